@@ -1,0 +1,93 @@
+// The configuration block: all that one node needs of the rig, as a value. hw/rigfile compiles it, flash or a
+// process start hands it to the node core, and its CRC-32 is the node_hash that the host requires.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "common/result.hpp"
+
+namespace octoskin {
+
+inline constexpr std::size_t kNodeSensorsMax = 34;
+inline constexpr std::size_t kNodeBusesMax = 4;
+inline constexpr std::size_t kSensorZonesMax = 9;
+inline constexpr std::uint8_t kNodeXshutLinesMax = 40;  ///< five 74HC595
+
+enum class DistanceMode : std::uint8_t { short_range = 1, medium_range = 2, long_range = 3 };
+enum class StreamGate : std::uint8_t { off = 0, differs = 1, advanced = 2 };
+
+/// Region of interest on the 16 x 16 SPAD array.
+struct Roi {
+    std::uint8_t centre_spad = 199;
+    std::uint8_t width = 16;   ///< 4..16
+    std::uint8_t height = 16;  ///< 4..16
+    friend constexpr bool operator==(const Roi&, const Roi&) = default;
+};
+
+struct SensorConfig {
+    std::uint8_t bus = 0;         ///< index of the node's I2C bus
+    std::uint8_t xshut_line = 0;  ///< index of the node's XSHUT output
+    std::uint8_t address = 0;     ///< 7-bit address after bring-up; never 0x29
+    DistanceMode distance_mode = DistanceMode::long_range;
+    std::uint16_t timing_budget_ms = 20;
+    std::uint16_t inter_measurement_ms = 33;
+    std::uint16_t phase_us = 0;  ///< start of this sensor's ranging within the period, to spread bus load
+    std::int16_t offset_quarter_mm = 0;          ///< 11.2 format, added by the device
+    bool has_offset = false;                     ///< false: the part's own factory offset stays
+    std::uint16_t crosstalk_raw = 0;             ///< 7.9 kcps per SPAD
+    std::uint16_t sigma_limit_quarter_mm = 360;  ///< 14.2: 90 mm
+    std::uint16_t signal_limit_raw = 128;        ///< 9.7 Mcps: 1.0
+    bool applies_gain_factor = false;            ///< 2011/2048 of ST's full API; off as in ST's ULD
+    std::uint8_t zone_count = 1;
+    std::array<Roi, kSensorZonesMax> zones{};
+    friend constexpr bool operator==(const SensorConfig&, const SensorConfig&) = default;
+};
+
+struct NodeConfig {
+    std::uint8_t node_id = 1;     ///< 1..62
+    std::uint8_t board_type = 0;  ///< hw/boards/
+    bool uses_can_fd = true;
+    std::uint32_t nominal_bitrate = 1'000'000;
+    std::uint32_t data_bitrate = 5'000'000;  ///< CAN FD only
+    std::uint32_t i2c_hz = 400'000;
+    bool is_io_2v8 = true;    ///< I2C and GPIO1 pulled up to AVDD (2.6..3.5 V) rather than 1.8 V
+    bool reads_twice = true;  ///< the result block is read twice and must agree
+    StreamGate stream_gate = StreamGate::advanced;
+    std::uint8_t aux_every = 0;          ///< classical: RANGE_AUX with every n-th reading; 0 = never
+    std::uint16_t zone_guard_us = 1000;  ///< a zone write this close to a range start makes its zone unknown
+    std::uint8_t sensor_count = 0;
+    std::array<SensorConfig, kNodeSensorsMax> sensors{};
+    friend constexpr bool operator==(const NodeConfig&, const NodeConfig&) = default;
+};
+
+/// Whether every field is within what a board can do: counts, indices, addresses (8..119, never 0x29), bit
+/// rates, ROI sizes, offsets of 13 bits; two sensors share neither an XSHUT line nor an address on one bus.
+/// Whether a sensor accepts a budget in a mode is the driver's to say.
+[[nodiscard]] bool is_valid(const NodeConfig& config) noexcept;
+
+/// In the order of the checks.
+enum class NodeConfigError : std::uint8_t {
+    truncated,      ///< shorter than a header, or than the length in it
+    wrong_magic,    ///< not a configuration block: an erased page, for one
+    wrong_length,   ///< the length in the header is impossible
+    wrong_crc,      ///< damaged
+    wrong_version,  ///< whole, but of another layout
+    invalid_field,  ///< not `is_valid`, a flag that is neither 0 nor 1, or fields and length that disagree
+};
+inline constexpr std::size_t kNodeConfigBytesMax = 2048;
+
+/// Canonical binary form: "OSKC", version and length (16 bits each), fields little-endian, CRC-32 of all
+/// before. Only sensors and zones within their counts are in it. Returns the bytes used in `out`. More
+/// sensors or zones than the arrays have is a programmer's mistake.
+[[nodiscard]] std::span<const std::uint8_t> encode(const NodeConfig& config,
+                                                   std::span<std::uint8_t, kNodeConfigBytesMax> out) noexcept;
+/// The block at the start of `memory`, which may be longer than the block: a flash page is.
+[[nodiscard]] Result<NodeConfig, NodeConfigError> decode_node_config(
+    std::span<const std::uint8_t> memory) noexcept;
+/// The node_hash: the CRC-32 that ends the canonical form.
+[[nodiscard]] std::uint32_t node_hash(const NodeConfig& config) noexcept;
+
+}  // namespace octoskin

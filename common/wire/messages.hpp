@@ -1,0 +1,268 @@
+// What travels on the bus, as plain values. docs/protocol.md has the bytes; codec.hpp turns one into the
+// other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <variant>
+
+#include "common/time.hpp"
+
+namespace octoskin::wire {
+
+/// Low 3 bits of byte 0 of every frame, frozen for all versions.
+inline constexpr std::uint8_t kProtocolVersion = 1;
+
+/// 1..62; 0 is the host, 63 addresses every node (commands).
+using NodeId = std::uint8_t;
+inline constexpr NodeId kHostId = 0;
+inline constexpr NodeId kBroadcastId = 63;
+
+inline constexpr std::uint8_t kAllSensors = 63;         ///< in commands
+inline constexpr std::uint8_t kSensorsPerNodeMax = 63;  ///< sensor index: 6 bits, 63 = all
+inline constexpr std::uint8_t kZonesMax = 15;           ///< zone index: 4 bits, 15 = unknown
+inline constexpr std::uint8_t kZoneUnknown = 15;
+inline constexpr std::uint8_t kSequenceCount = 64;  ///< readings: 6-bit sequence per (node, sensor)
+
+/// The low bits of a node's clock as sent: the clock's value modulo `span_us`, rounded down to the field's
+/// step.
+struct TimeResidue {
+    std::uint32_t value_us = 0;
+    std::uint32_t span_us = 0;
+    friend constexpr bool operator==(const TimeResidue&, const TimeResidue&) = default;
+};
+inline constexpr std::uint32_t kClassicalTimeStepUs = 64;
+inline constexpr std::uint32_t kClassicalTimeSpanUs = 1U << 18;  ///< 12 bits of 64 us: 262 ms
+inline constexpr std::uint32_t kFdTimeSpanUs = 1U << 24;         ///< 24 bits of 1 us: 16.8 s
+
+[[nodiscard]] constexpr TimeResidue classical_residue(NodeTime time) noexcept {
+    const std::uint32_t low = time.us % kClassicalTimeSpanUs;
+    return {.value_us = low - low % kClassicalTimeStepUs, .span_us = kClassicalTimeSpanUs};
+}
+[[nodiscard]] constexpr TimeResidue fd_residue(NodeTime time) noexcept {
+    return {.value_us = time.us % kFdTimeSpanUs, .span_us = kFdTimeSpanUs};
+}
+
+/// One reading of one sensor: everything that acceptance needs.
+struct RangeReading {
+    std::uint8_t sensor = 0;             ///< local index on its node
+    std::uint8_t zone = 0;               ///< ROI in force when the range began
+    std::uint8_t device_status = 0;      ///< the device's 5-bit code; 19 for code 9 with stream count 0
+    std::uint8_t sequence = 0;           ///< per (node, sensor), modulo 64
+    std::uint16_t range_mm = 0;          ///< classical: saturates at 8191
+    std::uint16_t sigma_quarter_mm = 0;  ///< device format 14.2; classical: whole mm, rounded up, at most 127
+    TimeResidue capture;                 ///< middle of the ranging window on the node's clock
+    friend constexpr bool operator==(const RangeReading&, const RangeReading&) = default;
+};
+
+/// Signal figures of one reading, device format 9.7 Mcps.
+struct SignalReading {
+    std::uint16_t peak_signal = 0;
+    std::uint16_t ambient = 0;
+    friend constexpr bool operator==(const SignalReading&, const SignalReading&) = default;
+};
+
+struct Range {  ///< classical: one reading in 8 bytes
+    RangeReading reading;
+    friend constexpr bool operator==(const Range&, const Range&) = default;
+};
+struct RangeAux {  ///< classical, optional, decimated; never needed for acceptance
+    std::uint8_t sensor = 0;
+    std::uint8_t sequence = 0;
+    SignalReading signal;
+    friend constexpr bool operator==(const RangeAux&, const RangeAux&) = default;
+};
+inline constexpr std::uint8_t kReadingsPerFdFrame = 4;
+struct RangeFd {  ///< CAN FD: 1..4 lossless readings
+    struct Entry {
+        RangeReading reading;
+        SignalReading signal;
+        friend constexpr bool operator==(const Entry&, const Entry&) = default;
+    };
+    std::uint8_t count = 0;
+    std::array<Entry, kReadingsPerFdFrame> entries{};
+    friend constexpr bool operator==(const RangeFd&, const RangeFd&) = default;
+};
+
+enum class NodeState : std::uint8_t {
+    starting = 0,  ///< sensors are being brought up
+    ranging = 1,
+    stopped = 2,      ///< by command
+    safe = 3,         ///< repeated resets: heartbeat only
+    bad_config = 4,   ///< configuration block missing, damaged or for another board: no ranging
+    id_conflict = 5,  ///< heard its own node id: ranges stopped
+    bus_fault = 6,    ///< no I2C bus usable
+};
+enum class ResetCause : std::uint8_t {
+    power_on = 0,
+    brown_out = 1,
+    watchdog = 2,
+    software = 3,
+    pin = 4,
+    fault = 5,
+    unknown = 7,
+};
+/// 10 Hz, one classical frame of 8 bytes in all versions.
+struct Heartbeat {
+    NodeState state = NodeState::starting;
+    ResetCause reset_cause = ResetCause::unknown;
+    bool is_rate_overridden = false;    ///< a volatile rate command is in force
+    bool is_time_suspect = false;       ///< the node's clock source failed its check
+    std::uint8_t degraded_sensors = 0;  ///< not ranging as configured; saturates at 31
+    std::uint16_t uid_crc = 0;          ///< CRC-16 of the 96-bit unique id
+    std::uint16_t node_hash_low = 0;
+    friend constexpr bool operator==(const Heartbeat&, const Heartbeat&) = default;
+};
+
+/// Sent as pages at start, on request and once a second. Pages arrive in any order; a receiver holds a node's
+/// info complete once it has every page.
+enum class InfoPage : std::uint8_t {
+    uid_low = 0,
+    uid_high = 1,
+    identity = 2,
+    build = 3,
+    counters = 4,
+    traffic = 5,
+    fault = 6,
+};
+inline constexpr std::uint8_t kInfoPages = 7;
+struct InfoUidLow {
+    std::array<std::uint8_t, 6> uid{};
+    friend constexpr bool operator==(const InfoUidLow&, const InfoUidLow&) = default;
+};
+struct InfoUidHigh {
+    std::array<std::uint8_t, 6> uid{};
+    friend constexpr bool operator==(const InfoUidHigh&, const InfoUidHigh&) = default;
+};
+struct InfoIdentity {
+    std::uint32_t node_hash = 0;  ///< CRC-32 of the configuration block
+    std::uint8_t sensor_count = 0;
+    std::uint8_t board_type = 0;  ///< hw/boards/: the number of the board type
+    friend constexpr bool operator==(const InfoIdentity&, const InfoIdentity&) = default;
+};
+struct InfoBuild {
+    std::uint32_t build_id = 0;  ///< first 32 bits of the firmware's git commit
+    std::uint16_t uptime_s = 0;  ///< saturates
+    friend constexpr bool operator==(const InfoBuild&, const InfoBuild&) = default;
+};
+struct InfoCounters {  ///< since start, saturating
+    std::uint16_t i2c_errors = 0;
+    std::uint16_t reads_disagreed = 0;  ///< double reads that never agreed
+    std::uint16_t sensor_restarts = 0;
+    friend constexpr bool operator==(const InfoCounters&, const InfoCounters&) = default;
+};
+struct InfoTraffic {                 ///< since start, saturating
+    std::uint16_t tx_dropped = 0;    ///< readings displaced by newer ones of their sensor
+    std::uint16_t late_dropped = 0;  ///< readings that waited over 50 ms to be sent
+    std::uint8_t bus_off_count = 0;
+    std::uint8_t rx_rejected = 0;  ///< frames for us that failed length, CRC or version
+    friend constexpr bool operator==(const InfoTraffic&, const InfoTraffic&) = default;
+};
+struct InfoFault {  ///< the last recorded fault; all zero if there is none
+    std::uint8_t kind = 0;
+    std::uint8_t count = 0;
+    std::uint32_t where = 0;  ///< program counter or assertion id
+    friend constexpr bool operator==(const InfoFault&, const InfoFault&) = default;
+};
+using NodeInfo =
+    std::variant<InfoUidLow, InfoUidHigh, InfoIdentity, InfoBuild, InfoCounters, InfoTraffic, InfoFault>;
+
+enum class SensorState : std::uint8_t {
+    absent = 0,  ///< never answered
+    starting = 1,
+    ranging = 2,
+    stopped = 3,
+    degraded = 4,  ///< answers, but ten readings in a row were rejected on the node
+    lost = 5,      ///< answered once, does not now
+};
+enum class SensorFault : std::uint8_t {
+    none = 0,
+    no_answer = 1,
+    wrong_id = 2,
+    boot_timeout = 3,
+    config_mismatch = 4,
+    no_data_ready = 5,
+    stale_stream = 6,
+    reads_disagree = 7,
+    implausible_block = 8,
+    bus_error = 9,
+    address_conflict = 10,
+};
+/// On change and once a second.
+struct SensorHealth {
+    std::uint8_t sensor = 0;
+    SensorState state = SensorState::absent;
+    SensorFault fault = SensorFault::none;  ///< why it is not ranging, or the last fault
+    std::uint16_t sent = 0;  ///< readings sent since start, modulo 2^16; counts RANGE frames' entries
+    std::uint8_t capture_bound_64us =
+        0;                      ///< bound on the capture time's error, in steps of 64 us, rounded up
+    std::uint8_t rejected = 0;  ///< readings rejected on the node since start, modulo 256
+    std::int8_t period_error_permille = 0;  ///< measured period against the configured one, saturating
+    friend constexpr bool operator==(const SensorHealth&, const SensorHealth&) = default;
+};
+
+/// Two-step synchronisation: every node notes its clock at the end of SYNC; FOLLOW_UP carries the host's own
+/// stamp of that instant; each node answers with its note.
+inline constexpr std::uint8_t kSyncSequenceCount = 32;
+struct Sync {
+    std::uint8_t sequence = 0;
+    friend constexpr bool operator==(const Sync&, const Sync&) = default;
+};
+struct FollowUp {
+    std::uint8_t sequence = 0;       ///< of the SYNC it belongs to
+    std::uint64_t host_time_us = 0;  ///< host clock at the end of that SYNC, 48 bits
+    friend constexpr bool operator==(const FollowUp&, const FollowUp&) = default;
+};
+struct SyncReport {
+    std::uint8_t sequence = 0;
+    NodeTime heard;  ///< node clock at the end of that SYNC
+    friend constexpr bool operator==(const SyncReport&, const SyncReport&) = default;
+};
+
+inline constexpr std::uint8_t kJointsPerSample = 7;
+inline constexpr std::uint8_t kJointSequenceCount = 8;
+/// Frames 0..2 carry joints (2i, 2i+1); frame 3 carries joint 6 and the sample's time.
+struct JointPair {
+    std::uint8_t index = 0;  ///< 0..2
+    std::uint8_t sequence = 0;
+    std::array<std::int32_t, 2> position_urad{};  ///< 24 bits signed: +-8.38 rad
+    friend constexpr bool operator==(const JointPair&, const JointPair&) = default;
+};
+struct JointLast {
+    std::uint8_t sequence = 0;
+    std::int32_t position_urad = 0;
+    TimeResidue sampled;  ///< span kFdTimeSpanUs
+    friend constexpr bool operator==(const JointLast&, const JointLast&) = default;
+};
+using JointState = std::variant<JointPair, JointLast>;
+
+enum class MarkKind : std::uint8_t { stop = 0, start = 1 };
+/// From the host (recorder or simulator): measurements captured before START or after STOP stay out of the
+/// map.
+struct Mark {
+    MarkKind kind = MarkKind::start;
+    std::uint64_t host_time_us = 0;  ///< 48 bits
+    friend constexpr bool operator==(const Mark&, const Mark&) = default;
+};
+
+enum class CommandCode : std::uint8_t {
+    start = 1,
+    stop = 2,
+    set_rate = 3,
+    reinitialise_sensor = 4,
+    identify = 5,
+    reset = 6,
+    send_info = 7,
+};
+struct Command {
+    CommandCode code = CommandCode::start;
+    std::uint8_t sensor = kAllSensors;
+    std::uint16_t argument = 0;  ///< set_rate: inter-measurement period in ms; identify: seconds; else 0
+    std::uint8_t sequence = 0;
+    friend constexpr bool operator==(const Command&, const Command&) = default;
+};
+
+using Message = std::variant<Range, RangeAux, RangeFd, Heartbeat, NodeInfo, SensorHealth, Sync, FollowUp,
+                             SyncReport, JointState, Mark, Command>;
+
+}  // namespace octoskin::wire

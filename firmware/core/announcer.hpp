@@ -1,0 +1,57 @@
+// When does the node speak about itself? Heartbeat at 10 Hz, each NODE_INFO page and each sensor's health
+// once a second, spread evenly, and earlier when something changed. It remembers only *that* something is to
+// be said; what is said is composed at the moment it is sent, so it is never out of date and never queues up.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/time.hpp"
+#include "common/wire/messages.hpp"
+#include "firmware/core/policy.hpp"
+
+namespace octoskin::node {
+
+class Announcer {
+  public:
+    Announcer(std::uint8_t sensor_count, const Policy& policy, NodeTime now) noexcept;
+
+    /// Notes what has fallen due by `now`.
+    void update(NodeTime now) noexcept;
+    /// When `update` next has something to note.
+    [[nodiscard]] NodeTime next_due() const noexcept;
+
+    void request_all() noexcept;
+    void request_health(std::uint8_t sensor) noexcept { health_due_ |= std::uint64_t{1} << sensor; }
+
+    [[nodiscard]] bool is_heartbeat_due() const noexcept { return is_heartbeat_due_; }
+    [[nodiscard]] std::optional<wire::InfoPage> info_page_due() const noexcept;
+    [[nodiscard]] std::optional<std::uint8_t> health_due() const noexcept;
+
+    void heartbeat_sent() noexcept { is_heartbeat_due_ = false; }
+    void info_sent(wire::InfoPage page) noexcept;
+    void health_sent(std::uint8_t sensor) noexcept;
+
+  private:
+    /// An even rhythm that does not drift, and does not catch up after a pause.
+    struct Rhythm {
+        Microseconds period{0};
+        NodeTime next;
+        [[nodiscard]] bool beats(NodeTime now) noexcept;
+    };
+
+    [[nodiscard]] static Rhythm every(Microseconds period, NodeTime now) noexcept;
+
+    std::uint8_t sensor_count_;
+    Rhythm heartbeat_;
+    Rhythm info_;
+    Rhythm health_;
+    bool is_heartbeat_due_ = true;
+    std::uint8_t info_due_;         ///< bit i: page i
+    std::uint64_t health_due_ = 0;  ///< bit i: sensor i
+    std::uint8_t info_turn_ = 0;
+    std::uint8_t health_turn_ = 0;
+    std::uint8_t health_first_ = 0;  ///< where the search begins, so that no sensor is always last
+};
+
+}  // namespace octoskin::node

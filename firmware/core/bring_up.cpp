@@ -1,0 +1,167 @@
+#include "firmware/core/bring_up.hpp"
+
+#include <cassert>
+
+#include "firmware/core/sensor_fault.hpp"
+
+namespace octoskin::node {
+
+BringUp::BringUp(vl53l1x::Device& device, DefaultAddress& default_address, XshutLines& xshut,
+                 const SensorConfig& config, const Policy& policy) noexcept
+    : device_(device), default_address_(default_address), xshut_(xshut), config_(config), policy_(policy) {}
+
+void BringUp::begin(NodeTime now) {
+    hold_in_reset();
+    outcome_ = Outcome::under_way;
+    fault_ = wire::SensorFault::none;
+    has_answered_ = false;
+    step_ = Step::held_low;
+    step_due_ = now + policy_.xshut_low;
+}
+
+void BringUp::hold_in_reset() {
+    assert(!device_.is_busy());
+    xshut_.set(config_.xshut_line, false);
+    default_address_.release(this);
+    step_ = Step::idle;
+}
+
+std::optional<NodeTime> BringUp::due() const noexcept {
+    switch (step_) {
+        case Step::idle:
+            return std::nullopt;
+        case Step::held_low:
+            return default_address_.is_free() ? std::optional(step_due_) : std::nullopt;
+        case Step::checking_silence:
+        case Step::booting:
+        case Step::identifying:
+        case Step::addressing:
+        case Step::confirming_silence:
+        case Step::initialising:
+        case Step::collecting:
+        case Step::configuring:
+            return step_due_;
+    }
+    return std::nullopt;
+}
+
+vl53l1x::Device& BringUp::active_device() noexcept {
+    const bool is_watching = step_ == Step::checking_silence || step_ == Step::confirming_silence;
+    return is_watching ? default_address_.watcher() : device_;
+}
+
+BusUse BringUp::advance(NodeTime now) {
+    if (step_ == Step::held_low) {
+        default_address_.hold(this);
+        start_step(Step::checking_silence, now);
+    } else if (step_ == Step::booting) {
+        start_step(Step::identifying, now);
+    }
+
+    vl53l1x::Device& device = active_device();
+    switch (device.poll(now)) {
+        case vl53l1x::Progress::busy:
+            if (const auto wake = device.wake_time(); wake && !is_reached(*wake, now)) {
+                step_due_ = *wake;
+                return BusUse::releases;
+            }
+            return BusUse::keeps;
+        case vl53l1x::Progress::done:
+            on_step_done(now);
+            break;
+        case vl53l1x::Progress::failed:
+            on_step_failed(device.error(), now);
+            break;
+        case vl53l1x::Progress::idle:
+            assert(false && "an operation is begun before it is polled");
+            break;
+    }
+    // Between two steps everybody else on the bus gets a chance.
+    return BusUse::releases;
+}
+
+void BringUp::start_step(Step step, NodeTime now) {
+    step_ = step;
+    step_due_ = now;
+    switch (step) {
+        case Step::checking_silence:
+        case Step::confirming_silence:
+            default_address_.watcher().begin_probe(vl53l1x::kDefaultAddress);
+            break;
+        case Step::booting:
+            xshut_.set(config_.xshut_line, true);
+            step_due_ = now + policy_.xshut_boot;
+            break;
+        case Step::identifying:
+            device_.begin_probe(vl53l1x::kDefaultAddress);
+            break;
+        case Step::addressing:
+            device_.begin_set_address(config_.address);
+            break;
+        case Step::initialising:
+            default_address_.release(this);
+            device_.begin_initialise();
+            break;
+        case Step::collecting:
+            device_.begin_finish_initialise();
+            break;
+        case Step::configuring:
+            device_.begin_configure(config_);
+            break;
+        case Step::idle:
+        case Step::held_low:
+            break;
+    }
+}
+
+void BringUp::on_step_done(NodeTime now) {
+    switch (step_) {
+        case Step::checking_silence:
+        case Step::confirming_silence:
+            fail(wire::SensorFault::address_conflict);
+            break;
+        case Step::identifying:
+            has_answered_ = true;
+            start_step(Step::addressing, now);
+            break;
+        case Step::addressing:
+            start_step(Step::confirming_silence, now);
+            break;
+        case Step::initialising:
+            start_step(Step::collecting, now);
+            break;
+        case Step::collecting:
+            start_step(Step::configuring, now);
+            break;
+        case Step::configuring:
+            outcome_ = Outcome::done;
+            step_ = Step::idle;
+            break;
+        case Step::idle:
+        case Step::held_low:
+        case Step::booting:
+            break;
+    }
+}
+
+void BringUp::on_step_failed(vl53l1x::Error error, NodeTime now) {
+    const bool was_watching = step_ == Step::checking_silence || step_ == Step::confirming_silence;
+    if (!was_watching) {
+        fail(sensor_fault(error));
+    } else if (error == vl53l1x::Error::no_answer) {
+        start_step(step_ == Step::checking_silence ? Step::booting : Step::initialising, now);
+    } else if (error == vl53l1x::Error::bus_error) {
+        fail(wire::SensorFault::bus_error);
+    } else {
+        fail(wire::SensorFault::address_conflict);  // somebody answered, however badly
+    }
+}
+
+void BringUp::fail(wire::SensorFault fault) {
+    fault_ = fault;
+    outcome_ = Outcome::failed;
+    // In reset it cannot answer at 0x29, where it would be taken for its neighbour.
+    hold_in_reset();
+}
+
+}  // namespace octoskin::node

@@ -1,0 +1,80 @@
+// Brings one sensor from reset to configured. Sensors of a bus pass the default address one after the other
+// and do all the rest side by side, so that the 100 ms of the first range are waited for once:
+//
+//   XSHUT low >= 1 ms | 0x29 must be silent | XSHUT high, 2 ms | identify | new address, verified |
+//   0x29 must be silent again || boot, default configuration, first range | collect it | settings
+//
+// ST AN5776 section 2.2 has the order up to the new address.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/config/node_config.hpp"
+#include "common/time.hpp"
+#include "common/wire/messages.hpp"
+#include "firmware/core/bus_use.hpp"
+#include "firmware/core/default_address.hpp"
+#include "firmware/core/policy.hpp"
+#include "firmware/core/ports.hpp"
+#include "firmware/drivers/vl53l1x/device.hpp"
+
+namespace octoskin::node {
+
+class BringUp {
+  public:
+    enum class Outcome : std::uint8_t { under_way, done, failed };
+
+    BringUp(vl53l1x::Device& device, DefaultAddress& default_address, XshutLines& xshut,
+            const SensorConfig& config, const Policy& policy) noexcept;
+
+    /// Puts the sensor in reset and begins. Never while the device is busy.
+    void begin(NodeTime now);
+    /// Puts the sensor in reset and leaves it there.
+    void hold_in_reset();
+
+    /// When the bus is wanted; empty while another sensor is at the default address, or nothing is under way.
+    [[nodiscard]] std::optional<NodeTime> due() const noexcept;
+    /// One step, with the bus free or taken by this sensor's own transfer.
+    [[nodiscard]] BusUse advance(NodeTime now);
+
+    [[nodiscard]] Outcome outcome() const noexcept { return outcome_; }
+    /// After `failed`.
+    [[nodiscard]] wire::SensorFault fault() const noexcept { return fault_; }
+    /// Whether the sensor identified itself in this attempt.
+    [[nodiscard]] bool has_answered() const noexcept { return has_answered_; }
+
+  private:
+    enum class Step : std::uint8_t {
+        idle,
+        held_low,
+        checking_silence,
+        booting,
+        identifying,
+        addressing,
+        confirming_silence,
+        initialising,
+        collecting,
+        configuring,
+    };
+
+    [[nodiscard]] vl53l1x::Device& active_device() noexcept;
+    void start_step(Step step, NodeTime now);
+    void on_step_done(NodeTime now);
+    void on_step_failed(vl53l1x::Error error, NodeTime now);
+    void fail(wire::SensorFault fault);
+
+    vl53l1x::Device& device_;
+    DefaultAddress& default_address_;
+    XshutLines& xshut_;
+    const SensorConfig& config_;
+    const Policy& policy_;
+
+    Step step_ = Step::idle;
+    NodeTime step_due_;
+    Outcome outcome_ = Outcome::under_way;
+    wire::SensorFault fault_ = wire::SensorFault::none;
+    bool has_answered_ = false;
+};
+
+}  // namespace octoskin::node

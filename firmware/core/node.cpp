@@ -1,0 +1,176 @@
+#include "firmware/core/node.hpp"
+
+#include <algorithm>
+
+#include "common/wire/crc.hpp"
+#include "firmware/core/frame_budget.hpp"
+#include "firmware/core/time_bracket.hpp"
+
+namespace octoskin::node {
+
+namespace {
+
+constexpr Microseconds kBlinkHalfPeriod{250'000};
+constexpr Microseconds kSecond{1'000'000};
+
+// A full transmit mailbox has no event of its own here: look again soon.
+constexpr Microseconds kTransmitRetry{1'000};
+
+bool is_usable(const NodeConfig& config, std::size_t bus_count) noexcept {
+    if (!is_valid(config)) return false;
+    const auto sensors = std::span(config.sensors).first(config.sensor_count);
+    return std::all_of(sensors.begin(), sensors.end(),
+                       [=](const SensorConfig& sensor) { return sensor.bus < bus_count; });
+}
+
+vl53l1x::Options device_options(const NodeConfig& config, bool applies_gain_factor) noexcept {
+    vl53l1x::Options options;
+    options.is_io_2v8 = config.is_io_2v8;
+    options.reads_twice = config.reads_twice;
+    options.applies_gain_factor = applies_gain_factor;
+    options.i2c_hz = config.i2c_hz;
+    return options;
+}
+
+NodeTime earlier(NodeTime time, const std::optional<NodeTime>& other) noexcept {
+    return other ? earlier_of(time, *other) : time;
+}
+
+}  // namespace
+
+Node::Node(const NodeConfig& config, const Identity& identity, const Ports& ports, NodeTime now,
+           const Policy& policy)
+    : config_(config),
+      identity_(identity),
+      ports_(ports),
+      policy_(policy),
+      is_config_usable_(is_usable(config, ports.buses.size())),
+      node_hash_(is_config_usable_ ? node_hash(config) : 0),
+      uid_crc_(crc16(identity.uid)),
+      queue_(config.uses_can_fd, config.aux_every, policy_),
+      announcer_(is_config_usable_ ? config.sensor_count : std::uint8_t{0}, policy_, now),
+      tokens_(frame_budget(config), now),
+      uptime_counted_(now) {
+    if (!is_config_usable_) config_.sensor_count = 0;
+    create_sensors(now);
+}
+
+void Node::create_sensors(NodeTime now) {
+    const RangingRules rules{.stream_gate = config_.stream_gate,
+                             .zone_guard = Microseconds{config_.zone_guard_us},
+                             .i2c_hz = config_.i2c_hz};
+    for (std::size_t i = 0; i < config_.sensor_count; ++i) {
+        const SensorConfig& sensor = config_.sensors[i];
+        const vl53l1x::Options options = device_options(config_, sensor.applies_gain_factor);
+        i2c::Bus& bus = *ports_.buses[sensor.bus];
+        auto& worker = buses_[sensor.bus];
+        if (!worker) worker.emplace(bus, options, policy_);
+        const SensorSurroundings surroundings{
+            .bus = bus, .default_address = worker->default_address(), .xshut = ports_.xshut};
+        sensors_[i].emplace(sensor, surroundings, options, rules, policy_, now);
+        worker->add(*sensors_[i]);
+    }
+    commanded_to_range_ = (std::uint64_t{1} << config_.sensor_count) - 1;
+}
+
+void Node::poll(NodeTime now) {
+    advance_buses(now);
+    collect_readings(now);
+    note_health_changes();
+    end_what_has_expired(now);
+    blink(now);
+    announcer_.update(now);
+    transmit(now);
+}
+
+void Node::advance_buses(NodeTime now) {
+    for (auto& bus : buses_) {
+        if (bus) bus->poll(now);
+    }
+}
+
+void Node::collect_readings(NodeTime now) {
+    for (std::uint8_t i = 0; i < config_.sensor_count; ++i) {
+        const auto reading = sensors_[i]->take_reading();
+        if (!reading) continue;
+        told_[i].bound_since = std::max(told_[i].bound_since, reading->capture_bound);
+        queue_.push(i, *reading, now);
+    }
+}
+
+void Node::note_health_changes() {
+    for (std::uint8_t i = 0; i < config_.sensor_count; ++i) {
+        const Told& told = told_[i];
+        const bool is_changed = sensors_[i]->state() != told.state || sensors_[i]->fault() != told.fault;
+        const bool is_bound_exceeded = bound_on_wire(told.bound_since) > bound_on_wire(told.bound);
+        if (is_changed || is_bound_exceeded) announcer_.request_health(i);
+    }
+}
+
+void Node::end_what_has_expired(NodeTime now) {
+    if (elapsed(uptime_counted_, now) >= kSecond) {
+        uptime_counted_ = uptime_counted_ + kSecond;
+        ++uptime_s_;
+    }
+    if (last_command_ && elapsed(last_command_->received, now) >= policy_.command_repeat) {
+        last_command_.reset();
+    }
+    if (own_id_heard_ && elapsed(*own_id_heard_, now) >= policy_.id_conflict_clear) {
+        own_id_heard_.reset();
+        apply_order_to_range(now);
+    }
+}
+
+void Node::blink(NodeTime now) {
+    if (!identify_until_ || ports_.indicator == nullptr || !is_reached(blink_at_, now)) return;
+    const bool is_over = is_reached(*identify_until_, now);
+    is_lit_ = !is_lit_ && !is_over;
+    ports_.indicator->set(is_lit_);
+    blink_at_ = now + kBlinkHalfPeriod;
+    if (is_over) identify_until_.reset();
+}
+
+NodeTime Node::wake_time(NodeTime now) const {
+    NodeTime wake = announcer_.next_due();
+    for (const auto& bus : buses_) {
+        if (bus) wake = earlier(wake, bus->wake_time());
+    }
+    if (identify_until_) wake = earlier_of(wake, blink_at_);
+    if (has_unsent_) {
+        wake = earlier_of(wake, now + std::max(tokens_.wait(), kTransmitRetry));
+    } else if (!own_id_heard_) {
+        wake = earlier(wake, queue_.ready_time());
+    }
+    return later_of(wake, now);
+}
+
+wire::NodeState Node::state() const noexcept {
+    using wire::NodeState;
+    if (!is_config_usable_) return NodeState::bad_config;
+    if (own_id_heard_) return NodeState::id_conflict;
+    const auto is_unusable = [](const auto& bus) { return !bus || bus->is_faulty(); };
+    const auto is_settled = [](const auto& sensor) { return sensor->is_settled(); };
+    const bool has_sensors = config_.sensor_count > 0;
+    if (has_sensors && std::all_of(buses_.begin(), buses_.end(), is_unusable)) return NodeState::bus_fault;
+    if (has_sensors && commanded_to_range_ == 0) return NodeState::stopped;
+    const auto all = sensors();
+    return std::all_of(all.begin(), all.end(), is_settled) ? NodeState::ranging : NodeState::starting;
+}
+
+NodeCounts Node::counts() const noexcept {
+    NodeCounts counts{.displaced = queue_.losses().displaced,
+                      .late = queue_.losses().late,
+                      .frames_sent = frames_sent_,
+                      .rx_rejected = rx_rejected_};
+    for (const auto& sensor : sensors()) {
+        const SensorCounts& own = sensor->counts();
+        counts.i2c_errors += sensor->i2c_error_count();
+        counts.rejected += own.rejected;
+        counts.reads_disagreed += own.reads_disagreed;
+        counts.undated += own.undated;
+        counts.sensor_restarts += own.restarts;
+    }
+    return counts;
+}
+
+}  // namespace octoskin::node

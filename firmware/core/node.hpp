@@ -1,0 +1,144 @@
+// The node: brings its sensors up, reads them on schedule, accepts or rejects each reading, and puts frames
+// out. The same code runs on the board, on Linux and in the simulator: time is an argument, buses and lines
+// are interfaces.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "common/config/node_config.hpp"
+#include "common/time.hpp"
+#include "common/wire/can_frame.hpp"
+#include "common/wire/messages.hpp"
+#include "firmware/core/announcer.hpp"
+#include "firmware/core/bus_worker.hpp"
+#include "firmware/core/policy.hpp"
+#include "firmware/core/ports.hpp"
+#include "firmware/core/reading_queue.hpp"
+#include "firmware/core/sensor.hpp"
+#include "firmware/core/token_bucket.hpp"
+
+namespace octoskin::node {
+
+/// What the node counted since its start.
+struct NodeCounts {
+    std::uint32_t i2c_errors = 0;       ///< failed transfers, retried ones included; silence at 0x29 is none
+    std::uint32_t rejected = 0;         ///< results that did not become readings
+    std::uint32_t reads_disagreed = 0;  ///< of these: never read twice alike
+    std::uint32_t undated = 0;          ///< of these: time or zone not known well enough
+    std::uint32_t sensor_restarts = 0;
+    std::uint32_t displaced = 0;  ///< readings displaced by a newer one of the same sensor before being sent
+    std::uint32_t late = 0;       ///< readings that waited too long to be sent
+    std::uint32_t frames_sent = 0;
+    std::uint32_t rx_rejected = 0;  ///< frames for us that failed a check, and commands that were refused
+};
+
+/// Call `poll` in a loop of 100 us or faster, or at `wake_time` and whenever an I2C transfer ends or a
+/// transmit mailbox falls free; and `on_frame` for every frame received (never for own ones), with the time
+/// of its end. One thread only; nothing waits. A `poll` takes at most 4 steps on each I2C bus and sends at
+/// most 8 frames: O(sensors). Slower loops are safe, but lose readings: each transfer of a reading needs a
+/// poll of its own.
+class Node {
+  public:
+    Node(const NodeConfig& config, const Identity& identity, const Ports& ports, NodeTime now,
+         const Policy& policy = {});
+    Node(const Node&) = delete;
+    Node& operator=(const Node&) = delete;
+
+    void poll(NodeTime now);
+    void on_frame(const wire::CanFrame& frame, NodeTime received);
+
+    /// When `poll` next has something to do of its own accord, never before `now`. The ends of I2C transfers
+    /// and of transmissions come on top: they are events of the ports.
+    [[nodiscard]] NodeTime wake_time(NodeTime now) const;
+
+    /// The host asked for a reset: the application performs it.
+    [[nodiscard]] bool is_reset_requested() const noexcept { return is_reset_requested_; }
+
+    [[nodiscard]] wire::NodeState state() const noexcept;
+    [[nodiscard]] NodeCounts counts() const noexcept;
+
+  private:
+    /// The sensors that a command names: [first, end).
+    struct Selection {
+        std::uint8_t first = 0;
+        std::uint8_t end = 0;
+        [[nodiscard]] bool is_empty() const noexcept { return first == end; }
+    };
+    /// What was last told of a sensor, and the worst capture bound since.
+    struct Told {
+        wire::SensorState state = wire::SensorState::starting;
+        wire::SensorFault fault = wire::SensorFault::none;
+        Microseconds bound{0};
+        Microseconds bound_since{0};
+    };
+    struct ReceivedCommand {
+        wire::Command command;
+        NodeTime received;
+    };
+
+    // --- work (node.cpp)
+    void create_sensors(NodeTime now);
+    void advance_buses(NodeTime now);
+    void collect_readings(NodeTime now);
+    void note_health_changes();
+    void end_what_has_expired(NodeTime now);
+    void blink(NodeTime now);
+    [[nodiscard]] std::span<const std::optional<Sensor>> sensors() const noexcept {
+        return std::span(sensors_).first(config_.sensor_count);
+    }
+
+    // --- frames in (node_receive.cpp)
+    [[nodiscard]] bool is_for_us(const wire::CanFrame& frame) const noexcept;
+    void on_own_id_heard(NodeTime now);
+    void apply_order_to_range(NodeTime now);
+    void on_command(const wire::Command& command, NodeTime now);
+    [[nodiscard]] bool perform(const wire::Command& command, NodeTime now);
+    [[nodiscard]] bool set_rate(const Selection& selection, std::uint16_t period_ms, NodeTime now);
+    [[nodiscard]] Selection selected(std::uint8_t sensor) const noexcept;
+    [[nodiscard]] static std::uint64_t mask_of(const Selection& selection) noexcept;
+
+    // --- frames out (node_transmit.cpp)
+    void transmit(NodeTime now);
+    [[nodiscard]] bool send_most_urgent(NodeTime now);
+    [[nodiscard]] bool send(const wire::Message& message);
+    [[nodiscard]] wire::Heartbeat heartbeat() const noexcept;
+    [[nodiscard]] wire::NodeInfo info(wire::InfoPage page) const noexcept;
+    [[nodiscard]] wire::SensorHealth health(std::uint8_t sensor) const noexcept;
+    [[nodiscard]] Microseconds bound_to_tell(std::uint8_t sensor) const noexcept;
+    [[nodiscard]] std::uint8_t bound_on_wire(Microseconds bound) const noexcept;
+    void note_told(std::uint8_t sensor) noexcept;
+
+    NodeConfig config_;
+    Identity identity_;
+    Ports ports_;
+    Policy policy_;
+    bool is_config_usable_;
+    std::uint32_t node_hash_;
+    std::uint16_t uid_crc_;
+
+    std::array<std::optional<BusWorker>, kNodeBusesMax> buses_{};
+    std::array<std::optional<Sensor>, kNodeSensorsMax> sensors_{};
+    std::array<Told, kNodeSensorsMax> told_{};
+    ReadingQueue queue_;
+    Announcer announcer_;
+    TokenBucket tokens_;
+
+    bool has_unsent_ = false;
+    std::uint32_t frames_sent_ = 0;
+    std::uint32_t rx_rejected_ = 0;
+    std::optional<wire::SyncReport> sync_report_;
+    std::optional<ReceivedCommand> last_command_;
+    std::uint64_t commanded_to_range_ = 0;  ///< bit i: sensor i
+    std::optional<NodeTime> own_id_heard_;
+    std::optional<NodeTime> identify_until_;
+    NodeTime blink_at_;
+    bool is_lit_ = false;
+    bool is_reset_requested_ = false;
+    std::uint32_t uptime_s_ = 0;
+    NodeTime uptime_counted_;
+};
+
+}  // namespace octoskin::node

@@ -1,0 +1,128 @@
+// What the node does about frames it hears.
+#include <algorithm>
+
+#include "common/wire/codec.hpp"
+#include "firmware/core/node.hpp"
+
+namespace octoskin::node {
+
+namespace {
+
+// The clock wraps after 71 minutes and is compared over half of that.
+constexpr std::uint16_t kIdentifySecondsMax = 1'800;
+
+}  // namespace
+
+void Node::on_frame(const wire::CanFrame& frame, NodeTime received) {
+    if (!is_for_us(frame)) return;
+    const auto decoded = wire::decode(frame);
+    if (!decoded) {
+        ++rx_rejected_;
+        return;
+    }
+    if (const auto* sync = std::get_if<wire::Sync>(&decoded->message)) {
+        // Answered at once, not after FOLLOW_UP: the note is the node's own, and one lost frame costs less.
+        sync_report_ = wire::SyncReport{.sequence = sync->sequence, .heard = received};
+    } else if (const auto* command = std::get_if<wire::Command>(&decoded->message)) {
+        on_command(*command, received);
+    } else {
+        on_own_id_heard(received);
+    }
+}
+
+/// SYNC, commands to this node or to all, and whatever another node sends under this node's id. Everything
+/// else on the bus is none of its business, and not even decoded.
+bool Node::is_for_us(const wire::CanFrame& frame) const noexcept {
+    if (frame.is_extended || frame.is_error) return false;
+    const wire::FrameSpec* spec = wire::frame_spec(wire::type_of(frame.can_id));
+    if (spec == nullptr) return false;
+    const wire::NodeId id = wire::node_of(frame.can_id);
+    switch (spec->party) {
+        case wire::Party::from_host:
+            return spec->type == wire::FrameType::sync && id == wire::kHostId;
+        case wire::Party::from_node:
+            return id == config_.node_id;
+        case wire::Party::to_node:
+            return id == config_.node_id || id == wire::kBroadcastId;
+    }
+    return false;
+}
+
+void Node::on_own_id_heard(NodeTime now) {
+    const bool is_news = !own_id_heard_;
+    own_id_heard_ = now;
+    if (is_news) apply_order_to_range(now);
+}
+
+void Node::apply_order_to_range(NodeTime now) {
+    for (std::uint8_t i = 0; i < config_.sensor_count; ++i) {
+        const bool is_commanded = ((commanded_to_range_ >> i) & 1U) != 0;
+        if (is_commanded && !own_id_heard_) {
+            sensors_[i]->order_start(now);
+        } else {
+            sensors_[i]->order_stop(now);
+        }
+    }
+}
+
+void Node::on_command(const wire::Command& command, NodeTime now) {
+    if (last_command_ && last_command_->command == command) return;  // the same frame once more
+    last_command_ = {.command = command, .received = now};
+    if (!perform(command, now)) ++rx_rejected_;
+}
+
+bool Node::perform(const wire::Command& command, NodeTime now) {
+    const Selection selection = selected(command.sensor);
+    switch (command.code) {
+        case wire::CommandCode::start:
+            commanded_to_range_ |= mask_of(selection);
+            apply_order_to_range(now);
+            return !selection.is_empty();
+        case wire::CommandCode::stop:
+            commanded_to_range_ &= ~mask_of(selection);
+            apply_order_to_range(now);
+            return !selection.is_empty();
+        case wire::CommandCode::set_rate:
+            return set_rate(selection, command.argument, now);
+        case wire::CommandCode::reinitialise_sensor:
+            for (std::uint8_t i = selection.first; i < selection.end; ++i) {
+                sensors_[i]->order_reinitialise(now);
+            }
+            return !selection.is_empty();
+        case wire::CommandCode::identify:
+            identify_until_ = now + Microseconds{1'000'000} * std::min(command.argument, kIdentifySecondsMax);
+            blink_at_ = now;
+            return true;
+        case wire::CommandCode::reset:
+            is_reset_requested_ = true;
+            return true;
+        case wire::CommandCode::send_info:
+            announcer_.request_all();
+            return true;
+    }
+    return false;
+}
+
+/// Each sensor decides for itself whether the period fits its budget; the command counts as refused unless
+/// all of them could follow.
+bool Node::set_rate(const Selection& selection, std::uint16_t period_ms, NodeTime now) {
+    const std::optional<Microseconds> period =
+        period_ms == 0 ? std::nullopt : std::optional(Microseconds{std::int64_t{period_ms} * 1'000});
+    bool is_followed = !selection.is_empty();
+    for (std::uint8_t i = selection.first; i < selection.end; ++i) {
+        if (!sensors_[i]->order_period(period, now)) is_followed = false;
+    }
+    return is_followed;
+}
+
+Node::Selection Node::selected(std::uint8_t sensor) const noexcept {
+    if (sensor == wire::kAllSensors) return {.first = 0, .end = config_.sensor_count};
+    if (sensor >= config_.sensor_count) return {};
+    return {.first = sensor, .end = static_cast<std::uint8_t>(sensor + 1U)};
+}
+
+std::uint64_t Node::mask_of(const Selection& selection) noexcept {
+    return (std::uint64_t{1} << selection.end) - (std::uint64_t{1} << selection.first);
+}
+
+}  // namespace octoskin::node

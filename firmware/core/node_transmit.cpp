@@ -1,0 +1,151 @@
+// What the node says, in which order. Everything is composed at the moment the controller takes it, so a full
+// mailbox delays what is said but never makes it old; only readings queue, and they have an age limit.
+#include <algorithm>
+#include <limits>
+
+#include "common/wire/codec.hpp"
+#include "firmware/core/node.hpp"
+
+namespace octoskin::node {
+
+namespace {
+
+constexpr int kFramesPerPoll = 8;
+
+template <class To>
+constexpr To saturated(std::uint32_t value) {
+    return static_cast<To>(std::min<std::uint32_t>(value, std::numeric_limits<To>::max()));
+}
+
+}  // namespace
+
+void Node::transmit(NodeTime now) {
+    tokens_.refill(now);
+    queue_.drop_late(now);
+    has_unsent_ = false;
+    // A node without a valid id of its own has no right to speak.
+    if (!wire::is_allowed(wire::Party::from_node, config_.node_id)) return;
+    for (int i = 0; i < kFramesPerPoll; ++i) {
+        if (!send_most_urgent(now)) return;
+    }
+    has_unsent_ = true;
+}
+
+/// In the order of the identifiers, as the bus would arbitrate them.
+bool Node::send_most_urgent(NodeTime now) {
+    if (announcer_.is_heartbeat_due()) {
+        if (!send(heartbeat())) return false;
+        announcer_.heartbeat_sent();
+    } else if (sync_report_) {
+        if (!send(*sync_report_)) return false;
+        sync_report_.reset();
+    } else if (!own_id_heard_ && queue_.is_ready(now)) {  // else they grow too old, and are counted so
+        if (!send(queue_.front())) return false;
+        queue_.pop();
+    } else if (const auto sensor = announcer_.health_due()) {
+        if (!send(health(*sensor))) return false;
+        announcer_.health_sent(*sensor);
+        note_told(*sensor);
+    } else if (const auto page = announcer_.info_page_due()) {
+        if (!send(info(*page))) return false;
+        announcer_.info_sent(*page);
+    } else if (queue_.aux()) {
+        if (!send(*queue_.aux())) return false;
+        queue_.pop_aux();
+    } else {
+        return false;
+    }
+    return true;
+}
+
+bool Node::send(const wire::Message& message) {
+    if (!tokens_.has_token() || !ports_.can.send(wire::encode(message, config_.node_id))) {
+        has_unsent_ = true;
+        return false;
+    }
+    tokens_.take();
+    ++frames_sent_;
+    return true;
+}
+
+wire::Heartbeat Node::heartbeat() const noexcept {
+    const auto all = sensors();
+    const auto degraded =
+        std::count_if(all.begin(), all.end(), [](const auto& sensor) { return sensor->is_degraded(); });
+    const bool is_overridden = std::any_of(all.begin(), all.end(),
+                                           [](const auto& sensor) { return sensor->is_period_overridden(); });
+    return {.state = state(),
+            .reset_cause = identity_.reset_cause,
+            .is_rate_overridden = is_overridden,
+            .degraded_sensors = static_cast<std::uint8_t>(degraded),
+            .uid_crc = uid_crc_,
+            .node_hash_low = static_cast<std::uint16_t>(node_hash_ & 0xFFFFU)};
+}
+
+wire::NodeInfo Node::info(wire::InfoPage page) const noexcept {
+    const auto uid_half = [this](std::size_t first) {
+        std::array<std::uint8_t, 6> half{};
+        std::copy_n(identity_.uid.begin() + static_cast<std::ptrdiff_t>(first), half.size(), half.begin());
+        return half;
+    };
+    const NodeCounts counted = counts();
+    switch (page) {
+        case wire::InfoPage::uid_low:
+            return wire::InfoUidLow{uid_half(0)};
+        case wire::InfoPage::uid_high:
+            return wire::InfoUidHigh{uid_half(6)};
+        case wire::InfoPage::identity:
+            return wire::InfoIdentity{.node_hash = node_hash_,
+                                      .sensor_count = config_.sensor_count,
+                                      .board_type = config_.board_type};
+        case wire::InfoPage::build:
+            return wire::InfoBuild{.build_id = identity_.build_id,
+                                   .uptime_s = saturated<std::uint16_t>(uptime_s_)};
+        case wire::InfoPage::counters:
+            return wire::InfoCounters{.i2c_errors = saturated<std::uint16_t>(counted.i2c_errors),
+                                      .reads_disagreed = saturated<std::uint16_t>(counted.reads_disagreed),
+                                      .sensor_restarts = saturated<std::uint16_t>(counted.sensor_restarts)};
+        case wire::InfoPage::traffic:
+            return wire::InfoTraffic{.tx_dropped = saturated<std::uint16_t>(counted.displaced),
+                                     .late_dropped = saturated<std::uint16_t>(counted.late),
+                                     .bus_off_count = 0,
+                                     .rx_rejected = saturated<std::uint8_t>(counted.rx_rejected)};
+        case wire::InfoPage::fault:
+            return wire::InfoFault{};
+    }
+    return wire::InfoFault{};
+}
+
+wire::SensorHealth Node::health(std::uint8_t sensor) const noexcept {
+    const Sensor& about = *sensors_[sensor];
+    const std::int32_t error = std::clamp<std::int32_t>(about.period_error_permille(), -128, 127);
+    return {.sensor = sensor,
+            .state = about.state(),
+            .fault = about.fault(),
+            .sent = queue_.sent(sensor),
+            .capture_bound_64us = bound_on_wire(bound_to_tell(sensor)),
+            .rejected = static_cast<std::uint8_t>(about.counts().rejected & 0xFFU),
+            .period_error_permille = static_cast<std::int8_t>(error)};
+}
+
+Microseconds Node::bound_to_tell(std::uint8_t sensor) const noexcept {
+    const Told& told = told_[sensor];
+    return told.bound_since.count() > 0 ? told.bound_since : told.bound;
+}
+
+void Node::note_told(std::uint8_t sensor) noexcept {
+    told_[sensor] = {.state = sensors_[sensor]->state(),
+                     .fault = sensors_[sensor]->fault(),
+                     .bound = bound_to_tell(sensor),
+                     .bound_since = Microseconds{0}};
+}
+
+std::uint8_t Node::bound_on_wire(Microseconds bound) const noexcept {
+    // A classical frame rounds the time down by up to one step of its field.
+    const std::int64_t step = wire::kClassicalTimeStepUs;
+    const std::int64_t rounding = config_.uses_can_fd ? 0 : step;
+    return static_cast<std::uint8_t>(
+        std::min<std::int64_t>((bound.count() + rounding + step - 1) / step, 255));
+}
+
+}  // namespace octoskin::node

@@ -1,0 +1,62 @@
+#include "firmware/core/period_trim.hpp"
+
+#include <algorithm>
+
+namespace octoskin::node {
+
+namespace {
+
+constexpr std::int64_t kMillion = 1'000'000;
+// Oscillators are 6-7 % off. Asking for more than this means that something else is wrong.
+constexpr std::int64_t kScaleMinPpm = 850'000;
+constexpr std::int64_t kScaleMaxPpm = 1'150'000;
+// One step of the register is 0.03-0.13 % at 15-50 ms; the rest is for drift since the last measurement.
+constexpr std::int32_t kTrimmedUncertaintyPermille = 10;
+
+}  // namespace
+
+PeriodTrim::PeriodTrim(Microseconds configured, const Policy& policy) noexcept
+    : policy_(policy), configured_(configured), trims_left_(policy.trims_at_start) {}
+
+void PeriodTrim::set_configured(Microseconds configured) noexcept {
+    configured_ = configured;
+    trims_left_ = policy_.trims_at_start;
+}
+
+Microseconds PeriodTrim::commanded() const noexcept {
+    return Microseconds{configured_.count() * scale_ppm_ / kMillion};
+}
+
+std::int32_t PeriodTrim::uncertainty_permille() const noexcept {
+    return is_oscillator_known_ ? kTrimmedUncertaintyPermille : policy_.period_unknown_permille;
+}
+
+std::int32_t PeriodTrim::error_permille(Microseconds measured) const noexcept {
+    return static_cast<std::int32_t>((measured - configured_).count() * 1000 / configured_.count());
+}
+
+bool PeriodTrim::wants_trim(const MeasuredPeriod& measured, NodeTime now) noexcept {
+    // Forgotten once it no longer matters, long before the clock's wrap could make it look recent again.
+    if (last_trim_ && elapsed(*last_trim_, now) >= policy_.trim_interval) last_trim_.reset();
+
+    Microseconds real = measured.value;
+    // A period that came out too short for the budget is seen doubled; half of it is what the register makes.
+    if (real > configured_ * 17 / 10) real /= 2;
+    const std::int64_t tolerance_us = configured_.count() * policy_.trim_tolerance_permille / 1000;
+    const std::int64_t off_us = std::abs((real - configured_).count());
+    const bool is_certain = measured.uncertainty.count() * 2 <= tolerance_us;
+    if (!is_certain || off_us <= tolerance_us) return false;
+
+    if (trims_left_ > 0) {
+        --trims_left_;
+    } else if (last_trim_) {
+        return false;
+    }
+    const std::int64_t scale = scale_ppm_ * configured_.count() / real.count();
+    scale_ppm_ = std::clamp(scale, kScaleMinPpm, kScaleMaxPpm);
+    is_oscillator_known_ = scale == scale_ppm_;
+    last_trim_ = now;
+    return true;
+}
+
+}  // namespace octoskin::node

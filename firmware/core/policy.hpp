@@ -1,0 +1,53 @@
+// The node core's own times and limits, in one place. What a rig may choose is in NodeConfig; these are
+// choices of the firmware, passed in so that a test can change one. The node keeps the one copy; everybody
+// else refers to it.
+#pragma once
+
+#include <cstdint>
+
+#include "common/time.hpp"
+
+namespace octoskin::node {
+
+struct Policy {
+    // --- bring-up. Datasheet DS12385: boots within 1.2 ms of XSHUT high; it states no minimum low time.
+    Microseconds xshut_low{1'000};
+    Microseconds xshut_boot{2'000};
+
+    // --- reading
+    /// How much one ready time may stray from the sensor's even grid.
+    Microseconds ready_jitter{30};
+    /// How uncertain the real period is before it was measured: the oscillator is 6-7 % off, part by part.
+    std::int32_t period_unknown_permille = 120;
+    Microseconds repoll_min{50};
+    Microseconds repoll_max{1'000};
+    /// A reading whose capture time is less certain than this is not sent.
+    Microseconds capture_bound_max{10'000};
+    std::int32_t stale_after_periods = 3;
+    std::uint8_t rejections_until_degraded = 10;
+
+    // --- trimming the inter-measurement register to the configured period
+    std::int32_t trim_tolerance_permille = 5;
+    std::uint8_t trims_at_start = 2;
+    Microseconds trim_interval{60'000'000};  ///< between trims once those at the start are used up
+    std::uint32_t trim_edges_min = 8;        ///< ready times observed before a period counts as measured
+
+    // --- recovery of one sensor: restart, XSHUT cycle, then XSHUT cycles at growing distance
+    std::uint8_t proven_readings_until_healthy = 10;
+    Microseconds backoff_first{100'000};
+    Microseconds backoff_max{10'000'000};
+    Microseconds bus_isolation{2'000};  ///< all sensors in reset, before the first attempt to free the bus
+    Microseconds bus_retry{1'000'000};  ///< between further attempts
+
+    // --- frames out
+    Microseconds company_wait{3'000};  ///< a reading waits this long for others to share its CAN FD frame
+    Microseconds reading_age_max{50'000};
+    Microseconds heartbeat_period{100'000};
+    Microseconds status_period{1'000'000};  ///< NODE_INFO's pages and every sensor's health, once each
+
+    // --- frames in
+    Microseconds command_repeat{500'000};  ///< the same command within this time is a duplicate frame
+    Microseconds id_conflict_clear{5'000'000};
+};
+
+}  // namespace octoskin::node

@@ -1,0 +1,38 @@
+// When to ask a sensor whether its data is ready. The first poll is meant to come just too early: "not ready"
+// is what bounds the ready time from below, and it is the proof that a sensor still keeps its rhythm. One
+// such poll is 48 bits on the bus.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/time.hpp"
+#include "firmware/core/policy.hpp"
+#include "firmware/core/time_bracket.hpp"
+
+namespace octoskin::node {
+
+class PollPlan {
+  public:
+    PollPlan(std::uint32_t i2c_hz, const Policy& policy) noexcept;
+
+    /// The first poll for data that should become ready within `predicted`.
+    [[nodiscard]] NodeTime first_poll(const TimeBracket& predicted) const noexcept;
+    /// The first poll after a start: nothing can be ready before the timing budget is used up.
+    [[nodiscard]] NodeTime first_poll_after_start(NodeTime started,
+                                                  Microseconds timing_budget) const noexcept;
+    /// The next poll when the one that ended at `now` found nothing. Bounded below and above, so neither
+    /// floods the bus nor leaves the ready time unknown.
+    [[nodiscard]] NodeTime repoll(const std::optional<TimeBracket>& predicted, Microseconds period,
+                                  NodeTime now) const noexcept;
+    /// Until when, at least, data was not ready if the poll begun at `began` found none: the sensor cannot
+    /// have looked before it was told at which register.
+    [[nodiscard]] NodeTime not_ready_until(NodeTime began) const noexcept;
+
+  private:
+    const Policy& policy_;
+    Microseconds poll_duration_;
+    Microseconds index_duration_;
+};
+
+}  // namespace octoskin::node

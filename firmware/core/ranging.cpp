@@ -1,0 +1,282 @@
+#include "firmware/core/ranging.hpp"
+
+#include <cassert>
+
+#include "firmware/core/sensor_fault.hpp"
+
+namespace octoskin::node {
+
+namespace {
+
+using wire::SensorFault;
+
+// ROI_CONFIG__USER_ROI_CENTRE_SPAD, followed by the size: VL53L1X full API, register map.
+constexpr std::uint16_t kRoiRegister = 0x007F;
+constexpr std::uint8_t kRoiBytes = 2;
+
+// After a stop the range under way still runs to its end; its overhead beyond the budget stays below this.
+constexpr Microseconds kDrainMargin{5'000};
+
+}  // namespace
+
+Ranging::Ranging(vl53l1x::Device& device, const SensorConfig& config, const RangingRules& rules,
+                 const Policy& policy) noexcept
+    : device_(device),
+      config_(config),
+      rules_(rules),
+      polls_(rules.i2c_hz, policy),
+      acceptance_(rules.stream_gate, Microseconds{std::int64_t{config.timing_budget_ms} * 1'000}, policy),
+      trim_(Microseconds{std::int64_t{config.inter_measurement_ms} * 1'000}, policy),
+      zones_(config.zone_count, rules.zone_guard) {}
+
+void Ranging::begin(NodeTime now) {
+    is_stop_requested_ = false;
+    is_trim_due_ = false;
+    fault_ = SensorFault::none;
+    start_step(Step::setting_period, now);
+}
+
+void Ranging::begin_restart(NodeTime now) {
+    is_stop_requested_ = false;
+    is_trim_due_ = true;
+    start_step(Step::stopping, now);
+}
+
+void Ranging::request_stop(NodeTime now) noexcept {
+    is_stop_requested_ = true;
+    if (is_waiting()) step_due_ = now;
+}
+
+void Ranging::set_period(Microseconds period, NodeTime now) noexcept {
+    trim_.set_configured(period);
+    is_trim_due_ = true;
+    if (is_waiting()) step_due_ = now;
+}
+
+bool Ranging::is_waiting() const noexcept {
+    return step_ == Step::awaiting_phase || step_ == Step::awaiting_data;
+}
+
+std::optional<NodeTime> Ranging::due() const noexcept {
+    if (step_ == Step::idle) return std::nullopt;
+    return step_due_;
+}
+
+Ranging::Result Ranging::advance(NodeTime now) {
+    if (step_ == Step::draining) return {.event = on_drained(now)};
+    start_due_step(now);
+
+    switch (device_.poll(now)) {
+        case vl53l1x::Progress::busy:
+            if (const auto wake = device_.wake_time(); wake && !is_reached(*wake, now)) {
+                step_due_ = *wake;
+                return {};
+            }
+            return {.bus = BusUse::keeps};
+        case vl53l1x::Progress::done:
+            return {.event = on_step_done(now)};
+        case vl53l1x::Progress::failed:
+            return {.event = on_step_failed(device_.error(), now)};
+        case vl53l1x::Progress::idle:
+            assert(false && "an operation is begun before it is polled");
+            break;
+    }
+    return {};
+}
+
+/// Steps that wait for a time become the step that follows once they are due.
+void Ranging::start_due_step(NodeTime now) {
+    if (!is_waiting()) return;
+    if (is_stop_requested_ || is_trim_due_) {
+        start_step(Step::stopping, now);
+    } else {
+        start_step(step_ == Step::awaiting_phase ? Step::starting : Step::reading, now);
+    }
+}
+
+void Ranging::start_step(Step step, NodeTime now) {
+    step_ = step;
+    step_due_ = now;
+    step_began_ = now;
+    switch (step) {
+        case Step::setting_period:
+            device_.begin_set_inter_measurement(trim_.commanded());
+            break;
+        case Step::awaiting_phase:
+            step_due_ = next_phase(now);
+            break;
+        case Step::starting:
+            device_.begin_start();
+            break;
+        case Step::reading:
+            device_.begin_read();
+            break;
+        case Step::writing_zone:
+            device_.begin_set_zone(config_.zones[zones_.next()]);
+            break;
+        case Step::checking_zone:
+            device_.begin_read_register(kRoiRegister, kRoiBytes);
+            break;
+        case Step::stopping:
+            device_.begin_stop();
+            break;
+        case Step::draining:
+            step_due_ = now + budget() + kDrainMargin;
+            break;
+        case Step::idle:
+        case Step::awaiting_data:
+            break;
+    }
+}
+
+Ranging::Event Ranging::on_step_done(NodeTime now) {
+    switch (step_) {
+        case Step::setting_period:
+            start_step(Step::awaiting_phase, now);
+            break;
+        case Step::starting:
+            on_started(now);
+            break;
+        case Step::reading:
+            return on_read(now);
+        case Step::writing_zone:
+            zones_.written({step_began_, now});
+            start_step(Step::checking_zone, now);
+            break;
+        case Step::checking_zone:
+            if (!is_zone_as_written()) return fail(SensorFault::config_mismatch);
+            await_next_result(now);
+            break;
+        case Step::stopping:
+            start_step(Step::draining, now);
+            break;
+        case Step::idle:
+        case Step::awaiting_phase:
+        case Step::awaiting_data:
+        case Step::draining:
+            break;
+    }
+    return Event::none;
+}
+
+Ranging::Event Ranging::on_step_failed(vl53l1x::Error error, NodeTime now) {
+    const bool is_bad_result =
+        error == vl53l1x::Error::reads_disagree || error == vl53l1x::Error::implausible_block;
+    if (step_ == Step::reading && is_bad_result) {
+        acceptance_.on_unreadable();
+        return refuse(sensor_fault(error), now);
+    }
+    return fail(sensor_fault(error));
+}
+
+Ranging::Event Ranging::on_drained(NodeTime now) {
+    if (is_stop_requested_) {
+        step_ = Step::idle;
+        return Event::stopped;
+    }
+    is_trim_due_ = false;
+    start_step(Step::setting_period, now);
+    return Event::none;
+}
+
+void Ranging::on_started(NodeTime now) {
+    acceptance_.restart(step_began_, trim_.configured(), trim_.uncertainty_permille());
+    zones_.settle();
+    step_ = Step::awaiting_data;
+    step_due_ = polls_.first_poll_after_start(now, budget());
+}
+
+Ranging::Event Ranging::on_read(NodeTime now) {
+    if (!device_.has_measurement()) {
+        acceptance_.on_not_ready(polls_.not_ready_until(step_began_));
+        // A sensor that gave results which had to be refused is not one that gives none.
+        const SensorFault silence = acceptance_.has_refused() ? fault_ : SensorFault::no_data_ready;
+        if (acceptance_.is_silent(now)) return fail(silence);
+        step_ = Step::awaiting_data;
+        step_due_ = polls_.repoll(acceptance_.next_ready(), acceptance_.period(), now);
+        return Event::none;
+    }
+    const ResultSeen seen{
+        .measurement = device_.measurement(), .ready_seen = device_.ready_seen(), .read_end = now};
+    switch (acceptance_.judge(seen, zones_)) {
+        case Verdict::accepted:
+            after_result(now);
+            return Event::reading;
+        case Verdict::undated:
+            after_result(now);
+            return Event::undated;
+        case Verdict::refused:
+            break;
+    }
+    return refuse(SensorFault::stale_stream, now);
+}
+
+Ranging::Event Ranging::refuse(SensorFault fault, NodeTime now) {
+    fault_ = fault;
+    if (acceptance_.is_silent(now)) return fail(fault);
+    await_next_result(now);
+    return Event::refused;
+}
+
+Ranging::Event Ranging::fail(SensorFault fault) {
+    fault_ = fault;
+    step_ = Step::idle;
+    return Event::failed;
+}
+
+void Ranging::after_result(NodeTime now) {
+    if (const auto measured = acceptance_.measured_period(); measured && trim_.wants_trim(*measured, now)) {
+        is_trim_due_ = true;
+    }
+    if (is_zone_write_due(now)) {
+        start_step(Step::writing_zone, now);
+    } else {
+        await_next_result(now);
+    }
+}
+
+void Ranging::await_next_result(NodeTime now) {
+    step_ = Step::awaiting_data;
+    const auto predicted = acceptance_.next_ready();
+    step_due_ = is_trim_due_ || is_stop_requested_ ? now
+                : predicted                        ? polls_.first_poll(*predicted)
+                                                   : polls_.repoll(predicted, acceptance_.period(), now);
+}
+
+bool Ranging::is_zone_write_due(NodeTime now) const noexcept {
+    const auto begin = acceptance_.next_range_begin();
+    return zones_.is_cycling() && !is_trim_due_ && begin && zones_.fits_before(*begin, now);
+}
+
+bool Ranging::is_zone_as_written() const {
+    const Roi& roi = config_.zones[zones_.current()];
+    const auto bytes = device_.register_bytes();
+    const auto size = static_cast<std::uint8_t>(((roi.height - 1U) << 4U) | (roi.width - 1U));
+    return bytes[0] == roi.centre_spad && bytes[1] == size;
+}
+
+bool Ranging::can_restart() const noexcept {
+    return fault_ == SensorFault::no_data_ready || fault_ == SensorFault::stale_stream ||
+           fault_ == SensorFault::reads_disagree || fault_ == SensorFault::implausible_block;
+}
+
+std::int32_t Ranging::period_error_permille() const noexcept {
+    const auto measured = acceptance_.measured_period();
+    return measured ? trim_.error_permille(measured->value) : 0;
+}
+
+/// Sensors start at whole periods of the node's clock plus their phase. The grid shifts once at the clock's
+/// wrap; whoever starts later is spread no worse, only differently from those already running.
+NodeTime Ranging::next_phase(NodeTime now) const noexcept {
+    const auto period = static_cast<std::uint64_t>(trim_.configured().count());
+    const std::uint64_t phase = config_.phase_us % period;
+    const std::uint64_t into_period = (now.us + period - phase) % period;
+    const std::uint64_t wait = (period - into_period) % period;
+    return now + Microseconds{static_cast<std::int64_t>(wait)};
+}
+
+Microseconds Ranging::budget() const noexcept {
+    return Microseconds{std::int64_t{config_.timing_budget_ms} * 1'000};
+}
+
+}  // namespace octoskin::node

@@ -1,0 +1,121 @@
+// One configured sensor while it ranges: starts it in its phase, polls it when its data should be ready,
+// hands each result to acceptance, cycles its zones, and stops it to trim its period.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/config/node_config.hpp"
+#include "common/time.hpp"
+#include "common/wire/messages.hpp"
+#include "firmware/core/acceptance.hpp"
+#include "firmware/core/bus_use.hpp"
+#include "firmware/core/period_trim.hpp"
+#include "firmware/core/policy.hpp"
+#include "firmware/core/poll_plan.hpp"
+#include "firmware/core/reading.hpp"
+#include "firmware/core/zone_cycle.hpp"
+#include "firmware/drivers/vl53l1x/device.hpp"
+
+namespace octoskin::node {
+
+/// What ranging needs of the node's configuration.
+struct RangingRules {
+    StreamGate stream_gate = StreamGate::advanced;
+    Microseconds zone_guard{1'000};
+    std::uint32_t i2c_hz = 400'000;
+};
+
+class Ranging {
+  public:
+    enum class Event : std::uint8_t {
+        none,
+        reading,  ///< `reading()` was accepted
+        undated,  ///< a good result of unknown time or zone was dropped
+        refused,  ///< a result was not new, or could not be read alike twice: see `fault()`
+        stopped,  ///< as requested
+        failed,   ///< the sensor does not answer, or nothing was accepted for too long: see `fault()`
+    };
+    struct Result {
+        BusUse bus = BusUse::releases;
+        Event event = Event::none;
+    };
+
+    Ranging(vl53l1x::Device& device, const SensorConfig& config, const RangingRules& rules,
+            const Policy& policy) noexcept;
+
+    /// The sensor was just configured, which puts it in its first zone.
+    void on_configured() noexcept { zones_.restart(); }
+    /// The sensor is configured and stopped: start it at its next phase.
+    void begin(NodeTime now);
+    /// Stop and start again, to bring a silent sensor back.
+    void begin_restart(NodeTime now);
+    /// Stop as soon as the transfers under way are over, then report `stopped`.
+    void request_stop(NodeTime now) noexcept;
+    /// Another period: from the next start on, and if ranging, restart for it.
+    void set_period(Microseconds period, NodeTime now) noexcept;
+    /// The sensor was taken away (reset, lost): nothing is under way any more.
+    void abandon() noexcept { step_ = Step::idle; }
+
+    /// When the bus is wanted; empty when nothing is under way.
+    [[nodiscard]] std::optional<NodeTime> due() const noexcept;
+    /// One step, with the bus free or taken by this sensor's own transfer.
+    [[nodiscard]] Result advance(NodeTime now);
+
+    [[nodiscard]] const Reading& reading() const noexcept { return acceptance_.reading(); }
+    /// Whether the last reading was seen to follow another: the sensor measures.
+    [[nodiscard]] bool is_proven() const noexcept { return acceptance_.is_proven(); }
+    [[nodiscard]] wire::SensorFault fault() const noexcept { return fault_; }
+    /// Whether the failed sensor might be helped by stopping and starting it.
+    [[nodiscard]] bool can_restart() const noexcept;
+    /// The measured period against the configured one; 0 until measured.
+    [[nodiscard]] std::int32_t period_error_permille() const noexcept;
+
+  private:
+    enum class Step : std::uint8_t {
+        idle,
+        setting_period,
+        awaiting_phase,
+        starting,
+        awaiting_data,
+        reading,
+        writing_zone,
+        checking_zone,
+        stopping,
+        draining,  ///< the range under way at the stop may still end with a result
+    };
+
+    void start_step(Step step, NodeTime now);
+    void start_due_step(NodeTime now);
+    [[nodiscard]] bool is_waiting() const noexcept;
+    [[nodiscard]] Event on_step_done(NodeTime now);
+    [[nodiscard]] Event on_step_failed(vl53l1x::Error error, NodeTime now);
+    [[nodiscard]] Event on_drained(NodeTime now);
+    [[nodiscard]] Event on_read(NodeTime now);
+    [[nodiscard]] Event refuse(wire::SensorFault fault, NodeTime now);
+    [[nodiscard]] Event fail(wire::SensorFault fault);
+    void on_started(NodeTime now);
+    void after_result(NodeTime now);
+    void await_next_result(NodeTime now);
+    [[nodiscard]] bool is_zone_write_due(NodeTime now) const noexcept;
+    [[nodiscard]] bool is_zone_as_written() const;
+    [[nodiscard]] NodeTime next_phase(NodeTime now) const noexcept;
+    [[nodiscard]] Microseconds budget() const noexcept;
+
+    vl53l1x::Device& device_;
+    const SensorConfig& config_;
+    RangingRules rules_;
+    PollPlan polls_;
+    Acceptance acceptance_;
+    PeriodTrim trim_;
+    ZoneCycle zones_;
+
+    Step step_ = Step::idle;
+    NodeTime step_due_;
+    NodeTime step_began_;
+    bool is_stop_requested_ = false;
+    bool is_trim_due_ = false;
+    wire::SensorFault fault_ = wire::SensorFault::none;
+};
+
+}  // namespace octoskin::node

@@ -1,0 +1,21 @@
+// One accepted reading on its way from a sensor to the bus.
+#pragma once
+
+#include <cstdint>
+
+#include "common/time.hpp"
+
+namespace octoskin::node {
+
+struct Reading {
+    std::uint8_t zone = 0;
+    std::uint8_t device_status = 0;  ///< as it goes on the wire: 19 for code 9 with stream count 0
+    std::uint16_t range_mm = 0;
+    std::uint16_t sigma_quarter_mm = 0;
+    std::uint16_t peak_signal = 0;  ///< 9.7 Mcps
+    std::uint16_t ambient = 0;      ///< 9.7 Mcps
+    NodeTime capture;               ///< middle of the ranging window
+    Microseconds capture_bound{0};  ///< bound on the error of `capture`
+};
+
+}  // namespace octoskin::node

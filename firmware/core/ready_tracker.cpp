@@ -1,0 +1,145 @@
+#include "firmware/core/ready_tracker.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace octoskin::node {
+
+namespace {
+
+constexpr std::int64_t kQ8 = 256;
+// The period is measured over windows of this many ranges: long enough for 0.03 % at 33 ms, short enough to
+// follow a part that warms up.
+constexpr std::uint32_t kWindowSlots = 32;
+// How far the period may have moved within a window, and from one window to the next.
+constexpr std::int64_t kDriftPerWindowPpm = 300;
+// A single range may come this much earlier than the rhythm says before the rhythm is doubted altogether.
+constexpr Microseconds kEarlySlip{1'000};
+
+constexpr std::int64_t floor_q8(std::int64_t q8) {
+    return q8 >> 8;
+}
+constexpr std::int64_t ceil_q8(std::int64_t q8) {
+    return (q8 + kQ8 - 1) >> 8;
+}
+
+}  // namespace
+
+ReadyTracker::ReadyTracker(const Policy& policy) noexcept : policy_(policy) {}
+
+void ReadyTracker::restart(Microseconds expected, std::int32_t uncertainty_permille) noexcept {
+    expected_ = expected;
+    grid_.reset();
+    assume_period(expected, uncertainty_permille);
+}
+
+void ReadyTracker::forget() noexcept {
+    grid_.reset();
+    assume_period(expected_, policy_.period_unknown_permille);
+}
+
+void ReadyTracker::assume_period(Microseconds period, std::int32_t uncertainty_permille) noexcept {
+    observed_ = 0;
+    slots_missed_in_row_ = 0;
+    const PeriodQ8 middle = period.count() * kQ8;
+    const PeriodQ8 margin = middle * uncertainty_permille / 1000;
+    shortest_q8_ = middle - margin;
+    longest_q8_ = middle + margin;
+}
+
+TimeBracket ReadyTracker::grid_after(std::uint32_t slots) const noexcept {
+    const auto n = static_cast<std::int64_t>(slots);
+    return {grid_->earliest + Microseconds{floor_q8(shortest_q8_ * n)},
+            grid_->latest + Microseconds{ceil_q8(longest_q8_ * n)}};
+}
+
+std::optional<TimeBracket> ReadyTracker::predict(std::uint32_t ranges) const noexcept {
+    if (!grid_) return std::nullopt;
+    return widened(grid_after(ranges), policy_.ready_jitter);
+}
+
+TimeBracket ReadyTracker::observe(const TimeBracket& seen, std::uint32_t ranges) noexcept {
+    ++observed_;
+    if (!grid_) {
+        grid_ = widened(seen, policy_.ready_jitter);
+        open_window();
+        return seen;
+    }
+    if (const auto ready = fit(seen, ranges)) {
+        slots_missed_in_row_ = 0;
+        return *ready;
+    }
+    // A sensor whose period is too close to its budget skips a start slot now and then: the grid holds, with
+    // one place left empty. Twice in a row it is no exception any more, but a sensor at half its rate.
+    if (slots_missed_in_row_ == 0) {
+        if (const auto ready = fit(seen, ranges + 1)) {
+            ++slots_missed_in_row_;
+            return *ready;
+        }
+    }
+    return reacquire(seen, ranges);
+}
+
+/// Takes `seen` as the ready time `slots` places on; empty, and nothing changed, if it contradicts the grid.
+std::optional<TimeBracket> ReadyTracker::fit(const TimeBracket& seen, std::uint32_t slots) noexcept {
+    const TimeBracket place = grid_after(slots);
+    const auto ready = intersection(seen, widened(place, policy_.ready_jitter));
+    const auto narrowed = intersection(widened(seen, policy_.ready_jitter), place);
+    if (!ready || !narrowed) return std::nullopt;
+    grid_ = narrowed;
+    window_slots_ += slots;
+    refine_period();
+    return ready;
+}
+
+/// The grid was wrong: begin a new one where the sensor was seen now. Its period is the expected one again,
+/// or twice that if a range was due in between and did not come.
+TimeBracket ReadyTracker::reacquire(const TimeBracket& seen, std::uint32_t ranges) noexcept {
+    TimeBracket ready = seen;
+    const TimeBracket predicted = *predict(ranges);
+    if (is_reached(predicted.earliest - kEarlySlip, seen.latest) &&
+        is_reached(seen.latest, predicted.latest)) {
+        ready.earliest = later_of(seen.earliest, predicted.earliest - kEarlySlip);
+    }
+    const Microseconds since_last = elapsed(grid_->middle(), ready.middle());
+    const bool is_doubled =
+        since_last > expected_ * ranges * 17 / 10 && since_last < expected_ * ranges * 23 / 10;
+    assume_period(is_doubled ? expected_ * 2 : expected_, policy_.period_unknown_permille);
+    observed_ = 1;
+    grid_ = widened(ready, policy_.ready_jitter);
+    open_window();
+    return ready;
+}
+
+void ReadyTracker::refine_period() noexcept {
+    const auto slots = static_cast<std::int64_t>(window_slots_);
+    const PeriodQ8 drift = longest_q8_ * kDriftPerWindowPpm / 1'000'000;
+    // The window tells its average; the period of now may have moved on.
+    const PeriodQ8 shortest = elapsed(window_start_.latest, grid_->earliest).count() * kQ8 / slots - drift;
+    const PeriodQ8 longest = elapsed(window_start_.earliest, grid_->latest).count() * kQ8 / slots + 1 + drift;
+    shortest_q8_ = std::max(shortest_q8_, shortest);
+    longest_q8_ = std::min(longest_q8_, longest);
+    // By induction over the window the grid never lies further from its start than `slots` of the longest
+    // period, so what the window calls the shortest stays below it; rounding costs less than the drift adds.
+    assert(shortest_q8_ <= longest_q8_);
+    if (window_slots_ < kWindowSlots) return;
+    shortest_q8_ -= drift;
+    longest_q8_ += drift;
+    open_window();
+}
+
+void ReadyTracker::open_window() noexcept {
+    window_start_ = *grid_;
+    window_slots_ = 0;
+}
+
+Microseconds ReadyTracker::period() const noexcept {
+    return Microseconds{(shortest_q8_ + longest_q8_) / (2 * kQ8)};
+}
+
+std::optional<MeasuredPeriod> ReadyTracker::measured_period() const noexcept {
+    if (observed_ <= policy_.trim_edges_min) return std::nullopt;
+    return MeasuredPeriod{period(), Microseconds{ceil_q8((longest_q8_ - shortest_q8_ + 1) / 2) + 1}};
+}
+
+}  // namespace octoskin::node

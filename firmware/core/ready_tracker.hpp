@@ -1,0 +1,71 @@
+// When did the sensor finish this range, and when will it finish the next? A sensor's own oscillator is 6-7 %
+// off the nominal and differs from part to part, so its rhythm is measured by when data was seen to be ready.
+//
+// The sensor starts its ranges by a timer: ready times lie on an even grid, each within some jitter that does
+// not add up. Everything is kept as an interval that certainly holds the truth as long as this is so: a poll
+// that saw "not ready" bounds the ready time from below, one that saw "ready" from above, and the grid
+// carries both bounds over to the next range. So a reading that was polled late, because the bus was taken,
+// still has a well-known time.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/time.hpp"
+#include "firmware/core/policy.hpp"
+#include "firmware/core/time_bracket.hpp"
+
+namespace octoskin::node {
+
+struct MeasuredPeriod {
+    Microseconds value{0};
+    Microseconds uncertainty{0};  ///< bound on the error of `value`, rounded up
+};
+
+class ReadyTracker {
+  public:
+    explicit ReadyTracker(const Policy& policy) noexcept;
+
+    /// Ranging starts anew, with a period within `uncertainty_permille` of `expected`.
+    void restart(Microseconds expected, std::int32_t uncertainty_permille) noexcept;
+
+    /// Ranging goes on, but when the last range was ready is not known any more.
+    void forget() noexcept;
+
+    /// Where the ready time of the `ranges`-th range after the last observed one lies; empty before the
+    /// first.
+    [[nodiscard]] std::optional<TimeBracket> predict(std::uint32_t ranges) const noexcept;
+
+    /// The `ranges`-th range after the last observed one became ready within `seen`. Returns where, by all
+    /// that is known: `seen` and the prediction together, or `seen` alone where they contradict each other;
+    /// the rhythm is then learnt again.
+    TimeBracket observe(const TimeBracket& seen, std::uint32_t ranges) noexcept;
+
+    /// The period as far as it is known, measured or not.
+    [[nodiscard]] Microseconds period() const noexcept;
+    /// The period once `trim_edges_min` ready times were observed since the start.
+    [[nodiscard]] std::optional<MeasuredPeriod> measured_period() const noexcept;
+
+  private:
+    // Periods in 1/256 us: a rounding error of one unit is 0.25 us over the 64 ranges of a window.
+    using PeriodQ8 = std::int64_t;
+
+    [[nodiscard]] TimeBracket grid_after(std::uint32_t slots) const noexcept;
+    [[nodiscard]] std::optional<TimeBracket> fit(const TimeBracket& seen, std::uint32_t slots) noexcept;
+    [[nodiscard]] TimeBracket reacquire(const TimeBracket& seen, std::uint32_t ranges) noexcept;
+    void assume_period(Microseconds period, std::int32_t uncertainty_permille) noexcept;
+    void refine_period() noexcept;
+    void open_window() noexcept;
+
+    const Policy& policy_;
+    Microseconds expected_{0};
+    std::optional<TimeBracket> grid_;  ///< where the last observed range's place on the grid lies
+    TimeBracket window_start_;
+    std::uint32_t window_slots_ = 0;
+    std::uint32_t observed_ = 0;
+    std::uint32_t slots_missed_in_row_ = 0;
+    PeriodQ8 shortest_q8_ = 0;
+    PeriodQ8 longest_q8_ = 0;
+};
+
+}  // namespace octoskin::node

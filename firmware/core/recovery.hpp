@@ -1,0 +1,43 @@
+// What to do about a sensor that failed, and when: first a restart, if it still answers, then XSHUT cycles,
+// at once and then at growing distance. It never gives up and never hurries.
+#pragma once
+
+#include <cstdint>
+
+#include "common/time.hpp"
+#include "firmware/core/policy.hpp"
+
+namespace octoskin::node {
+
+enum class RecoveryStep : std::uint8_t {
+    restart,      ///< stop and start ranging
+    xshut_cycle,  ///< hold in reset, then bring up from the beginning
+};
+
+struct RecoveryPlan {
+    RecoveryStep step = RecoveryStep::restart;
+    NodeTime at;
+};
+
+class Recovery {
+  public:
+    explicit Recovery(const Policy& policy) noexcept : policy_(policy) {}
+
+    /// What to do about a failure at `now`. `can_restart`: the sensor answers and was ranging.
+    [[nodiscard]] RecoveryPlan on_failure(bool can_restart, NodeTime now) noexcept;
+    /// A reading that proves that the sensor measures. Enough of them in a row and the next failure counts as
+    /// the first.
+    void on_proven_reading() noexcept;
+    /// An attempt from scratch on somebody's order.
+    void reset() noexcept;
+
+  private:
+    [[nodiscard]] Microseconds next_backoff() noexcept;
+
+    const Policy& policy_;
+    std::uint8_t failures_ = 0;
+    std::uint8_t proven_in_row_ = 0;
+    Microseconds backoff_{0};
+};
+
+}  // namespace octoskin::node

@@ -1,0 +1,236 @@
+#include "firmware/core/sensor.hpp"
+
+#include <utility>
+
+namespace octoskin::node {
+
+namespace {
+
+using wire::SensorFault;
+using wire::SensorState;
+
+// A shorter period than this beyond the budget makes the device skip every second start slot (UM2510 3.3;
+// the driver refuses it too).
+constexpr Microseconds kPeriodMargin{5'000};
+
+SensorState state_after(SensorFault fault, bool has_ever_answered) noexcept {
+    switch (fault) {
+        case SensorFault::no_answer:
+        case SensorFault::bus_error:
+        case SensorFault::address_conflict:
+            return has_ever_answered ? SensorState::lost : SensorState::absent;
+        case SensorFault::none:
+        case SensorFault::wrong_id:
+        case SensorFault::boot_timeout:
+        case SensorFault::config_mismatch:
+        case SensorFault::no_data_ready:
+        case SensorFault::stale_stream:
+        case SensorFault::reads_disagree:
+        case SensorFault::implausible_block:
+            return SensorState::degraded;
+    }
+    return SensorState::degraded;
+}
+
+}  // namespace
+
+Sensor::Sensor(const SensorConfig& config, const SensorSurroundings& surroundings,
+               const vl53l1x::Options& options, const RangingRules& rules, const Policy& policy, NodeTime now)
+    : config_(config),
+      xshut_(surroundings.xshut),
+      policy_(policy),
+      device_(surroundings.bus, options),
+      bring_up_(device_, surroundings.default_address, surroundings.xshut, config_, policy),
+      ranging_(device_, config_, rules, policy),
+      recovery_(policy) {
+    begin_bring_up(now);
+}
+
+void Sensor::order_start(NodeTime now) {
+    if (std::exchange(is_ordered_to_range_, true)) return;
+    if (mode_ == Mode::stopped) range_or_rest(now);
+}
+
+void Sensor::order_stop(NodeTime now) {
+    is_ordered_to_range_ = false;
+    if (mode_ == Mode::ranging) ranging_.request_stop(now);
+}
+
+void Sensor::order_reinitialise(NodeTime now) {
+    if (mode_ != Mode::bringing_up) reinitialise_ordered_ = now;
+}
+
+bool Sensor::order_period(std::optional<Microseconds> period, NodeTime now) {
+    const Microseconds configured{std::int64_t{config_.inter_measurement_ms} * 1'000};
+    const Microseconds budget{std::int64_t{config_.timing_budget_ms} * 1'000};
+    const Microseconds wanted = period.value_or(configured);
+    if (wanted < budget + kPeriodMargin) return false;
+    ranging_.set_period(wanted, now);
+    is_period_overridden_ = wanted != configured;
+    return true;
+}
+
+std::optional<NodeTime> Sensor::due() const noexcept {
+    if (is_reinitialisation_due()) return reinitialise_ordered_;
+    switch (mode_) {
+        case Mode::bringing_up:
+            return bring_up_.due();
+        case Mode::ranging:
+            return ranging_.due();
+        case Mode::awaiting_recovery:
+            return plan_.at;
+        case Mode::stopped:
+            return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+bool Sensor::is_reinitialisation_due() const noexcept {
+    return reinitialise_ordered_ && mode_ != Mode::bringing_up && !device_.is_busy();
+}
+
+BusUse Sensor::advance(NodeTime now) {
+    if (is_reinitialisation_due()) {
+        recovery_.reset();
+        ++counts_.restarts;
+        state_ = SensorState::starting;
+        begin_bring_up(now);
+        return BusUse::releases;
+    }
+    switch (mode_) {
+        case Mode::bringing_up:
+            return advance_bring_up(now);
+        case Mode::ranging:
+            return advance_ranging(now);
+        case Mode::awaiting_recovery:
+            recover(now);
+            return BusUse::releases;
+        case Mode::stopped:
+            break;
+    }
+    return BusUse::releases;
+}
+
+void Sensor::begin_bring_up(NodeTime now) {
+    reinitialise_ordered_.reset();
+    ranging_.abandon();
+    bring_up_.begin(now);
+    mode_ = Mode::bringing_up;
+}
+
+BusUse Sensor::advance_bring_up(NodeTime now) {
+    const BusUse use = bring_up_.advance(now);
+    has_ever_answered_ = has_ever_answered_ || bring_up_.has_answered();
+    switch (bring_up_.outcome()) {
+        case BringUp::Outcome::under_way:
+            break;
+        case BringUp::Outcome::done:
+            ranging_.on_configured();
+            range_or_rest(now);
+            break;
+        case BringUp::Outcome::failed:
+            on_failure(bring_up_.fault(), false, now);
+            break;
+    }
+    return use;
+}
+
+void Sensor::range_or_rest(NodeTime now) {
+    if (is_ordered_to_range_) {
+        if (state_ == SensorState::stopped) state_ = SensorState::starting;
+        ranging_.begin(now);
+        mode_ = Mode::ranging;
+    } else {
+        state_ = SensorState::stopped;
+        is_settled_ = true;
+        mode_ = Mode::stopped;
+    }
+}
+
+BusUse Sensor::advance_ranging(NodeTime now) {
+    const Ranging::Result result = ranging_.advance(now);
+    switch (result.event) {
+        case Ranging::Event::none:
+            break;
+        case Ranging::Event::reading:
+            reading_ = ranging_.reading();
+            on_reading();
+            break;
+        case Ranging::Event::undated:
+            ++counts_.rejected;
+            ++counts_.undated;
+            on_reading();
+            break;
+        case Ranging::Event::refused:
+            on_refused();
+            break;
+        case Ranging::Event::stopped:
+            range_or_rest(now);
+            break;
+        case Ranging::Event::failed:
+            on_failure(ranging_.fault(), ranging_.can_restart(), now);
+            break;
+    }
+    return result.bus;
+}
+
+void Sensor::on_reading() {
+    is_settled_ = true;
+    if (ranging_.is_proven()) {
+        refused_in_row_ = 0;
+        recovery_.on_proven_reading();
+    }
+    // A sensor that froze gives one first result after each restart: only the second proves anything.
+    if (ranging_.is_proven() || state_ == SensorState::starting) state_ = SensorState::ranging;
+}
+
+void Sensor::on_refused() {
+    fault_ = ranging_.fault();
+    ++counts_.rejected;
+    if (fault_ == SensorFault::reads_disagree) ++counts_.reads_disagreed;
+    if (refused_in_row_ < policy_.rejections_until_degraded) ++refused_in_row_;
+    if (refused_in_row_ == policy_.rejections_until_degraded) state_ = SensorState::degraded;
+}
+
+void Sensor::on_failure(wire::SensorFault fault, bool can_restart, NodeTime now) {
+    fault_ = fault;
+    state_ = state_after(fault, has_ever_answered_);
+    is_settled_ = true;
+    is_bus_suspect_ = fault == SensorFault::bus_error;
+    ++counts_.restarts;
+    plan_ = recovery_.on_failure(can_restart, now);
+    // Whoever may be at the default address unasked waits in reset.
+    if (plan_.step == RecoveryStep::xshut_cycle) bring_up_.hold_in_reset();
+    mode_ = Mode::awaiting_recovery;
+}
+
+void Sensor::isolate() {
+    xshut_.set(config_.xshut_line, false);
+    fault_ = SensorFault::bus_error;
+    state_ = state_after(fault_, has_ever_answered_);
+    is_settled_ = true;
+}
+
+void Sensor::recover(NodeTime now) {
+    if (plan_.step == RecoveryStep::xshut_cycle) {
+        begin_bring_up(now);
+        return;
+    }
+    ranging_.begin_restart(now);
+    mode_ = Mode::ranging;
+}
+
+bool Sensor::is_degraded() const noexcept {
+    if (!is_ordered_to_range_ || !is_settled_) return false;
+    return state_ != SensorState::ranging && state_ != SensorState::stopped;
+}
+
+std::optional<Reading> Sensor::take_reading() noexcept {
+    return std::exchange(reading_, std::nullopt);
+}
+
+bool Sensor::take_bus_suspicion() noexcept {
+    return std::exchange(is_bus_suspect_, false);
+}
+
+}  // namespace octoskin::node

@@ -1,0 +1,119 @@
+// One sensor's life: brought up, ranging, stopped by order, or in recovery after a failure; and what the node
+// tells about it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/config/node_config.hpp"
+#include "common/time.hpp"
+#include "common/wire/messages.hpp"
+#include "firmware/core/bring_up.hpp"
+#include "firmware/core/bus_use.hpp"
+#include "firmware/core/default_address.hpp"
+#include "firmware/core/policy.hpp"
+#include "firmware/core/ports.hpp"
+#include "firmware/core/ranging.hpp"
+#include "firmware/core/reading.hpp"
+#include "firmware/core/recovery.hpp"
+#include "firmware/drivers/vl53l1x/device.hpp"
+
+namespace octoskin::node {
+
+/// What a sensor needs of its surroundings; all of it outlives the sensor.
+struct SensorSurroundings {
+    i2c::Bus& bus;
+    DefaultAddress& default_address;
+    XshutLines& xshut;
+};
+
+/// Since start; the wire carries them modulo or saturated.
+struct SensorCounts {
+    std::uint32_t rejected = 0;         ///< results that did not become readings, for whatever reason
+    std::uint32_t reads_disagreed = 0;  ///< of these: never read twice alike
+    std::uint32_t undated = 0;          ///< of these: time or zone not known well enough
+    std::uint32_t restarts = 0;         ///< attempts to bring it back
+};
+
+class Sensor {
+  public:
+    Sensor(const SensorConfig& config, const SensorSurroundings& surroundings,
+           const vl53l1x::Options& options, const RangingRules& rules, const Policy& policy, NodeTime now);
+    Sensor(const Sensor&) = delete;
+    Sensor& operator=(const Sensor&) = delete;
+
+    // --- orders; they take effect as soon as the transfers under way are over
+    void order_start(NodeTime now);
+    void order_stop(NodeTime now);
+    void order_reinitialise(NodeTime now);
+    /// Empty: the configured period. Returns whether the period fits the timing budget; if not, nothing is
+    /// changed.
+    [[nodiscard]] bool order_period(std::optional<Microseconds> period, NodeTime now);
+
+    // --- work
+    /// When the bus is wanted; empty while there is nothing to wait for.
+    [[nodiscard]] std::optional<NodeTime> due() const noexcept;
+    /// One step, with the bus free or taken by this sensor's own transfer.
+    [[nodiscard]] BusUse advance(NodeTime now);
+    /// The reading that the last step accepted; told once.
+    [[nodiscard]] std::optional<Reading> take_reading() noexcept;
+    /// Whether the last failure may be the whole bus's; told once.
+    [[nodiscard]] bool take_bus_suspicion() noexcept;
+
+    /// Puts the sensor in reset, whatever it is doing, because somebody holds the bus. It finds out by itself
+    /// and comes back the usual way.
+    void isolate();
+
+    // --- health
+    [[nodiscard]] wire::SensorState state() const noexcept { return state_; }
+    [[nodiscard]] wire::SensorFault fault() const noexcept { return fault_; }
+    /// Not ranging as configured, though it should, and not for being still in its first bring-up.
+    [[nodiscard]] bool is_degraded() const noexcept;
+    /// Has ended its first bring-up, well or badly.
+    [[nodiscard]] bool is_settled() const noexcept { return is_settled_; }
+    [[nodiscard]] bool is_period_overridden() const noexcept { return is_period_overridden_; }
+    [[nodiscard]] bool is_ordered_to_range() const noexcept { return is_ordered_to_range_; }
+    [[nodiscard]] std::int32_t period_error_permille() const noexcept {
+        return ranging_.period_error_permille();
+    }
+    [[nodiscard]] const SensorCounts& counts() const noexcept { return counts_; }
+    [[nodiscard]] std::uint16_t i2c_error_count() const noexcept { return device_.i2c_error_count(); }
+
+  private:
+    enum class Mode : std::uint8_t { bringing_up, ranging, stopped, awaiting_recovery };
+
+    [[nodiscard]] BusUse advance_bring_up(NodeTime now);
+    [[nodiscard]] BusUse advance_ranging(NodeTime now);
+    void begin_bring_up(NodeTime now);
+    void range_or_rest(NodeTime now);
+    void on_reading();
+    void on_refused();
+    void on_failure(wire::SensorFault fault, bool can_restart, NodeTime now);
+    void recover(NodeTime now);
+    [[nodiscard]] bool is_reinitialisation_due() const noexcept;
+
+    const SensorConfig& config_;
+    XshutLines& xshut_;
+    const Policy& policy_;
+    vl53l1x::Device device_;
+    BringUp bring_up_;
+    Ranging ranging_;
+    Recovery recovery_;
+
+    Mode mode_ = Mode::bringing_up;
+    RecoveryPlan plan_;
+    bool is_ordered_to_range_ = true;
+    std::optional<NodeTime> reinitialise_ordered_;
+    bool is_period_overridden_ = false;
+
+    wire::SensorState state_ = wire::SensorState::starting;
+    wire::SensorFault fault_ = wire::SensorFault::none;
+    bool is_settled_ = false;
+    bool has_ever_answered_ = false;
+    bool is_bus_suspect_ = false;
+    std::uint8_t refused_in_row_ = 0;
+    SensorCounts counts_;
+    std::optional<Reading> reading_;
+};
+
+}  // namespace octoskin::node

@@ -1,0 +1,11 @@
+// The driver's errors as the wire names them.
+#pragma once
+
+#include "common/wire/messages.hpp"
+#include "firmware/drivers/vl53l1x/device.hpp"
+
+namespace octoskin::node {
+
+[[nodiscard]] wire::SensorFault sensor_fault(vl53l1x::Error error) noexcept;
+
+}  // namespace octoskin::node

@@ -1,0 +1,32 @@
+// How long a transfer lasts on the wire, and when to stop waiting for it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "common/time.hpp"
+#include "firmware/drivers/i2c/i2c_bus.hpp"
+
+namespace octoskin::i2c {
+
+/// Clock periods of a transfer without clock stretching: every byte is 8 bits and an acknowledge, START and
+/// STOP count one each, and a read behind a write costs a repeated START and a second address byte.
+[[nodiscard]] constexpr std::uint32_t bit_count(std::size_t bytes_written, std::size_t bytes_read) noexcept {
+    const auto written = static_cast<std::uint32_t>(bytes_written);
+    const auto read = static_cast<std::uint32_t>(bytes_read);
+    if (read == 0) return (1 + written) * 9 + 2;
+    if (written == 0) return (1 + read) * 9 + 2;
+    return (2 + written + read) * 9 + 3;
+}
+[[nodiscard]] constexpr std::uint32_t bit_count(const Transfer& transfer) noexcept {
+    return bit_count(transfer.write.size(), transfer.read.size());
+}
+
+/// The time a transfer may take before it is given up: three times its nominal time, for parts and ports that
+/// stretch the clock, plus 1 ms for a late interrupt. `bus_hz` > 0.
+[[nodiscard]] constexpr Microseconds time_limit(const Transfer& transfer, std::uint32_t bus_hz) noexcept {
+    const std::uint64_t nominal_us = (std::uint64_t{bit_count(transfer)} * 1'000'000 + bus_hz - 1) / bus_hz;
+    return Microseconds{static_cast<std::int64_t>(3 * nominal_us + 1'000)};
+}
+
+}  // namespace octoskin::i2c

@@ -1,0 +1,348 @@
+// What each operation of the driver does: tables of stages, in the order of ST's driver (ULD 3.5.2; UM2510).
+// Private to the driver: read device.hpp first, and the tables at the end of this file next.
+#pragma once
+
+#include <algorithm>
+
+#include "firmware/drivers/vl53l1x/device.hpp"
+#include "firmware/drivers/vl53l1x/roi.hpp"
+#include "firmware/drivers/vl53l1x/timing.hpp"
+
+namespace octoskin::vl53l1x {
+
+struct Device::Method {
+    // --- bring-up
+
+    static void ask_boot_state(Device& d) { d.read(reg::FIRMWARE_SYSTEM_STATUS, 1, judge_boot_state); }
+    static Verdict judge_boot_state(Device& d, NodeTime) {
+        return (d.answer_[0] & 1U) != 0 ? Verdict::proceed : Verdict::repeat_stage;
+    }
+
+    static void ask_identity(Device& d) { d.read(reg::IDENTIFICATION_MODEL_ID, 2, judge_identity); }
+    static Verdict judge_identity(Device& d, NodeTime) {
+        constexpr std::uint16_t kModelAndModuleType = 0xEACC;  // DS12385 table 11; ST's header says 0xEEAC
+        return d.answer16() == kModelAndModuleType ? Verdict::proceed : d.fail(Error::wrong_id);
+    }
+
+    // The part listens at its new address from the next START on.
+    static void write_address(Device& d) {
+        d.write8(reg::I2C_SLAVE_DEVICE_ADDRESS, d.new_address_, [](Device& device, NodeTime) {
+            device.live_address_ = device.new_address_;
+            return Verdict::proceed;
+        });
+    }
+    static void verify_address(Device& d) {
+        if (d.options_.verifies_address) ask_identity(d);
+    }
+
+    static void write_default_configuration(Device& d) {
+        constexpr auto kCount = static_cast<std::uint8_t>(kDefaultConfiguration.size());
+        const bool in_burst = d.options_.writes_config_in_burst;
+        d.line_up({.kind = Step::Kind::write_defaults,
+                   .index = kDefaultConfigurationFirst,
+                   .count = in_burst ? kCount : std::uint8_t{1},
+                   .transfers = in_burst ? std::uint8_t{1} : kCount,
+                   .judge = [](Device& device, NodeTime) {
+                       device.mode_ = DistanceMode::long_range;
+                       device.budget_ms_ = 100;
+                       device.written_roi_ = Roi{};
+                       device.is_active_low_ = device.options_.is_interrupt_active_low;
+                       return Verdict::proceed;
+                   }});
+    }
+
+    // VHV: the bias voltage of the SPADs. Bound to two search loops from the value found last, or the full
+    // search.
+    static void bound_vhv_search(Device& d) {
+        d.write8(reg::VHV_CONFIG_TIMEOUT_MACROP_LOOP_BOUND, 0x09);
+        d.write8(reg::VHV_CONFIG_INIT, 0x00);
+    }
+    static void allow_full_vhv_search(Device& d) {
+        d.write8(reg::VHV_CONFIG_TIMEOUT_MACROP_LOOP_BOUND, 0x81);
+        d.write8(reg::VHV_CONFIG_INIT, 0x92);
+    }
+
+    // --- mode, budget, period
+
+    static void reread_budget(Device& d) {
+        if (!d.options_.rereads_settings) return;
+        d.read(reg::RANGE_CONFIG_TIMEOUT_MACROP_A, 2, [](Device& device, NodeTime) {
+            const auto budget_ms = budget_of_timeout_a(device.answer16());
+            if (!budget_ms) return device.fail(Error::config_mismatch);
+            device.budget_ms_ = *budget_ms;
+            return Verdict::proceed;
+        });
+    }
+    static void reread_mode(Device& d) {
+        if (!d.options_.rereads_settings) return;
+        d.read(reg::PHASECAL_CONFIG_TIMEOUT_MACROP, 1, [](Device& device, NodeTime) {
+            const auto mode = marked_mode(device.answer_[0]);
+            if (!mode) return device.fail(Error::config_mismatch);
+            device.mode_ = *mode;
+            return Verdict::proceed;
+        });
+    }
+
+    static void write_mode(Device& d) {
+        const ModeRegisters& mode = mode_registers(d.settings_.distance_mode);
+        d.write8(reg::PHASECAL_CONFIG_TIMEOUT_MACROP, mode.phasecal_timeout);
+        d.write8(reg::RANGE_CONFIG_VCSEL_PERIOD_A, mode.vcsel_period_a);
+        d.write8(reg::RANGE_CONFIG_VCSEL_PERIOD_B, mode.vcsel_period_b);
+        d.write8(reg::RANGE_CONFIG_VALID_PHASE_HIGH, mode.valid_phase_high);
+        d.write16(reg::SD_CONFIG_WOI_SD0, mode.woi);
+        d.write16(reg::SD_CONFIG_INITIAL_PHASE_SD0, mode.initial_phase, [](Device& device, NodeTime) {
+            device.mode_ = device.settings_.distance_mode;
+            return Verdict::proceed;
+        });
+    }
+    /// The budget in force cannot be taken along into a mode without it.
+    static void check_budget(Device& d) {
+        if (!range_timeouts(d.settings_.distance_mode, d.budget_ms_)) d.fail(Error::unsupported_config);
+    }
+    static void write_timeouts(Device& d, std::uint16_t budget_ms, Judge judge) {
+        const auto timeouts = range_timeouts(d.mode_, budget_ms);
+        if (!timeouts) {
+            d.fail(Error::unsupported_config);
+            return;
+        }
+        d.write16(reg::RANGE_CONFIG_TIMEOUT_MACROP_A, timeouts->a);
+        d.write16(reg::RANGE_CONFIG_TIMEOUT_MACROP_B, timeouts->b, judge);
+    }
+    static void write_same_budget(Device& d) { write_timeouts(d, d.budget_ms_, nullptr); }
+    static void write_new_budget(Device& d) {
+        write_timeouts(d, d.settings_.timing_budget_ms, [](Device& device, NodeTime) {
+            device.budget_ms_ = device.settings_.timing_budget_ms;
+            return Verdict::proceed;
+        });
+    }
+    /// ST's mode setter applies the old budget to the new mode; pointless where the new budget follows.
+    static void write_same_budget_as_st(Device& d) {
+        if (d.options_.rereads_settings) write_same_budget(d);
+    }
+
+    static void ask_oscillator(Device& d) {
+        d.read(reg::RESULT_OSC_CALIBRATE_VAL, 2, [](Device& device, NodeTime) {
+            const auto value = period_register(device.answer16(), device.period_);
+            if (!value) return device.fail(Error::oscillator_zero);
+            device.write32(reg::SYSTEM_INTERMEASUREMENT_PERIOD, *value);
+            return Verdict::proceed;
+        });
+    }
+
+    // --- region of interest
+
+    static void write_roi(Device& d) {
+        const bool is_size_new = !d.written_roi_ || d.written_roi_->width != d.roi_.width ||
+                                 d.written_roi_->height != d.roi_.height;
+        d.written_roi_.reset();  // unknown until it is written
+        const std::uint8_t size = size_register(d.roi_);
+        if (!is_size_new) {
+            d.write8(reg::ROI_CONFIG_USER_ROI_CENTRE_SPAD, d.roi_.centre_spad, note_roi);
+        } else if (d.options_.writes_config_in_burst) {
+            const auto centre_and_size = static_cast<std::uint16_t>((d.roi_.centre_spad << 8U) | size);
+            d.write16(reg::ROI_CONFIG_USER_ROI_CENTRE_SPAD, centre_and_size, note_roi);
+        } else {
+            d.write8(reg::ROI_CONFIG_USER_ROI_REQUESTED_GLOBAL_XY_SIZE, size);
+            d.write8(reg::ROI_CONFIG_USER_ROI_CENTRE_SPAD, d.roi_.centre_spad, note_roi);
+        }
+    }
+    static Verdict note_roi(Device& d, NodeTime) {
+        d.written_roi_ = d.roi_;
+        return Verdict::proceed;
+    }
+
+    /// ST's SetROI, which moves the centre too.
+    static void write_roi_size(Device& d) {
+        d.written_roi_.reset();
+        d.read(reg::ROI_CONFIG_MODE_ROI_CENTRE_SPAD, 1, [](Device& device, NodeTime) {
+            constexpr std::uint8_t kArrayCentre = 199;
+            const bool is_large = device.roi_.width > 10 || device.roi_.height > 10;
+            device.write8(reg::ROI_CONFIG_USER_ROI_CENTRE_SPAD, is_large ? kArrayCentre : device.answer_[0]);
+            device.write8(reg::ROI_CONFIG_USER_ROI_REQUESTED_GLOBAL_XY_SIZE, size_register(device.roi_),
+                          note_roi);
+            return Verdict::proceed;
+        });
+    }
+    static void write_roi_size_as_st(Device& d) {
+        if (d.options_.rereads_settings) write_roi_size(d);
+    }
+
+    // --- limits, offset, crosstalk, interrupt
+
+    static void write_sigma_limit(Device& d) {
+        d.write16(reg::RANGE_CONFIG_SIGMA_THRESH, d.settings_.sigma_limit_quarter_mm);
+    }
+    static void write_signal_limit(Device& d) {
+        d.write16(reg::RANGE_CONFIG_MIN_COUNT_RATE_RTN_LIMIT_MCPS, d.settings_.signal_limit_raw);
+    }
+    static void write_offset(Device& d) {
+        if (!d.settings_.has_offset) return;
+        d.write16(reg::ALGO_PART_TO_PART_RANGE_OFFSET_MM,
+                  static_cast<std::uint16_t>(d.settings_.offset_quarter_mm));
+        d.write16(reg::MM_CONFIG_INNER_OFFSET_MM, 0);
+        d.write16(reg::MM_CONFIG_OUTER_OFFSET_MM, 0);
+    }
+    static void write_crosstalk(Device& d) {
+        d.write16(reg::ALGO_CROSSTALK_COMPENSATION_X_PLANE_GRADIENT_KCPS, 0);
+        d.write16(reg::ALGO_CROSSTALK_COMPENSATION_Y_PLANE_GRADIENT_KCPS, 0);
+        d.write16(reg::ALGO_CROSSTALK_COMPENSATION_PLANE_OFFSET_KCPS, d.settings_.crosstalk_raw);
+    }
+
+    static void write_polarity(Device& d) {
+        if (!d.options_.caches_polarity) d.read(reg::GPIO_HV_MUX_CTRL, 1, nullptr);
+        d.write8(reg::GPIO_HV_MUX_CTRL, interrupt_pin_control(d.is_polarity_low_),
+                 [](Device& device, NodeTime) {
+                     device.is_active_low_ = device.is_polarity_low_;
+                     return Verdict::proceed;
+                 });
+    }
+
+    // ST's driver keeps the old window's bits and merges two windows into a third; here the new one replaces
+    // it.
+    static void write_range_threshold(Device& d) {
+        if (d.options_.rereads_settings) d.read(reg::SYSTEM_INTERRUPT_CONFIG_GPIO, 1, nullptr);
+        d.write8(reg::SYSTEM_INTERRUPT_CONFIG_GPIO, static_cast<std::uint8_t>(d.threshold_.window));
+        d.write16(reg::SYSTEM_THRESH_HIGH, d.threshold_.high_mm);
+        d.write16(reg::SYSTEM_THRESH_LOW, d.threshold_.low_mm);
+    }
+
+    // --- start, ready, result, stop
+
+    static constexpr std::uint8_t kStartTimed = 0x40;
+    static constexpr std::uint8_t kStartSingle = 0x10;
+
+    static void clear_before_start(Device& d) {
+        d.not_ready_seen_.reset();
+        if (d.options_.clears_before_start) clear(d);
+    }
+    static void start(Device& d) { d.write8(reg::SYSTEM_MODE_START, d.mode_start_); }
+    static void choose_timed(Device& d) { d.mode_start_ = kStartTimed; }
+    static void stop(Device& d) { d.write8(reg::SYSTEM_MODE_START, 0x00); }
+    static void abort(Device& d) { d.write8(reg::SYSTEM_MODE_START, 0x80); }
+
+    static void ask_polarity(Device& d) {
+        if (d.options_.caches_polarity) return;
+        d.read(reg::GPIO_HV_MUX_CTRL, 1, [](Device& device, NodeTime) {
+            device.is_active_low_ = (device.answer_[0] & 0x10U) != 0;
+            return Verdict::proceed;
+        });
+    }
+    static bool is_ready(const Device& d) {
+        const bool is_pin_high = (d.answer_[0] & 1U) != 0;
+        return is_pin_high != d.is_active_low_;
+    }
+    static void await_ready(Device& d) {
+        ask_polarity(d);
+        d.read(reg::GPIO_TIO_HV_STATUS, 1, [](Device& device, NodeTime) {
+            return is_ready(device) ? Verdict::proceed : Verdict::repeat_stage;
+        });
+    }
+    static void ask_ready(Device& d) {
+        ask_polarity(d);
+        d.read(reg::GPIO_TIO_HV_STATUS, 1, [](Device& device, NodeTime now) {
+            if (is_ready(device)) {
+                device.ready_seen_ = now;
+                return Verdict::proceed;
+            }
+            device.not_ready_seen_ = device.submitted_;
+            return Verdict::end;
+        });
+    }
+
+    // I2C has no checksum: a result counts if two reads of it agree.
+    static void read_result(Device& d) {
+        d.read(reg::RESULT_RANGE_STATUS, ResultBlock{}.size(), [](Device& device, NodeTime) {
+            device.block_ = device.answer_;
+            return device.options_.reads_twice ? Verdict::proceed : judge_result(device);
+        });
+        if (d.options_.reads_twice) d.read(reg::RESULT_RANGE_STATUS, ResultBlock{}.size(), compare_result);
+    }
+    static Verdict compare_result(Device& d, NodeTime) {
+        if (d.answer_ == d.block_) return judge_result(d);
+        // A new result between the two reads is no error, but it comes once a period.
+        const bool has_moved = d.answer_[kStreamCountOffset] != d.block_[kStreamCountOffset];
+        if (!has_moved || d.has_read_again_) return d.fail(Error::reads_disagree);
+        d.has_read_again_ = true;
+        return Verdict::repeat_stage;
+    }
+    static Verdict judge_result(Device& d) {
+        return is_plausible(d.block_) ? Verdict::proceed : d.fail(Error::implausible_block);
+    }
+
+    static void clear(Device& d) {
+        d.write8(reg::SYSTEM_INTERRUPT_CLEAR, 0x01, [](Device& device, NodeTime) {
+            device.not_ready_seen_ = device.submitted_;
+            return Verdict::proceed;
+        });
+    }
+    /// The last step of a read: only now does the reading count.
+    static void clear_and_publish(Device& d) {
+        d.write8(reg::SYSTEM_INTERRUPT_CLEAR, 0x01, [](Device& device, NodeTime) {
+            device.reading_ = {.measurement = unpack(device.block_, device.options_.applies_gain_factor),
+                               .ready_seen = device.ready_seen_,
+                               .not_ready_seen = device.not_ready_seen_};
+            device.has_measurement_ = true;
+            device.not_ready_seen_ = device.submitted_;
+            return Verdict::proceed;
+        });
+    }
+
+    static void read_bytes(Device& d) {
+        d.read(d.register_index_, d.register_bytes_wanted_, [](Device& device, NodeTime) {
+            device.register_count_ = device.register_bytes_wanted_;
+            std::copy_n(device.answer_.begin(), device.register_count_, device.register_bytes_.begin());
+            return Verdict::proceed;
+        });
+    }
+
+    // --- the stages that wait
+
+    static constexpr Stage kAwaitBoot{ask_boot_state, 1'000, 500'000, Error::boot_timeout};
+    // A first range takes one period, 100 ms at the defaults; a fleet polling every 5 ms leaves the bus free.
+    static constexpr Stage kAwaitReady{await_ready, 5'000, 1'000'000, Error::not_ready};
+    static constexpr Stage kReadResult{read_result, 0, 50'000, Error::reads_disagree};
+
+    // --- the operations
+
+    static constexpr Stage kProbe[]{{ask_identity}};
+    static constexpr Stage kSetAddress[]{{write_address}, {verify_address}};
+    static constexpr Stage kAwaitBootOnly[]{kAwaitBoot};
+    static constexpr Stage kLoadConfiguration[]{
+        {write_default_configuration}, {choose_timed}, {clear_before_start}, {start}};
+    static constexpr Stage kInitialise[]{
+        kAwaitBoot, {write_default_configuration}, {choose_timed}, {clear_before_start}, {start}};
+    static constexpr Stage kFinishInitialise[]{kAwaitReady, {clear}, {stop}, {bound_vhv_search}};
+    static constexpr Stage kConfigure[]{
+        // clang-format off
+        {reread_budget}, {write_mode}, {reread_mode}, {write_same_budget_as_st},
+        {reread_mode}, {write_new_budget},
+        {ask_oscillator},
+        {write_roi_size_as_st}, {write_roi},
+        {write_sigma_limit}, {write_signal_limit},
+        {write_offset},
+        {write_crosstalk},
+        // clang-format on
+    };
+    static constexpr Stage kSetDistanceMode[]{
+        {reread_budget}, {check_budget}, {write_mode}, {reread_mode}, {write_same_budget}};
+    static constexpr Stage kSetTimingBudget[]{{reread_mode}, {write_new_budget}};
+    static constexpr Stage kSetInterMeasurement[]{{ask_oscillator}};
+    static constexpr Stage kSetSigmaLimit[]{{write_sigma_limit}};
+    static constexpr Stage kSetSignalLimit[]{{write_signal_limit}};
+    static constexpr Stage kSetOffset[]{{write_offset}};
+    static constexpr Stage kSetCrosstalk[]{{write_crosstalk}};
+    static constexpr Stage kSetPolarity[]{{write_polarity}};
+    static constexpr Stage kSetRangeThreshold[]{{write_range_threshold}};
+    static constexpr Stage kSetRoiSize[]{{write_roi_size}};
+    static constexpr Stage kSetZone[]{{write_roi}};
+    static constexpr Stage kStart[]{{clear_before_start}, {start}};
+    static constexpr Stage kStop[]{{stop}};
+    static constexpr Stage kAbort[]{{abort}};
+    static constexpr Stage kRead[]{{ask_ready}, kReadResult, {clear_and_publish}};
+    static constexpr Stage kUpdateTemperature[]{
+        {allow_full_vhv_search}, {choose_timed}, {clear_before_start}, {start}, kAwaitReady, {clear}, {stop},
+        {bound_vhv_search}};
+    static constexpr Stage kReadRegister[]{{read_bytes}};
+};
+
+}  // namespace octoskin::vl53l1x

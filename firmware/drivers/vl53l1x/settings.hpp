@@ -1,0 +1,33 @@
+// What is set between initialising and starting a sensor.
+#pragma once
+
+#include <cstdint>
+
+#include "common/config/node_config.hpp"
+
+namespace octoskin::vl53l1x {
+
+/// Of the sensor's part of the configuration block, the driver applies mode, budget, period, the first zone,
+/// limits, offset and crosstalk.
+using Settings = SensorConfig;
+
+/// ALGO__PART_TO_PART_RANGE_OFFSET_MM: signed 13 bits, 11.2 mm.
+inline constexpr std::int16_t kOffsetQuarterMmMin = -4096;
+inline constexpr std::int16_t kOffsetQuarterMmMax = 4095;
+[[nodiscard]] constexpr bool is_offset_supported(std::int16_t quarter_mm) noexcept {
+    return quarter_mm >= kOffsetQuarterMmMin && quarter_mm <= kOffsetQuarterMmMax;
+}
+
+/// True if a sensor can do it: a budget of the mode's table, a period of at least the budget plus 5 ms, at
+/// least one zone and every zone on the SPAD array, an offset within its 13 bits.
+[[nodiscard]] bool is_supported(const Settings& settings) noexcept;
+
+/// When the interrupt fires, instead of on every sample (SYSTEM__INTERRUPT_CONFIG_GPIO bits 1:0).
+enum class RangeWindow : std::uint8_t { below_low = 0, above_high = 1, outside = 2, inside = 3 };
+struct RangeThreshold {
+    std::uint16_t low_mm = 0;
+    std::uint16_t high_mm = 0;
+    RangeWindow window = RangeWindow::inside;
+};
+
+}  // namespace octoskin::vl53l1x

@@ -1,0 +1,82 @@
+#include <cassert>
+#include <nlohmann/json.hpp>
+
+#include "host/apps/evaluation/results.hpp"
+
+namespace octoskin::evaluation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kReservedKey = "run";
+
+Json number(const std::optional<double>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+Json summary_json(const Summary& summary) {
+    Json per_seed = Json::array();
+    for (const auto& value : summary.per_seed) {
+        per_seed.push_back(number(value));
+    }
+    return {{"mean", number(summary.mean)}, {"sd", number(summary.sd)}, {"per_seed", std::move(per_seed)}};
+}
+
+/// In the order of `metric_fields`, which is the order in which a person looks for them.
+Json metrics_object(const MetricSummaries& metrics) {
+    Json object = Json::object();
+    for (const auto& field : metric_fields()) {
+        if (const auto found = metrics.find(field.name); found != metrics.end()) {
+            object[std::string(field.name)] = summary_json(found->second);
+        }
+    }
+    return object;
+}
+
+Json calibration_json(const Calibration& calibration) {
+    Json bins = Json::array();
+    for (std::size_t i = 0; i < calibration.size(); ++i) {
+        const auto& bin = calibration[i];
+        bins.push_back({{"from", static_cast<double>(i) / static_cast<double>(kCalibrationBins)},
+                        {"to", static_cast<double>(i + 1) / static_cast<double>(kCalibrationBins)},
+                        {"count", bin.count},
+                        {"mean_predicted", number(bin.mean_predicted())},
+                        {"observed_fraction", number(bin.observed_fraction())}});
+    }
+    return bins;
+}
+
+Json run_json(const Results& results) {
+    Json run = {{"seeds", results.seeds}, {"paired", Json::object()}, {"calibration", Json::object()}};
+    for (const auto& difference : results.paired) {
+        run["paired"][difference.name] = {{"seeds", difference.seeds},
+                                          {"metrics", metrics_object(difference.metrics)}};
+    }
+    for (const auto& map : results.maps) {
+        run["calibration"][map.configuration][map.map] = calibration_json(map.calibration);
+    }
+    run["times"] = Json::array();
+    for (const auto& time : results.times) {
+        run["times"].push_back({{"part", time.part}, {"wall_s", time.wall_s}, {"cpu_s", time.cpu_s}});
+    }
+    run["provenance"] = Json::object();
+    for (const auto& [key, value] : results.provenance) {
+        run["provenance"][key] = value;
+    }
+    return run;
+}
+
+}  // namespace
+
+std::string metrics_json(const Results& results) {
+    Json root = Json::object();
+    for (const auto& map : results.maps) {
+        assert(map.configuration != kReservedKey);
+        root[map.configuration][map.map] = metrics_object(map.metrics);
+    }
+    root[kReservedKey] = run_json(results);
+    // A path or a name may hold any bytes; JSON may not.
+    return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace octoskin::evaluation

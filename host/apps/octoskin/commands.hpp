@@ -1,0 +1,33 @@
+// The subcommands of `octoskin`, one file each. Each adds itself to the parser; its callback throws
+// CommandFailure, which main turns into a message and an exit code.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <stdexcept>
+
+#include "host/apps/recording/app_error.hpp"
+
+namespace octoskin::app {
+
+class CommandFailure : public std::runtime_error {
+  public:
+    explicit CommandFailure(const AppError& error) : std::runtime_error(error.message), code_(error.code) {}
+    [[nodiscard]] ExitCode code() const noexcept { return code_; }
+
+  private:
+    ExitCode code_;
+};
+
+void add_simulate_command(CLI::App& app);
+void add_replay_command(CLI::App& app);
+void add_evaluate_command(CLI::App& app);
+void add_experiment_command(CLI::App& app);
+void add_rig_command(CLI::App& app);
+void add_mapping_command(CLI::App& app);
+
+/// A file that ships with octoskin: under share/octoskin beside the installed program, or in the source tree
+/// it was built from.
+[[nodiscard]] std::filesystem::path shipped_file(const std::string& relative);
+
+}  // namespace octoskin::app

@@ -1,0 +1,60 @@
+// octoskin experiment: seeds x configurations, with metrics, maps and a report. What ./demo runs.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "host/apps/octoskin/commands.hpp"
+#include "host/apps/study/configuration.hpp"
+#include "host/apps/study/study.hpp"
+
+namespace octoskin::app {
+namespace {
+
+void run_experiment(const StudyRequest& request) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto results = run_study(request, [](const std::string& line) { spdlog::info("{}", line); });
+    if (!results) throw CommandFailure(results.error());
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    fmt::print("{}\n", evaluation::metrics_table(*results));
+    fmt::print("{:.0f} s in all. Look at {}\n", seconds,
+               std::filesystem::absolute(request.out / "report.html").string());
+}
+
+}  // namespace
+
+void add_experiment_command(CLI::App& app) {
+    auto request = std::make_shared<StudyRequest>();
+    request->inputs.rig = shipped_file("hw/rigs/experiment.yaml");
+    request->inputs.scenario = shipped_file("hw/worlds/experiment.scenario.yaml");
+    request->seeds = {0};
+    request->configurations = {"robust"};
+    request->jobs = std::max(1U, std::thread::hardware_concurrency());
+    CLI::App* command = app.add_subcommand(
+        "experiment", "Simulate, replay and judge over seeds; write maps, metrics and a report");
+    command->add_option("--out", request->out, "Directory of the results")->required();
+    command->add_option("--seeds", request->seeds, "Seeds; the first one's maps and recording are kept")
+        ->capture_default_str()
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--configurations", request->configurations)
+        ->description("Any of paper, paper_noise_free_robot_seen, robust")
+        ->capture_default_str();
+    command->add_option("--jobs", request->jobs, "Seeds at once")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 64));
+    command->add_option("--rig", request->inputs.rig, "Rig (YAML)")
+        ->capture_default_str()
+        ->check(CLI::ExistingFile);
+    command->add_option("--robot", request->inputs.robot, "Robot (URDF) in place of the rig's")
+        ->check(CLI::ExistingFile);
+    command->add_option("--scenario", request->inputs.scenario, "Motion, noise, seeds, judged region (YAML)")
+        ->capture_default_str()
+        ->check(CLI::ExistingFile);
+    command->add_option("--world", request->inputs.world, "World (SDF) in place of the scenario's")
+        ->check(CLI::ExistingFile);
+    command->callback([request] { run_experiment(*request); });
+}
+
+}  // namespace octoskin::app

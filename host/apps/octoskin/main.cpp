@@ -1,0 +1,54 @@
+// octoskin: the one command-line program.
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+#include <exception>
+
+#include "host/apps/octoskin/commands.hpp"
+
+namespace {
+
+constexpr const char* kFooter =
+    "Exit codes: 0 done; 1 done, with a bad result; 64 command line; 65 unusable data;\n"
+    "66 no such file; 70 a defect of octoskin; 73 cannot write; 78 rig, robot, scenario or mapping file.";
+
+int run(int argc, char** argv) {
+    using namespace octoskin;
+    CLI::App app{"One map of what a depth camera and the range sensors on a robot arm see."};
+    app.set_version_flag("--version", "octoskin " OCTOSKIN_VERSION);
+    app.require_subcommand(1);
+    app.footer(kFooter);
+    app::add_simulate_command(app);
+    app::add_replay_command(app);
+    app::add_evaluate_command(app);
+    app::add_experiment_command(app);
+    app::add_rig_command(app);
+    app::add_mapping_command(app);
+    try {
+        app.parse(argc, argv);
+        return static_cast<int>(ExitCode::ok);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+    } catch (const app::CommandFailure& failure) {
+        spdlog::error("{}", failure.what());
+        return static_cast<int>(failure.code());
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    constexpr int kInternal = 70;
+    // A reader that goes away (`| head`) must not end the program in the middle of a file.
+    std::signal(SIGPIPE, SIG_IGN);
+    spdlog::set_default_logger(spdlog::stderr_color_mt("octoskin"));
+    spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
+        spdlog::critical("a defect of octoskin, please report it: {}", error.what());
+        return kInternal;
+    }
+}

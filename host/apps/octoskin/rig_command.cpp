@@ -1,0 +1,64 @@
+// octoskin rig: whether a rig is sound, and what it asks of its buses.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "common/wire/bus_load.hpp"
+#include "host/apps/octoskin/commands.hpp"
+#include "host/io/rig/host_rig_reader.hpp"
+#include "hw/rigfile/can_load.hpp"
+#include "hw/rigfile/rig.hpp"
+
+namespace octoskin::app {
+namespace {
+
+struct RigOptions {
+    std::filesystem::path rig;
+    std::filesystem::path robot;
+    bool prints_canonical = false;
+};
+
+void describe(const rig::Rig& rig) {
+    fmt::print("rig {}: hash {:08x}, robot {}\n", rig.name, rig::rig_hash(rig), rig.urdf.filename().string());
+    for (const rig::Node& node : rig.nodes) {
+        fmt::print("  node {} '{}': {} sensors, node_hash {:08x}\n", node.config.node_id, node.name,
+                   node.sensors.size(), node_hash(node.config));
+    }
+    fmt::print("  node {} sends {} joints at {:g} Hz\n", rig.joints.node_id, rig.joints.joints.size(),
+               rig.joints.rate_hz);
+    if (rig.camera) {
+        fmt::print("  camera {} x {} at {:g} Hz\n", rig.camera->width, rig.camera->height,
+                   rig.camera->rate_hz);
+    }
+    fmt::print("  CAN{} {} bit/s{}: load {:.1f} % in the worst case, at most {:.0f} %\n",
+               rig.bus.uses_can_fd ? " FD" : "", rig.bus.nominal_bitrate,
+               rig.bus.uses_can_fd ? fmt::format(" / {} bit/s", rig.bus.data_bitrate) : "",
+               100.0 * rig::can_load(rig), 100.0 * wire::kBusLoadLimit);
+}
+
+}  // namespace
+
+void add_rig_command(CLI::App& app) {
+    auto options = std::make_shared<RigOptions>();
+    CLI::App* command =
+        app.add_subcommand("rig", "Check a rig and its robot; print nodes, hashes and bus loads");
+    command->add_option("rig", options->rig, "Rig (YAML)")->required();
+    command->add_option("--robot", options->robot, "Robot (URDF) in place of the rig's")
+        ->check(CLI::ExistingFile);
+    command->add_flag("--canonical", options->prints_canonical,
+                      "Print the rig in full, in its canonical form");
+    command->callback([options] {
+        const auto rig = rig::read_rig(options->rig, options->robot);
+        if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+        if (const auto host = make_host_setup(*rig); !host) {
+            throw CommandFailure({ExitCode::bad_config, host.error().message()});
+        }
+        if (options->prints_canonical) {
+            fmt::print("{}", rig::canonical_text(*rig, rig->urdf.string()));
+        } else {
+            describe(*rig);
+        }
+    });
+}
+
+}  // namespace octoskin::app

@@ -1,0 +1,194 @@
+#include "host/apps/playback/playback.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "common/wire/codec.hpp"
+#include "host/apps/recording/reading.hpp"
+#include "host/io/candump/log_source.hpp"
+#include "host/io/openni2/oni_reader.hpp"
+#include "host/io/rig/host_rig_reader.hpp"
+
+namespace octoskin {
+namespace {
+
+Unexpected<AppError> fail(ExitCode code, std::string message) {
+    return unexpected(AppError{code, std::move(message)});
+}
+
+struct Setup {
+    rig::Rig rig;
+    HostSetup host;
+};
+
+Result<Setup, AppError> read_setup(const PlaybackRequest& request) {
+    const auto lock = lock_reading();
+    auto rig = rig::read_rig(request.rig.empty() ? request.recording.rig() : request.rig, request.robot);
+    if (!rig) return fail(ExitCode::bad_config, rig.error().message());
+    auto host = make_host_setup(*rig);
+    if (!host) return fail(ExitCode::bad_config, host.error().message());
+    return Setup{std::move(*rig), std::move(*host)};
+}
+
+Result<candump::LogReader, AppError> open_reader(const RecordingPaths& recording) {
+    auto reader = candump::LogReader::open(recording.can_log());
+    if (!reader) return fail(ExitCode::no_input, reader.error().message());
+    return std::move(*reader);
+}
+
+/// The interface that the rig is on: the first that carries a heartbeat of one of its nodes. A log may hold
+/// several, and the same bus twice. Empty if none does: then every frame is looked at, and counted for what
+/// it is.
+Result<std::string, AppError> interface_of(const RecordingPaths& recording, const HostRig& rig) {
+    auto reader = open_reader(recording);
+    if (!reader) return unexpected(reader.error());
+    for (;;) {
+        const auto entry = reader->next();
+        if (!entry) return fail(ExitCode::bad_data, entry.error().message());
+        if (!*entry) return std::string();
+        const auto decoded = wire::decode((*entry)->frame);
+        if (!decoded || !std::holds_alternative<wire::Heartbeat>(decoded->message)) continue;
+        const bool is_of_rig = std::any_of(rig.nodes.begin(), rig.nodes.end(), [&](const HostNode& node) {
+            return node.node_id == decoded->node_id;
+        });
+        if (is_of_rig) return (*entry)->interface;
+    }
+}
+
+Result<candump::LogSource, AppError> open_log(const RecordingPaths& recording, const std::string& interface) {
+    auto reader = open_reader(recording);
+    if (!reader) return unexpected(reader.error());
+    return candump::LogSource(std::move(*reader), interface);
+}
+
+/// Whether the map begins at a START mark: read through once before.
+Result<MapBegin, AppError> begin_of(const RecordingPaths& recording, const std::string& interface) {
+    auto log = open_log(recording, interface);
+    if (!log) return unexpected(log.error());
+    const auto marked = has_start_mark(*log);
+    if (!marked) return fail(ExitCode::bad_data, marked.error().what);
+    return *marked ? MapBegin::start_mark : MapBegin::first_usable;
+}
+
+/// The recording's depth frames. Not being able to read them is a camera fault: the ranges are mapped all the
+/// same.
+struct DepthInput {
+    std::optional<openni2::OniReader> reader;
+    std::optional<DepthSourceError> error;
+};
+
+DepthInput open_depth(const RecordingPaths& recording) {
+    std::error_code error;
+    if (!std::filesystem::exists(recording.depth(), error)) return {};
+    auto reader = openni2::OniReader::open(recording.depth(), recording.depth_epoch());
+    if (!reader) return {std::nullopt, reader.error()};
+    return {std::move(*reader), std::nullopt};
+}
+
+AccountTable line_table(const candump::LogSource& log) {
+    AccountTable table = tabulate("log lines", log.reader().account());
+    table.used -= log.other_interface();
+    table.rejected.push_back({"other_interface", log.other_interface()});
+    return table;
+}
+
+/// What became of the pixels of the depth frames that were used.
+AccountTable pixel_table(const DepthStage& depth) {
+    const DepthPixelCounts& pixels = depth.pixels();
+    const std::uint64_t robot = depth.robot_pixels();
+    AccountTable table{.unit = "depth pixels",
+                       .in = pixels.used + pixels.no_value + pixels.bad_value + pixels.outside_map,
+                       .used = pixels.used,
+                       .pending = 0,
+                       .rejected = {{"no_value", pixels.no_value - robot},
+                                    {"robot", robot},
+                                    {"bad_value", pixels.bad_value},
+                                    {"outside_map", pixels.outside_map}},
+                       .is_balanced = robot <= pixels.no_value};
+    return table;
+}
+
+std::vector<std::string> take_notes(const Pipeline& pipeline, const HostRig& rig) {
+    std::vector<std::string> notes;
+    for (const HostNode& node : rig.nodes) {
+        notes.push_back(pipeline.intake().nodes().describe(node.node_id, pipeline.now()));
+    }
+    const HostClockEstimate& clock = pipeline.intake().host_clock();
+    if (clock.steps_back() + clock.steps_ahead() + clock.stamps_ignored() > 0) {
+        notes.push_back("stamps of the log: " + std::to_string(clock.steps_back()) + " steps back, " +
+                        std::to_string(clock.steps_ahead()) + " ahead, " +
+                        std::to_string(clock.stamps_ignored()) + " that fitted nothing");
+    }
+    return notes;
+}
+
+void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInput& depth,
+                   Playback& playback) {
+    const auto frames = playback.outcome.progress.can_frames;
+    if (frames < meta.can_frames) {
+        playback.warnings.push_back("can.log: " + std::to_string(frames) + " frames, but meta.yaml says " +
+                                    std::to_string(meta.can_frames) + ": part of the log is missing");
+    }
+    if (rig.camera && !depth.reader && !depth.error) {
+        playback.warnings.emplace_back(
+            "the rig has a camera, but the recording has no depth.oni: ranges only");
+    }
+    if (!rig.camera && depth.reader) {
+        playback.warnings.emplace_back(
+            "the recording has a depth.oni, but the rig has no camera: its frames are not used");
+    }
+    const std::pair<const char*, const FusedMap*> maps[] = {
+        {"depth", playback.pipeline.maps().depth()},
+        {"proximity", playback.pipeline.maps().proximity()},
+        {"fused", playback.pipeline.maps().fused()}};
+    for (const auto& [name, map] : maps) {
+        if (map == nullptr || map->counters().no_room == 0) continue;
+        playback.is_map_incomplete = true;
+        playback.warnings.push_back(std::string(name) + ": " + std::to_string(map->counters().no_room) +
+                                    " voxel terms had no room; raise map.memory_max_mib in the mapping file");
+    }
+}
+
+}  // namespace
+
+Result<Playback, AppError> play_recording(const PlaybackRequest& request, const ReplayReport& report) {
+    if (const auto checked = check_recording(request.recording); !checked) {
+        return fail(ExitCode::no_input, checked.error().message());
+    }
+    const auto meta = read_meta(request.recording);
+    if (!meta) return fail(ExitCode::bad_data, meta.error().message());
+    auto setup = read_setup(request);
+    if (!setup) return unexpected(setup.error());
+    const HostRig& rig = setup->host.rig;
+    const auto interface = interface_of(request.recording, rig);
+    if (!interface) return unexpected(interface.error());
+    const auto begin = begin_of(request.recording, *interface);
+    if (!begin) return unexpected(begin.error());
+    auto log = open_log(request.recording, *interface);
+    if (!log) return unexpected(log.error());
+    DepthInput depth = open_depth(request.recording);
+    PipelineConfig config;
+    config.maps = request.maps;
+    config.begin = *begin;
+    auto pipeline = Pipeline::build(rig, std::move(setup->host.robot), request.mapping, config);
+    if (!pipeline) {
+        return fail(ExitCode::bad_config, request.recording.rig().string() + ": the robot has no '" +
+                                              pipeline.error().element + "' that the rig speaks of");
+    }
+
+    ReplayOutcome outcome = replay(*pipeline, *log, depth.reader ? &*depth.reader : nullptr, report);
+    if (depth.error) outcome.depth_error = depth.error;
+    Playback playback{std::move(setup->rig), std::move(*pipeline), std::move(outcome), {}, {}, {}, false};
+    playback.accounts.push_back(line_table(*log));
+    for (AccountTable& table : playback.pipeline.account_tables())
+        playback.accounts.push_back(std::move(table));
+    if (const DepthStage* stage = playback.pipeline.depth_stage())
+        playback.accounts.push_back(pixel_table(*stage));
+    playback.notes = take_notes(playback.pipeline, rig);
+    find_warnings(*meta, rig, depth, playback);
+    return playback;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,43 @@
+// From a recording on disk to maps: the files opened, the host's pipeline run, the account drawn up.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "common/result.hpp"
+#include "host/apps/recording/app_error.hpp"
+#include "host/apps/recording/recording.hpp"
+#include "host/core/account/account.hpp"
+#include "host/core/mapping/mapping_config.hpp"
+#include "host/core/pipeline/pipeline.hpp"
+#include "host/core/pipeline/replay.hpp"
+#include "hw/rigfile/rig.hpp"
+
+namespace octoskin {
+
+struct PlaybackRequest {
+    RecordingPaths recording;
+    MappingConfig mapping;
+    MapChoice maps;
+    std::filesystem::path rig;    ///< in place of the recording's; empty: the recording's
+    std::filesystem::path robot;  ///< in place of the recording's; empty: the recording's
+};
+
+struct Playback {
+    rig::Rig rig;
+    Pipeline pipeline;  ///< finished: its maps and its accounts
+    ReplayOutcome outcome;
+    std::vector<AccountTable> accounts;  ///< log lines, then the pipeline's, then the pixels
+    /// How each node and the host's clock stood at the end: "node 1 'rear_rings': info_mismatch (node_hash
+    /// ...)".
+    std::vector<std::string> notes;
+    std::vector<std::string> warnings;  ///< what a person should know about this recording
+    bool is_map_incomplete = false;     ///< a map had no room for some of its voxels
+};
+
+/// Opens a recording and plays it to its end. A source that fails on the way (a truncated .oni) is told in
+/// `outcome`, and what came before it is on the maps. Several threads may play at once.
+[[nodiscard]] Result<Playback, AppError> play_recording(const PlaybackRequest& request,
+                                                        const ReplayReport& report = {});
+
+}  // namespace octoskin

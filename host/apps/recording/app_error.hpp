@@ -1,0 +1,24 @@
+// What `octoskin` tells the shell and the person when something cannot be done.
+#pragma once
+
+#include <string>
+
+namespace octoskin {
+
+/// After sysexits.h, so that a script or a service manager can tell what went wrong.
+enum class ExitCode : int {
+    ok = 0,
+    failed = 1,          ///< the work was done and its result is bad
+    usage = 64,          ///< the command line
+    bad_data = 65,       ///< a recording, map or world that cannot be used
+    no_input = 66,       ///< a file that is not there
+    cannot_create = 73,  ///< an output file
+    bad_config = 78,     ///< rig, robot, mapping or scenario file
+};
+
+struct AppError {
+    ExitCode code = ExitCode::failed;
+    std::string message;  ///< what, where, the value, what to do
+};
+
+}  // namespace octoskin

@@ -1,0 +1,55 @@
+// A recording: a directory of ordinary files that any tool can open.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "common/result.hpp"
+
+namespace octoskin {
+
+/// Where the files of a recording are.
+struct RecordingPaths {
+    explicit RecordingPaths(std::filesystem::path directory_in) : directory(std::move(directory_in)) {}
+
+    [[nodiscard]] std::filesystem::path can_log() const { return directory / "can.log"; }
+    [[nodiscard]] std::filesystem::path depth() const { return directory / "depth.oni"; }
+    [[nodiscard]] std::filesystem::path depth_epoch() const { return directory / "depth.epoch.yaml"; }
+    [[nodiscard]] std::filesystem::path rig() const { return directory / "rig.yaml"; }
+    [[nodiscard]] std::filesystem::path robot() const { return directory / "robot.urdf"; }
+    [[nodiscard]] std::filesystem::path meta() const { return directory / "meta.yaml"; }
+
+    std::filesystem::path directory;
+};
+
+/// Where a recording comes from: for people and for provenance, never for the map.
+struct RecordingMeta {
+    std::string made_by;                ///< program, version, build
+    std::string source;                 ///< "simulation" or "robot"
+    std::string world;                  ///< file name of the simulated world; empty for a robot
+    std::string scenario;               ///< file name of the simulated motion; empty for a robot
+    std::optional<std::uint64_t> seed;  ///< of the simulation
+    bool is_depth_noise_free = false;
+    std::uint64_t can_frames = 0;
+    std::uint64_t depth_frames = 0;
+    double duration_s = 0.0;
+};
+
+struct RecordingError {
+    std::filesystem::path file;
+    std::string what;
+    [[nodiscard]] std::string message() const { return file.string() + ": " + what; }
+};
+
+[[nodiscard]] Status<RecordingError> write_meta(const RecordingPaths& recording, const RecordingMeta& meta);
+
+/// Reads meta.yaml. Unknown keys are refused, as everywhere.
+[[nodiscard]] Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording);
+
+/// That `directory` holds every file a recording must have; names the one that is missing. A recording
+/// without a camera has neither depth.oni nor its sidecar.
+[[nodiscard]] Status<RecordingError> check_recording(const RecordingPaths& recording);
+
+}  // namespace octoskin

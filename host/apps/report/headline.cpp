@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include "host/apps/report/sections.hpp"
+#include "host/apps/report/text.hpp"
+
+namespace octoskin::report {
+namespace {
+
+using evaluation::MapSummary;
+using evaluation::Summary;
+
+struct Contest {
+    const MapSummary& depth;
+    const MapSummary& fused;
+    evaluation::PairedDifference difference;
+
+    [[nodiscard]] bool has(std::string_view metric) const {
+        return depth.at(metric).mean && fused.at(metric).mean;
+    }
+};
+
+/// "paired: +0.062 ± 0.019, better in 5 of 5 seeds"
+std::string paired_note(const Summary& paired, Style style, bool is_more_better) {
+    int better = 0;
+    int all = 0;
+    for (const auto& value : paired.per_seed) {
+        better += value && (is_more_better ? *value > 0.0 : *value < 0.0) ? 1 : 0;
+        all += value ? 1 : 0;
+    }
+    if (all < 2) {
+        return summary_text(paired, style);
+    }
+    return fmt::format("{}, better in {} of {} seeds", summary_text(paired, style), better, all);
+}
+
+std::string tile(std::string_view what, const std::string& from, const std::string& to,
+                 const std::string& note) {
+    return fmt::format(
+        "<div class=\"tile\"><div class=\"what\">{}</div><div class=\"big\"><span class=\"from\">{} "
+        "→</span> {}</div><div class=\"note\">{}</div></div>\n",
+        what, from, to, note);
+}
+
+std::string share_tile(const Contest& contest, std::string_view metric, std::string_view what) {
+    if (!contest.has(metric)) {
+        return {};
+    }
+    return tile(what, percent_text(*contest.depth.at(metric).mean),
+                percent_text(*contest.fused.at(metric).mean),
+                paired_note(contest.difference.metrics.find(metric)->second, {.is_difference = true}, true));
+}
+
+std::string missed_tile(const Contest& contest) {
+    const double before = *contest.depth.at("missed").mean;
+    const double after = *contest.fused.at("missed").mean;
+    const auto& paired = contest.difference.metrics.find("missed")->second;
+    std::string note = paired_note(paired, {.is_count = true, .is_difference = true}, false);
+    if (before > 0.0) {
+        note = signed_text(percent_text(after / before - 1.0)) + "; " + note;
+    }
+    return tile("Missed: occupied voxels that the map does not know", count_text(before), count_text(after),
+                note);
+}
+
+std::string f1_tile(const Contest& contest) {
+    if (!contest.has("f1")) {
+        return {};
+    }
+    return tile("F1 against the true surfaces", ratio_text(*contest.depth.at("f1").mean),
+                ratio_text(*contest.fused.at("f1").mean),
+                paired_note(contest.difference.metrics.find("f1")->second, {.is_difference = true}, true));
+}
+
+constexpr std::string_view kLeadText =
+    R"(Of the surfaces that the external camera cannot see, its own map holds {}; with the range sensors on the arm, the
+fused map holds {}.)";
+
+std::string lead_sentence(const Contest& contest) {
+    if (!contest.has("occluded_recall")) {
+        return {};
+    }
+    std::string text =
+        fmt::format(fmt::runtime(kLeadText), percent_text(*contest.depth.at("occluded_recall").mean),
+                    percent_text(*contest.fused.at("occluded_recall").mean));
+    if (contest.has("object_recall")) {
+        text += fmt::format(" Of the objects hidden behind the furniture: {} and {}.",
+                            percent_text(*contest.depth.at("object_recall").mean),
+                            percent_text(*contest.fused.at("object_recall").mean));
+    }
+    if (contest.has("precision")) {
+        text += fmt::format(" Of all that the fused map calls occupied, {} truly is.",
+                            percent_text(*contest.fused.at("precision").mean));
+    }
+    return text;
+}
+
+std::string origin_line(std::string_view configuration, std::size_t seeds) {
+    const std::string over = seeds == 1 ? "one seed."
+                                        : fmt::format(
+                                              "mean of {} seeds; differences are paired seed by seed, "
+                                              "± one standard deviation.",
+                                              seeds);
+    return fmt::format(
+        "<p class=\"soft\">Depth camera alone → fused, configuration <code>{}</code>, {}</p>\n",
+        escaped(configuration), over);
+}
+
+}  // namespace
+
+std::string headline_section(const ReportInput& input) {
+    std::string html = fmt::format("<header>\n<h1>{}</h1>\n", escaped(input.title));
+    const auto* depth = find_map(input.results.maps, input.main_configuration, "depth");
+    const auto* fused = find_map(input.results.maps, input.main_configuration, "fused");
+    if (depth != nullptr && fused != nullptr) {
+        const Contest contest{*depth, *fused, paired_difference(*fused, *depth)};
+        html += fmt::format("<p class=\"lead\">{}</p>\n<div class=\"tiles\">\n", lead_sentence(contest));
+        html +=
+            share_tile(contest, "occluded_recall", "Surfaces out of the camera’s sight that the map holds");
+        html += share_tile(contest, "object_recall", "The same, on the hidden objects only");
+        html += missed_tile(contest) + f1_tile(contest) + "</div>\n";
+        html += origin_line(input.main_configuration, fused->seeds.size());
+    }
+    return html + "</header>\n";
+}
+
+}  // namespace octoskin::report

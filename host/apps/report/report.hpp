@@ -1,0 +1,51 @@
+// report.html: one self-contained file that shows what the fused map knows and the camera cannot.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/apps/evaluation/results.hpp"
+#include "host/apps/report/image.hpp"
+#include "host/core/mapping/update_model.hpp"
+
+namespace octoskin::report {
+
+/// One map or the scene, from the robot's side and from the camera's.
+struct PicturePair {
+    std::string title;    ///< "Depth camera only"
+    std::string caption;  ///< what one sees, one or two sentences
+    Image front;
+    Image back;
+};
+
+/// The account of one kind of input: in = used + sum of rejected.
+struct Account {
+    std::string input;  ///< "ranges"
+    std::uint64_t received = 0;
+    std::uint64_t used = 0;
+    std::vector<std::pair<std::string, std::uint64_t>> rejected;  ///< counter name, count
+};
+
+struct ReportInput {
+    std::string title = "octoskin: what the camera cannot see";
+    evaluation::Results results;
+    /// The configuration that the headline and the pictures speak of.
+    std::string main_configuration = "robust";
+    std::uint64_t picture_seed = 0;
+    std::vector<PicturePair> pictures;  ///< scene first, then the maps
+    UpdateModel update_model;
+    std::vector<Account> accounts;
+    std::vector<std::string> idealisations;  ///< one sentence each
+    std::vector<std::string> reproduce;      ///< shell commands
+};
+
+/// What the simulated experiment leaves out, in the words of the report. For `ReportInput::idealisations`.
+[[nodiscard]] std::vector<std::string> experiment_idealisations();
+
+/// The whole document, UTF-8, no reference to anything outside itself. Text in the input may hold any
+/// characters: it is escaped. Equal inputs give equal bytes.
+[[nodiscard]] std::string report_html(const ReportInput& input);
+
+}  // namespace octoskin::report

@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "host/apps/report/chart.hpp"
+#include "host/apps/report/charts.hpp"
+#include "host/apps/report/text.hpp"
+
+namespace octoskin::report {
+namespace {
+
+constexpr double kRangeMax_m = 4.0;
+
+double probability_of(double log_odds) {
+    return 1.0 / (1.0 + std::exp(-log_odds));
+}
+
+/// The curve from where hits begin to count, and along 0.5 before.
+struct Curve {
+    std::vector<ChartPoint> silent;
+    std::vector<ChartPoint> counting;
+};
+
+Curve curve_of(const HitModel& hit) {
+    constexpr int kSteps = 400;
+    Curve curve;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double range_m = kRangeMax_m * i / kSteps;
+        const auto log_odds = static_cast<double>(hit.log_odds(range_m));
+        auto& part = log_odds == 0.0 ? curve.silent : curve.counting;
+        part.push_back({range_m, probability_of(log_odds)});
+    }
+    return curve;
+}
+
+void draw(Chart& chart, const Curve& curve, std::string_view css_class) {
+    chart.line(curve.silent, fmt::format("{} faint", css_class));
+    chart.line(curve.counting, css_class);
+}
+
+/// Values at both ends, written beside them.
+void label_ends(Chart& chart, const Curve& curve, std::string_view css_class, double dy_first,
+                double dy_last) {
+    if (curve.counting.empty()) {
+        return;
+    }
+    const auto& first = curve.counting.front();
+    const auto& last = curve.counting.back();
+    const std::string css = fmt::format("note {}", css_class);
+    chart.text(first, 6.0, dy_first, ratio_text(first.y), css);
+    chart.text(last, -4.0, dy_last, ratio_text(last.y), css, "end");
+}
+
+}  // namespace
+
+std::string update_curves_svg(const UpdateModel& model) {
+    const Curve proximity = curve_of(model.proximity);
+    const Curve depth = curve_of(model.depth);
+    Chart chart({.low = 0.0, .high = kRangeMax_m, .label = "range, m", .tick_count = 8},
+                {.low = 0.35, .high = 0.8, .label = "P(occupied) after one update", .tick_count = 9});
+    draw(chart, proximity, "proximity");
+    draw(chart, depth, "depth");
+    label_ends(chart, proximity, "proximity", -8.0, -8.0);
+    label_ends(chart, depth, "depth", 18.0, 18.0);
+    const double miss = probability_of(static_cast<double>(model.miss_log_odds));
+    chart.line({{0.0, miss}, {kRangeMax_m, miss}}, "miss");
+    chart.text({kRangeMax_m, miss}, -4.0, -7.0, "a beam passed through: " + ratio_text(miss), "note miss",
+               "end");
+    return chart.svg("Probability that a voxel is occupied after one hit, over the range, for both sensors");
+}
+
+}  // namespace octoskin::report

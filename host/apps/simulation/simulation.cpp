@@ -1,0 +1,147 @@
+#include "host/apps/simulation/simulation.hpp"
+
+#include <fstream>
+#include <optional>
+
+#include "host/apps/recording/reading.hpp"
+#include "host/apps/recording/recording.hpp"
+#include "host/io/candump/log_writer.hpp"
+#include "host/io/openni2/oni_writer.hpp"
+#include "hw/rigfile/rig.hpp"
+#include "hw/rigfile/robot_description.hpp"
+#include "hw/sim/arm/arm.hpp"
+#include "hw/sim/scenario/scenario.hpp"
+#include "hw/sim/world/world.hpp"
+
+namespace octoskin {
+namespace {
+
+namespace fs = std::filesystem;
+
+Unexpected<AppError> fail(ExitCode code, std::string message) {
+    return unexpected(AppError{code, std::move(message)});
+}
+
+/// Everything that is read before anything is simulated.
+struct Inputs {
+    sim::Scenario scenario;
+    rig::Rig rig;
+    sim::World world;
+    sim::Arm arm;
+    std::vector<rig::Capsule> body;  ///< the real one: without the rig's padding
+    fs::path world_file;
+};
+
+Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
+    const auto lock = lock_reading();
+    auto scenario = sim::read_scenario(request.scenario);
+    if (!scenario) return fail(ExitCode::bad_config, scenario.error().message());
+    auto rig = rig::read_rig(request.rig, request.robot);
+    if (!rig) return fail(ExitCode::bad_config, rig.error().message());
+    const fs::path world_file = request.world.empty() ? scenario->world : request.world;
+    auto world = sim::World::read(world_file);
+    if (!world) return fail(ExitCode::bad_data, world.error().message());
+    auto arm = sim::Arm::read(rig->urdf, rig->base_link, rig->joints.joints);
+    if (!arm) return fail(ExitCode::bad_config, arm.error().message());
+    auto body = rig::read_capsules(rig->urdf, {});
+    if (!body) return fail(ExitCode::bad_config, body.error().message());
+    rig->T_map_base.pretranslate(scenario->map_shift_m(request.seed));
+    return Inputs{std::move(*scenario), std::move(*rig),  std::move(*world),
+                  std::move(*arm),      std::move(*body), world_file};
+}
+
+/// The files of the recording that is being made; the first error stops the writing and is kept.
+class Recorder {
+  public:
+    static Result<Recorder, AppError> create(const RecordingPaths& paths, const rig::Rig& rig) {
+        std::error_code error;
+        fs::create_directories(paths.directory, error);
+        if (error) return fail(ExitCode::cannot_create, paths.directory.string() + ": " + error.message());
+        for (const auto& stale : {paths.depth(), paths.depth_epoch()}) fs::remove(stale, error);
+        fs::copy_file(rig.urdf, paths.robot(), fs::copy_options::overwrite_existing, error);
+        if (error) return fail(ExitCode::cannot_create, paths.robot().string() + ": " + error.message());
+        std::ofstream rig_file(paths.rig());
+        rig_file << rig::canonical_text(rig, paths.robot().filename().string());
+        rig_file.close();
+        if (!rig_file) return fail(ExitCode::cannot_create, paths.rig().string() + ": cannot write");
+        auto log = candump::LogWriter::create(paths.can_log());
+        if (!log) return fail(ExitCode::cannot_create, log.error().message());
+        Recorder recorder(std::move(*log));
+        if (rig.camera) {
+            auto depth = openni2::OniWriter::create(paths.depth(), paths.depth_epoch(),
+                                                    {rig.camera->width, rig.camera->height});
+            if (!depth) return fail(ExitCode::cannot_create, depth.error().what);
+            recorder.depth_.emplace(std::move(*depth));
+        }
+        return recorder;
+    }
+
+    void write(const wire::CanFrame& frame, WallTime stamp) {
+        if (error_) return;
+        if (const auto written = log_.write(stamp, frame); !written) error_ = written.error().message();
+    }
+    void write(HostTime captured, std::span<const std::uint16_t> depth_mm) {
+        if (error_) return;
+        if (const auto written = depth_->write(captured, depth_mm); !written) error_ = written.error().what;
+    }
+    Status<AppError> close() {
+        if (!error_) {
+            if (const auto closed = log_.close(); !closed) error_ = closed.error().message();
+        }
+        if (!error_ && depth_) {
+            if (const auto closed = depth_->close(); !closed) error_ = closed.error().what;
+        }
+        if (error_) return fail(ExitCode::cannot_create, *error_);
+        return Done{};
+    }
+
+  private:
+    explicit Recorder(candump::LogWriter log) : log_(std::move(log)) {}
+
+    candump::LogWriter log_;
+    std::optional<openni2::OniWriter> depth_;
+    std::optional<std::string> error_;
+};
+
+}  // namespace
+
+Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequest& request,
+                                                            const std::function<void(double)>& on_progress) {
+    auto inputs = read_inputs(request);
+    if (!inputs) return unexpected(inputs.error());
+    const RecordingPaths paths(request.out);
+    auto recorder = Recorder::create(paths, inputs->rig);
+    if (!recorder) return unexpected(recorder.error());
+
+    const sim::ExperimentInput input{.rig = inputs->rig,
+                                     .capsules = inputs->body,
+                                     .world = inputs->world,
+                                     .arm = inputs->arm,
+                                     .scenario = inputs->scenario,
+                                     .seed = request.seed,
+                                     .is_depth_noise_free = request.is_depth_noise_free};
+    const sim::ExperimentOutput output{
+        .on_frame = [&](const wire::CanFrame& frame, WallTime stamp) { recorder->write(frame, stamp); },
+        .on_depth = [&](HostTime captured, std::uint32_t, std::uint32_t,
+                        const std::vector<std::uint16_t>& depth_mm) { recorder->write(captured, depth_mm); },
+        .on_progress = on_progress};
+    const auto summary = sim::run_experiment(input, output);
+    if (!summary) return fail(ExitCode::bad_config, request.scenario.string() + ": " + summary.error().what);
+    if (const auto closed = recorder->close(); !closed) return unexpected(closed.error());
+
+    const RecordingMeta meta{.made_by = "octoskin " OCTOSKIN_VERSION,
+                             .source = "simulation",
+                             .world = inputs->world_file.filename().string(),
+                             .scenario = request.scenario.filename().string(),
+                             .seed = request.seed,
+                             .is_depth_noise_free = request.is_depth_noise_free,
+                             .can_frames = summary->can_frames,
+                             .depth_frames = summary->depth_frames,
+                             .duration_s = summary->duration_s};
+    if (const auto written = write_meta(paths, meta); !written) {
+        return fail(ExitCode::cannot_create, written.error().message());
+    }
+    return *summary;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,31 @@
+// From a world, a rig and a scenario to a recording on disk.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "common/result.hpp"
+#include "host/apps/recording/app_error.hpp"
+#include "hw/sim/experiment/experiment.hpp"
+
+namespace octoskin {
+
+struct SimulationRequest {
+    std::filesystem::path rig;
+    std::filesystem::path robot;  ///< URDF in place of the rig's; empty: the rig's
+    std::filesystem::path scenario;
+    std::filesystem::path world;  ///< SDF in place of the scenario's; empty: the scenario's
+    std::uint64_t seed = 0;
+    bool is_depth_noise_free = false;
+    std::filesystem::path out;  ///< made if it is not there; files of a former recording are replaced
+};
+
+/// Simulates and records. The recording's rig has the seed's shift in T_map_base. Several threads may each
+/// make a recording. state: not to be called while another thread reads a rig, world or robot, except for
+/// `read_lock` below.
+[[nodiscard]] Result<sim::ExperimentSummary, AppError> simulate_recording(
+    const SimulationRequest& request, const std::function<void(double)>& on_progress = {});
+
+}  // namespace octoskin

@@ -1,0 +1,118 @@
+#include "host/apps/study/seed_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "host/apps/study/part_timer.hpp"
+
+namespace octoskin {
+namespace {
+
+using Say = std::function<void(const std::string&)>;
+
+/// Says how far a long part is, every quarter.
+class Quarters {
+  public:
+    Quarters(const Say& say, std::string part) : say_(say), part_(std::move(part)) {}
+    void reach(double fraction) {
+        const int quarter = static_cast<int>(fraction * 4.0);
+        if (quarter <= last_ || quarter >= 4) return;
+        last_ = quarter;
+        say_(fmt::format("{}: {} %", part_, quarter * 25));
+    }
+
+  private:
+    const Say& say_;
+    std::string part_;
+    int last_ = 0;
+};
+
+Status<AppError> simulate(const SeedRequest& request, bool is_noise_free, const Say& say,
+                          SeedOutcome& outcome) {
+    SimulationRequest simulation = request.simulation;
+    simulation.is_depth_noise_free = is_noise_free;
+    simulation.out = is_noise_free ? request.scratch : request.recording;
+    const PartTimer timer("simulate");
+    Quarters quarters(say, is_noise_free ? "simulating without depth noise" : "simulating");
+    const auto summary = simulate_recording(simulation, [&](double fraction) { quarters.reach(fraction); });
+    if (!summary) return unexpected(summary.error());
+    outcome.times.push_back(timer.stop());
+    say(
+        fmt::format("simulated {:.1f} s: {} CAN frames, {} depth frames, first range after {:.2f} s, bus "
+                    "{:.0f} % busy ({:.1f} s)",
+                    summary->duration_s, summary->can_frames, summary->depth_frames, summary->first_range_s,
+                    100.0 * summary->can_busy_fraction, outcome.times.back().wall_s));
+    return Done{};
+}
+
+Result<Playback, AppError> play(const SeedRequest& request, const StudyConfiguration& configuration,
+                                const Say& say, SeedOutcome& outcome) {
+    const RecordingPaths recording(configuration.is_depth_noise_free ? request.scratch : request.recording);
+    const PartTimer timer("replay " + configuration.name);
+    auto playback = play_recording(
+        {.recording = recording, .mapping = configuration.mapping, .maps = {}, .rig = {}, .robot = {}});
+    if (!playback) return playback;
+    if (!playback->outcome.is_complete() || !playback->pipeline.is_balanced()) {
+        const auto& error = playback->outcome.depth_error;
+        return unexpected(
+            AppError{ExitCode::bad_data, error ? error->what : "the replay's account does not balance"});
+    }
+    outcome.times.push_back(timer.stop());
+    say(fmt::format("replayed as '{}' ({:.1f} s)", configuration.name, outcome.times.back().wall_s));
+    return playback;
+}
+
+void judge(const Playback& playback, const std::string& configuration, const evaluation::Truth& truth,
+           SeedOutcome& outcome) {
+    const PartTimer timer("evaluate");
+    const MapSet& maps = playback.pipeline.maps();
+    const std::pair<const char*, const FusedMap*> named[] = {
+        {"depth", maps.depth()}, {"proximity", maps.proximity()}, {"fused", maps.fused()}};
+    for (const auto& [name, map] : named) {
+        outcome.runs.push_back({configuration, name, outcome.seed, evaluation::evaluate(*map, truth)});
+    }
+    outcome.times.push_back(timer.stop());
+}
+
+evaluation::Truth make_truth(const StudyGround& ground, const rig::Rig& rig, SeedOutcome& outcome) {
+    const PartTimer timer("ground truth");
+    evaluation::TruthConfig config = ground.truth;
+    config.external_camera = rig.camera;
+    evaluation::Truth truth = evaluation::build_truth(ground.world, ground.survey, config, rig.T_map_base);
+    outcome.times.push_back(timer.stop());
+    return truth;
+}
+
+}  // namespace
+
+Result<SeedOutcome, AppError> study_seed(const SeedRequest& request, const StudyGround& ground,
+                                         const Say& say) {
+    SeedOutcome outcome{.seed = request.simulation.seed, .runs = {}, .times = {}, .main = {}, .truth = {}};
+    for (const bool is_noise_free : {false, true}) {
+        const auto& all = request.configurations;
+        const auto matches = [&](const StudyConfiguration& c) {
+            return c.is_depth_noise_free == is_noise_free;
+        };
+        if (std::none_of(all.begin(), all.end(), matches)) continue;
+        if (const auto simulated = simulate(request, is_noise_free, say, outcome); !simulated) {
+            return unexpected(simulated.error());
+        }
+        for (const StudyConfiguration& configuration : all) {
+            if (!matches(configuration)) continue;
+            auto playback = play(request, configuration, say, outcome);
+            if (!playback) return unexpected(playback.error());
+            if (!outcome.truth) outcome.truth = make_truth(ground, playback->rig, outcome);
+            judge(*playback, configuration.name, *outcome.truth, outcome);
+            if (request.keeps_maps && configuration.name == request.main_configuration) {
+                outcome.main.emplace(std::move(*playback));
+            }
+        }
+    }
+    std::error_code ignored;
+    std::filesystem::remove_all(request.scratch, ignored);
+    if (!request.keeps_recording) std::filesystem::remove_all(request.recording, ignored);
+    return outcome;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,21 @@
+// The pictures of the report: the scene, and the three maps of one seed, from both sides.
+#pragma once
+
+#include <vector>
+
+#include "host/apps/evaluation/truth.hpp"
+#include "host/apps/report/report.hpp"
+#include "host/core/pipeline/map_set.hpp"
+#include "hw/rigfile/rig.hpp"
+#include "hw/sim/scenario/scenario.hpp"
+#include "hw/sim/world/world.hpp"
+
+namespace octoskin {
+
+/// Scene first, then depth, proximity and fused. About 10 s on one core.
+[[nodiscard]] std::vector<report::PicturePair> draw_pictures(const sim::World& world,
+                                                             const sim::Scenario& scenario,
+                                                             const rig::Rig& rig, const MapSet& maps,
+                                                             const evaluation::Truth& truth);
+
+}  // namespace octoskin

@@ -1,0 +1,32 @@
+// One accepted range, placed: the value that the integrator takes.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "common/time.hpp"
+
+namespace octoskin {
+
+/// Which zone of which sensor of which node.
+struct BeamSource {
+    std::uint8_t node_id = 0;
+    std::uint8_t sensor = 0;
+    std::uint8_t zone = 0;
+    friend constexpr auto operator<=>(const BeamSource&, const BeamSource&) = default;
+};
+
+struct Beam {
+    BeamSource source;
+    HostTime captured;
+    Eigen::Vector3d p_map_sensor = Eigen::Vector3d::Zero();  ///< origin, map frame, metres
+    Eigen::Vector3d direction_map =
+        Eigen::Vector3d::UnitZ();  ///< unit vector along the sensor's z axis, map frame
+    /// Measured range along `direction_map` in metres; empty for a beam without return.
+    std::optional<double> range_m;
+    double sigma_m = 0.0;
+    double clear_limit_m = 0.0;  ///< without return: space may be cleared up to here; 0 = not at all
+};
+
+}  // namespace octoskin

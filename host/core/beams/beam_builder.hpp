@@ -1,0 +1,57 @@
+// Puts an accepted range where its sensor was at that instant, and refuses those that end on the robot
+// itself.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "common/result.hpp"
+#include "host/core/beams/beam.hpp"
+#include "host/core/beams/range_measurement.hpp"
+#include "host/core/beams/robot_pose.hpp"
+#include "host/core/kinematics/robot_model.hpp"
+#include "host/core/rig/host_rig.hpp"
+
+namespace octoskin {
+
+struct BeamRules {
+    bool removes_robot = true;
+    /// A beam without target clears space up to here at most.
+    double no_return_clear_m = 0.0;
+};
+
+enum class BeamFault : std::uint8_t {
+    self_hit,    ///< longer than the way to the robot's own body, less the rig's margin
+    not_finite,  ///< the pose holds a NaN or an infinity
+};
+
+class BeamBuilder {
+  public:
+    /// Refuses, by name, a link of the rig that the robot does not have.
+    [[nodiscard]] static Result<BeamBuilder, RobotModelFault> build(const HostRig& rig,
+                                                                    const RobotModel& robot,
+                                                                    const BeamRules& rules);
+
+    /// `robot`: at the capture time. The source must be one of the rig's (asserted). About 50 ns per capsule.
+    [[nodiscard]] Result<Beam, BeamFault> place(const RangeMeasurement& measurement,
+                                                const RobotPose& robot) const;
+
+  private:
+    struct Sensor {
+        LinkId link = 0;
+        Eigen::Isometry3d T_link_sensor = Eigen::Isometry3d::Identity();
+        std::vector<HostZone> zones;
+    };
+    BeamBuilder() = default;
+
+    BeamRules rules_;
+    double self_margin_m_ = 0.0;
+    Eigen::Isometry3d T_map_base_ = Eigen::Isometry3d::Identity();
+    std::vector<LinkId> ignored_links_;
+    std::map<std::pair<std::uint8_t, std::uint8_t>, Sensor> sensors_;  ///< by node and local index
+};
+
+}  // namespace octoskin

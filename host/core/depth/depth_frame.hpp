@@ -1,0 +1,38 @@
+// One frame of the depth camera, as it comes from any source.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "common/time.hpp"
+
+namespace octoskin {
+
+/// Pinhole model; a ray goes through a pixel's centre: ((u + 0.5 - cx) / fx, (v + 0.5 - cy) / fy, 1).
+struct CameraIntrinsics {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    double fx = 0.0;
+    double fy = 0.0;
+    double cx = 0.0;
+    double cy = 0.0;
+};
+
+/// Row-major depth along the optical axis in millimetres, 0 = no value.
+struct DepthFrame {
+    HostTime captured;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<std::uint16_t> depth_mm;
+};
+
+/// Depth along the optical axis in metres, height x width row-major; NaN = no value. What filters take and
+/// give.
+struct DepthImage {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<float> depth_m;
+};
+
+}  // namespace octoskin

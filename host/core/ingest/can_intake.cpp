@@ -1,0 +1,265 @@
+#include "host/core/ingest/can_intake.hpp"
+
+#include <variant>
+
+#include "common/wire/codec.hpp"
+
+namespace octoskin {
+namespace {
+
+std::optional<ReadingReason> reason_of(NodeVerdict verdict) {
+    switch (verdict) {
+        case NodeVerdict::other_version:
+            return ReadingReason::node_version;
+        case NodeVerdict::quarantined:
+            return ReadingReason::node_quarantined;
+        case NodeVerdict::absent:
+            return ReadingReason::node_absent;
+        case NodeVerdict::lost:
+            return ReadingReason::node_lost;
+        case NodeVerdict::time_suspect:
+            return ReadingReason::node_time_suspect;
+        case NodeVerdict::info_incomplete:
+            return ReadingReason::node_info_incomplete;
+        case NodeVerdict::info_mismatch:
+            return ReadingReason::node_info_mismatch;
+        case NodeVerdict::build_refused:
+            return ReadingReason::node_build_refused;
+        case NodeVerdict::usable:
+            return std::nullopt;
+    }
+    return ReadingReason::node_absent;
+}
+
+template <class Reason>
+Reason clock_reason(ClockFault fault) {
+    switch (fault) {
+        case ClockFault::not_ready:
+            return Reason::clock_not_ready;
+        case ClockFault::in_doubt:
+            return Reason::clock_in_doubt;
+        case ClockFault::silent:
+            return Reason::clock_silent;
+    }
+    return Reason::clock_in_doubt;
+}
+
+/// Times that no sensor can produce: the node's clock has jumped since the last exchange. A jump shows at the
+/// next reading unless it shifts readings by less than their distance less three quarters of a budget.
+bool contradicts_clock(ReadingReason reason) {
+    return reason == ReadingReason::too_soon || reason == ReadingReason::too_young ||
+           reason == ReadingReason::out_of_window;
+}
+
+FrameReason reason_of(SyncFault fault) {
+    return fault == SyncFault::repeated ? FrameReason::sync_repeated : FrameReason::sync_unmatched;
+}
+
+/// Joint states need no NODE_INFO, and their node need not send heartbeats; but what it says must count.
+bool is_refused_for_joints(NodeVerdict verdict) {
+    return verdict == NodeVerdict::other_version || verdict == NodeVerdict::quarantined ||
+           verdict == NodeVerdict::time_suspect;
+}
+
+}  // namespace
+
+CanIntake::CanIntake(const HostRig& rig, const IntakeConfig& config)
+    : config_(config),
+      joint_source_(rig.joints.node_id),
+      host_clock_(config.host_clock),
+      nodes_(rig),
+      ranges_(rig, config.uses_no_return),
+      joints_(rig.joints.rate_hz) {
+    for (const auto& [node, record] : nodes_.records()) {
+        clocks_.emplace(node, ClockMap(config.clock));
+    }
+}
+
+FrameOutcome CanIntake::on_frame(const wire::CanFrame& frame, WallTime stamp) {
+    stamp_ = stamp;
+    FrameOutcome outcome;
+    const auto decoded = wire::decode(frame);
+    if (!decoded) {
+        outcome.rejected = reason_of(decoded.error());
+        const wire::NodeId sender = wire::node_of(frame.can_id);
+        if (decoded.error() == wire::DecodeError::wrong_version &&
+            wire::type_of(frame.can_id) == wire::FrameType::heartbeat && nodes_.knows(sender)) {
+            nodes_.on_other_version(sender, now());
+        }
+        return outcome;
+    }
+    const wire::NodeId node = decoded->node_id;
+    const bool is_from_node =
+        node != wire::kHostId && !std::holds_alternative<wire::Command>(decoded->message);
+    if (is_from_node && !nodes_.knows(node)) {
+        outcome.rejected = FrameReason::unknown_node;
+        return outcome;
+    }
+    // Only now: a stranger on another interface of the log must not move "now".
+    host_clock_.observe(stamp);
+    outcome.rejected =
+        std::visit([&](const auto& message) { return on(node, message, outcome); }, decoded->message);
+    return outcome;
+}
+
+Result<MappedTime, ReadingReason> CanIntake::capture_time(wire::NodeId node,
+                                                          const wire::TimeResidue& capture) const {
+    const auto now_known = now();
+    if (const auto reason = reason_of(nodes_.verdict(node, now_known))) {
+        return unexpected(*reason);
+    }
+    if (!now_known) {
+        return unexpected(ReadingReason::no_host_time);
+    }
+    const auto captured = clocks_.at(node).locate(capture, *now_known);
+    if (!captured) {
+        return unexpected(clock_reason<ReadingReason>(captured.error()));
+    }
+    return *captured;
+}
+
+Result<RangeMeasurement, ReadingReason> CanIntake::accept(wire::NodeId node,
+                                                          const wire::RangeReading& reading) {
+    if (!ranges_.knows(node, reading.sensor)) {
+        return unexpected(ReadingReason::unknown_sensor);
+    }
+    ranges_.on_arrival(node, reading.sensor);
+    const auto captured = capture_time(node, reading.capture);
+    if (!captured) {
+        ranges_.skip(node, reading.sensor);
+        return unexpected(captured.error());
+    }
+    auto measurement = ranges_.check(node, reading, *captured, *now());
+    if (!measurement && contradicts_clock(measurement.error())) {
+        clocks_.at(node).doubt();
+    }
+    return measurement;
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Range& message, FrameOutcome& outcome) {
+    outcome.readings.push_back(accept(node, message.reading));
+    return std::nullopt;
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::RangeFd& message, FrameOutcome& outcome) {
+    for (std::size_t i = 0; i < message.count; ++i) {
+        const wire::RangeFd::Entry& entry = message.entries[i];
+        outcome.readings.push_back(accept(node, entry.reading));
+        if (ranges_.knows(node, entry.reading.sensor)) {
+            ranges_.on_signal(node, entry.reading.sensor, entry.signal);
+        }
+    }
+    return std::nullopt;
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::RangeAux& message, FrameOutcome&) {
+    if (!ranges_.knows(node, message.sensor)) {
+        return FrameReason::unknown_sensor;
+    }
+    ranges_.on_signal(node, message.sensor, message.signal);
+    return std::nullopt;
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Heartbeat& message, FrameOutcome&) {
+    if (nodes_.on_heartbeat(node, message, now()) == NodeRegistry::Life::restarted) {
+        clocks_.at(node).forget();
+        ranges_.forget(node);
+    }
+    return std::nullopt;
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::NodeInfo& message, FrameOutcome&) {
+    return nodes_.on_info(node, message, now()) ? std::nullopt : Rejection(FrameReason::node_refused);
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::SensorHealth& message, FrameOutcome&) {
+    if (!ranges_.knows(node, message.sensor)) {
+        return FrameReason::unknown_sensor;
+    }
+    ranges_.on_health(node, message);
+    return std::nullopt;
+}
+
+void CanIntake::add_exchange(wire::NodeId node) {
+    if (const auto sample = exchange_.take_sample(node)) {
+        clocks_.at(node).add(*sample);
+    }
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::SyncReport& message, FrameOutcome&) {
+    const auto taken = exchange_.on_report(node, message);
+    if (!taken) {
+        return reason_of(taken.error());
+    }
+    add_exchange(node);
+    return std::nullopt;
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::Sync& message, FrameOutcome&) {
+    const auto taken = exchange_.on_sync(message, stamp_);
+    return taken ? std::nullopt : Rejection(reason_of(taken.error()));
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::FollowUp& message, FrameOutcome&) {
+    const auto stamp = exchange_.on_follow_up(message);
+    if (!stamp) {
+        return reason_of(stamp.error());
+    }
+    const std::uint64_t relocks_before = host_clock_.relocks();
+    host_clock_.learn(*stamp);
+    for (const auto& [node, clock] : clocks_) {
+        if (host_clock_.relocks() > relocks_before) {
+            ranges_.forget(node);  // what came since the step had wrong times
+        }
+        add_exchange(node);
+    }
+    return std::nullopt;
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::Mark& message, FrameOutcome& outcome) {
+    outcome.mark = message;
+    return std::nullopt;
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::Command&, FrameOutcome&) {
+    return FrameReason::for_nodes;
+}
+
+CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::JointState& message,
+                                   FrameOutcome& outcome) {
+    const auto now_known = now();
+    if (node != joint_source_) {
+        return FrameReason::not_joint_source;
+    }
+    if (is_refused_for_joints(nodes_.verdict(node, now_known))) {
+        return FrameReason::node_refused;
+    }
+    if (!now_known) {
+        return FrameReason::joint_no_host_time;
+    }
+    const JointAssembler::Outcome assembled = joints_.on_frame(message, *now_known);
+    for (const JointReason reason : assembled.given_up) {
+        outcome.joint_samples.push_back(unexpected(reason));
+    }
+    outcome.joint_samples_begun += assembled.opened ? 1U : 0U;
+    if (assembled.complete) {
+        outcome.joint_samples.push_back(place(*assembled.complete, *now_known));
+    }
+    return assembled.is_repeated ? Rejection(FrameReason::joint_repeated) : std::nullopt;
+}
+
+Result<JointMeasurement, JointReason> CanIntake::place(const JointReading& reading, HostTime now) const {
+    const auto sampled = clocks_.at(joint_source_).locate(reading.sampled, now);
+    if (!sampled) {
+        return unexpected(clock_reason<JointReason>(sampled.error()));
+    }
+    if (sampled->time - reading.begun > config_.host_clock.back_tolerance) {
+        return unexpected(JointReason::contradictory);
+    }
+    if (now - sampled->time > config_.joint_age_max) {
+        return unexpected(JointReason::too_old);
+    }
+    return JointMeasurement{sampled->time, reading.position_rad};
+}
+
+}  // namespace octoskin

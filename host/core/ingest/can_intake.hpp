@@ -1,0 +1,102 @@
+// From a frame on the bus to measurements in host time: the gate that everything passes. It keeps who is on
+// the bus, how their clocks run, and the order of their readings; it counts nothing and places nothing.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "common/wire/can_frame.hpp"
+#include "common/wire/messages.hpp"
+#include "host/core/ingest/joint_assembler.hpp"
+#include "host/core/ingest/node_registry.hpp"
+#include "host/core/ingest/range_gate.hpp"
+#include "host/core/ingest/reasons.hpp"
+#include "host/core/rig/host_rig.hpp"
+#include "host/core/time/clock_map.hpp"
+#include "host/core/time/host_clock.hpp"
+#include "host/core/time/sync_exchange.hpp"
+
+namespace octoskin {
+
+struct IntakeConfig {
+    ClockMapConfig clock;
+    HostClockConfig host_clock;
+    bool uses_no_return = false;  ///< beams without return may clear space
+    /// A joint sample that arrives later than this after it was sampled is not used. Less than what a
+    /// stepping wall clock needs to make a range's time field ambiguous: host/core/time/README.md.
+    Nanoseconds joint_age_max{50'000'000};
+};
+
+/// One joint sample in host time.
+struct JointMeasurement {
+    HostTime sampled;
+    std::array<double, wire::kJointsPerSample> position_rad{};
+};
+
+/// What one frame brought: either a reason why it was not used, or any of the rest.
+struct FrameOutcome {
+    std::optional<FrameReason> rejected;
+    std::vector<Result<RangeMeasurement, ReadingReason>> readings;  ///< one for each reading in the frame
+    std::uint64_t joint_samples_begun = 0;
+    std::vector<Result<JointMeasurement, JointReason>> joint_samples;  ///< those that this frame ended
+    std::optional<wire::Mark> mark;
+};
+
+class CanIntake {
+  public:
+    explicit CanIntake(const HostRig& rig, const IntakeConfig& config = {});
+
+    /// Frames in the order of arrival. `stamp`: when it was received. About 1 us.
+    [[nodiscard]] FrameOutcome on_frame(const wire::CanFrame& frame, WallTime stamp);
+
+    /// The host's clock at the newest stamp; empty while unknown.
+    [[nodiscard]] std::optional<HostTime> now() const { return host_clock_.now(); }
+    /// Joint samples begun and not ended.
+    [[nodiscard]] std::uint64_t joint_samples_pending() const { return joints_.pending(); }
+
+    [[nodiscard]] const NodeRegistry& nodes() const noexcept { return nodes_; }
+    [[nodiscard]] const RangeGate& ranges() const noexcept { return ranges_; }
+    [[nodiscard]] const HostClockEstimate& host_clock() const noexcept { return host_clock_; }
+    /// Of a node of the rig.
+    [[nodiscard]] const ClockMap& clock(wire::NodeId node) const { return clocks_.at(node); }
+
+  private:
+    // One for each message. What they return goes into FrameOutcome::rejected.
+    using Rejection = std::optional<FrameReason>;
+    Rejection on(wire::NodeId node, const wire::Range& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId node, const wire::RangeFd& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId node, const wire::RangeAux& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId node, const wire::Heartbeat& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId node, const wire::NodeInfo& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId node, const wire::SensorHealth& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId node, const wire::SyncReport& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId node, const wire::JointState& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId host, const wire::Sync& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId host, const wire::FollowUp& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId host, const wire::Mark& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId node, const wire::Command& message, FrameOutcome& outcome);
+
+    /// In host time, if the node is usable and its clock known.
+    [[nodiscard]] Result<MappedTime, ReadingReason> capture_time(wire::NodeId node,
+                                                                 const wire::TimeResidue& capture) const;
+    [[nodiscard]] Result<RangeMeasurement, ReadingReason> accept(wire::NodeId node,
+                                                                 const wire::RangeReading& reading);
+    [[nodiscard]] Result<JointMeasurement, JointReason> place(const JointReading& reading,
+                                                              HostTime now) const;
+    void add_exchange(wire::NodeId node);
+
+    IntakeConfig config_;
+    wire::NodeId joint_source_;
+    HostClockEstimate host_clock_;
+    SyncExchange exchange_;
+    std::map<wire::NodeId, ClockMap> clocks_;
+    NodeRegistry nodes_;
+    RangeGate ranges_;
+    JointAssembler joints_;
+    WallTime stamp_;  ///< of the frame at hand
+};
+
+}  // namespace octoskin

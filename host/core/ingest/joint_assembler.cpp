@@ -1,0 +1,85 @@
+#include "host/core/ingest/joint_assembler.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace octoskin {
+namespace {
+
+std::uint8_t sequence_of(const wire::JointState& frame) {
+    return std::visit([](const auto& part) { return part.sequence; }, frame);
+}
+
+std::uint8_t part_of(const wire::JointState& frame) {
+    const auto* pair = std::get_if<wire::JointPair>(&frame);
+    return pair ? pair->index : std::uint8_t{3};
+}
+
+JointReading join(const std::array<std::optional<wire::JointState>, 4>& parts) {
+    JointReading reading;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto& pair = std::get<wire::JointPair>(*parts[i]);
+        reading.position_rad[2 * i] = 1e-6 * pair.position_urad[0];
+        reading.position_rad[2 * i + 1] = 1e-6 * pair.position_urad[1];
+    }
+    const auto& last = std::get<wire::JointLast>(*parts[3]);
+    reading.position_rad[6] = 1e-6 * last.position_urad;
+    reading.sampled = last.sampled;
+    return reading;
+}
+
+}  // namespace
+
+JointAssembler::JointAssembler(double rate_hz)
+    : patience_(std::llround(1e9 * wire::kJointSequenceCount / 2 / rate_hz)) {
+    assert(rate_hz > 0.0);
+}
+
+void JointAssembler::give_up_stale(HostTime now, Outcome& outcome) {
+    for (auto& sample : samples_) {
+        if (!sample || (now >= sample->opened && now - sample->opened <= patience_)) {
+            continue;
+        }
+        if (!sample->is_complete) {
+            outcome.given_up.push_back(JointReason::incomplete);
+        }
+        sample.reset();
+    }
+}
+
+JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, HostTime now) {
+    Outcome outcome;
+    give_up_stale(now, outcome);
+    auto& sample = samples_[sequence_of(frame)];
+    const std::uint8_t part = part_of(frame);
+    if (sample && sample->parts[part]) {
+        if (*sample->parts[part] == frame) {
+            outcome.is_repeated = true;
+            return outcome;
+        }
+        if (!sample->is_complete) {
+            outcome.given_up.push_back(JointReason::contradictory);
+        }
+        sample.reset();
+    }
+    if (!sample) {
+        sample = Sample{.opened = now, .is_complete = false, .parts = {}};
+        outcome.opened = true;
+    }
+    sample->parts[part] = frame;
+    const auto is_here = [](const auto& entry) { return entry.has_value(); };
+    if (std::ranges::all_of(sample->parts, is_here)) {
+        sample->is_complete = true;
+        outcome.complete = join(sample->parts);
+        outcome.complete->begun = sample->opened;
+    }
+    return outcome;
+}
+
+std::uint64_t JointAssembler::pending() const {
+    const auto is_pending = [](const auto& sample) { return sample && !sample->is_complete; };
+    return static_cast<std::uint64_t>(std::ranges::count_if(samples_, is_pending));
+}
+
+}  // namespace octoskin

@@ -1,0 +1,54 @@
+// Four frames of one sequence number make one joint sample.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/time.hpp"
+#include "common/wire/messages.hpp"
+#include "host/core/ingest/reasons.hpp"
+
+namespace octoskin {
+
+/// A whole sample, not yet placed in time.
+struct JointReading {
+    std::array<double, wire::kJointsPerSample> position_rad{};
+    wire::TimeResidue sampled;
+    HostTime begun;  ///< arrival of its first frame
+};
+
+/// The sequence has three bits only, and comes round within 80 ms at 100 Hz: a sample that is not complete
+/// within half a round is given up. A frame that is nearly a whole round late can still meet those of the
+/// next round; it then came before that sample was taken, which `JointReading::begun` shows.
+class JointAssembler {
+  public:
+    explicit JointAssembler(double rate_hz);
+
+    struct Outcome {
+        bool opened = false;       ///< the frame was the first of a sample
+        bool is_repeated = false;  ///< the sample has this frame already, with the same content
+        std::optional<JointReading> complete;
+        std::vector<JointReason> given_up;  ///< one for each sample that ended without being complete
+    };
+    /// Takes frames in the order of arrival.
+    [[nodiscard]] Outcome on_frame(const wire::JointState& frame, HostTime now);
+
+    /// Samples begun and not complete.
+    [[nodiscard]] std::uint64_t pending() const;
+
+  private:
+    static constexpr std::uint8_t kParts = 4;
+    struct Sample {
+        HostTime opened;
+        bool is_complete = false;  ///< kept, so that a repeated frame does not open it again
+        std::array<std::optional<wire::JointState>, kParts> parts;
+    };
+    void give_up_stale(HostTime now, Outcome& outcome);
+
+    Nanoseconds patience_;
+    std::array<std::optional<Sample>, wire::kJointSequenceCount> samples_;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,162 @@
+#include "host/core/ingest/node_registry.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdio>
+
+#include "common/wire/crc.hpp"
+
+namespace octoskin {
+namespace {
+
+using wire::NodeState;
+
+std::string differs(const char* what, std::uint32_t found, std::uint32_t expected) {
+    std::array<char, 96> text{};
+    std::snprintf(text.data(), text.size(), "%s %08x, the rig has %08x", what, found, expected);
+    return text.data();
+}
+
+/// A hold ends only when "now" is known and the last sign is old enough.
+bool is_held(bool is_set, std::optional<HostTime> since, std::optional<HostTime> now, Nanoseconds hold) {
+    return is_set && !(since && now && *now - *since >= hold);
+}
+
+bool is_refused(const NodeRecord& record, std::optional<HostTime> now) {
+    return is_held(record.is_other_version, record.other_version, now, NodeRegistry::kOtherVersionHold) ||
+           is_held(record.is_in_conflict, record.conflict, now, NodeRegistry::kConflictHold);
+}
+
+bool is_lost(const NodeRecord& record, std::optional<HostTime> now) {
+    // Heard in the future: the host's own clock began anew.
+    return now && (!record.heard || std::chrono::abs(*now - *record.heard) > NodeRegistry::kLostAfter);
+}
+
+}  // namespace
+
+bool NodeRecord::is_info_complete() const {
+    return std::ranges::all_of(pages, [](const auto& entry) { return entry.has_value(); });
+}
+
+std::optional<std::string> NodeRecord::mismatch() const {
+    if (!has_block || !heartbeat) {
+        return std::nullopt;
+    }
+    if (heartbeat->node_hash_low != (expected.node_hash & 0xFFFFU)) {
+        return differs("low half of node_hash", heartbeat->node_hash_low, expected.node_hash & 0xFFFFU);
+    }
+    if (!is_info_complete()) {
+        return std::nullopt;
+    }
+    const auto& identity = *page<wire::InfoIdentity>();
+    if (identity.node_hash != expected.node_hash) {
+        return differs("node_hash", identity.node_hash, expected.node_hash);
+    }
+    if (identity.sensor_count != expected.sensors.size()) {
+        return differs("number of sensors", identity.sensor_count,
+                       static_cast<std::uint32_t>(expected.sensors.size()));
+    }
+    const std::uint16_t uid_crc = crc16(page<wire::InfoUidHigh>()->uid, crc16(page<wire::InfoUidLow>()->uid));
+    if (uid_crc != heartbeat->uid_crc) {
+        return differs("checksum of the unique id in NODE_INFO", uid_crc, heartbeat->uid_crc);
+    }
+    return std::nullopt;
+}
+
+NodeRegistry::NodeRegistry(const HostRig& rig) {
+    for (const HostNode& node : rig.nodes) {
+        records_[node.node_id].expected = node;
+    }
+    if (!rig.joints.joints.empty() && !knows(rig.joints.node_id)) {
+        NodeRecord& joints = records_[rig.joints.node_id];
+        joints.expected = {.node_id = rig.joints.node_id,
+                           .name = "joints",
+                           .node_hash = 0,
+                           .pinned_build_id = {},
+                           .sensors = {}};
+        joints.has_block = false;
+    }
+}
+
+NodeRegistry::Life NodeRegistry::on_heartbeat(wire::NodeId node, const wire::Heartbeat& heartbeat,
+                                              std::optional<HostTime> now) {
+    NodeRecord& record = records_.at(node);
+    const bool is_other_board = record.heartbeat && record.heartbeat->uid_crc != heartbeat.uid_crc;
+    const bool is_back_at_start = record.heartbeat && record.heartbeat->state != NodeState::starting &&
+                                  heartbeat.state == NodeState::starting;
+    if (is_other_board && !is_lost(record, now)) {
+        record.is_in_conflict = true;
+        record.conflict = now;
+    } else if (record.is_in_conflict && !record.conflict) {
+        record.conflict = now;  // the hold starts when there is a time to count from
+    }
+    if (record.is_other_version && !record.other_version) {
+        record.other_version = now;
+    }
+    if (is_other_board || is_back_at_start) {
+        record.pages = {};
+    }
+    record.heartbeat = heartbeat;
+    record.heard = now ? now : record.heard;
+    return is_other_board || is_back_at_start ? Life::restarted : Life::goes_on;
+}
+
+void NodeRegistry::on_other_version(wire::NodeId node, std::optional<HostTime> now) {
+    NodeRecord& record = records_.at(node);
+    record.is_other_version = true;
+    record.other_version = now;
+    record.pages = {};
+}
+
+bool NodeRegistry::on_info(wire::NodeId node, const wire::NodeInfo& info, std::optional<HostTime> now) {
+    NodeRecord& record = records_.at(node);
+    if (is_refused(record, now)) {
+        return false;
+    }
+    record.is_in_conflict = false;
+    record.is_other_version = false;
+    record.pages[info.index()] = info;
+    return true;
+}
+
+NodeVerdict NodeRegistry::verdict(wire::NodeId node, std::optional<HostTime> now) const {
+    const NodeRecord& record = records_.at(node);
+    if (is_held(record.is_other_version, record.other_version, now, kOtherVersionHold)) {
+        return NodeVerdict::other_version;
+    }
+    if (is_held(record.is_in_conflict, record.conflict, now, kConflictHold)) {
+        return NodeVerdict::quarantined;
+    }
+    if (!record.heartbeat) {
+        return NodeVerdict::absent;
+    }
+    if (is_lost(record, now)) {
+        return NodeVerdict::lost;
+    }
+    if (record.heartbeat->is_time_suspect) {
+        return NodeVerdict::time_suspect;
+    }
+    if (!record.has_block) {
+        return NodeVerdict::usable;
+    }
+    if (record.mismatch()) {
+        return NodeVerdict::info_mismatch;
+    }
+    if (!record.is_info_complete()) {
+        return NodeVerdict::info_incomplete;
+    }
+    const auto& pinned = record.expected.pinned_build_id;
+    return pinned && *pinned != record.page<wire::InfoBuild>()->build_id ? NodeVerdict::build_refused
+                                                                         : NodeVerdict::usable;
+}
+
+std::string NodeRegistry::describe(wire::NodeId node, std::optional<HostTime> now) const {
+    const NodeRecord& record = records_.at(node);
+    const NodeVerdict judged = verdict(node, now);
+    const auto mismatch = judged == NodeVerdict::info_mismatch ? record.mismatch() : std::nullopt;
+    return "node " + std::to_string(node) + " '" + record.expected.name +
+           "': " + names_of(NodeVerdict{})[static_cast<std::size_t>(judged)] +
+           (mismatch ? " (" + *mismatch + ")" : "");
+}
+
+}  // namespace octoskin

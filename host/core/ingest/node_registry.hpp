@@ -1,0 +1,93 @@
+// Who is on the bus, and whether it is the board that the rig describes. Ranges of a node count only while
+// its verdict is `usable`.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/time.hpp"
+#include "common/wire/messages.hpp"
+#include "host/core/rig/host_rig.hpp"
+
+namespace octoskin {
+
+/// The worst that holds, in this order.
+enum class NodeVerdict : std::uint8_t {
+    other_version,  ///< a heartbeat of another protocol version within the last second: nothing else is read
+    quarantined,    ///< two unique ids on one node id within the last two seconds
+    absent,         ///< no heartbeat yet
+    lost,           ///< no heartbeat for 350 ms
+    time_suspect,   ///< says so itself
+    info_incomplete,  ///< pages of NODE_INFO are missing
+    info_mismatch,    ///< see NodeRecord::mismatch
+    build_refused,    ///< the rig pins another build
+    usable,
+};
+[[nodiscard]] constexpr std::array<const char*, 9> names_of(NodeVerdict) {
+    return {"other_version",   "quarantined",   "absent",        "lost",  "time_suspect",
+            "info_incomplete", "info_mismatch", "build_refused", "usable"};
+}
+
+/// All that is known of one node.
+struct NodeRecord {
+    HostNode expected;
+    /// A node that only sends joint states has no configuration block to compare.
+    bool has_block = true;
+    std::optional<wire::Heartbeat> heartbeat;
+    std::optional<HostTime> heard;  ///< the newest heartbeat while "now" was known
+    std::array<std::optional<wire::NodeInfo>, wire::kInfoPages> pages;
+    std::optional<HostTime> conflict;  ///< the newest sign of a second board
+    bool is_in_conflict = false;
+    std::optional<HostTime> other_version;  ///< the newest heartbeat of another version
+    bool is_other_version = false;
+
+    /// Which of the node's claims differs from the rig: "node_hash 1a2b3c4d, the rig compiles to 5e6f7a8b".
+    [[nodiscard]] std::optional<std::string> mismatch() const;
+    [[nodiscard]] bool is_info_complete() const;
+    template <class Page>
+    [[nodiscard]] const Page* page() const {
+        for (const auto& entry : pages) {
+            if (entry && std::holds_alternative<Page>(*entry)) {
+                return std::get_if<Page>(&*entry);
+            }
+        }
+        return nullptr;
+    }
+};
+
+class NodeRegistry {
+  public:
+    static constexpr Nanoseconds kLostAfter{350'000'000};
+    static constexpr Nanoseconds kConflictHold{2'000'000'000};
+    static constexpr Nanoseconds kOtherVersionHold{1'000'000'000};
+
+    explicit NodeRegistry(const HostRig& rig);
+
+    [[nodiscard]] bool knows(wire::NodeId node) const { return records_.contains(node); }
+    [[nodiscard]] const std::map<wire::NodeId, NodeRecord>& records() const noexcept { return records_; }
+
+    /// What a heartbeat tells about the node's past.
+    enum class Life : std::uint8_t {
+        goes_on,
+        restarted,  ///< its clock and its sequences began anew
+    };
+    /// Each takes a known node. `now`: empty while unknown.
+    [[nodiscard]] Life on_heartbeat(wire::NodeId node, const wire::Heartbeat& heartbeat,
+                                    std::optional<HostTime> now);
+    /// A heartbeat with a valid checksum and another version.
+    void on_other_version(wire::NodeId node, std::optional<HostTime> now);
+    /// False if the page was not taken: the node is quarantined or speaks another version.
+    [[nodiscard]] bool on_info(wire::NodeId node, const wire::NodeInfo& info, std::optional<HostTime> now);
+
+    [[nodiscard]] NodeVerdict verdict(wire::NodeId node, std::optional<HostTime> now) const;
+    /// For a person: "node 7 'upper ring': info_mismatch (node_hash 1a2b3c4d, the rig has 5e6f7a8b)".
+    [[nodiscard]] std::string describe(wire::NodeId node, std::optional<HostTime> now) const;
+
+  private:
+    std::map<wire::NodeId, NodeRecord> records_;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,79 @@
+// The last check before a reading becomes a measurement: its place in the sequence, its age, its status, its
+// zone, its figures.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "common/wire/messages.hpp"
+#include "host/core/beams/range_measurement.hpp"
+#include "host/core/ingest/reasons.hpp"
+#include "host/core/ingest/sequence_tracker.hpp"
+#include "host/core/rig/host_rig.hpp"
+#include "host/core/time/clock_map.hpp"
+
+namespace octoskin {
+
+/// What is known of one sensor, for a person to read.
+struct SensorRecord {
+    std::uint64_t received = 0;                     ///< readings that came, each counted once
+    std::array<std::uint64_t, 32> device_status{};  ///< how often each code came
+    SequenceTracker sequence;
+    std::optional<wire::SensorHealth> health;
+    std::optional<wire::SignalReading> signal;
+    /// Readings that the node sent and that never came: exact as of the newest health message.
+    std::uint64_t lost = 0;
+    std::uint64_t sent_total = 0;       ///< by the node's own count, since its first health message
+    std::uint64_t received_before = 0;  ///< `received` at that message
+};
+
+class RangeGate {
+  public:
+    using SensorKey = std::pair<wire::NodeId, std::uint8_t>;
+
+    /// `uses_no_return`: beams without return may clear space; if not, they are rejected here.
+    RangeGate(const HostRig& rig, bool uses_no_return);
+
+    [[nodiscard]] bool knows(wire::NodeId node, std::uint8_t sensor) const {
+        return sensors_.contains({node, sensor});
+    }
+    /// Any reading of a known sensor, whatever becomes of it.
+    void on_arrival(wire::NodeId node, std::uint8_t sensor) { ++sensors_.at({node, sensor}).record.received; }
+    /// After `on_arrival`, for a reading whose node is usable and whose time is known.
+    [[nodiscard]] Result<RangeMeasurement, ReadingReason> check(wire::NodeId node,
+                                                                const wire::RangeReading& reading,
+                                                                const MappedTime& captured, HostTime now);
+
+    /// After `on_arrival`, for a reading that cannot be checked: its node is not usable, or its time not
+    /// known.
+    void skip(wire::NodeId node, std::uint8_t sensor) { sensors_.at({node, sensor}).record.sequence.skip(); }
+
+    void on_health(wire::NodeId node, const wire::SensorHealth& health);
+    void on_signal(wire::NodeId node, std::uint8_t sensor, const wire::SignalReading& signal);
+    /// The node's sequences began anew, or the times of the newest readings were wrong.
+    void forget(wire::NodeId node);
+
+    [[nodiscard]] const SensorRecord& record(wire::NodeId node, std::uint8_t sensor) const {
+        return sensors_.at({node, sensor}).record;
+    }
+
+  private:
+    struct Sensor {
+        HostSensor expected;
+        SensorRecord record;
+    };
+    [[nodiscard]] std::optional<ReadingReason> place_fault(Sensor& sensor, const wire::RangeReading& reading,
+                                                           HostTime captured, HostTime now) const;
+    [[nodiscard]] std::optional<ReadingReason> figure_fault(double range_m, double sigma_m) const;
+
+    HostRangeLimits limits_;
+    bool uses_no_return_;
+    std::map<SensorKey, Sensor> sensors_;
+};
+
+}  // namespace octoskin

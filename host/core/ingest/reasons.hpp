@@ -1,0 +1,156 @@
+// Why an input was not used: one enumeration per unit of account, one name per reason.
+//
+// A *frame* is one CAN frame as received. A RANGE frame is used once its readings are taken in; each
+// *reading* then has its own fate, and is used when its terms went into a map. A *joint sample* is what the
+// four frames of one sequence number make together; it is used once poses are interpolated from it. A *depth
+// frame* is one image.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/wire/codec.hpp"
+
+namespace octoskin {
+
+enum class FrameReason : std::uint8_t {
+    // The first seven are wire::DecodeError, in its order.
+    foreign_format,
+    unknown_type,
+    wrong_length,
+    wrong_crc,
+    wrong_version,
+    nonzero_padding,
+    invalid_field,
+    unknown_node,        ///< a node id that the rig does not have
+    unknown_sensor,      ///< health or signal of a sensor that the node does not have
+    for_nodes,           ///< a command: nothing for the host in it
+    sync_unmatched,      ///< FOLLOW_UP or SYNC_REPORT without their SYNC
+    sync_repeated,       ///< a second SYNC, FOLLOW_UP or SYNC_REPORT where one belongs
+    node_refused,        ///< NODE_INFO or joints of a node that is quarantined or speaks another version
+    not_joint_source,    ///< joint states of a node that the rig does not name for it
+    joint_repeated,      ///< a joint frame that the sample has already
+    joint_no_host_time,  ///< a joint frame while "now" is unknown
+    mark_ignored,        ///< a MARK where the map does not wait for one, or over 1 s from "now"
+};
+[[nodiscard]] constexpr std::array<const char*, 17> names_of(FrameReason) {
+    return {"foreign_format",     "unknown_type",  "wrong_length", "wrong_crc",        "wrong_version",
+            "nonzero_padding",    "invalid_field", "unknown_node", "unknown_sensor",   "for_nodes",
+            "sync_unmatched",     "sync_repeated", "node_refused", "not_joint_source", "joint_repeated",
+            "joint_no_host_time", "mark_ignored"};
+}
+static_assert(static_cast<std::size_t>(FrameReason::invalid_field) + 1 == wire::kDecodeErrors);
+[[nodiscard]] constexpr FrameReason reason_of(wire::DecodeError error) noexcept {
+    return static_cast<FrameReason>(error);
+}
+
+enum class ReadingReason : std::uint8_t {
+    // Its node.
+    node_absent,           ///< no heartbeat yet
+    node_lost,             ///< no heartbeat for 350 ms
+    node_version,          ///< speaks another version of the protocol
+    node_quarantined,      ///< two boards share the node id
+    node_time_suspect,     ///< the node's clock source failed its own check
+    node_info_incomplete,  ///< not all pages of NODE_INFO are here
+    node_info_mismatch,    ///< configuration block, number of sensors or unique id is not what it should be
+    node_build_refused,    ///< the rig pins another firmware build
+    unknown_sensor,        ///< an index that the node does not have
+    // Its time.
+    no_host_time,     ///< "now" is unknown
+    clock_not_ready,  ///< ClockFault
+    clock_in_doubt,
+    clock_silent,
+    // Its place among the sensor's readings.
+    duplicate,
+    out_of_window,  ///< older than the last 32 of its sensor, or its number does not fit its time
+    too_soon,       ///< its ranging window overlaps that of another reading of the sensor
+    too_young,      ///< arrived before its ranging window can have ended
+    too_old,        ///< arrived later than budget / 2 + 100 ms after its capture
+    // What it says.
+    no_return,        ///< no target, and the map leaves such beams alone
+    status_fault,     ///< any status but "valid" and "no target"
+    zone_unknown,     ///< the node does not know which zone was in force
+    zone_not_in_rig,  ///< a zone that the sensor does not have
+    not_finite,
+    below_range_min,
+    above_range_max,
+    sigma_above_max,
+    // On its way into the map.
+    queue_overflow,  ///< displaced by newer ones
+    outside_marks,   ///< captured before START or after STOP
+    late,            ///< came after the map had gone on
+    joints_missing,  ///< no pose at its capture time
+    self_hit,        ///< reaches the robot's own body
+    beam_not_valid,  ///< a pose or range that is no number
+    outside_map,     ///< beyond the octree
+};
+[[nodiscard]] constexpr std::array<const char*, 33> names_of(ReadingReason) {
+    return {"node_absent",
+            "node_lost",
+            "node_version",
+            "node_quarantined",
+            "node_time_suspect",
+            "node_info_incomplete",
+            "node_info_mismatch",
+            "node_build_refused",
+            "unknown_sensor",
+            "no_host_time",
+            "clock_not_ready",
+            "clock_in_doubt",
+            "clock_silent",
+            "duplicate",
+            "out_of_window",
+            "too_soon",
+            "too_young",
+            "too_old",
+            "no_return",
+            "status_fault",
+            "zone_unknown",
+            "zone_not_in_rig",
+            "not_finite",
+            "below_range_min",
+            "above_range_max",
+            "sigma_above_max",
+            "queue_overflow",
+            "outside_marks",
+            "late",
+            "joints_missing",
+            "self_hit",
+            "beam_not_valid",
+            "outside_map"};
+}
+
+enum class JointReason : std::uint8_t {
+    incomplete,       ///< not all four frames came in time
+    contradictory,    ///< two frames differ that should be one, or one came before the sample was taken
+    clock_not_ready,  ///< ClockFault
+    clock_in_doubt,
+    clock_silent,
+    too_old,        ///< arrived more than 50 ms after it was sampled
+    out_of_limits,  ///< a joint beyond its limits
+    out_of_order,   ///< not later than the sample before it
+    queue_overflow,
+};
+[[nodiscard]] constexpr std::array<const char*, 9> names_of(JointReason) {
+    return {"incomplete", "contradictory", "clock_not_ready", "clock_in_doubt", "clock_silent",
+            "too_old",    "out_of_limits", "out_of_order",    "queue_overflow"};
+}
+
+enum class DepthReason : std::uint8_t {
+    no_camera,       ///< the rig has none
+    wrong_size,      ///< not the camera's width and height
+    out_of_order,    ///< not later than the frame before it
+    ahead_of_time,   ///< captured in the future
+    queue_overflow,  ///< displaced by newer ones
+    outside_marks,   ///< captured before START, after STOP, or before the first usable reading
+    late,            ///< came after the map had gone on
+    joints_missing,  ///< no pose at its capture time, so the robot cannot be taken out
+    outside_map,     ///< the camera, or a pose that is no number
+    box_too_large,   ///< its rays span more voxels than allowed
+};
+[[nodiscard]] constexpr std::array<const char*, 10> names_of(DepthReason) {
+    return {"no_camera",     "wrong_size", "out_of_order",   "ahead_of_time", "queue_overflow",
+            "outside_marks", "late",       "joints_missing", "outside_map",   "box_too_large"};
+}
+
+}  // namespace octoskin

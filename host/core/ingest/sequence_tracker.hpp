@@ -1,0 +1,43 @@
+// The readings of one sensor in their order: which are new, which were here before, how many are missing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "common/wire/messages.hpp"
+
+namespace octoskin {
+
+enum class SequenceFault : std::uint8_t {
+    duplicate,      ///< the same reading again
+    out_of_window,  ///< more than 32 readings old, or number and time contradict each other
+    too_soon,       ///< closer to its neighbour than two ranging windows can be
+};
+
+/// Six bits of sequence number alone cannot tell 40 lost readings from one that is 24 late: the capture time
+/// does.
+class SequenceTracker {
+  public:
+    /// Takes readings in the order of arrival. `spacing_min`: two readings of a sensor are never closer.
+    [[nodiscard]] Status<SequenceFault> observe(std::uint8_t sequence, HostTime captured,
+                                                Nanoseconds spacing_min);
+
+    /// A reading came whose time nobody knows: what the next one leaves out is no gap.
+    void skip() noexcept { has_skipped_ = true; }
+
+    /// Readings that never came, so far as sequence numbers tell: exact while fewer than 64 are lost at once.
+    /// A late one that is still used is taken off again.
+    [[nodiscard]] std::uint64_t gaps() const noexcept { return gaps_; }
+
+  private:
+    /// What is known of the last 64 numbers.
+    std::array<std::optional<HostTime>, wire::kSequenceCount> captured_;
+    std::optional<std::uint8_t> newest_;
+    std::uint64_t gaps_ = 0;
+    bool has_skipped_ = false;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,38 @@
+#include "host/core/kinematics/self_hit.hpp"
+
+#include <algorithm>
+
+namespace octoskin {
+
+Result<RobotBody, RobotModelFault> RobotBody::build(std::span<const LinkCapsule> capsules,
+                                                    const RobotModel& model) {
+    RobotBody body;
+    for (const LinkCapsule& capsule : capsules) {
+        const auto link = model.find_link(capsule.link);
+        if (!link) return unexpected(RobotModelFault{RobotModelError::unreachable, capsule.link});
+        body.capsules_.push_back({capsule.p_link_a, capsule.p_link_b, capsule.radius_m, *link});
+    }
+    return body;
+}
+
+void RobotBody::pose(std::span<const Eigen::Isometry3d> T_base_link, std::vector<PosedCapsule>& posed) const {
+    posed.clear();
+    for (const PosedCapsule& capsule : capsules_) {
+        const Eigen::Isometry3d& T = T_base_link[capsule.link];
+        posed.push_back({T * capsule.p_a, T * capsule.p_b, capsule.radius_m, capsule.link});
+    }
+}
+
+std::optional<double> predict_self_hit(std::span<const PosedCapsule> capsules, const Eigen::Vector3d& origin,
+                                       const Eigen::Vector3d& direction,
+                                       std::span<const LinkId> ignored) noexcept {
+    std::optional<double> nearest;
+    for (const PosedCapsule& capsule : capsules) {
+        if (std::find(ignored.begin(), ignored.end(), capsule.link) != ignored.end()) continue;
+        const auto range_m = ray_entry(capsule, origin, direction);
+        if (range_m && (!nearest || *range_m < *nearest)) nearest = range_m;
+    }
+    return nearest;
+}
+
+}  // namespace octoskin

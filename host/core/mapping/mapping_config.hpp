@@ -1,0 +1,37 @@
+// Everything that decides how measurements become voxels. Two named configurations ship; a file may override
+// any value (host/io/mapping).
+#pragma once
+
+#include <cstdint>
+
+#include "host/core/depth/depth_filter.hpp"
+#include "host/core/mapping/fused_map.hpp"
+#include "host/core/mapping/update_model.hpp"
+
+namespace octoskin {
+
+enum class DepthUpdate : std::uint8_t {
+    paper,   ///< set-wise: per frame and voxel one term, hit wins over traversed
+    robust,  ///< each voxel's term is the mean of its beams' terms; meant for a filtered image
+};
+
+struct MappingConfig {
+    MapConfig map;
+    UpdateModel model;
+    DepthUpdate depth_update = DepthUpdate::robust;
+    DepthFilterConfig depth_filter;
+    bool removes_robot_from_depth = true;
+    bool removes_robot_from_ranges = true;
+    /// A beam without return clears space up to here, and never beyond its own limit; 0 leaves the map alone.
+    double no_return_clear_m = 0.0;
+    /// The box around one image's rays may hold this many voxels (8 bytes each); a larger one is refused.
+    std::uint32_t depth_box_voxels_max = 1U << 26U;
+    friend bool operator==(const MappingConfig&, const MappingConfig&) = default;
+};
+
+/// The paper's equations as they stand: no filter, one term per voxel and frame.
+[[nodiscard]] MappingConfig paper_mapping();
+/// The default: depth filtered, each voxel's term the mean of its beams' terms.
+[[nodiscard]] MappingConfig robust_mapping();
+
+}  // namespace octoskin

@@ -1,0 +1,105 @@
+// Counts, for each voxel of a box, how many rays passed through it and which hit terms ended in it: what
+// every strategy of turning one depth image into voxel terms starts from.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "host/core/mapping/ray_walk.hpp"
+#include "host/core/mapping/voxel_lattice.hpp"
+
+namespace octoskin {
+
+/// Lowest and highest key along each axis, both inside.
+struct KeyBox {
+    VoxelKey lowest;
+    VoxelKey highest;
+
+    void include(VoxelKey key) noexcept {
+        lowest = {std::min(lowest.x, key.x), std::min(lowest.y, key.y), std::min(lowest.z, key.z)};
+        highest = {std::max(highest.x, key.x), std::max(highest.y, key.y), std::max(highest.z, key.z)};
+    }
+};
+
+/// All that the beams of one image say about one voxel.
+struct VoxelTally {
+    std::uint32_t passed = 0;
+    std::uint32_t hits = 0;
+    double hit_sum = 0.0;
+    float hit_max = 0.0F;  ///< of the hits; meaningless without one
+};
+
+/// A dense grid over a box of voxels, one voxel wider on every side (where rounding may lead a ray, see
+/// `Ray::steps_max`). Its memory stays for the next image.
+class TallyGrid {
+  public:
+    /// Spans `box`, all counts 0; false, and nothing done, if the grid would need over `voxels_max` voxels.
+    /// Every use ends with drain().
+    [[nodiscard]] bool span(const KeyBox& box, std::size_t voxels_max);
+
+    /// How walk_ray() numbers the voxels of this grid; the ray lies in the box.
+    [[nodiscard]] VoxelIndexing indexing_of(const Ray& ray) const noexcept {
+        return {.first = index_of(ray.first), .last = index_of(ray.last), .stride = stride_};
+    }
+    [[nodiscard]] std::ptrdiff_t index_of(VoxelKey key) const noexcept {
+        return (key.x - corner_[0]) * stride_[0] + (key.y - corner_[1]) * stride_[1] +
+               (key.z - corner_[2]) * stride_[2];
+    }
+
+    void add_pass(std::ptrdiff_t index) noexcept { ++marks_[static_cast<std::size_t>(index)]; }
+    void add_hit(std::ptrdiff_t index, float term);
+
+    /// Calls take(key, tally) for each voxel passed or hit, in ascending (z, y, x), and leaves the grid
+    /// empty. Voxels beyond the octree's bounds are left out.
+    template <class Take>
+    void drain(Take&& take);
+
+  private:
+    /// Top bit of a mark: the voxel was hit, `hit_slots_` says where its hits are. The rest: rays passed; an
+    /// image has far fewer than 2^31 pixels.
+    static constexpr std::uint32_t kIsHit = 1U << 31U;
+
+    template <class Take>
+    void drain_row(std::size_t index, int y_key, int z_key, Take& take);
+
+    std::array<int, 3> corner_{};  ///< key of the voxel at index 0; may be -1
+    std::array<int, 3> size_{};
+    std::array<std::ptrdiff_t, 3> stride_{};
+    std::vector<std::uint32_t> marks_;      ///< all 0 between two images
+    std::vector<std::uint32_t> hit_slots_;  ///< index into hits_; valid only where the mark says so
+    std::vector<VoxelTally> hits_;
+};
+
+template <class Take>
+void TallyGrid::drain(Take&& take) {
+    for (int z = 0; z < size_[2]; ++z) {
+        for (int y = 0; y < size_[1]; ++y) {
+            const std::ptrdiff_t row = y * stride_[1] + z * stride_[2];
+            drain_row(static_cast<std::size_t>(row), corner_[1] + y, corner_[2] + z, take);
+        }
+    }
+    hits_.clear();
+}
+
+template <class Take>
+void TallyGrid::drain_row(std::size_t index, int y_key, int z_key, Take& take) {
+    const auto is_key = [](int value) { return value >= 0 && value < kVoxelsPerAxis; };
+    for (int x_key = corner_[0]; x_key < corner_[0] + size_[0]; ++x_key, ++index) {
+        const std::uint32_t mark = marks_[index];
+        if (mark == 0) continue;
+        marks_[index] = 0;
+        if (!is_key(x_key) || !is_key(y_key) || !is_key(z_key)) continue;
+        VoxelTally tally;
+        if ((mark & kIsHit) != 0) tally = hits_[hit_slots_[index]];
+        tally.passed = mark & ~kIsHit;
+        take(VoxelKey{static_cast<std::uint16_t>(x_key), static_cast<std::uint16_t>(y_key),
+                      static_cast<std::uint16_t>(z_key)},
+             tally);
+    }
+}
+
+}  // namespace octoskin

@@ -1,0 +1,70 @@
+#include "host/core/pipeline/depth_stage.hpp"
+
+#include <cassert>
+
+#include "host/core/depth/depth_filter.hpp"
+#include "host/core/depth/depth_image.hpp"
+#include "host/core/self_filter/robot_filter.hpp"
+
+namespace octoskin {
+namespace {
+
+DepthReason reason_of(DepthRejection rejection) {
+    switch (rejection) {
+        case DepthRejection::size_differs:
+            return DepthReason::wrong_size;
+        case DepthRejection::pose_not_finite:
+        case DepthRejection::camera_outside_map:
+            return DepthReason::outside_map;
+        case DepthRejection::box_too_large:
+            return DepthReason::box_too_large;
+    }
+    return DepthReason::outside_map;
+}
+
+}  // namespace
+
+DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config)
+    : camera_(rig.camera.value()),
+      config_(config),
+      self_margin_m_(rig.depth_self_margin_m),
+      T_map_camera_(rig.T_map_base * camera_.T_base_camera),
+      integrator_(config, camera_.intrinsics) {}
+
+void DepthStage::take_robot_out(DepthImage& image, const RobotPose& robot) {
+    const Eigen::Isometry3d T_camera_base = camera_.T_base_camera.inverse();
+    body_camera_ = robot.body_base;
+    for (PosedCapsule& capsule : body_camera_) {
+        capsule.p_a = T_camera_base * capsule.p_a;
+        capsule.p_b = T_camera_base * capsule.p_b;
+    }
+    robot_pixels_ += remove_robot(image, camera_.intrinsics, body_camera_, self_margin_m_);
+}
+
+Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, const RobotPose* robot) {
+    assert(robot != nullptr || !needs_robot());
+    Result<DepthImage, DepthFrameFault> converted =
+        to_depth_image(frame, {camera_.depth_min_m, camera_.depth_max_m});
+    if (!converted || converted->width != camera_.intrinsics.width ||
+        converted->height != camera_.intrinsics.height) {
+        return unexpected(DepthReason::wrong_size);
+    }
+    DepthImage image = std::move(converted).value();
+    if (config_.depth_filter.is_enabled) {
+        image = filter_depth(image, config_.depth_filter);
+    }
+    if (needs_robot()) {
+        take_robot_out(image, *robot);
+    }
+    Result<DepthUpdates, DepthRejection> updates = integrator_.integrate(image, T_map_camera_);
+    if (!updates) {
+        return unexpected(reason_of(updates.error()));
+    }
+    pixels_.used += updates->pixels.used;
+    pixels_.no_value += updates->pixels.no_value;
+    pixels_.bad_value += updates->pixels.bad_value;
+    pixels_.outside_map += updates->pixels.outside_map;
+    return std::move(updates).value();
+}
+
+}  // namespace octoskin

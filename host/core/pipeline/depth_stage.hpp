@@ -1,0 +1,45 @@
+// From a depth frame to the terms of its voxels: convert, filter, take the robot out, integrate.
+#pragma once
+
+#include <vector>
+
+#include "common/result.hpp"
+#include "host/core/beams/robot_pose.hpp"
+#include "host/core/depth/depth_frame.hpp"
+#include "host/core/ingest/reasons.hpp"
+#include "host/core/mapping/depth_integrator.hpp"
+#include "host/core/mapping/mapping_config.hpp"
+#include "host/core/rig/host_rig.hpp"
+
+namespace octoskin {
+
+class DepthStage {
+  public:
+    /// The rig must have a camera.
+    DepthStage(const HostRig& rig, const MappingConfig& config);
+
+    /// Whether a frame needs to know where the robot was.
+    [[nodiscard]] bool needs_robot() const noexcept { return config_.removes_robot_from_depth; }
+
+    /// `robot`: at the frame's capture time; may be null unless `needs_robot()`.
+    [[nodiscard]] Result<DepthUpdates, DepthReason> updates(const DepthFrame& frame, const RobotPose* robot);
+
+    /// Pixels set to nothing because they show the robot, over all frames.
+    [[nodiscard]] std::uint64_t robot_pixels() const noexcept { return robot_pixels_; }
+    /// What became of the others, over all frames used.
+    [[nodiscard]] const DepthPixelCounts& pixels() const noexcept { return pixels_; }
+
+  private:
+    void take_robot_out(DepthImage& image, const RobotPose& robot);
+
+    HostCamera camera_;
+    MappingConfig config_;
+    double self_margin_m_;
+    Eigen::Isometry3d T_map_camera_;
+    DepthIntegrator integrator_;
+    std::vector<PosedCapsule> body_camera_;
+    std::uint64_t robot_pixels_ = 0;
+    DepthPixelCounts pixels_;
+};
+
+}  // namespace octoskin

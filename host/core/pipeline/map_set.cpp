@@ -1,0 +1,33 @@
+#include "host/core/pipeline/map_set.hpp"
+
+namespace octoskin {
+
+MapSet::MapSet(const MapConfig& config, const MapChoice& choice) {
+    if (choice.depth) {
+        depth_.emplace(config);
+    }
+    if (choice.proximity) {
+        proximity_.emplace(config);
+    }
+    if (choice.fused) {
+        fused_.emplace(config);
+    }
+}
+
+void MapSet::add_depth(std::span<const VoxelUpdate> updates) {
+    for (auto* map : {&depth_, &fused_}) {
+        if (*map) {
+            (*map)->apply(updates);
+        }
+    }
+}
+
+void MapSet::add_proximity(std::span<const VoxelUpdate> updates) {
+    for (auto* map : {&proximity_, &fused_}) {
+        if (*map) {
+            (*map)->apply(updates);
+        }
+    }
+}
+
+}  // namespace octoskin

@@ -1,0 +1,37 @@
+// The maps that are built at the same time: from the camera, from the range sensors, from both.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "host/core/mapping/fused_map.hpp"
+
+namespace octoskin {
+
+struct MapChoice {
+    bool depth = true;
+    bool proximity = true;
+    bool fused = true;
+};
+
+class MapSet {
+  public:
+    MapSet(const MapConfig& config, const MapChoice& choice);
+
+    /// To `depth` and `fused`.
+    void add_depth(std::span<const VoxelUpdate> updates);
+    /// To `proximity` and `fused`.
+    void add_proximity(std::span<const VoxelUpdate> updates);
+
+    /// Null if it was not chosen.
+    [[nodiscard]] const FusedMap* depth() const noexcept { return depth_ ? &*depth_ : nullptr; }
+    [[nodiscard]] const FusedMap* proximity() const noexcept { return proximity_ ? &*proximity_ : nullptr; }
+    [[nodiscard]] const FusedMap* fused() const noexcept { return fused_ ? &*fused_ : nullptr; }
+
+  private:
+    std::optional<FusedMap> depth_;
+    std::optional<FusedMap> proximity_;
+    std::optional<FusedMap> fused_;
+};
+
+}  // namespace octoskin

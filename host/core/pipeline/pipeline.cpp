@@ -1,0 +1,313 @@
+#include "host/core/pipeline/pipeline.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace octoskin {
+namespace {
+
+/// A depth frame this far in the future has a wrong epoch.
+constexpr Nanoseconds kDepthAheadMax{1'000'000'000};
+/// A mark is sent at about the time that it names; one further from "now" is damaged or another host's.
+constexpr Nanoseconds kMarkApartMax{1'000'000'000};
+/// "Now" is unknown for two exchanges at most; after five seconds without any, nothing is mapped anyhow.
+constexpr Nanoseconds kMarkWaitMax{5'000'000'000};
+constexpr std::size_t kMarksWaitingMax = 16;
+/// Far less than any timing budget: two readings of one source this close are one and the same, placed by two
+/// states of the clock map.
+constexpr Nanoseconds kSameReading{5'000'000};
+constexpr HostTime kEndOfTime{std::numeric_limits<std::int64_t>::max()};
+/// The camera's place in the order of sources: node 0 is the host.
+constexpr BeamSource kCameraSource{};
+
+ReadingReason reason_of(BeamFault fault) {
+    return fault == BeamFault::self_hit ? ReadingReason::self_hit : ReadingReason::beam_not_valid;
+}
+
+ReadingReason reason_of(BeamRejection rejection) {
+    return rejection == BeamRejection::outside_map ? ReadingReason::outside_map
+                                                   : ReadingReason::beam_not_valid;
+}
+
+template <class Reason>
+bool settle(Account<Reason>& account, const Status<Reason>& outcome) {
+    outcome ? account.use() : account.reject(outcome.error());
+    return outcome.has_value();
+}
+
+IntakeConfig intake_config(const PipelineConfig& config, const MappingConfig& mapping) {
+    IntakeConfig intake = config.intake;
+    intake.uses_no_return = mapping.no_return_clear_m > 0.0;
+    return intake;
+}
+
+}  // namespace
+
+Result<Pipeline, RobotModelFault> Pipeline::build(const HostRig& rig, RobotModel robot,
+                                                  const MappingConfig& mapping,
+                                                  const PipelineConfig& config) {
+    assert(robot.joint_count() == rig.joints.joints.size());
+    assert(config.lag > config.joints.bracket_max);
+    auto beams = BeamBuilder::build(
+        rig, robot,
+        {.removes_robot = mapping.removes_robot_from_ranges, .no_return_clear_m = mapping.no_return_clear_m});
+    if (!beams) {
+        return unexpected(beams.error());
+    }
+    auto tracker = RobotTracker::build(rig, std::move(robot), config.joints);
+    if (!tracker) {
+        return unexpected(tracker.error());
+    }
+    return Pipeline(rig, std::move(tracker).value(), std::move(beams).value(), mapping, config);
+}
+
+Pipeline::Pipeline(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
+                   const PipelineConfig& config)
+    : config_(config),
+      intake_(rig, intake_config(config, mapping)),
+      marks_(config.begin),
+      joints_waiting_(config.joint_samples_waiting_max),
+      readings_waiting_(config.readings_waiting_max),
+      depth_waiting_(config.depth_frames_waiting_max),
+      robot_(std::move(robot)),
+      beams_(std::move(beams)),
+      beam_integrator_(mapping),
+      maps_(mapping.map, config.maps) {
+    if (rig.camera) {
+        depth_stage_.emplace(rig, mapping);
+        camera_patience_ = Nanoseconds{std::llround(3e9 / rig.camera->rate_hz)};
+    }
+}
+
+void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
+    assert(!is_finished_);
+    accounts_.frames.take_in();
+    FrameOutcome outcome = intake_.on_frame(frame, stamp);
+    const std::optional<bool> is_taken = outcome.mark ? take_mark(*outcome.mark) : true;
+    if (is_taken && !*is_taken) {
+        outcome.rejected = FrameReason::mark_ignored;
+    }
+    if (is_taken) {
+        outcome.rejected ? accounts_.frames.reject(*outcome.rejected) : accounts_.frames.use();
+    }
+    queue(outcome);
+    if (const auto now_known = now()) {
+        has_can_time_ = true;
+        settle_marks(*now_known);
+        advance(*now_known);
+    }
+}
+
+std::optional<bool> Pipeline::take_mark(const wire::Mark& mark) {
+    const auto now_known = now();
+    if (now_known) {
+        const Nanoseconds apart = MarkWindow::time_of(mark) - *now_known;
+        return std::chrono::abs(apart) <= kMarkApartMax && marks_.take(mark);
+    }
+    if (marks_waiting_.size() == kMarksWaitingMax) {
+        return false;
+    }
+    marks_waiting_.push_back(mark);
+    return std::nullopt;
+}
+
+void Pipeline::settle_marks(HostTime now) {
+    for (const wire::Mark& mark : std::exchange(marks_waiting_, {})) {
+        const Nanoseconds ahead = MarkWindow::time_of(mark) - now;
+        const bool is_plausible = ahead <= kMarkApartMax && ahead >= -(kMarkApartMax + kMarkWaitMax);
+        is_plausible&& marks_.take(mark) ? accounts_.frames.use()
+                                         : accounts_.frames.reject(FrameReason::mark_ignored);
+    }
+}
+
+void Pipeline::queue(const FrameOutcome& outcome) {
+    accounts_.joint_samples.take_in(outcome.joint_samples_begun);
+    for (const auto& joints : outcome.joint_samples) {
+        joints ? queue(*joints) : accounts_.joint_samples.reject(joints.error());
+    }
+    accounts_.readings.take_in(outcome.readings.size());
+    for (const auto& reading : outcome.readings) {
+        reading ? queue(*reading) : accounts_.readings.reject(reading.error());
+    }
+}
+
+void Pipeline::queue(const RangeMeasurement& measurement) {
+    const ReleaseKey key{measurement.captured, measurement.source};
+    if (is_late(key)) {
+        accounts_.readings.reject(ReadingReason::late);
+    } else if (is_repeated(key)) {
+        accounts_.readings.reject(ReadingReason::duplicate);
+    } else if (readings_waiting_.push(key, measurement) != ReorderBuffer<RangeMeasurement>::Pushed::waits) {
+        accounts_.readings.reject(ReadingReason::queue_overflow);
+    }
+}
+
+bool Pipeline::is_repeated(const ReleaseKey& key) const {
+    const auto used = used_.find(key.source);
+    return (used != used_.end() && key.captured - used->second < kSameReading) ||
+           readings_waiting_.has_near(key, kSameReading);
+}
+
+void Pipeline::queue(const JointMeasurement& joints) {
+    using Pushed = ReorderBuffer<JointMeasurement>::Pushed;
+    const Pushed pushed = joints_waiting_.push({joints.sampled, kCameraSource}, joints);
+    if (pushed != Pushed::waits) {
+        accounts_.joint_samples.reject(pushed == Pushed::refused ? JointReason::out_of_order
+                                                                 : JointReason::queue_overflow);
+    }
+}
+
+std::optional<DepthReason> Pipeline::fault_on_arrival(const DepthFrame& frame) const {
+    if (!depth_stage_) {
+        return DepthReason::no_camera;
+    }
+    if (depth_newest_ && frame.captured <= *depth_newest_) {
+        return DepthReason::out_of_order;
+    }
+    const auto now_known = now();
+    if (now_known && frame.captured - *now_known > kDepthAheadMax) {
+        return DepthReason::ahead_of_time;
+    }
+    if (is_late({frame.captured, kCameraSource})) {
+        return DepthReason::late;
+    }
+    return std::nullopt;
+}
+
+void Pipeline::on_depth(DepthFrame frame) {
+    assert(!is_finished_);
+    accounts_.depth_frames.take_in();
+    if (const auto reason = fault_on_arrival(frame)) {
+        accounts_.depth_frames.reject(*reason);
+        return;
+    }
+    const HostTime captured = frame.captured;
+    depth_newest_ = captured;
+    // A rig without a bus, or with a silent one, has no other clock than its camera. What is due makes room.
+    const std::optional<HostTime> now_known = has_can_time_ ? now() : captured;
+    if (now_known) {
+        advance(*now_known);
+    }
+    using Pushed = ReorderBuffer<DepthFrame>::Pushed;
+    if (depth_waiting_.is_full() ||
+        depth_waiting_.push({captured, kCameraSource}, std::move(frame)) != Pushed::waits) {
+        accounts_.depth_frames.reject(DepthReason::queue_overflow);
+    }
+}
+
+void Pipeline::advance(HostTime now) {
+    // The samples that surround an instant may be as far apart as the history allows.
+    release_joints(now - (config_.lag - config_.joints.bracket_max));
+    release_measurements(now - config_.lag);
+}
+
+void Pipeline::release_joints(HostTime until) {
+    while (joints_waiting_.size() > 0 && joints_waiting_.front()->captured <= until) {
+        settle(accounts_.joint_samples, robot_.add(joints_waiting_.pop()));
+    }
+}
+
+void Pipeline::release_measurements(HostTime until) {
+    while (true) {  // each round takes one out of a bounded buffer
+        const auto reading = readings_waiting_.front();
+        const auto depth = depth_waiting_.front();
+        const bool is_depth_next = depth && (!reading || *depth < *reading);
+        const auto next = is_depth_next ? depth : reading;
+        if (!next || next->captured > until) {
+            return;
+        }
+        const bool is_used = is_depth_next ? settle(accounts_.depth_frames, integrate(depth_waiting_.pop()))
+                                           : settle(accounts_.readings, integrate(readings_waiting_.pop()));
+        integrated_ = is_used ? next : integrated_;
+    }
+}
+
+Status<ReadingReason> Pipeline::integrate(const RangeMeasurement& measurement) {
+    if (!marks_.contains(measurement.captured)) {
+        return unexpected(ReadingReason::outside_marks);
+    }
+    const RobotPose* const robot = robot_.at(measurement.captured);
+    if (robot == nullptr) {
+        return unexpected(ReadingReason::joints_missing);
+    }
+    const auto beam = beams_.place(measurement, *robot);
+    if (!beam) {
+        return unexpected(reason_of(beam.error()));
+    }
+    const auto updates = beam_integrator_.integrate(*beam);
+    if (!updates) {
+        return unexpected(reason_of(updates.error()));
+    }
+    maps_.add_proximity(*updates);
+    used_[measurement.source] = measurement.captured;
+    return Done{};
+}
+
+Status<DepthReason> Pipeline::integrate(const DepthFrame& frame) {
+    if (!marks_.contains(frame.captured)) {
+        return unexpected(DepthReason::outside_marks);
+    }
+    const RobotPose* const robot = depth_stage_->needs_robot() ? robot_.at(frame.captured) : nullptr;
+    if (robot == nullptr && depth_stage_->needs_robot()) {
+        return unexpected(DepthReason::joints_missing);
+    }
+    const auto updates = depth_stage_->updates(frame, robot);
+    if (!updates) {
+        return unexpected(updates.error());
+    }
+    maps_.add_depth(updates->updates);
+    return Done{};
+}
+
+void Pipeline::finish_can() {
+    release_joints(kEndOfTime);
+    has_can_time_ = false;
+}
+
+void Pipeline::finish() {
+    for (; !marks_waiting_.empty(); marks_waiting_.pop_back()) {
+        accounts_.frames.reject(FrameReason::mark_ignored);
+    }
+    release_joints(kEndOfTime);
+    release_measurements(kEndOfTime);
+    for (std::uint64_t i = intake_.joint_samples_pending(); i > 0 && !is_finished_; --i) {
+        accounts_.joint_samples.reject(JointReason::incomplete);
+    }
+    is_finished_ = true;
+}
+
+bool Pipeline::is_camera_stale() const {
+    const auto now_known = now();
+    if (!camera_patience_ || !now_known) {
+        return false;
+    }
+    return !depth_newest_ || *now_known - *depth_newest_ > *camera_patience_;
+}
+
+std::vector<AccountTable> Pipeline::account_tables() const {
+    const std::uint64_t samples_open = is_finished_ ? 0 : intake_.joint_samples_pending();
+    return {tabulate("CAN frames", accounts_.frames, marks_waiting_.size()),
+            tabulate("readings", accounts_.readings, readings_waiting_.size()),
+            tabulate("joint samples", accounts_.joint_samples, joints_waiting_.size() + samples_open),
+            tabulate("depth frames", accounts_.depth_frames, depth_waiting_.size())};
+}
+
+bool Pipeline::is_balanced() const {
+    bool is_balanced = true;
+    for (const AccountTable& table : account_tables()) {
+        is_balanced = is_balanced && table.is_balanced;
+    }
+    return is_balanced;
+}
+
+std::string Pipeline::account_text() const {
+    std::string text;
+    for (const AccountTable& table : account_tables()) {
+        text += to_text(table);
+    }
+    return text;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,134 @@
+// The host's way from frames to maps, one way, left to right. The same object serves a replay and the daemon:
+// it opens nothing, asks for no time, and the maps it builds depend on what was measured, not on when it
+// arrived.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "common/wire/can_frame.hpp"
+#include "host/core/account/account.hpp"
+#include "host/core/beams/beam_builder.hpp"
+#include "host/core/depth/depth_frame.hpp"
+#include "host/core/ingest/can_intake.hpp"
+#include "host/core/ingest/reasons.hpp"
+#include "host/core/kinematics/robot_model.hpp"
+#include "host/core/mapping/beam_integrator.hpp"
+#include "host/core/mapping/mapping_config.hpp"
+#include "host/core/pipeline/depth_stage.hpp"
+#include "host/core/pipeline/map_set.hpp"
+#include "host/core/pipeline/mark_window.hpp"
+#include "host/core/pipeline/reorder_buffer.hpp"
+#include "host/core/pipeline/robot_tracker.hpp"
+#include "host/core/rig/host_rig.hpp"
+
+namespace octoskin {
+
+struct PipelineConfig {
+    MapChoice maps;
+    MapBegin begin = MapBegin::first_usable;
+    /// A measurement enters the map this long after it was captured, and waits no longer for what was
+    /// captured before it. More than the longest gap that joints are interpolated over, and than the age
+    /// limit of a range.
+    Nanoseconds lag{250'000'000};
+    JointHistoryConfig joints;
+    IntakeConfig intake;  ///< `uses_no_return` follows from the mapping
+    /// Bounds of what may wait; beyond, it is counted and dropped: the oldest, but the newest of depth
+    /// frames: those that wait have their joints.
+    std::size_t readings_waiting_max = 4096;
+    std::size_t depth_frames_waiting_max = 16;
+    std::size_t joint_samples_waiting_max = 256;
+};
+
+/// The fate of every input, by the units of `reasons.hpp`.
+struct PipelineAccounts {
+    Account<FrameReason> frames;
+    Account<ReadingReason> readings;
+    Account<JointReason> joint_samples;
+    Account<DepthReason> depth_frames;
+};
+
+class Pipeline {
+  public:
+    /// Refuses, by name, a link of the rig that the robot does not have. `robot` moves the joints of
+    /// `rig.joints.joints`, in that order (asserted: as many).
+    [[nodiscard]] static Result<Pipeline, RobotModelFault> build(const HostRig& rig, RobotModel robot,
+                                                                 const MappingConfig& mapping,
+                                                                 const PipelineConfig& config = {});
+
+    /// Frames in the order of arrival. `stamp`: when it was received; it places nothing.
+    void on_can(const wire::CanFrame& frame, WallTime stamp);
+    /// Depth frames in the order of their capture, at about the time when they arrive among the CAN frames.
+    void on_depth(DepthFrame frame);
+    /// No further CAN frame will come: from now on the camera tells the time.
+    void finish_can();
+    /// Nothing more will come: what still waits is integrated or counted. Nothing may be given in afterwards.
+    void finish();
+
+    [[nodiscard]] const MapSet& maps() const noexcept { return maps_; }
+    [[nodiscard]] const PipelineAccounts& accounts() const noexcept { return accounts_; }
+    /// In = used + rejected + what still waits, for each unit of account.
+    [[nodiscard]] bool is_balanced() const;
+    /// One table per unit of account.
+    [[nodiscard]] std::vector<AccountTable> account_tables() const;
+    /// The tables as text.
+    [[nodiscard]] std::string account_text() const;
+
+    /// The host's clock; empty while unknown.
+    [[nodiscard]] std::optional<HostTime> now() const { return intake_.now(); }
+    /// True if "now" is known and three periods have passed without a depth frame that the rig promises.
+    [[nodiscard]] bool is_camera_stale() const;
+    [[nodiscard]] const CanIntake& intake() const noexcept { return intake_; }
+    /// Null if the rig has no camera.
+    [[nodiscard]] const DepthStage* depth_stage() const noexcept {
+        return depth_stage_ ? &*depth_stage_ : nullptr;
+    }
+
+  private:
+    Pipeline(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
+             const PipelineConfig& config);
+
+    /// Empty if the mark has to wait until "now" is known.
+    [[nodiscard]] std::optional<bool> take_mark(const wire::Mark& mark);
+    void settle_marks(HostTime now);
+    void queue(const FrameOutcome& outcome);
+    void queue(const RangeMeasurement& measurement);
+    void queue(const JointMeasurement& joints);
+    [[nodiscard]] std::optional<DepthReason> fault_on_arrival(const DepthFrame& frame) const;
+
+    /// Integrates what was captured long enough before `now`.
+    void advance(HostTime now);
+    void release_joints(HostTime until);
+    void release_measurements(HostTime until);
+    [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
+    [[nodiscard]] Status<DepthReason> integrate(const DepthFrame& frame);
+    [[nodiscard]] bool is_late(const ReleaseKey& key) const { return integrated_ && key <= *integrated_; }
+    [[nodiscard]] bool is_repeated(const ReleaseKey& key) const;
+
+    PipelineConfig config_;
+    CanIntake intake_;
+    MarkWindow marks_;
+    std::vector<wire::Mark> marks_waiting_;  ///< for "now" to be known
+    ReorderBuffer<JointMeasurement> joints_waiting_;
+    ReorderBuffer<RangeMeasurement> readings_waiting_;
+    ReorderBuffer<DepthFrame> depth_waiting_;
+    RobotTracker robot_;
+    BeamBuilder beams_;
+    BeamIntegrator beam_integrator_;
+    std::optional<DepthStage> depth_stage_;
+    MapSet maps_;
+
+    PipelineAccounts accounts_;
+    std::optional<ReleaseKey> integrated_;        ///< the newest measurement in the maps
+    std::map<BeamSource, HostTime> used_;         ///< the newest reading of each source in the maps
+    std::optional<Nanoseconds> camera_patience_;  ///< three periods; empty without a camera
+    std::optional<HostTime> depth_newest_;        ///< capture time of the newest depth frame
+    bool has_can_time_ = false;                   ///< and more of it may come
+    bool is_finished_ = false;
+};
+
+}  // namespace octoskin

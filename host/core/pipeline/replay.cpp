@@ -1,0 +1,128 @@
+#include "host/core/pipeline/replay.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "common/wire/codec.hpp"
+
+namespace octoskin {
+namespace {
+
+/// A depth source with its next frame at hand.
+class DepthFeed {
+  public:
+    DepthFeed(DepthSource* source, ReplayOutcome& outcome) : source_(source), outcome_(outcome) { fetch(); }
+
+    void feed_until(HostTime now, Pipeline& pipeline) {
+        while (next_ && next_->captured <= now) {  // ends with the source
+            feed_one(pipeline);
+        }
+    }
+    void feed_rest(Pipeline& pipeline) {
+        while (next_) {
+            feed_one(pipeline);
+        }
+    }
+
+  private:
+    void feed_one(Pipeline& pipeline) {
+        pipeline.on_depth(*std::exchange(next_, std::nullopt));
+        ++outcome_.progress.depth_frames;
+        fetch();
+    }
+    void fetch() {
+        if (source_ == nullptr) {
+            return;
+        }
+        Result<std::optional<DepthFrame>, DepthSourceError> frame = source_->next();
+        if (frame) {
+            next_ = std::move(frame).value();
+            return;
+        }
+        outcome_.depth_error = frame.error();
+        source_ = nullptr;
+    }
+
+    DepthSource* source_;
+    ReplayOutcome& outcome_;
+    std::optional<DepthFrame> next_;
+};
+
+/// Three exchanges: without "now" the map would not know the mark's time either.
+constexpr Nanoseconds kMarkNearExchange{3'000'000'000};
+
+bool is_near(HostTime mark, HostTime exchange) {
+    return std::chrono::abs(mark - exchange) <= kMarkNearExchange;
+}
+
+std::optional<StampedFrame> next_frame(CanSource& can, ReplayOutcome& outcome) {
+    Result<std::optional<StampedFrame>, CanSourceError> frame = can.next();
+    if (frame) {
+        return std::move(frame).value();
+    }
+    outcome.can_error = frame.error();
+    return std::nullopt;
+}
+
+}  // namespace
+
+ReplayOutcome replay(Pipeline& pipeline, CanSource& can, DepthSource* depth, const ReplayReport& report) {
+    ReplayOutcome outcome;
+    ReplayProgress& progress = outcome.progress;
+    DepthFeed depth_feed(depth, outcome);
+    while (const auto entry = next_frame(can, outcome)) {
+        pipeline.on_can(entry->frame, entry->stamp);
+        if (const auto now = pipeline.now()) {
+            depth_feed.feed_until(*now, pipeline);
+            progress.now = now;
+            progress.begin = progress.begin ? progress.begin : now;
+        }
+        if (++progress.can_frames % kReplayReportEvery == 0 && report) {
+            report(progress);
+        }
+    }
+    pipeline.finish_can();
+    depth_feed.feed_rest(pipeline);
+    pipeline.finish();
+    if (report) {
+        report(progress);
+    }
+    return outcome;
+}
+
+Result<bool, CanSourceError> has_start_mark(CanSource& can) {
+    std::optional<HostTime> exchange;
+    std::vector<HostTime> starts;  // before the first exchange
+    while (true) {                 // ends with the source
+        const auto entry = can.next();
+        if (!entry) {
+            return unexpected(entry.error());
+        }
+        if (!*entry) {
+            return false;
+        }
+        const auto decoded = wire::decode((*entry)->frame);
+        if (!decoded) {
+            continue;
+        }
+        if (const auto* follow_up = std::get_if<wire::FollowUp>(&decoded->message)) {
+            exchange = HostTime{static_cast<std::int64_t>(follow_up->host_time_us) * 1000};
+        }
+        const auto* mark = std::get_if<wire::Mark>(&decoded->message);
+        if (mark != nullptr && mark->kind == wire::MarkKind::start) {
+            starts.push_back(MarkWindow::time_of(*mark));
+        }
+        const auto is_plausible = [&](HostTime start) { return is_near(start, *exchange); };
+        if (exchange && std::ranges::any_of(starts, is_plausible)) {
+            return true;
+        }
+        if (exchange) {
+            starts.clear();
+        }
+    }
+}
+
+}  // namespace octoskin

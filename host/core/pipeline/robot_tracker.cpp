@@ -1,0 +1,42 @@
+#include "host/core/pipeline/robot_tracker.hpp"
+
+#include <span>
+#include <utility>
+
+namespace octoskin {
+
+Result<RobotTracker, RobotModelFault> RobotTracker::build(const HostRig& rig, RobotModel robot,
+                                                          const JointHistoryConfig& config) {
+    Result<RobotBody, RobotModelFault> body = RobotBody::build(rig.body, robot);
+    if (!body) {
+        return unexpected(body.error());
+    }
+    return RobotTracker(std::move(robot), std::move(body).value(), config);
+}
+
+RobotTracker::RobotTracker(RobotModel robot, RobotBody body, const JointHistoryConfig& config)
+    : robot_(std::move(robot)), body_(std::move(body)), joints_(robot_.limits(), config) {
+    pose_.T_base_link.resize(robot_.link_count());
+}
+
+Status<JointReason> RobotTracker::add(const JointMeasurement& joints) {
+    const auto position = std::span(joints.position_rad).first(robot_.joint_count());
+    const auto added = joints_.add(joints.sampled, position);
+    if (added) {
+        return Done{};
+    }
+    return unexpected(added.error() == JointRejection::out_of_order ? JointReason::out_of_order
+                                                                    : JointReason::out_of_limits);
+}
+
+const RobotPose* RobotTracker::at(HostTime instant) {
+    const auto position = joints_.at(instant);
+    if (!position) {
+        return nullptr;
+    }
+    robot_.forward(position->span(), pose_.T_base_link);
+    body_.pose(pose_.T_base_link, pose_.body_base);
+    return &pose_;
+}
+
+}  // namespace octoskin

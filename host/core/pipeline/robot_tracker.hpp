@@ -1,0 +1,41 @@
+// Where the whole robot was at any instant: joint samples in, poses out.
+#pragma once
+
+#include <vector>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "host/core/beams/robot_pose.hpp"
+#include "host/core/ingest/can_intake.hpp"
+#include "host/core/kinematics/joint_history.hpp"
+#include "host/core/kinematics/robot_model.hpp"
+#include "host/core/kinematics/self_hit.hpp"
+#include "host/core/rig/host_rig.hpp"
+
+namespace octoskin {
+
+class RobotTracker {
+  public:
+    /// Refuses, by name, a body capsule on a link that the robot does not have.
+    [[nodiscard]] static Result<RobotTracker, RobotModelFault> build(const HostRig& rig, RobotModel robot,
+                                                                     const JointHistoryConfig& config);
+
+    /// Joint samples in the order of their times.
+    [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
+
+    /// The robot at `instant`, or null if no samples surround it closely enough. Valid until the next call.
+    /// About 2 us.
+    [[nodiscard]] const RobotPose* at(HostTime instant);
+
+    [[nodiscard]] const RobotModel& robot() const noexcept { return robot_; }
+
+  private:
+    RobotTracker(RobotModel robot, RobotBody body, const JointHistoryConfig& config);
+
+    RobotModel robot_;
+    RobotBody body_;
+    JointHistory joints_;
+    RobotPose pose_;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,57 @@
+// Two-step synchronisation seen from the side: SYNC, the host's FOLLOW_UP and the nodes' reports of one
+// sequence number, in any order after the SYNC, become one pair of readings per node.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "common/wire/messages.hpp"
+
+namespace octoskin {
+
+/// One instant, the end of a SYNC frame, on both clocks.
+struct SyncSample {
+    HostTime host;
+    NodeTime heard;
+};
+
+/// The same instant on the host's clock and in the log's stamps.
+struct SyncStamp {
+    HostTime host;
+    WallTime stamp;
+};
+
+enum class SyncFault : std::uint8_t {
+    unmatched,  ///< belongs to no SYNC that is open: its SYNC was lost, or it came too late
+    repeated,   ///< a second one of its kind for this SYNC; which of them is true cannot be told
+};
+
+class SyncExchange {
+  public:
+    /// Opens an exchange; the one before is over. A second SYNC of the same number makes both ambiguous: the
+    /// exchange is closed without result.
+    [[nodiscard]] Status<SyncFault> on_sync(const wire::Sync& sync, WallTime stamp);
+    [[nodiscard]] Result<SyncStamp, SyncFault> on_follow_up(const wire::FollowUp& follow_up);
+    [[nodiscard]] Status<SyncFault> on_report(wire::NodeId node, const wire::SyncReport& report);
+
+    /// The pair of readings of `node`, once, as soon as report and FOLLOW_UP are both here.
+    [[nodiscard]] std::optional<SyncSample> take_sample(wire::NodeId node);
+
+  private:
+    enum class Answer : std::uint8_t { none, waiting, taken };
+    struct Report {
+        Answer answer = Answer::none;
+        NodeTime heard;
+    };
+
+    std::optional<std::uint8_t> sequence_;  ///< of the open exchange
+    std::uint8_t sequence_last_ = 0xFF;     ///< of the newest SYNC, open or not
+    WallTime stamp_;
+    std::optional<HostTime> host_;
+    std::array<Report, wire::kBroadcastId + 1> reports_{};
+};
+
+}  // namespace octoskin

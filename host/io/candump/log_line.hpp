@@ -1,0 +1,58 @@
+// One line of a candump log, as `candump -L` and `candump -l` write it:
+//
+//     (1436509053.850870) vcan0 044#2A366C2BBA      classical; 8 identifier digits: extended, or an error
+//     frame (1436509053.850870) vcan0 044#R4              remote, with its length if that is not 0
+//     (1436509053.850870) vcan0 044##12A366C2B      CAN FD: a digit of flags (1 = bit rate switch), then the
+//     data
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "common/wire/can_frame.hpp"
+
+namespace octoskin::candump {
+
+struct LogEntry {
+    WallTime stamp;         ///< whole microseconds, not negative
+    std::string interface;  ///< 1 to 15 printable ASCII characters, no blank
+    wire::CanFrame frame;
+    friend bool operator==(const LogEntry&, const LogEntry&) = default;
+};
+
+/// Why a line is no entry. One counter each.
+enum class LineFault : std::uint8_t {
+    blank,       ///< nothing on it
+    foreign,     ///< does not begin with '(': not a line of candump
+    timestamp,   ///< not "(seconds.fraction)" with 6 or 9 digits of fraction
+    interface,   ///< missing, longer than 15 characters, or not printable
+    identifier,  ///< not 3 or 8 hexadecimal digits, or out of range
+    data,        ///< no '#', a digit that is not hexadecimal, half a byte, or something behind the frame
+    length,      ///< more than 8 bytes, or a length that CAN FD does not have
+    too_long,    ///< more than kLineBytesMax bytes
+    truncated,   ///< the file ends within the line
+};
+[[nodiscard]] constexpr std::array<const char*, 9> names_of(LineFault) {
+    return {"line_blank", "line_foreign", "line_timestamp", "line_interface", "line_identifier",
+            "line_data",  "line_length",  "line_too_long",  "line_truncated"};
+}
+
+/// The longest line that candump writes has 179 bytes: stamp 20, interface 16, identifier 8, FD marks 3, data
+/// 128, direction 2, CR and LF.
+inline constexpr std::size_t kLineBytesMax = 256;
+
+/// The entry in `line`, which has no line feed; a carriage return at its end is taken off, and a direction
+/// mark
+/// ("R", "T") behind the frame is allowed. Never returns `too_long` or `truncated`. Any bytes are safe.
+[[nodiscard]] Result<LogEntry, LineFault> parse_line(std::string_view line);
+
+/// The same line again, with a line feed. The stamp is cut to whole microseconds. Asserts what `LogEntry`
+/// promises, and that the frame's length exists in its format.
+[[nodiscard]] std::string format_line(const LogEntry& entry);
+
+}  // namespace octoskin::candump

@@ -1,0 +1,43 @@
+// A log as the pipeline's source of frames.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "host/core/pipeline/can_source.hpp"
+#include "host/io/candump/log_reader.hpp"
+
+namespace octoskin::candump {
+
+class LogSource final : public CanSource {
+  public:
+    /// `interface`: the only one whose frames are given out; empty: all of them.
+    explicit LogSource(LogReader reader, std::string interface = "")
+        : reader_(std::move(reader)), interface_(std::move(interface)) {}
+
+    [[nodiscard]] Result<std::optional<StampedFrame>, CanSourceError> next() override {
+        for (;;) {
+            Result<std::optional<LogEntry>, LogError> entry = reader_.next();
+            if (!entry) return unexpected(CanSourceError{entry.error().message()});
+            if (!*entry) return std::optional<StampedFrame>{};
+            if (interface_.empty() || (*entry)->interface == interface_) {
+                return std::optional(StampedFrame{(*entry)->stamp, (*entry)->frame});
+            }
+            ++other_interface_;
+        }
+    }
+
+    /// For its account of lines.
+    [[nodiscard]] const LogReader& reader() const noexcept { return reader_; }
+    /// Lines that were frames of another interface.
+    [[nodiscard]] std::uint64_t other_interface() const noexcept { return other_interface_; }
+
+  private:
+    LogReader reader_;
+    std::string interface_;
+    std::uint64_t other_interface_ = 0;
+};
+
+}  // namespace octoskin::candump

@@ -1,0 +1,36 @@
+#include "host/io/candump/log_writer.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace octoskin::candump {
+
+Result<LogWriter, LogError> LogWriter::create(const std::filesystem::path& file, std::string interface) {
+    errno = 0;
+    std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+    if (!stream) {
+        return unexpected(LogError{file, std::string("cannot create: ") + std::strerror(errno)});
+    }
+    return LogWriter(file, std::move(stream), std::move(interface));
+}
+
+Status<LogError> LogWriter::write(WallTime stamp, const wire::CanFrame& frame) {
+    entry_.stamp = stamp;
+    entry_.frame = frame;
+    const std::string line = format_line(entry_);
+    if (!stream_.write(line.data(), static_cast<std::streamsize>(line.size()))) {
+        return unexpected(LogError{file_, "writing failed; is the disk full?"});
+    }
+    return Done{};
+}
+
+Status<LogError> LogWriter::close() {
+    stream_.close();
+    if (!stream_) {
+        return unexpected(LogError{file_, "writing failed; is the disk full?"});
+    }
+    return Done{};
+}
+
+}  // namespace octoskin::candump

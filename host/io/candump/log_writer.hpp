@@ -1,0 +1,36 @@
+// Writes a candump log that candump's own companion tools read.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "common/result.hpp"
+#include "host/io/candump/log_line.hpp"
+#include "host/io/candump/log_reader.hpp"
+
+namespace octoskin::candump {
+
+class LogWriter {
+  public:
+    /// Creates or empties `file`. `interface`: the name on every line, 1 to 15 characters without blanks.
+    [[nodiscard]] static Result<LogWriter, LogError> create(const std::filesystem::path& file,
+                                                            std::string interface = "can0");
+
+    /// Appends one line. Buffered: a full disk may show only in `close()`. Asserts as `format_line()` does.
+    [[nodiscard]] Status<LogError> write(WallTime stamp, const wire::CanFrame& frame);
+
+    /// Flushes and closes. Without it the log may be incomplete and nobody knows.
+    [[nodiscard]] Status<LogError> close();
+
+  private:
+    LogWriter(std::filesystem::path file, std::ofstream stream, std::string interface)
+        : file_(std::move(file)), stream_(std::move(stream)) {
+        entry_.interface = std::move(interface);
+    }
+    std::filesystem::path file_;
+    std::ofstream stream_;
+    LogEntry entry_;
+};
+
+}  // namespace octoskin::candump

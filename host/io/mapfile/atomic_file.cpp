@@ -1,0 +1,154 @@
+#include "host/io/mapfile/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <optional>
+#include <system_error>
+
+namespace octoskin {
+namespace {
+
+constexpr std::string_view kPartialSuffix = ".octoskin-part";
+
+class PosixFileOperations final : public FileOperations {
+  public:
+    int create(const char* path) override {
+        return ::open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
+    }
+    int open_directory(const char* path) override { return ::open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC); }
+    ssize_t write(int descriptor, const void* bytes, std::size_t count) override {
+        return ::write(descriptor, bytes, count);
+    }
+    int sync(int descriptor) override { return ::fsync(descriptor); }
+    int close(int descriptor) override { return ::close(descriptor); }
+    int rename(const char* from, const char* to) override { return std::rename(from, to); }
+    int remove(const char* path) override { return ::unlink(path); }
+};
+
+std::filesystem::path partial_path_of(const std::filesystem::path& file) {
+    return file.parent_path() / fmt::format(".{}{}", file.filename().string(), kPartialSuffix);
+}
+
+const char* name_of(SaveStep step) {
+    switch (step) {
+        case SaveStep::name:
+            return "choosing a file name";
+        case SaveStep::create:
+            return "creating a file beside it";
+        case SaveStep::write:
+            return "writing";
+        case SaveStep::sync:
+            return "flushing to disk";
+        case SaveStep::close:
+            return "closing";
+        case SaveStep::rename:
+            return "renaming";
+        case SaveStep::sync_directory:
+            return "flushing the folder to disk";
+    }
+    return "saving";
+}
+
+/// The steps of one save. Each returns what it failed at; errno says why.
+class Save {
+  public:
+    Save(FileOperations& operations, const std::filesystem::path& file)
+        : operations_(operations), file_(file), partial_(partial_path_of(file)) {}
+
+    std::optional<SaveError> run(std::string_view bytes) {
+        if (auto error = write_partial(bytes)) {
+            operations_.remove(partial_.c_str());
+            return error;
+        }
+        if (operations_.rename(partial_.c_str(), file_.c_str()) != 0) {
+            auto error = failed(SaveStep::rename);
+            operations_.remove(partial_.c_str());
+            return error;
+        }
+        return sync_directory();
+    }
+
+  private:
+    SaveError failed(SaveStep step) const { return {step, errno, file_}; }
+
+    std::optional<SaveError> write_partial(std::string_view bytes) {
+        const int descriptor = operations_.create(partial_.c_str());
+        if (descriptor < 0) return failed(SaveStep::create);
+        auto error = write_all(descriptor, bytes);
+        if (!error && operations_.sync(descriptor) != 0) error = failed(SaveStep::sync);
+        // A late write error may show only here (network file systems).
+        if (operations_.close(descriptor) != 0 && !error) error = failed(SaveStep::close);
+        return error;
+    }
+
+    std::optional<SaveError> write_all(int descriptor, std::string_view bytes) {
+        while (!bytes.empty()) {
+            const ssize_t written = operations_.write(descriptor, bytes.data(), bytes.size());
+            if (written < 0 && errno == EINTR) continue;
+            if (written == 0) errno = EIO;  // no progress and no reason: do not try for ever
+            if (written <= 0) return failed(SaveStep::write);
+            bytes.remove_prefix(static_cast<std::size_t>(written));
+        }
+        return std::nullopt;
+    }
+
+    /// Makes the rename itself durable.
+    std::optional<SaveError> sync_directory() {
+        const auto folder = file_.has_parent_path() ? file_.parent_path() : std::filesystem::path(".");
+        const int descriptor = operations_.open_directory(folder.c_str());
+        if (descriptor < 0) return failed(SaveStep::sync_directory);
+        std::optional<SaveError> error;
+        if (operations_.sync(descriptor) != 0) error = failed(SaveStep::sync_directory);
+        operations_.close(descriptor);
+        return error;
+    }
+
+    FileOperations& operations_;
+    std::filesystem::path file_;
+    std::filesystem::path partial_;
+};
+
+}  // namespace
+
+FileOperations& posix_file_operations() {
+    static PosixFileOperations operations;  // stateless
+    return operations;
+}
+
+std::string SaveError::message() const {
+    const std::string reason =
+        error_number == 0 ? "the path names no file" : std::generic_category().message(error_number);
+    const char* const outcome = step == SaveStep::sync_directory
+                                    ? "the new file is in place, but may not survive a power failure"
+                                    : "the old file, if any, is untouched";
+    return fmt::format("{}: {} failed ({}); {}", file.string(), name_of(step), reason, outcome);
+}
+
+Status<SaveError> save_atomically(const std::filesystem::path& file, std::string_view bytes,
+                                  FileOperations& operations) {
+    if (!file.has_filename() || file.filename() == "." || file.filename() == "..") {
+        return unexpected(SaveError{SaveStep::name, 0, file});
+    }
+    if (auto error = Save(operations, file).run(bytes)) return unexpected(std::move(*error));
+    return Done{};
+}
+
+std::size_t remove_leftovers(const std::filesystem::path& directory) {
+    std::size_t removed = 0;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(directory, error), end; !error && entry != end;
+         entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        std::error_code not_removed;
+        const bool is_leftover =
+            name.starts_with('.') && name.ends_with(kPartialSuffix) && entry->is_regular_file(not_removed);
+        if (is_leftover && std::filesystem::remove(entry->path(), not_removed)) ++removed;
+    }
+    return removed;
+}
+
+}  // namespace octoskin

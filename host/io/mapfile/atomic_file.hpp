@@ -1,0 +1,55 @@
+// Saves a file so that at every instant the name stands for the old content or the new, never for a mixture:
+// written under another name beside it, flushed to the disk, then renamed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include <sys/types.h>
+
+#include "common/result.hpp"
+
+namespace octoskin {
+
+/// The system calls that saving needs, with their own return values and errno; a test can make any of them
+/// fail.
+class FileOperations {
+  public:
+    virtual ~FileOperations() = default;
+    /// For writing, made or emptied; never through a symbolic link.
+    virtual int create(const char* path) = 0;
+    virtual int open_directory(const char* path) = 0;
+    virtual ssize_t write(int descriptor, const void* bytes, std::size_t count) = 0;
+    virtual int sync(int descriptor) = 0;
+    virtual int close(int descriptor) = 0;
+    virtual int rename(const char* from, const char* to) = 0;
+    virtual int remove(const char* path) = 0;
+};
+
+/// The real ones.
+[[nodiscard]] FileOperations& posix_file_operations();
+
+enum class SaveStep : std::uint8_t { name, create, write, sync, close, rename, sync_directory };
+
+struct SaveError {
+    SaveStep step{};
+    int error_number = 0;  ///< errno of the step; 0 for `name`: the path names no file
+    std::filesystem::path file;
+    /// "out/map.ot: write failed (No space left on device); the old file is untouched".
+    [[nodiscard]] std::string message() const;
+};
+
+/// Saves `bytes` as `file`. On an error before `sync_directory` the old file is as it was and nothing is left
+/// behind; on that one the new file is in place, but may be lost if power fails now. Blocks for as long as
+/// the disk takes. Two writers of one file at once are not supported.
+[[nodiscard]] Status<SaveError> save_atomically(const std::filesystem::path& file, std::string_view bytes,
+                                                FileOperations& operations = posix_file_operations());
+
+/// Removes what a process left in `directory` when it died while saving; returns how many. To be called at
+/// start, before any save.
+std::size_t remove_leftovers(const std::filesystem::path& directory);
+
+}  // namespace octoskin

@@ -1,0 +1,90 @@
+#include "host/io/mapfile/map_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "host/io/mapfile/atomic_file.hpp"
+#include "host/io/mapfile/octomap_writer.hpp"
+#include "host/io/mapfile/ply_writer.hpp"
+
+namespace octoskin {
+namespace {
+
+Unexpected<MapFileError> fail(const std::filesystem::path& file, const std::string& what) {
+    return unexpected(MapFileError{fmt::format("{}: {}", file.string(), what)});
+}
+
+Unexpected<MapFileError> fail_with_errno(const std::filesystem::path& file, const char* step) {
+    return fail(file, fmt::format("{} failed ({})", step, std::generic_category().message(errno)));
+}
+
+/// Closes on every way out.
+class Descriptor {
+  public:
+    explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor() {
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    [[nodiscard]] int get() const noexcept { return descriptor_; }
+
+  private:
+    int descriptor_;
+};
+
+/// Without blocking on a pipe or a device that someone put in the file's place.
+Result<std::string, MapFileError> read_bytes(const std::filesystem::path& file, std::uint64_t bytes_max) {
+    const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (descriptor.get() < 0) return fail_with_errno(file, "opening");
+    struct stat status {};
+    if (::fstat(descriptor.get(), &status) != 0) return fail_with_errno(file, "looking at it");
+    if (!S_ISREG(status.st_mode)) return fail(file, "not a regular file");
+    const auto size = static_cast<std::uint64_t>(status.st_size);
+    if (size > bytes_max) return fail(file, fmt::format("{} bytes, the limit is {}", size, bytes_max));
+    std::string bytes(size, '\0');
+    std::size_t position = 0;
+    while (position < bytes.size()) {
+        const ssize_t count = ::read(descriptor.get(), bytes.data() + position, bytes.size() - position);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return fail_with_errno(file, "reading");
+        if (count == 0) return fail(file, "became shorter while it was read");
+        position += static_cast<std::size_t>(count);
+    }
+    return bytes;
+}
+
+}  // namespace
+
+Status<MapFileError> save_map(const FusedMap& map, const std::filesystem::path& file) {
+    const std::string extension = file.extension().string();
+    std::string bytes;
+    if (extension == ".ot") {
+        bytes = encode_ot(map);
+    } else if (extension == ".bt") {
+        bytes = encode_bt(map);
+    } else if (extension == ".ply") {
+        bytes = encode_ply(map);
+    } else {
+        return fail(file, fmt::format("extension \"{}\" is not one of .ot, .bt, .ply", extension));
+    }
+    const auto saved = save_atomically(file, bytes);
+    if (!saved) return unexpected(MapFileError{saved.error().message()});
+    return Done{};
+}
+
+Result<FusedMap, MapFileError> load_map(const std::filesystem::path& file, const MapReadLimits& limits,
+                                        std::uint64_t file_bytes_max) {
+    const auto bytes = read_bytes(file, file_bytes_max);
+    if (!bytes) return unexpected(bytes.error());
+    auto map = decode_octomap(*bytes, limits);
+    if (!map) return fail(file, map.error().what);
+    return std::move(map).value();
+}
+
+}  // namespace octoskin

@@ -1,0 +1,29 @@
+// Maps to files and back: .ot and .bt as OctoMap has them, .ply for the eye. Start here.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "common/result.hpp"
+#include "host/core/mapping/fused_map.hpp"
+#include "host/io/mapfile/octomap_reader.hpp"
+
+namespace octoskin {
+
+/// "out/map.ot: byte 4711: the data end within the tree": file, place, value and, where there is one, remedy.
+struct MapFileError {
+    std::string message;
+};
+
+/// Writes the map, in the format that the extension names (.ot, .bt or .ply). At every instant the file is
+/// the old one or the new one, whole. Equal maps give equal bytes.
+[[nodiscard]] Status<MapFileError> save_map(const FusedMap& map, const std::filesystem::path& file);
+
+/// Reads a .ot or .bt (told apart by the first line, not by name), checked as octomap_reader.hpp says.
+/// Refuses what is no regular file and what is larger than `file_bytes_max`.
+[[nodiscard]] Result<FusedMap, MapFileError> load_map(const std::filesystem::path& file,
+                                                      const MapReadLimits& limits = {},
+                                                      std::uint64_t file_bytes_max = 512ULL << 20U);
+
+}  // namespace octoskin

@@ -1,0 +1,27 @@
+#include "host/io/mapfile/octomap_tree.hpp"
+
+#include <octomap/octomap_utils.h>
+
+#include <cassert>
+#include <sstream>
+
+#include "host/io/mapfile/octomap_writer.hpp"
+
+namespace octoskin {
+
+std::unique_ptr<octomap::OcTree> to_octomap(const FusedMap& map) {
+    auto tree = std::make_unique<octomap::OcTree>(map.resolution_m());
+    const MapConfig& config = map.config();
+    tree->setOccupancyThres(octomap::probability(config.log_odds_occupied));
+    tree->setClampingThresMin(octomap::probability(config.log_odds_min));
+    tree->setClampingThresMax(octomap::probability(config.log_odds_max));
+    if (map.known_voxels() == 0) return tree;
+    // Through OctoMap's own reader: no public function of it makes inner nodes.
+    const std::string bytes = encode_ot(map);
+    std::istringstream nodes(bytes.substr(bytes.find("\ndata\n") + 6));
+    tree->readData(nodes);
+    assert(nodes.good());
+    return tree;
+}
+
+}  // namespace octoskin

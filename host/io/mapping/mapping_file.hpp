@@ -1,0 +1,24 @@
+// The mapping configuration as a YAML file, or by name.
+#pragma once
+
+#include <string>
+
+#include "common/result.hpp"
+#include "host/core/mapping/mapping_config.hpp"
+#include "hw/rigfile/rig.hpp"
+
+namespace octoskin {
+
+/// What is wrong with a file: "my.yaml:12: depth_filter.window_px: expected an odd number, found 4".
+using MappingFileError = rig::RigError;
+
+/// `paper` and `robust` are the two that ship, by name (write ./paper for a file of that name); anything else
+/// is the path of a YAML file. A file starts from the one that its key `base` names (robust, if it names
+/// none) and overrides what it mentions; host/config/ has both written out in full. An unknown key, a value
+/// of the wrong type or out of range is an error.
+[[nodiscard]] Result<MappingConfig, MappingFileError> read_mapping(const std::string& name_or_file);
+
+/// The configuration in full as YAML. Reading it back gives an equal one, and equal ones give equal text.
+[[nodiscard]] std::string mapping_text(const MappingConfig& config);
+
+}  // namespace octoskin

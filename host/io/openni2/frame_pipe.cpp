@@ -1,0 +1,128 @@
+#include "host/io/openni2/frame_pipe.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace octoskin::openni2 {
+namespace {
+
+constexpr std::array<char, 4> kMagic{'O', 'S', 'K', 'D'};
+constexpr std::uint32_t kVersion = 1;
+constexpr std::uint64_t kEnd = ~std::uint64_t{0};
+
+struct Header {
+    std::array<char, 4> magic = kMagic;
+    std::uint32_t version = kVersion;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+};
+
+/// To a socket without blocking and without SIGPIPE, whoever handles that; to anything else as usual.
+ssize_t write_some(int descriptor, std::span<const std::byte> bytes) {
+    const ssize_t sent = ::send(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    return sent < 0 && errno == ENOTSOCK ? ::write(descriptor, bytes.data(), bytes.size()) : sent;
+}
+
+}  // namespace
+
+const char* name(PipeError error) noexcept {
+    switch (error) {
+        case PipeError::timeout:
+            return "no data in time";
+        case PipeError::closed:
+            return "ended in the middle";
+        case PipeError::wrong_format:
+            return "not a stream of depth frames";
+        case PipeError::io:
+            return "reading or writing failed";
+    }
+    return "unknown error";
+}
+
+Status<PipeError> FramePipe::write_header(FrameSize size) {
+    const Header header{.width = size.width, .height = size.height};
+    return write_bytes(std::as_bytes(std::span(&header, 1)));
+}
+
+Status<PipeError> FramePipe::write_frame(std::uint64_t timestamp_us,
+                                         std::span<const std::uint16_t> depth_mm) {
+    if (const auto written = write_bytes(std::as_bytes(std::span(&timestamp_us, 1))); !written)
+        return written;
+    return write_bytes(std::as_bytes(depth_mm));
+}
+
+Status<PipeError> FramePipe::write_end() {
+    return write_bytes(std::as_bytes(std::span(&kEnd, 1)));
+}
+
+Result<FrameSize, PipeError> FramePipe::read_header() {
+    Header header;
+    if (const auto read = read_bytes(std::as_writable_bytes(std::span(&header, 1))); !read) {
+        return unexpected(read.error());
+    }
+    const bool is_plausible = header.width > 0 && header.height > 0 && header.width <= kSideMax &&
+                              header.height <= kSideMax &&
+                              FrameSize{header.width, header.height}.pixels() <= kPixelsMax;
+    if (header.magic != kMagic || header.version != kVersion || !is_plausible)
+        return unexpected(PipeError::wrong_format);
+    return FrameSize{header.width, header.height};
+}
+
+Result<std::optional<PipedFrame>, PipeError> FramePipe::read_frame(FrameSize size) {
+    PipedFrame frame;
+    if (const auto read = read_bytes(std::as_writable_bytes(std::span(&frame.timestamp_us, 1))); !read) {
+        return unexpected(read.error());
+    }
+    if (frame.timestamp_us == kEnd) return std::optional<PipedFrame>{};
+    frame.depth_mm.resize(size.pixels());
+    if (const auto read = read_bytes(std::as_writable_bytes(std::span(frame.depth_mm))); !read) {
+        return unexpected(read.error());
+    }
+    return std::optional(std::move(frame));
+}
+
+Status<PipeError> FramePipe::wait_for(short events) const {
+    pollfd waiting{.fd = descriptor_, .events = events, .revents = 0};
+    for (;;) {
+        const int ready = ::poll(&waiting, 1, static_cast<int>(patience_.count()));
+        if (ready > 0) return Done{};
+        if (ready == 0) return unexpected(PipeError::timeout);
+        if (errno != EINTR) return unexpected(PipeError::io);
+    }
+}
+
+Status<PipeError> FramePipe::write_bytes(std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        if (const auto ready = wait_for(POLLOUT); !ready) return ready;
+        const ssize_t moved = write_some(descriptor_, bytes);
+        if (moved > 0) {
+            bytes = bytes.subspan(static_cast<std::size_t>(moved));
+        } else if (moved < 0 && errno == EPIPE) {
+            return unexpected(PipeError::closed);
+        } else if (moved < 0 && errno != EINTR && errno != EAGAIN) {
+            return unexpected(PipeError::io);
+        }
+    }
+    return Done{};
+}
+
+Status<PipeError> FramePipe::read_bytes(std::span<std::byte> bytes) {
+    while (!bytes.empty()) {
+        if (const auto ready = wait_for(POLLIN); !ready) return ready;
+        const ssize_t moved = ::read(descriptor_, bytes.data(), bytes.size());
+        if (moved == 0) return unexpected(PipeError::closed);
+        if (moved > 0) {
+            bytes = bytes.subspan(static_cast<std::size_t>(moved));
+        } else if (errno != EINTR && errno != EAGAIN) {
+            return unexpected(PipeError::io);
+        }
+    }
+    return Done{};
+}
+
+}  // namespace octoskin::openni2

@@ -1,0 +1,47 @@
+// Starting a helper program with a pipe to or from it, and never waiting for it without a limit.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+
+namespace octoskin::openni2 {
+
+/// Which of the helper's standard streams is our end of the pipe.
+enum class HelperPipe : std::uint8_t { its_input, its_output };
+
+class HelperProcess {
+  public:
+    /// Starts `program argument`. Its standard error is ours. The message says what failed.
+    [[nodiscard]] static Result<HelperProcess, std::string> start(const std::filesystem::path& program,
+                                                                  const std::string& argument,
+                                                                  HelperPipe pipe);
+    HelperProcess(HelperProcess&& other) noexcept;
+    HelperProcess& operator=(HelperProcess&& other) noexcept;
+    /// Ends a helper that still runs.
+    ~HelperProcess();
+
+    [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
+    /// Our end: an input helper then sees its end of file.
+    void close_pipe();
+    /// Waits for the helper's own end. Empty: it exited with 0; else how it ended, in words ("exit code 1",
+    /// "signal 11", "did not end in time": it is killed then).
+    [[nodiscard]] std::optional<std::string> wait(std::chrono::milliseconds patience);
+
+  private:
+    HelperProcess(int process, int descriptor) : process_(process), descriptor_(descriptor) {}
+    void end();
+
+    int process_ = -1;
+    int descriptor_ = -1;
+};
+
+/// A helper program: beside the running executable, in ../libexec/octoskin/, or where the build put it. Empty
+/// if nowhere.
+[[nodiscard]] std::optional<std::filesystem::path> find_helper(const std::string& name);
+
+}  // namespace octoskin::openni2

@@ -1,0 +1,47 @@
+#include "host/io/openni2/helpers/helper_limits.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+
+namespace octoskin::openni2 {
+namespace {
+
+// The sanitizers reserve terabytes of addresses, which no limit would let them.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kLimitsMemory = false;
+#else
+constexpr bool kLimitsMemory = true;
+#endif
+constexpr rlim_t kMemoryMax = rlim_t{2} << 30U;
+
+}  // namespace
+
+void limit_this_process() {
+    std::signal(SIGPIPE, SIG_IGN);
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const rlimit no_core{0, 0};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    const rlimit memory{kMemoryMax, kMemoryMax};
+    if (kLimitsMemory) ::setrlimit(RLIMIT_AS, &memory);
+}
+
+void allow_processor_seconds(unsigned seconds) {
+    rusage used{};
+    rlimit limit{};
+    ::getrusage(RUSAGE_SELF, &used);
+    ::getrlimit(RLIMIT_CPU, &limit);
+    limit.rlim_cur = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1U + seconds;
+    ::setrlimit(RLIMIT_CPU, &limit);
+}
+
+int take_standard_output() {
+    const int output = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    ::dup2(STDERR_FILENO, STDOUT_FILENO);
+    return output;
+}
+
+}  // namespace octoskin::openni2

@@ -1,0 +1,114 @@
+// octoskin-oni-read FILE.oni: the depth frames of a recording to standard output (frame_pipe.hpp). OpenNI2
+// may crash or hang on a damaged file: that is why this is a process of its own, with limits.
+#include <OpenNI.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "host/io/openni2/frame_pipe.hpp"
+#include "host/io/openni2/helpers/helper_limits.hpp"
+
+namespace octoskin::openni2 {
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{600'000};  // the reader may think as long as it likes
+constexpr int kFrameTimeoutMs = 2000;                    // the end of a file shows only as silence
+constexpr unsigned kProcessorSecondsPerFrame = 5;
+
+int complain(const char* what) {
+    std::fprintf(stderr, "octoskin-oni-read: %s: %s\n", what, openni::OpenNI::getExtendedError());
+    return 1;
+}
+
+/// The frame's pixels, whatever its stride; empty if it is not of the stream's size.
+std::vector<std::uint16_t> pixels_of(const openni::VideoFrameRef& frame, FrameSize size) {
+    const auto row_bytes = size.width * sizeof(std::uint16_t);
+    const auto stride = static_cast<std::size_t>(frame.getStrideInBytes());
+    const bool is_whole =
+        frame.getWidth() == static_cast<int>(size.width) &&
+        frame.getHeight() == static_cast<int>(size.height) && stride >= row_bytes &&
+        static_cast<std::size_t>(frame.getDataSize()) >= stride * (size.height - 1) + row_bytes;
+    if (!is_whole) return {};
+    std::vector<std::uint16_t> pixels(size.pixels());
+    const auto* source = static_cast<const std::byte*>(frame.getData());
+    for (std::uint32_t row = 0; row < size.height; ++row) {
+        std::memcpy(pixels.data() + static_cast<std::size_t>(row) * size.width, source + row * stride,
+                    row_bytes);
+    }
+    return pixels;
+}
+
+int stream_frames(openni::VideoStream& stream, int frame_count, FrameSize size, int descriptor) {
+    FramePipe output(descriptor, kPatience);
+    if (!output.write_header(size)) return 1;
+    openni::VideoStream* const streams[] = {&stream};
+    openni::VideoFrameRef frame;
+    for (int read = 0; read < frame_count; ++read) {
+        allow_processor_seconds(kProcessorSecondsPerFrame);
+        int ready = -1;
+        if (openni::OpenNI::waitForAnyStream(const_cast<openni::VideoStream**>(streams), 1, &ready,
+                                             kFrameTimeoutMs) != openni::STATUS_OK ||
+            stream.readFrame(&frame) != openni::STATUS_OK) {
+            std::fprintf(stderr, "octoskin-oni-read: only %d of %d frames\n", read, frame_count);
+            return 1;
+        }
+        // A frame in the wrong place would be a frame at the wrong time.
+        if (frame.getFrameIndex() != read + 1) return complain("a frame is missing or out of place");
+        const auto pixels = pixels_of(frame, size);
+        if (pixels.empty()) return complain("a frame of another size");
+        if (!output.write_frame(frame.getTimestamp(), pixels)) return 1;
+    }
+    return output.write_end() ? 0 : 1;
+}
+
+int read_recording(const char* file, int descriptor) {
+    openni::Device device;
+    openni::VideoStream stream;
+    if (device.open(file) != openni::STATUS_OK || !device.isFile()) {
+        std::fprintf(stderr, "octoskin-oni-read: %s: not an .oni recording, or a damaged or cut off one\n",
+                     file);
+        return 1;
+    }
+    openni::PlaybackControl* playback = device.getPlaybackControl();
+    if (playback == nullptr || stream.create(device, openni::SENSOR_DEPTH) != openni::STATUS_OK) {
+        return complain("the recording has no depth stream");
+    }
+    playback->setRepeatEnabled(false);
+    playback->setSpeed(-1.0F);  // as fast as they are taken, and none dropped
+    const openni::VideoMode mode = stream.getVideoMode();
+    const FrameSize size{static_cast<std::uint32_t>(mode.getResolutionX()),
+                         static_cast<std::uint32_t>(mode.getResolutionY())};
+    const bool is_depth_mm = mode.getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_1_MM;
+    if (!is_depth_mm || size.width == 0 || size.height == 0 || size.width > kSideMax ||
+        size.height > kSideMax || size.pixels() > kPixelsMax) {
+        return complain("a video mode that octoskin does not read");
+    }
+    if (stream.start() != openni::STATUS_OK) return complain("cannot start the stream");
+    const int outcome = stream_frames(stream, playback->getNumberOfFrames(stream), size, descriptor);
+    // No clean-up: this process ends here, and OpenNI2's shutdown is one more thing that may hang on a
+    // damaged file.
+    std::fflush(nullptr);
+    _exit(outcome);
+}
+
+}  // namespace
+}  // namespace octoskin::openni2
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::fputs(
+            "usage: octoskin-oni-read FILE.oni > frames\nA helper of octoskin; `octoskin replay` runs it.\n",
+            stderr);
+        return 2;
+    }
+    octoskin::openni2::limit_this_process();
+    octoskin::openni2::allow_processor_seconds(octoskin::openni2::kProcessorSecondsPerFrame);
+    const int descriptor = octoskin::openni2::take_standard_output();
+    // OpenNI2 changes the working directory while it loads its drivers.
+    const auto file = std::filesystem::absolute(argv[1]);
+    if (openni::OpenNI::initialize() != openni::STATUS_OK)
+        return octoskin::openni2::complain("cannot start OpenNI2");
+    return octoskin::openni2::read_recording(file.c_str(), descriptor);
+}

@@ -1,0 +1,69 @@
+#include "host/io/openni2/oni_reader.hpp"
+
+#include <string>
+
+namespace octoskin::openni2 {
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{15'000};
+constexpr std::chrono::milliseconds kEndPatience{2'000};
+constexpr const char* kHelper = "octoskin-oni-read";
+
+std::string with_end(std::string what, const std::optional<std::string>& how_it_ended) {
+    if (how_it_ended) what += " (" + std::string(kHelper) + ": " + *how_it_ended + ")";
+    return what;
+}
+
+}  // namespace
+
+Result<OniReader, DepthSourceError> OniReader::open(const std::filesystem::path& oni,
+                                                    const std::filesystem::path& epoch_file,
+                                                    std::optional<std::filesystem::path> helper) {
+    const auto failure = [&oni](const std::string& what) {
+        return unexpected(DepthSourceError{oni.string() + ": " + what});
+    };
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(oni, error)) return failure("no such file, or not an ordinary one");
+    const auto epoch = read_epoch(epoch_file);
+    if (!epoch) return unexpected(epoch.error());
+    if (!helper) helper = find_helper(kHelper);
+    if (!helper)
+        return failure(std::string(kHelper) +
+                       " is neither beside this program nor in libexec; build or install it");
+    auto process = HelperProcess::start(*helper, oni.string(), HelperPipe::its_output);
+    if (!process) return failure(process.error());
+    const auto size = FramePipe(process->descriptor(), kPatience).read_header();
+    if (!size) {
+        return failure(
+            with_end("not a recording with depth that OpenNI2 can read", process->wait(kEndPatience)));
+    }
+    return OniReader(oni, *epoch, std::move(*process), *size);
+}
+
+Unexpected<DepthSourceError> OniReader::fail(const std::string& what) {
+    failure_ = DepthSourceError{file_.string() + ": " + what + " after " + std::to_string(frames_read_) +
+                                " of " + std::to_string(epoch_.frames) + " frames"};
+    return unexpected(*failure_);
+}
+
+Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
+    if (failure_) return unexpected(*failure_);
+    if (is_ended_) return std::optional<DepthFrame>{};
+    auto piped = FramePipe(helper_.descriptor(), kPatience).read_frame(size_);
+    if (!piped) return fail(with_end(name(piped.error()), helper_.wait(kEndPatience)));
+    if (!piped->has_value()) {
+        if (frames_read_ != epoch_.frames) return fail("the recording ends");
+        is_ended_ = true;
+        return std::optional<DepthFrame>{};
+    }
+    const auto since_first = static_cast<std::int64_t>((*piped)->timestamp_us);
+    constexpr std::int64_t kMaxUs = std::int64_t{1} << 48U;
+    if (since_first < 0 || since_first > kMaxUs) return fail("an impossible time stamp");
+    const HostTime captured = epoch_.first_frame + Microseconds{since_first};
+    if (frames_read_ > 0 && captured < last_) return fail("a time stamp that goes backwards");
+    last_ = captured;
+    ++frames_read_;
+    return std::optional(DepthFrame{captured, size_.width, size_.height, std::move((*piped)->depth_mm)});
+}
+
+}  // namespace octoskin::openni2

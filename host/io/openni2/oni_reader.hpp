@@ -1,0 +1,45 @@
+// Depth frames out of a recording. OpenNI2 runs in a helper process, so a damaged file can end nothing but
+// that.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "common/result.hpp"
+#include "host/core/depth/depth_source.hpp"
+#include "host/io/openni2/depth_epoch.hpp"
+#include "host/io/openni2/frame_pipe.hpp"
+#include "host/io/openni2/helper_process.hpp"
+
+namespace octoskin::openni2 {
+
+class OniReader final : public DepthSource {
+  public:
+    /// Opens `oni` with its sidecar `epoch`. Errors name the file: missing, not a recording, cut off.
+    /// `helper`: the program to use instead of the installed octoskin-oni-read.
+    [[nodiscard]] static Result<OniReader, DepthSourceError> open(
+        const std::filesystem::path& oni, const std::filesystem::path& epoch,
+        std::optional<std::filesystem::path> helper = std::nullopt);
+
+    /// Waits at most 15 s for a frame. A recording with fewer frames than its sidecar says ends with an error
+    /// after the last whole frame. After an error there is only that error.
+    [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override;
+
+    [[nodiscard]] FrameSize frame_size() const noexcept { return size_; }
+
+  private:
+    OniReader(std::filesystem::path file, const DepthEpoch& epoch, HelperProcess helper, FrameSize size)
+        : file_(std::move(file)), epoch_(epoch), helper_(std::move(helper)), size_(size) {}
+    [[nodiscard]] Unexpected<DepthSourceError> fail(const std::string& what);
+
+    std::filesystem::path file_;
+    DepthEpoch epoch_;
+    HelperProcess helper_;
+    FrameSize size_;
+    std::uint64_t frames_read_ = 0;
+    HostTime last_{};
+    bool is_ended_ = false;
+    std::optional<DepthSourceError> failure_;
+};
+
+}  // namespace octoskin::openni2

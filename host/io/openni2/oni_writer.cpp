@@ -1,0 +1,72 @@
+#include "host/io/openni2/oni_writer.hpp"
+
+#include <cassert>
+#include <string>
+#include <vector>
+
+namespace octoskin::openni2 {
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{30'000};
+/// 3 ms on a quiet machine.
+constexpr std::chrono::milliseconds kPatiencePerFrame{100};
+constexpr const char* kHelper = "octoskin-oni-write";
+
+}  // namespace
+
+Unexpected<DepthSourceError> OniWriter::failure(const std::string& what) const {
+    return unexpected(DepthSourceError{oni_.string() + ": " + what});
+}
+
+Result<OniWriter, DepthSourceError> OniWriter::create(const std::filesystem::path& oni,
+                                                      const std::filesystem::path& epoch, FrameSize size,
+                                                      std::optional<std::filesystem::path> helper) {
+    const auto failure = [&oni](const std::string& what) {
+        return unexpected(DepthSourceError{oni.string() + ": " + what});
+    };
+    if (size.pixels() == 0 || size.pixels() > kPixelsMax || size.width > kSideMax || size.height > kSideMax) {
+        return failure("OpenNI2 cannot record pictures of " + std::to_string(size.width) + " x " +
+                       std::to_string(size.height) + " pixels, only up to 1600 x 1200");
+    }
+    if (!helper) helper = find_helper(kHelper);
+    if (!helper)
+        return failure(std::string(kHelper) +
+                       " is neither beside this program nor in libexec; build or install it");
+    // An old sidecar must not vouch for a recording that is not finished.
+    std::error_code ignored;
+    for (const auto& stale : {oni, epoch}) std::filesystem::remove(stale, ignored);
+    auto process = HelperProcess::start(*helper, oni.string(), HelperPipe::its_input);
+    if (!process) return failure(process.error());
+    if (const auto written = FramePipe(process->descriptor(), kPatience).write_header(size); !written) {
+        return failure(name(written.error()));
+    }
+    return OniWriter(oni, epoch, size, std::move(*process));
+}
+
+Status<DepthSourceError> OniWriter::write(HostTime captured, std::span<const std::uint16_t> depth_mm) {
+    assert(depth_mm.size() == size_.pixels());
+    const HostTime whole_us{captured.ns / 1000 * 1000};
+    if (epoch_.frames == 0) epoch_.first_frame = whole_us;
+    assert(whole_us >= epoch_.first_frame);
+    std::vector<std::uint16_t> storable(depth_mm.begin(), depth_mm.end());
+    for (std::uint16_t& depth : storable) {
+        if (depth > kDepthMaxMm) depth = 0;
+    }
+    const auto since_first = static_cast<std::uint64_t>((whole_us - epoch_.first_frame).count() / 1000);
+    const auto written = FramePipe(helper_.descriptor(), kPatience).write_frame(since_first, storable);
+    if (!written) return failure(name(written.error()));
+    ++epoch_.frames;
+    return Done{};
+}
+
+Status<DepthSourceError> OniWriter::close() {
+    if (const auto written = FramePipe(helper_.descriptor(), kPatience).write_end(); !written) {
+        return failure(name(written.error()));
+    }
+    helper_.close_pipe();
+    const auto patience = kPatience + kPatiencePerFrame * static_cast<std::int64_t>(epoch_.frames);
+    if (const auto how = helper_.wait(patience)) return failure("the recorder failed: " + *how);
+    return write_epoch(epoch_file_, epoch_);
+}
+
+}  // namespace octoskin::openni2

@@ -1,0 +1,48 @@
+// Depth frames into a recording, by OpenNI2's own recorder in a helper process.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "host/core/depth/depth_source.hpp"
+#include "host/io/openni2/depth_epoch.hpp"
+#include "host/io/openni2/frame_pipe.hpp"
+#include "host/io/openni2/helper_process.hpp"
+
+namespace octoskin::openni2 {
+
+/// OpenNI2's codec is lossless up to this depth; larger ones are stored as 0 (none).
+inline constexpr std::uint16_t kDepthMaxMm = 32767;
+
+class OniWriter {
+  public:
+    /// Creates `oni` and, on `close`, its sidecar `epoch`; former ones are removed. Errors: a helper that is
+    /// not there, pictures of more than 1600 x 1200 pixels. `helper`: the program to use instead of the
+    /// installed octoskin-oni-write.
+    [[nodiscard]] static Result<OniWriter, DepthSourceError> create(
+        const std::filesystem::path& oni, const std::filesystem::path& epoch, FrameSize size,
+        std::optional<std::filesystem::path> helper = std::nullopt);
+    /// Frames in the order of their time. Asserts the size.
+    [[nodiscard]] Status<DepthSourceError> write(HostTime captured, std::span<const std::uint16_t> depth_mm);
+    /// Waits for the recorder (3 ms for each of up to the last 600 frames of 512 x 424, fewer larger ones)
+    /// and writes the sidecar. Without it the recording is not complete. The bytes of the .oni depend on the
+    /// frames only.
+    [[nodiscard]] Status<DepthSourceError> close();
+
+  private:
+    OniWriter(std::filesystem::path oni, std::filesystem::path epoch, FrameSize size, HelperProcess helper)
+        : oni_(std::move(oni)), epoch_file_(std::move(epoch)), size_(size), helper_(std::move(helper)) {}
+    [[nodiscard]] Unexpected<DepthSourceError> failure(const std::string& what) const;
+
+    std::filesystem::path oni_;
+    std::filesystem::path epoch_file_;
+    FrameSize size_;
+    HelperProcess helper_;
+    DepthEpoch epoch_;
+};
+
+}  // namespace octoskin::openni2

@@ -1,0 +1,83 @@
+#include "host/io/rig/host_rig_reader.hpp"
+
+#include <utility>
+
+#include "host/io/urdf/urdf_robot.hpp"
+#include "hw/rigfile/robot_description.hpp"
+#include "hw/rigfile/zone.hpp"
+
+namespace octoskin {
+namespace {
+
+HostSensor to_host(const rig::Sensor& sensor, const SensorConfig& config) {
+    HostSensor host;
+    host.name = sensor.name;
+    host.link = sensor.link;
+    host.T_link_sensor = sensor.T_link_sensor;
+    host.timing_budget = std::chrono::milliseconds(config.timing_budget_ms);
+    host.period = std::chrono::milliseconds(config.inter_measurement_ms);
+    host.zones.clear();
+    for (std::size_t i = 0; i < config.zone_count; ++i) {
+        host.zones.push_back({sensor.zone_offset_m[i], rig::zone_direction(config.zones[i])});
+    }
+    return host;
+}
+
+HostNode to_host(const rig::Node& node) {
+    HostNode host;
+    host.node_id = node.config.node_id;
+    host.name = node.name;
+    host.node_hash = node_hash(node.config);
+    host.pinned_build_id = node.pinned_build_id;
+    for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+        host.sensors.push_back(to_host(node.sensors[i], node.config.sensors[i]));
+    }
+    return host;
+}
+
+HostCamera to_host(const rig::Camera& camera) {
+    HostCamera host;
+    host.intrinsics = {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy};
+    host.depth_min_m = camera.depth_min_m;
+    host.depth_max_m = camera.depth_max_m;
+    host.T_base_camera = camera.T_base_camera;
+    host.rate_hz = camera.rate_hz;
+    return host;
+}
+
+HostRig to_host(const rig::Rig& rig) {
+    HostRig host;
+    host.name = rig.name;
+    host.rig_hash = rig::rig_hash(rig);
+    host.T_map_base = rig.T_map_base;
+    for (const rig::Node& node : rig.nodes) host.nodes.push_back(to_host(node));
+    host.joints = {rig.joints.node_id, rig.joints.joints, rig.joints.rate_hz};
+    if (rig.camera) host.camera = to_host(*rig.camera);
+    host.links_ignored_by_sensors = rig.links_ignored_by_sensors;
+    host.depth_self_margin_m = rig.depth_self_margin_m;
+    host.range_self_margin_m = rig.range_self_margin_m;
+    host.range_limits = {rig.range_limits.min_m, rig.range_limits.max_m, rig.range_limits.sigma_max_m};
+    return host;
+}
+
+}  // namespace
+
+Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
+    auto robot = read_robot_model(rig.urdf, rig.base_link, rig.joints.joints);
+    if (!robot) return unexpected(robot.error());
+    const auto capsules = rig::read_capsules(rig.urdf, rig.link_padding_m);
+    if (!capsules) return unexpected(capsules.error());
+    HostRig host = to_host(rig);
+    for (const rig::Capsule& capsule : *capsules) {
+        if (!robot->find_link(capsule.link)) {
+            return unexpected(
+                rig::RigError{rig.urdf, 0, "link " + capsule.link,
+                              "has a <collision> but does not hang below the rig's base link '" +
+                                  rig.base_link + "': remove it, or use another base_link"});
+        }
+        host.body.push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
+    }
+    return HostSetup{std::move(host), std::move(robot).value()};
+}
+
+}  // namespace octoskin

@@ -1,0 +1,100 @@
+#include "host/io/urdf/urdf_robot.hpp"
+
+#include <urdf_model/joint.h>
+#include <urdf_model/link.h>
+#include <urdf_model/model.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "hw/rigfile/urdf_document.hpp"
+
+namespace octoskin {
+namespace {
+
+std::optional<JointKind> kind_of(const urdf::Joint& joint) {
+    switch (joint.type) {
+        case urdf::Joint::FIXED:
+            return JointKind::fixed;
+        case urdf::Joint::REVOLUTE:
+            return JointKind::revolute;
+        case urdf::Joint::CONTINUOUS:
+            return JointKind::continuous;
+        case urdf::Joint::PRISMATIC:
+            return JointKind::prismatic;
+        case urdf::Joint::FLOATING:
+        case urdf::Joint::PLANAR:
+        case urdf::Joint::UNKNOWN:
+            break;
+    }
+    return std::nullopt;
+}
+
+/// Why a joint cannot be taken, or nothing.
+std::string fault_of(const urdf::Joint& joint) {
+    const auto kind = kind_of(joint);
+    if (!kind) return "expected a fixed, revolute, continuous or prismatic joint, found another kind";
+    if (joint.mimic) return "expected a joint with a position of its own, found a mimic joint";
+    const bool needs_limits = *kind == JointKind::revolute || *kind == JointKind::prismatic;
+    if (needs_limits && !joint.limits) return "expected <limit>, found none";
+    return "";
+}
+
+JointDescription to_description(const urdf::Joint& joint) {
+    JointDescription description;
+    description.name = joint.name;
+    description.parent_link = joint.parent_link_name;
+    description.child_link = joint.child_link_name;
+    description.kind = *kind_of(joint);
+    const urdf::Pose& origin = joint.parent_to_joint_origin_transform;
+    const Eigen::Quaterniond rotation(origin.rotation.w, origin.rotation.x, origin.rotation.y,
+                                      origin.rotation.z);
+    description.T_parent_joint.linear() = rotation.toRotationMatrix();
+    description.T_parent_joint.translation() << origin.position.x, origin.position.y, origin.position.z;
+    description.axis << joint.axis.x, joint.axis.y, joint.axis.z;
+    if (joint.limits) description.limits = {joint.limits->lower, joint.limits->upper};
+    return description;
+}
+
+/// The joints below `base`, breadth first. urdfdom has made sure that it is a tree, so each comes once.
+Result<std::vector<JointDescription>, rig::RigError> joints_below(const rig::UrdfDocument& document,
+                                                                  const urdf::Link& base) {
+    std::vector<JointDescription> descriptions;
+    std::vector<const urdf::Link*> links = {&base};
+    for (std::size_t i = 0; i < links.size(); ++i) {
+        const urdf::Link& link = *links[i];
+        for (const auto& joint : link.child_joints) {
+            auto fault = fault_of(*joint);
+            if (!fault.empty()) return unexpected(document.error("joint", joint->name, std::move(fault)));
+            descriptions.push_back(to_description(*joint));
+        }
+        for (const auto& child : link.child_links) links.push_back(child.get());
+    }
+    return descriptions;
+}
+
+}  // namespace
+
+Result<RobotModel, rig::RigError> read_robot_model(const std::filesystem::path& urdf,
+                                                   const std::string& base_link,
+                                                   std::span<const std::string> moved) {
+    const auto document = rig::UrdfDocument::read(urdf);
+    if (!document) return unexpected(document.error());
+    const auto base = document->model().getLink(base_link);
+    if (!base)
+        return unexpected(
+            document->error("link", base_link, "expected this base link, found none of its name"));
+    const auto joints = joints_below(*document, *base);
+    if (!joints) return unexpected(joints.error());
+    auto model = RobotModel::build(base_link, *joints, moved);
+    if (!model) {
+        const RobotModelFault& fault = model.error();
+        const bool is_link =
+            fault.error == RobotModelError::two_parents || fault.error == RobotModelError::unreachable;
+        return unexpected(document->error(is_link ? "link" : "joint", fault.element, describe(fault.error)));
+    }
+    return std::move(model).value();
+}
+
+}  // namespace octoskin

@@ -1,0 +1,238 @@
+#include "hw/rigfile/document.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+namespace octoskin::rig {
+namespace {
+
+constexpr std::size_t kFileBytesMax = 1U << 20U;
+constexpr std::size_t kDepthMax = 16;
+constexpr std::size_t kExtendsMax = 8;
+
+std::string read_text(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::error_code error;
+    if (!stream || std::filesystem::is_directory(file, error)) {
+        throw Fault{{file, 0, "", "cannot be opened: give the path of an existing, readable YAML file"}};
+    }
+    std::string text(kFileBytesMax + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > kFileBytesMax) {
+        throw Fault{
+            {file, 0, "", fmt::format("expected a file of at most {} bytes, found more", kFileBytesMax)}};
+    }
+    return text;
+}
+
+/// Builds the tree from yaml-cpp's events rather than from its nodes: nodes drop a repeated key, forget the
+/// file, and expand aliases without a bound.
+class TreeBuilder final : public YAML::EventHandler {
+  public:
+    explicit TreeBuilder(std::shared_ptr<const std::filesystem::path> file) : file_(std::move(file)) {}
+
+    [[nodiscard]] Value take_root() { return std::move(root_); }
+
+    void OnDocumentStart(const YAML::Mark&) override {}
+    void OnDocumentEnd() override {}
+    void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+        refuse_anchor(mark, anchor);
+        if (is_key_next()) fail(mark, "expected a key, found nothing");
+        add(make(mark, Value::Kind::null));
+    }
+    void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+        fail(mark, "aliases (*name) are not used in rig files: write the value out, or use sensor_defaults");
+    }
+    void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  const std::string& text) override {
+        refuse_anchor(mark, anchor);
+        refuse_tag(mark, tag);
+        if (is_key_next()) return start_entry(mark, text);
+        Value value = make(mark, Value::Kind::scalar);
+        value.text = text;
+        value.is_quoted = tag == "!";
+        add(std::move(value));
+    }
+    void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                         YAML::EmitterStyle::value) override {
+        open(mark, tag, anchor, Value::Kind::list);
+    }
+    void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                    YAML::EmitterStyle::value) override {
+        open(mark, tag, anchor, Value::Kind::table);
+    }
+    void OnSequenceEnd() override { close(); }
+    void OnMapEnd() override { close(); }
+
+  private:
+    [[noreturn]] void fail(const YAML::Mark& mark, std::string what) const {
+        throw Fault{{*file_, mark.line + 1, "", std::move(what)}};
+    }
+    void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
+        if (anchor != YAML::NullAnchor) fail(mark, "anchors (&name) are not used in rig files: remove it");
+    }
+    void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
+        // yaml-cpp's own marks: "?" for a plain value, "!" for a quoted one.
+        if (!tag.empty() && tag != "?" && tag != "!") {
+            fail(mark, fmt::format("tags are not used in rig files: remove '{}'", tag));
+        }
+    }
+    [[nodiscard]] Value make(const YAML::Mark& mark, Value::Kind kind) const {
+        Value value;
+        value.kind = kind;
+        value.file = file_;
+        value.line = mark.line + 1;
+        return value;
+    }
+    [[nodiscard]] bool is_key_next() const {
+        return !open_.empty() && open_.back().kind == Value::Kind::table && !has_key_;
+    }
+    void start_entry(const YAML::Mark& mark, const std::string& key) {
+        if (const Value* first = open_.back().find(key)) {
+            throw Fault{{*file_, mark.line + 1, key,
+                         fmt::format("expected each key once, found it again (first at line {}): remove one",
+                                     first->line)}};
+        }
+        pending_key_ = key;
+        pending_key_line_ = mark.line + 1;
+        has_key_ = true;
+    }
+    void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Value::Kind kind) {
+        refuse_anchor(mark, anchor);
+        refuse_tag(mark, tag);
+        if (is_key_next()) fail(mark, "expected a key, found a list or table");
+        if (open_.size() >= kDepthMax) fail(mark, fmt::format("nested deeper than {}", kDepthMax));
+        Value value = make(mark, kind);
+        take_key(value);
+        open_.push_back(std::move(value));
+    }
+    void close() {
+        Value value = std::move(open_.back());
+        open_.pop_back();
+        (open_.empty() ? root_ : open_.back().items.emplace_back()) = std::move(value);
+    }
+    /// An entry stands where its key does: a table or list below it begins a line later.
+    void take_key(Value& value) {
+        if (has_key_) value.line = pending_key_line_;
+        value.key = std::exchange(pending_key_, {});
+        has_key_ = false;
+    }
+    void add(Value value) {
+        take_key(value);
+        (open_.empty() ? root_ : open_.back().items.emplace_back()) = std::move(value);
+    }
+
+    std::shared_ptr<const std::filesystem::path> file_;
+    std::vector<Value> open_;  ///< tables and lists begun and not ended, outermost first
+    std::string pending_key_;
+    int pending_key_line_ = 0;
+    bool has_key_ = false;
+    Value root_;
+};
+
+constexpr std::array<std::string_view, 4> kOrientationKeys = {"rpy_deg", "quaternion_wxyz", "rotation_rows",
+                                                              "looking_at_m"};
+
+bool is_orientation(const Value& item) {
+    return std::find(kOrientationKeys.begin(), kOrientationKeys.end(), item.key) != kOrientationKeys.end();
+}
+
+void merge_item(Value& base, const Value& item) {
+    std::erase_if(base.items, [&](const Value& old) {
+        return old.key != item.key && is_orientation(old) && is_orientation(item);
+    });
+    const auto old = std::find_if(base.items.begin(), base.items.end(),
+                                  [&](const Value& candidate) { return candidate.key == item.key; });
+    if (item.kind == Value::Kind::null) {
+        if (old != base.items.end()) base.items.erase(old);
+    } else if (old == base.items.end()) {
+        base.items.push_back(item);
+    } else if (old->kind == Value::Kind::table && item.kind == Value::Kind::table) {
+        *old = merge(std::move(*old), item);
+    } else {
+        *old = item;
+    }
+}
+
+/// The file that `extends:` names, or an empty path; the key itself is taken out.
+std::filesystem::path take_extends(Value& document) {
+    const Value* extends = document.find("extends");
+    if (!extends) return {};
+    auto path = existing_file(*extends, "extends");
+    std::erase_if(document.items, [](const Value& item) { return item.key == "extends"; });
+    return path;
+}
+
+}  // namespace
+
+const Value* Value::find(std::string_view wanted) const noexcept {
+    const auto found =
+        std::find_if(items.begin(), items.end(), [&](const Value& item) { return item.key == wanted; });
+    return kind == Kind::table && found != items.end() ? &*found : nullptr;
+}
+
+Value load_document(const std::filesystem::path& file) {
+    std::istringstream stream(read_text(file));
+    TreeBuilder builder(std::make_shared<const std::filesystem::path>(file));
+    try {
+        YAML::Parser parser(stream);
+        parser.HandleNextDocument(builder);
+        Value root = builder.take_root();
+        if (root.kind != Value::Kind::table) {
+            throw Fault{
+                {file, std::max(root.line, 1), "", "expected a table of keys at the top, found none"}};
+        }
+        if (parser.HandleNextDocument(builder)) {
+            throw Fault{{file, builder.take_root().line, "", "expected one YAML document, found a second"}};
+        }
+        return root;
+    } catch (const YAML::Exception& exception) {
+        throw Fault{{file, exception.mark.line + 1, "", fmt::format("not YAML: {}", exception.msg)}};
+    }
+}
+
+std::filesystem::path existing_file(const Value& value, const std::string& key_path) {
+    auto path = value.file->parent_path() / value.text;
+    std::error_code error;  // a name too long, for one, is as absent as any
+    if (value.kind != Value::Kind::scalar || !std::filesystem::is_regular_file(path, error)) {
+        throw Fault{{*value.file, value.line, key_path,
+                     fmt::format("expected the path of a file, relative to this one, found none at '{}'",
+                                 path.string())}};
+    }
+    return path;
+}
+
+Value merge(Value base, const Value& overlay) {
+    for (const Value& item : overlay.items) merge_item(base, item);
+    // What is missing or wrong as a whole is reported where the overlay was written.
+    base.file = overlay.file;
+    base.line = overlay.line;
+    return base;
+}
+
+Value load_with_extends(const std::filesystem::path& file) {
+    std::vector<Value> layers = {load_document(file)};
+    for (auto next = take_extends(layers.back()); !next.empty(); next = take_extends(layers.back())) {
+        if (layers.size() == kExtendsMax) {
+            throw Fault{
+                {file, 0, "extends",
+                 fmt::format("expected at most {} files one upon the other, found more: is it a circle?",
+                             kExtendsMax)}};
+        }
+        layers.push_back(load_document(next));
+    }
+    Value merged = std::move(layers.back());
+    for (std::size_t i = layers.size() - 1; i-- > 0;) merged = merge(std::move(merged), layers[i]);
+    return merged;
+}
+
+}  // namespace octoskin::rig

@@ -1,0 +1,52 @@
+// A YAML file as a plain tree that remembers where every value was written: the layer between yaml-cpp and
+// the checks. It accepts the part of YAML that a rig needs (tables, lists, scalars) and refuses the rest by
+// name.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hw/rigfile/rig.hpp"
+
+namespace octoskin::rig {
+
+/// Thrown inside hw/rigfile only; the public functions catch it and return its error.
+struct Fault {
+    RigError error;
+};
+
+/// One value, and where it was written. An item of a table carries its key.
+struct Value {
+    enum class Kind { null, scalar, list, table };
+    Kind kind = Kind::null;
+    std::string key;         ///< in the table above; empty in a list and at the top
+    std::string text;        ///< of a scalar
+    bool is_quoted = false;  ///< a quoted scalar is a string, whatever it looks like
+    std::vector<Value> items;
+    std::shared_ptr<const std::filesystem::path> file;
+    int line = 0;  ///< 1-based
+
+    /// The item of a table with this key; nullptr if there is none.
+    [[nodiscard]] const Value* find(std::string_view wanted) const noexcept;
+};
+
+/// Reads one YAML file whose top is a table. Throws Fault: unreadable, over 1 MiB, not YAML, a key twice in
+/// one table, an anchor, alias or tag, more than one document, nested deeper than 16.
+[[nodiscard]] Value load_document(const std::filesystem::path& file);
+
+/// The file that a scalar names, relative to the file it is written in. Throws Fault, at the scalar, unless
+/// that is an existing file.
+[[nodiscard]] std::filesystem::path existing_file(const Value& value, const std::string& key_path);
+
+/// Lays `overlay` over `base`: tables are merged key by key, everything else replaces, and a null removes the
+/// key. An orientation replaces the other file's orientation even if it is written another way.
+[[nodiscard]] Value merge(Value base, const Value& overlay);
+
+/// load_document(), then every file that `extends:` names, each relative to the file that names it, laid one
+/// over the other. Throws Fault also for a circle and for more than 8 files.
+[[nodiscard]] Value load_with_extends(const std::filesystem::path& file);
+
+}  // namespace octoskin::rig

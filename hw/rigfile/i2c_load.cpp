@@ -1,0 +1,42 @@
+#include "hw/rigfile/i2c_load.hpp"
+
+#include <algorithm>
+
+namespace octoskin::rig {
+namespace {
+
+constexpr double kSlowestShare = 283.0 / 400.0;
+
+/// Bits on the wire, every byte with its acknowledgement: start, address, 2 index bytes, data, stop.
+constexpr unsigned write_bits(unsigned bytes) {
+    return 1 + 9 * (1 + 2 + bytes) + 1;
+}
+/// Start, address, 2 index bytes, repeated start, address, data, stop.
+constexpr unsigned read_bits(unsigned bytes) {
+    return 1 + 9 * 3 + 1 + 9 * (1 + bytes) + 1;
+}
+
+constexpr unsigned kPollBits = read_bits(1);
+constexpr unsigned kResultBits = read_bits(17);
+constexpr unsigned kClearBits = write_bits(1);
+constexpr unsigned kReadBackBits = read_bits(1);  ///< one register of the configuration with every reading
+constexpr unsigned kZoneBits = write_bits(1);
+static_assert(kPollBits + 2 * kResultBits + kClearBits + kReadBackBits == 518);
+
+double bits_per_second(const NodeConfig& node, const SensorConfig& sensor) {
+    const unsigned bits = kPollBits + (node.reads_twice ? 2 : 1) * kResultBits + kClearBits + kReadBackBits +
+                          (sensor.zone_count > 1 ? kZoneBits : 0);
+    return bits * 1000.0 / sensor.inter_measurement_ms;
+}
+
+}  // namespace
+
+double i2c_load(const NodeConfig& node, std::uint8_t bus) {
+    double load_bps = 0.0;
+    for (std::size_t i = 0; i < std::min<std::size_t>(node.sensor_count, kNodeSensorsMax); ++i) {
+        if (node.sensors[i].bus == bus) load_bps += bits_per_second(node, node.sensors[i]);
+    }
+    return load_bps / (node.i2c_hz * kSlowestShare);
+}
+
+}  // namespace octoskin::rig

@@ -1,0 +1,12 @@
+// How busy a node's sensors keep one of its I2C buses.
+#pragma once
+
+#include "common/config/node_config.hpp"
+
+namespace octoskin::rig {
+
+/// Share of the time that bus `bus` is occupied while all its sensors range, 0..1 and beyond. At the slowest
+/// clock that the bus may have: filters and rise times stretch a nominal 400 kHz to 283.
+[[nodiscard]] double i2c_load(const NodeConfig& node, std::uint8_t bus);
+
+}  // namespace octoskin::rig

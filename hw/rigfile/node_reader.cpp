@@ -1,0 +1,159 @@
+#include "hw/rigfile/node_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+#include "common/wire/messages.hpp"
+#include "hw/rigfile/i2c_load.hpp"
+#include "hw/rigfile/sensor_reader.hpp"
+
+namespace octoskin::rig {
+namespace {
+
+constexpr double kI2cLoadMax = 0.7;
+constexpr std::size_t kNodesMax = 62;
+
+/// Remembers who took a thing first.
+class Taken {
+  public:
+    /// Fails at `table.key` if `thing` is taken already.
+    void take(const Table& table, std::string_view key, const std::string& thing) {
+        const auto [first, is_new] = first_.try_emplace(thing, table.path_of(key));
+        if (!is_new)
+            table.fail(
+                key, fmt::format("expected one of a kind, found {} again: {} has it", thing, first->second));
+    }
+
+  private:
+    std::map<std::string, std::string> first_;
+};
+
+NodeConfig read_node_settings(const Table& table, const NodeContext& context, const Board& board) {
+    NodeConfig config;
+    config.node_id = table.integer<std::uint8_t>("node_id", {1, 62});
+    config.board_type = board.board_type;
+    config.uses_can_fd = context.bus.uses_can_fd;
+    config.nominal_bitrate = context.bus.nominal_bitrate;
+    config.data_bitrate = context.bus.data_bitrate;
+    config.i2c_hz = table.integer<std::uint32_t>("i2c_hz", {10'000, 400'000}, config.i2c_hz);
+    config.is_io_2v8 = table.choice<bool>("io_level", {{"2v8", true}, {"1v8", false}}, true);
+    config.reads_twice = table.flag("reads_twice", config.reads_twice);
+    config.stream_gate = table.choice<StreamGate>(
+        "stream_gate",
+        {{"off", StreamGate::off}, {"differs", StreamGate::differs}, {"advanced", StreamGate::advanced}},
+        config.stream_gate);
+    config.aux_every = table.integer<std::uint8_t>("aux_every", {0, 255}, config.aux_every);
+    config.zone_guard_us = table.integer<std::uint16_t>("zone_guard_us", {0, 20'000}, config.zone_guard_us);
+    if (config.uses_can_fd && !board.supports_can_fd) {
+        table.fail("board",
+                   fmt::format("expected a board with CAN FD, as `bus` asks for; {} has classical CAN only",
+                               board.name));
+    }
+    return config;
+}
+
+void refuse_shared_wiring(const Table& sensor, const SensorConfig& config, Taken& taken) {
+    taken.take(sensor, "address", fmt::format("address 0x{:02X} on bus {}", config.address, config.bus));
+    taken.take(sensor, "xshut_line", fmt::format("xshut_line {}", config.xshut_line));
+}
+
+void read_sensors(const Table& node_table, const NodeContext& context, Node& node) {
+    const Value& list = node_table.require("sensors");
+    const std::string path = node_table.path_of("sensors");
+    const auto& items = read_list(list, path);
+    const std::size_t sensors_max = std::min<std::size_t>(node.board.sensors_max, kNodeSensorsMax);
+    if (items.empty() || items.size() > sensors_max) {
+        fail(list, path,
+             fmt::format("expected 1 to {} sensors on a {}, found {}", sensors_max, node.board.name,
+                         items.size()));
+    }
+    Taken taken;
+    std::array<std::size_t, 256> sensors_on_bus{};
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const std::string sensor_path = fmt::format("{}[{}]", path, i);
+        const Value value = context.sensor_defaults && items[i].kind == Value::Kind::table
+                                ? merge(*context.sensor_defaults, items[i])
+                                : items[i];
+        const Table table = sensor_table(value, sensor_path);
+        SensorEntry entry = read_sensor(table, context.robot, context.base_link, node.board);
+        taken.take(table, "name", fmt::format("name '{}'", entry.sensor.name));
+        refuse_shared_wiring(table, entry.config, taken);
+        if (++sensors_on_bus[entry.config.bus] > node.board.sensors_per_bus_max) {
+            table.fail("bus",
+                       fmt::format("expected at most {} sensors on a bus of a {}, found more on bus {}",
+                                   node.board.sensors_per_bus_max, node.board.name, entry.config.bus));
+        }
+        node.config.sensors[i] = entry.config;
+        node.config.sensor_count = static_cast<std::uint8_t>(i + 1);
+        node.sensors.push_back(std::move(entry.sensor));
+    }
+}
+
+void refuse_overloaded_i2c(const Table& table, const Node& node) {
+    for (std::uint8_t bus = 0; bus < node.board.i2c_bus_count; ++bus) {
+        const double load = i2c_load(node.config, bus);
+        if (load <= kI2cLoadMax) continue;
+        table.fail(
+            "sensors",
+            fmt::format("expected an I2C load of at most {:.0f} %, found {:.0f} % on bus {}: use a longer "
+                        "inter_measurement_ms, fewer sensors on this bus, or a faster i2c_hz",
+                        100.0 * kI2cLoadMax, 100.0 * load, bus));
+    }
+}
+
+Node read_node(const Table& table, const NodeContext& context) {
+    Node node;
+    node.name = table.name("name");
+    node.board = read_board(table.require("board"), table.path_of("board"));
+    node.config = read_node_settings(table, context, node.board);
+    if (table.find("pinned_build_id")) {
+        node.pinned_build_id = table.integer<std::uint32_t>("pinned_build_id", {0, 0xFFFF'FFFF});
+    }
+    read_sensors(table, context, node);
+    refuse_overloaded_i2c(table, node);
+    return node;
+}
+
+}  // namespace
+
+Board read_board(const Value& value, const std::string& path) {
+    if (value.kind == Value::Kind::scalar) {
+        return read_board(load_document(existing_file(value, path)), "");
+    }
+    const Table table(value, path,
+                      {"name", "board_type", "i2c_bus_count", "xshut_line_count", "sensors_max",
+                       "sensors_per_bus_max", "supports_can_fd"});
+    Board board;
+    board.name = table.name("name");
+    board.board_type = table.integer<std::uint8_t>("board_type", {0, 255});
+    board.i2c_bus_count = table.integer<std::uint8_t>("i2c_bus_count", {1, kNodeBusesMax});
+    board.xshut_line_count = table.integer<std::uint8_t>("xshut_line_count", {1, kNodeXshutLinesMax});
+    board.sensors_max = table.integer<std::uint8_t>("sensors_max", {1, kNodeSensorsMax});
+    board.sensors_per_bus_max = table.integer<std::uint8_t>("sensors_per_bus_max", {1, kNodeSensorsMax});
+    board.supports_can_fd = table.flag("supports_can_fd");
+    return board;
+}
+
+std::vector<Node> read_nodes(const Value& value, const std::string& path, const NodeContext& context) {
+    const auto& items = read_list(value, path);
+    if (items.empty() || items.size() > kNodesMax) {
+        fail(value, path, fmt::format("expected 1 to {} nodes, found {}", kNodesMax, items.size()));
+    }
+    std::vector<Node> nodes;
+    Taken taken;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const Table table(items[i], fmt::format("{}[{}]", path, i),
+                          {"name", "node_id", "board", "i2c_hz", "io_level", "reads_twice", "stream_gate",
+                           "aux_every", "zone_guard_us", "pinned_build_id", "sensors"});
+        nodes.push_back(read_node(table, context));
+        taken.take(table, "name", fmt::format("name '{}'", nodes.back().name));
+        taken.take(table, "node_id", fmt::format("node_id {}", nodes.back().config.node_id));
+    }
+    return nodes;
+}
+
+}  // namespace octoskin::rig

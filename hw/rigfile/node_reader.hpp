@@ -1,0 +1,28 @@
+// The `nodes:` of a rig: boards, sensors, and what makes a set of them possible.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hw/rigfile/table.hpp"
+#include "hw/rigfile/urdf_document.hpp"
+
+namespace octoskin::rig {
+
+/// What a node's checks need to know of the rest of the rig.
+struct NodeContext {
+    const UrdfDocument& robot;
+    const std::string& base_link;
+    const Bus& bus;
+    const Value* sensor_defaults;  ///< laid under every sensor; nullptr if the rig has none
+};
+
+/// Every node with its sensors and its complete configuration. Throws Fault for whatever is wrong in a node,
+/// for names and addresses used twice, and for an I2C bus loaded above 70 %.
+[[nodiscard]] std::vector<Node> read_nodes(const Value& value, const std::string& path,
+                                           const NodeContext& context);
+
+/// A path to a board's file, relative to the file that names it, or the board's table itself.
+[[nodiscard]] Board read_board(const Value& value, const std::string& path);
+
+}  // namespace octoskin::rig

@@ -1,0 +1,122 @@
+#include "hw/rigfile/pose.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace octoskin::rig {
+namespace {
+
+constexpr double kQuaternionTolerance = 1e-6;
+constexpr double kMatrixTolerance = 1e-9;
+
+std::vector<double> read_numbers(const Value& value, const std::string& path, std::size_t count,
+                                 double limit) {
+    if (value.kind != Value::Kind::list || value.items.size() != count) {
+        fail(value, path, fmt::format("expected a list of {} numbers, found {}", count, describe(value)));
+    }
+    std::vector<double> numbers;
+    for (const Value& item : value.items) numbers.push_back(read_number(item, path, {-limit, limit}));
+    return numbers;
+}
+
+Eigen::Matrix3d read_rpy(const Value& value, const std::string& path) {
+    const auto degrees = read_numbers(value, path, 3, 360.0);
+    const auto turn = [&](std::size_t i, const Eigen::Vector3d& axis) {
+        return Eigen::AngleAxisd(degrees[i] * std::numbers::pi / 180.0, axis).toRotationMatrix();
+    };
+    return turn(2, Eigen::Vector3d::UnitZ()) * turn(1, Eigen::Vector3d::UnitY()) *
+           turn(0, Eigen::Vector3d::UnitX());
+}
+
+Eigen::Matrix3d read_quaternion(const Value& value, const std::string& path) {
+    const auto wxyz = read_numbers(value, path, 4, 2.0);
+    const Eigen::Quaterniond q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+    if (std::abs(q.norm() - 1.0) > kQuaternionTolerance) {
+        fail(value, path,
+             fmt::format("expected a quaternion of length 1, found length {}: divide by it", q.norm()));
+    }
+    return q.normalized().toRotationMatrix();
+}
+
+Eigen::Matrix3d read_rows(const Value& value, const std::string& path) {
+    if (value.kind != Value::Kind::list || value.items.size() != 3) {
+        fail(value, path, fmt::format("expected a list of 3 rows, found {}", describe(value)));
+    }
+    Eigen::Matrix3d rotation;
+    for (int row = 0; row < 3; ++row) {
+        const auto numbers =
+            read_numbers(value.items[static_cast<std::size_t>(row)], path, 3, 1.0 + kMatrixTolerance);
+        rotation.row(row) << numbers[0], numbers[1], numbers[2];
+    }
+    const double skew = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+    if (skew > kMatrixTolerance || rotation.determinant() < 0.0) {
+        fail(value, path, "expected a rotation: rows of length 1, at right angles, right-handed");
+    }
+    return rotation;
+}
+
+Eigen::Matrix3d read_looking_at(const Value& value, const std::string& path, const Eigen::Vector3d& p_camera,
+                                double reach_m) {
+    const Eigen::Vector3d forward = read_position(value, path, reach_m) - p_camera;
+    const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ());
+    if (!(right.norm() > 1e-3 * forward.norm())) {
+        fail(value, path, "expected a point that is not straight above or below: give rpy_deg instead");
+    }
+    Eigen::Matrix3d rotation;
+    rotation.col(2) = forward.normalized();
+    rotation.col(0) = right.normalized();
+    rotation.col(1) = rotation.col(2).cross(rotation.col(0));
+    return rotation;
+}
+
+Table pose_table(const Value& value, const std::string& path, const PoseRules& rules) {
+    if (rules.may_look_at_point) {
+        return {value, path, {"xyz_m", "rpy_deg", "quaternion_wxyz", "rotation_rows", "looking_at_m"}};
+    }
+    return {value, path, {"xyz_m", "rpy_deg", "quaternion_wxyz", "rotation_rows"}};
+}
+
+}  // namespace
+
+Eigen::Vector3d read_position(const Value& value, const std::string& path, double reach_m) {
+    const auto xyz = read_numbers(value, path, 3, 1e9);
+    Eigen::Vector3d position(xyz[0], xyz[1], xyz[2]);
+    if (position.cwiseAbs().maxCoeff() > reach_m) {
+        fail(value, path,
+             fmt::format("expected metres from {} to {}, found ({}, {}, {}): is it written in millimetres?",
+                         -reach_m, reach_m, xyz[0], xyz[1], xyz[2]));
+    }
+    return position;
+}
+
+Eigen::Isometry3d read_pose(const Value& value, const std::string& path, const PoseRules& rules) {
+    const Table table = pose_table(value, path, rules);
+    Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
+    T_parent_child.translation() =
+        read_position(table.require("xyz_m"), table.path_of("xyz_m"), rules.reach_m);
+
+    int orientations = 0;
+    const auto take = [&](std::string_view key, auto read) {
+        const Value* orientation = table.find(key);
+        if (!orientation) return;
+        ++orientations;
+        T_parent_child.linear() = read(*orientation, table.path_of(key));
+    };
+    take("rpy_deg", read_rpy);
+    take("quaternion_wxyz", read_quaternion);
+    take("rotation_rows", read_rows);
+    take("looking_at_m", [&](const Value& point, const std::string& point_path) {
+        return read_looking_at(point, point_path, T_parent_child.translation(), rules.reach_m);
+    });
+    if (orientations != 1) {
+        fail(value, path,
+             fmt::format("expected one orientation, found {}: give rpy_deg or quaternion_wxyz{}",
+                         orientations, rules.may_look_at_point ? " or looking_at_m" : ""));
+    }
+    return T_parent_child;
+}
+
+}  // namespace octoskin::rig

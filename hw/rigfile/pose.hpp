@@ -1,0 +1,28 @@
+// Poses in the rig file: a position and one of several ways to write an orientation.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "hw/rigfile/table.hpp"
+
+namespace octoskin::rig {
+
+struct PoseRules {
+    double reach_m = 2.0;            ///< each coordinate's magnitude; beyond it, somebody wrote millimetres
+    bool may_look_at_point = false;  ///< a camera may say what its optical axis goes through
+};
+
+/// A list of three numbers within the reach, metres.
+[[nodiscard]] Eigen::Vector3d read_position(const Value& value, const std::string& path, double reach_m);
+
+/// T_parent_child from `xyz_m` and one of
+/// - `rpy_deg`: roll, pitch, yaw about the parent's fixed x, y, z, as in URDF;
+/// - `quaternion_wxyz`: of length 1 within 1e-6;
+/// - `rotation_rows`: the rotation matrix row by row, orthonormal within 1e-9; kept to the last bit;
+/// - `looking_at_m` (cameras): the point that the optical axis goes through; the picture's top is up (+z of
+/// base).
+[[nodiscard]] Eigen::Isometry3d read_pose(const Value& value, const std::string& path,
+                                          const PoseRules& rules);
+
+}  // namespace octoskin::rig

@@ -1,0 +1,217 @@
+// From a rig file to a Rig: the top level, and what does not belong to a node.
+#include <fmt/format.h>
+#include <urdf_model/model.h>
+
+#include <algorithm>
+#include <array>
+
+#include "common/wire/bus_load.hpp"
+#include "common/wire/messages.hpp"
+#include "hw/rigfile/can_load.hpp"
+#include "hw/rigfile/joined.hpp"
+#include "hw/rigfile/node_reader.hpp"
+#include "hw/rigfile/pose.hpp"
+#include "hw/rigfile/rig.hpp"
+#include "hw/rigfile/table.hpp"
+#include "hw/rigfile/urdf_document.hpp"
+
+namespace octoskin::rig {
+namespace {
+
+constexpr double kRoomM = 100.0;  ///< nothing of a rig is further from its base than this
+
+UrdfDocument read_robot(const Table& robot, const std::filesystem::path& urdf_instead) {
+    const Value& named = robot.require("urdf");
+    const auto file = urdf_instead.empty() ? existing_file(named, robot.path_of("urdf")) : urdf_instead;
+    auto document = UrdfDocument::read(std::filesystem::absolute(file).lexically_normal());
+    if (!document) throw Fault{document.error()};
+    return std::move(document).value();
+}
+
+void require_link(const Value& value, const std::string& path, const std::string& link,
+                  const UrdfDocument& robot) {
+    if (robot.model().links_.contains(link)) return;
+    fail(value, path,
+         fmt::format("expected a link of {}, found '{}'", robot.file().filename().string(), link));
+}
+
+void read_self_filter(const Table& robot, const UrdfDocument& document, Rig& rig) {
+    rig.base_link = robot.name("base_link");
+    require_link(robot.require("base_link"), robot.path_of("base_link"), rig.base_link, document);
+    rig.depth_self_margin_m = robot.number("depth_self_margin_m", {0.0, 1.0}, rig.depth_self_margin_m);
+    rig.range_self_margin_m = robot.number("range_self_margin_m", {0.0, 1.0}, rig.range_self_margin_m);
+    if (const Value* paddings = robot.find("link_padding_m")) {
+        const std::string path = robot.path_of("link_padding_m");
+        if (paddings->kind != Value::Kind::table)
+            fail(*paddings, path, "expected a table of link names and metres");
+        for (const Value& padding : paddings->items) {
+            const std::string entry = path + "." + padding.key;
+            require_link(padding, entry, padding.key, document);
+            rig.link_padding_m[padding.key] = read_number(padding, entry, {0.0, 0.5});
+        }
+    }
+    if (const Value* ignored = robot.find("links_ignored_by_sensors")) {
+        const std::string path = robot.path_of("links_ignored_by_sensors");
+        for (const Value& link : read_list(*ignored, path)) {
+            rig.links_ignored_by_sensors.push_back(read_name(link, path));
+            require_link(link, path, link.text, document);
+        }
+    }
+}
+
+std::uint32_t read_bitrate(const Table& bus, std::string_view key,
+                           std::initializer_list<std::int64_t> rates) {
+    const auto bitrate = bus.integer<std::int64_t>(key, {1, 8'000'000});
+    if (std::find(rates.begin(), rates.end(), bitrate) == rates.end()) {
+        bus.fail(key, fmt::format("expected one of {}, found {}", joined(rates), bitrate));
+    }
+    return static_cast<std::uint32_t>(bitrate);
+}
+
+Bus read_bus(const Value& value) {
+    const Table table(value, "bus", {"protocol", "nominal_bitrate_bps", "data_bitrate_bps"});
+    Bus bus;
+    bus.uses_can_fd = table.choice<bool>("protocol", {{"can", false}, {"can_fd", true}});
+    bus.nominal_bitrate = read_bitrate(table, "nominal_bitrate_bps", {125'000, 250'000, 500'000, 1'000'000});
+    if (bus.uses_can_fd) {
+        bus.data_bitrate =
+            read_bitrate(table, "data_bitrate_bps", {1'000'000, 2'000'000, 4'000'000, 5'000'000, 8'000'000});
+    } else if (table.find("data_bitrate_bps")) {
+        table.fail("data_bitrate_bps",
+                   "expected none with protocol can: remove it (`~` removes an inherited key)");
+    }
+    return bus;
+}
+
+std::vector<std::string> read_joint_names(const Table& table, const UrdfDocument& robot,
+                                          const std::string& base_link) {
+    const Value& list = table.require("names");
+    const std::string path = table.path_of("names");
+    const auto moving = robot.moving_joints(base_link);
+    std::vector<std::string> names;
+    for (const Value& item : read_list(list, path)) {
+        auto name = read_name(item, path);
+        if (std::find(moving.begin(), moving.end(), name) == moving.end()) {
+            fail(item, path,
+                 fmt::format("expected a moving joint of {}, found '{}'; it has {}",
+                             robot.file().filename().string(), name, joined(moving)));
+        }
+        if (std::find(names.begin(), names.end(), name) != names.end()) {
+            fail(item, path, fmt::format("expected each joint once, found '{}' again", name));
+        }
+        names.push_back(std::move(name));
+    }
+    for (const auto& name : moving) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) {
+            fail(
+                list, path,
+                fmt::format("expected every moving joint of {}, found none named '{}': its position would be "
+                            "unknown",
+                            robot.file().filename().string(), name));
+        }
+    }
+    if (names.empty() || names.size() > wire::kJointsPerSample) {
+        fail(list, path,
+             fmt::format("expected 1 to {} joints, found {}", wire::kJointsPerSample, names.size()));
+    }
+    return names;
+}
+
+JointSource read_joints(const Value& value, const UrdfDocument& robot, const Rig& rig) {
+    const Table table(value, "joints", {"node_id", "names", "rate_hz"});
+    JointSource joints;
+    joints.node_id = table.integer<std::uint8_t>("node_id", {1, 62});
+    for (const Node& node : rig.nodes) {
+        if (node.config.node_id != joints.node_id) continue;
+        table.fail("node_id", fmt::format("expected an id of its own, found {}: node '{}' has it",
+                                          joints.node_id, node.name));
+    }
+    joints.joints = read_joint_names(table, robot, rig.base_link);
+    joints.rate_hz = table.number("rate_hz", {1.0, 1000.0});
+    return joints;
+}
+
+Camera read_camera(const Value& value) {
+    const Table table(value, "camera",
+                      {"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px", "rate_hz", "depth_min_m",
+                       "depth_max_m", "pose"});
+    Camera camera;
+    camera.width = table.integer<std::uint32_t>("width_px", {1, 4096});
+    camera.height = table.integer<std::uint32_t>("height_px", {1, 4096});
+    camera.fx = table.number("fx_px", {1.0, 100'000.0});
+    camera.fy = table.number("fy_px", {1.0, 100'000.0});
+    camera.cx = table.number("cx_px", {0.0, static_cast<double>(camera.width)});
+    camera.cy = table.number("cy_px", {0.0, static_cast<double>(camera.height)});
+    camera.rate_hz = table.number("rate_hz", {0.1, 1000.0});
+    camera.depth_min_m = table.number("depth_min_m", {0.0, 100.0}, camera.depth_min_m);
+    camera.depth_max_m = table.number("depth_max_m", {0.0, 100.0}, camera.depth_max_m);
+    if (!(camera.depth_min_m < camera.depth_max_m))
+        table.fail("depth_max_m", "expected more than depth_min_m");
+    camera.T_base_camera = read_pose(table.require("pose"), table.path_of("pose"),
+                                     {.reach_m = kRoomM, .may_look_at_point = true});
+    return camera;
+}
+
+RangeLimits read_range_limits(const Value& value) {
+    const Table table(value, "range_limits", {"min_m", "max_m", "sigma_max_m"});
+    RangeLimits limits;
+    limits.min_m = table.number("min_m", {0.0, 8.0}, limits.min_m);
+    limits.max_m = table.number("max_m", {0.0, 8.0}, limits.max_m);
+    limits.sigma_max_m = table.number("sigma_max_m", {0.001, 1.0}, limits.sigma_max_m);
+    if (!(limits.min_m < limits.max_m)) table.fail("max_m", "expected more than min_m");
+    return limits;
+}
+
+void refuse_overloaded_bus(const Table& top, const Rig& rig) {
+    const double load = can_load(rig);
+    if (load <= wire::kBusLoadLimit) return;
+    top.fail(
+        "bus",
+        fmt::format("expected a CAN load of at most {:.0f} %, found {:.1f} % in the worst case: use a longer "
+                    "inter_measurement_ms, a higher bitrate, can_fd, or fewer sensors",
+                    100.0 * wire::kBusLoadLimit, 100.0 * load));
+}
+
+Rig read_checked(const std::filesystem::path& file, const std::filesystem::path& urdf_instead) {
+    const Value document = load_with_extends(file);
+    const Table top(document, "",
+                    {"name", "robot", "T_map_base", "bus", "range_limits", "joints", "camera",
+                     "sensor_defaults", "nodes"});
+    Rig rig;
+    rig.name = top.name("name");
+    const Table robot(top.require("robot"), "robot",
+                      {"urdf", "base_link", "link_padding_m", "links_ignored_by_sensors",
+                       "depth_self_margin_m", "range_self_margin_m"});
+    const UrdfDocument urdf = read_robot(robot, urdf_instead);
+    rig.urdf = urdf.file();
+    read_self_filter(robot, urdf, rig);
+    if (const Value* pose = top.find("T_map_base")) {
+        rig.T_map_base = read_pose(*pose, "T_map_base", {.reach_m = kRoomM});
+    }
+    rig.bus = read_bus(top.require("bus"));
+    if (const Value* limits = top.find("range_limits")) rig.range_limits = read_range_limits(*limits);
+    if (const Value* camera = top.find("camera")) rig.camera = read_camera(*camera);
+    rig.nodes = read_nodes(top.require("nodes"), "nodes",
+                           {urdf, rig.base_link, rig.bus, top.find("sensor_defaults")});
+    rig.joints = read_joints(top.require("joints"), urdf, rig);
+    refuse_overloaded_bus(top, rig);
+    return rig;
+}
+
+}  // namespace
+
+std::string RigError::message() const {
+    std::string place = file.string();
+    if (line > 0) place += fmt::format(":{}", line);
+    return key.empty() ? fmt::format("{}: {}", place, what) : fmt::format("{}: {}: {}", place, key, what);
+}
+
+Result<Rig, RigError> read_rig(const std::filesystem::path& file, const std::filesystem::path& urdf_instead) {
+    try {
+        return read_checked(file, urdf_instead);
+    } catch (const Fault& fault) {
+        return unexpected(fault.error);
+    }
+}
+
+}  // namespace octoskin::rig

@@ -1,0 +1,115 @@
+// The rig as a value: which boards, which sensor where, which robot and camera. Read by read_rig() and by
+// nothing else.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/node_config.hpp"
+#include "common/result.hpp"
+
+namespace octoskin::rig {
+
+/// A sensor of a node: its extrinsics and what the host must know to use its ranges.
+struct Sensor {
+    std::string name;
+    std::string link;                                                 ///< URDF link that carries it
+    Eigen::Isometry3d T_link_sensor = Eigen::Isometry3d::Identity();  ///< ranges run along the sensor's +z
+    std::vector<double> zone_offset_m = {0.0};                        ///< added to a valid range, per zone
+};
+
+/// What a type of board can do: the limits that a rig is checked against.
+struct Board {
+    std::string name;
+    std::uint8_t board_type = 0;  ///< the number that NODE_INFO reports
+    std::uint8_t i2c_bus_count = 0;
+    std::uint8_t xshut_line_count = 0;
+    std::uint8_t sensors_max = 0;
+    std::uint8_t sensors_per_bus_max = 0;
+    bool supports_can_fd = false;
+};
+
+struct Node {
+    std::string name;
+    Board board;
+    NodeConfig config;  ///< complete, sensors included: what is compiled into the block
+    std::optional<std::uint32_t> pinned_build_id;
+    std::vector<Sensor> sensors;  ///< in the order of the local index
+};
+
+struct JointSource {
+    std::uint8_t node_id = 0;         ///< who sends joint states
+    std::vector<std::string> joints;  ///< URDF joint names in the order on the wire, 1..7
+    double rate_hz = 100.0;
+};
+
+struct Camera {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;
+    double rate_hz = 0.0;
+    double depth_min_m = 0.5;
+    double depth_max_m = 4.5;
+    Eigen::Isometry3d T_base_camera =
+        Eigen::Isometry3d::Identity();  ///< optical frame: z forward, x right, y down
+};
+
+struct Bus {
+    std::uint32_t nominal_bitrate = 1'000'000;
+    bool uses_can_fd = true;
+    std::uint32_t data_bitrate = 5'000'000;
+};
+
+/// The limits that acceptance applies to every range.
+struct RangeLimits {
+    double min_m = 0.04;
+    double max_m = 4.0;
+    double sigma_max_m = 0.2;
+};
+
+struct Rig {
+    std::string name;
+    std::filesystem::path urdf;  ///< absolute
+    std::string base_link;
+    Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
+    std::map<std::string, double> link_padding_m;  ///< added to a link's collision capsules
+    /// Links left out when a sensor on them predicts where its beam meets the robot (its own mount).
+    std::vector<std::string> links_ignored_by_sensors;
+    double depth_self_margin_m = 0.09;  ///< depth points this close to a capsule's surface are the robot
+    double range_self_margin_m = 0.12;  ///< ranges beyond (predicted self-hit - this) are the robot
+    Bus bus;
+    std::vector<Node> nodes;
+    JointSource joints;
+    std::optional<Camera> camera;
+    RangeLimits range_limits;
+};
+
+/// What is wrong, where: "rig.yaml:12: nodes[0].sensors[3].pose.xyz_m: expected 3 numbers, found 'left'".
+struct RigError {
+    std::filesystem::path file;
+    int line = 0;  ///< 1-based; 0 if it concerns the whole file
+    std::string key;
+    std::string what;
+    [[nodiscard]] std::string message() const;
+};
+
+/// Reads and checks a rig: unknown keys, types, units, ranges, references, unique ids and addresses, I2C
+/// capacity, and the computed CAN load (refused above 70 %). Paths in it are relative to the file. A
+/// top-level `extends: other.yaml` takes that file first and lays this one's keys over it. `urdf_instead`: a
+/// robot to use in place of the one the rig names. Not to be called from two threads at once (urdfdom's log
+/// is global).
+[[nodiscard]] Result<Rig, RigError> read_rig(const std::filesystem::path& file,
+                                             const std::filesystem::path& urdf_instead = {});
+
+/// The canonical YAML text of a rig: reading it gives an equal rig, and equal rigs give equal text. `urdf` is
+/// written as given.
+[[nodiscard]] std::string canonical_text(const Rig& rig, const std::string& urdf);
+/// CRC-32 of the canonical text; where the URDF lies does not count.
+[[nodiscard]] std::uint32_t rig_hash(const Rig& rig);
+
+}  // namespace octoskin::rig

@@ -1,0 +1,132 @@
+#include "hw/rigfile/robot_description.hpp"
+
+#include <fmt/format.h>
+#include <urdf_model/link.h>
+#include <urdf_model/model.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hw/rigfile/urdf_document.hpp"
+
+namespace octoskin::rig {
+namespace {
+
+constexpr double kSameM =
+    1e-4;  ///< a sphere this close to a cylinder's end, and this close in radius, is its end
+constexpr double kRadiusMaxM = 5.0;
+
+Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
+    Eigen::Isometry3d T_link_body = Eigen::Isometry3d::Identity();
+    T_link_body.linear() =
+        Eigen::Quaterniond(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z)
+            .toRotationMatrix();
+    T_link_body.translation() << pose.position.x, pose.position.y, pose.position.z;
+    return T_link_body;
+}
+
+/// One link's collision elements, cylinders apart from spheres.
+struct Bodies {
+    std::vector<Capsule> cylinders;  ///< ends at the centres of the flat faces
+    std::vector<Capsule> spheres;
+};
+
+const char* shape_name(const urdf::Geometry& geometry) {
+    switch (geometry.type) {
+        case urdf::Geometry::SPHERE:
+            return "sphere";
+        case urdf::Geometry::BOX:
+            return "box";
+        case urdf::Geometry::CYLINDER:
+            return "cylinder";
+        case urdf::Geometry::MESH:
+            return "mesh";
+    }
+    return "shape";
+}
+
+std::string name_of(const urdf::Collision& collision) {
+    return collision.name.empty() ? "its <collision>"
+                                  : fmt::format("<collision name=\"{}\">", collision.name);
+}
+
+/// Adds one collision element to `bodies`; returns what is wrong with it, or nothing.
+std::string add_body(const urdf::Collision& collision, const std::string& link, Bodies& bodies) {
+    if (!collision.geometry) return fmt::format("{} has no geometry", name_of(collision));
+    const Eigen::Isometry3d T_link_body = to_isometry(collision.origin);
+    Capsule body{link, T_link_body.translation(), T_link_body.translation(), 0.0};
+    double length_m = 0.0;
+    if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(collision.geometry.get())) {
+        length_m = cylinder->length;
+        body.radius_m = cylinder->radius;
+        body.p_link_a = T_link_body * Eigen::Vector3d(0.0, 0.0, -length_m / 2.0);
+        body.p_link_b = T_link_body * Eigen::Vector3d(0.0, 0.0, length_m / 2.0);
+        bodies.cylinders.push_back(body);
+    } else if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(collision.geometry.get())) {
+        body.radius_m = sphere->radius;
+        bodies.spheres.push_back(body);
+    } else {
+        return fmt::format(
+            "{} is a {}: expected a cylinder or a sphere (two spheres and a cylinder are a capsule)",
+            name_of(collision), shape_name(*collision.geometry));
+    }
+    const bool is_sound = T_link_body.matrix().allFinite() && body.radius_m > 0.0 &&
+                          body.radius_m <= kRadiusMaxM && length_m >= 0.0 && length_m <= kRadiusMaxM;
+    return is_sound ? ""
+                    : fmt::format("{} has a size or place that is not finite and within {} m: metres?",
+                                  name_of(collision), kRadiusMaxM);
+}
+
+/// A cylinder takes its end from the sphere at that end: the sphere's centre is written without a rotation.
+bool absorb(const Capsule& sphere, Capsule& cylinder) {
+    if (std::abs(sphere.radius_m - cylinder.radius_m) > kSameM) return false;
+    for (Eigen::Vector3d* end : {&cylinder.p_link_a, &cylinder.p_link_b}) {
+        if ((*end - sphere.p_link_a).norm() > kSameM) continue;
+        *end = sphere.p_link_a;
+        return true;
+    }
+    return false;
+}
+
+std::vector<Capsule> to_capsules(Bodies bodies) {
+    std::vector<Capsule> capsules = std::move(bodies.cylinders);
+    const std::size_t cylinders = capsules.size();
+    for (const Capsule& sphere : bodies.spheres) {
+        bool is_end = false;
+        // A sphere may end two cylinders that meet in it.
+        for (std::size_t i = 0; i < cylinders; ++i) is_end = absorb(sphere, capsules[i]) || is_end;
+        if (!is_end) capsules.push_back(sphere);
+    }
+    return capsules;
+}
+
+}  // namespace
+
+Result<std::vector<Capsule>, RigError> read_capsules(const std::filesystem::path& urdf,
+                                                     const std::map<std::string, double>& link_padding_m) {
+    auto document = UrdfDocument::read(urdf);
+    if (!document) return unexpected(document.error());
+    const auto& links = document->model().links_;
+    for (const auto& [link, padding_m] : link_padding_m) {
+        if (!links.contains(link)) {
+            return unexpected(
+                document->error("link", link, "padded in the rig, but the robot has no such link"));
+        }
+    }
+    std::vector<Capsule> all;
+    for (const auto& [name, link] : links) {
+        Bodies bodies;
+        for (const auto& collision : link->collision_array) {
+            auto fault = add_body(*collision, name, bodies);
+            if (!fault.empty()) return unexpected(document->error("link", name, std::move(fault)));
+        }
+        const auto padding = link_padding_m.find(name);
+        for (Capsule& capsule : to_capsules(std::move(bodies))) {
+            if (padding != link_padding_m.end()) capsule.radius_m += padding->second;
+            all.push_back(std::move(capsule));
+        }
+    }
+    return all;
+}
+
+}  // namespace octoskin::rig

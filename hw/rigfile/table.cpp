@@ -1,0 +1,155 @@
+#include "hw/rigfile/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "hw/rigfile/key_hint.hpp"
+
+namespace octoskin::rig {
+namespace {
+
+constexpr std::size_t kNameLengthMax = 64;
+
+template <class T>
+std::optional<T> parse_all(std::string_view text, auto... format) {
+    T parsed{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed, format...);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return parsed;
+}
+
+std::optional<std::int64_t> parse_integer(std::string_view text) {
+    if (text.starts_with("0x") || text.starts_with("0X")) {
+        // No sign may hide behind the prefix: from_chars would read "0x-1".
+        if (text.size() > 2 && text[2] == '-') return std::nullopt;
+        return parse_all<std::int64_t>(text.substr(2), 16);
+    }
+    return parse_all<std::int64_t>(text, 10);
+}
+
+bool is_name_character(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.' || c == '/';
+}
+
+bool is_plain_scalar(const Value& value) {
+    return value.kind == Value::Kind::scalar && !value.is_quoted;
+}
+
+}  // namespace
+
+void fail(const Value& value, const std::string& path, std::string what) {
+    throw Fault{{value.file ? *value.file : std::filesystem::path{}, value.line, path, std::move(what)}};
+}
+
+std::string describe(const Value& value) {
+    switch (value.kind) {
+        case Value::Kind::null:
+            return "nothing";
+        case Value::Kind::scalar:
+            return fmt::format("'{}'", value.text.substr(0, kNameLengthMax));
+        case Value::Kind::list:
+            return fmt::format("a list of {}", value.items.size());
+        case Value::Kind::table:
+            return "a table";
+    }
+    return "nothing";
+}
+
+double read_number(const Value& value, const std::string& path, Range<double> range) {
+    const auto number = is_plain_scalar(value) ? parse_all<double>(value.text) : std::nullopt;
+    // Written so that NaN, which from_chars reads, is out of every range.
+    if (!number || !(*number >= range.min && *number <= range.max)) {
+        fail(value, path,
+             fmt::format("expected a number from {} to {}, found {}", range.min, range.max, describe(value)));
+    }
+    return *number;
+}
+
+std::int64_t read_integer(const Value& value, const std::string& path, Range<std::int64_t> range) {
+    const auto number = is_plain_scalar(value) ? parse_integer(value.text) : std::nullopt;
+    if (!number || *number < range.min || *number > range.max) {
+        fail(value, path,
+             fmt::format("expected a whole number from {} to {}, found {}", range.min, range.max,
+                         describe(value)));
+    }
+    return *number;
+}
+
+std::string read_name(const Value& value, const std::string& path) {
+    const bool is_name = value.kind == Value::Kind::scalar && !value.text.empty() &&
+                         value.text.size() <= kNameLengthMax &&
+                         std::all_of(value.text.begin(), value.text.end(), is_name_character);
+    if (!is_name) {
+        fail(value, path,
+             fmt::format("expected a name of 1 to {} letters, digits or _ - . /, found {}", kNameLengthMax,
+                         describe(value)));
+    }
+    return value.text;
+}
+
+const std::vector<Value>& read_list(const Value& value, const std::string& path) {
+    if (value.kind != Value::Kind::list) {
+        fail(value, path, fmt::format("expected a list, found {}", describe(value)));
+    }
+    return value.items;
+}
+
+Table::Table(const Value& value, std::string path, std::initializer_list<std::string_view> known_keys)
+    : value_(value), path_(std::move(path)) {
+    if (value.kind != Value::Kind::table) {
+        rig::fail(value, path_, fmt::format("expected a table of keys, found {}", describe(value)));
+    }
+    for (const Value& item : value.items) {
+        if (std::find(known_keys.begin(), known_keys.end(), item.key) != known_keys.end()) continue;
+        rig::fail(item, path_of(item.key),
+                  "expected a known key, found this one: " + hint_for_key(item.key, known_keys, path_));
+    }
+}
+
+std::string Table::path_of(std::string_view key) const {
+    return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+const Value* Table::find(std::string_view key) const noexcept {
+    const Value* found = value_.find(key);
+    return found && found->kind != Value::Kind::null ? found : nullptr;
+}
+
+const Value& Table::require(std::string_view key) const {
+    if (const Value* found = find(key)) return *found;
+    rig::fail(value_, path_of(key), "expected this key, found none: add it");
+}
+
+double Table::number(std::string_view key, Range<double> range, std::optional<double> fallback) const {
+    if (!find(key) && fallback) return *fallback;
+    return read_number(require(key), path_of(key), range);
+}
+
+bool Table::flag(std::string_view key, std::optional<bool> fallback) const {
+    if (!find(key) && fallback) return *fallback;
+    const Value& value = require(key);
+    if (!is_plain_scalar(value) || (value.text != "true" && value.text != "false")) {
+        rig::fail(value, path_of(key), fmt::format("expected true or false, found {}", describe(value)));
+    }
+    return value.text == "true";
+}
+
+std::string Table::name(std::string_view key) const {
+    return read_name(require(key), path_of(key));
+}
+
+void Table::fail(std::string_view key, std::string what) const {
+    const Value* found = find(key);
+    rig::fail(found ? *found : value_, path_of(key), std::move(what));
+}
+
+void Table::fail_choice(std::string_view key, const std::string& expected) const {
+    fail(key, fmt::format("expected {}, found {}", expected, describe(require(key))));
+}
+
+}  // namespace octoskin::rig

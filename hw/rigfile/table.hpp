@@ -1,0 +1,83 @@
+// Strict access to a table of the rig file: every key known, every value of its type and within its range.
+// Each function throws Fault with file, line and key; the message says what was expected, what was found,
+// what to do.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "hw/rigfile/document.hpp"
+
+namespace octoskin::rig {
+
+/// The least and the greatest value allowed.
+template <class T>
+struct Range {
+    T min;
+    T max;
+};
+
+/// `value` is at fault: throws with its file and line.
+[[noreturn]] void fail(const Value& value, const std::string& path, std::string what);
+
+[[nodiscard]] double read_number(const Value& value, const std::string& path, Range<double> range);
+[[nodiscard]] std::int64_t read_integer(const Value& value, const std::string& path,
+                                        Range<std::int64_t> range);
+/// A name: 1..64 letters, digits and _ - . /
+[[nodiscard]] std::string read_name(const Value& value, const std::string& path);
+[[nodiscard]] const std::vector<Value>& read_list(const Value& value, const std::string& path);
+
+class Table {
+  public:
+    /// `path`: where the table is, "nodes[0].sensors[3]"; empty at the top. Refuses a value that is no table
+    /// and any key that is not in `known_keys`, with a hint if the unit in its name is the only difference.
+    Table(const Value& value, std::string path, std::initializer_list<std::string_view> known_keys);
+
+    [[nodiscard]] const Value& value() const noexcept { return value_; }
+    [[nodiscard]] std::string path_of(std::string_view key) const;
+    /// Absent and null are the same.
+    [[nodiscard]] const Value* find(std::string_view key) const noexcept;
+    [[nodiscard]] const Value& require(std::string_view key) const;
+
+    [[nodiscard]] double number(std::string_view key, Range<double> range,
+                                std::optional<double> fallback = std::nullopt) const;
+    template <std::integral T>
+    [[nodiscard]] T integer(std::string_view key, Range<std::int64_t> range,
+                            std::optional<T> fallback = std::nullopt) const {
+        if (!find(key) && fallback) return *fallback;
+        return static_cast<T>(read_integer(require(key), path_of(key), range));
+    }
+    [[nodiscard]] bool flag(std::string_view key, std::optional<bool> fallback = std::nullopt) const;
+    [[nodiscard]] std::string name(std::string_view key) const;
+    /// One of a few words.
+    template <class Enum>
+    [[nodiscard]] Enum choice(std::string_view key,
+                              std::initializer_list<std::pair<std::string_view, Enum>> words,
+                              std::optional<Enum> fallback = std::nullopt) const {
+        if (!find(key) && fallback) return *fallback;
+        std::string expected;
+        for (const auto& [word, meaning] : words) {
+            if (require(key).kind == Value::Kind::scalar && require(key).text == word) return meaning;
+            expected += (expected.empty() ? "" : " or ") + std::string(word);
+        }
+        fail_choice(key, expected);
+    }
+    [[noreturn]] void fail(std::string_view key, std::string what) const;
+
+  private:
+    [[noreturn]] void fail_choice(std::string_view key, const std::string& expected) const;
+
+    const Value& value_;
+    std::string path_;
+};
+
+/// What a message says it found: the text of a scalar, or "a list of 3" and the like.
+[[nodiscard]] std::string describe(const Value& value);
+
+}  // namespace octoskin::rig

@@ -1,0 +1,102 @@
+#include "hw/rigfile/urdf_document.hpp"
+
+#include <console_bridge/console.h>
+#include <fmt/format.h>
+#include <urdf_model/model.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <fstream>
+#include <utility>
+
+namespace octoskin::rig {
+namespace {
+
+constexpr std::size_t kFileBytesMax = 16U << 20U;
+
+/// Takes over console_bridge's output while it lives: urdfdom tells what is wrong only there.
+class CapturedLog final : public console_bridge::OutputHandler {
+  public:
+    CapturedLog() : previous_(console_bridge::getOutputHandler()) { console_bridge::useOutputHandler(this); }
+    ~CapturedLog() override { console_bridge::useOutputHandler(previous_); }
+    CapturedLog(const CapturedLog&) = delete;
+    CapturedLog& operator=(const CapturedLog&) = delete;
+
+    void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+        if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR) return;
+        errors_ += (errors_.empty() ? "" : "; ") + text;
+    }
+    [[nodiscard]] const std::string& errors() const noexcept { return errors_; }
+
+  private:
+    console_bridge::OutputHandler* previous_;
+    std::string errors_;
+};
+
+Result<std::string, RigError> read_text(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::error_code error;
+    if (!stream || std::filesystem::is_directory(file, error)) {
+        return unexpected(
+            RigError{file, 0, "", "cannot be opened: give the path of an existing, readable URDF file"});
+    }
+    std::string text(std::istreambuf_iterator<char>(stream), {});
+    if (text.size() > kFileBytesMax) {
+        return unexpected(
+            RigError{file, 0, "", fmt::format("expected at most {} bytes, found more", kFileBytesMax)});
+    }
+    return text;
+}
+
+/// The model, or urdfdom's words for why there is none.
+std::pair<urdf::ModelInterfaceSharedPtr, std::string> parse(const std::string& text) {
+    CapturedLog log;
+    try {
+        auto model = urdf::parseURDF(text);
+        // urdfdom returns a model with parts left out for some errors that it only logs.
+        if (!log.errors().empty()) model = nullptr;
+        return {std::move(model), log.errors()};
+    } catch (const std::exception& exception) {
+        return {nullptr, exception.what()};
+    }
+}
+
+}  // namespace
+
+Result<UrdfDocument, RigError> UrdfDocument::read(const std::filesystem::path& file) {
+    const auto text = read_text(file);
+    if (!text) return unexpected(text.error());
+    auto outline = UrdfOutline::read(file, *text);
+    if (!outline) return unexpected(outline.error());
+    UrdfDocument document;
+    document.file_ = file;
+    document.outline_ = std::move(outline).value();
+    auto [model, complaint] = parse(*text);
+    if (!model || !model->getRoot()) {
+        return unexpected(RigError{
+            file, 0, "", "not a usable URDF: " + (complaint.empty() ? "no robot found" : complaint)});
+    }
+    document.model_ = std::move(model);
+    return document;
+}
+
+bool UrdfDocument::is_below(const std::string& base_link, const std::string& link) const {
+    const auto& links = model_->links_;
+    // The outline has made sure that every way up ends.
+    for (auto at = links.find(link); at != links.end();) {
+        if (at->first == base_link) return true;
+        const auto& joint = at->second->parent_joint;
+        at = joint ? links.find(joint->parent_link_name) : links.end();
+    }
+    return false;
+}
+
+std::vector<std::string> UrdfDocument::moving_joints(const std::string& base_link) const {
+    std::vector<std::string> names;
+    for (const auto& [name, joint] : model_->joints_) {
+        if (joint->type != urdf::Joint::FIXED && is_below(base_link, joint->parent_link_name))
+            names.push_back(name);
+    }
+    return names;
+}
+
+}  // namespace octoskin::rig

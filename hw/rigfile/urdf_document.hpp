@@ -1,0 +1,46 @@
+// A robot description through urdfdom, with urdfdom's complaints turned into our errors. The only place that
+// calls its parser.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/result.hpp"
+#include "hw/rigfile/rig.hpp"
+#include "hw/rigfile/urdf_outline.hpp"
+
+namespace urdf {
+class ModelInterface;
+}
+
+namespace octoskin::rig {
+
+class UrdfDocument {
+  public:
+    /// Errors: unreadable, over 16 MiB, those of UrdfOutline, and all that urdfdom refuses (a joint without
+    /// its link, two roots, a repeated name); the message carries urdfdom's own words. urdfdom prints
+    /// nothing. Not to be called from two threads at once: urdfdom's log is global.
+    [[nodiscard]] static Result<UrdfDocument, RigError> read(const std::filesystem::path& file);
+
+    [[nodiscard]] const urdf::ModelInterface& model() const noexcept { return *model_; }
+    [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
+    /// True if `link` is `base_link` or hangs below it; false also if the robot has no such links.
+    [[nodiscard]] bool is_below(const std::string& base_link, const std::string& link) const;
+    /// The joints below `base_link` that are not fixed, by name.
+    [[nodiscard]] std::vector<std::string> moving_joints(const std::string& base_link) const;
+    /// An error about one element ("joint", "panda_joint3"), with its line if there is such an element.
+    [[nodiscard]] RigError error(std::string_view tag, std::string_view name, std::string what) const {
+        return outline_.error(tag, name, std::move(what));
+    }
+
+  private:
+    std::filesystem::path file_;
+    UrdfOutline outline_;
+    std::shared_ptr<const urdf::ModelInterface> model_;
+};
+
+}  // namespace octoskin::rig

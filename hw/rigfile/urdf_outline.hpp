@@ -1,0 +1,40 @@
+// The names in a URDF file and the lines they stand at, read before urdfdom sees the file: urdfdom knows no
+// lines, leaks what hangs in a loop, and its XML reader recurses as deep as the file goes.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/result.hpp"
+#include "hw/rigfile/rig.hpp"
+
+namespace octoskin::rig {
+
+class UrdfOutline {
+  public:
+    /// Errors, each with its line: not XML, nested deeper than 100, no <robot>, a link that hangs from two
+    /// joints, a loop. `file` is for the messages only.
+    [[nodiscard]] static Result<UrdfOutline, RigError> read(const std::filesystem::path& file,
+                                                            const std::string& text);
+
+    /// An error about one element ("joint", "panda_joint3"), with its line if there is such an element.
+    [[nodiscard]] RigError error(std::string_view tag, std::string_view name, std::string what) const;
+
+  private:
+    struct Element {
+        std::string tag;
+        std::string name;
+        int line = 0;
+        std::string parent_link;  ///< of a joint
+        std::string child_link;
+    };
+    [[nodiscard]] std::optional<RigError> find_loop() const;
+
+    std::filesystem::path file_;
+    std::vector<Element> elements_;  ///< links and joints in the order of the file
+};
+
+}  // namespace octoskin::rig

@@ -1,0 +1,65 @@
+#include "hw/sim/arm/trajectory.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace octoskin::sim {
+
+Eigen::Isometry3d CircleMotion::T_base_link(std::uint32_t tick) const {
+    const double angle = 2.0 * std::numbers::pi * tick / ticks_per_revolution;
+    Eigen::Isometry3d T_base_link = Eigen::Isometry3d::Identity();
+    T_base_link.linear() = R_base_link;
+    T_base_link.translation() =
+        p_base_centre + radius_m * (std::cos(angle) * towards_start + std::sin(angle) * towards_quarter);
+    return T_base_link;
+}
+
+Result<Trajectory, MotionError> Trajectory::circle(const Arm& arm, const CircleMotion& motion,
+                                                   SimTime start) {
+    assert(motion.ticks() > 0 && motion.tick_rate_hz > 0.0);
+    const auto failure = [](std::string what) { return unexpected(MotionError{std::move(what)}); };
+    if (!arm.has_link(motion.link)) {
+        return failure("the robot has no link '" + motion.link + "' to be moved");
+    }
+    if (static_cast<std::size_t>(motion.start_position.size()) != arm.joint_count()) {
+        return failure("the start posture has " + std::to_string(motion.start_position.size()) +
+                       " joints, the robot " + std::to_string(arm.joint_count()));
+    }
+    Trajectory trajectory(start, motion.tick_rate_hz);
+    Eigen::VectorXd position = motion.start_position;
+    for (std::uint32_t tick = 0; tick <= motion.ticks(); ++tick) {
+        const auto solved = arm.inverse(motion.link, motion.T_base_link(tick), position);
+        if (!solved) {
+            return failure("'" + motion.link + "' does not reach its place at tick " + std::to_string(tick) +
+                           "; move the circle or the start posture");
+        }
+        position = *solved;
+        if (const auto joint = arm.joint_outside_limits(position)) {
+            return failure("joint '" + *joint + "' is outside its limits at tick " + std::to_string(tick) +
+                           "; move the circle or the start posture");
+        }
+        trajectory.ticks_.push_back(position);
+    }
+    return trajectory;
+}
+
+Eigen::VectorXd Trajectory::at(SimTime time) const {
+    const double ticks = static_cast<double>(time.us - start_.us) * 1e-6 * tick_rate_hz_;
+    if (ticks <= 0.0) {
+        return ticks_.front();
+    }
+    if (ticks >= static_cast<double>(ticks_.size() - 1)) {
+        return ticks_.back();
+    }
+    const auto before = static_cast<std::size_t>(ticks);
+    const double part = ticks - static_cast<double>(before);
+    return ticks_[before] + part * (ticks_[before + 1] - ticks_[before]);
+}
+
+SimTime Trajectory::end() const noexcept {
+    const double seconds = static_cast<double>(ticks_.size() - 1) / tick_rate_hz_;
+    return {start_.us + static_cast<std::int64_t>(std::llround(seconds * 1e6))};
+}
+
+}  // namespace octoskin::sim

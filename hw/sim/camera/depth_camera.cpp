@@ -1,0 +1,122 @@
+#include "hw/sim/camera/depth_camera.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace octoskin::sim {
+namespace {
+
+/// Tangents of the angles, in one plane through the optical axis, under which a disc is seen.
+struct Span {
+    double low;
+    double high;
+};
+
+/// `across`, `depth`: the disc's centre. Empty if part of it may lie beside or behind the camera.
+std::optional<Span> span_of(double across, double depth, double radius) {
+    const double distance = std::hypot(across, depth);
+    if (distance <= radius) {
+        return std::nullopt;
+    }
+    const double middle = std::atan2(across, depth);
+    const double half = std::asin(radius / distance);
+    constexpr double kWidest = 0.499 * std::numbers::pi;
+    if (std::abs(middle) + half >= kWidest) {
+        return std::nullopt;
+    }
+    return Span{std::tan(middle - half), std::tan(middle + half)};
+}
+
+/// The pixels whose centres may lie within the span, [begin, end).
+std::pair<std::uint32_t, std::uint32_t> pixels_of(Span span, double focal_px, double centre_px,
+                                                  std::uint32_t size) {
+    const auto clamped = [&](double pixel) {
+        return static_cast<std::uint32_t>(std::clamp(pixel, 0.0, static_cast<double>(size)));
+    };
+    return {clamped(std::floor(span.low * focal_px + centre_px - 0.5)),
+            clamped(std::ceil(span.high * focal_px + centre_px - 0.5) + 1.0)};
+}
+
+}  // namespace
+
+DepthCamera::DepthCamera(const World& world, const rig::Camera& camera, double sigma_m, std::uint64_t seed)
+    : camera_(camera), sigma_m_(sigma_m), noise_(seed, NoiseSource::depth) {
+    assert(camera.depth_max_m < 65.5);
+    std::vector<Eigen::Vector3d> directions_base;
+    directions_base.reserve(std::size_t{camera.width} * camera.height);
+    for (std::uint32_t v = 0; v < camera.height; ++v) {
+        for (std::uint32_t u = 0; u < camera.width; ++u) {
+            directions_base.emplace_back(camera.T_base_camera.linear() * direction_camera(u, v));
+        }
+    }
+    background_m_.resize(directions_base.size());
+    // Noise may bring a surface back into reach: cast well beyond it.
+    world.cast_fan(camera.T_base_camera.translation(), directions_base, camera.depth_max_m + 10.0 * sigma_m,
+                   background_m_);
+}
+
+Eigen::Vector3d DepthCamera::direction_camera(std::uint32_t u, std::uint32_t v) const {
+    return {(u + 0.5 - camera_.cx) / camera_.fx, (v + 0.5 - camera_.cy) / camera_.fy, 1.0};
+}
+
+DepthCamera::Rectangle DepthCamera::bounds_of(const BodyCapsule& capsule) const {
+    const Rectangle everything{0, camera_.width, 0, camera_.height};
+    Rectangle bounds{camera_.width, 0, camera_.height, 0};
+    // A capsule is the convex hull of its two end spheres, so the hull of their pictures holds its picture.
+    for (const Eigen::Vector3d* end : {&capsule.p_base_a, &capsule.p_base_b}) {
+        const auto across = span_of(end->x(), end->z(), capsule.radius_m);
+        const auto down = span_of(end->y(), end->z(), capsule.radius_m);
+        if (!across || !down) {
+            return everything;
+        }
+        const auto [u_begin, u_end] = pixels_of(*across, camera_.fx, camera_.cx, camera_.width);
+        const auto [v_begin, v_end] = pixels_of(*down, camera_.fy, camera_.cy, camera_.height);
+        bounds = {std::min(bounds.u_begin, u_begin), std::max(bounds.u_end, u_end),
+                  std::min(bounds.v_begin, v_begin), std::max(bounds.v_end, v_end)};
+    }
+    return bounds;
+}
+
+void DepthCamera::draw(const BodyCapsule& capsule, std::vector<double>& depth_m) const {
+    const Rectangle bounds = bounds_of(capsule);
+    for (std::uint32_t v = bounds.v_begin; v < bounds.v_end; ++v) {
+        for (std::uint32_t u = bounds.u_begin; u < bounds.u_end; ++u) {
+            double& nearest = depth_m[std::size_t{v} * camera_.width + u];
+            const auto t = cast_capsule(capsule, Eigen::Vector3d::Zero(), direction_camera(u, v));
+            if (t && *t < nearest) {
+                nearest = *t;
+            }
+        }
+    }
+}
+
+std::uint16_t DepthCamera::measured_mm(double depth_m, const Noise& noise, std::size_t pixel) const {
+    if (!std::isfinite(depth_m)) {
+        return 0;
+    }
+    const double measured_m = sigma_m_ > 0.0 ? depth_m + sigma_m_ * noise.gaussian(pixel) : depth_m;
+    if (measured_m < camera_.depth_min_m || measured_m > camera_.depth_max_m) {
+        return 0;
+    }
+    return static_cast<std::uint16_t>(std::lround(measured_m * 1e3));
+}
+
+std::vector<std::uint16_t> DepthCamera::render(const std::vector<BodyCapsule>& body,
+                                               std::uint32_t frame_index) const {
+    std::vector<double> depth_m = background_m_;
+    const Eigen::Isometry3d T_camera_base = camera_.T_base_camera.inverse();
+    for (const BodyCapsule& capsule : body) {
+        draw({T_camera_base * capsule.p_base_a, T_camera_base * capsule.p_base_b, capsule.radius_m}, depth_m);
+    }
+    const Noise noise = noise_.of(frame_index);
+    std::vector<std::uint16_t> image(depth_m.size());
+    for (std::size_t pixel = 0; pixel < image.size(); ++pixel) {
+        image[pixel] = measured_mm(depth_m[pixel], noise, pixel);
+    }
+    return image;
+}
+
+}  // namespace octoskin::sim

@@ -1,0 +1,169 @@
+#include "hw/sim/can/simulated_can_bus.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace octoskin::sim {
+
+namespace {
+
+void flip_bit(wire::CanFrame& frame, std::uint16_t bit) {
+    if (frame.payload_len == 0) return;
+    const std::size_t index = bit % (8U * frame.payload_len);
+    frame.data[index / 8] = static_cast<std::uint8_t>(frame.data[index / 8] ^ (1U << (index % 8)));
+}
+
+SimTime later(SimTime time, std::int64_t by_us) {
+    return {time.us + by_us};
+}
+
+}  // namespace
+
+std::int64_t frame_duration_us(const wire::CanFrame& frame, const wire::BitRates& rates) {
+    const wire::FrameBits bits = frame.is_fd ? wire::worst_case_bits_fd(frame.payload_len)
+                                             : wire::worst_case_bits_classical(frame.payload_len);
+    const std::uint32_t data_rate = frame.has_bit_rate_switch ? rates.data : rates.nominal;
+    const double seconds =
+        static_cast<double>(bits.nominal) / rates.nominal + static_cast<double>(bits.data) / data_rate;
+    return static_cast<std::int64_t>(std::ceil(seconds * 1e6 - 1e-9));
+}
+
+SimulatedCanBus::SimulatedCanBus(const wire::BitRates& rates) : rates_(rates) {}
+
+node::CanTransmitter& SimulatedCanBus::attach(FrameHandler on_frame, std::size_t mailboxes) {
+    return controllers_.emplace_back(*this, std::move(on_frame), mailboxes);
+}
+
+void SimulatedCanBus::tap(FrameHandler on_frame) {
+    taps_.push_back(std::move(on_frame));
+}
+
+void SimulatedCanBus::add_fault(const CanFault& fault) {
+    faults_.push_back({.fault = fault});
+}
+
+bool SimulatedCanBus::Controller::send(const wire::CanFrame& frame) {
+    if (pending.size() >= mailbox_count_) return false;
+    pending.push_back({.frame = frame, .given = bus_.now_});
+    return true;
+}
+
+void SimulatedCanBus::advance(SimTime now) {
+    // Each turn ends one frame, delivers one batch or starts one frame, all of them bounded by what is
+    // pending.
+    while (true) {
+        const bool is_ending = under_way_ && under_way_->end <= now;
+        const bool is_delivery_due = !heard_.empty() && heard_.begin()->first <= now;
+        if (is_delivery_due && !(is_ending && under_way_->end < heard_.begin()->first)) {
+            deliver_due(heard_.begin()->first);
+        } else if (is_ending) {
+            end_transmission();
+        } else if (under_way_ || !start_transmission(now)) {
+            break;
+        }
+    }
+    now_ = std::max(now_, now);
+}
+
+void SimulatedCanBus::end_transmission() {
+    const Transmission ended = *std::exchange(under_way_, std::nullopt);
+    now_ = ended.end;
+    idle_since_ = ended.end;
+    schedule_heard(ended);
+}
+
+void SimulatedCanBus::schedule_heard(const Transmission& ended) {
+    Transmission heard = ended;
+    int times = 1;
+    for (ActiveFault& active : faults_) {
+        if (active.fault.can_id && *active.fault.can_id != ended.frame.can_id) continue;
+        if (!active.fault.hits(active.matches++)) continue;
+        switch (active.fault.kind) {
+            case CanFaultKind::drop:
+                times = 0;
+                break;
+            case CanFaultKind::duplicate:
+                times *= 2;
+                break;
+            case CanFaultKind::corrupt:
+                flip_bit(heard.frame, active.fault.bit);
+                break;
+            case CanFaultKind::delay:
+                heard.end = later(heard.end, active.fault.delay_us);
+                break;
+        }
+    }
+    for (int i = 0; i < times; ++i) heard_.emplace(heard.end, heard);
+}
+
+void SimulatedCanBus::deliver_due(SimTime time) {
+    now_ = std::max(now_, time);
+    while (!heard_.empty() && heard_.begin()->first <= time) {
+        const Transmission heard = heard_.extract(heard_.begin()).mapped();
+        deliver(heard);
+    }
+}
+
+void SimulatedCanBus::deliver(const Transmission& heard) {
+    for (const FrameHandler& tap : taps_) tap(heard.frame, heard.end);
+    for (const Controller& controller : controllers_) {
+        if (&controller != heard.sender && controller.on_frame) controller.on_frame(heard.frame, heard.end);
+    }
+}
+
+bool SimulatedCanBus::start_transmission(SimTime now) {
+    const auto given = earliest_given();
+    if (!given) return false;
+    const SimTime start = std::max(*given, idle_since_);
+    if (start > now) return false;
+
+    Controller* winner = nullptr;
+    std::vector<Pending>::iterator winning;
+    for (Controller& controller : controllers_) {
+        for (auto it = controller.pending.begin(); it != controller.pending.end(); ++it) {
+            if (it->given > start) continue;
+            if (winner != nullptr && winning->frame.can_id <= it->frame.can_id) continue;
+            winner = &controller;
+            winning = it;
+        }
+    }
+    const std::int64_t duration = frame_duration_us(winning->frame, rates_);
+    under_way_ = {.frame = winning->frame, .sender = winner, .end = later(start, duration)};
+    busy_us_ += duration;
+    winner->pending.erase(winning);
+    return true;
+}
+
+std::optional<SimTime> SimulatedCanBus::earliest_given() const {
+    std::optional<SimTime> earliest;
+    for (const Controller& controller : controllers_) {
+        for (const Pending& pending : controller.pending) {
+            if (!earliest || pending.given < *earliest) earliest = pending.given;
+        }
+    }
+    return earliest;
+}
+
+std::optional<SimTime> SimulatedCanBus::next_event() const {
+    std::optional<SimTime> next;
+    const auto consider = [&](SimTime time) {
+        if (!next || time < *next) next = time;
+    };
+    if (!heard_.empty()) consider(heard_.begin()->first);
+    if (under_way_) {
+        consider(under_way_->end);
+    } else if (const auto given = earliest_given()) {
+        consider(std::max({*given, idle_since_, now_}));
+    }
+    return next;
+}
+
+double SimulatedCanBus::busy_fraction() const {
+    if (now_.us <= 0) return 0.0;
+    std::int64_t busy = busy_us_;
+    if (under_way_) busy -= std::max<std::int64_t>(0, under_way_->end.us - now_.us);
+    return static_cast<double>(busy) / static_cast<double>(now_.us);
+}
+
+}  // namespace octoskin::sim

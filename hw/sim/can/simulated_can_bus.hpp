@@ -1,0 +1,104 @@
+// A CAN bus on simulated time: arbitration by identifier, frames that take as long as their bits, a tap that
+// hears everything, and faults as data.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/wire/bus_load.hpp"
+#include "common/wire/can_frame.hpp"
+#include "firmware/core/ports.hpp"
+#include "hw/sim/can/can_fault.hpp"
+#include "hw/sim/vl53l1x/scene.hpp"
+
+namespace octoskin::sim {
+
+/// Called at the end of a frame, the instant that "heard SYNC" and receive stamps mean.
+using FrameHandler = std::function<void(const wire::CanFrame& frame, SimTime end_of_frame)>;
+
+/// How long a frame and the three bits after it occupy the bus: worst-case stuffing, rounded up to whole
+/// microseconds.
+[[nodiscard]] std::int64_t frame_duration_us(const wire::CanFrame& frame, const wire::BitRates& rates);
+
+class SimulatedCanBus {
+  public:
+    explicit SimulatedCanBus(const wire::BitRates& rates);
+    SimulatedCanBus(const SimulatedCanBus&) = delete;
+    SimulatedCanBus& operator=(const SimulatedCanBus&) = delete;
+
+    /// A controller on the bus. `on_frame` hears the frames of all others, never its own. The transmitter
+    /// lives as long as the bus, holds `mailboxes` frames and sends the lowest identifier first, equal ones
+    /// in the order given. A frame counts as given at the bus's present time: call `advance(now)` before
+    /// whoever sends at `now`.
+    node::CanTransmitter& attach(FrameHandler on_frame, std::size_t mailboxes = 3);
+
+    /// Hears every frame of every controller: the recorder.
+    void tap(FrameHandler on_frame);
+
+    /// From now on. Faults apply in the order they were added.
+    void add_fault(const CanFault& fault);
+
+    /// Ends and starts frames up to `now`, calling the handlers in the order of time, then taps first, then
+    /// controllers in the order of attachment. Frames given at the same instant arbitrate with each other,
+    /// whatever the order of the calls. Handlers may send; they must not call `advance`.
+    void advance(SimTime now);
+
+    /// The next instant at which `advance` has something to do; empty if no frame is waiting or under way.
+    [[nodiscard]] std::optional<SimTime> next_event() const;
+
+    /// Share of the time from 0 to the last `advance` that the bus was busy, 0..1.
+    [[nodiscard]] double busy_fraction() const;
+
+  private:
+    struct Pending {
+        wire::CanFrame frame;
+        SimTime given;
+    };
+    class Controller final : public node::CanTransmitter {
+      public:
+        Controller(const SimulatedCanBus& bus, FrameHandler handler, std::size_t mailbox_count)
+            : on_frame(std::move(handler)), bus_(bus), mailbox_count_(mailbox_count) {}
+        bool send(const wire::CanFrame& frame) override;
+
+        FrameHandler on_frame;
+        std::vector<Pending> pending;  ///< in the order given; the one under way has left
+
+      private:
+        const SimulatedCanBus& bus_;
+        std::size_t mailbox_count_;
+    };
+    struct Transmission {
+        wire::CanFrame frame;
+        const Controller* sender = nullptr;
+        SimTime end;
+    };
+    struct ActiveFault {
+        CanFault fault;
+        std::uint32_t matches = 0;
+    };
+
+    void end_transmission();
+    [[nodiscard]] bool start_transmission(SimTime now);
+    void deliver_due(SimTime now);
+    void deliver(const Transmission& heard);
+    void schedule_heard(const Transmission& ended);
+    [[nodiscard]] std::optional<SimTime> earliest_given() const;
+
+    wire::BitRates rates_;
+    SimTime now_;
+    SimTime idle_since_;
+    std::int64_t busy_us_ = 0;
+    std::list<Controller> controllers_;  // a list: transmitters keep their addresses
+    std::vector<FrameHandler> taps_;
+    std::vector<ActiveFault> faults_;
+    std::optional<Transmission> under_way_;
+    std::multimap<SimTime, Transmission>
+        heard_;  ///< ended, to be delivered; equal times in order of insertion
+};
+
+}  // namespace octoskin::sim

@@ -1,0 +1,35 @@
+// Simulated time, and the clocks that are derived from it.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "common/time.hpp"
+#include "hw/sim/vl53l1x/scene.hpp"
+
+namespace octoskin::sim {
+
+/// A node's free-running microsecond counter: some value at the start of the simulation, and a crystal that
+/// is off by `drift_ppm`.
+class NodeClock {
+  public:
+    constexpr NodeClock() = default;
+    constexpr NodeClock(NodeTime at_start, double drift_ppm) : at_start_(at_start), drift_ppm_(drift_ppm) {}
+
+    [[nodiscard]] NodeTime to_node(SimTime time) const noexcept {
+        const double drift_us = static_cast<double>(time.us) * drift_ppm_ * 1e-6;
+        return at_start_ + Microseconds{time.us + static_cast<std::int64_t>(std::floor(drift_us))};
+    }
+
+  private:
+    NodeTime at_start_{};
+    double drift_ppm_ = 0.0;
+};
+
+/// The present of a simulation: one instance, advanced by whoever runs it, read by the models that need to
+/// know.
+struct Present {
+    SimTime time{};
+};
+
+}  // namespace octoskin::sim

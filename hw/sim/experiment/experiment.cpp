@@ -1,0 +1,197 @@
+#include "hw/sim/experiment/experiment.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <deque>
+#include <memory>
+#include <random>
+
+#include "common/wire/codec.hpp"
+#include "hw/sim/camera/depth_camera.hpp"
+#include "hw/sim/camera/sensor_scene.hpp"
+#include "hw/sim/can/simulated_can_bus.hpp"
+#include "hw/sim/experiment/joint_node.hpp"
+#include "hw/sim/experiment/simulated_board.hpp"
+#include "hw/sim/experiment/sync_master.hpp"
+
+namespace octoskin::sim {
+namespace {
+
+// The turn of the simulation's loop: every board polls this often. Longer than a byte on the bus, a fifth of
+// a transfer.
+constexpr std::int64_t kTurnUs = 50;
+constexpr Microseconds kSyncPeriod{1'000'000};
+// Frames before START: they must not enter the map, so a recording has some.
+constexpr int kFramesBeforeStart = 2;
+// The host has been up for a while, and its wall clock says some day.
+constexpr HostTime kHostAtStart{4'321'000'000'000};
+constexpr WallTime kWallAtStart{1'750'000'000'000'000'000};
+
+SimTime from_seconds(double seconds) {
+    return {static_cast<std::int64_t>(std::llround(seconds * 1e6))};
+}
+
+/// Crystals are within +-100 ppm; counters start anywhere, the first node's shortly before it wraps.
+NodeClock draw_clock(std::mt19937_64& random, bool is_first) {
+    const auto start = static_cast<std::uint32_t>(random() & 0xFFFFFFFFU);
+    const double drift_ppm = static_cast<double>(random() % 2001) / 10.0 - 100.0;
+    return {NodeTime{is_first ? 0U - 6'000'000U : start}, drift_ppm};
+}
+
+/// Everything that takes part, wired together.
+class RigInOneProcess {
+  public:
+    RigInOneProcess(const ExperimentInput& input, const Trajectory& trajectory,
+                    const ExperimentOutput& output)
+        : output_(output),
+          surroundings_{.world = input.world,
+                        .arm = input.arm,
+                        .trajectory = trajectory,
+                        .capsules = input.capsules,
+                        .ignored_links = input.rig.links_ignored_by_sensors,
+                        .optics = input.scenario.ranges,
+                        .seed = input.seed},
+          bus_({input.rig.bus.nominal_bitrate, input.rig.bus.data_bitrate}),
+          master_(SimulatedHostClock(kHostAtStart), kSyncPeriod) {
+        std::mt19937_64 random(input.seed);
+        bus_.tap([this](const wire::CanFrame& frame, SimTime end) { record(frame, end); });
+        host_ = &bus_.attach([](const wire::CanFrame&, SimTime) {}, 16);
+        for (const rig::Node& node : input.rig.nodes) {
+            const NodeClock clock = draw_clock(random, boards_.empty());
+            const SceneOfSensor scene = [&](std::uint8_t sensor) {
+                return ranging_scene(surroundings_, mount_of(node, sensor));
+            };
+            boards_.push_back(
+                std::make_unique<SimulatedBoard>(node.config, clock, input.seed, present_, bus_, scene));
+        }
+        const JointPositions positions = [&trajectory](SimTime time) {
+            const Eigen::VectorXd q = trajectory.at(time);
+            return std::vector<double>(q.data(), q.data() + q.size());
+        };
+        joints_ = std::make_unique<JointNode>(input.rig.joints.node_id, input.rig.joints.rate_hz,
+                                              draw_clock(random, false), positions);
+        joint_transmitter_ = &bus_.attach(
+            [this](const wire::CanFrame& frame, SimTime end) { joints_->on_frame(frame, end); }, 16);
+    }
+
+    /// To be sent at `at`.
+    void mark(wire::MarkKind kind, SimTime at) { marks_.push_back({kind, at}); }
+
+    void run_until(SimTime end) {
+        while (present_.time < end) {
+            present_.time.us += kTurnUs;
+            bus_.advance(present_.time);
+            send_marks();
+            for (const auto& board : boards_) board->poll();
+            send_all(joints_->poll(present_.time), *joint_transmitter_);
+            send_all(master_.poll(present_.time), *host_);
+        }
+    }
+
+    [[nodiscard]] SimTime now() const { return present_.time; }
+
+    [[nodiscard]] ExperimentSummary summary() const {
+        ExperimentSummary summary = summary_;
+        summary.duration_s = static_cast<double>(present_.time.us) * 1e-6;
+        summary.can_busy_fraction = bus_.busy_fraction();
+        for (const auto& board : boards_) {
+            for (std::size_t bus = 0; bus < kNodeBusesMax; ++bus) {
+                summary.i2c_busy_fraction.push_back(static_cast<double>(board->bus(bus).busy_time().count()) /
+                                                    static_cast<double>(present_.time.us));
+            }
+        }
+        return summary;
+    }
+
+  private:
+    struct ScheduledMark {
+        wire::MarkKind kind;
+        SimTime at;
+    };
+
+    void send_marks() {
+        while (!marks_.empty() && present_.time >= marks_.front().at) {
+            master_.mark(marks_.front().kind, marks_.front().at);
+            marks_.pop_front();
+        }
+    }
+
+    // The mailboxes outnumber what either sends at once (four joint frames, a heartbeat, a report).
+    static void send_all(const std::vector<wire::CanFrame>& frames, node::CanTransmitter& transmitter) {
+        for (const wire::CanFrame& frame : frames) {
+            const bool is_sent = transmitter.send(frame);
+            assert(is_sent);
+            static_cast<void>(is_sent);
+        }
+    }
+
+    void record(const wire::CanFrame& frame, SimTime end) {
+        master_.on_frame(frame, end);
+        ++summary_.can_frames;
+        if (summary_.first_range_s == 0.0 && is_range(frame))
+            summary_.first_range_s = static_cast<double>(end.us) * 1e-6;
+        output_.on_frame(frame, WallTime{kWallAtStart.ns + end.us * 1000});
+    }
+
+    static bool is_range(const wire::CanFrame& frame) {
+        const wire::FrameType type = wire::type_of(frame.can_id);
+        return type == wire::FrameType::range || type == wire::FrameType::range_fd;
+    }
+
+    static SensorMount mount_of(const rig::Node& node, std::uint8_t sensor) {
+        const rig::Sensor& mounted = node.sensors.at(sensor);
+        return {mounted.link, mounted.T_link_sensor, node.config.node_id * 64U + sensor};
+    }
+
+    const ExperimentOutput& output_;
+    SensorSurroundings surroundings_;
+    Present present_;
+    SimulatedCanBus bus_;
+    SyncMaster master_;
+    node::CanTransmitter* host_ = nullptr;
+    std::vector<std::unique_ptr<SimulatedBoard>> boards_;
+    std::unique_ptr<JointNode> joints_;
+    node::CanTransmitter* joint_transmitter_ = nullptr;
+    std::deque<ScheduledMark> marks_;
+    ExperimentSummary summary_;
+};
+
+}  // namespace
+
+Result<ExperimentSummary, ExperimentError> run_experiment(const ExperimentInput& input,
+                                                          const ExperimentOutput& output) {
+    const SimTime start = from_seconds(input.scenario.rest_s);
+    const auto trajectory = Trajectory::circle(input.arm, input.scenario.motion, start);
+    if (!trajectory) return unexpected(ExperimentError{trajectory.error().what});
+    const SimTime end = trajectory->end();
+
+    RigInOneProcess rig(input, *trajectory, output);
+    rig.mark(wire::MarkKind::start, start);
+    rig.mark(wire::MarkKind::stop, end);
+    std::uint32_t frames = 0;
+    if (input.rig.camera) {
+        const double sigma_m = input.is_depth_noise_free ? 0.0 : input.scenario.depth_sigma_m;
+        const DepthCamera camera(input.world, *input.rig.camera, sigma_m, input.seed);
+        const double period_s = 1.0 / input.rig.camera->rate_hz;
+        for (int index = -kFramesBeforeStart;; ++index) {
+            const SimTime captured{start.us + from_seconds(period_s * index).us};
+            if (captured >= end) break;
+            rig.run_until(captured);
+            output.on_depth(
+                SimulatedHostClock(kHostAtStart).at(captured), input.rig.camera->width,
+                input.rig.camera->height,
+                camera.render(posed_body(input.capsules, input.arm.forward(trajectory->at(captured))),
+                              frames));
+            ++frames;
+            if (output.on_progress) {
+                output.on_progress(static_cast<double>(captured.us) / static_cast<double>(end.us));
+            }
+        }
+    }
+    rig.run_until({end.us + 500'000});  // what is still under way arrives
+    ExperimentSummary summary = rig.summary();
+    summary.depth_frames = frames;
+    return summary;
+}
+
+}  // namespace octoskin::sim

@@ -1,0 +1,59 @@
+// The whole rig in one process, on one virtual clock and from one seed: sensors, boards, bus, arm controller,
+// camera and the host's transmissions. What comes out is only what a recorder would see: frames on the bus
+// and depth images.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "common/wire/can_frame.hpp"
+#include "hw/rigfile/rig.hpp"
+#include "hw/rigfile/robot_description.hpp"
+#include "hw/sim/arm/arm.hpp"
+#include "hw/sim/scenario/scenario.hpp"
+#include "hw/sim/world/world.hpp"
+
+namespace octoskin::sim {
+
+struct ExperimentInput {
+    const rig::Rig& rig;
+    const std::vector<rig::Capsule>& capsules;  ///< of the robot, without the rig's padding: the real body
+    const World& world;
+    const Arm& arm;
+    const Scenario& scenario;
+    std::uint64_t seed = 0;
+    bool is_depth_noise_free = false;
+};
+
+/// A recorder's view. `captured` and `stamp` are on the clocks that a real recorder has.
+struct ExperimentOutput {
+    std::function<void(const wire::CanFrame& frame, WallTime stamp)> on_frame;
+    std::function<void(HostTime captured, std::uint32_t width, std::uint32_t height,
+                       std::vector<std::uint16_t> depth_mm)>
+        on_depth;
+    std::function<void(double fraction)> on_progress;
+};
+
+struct ExperimentSummary {
+    double duration_s = 0.0;
+    std::uint64_t can_frames = 0;
+    std::uint64_t depth_frames = 0;
+    double can_busy_fraction = 0.0;
+    std::vector<double> i2c_busy_fraction;  ///< per node and bus
+    double first_range_s = 0.0;             ///< when the first range was on the bus
+};
+
+struct ExperimentError {
+    std::string what;
+};
+
+/// Runs it from power-up to the STOP mark. Same input, same output, to the bit. About 1 s for the sensors and
+/// 0.1 s for each depth frame.
+[[nodiscard]] Result<ExperimentSummary, ExperimentError> run_experiment(const ExperimentInput& input,
+                                                                        const ExperimentOutput& output);
+
+}  // namespace octoskin::sim

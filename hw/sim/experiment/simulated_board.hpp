@@ -1,0 +1,46 @@
+// One sensor board in the simulation: the real node core with its modelled sensors on modelled buses.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "common/config/node_config.hpp"
+#include "firmware/core/node.hpp"
+#include "hw/sim/can/simulated_can_bus.hpp"
+#include "hw/sim/clock.hpp"
+#include "hw/sim/i2c/simulated_i2c_bus.hpp"
+#include "hw/sim/vl53l1x/sensor_model.hpp"
+
+namespace octoskin::sim {
+
+/// The scene that the sensor with this local index looks at.
+using SceneOfSensor = std::function<RangingScene(std::uint8_t sensor)>;
+
+class SimulatedBoard final : private node::XshutLines {
+  public:
+    /// `present` and `can` must outlive the board. Every sensor's part differs: its constants are a function
+    /// of `seed`, node and sensor.
+    SimulatedBoard(const NodeConfig& config, NodeClock clock, std::uint64_t seed, const Present& present,
+                   SimulatedCanBus& can, const SceneOfSensor& scene);
+
+    /// One turn of the board's loop at the present time.
+    void poll();
+    [[nodiscard]] SensorModel& sensor(std::size_t index) { return *sensors_.at(index); }
+    [[nodiscard]] SimulatedI2cBus& bus(std::size_t index) { return *buses_.at(index); }
+    [[nodiscard]] const node::Node& node() const noexcept { return *node_; }
+
+  private:
+    void set(std::uint8_t line, bool is_high) override;
+
+    NodeConfig config_;
+    NodeClock clock_;
+    const Present& present_;
+    std::vector<std::unique_ptr<SensorModel>> sensors_;
+    std::vector<std::unique_ptr<SimulatedI2cBus>> buses_;
+    std::vector<i2c::Bus*> bus_pointers_;
+    std::unique_ptr<node::Node> node_;
+};
+
+}  // namespace octoskin::sim

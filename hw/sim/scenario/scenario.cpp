@@ -1,0 +1,149 @@
+#include "hw/sim/scenario/scenario.hpp"
+
+#include <cmath>
+
+#include "hw/rigfile/pose.hpp"
+#include "hw/rigfile/table.hpp"
+#include "hw/sim/noise/noise.hpp"
+
+namespace octoskin::sim {
+namespace {
+
+using rig::Table;
+using rig::Value;
+
+constexpr double kReach_m = 20.0;  ///< of positions: beyond it, somebody wrote millimetres
+
+Eigen::Vector3d position(const Table& table, std::string_view key) {
+    return rig::read_position(table.require(key), table.path_of(key), kReach_m);
+}
+
+/// Three numbers of length 1.
+Eigen::Vector3d unit_vector(const Table& table, std::string_view key) {
+    Eigen::Vector3d vector = rig::read_position(table.require(key), table.path_of(key), 1.0);
+    if (std::abs(vector.norm() - 1.0) > 1e-9) {
+        table.fail(key, "expected three numbers that make a vector of length 1, found length " +
+                            std::to_string(vector.norm()));
+    }
+    return vector;
+}
+
+Eigen::VectorXd joint_positions(const Table& table, std::string_view key) {
+    const auto& items = rig::read_list(table.require(key), table.path_of(key));
+    Eigen::VectorXd positions(static_cast<Eigen::Index>(items.size()));
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const std::string path = table.path_of(key) + "[" + std::to_string(i) + "]";
+        positions[static_cast<Eigen::Index>(i)] = rig::read_number(items[i], path, {-10.0, 10.0});
+    }
+    return positions;
+}
+
+CircleMotion read_circle(const Value& value, const std::string& path) {
+    const Table table(value, path,
+                      {"link", "centre", "radius_m", "towards_start", "towards_quarter",
+                       "ticks_per_revolution", "tick_rate_hz", "revolutions", "start_position_rad"});
+    CircleMotion motion;
+    motion.link = table.name("link");
+    const Eigen::Isometry3d T_base_centre =
+        rig::read_pose(table.require("centre"), table.path_of("centre"), {.reach_m = kReach_m});
+    motion.p_base_centre = T_base_centre.translation();
+    motion.R_base_link = T_base_centre.linear();
+    motion.radius_m = table.number("radius_m", {0.0, 5.0});
+    motion.towards_start = unit_vector(table, "towards_start");
+    motion.towards_quarter = unit_vector(table, "towards_quarter");
+    if (std::abs(motion.towards_start.dot(motion.towards_quarter)) > 1e-9) {
+        table.fail("towards_quarter", "expected a vector at right angles to towards_start");
+    }
+    motion.ticks_per_revolution = table.integer<std::uint32_t>("ticks_per_revolution", {3, 100'000});
+    motion.tick_rate_hz = table.number("tick_rate_hz", {1.0, 1000.0});
+    motion.revolutions = table.integer<std::uint32_t>("revolutions", {1, 1000}, 1U);
+    motion.start_position = joint_positions(table, "start_position_rad");
+    return motion;
+}
+
+void read_motion(const Table& top, Scenario& scenario) {
+    const Table table(top.require("motion"), "motion", {"rest_s", "circle"});
+    // A node is usable after two SYNCs at 1 Hz, and START must find all of them usable.
+    scenario.rest_s = table.number("rest_s", {3.0, 600.0});
+    scenario.motion = read_circle(table.require("circle"), table.path_of("circle"));
+}
+
+void read_sensing(const Table& top, Scenario& scenario) {
+    const Table depth(top.require("depth"), "depth", {"sigma_m"});
+    scenario.depth_sigma_m = depth.number("sigma_m", {0.0, 1.0});
+    const Table ranges(top.require("ranges"), "ranges", {"sigma_m", "min_m", "max_m"});
+    scenario.ranges.sigma_m = ranges.number("sigma_m", {0.0, 1.0});
+    scenario.ranges.min_m = ranges.number("min_m", {0.0, 10.0});
+    scenario.ranges.max_m = ranges.number("max_m", {scenario.ranges.min_m, 10.0});
+}
+
+void read_seeds(const Table& top, Scenario& scenario) {
+    const Table seeds(top.require("seeds"), "seeds", {"map_shift_m", "further_map_shift_max_m"});
+    const auto& shifts = rig::read_list(seeds.require("map_shift_m"), seeds.path_of("map_shift_m"));
+    for (std::size_t i = 0; i < shifts.size(); ++i) {
+        const std::string path = seeds.path_of("map_shift_m") + "[" + std::to_string(i) + "]";
+        scenario.map_shifts_m.push_back(rig::read_position(shifts[i], path, 1.0));
+    }
+    scenario.further_map_shift_max_m = seeds.number("further_map_shift_max_m", {0.0, 1.0});
+}
+
+void read_judgement(const Table& top, Scenario& scenario) {
+    const auto& models = rig::read_list(top.require("hidden_models"), "hidden_models");
+    for (std::size_t i = 0; i < models.size(); ++i) {
+        scenario.hidden_models.push_back(
+            rig::read_name(models[i], "hidden_models[" + std::to_string(i) + "]"));
+    }
+    const Table region(top.require("region"), "region", {"min_m", "max_m", "floor_top_m"});
+    scenario.region.p_base_min = position(region, "min_m");
+    scenario.region.p_base_max = position(region, "max_m");
+    if (!(scenario.region.p_base_min.array() < scenario.region.p_base_max.array()).all()) {
+        region.fail("max_m", "expected each number greater than that of min_m");
+    }
+    if (region.find("floor_top_m") != nullptr) {
+        scenario.region.floor_top_m = region.number("floor_top_m", {-kReach_m, kReach_m});
+    }
+}
+
+std::filesystem::path read_world(const Table& top) {
+    const Value& value = top.require("world");
+    auto world = std::filesystem::absolute(value.file->parent_path() / value.text).lexically_normal();
+    if (value.kind != Value::Kind::scalar || !std::filesystem::is_regular_file(world)) {
+        top.fail("world", "expected the path of an SDF file, relative to this file; there is none at " +
+                              world.string());
+    }
+    return world;
+}
+
+Scenario read_checked(const std::filesystem::path& file) {
+    const Value document = rig::load_with_extends(file);
+    const Table top(document, "",
+                    {"name", "world", "motion", "depth", "ranges", "seeds", "hidden_models", "region"});
+    Scenario scenario;
+    scenario.name = top.name("name");
+    scenario.world = read_world(top);
+    read_motion(top, scenario);
+    read_sensing(top, scenario);
+    read_seeds(top, scenario);
+    read_judgement(top, scenario);
+    return scenario;
+}
+
+}  // namespace
+
+Eigen::Vector3d Scenario::map_shift_m(std::uint64_t seed) const {
+    if (seed < map_shifts_m.size()) {
+        return map_shifts_m[seed];
+    }
+    const Noise noise(seed, NoiseSource::map_shift);
+    return further_map_shift_max_m * Eigen::Vector3d(noise.uniform(0), noise.uniform(1), noise.uniform(2));
+}
+
+Result<Scenario, rig::RigError> read_scenario(const std::filesystem::path& file) {
+    try {
+        return read_checked(file);
+    } catch (const rig::Fault& fault) {
+        return unexpected(fault.error);
+    }
+}
+
+}  // namespace octoskin::sim

@@ -1,0 +1,54 @@
+// What happens in a simulated world: how the arm moves, how noisy the sensors are, what the seeds change, and
+// what is judged.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+#include "hw/rigfile/rig.hpp"
+#include "hw/sim/arm/trajectory.hpp"
+
+namespace octoskin::sim {
+
+/// The optics of the simulated range sensors, where they are not the chip's own.
+struct RangeOptics {
+    double sigma_m = 0.0;
+    double min_m = 0.0;  ///< nothing nearer and
+    double max_m = 0.0;  ///< nothing further is seen
+};
+
+/// The box that the evaluation judges, in the robot's base frame, metres.
+struct ScenarioRegion {
+    Eigen::Vector3d p_base_min = Eigen::Vector3d::Zero();
+    Eigen::Vector3d p_base_max = Eigen::Vector3d::Zero();
+    std::optional<double> floor_top_m;  ///< its layer of voxels is not judged
+};
+
+struct Scenario {
+    std::string name;
+    std::filesystem::path world;  ///< absolute
+    double rest_s = 0.0;          ///< at rest from the start of the recording to the START mark
+    CircleMotion motion;
+    double depth_sigma_m = 0.0;
+    RangeOptics ranges;
+    /// Translation of T_map_base, one per seed: where world, camera and robot together stand in the map's
+    /// grid.
+    std::vector<Eigen::Vector3d> map_shifts_m;
+    double further_map_shift_max_m = 0.0;
+    std::vector<std::string> hidden_models;  ///< SDF models that the camera is not supposed to see
+    ScenarioRegion region;
+
+    /// The shift of any seed: of those listed, else uniform in [0, further_map_shift_max_m) on each axis.
+    [[nodiscard]] Eigen::Vector3d map_shift_m(std::uint64_t seed) const;
+};
+
+/// Reads and checks a scenario, as strictly as read_rig(): unknown keys, types, units, ranges; `extends:`
+/// works too. Paths in it are relative to the file.
+[[nodiscard]] Result<Scenario, rig::RigError> read_scenario(const std::filesystem::path& file);
+
+}  // namespace octoskin::sim

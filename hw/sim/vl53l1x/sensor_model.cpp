@@ -1,0 +1,245 @@
+#include "hw/sim/vl53l1x/sensor_model.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace octoskin::sim {
+namespace {
+
+constexpr std::size_t kHistoryMax = 64;
+
+bool is_read_only(std::uint16_t index) {
+    const bool is_identification = index >= reg::kModelId && index <= reg::kModelId + 2U;
+    const bool is_result = index >= reg::kResultInterruptStatus && index <= reg::kResultLast;
+    return is_identification || is_result || index == reg::kSystemStatus;
+}
+
+}  // namespace
+
+SensorModel::SensorModel(const SensorPart& part, RangingScene scene)
+    : part_(part), scene_(std::move(scene)) {}
+
+void SensorModel::set_xshut(bool is_high, SimTime time) {
+    advance(time);
+    if (!is_high && !faults_.ignores_xshut) {
+        power_ = Power::shut_down;
+        ranging_.reset();
+        faults_.holds_sda_clocks = 0;
+    } else if (power_ == Power::shut_down) {
+        boot(time);
+    }
+}
+
+void SensorModel::brown_out(SimTime time) {
+    advance(time);
+    if (power_ != Power::shut_down) boot(time);
+}
+
+void SensorModel::boot(SimTime time) {
+    registers_ = reset_registers();
+    write16(registers_, reg::kOscCalibrate, part_.osc_calibrate);
+    registers_.at(reg::kRoiModeCentre) = part_.optical_centre_spad;
+    if (faults_.has_wrong_id) registers_.at(reg::kModelId) = 0xEB;
+    power_ = Power::booting;
+    booted_at_ = {time.us + part_.boot_time.count()};
+    mode_ = Mode::idle;
+    ranging_.reset();
+    ranging_index_ = 0;
+    stream_count_ = 0;
+    is_interrupt_asserted_ = false;
+    index_bytes_ = 0;
+}
+
+void SensorModel::advance(SimTime time) {
+    if (power_ == Power::booting && time >= booted_at_ && !faults_.never_boots) power_ = Power::running;
+    if (power_ != Power::running) return;
+    const bool shows_two = time.us < booted_at_.us + faults_.status_two_for.count();
+    registers_.at(reg::kSystemStatus) = shows_two ? 0x02 : 0x03;
+    while (ranging_ && time >= ranging_->start) {
+        if (!ranging_->is_latched) latch_ranging();
+        if (time.us < ranging_->start.us + ranging_->timing.budget.count()) break;
+        finish_ranging();
+    }
+}
+
+// Facts of a START: while shut down or booting nobody answers; the address counts from the next START after
+// it was written.
+bool SensorModel::on_start(std::uint8_t address, bool is_read, SimTime time) {
+    advance(time);
+    if (faults_.is_absent || (power_ != Power::running && power_ != Power::soft_reset)) return false;
+    if (power_ == Power::soft_reset && is_read) return false;
+    if (address != (registers_.at(reg::kI2cAddress) & 0x7FU)) return false;
+    index_bytes_ = 0;  // of a write; a read goes on at the index as it is
+    return true;
+}
+
+bool SensorModel::on_write(std::uint8_t byte, SimTime time) {
+    advance(time);
+    if (index_bytes_ == 0) {
+        index_ = static_cast<std::uint16_t>(byte << 8U);
+        index_bytes_ = 1;
+        return true;
+    }
+    if (index_bytes_ == 1) {
+        index_ = static_cast<std::uint16_t>(index_ | byte);
+        index_bytes_ = 2;
+        return power_ == Power::running || index_ == reg::kSoftReset;
+    }
+    // In soft reset only the register that ends it answers.
+    if (power_ == Power::soft_reset && index_ != reg::kSoftReset) return false;
+    write_register(index_, byte, time);
+    ++index_;
+    return true;
+}
+
+std::uint8_t SensorModel::on_read(SimTime) {
+    // A read is one snapshot: time stands still from its START on.
+    registers_.at(reg::kGpioStatus) =
+        static_cast<std::uint8_t>((registers_.at(reg::kGpioStatus) & 0xFEU) | (pin_level() ? 1U : 0U));
+    const std::uint8_t byte = index_ < registers_.size() ? registers_.at(index_) : std::uint8_t{0};
+    ++index_;
+    return byte;
+}
+
+void SensorModel::on_stop(SimTime) {}
+
+bool SensorModel::holds_sda(SimTime time) {
+    advance(time);
+    return power_ != Power::shut_down && faults_.holds_sda_clocks > 0;
+}
+
+void SensorModel::on_clocks(std::uint32_t count, SimTime) {
+    faults_.holds_sda_clocks -= std::min(faults_.holds_sda_clocks, count);
+}
+
+void SensorModel::write_register(std::uint16_t index, std::uint8_t value, SimTime time) {
+    if (index >= registers_.size() || is_read_only(index)) return;
+    switch (index) {
+        case reg::kSoftReset:
+            write_soft_reset(value, time);
+            return;
+        case reg::kGpioStatus: {
+            const unsigned live = registers_.at(index) & 1U;
+            registers_.at(index) = static_cast<std::uint8_t>((value & 0xFEU) | live);
+            return;
+        }
+        case reg::kInterruptClear:
+            write_interrupt_clear(value, time);
+            return;
+        case reg::kModeStart:
+            registers_.at(index) = value;
+            start_mode(value, time);
+            return;
+        default:
+            registers_.at(index) = value;
+            return;
+    }
+}
+
+void SensorModel::write_soft_reset(std::uint8_t value, SimTime time) {
+    if (value == 0) {
+        power_ = Power::soft_reset;
+        ranging_.reset();
+    } else if (power_ == Power::soft_reset) {
+        boot(time);
+    }
+}
+
+// The register itself reads as 0.
+void SensorModel::write_interrupt_clear(std::uint8_t value, SimTime time) {
+    if ((value & 1U) == 0) return;
+    is_interrupt_asserted_ = faults_.is_always_ready;
+    if (mode_ == Mode::waiting_for_clear) {
+        mode_ = Mode::back_to_back;
+        ranging_ = Ranging{.start = time};
+    }
+}
+
+void SensorModel::start_mode(std::uint8_t value, SimTime time) {
+    constexpr unsigned kSingle = 0x10;
+    constexpr unsigned kBackToBack = 0x20;
+    constexpr unsigned kTimed = 0x40;
+    constexpr unsigned kAbort = 0x80;
+    const unsigned bits = value;
+    if ((bits & kAbort) != 0) {
+        mode_ = Mode::idle;
+        ranging_.reset();
+        return;
+    }
+    if ((bits & (kSingle | kBackToBack | kTimed)) == 0) {
+        stops_after_this_ = true;  // UM2510 3.5.7: the running range is finished
+        if (!ranging_ || ranging_->start > time) {
+            ranging_.reset();
+            mode_ = Mode::idle;
+        }
+        return;
+    }
+    stream_count_ = 0;
+    is_first_of_run_ = true;
+    stops_after_this_ = false;
+    mode_ = (bits & kTimed) != 0 ? Mode::timed : (bits & kSingle) != 0 ? Mode::single : Mode::back_to_back;
+    const RangingTiming timing = ranging_timing(registers_, part_);
+    // The first timed result was observed one period after the start: about 103 ms at the defaults, where
+    // period and budget are nearly equal, so that no slot is missed yet.
+    const Microseconds wait = mode_ == Mode::timed ? timing.slot - timing.budget : Microseconds{0};
+    ranging_ = Ranging{.start = {time.us + std::max<std::int64_t>(wait.count(), 0)}};
+}
+
+// What is written during a range applies from the next one (UM2555 5).
+void SensorModel::latch_ranging() {
+    ranging_->is_latched = true;
+    ranging_->timing = ranging_timing(registers_, part_);
+    ranging_->config = ranging_config(registers_);
+}
+
+void SensorModel::finish_ranging() {
+    const Ranging ranging = *ranging_;
+    const SimTime middle{ranging.start.us + ranging.timing.budget.count() / 2};
+    const SimTime ready{ranging.start.us + ranging.timing.budget.count()};
+    const RangingReturn seen = scene_(ranging_index_, middle, ranging.config.roi);
+    step_stream_count();
+    const RangingResult result{
+        .range_status = faults_.device_status.value_or(device_status(ranging.config, seen)),
+        .stream_count = stream_count_,
+        .range_mm = reported_range_mm(ranging.config, seen, ranging_index_)};
+    write_result(registers_, ranging.config, seen, result);
+    const bool fires = fires_interrupt(ranging.config, result) || faults_.is_always_ready;
+    if (fires && !faults_.never_ready) is_interrupt_asserted_ = true;
+    history_.push_back({ranging_index_, middle, ready, ranging.config.roi, result});
+    if (history_.size() > kHistoryMax) history_.pop_front();
+    ++ranging_index_;
+    schedule_next(ranging);
+}
+
+void SensorModel::schedule_next(const Ranging& finished) {
+    ranging_.reset();
+    if (stops_after_this_ || mode_ == Mode::single) {
+        mode_ = Mode::idle;
+    } else if (mode_ == Mode::timed) {
+        ranging_ = Ranging{.start = {finished.start.us + finished.timing.period.count()}};
+    } else {
+        mode_ = Mode::waiting_for_clear;
+    }
+}
+
+// 0 for the first range of a run, 1..255, then 128..255 again (UM2356).
+void SensorModel::step_stream_count() {
+    if (std::exchange(is_first_of_run_, false)) {
+        stream_count_ = 0;
+    } else if (!faults_.freezes_stream) {
+        stream_count_ =
+            stream_count_ == 255 ? std::uint8_t{128} : static_cast<std::uint8_t>(stream_count_ + 1U);
+    }
+}
+
+bool SensorModel::pin_level() const {
+    const bool is_active_low = (registers_.at(reg::kGpioMux) & 0x10U) != 0;
+    return is_interrupt_asserted_ != is_active_low;
+}
+
+bool SensorModel::gpio1_level(SimTime time) {
+    advance(time);
+    return power_ != Power::running || pin_level();  // open drain, pulled up
+}
+
+}  // namespace octoskin::sim

@@ -1,0 +1,107 @@
+// A VL53L1X down to its registers: what a driver can see of a part over I2C, XSHUT and GPIO1. Strict where
+// the public documents are; each behaviour names its source in the code. Advanced lazily: every access
+// carries its time.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "hw/sim/i2c/i2c_target.hpp"
+#include "hw/sim/vl53l1x/ranging_result.hpp"
+#include "hw/sim/vl53l1x/ranging_timing.hpp"
+#include "hw/sim/vl53l1x/register_map.hpp"
+#include "hw/sim/vl53l1x/scene.hpp"
+
+namespace octoskin::sim {
+
+/// What can be wrong with a part.
+struct SensorFaults {
+    bool is_absent = false;  ///< never acknowledges
+    bool never_boots = false;
+    bool has_wrong_id = false;
+    bool ignores_xshut = false;    ///< the line is not wired: XSHUT is pulled up
+    bool freezes_stream = false;   ///< the stream count stops advancing
+    bool never_ready = false;      ///< ranges, but its interrupt never fires
+    bool is_always_ready = false;  ///< its interrupt cannot be cleared
+    std::optional<std::uint8_t>
+        device_status{};  ///< every result carries this RESULT__RANGE_STATUS byte, high bits included
+    Microseconds status_two_for{0};  ///< 0xE5 reads 0x02 for so long after boot, as real parts were seen to
+    std::uint32_t holds_sda_clocks = 0;  ///< holds SDA low until it got so many clocks, or XSHUT
+};
+
+/// One finished ranging, as it truly was: for tests and for comparing with what the node reports.
+struct RangingRecord {
+    std::uint32_t index = 0;
+    SimTime window_middle{};
+    SimTime ready{};
+    Roi roi{};  ///< in force when the range began
+    RangingResult result{};
+};
+
+class SensorModel final : public I2cTarget {
+  public:
+    /// Powered, with XSHUT low.
+    SensorModel(const SensorPart& part, RangingScene scene);
+
+    void set_xshut(bool is_high, SimTime time);
+    void set_faults(const SensorFaults& faults) { faults_ = faults; }
+    [[nodiscard]] const SensorFaults& faults() const noexcept { return faults_; }
+    /// The supply dips: everything is forgotten and, XSHUT being high, the part boots at 0x29.
+    void brown_out(SimTime time);
+
+    /// Level of the GPIO1 pin.
+    [[nodiscard]] bool gpio1_level(SimTime time);
+    /// Finishes the rangings that end by `time`.
+    void advance(SimTime time);
+    /// The newest finished rangings, oldest first, at most 64.
+    [[nodiscard]] const std::deque<RangingRecord>& history() const noexcept { return history_; }
+    [[nodiscard]] const Registers& registers() const noexcept { return registers_; }
+
+    bool on_start(std::uint8_t address, bool is_read, SimTime time) override;
+    bool on_write(std::uint8_t byte, SimTime time) override;
+    std::uint8_t on_read(SimTime time) override;
+    void on_stop(SimTime time) override;
+    bool holds_sda(SimTime time) override;
+    void on_clocks(std::uint32_t count, SimTime time) override;
+
+  private:
+    enum class Power : std::uint8_t { shut_down, booting, soft_reset, running };
+    enum class Mode : std::uint8_t { idle, timed, single, back_to_back, waiting_for_clear };
+    struct Ranging {
+        SimTime start{};
+        bool is_latched = false;  ///< has begun: what follows is what the registers said then
+        RangingTiming timing{};
+        RangingConfig config{};
+    };
+
+    void boot(SimTime time);
+    void write_register(std::uint16_t index, std::uint8_t value, SimTime time);
+    void write_soft_reset(std::uint8_t value, SimTime time);
+    void write_interrupt_clear(std::uint8_t value, SimTime time);
+    void start_mode(std::uint8_t value, SimTime time);
+    void latch_ranging();
+    void finish_ranging();
+    void schedule_next(const Ranging& finished);
+    void step_stream_count();
+    [[nodiscard]] bool pin_level() const;
+
+    SensorPart part_;
+    RangingScene scene_;
+    SensorFaults faults_;
+    Registers registers_{};
+    Power power_ = Power::shut_down;
+    SimTime booted_at_{};
+    Mode mode_ = Mode::idle;
+    bool stops_after_this_ = false;
+    std::optional<Ranging> ranging_;
+    std::uint32_t ranging_index_ = 0;
+    std::uint8_t stream_count_ = 0;
+    bool is_first_of_run_ = true;
+    bool is_interrupt_asserted_ = false;
+    std::uint16_t index_ = 0;
+    std::uint8_t index_bytes_ = 0;
+    std::deque<RangingRecord> history_;
+};
+
+}  // namespace octoskin::sim

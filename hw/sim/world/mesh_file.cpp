@@ -1,0 +1,52 @@
+#include "hw/sim/world/mesh_file.hpp"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+
+namespace octoskin::sim {
+namespace {
+
+void append(const aiMesh& part, TriangleMesh& mesh) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+        const aiVector3D& vertex = part.mVertices[i];
+        mesh.vertices.emplace_back(static_cast<double>(vertex.x), static_cast<double>(vertex.y),
+                                   static_cast<double>(vertex.z));
+    }
+    for (unsigned i = 0; i < part.mNumFaces; ++i) {
+        const aiFace& face = part.mFaces[i];
+        if (face.mNumIndices == 3) {  // points and lines have no surface
+            mesh.triangles.emplace_back(first + static_cast<int>(face.mIndices[0]),
+                                        first + static_cast<int>(face.mIndices[1]),
+                                        first + static_cast<int>(face.mIndices[2]));
+        }
+    }
+}
+
+}  // namespace
+
+Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file) {
+    Assimp::Importer importer;
+    const aiScene* scene =
+        importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
+    if (scene == nullptr) {
+        return unexpected("cannot read mesh " + file.string() + ": " + importer.GetErrorString());
+    }
+    TriangleMesh mesh;
+    for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
+        append(*scene->mMeshes[i], mesh);
+    }
+    if (mesh.triangles.empty()) {
+        return unexpected("mesh " + file.string() + " has no triangles");
+    }
+    for (const auto& vertex : mesh.vertices) {
+        if (!vertex.allFinite()) {
+            return unexpected("mesh " + file.string() + " has a coordinate that is not a finite number");
+        }
+    }
+    return mesh;
+}
+
+}  // namespace octoskin::sim

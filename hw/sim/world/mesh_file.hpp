@@ -1,0 +1,16 @@
+// Reads a mesh file (OBJ, STL, COLLADA, ...) with assimp: the only file that includes it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "common/result.hpp"
+#include "hw/sim/world/solid.hpp"
+
+namespace octoskin::sim {
+
+/// All triangles of the file in the file's own coordinates, node transforms applied. The error says what
+/// assimp says, or that there is no triangle or a coordinate that is not finite.
+[[nodiscard]] Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file);
+
+}  // namespace octoskin::sim

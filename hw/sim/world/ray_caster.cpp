@@ -1,0 +1,167 @@
+#include "hw/sim/world/ray_caster.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+namespace octoskin::sim {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t kPacket = 8;
+
+/// The plane of a triangle: points p with normal . p = offset.
+struct Plane {
+    Eigen::Vector3d normal;
+    double offset;
+};
+
+Plane plane_of(const Solid& solid, const Eigen::Vector3i& triangle) {
+    const auto& a = solid.vertices[static_cast<std::size_t>(triangle[0])];
+    const auto& b = solid.vertices[static_cast<std::size_t>(triangle[1])];
+    const auto& c = solid.vertices[static_cast<std::size_t>(triangle[2])];
+    const Eigen::Vector3d normal = (b - a).cross(c - a).normalized();
+    return {normal, normal.dot(a)};
+}
+
+RTCGeometry make_geometry(RTCDevice device, const Solid& solid) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), solid.vertices.size()));
+    for (const auto& vertex : solid.vertices) {
+        vertices = std::copy_n(vertex.cast<float>().eval().data(), 3, vertices);
+    }
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), solid.triangles.size()));
+    for (const auto& triangle : solid.triangles) {
+        indices = std::copy_n(triangle.cast<unsigned>().eval().data(), 3, indices);
+    }
+    rtcCommitGeometry(geometry);
+    return geometry;
+}
+
+RTCScene make_scene(RTCDevice device) {
+    RTCScene scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    return scene;
+}
+
+}  // namespace
+
+struct RayCaster::Impl {
+    RTCDevice device = nullptr;
+    RTCScene all = nullptr;
+    std::vector<RTCScene> one_solid;
+    std::vector<std::vector<Plane>> planes;  ///< per solid, per triangle
+
+    ~Impl() {
+        for (RTCScene scene : one_solid) {
+            rtcReleaseScene(scene);
+        }
+        rtcReleaseScene(all);
+        rtcReleaseDevice(device);
+    }
+
+    [[nodiscard]] std::optional<TriangleHit> cast(RTCScene scene, const Eigen::Vector3d& origin,
+                                                  const Eigen::Vector3d& direction, double t_max) const {
+        RTCRayHit ray{};
+        ray.ray.org_x = static_cast<float>(origin.x());
+        ray.ray.org_y = static_cast<float>(origin.y());
+        ray.ray.org_z = static_cast<float>(origin.z());
+        ray.ray.dir_x = static_cast<float>(direction.x());
+        ray.ray.dir_y = static_cast<float>(direction.y());
+        ray.ray.dir_z = static_cast<float>(direction.z());
+        ray.ray.tfar = static_cast<float>(t_max);
+        ray.ray.mask = ~0u;
+        ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect1(scene, &context, &ray);
+        if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+            return std::nullopt;
+        }
+        const Plane& plane = planes[ray.hit.geomID][ray.hit.primID];
+        return TriangleHit{exact_t(plane, origin, direction, ray.ray.tfar), ray.hit.geomID, plane.normal};
+    }
+
+    /// A ray that almost grazes the plane gains nothing from it: there Embree's value stays.
+    static double exact_t(const Plane& plane, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                          float t_found) {
+        const double speed = plane.normal.dot(direction);
+        const double t = (plane.offset - plane.normal.dot(origin)) / speed;
+        const double found = static_cast<double>(t_found);
+        return std::abs(t - found) <= 1e-4 * (1.0 + found) ? std::max(t, 0.0) : found;
+    }
+};
+
+RayCaster::RayCaster(const std::vector<Solid>& solids) : impl_(std::make_unique<Impl>()) {
+    // One thread: the scenes are small, and a library that starts threads of its own would surprise its user.
+    impl_->device = rtcNewDevice("threads=1");
+    impl_->all = make_scene(impl_->device);
+    for (std::uint32_t i = 0; i < solids.size(); ++i) {
+        RTCGeometry geometry = make_geometry(impl_->device, solids[i]);
+        RTCScene alone = make_scene(impl_->device);
+        for (RTCScene scene : {impl_->all, alone}) {
+            rtcAttachGeometryByID(scene, geometry, i);
+        }
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(alone);
+        impl_->one_solid.push_back(alone);
+        auto& planes = impl_->planes.emplace_back();
+        for (const auto& triangle : solids[i].triangles) {
+            planes.push_back(plane_of(solids[i], triangle));
+        }
+    }
+    rtcCommitScene(impl_->all);
+    assert(rtcGetDeviceError(impl_->device) == RTC_ERROR_NONE);
+}
+
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+RayCaster::~RayCaster() = default;
+
+std::optional<TriangleHit> RayCaster::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                           double t_max) const {
+    return impl_->cast(impl_->all, origin, direction, t_max);
+}
+
+std::optional<TriangleHit> RayCaster::cast_at_solid(std::uint32_t solid, const Eigen::Vector3d& origin,
+                                                    const Eigen::Vector3d& direction) const {
+    return impl_->cast(impl_->one_solid[solid], origin, direction, static_cast<double>(kInfinity));
+}
+
+void RayCaster::cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
+                         double t_max, std::span<double> t) const {
+    assert(t.size() == directions.size());
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    for (std::size_t first = 0; first < directions.size(); first += kPacket) {
+        const std::size_t count = std::min(kPacket, directions.size() - first);
+        alignas(32) RTCRayHit8 packet{};
+        alignas(32) int is_valid[kPacket] = {};
+        for (std::size_t i = 0; i < count; ++i) {
+            is_valid[i] = -1;
+            packet.ray.org_x[i] = static_cast<float>(origin.x());
+            packet.ray.org_y[i] = static_cast<float>(origin.y());
+            packet.ray.org_z[i] = static_cast<float>(origin.z());
+            packet.ray.dir_x[i] = static_cast<float>(directions[first + i].x());
+            packet.ray.dir_y[i] = static_cast<float>(directions[first + i].y());
+            packet.ray.dir_z[i] = static_cast<float>(directions[first + i].z());
+            packet.ray.tfar[i] = static_cast<float>(t_max);
+            packet.ray.mask[i] = ~0u;
+            packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        rtcIntersect8(is_valid, impl_->all, &context, &packet);
+        for (std::size_t i = 0; i < count; ++i) {
+            t[first + i] = packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
+                               ? std::numeric_limits<double>::infinity()
+                               : Impl::exact_t(impl_->planes[packet.hit.geomID[i]][packet.hit.primID[i]],
+                                               origin, directions[first + i], packet.ray.tfar[i]);
+        }
+    }
+}
+
+}  // namespace octoskin::sim

@@ -1,0 +1,105 @@
+#include "hw/sim/world/sdf_shapes.hpp"
+
+#include <cmath>
+#include <ignition/math/eigen3/Conversions.hh>
+#include <sdf/sdf.hh>
+#include <string_view>
+
+#include "hw/sim/world/mesh_file.hpp"
+#include "hw/sim/world/shapes.hpp"
+
+namespace octoskin::sim {
+namespace {
+
+using ignition::math::eigen3::convert;
+using MeshOrError = Result<TriangleMesh, std::string>;
+
+bool is_size(double value) {
+    return std::isfinite(value) && value > 0.0;
+}
+
+MeshOrError checked(bool sizes_are_good, const TriangleMesh& mesh) {
+    if (!sizes_are_good) {
+        return unexpected(std::string("expected sizes in metres that are positive and finite"));
+    }
+    return mesh;
+}
+
+MeshOrError box_of(const sdf::Box& box) {
+    const Eigen::Vector3d size = convert(box.Size());
+    return checked(is_size(size.x()) && is_size(size.y()) && is_size(size.z()), box_mesh(size));
+}
+
+MeshOrError plane_of(const sdf::Plane& plane) {
+    const Eigen::Vector2d size(plane.Size().X(), plane.Size().Y());
+    return checked(is_size(size.x()) && is_size(size.y()), plane_mesh(convert(plane.Normal()), size));
+}
+
+MeshOrError ellipsoid_of(const sdf::Ellipsoid& ellipsoid) {
+    const Eigen::Vector3d radii = convert(ellipsoid.Radii());
+    return checked(is_size(radii.x()) && is_size(radii.y()) && is_size(radii.z()), ellipsoid_mesh(radii));
+}
+
+MeshOrError mesh_of(const sdf::Mesh& mesh) {
+    if (!mesh.Submesh().empty()) {
+        return unexpected("submesh '" + mesh.Submesh() +
+                          "' is not supported; give it a mesh file of its own");
+    }
+    constexpr std::string_view kFileScheme = "file://";
+    std::string uri = mesh.Uri();
+    if (uri.starts_with(kFileScheme)) {
+        uri.erase(0, kFileScheme.size());
+    } else if (uri.find("://") != std::string::npos) {
+        return unexpected("mesh uri '" + uri +
+                          "' is not supported; expected a path relative to the SDF file");
+    }
+    auto read = read_mesh(std::filesystem::path(mesh.FilePath()).parent_path() / uri);
+    if (!read) {
+        return read;
+    }
+    const Eigen::Vector3d scale = convert(mesh.Scale());
+    if (!scale.allFinite() || scale.prod() == 0.0) {
+        return unexpected(std::string("expected a mesh scale that is finite and not zero"));
+    }
+    for (auto& vertex : read->vertices) {
+        vertex = vertex.cwiseProduct(scale);
+    }
+    return read;
+}
+
+}  // namespace
+
+Result<TriangleMesh, std::string> mesh_of(const sdf::Geometry& geometry) {
+    switch (geometry.Type()) {
+        case sdf::GeometryType::BOX:
+            return box_of(*geometry.BoxShape());
+        case sdf::GeometryType::CYLINDER: {
+            const auto& shape = *geometry.CylinderShape();
+            return checked(is_size(shape.Radius()) && is_size(shape.Length()),
+                           cylinder_mesh(shape.Radius(), shape.Length()));
+        }
+        case sdf::GeometryType::SPHERE: {
+            const double radius = geometry.SphereShape()->Radius();
+            return checked(is_size(radius), ellipsoid_mesh(Eigen::Vector3d::Constant(radius)));
+        }
+        case sdf::GeometryType::CAPSULE: {
+            const auto& shape = *geometry.CapsuleShape();
+            return checked(is_size(shape.Radius()) && is_size(shape.Length()),
+                           capsule_mesh(shape.Radius(), shape.Length()));
+        }
+        case sdf::GeometryType::ELLIPSOID:
+            return ellipsoid_of(*geometry.EllipsoidShape());
+        case sdf::GeometryType::PLANE:
+            return plane_of(*geometry.PlaneShape());
+        case sdf::GeometryType::MESH:
+            return mesh_of(*geometry.MeshShape());
+        case sdf::GeometryType::HEIGHTMAP:
+        case sdf::GeometryType::EMPTY:
+            break;
+    }
+    const auto shape = geometry.Element() ? geometry.Element()->GetFirstElement() : nullptr;
+    return unexpected("unsupported shape '" + (shape ? shape->GetName() : "empty") +
+                      "'; supported shapes are " + kSdfShapes);
+}
+
+}  // namespace octoskin::sim

@@ -1,0 +1,20 @@
+// The shapes of an SDF file as triangle meshes.
+#pragma once
+
+#include <sdf/Geometry.hh>
+#include <string>
+
+#include "common/result.hpp"
+#include "hw/sim/world/solid.hpp"
+
+namespace octoskin::sim {
+
+/// For messages: what mesh_of() takes.
+inline constexpr const char* kSdfShapes =
+    "box, cylinder, sphere, capsule, ellipsoid, plane, mesh (a cone is a mesh)";
+
+/// The shape in its own coordinates, metres. The error says what is wrong: another shape, a size that is not
+/// positive and finite, a mesh that cannot be read.
+[[nodiscard]] Result<TriangleMesh, std::string> mesh_of(const sdf::Geometry& geometry);
+
+}  // namespace octoskin::sim

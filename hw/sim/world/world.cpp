@@ -1,0 +1,157 @@
+#include "hw/sim/world/world.hpp"
+
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "hw/sim/world/ray_caster.hpp"
+#include "hw/sim/world/sdf_solids.hpp"
+
+namespace octoskin::sim {
+namespace {
+
+/// How far outside its own surface a point is asked whether another solid covers it: more than single
+/// precision loses at 100 m, far less than any map's voxel.
+constexpr double kBurialProbe_m = 1e-4;
+
+Eigen::AlignedBox3d bounds_of(const Solid& solid) {
+    Eigen::AlignedBox3d bounds;
+    for (const auto& vertex : solid.vertices) {
+        bounds.extend(vertex);
+    }
+    return bounds;
+}
+
+/// Points of the triangle abc in rows parallel to its side ac, from ab to bc. With ab the longest side no two
+/// neighbours are further apart than the pitch, within a row, between rows, and along each side.
+template <class Visit>
+void sample_triangle(std::array<Eigen::Vector3d, 3> abc, double pitch_m, const Visit& visit) {
+    const auto length = [&](std::size_t i) { return (abc[(i + 1) % 3] - abc[i]).norm(); };
+    std::size_t longest = 0;
+    for (std::size_t i = 1; i < 3; ++i) {
+        longest = length(i) > length(longest) ? i : longest;
+    }
+    std::rotate(abc.begin(), abc.begin() + static_cast<std::ptrdiff_t>(longest), abc.end());
+    const auto& [a, b, c] = abc;
+    const int rows = std::max(1, static_cast<int>(std::ceil((b - a).norm() / pitch_m)));
+    for (int row = 0; row <= rows; ++row) {
+        const double part = static_cast<double>(row) / rows;
+        const Eigen::Vector3d from = a + part * (b - a);
+        const Eigen::Vector3d to = c + part * (b - c);
+        const int steps = static_cast<int>(std::ceil((to - from).norm() / pitch_m));
+        for (int step = 0; step <= steps; ++step) {
+            visit(steps == 0 ? from
+                             : Eigen::Vector3d(from + (to - from) * (static_cast<double>(step) / steps)));
+        }
+    }
+}
+
+}  // namespace
+
+struct World::Impl {
+    explicit Impl(std::vector<Solid> all) : solids(std::move(all)), caster(solids) {
+        for (const auto& solid : solids) {
+            bounds.push_back(bounds_of(solid));
+        }
+    }
+
+    /// Looks out of the solid from `point`: whoever is inside sees the back of a triangle first. A ray that
+    /// grazes an edge may be told the wrong one of two triangles; of three unrelated directions two decide.
+    [[nodiscard]] bool is_inside(std::uint32_t solid, const Eigen::Vector3d& point) const {
+        static const std::array<Eigen::Vector3d, 3> kDirections = {Eigen::Vector3d(0.5377, 0.1834, 0.8229),
+                                                                   Eigen::Vector3d(-0.3188, -0.9077, 0.2731),
+                                                                   Eigen::Vector3d(-0.4336, 0.3426, -0.8335)};
+        if (!solids[solid].is_closed || !bounds[solid].contains(point)) {
+            return false;
+        }
+        int votes = 0;
+        for (const auto& direction : kDirections) {
+            const auto hit = caster.cast_at_solid(solid, point, direction);
+            votes += hit && hit->normal.dot(direction) > 0.0 ? 1 : 0;
+        }
+        return votes >= 2;
+    }
+
+    [[nodiscard]] bool is_inside_other(std::uint32_t own, const Eigen::Vector3d& point) const {
+        for (std::uint32_t i = 0; i < solids.size(); ++i) {
+            if (i != own && is_inside(i, point)) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    std::vector<Solid> solids;
+    std::vector<Eigen::AlignedBox3d> bounds;
+    RayCaster caster;
+};
+
+std::string WorldError::message() const {
+    return file.string() + ": " + (element.empty() ? "" : element + ": ") + what;
+}
+
+World::World(std::vector<Solid> solids) : impl_(std::make_unique<Impl>(std::move(solids))) {}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+World::~World() = default;
+
+Result<World, WorldError> World::read(const std::filesystem::path& sdf) {
+    auto solids = read_solids(sdf);
+    if (!solids) {
+        return unexpected(solids.error());
+    }
+    return World(std::move(*solids));
+}
+
+const std::vector<Solid>& World::solids() const noexcept {
+    return impl_->solids;
+}
+
+std::optional<RayHit> World::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                  double range_max_m) const {
+    const auto hit = impl_->caster.cast(origin, direction, range_max_m);
+    if (!hit) {
+        return std::nullopt;
+    }
+    return RayHit{hit->t, hit->solid, hit->normal};
+}
+
+void World::cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions, double t_max,
+                     std::span<double> t) const {
+    impl_->caster.cast_fan(origin, directions, t_max, t);
+}
+
+void World::sample_surfaces(double pitch_m,
+                            const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const {
+    const Eigen::Vector3d corner = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+    sample_surfaces(pitch_m, Eigen::AlignedBox3d(-corner, corner), visit);
+}
+
+void World::sample_surfaces(double pitch_m, const Eigen::AlignedBox3d& region,
+                            const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const {
+    assert(pitch_m > 0.0);
+    for (std::uint32_t i = 0; i < impl_->solids.size(); ++i) {
+        const Solid& solid = impl_->solids[i];
+        for (const auto& triangle : solid.triangles) {
+            const std::array<Eigen::Vector3d, 3> corners = {
+                solid.vertices[static_cast<std::size_t>(triangle[0])],
+                solid.vertices[static_cast<std::size_t>(triangle[1])],
+                solid.vertices[static_cast<std::size_t>(triangle[2])]};
+            const Eigen::Vector3d probe =
+                kBurialProbe_m * (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+            sample_triangle(corners, pitch_m, [&](const Eigen::Vector3d& point) {
+                if (region.contains(point) && !impl_->is_inside_other(i, point + probe)) {
+                    visit(point, i);
+                }
+            });
+        }
+    }
+}
+
+bool World::is_inside(const Eigen::Vector3d& point) const {
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    return impl_->is_inside_other(kNone, point);
+}
+
+}  // namespace octoskin::sim

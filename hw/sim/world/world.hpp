@@ -1,0 +1,64 @@
+// The simulated world: the solids of an SDF file, ray-cast with Embree, and as surfaces and interiors for the
+// ground truth. All coordinates in the world frame, which is the robot's base frame; metres. Coordinates
+// should stay within some 100 m of the origin: the triangle that a ray meets is found in single precision.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/result.hpp"
+#include "hw/sim/world/solid.hpp"
+#include "hw/sim/world/world_error.hpp"
+
+namespace octoskin::sim {
+
+struct RayHit {
+    double range_m = 0.0;
+    std::uint32_t solid = 0;                           ///< index into `solids()`
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, out of the solid
+};
+
+class World {
+  public:
+    /// The visuals of an SDF file; see read_solids() for shapes and errors. Not from two threads at once: the
+    /// libraries' logs are global.
+    [[nodiscard]] static Result<World, WorldError> read(const std::filesystem::path& sdf);
+    explicit World(std::vector<Solid> solids);
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+    ~World();
+
+    /// The nearest surface along a ray within `range_max_m`. Direction: unit vector. < 1 us for the shipped
+    /// worlds. Safe from several threads at once.
+    [[nodiscard]] std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                             double range_max_m) const;
+    /// Many rays from one origin, for images: `t[i]` is the nearest surface's distance in lengths of
+    /// `directions[i]` (any length: with z = 1 in camera coordinates it is the depth), infinity beyond
+    /// `t_max`.
+    void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions, double t_max,
+                  std::span<double> t) const;
+    [[nodiscard]] const std::vector<Solid>& solids() const noexcept;
+
+    /// Calls `visit(point, solid index)` for points of the surface of all solids together, no two neighbours
+    /// further apart than `pitch_m`. Points of a solid that are buried in or touch another solid are left
+    /// out: nothing can ever see them. With `region`, only points within it. About 0.3 us a point.
+    void sample_surfaces(double pitch_m,
+                         const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const;
+    void sample_surfaces(double pitch_m, const Eigen::AlignedBox3d& region,
+                         const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const;
+    /// True if a point lies inside a closed solid. About 0.2 us outside all solids' bounding boxes, 1 us
+    /// within.
+    [[nodiscard]] bool is_inside(const Eigen::Vector3d& point) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace octoskin::sim

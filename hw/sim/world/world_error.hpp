@@ -1,0 +1,17 @@
+// What is wrong with a world file, and where.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace octoskin::sim {
+
+struct WorldError {
+    std::filesystem::path file;
+    std::string element;  ///< "model 'shelf', link 'body', visual 'top'"; empty if it concerns the whole file
+    std::string what;
+    /// "file: element: what".
+    [[nodiscard]] std::string message() const;
+};
+
+}  // namespace octoskin::sim

@@ -1,0 +1,2 @@
+#pragma once
+#include "host/core/mapping/fused_map.hpp"

@@ -1,0 +1,186 @@
+// Random faults of buses and sensors, from a seed. Whatever happens, a reading that is sent was truly taken:
+// this distance, in this zone, at this time within the bound told; and when the faults are over the fleet
+// comes back.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/node_rig.hpp"
+
+namespace octoskin::node {
+namespace {
+
+using sim::I2cFaultKind;
+using test::fleet_config;
+using test::NodeRig;
+using test::SaidReading;
+using test::SensorSetup;
+using test::TrueRange;
+
+constexpr Microseconds kStep{50'000};
+constexpr int kFaultySteps = 120;
+constexpr Microseconds kQuiet{22'000'000};  // two of the longest waits between attempts, and a bring-up
+constexpr std::uint8_t kSensors = 6;
+constexpr std::size_t kBuses = 2;
+
+// Only results are read twice. A bit flipped in the poll that says "not ready" moves the capture time by the
+// distance to the next poll, which is its longest here.
+constexpr std::int64_t kOnePollUs = 1'000;
+
+// Faults that the double read, the stream count and the error handling must catch. Writes that arrive altered
+// are a matter of reading the configuration back.
+constexpr std::array<I2cFaultKind, 8> kBusFaults = {
+    I2cFaultKind::nack_address, I2cFaultKind::nack_byte,        I2cFaultKind::nack_read,
+    I2cFaultKind::flip_bit,     I2cFaultKind::lose_arbitration, I2cFaultKind::stretch,
+    I2cFaultKind::read_ones,    I2cFaultKind::sda_stuck_low};
+
+class Campaign {
+  public:
+    explicit Campaign(std::uint32_t seed)
+        : random_(seed), rig_(config(), parts(random_), sim::NodeClock{{0xFFFFFFFFU - 4'000'000U}, 50.0}) {
+        for (int step = 0; step < kFaultySteps; ++step) {
+            if (step >= 20 && draw(4) == 0) disturb();
+            rig_.run_for(kStep);
+        }
+        for (std::size_t sensor = 0; sensor < kSensors; ++sensor) rig_.sensor(sensor).set_faults({});
+        rig_.run_for(kQuiet);
+    }
+    [[nodiscard]] NodeRig& rig() { return rig_; }
+
+  private:
+    static NodeConfig config() {
+        NodeConfig config = fleet_config(kSensors, kBuses);
+        for (std::uint8_t i = 0; i < kSensors; i = static_cast<std::uint8_t>(i + 2)) {
+            config.sensors[i].zone_count = 2;
+            config.sensors[i].zones[0] = {.centre_spad = 167, .width = 8, .height = 16};
+            config.sensors[i].zones[1] = {.centre_spad = 231, .width = 8, .height = 8};
+        }
+        return config;
+    }
+    static std::vector<SensorSetup> parts(std::mt19937& random) {
+        std::vector<SensorSetup> setups(kSensors);
+        for (auto& setup : setups) {
+            setup.part.slow_clock_factor = 1.0 + 0.0001 * static_cast<double>(random() % 1'600);
+        }
+        return setups;
+    }
+    std::uint32_t draw(std::uint32_t count) { return static_cast<std::uint32_t>(random_() % count); }
+
+    void disturb() {
+        const std::size_t sensor = draw(kSensors);
+        switch (draw(8)) {
+            case 0:
+                rig_.sensor(sensor).brown_out(rig_.now());
+                break;
+            case 1:
+                rig_.sensor(sensor).set_faults({.freezes_stream = true});
+                break;
+            case 2:
+                rig_.sensor(sensor).set_faults({.never_ready = true});
+                break;
+            case 3:
+                rig_.sensor(sensor).set_faults({.is_always_ready = true});
+                break;
+            case 4:
+                rig_.sensor(sensor).set_faults({.holds_sda_clocks = 1 + draw(40)});
+                break;
+            default:
+                disturb_bus();
+                break;
+        }
+        if (draw(3) == 0) rig_.sensor(draw(kSensors)).set_faults({});
+    }
+    void disturb_bus() {
+        sim::SimulatedI2cBus& bus = rig_.bus(draw(kBuses));
+        const I2cFaultKind kind = kBusFaults.at(draw(kBusFaults.size()));
+        // Data that is wrong twice in the same way is beyond what reading twice can see.
+        const bool alters_data = kind == I2cFaultKind::flip_bit || kind == I2cFaultKind::read_ones;
+        bus.inject({.kind = kind,
+                    .first = bus.transfer_count() + draw(60),
+                    .count = alters_data ? 1 : 1 + draw(3),
+                    .position = kind == I2cFaultKind::sda_stuck_low ? 1 + draw(30) : draw(136)});
+    }
+
+    std::mt19937 random_;
+    NodeRig rig_;
+};
+
+class Judge {
+  public:
+    explicit Judge(NodeRig& rig) : rig_(rig) {
+        for (const auto& item : rig.said()) {
+            const auto* health = std::get_if<wire::SensorHealth>(&item.message);
+            if (health == nullptr) continue;
+            bounds_[health->sensor].push_back({item.end.us, health->capture_bound_64us * std::int64_t{64}});
+        }
+    }
+    /// Empty if the reading is true; else what is wrong with it.
+    [[nodiscard]] std::string complaint(std::uint8_t sensor, const SaidReading& said) const {
+        const TrueRange* truth = nullptr;
+        for (const TrueRange& range : rig_.truth(sensor)) {
+            if (range.range_mm == said.reading.range_mm && range.window_middle < said.end) truth = &range;
+        }
+        if (truth == nullptr) return "no range had this distance";
+        const NodeConfig config = zones_of(sensor);
+        if (!(truth->roi == config.sensors[0].zones.at(said.reading.zone))) return "taken in another zone";
+        const std::uint32_t true_us = rig_.clock().to_node(truth->window_middle).us;
+        const auto residue = static_cast<std::int32_t>((said.reading.capture.value_us - true_us) << 8U) / 256;
+        if (std::abs(residue) > bound_us(sensor, said.end.us) + kOnePollUs) {
+            return "captured " + std::to_string(residue) + " us beside the truth, told " +
+                   std::to_string(bound_us(sensor, said.end.us));
+        }
+        return {};
+    }
+
+  private:
+    static NodeConfig zones_of(std::uint8_t sensor) {
+        NodeConfig config;
+        if (sensor % 2 == 0) {
+            config.sensors[0].zones[0] = {.centre_spad = 167, .width = 8, .height = 16};
+            config.sensors[0].zones[1] = {.centre_spad = 231, .width = 8, .height = 8};
+        }
+        return config;
+    }
+    [[nodiscard]] std::int64_t bound_us(std::uint8_t sensor, std::int64_t end_us) const {
+        std::int64_t largest = 0;
+        for (const auto& [told_us, bound_us] : bounds_.at(sensor)) {
+            if (end_us - told_us < 1'100'000 && end_us - told_us > -20'000)
+                largest = std::max(largest, bound_us);
+        }
+        return largest;
+    }
+
+    NodeRig& rig_;
+    std::map<std::uint8_t, std::vector<std::pair<std::int64_t, std::int64_t>>> bounds_;
+};
+
+TEST(NodeFaultCampaign, sends_nothing_but_the_truth_and_recovers_for_every_seed) {
+    std::uint32_t restarts = 0;
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+        Campaign campaign(seed);
+        NodeRig& rig = campaign.rig();
+        const Judge judge(rig);
+        for (std::uint8_t sensor = 0; sensor < kSensors; ++sensor) {
+            for (const SaidReading& said : rig.readings_of(sensor)) {
+                EXPECT_EQ(judge.complaint(sensor, said), "")
+                    << "seed " << seed << " sensor " << int{sensor} << " at " << said.end.us;
+            }
+            EXPECT_EQ(rig.last_health(sensor)->state, wire::SensorState::ranging)
+                << "seed " << seed << " sensor " << int{sensor};
+        }
+        EXPECT_EQ(rig.said_of<wire::Heartbeat>().back().degraded_sensors, 0) << "seed " << seed;
+        EXPECT_EQ(rig.undecodable_count(), 0U);
+        restarts += rig.node().counts().sensor_restarts;
+    }
+    EXPECT_GT(restarts, 300U) << "the faults hardly did anything";
+}
+
+}  // namespace
+}  // namespace octoskin::node

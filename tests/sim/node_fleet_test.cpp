@@ -1,0 +1,242 @@
+// Ten seconds of whole fleets whose oscillators are up to 7 % off, as the parts' real ones are. Oracle: the
+// simulated sensors' own windows; each range has a distance of its own by which it is found again.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/support/node_rig.hpp"
+
+namespace octoskin::node {
+namespace {
+
+using test::fleet_config;
+using test::NodeRig;
+using test::SaidReading;
+using test::SensorSetup;
+using test::TrueRange;
+
+constexpr Microseconds kDuration{10'000'000};
+// Until then every sensor has been trimmed twice at most.
+constexpr std::int64_t kSettledUs = 2'000'000;
+// A range whose window ended by then has had the time to be read and sent.
+constexpr std::int64_t kCompleteUs = 9'900'000;
+
+NodeConfig at_30_hz(std::uint8_t count, std::uint8_t buses) {
+    return fleet_config(count, buses);
+}
+
+NodeConfig at_50_hz(std::uint8_t count, std::uint8_t buses) {
+    NodeConfig config = fleet_config(count, buses);
+    for (std::uint8_t i = 0; i < count; ++i) {
+        SensorConfig& sensor = config.sensors[i];
+        sensor.distance_mode = DistanceMode::short_range;
+        sensor.timing_budget_ms = 15;
+        sensor.inter_measurement_ms = 20;
+        sensor.phase_us = static_cast<std::uint16_t>(20'000 / count * i);
+    }
+    return config;
+}
+
+/// Real periods from 7 % below to 7 % above the nominal ones; oscillator values over all that are modelled.
+std::vector<SensorSetup> spread_fleet(std::uint8_t count) {
+    std::vector<SensorSetup> setups(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double period_factor = 0.93 + 0.14 * static_cast<double>(i) / (count - 1);
+        setups[i].part.slow_clock_factor = 1.075 / period_factor;
+        setups[i].part.osc_calibrate = static_cast<std::uint16_t>(30 + i % 16);
+    }
+    return setups;
+}
+
+std::int64_t signed_residue(std::uint32_t difference, std::uint32_t span) {
+    const std::int64_t residue = difference % span;
+    return residue >= span / 2 ? residue - span : residue;
+}
+
+struct Outcome {
+    std::vector<std::int64_t> errors_us;  ///< absolute, of the settled part
+    std::int64_t beyond_bound = 0;        ///< readings whose error exceeds the bound told for their sensor
+    std::int64_t never_measured = 0;      ///< readings of a distance that no range had
+    std::int64_t used = 0;
+    std::int64_t lost = 0;
+    std::int64_t twice = 0;
+    std::int64_t first_us = 0;  ///< of the sensor that came last
+};
+
+class FleetRun {
+  public:
+    FleetRun(const NodeConfig& config, Microseconds loop = Microseconds{0})
+        // The node's clock starts 5 s before it wraps and its crystal is 100 ppm off.
+        : config_(config),
+          rig_(config, spread_fleet(config.sensor_count), sim::NodeClock{{0xFFFFFFFFU - 5'000'000U}, 100.0}) {
+        if (loop.count() > 0) {
+            rig_.run_in_steps_for(kDuration, loop);
+        } else {
+            rig_.run_for(kDuration);
+        }
+        note_bounds();
+        for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) judge(sensor);
+        std::sort(outcome_.errors_us.begin(), outcome_.errors_us.end());
+    }
+    [[nodiscard]] const Outcome& outcome() const { return outcome_; }
+    [[nodiscard]] NodeRig& rig() { return rig_; }
+    [[nodiscard]] double bus_use() {
+        double most = 0.0;
+        for (std::size_t bus = 0; bus < kNodeBusesMax; ++bus) {
+            most = std::max(most, static_cast<double>(rig_.bus(bus).busy_time().count()));
+        }
+        return most / static_cast<double>(kDuration.count());
+    }
+    [[nodiscard]] std::int64_t error_us(double quantile) const {
+        const auto last = static_cast<double>(outcome_.errors_us.size() - 1);
+        return outcome_.errors_us.at(static_cast<std::size_t>(quantile * last));
+    }
+    void report(const std::string& name) {
+        std::printf(
+            "%-28s capture error p50 %lld p99 %lld max %lld us; used %lld, lost %lld; I2C %.1f %%, "
+            "CAN %.1f %%; last sensor's first reading %.0f ms\n",
+            name.c_str(), static_cast<long long>(error_us(0.5)), static_cast<long long>(error_us(0.99)),
+            static_cast<long long>(error_us(1.0)), static_cast<long long>(outcome_.used),
+            static_cast<long long>(outcome_.lost), 100.0 * bus_use(), 100.0 * rig_.can().busy_fraction(),
+            static_cast<double>(outcome_.first_us) * 1e-3);
+    }
+
+  private:
+    struct Told {
+        sim::SimTime when;
+        std::int64_t bound_us = 0;
+    };
+
+    void note_bounds() {
+        for (const auto& item : rig_.said()) {
+            const auto* health = std::get_if<wire::SensorHealth>(&item.message);
+            if (health == nullptr) continue;
+            bounds_[health->sensor].push_back({item.end, health->capture_bound_64us * std::int64_t{64}});
+        }
+    }
+    /// The largest bound told in the second before the reading, or just after it: a larger bound than before
+    /// is told at once, but a reading has the higher priority.
+    [[nodiscard]] std::int64_t bound_us(std::uint8_t sensor, sim::SimTime end) const {
+        std::int64_t largest = 0;
+        for (const Told& told : bounds_.at(sensor)) {
+            const std::int64_t since_us = end.us - told.when.us;
+            if (since_us < 1'100'000 && since_us > -20'000) largest = std::max(largest, told.bound_us);
+        }
+        return largest;
+    }
+    void judge(std::uint8_t sensor) {
+        std::map<std::int64_t, int> uses;  // by the window's middle
+        const auto readings = rig_.readings_of(sensor);
+        for (const SaidReading& said : readings) {
+            const TrueRange* truth = find(sensor, said);
+            if (truth == nullptr) {
+                ++outcome_.never_measured;
+                continue;
+            }
+            ++uses[truth->window_middle.us];
+            const std::uint32_t true_us = rig_.clock().to_node(truth->window_middle).us;
+            const std::int64_t error_us = std::abs(
+                signed_residue(said.reading.capture.value_us - true_us, said.reading.capture.span_us));
+            if (error_us > bound_us(sensor, said.end)) ++outcome_.beyond_bound;
+            if (said.end.us > kSettledUs) outcome_.errors_us.push_back(error_us);
+        }
+        for (const TrueRange& range : rig_.truth(sensor)) {
+            const int times = uses[range.window_middle.us];
+            outcome_.twice += times > 1 ? 1 : 0;
+            if (range.window_middle.us < kSettledUs || range.window_middle.us > kCompleteUs) continue;
+            outcome_.used += times > 0 ? 1 : 0;
+            outcome_.lost += times == 0 ? 1 : 0;
+        }
+        outcome_.first_us =
+            std::max(outcome_.first_us, readings.empty() ? kDuration.count() : readings.front().end.us);
+    }
+    [[nodiscard]] const TrueRange* find(std::uint8_t sensor, const SaidReading& said) const {
+        const TrueRange* found = nullptr;
+        for (const TrueRange& range : rig_.truth(sensor)) {
+            if (range.range_mm == said.reading.range_mm && range.window_middle < said.end) found = &range;
+        }
+        return found;
+    }
+
+    NodeConfig config_;
+    NodeRig rig_;
+    std::map<std::uint8_t, std::vector<Told>> bounds_;
+    Outcome outcome_;
+};
+
+void expect_whole(FleetRun& run) {
+    EXPECT_EQ(run.outcome().lost, 0);
+    EXPECT_EQ(run.outcome().twice, 0);
+    EXPECT_EQ(run.outcome().never_measured, 0);
+    EXPECT_EQ(run.outcome().beyond_bound, 0);
+    const NodeCounts counts = run.rig().node().counts();
+    EXPECT_EQ(counts.rejected + counts.displaced + counts.late + counts.sensor_restarts, 0U);
+    EXPECT_LE(run.outcome().first_us, 400'000);
+}
+
+void expect_trimmed(NodeRig& rig, std::uint8_t count, int tolerance_permille) {
+    for (std::uint8_t sensor = 0; sensor < count; ++sensor) {
+        EXPECT_LE(std::abs(rig.last_health(sensor)->period_error_permille), tolerance_permille)
+            << int{sensor};
+    }
+}
+
+TEST(NodeFleet, loses_no_reading_of_17_sensors_at_30_hz) {
+    FleetRun run(at_30_hz(17, 4));
+    run.report("17 at 30 Hz, CAN FD");
+    expect_whole(run);
+    expect_trimmed(run.rig(), 17, 5);
+    // 17 sensors in 7.9 s at 33 ms
+    EXPECT_NEAR(static_cast<double>(run.outcome().used), 17 * 7'900.0 / 33.0, 40.0);
+    EXPECT_LE(run.error_us(0.5), 100);
+    EXPECT_LE(run.error_us(0.99), 1'000);
+}
+
+TEST(NodeFleet, loses_no_reading_of_17_sensors_at_50_hz) {
+    FleetRun run(at_50_hz(17, 4));
+    run.report("17 at 50 Hz, CAN FD");
+    expect_whole(run);
+    expect_trimmed(run.rig(), 17, 5);
+    EXPECT_NEAR(static_cast<double>(run.outcome().used), 17 * 7'900.0 / 20.0, 80.0);
+    EXPECT_LE(run.error_us(0.99), 1'000);
+}
+
+TEST(NodeFleet, loses_no_reading_in_classical_frames_at_500_kbit_per_second) {
+    NodeConfig config = at_50_hz(17, 4);
+    config.uses_can_fd = false;
+    config.nominal_bitrate = 500'000;
+    FleetRun run(config);
+    run.report("17 at 50 Hz, classical");
+    expect_whole(run);
+}
+
+TEST(NodeFleet, loses_no_reading_of_34_sensors_at_30_hz) {
+    FleetRun run(at_30_hz(34, 4));
+    run.report("34 at 30 Hz, CAN FD");
+    expect_whole(run);
+    EXPECT_LE(run.bus_use(), 0.40);
+}
+
+TEST(NodeFleet, loses_no_reading_on_the_slowest_i2c_bus) {
+    NodeConfig config = at_50_hz(17, 4);
+    config.i2c_hz = 283'000;
+    FleetRun run(config);
+    run.report("17 at 50 Hz, I2C 283 kHz");
+    expect_whole(run);
+    EXPECT_LE(run.bus_use(), 0.50);
+}
+
+TEST(NodeFleet, loses_no_reading_in_a_main_loop_of_a_hundred_microseconds) {
+    for (const NodeConfig& config : {at_30_hz(17, 4), at_50_hz(17, 4)}) {
+        FleetRun run(config, Microseconds{100});
+        run.report("17, loop of 100 us");
+        expect_whole(run);
+    }
+}
+
+}  // namespace
+}  // namespace octoskin::node

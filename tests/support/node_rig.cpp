@@ -1,0 +1,157 @@
+#include "tests/support/node_rig.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace octoskin::test {
+
+namespace {
+
+// Distances repeat after this many ranges: long after any reading of the earlier one is gone.
+constexpr std::uint32_t kDistances = 1'000;
+constexpr std::uint16_t kFirstDistanceMm = 200;
+
+constexpr node::Identity kIdentity{.uid = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12},
+                                   .build_id = 0x1234ABCD,
+                                   .reset_cause = wire::ResetCause::pin};
+
+}  // namespace
+
+NodeConfig fleet_config(std::uint8_t count, std::uint8_t buses) {
+    NodeConfig config;
+    config.node_id = 5;
+    config.sensor_count = count;
+    for (std::uint8_t i = 0; i < count; ++i) {
+        SensorConfig& sensor = config.sensors[i];
+        sensor.bus = static_cast<std::uint8_t>(i % buses);
+        sensor.xshut_line = i;
+        sensor.address = static_cast<std::uint8_t>(0x30 + i);
+        sensor.phase_us = static_cast<std::uint16_t>(33'000 / count * i);
+    }
+    return config;
+}
+
+NodeRig::FittedSensor::FittedSensor(const SensorSetup& setup)
+    : model(setup.part, [this](std::uint32_t, sim::SimTime middle, const Roi& roi) {
+          const auto index = static_cast<std::uint32_t>(truth.size()) % kDistances;
+          const auto range_mm = static_cast<std::uint16_t>(kFirstDistanceMm + index);
+          truth.push_back({.range_mm = range_mm, .window_middle = middle, .roi = roi});
+          return sim::RangingReturn{
+              .range_m = range_mm * 1e-3, .sigma_m = 0.005, .peak_signal_mcps = 10.0, .ambient_mcps = 0.5};
+      }) {
+    model.set_faults(setup.faults);
+}
+
+NodeRig::NodeRig(const NodeConfig& config, const std::vector<SensorSetup>& setups, sim::NodeClock clock,
+                 const node::Policy& policy)
+    : config_(config), clock_(clock), can_({.nominal = config.nominal_bitrate, .data = config.data_bitrate}) {
+    for (std::size_t bus = 0; bus < kNodeBusesMax; ++bus) {
+        buses_.emplace_back(present_, config.i2c_hz);
+        bus_pointers_.push_back(&buses_.back());
+    }
+    for (std::size_t i = 0; i < config.sensor_count; ++i) {
+        sensors_.push_back(std::make_unique<FittedSensor>(setups.at(i)));
+        if (setups[i].is_fitted) buses_.at(config.sensors[i].bus).attach(sensors_.back()->model);
+    }
+    can_.tap([this](const wire::CanFrame& frame, sim::SimTime end) { record(frame, end); });
+    controller_ = &can_.attach([this](const wire::CanFrame& frame, sim::SimTime end) {
+        node_->on_frame(frame, clock_.to_node(end));
+    });
+    host_ = &can_.attach({}, 64);
+    const node::Ports ports{.buses = bus_pointers_, .xshut = *this, .can = *this, .indicator = this};
+    node_ = std::make_unique<node::Node>(config_, kIdentity, ports, node_now(), policy);
+}
+
+void NodeRig::set(std::uint8_t line, bool is_high) {
+    xshut_events_.push_back({.line = line, .is_high = is_high, .time = present_.time});
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+        if (config_.sensors[i].xshut_line == line) sensors_[i]->model.set_xshut(is_high, present_.time);
+    }
+}
+
+void NodeRig::attach_stray_sensor(std::size_t bus, const sim::SensorFaults& faults) {
+    stray_ = std::make_unique<FittedSensor>(SensorSetup{.part = {}, .faults = faults});
+    stray_->model.set_xshut(true, present_.time);
+    buses_.at(bus).attach(stray_->model);
+}
+
+bool NodeRig::send(const wire::CanFrame& frame) {
+    return !is_transmission_blocked_ && controller_->send(frame);
+}
+
+void NodeRig::turn() {
+    can_.advance(present_.time);
+    node_->poll(node_now());
+    ++poll_count_;
+}
+
+void NodeRig::run_for(Microseconds duration) {
+    const sim::SimTime end{present_.time.us + duration.count()};
+    while (present_.time < end) {
+        turn();
+        present_.time = std::min(next_event(), end);
+    }
+}
+
+sim::SimTime NodeRig::next_event() const {
+    const Microseconds wait = elapsed(node_now(), node_->wake_time(node_now()));
+    sim::SimTime next{present_.time.us + wait.count()};
+    for (const sim::SimulatedI2cBus& bus : buses_) {
+        if (const auto end = bus.transfer_end()) next = std::min(next, *end);
+    }
+    if (const auto event = can_.next_event()) next = std::min(next, *event);
+    // What is due at once is done in the next microsecond: the loop of no board is faster.
+    return std::max(next, sim::SimTime{present_.time.us + 1});
+}
+
+void NodeRig::run_in_steps_for(Microseconds duration, Microseconds step) {
+    const sim::SimTime end{present_.time.us + duration.count()};
+    while (present_.time < end) {
+        turn();
+        present_.time.us += step.count();
+    }
+}
+
+void NodeRig::send_from_host(const wire::Message& message, wire::NodeId id) {
+    send_from_host(wire::encode(message, id));
+}
+
+void NodeRig::send_from_host(const wire::CanFrame& frame) {
+    if (!host_->send(frame)) throw std::runtime_error("the test's own mailboxes are full");
+}
+
+void NodeRig::record(const wire::CanFrame& frame, sim::SimTime end) {
+    frames_.push_back(frame);
+    const auto decoded = wire::decode(frame);
+    if (!decoded) {
+        ++undecodable_count_;
+        return;
+    }
+    said_.push_back({.message = decoded->message, .end = end});
+}
+
+std::vector<SaidReading> NodeRig::readings_of(std::uint8_t sensor) const {
+    std::vector<SaidReading> readings;
+    for (const SaidMessage& item : said_) {
+        if (const auto* classical = std::get_if<wire::Range>(&item.message)) {
+            if (classical->reading.sensor == sensor) readings.push_back({classical->reading, item.end});
+        } else if (const auto* fd = std::get_if<wire::RangeFd>(&item.message)) {
+            for (std::uint8_t i = 0; i < fd->count; ++i) {
+                const wire::RangeReading& reading = fd->entries[i].reading;
+                if (reading.sensor == sensor) readings.push_back({reading, item.end});
+            }
+        }
+    }
+    return readings;
+}
+
+std::optional<wire::SensorHealth> NodeRig::last_health(std::uint8_t sensor) const {
+    std::optional<wire::SensorHealth> last;
+    for (const SaidMessage& item : said_) {
+        const auto* health = std::get_if<wire::SensorHealth>(&item.message);
+        if (health != nullptr && health->sensor == sensor) last = *health;
+    }
+    return last;
+}
+
+}  // namespace octoskin::test

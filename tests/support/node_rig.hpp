@@ -1,0 +1,147 @@
+// One node in a simulation that a test holds in its hands: the real node core and driver, modelled sensors,
+// I2C buses and a CAN bus, everything said recorded, and the truth of every range kept aside as the oracle.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "common/config/node_config.hpp"
+#include "common/time.hpp"
+#include "common/wire/codec.hpp"
+#include "common/wire/messages.hpp"
+#include "firmware/core/node.hpp"
+#include "hw/sim/can/simulated_can_bus.hpp"
+#include "hw/sim/clock.hpp"
+#include "hw/sim/i2c/simulated_i2c_bus.hpp"
+#include "hw/sim/vl53l1x/sensor_model.hpp"
+
+namespace octoskin::test {
+
+/// `count` sensors on `buses` buses in turn, sensor i on XSHUT line i with address 0x30 + i.
+[[nodiscard]] NodeConfig fleet_config(std::uint8_t count, std::uint8_t buses);
+
+struct SensorSetup {
+    sim::SensorPart part;
+    sim::SensorFaults faults;
+    bool is_fitted = true;
+};
+
+/// A range as the sensor truly took it. Its distance in millimetres tells it from its neighbours in time.
+struct TrueRange {
+    std::uint16_t range_mm = 0;
+    sim::SimTime window_middle{};
+    Roi roi;
+};
+
+struct SaidMessage {
+    wire::Message message;
+    sim::SimTime end{};
+};
+
+/// A reading as it came over the bus, from a RANGE or RANGE_FD frame.
+struct SaidReading {
+    wire::RangeReading reading;
+    sim::SimTime end{};
+};
+
+struct XshutEvent {
+    std::uint8_t line = 0;
+    bool is_high = false;
+    sim::SimTime time{};
+};
+
+class NodeRig final : private node::XshutLines, private node::Indicator, private node::CanTransmitter {
+  public:
+    /// `setups`: one for each sensor of the configuration.
+    NodeRig(const NodeConfig& config, const std::vector<SensorSetup>& setups, sim::NodeClock clock = {},
+            const node::Policy& policy = {});
+
+    /// Runs from event to event.
+    void run_for(Microseconds duration);
+    /// Runs in steps of `step`, as a main loop of that length would.
+    void run_in_steps_for(Microseconds duration, Microseconds step);
+    /// A frame from outside, as if another controller sent it.
+    void send_from_host(const wire::Message& message, wire::NodeId id);
+    void send_from_host(const wire::CanFrame& frame);
+    /// While blocked, the node's controller takes no frame, as if every mailbox were full.
+    void block_transmission(bool is_blocked) { is_transmission_blocked_ = is_blocked; }
+    /// A sensor more, whose XSHUT nobody drives: it answers at 0x29 from the start.
+    void attach_stray_sensor(std::size_t bus, const sim::SensorFaults& faults = {});
+
+    [[nodiscard]] sim::SimTime now() const noexcept { return present_.time; }
+    [[nodiscard]] NodeTime node_now() const { return clock_.to_node(present_.time); }
+    [[nodiscard]] const sim::NodeClock& clock() const noexcept { return clock_; }
+    [[nodiscard]] node::Node& node() { return *node_; }
+    [[nodiscard]] sim::SensorModel& sensor(std::size_t index) { return sensors_.at(index)->model; }
+    [[nodiscard]] sim::SimulatedI2cBus& bus(std::size_t index) { return buses_.at(index); }
+    [[nodiscard]] sim::SimulatedCanBus& can() { return can_; }
+
+    [[nodiscard]] const std::vector<TrueRange>& truth(std::size_t sensor) const {
+        return sensors_.at(sensor)->truth;
+    }
+    [[nodiscard]] const std::vector<wire::CanFrame>& frames() const noexcept { return frames_; }
+    /// What was said on the bus, decoded; the host's part too.
+    [[nodiscard]] const std::vector<SaidMessage>& said() const noexcept { return said_; }
+    [[nodiscard]] std::vector<SaidReading> readings_of(std::uint8_t sensor) const;
+    [[nodiscard]] std::optional<wire::SensorHealth> last_health(std::uint8_t sensor) const;
+    [[nodiscard]] const std::vector<XshutEvent>& xshut_events() const noexcept { return xshut_events_; }
+    [[nodiscard]] std::vector<bool> lit() const { return lit_; }
+    [[nodiscard]] std::uint32_t undecodable_count() const noexcept { return undecodable_count_; }
+    [[nodiscard]] std::uint64_t poll_count() const noexcept { return poll_count_; }
+
+    template <class T>
+    [[nodiscard]] std::vector<T> said_of() const {
+        std::vector<T> all;
+        for (const SaidMessage& item : said_) {
+            if (const auto* message = std::get_if<T>(&item.message)) all.push_back(*message);
+        }
+        return all;
+    }
+    template <class T>
+    [[nodiscard]] std::vector<sim::SimTime> times_of() const {
+        std::vector<sim::SimTime> all;
+        for (const SaidMessage& item : said_) {
+            if (std::holds_alternative<T>(item.message)) all.push_back(item.end);
+        }
+        return all;
+    }
+
+  private:
+    struct FittedSensor {
+        FittedSensor(const SensorSetup& setup);
+        std::vector<TrueRange> truth;
+        sim::SensorModel model;
+    };
+
+    void set(std::uint8_t line, bool is_high) override;
+    void set(bool is_on) override { lit_.push_back(is_on); }
+    bool send(const wire::CanFrame& frame) override;
+    void turn();
+    [[nodiscard]] sim::SimTime next_event() const;
+    void record(const wire::CanFrame& frame, sim::SimTime end);
+
+    NodeConfig config_;
+    sim::NodeClock clock_;
+    sim::Present present_;
+    std::vector<std::unique_ptr<FittedSensor>> sensors_;
+    std::deque<sim::SimulatedI2cBus> buses_;
+    std::vector<i2c::Bus*> bus_pointers_;
+    sim::SimulatedCanBus can_;
+    node::CanTransmitter* controller_ = nullptr;
+    node::CanTransmitter* host_ = nullptr;
+    std::unique_ptr<node::Node> node_;
+    std::vector<wire::CanFrame> frames_;
+    std::vector<SaidMessage> said_;
+    std::vector<XshutEvent> xshut_events_;
+    std::vector<bool> lit_;
+    bool is_transmission_blocked_ = false;
+    std::unique_ptr<FittedSensor> stray_;
+    std::uint32_t undecodable_count_ = 0;
+    std::uint64_t poll_count_ = 0;
+};
+
+}  // namespace octoskin::test

@@ -1,0 +1,246 @@
+// Bad input through the program: a clear error with its exit code, or a counter; never a crash, a hang, or a
+// changed voxel.
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "tests/system/cli/program.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class BadInput : public ProgramTest {
+  protected:
+    /// Replays `rec` as it now is, expects success, and hands back the fused map's bytes.
+    std::string replayed_map() {
+        const Said said = octoskin("replay " + path("rec") + " --out " + path("maps"));
+        EXPECT_EQ(said.exit_code, 0) << said.output;
+        said_ = said.output;
+        return content(path("maps/fused.ot"));
+    }
+    std::string said_;
+};
+
+TEST_F(BadInput, the_command_line_is_refused_with_a_hint) {
+    EXPECT_EQ(octoskin("").exit_code, 64);
+    EXPECT_EQ(octoskin("reply").exit_code, 64);
+    const Said unknown = octoskin("replay somewhere --fast");
+    EXPECT_EQ(unknown.exit_code, 64);
+    EXPECT_THAT(unknown.output, HasSubstr("--fast"));
+    EXPECT_EQ(octoskin("simulate out --seed many").exit_code, 64);
+    EXPECT_EQ(octoskin("simulate out --seed -1").exit_code, 64);
+    EXPECT_EQ(octoskin("--help").exit_code, 0);
+    EXPECT_EQ(octoskin("replay --help").exit_code, 0);
+}
+
+TEST_F(BadInput, a_missing_recording_or_a_missing_part_of_it_is_named) {
+    const Said absent = octoskin("replay " + path("nowhere"));
+    EXPECT_EQ(absent.exit_code, 66);
+    EXPECT_THAT(absent.output, HasSubstr("nowhere: no such directory"));
+    record_short("rec");
+    for (const char* file : {"can.log", "rig.yaml", "robot.urdf", "meta.yaml"}) {
+        std::filesystem::rename(path(std::string("rec/") + file), path("aside"));
+        const Said said = octoskin("replay " + path("rec"));
+        EXPECT_EQ(said.exit_code, 66) << file;
+        EXPECT_THAT(said.output, HasSubstr(file));
+        std::filesystem::rename(path("aside"), path(std::string("rec/") + file));
+    }
+}
+
+TEST_F(BadInput, a_rig_with_a_mistake_is_refused_by_file_line_and_key) {
+    const Said said = octoskin("rig " + source("tests/data/rigs/metres-for-millimetres.yaml"));
+    EXPECT_EQ(said.exit_code, 78);
+    EXPECT_THAT(said.output, testing::ContainsRegex("metres-for-millimetres.yaml:[0-9]+: "));
+    const Said overloaded = octoskin("rig " + source("tests/data/rigs/can-overloaded.yaml"));
+    EXPECT_EQ(overloaded.exit_code, 78);
+    EXPECT_THAT(overloaded.output, HasSubstr("70 %"));
+    const Said robot = octoskin("rig " + source("hw/rigs/experiment.yaml") + " --robot " +
+                                source("tests/data/gantry/gantry.urdf"));
+    EXPECT_EQ(robot.exit_code, 78);
+    EXPECT_THAT(robot.output, HasSubstr("panda"));
+}
+
+TEST_F(BadInput, an_unsupported_shape_in_a_world_is_named) {
+    const Said said =
+        octoskin("simulate " + path("rec") + " --world " + source("tests/data/worlds/cone-element.sdf"));
+    EXPECT_EQ(said.exit_code, 65) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("cone-element.sdf"));
+}
+
+TEST_F(BadInput, a_mapping_file_with_an_unknown_key_is_refused) {
+    record_short("rec");
+    write(path("mapping.yaml"), "base: paper\nmodell:\n  miss_log_odds: -0.4\n");
+    const Said said = octoskin("replay " + path("rec") + " --configuration " + path("mapping.yaml"));
+    EXPECT_EQ(said.exit_code, 78);
+    EXPECT_THAT(said.output, HasSubstr("mapping.yaml:2"));
+    EXPECT_EQ(octoskin("replay " + path("rec") + " --configuration best").exit_code, 78);
+}
+
+TEST_F(BadInput, foreign_lines_and_frames_in_the_log_are_counted_and_change_no_voxel) {
+    record_short("rec");
+    const std::string clean = replayed_map();
+    const std::string log = content(path("rec/can.log"));
+    std::string dirty;
+    std::size_t line_number = 0;
+    for (std::size_t begin = 0; begin < log.size();) {
+        const std::size_t end = log.find('\n', begin) + 1;
+        const std::string line = log.substr(begin, end - begin);
+        const std::string stamp = line.substr(0, line.find(')') + 1) + " can0 ";
+        dirty += line;
+        switch (line_number++ % 400) {
+            case 0:
+                dirty += "\n";
+                break;
+            case 50:
+                dirty += "(not a time) can0 123#00\n";
+                break;
+            case 100:
+                dirty += stamp + "7FF#1122334455667788\n";
+                break;  // an identifier of nobody
+            case 150:
+                dirty += stamp + "1FFFFFFF#00\n";
+                break;  // extended
+            case 200:
+                dirty += stamp + "201#R\n";
+                break;  // remote
+            case 250:
+                dirty += stamp + "201#0011223344556677\n";
+                break;  // RANGE of node 1, wrong CRC
+            case 300:
+                dirty += stamp + "141#01\n";
+                break;  // heartbeat, wrong length
+            case 350:
+                dirty += stamp + "02F##1zz\n";
+                break;  // not hexadecimal
+            default:
+                break;
+        }
+        begin = end;
+    }
+    dirty += "(1750000009.000000) can0 201#0011223";  // the file ends in mid-line
+    write(path("rec/can.log"), dirty);
+    EXPECT_EQ(replayed_map(), clean);
+    for (const char* counter : {"line_blank", "line_timestamp", "line_data", "line_truncated"}) {
+        EXPECT_THAT(said_, HasSubstr(counter));
+    }
+    EXPECT_THAT(said_, Not(HasSubstr("log lines " + std::to_string(line_number) +
+                                     " in = " + std::to_string(line_number))));
+}
+
+TEST_F(BadInput, random_bytes_in_the_log_never_crash_the_replay) {
+    record_short("rec");
+    const std::string log = content(path("rec/can.log"));
+    for (const unsigned seed : {1U, 2U, 3U}) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        std::mt19937 random(seed);
+        std::string broken = log;
+        for (int i = 0; i < 2000; ++i) broken[random() % broken.size()] = static_cast<char>(random() % 256);
+        write(path("rec/can.log"), broken);
+        // Done, or done with an empty map; never a signal, a defect, or an account that does not balance.
+        const Said said = octoskin("replay " + path("rec"));
+        EXPECT_TRUE(said.exit_code == 0 || said.exit_code == 1) << said.exit_code;
+        EXPECT_THAT(said.output, Not(HasSubstr("does not balance")));
+        EXPECT_THAT(said.output, HasSubstr("log lines"));
+    }
+}
+
+TEST_F(BadInput, a_recording_without_joints_maps_nothing_and_says_why) {
+    record_short("rec");
+    // Joint states of node 3 have the identifier (6 << 6) | 3 = 0x183.
+    ASSERT_EQ(run("sed -i '/ can0 183#/d' " + path("rec/can.log")).exit_code, 0);
+    const Said said = octoskin("replay " + path("rec"));
+    EXPECT_EQ(said.exit_code, 1);
+    EXPECT_THAT(said.output, HasSubstr("joints_missing"));
+    EXPECT_THAT(said.output, HasSubstr("part of the log is missing"));
+    EXPECT_THAT(said.output, HasSubstr("nothing came into the map"));
+}
+
+TEST_F(BadInput, a_node_with_another_configuration_is_refused_by_name) {
+    record_short("rec");
+    // Another period on node 1's sensors: another node_hash than the one that the recording's nodes told.
+    ASSERT_EQ(run("sed -i '0,/inter_measurement_ms: 33/s//inter_measurement_ms: 40/' " + path("rec/rig.yaml"))
+                  .exit_code,
+              0);
+    const Said said = octoskin("replay " + path("rec"));
+    EXPECT_EQ(said.exit_code, 0) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("node_info_mismatch"));
+    EXPECT_THAT(said.output,
+                testing::ContainsRegex("node 1 'rear_rings': .*node_hash [0-9a-f]+, the rig has [0-9a-f]+"));
+    EXPECT_THAT(said.output, HasSubstr("node 2 'front_rings': usable"));
+}
+
+TEST_F(BadInput, the_same_bus_logged_twice_gives_the_same_map) {
+    record_short("rec");
+    const std::string clean = replayed_map();
+    ASSERT_EQ(run("sed -i 'p; s/ can0 / can1 /' " + path("rec/can.log")).exit_code, 0);
+    EXPECT_EQ(replayed_map(), clean);
+    EXPECT_THAT(said_, HasSubstr("other_interface"));
+}
+
+TEST_F(BadInput, a_broken_meta_file_is_named) {
+    record_short("rec");
+    for (const char* text : {"", "schema: other\n", "schema: octoskin-recording/1\nseed: nan\n", "a: [\n"}) {
+        write(path("rec/meta.yaml"), text);
+        const Said said = octoskin("replay " + path("rec"));
+        EXPECT_EQ(said.exit_code, 65) << text;
+        EXPECT_THAT(said.output, HasSubstr("meta.yaml")) << text;
+    }
+    for (const char* file : {"meta.yaml", "depth.epoch.yaml", "can.log"}) {
+        record_short("rec");
+        std::filesystem::remove(path(std::string("rec/") + file));
+        std::filesystem::create_directory(path(std::string("rec/") + file));
+        const Said said = octoskin("replay " + path("rec"));
+        EXPECT_TRUE(said.exit_code == 65 || said.exit_code == 66) << file << ": " << said.exit_code;
+        EXPECT_THAT(said.output, HasSubstr(file));
+        std::filesystem::remove(path(std::string("rec/") + file));
+    }
+}
+
+TEST_F(BadInput, a_map_that_runs_out_of_room_says_so_and_fails) {
+    record_short("rec");
+    write(path("mapping.yaml"), "base: robust\nmap: {memory_max_mib: 1}\n");
+    const Said said = octoskin("replay " + path("rec") + " --configuration " + path("mapping.yaml"));
+    EXPECT_EQ(said.exit_code, 1) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("no room"));
+}
+
+TEST_F(BadInput, a_recording_without_its_depth_maps_the_ranges_and_says_so) {
+    record_short("rec");
+    std::filesystem::remove(path("rec/depth.oni"));
+    std::filesystem::remove(path("rec/depth.epoch.yaml"));
+    const Said said = octoskin("replay " + path("rec"));
+    EXPECT_EQ(said.exit_code, 0) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("no depth.oni"));
+}
+
+TEST_F(BadInput, a_truncated_oni_is_an_error_that_keeps_what_came_before) {
+    record_short("rec");
+    static_cast<void>(replayed_map());
+    const std::string ranges_only = content(path("maps/proximity.ot"));
+    const std::string oni = content(path("rec/depth.oni"));
+    for (const std::size_t part : {8U, 4U, 2U}) {
+        write(path("rec/depth.oni"), oni.substr(0, oni.size() / part));
+        const Said said = octoskin("replay " + path("rec") + " --out " + path("cut"));
+        EXPECT_EQ(said.exit_code, 65) << said.output;
+        EXPECT_THAT(said.output, HasSubstr("depth.oni: "));
+        EXPECT_THAT(said.output, HasSubstr("in = "));
+        EXPECT_EQ(content(path("cut/proximity.ot")), ranges_only) << "1/" << part;
+    }
+    write(path("rec/depth.oni"), "foreign");
+    const Said foreign = octoskin("replay " + path("rec"));
+    EXPECT_EQ(foreign.exit_code, 65);
+    EXPECT_THAT(foreign.output, HasSubstr("not a recording"));
+}
+
+TEST_F(BadInput, an_output_that_cannot_be_written_is_named) {
+    write(path("file"), "in the way");
+    const Said said = octoskin("simulate " + path("file/rec"));
+    EXPECT_EQ(said.exit_code, 73) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("file/rec"));
+}
+
+}  // namespace
+}  // namespace octoskin

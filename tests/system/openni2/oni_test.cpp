@@ -1,0 +1,328 @@
+// The real OpenNI2 on both sides: its recorder through our virtual camera, its playback through our reader.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "host/io/openni2/oni_reader.hpp"
+#include "host/io/openni2/oni_writer.hpp"
+
+namespace octoskin::openni2 {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr FrameSize kSize{64, 53};
+constexpr int kFrames = 12;
+
+std::vector<std::uint16_t> noisy_frame(int index) {
+    std::mt19937 random(static_cast<unsigned>(index));
+    std::vector<std::uint16_t> depth(kSize.pixels());
+    for (auto& value : depth)
+        value = static_cast<std::uint16_t>(random() % 5 == 0 ? 0 : 400 + random() % 4200);
+    depth.front() = 32'767;
+    depth.back() = 1;
+    return depth;
+}
+
+HostTime time_of(int index) {
+    return HostTime{123'456'789'000'000 + index * 100'003'000LL};
+}
+
+class OniTest : public testing::Test {
+  protected:
+    OniTest() : directory_(fs::path(testing::TempDir()) / ("octoskin_oni_" + std::to_string(::getpid()))) {
+        fs::create_directories(directory_);
+    }
+    ~OniTest() override { fs::remove_all(directory_); }
+
+    [[nodiscard]] fs::path oni() const { return directory_ / "depth.oni"; }
+    [[nodiscard]] fs::path epoch() const { return directory_ / "depth.epoch.yaml"; }
+
+    void record() const {
+        auto writer = OniWriter::create(oni(), epoch(), kSize);
+        ASSERT_TRUE(writer) << writer.error().what;
+        for (int i = 0; i < kFrames; ++i) ASSERT_TRUE(writer->write(time_of(i), noisy_frame(i)));
+        const auto closed = writer->close();
+        ASSERT_TRUE(closed) << closed.error().what;
+    }
+
+    /// Frames until the end or an error; the error's text in `error`.
+    static int count_frames(OniReader& reader, std::string& error) {
+        for (int frames = 0;; ++frames) {
+            const auto frame = reader.next();
+            if (!frame) {
+                error = frame.error().what;
+                return frames;
+            }
+            if (!frame->has_value()) return frames;
+            EXPECT_EQ((*frame)->depth_mm.size(), kSize.pixels());
+        }
+    }
+
+    fs::path directory_;
+};
+
+TEST_F(OniTest, every_frame_comes_back_with_its_pixels_and_its_time) {
+    record();
+    auto reader = OniReader::open(oni(), epoch());
+    ASSERT_TRUE(reader) << reader.error().what;
+    for (int i = 0; i < kFrames; ++i) {
+        const auto frame = reader->next();
+        ASSERT_TRUE(frame) << frame.error().what;
+        ASSERT_TRUE(frame->has_value()) << "frame " << i;
+        EXPECT_EQ((*frame)->captured, time_of(i)) << "frame " << i;
+        EXPECT_EQ((*frame)->width, 64U);
+        EXPECT_EQ((*frame)->height, 53U);
+        EXPECT_EQ((*frame)->depth_mm, noisy_frame(i)) << "frame " << i;
+    }
+    for (int again = 0; again < 2; ++again) {
+        const auto end = reader->next();
+        ASSERT_TRUE(end);
+        EXPECT_FALSE(end->has_value());
+    }
+}
+
+TEST_F(OniTest, depth_that_the_codec_would_spoil_is_stored_as_none) {
+    auto writer = OniWriter::create(oni(), epoch(), kSize);
+    ASSERT_TRUE(writer);
+    std::vector<std::uint16_t> depth(kSize.pixels(), 1000);
+    depth[5] = 32'767;
+    depth[7] = 32'768;
+    depth[6] = 65'535;
+    ASSERT_TRUE(writer->write(time_of(0), depth));
+    ASSERT_TRUE(writer->close());
+    auto reader = OniReader::open(oni(), epoch());
+    ASSERT_TRUE(reader);
+    const auto frame = reader->next();
+    ASSERT_TRUE(frame && frame->has_value());
+    EXPECT_EQ((*frame)->depth_mm[4], 1000);
+    EXPECT_EQ((*frame)->depth_mm[5], 32'767);
+    EXPECT_EQ((*frame)->depth_mm[7], 0);
+    EXPECT_EQ((*frame)->depth_mm[6], 0);
+}
+
+TEST_F(OniTest, a_truncated_recording_ends_with_a_named_error_in_bounded_time) {
+    record();
+    std::ifstream whole(oni(), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
+    std::mt19937 random(1);
+    std::vector<std::size_t> lengths{
+        0, 1, 20, 24, 48, 200, bytes.size() / 2, bytes.size() - 28, bytes.size() - 1};
+    for (int i = 0; i < 20; ++i) lengths.push_back(random() % bytes.size());
+    for (const std::size_t length : lengths) {
+        SCOPED_TRACE("cut to " + std::to_string(length) + " of " + std::to_string(bytes.size()) + " bytes");
+        std::ofstream(oni(), std::ios::binary) << bytes.substr(0, length);
+        const auto start = std::chrono::steady_clock::now();
+        auto reader = OniReader::open(oni(), epoch());
+        std::string error;
+        int frames = 0;
+        if (!reader) {
+            error = reader.error().what;
+        } else {
+            frames = count_frames(*reader, error);
+        }
+        // OpenNI2 writes the frames first and their index behind them: with all frames there, nothing was
+        // lost.
+        if (frames < kFrames) {
+            EXPECT_THAT(error, testing::HasSubstr("depth.oni: "));
+        }
+        EXPECT_LE(frames, kFrames);
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(6));
+    }
+}
+
+TEST_F(OniTest, a_damaged_recording_gives_an_error_or_its_frames_in_bounded_time) {
+    record();
+    std::ifstream whole(oni(), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
+    for (unsigned seed = 0; seed < 12; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        std::mt19937 random(seed);
+        std::string damaged = bytes;
+        // Half of them in the head, where the sizes are.
+        const std::size_t reach = seed % 2 == 0 ? 1000 : damaged.size();
+        for (int i = 0; i < 8; ++i) damaged[random() % reach] = static_cast<char>(random());
+        std::ofstream(oni(), std::ios::binary) << damaged;
+        const auto start = std::chrono::steady_clock::now();
+        std::string error;
+        auto reader = OniReader::open(oni(), epoch());
+        if (reader) {
+            EXPECT_LE(count_frames(*reader, error), kFrames);
+        }
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(6));
+    }
+}
+
+TEST_F(OniTest, full_size_frames_of_pure_noise_come_back_whole) {
+    constexpr FrameSize kFull{512, 424};
+    constexpr int kCount = 40;
+    const auto frame_of = [&](int index) {
+        std::mt19937 random(static_cast<unsigned>(index));
+        std::vector<std::uint16_t> depth(kFull.pixels());
+        for (auto& value : depth) value = static_cast<std::uint16_t>(random() % 32'768);
+        return depth;
+    };
+    auto writer = OniWriter::create(oni(), epoch(), kFull);
+    ASSERT_TRUE(writer) << writer.error().what;
+    for (int i = 0; i < kCount; ++i) ASSERT_TRUE(writer->write(time_of(i), frame_of(i)));
+    const auto closed = writer->close();
+    ASSERT_TRUE(closed) << closed.error().what;
+    auto reader = OniReader::open(oni(), epoch());
+    ASSERT_TRUE(reader) << reader.error().what;
+    for (int i = 0; i < kCount; ++i) {
+        const auto frame = reader->next();
+        ASSERT_TRUE(frame) << frame.error().what;
+        ASSERT_TRUE(frame->has_value()) << "frame " << i;
+        ASSERT_EQ((*frame)->captured, time_of(i)) << "frame " << i;
+        ASSERT_TRUE((*frame)->depth_mm == frame_of(i)) << "frame " << i;
+    }
+    EXPECT_FALSE(reader->next()->has_value());
+}
+
+TEST_F(OniTest, equal_frames_make_equal_bytes) {
+    record();
+    std::ifstream first_file(oni(), std::ios::binary);
+    const std::string first{std::istreambuf_iterator<char>(first_file), {}};
+    record();
+    std::ifstream second_file(oni(), std::ios::binary);
+    const std::string second{std::istreambuf_iterator<char>(second_file), {}};
+    EXPECT_TRUE(first == second);
+}
+
+TEST_F(OniTest, a_recording_without_frames_has_an_end_and_no_frames) {
+    auto writer = OniWriter::create(oni(), epoch(), kSize);
+    ASSERT_TRUE(writer);
+    const auto closed = writer->close();
+    ASSERT_TRUE(closed) << closed.error().what;
+    auto reader = OniReader::open(oni(), epoch());
+    ASSERT_TRUE(reader) << reader.error().what;
+    const auto end = reader->next();
+    ASSERT_TRUE(end) << end.error().what;
+    EXPECT_FALSE(end->has_value());
+}
+
+TEST_F(OniTest, a_recording_that_cannot_be_created_is_an_error_and_leaves_no_sidecar) {
+    auto writer = OniWriter::create(directory_ / "no such folder" / "depth.oni", epoch(), kSize);
+    ASSERT_TRUE(writer);
+    const auto written = writer->write(time_of(0), noisy_frame(0));
+    const auto closed = writer->close();
+    EXPECT_FALSE(written && closed);
+    EXPECT_FALSE(fs::exists(epoch()));
+}
+
+/// No file of this process and its helpers grows beyond a size: what a full disk looks like to a writer.
+class FileSizeLimit {
+  public:
+    explicit FileSizeLimit(rlim_t bytes) {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{bytes, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+
+  private:
+    rlimit before_{};
+    void (*handler_)(int) = SIG_DFL;
+};
+
+TEST_F(OniTest, a_disk_that_fills_up_is_an_error_and_leaves_no_sidecar) {
+    const FileSizeLimit room_for_three_frames(30'000);
+    auto writer = OniWriter::create(oni(), epoch(), kSize);
+    ASSERT_TRUE(writer);
+    bool is_written = true;
+    for (int i = 0; i < kFrames; ++i) is_written = is_written && writer->write(time_of(i), noisy_frame(i));
+    const auto closed = writer->close();
+    EXPECT_FALSE(is_written && closed);
+    EXPECT_FALSE(fs::exists(epoch()));
+}
+
+TEST_F(OniTest, a_writer_whose_helper_ends_early_reports_it_instead_of_dying_of_it) {
+    const fs::path ending = directory_ / "ending";
+    std::ofstream(ending) << "#!/bin/sh\nexit 3\n";
+    fs::permissions(ending, fs::perms::owner_all);
+    auto writer = OniWriter::create(oni(), epoch(), kSize, ending);
+    bool has_failed = !writer;
+    for (int i = 0; i < 500 && !has_failed; ++i) has_failed = !writer->write(time_of(i), noisy_frame(0));
+    EXPECT_TRUE(has_failed);
+    EXPECT_FALSE(fs::exists(epoch()));
+}
+
+TEST_F(OniTest, pictures_too_large_for_OpenNI2_are_refused) {
+    const auto writer = OniWriter::create(oni(), epoch(), {2000, 1200});
+    ASSERT_FALSE(writer);
+    EXPECT_THAT(writer.error().what, testing::HasSubstr("2000 x 1200"));
+}
+
+TEST_F(OniTest, an_error_stays_the_answer) {
+    record();
+    ASSERT_TRUE(write_epoch(epoch(), {.first_frame = time_of(0), .frames = kFrames + 1}));
+    auto reader = OniReader::open(oni(), epoch());
+    ASSERT_TRUE(reader);
+    std::string error, again;
+    count_frames(*reader, error);
+    EXPECT_EQ(count_frames(*reader, again), 0);
+    EXPECT_EQ(again, error);
+}
+
+TEST_F(OniTest, a_file_that_is_no_recording_is_named) {
+    std::ofstream(epoch()) << "schema: octoskin-depth-epoch/1\nfirst_frame_us: 5\nframes: 1\n";
+    std::ofstream(oni()) << "this is not a recording";
+    const auto reader = OniReader::open(oni(), epoch());
+    ASSERT_FALSE(reader);
+    EXPECT_THAT(reader.error().what, testing::HasSubstr("depth.oni: not a recording"));
+}
+
+TEST_F(OniTest, a_helper_that_crashes_is_a_camera_fault_and_nothing_more) {
+    record();
+    const fs::path crashing = directory_ / "crashing";
+    std::ofstream(crashing) << "#!/bin/sh\nkill -SEGV $$\n";
+    fs::permissions(crashing, fs::perms::owner_all);
+    const auto reader = OniReader::open(oni(), epoch(), crashing);
+    ASSERT_FALSE(reader);
+    EXPECT_THAT(reader.error().what, testing::HasSubstr("signal 11"));
+}
+
+TEST_F(OniTest, a_sidecar_that_promises_more_frames_is_an_error_after_the_last_one) {
+    record();
+    ASSERT_TRUE(write_epoch(epoch(), {.first_frame = time_of(0), .frames = kFrames + 1}));
+    auto reader = OniReader::open(oni(), epoch());
+    ASSERT_TRUE(reader);
+    std::string error;
+    EXPECT_EQ(count_frames(*reader, error), kFrames);
+    EXPECT_THAT(error, testing::HasSubstr("the recording ends after 12 of 13 frames"));
+}
+
+TEST_F(OniTest, every_broken_sidecar_is_named) {
+    record();
+    for (const char* text :
+         {"", "schema: other\n", "schema: octoskin-depth-epoch/1\nfirst_frame_us: -1\nframes: 1\n",
+          "schema: octoskin-depth-epoch/1\nfirst_frame_us: soon\nframes: 1\n",
+          "schema: octoskin-depth-epoch/1\nfirst_frame_us: 1\n",
+          "schema: octoskin-depth-epoch/1\nfirst_frame_us: 1\nframes: 1\nfps: 10\n", "[", "a: [\n"}) {
+        std::ofstream(epoch()) << text;
+        const auto reader = OniReader::open(oni(), epoch());
+        ASSERT_FALSE(reader) << text;
+        EXPECT_THAT(reader.error().what, testing::HasSubstr("depth.epoch.yaml")) << text;
+    }
+    fs::remove(epoch());
+    EXPECT_THAT(OniReader::open(oni(), epoch()).error().what, testing::HasSubstr("no such file"));
+}
+
+}  // namespace
+}  // namespace octoskin::openni2

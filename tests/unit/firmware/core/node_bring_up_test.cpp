@@ -1,0 +1,225 @@
+// Bring-up of whole fleets: the real driver against modelled sensors and buses.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "tests/support/node_rig.hpp"
+
+namespace octoskin::node {
+namespace {
+
+using test::fleet_config;
+using test::NodeRig;
+using test::SensorSetup;
+using test::XshutEvent;
+using wire::SensorFault;
+using wire::SensorState;
+
+constexpr Microseconds kMillisecond{1'000};
+
+std::vector<SensorSetup> fleet(std::size_t count) {
+    return std::vector<SensorSetup>(count);
+}
+
+/// XSHUT rises in the order of time, by bus.
+std::map<int, std::vector<XshutEvent>> rises_by_bus(const NodeRig& rig, const NodeConfig& config) {
+    std::map<int, std::vector<XshutEvent>> rises;
+    for (const XshutEvent& event : rig.xshut_events()) {
+        if (event.is_high) rises[config.sensors.at(event.line).bus].push_back(event);
+    }
+    return rises;
+}
+
+TEST(NodeBringUp, has_17_sensors_on_4_buses_ranging_within_a_third_of_a_second) {
+    NodeRig rig(fleet_config(17, 4), fleet(17));
+    rig.run_for(333 * kMillisecond);
+    EXPECT_EQ(rig.node().state(), wire::NodeState::ranging);
+    for (std::uint8_t sensor = 0; sensor < 17; ++sensor) {
+        ASSERT_TRUE(rig.last_health(sensor).has_value());
+        EXPECT_EQ(rig.last_health(sensor)->state, SensorState::ranging) << int{sensor};
+        EXPECT_GE(rig.readings_of(sensor).size(), 1U) << int{sensor};
+    }
+    EXPECT_EQ(rig.node().counts().i2c_errors, 0U);
+}
+
+TEST(NodeBringUp, holds_every_sensor_in_reset_for_a_millisecond_before_the_first_rises) {
+    NodeRig rig(fleet_config(17, 4), fleet(17));
+    rig.run_for(333 * kMillisecond);
+    std::array<bool, 17> was_low{};
+    for (const XshutEvent& event : rig.xshut_events()) {
+        if (!event.is_high) {
+            EXPECT_EQ(event.time.us, 0);
+            was_low.at(event.line) = true;
+        } else {
+            EXPECT_GE(event.time.us, 1'000);
+        }
+    }
+    EXPECT_TRUE(std::all_of(was_low.begin(), was_low.end(), [](bool low) { return low; }));
+}
+
+TEST(NodeBringUp, raises_one_sensor_of_a_bus_at_a_time_and_all_buses_side_by_side) {
+    const NodeConfig config = fleet_config(17, 4);
+    NodeRig rig(config, fleet(17));
+    rig.run_for(333 * kMillisecond);
+    const auto rises = rises_by_bus(rig, config);
+    ASSERT_EQ(rises.size(), 4U);
+    for (const auto& [bus, events] : rises) {
+        ASSERT_EQ(events.size(), bus == 0 ? 5U : 4U);
+        EXPECT_LE(events.front().time.us, 1'500);
+        for (std::size_t i = 1; i < events.size(); ++i) {
+            EXPECT_GT(events[i].line, events[i - 1].line);
+            // 2 ms to boot; then identification (57 bits), new address (38), its read-back (57) and twice
+            // nobody at 0x29 (11 each) at 400 kHz
+            EXPECT_GE(events[i].time.us - events[i - 1].time.us, 2'000 + 435);
+        }
+    }
+}
+
+TEST(NodeBringUp, starts_each_sensor_in_its_phase) {
+    NodeConfig config = fleet_config(5, 1);
+    const std::array<std::uint16_t, 5> phases_us = {0, 6'000, 12'000, 18'000, 27'000};
+    std::vector<SensorSetup> setups = fleet(5);
+    for (std::size_t i = 0; i < 5; ++i) {
+        config.sensors[i].phase_us = phases_us[i];
+        setups[i].part.slow_clock_factor = 1.075;  // a part that is exactly as the driver assumes
+    }
+    NodeRig rig(config, setups);
+    rig.run_for(400 * kMillisecond);
+    for (std::size_t i = 0; i < 5; ++i) {
+        // Range 0 is the first one, of initialisation; a window's middle is half a budget before its end, and
+        // the first range of a start ends one period after it.
+        const std::int64_t start_us = rig.truth(i).at(1).window_middle.us + 10'000 - 33'000;
+        const std::int64_t into_phase_us = (start_us - phases_us[i] + 33'000) % 33'000;
+        EXPECT_LE(into_phase_us, 1'500) << i;
+    }
+}
+
+TEST(NodeBringUp, names_an_absent_sensor_and_a_stranger_and_goes_on_with_the_others) {
+    std::vector<SensorSetup> setups = fleet(17);
+    setups[3].is_fitted = false;
+    setups[8].faults.has_wrong_id = true;
+    NodeRig rig(fleet_config(17, 4), setups);
+    rig.run_for(1'000 * kMillisecond);
+
+    EXPECT_EQ(rig.node().state(), wire::NodeState::ranging);
+    EXPECT_EQ(rig.said_of<wire::Heartbeat>().back().degraded_sensors, 2);
+    EXPECT_EQ(rig.last_health(3)->state, SensorState::absent);
+    EXPECT_EQ(rig.last_health(3)->fault, SensorFault::no_answer);
+    EXPECT_EQ(rig.last_health(8)->state, SensorState::degraded);
+    EXPECT_EQ(rig.last_health(8)->fault, SensorFault::wrong_id);
+    for (std::uint8_t sensor = 0; sensor < 17; ++sensor) {
+        if (sensor == 3 || sensor == 8) {
+            EXPECT_TRUE(rig.readings_of(sensor).empty());
+            continue;
+        }
+        EXPECT_EQ(rig.last_health(sensor)->state, SensorState::ranging) << int{sensor};
+        EXPECT_LT(rig.readings_of(sensor).front().end.us, 350'000) << int{sensor};
+    }
+}
+
+TEST(NodeBringUp, leaves_a_failed_sensor_in_reset_so_that_it_is_not_taken_for_its_neighbour) {
+    std::vector<SensorSetup> setups = fleet(2);
+    setups[0].faults.has_wrong_id = true;
+    const NodeConfig config = fleet_config(2, 1);
+    NodeRig rig(config, setups);
+    bool is_stranger_high = false;
+    rig.run_for(400 * kMillisecond);
+    for (const XshutEvent& event : rig.xshut_events()) {
+        if (event.line == 0) is_stranger_high = event.is_high;
+        if (event.line == 1 && event.is_high) {
+            EXPECT_FALSE(is_stranger_high);
+        }
+    }
+    EXPECT_EQ(rig.last_health(1)->state, SensorState::ranging);
+}
+
+TEST(NodeBringUp, refuses_a_bus_where_somebody_answers_at_0x29_while_all_are_in_reset) {
+    NodeRig rig(fleet_config(4, 2), fleet(4));
+    rig.attach_stray_sensor(1);
+    rig.run_for(1'000 * kMillisecond);
+    for (const std::uint8_t sensor : std::array<std::uint8_t, 2>{0, 2})
+        EXPECT_EQ(rig.last_health(sensor)->state, SensorState::ranging);
+    for (const std::uint8_t sensor : std::array<std::uint8_t, 2>{1, 3}) {
+        EXPECT_EQ(rig.last_health(sensor)->state, SensorState::absent);
+        EXPECT_EQ(rig.last_health(sensor)->fault, SensorFault::address_conflict);
+        EXPECT_TRUE(rig.readings_of(sensor).empty());
+    }
+}
+
+TEST(NodeBringUp, refuses_a_bus_where_a_stranger_answers_at_0x29) {
+    NodeRig rig(fleet_config(2, 1), fleet(2));
+    rig.attach_stray_sensor(0, {.has_wrong_id = true});
+    rig.run_for(1'000 * kMillisecond);
+    for (std::uint8_t sensor = 0; sensor < 2; ++sensor) {
+        EXPECT_EQ(rig.last_health(sensor)->fault, SensorFault::address_conflict);
+        EXPECT_TRUE(rig.readings_of(sensor).empty());
+    }
+}
+
+TEST(NodeBringUp, is_not_begun_again_by_an_order_to_do_what_is_under_way) {
+    NodeRig rig(fleet_config(2, 1), fleet(2));
+    rig.run_for(5 * kMillisecond);
+    rig.send_from_host(wire::Command{.code = wire::CommandCode::reinitialise_sensor}, 5);
+    rig.run_for(500 * kMillisecond);
+    EXPECT_EQ(rig.xshut_events().size(), 4U);  // each low, then high
+    EXPECT_EQ(rig.last_health(1)->state, SensorState::ranging);
+}
+
+TEST(NodeBringUp, waits_for_a_part_that_is_slow_to_say_that_it_has_booted) {
+    std::vector<SensorSetup> setups = fleet(2);
+    setups[1].faults.status_two_for = 40 * kMillisecond;
+    NodeRig rig(fleet_config(2, 1), setups);
+    rig.run_for(500 * kMillisecond);
+    EXPECT_EQ(rig.last_health(0)->state, SensorState::ranging);
+    EXPECT_EQ(rig.last_health(1)->state, SensorState::ranging);
+}
+
+TEST(NodeBringUp, says_that_a_part_never_boots) {
+    std::vector<SensorSetup> setups = fleet(2);
+    setups[1].faults.status_two_for = 60'000 * kMillisecond;
+    NodeRig rig(fleet_config(2, 1), setups);
+    rig.run_for(1'000 * kMillisecond);
+    EXPECT_EQ(rig.last_health(0)->state, SensorState::ranging);
+    EXPECT_EQ(rig.last_health(1)->state, SensorState::degraded);
+    EXPECT_EQ(rig.last_health(1)->fault, SensorFault::boot_timeout);
+}
+
+TEST(NodeBringUp, takes_34_sensors_on_4_buses) {
+    NodeRig rig(fleet_config(34, 4), fleet(34));
+    rig.run_for(400 * kMillisecond);
+    for (std::uint8_t sensor = 0; sensor < 34; ++sensor) {
+        EXPECT_GE(rig.readings_of(sensor).size(), 1U) << int{sensor};
+    }
+}
+
+TEST(NodeBringUp, keeps_still_with_a_configuration_that_no_board_can_have) {
+    NodeConfig config = fleet_config(4, 2);
+    config.sensors[2].address = 0x29;
+    NodeRig rig(config, fleet(4));
+    rig.run_for(1'000 * kMillisecond);
+    EXPECT_TRUE(rig.xshut_events().empty());
+    EXPECT_EQ(rig.said_of<wire::Heartbeat>().size(), 10U);
+    EXPECT_EQ(rig.said_of<wire::Heartbeat>().back().state, wire::NodeState::bad_config);
+}
+
+TEST(NodeBringUp, says_nothing_at_all_without_a_node_id_of_its_own) {
+    for (const int node_id : {0, 63, 64}) {
+        NodeConfig config = fleet_config(4, 2);
+        config.node_id = static_cast<std::uint8_t>(node_id);
+        NodeRig rig(config, fleet(4));
+        rig.run_for(1'000 * kMillisecond);
+        EXPECT_TRUE(rig.frames().empty());
+    }
+}
+
+TEST(NodeBringUp, is_in_order_without_any_sensor) {
+    NodeRig rig(fleet_config(0, 1), {});
+    rig.run_for(1'000 * kMillisecond);
+    EXPECT_EQ(rig.node().state(), wire::NodeState::ranging);
+    EXPECT_EQ(rig.said_of<wire::Heartbeat>().size(), 10U);
+}
+
+}  // namespace
+}  // namespace octoskin::node

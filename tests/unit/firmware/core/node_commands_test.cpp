@@ -1,0 +1,243 @@
+// What the node does on what it hears.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/node_rig.hpp"
+
+namespace octoskin::node {
+namespace {
+
+using test::fleet_config;
+using test::NodeRig;
+using test::SensorSetup;
+using wire::Command;
+using wire::CommandCode;
+using wire::NodeState;
+using wire::SensorState;
+
+constexpr Microseconds kMillisecond{1'000};
+constexpr wire::NodeId kOwnId = 5;
+
+class NodeCommandsTest : public testing::Test {
+  protected:
+    NodeCommandsTest() : rig_(fleet_config(4, 2), std::vector<SensorSetup>(4)) {
+        rig_.run_for(1'500 * kMillisecond);
+    }
+    void command(CommandCode code, std::uint8_t sensor = wire::kAllSensors, std::uint16_t argument = 0,
+                 wire::NodeId id = kOwnId) {
+        rig_.send_from_host(
+            Command{.code = code, .sensor = sensor, .argument = argument, .sequence = sequence_++}, id);
+    }
+    std::size_t readings_in(std::uint8_t sensor, Microseconds duration) {
+        const std::size_t before = rig_.readings_of(sensor).size();
+        rig_.run_for(duration);
+        return rig_.readings_of(sensor).size() - before;
+    }
+    wire::Heartbeat heartbeat() { return rig_.said_of<wire::Heartbeat>().back(); }
+
+    NodeRig rig_;
+    std::uint8_t sequence_ = 0;
+};
+
+TEST_F(NodeCommandsTest, answers_sync_with_its_own_clock_at_the_end_of_the_frame) {
+    rig_.send_from_host(wire::Sync{.sequence = 17}, wire::kHostId);
+    rig_.run_for(5 * kMillisecond);
+    const auto ends = rig_.times_of<wire::Sync>();
+    const auto reports = rig_.said_of<wire::SyncReport>();
+    ASSERT_EQ(ends.size(), 1U);
+    ASSERT_EQ(reports.size(), 1U);
+    EXPECT_EQ(reports[0].sequence, 17);
+    EXPECT_EQ(reports[0].heard, rig_.clock().to_node(ends[0]));
+}
+
+TEST_F(NodeCommandsTest, stops_and_starts_all_sensors) {
+    command(CommandCode::stop);
+    // The range under way ends by itself, up to a budget later: only then is the sensor at rest.
+    rig_.run_for(20 * kMillisecond);
+    EXPECT_EQ(rig_.last_health(3)->state, SensorState::ranging);
+    rig_.run_for(180 * kMillisecond);
+    EXPECT_EQ(heartbeat().state, NodeState::stopped);
+    EXPECT_EQ(heartbeat().degraded_sensors, 0);
+    EXPECT_EQ(rig_.last_health(3)->state, SensorState::stopped);
+    EXPECT_EQ(readings_in(0, 500 * kMillisecond), 0U);
+    const std::size_t truth = rig_.truth(0).size();
+    rig_.run_for(500 * kMillisecond);
+    EXPECT_EQ(rig_.truth(0).size(), truth) << "the sensor itself must have stopped";
+
+    command(CommandCode::start);
+    rig_.run_for(10 * kMillisecond);
+    EXPECT_EQ(rig_.last_health(3)->state, SensorState::starting);
+    rig_.run_for(190 * kMillisecond);
+    EXPECT_EQ(heartbeat().state, NodeState::ranging);
+    EXPECT_GE(readings_in(0, 500 * kMillisecond), 14U);
+}
+
+TEST_F(NodeCommandsTest, stops_a_single_sensor) {
+    command(CommandCode::stop, 2);
+    rig_.run_for(200 * kMillisecond);
+    EXPECT_EQ(rig_.last_health(2)->state, SensorState::stopped);
+    EXPECT_EQ(heartbeat().state, NodeState::ranging);
+    EXPECT_EQ(readings_in(2, 300 * kMillisecond), 0U);
+    EXPECT_GE(readings_in(1, 300 * kMillisecond), 8U);
+}
+
+TEST_F(NodeCommandsTest, obeys_commands_to_all_nodes_and_ignores_those_to_others) {
+    command(CommandCode::stop, wire::kAllSensors, 0, 6);
+    rig_.run_for(200 * kMillisecond);
+    EXPECT_EQ(heartbeat().state, NodeState::ranging);
+    command(CommandCode::stop, wire::kAllSensors, 0, wire::kBroadcastId);
+    rig_.run_for(200 * kMillisecond);
+    EXPECT_EQ(heartbeat().state, NodeState::stopped);
+}
+
+TEST_F(NodeCommandsTest, ranges_at_a_commanded_rate_and_says_that_it_is_not_the_configured_one) {
+    command(CommandCode::set_rate, wire::kAllSensors, 100);
+    rig_.run_for(1'500 * kMillisecond);
+    EXPECT_TRUE(heartbeat().is_rate_overridden);
+    const std::size_t slow = readings_in(1, 2'000 * kMillisecond);
+    EXPECT_GE(slow, 19U);
+    EXPECT_LE(slow, 21U);
+
+    command(CommandCode::set_rate, wire::kAllSensors, 0);  // back to the configuration's
+    rig_.run_for(1'500 * kMillisecond);
+    EXPECT_FALSE(heartbeat().is_rate_overridden);
+    const std::size_t configured = readings_in(1, 2'000 * kMillisecond);
+    EXPECT_GE(configured, 59U);
+    EXPECT_LE(configured, 62U);
+}
+
+TEST_F(NodeCommandsTest, refuses_and_counts_a_period_too_short_for_the_timing_budget) {
+    command(CommandCode::set_rate, wire::kAllSensors, 24);  // budget 20 ms, and 5 ms to spare
+    rig_.run_for(300 * kMillisecond);
+    EXPECT_FALSE(heartbeat().is_rate_overridden);
+    EXPECT_EQ(rig_.node().counts().rx_rejected, 1U);
+    command(CommandCode::set_rate, wire::kAllSensors, 25);
+    rig_.run_for(300 * kMillisecond);
+    EXPECT_TRUE(heartbeat().is_rate_overridden);
+    EXPECT_EQ(rig_.node().counts().rx_rejected, 1U);
+}
+
+TEST_F(NodeCommandsTest, refuses_and_counts_commands_for_sensors_it_does_not_have) {
+    command(CommandCode::stop, 4);
+    command(CommandCode::start, 62);
+    command(CommandCode::set_rate, 4, 100);
+    command(CommandCode::reinitialise_sensor, 4);
+    rig_.run_for(100 * kMillisecond);
+    EXPECT_EQ(rig_.node().counts().rx_rejected, 4U);
+    EXPECT_EQ(heartbeat().state, NodeState::ranging);
+}
+
+TEST_F(NodeCommandsTest, reinitialises_one_sensor_and_leaves_its_neighbours_alone) {
+    const std::size_t events = rig_.xshut_events().size();
+    command(CommandCode::reinitialise_sensor, 2);
+    rig_.run_for(500 * kMillisecond);
+    ASSERT_EQ(rig_.xshut_events().size(), events + 2);
+    for (std::size_t i = events; i < events + 2; ++i) EXPECT_EQ(rig_.xshut_events()[i].line, 2);
+    EXPECT_EQ(rig_.last_health(2)->state, SensorState::ranging);
+    EXPECT_EQ(rig_.node().counts().sensor_restarts, 1U);
+}
+
+TEST_F(NodeCommandsTest, obeys_a_command_once_that_was_heard_twice) {
+    const Command reinitialise{.code = CommandCode::reinitialise_sensor, .sensor = 2, .sequence = 9};
+    rig_.send_from_host(reinitialise, kOwnId);
+    rig_.send_from_host(reinitialise, kOwnId);
+    rig_.run_for(499 * kMillisecond);
+    rig_.send_from_host(reinitialise, kOwnId);
+    rig_.run_for(300 * kMillisecond);
+    EXPECT_EQ(rig_.node().counts().sensor_restarts, 1U);
+    rig_.send_from_host(reinitialise, kOwnId);  // long enough after: a host that begins anew
+    rig_.run_for(300 * kMillisecond);
+    EXPECT_EQ(rig_.node().counts().sensor_restarts, 2U);
+}
+
+TEST_F(NodeCommandsTest, blinks_for_as_long_as_it_is_told) {
+    command(CommandCode::identify, wire::kAllSensors, 2);
+    rig_.run_for(1'900 * kMillisecond);
+    EXPECT_EQ(rig_.lit(), (std::vector<bool>{true, false, true, false, true, false, true, false}));
+    rig_.run_for(2'000 * kMillisecond);
+    EXPECT_FALSE(rig_.lit().back());
+    EXPECT_LE(rig_.lit().size(), 9U);
+}
+
+TEST_F(NodeCommandsTest, passes_a_reset_on_to_the_application) {
+    EXPECT_FALSE(rig_.node().is_reset_requested());
+    command(CommandCode::reset);
+    rig_.run_for(5 * kMillisecond);
+    EXPECT_TRUE(rig_.node().is_reset_requested());
+}
+
+TEST_F(NodeCommandsTest, repeats_all_it_knows_of_itself_on_request) {
+    const std::size_t pages = rig_.said_of<wire::NodeInfo>().size();
+    const std::size_t healths = rig_.said_of<wire::SensorHealth>().size();
+    command(CommandCode::send_info);
+    rig_.run_for(20 * kMillisecond);
+    EXPECT_GE(rig_.said_of<wire::NodeInfo>().size(), pages + 7);
+    EXPECT_GE(rig_.said_of<wire::SensorHealth>().size(), healths + 4);
+}
+
+TEST_F(NodeCommandsTest, counts_a_damaged_command_and_does_not_obey_it) {
+    wire::CanFrame frame = wire::encode(Command{.code = CommandCode::stop}, kOwnId);
+    frame.data[1] = static_cast<std::uint8_t>(frame.data[1] ^ 0x10U);
+    rig_.send_from_host(frame);
+    rig_.run_for(200 * kMillisecond);
+    EXPECT_EQ(rig_.node().counts().rx_rejected, 1U);
+    EXPECT_EQ(heartbeat().state, NodeState::ranging);
+}
+
+TEST_F(NodeCommandsTest, does_not_care_for_foreign_frames) {
+    for (const std::uint32_t can_id : {0x000U, 0x03FU, 0x3FFU, 0x7C5U, 0x7FFU}) {
+        wire::CanFrame frame;
+        frame.can_id = can_id;
+        frame.payload_len = 8;
+        rig_.send_from_host(frame);
+    }
+    wire::CanFrame extended = wire::encode(Command{.code = CommandCode::stop}, kOwnId);
+    extended.is_extended = true;
+    rig_.send_from_host(extended);
+    rig_.run_for(200 * kMillisecond);
+    EXPECT_EQ(rig_.node().counts().rx_rejected, 0U);
+    EXPECT_EQ(heartbeat().state, NodeState::ranging);
+}
+
+TEST_F(NodeCommandsTest, stops_ranging_while_another_node_speaks_under_its_id) {
+    for (int i = 0; i < 10; ++i) {
+        rig_.send_from_host(wire::Heartbeat{.state = NodeState::ranging, .uid_crc = 1}, kOwnId);
+        rig_.run_for(100 * kMillisecond);
+    }
+    EXPECT_EQ(rig_.node().state(), NodeState::id_conflict);
+    EXPECT_EQ(readings_in(0, 1'000 * kMillisecond), 0U);
+    EXPECT_EQ(heartbeat().state, NodeState::id_conflict);
+
+    rig_.run_for(5'000 * kMillisecond);  // the other one is gone
+    EXPECT_EQ(rig_.node().state(), NodeState::ranging);
+    EXPECT_GE(readings_in(0, 1'000 * kMillisecond), 28U);
+}
+
+TEST_F(NodeCommandsTest, sends_no_reading_from_the_moment_it_hears_its_own_id) {
+    const auto before = [this] {
+        std::size_t count = 0;
+        for (std::uint8_t sensor = 0; sensor < 4; ++sensor) count += rig_.readings_of(sensor).size();
+        return count;
+    };
+    for (int i = 0; i < 20; ++i) {
+        rig_.run_for(6'777 * kMillisecond);  // a conflict lasts 5 s: at another phase each time
+        rig_.send_from_host(wire::SyncReport{.sequence = 1, .heard = {}}, kOwnId);
+        rig_.run_for(1 * kMillisecond);  // a frame already in its mailbox may still go
+        const std::size_t readings = before();
+        rig_.run_for(500 * kMillisecond);
+        EXPECT_EQ(before(), readings) << i;
+    }
+    EXPECT_GT(rig_.node().counts().late, 0U);
+}
+
+TEST_F(NodeCommandsTest, stays_stopped_by_command_after_an_id_conflict_is_over) {
+    command(CommandCode::stop, 1);
+    rig_.send_from_host(wire::SyncReport{}, kOwnId);
+    rig_.run_for(6'000 * kMillisecond);
+    EXPECT_EQ(readings_in(1, 500 * kMillisecond), 0U);
+    EXPECT_GE(readings_in(0, 500 * kMillisecond), 14U);
+}
+
+}  // namespace
+}  // namespace octoskin::node

@@ -1,0 +1,110 @@
+// Zones on the way from the sensor to the wire. Oracle: the region of interest with which the modelled sensor
+// truly took each range.
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "tests/support/node_rig.hpp"
+
+namespace octoskin::node {
+namespace {
+
+using test::fleet_config;
+using test::NodeRig;
+using test::SaidReading;
+using test::SensorSetup;
+using test::TrueRange;
+
+constexpr Microseconds kSecond{1'000'000};
+constexpr std::array<Roi, 3> kZones = {Roi{.centre_spad = 167, .width = 8, .height = 16},
+                                       Roi{.centre_spad = 231, .width = 8, .height = 16},
+                                       Roi{.centre_spad = 199, .width = 6, .height = 6}};
+
+NodeConfig zoned_config(std::uint8_t count, std::uint8_t buses) {
+    NodeConfig config = fleet_config(count, buses);
+    for (auto& sensor : config.sensors) {
+        sensor.zone_count = 3;
+        std::copy(kZones.begin(), kZones.end(), sensor.zones.begin());
+    }
+    return config;
+}
+
+const TrueRange* truth_of(const NodeRig& rig, std::uint8_t sensor, const SaidReading& said) {
+    const TrueRange* found = nullptr;
+    for (const TrueRange& range : rig.truth(sensor)) {
+        if (range.range_mm == said.reading.range_mm && range.window_middle < said.end) found = &range;
+    }
+    return found;
+}
+
+TEST(NodeZones, tells_the_zone_in_which_each_range_was_truly_taken) {
+    for (const double slow_clock_factor : {1.00, 1.075, 1.15}) {
+        std::vector<SensorSetup> setups(6);
+        for (auto& setup : setups) setup.part.slow_clock_factor = slow_clock_factor;
+        NodeRig rig(zoned_config(6, 2), setups);
+        rig.run_for(10 * kSecond);
+        for (std::uint8_t sensor = 0; sensor < 6; ++sensor) {
+            std::array<int, 3> count{};
+            for (const SaidReading& said : rig.readings_of(sensor)) {
+                const TrueRange* truth = truth_of(rig, sensor, said);
+                ASSERT_NE(truth, nullptr);
+                ASSERT_LT(said.reading.zone, 3);
+                EXPECT_EQ(truth->roi, kZones.at(said.reading.zone));
+                ++count.at(said.reading.zone);
+            }
+            for (const int readings : count) EXPECT_GE(readings, 80) << int{sensor};
+        }
+    }
+}
+
+TEST(NodeZones, drops_and_counts_readings_rather_than_guess_their_zone) {
+    NodeConfig config = zoned_config(4, 1);
+    config.zone_guard_us = 14'000;  // longer than the 13 ms between two ranges: no write can ever be safe
+    NodeRig rig(config, std::vector<SensorSetup>(4));
+    rig.run_for(5 * kSecond);
+    for (std::uint8_t sensor = 0; sensor < 4; ++sensor) {
+        for (const SaidReading& said : rig.readings_of(sensor)) EXPECT_EQ(said.reading.zone, 0);
+    }
+}
+
+TEST(NodeZones, knows_the_zone_after_forty_minutes_at_rest) {
+    // Longer than half the clock's period, when times of before would look like times to come.
+    NodeConfig config = zoned_config(1, 1);
+    config.sensors[0].zone_count = 2;
+    NodeRig rig(config, std::vector<SensorSetup>(1));
+    rig.run_for(1 * kSecond);
+    rig.send_from_host(wire::Command{.code = wire::CommandCode::stop}, 5);
+    rig.run_for(40 * 60 * kSecond);
+    const std::size_t before = rig.readings_of(0).size();
+    rig.send_from_host(wire::Command{.code = wire::CommandCode::start}, 5);
+    rig.run_for(2 * kSecond);
+    const auto readings = rig.readings_of(0);
+    ASSERT_GE(readings.size(), before + 50);
+    for (std::size_t i = before; i < readings.size(); ++i) {
+        const TrueRange* truth = truth_of(rig, 0, readings[i]);
+        ASSERT_NE(truth, nullptr);
+        EXPECT_EQ(truth->roi, kZones.at(readings[i].reading.zone)) << i;
+    }
+}
+
+TEST(NodeZones, notices_a_zone_that_was_not_written_as_meant) {
+    NodeRig rig(zoned_config(1, 1), std::vector<SensorSetup>(1));
+    rig.run_for(2 * kSecond);
+    for (std::uint64_t i = 0; i < 40; ++i) {
+        rig.bus(0).inject(
+            {.kind = sim::I2cFaultKind::lose_write, .first = rig.bus(0).transfer_count() + 97 * i});
+    }
+    rig.run_for(20 * kSecond);
+    int readings = 0;
+    for (const SaidReading& said : rig.readings_of(0)) {
+        const TrueRange* truth = truth_of(rig, 0, said);
+        ASSERT_NE(truth, nullptr);
+        EXPECT_EQ(truth->roi, kZones.at(said.reading.zone)) << said.end.us;
+        ++readings;
+    }
+    EXPECT_GE(readings, 300);
+    EXPECT_GE(rig.node().counts().sensor_restarts, 1U);
+}
+
+}  // namespace
+}  // namespace octoskin::node

@@ -1,0 +1,182 @@
+#include "host/apps/report/report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+
+namespace octoskin::report {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+evaluation::Run judged(std::string configuration, std::string map, std::uint64_t seed, std::uint64_t missed,
+                       double occluded_recall) {
+    evaluation::Run run{std::move(configuration), std::move(map), seed, {}};
+    run.metrics.occupied = 12345;
+    run.metrics.missed = missed;
+    run.metrics.precision = 0.98;
+    run.metrics.f1 = 0.5 + occluded_recall;
+    run.metrics.occluded_recall = occluded_recall;
+    run.metrics.calibration[9] = {.count = 10, .probability_sum = 9.6, .occupied_count = 9};
+    return run;
+}
+
+ReportInput two_seeds() {
+    const std::vector<evaluation::Run> runs = {
+        judged("paper", "fused", 0, 1100, 0.12),  judged("robust", "depth", 0, 2000, 0.0),
+        judged("robust", "fused", 0, 1400, 0.10), judged("robust", "depth", 1, 2200, 0.0),
+        judged("robust", "fused", 1, 1580, 0.12),
+    };
+    ReportInput input;
+    input.results = evaluation::collect(runs, {{"simulate", 12.5, 14.25}}, {{"world", "experiment.sdf"}});
+    const Image dot{1, 1, {10, 20, 30, 255}};
+    input.pictures = {{"The scene", "A room.", dot, dot}, {"Fused", "Both.", dot, dot}};
+    input.accounts = {{"ranges", 100, 90, {{"no_target", 7}, {"stale", 3}, {"duplicate", 0}}}};
+    input.idealisations = experiment_idealisations();
+    input.reproduce = {"./demo --full"};
+    return input;
+}
+
+/// Every start tag has its end tag, in order; the void elements of HTML have none. Empty if so.
+std::string first_unbalanced_tag(const std::string& html) {
+    const std::set<std::string> void_elements = {"meta", "img", "input", "br"};
+    const std::regex tag("<(/?)([a-z][a-z0-9]*)((?:[^>\"]|\"[^\"]*\")*?)(/?)>");
+    std::vector<std::string> open;
+    for (std::sregex_iterator i(html.begin(), html.end(), tag), end; i != end; ++i) {
+        const std::string name = (*i)[2];
+        if (void_elements.contains(name) || (*i)[4].length() > 0) {
+            continue;
+        }
+        if ((*i)[1].length() == 0) {
+            open.push_back(name);
+        } else if (open.empty() || open.back() != name) {
+            return "</" + name + ">";
+        } else {
+            open.pop_back();
+        }
+    }
+    return open.empty() ? "" : "<" + open.back() + ">";
+}
+
+TEST(Report, has_every_section) {
+    const std::string html = report_html(two_seeds());
+    for (const char* id : {"pictures", "paper", "paired", "metrics", "update", "calibration", "account",
+                           "idealisations", "times", "reproduce"}) {
+        EXPECT_THAT(html, HasSubstr(std::string("<section id=\"") + id + "\"")) << id;
+    }
+    EXPECT_THAT(html, HasSubstr("<h1>octoskin: what the camera cannot see</h1>"));
+}
+
+TEST(Report, loads_nothing_from_outside) {
+    const std::string html = report_html(two_seeds());
+    EXPECT_THAT(html, Not(HasSubstr("http://")));
+    EXPECT_THAT(html, Not(HasSubstr("https://")));
+    EXPECT_THAT(html, Not(HasSubstr("<script")));
+    EXPECT_THAT(html, Not(HasSubstr("<link")));
+    EXPECT_THAT(html, Not(HasSubstr("@import")));
+    EXPECT_THAT(html, Not(HasSubstr("url(")));
+    const std::regex source("(src|href|srcset)=\"([^\"]{0,15})");
+    for (std::sregex_iterator i(html.begin(), html.end(), source), end; i != end; ++i) {
+        EXPECT_EQ((*i)[2], "data:image/png;");
+    }
+}
+
+TEST(Report, is_valid_utf8_and_balanced_html) {
+    const std::string html = report_html(two_seeds());
+    EXPECT_NO_THROW((void)nlohmann::json(html).dump()) << "the JSON library refuses what is not UTF-8";
+    EXPECT_EQ(first_unbalanced_tag(html), "");
+    EXPECT_TRUE(html.starts_with("<!DOCTYPE html>"));
+    EXPECT_TRUE(html.ends_with("</html>\n"));
+}
+
+TEST(Report, says_first_what_fusion_found) {
+    const std::string html = report_html(two_seeds());
+    EXPECT_THAT(
+        html,
+        HasSubstr("its own map holds 0.0\u00a0%; with the range sensors on the arm, the\nfused map holds "
+                  "11.0\u00a0%."));
+    EXPECT_THAT(html, HasSubstr("2\u202f100 →</span> 1\u202f490"));
+    EXPECT_THAT(html, HasSubstr("\u221229.0\u00a0%; \u2212610 ± 14, better in 2 of 2 seeds"));
+}
+
+TEST(Report, shows_the_papers_table_beside_ours) {
+    const std::string html = report_html(two_seeds());
+    for (const char* cell : {"970", "27\u202f510", "3\u202f523", "299", "587", "47\u202f847", "3\u202f697",
+                             "26", "1\u202f430", "66\u202f697", "2\u202f469", "317"}) {
+        EXPECT_THAT(html, HasSubstr(std::string("<td>") + cell + "</td>"));
+    }
+    EXPECT_THAT(html, HasSubstr("<td>12\u202f345 ± 0</td>"));
+    EXPECT_THAT(html, HasSubstr("Missed changes by \u221229.9\u00a0% in the paper"));
+    EXPECT_THAT(html, HasSubstr("by \u221229.0\u00a0% in <code>robust</code>"));
+}
+
+TEST(Report, names_the_papers_swapped_labels) {
+    EXPECT_THAT(report_html(two_seeds()), HasSubstr("the two labels are swapped"));
+}
+
+TEST(Report, balances_the_account_or_says_that_it_does_not) {
+    ReportInput input = two_seeds();
+    EXPECT_THAT(report_html(input), HasSubstr("<th>ranges</th><td>100</td><td>90</td><td>10</td>"));
+    EXPECT_THAT(report_html(input), HasSubstr("no_target"));
+    EXPECT_THAT(report_html(input), Not(HasSubstr("duplicate"))) << "counters at 0 are left out";
+    input.accounts[0].received = 101;
+    EXPECT_THAT(report_html(input), HasSubstr("ranges (does not balance)"));
+}
+
+TEST(Report, embeds_each_picture) {
+    const std::string html = report_html(two_seeds());
+    const std::regex picture("<img [^>]*src=\"data:image/png;base64,iVBOR[A-Za-z0-9+/=]+\"");
+    EXPECT_EQ(std::distance(std::sregex_iterator(html.begin(), html.end(), picture), std::sregex_iterator()),
+              4);
+}
+
+TEST(Report, disarms_hostile_names) {
+    ReportInput input = two_seeds();
+    input.title = "<script>alert(1)</script>";
+    input.results.provenance = {{"world\"", "</code><img src=x>"}};
+    input.pictures[0].caption = "caf\xe9 & \"quotes\"";
+    input.results.maps[0].configuration = "<i>";
+    input.results.maps[0].map = "<u>";
+    input.accounts[0].input = "<u>";
+    input.reproduce = {"./demo && echo '<done>'"};
+    const std::string html = report_html(input);
+    EXPECT_THAT(html, Not(HasSubstr("<script>")));
+    EXPECT_THAT(html, Not(HasSubstr("<img src=x>")));
+    EXPECT_THAT(html, Not(HasSubstr("<u>")));
+    EXPECT_THAT(html, HasSubstr("caf\ufffd &amp; &quot;quotes&quot;"));
+    EXPECT_EQ(first_unbalanced_tag(html), "");
+}
+
+TEST(Report, of_nothing_is_still_a_document) {
+    const std::string html = report_html(ReportInput{});
+    EXPECT_THAT(html, HasSubstr("No pictures were made"));
+    EXPECT_EQ(first_unbalanced_tag(html), "");
+    EXPECT_THAT(html, Not(HasSubstr("nan")));
+}
+
+TEST(Report, of_a_world_without_hidden_objects_leaves_them_out) {
+    const std::string html = report_html(two_seeds());
+    EXPECT_THAT(html, Not(HasSubstr("on the hidden objects only")));
+    EXPECT_THAT(html, HasSubstr("<th>object recall</th><td>\u2013</td>"));
+}
+
+TEST(Report, of_a_single_seed_claims_no_spread) {
+    ReportInput input = two_seeds();
+    const std::vector<evaluation::Run> runs = {judged("robust", "depth", 0, 2000, 0.0),
+                                               judged("robust", "fused", 0, 1400, 0.10)};
+    input.results = evaluation::collect(runs);
+    const std::string html = report_html(input);
+    EXPECT_THAT(html, HasSubstr("\u221230.0\u00a0%; \u2212600</div>"));
+    EXPECT_THAT(html, HasSubstr("</code>, one seed.</p>"));
+}
+
+TEST(Report, is_the_same_text_for_the_same_input) {
+    EXPECT_EQ(report_html(two_seeds()), report_html(two_seeds()));
+}
+
+}  // namespace
+}  // namespace octoskin::report

@@ -1,0 +1,140 @@
+#include "host/core/depth/depth_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace octoskin {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+DepthImage flat_image(std::uint32_t width, std::uint32_t height, float depth_m) {
+    return {.width = width, .height = height, .depth_m = std::vector<float>(width * height, depth_m)};
+}
+
+float& at(DepthImage& image, std::uint32_t u, std::uint32_t v) {
+    return image.depth_m[v * image.width + u];
+}
+
+/// The filter as its documentation says it, pixel by pixel. The oracle.
+float filtered_pixel(const DepthImage& image, int u, int v, const DepthFilterConfig& config) {
+    const int reach = static_cast<int>(config.window / 2);
+    const float centre =
+        image.depth_m[static_cast<std::size_t>(v) * image.width + static_cast<std::size_t>(u)];
+    if (std::isnan(centre)) return kNan;
+    const auto gate_m = static_cast<float>(config.gate_sigmas * config.sigma_m);
+    const auto mean_gate_m = static_cast<float>(config.mean_sigmas * config.sigma_m);
+    std::vector<float> near;
+    for (int row = std::max(0, v - reach);
+         row <= std::min<int>(static_cast<int>(image.height) - 1, v + reach); ++row) {
+        for (int column = std::max(0, u - reach);
+             column <= std::min<int>(static_cast<int>(image.width) - 1, u + reach); ++column) {
+            const float value =
+                image.depth_m[static_cast<std::size_t>(row) * image.width + static_cast<std::size_t>(column)];
+            if (!std::isnan(value) && std::fabs(value - centre) <= gate_m) near.push_back(value);
+        }
+    }
+    std::sort(near.begin(), near.end());
+    const float median = 0.5F * (near[(near.size() - 1) / 2] + near[near.size() / 2]);
+    double sum = 0.0;
+    std::uint32_t support = 0;
+    for (const float value : near) {
+        if (std::fabs(value - median) > mean_gate_m) continue;
+        sum += static_cast<double>(value);
+        ++support;
+    }
+    return support > config.min_support ? static_cast<float>(sum / support) : kNan;
+}
+
+TEST(DepthFilter, leaves_a_flat_image_as_it_is_up_to_the_border) {
+    const DepthImage filtered = filter_depth(flat_image(9, 7, 2.0F), {});
+    EXPECT_EQ(filtered.width, 9U);
+    EXPECT_EQ(filtered.height, 7U);
+    for (const float depth_m : filtered.depth_m) EXPECT_EQ(depth_m, 2.0F);
+}
+
+TEST(DepthFilter, keeps_a_step_between_two_surfaces_sharp) {
+    DepthImage image = flat_image(10, 6, 2.0F);
+    for (std::uint32_t v = 0; v < 6; ++v) {
+        for (std::uint32_t u = 5; u < 10; ++u) at(image, u, v) = 2.5F;
+    }
+    EXPECT_EQ(filter_depth(image, {}).depth_m, image.depth_m);
+}
+
+TEST(DepthFilter, drops_a_pixel_that_stands_alone) {
+    DepthImage image = flat_image(9, 9, 2.0F);
+    at(image, 4, 4) = 1.0F;
+    DepthImage filtered = filter_depth(image, {});
+    EXPECT_TRUE(std::isnan(at(filtered, 4, 4)));
+    EXPECT_EQ(at(filtered, 3, 4), 2.0F);
+}
+
+TEST(DepthFilter, needs_more_than_five_values_of_its_window) {
+    DepthImage image = flat_image(9, 9, kNan);
+    for (std::uint32_t u = 2; u < 7; ++u) at(image, u, 4) = 2.0F;
+    EXPECT_TRUE(std::isnan(filter_depth(image, {}).depth_m[4 * 9 + 4]));
+    at(image, 4, 5) = 2.0F;
+    EXPECT_EQ(filter_depth(image, {}).depth_m[4 * 9 + 4], 2.0F);
+}
+
+TEST(DepthFilter, makes_no_value_where_there_was_none) {
+    DepthImage image = flat_image(9, 9, 2.0F);
+    at(image, 4, 4) = kNan;
+    EXPECT_TRUE(std::isnan(filter_depth(image, {}).depth_m[4 * 9 + 4]));
+}
+
+TEST(DepthFilter, averages_what_lies_near_the_median) {
+    // Sorted 1.94 and 24 x 2.0: all within the gate and within 7.5 cm of the median.
+    DepthImage image = flat_image(5, 5, 2.0F);
+    at(image, 0, 0) = 1.94F;
+    EXPECT_NEAR(filter_depth(image, {}).depth_m[2 * 5 + 2], 2.0 - 0.06 / 25.0, 1e-6);
+    // 1.91 is within the gate of the centre (12 cm), not within 7.5 cm of the median.
+    at(image, 0, 0) = 1.91F;
+    EXPECT_EQ(filter_depth(image, {}).depth_m[2 * 5 + 2], 2.0F);
+}
+
+TEST(DepthFilter, takes_images_smaller_than_its_window) {
+    EXPECT_EQ(filter_depth(flat_image(3, 2, 2.0F), {}).depth_m, std::vector<float>(6, 2.0F));
+    EXPECT_TRUE(std::isnan(filter_depth(flat_image(1, 1, 2.0F), {}).depth_m[0]));
+    EXPECT_TRUE(filter_depth(flat_image(0, 0, 2.0F), {}).depth_m.empty());
+}
+
+TEST(DepthFilter, a_window_of_one_pixel_and_no_support_changes_nothing) {
+    const DepthImage image = flat_image(4, 4, 1.5F);
+    EXPECT_EQ(filter_depth(image, {.window = 1, .min_support = 0}).depth_m, image.depth_m);
+}
+
+// Oracle: the definition, pixel by pixel, on noisy steps with holes; window sizes 3, 5 and 7.
+TEST(DepthFilter, equals_its_definition_on_noisy_images_with_holes) {
+    for (unsigned seed = 0; seed < 12; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<float> noise(0.0F, 0.03F);
+        std::uniform_int_distribution<unsigned> percent(0, 99);
+        DepthImage image = flat_image(61, 37, 2.0F);
+        for (std::size_t i = 0; i < image.depth_m.size(); ++i) {
+            const float surface_m = (i / 7) % 3 == 0 ? 2.15F : 2.0F;
+            image.depth_m[i] = percent(random) < 20 + 5 * seed ? kNan : surface_m + noise(random);
+        }
+        const DepthFilterConfig config{.window = 3 + 2 * (seed % 3)};
+        const DepthImage filtered = filter_depth(image, config);
+        for (int v = 0; v < 37; ++v) {
+            for (int u = 0; u < 61; ++u) {
+                const float expected = filtered_pixel(image, u, v, config);
+                const float actual =
+                    filtered.depth_m[static_cast<std::size_t>(v) * 61 + static_cast<std::size_t>(u)];
+                ASSERT_EQ(std::isnan(actual), std::isnan(expected))
+                    << "seed " << seed << " at " << u << "," << v;
+                if (std::isnan(expected)) continue;
+                ASSERT_NEAR(actual, expected, 1e-6F) << "seed " << seed;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,153 @@
+// What only the gates together show: a node's life, and joints of a node that is refused. Every single
+// rejection is provoked in tests/unit/host/core/pipeline.
+#include "host/core/ingest/can_intake.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "common/range_status.hpp"
+#include "common/wire/crc.hpp"
+#include "tests/support/bus/scripted_bus.hpp"
+
+namespace octoskin {
+namespace {
+
+using test::ScriptedBus;
+
+constexpr wire::NodeId kNode = 3;
+constexpr wire::NodeId kJointNode = 9;
+
+HostRig rig() {
+    HostRig rig;
+    rig.nodes.push_back({.node_id = kNode,
+                         .name = "n",
+                         .node_hash = 0x12345678,
+                         .pinned_build_id = {},
+                         .sensors = {HostSensor{}}});
+    rig.joints = {.node_id = kJointNode, .joints = {"a"}, .rate_hz = 100.0};
+    return rig;
+}
+
+/// Exchanges at 0.1, 1.1, ..., heartbeats at 10 Hz but for [quiet_from, quiet_to), readings at 30 Hz from 2 s
+/// on.
+ScriptedBus bus(double quiet_from_s = 99.0, double quiet_to_s = 99.0) {
+    ScriptedBus bus;
+    bus.set_clock(kNode, 0xFFFF0000U, 50e-6);
+    bus.info(0.01, rig().nodes[0]);
+    for (int k = 0; k < 8; ++k) {
+        bus.exchange(0.1 + k, {kNode, kJointNode});
+    }
+    for (int k = 0; k < 80; ++k) {
+        const double t = k / 10.0;
+        if (t < quiet_from_s || t >= quiet_to_s) {
+            bus.heartbeat(t, rig().nodes[0]);
+        }
+    }
+    for (double t = 2.0; t < 8.0; t += 0.033) {
+        bus.range(t, kNode,
+                  {.sensor = 0,
+                   .zone = 0,
+                   .device_status = kDeviceStatusComplete,
+                   .sequence = 0,
+                   .range_mm = 1000,
+                   .sigma_quarter_mm = 20,
+                   .capture = {}});
+    }
+    return bus;
+}
+
+using Visit = std::function<void(const FrameOutcome&, HostTime now)>;
+CanIntake take(const ScriptedBus& bus, const Visit& visit) {
+    CanIntake intake(rig());
+    for (const StampedFrame& entry : bus.frames()) {
+        const FrameOutcome outcome = intake.on_frame(entry.frame, entry.stamp);
+        visit(outcome, intake.now().value_or(HostTime{0}));
+    }
+    return intake;
+}
+
+/// How many readings had this reason, and when the last of them came.
+struct Seen {
+    int count = 0;
+    HostTime last;
+};
+Seen readings_with(const ScriptedBus& bus, ReadingReason reason) {
+    Seen seen;
+    (void)take(bus, [&](const FrameOutcome& outcome, HostTime now) {
+        for (const auto& reading : outcome.readings) {
+            if (!reading && reading.error() == reason) {
+                ++seen.count;
+                seen.last = now;
+            }
+        }
+    });
+    return seen;
+}
+
+TEST(CanIntake, accepts_all_readings_of_a_node_that_is_well_and_counts_no_gap) {
+    int accepted = 0;
+    const CanIntake intake = take(bus(), [&](const FrameOutcome& outcome, HostTime) {
+        EXPECT_FALSE(outcome.rejected.has_value());
+        for (const auto& reading : outcome.readings) {
+            accepted += reading ? 1 : 0;
+        }
+    });
+    EXPECT_EQ(accepted, 182);
+    EXPECT_EQ(intake.ranges().record(kNode, 0).sequence.gaps(), 0U);
+    EXPECT_EQ(intake.ranges().record(kNode, 0).received, 182U);
+    EXPECT_EQ(intake.ranges().record(kNode, 0).device_status[9], 182U);
+}
+
+TEST(CanIntake, trusts_the_clock_of_a_node_that_restarted_only_after_two_more_exchanges) {
+    ScriptedBus restarted = bus();
+    wire::Heartbeat starting{};
+    starting.uid_crc = crc16(ScriptedBus::uid_of(kNode));
+    starting.node_hash_low = 0x5678;
+    restarted.send(4.05, starting, kNode);
+    restarted.info(4.06, rig().nodes[0]);
+    // The exchanges of 4.1 and 5.1 s; the second counts from 0.2 s after it.
+    const Seen seen = readings_with(restarted, ReadingReason::clock_not_ready);
+    EXPECT_NEAR(seen.count, (5.3 - 4.06) / 0.033, 2.0);
+    EXPECT_NEAR(static_cast<double>(seen.last.ns) * 1e-9, 5.3, 0.04);
+}
+
+TEST(CanIntake, rejects_readings_while_the_heartbeat_is_missing_and_no_longer) {
+    const Seen seen = readings_with(bus(4.0, 5.0), ReadingReason::node_lost);
+    // Last heard at 3.9 s, so lost from 4.25 s on.
+    EXPECT_NEAR(seen.count, (5.0 - 4.25) / 0.033, 2.0);
+    EXPECT_LT(seen.last.ns, 5'020'000'000);
+}
+
+TEST(CanIntake, counts_readings_it_could_not_use_as_received_and_not_as_gaps) {
+    const CanIntake intake = take(bus(4.0, 5.0), [](const FrameOutcome&, HostTime) {});
+    EXPECT_EQ(intake.ranges().record(kNode, 0).received, 182U);
+    EXPECT_EQ(intake.ranges().record(kNode, 0).sequence.gaps(), 0U);
+}
+
+TEST(CanIntake, takes_no_joints_from_a_node_that_two_boards_share) {
+    ScriptedBus shared = bus();
+    wire::Heartbeat board{};
+    board.uid_crc = 1;
+    shared.send(3.0, board, kJointNode);
+    board.uid_crc = 2;
+    shared.send(3.1, board, kJointNode);
+    const double position = 0.0;
+    for (double t = 2.5; t < 3.5; t += 0.01) {
+        shared.joints(t, kJointNode, {&position, 1});
+    }
+    int refused = 0;
+    int samples = 0;
+    (void)take(shared, [&](const FrameOutcome& outcome, HostTime) {
+        refused += outcome.rejected == FrameReason::node_refused ? 1 : 0;
+        samples += static_cast<int>(std::ranges::count_if(
+            outcome.joint_samples, [](const auto& sample) { return sample.has_value(); }));
+    });
+    EXPECT_NEAR(samples, 60, 1);
+    EXPECT_NEAR(refused, 4 * 40, 4);
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,224 @@
+#include "host/core/ingest/node_registry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "common/wire/crc.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr wire::NodeId kNode = 7;
+constexpr std::uint32_t kHash = 0xAABBCCDD;
+constexpr std::array<std::uint8_t, 12> kUid = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+
+HostTime ms(std::int64_t value) {
+    return {value * 1'000'000};
+}
+
+HostRig rig() {
+    HostRig rig;
+    rig.nodes.push_back({.node_id = kNode,
+                         .name = "upper ring",
+                         .node_hash = kHash,
+                         .pinned_build_id = {},
+                         .sensors = std::vector<HostSensor>(3)});
+    rig.joints = {.node_id = 9, .joints = {"a"}, .rate_hz = 100.0};
+    return rig;
+}
+
+wire::Heartbeat heartbeat(std::uint16_t uid_crc = crc16(kUid),
+                          wire::NodeState state = wire::NodeState::ranging) {
+    return {.state = state,
+            .reset_cause = wire::ResetCause::power_on,
+            .is_rate_overridden = false,
+            .is_time_suspect = false,
+            .degraded_sensors = 0,
+            .uid_crc = uid_crc,
+            .node_hash_low = 0xCCDD};
+}
+
+std::vector<wire::NodeInfo> pages(std::uint32_t hash = kHash, std::uint8_t sensors = 3,
+                                  std::uint32_t build = 42) {
+    return {wire::InfoUidLow{{1, 2, 3, 4, 5, 6}},
+            wire::InfoUidHigh{{7, 8, 9, 10, 11, 12}},
+            wire::InfoIdentity{hash, sensors, 1},
+            wire::InfoBuild{build, 10},
+            wire::InfoCounters{},
+            wire::InfoTraffic{},
+            wire::InfoFault{}};
+}
+
+void identify(NodeRegistry& registry, std::int64_t at_ms, const std::vector<wire::NodeInfo>& info = pages()) {
+    EXPECT_EQ(registry.on_heartbeat(kNode, heartbeat(), ms(at_ms)), NodeRegistry::Life::goes_on);
+    for (const wire::NodeInfo& page : info) {
+        EXPECT_TRUE(registry.on_info(kNode, page, ms(at_ms)));
+    }
+}
+
+TEST(NodeRegistry, trusts_a_node_only_once_every_page_is_here_whatever_their_order) {
+    for (std::size_t missing = 0; missing < 7; ++missing) {
+        NodeRegistry registry(rig());
+        EXPECT_EQ(registry.verdict(kNode, ms(0)), NodeVerdict::absent);
+        (void)registry.on_heartbeat(kNode, heartbeat(), ms(0));
+        for (std::size_t i = 7; i-- > 0;) {
+            EXPECT_EQ(registry.verdict(kNode, ms(0)), NodeVerdict::info_incomplete);
+            if (i != missing) {
+                EXPECT_TRUE(registry.on_info(kNode, pages()[i], ms(0)));
+            }
+        }
+        EXPECT_EQ(registry.verdict(kNode, ms(0)), NodeVerdict::info_incomplete) << missing;
+        EXPECT_TRUE(registry.on_info(kNode, pages()[missing], ms(0)));
+        EXPECT_EQ(registry.verdict(kNode, ms(0)), NodeVerdict::usable) << missing;
+    }
+}
+
+TEST(NodeRegistry, names_what_differs_from_the_rig) {
+    const auto mismatch = [](const std::vector<wire::NodeInfo>& info) {
+        NodeRegistry registry(rig());
+        identify(registry, 0, info);
+        EXPECT_EQ(registry.verdict(kNode, ms(0)), NodeVerdict::info_mismatch);
+        return registry.records().at(kNode).mismatch().value_or("");
+    };
+    EXPECT_EQ(mismatch(pages(0xAABBCCDE)), "node_hash aabbccde, the rig has aabbccdd");
+    EXPECT_EQ(mismatch(pages(kHash, 4)), "number of sensors 00000004, the rig has 00000003");
+    auto other_board = pages();
+    other_board[0] = wire::InfoUidLow{{9, 9, 9, 9, 9, 9}};
+    EXPECT_NE(mismatch(other_board).find("checksum of the unique id"), std::string::npos);
+}
+
+TEST(NodeRegistry, describes_a_node_by_name) {
+    NodeRegistry registry(rig());
+    EXPECT_EQ(registry.describe(kNode, ms(0)), "node 7 'upper ring': absent");
+    identify(registry, 0, pages(0xAABBCCDE));
+    EXPECT_EQ(registry.describe(kNode, ms(0)),
+              "node 7 'upper ring': info_mismatch (node_hash aabbccde, the rig has aabbccdd)");
+    EXPECT_EQ(registry.describe(kNode, ms(999)), "node 7 'upper ring': lost");
+}
+
+TEST(NodeRegistry, refuses_another_configuration_at_its_first_heartbeat) {
+    NodeRegistry registry(rig());
+    identify(registry, 0);
+    wire::Heartbeat other = heartbeat();
+    other.node_hash_low = 0x1234;
+    (void)registry.on_heartbeat(kNode, other, ms(100));
+    EXPECT_EQ(registry.verdict(kNode, ms(100)), NodeVerdict::info_mismatch);
+    EXPECT_EQ(*registry.records().at(kNode).mismatch(),
+              "low half of node_hash 00001234, the rig has 0000ccdd");
+}
+
+TEST(NodeRegistry, refuses_another_build_only_where_the_rig_pins_it) {
+    HostRig pinned = rig();
+    pinned.nodes[0].pinned_build_id = 43;
+    NodeRegistry registry(pinned);
+    identify(registry, 0);
+    EXPECT_EQ(registry.verdict(kNode, ms(0)), NodeVerdict::build_refused);
+    EXPECT_TRUE(registry.on_info(kNode, wire::InfoBuild{43, 10}, ms(0)));
+    EXPECT_EQ(registry.verdict(kNode, ms(0)), NodeVerdict::usable);
+}
+
+TEST(NodeRegistry, declares_a_node_lost_350_ms_after_its_last_heartbeat) {
+    NodeRegistry registry(rig());
+    identify(registry, 1000);
+    EXPECT_EQ(registry.verdict(kNode, ms(1350)), NodeVerdict::usable);
+    EXPECT_EQ(registry.verdict(kNode, ms(1351)), NodeVerdict::lost);
+    (void)registry.on_heartbeat(kNode, heartbeat(), ms(1400));
+    EXPECT_EQ(registry.verdict(kNode, ms(1400)), NodeVerdict::usable) << "the same board is known already";
+}
+
+TEST(NodeRegistry, does_not_trust_a_clock_that_the_node_doubts_itself) {
+    NodeRegistry registry(rig());
+    identify(registry, 0);
+    wire::Heartbeat suspect = heartbeat();
+    suspect.is_time_suspect = true;
+    (void)registry.on_heartbeat(kNode, suspect, ms(100));
+    EXPECT_EQ(registry.verdict(kNode, ms(100)), NodeVerdict::time_suspect);
+    (void)registry.on_heartbeat(kNode, heartbeat(), ms(200));
+    EXPECT_EQ(registry.verdict(kNode, ms(200)), NodeVerdict::usable);
+}
+
+TEST(NodeRegistry, quarantines_two_boards_with_one_id_at_the_second_heartbeat) {
+    NodeRegistry registry(rig());
+    identify(registry, 0);
+    for (std::int64_t t = 50; t <= 1050; t += 100) {
+        EXPECT_EQ(registry.on_heartbeat(kNode, heartbeat(0x1111), ms(t)), NodeRegistry::Life::restarted);
+        EXPECT_EQ(registry.verdict(kNode, ms(t)), NodeVerdict::quarantined);
+        EXPECT_FALSE(registry.on_info(kNode, pages()[0], ms(t)));
+        (void)registry.on_heartbeat(kNode, heartbeat(), ms(t + 50));
+        EXPECT_EQ(registry.verdict(kNode, ms(t + 50)), NodeVerdict::quarantined);
+    }
+    // The second board leaves after 1050 ms; the first was heard again at 1100.
+    for (std::int64_t t = 1200; t <= 3000; t += 100) {
+        (void)registry.on_heartbeat(kNode, heartbeat(), ms(t));
+        EXPECT_EQ(registry.verdict(kNode, ms(t)), NodeVerdict::quarantined);
+    }
+    (void)registry.on_heartbeat(kNode, heartbeat(), ms(3100));
+    EXPECT_EQ(registry.verdict(kNode, ms(3100)), NodeVerdict::info_incomplete)
+        << "who it is must be told anew";
+    identify(registry, 3200);
+    EXPECT_EQ(registry.verdict(kNode, ms(3200)), NodeVerdict::usable);
+}
+
+TEST(NodeRegistry, takes_a_board_that_replaces_a_lost_one_but_asks_it_who_it_is) {
+    NodeRegistry registry(rig());
+    identify(registry, 0);
+    EXPECT_EQ(registry.on_heartbeat(kNode, heartbeat(0x1111), ms(1000)), NodeRegistry::Life::restarted);
+    EXPECT_EQ(registry.verdict(kNode, ms(1000)), NodeVerdict::info_incomplete);
+}
+
+TEST(NodeRegistry, notices_a_restart) {
+    NodeRegistry registry(rig());
+    identify(registry, 0);
+    const auto starting = heartbeat(crc16(kUid), wire::NodeState::starting);
+    EXPECT_EQ(registry.on_heartbeat(kNode, starting, ms(100)), NodeRegistry::Life::restarted);
+    EXPECT_EQ(registry.on_heartbeat(kNode, starting, ms(200)), NodeRegistry::Life::goes_on);
+    EXPECT_EQ(registry.verdict(kNode, ms(200)), NodeVerdict::info_incomplete);
+}
+
+TEST(NodeRegistry, refuses_a_node_of_another_version_until_it_is_silent_for_a_second) {
+    NodeRegistry registry(rig());
+    identify(registry, 0);
+    registry.on_other_version(kNode, ms(100));
+    EXPECT_EQ(registry.verdict(kNode, ms(100)), NodeVerdict::other_version);
+    (void)registry.on_heartbeat(kNode, heartbeat(), ms(1000));
+    EXPECT_FALSE(registry.on_info(kNode, pages()[0], ms(1000)));
+    EXPECT_EQ(registry.verdict(kNode, ms(1099)), NodeVerdict::other_version);
+    EXPECT_EQ(registry.verdict(kNode, ms(1100)), NodeVerdict::info_incomplete);
+}
+
+TEST(NodeRegistry, holds_a_refusal_while_no_time_is_known) {
+    NodeRegistry registry(rig());
+    registry.on_other_version(kNode, std::nullopt);
+    EXPECT_EQ(registry.verdict(kNode, std::nullopt), NodeVerdict::other_version);
+    EXPECT_EQ(registry.verdict(kNode, ms(99'999)), NodeVerdict::other_version) << "nobody knows since when";
+    (void)registry.on_heartbeat(kNode, heartbeat(), ms(100'000));
+    EXPECT_EQ(registry.verdict(kNode, ms(100'999)), NodeVerdict::other_version);
+    (void)registry.on_heartbeat(kNode, heartbeat(), ms(101'000));
+    EXPECT_EQ(registry.verdict(kNode, ms(101'000)), NodeVerdict::info_incomplete);
+}
+
+TEST(NodeRegistry, quarantines_two_boards_even_while_no_time_is_known) {
+    NodeRegistry registry(rig());
+    (void)registry.on_heartbeat(kNode, heartbeat(), std::nullopt);
+    (void)registry.on_heartbeat(kNode, heartbeat(0x1111), std::nullopt);
+    EXPECT_EQ(registry.verdict(kNode, std::nullopt), NodeVerdict::quarantined);
+    for (std::int64_t t = 5000; t < 7000; t += 100) {  // the time is known, and only one board is left
+        (void)registry.on_heartbeat(kNode, heartbeat(0x1111), ms(t));
+        EXPECT_EQ(registry.verdict(kNode, ms(t)), NodeVerdict::quarantined);
+    }
+    (void)registry.on_heartbeat(kNode, heartbeat(0x1111), ms(7000));
+    EXPECT_EQ(registry.verdict(kNode, ms(7000)), NodeVerdict::info_incomplete);
+}
+
+TEST(NodeRegistry, asks_no_block_of_the_node_that_sends_joints_only) {
+    NodeRegistry registry(rig());
+    ASSERT_TRUE(registry.knows(9));
+    EXPECT_EQ(registry.verdict(9, ms(0)), NodeVerdict::absent);
+    (void)registry.on_heartbeat(9, heartbeat(), ms(0));
+    EXPECT_EQ(registry.verdict(9, ms(0)), NodeVerdict::usable);
+    EXPECT_FALSE(registry.knows(8));
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,147 @@
+#include "host/core/mapping/depth_integrator.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace octoskin {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+constexpr std::uint16_t kZero = 32768;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// `width` pixels in a row that all look along z through nearly the same line.
+CameraIntrinsics narrow_camera(std::uint32_t width) {
+    return {.width = width, .height = 1, .fx = 1e9, .fy = 1e9, .cx = 0.5 * width, .cy = 0.5};
+}
+
+DepthImage image_of(std::vector<float> depth_m) {
+    return {.width = static_cast<std::uint32_t>(depth_m.size()), .height = 1, .depth_m = std::move(depth_m)};
+}
+
+/// Voxels of 1 m, the camera in the middle of one, looking along the map's z.
+MappingConfig coarse(MappingConfig config) {
+    config.map.resolution_m = 1.0;
+    return config;
+}
+Eigen::Isometry3d at_half_metres() {
+    return Eigen::Isometry3d(Eigen::Translation3d(0.5, 0.5, 0.5));
+}
+
+VoxelUpdate update_at(int z, float log_odds) {
+    return {{kZero, kZero, static_cast<std::uint16_t>(kZero + z)}, log_odds};
+}
+
+std::vector<VoxelUpdate> integrate(const MappingConfig& config, const DepthImage& image) {
+    auto result = DepthIntegrator(config, narrow_camera(image.width)).integrate(image, at_half_metres());
+    EXPECT_TRUE(result.has_value());
+    return result ? std::move(*result).updates : std::vector<VoxelUpdate>{};
+}
+
+TEST(DepthIntegrator, paper_gives_one_miss_per_passed_voxel_however_many_beams_pass) {
+    EXPECT_THAT(integrate(coarse(paper_mapping()), image_of({2.0F, 2.0F, 2.0F})),
+                ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, 0.8F)));
+}
+
+TEST(DepthIntegrator, paper_lets_a_hit_win_over_beams_that_pass) {
+    EXPECT_THAT(
+        integrate(coarse(paper_mapping()), image_of({1.0F, 3.0F, 3.0F})),
+        ElementsAre(update_at(0, -0.4F), update_at(1, 0.9F), update_at(2, -0.4F), update_at(3, 0.7F)));
+}
+
+TEST(DepthIntegrator, paper_takes_the_largest_of_several_hits) {
+    EXPECT_THAT(integrate(coarse(paper_mapping()), image_of({2.3F, 1.75F, 2.0F})),
+                ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, 0.825F)));
+}
+
+TEST(DepthIntegrator, paper_never_turns_a_hit_of_zero_into_a_miss) {
+    MappingConfig config = coarse(paper_mapping());
+    config.model.depth.range_min_m = 1.2;
+    EXPECT_THAT(integrate(config, image_of({1.1F, 3.0F})),
+                ElementsAre(update_at(0, -0.4F), update_at(2, -0.4F), update_at(3, 0.7F)));
+}
+
+TEST(DepthIntegrator, robust_gives_the_mean_of_the_beams_terms) {
+    // Voxel 1: one hit of 0.9 and two beams that pass. Voxel 3: hits of 0.7 and 0.68.
+    EXPECT_THAT(integrate(coarse(robust_mapping()), image_of({1.0F, 3.0F, 3.2F})),
+                ElementsAre(update_at(0, -0.4F), update_at(1, (0.9F - 0.8F) / 3.0F), update_at(2, -0.4F),
+                            update_at(3, 0.69F)));
+}
+
+TEST(DepthIntegrator, robust_counts_a_hit_of_zero_as_a_beam) {
+    MappingConfig config = coarse(robust_mapping());
+    config.model.depth.range_min_m = 1.2;
+    EXPECT_THAT(
+        integrate(config, image_of({1.1F, 3.0F})),
+        ElementsAre(update_at(0, -0.4F), update_at(1, -0.2F), update_at(2, -0.4F), update_at(3, 0.7F)));
+    EXPECT_THAT(integrate(config, image_of({1.1F})), ElementsAre(update_at(0, -0.4F)));
+}
+
+TEST(DepthIntegrator, takes_the_range_along_the_ray_and_not_the_depth_for_the_hit) {
+    // One pixel that looks 3 to the side for 4 ahead: depth 2 m is a range of 2.5 m.
+    const CameraIntrinsics camera{.width = 1, .height = 1, .fx = 4.0, .fy = 4.0, .cx = -2.5, .cy = 0.5};
+    DepthIntegrator integrator(coarse(paper_mapping()), camera);
+    const auto result = integrator.integrate(image_of({2.0F}), at_half_metres());
+    ASSERT_TRUE(result.has_value());
+    EXPECT_EQ(result->updates.back(), (VoxelUpdate{{kZero + 2, kZero, kZero + 2}, 0.75F}));
+}
+
+TEST(DepthIntegrator, counts_every_pixel_under_one_name_and_uses_only_the_good_ones) {
+    DepthIntegrator integrator(coarse(paper_mapping()), narrow_camera(8));
+    const auto result = integrator.integrate(
+        image_of({2.0F, kNan, kInfinity, -kInfinity, 0.0F, -1.0F, 1e30F, 40000.0F}), at_half_metres());
+    ASSERT_TRUE(result.has_value());
+    EXPECT_EQ(result->pixels.used, 1U);
+    EXPECT_EQ(result->pixels.no_value, 1U);
+    EXPECT_EQ(result->pixels.bad_value, 4U);
+    EXPECT_EQ(result->pixels.outside_map, 2U);
+    EXPECT_THAT(result->updates, ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, 0.8F)));
+}
+
+TEST(DepthIntegrator, gives_nothing_for_an_image_without_values) {
+    EXPECT_THAT(integrate(coarse(robust_mapping()), image_of({kNan, kNan})), IsEmpty());
+}
+
+TEST(DepthIntegrator, names_why_an_image_is_refused) {
+    DepthIntegrator integrator(coarse(paper_mapping()), narrow_camera(2));
+    EXPECT_EQ(integrator.integrate(image_of({1.0F}), at_half_metres()).error(), DepthRejection::size_differs);
+    DepthImage lying = image_of({1.0F, 1.0F});
+    lying.depth_m.pop_back();
+    EXPECT_EQ(integrator.integrate(lying, at_half_metres()).error(), DepthRejection::size_differs);
+
+    Eigen::Isometry3d broken = at_half_metres();
+    broken.translation().x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(integrator.integrate(image_of({1.0F, 1.0F}), broken).error(), DepthRejection::pose_not_finite);
+    const Eigen::Isometry3d far(Eigen::Translation3d(0.0, 1e5, 0.0));
+    EXPECT_EQ(integrator.integrate(image_of({1.0F, 1.0F}), far).error(), DepthRejection::camera_outside_map);
+}
+
+TEST(DepthIntegrator, refuses_a_box_beyond_its_memory_and_works_again_afterwards) {
+    MappingConfig config = coarse(paper_mapping());
+    config.depth_box_voxels_max = 100;  // 3 x 3 in cross-section with its margin: 11 deep at most
+    DepthIntegrator integrator(config, narrow_camera(1));
+    EXPECT_EQ(integrator.integrate(image_of({20.0F}), at_half_metres()).error(),
+              DepthRejection::box_too_large);
+    const auto result = integrator.integrate(image_of({1.0F}), at_half_metres());
+    ASSERT_TRUE(result.has_value());
+    EXPECT_THAT(result->updates, ElementsAre(update_at(0, -0.4F), update_at(1, 0.9F)));
+}
+
+TEST(DepthIntegrator, forgets_a_frame_before_the_next) {
+    DepthIntegrator integrator(coarse(robust_mapping()), narrow_camera(2));
+    const auto first = integrator.integrate(image_of({1.0F, 3.0F}), at_half_metres());
+    ASSERT_TRUE(first.has_value());
+    const auto second = integrator.integrate(image_of({kNan, 2.0F}), at_half_metres());
+    ASSERT_TRUE(second.has_value());
+    EXPECT_THAT(second->updates, ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, 0.8F)));
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,146 @@
+// Clocks that step while the robot moves: a measurement is placed where it was taken, or not at all.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "common/wire/codec.hpp"
+#include "host/io/mapfile/octomap_writer.hpp"
+#include "tests/unit/host/core/pipeline/turning_scene.hpp"
+
+namespace octoskin::test {
+namespace {
+
+constexpr double kStep_s = 4.5;  ///< 0.4 s after an exchange
+
+/// The scene up to the step, then the same with the node's clock `step_s` ahead.
+std::vector<StampedFrame> frames_with_jump(wire::NodeId node, double step_s) {
+    const auto step_us = static_cast<std::uint32_t>(std::llround(1e6 * step_s));
+    std::vector<StampedFrame> frames = turning_scene(node).bus.frames();
+    const std::vector<StampedFrame> jumped = turning_scene(node, 3'000'000'000U + step_us).bus.frames();
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        frames[i] = frames[i].stamp < wall_at(kStep_s) ? frames[i] : jumped[i];
+    }
+    return frames;
+}
+
+TEST(ClockSteps, none_uses_every_reading) {
+    const Scene scene = turning_scene();
+    const Pipeline pipeline = play(scene, scene.bus.frames());
+    EXPECT_EQ(pipeline.accounts().readings.used(), 149U) << pipeline.account_text();
+    expect_hits_where_shots_ended(pipeline, 60);
+}
+
+TEST(ClockSteps, of_the_wall_clock_put_no_range_in_the_wrong_place) {
+    const Scene scene = turning_scene();
+    for (const double step_s :
+         {0.004, 0.01, 0.03, 0.049, 0.051, 0.06, 0.1, 0.14, 0.15, 0.2,    0.24,   0.25, 0.26,
+          0.262, 0.27, 0.3,  0.5,   0.53,  1.0,  3.0, 4.9,  5.1,  16.777, 16.778, 60.0, 3600.0}) {
+        for (const double sign : {1.0, -1.0}) {
+            SCOPED_TRACE("step of " + std::to_string(sign * step_s) + " s");
+            std::vector<StampedFrame> frames = scene.bus.frames();
+            for (StampedFrame& entry : frames) {
+                entry.stamp.ns += entry.stamp >= wall_at(kStep_s) ? std::llround(1e9 * sign * step_s) : 0;
+            }
+            const Pipeline pipeline = play(scene, frames);
+            expect_hits_where_shots_ended(pipeline, 60);
+            // The exchanges of 5.1 and 6.1 s agree again.
+            EXPECT_GT(pipeline.accounts().readings.used(), 90U) << pipeline.account_text();
+        }
+    }
+}
+
+/// The maps, byte by byte.
+std::string maps_of(const Pipeline& pipeline) {
+    return encode_ot(*pipeline.maps().fused()) + encode_ot(*pipeline.maps().proximity());
+}
+
+TEST(ClockSteps, of_the_wall_clock_by_an_hour_are_counted_and_over_after_two_exchanges) {
+    const Scene scene = turning_scene();
+    for (const double step_s : {3600.0, -3600.0}) {
+        std::vector<StampedFrame> frames = scene.bus.frames();
+        for (StampedFrame& entry : frames) {
+            entry.stamp.ns += entry.stamp >= wall_at(kStep_s) ? std::llround(1e9 * step_s) : 0;
+        }
+        const Pipeline pipeline = play(scene, frames);
+        const HostClockEstimate& clock = pipeline.intake().host_clock();
+        EXPECT_EQ(clock.steps_back(), step_s < 0.0 ? 1U : 0U);
+        EXPECT_EQ(clock.steps_ahead(), step_s > 0.0 ? 1U : 0U);
+        EXPECT_EQ(clock.relocks(), 1U);
+        // Lost: 48 readings of 4.5 to 6.101 s, and the few around them that wait or have no pose.
+        EXPECT_GE(pipeline.accounts().readings.used(), 149U - 48U - 10U) << pipeline.account_text();
+    }
+}
+
+TEST(ClockSteps, of_single_stamps_do_not_change_the_map) {
+    const Scene scene = turning_scene();
+    const std::vector<StampedFrame> clean = scene.bus.frames();
+    const std::string expected = maps_of(play(scene, clean));
+    wire::CanFrame foreign;
+    foreign.can_id = 0x7A1;
+    foreign.payload_len = 1;
+    // Frames of our own that say nothing new: a heartbeat, a reading that is there already.
+    ScriptedBus bus;
+    bus.heartbeat(4.5, node_of(scene, kLeft));
+    const wire::CanFrame heartbeat = bus.frames().front().frame;
+    const auto is_range = [](const StampedFrame& entry) {
+        return entry.frame.can_id == wire::can_id(wire::FrameType::range, kLeft);
+    };
+    const wire::CanFrame range = std::ranges::find_if(clean, is_range)->frame;
+    for (const wire::CanFrame& frame : {foreign, heartbeat, range}) {
+        for (const double step_s : {3600.0, 1.0, -0.03, -0.1, -1.0, -3600.0}) {
+            for (const double at_s : {3.2, 4.5, 5.1005, 6.0}) {
+                SCOPED_TRACE(std::to_string(frame.can_id) + " at " + std::to_string(at_s) + " s, stamped " +
+                             std::to_string(step_s) + " s ahead");
+                std::vector<StampedFrame> frames = clean;
+                const auto place = std::ranges::find_if(
+                    frames, [&](const StampedFrame& entry) { return entry.stamp >= wall_at(at_s); });
+                frames.insert(place, {wall_at(at_s + step_s), frame});
+                EXPECT_TRUE(maps_of(play(scene, frames)) == expected);
+            }
+        }
+    }
+}
+
+TEST(ClockSteps, of_any_number_of_foreign_stamps_do_not_change_the_map) {
+    const Scene scene = turning_scene();
+    const std::string expected = maps_of(play(scene, scene.bus.frames()));
+    wire::CanFrame foreign;
+    foreign.can_id = 0x7A1;
+    foreign.payload_len = 1;
+    for (const double step_s : {3600.0, 0.1, -0.01, -3600.0}) {
+        std::vector<StampedFrame> frames;
+        for (const StampedFrame& entry : scene.bus.frames()) {
+            frames.push_back(entry);
+            frames.push_back({{entry.stamp.ns + std::llround(1e9 * step_s)}, foreign});
+        }
+        EXPECT_TRUE(maps_of(play(scene, frames)) == expected) << step_s;
+    }
+}
+
+TEST(ClockSteps, of_a_sensor_nodes_clock_put_no_range_in_the_wrong_place) {
+    for (const double step_s : {0.02, 0.03, 0.05, 0.1, 0.15, 0.2, 0.24, 0.5, 1.0, 3.0, 100.0, 2000.0}) {
+        for (const double sign : {1.0, -1.0}) {
+            SCOPED_TRACE("jump of " + std::to_string(sign * step_s) + " s");
+            const Pipeline pipeline = play(turning_scene(), frames_with_jump(kLeft, sign * step_s));
+            expect_hits_where_shots_ended(pipeline, 60);
+            EXPECT_GT(pipeline.accounts().readings.used(), 90U) << pipeline.account_text();
+        }
+    }
+}
+
+TEST(ClockSteps, of_the_joint_sources_clock_put_no_range_in_the_wrong_place) {
+    for (const double step_s : {0.06, 0.1, 0.5, 5.0, 16.777, 1000.0}) {
+        for (const double sign : {1.0, -1.0}) {
+            SCOPED_TRACE("jump of " + std::to_string(sign * step_s) + " s");
+            const Pipeline pipeline = play(turning_scene(kJoints), frames_with_jump(kJoints, sign * step_s));
+            expect_hits_where_shots_ended(pipeline, 60);
+            EXPECT_GT(pipeline.accounts().readings.used(), 90U) << pipeline.account_text();
+        }
+    }
+}
+
+}  // namespace
+}  // namespace octoskin::test

@@ -1,0 +1,175 @@
+// Whole files: the nasty ones in tests/data/candump, and the round trip through the writer.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "host/io/candump/log_reader.hpp"
+#include "host/io/candump/log_source.hpp"
+#include "host/io/candump/log_writer.hpp"
+
+namespace octoskin::candump {
+namespace {
+
+const std::filesystem::path kData = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "tests/data/candump";
+
+struct ReadBack {
+    std::vector<LogEntry> entries;
+    Account<LineFault> account;
+    std::array<std::uint64_t, 9> first_lines{};
+};
+
+ReadBack read_all(const std::filesystem::path& file) {
+    auto reader = LogReader::open(file);
+    EXPECT_TRUE(reader.has_value());
+    ReadBack back;
+    while (true) {
+        const auto entry = reader->next();
+        EXPECT_TRUE(entry.has_value());
+        if (!entry || !entry->has_value()) {
+            break;
+        }
+        back.entries.push_back(**entry);
+    }
+    EXPECT_FALSE(reader->next()->has_value()) << "an end stays an end";
+    back.account = reader->account();
+    for (std::size_t i = 0; i < back.first_lines.size(); ++i) {
+        back.first_lines[i] = reader->first_line(static_cast<LineFault>(i));
+    }
+    EXPECT_TRUE(back.account.is_balanced());
+    EXPECT_EQ(back.account.used(), back.entries.size());
+    return back;
+}
+
+class TemporaryFile {
+  public:
+    explicit TemporaryFile(const std::string& name)
+        : path_(std::filesystem::temp_directory_path() /
+                (name + "-" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "-" +
+                 std::to_string(reinterpret_cast<std::uintptr_t>(this)))) {}
+    ~TemporaryFile() { std::filesystem::remove(path_); }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+TEST(LogReader, reads_every_form_of_a_line) {
+    const ReadBack back = read_all(kData / "every-form.log");
+    EXPECT_EQ(back.account.in(), 10U);
+    EXPECT_EQ(back.entries.size(), 10U);
+}
+
+TEST(LogReader, tolerates_carriage_returns) {
+    const ReadBack back = read_all(kData / "crlf.log");
+    ASSERT_EQ(back.entries.size(), 2U);
+    EXPECT_EQ(back.entries[1].frame.data[0], 0x2B);
+    EXPECT_EQ(back.account.rejected(LineFault::blank), 1U);
+}
+
+TEST(LogReader, counts_a_line_the_file_ends_in) {
+    for (const char* file : {"truncated-in-data.log", "truncated-in-stamp.log"}) {
+        const ReadBack back = read_all(kData / file);
+        EXPECT_EQ(back.entries.size(), 1U) << file;
+        EXPECT_EQ(back.account.rejected(LineFault::truncated), 1U) << file;
+    }
+}
+
+TEST(LogReader, leaves_a_line_cut_between_bytes_to_the_frames_checksum) {
+    const ReadBack back = read_all(kData / "cut-between-bytes.log");
+    ASSERT_EQ(back.entries.size(), 2U);
+    EXPECT_EQ(back.entries[1].frame.payload_len, 2);
+}
+
+TEST(LogReader, steps_over_lines_of_other_programs) {
+    const ReadBack back = read_all(kData / "foreign-lines.log");
+    EXPECT_EQ(back.entries.size(), 1U);
+    EXPECT_EQ(back.account.rejected(LineFault::foreign), 5U);
+}
+
+TEST(LogReader, counts_each_fault_once_with_the_number_of_its_first_line) {
+    const ReadBack back = read_all(kData / "every-fault.log");
+    EXPECT_TRUE(back.entries.empty());
+    for (std::size_t i = 0; i < 9; ++i) {
+        EXPECT_EQ(back.account.rejected(static_cast<LineFault>(i)), 1U) << names_of(LineFault{})[i];
+        EXPECT_EQ(back.first_lines[i], i + 1) << names_of(LineFault{})[i];
+    }
+}
+
+TEST(LogReader, holds_no_more_of_a_line_without_end_than_its_bound_and_goes_on_after_it) {
+    TemporaryFile file("long-line");
+    std::ofstream(file.path()) << "(1436509053.850870) vcan0 044#" << std::string(1'000'000, 'A')
+                               << "\n(1436509053.850871) vcan0 044#2A\n";
+    const ReadBack back = read_all(file.path());
+    EXPECT_EQ(back.entries.size(), 1U);
+    EXPECT_EQ(back.account.rejected(LineFault::too_long), 1U);
+    EXPECT_EQ(back.account.in(), 2U);
+}
+
+TEST(LogReader, takes_the_longest_line_that_is_allowed) {
+    TemporaryFile file("edge");
+    const std::string line = "(1436509053.850870) vcan0 044#";
+    std::ofstream(file.path()) << line << std::string(kLineBytesMax - line.size(), 'A') << "\n"
+                               << line << std::string(kLineBytesMax + 1 - line.size(), 'A') << "\n";
+    const ReadBack back = read_all(file.path());
+    EXPECT_EQ(back.account.rejected(LineFault::length), 1U) << "256 bytes are a line, if a bad one";
+    EXPECT_EQ(back.account.rejected(LineFault::too_long), 1U);
+}
+
+TEST(LogReader, says_why_a_file_cannot_be_opened) {
+    const auto absent = LogReader::open("/nowhere/can.log");
+    ASSERT_FALSE(absent.has_value());
+    EXPECT_EQ(absent.error().message(), "/nowhere/can.log: cannot open: No such file or directory");
+    EXPECT_FALSE(LogReader::open(kData).has_value()) << "a directory";
+}
+
+TEST(LogSource, gives_the_frames_of_a_log_with_their_stamps_and_then_ends) {
+    LogSource source(std::move(LogReader::open(kData / "foreign-lines.log")).value());
+    const auto frame = source.next();
+    ASSERT_TRUE(frame.has_value() && frame->has_value());
+    EXPECT_EQ((*frame)->stamp.ns, 1'436'509'053'850'870'000);
+    EXPECT_EQ((*frame)->frame.can_id, 0x44U);
+    EXPECT_FALSE(source.next()->has_value());
+    EXPECT_EQ(source.reader().account().rejected(LineFault::foreign), 5U);
+}
+
+TEST(LogWriter, writes_a_log_that_reads_back_equal) {
+    TemporaryFile file("round-trip");
+    const ReadBack expected = read_all(kData / "every-form.log");
+    auto writer = LogWriter::create(file.path(), "vcan0");
+    ASSERT_TRUE(writer.has_value());
+    for (const LogEntry& entry : expected.entries) {
+        ASSERT_TRUE(writer->write(entry.stamp, entry.frame).has_value());
+    }
+    ASSERT_TRUE(writer->close().has_value());
+    const ReadBack back = read_all(file.path());
+    ASSERT_EQ(back.entries.size(), 10U);
+    for (std::size_t i = 0; i < 10; ++i) {
+        EXPECT_EQ(back.entries[i].frame, expected.entries[i].frame);
+        EXPECT_EQ(back.entries[i].stamp, expected.entries[i].stamp);
+        EXPECT_EQ(back.entries[i].interface, "vcan0");
+    }
+}
+
+TEST(LogWriter, reports_a_full_disk) {
+    if (!std::filesystem::exists("/dev/full")) {
+        GTEST_SKIP() << "no /dev/full here";
+    }
+    auto writer = LogWriter::create("/dev/full");
+    ASSERT_TRUE(writer.has_value());
+    const auto written = writer->write({0}, {.can_id = 1});
+    EXPECT_FALSE(written.has_value() && writer->close().has_value());
+}
+
+TEST(LogWriter, says_why_a_file_cannot_be_created) {
+    const auto writer = LogWriter::create("/nowhere/can.log");
+    ASSERT_FALSE(writer.has_value());
+    EXPECT_EQ(writer.error().message(), "/nowhere/can.log: cannot create: No such file or directory");
+}
+
+}  // namespace
+}  // namespace octoskin::candump

@@ -1,0 +1,156 @@
+#include "host/io/mapfile/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <string>
+
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing_support::ScratchFolder;
+
+/// The real operations, but the n-th of all calls that can fail does, and writes take a few bytes at a time.
+class FailingOperations final : public FileOperations {
+  public:
+    explicit FailingOperations(int failing_call) : calls_left_(failing_call) {}
+
+    int create(const char* path) override { return fails(ENOSPC) ? -1 : real_.create(path); }
+    int open_directory(const char* path) override { return fails(EACCES) ? -1 : real_.open_directory(path); }
+    ssize_t write(int descriptor, const void* bytes, std::size_t count) override {
+        return fails(ENOSPC) ? -1 : real_.write(descriptor, bytes, std::min<std::size_t>(count, 5));
+    }
+    int sync(int descriptor) override { return fails(EIO) ? -1 : real_.sync(descriptor); }
+    int close(int descriptor) override {
+        const int result = real_.close(descriptor);  // the descriptor is gone whatever close() says
+        return fails(EIO) ? -1 : result;
+    }
+    int rename(const char* from, const char* to) override {
+        return fails(EXDEV) ? -1 : real_.rename(from, to);
+    }
+    int remove(const char* path) override { return real_.remove(path); }
+
+    [[nodiscard]] bool has_failed() const noexcept { return calls_left_ < 0; }
+
+  private:
+    bool fails(int error_number) {
+        if (calls_left_-- != 0) return false;
+        errno = error_number;
+        return true;
+    }
+
+    FileOperations& real_ = posix_file_operations();
+    int calls_left_;
+};
+
+/// Interrupted before every write that succeeds.
+class InterruptedOperations final : public FileOperations {
+  public:
+    int create(const char* path) override { return real_.create(path); }
+    int open_directory(const char* path) override { return real_.open_directory(path); }
+    ssize_t write(int descriptor, const void* bytes, std::size_t count) override {
+        is_interrupted_ = !is_interrupted_;
+        if (is_interrupted_) {
+            errno = EINTR;
+            return -1;
+        }
+        return real_.write(descriptor, bytes, std::min<std::size_t>(count, 3));
+    }
+    int sync(int descriptor) override { return real_.sync(descriptor); }
+    int close(int descriptor) override { return real_.close(descriptor); }
+    int rename(const char* from, const char* to) override { return real_.rename(from, to); }
+    int remove(const char* path) override { return real_.remove(path); }
+
+  private:
+    FileOperations& real_ = posix_file_operations();
+    bool is_interrupted_ = false;
+};
+
+TEST(AtomicFile, saves_a_new_file_and_replaces_an_old_one) {
+    const ScratchFolder folder;
+    const auto file = folder / "map.ot";
+    EXPECT_TRUE(save_atomically(file, "first").has_value());
+    EXPECT_EQ(ScratchFolder::read(file), "first");
+    EXPECT_TRUE(save_atomically(file, std::string_view("\0second", 7)).has_value());
+    EXPECT_EQ(ScratchFolder::read(file), std::string("\0second", 7));
+    EXPECT_TRUE(save_atomically(file, "").has_value());
+    EXPECT_EQ(ScratchFolder::read(file), "");
+    EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(AtomicFile, survives_a_failure_at_every_single_call) {
+    const std::string content = "the new content";  // three writes of five bytes
+    // Create, three writes, sync, close, rename, open the folder, sync it. Closing a folder comes after all
+    // that: nothing can be lost any more.
+    constexpr int kCallsThatMatter = 9;
+    for (int failing_call = 0; failing_call < kCallsThatMatter; ++failing_call) {
+        const ScratchFolder folder;
+        const auto file = folder.write("map.ot", "old");
+        FailingOperations operations(failing_call);
+        const auto saved = save_atomically(file, content, operations);
+        ASSERT_TRUE(operations.has_failed());
+        ASSERT_FALSE(saved.has_value()) << "call " << failing_call << " failed and nobody said so";
+        EXPECT_NE(saved.error().error_number, 0);
+        const bool is_in_place = saved.error().step == SaveStep::sync_directory;
+        EXPECT_EQ(ScratchFolder::read(file), is_in_place ? content : "old") << "call " << failing_call;
+        EXPECT_EQ(folder.entries(), 1) << "call " << failing_call << " left something behind";
+    }
+    const ScratchFolder folder;
+    FailingOperations operations(kCallsThatMatter);
+    EXPECT_TRUE(save_atomically(folder / "map.ot", content, operations).has_value());
+    EXPECT_TRUE(operations.has_failed());
+}
+
+TEST(AtomicFile, goes_on_after_interruptions_and_short_writes) {
+    const ScratchFolder folder;
+    InterruptedOperations operations;
+    EXPECT_TRUE(save_atomically(folder / "map.bt", "0123456789", operations).has_value());
+    EXPECT_EQ(ScratchFolder::read(folder / "map.bt"), "0123456789");
+}
+
+TEST(AtomicFile, says_which_step_failed_and_why) {
+    const ScratchFolder folder;
+    const auto missing = save_atomically(folder / "no/such/map.ot", "x");
+    ASSERT_FALSE(missing.has_value());
+    EXPECT_EQ(missing.error().step, SaveStep::create);
+    EXPECT_EQ(missing.error().error_number, ENOENT);
+    EXPECT_EQ(missing.error().message(),
+              (folder / "no/such/map.ot").string() +
+                  ": creating a file beside it failed (No such file or directory); "
+                  "the old file, if any, is untouched");
+    std::filesystem::create_directory(folder / "taken.ot");
+    const auto taken = save_atomically(folder / "taken.ot", "x");
+    ASSERT_FALSE(taken.has_value());
+    EXPECT_EQ(taken.error().step, SaveStep::rename);
+    EXPECT_EQ(folder.entries(), 1);
+    EXPECT_EQ(save_atomically("", "x").error().step, SaveStep::name);
+    EXPECT_EQ(save_atomically(folder.path() / "", "x").error().step, SaveStep::name);
+    EXPECT_EQ(save_atomically(folder.path() / "..", "x").error().step, SaveStep::name);
+}
+
+TEST(AtomicFile, writes_through_no_symbolic_link_that_waits_at_its_partial_name) {
+    const ScratchFolder folder;
+    const auto victim = folder.write("victim", "precious");
+    std::filesystem::create_symlink(victim, folder / ".map.ot.octoskin-part");
+    EXPECT_FALSE(save_atomically(folder / "map.ot", "x").has_value());
+    EXPECT_EQ(ScratchFolder::read(victim), "precious");
+}
+
+TEST(AtomicFile, removes_leftovers_of_a_dead_process_and_nothing_else) {
+    const ScratchFolder folder;
+    folder.write("map.ot", "kept");
+    folder.write(".map.ot.octoskin-part", "half");
+    folder.write(".other.octoskin-part", "half");
+    folder.write("visible.octoskin-part", "kept");
+    folder.write(".hidden", "kept");
+    EXPECT_EQ(remove_leftovers(folder.path()), 2U);
+    EXPECT_EQ(folder.entries(), 3);
+    EXPECT_EQ(remove_leftovers(folder / "no such folder"), 0U);
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,132 @@
+#include "host/io/mapping/mapping_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::ScratchFolder;
+
+Result<MappingConfig, MappingFileError> read_text(const std::string& text) {
+    const ScratchFolder folder;
+    return read_mapping(folder.write("my.yaml", text).string());
+}
+
+std::string error_of(const std::string& text) {
+    const auto config = read_text(text);
+    return config ? "no error" : config.error().message();
+}
+
+TEST(MappingFile, knows_the_two_that_ship_by_name) {
+    EXPECT_EQ(*read_mapping("paper"), paper_mapping());
+    EXPECT_EQ(*read_mapping("robust"), robust_mapping());
+    EXPECT_EQ(read_mapping("paper")->depth_update, DepthUpdate::paper);
+    EXPECT_FALSE(read_mapping("paper")->depth_filter.is_enabled);
+    EXPECT_EQ(read_mapping("robust")->depth_update, DepthUpdate::robust);
+    EXPECT_TRUE(read_mapping("robust")->depth_filter.is_enabled);
+}
+
+TEST(MappingFile, shipped_files_say_what_is_built_in) {
+    const std::string folder = OCTOSKIN_SOURCE_DIR "/host/config/";
+    const auto paper = read_mapping(folder + "paper.yaml");
+    ASSERT_TRUE(paper.has_value()) << paper.error().message();
+    EXPECT_EQ(*paper, paper_mapping());
+    const auto robust = read_mapping(folder + "robust.yaml");
+    ASSERT_TRUE(robust.has_value()) << robust.error().message();
+    EXPECT_EQ(*robust, robust_mapping());
+}
+
+/// With another `base`, so that every value has to come from the file itself.
+TEST(MappingFile, shipped_files_leave_nothing_out) {
+    for (const std::string name : {"paper", "robust"}) {
+        std::string text = ScratchFolder::read(OCTOSKIN_SOURCE_DIR "/host/config/" + name + ".yaml");
+        const std::string base = "base: " + name;
+        ASSERT_NE(text.find(base), std::string::npos);
+        text.replace(text.find(base), base.size(), name == "paper" ? "base: robust" : "base: paper");
+        EXPECT_EQ(*read_text(text), *read_mapping(name));
+    }
+}
+
+TEST(MappingFile, starts_from_robust_or_the_base_it_names_and_overrides_what_it_mentions) {
+    EXPECT_EQ(*read_text("{}"), robust_mapping());
+    MappingConfig expected = paper_mapping();
+    expected.map.resolution_m = 0.02;
+    expected.removes_robot_from_depth = false;
+    EXPECT_EQ(*read_text("base: paper\nremoves_robot_from_depth: false\nmap: {resolution_m: 0.02}\n"),
+              expected);
+}
+
+TEST(MappingFile, reads_every_key) {
+    const auto config = read_text(
+        "map: {resolution_m: 0.02, log_odds_min: -3.5, log_odds_max: 4, log_odds_occupied: 0.25, "
+        "memory_max_mib: 10}\n"
+        "proximity_hit: {log_odds_offset: 0.5, log_odds_slope_per_m: 0.25, range_min_m: 0.125, "
+        "is_range_min_exclusive: true}\n"
+        "depth_hit: {log_odds_offset: 0.75, log_odds_slope_per_m: 0.5, range_min_m: 1.5, "
+        "is_range_min_exclusive: false}\n"
+        "miss_log_odds: -0.5\ndepth_update: paper\n"
+        "depth_filter: {is_enabled: false, window_px: 3, sigma_m: 0.01, gate_sigmas: 5, mean_sigmas: 2, "
+        "min_support: 4}\n"
+        "removes_robot_from_depth: false\nremoves_robot_from_ranges: false\nno_return_clear_m: 1.25\n"
+        "depth_box_voxels_max: 5000\n");
+    ASSERT_TRUE(config.has_value()) << config.error().message();
+    const MappingConfig expected{
+        .map = {.resolution_m = 0.02,
+                .log_odds_min = -3.5F,
+                .log_odds_max = 4.0F,
+                .log_odds_occupied = 0.25F,
+                .memory_max_mib = 10},
+        .model =
+            {.proximity =
+                 {.offset = 0.5, .slope_per_m = 0.25, .range_min_m = 0.125, .is_min_exclusive = true},
+             .depth = {.offset = 0.75, .slope_per_m = 0.5, .range_min_m = 1.5, .is_min_exclusive = false},
+             .miss_log_odds = -0.5F},
+        .depth_update = DepthUpdate::paper,
+        .depth_filter = {.is_enabled = false,
+                         .window = 3,
+                         .sigma_m = 0.01,
+                         .gate_sigmas = 5.0,
+                         .mean_sigmas = 2.0,
+                         .min_support = 4},
+        .removes_robot_from_depth = false,
+        .removes_robot_from_ranges = false,
+        .no_return_clear_m = 1.25,
+        .depth_box_voxels_max = 5000};
+    EXPECT_EQ(*config, expected);
+    // And writes every key: what it writes reads back as the same.
+    EXPECT_EQ(*read_text("base: robust\n" + mapping_text(*config)), *config);
+    EXPECT_EQ(*read_text("base: paper\n" + mapping_text(*config)), *config);
+    EXPECT_EQ(mapping_text(*read_text(mapping_text(*config))), mapping_text(*config));
+}
+
+TEST(MappingFile, names_file_line_key_value_and_remedy) {
+    EXPECT_THAT(error_of("map:\n  resolution: 0.04\n"), HasSubstr("my.yaml:2: map.resolution: "));
+    EXPECT_THAT(error_of("map:\n  resolution: 0.04\n"), HasSubstr("resolution_m"));
+    EXPECT_THAT(error_of("\nno_return_clear_mm: 100\n"), HasSubstr("my.yaml:2: no_return_clear_mm: "));
+    EXPECT_THAT(error_of("depth_update: best\n"),
+                HasSubstr("my.yaml:1: depth_update: expected paper or robust, found 'best'"));
+    EXPECT_THAT(error_of("base: worst\n"),
+                HasSubstr("my.yaml:1: base: expected paper or robust, found 'worst'"));
+    EXPECT_THAT(error_of("miss_log_odds: 0.4\n"),
+                HasSubstr("my.yaml:1: miss_log_odds: expected a number from "));
+    EXPECT_THAT(error_of("depth_filter: {window_px: 4}\n"),
+                HasSubstr("my.yaml:1: depth_filter.window_px: expected an odd number, found 4"));
+    EXPECT_THAT(error_of("depth_filter: {is_enabled: 1}\n"), HasSubstr("expected true or false, found '1'"));
+    EXPECT_THAT(error_of("map: {log_odds_occupied: 4}\n"), HasSubstr("my.yaml:1: map.log_odds_occupied: "));
+    EXPECT_THAT(error_of("map: {log_odds_occupied: -2}\n"), HasSubstr("my.yaml:1: map.log_odds_occupied: "));
+    EXPECT_THAT(error_of("map: 0.04\n"), HasSubstr("my.yaml:1: map: expected a table of keys"));
+    EXPECT_THAT(error_of("map: {resolution_m: .nan}\n"), HasSubstr("my.yaml:1: map.resolution_m: "));
+    EXPECT_THAT(error_of("map: {resolution_m: 0}\n"), HasSubstr("my.yaml:1: map.resolution_m: "));
+    EXPECT_THAT(error_of("depth_hit: {range_min_m: -1}\n"), HasSubstr("my.yaml:1: depth_hit.range_min_m: "));
+    EXPECT_THAT(error_of("map: [\n"), HasSubstr("my.yaml:"));
+    EXPECT_FALSE(read_mapping("no/such/file.yaml").has_value());
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,98 @@
+// From the shipped rig file to the host's view of it.
+#include "host/io/rig/host_rig_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <vector>
+
+#include "common/config/node_config.hpp"
+
+namespace octoskin {
+namespace {
+
+const std::filesystem::path kSource = OCTOSKIN_SOURCE_DIR;
+
+rig::Rig experiment() {
+    auto rig = rig::read_rig(kSource / "hw/rigs/experiment.yaml");
+    EXPECT_TRUE(rig) << rig.error().message();
+    return std::move(rig).value();
+}
+
+TEST(HostRigReader, takes_over_everything_the_host_needs) {
+    rig::Rig rig = experiment();
+    rig.nodes[1].pinned_build_id = 0x1234ABCD;
+    rig.T_map_base.translation() << 0.1, 0.2, 0.3;
+    const auto setup = make_host_setup(rig);
+    ASSERT_TRUE(setup) << setup.error().message();
+    const HostRig& host = setup->rig;
+    EXPECT_EQ(host.name, "experiment");
+    EXPECT_EQ(host.rig_hash, rig::rig_hash(rig));
+    EXPECT_TRUE(host.T_map_base.matrix() == rig.T_map_base.matrix());
+    ASSERT_EQ(host.nodes.size(), 2U);
+    EXPECT_EQ(host.nodes[1].node_id, 2);
+    EXPECT_EQ(host.nodes[1].name, "front_rings");
+    EXPECT_EQ(host.nodes[1].node_hash, node_hash(rig.nodes[1].config));
+    EXPECT_NE(host.nodes[1].node_hash, host.nodes[0].node_hash);
+    EXPECT_EQ(host.nodes[1].pinned_build_id, 0x1234ABCDU);
+    EXPECT_FALSE(host.nodes[0].pinned_build_id);
+    ASSERT_EQ(host.nodes[0].sensors.size(), 17U);
+    const HostSensor& sensor = host.nodes[0].sensors[9];
+    EXPECT_EQ(sensor.name, "ring1_1");
+    EXPECT_EQ(sensor.link, "panda_link8");
+    EXPECT_TRUE(sensor.T_link_sensor.matrix() == rig.nodes[0].sensors[9].T_link_sensor.matrix());
+    EXPECT_EQ(sensor.timing_budget, Microseconds(20'000));
+    EXPECT_EQ(sensor.period, Microseconds(33'000));
+    ASSERT_EQ(sensor.zones.size(), 1U);
+    EXPECT_EQ(sensor.zones[0].offset_m, 0.0);
+    EXPECT_TRUE(sensor.zones[0].direction_sensor == Eigen::Vector3d::UnitZ());
+    EXPECT_EQ(host.joints.node_id, 3);
+    EXPECT_EQ(host.joints.joints.front(), "panda_joint1");
+    EXPECT_EQ(host.joints.rate_hz, 100.0);
+    EXPECT_EQ(host.links_ignored_by_sensors, (std::vector<std::string>{"panda_link7", "panda_link8"}));
+    EXPECT_EQ(host.depth_self_margin_m, 0.09);
+    EXPECT_EQ(host.range_self_margin_m, 0.12);
+    EXPECT_EQ(host.range_limits.min_m, 0.04);
+    EXPECT_EQ(host.range_limits.max_m, 4.0);
+    EXPECT_EQ(host.range_limits.sigma_max_m, 0.2);
+}
+
+TEST(HostRigReader, takes_over_the_camera_or_its_absence) {
+    rig::Rig rig = experiment();
+    const auto with = make_host_setup(rig);
+    ASSERT_TRUE(with->rig.camera);
+    EXPECT_EQ(with->rig.camera->intrinsics.width, 512U);
+    EXPECT_EQ(with->rig.camera->intrinsics.height, 424U);
+    EXPECT_EQ(with->rig.camera->intrinsics.fx, 365.0);
+    EXPECT_EQ(with->rig.camera->intrinsics.cy, 212.0);
+    EXPECT_EQ(with->rig.camera->depth_min_m, 0.5);
+    EXPECT_EQ(with->rig.camera->depth_max_m, 4.5);
+    EXPECT_EQ(with->rig.camera->rate_hz, 10.0);
+    EXPECT_TRUE(with->rig.camera->T_base_camera.matrix() == rig.camera->T_base_camera.matrix());
+    rig.camera.reset();
+    EXPECT_FALSE(make_host_setup(rig)->rig.camera);
+}
+
+TEST(HostRigReader, reads_the_body_and_the_kinematics_from_the_urdf) {
+    rig::Rig rig = experiment();
+    rig.link_padding_m["panda_link2"] = 0.02;
+    const auto setup = make_host_setup(rig);
+    ASSERT_TRUE(setup);
+    ASSERT_EQ(setup->rig.body.size(), 8U);
+    EXPECT_EQ(setup->rig.body[2].link, "panda_link2");
+    EXPECT_DOUBLE_EQ(setup->rig.body[2].radius_m, 0.09);
+    EXPECT_EQ(setup->robot.link_count(), 9U);
+    EXPECT_EQ(setup->robot.joint_count(), 7U);
+}
+
+TEST(HostRigReader, refuses_a_body_outside_the_kinematic_tree) {
+    rig::Rig rig = experiment();
+    rig.base_link = "panda_link4";
+    rig.joints.joints = {"panda_joint5", "panda_joint6", "panda_joint7"};
+    const auto setup = make_host_setup(rig);
+    ASSERT_FALSE(setup);
+    EXPECT_EQ(setup.error().key, "link panda_link0");
+}
+
+}  // namespace
+}  // namespace octoskin

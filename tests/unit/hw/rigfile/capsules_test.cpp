@@ -1,0 +1,149 @@
+// Collision geometry of a URDF as capsules.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "hw/rigfile/robot_description.hpp"
+
+namespace octoskin::rig {
+namespace {
+
+using testing::HasSubstr;
+using Padding = std::map<std::string, double>;
+
+const std::filesystem::path kPanda = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw/robots/panda.urdf";
+
+class Capsules : public testing::Test {
+  protected:
+    void TearDown() override { std::filesystem::remove(file_); }
+    /// The capsules of a robot with one link, "hull", and this in it.
+    Result<std::vector<Capsule>, RigError> read(const std::string& collisions, const Padding& padding = {}) {
+        std::ofstream(file_) << "<robot name=\"r\">\n  <link name=\"hull\">\n"
+                             << collisions << "  </link>\n</robot>\n";
+        return read_capsules(file_, padding);
+    }
+    std::filesystem::path file_ =
+        std::filesystem::path(testing::TempDir()) /
+        (std::string("octoskin-") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".urdf");
+};
+
+std::string sphere(const std::string& xyz, const std::string& radius) {
+    return "<collision><origin xyz=\"" + xyz + "\"/><geometry><sphere radius=\"" + radius +
+           "\"/></geometry></collision>\n";
+}
+std::string cylinder(const std::string& origin, const std::string& radius, const std::string& length) {
+    return "<collision><origin " + origin + "/><geometry><cylinder radius=\"" + radius + "\" length=\"" +
+           length + "\"/></geometry></collision>\n";
+}
+
+TEST(PandaBody, is_the_eight_capsules_between_the_joint_frames) {
+    const auto capsules = read_capsules(kPanda, {});
+    ASSERT_TRUE(capsules) << capsules.error().message();
+    struct Expected {
+        const char* link;
+        Eigen::Vector3d a, b;
+        double radius_m;
+    };
+    // The links' frames are the joint frames; frame 2 shares frame 1's origin, 0.333 above the base.
+    const Expected expected[] = {
+        {"panda_link0", {0, 0, 0.07}, {0, 0, 0.25}, 0.085},
+        {"panda_link1", {0, 0, 0.25 - 0.333}, {0, 0, 0}, 0.08},
+        {"panda_link2", {0, 0, 0}, {0, -0.316, 0}, 0.07},
+        {"panda_link3", {0, 0, 0}, {0.0825, 0, 0}, 0.07},
+        {"panda_link4", {0, 0, 0}, {-0.0825, 0.384, 0}, 0.06},
+        {"panda_link6", {0, 0, 0}, {0.088, 0, 0}, 0.06},
+        {"panda_link7", {0, 0, 0}, {0, 0, 0.107}, 0.055},
+        {"panda_link8", {0, 0, 0}, {0, 0, 0.08}, 0.055},
+    };
+    ASSERT_EQ(capsules->size(), std::size(expected));
+    for (std::size_t i = 0; i < std::size(expected); ++i) {
+        const Capsule& capsule = (*capsules)[i];
+        EXPECT_EQ(capsule.link, expected[i].link);
+        EXPECT_EQ(capsule.radius_m, expected[i].radius_m) << capsule.link;
+        const bool is_turned = (capsule.p_link_a - expected[i].a).norm() > 1e-9;
+        EXPECT_LT(((is_turned ? capsule.p_link_b : capsule.p_link_a) - expected[i].a).norm(), 1e-15)
+            << capsule.link;
+        EXPECT_LT(((is_turned ? capsule.p_link_a : capsule.p_link_b) - expected[i].b).norm(), 1e-15)
+            << capsule.link;
+    }
+}
+
+TEST_F(Capsules, cylinder_with_a_sphere_at_each_end_is_one_capsule) {
+    const auto capsules =
+        read(sphere("0 0 0", "0.1") + cylinder("xyz=\"0 0 0.2\"", "0.1", "0.4") + sphere("0 0 0.4", "0.1"));
+    ASSERT_TRUE(capsules) << capsules.error().message();
+    ASSERT_EQ(capsules->size(), 1U);
+    EXPECT_EQ((*capsules)[0].p_link_a, Eigen::Vector3d(0, 0, 0));
+    EXPECT_EQ((*capsules)[0].p_link_b, Eigen::Vector3d(0, 0, 0.4));
+    EXPECT_EQ((*capsules)[0].radius_m, 0.1);
+}
+
+TEST_F(Capsules, lone_cylinder_is_padded_to_a_capsule) {
+    const auto capsules = read(cylinder("xyz=\"1 0 0\" rpy=\"0 1.5707963267948966 0\"", "0.1", "0.4"));
+    ASSERT_EQ(capsules->size(), 1U);
+    EXPECT_TRUE((*capsules)[0].p_link_a.isApprox(Eigen::Vector3d(0.8, 0, 0)));
+    EXPECT_TRUE((*capsules)[0].p_link_b.isApprox(Eigen::Vector3d(1.2, 0, 0)));
+}
+
+TEST_F(Capsules, lone_sphere_is_a_capsule_without_length) {
+    const auto capsules = read(sphere("0.1 0.2 0.3", "0.05"));
+    ASSERT_EQ(capsules->size(), 1U);
+    EXPECT_EQ((*capsules)[0].p_link_a, Eigen::Vector3d(0.1, 0.2, 0.3));
+    EXPECT_EQ((*capsules)[0].p_link_b, Eigen::Vector3d(0.1, 0.2, 0.3));
+}
+
+TEST_F(Capsules, sphere_where_two_cylinders_meet_ends_both) {
+    const auto capsules = read(cylinder("xyz=\"0 0 0.2\"", "0.1", "0.4") + sphere("0 0 0.4", "0.1") +
+                               cylinder("xyz=\"0 0 0.5\"", "0.1", "0.2"));
+    EXPECT_EQ(capsules->size(), 2U);
+}
+
+TEST_F(Capsules, sphere_of_another_size_or_place_stands_for_itself) {
+    EXPECT_EQ(read(cylinder("xyz=\"0 0 0.2\"", "0.1", "0.4") + sphere("0 0 0.4", "0.12"))->size(), 2U);
+    EXPECT_EQ(read(cylinder("xyz=\"0 0 0.2\"", "0.1", "0.4") + sphere("0 0 0.41", "0.1"))->size(), 2U);
+}
+
+TEST_F(Capsules, padding_of_a_link_is_added_to_its_radius) {
+    const auto capsules = read(sphere("0 0 0", "0.05"), {{"hull", 0.02}});
+    EXPECT_DOUBLE_EQ((*capsules)[0].radius_m, 0.07);
+}
+
+TEST_F(Capsules, padding_of_an_unknown_link_is_refused) {
+    const auto capsules = read(sphere("0 0 0", "0.05"), {{"hall", 0.02}});
+    ASSERT_FALSE(capsules);
+    EXPECT_EQ(capsules.error().key, "link hall");
+}
+
+TEST_F(Capsules, box_and_mesh_are_refused_by_link_and_name) {
+    const auto box = read("<collision name=\"lid\"><geometry><box size=\"1 1 1\"/></geometry></collision>\n");
+    ASSERT_FALSE(box);
+    EXPECT_EQ(box.error().key, "link hull");
+    EXPECT_EQ(box.error().line, 2);
+    EXPECT_THAT(box.error().message(),
+                HasSubstr("<collision name=\"lid\"> is a box: expected a cylinder or a sphere"));
+    const auto mesh = read("<collision><geometry><mesh filename=\"hull.stl\"/></geometry></collision>\n");
+    ASSERT_FALSE(mesh);
+    EXPECT_THAT(mesh.error().message(), HasSubstr("is a mesh"));
+}
+
+TEST_F(Capsules, absurd_size_is_refused) {
+    for (const char* radius : {"0", "-0.1", "50"}) {
+        const auto capsules = read(sphere("0 0 0", radius));
+        ASSERT_FALSE(capsules) << radius;
+        EXPECT_THAT(capsules.error().message(), HasSubstr("metres?")) << radius;
+    }
+    EXPECT_FALSE(read(cylinder("xyz=\"0 0 0\"", "0.1", "-1")));
+    EXPECT_FALSE(read(sphere("0 0 0", "nan")));
+    EXPECT_FALSE(read(sphere("0 nan 0", "0.1")));
+}
+
+TEST_F(Capsules, robot_without_collision_geometry_has_none) {
+    EXPECT_TRUE(read("")->empty());
+}
+
+}  // namespace
+}  // namespace octoskin::rig

@@ -1,0 +1,148 @@
+// The depth camera. Oracles: the depth of planes and boxes worked out by hand; one ray at a time for the
+// robot; the moments of the normal distribution for the noise.
+#include "hw/sim/camera/depth_camera.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hw/sim/world/shapes.hpp"
+
+namespace octoskin::sim {
+namespace {
+
+Solid box_at(const Eigen::Vector3d& size_m, const Eigen::Vector3d& centre) {
+    const auto mesh = transformed(box_mesh(size_m), Eigen::Isometry3d(Eigen::Translation3d(centre)));
+    return {"box/body/box", "box", mesh.vertices, mesh.triangles, true};
+}
+
+/// Looks along +x of base from `p_base_camera`: picture right = -y, picture down = -z.
+rig::Camera camera_at(const Eigen::Vector3d& p_base_camera) {
+    rig::Camera camera{
+        .width = 512, .height = 424, .fx = 365, .fy = 365, .cx = 256, .cy = 212, .rate_hz = 10};
+    camera.depth_min_m = 0.5;
+    camera.depth_max_m = 4.5;
+    camera.T_base_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    camera.T_base_camera.translation() = p_base_camera;
+    return camera;
+}
+
+/// A wall whose face is 2 m ahead, over the whole picture.
+World wall() {
+    return World(std::vector<Solid>{box_at({0.2, 20, 20}, {2.1, 0, 0})});
+}
+
+std::uint16_t at(const std::vector<std::uint16_t>& image, std::size_t u, std::size_t v) {
+    return image[v * 512 + u];
+}
+
+TEST(DepthCamera, measures_depth_along_the_optical_axis_not_along_the_ray) {
+    const World world = wall();
+    const DepthCamera camera(world, camera_at({0, 0, 0}), 0.0, 0);
+    for (const std::uint16_t depth_mm : camera.render({}, 0)) {
+        ASSERT_EQ(depth_mm, 2000);
+    }
+}
+
+TEST(DepthCamera, sends_its_rays_through_the_middles_of_the_pixels) {
+    // A box of 1 m x 1 m x 0.6 m (depth x width x height) whose front is 1 m ahead, shifted so that it covers
+    // y in (-0.2, 0.8) and z in (-0.5, 0.1). At depth 1 a pixel (u, v) looks at y = -(u + 0.5 - 256) / 365
+    // and z = -(v + 0.5 - 212) / 365, so the box covers u + 0.5 in (256 - 292, 256 + 73) and v + 0.5 in
+    // (175.5, 394.5).
+    const World world(std::vector<Solid>{box_at({1.0, 1.0, 0.6}, {1.5, 0.3, -0.2})});
+    const DepthCamera camera(world, camera_at({0, 0, 0}), 0.0, 0);
+    const auto image = camera.render({}, 0);
+    EXPECT_EQ(at(image, 0, 300), 1000);
+    EXPECT_EQ(at(image, 328, 300), 1000);
+    EXPECT_EQ(at(image, 330, 300), 0);
+    EXPECT_EQ(at(image, 100, 176), 1000);
+    EXPECT_EQ(at(image, 100, 174), 0);
+    EXPECT_EQ(at(image, 100, 393), 1000);
+    EXPECT_EQ(at(image, 100, 395), 0);
+}
+
+TEST(DepthCamera, sees_nothing_nearer_or_further_than_its_limits) {
+    for (const double x : {0.501, 4.499}) {
+        const World world(std::vector<Solid>{box_at({0.2, 20, 20}, {x + 0.1, 0, 0})});
+        EXPECT_EQ(at(DepthCamera(world, camera_at({0, 0, 0}), 0.0, 0).render({}, 0), 10, 20),
+                  std::lround(1e3 * x));
+    }
+    for (const double x : {0.499, 4.501}) {
+        const World world(std::vector<Solid>{box_at({0.2, 20, 20}, {x + 0.1, 0, 0})});
+        EXPECT_EQ(at(DepthCamera(world, camera_at({0, 0, 0}), 0.0, 0).render({}, 0), 10, 20), 0);
+    }
+}
+
+TEST(DepthCamera, draws_the_robot_exactly_where_each_pixels_ray_meets_it) {
+    const World world = wall();
+    const rig::Camera model = camera_at({0, 0, 0});
+    const DepthCamera camera(world, model, 0.0, 0);
+    // In front; partly outside the picture; beside the camera and reaching into the picture; behind the wall;
+    // behind the camera.
+    const std::vector<std::vector<BodyCapsule>> bodies = {
+        {{{1.0, -0.2, -0.1}, {1.4, 0.3, 0.2}, 0.08}},
+        {{{1.0, 0.6, 0.0}, {1.2, 1.5, 0.8}, 0.1}},
+        {{{-0.5, 0.3, 0.0}, {1.5, 0.1, 0.0}, 0.05}},
+        {{{2.5, 0.0, 0.0}, {3.0, 0.0, 0.0}, 0.1}},
+        {{{-1.0, 0.0, 0.0}, {-2.0, 0.5, 0.0}, 0.1}},
+        {{{0.9, 0.1, 0.1}, {0.9, 0.1, 0.1}, 0.2}, {{0.8, 0.1, 0.1}, {0.8, -0.3, 0.1}, 0.05}}};
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const auto image = camera.render(bodies[i], 0);
+        int robot_pixels = 0;
+        for (std::uint32_t v = 0; v < 424; ++v) {
+            for (std::uint32_t u = 0; u < 512; ++u) {
+                const Eigen::Vector3d ray(1.0, -(u + 0.5 - 256) / 365, -(v + 0.5 - 212) / 365);
+                const auto t = cast_body(bodies[i], Eigen::Vector3d::Zero(), ray);
+                const double depth_m = std::min(2.0, t.value_or(2.0));
+                const std::uint16_t expected =
+                    depth_m < 0.5 ? std::uint16_t{0} : static_cast<std::uint16_t>(std::lround(1e3 * depth_m));
+                ASSERT_EQ(at(image, u, v), expected) << "body " << i << " at " << u << ", " << v;
+                robot_pixels += depth_m < 2.0 ? 1 : 0;
+            }
+        }
+        EXPECT_EQ(robot_pixels > 1000, i != 3 && i != 4) << "body " << i;
+    }
+}
+
+TEST(DepthCamera, has_gaussian_noise_of_the_given_deviation_in_every_pixel) {
+    const World world = wall();
+    const DepthCamera camera(world, camera_at({0, 0, 0}), 0.03, 11);
+    double sum = 0.0, squares = 0.0;
+    const auto image = camera.render({}, 4);
+    for (const std::uint16_t depth_mm : image) {
+        ASSERT_NE(depth_mm, 0);
+        sum += depth_mm - 2000.0;
+        squares += (depth_mm - 2000.0) * (depth_mm - 2000.0);
+    }
+    const double n = static_cast<double>(image.size());
+    EXPECT_NEAR(sum / n, 0.0, 0.33);                  // five standard errors
+    EXPECT_NEAR(std::sqrt(squares / n), 30.0, 0.25);  // and the rounding's 0.29 mm
+}
+
+TEST(DepthCamera, has_noise_that_depends_on_seed_frame_and_pixel_alone) {
+    const World world = wall();
+    const DepthCamera camera(world, camera_at({0, 0, 0}), 0.03, 11);
+    const auto first = camera.render({}, 4);
+    const auto other_frame = camera.render({}, 5);
+    EXPECT_EQ(camera.render({}, 4), first) << "the order of rendering has a part in it";
+    EXPECT_NE(other_frame, first);
+    EXPECT_NE(DepthCamera(world, camera_at({0, 0, 0}), 0.03, 12).render({}, 4), first);
+    // A body in some pixels leaves the noise of all others.
+    const auto with_body = camera.render({{{1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 0.1}}, 4);
+    EXPECT_EQ(at(with_body, 5, 5), at(first, 5, 5));
+    EXPECT_NE(at(with_body, 256, 212), at(first, 256, 212));
+}
+
+TEST(DepthCamera, noise_can_carry_a_surface_over_either_limit) {
+    const World world(std::vector<Solid>{box_at({0.2, 20, 20}, {4.61, 0, 0})});  // its face at 4.51 m
+    int seen = 0;
+    for (const std::uint16_t depth_mm : DepthCamera(world, camera_at({0, 0, 0}), 0.03, 0).render({}, 0)) {
+        EXPECT_LE(depth_mm, 4500);
+        seen += depth_mm != 0 ? 1 : 0;
+    }
+    // P(noise < -10 mm) at 30 mm is 0.36944.
+    EXPECT_NEAR(seen / (512.0 * 424.0), 0.36944, 0.0052);
+}
+
+}  // namespace
+}  // namespace octoskin::sim

@@ -1,0 +1,151 @@
+// What a range sensor on the experiment's moving arm sees. Oracle: distances worked out by hand from the
+// scene's and the circle's numbers.
+#include "hw/sim/camera/sensor_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "hw/sim/world/shapes.hpp"
+
+namespace octoskin::sim {
+namespace {
+
+constexpr double kHalfTurn = 3.14159265358979323846;
+constexpr SimTime kStart{3'000'000};
+const std::filesystem::path kHw = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw";
+const std::vector<std::string> kMount = {"panda_link7", "panda_link8"};
+
+template <class T, class E>
+T expect_read(Result<T, E> result) {
+    EXPECT_TRUE(result.has_value());
+    return std::move(*result);
+}
+
+class ExperimentSensor : public testing::Test {
+  protected:
+    RangingScene scene(const Eigen::Isometry3d& T_flange_sensor, double sigma_m = 0.0, std::uint64_t seed = 0,
+                       std::uint32_t noise_id = 0) const {
+        return ranging_scene({.world = world_,
+                              .arm = arm_,
+                              .trajectory = trajectory_,
+                              .capsules = capsules_,
+                              .ignored_links = kMount,
+                              .optics = {sigma_m, 0.04, 4.0},
+                              .seed = seed},
+                             {"panda_link8", T_flange_sensor, noise_id});
+    }
+
+    /// The flange points down, so its z is -z of base, its y is -y, and its x is x.
+    static Eigen::Isometry3d looking(const Eigen::Vector3d& direction_flange) {
+        return Eigen::Isometry3d(
+            Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction_flange));
+    }
+
+    static Solid box_at(const Eigen::Vector3d& size_m, const Eigen::Vector3d& centre) {
+        const auto mesh = transformed(box_mesh(size_m), Eigen::Isometry3d(Eigen::Translation3d(centre)));
+        return {"box/body/box", "box", mesh.vertices, mesh.triangles, true};
+    }
+
+    /// Of the experiment's world only the floor, top at z = -0.02, and the left shelf's back panel, front at
+    /// x = 1.165.
+    World world_{std::vector<Solid>{box_at({10, 10, 0.1}, {0, 0, -0.07}),
+                                    box_at({0.03, 0.845, 1.0}, {1.18, 0.5075, 0.48})}};
+    Scenario scenario_ = expect_read(read_scenario(kHw / "worlds/experiment.scenario.yaml"));
+    Arm arm_ = expect_read(Arm::read(kHw / "robots/panda.urdf", "panda_link0",
+                                     {"panda_joint1", "panda_joint2", "panda_joint3", "panda_joint4",
+                                      "panda_joint5", "panda_joint6", "panda_joint7"}));
+    Trajectory trajectory_ = expect_read(Trajectory::circle(arm_, scenario_.motion, kStart));
+    std::vector<rig::Capsule> capsules_ = expect_read(rig::read_capsules(kHw / "robots/panda.urdf", {}));
+};
+
+TEST_F(ExperimentSensor, looking_down_sees_the_floor_from_where_the_arm_is_at_that_instant) {
+    const auto down = scene(Eigen::Isometry3d::Identity());
+    // The flange is 0.45 + 0.3 sin a above the base, the floor 0.02 below it.
+    EXPECT_NEAR(*down(0, {0}, Roi{}).range_m, 0.47, 1e-6);
+    EXPECT_NEAR(*down(1, kStart, Roi{}).range_m, 0.47, 1e-6);
+    EXPECT_NEAR(*down(2, {5'500'000}, Roi{}).range_m, 0.77, 1e-6);
+    EXPECT_NEAR(*down(3, {10'500'000}, Roi{}).range_m, 0.17, 1e-6);
+    EXPECT_NEAR(*down(4, {3'833'333}, Roi{}).range_m, 0.47 + 0.15, 2e-6);  // 30 degrees in
+}
+
+TEST_F(ExperimentSensor, looking_ahead_sees_the_panel) {
+    EXPECT_NEAR(*scene(looking({1, 0, 0}))(0, {0}, Roi{}).range_m, 1.165 - 0.45, 1e-6);
+}
+
+TEST_F(ExperimentSensor, looking_into_the_open_gets_no_return) {
+    const auto seen = scene(looking({0, -1, 0}))(0, {0}, Roi{});
+    EXPECT_FALSE(seen.range_m);
+}
+
+TEST_F(ExperimentSensor, looking_back_along_the_arm_sees_the_arm_but_not_its_own_mount) {
+    // From beside the flange straight up past link 7 (radius 0.055): link 6's capsule lies 0.107 above,
+    // between frames 6 and 7, radius 0.06. Beneath its axis, 0.05 m aside along the link's y, it is reached
+    // at 0.107 - sqrt(0.06^2 - 0.05^2). With one metre out of the way there is nothing above.
+    Eigen::Isometry3d beside = looking({0, 0, -1});
+    beside.translation() << 0.0, 0.05, 0.0;
+    const auto seen = scene(beside)(0, {0}, Roi{});
+    ASSERT_TRUE(seen.range_m);
+    // Link 6 reaches the flange's axis at its end, so straight along it the sensor meets the end's sphere
+    // first.
+    const Eigen::Isometry3d T_base_flange = arm_.forward(trajectory_.at({0}), "panda_link8");
+    const Eigen::Isometry3d T_base_link6 = arm_.forward(trajectory_.at({0}), "panda_link6");
+    const Eigen::Vector3d p_base_end = T_base_link6 * Eigen::Vector3d(0.088, 0, 0);
+    EXPECT_NEAR((T_base_flange.inverse() * p_base_end - Eigen::Vector3d(0, 0, -0.107)).norm(), 0.0, 1e-12);
+    EXPECT_LE(*seen.range_m, 0.107 - std::sqrt(0.06 * 0.06 - 0.05 * 0.05) + 1e-9);
+    EXPECT_GE(*seen.range_m, 0.107 - 0.06);
+    beside.translation() << 0.0, 1.0, 0.0;
+    EXPECT_FALSE(scene(beside)(0, {0}, Roi{}).range_m);
+}
+
+TEST_F(ExperimentSensor, sees_nothing_nearer_or_further_than_its_optics_allow) {
+    // Moved along its own axis to 3.9 cm and 4.1 cm above the floor.
+    Eigen::Isometry3d near = Eigen::Isometry3d::Identity();
+    near.translation().z() = 0.47 - 0.039;
+    EXPECT_FALSE(scene(near)(0, {0}, Roi{}).range_m);
+    near.translation().z() = 0.47 - 0.041;
+    EXPECT_TRUE(scene(near)(0, {0}, Roi{}).range_m);
+    Eigen::Isometry3d far = Eigen::Isometry3d::Identity();
+    far.translation() << 0.0, -2.0, 0.47 - 4.01;  // away from the arm
+    EXPECT_FALSE(scene(far)(0, {0}, Roi{}).range_m);
+    far.translation().z() = 0.47 - 3.99;
+    EXPECT_TRUE(scene(far)(0, {0}, Roi{}).range_m);
+}
+
+TEST_F(ExperimentSensor, looks_where_the_middle_of_its_zone_looks) {
+    // The lower right quarter of the array (UM2555's table), centre 60 of a 8 x 8 zone: the lens inverts, so
+    // it looks up and to the left by the same angle; the floor is 1 / cos further away.
+    const auto down = scene(Eigen::Isometry3d::Identity());
+    const Roi corner{.centre_spad = 28, .width = 8, .height = 8};
+    const double per_spad = 27.0 / (16.0 * std::sqrt(2.0)) * kHalfTurn / 180.0;
+    const double tangent = std::tan(4.0 * per_spad);
+    EXPECT_NEAR(*down(0, {0}, corner).range_m, 0.47 * std::sqrt(1.0 + 2.0 * tangent * tangent), 1e-6);
+}
+
+TEST_F(ExperimentSensor, has_gaussian_noise_of_its_own_by_ranging_index) {
+    const auto noisy = scene(Eigen::Isometry3d::Identity(), 0.02, 9, 5);
+    double sum = 0.0, squares = 0.0;
+    constexpr int kDraws = 20'000;
+    for (std::uint32_t i = 0; i < kDraws; ++i) {
+        const double error_m = *noisy(i, {0}, Roi{}).range_m - 0.47;
+        sum += error_m;
+        squares += error_m * error_m;
+    }
+    EXPECT_NEAR(sum / kDraws, 0.0, 7.1e-4);                  // five standard errors
+    EXPECT_NEAR(std::sqrt(squares / kDraws), 0.02, 5.0e-4);  // likewise
+    const double once = *noisy(17, {0}, Roi{}).range_m;
+    EXPECT_EQ(*noisy(17, {0}, Roi{}).range_m, once);
+    EXPECT_EQ(*scene(Eigen::Isometry3d::Identity(), 0.02, 9, 5)(17, {0}, Roi{}).range_m, once);
+    EXPECT_NE(*scene(Eigen::Isometry3d::Identity(), 0.02, 9, 6)(17, {0}, Roi{}).range_m, once);
+    EXPECT_NE(*scene(Eigen::Isometry3d::Identity(), 0.02, 8, 5)(17, {0}, Roi{}).range_m, once);
+}
+
+TEST_F(ExperimentSensor, reports_the_sigma_and_a_signal_that_no_limit_refuses) {
+    const auto seen = scene(Eigen::Isometry3d::Identity(), 0.02)(0, {0}, Roi{});
+    EXPECT_EQ(seen.sigma_m, 0.02);
+    EXPECT_GT(seen.peak_signal_mcps, 1.0);
+}
+
+}  // namespace
+}  // namespace octoskin::sim

@@ -1,0 +1,119 @@
+// The scenario file: the experiment's numbers, and what each kind of mistake is told. Oracle: the numbers of
+// the experiment's description, typed in again here.
+#include "hw/sim/scenario/scenario.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin::sim {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::filesystem::path kExperiment =
+    std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw/worlds/experiment.scenario.yaml";
+
+/// The experiment with some keys laid over it.
+class ScenarioFile : public testing::Test {
+  protected:
+    Result<Scenario, rig::RigError> read_with(const std::string& overlay) {
+        std::ofstream(file_) << "extends: " << kExperiment.string() << "\n" << overlay << "\n";
+        return read_scenario(file_);
+    }
+    std::string error_of(const std::string& overlay) {
+        const auto scenario = read_with(overlay);
+        EXPECT_FALSE(scenario) << overlay << " was accepted";
+        return scenario ? "" : scenario.error().message();
+    }
+
+    const testing_support::ScratchFolder scratch_;
+    const std::filesystem::path file_ = scratch_ / "changed.yaml";
+};
+
+TEST_F(ScenarioFile, of_the_experiment_says_what_the_experiment_is) {
+    const auto scenario = read_scenario(kExperiment);
+    ASSERT_TRUE(scenario) << scenario.error().message();
+    EXPECT_EQ(scenario->name, "experiment");
+    EXPECT_EQ(scenario->world, std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw/worlds/experiment.sdf");
+    EXPECT_EQ(scenario->rest_s, 3.0);
+    EXPECT_EQ(scenario->motion.link, "panda_link8");
+    EXPECT_EQ(scenario->motion.ticks(), 300u);
+    EXPECT_EQ(scenario->motion.tick_rate_hz, 30.0);
+    const Eigen::Isometry3d quarter = scenario->motion.T_base_link(75);
+    EXPECT_NEAR((quarter.translation() - Eigen::Vector3d(0.45, 0.0, 0.75)).norm(), 0.0, 1e-15);
+    EXPECT_EQ(Eigen::Matrix3d(quarter.linear()), Eigen::Matrix3d(Eigen::Vector3d(1, -1, -1).asDiagonal()));
+    EXPECT_EQ(scenario->motion.start_position.size(), 7);
+    EXPECT_EQ(scenario->motion.start_position[3], -2.356);
+    EXPECT_EQ(scenario->depth_sigma_m, 0.03);
+    EXPECT_EQ(scenario->ranges.sigma_m, 0.02);
+    EXPECT_EQ(scenario->ranges.min_m, 0.04);
+    EXPECT_EQ(scenario->ranges.max_m, 4.0);
+    EXPECT_THAT(scenario->hidden_models, testing::ElementsAre("cone", "crate"));
+    EXPECT_EQ(scenario->region.p_base_max, Eigen::Vector3d(1.4, 1.2, 1.4));
+    EXPECT_EQ(scenario->region.floor_top_m, -0.02);
+}
+
+TEST_F(ScenarioFile, shifts_the_map_by_the_listed_seeds_and_by_a_draw_for_others) {
+    const auto scenario = read_scenario(kExperiment);
+    ASSERT_TRUE(scenario);
+    EXPECT_EQ(scenario->map_shift_m(0), Eigen::Vector3d(0.002990, 0.020829, 0.001814));
+    EXPECT_EQ(scenario->map_shift_m(4), Eigen::Vector3d(0.018570, 0.037851, 0.036570));
+    for (std::uint64_t seed = 5; seed < 200; ++seed) {
+        const Eigen::Vector3d shift = scenario->map_shift_m(seed);
+        EXPECT_EQ(shift, scenario->map_shift_m(seed));
+        EXPECT_NE(shift, scenario->map_shift_m(seed + 1));
+        EXPECT_GE(shift.minCoeff(), 0.0);
+        EXPECT_LT(shift.maxCoeff(), 0.04);
+    }
+}
+
+TEST_F(ScenarioFile, takes_other_values_laid_over_it) {
+    const auto scenario =
+        read_with("depth: {sigma_m: 0}\nregion: {floor_top_m: null}\nmotion: {circle: {revolutions: 2}}");
+    ASSERT_TRUE(scenario) << scenario.error().message();
+    EXPECT_EQ(scenario->depth_sigma_m, 0.0);
+    EXPECT_FALSE(scenario->region.floor_top_m);
+    EXPECT_EQ(scenario->motion.ticks(), 600u);
+}
+
+TEST_F(ScenarioFile, with_an_unknown_key_is_refused_with_file_line_and_key) {
+    EXPECT_THAT(error_of("depth:\n  sigma_mm: 30"),
+                AllOf(HasSubstr("changed.yaml:3"), HasSubstr("sigma_mm"), HasSubstr("sigma_m")));
+    EXPECT_THAT(error_of("camera: {sigma_m: 0.03}"), HasSubstr("camera"));
+}
+
+TEST_F(ScenarioFile, with_a_wrong_value_is_refused_with_what_was_expected) {
+    EXPECT_THAT(error_of("depth: {sigma_m: 30}"), AllOf(HasSubstr("depth.sigma_m"), HasSubstr("'30'")));
+    EXPECT_THAT(error_of("depth: {sigma_m: nan}"), HasSubstr("depth.sigma_m"));
+    EXPECT_THAT(error_of("motion: {rest_s: 1}"), HasSubstr("motion.rest_s"));
+    EXPECT_THAT(error_of("motion: {circle: {towards_start: [0, 2, 0]}}"),
+                HasSubstr("motion.circle.towards_start"));
+    EXPECT_THAT(error_of("motion: {circle: {towards_quarter: [0, 1, 0]}}"), HasSubstr("right angles"));
+    EXPECT_THAT(error_of("motion: {circle: {towards_quarter: [0, 0, 0.5]}}"), HasSubstr("length 1"));
+    EXPECT_THAT(error_of("motion: {circle: {ticks_per_revolution: 0}}"), HasSubstr("ticks_per_revolution"));
+    EXPECT_THAT(error_of("motion: {circle: {start_position_rad: [0, left]}}"),
+                HasSubstr("start_position_rad[1]"));
+    EXPECT_THAT(error_of("ranges: {min_m: 5}"), HasSubstr("ranges.max_m"));
+    EXPECT_THAT(error_of("region: {max_m: [-1, 1.2, 1.4]}"), HasSubstr("region.max_m"));
+    EXPECT_THAT(error_of("seeds: {map_shift_m: [[0, 0]]}"), HasSubstr("seeds.map_shift_m[0]"));
+    EXPECT_THAT(error_of("world: no-such.sdf"), AllOf(HasSubstr(":2"), HasSubstr("no-such.sdf")));
+    EXPECT_THAT(error_of("world: [a, b]"), HasSubstr("world"));
+    EXPECT_THAT(error_of("hidden_models: cone"), HasSubstr("hidden_models"));
+}
+
+TEST_F(ScenarioFile, without_a_required_key_or_that_is_not_there_is_refused) {
+    EXPECT_THAT(error_of("ranges: {sigma_m: null}"), HasSubstr("ranges.sigma_m"));
+    EXPECT_THAT(error_of("motion: null"), HasSubstr("motion"));
+    const auto absent = read_scenario("no-such.scenario.yaml");
+    ASSERT_FALSE(absent);
+    EXPECT_THAT(absent.error().message(), HasSubstr("no-such.scenario.yaml"));
+}
+
+}  // namespace
+}  // namespace octoskin::sim

@@ -1,0 +1,169 @@
+// SDF files: what is read, how poses compose, and what each kind of bad file is told. Oracle: numbers worked
+// out by hand from the file's text.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "hw/sim/world/world.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin::sim {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::filesystem::path kData = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "tests/data/worlds";
+const std::filesystem::path kWorlds = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw/worlds";
+
+std::string error_of(const std::string& name) {
+    const auto world = World::read(kData / name);
+    EXPECT_FALSE(world.has_value()) << name << " was accepted";
+    return world ? "" : world.error().message();
+}
+
+TEST(Sdf, composes_the_poses_of_model_link_and_visual) {
+    // Model at (1 2 3) turned 90 degrees about z; link at (1 0 0) in it; visual at (0 0 0.5) turned 90
+    // degrees about x: a box of 0.2 x 0.4 x 0.6 that ends up centred at (1, 3, 3.5) with sides 0.6 x 0.2 x
+    // 0.4.
+    const auto world = World::read(kData / "composed-poses.sdf");
+    ASSERT_TRUE(world) << world.error().message();
+    ASSERT_EQ(world->solids().size(), 1u);
+    EXPECT_EQ(world->solids()[0].name, "turned/arm/box");
+    EXPECT_EQ(world->solids()[0].model, "turned");
+    Eigen::AlignedBox3d bounds;
+    for (const auto& vertex : world->solids()[0].vertices) {
+        bounds.extend(vertex);
+    }
+    EXPECT_NEAR((bounds.min() - Eigen::Vector3d(0.7, 2.9, 3.3)).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((bounds.max() - Eigen::Vector3d(1.3, 3.1, 3.7)).norm(), 0.0, 1e-12);
+}
+
+TEST(Sdf, resolves_poses_relative_to_frames_and_models_within_models) {
+    // Frame 'table' at z = 0.7; model 'tray' 0.1 above it; nested model 'cup' at x = 0.3 in that.
+    const auto world = World::read(kData / "nested-models-and-frames.sdf");
+    ASSERT_TRUE(world) << world.error().message();
+    ASSERT_EQ(world->solids().size(), 2u);
+    EXPECT_EQ(world->solids()[1].name, "tray::cup/body/ball");
+    EXPECT_EQ(world->solids()[1].model, "tray");
+    const auto hit = world->cast({0.3, 0.0, 5.0}, -Eigen::Vector3d::UnitZ(), 10.0);
+    ASSERT_TRUE(hit);
+    EXPECT_NEAR(hit->range_m, 5.0 - (0.7 + 0.1 + 0.05), 1e-4);
+}
+
+TEST(Sdf, reads_every_supported_shape_from_a_file_with_a_single_model) {
+    const auto world = World::read(kData / "every-shape.sdf");
+    ASSERT_TRUE(world) << world.error().message();
+    std::vector<std::string> names;
+    for (const auto& solid : world->solids()) {
+        names.push_back(solid.name);
+        EXPECT_EQ(solid.is_closed, solid.name != "zoo/body/plane");
+        EXPECT_EQ(solid.model, "zoo");
+    }
+    EXPECT_THAT(names, testing::ElementsAre("zoo/body/box", "zoo/body/cylinder", "zoo/body/sphere",
+                                            "zoo/body/capsule", "zoo/body/ellipsoid", "zoo/body/plane",
+                                            "zoo/body/mesh"));
+    EXPECT_TRUE(world->is_inside({6.0, 0.0, 0.19})) << "a mirrored mesh keeps its interior";
+    EXPECT_FALSE(world->is_inside({6.0, 0.0, 0.21}));
+}
+
+TEST(Sdf, names_the_element_with_an_unsupported_shape_and_the_supported_ones) {
+    EXPECT_THAT(error_of("heightmap.sdf"),
+                AllOf(HasSubstr("heightmap.sdf: model 'hill', link 'body', visual 'slope'"),
+                      HasSubstr("unsupported shape 'heightmap'"), HasSubstr("box, cylinder, sphere")));
+    EXPECT_THAT(error_of("cone-element.sdf"), AllOf(HasSubstr("cone-element.sdf"), HasSubstr("line 7"),
+                                                    HasSubstr("cone"), HasSubstr("box, cylinder, sphere")));
+    EXPECT_THAT(error_of("empty-geometry.sdf"), AllOf(HasSubstr("visual 'nothing'"), HasSubstr("empty")));
+}
+
+TEST(Sdf, passes_on_the_parsers_message_for_a_broken_file) {
+    EXPECT_THAT(error_of("broken-xml.sdf"),
+                AllOf(HasSubstr("broken-xml.sdf: line 6"), HasSubstr("not well-formed XML")));
+    EXPECT_THAT(error_of("robot-instead.sdf"), HasSubstr("expected the root element 'sdf', found 'robot'"));
+    EXPECT_THAT(error_of("misspelt-element.sdf"), AllOf(HasSubstr("line 5"), HasSubstr("poze")));
+    EXPECT_THAT(error_of("text-for-a-number.sdf"),
+                AllOf(HasSubstr("text-for-a-number.sdf: line 7"), HasSubstr("left")));
+    EXPECT_THAT(error_of("no-such-file.sdf"), HasSubstr("no such file"));
+    EXPECT_THAT(error_of("empty.sdf"), HasSubstr("empty.sdf: "));
+}
+
+TEST(Sdf, refuses_sizes_and_meshes_that_make_no_solid) {
+    EXPECT_THAT(error_of("negative-radius.sdf"), AllOf(HasSubstr("model 'ball', link 'body', visual 'ball'"),
+                                                       HasSubstr("positive and finite")));
+    EXPECT_THAT(error_of("nan-pose.sdf"), HasSubstr("nan-pose.sdf"));
+    EXPECT_THAT(error_of("missing-mesh.sdf"),
+                AllOf(HasSubstr("visual 'shell'"), HasSubstr("no-such-mesh.obj")));
+    EXPECT_THAT(error_of("mesh-without-triangles.sdf"), HasSubstr("points-only.obj"));
+    EXPECT_THAT(error_of("nothing-to-see.sdf"), HasSubstr("no visual"));
+}
+
+TEST(Sdf, survives_every_truncation_of_a_good_file) {
+    std::ifstream input(kData / "composed-poses.sdf");
+    const std::string text(std::istreambuf_iterator<char>(input), {});
+    const testing_support::ScratchFolder scratch;
+    for (std::size_t length = 0; length + 2 < text.size(); length += 7) {
+        const auto cut_file = scratch.write("cut.sdf", text.substr(0, length));
+        EXPECT_FALSE(World::read(cut_file).has_value()) << "cut at " << length;
+    }
+}
+
+class ExperimentWorld : public testing::Test {
+  protected:
+    void SetUp() override {
+        auto read = World::read(kWorlds / "experiment.sdf");
+        ASSERT_TRUE(read) << read.error().message();
+        world_ = std::make_unique<World>(std::move(*read));
+    }
+    double range(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
+        const auto hit = world_->cast(origin, direction, 20.0);
+        return hit ? hit->range_m : -1.0;
+    }
+    std::unique_ptr<World> world_;
+};
+
+TEST_F(ExperimentWorld, consists_of_closed_solids_of_the_five_models) {
+    std::set<std::string> models;
+    for (const auto& solid : world_->solids()) {
+        EXPECT_TRUE(solid.is_closed) << solid.name;
+        models.insert(solid.model);
+    }
+    EXPECT_THAT(models, testing::ElementsAre("cone", "crate", "floor", "shelf_left", "shelf_right"));
+    EXPECT_EQ(world_->solids().size(), 15u);
+}
+
+TEST_F(ExperimentWorld, has_floor_and_crate_where_the_scene_says) {
+    EXPECT_NEAR(range({-0.5, 0.0, 1.0}, -Eigen::Vector3d::UnitZ()), 1.02, 1e-9);
+    EXPECT_NEAR(range({0.67, 0.34, 1.0}, -Eigen::Vector3d::UnitZ()), 0.70, 1e-9);
+    EXPECT_NEAR(range({0.0, 0.34, 0.1}, Eigen::Vector3d::UnitX()), 0.58, 1e-9);
+    EXPECT_NEAR(range({0.67, 0.0, 0.1}, Eigen::Vector3d::UnitY()), 0.24, 1e-9);
+}
+
+TEST_F(ExperimentWorld, has_the_cone_with_its_apex_above_its_middle) {
+    // Half way up, the cone's radius is half of 0.13; its facets lie up to 0.07 mm inside.
+    EXPECT_NEAR(range({0.0, -0.32, 0.18}, Eigen::Vector3d::UnitX()), 0.66 - 0.065, 1e-4);
+    EXPECT_NEAR(range({0.66, -0.32, 1.0}, -Eigen::Vector3d::UnitZ()), 1.0 - 0.38, 1e-5);
+    EXPECT_TRUE(world_->is_inside({0.66, -0.32, 0.37}));
+    EXPECT_FALSE(world_->is_inside({0.66, -0.32, 0.39}));
+}
+
+TEST_F(ExperimentWorld, has_shelves_open_towards_the_robot_and_closed_towards_the_camera) {
+    for (const double y : {-0.5, 0.5}) {
+        for (const double z : {0.25, 0.7}) {
+            // From the robot into a compartment: nothing up to the back panel's inner face.
+            EXPECT_NEAR(range({0.8, y, z}, Eigen::Vector3d::UnitX()), 1.165 - 0.8, 1e-9);
+            EXPECT_NEAR(range({2.0, y, z}, -Eigen::Vector3d::UnitX()), 2.0 - 1.195, 1e-9);
+        }
+        EXPECT_NEAR(range({1.0, y, 2.0}, -Eigen::Vector3d::UnitZ()), 2.0 - 0.98, 1e-9);
+        EXPECT_NEAR(range({1.0, y, 0.9}, -Eigen::Vector3d::UnitZ()), 0.9 - 0.495, 1e-9);
+        EXPECT_NEAR(range({1.0, y, 0.4}, -Eigen::Vector3d::UnitZ()), 0.4 - 0.01, 1e-9);
+    }
+    EXPECT_NEAR(range({1.0, 0.0, 0.3}, Eigen::Vector3d::UnitY()), 0.085, 1e-9);
+    EXPECT_NEAR(range({1.0, 0.0, 0.3}, -Eigen::Vector3d::UnitY()), 0.085, 1e-9);
+    EXPECT_NEAR(range({1.0, 2.0, 0.3}, -Eigen::Vector3d::UnitY()), 2.0 - 0.93, 1e-9);
+}
+
+}  // namespace
+}  // namespace octoskin::sim

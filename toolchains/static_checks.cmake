@@ -1,0 +1,20 @@
+# format, format-check and tidy as targets, over the files that git tracks.
+find_program(OCTOSKIN_CLANG_FORMAT clang-format)
+find_program(OCTOSKIN_RUN_CLANG_TIDY NAMES run-clang-tidy run-clang-tidy-14)
+execute_process(COMMAND git ls-files *.cpp *.hpp WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    OUTPUT_VARIABLE OCTOSKIN_SOURCES OUTPUT_STRIP_TRAILING_WHITESPACE)
+string(REPLACE "\n" ";" OCTOSKIN_SOURCES "${OCTOSKIN_SOURCES}")
+if(OCTOSKIN_CLANG_FORMAT AND OCTOSKIN_SOURCES)
+    add_custom_target(format COMMAND ${OCTOSKIN_CLANG_FORMAT} -i ${OCTOSKIN_SOURCES}
+        WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
+    add_custom_target(format-check COMMAND ${OCTOSKIN_CLANG_FORMAT} --dry-run --Werror ${OCTOSKIN_SOURCES}
+        WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
+endif()
+if(OCTOSKIN_RUN_CLANG_TIDY)
+    # Tests are left out: GoogleTest's macros trip most checks. The path filter is a regular expression.
+    add_custom_target(tidy COMMAND ${OCTOSKIN_RUN_CLANG_TIDY} -quiet -p ${PROJECT_BINARY_DIR}
+        "${PROJECT_SOURCE_DIR}/(common|firmware|host|hw)/.*\\.cpp$" WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
+    # What runs on a board: the part that every check can afford.
+    add_custom_target(tidy-firmware COMMAND ${OCTOSKIN_RUN_CLANG_TIDY} -quiet -p ${PROJECT_BINARY_DIR}
+        "${PROJECT_SOURCE_DIR}/(common|firmware)/.*\\.cpp$" WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
+endif()
