@@ -50,7 +50,8 @@ std::string quoted(const std::string& text) {
 }
 
 const char* word(DistanceMode mode) {
-    return mode == DistanceMode::short_range ? "short" : "long";
+    if (mode == DistanceMode::short_range) return "short";
+    return mode == DistanceMode::medium_range ? "medium" : "long";
 }
 
 const char* word(StreamGate gate) {

@@ -19,10 +19,21 @@ constexpr std::uint8_t kDefaultAddress =
 constexpr std::int64_t kSpareMs =
     5;  ///< a shorter pause after the budget makes the device skip every other slot
 constexpr std::int64_t kBudgetMaxMs = 200;  ///< the wire's time field spans 262 ms
-/// ST ULD 3.5.2, VL53L1X_SetTimingBudgetInMs. It has 500 ms as well, which the wire's time field cannot
-/// carry.
+/// ST ULD 3.5.2, VL53L1X_SetTimingBudgetInMs; medium mode, which it does not have, needs 33 ms (datasheet
+/// DS12385 rev 7, 2.5.2). ST has 500 ms as well, which the wire's time field cannot carry.
 constexpr std::array<std::int64_t, 6> kShortBudgetsMs = {15, 20, 33, 50, 100, 200};
+constexpr std::array<std::int64_t, 4> kMediumBudgetsMs = {33, 50, 100, 200};
 constexpr std::array<std::int64_t, 5> kLongBudgetsMs = {20, 33, 50, 100, 200};
+
+struct ModeBudgets {
+    const char* mode;
+    std::span<const std::int64_t> budgets_ms;
+};
+ModeBudgets mode_budgets(DistanceMode mode) {
+    if (mode == DistanceMode::short_range) return {"short", kShortBudgetsMs};
+    if (mode == DistanceMode::medium_range) return {"medium", kMediumBudgetsMs};
+    return {"long", kLongBudgetsMs};
+}
 
 void read_wiring(const Table& table, const Board& board, SensorConfig& config) {
     config.bus = table.integer<std::uint8_t>("bus", {0, board.i2c_bus_count - 1});
@@ -35,8 +46,10 @@ void read_wiring(const Table& table, const Board& board, SensorConfig& config) {
 }
 
 void read_timing(const Table& table, SensorConfig& config) {
-    config.distance_mode = table.choice<DistanceMode>(
-        "distance_mode", {{"short", DistanceMode::short_range}, {"long", DistanceMode::long_range}});
+    config.distance_mode =
+        table.choice<DistanceMode>("distance_mode", {{"short", DistanceMode::short_range},
+                                                     {"medium", DistanceMode::medium_range},
+                                                     {"long", DistanceMode::long_range}});
     const auto budget_ms = table.integer<std::int64_t>("timing_budget_ms", {1, 1000});
     if (budget_ms > kBudgetMaxMs) {
         table.fail("timing_budget_ms",
@@ -44,12 +57,10 @@ void read_timing(const Table& table, SensorConfig& config) {
                                "ambiguous",
                                kBudgetMaxMs, budget_ms));
     }
-    const bool is_short = config.distance_mode == DistanceMode::short_range;
-    const std::span<const std::int64_t> budgets = is_short ? std::span<const std::int64_t>(kShortBudgetsMs)
-                                                           : std::span<const std::int64_t>(kLongBudgetsMs);
-    if (std::find(budgets.begin(), budgets.end(), budget_ms) == budgets.end()) {
-        table.fail("timing_budget_ms", fmt::format("expected one of {} in {} mode, found {}", joined(budgets),
-                                                   is_short ? "short" : "long", budget_ms));
+    const auto [mode, budgets_ms] = mode_budgets(config.distance_mode);
+    if (std::find(budgets_ms.begin(), budgets_ms.end(), budget_ms) == budgets_ms.end()) {
+        table.fail("timing_budget_ms", fmt::format("expected one of {} in {} mode, found {}",
+                                                   joined(budgets_ms), mode, budget_ms));
     }
     const auto period_ms = table.integer<std::int64_t>("inter_measurement_ms", {1, 10'000});
     if (period_ms < budget_ms + kSpareMs) {

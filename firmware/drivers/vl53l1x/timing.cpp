@@ -32,19 +32,27 @@ struct BudgetRow {
 };
 using enum DistanceMode;
 // Short and long: ST ULD 3.5.2, VL53L1X_SetTimingBudgetInMs, its odd short / 33 ms row included. ST's driver
-// has no medium mode; its rows integrate for as long as the long ones do (the same microseconds in macro
-// periods of 24 and 20 instead of 32 and 28 clocks, at the typical 11.78 MHz), so that what is left of the
-// budget for calibration stays ST's.
-constexpr std::array<BudgetRow, 19> kBudgets{{
-    {short_range, 15, {0x001D, 0x0027}},   {short_range, 20, {0x0051, 0x006E}},
-    {short_range, 33, {0x00D6, 0x006E}},   {short_range, 50, {0x01AE, 0x01E8}},
-    {short_range, 100, {0x02E1, 0x0388}},  {short_range, 200, {0x03E1, 0x0496}},
-    {short_range, 500, {0x0591, 0x05C1}},  {medium_range, 20, {0x0028, 0x0030}},
-    {medium_range, 33, {0x0080, 0x009A}},  {medium_range, 50, {0x00E7, 0x018A}},
-    {medium_range, 100, {0x0288, 0x02A3}}, {medium_range, 200, {0x0390, 0x03AD}},
-    {medium_range, 500, {0x04BE, 0x04E5}}, {long_range, 20, {0x001E, 0x0022}},
-    {long_range, 33, {0x0060, 0x006E}},    {long_range, 50, {0x00AD, 0x00C6}},
-    {long_range, 100, {0x01CC, 0x01EA}},   {long_range, 200, {0x02D9, 0x02F8}},
+// has no medium mode, and the datasheet (DS12385 rev 7, 2.5.2) wants 33 ms there; its rows integrate for as
+// long as the long ones do (the same microseconds in macro periods of 24 and 20 instead of 32 and 28 clocks,
+// at the typical 11.78 MHz), so that what is left of the budget for calibration stays ST's.
+constexpr std::array<BudgetRow, 18> kBudgets{{
+    {short_range, 15, {0x001D, 0x0027}},
+    {short_range, 20, {0x0051, 0x006E}},
+    {short_range, 33, {0x00D6, 0x006E}},
+    {short_range, 50, {0x01AE, 0x01E8}},
+    {short_range, 100, {0x02E1, 0x0388}},
+    {short_range, 200, {0x03E1, 0x0496}},
+    {short_range, 500, {0x0591, 0x05C1}},
+    {medium_range, 33, {0x0080, 0x009A}},
+    {medium_range, 50, {0x00E7, 0x018A}},
+    {medium_range, 100, {0x0288, 0x02A3}},
+    {medium_range, 200, {0x0390, 0x03AD}},
+    {medium_range, 500, {0x04BE, 0x04E5}},
+    {long_range, 20, {0x001E, 0x0022}},
+    {long_range, 33, {0x0060, 0x006E}},
+    {long_range, 50, {0x00AD, 0x00C6}},
+    {long_range, 100, {0x01CC, 0x01EA}},
+    {long_range, 200, {0x02D9, 0x02F8}},
     {long_range, 500, {0x048F, 0x04A4}},
 }};
 

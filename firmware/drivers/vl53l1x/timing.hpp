@@ -30,8 +30,8 @@ struct RangeTimeouts {
     std::uint16_t b = 0;
     friend constexpr bool operator==(const RangeTimeouts&, const RangeTimeouts&) = default;
 };
-/// Empty unless the budget is one that the mode supports: 20, 33, 50, 100, 200 or 500 ms, and 15 ms in short
-/// mode only.
+/// Empty unless the budget is one that the mode supports: 33, 50, 100, 200 or 500 ms; 20 ms in short and long
+/// mode, 15 ms in short mode only.
 [[nodiscard]] std::optional<RangeTimeouts> range_timeouts(DistanceMode mode,
                                                           std::uint16_t budget_ms) noexcept;
 /// The budget that a time-out A stands for, whatever the mode: no value occurs twice. Empty if unknown.

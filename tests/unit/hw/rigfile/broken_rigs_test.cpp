@@ -67,7 +67,8 @@ const Broken kBroken[] = {
     {"two-numbers-for-a-position.yaml", 3, "nodes[0].sensors[0].pose.xyz_m",
      "expected a list of 3 numbers, found a list of 2"},
     {"name-with-a-space.yaml", 2, "name", "found 'my rig'"},
-    {"unknown-word.yaml", 3, "nodes[0].sensors[0].distance_mode", "expected short or long, found 'medium'"},
+    {"unknown-word.yaml", 3, "nodes[0].sensors[0].distance_mode",
+     "expected short or medium or long, found 'far'"},
     // Numbers.
     {"nan.yaml", 3, "nodes[0].sensors[0].pose.xyz_m", "found 'nan'"},
     {"nan-of-yaml.yaml", 3, "joints.rate_hz", "found '.nan'"},
@@ -129,6 +130,8 @@ const Broken kBroken[] = {
      "expected one of 20, 33, 50, 100, 200 in long mode, found 25"},
     {"budget-of-short-mode-in-long-mode.yaml", 3, "nodes[0].sensors[0].timing_budget_ms",
      "in long mode, found 15"},
+    {"budget-of-long-mode-in-medium-mode.yaml", 3, "nodes[0].sensors[0].timing_budget_ms",
+     "expected one of 33, 50, 100, 200 in medium mode, found 20"},
     {"budget-over-200-ms.yaml", 3, "nodes[0].sensors[0].timing_budget_ms", "expected at most 200, found 500"},
     {"phase-beyond-the-period.yaml", 3, "nodes[0].sensors[0].phase_us", "from 0 to 49999, found '50000'"},
     // Zones.

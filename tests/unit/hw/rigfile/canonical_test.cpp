@@ -1,11 +1,14 @@
 // The canonical text, the two hashes, and what changes them.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <random>
+#include <set>
 #include <string>
 
 #include "common/config/node_config.hpp"
@@ -235,6 +238,7 @@ const Change kChanges[] = {
     {"xshut_line: 3", "xshut_line: 2", true},
     {"address: 0x30", "address: 0x31", true},
     {"distance_mode: long", "distance_mode: short", true},
+    {"distance_mode: long", "distance_mode: medium", true},
     {"timing_budget_ms: 33", "timing_budget_ms: 20", true},
     {"inter_measurement_ms: 50", "inter_measurement_ms: 51", true},
     {"phase_us: 700", "phase_us: 701", true},
@@ -276,6 +280,23 @@ TEST_F(RigText, node_hash_changes_with_what_firmware_uses_and_with_nothing_else_
         EXPECT_EQ(node_hash(after->nodes[0].config) != node_hash(before.nodes[0].config), change.changes_node)
             << change.to;
         EXPECT_NE(rig_hash(*after), rig_hash(before)) << change.to;
+    }
+}
+
+// ST ULD 3.5.2's budgets, less the 500 ms that the wire cannot carry; in medium mode, which it lacks, those
+// that the datasheet allows there.
+TEST_F(RigText, each_mode_takes_its_own_budgets_and_no_other) {
+    const std::map<std::string, std::set<int>> budgets_ms{{"short", {15, 20, 33, 50, 100, 200}},
+                                                          {"medium", {33, 50, 100, 200}},
+                                                          {"long", {20, 33, 50, 100, 200}}};
+    const std::string slow = replaced(kFullRig, "inter_measurement_ms: 50", "inter_measurement_ms: 300");
+    for (const auto& [mode, known] : budgets_ms) {
+        const std::string text = replaced(slow, "distance_mode: long", "distance_mode: " + mode);
+        for (const int ms : {14, 15, 16, 19, 20, 21, 32, 33, 34, 49, 50, 51, 99, 100, 101, 199, 200}) {
+            const auto rig =
+                read(replaced(text, "timing_budget_ms: 33", fmt::format("timing_budget_ms: {}", ms)));
+            EXPECT_EQ(static_cast<bool>(rig), known.contains(ms)) << mode << ' ' << ms;
+        }
     }
 }
 
