@@ -23,11 +23,10 @@ bool is_usable(const NodeConfig& config, std::size_t bus_count) noexcept {
                        [=](const SensorConfig& sensor) { return sensor.bus < bus_count; });
 }
 
-vl53l1x::Options device_options(const NodeConfig& config, bool applies_gain_factor) noexcept {
+vl53l1x::Options device_options(const NodeConfig& config) noexcept {
     vl53l1x::Options options;
     options.is_io_2v8 = config.is_io_2v8;
     options.reads_twice = config.reads_twice;
-    options.applies_gain_factor = applies_gain_factor;
     options.i2c_hz = config.i2c_hz;
     return options;
 }
@@ -61,7 +60,7 @@ void Node::create_sensors(NodeTime now) {
                              .i2c_hz = config_.i2c_hz};
     for (std::size_t i = 0; i < config_.sensor_count; ++i) {
         const SensorConfig& sensor = config_.sensors[i];
-        const vl53l1x::Options options = device_options(config_, sensor.applies_gain_factor);
+        const vl53l1x::Options options = device_options(config_);
         i2c::Bus& bus = *ports_.buses[sensor.bus];
         auto& worker = buses_[sensor.bus];
         if (!worker) worker.emplace(bus, options, policy_);

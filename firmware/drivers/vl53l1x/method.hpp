@@ -278,7 +278,7 @@ struct Device::Method {
     /// The last step of a read: only now does the reading count.
     static void clear_and_publish(Device& d) {
         d.write8(reg::SYSTEM_INTERRUPT_CLEAR, 0x01, [](Device& device, NodeTime) {
-            device.reading_ = {.measurement = unpack(device.block_, device.options_.applies_gain_factor),
+            device.reading_ = {.measurement = unpack(device.block_, device.settings_.applies_gain_factor),
                                .ready_seen = device.ready_seen_,
                                .not_ready_seen = device.not_ready_seen_};
             device.has_measurement_ = true;

@@ -25,18 +25,16 @@ struct Options {
     bool is_interrupt_active_low = true;  ///< 0x30 bit 4
     bool writes_config_in_burst = true;   ///< 91 bytes in one transfer rather than 91 transfers
     bool reads_twice = true;
-    bool applies_gain_factor = false;  ///< range * 2011 / 2048, as in ST's full API
-    bool caches_polarity = true;       ///< false: 0x30 is read before every 0x31, as ST's driver does
-    bool clears_before_start = true;   ///< write 0x86 before 0x87 = 0x40
-    bool verifies_address = true;      ///< the id is read at a new address once it is set
-    bool rereads_settings = false;     ///< mode and budget are read back before they are built on
-    std::uint32_t i2c_hz = 400'000;    ///< for the deadline of a transfer: 3 x nominal time + 1 ms
+    bool caches_polarity = true;      ///< false: 0x30 is read before every 0x31, as ST's driver does
+    bool clears_before_start = true;  ///< write 0x86 before 0x87 = 0x40
+    bool verifies_address = true;     ///< the id is read at a new address once it is set
+    bool rereads_settings = false;    ///< mode and budget are read back before they are built on
+    std::uint32_t i2c_hz = 400'000;   ///< for the deadline of a transfer: 3 x nominal time + 1 ms
     [[nodiscard]] static constexpr Options as_st_uld() noexcept {
         return {.is_io_2v8 = false,
                 .is_interrupt_active_low = false,
                 .writes_config_in_burst = false,
                 .reads_twice = false,
-                .applies_gain_factor = false,
                 .caches_polarity = false,
                 .clears_before_start = false,
                 .verifies_address = false,

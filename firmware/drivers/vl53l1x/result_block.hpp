@@ -12,7 +12,8 @@ namespace octoskin::vl53l1x {
 using ResultBlock = std::array<std::uint8_t, 17>;
 inline constexpr std::size_t kStreamCountOffset = 2;
 
-/// Unpacks without judging. `gain` scales the range by 2011/2048, rounded, as ST's full API does.
+/// Unpacks without judging. `applies_gain_factor` scales the range by 2011/2048, rounded, as ST's full API
+/// does.
 [[nodiscard]] Measurement unpack(const ResultBlock& block, bool applies_gain_factor) noexcept;
 
 /// False for what no sensor sends: a bus that reads 0xFF throughout, a status code beyond the last one

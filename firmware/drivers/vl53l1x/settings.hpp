@@ -8,7 +8,7 @@
 namespace octoskin::vl53l1x {
 
 /// Of the sensor's part of the configuration block, the driver applies mode, budget, period, the first zone,
-/// limits, offset and crosstalk.
+/// limits, offset, crosstalk and the gain factor (range * 2011 / 2048, as in ST's full API).
 using Settings = SensorConfig;
 
 /// ALGO__PART_TO_PART_RANGE_OFFSET_MM: signed 13 bits, 11.2 mm.

@@ -91,6 +91,27 @@ TEST(DeviceOnModel, fleet_on_one_bus_is_brought_up_one_by_one_and_ranges_at_once
     }
 }
 
+// The model reports what the device's registers hold: the factor is the driver's to apply.
+TEST(DeviceOnModel, gain_factor_is_applied_as_configured) {
+    for (const bool applies : {false, true}) {
+        Settings settings = kSettings;
+        settings.applies_gain_factor = applies;
+        test::SensorBench bench;
+        sim::SensorModel& sensor = bench.add(test::wall_at(1.234));
+        Device device(bench.bus(), Options{});
+        bench.bring_up(device, sensor, settings);
+        ASSERT_TRUE(bench.await_measurement(device));
+        EXPECT_EQ(device.measurement().range_mm, applies ? 1212 : 1234);
+        settings.applies_gain_factor = !applies;
+        settings.timing_budget_ms = 1;
+        device.begin_configure(settings);
+        EXPECT_EQ(bench.finish(device), Progress::failed);
+        bench.wait(Microseconds{50'000});
+        ASSERT_TRUE(bench.await_measurement(device));
+        EXPECT_EQ(device.measurement().range_mm, applies ? 1212 : 1234) << "refused settings change nothing";
+    }
+}
+
 TEST(DeviceOnModel, every_mode_and_budget_ranges_at_the_period_asked_for) {
     for (const DistanceMode mode :
          {DistanceMode::short_range, DistanceMode::medium_range, DistanceMode::long_range}) {

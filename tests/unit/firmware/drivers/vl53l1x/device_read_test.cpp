@@ -193,16 +193,6 @@ TEST(DeviceOptions, without_a_clear_before_the_start_nothing_is_known_of_when_it
     EXPECT_EQ(device.not_ready_seen(), std::nullopt);
 }
 
-TEST(DeviceOptions, gain_factor_scales_the_range) {
-    test::ScriptedI2cBus bus{"R 0031 1 -> 02"};
-    bus.expect(kBlock5);
-    bus.expect(kClear);
-    Device device{bus, Options{.reads_twice = false, .applies_gain_factor = true}};
-    device.begin_read();
-    EXPECT_EQ(finish(device), Progress::done);
-    EXPECT_EQ(device.measurement().range_mm, 1212);
-}
-
 TEST(DeviceOptions, settings_that_read_back_as_none_known_are_a_mismatch) {
     test::ScriptedI2cBus bus{"R 004B 1 -> 0B | R 005E 2 -> 01 DB"};
     Device device{bus, Options::as_st_uld()};
