@@ -24,30 +24,55 @@ bool HostClockEstimate::follows(WallTime before, WallTime stamp) const {
 void HostClockEstimate::observe(WallTime received) {
     const WallTime stamp = bounded(received);
     if (!stamp_max_ || follows(*stamp_max_, stamp)) {
-        stamp_max_ = stamp_max_ ? std::max(*stamp_max_, stamp) : stamp;
-        stamps_ignored_ += jump_ ? jump_->stamps : 0U;
-        jump_.reset();
+        accept(stamp);
         return;
     }
     if (jump_ && follows(jump_->newest, stamp)) {
-        jump_ = {std::max(jump_->newest, stamp), jump_->stamps + 1};
+        jump_ = {jump_->first, std::max(jump_->newest, stamp), jump_->stamps + 1};
     } else {
         stamps_ignored_ += jump_ ? jump_->stamps : 0U;
-        jump_ = {stamp, 1};
+        jump_ = {stamp, stamp, 1};
     }
-    if (jump_->stamps < config_.jump_agreement) {
+    if (jump_->stamps >= config_.jump_agreement) {
+        settle_jump();
+    }
+}
+
+void HostClockEstimate::accept(WallTime stamp) {
+    stamps_ignored_ += jump_ ? jump_->stamps : 0U;
+    jump_.reset();
+    if (stamp_max_ && stamp <= *stamp_max_) {
         return;
     }
-    ++(jump_->newest < *stamp_max_ ? steps_back_ : steps_ahead_);
-    is_in_doubt_ = true;
+    stamp_before_ = stamp_max_;
+    stamp_max_ = stamp;
+}
+
+void HostClockEstimate::settle_jump() {
+    const bool is_back = jump_->newest < *stamp_max_;
+    // A step back of less than the last gap between two stamps looks the same. It is below ahead_tolerance,
+    // so that no range is taken for one of another turn, and the next exchange sees it.
+    const bool had_run_ahead = is_back && stamp_before_ && follows(*stamp_before_, jump_->first);
+    if (had_run_ahead) {
+        ++stamps_ignored_;
+    } else {
+        ++(is_back ? steps_back_ : steps_ahead_);
+        is_in_doubt_ = true;
+    }
+    stamp_before_.reset();
     stamp_max_ = jump_->newest;
     jump_.reset();
 }
 
 bool HostClockEstimate::is_discredited(WallTime sync_stamp) const {
-    // While a jump is undecided the SYNC may be the first to tell the new time.
-    return stamp_max_ && !jump_ &&
-           (sync_stamp > *stamp_max_ || stamp_max_->ns - sync_stamp.ns > kExchangeMax.count());
+    if (!stamp_max_) {
+        return false;
+    }
+    if (jump_) {
+        // The SYNC may be the first to tell the new time, or the one whose stamp ran ahead of all others.
+        return jump_->newest < *stamp_max_ && sync_stamp == *stamp_max_;
+    }
+    return sync_stamp > *stamp_max_ || stamp_max_->ns - sync_stamp.ns > kExchangeMax.count();
 }
 
 void HostClockEstimate::learn(const SyncStamp& sync) {

@@ -104,6 +104,26 @@ TEST(ClockSteps, of_single_stamps_do_not_change_the_map) {
     }
 }
 
+TEST(ClockSteps, of_one_frame_of_ours_stamped_ahead_cost_what_comes_within_four_stamps) {
+    const Scene scene = turning_scene();
+    const std::vector<StampedFrame> clean = scene.bus.frames();
+    for (const double ahead_s : {0.006, 0.03, 0.1, 0.139, 0.141, 0.3, 0.499, 0.6}) {
+        // Of a joint sample, of a range, of a SYNC.
+        for (const double at_s : {4.5, 4.500'2, 4.517, 5.1, 5.101}) {
+            SCOPED_TRACE(std::to_string(at_s) + " s stamped " + std::to_string(ahead_s) + " s ahead");
+            std::vector<StampedFrame> frames = clean;
+            const auto wrong = std::ranges::find_if(
+                frames, [&](const StampedFrame& entry) { return entry.stamp >= wall_at(at_s); });
+            wrong->stamp.ns += std::llround(1e9 * ahead_s);
+            const Pipeline pipeline = play(scene, frames);
+            expect_hits_where_shots_ended(pipeline, 60);
+            EXPECT_GE(pipeline.accounts().readings.used(), 149U - 2U) << pipeline.account_text();
+            const HostClockEstimate& clock = pipeline.intake().host_clock();
+            EXPECT_EQ(clock.steps_back() + clock.steps_ahead() + clock.relocks(), 0U);
+        }
+    }
+}
+
 TEST(ClockSteps, of_any_number_of_foreign_stamps_do_not_change_the_map) {
     const Scene scene = turning_scene();
     const std::string expected = maps_of(play(scene, scene.bus.frames()));
