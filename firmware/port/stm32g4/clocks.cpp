@@ -1,0 +1,95 @@
+#include "firmware/port/stm32g4/clocks.hpp"
+
+#include "firmware/port/stm32g4/clock_plan.hpp"
+#include "firmware/port/stm32g4/registers/clocks_and_power.hpp"
+
+namespace octoskin::stm32g4 {
+
+namespace {
+
+constexpr Microseconds kCrystalLimit{10'000};  // crystals of this size start within 2 ms
+constexpr Microseconds kLockLimit{1'000};      // the PLL locks within 40 us
+constexpr Microseconds kSwitchLimit{1'000};
+
+constexpr std::uint32_t kSelectPll = 3;      // CFGR.SW
+constexpr std::uint32_t kHalfSpeed = 8;      // CFGR.HPRE: divided by 2
+constexpr std::uint32_t kFullSpeed = 0;      // CFGR.HPRE: not divided
+constexpr std::uint32_t kCanFromPllq = 1;    // CCIPR.FDCANSEL
+constexpr std::uint32_t kPowerRangeOne = 1;  // PWR_CR1.VOS
+
+/// Whether `field` showed `value` in time.
+bool shows(const MicrosecondTimer& timer, Field<RccMap> field, std::uint32_t value, Microseconds limit) {
+    const NodeTime begun = timer.now();
+    while (rcc.get(field) != value) {
+        if (elapsed(begun, timer.now()) > limit) return false;
+    }
+    return true;
+}
+
+void raise_core_voltage() {
+    rcc.set("APB1ENR1.PWREN", 1);
+    (void)rcc.read("APB1ENR1");  // the enable takes two clocks
+    // PB4 and PB6 else keep USB-C's dead-battery pull-downs of 5.1 kOhm.
+    pwr.set("CR3.UCPD1_DBDIS", 1);
+    pwr.set("CR1.VOS", kPowerRangeOne);
+    pwr.set("CR5.R1MODE", 0);  // boost: above 150 MHz
+}
+
+bool start_crystal(const MicrosecondTimer& timer) {
+    rcc.set("CR.HSEON", 1);
+    if (shows(timer, "CR.HSERDY", 1, kCrystalLimit)) return true;
+    rcc.set("CR.HSEON", 0);
+    return false;
+}
+
+bool lock_pll(const MicrosecondTimer& timer, const ClockPlan& plan) {
+    rcc.set("CR.PLLON", 0);
+    if (!shows(timer, "CR.PLLRDY", 0, kLockLimit)) return false;
+    rcc.write("PLLCFGR", plan.pllcfgr());
+    rcc.set("CR.PLLON", 1);
+    return shows(timer, "CR.PLLRDY", 1, kLockLimit);
+}
+
+bool prepare_flash(const MicrosecondTimer& timer, std::uint32_t core_hz) {
+    using F = Field<FlashMap>;
+    const std::uint32_t wait_states = flash_wait_states(core_hz);
+    flash.write("ACR",
+                F("ACR.LATENCY")(wait_states) | F("ACR.PRFTEN")(1) | F("ACR.ICEN")(1) | F("ACR.DCEN")(1));
+    const NodeTime begun = timer.now();
+    while (flash.get("ACR.LATENCY") != wait_states) {
+        if (elapsed(begun, timer.now()) > kSwitchLimit) return false;
+    }
+    return true;
+}
+
+/// Above 80 MHz a change from low speed goes through half of it, for a microsecond (RM0440).
+bool switch_to_pll(MicrosecondTimer& timer, const ClockPlan& plan) {
+    rcc.set("CFGR.PPRE1", 0);
+    rcc.set("CFGR.PPRE2", 0);
+    rcc.set("CFGR.HPRE", kHalfSpeed);
+    rcc.set("CFGR.SW", kSelectPll);
+    if (!shows(timer, "CFGR.SWS", kSelectPll, kSwitchLimit)) return false;
+    timer.start(plan.core_hz() / 2);
+    timer.wait(Microseconds{2});
+    rcc.set("CFGR.HPRE", kFullSpeed);
+    timer.start(plan.core_hz());
+    return true;
+}
+
+}  // namespace
+
+Clocks start_clocks(MicrosecondTimer& timer) {
+    timer.start(kInternalHz);
+    raise_core_voltage();
+    const bool has_crystal = start_crystal(timer);
+    const ClockPlan& plan = has_crystal ? kCrystalPlan : kInternalPlan;
+    if (!lock_pll(timer, plan) || !prepare_flash(timer, plan.core_hz()) || !switch_to_pll(timer, plan)) {
+        return {.source = ClockSource::unlocked, .core_hz = kInternalHz, .can_hz = 0};
+    }
+    if (!has_crystal) return {.source = ClockSource::internal, .core_hz = plan.core_hz(), .can_hz = 0};
+    rcc.set("CR.CSSON", 1);
+    rcc.set("CCIPR.FDCANSEL", kCanFromPllq);
+    return {.source = ClockSource::crystal, .core_hz = plan.core_hz(), .can_hz = plan.can_hz()};
+}
+
+}  // namespace octoskin::stm32g4

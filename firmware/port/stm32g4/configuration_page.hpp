@@ -1,0 +1,19 @@
+// The flash page that holds this board's configuration block. Flashing merges it with the image.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/config/node_config.hpp"
+
+namespace octoskin::stm32g4 {
+
+/// The last 2 KiB of the flash.
+inline constexpr std::uint32_t kConfigurationPage = 0x0807'F800;
+
+[[nodiscard]] inline std::span<const std::uint8_t, kNodeConfigBytesMax> configuration_page() {
+    return std::span<const std::uint8_t, kNodeConfigBytesMax>(
+        reinterpret_cast<const std::uint8_t*>(std::uintptr_t{kConfigurationPage}), kNodeConfigBytesMax);
+}
+
+}  // namespace octoskin::stm32g4

@@ -1,0 +1,142 @@
+#include "firmware/port/stm32g4/fault_handlers.hpp"
+
+#include <cstdint>
+
+#include "firmware/port/stm32g4/cpu.hpp"
+#include "firmware/port/stm32g4/interrupt_handlers.hpp"
+#include "firmware/port/stm32g4/registers/clocks_and_power.hpp"
+#include "firmware/port/stm32g4/registers/core.hpp"
+#include "firmware/port/stm32g4/registers/fdcan.hpp"
+#include "firmware/port/stm32g4/registers/timer.hpp"
+
+extern "C" {
+extern std::uint32_t stack_bottom[];
+extern std::uint32_t ram_end[];
+}
+
+namespace octoskin::stm32g4 {
+
+namespace {
+
+[[gnu::section(".noinit")]] FaultRecord the_record;
+
+/// What the core pushes when an exception begins (ARMv7-M).
+struct StackedFrame {
+    std::uint32_t r0, r1, r2, r3, r12, lr, pc, xpsr;
+};
+
+/// Not if the stack was lost: then nothing was pushed.
+const StackedFrame* frame_at(std::uintptr_t address) {
+    const bool is_in_ram = address >= reinterpret_cast<std::uintptr_t>(stack_bottom) &&
+                           address + sizeof(StackedFrame) <= reinterpret_cast<std::uintptr_t>(ram_end);
+    return is_in_ram ? reinterpret_cast<const StackedFrame*>(address) : nullptr;
+}
+
+/// CAN's clock must be on, or its register cannot be reached.
+void silence_can() {
+    if (rcc.is_set("APB1ENR1.FDCANEN")) fdcan1.set("CCCR.INIT", 1);
+}
+
+NodeTime uptime() {
+    return {rcc.is_set("APB1ENR1.TIM2EN") ? tim2.read("CNT") : 0};
+}
+
+}  // namespace
+
+FaultRecord& fault_record() {
+    return the_record;
+}
+
+void record_and_reset(const Fault& fault) {
+    cpu::mask_interrupts();
+    silence_can();
+    Fault timed = fault;
+    timed.uptime = uptime();
+    the_record.write(timed);
+    cpu::reset();
+}
+
+}  // namespace octoskin::stm32g4
+
+namespace {
+
+using octoskin::stm32g4::Fault;
+using octoskin::stm32g4::FaultKind;
+
+[[noreturn]] void stop(FaultKind kind, const void* where) {
+    octoskin::stm32g4::record_and_reset(
+        {.kind = kind, .where = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(where))});
+}
+
+}  // namespace
+
+extern "C" {
+
+[[noreturn, gnu::used]] void record_core_fault(std::uintptr_t stack, std::uint32_t exception_return) {
+    using namespace octoskin::stm32g4;
+    using F = Field<ScbMap>;
+    const StackedFrame* frame = frame_at(stack);
+    Fault fault{.kind = frame != nullptr ? FaultKind::hard_fault : FaultKind::stack_overflow,
+                .where = frame != nullptr ? frame->pc : 0,
+                .called_from = frame != nullptr ? frame->lr : exception_return,
+                .status = scb.read("CFSR_UFSR_BFSR_MMFSR")};
+    if (F("CFSR_UFSR_BFSR_MMFSR.BFARVALID").of(fault.status) != 0) fault.address = scb.read("BFAR");
+    if (F("CFSR_UFSR_BFSR_MMFSR.MMARVALID").of(fault.status) != 0) fault.address = scb.read("MMFAR");
+    record_and_reset(fault);
+}
+
+[[noreturn, gnu::used]] void record_unexpected_interrupt() {
+    using namespace octoskin::stm32g4;
+    record_and_reset({.kind = FaultKind::unexpected_interrupt, .where = scb.get("ICSR.VECTACTIVE")});
+}
+
+/// The only enabled source of the NMI is the clock security system: the crystal failed.
+[[noreturn, gnu::used]] void record_clock_loss(std::uintptr_t stack) {
+    using namespace octoskin::stm32g4;
+    silence_can();
+    const StackedFrame* frame = frame_at(stack);
+    const bool is_clock = rcc.is_set("CIFR.CSSF");
+    record_and_reset({.kind = is_clock ? FaultKind::clock_lost : FaultKind::unexpected_interrupt,
+                      .where = frame != nullptr ? frame->pc : 0,
+                      .called_from = frame != nullptr ? frame->lr : 0});
+}
+
+// The stack may be the very thing that failed: each handler begins on one of its own. r0: the old one.
+[[gnu::naked]] void fault_handler() {
+    __asm volatile(
+        "mrs r0, msp\n\t"
+        "mov r1, lr\n\t"
+        "ldr r2, =fault_stack_top\n\t"
+        "msr msp, r2\n\t"
+        "b record_core_fault\n\t"
+        ".ltorg");
+}
+
+[[gnu::naked]] void nmi_handler() {
+    __asm volatile(
+        "mrs r0, msp\n\t"
+        "ldr r2, =fault_stack_top\n\t"
+        "msr msp, r2\n\t"
+        "b record_clock_loss\n\t"
+        ".ltorg");
+}
+
+[[gnu::naked]] void unexpected_interrupt() {
+    __asm volatile(
+        "ldr r2, =fault_stack_top\n\t"
+        "msr msp, r2\n\t"
+        "b record_unexpected_interrupt\n\t"
+        ".ltorg");
+}
+
+// What the C and C++ libraries call when a program must not go on.
+[[noreturn]] void __assert_func(const char*, int, const char*, const char*) {
+    stop(FaultKind::assertion, __builtin_return_address(0));
+}
+[[noreturn]] void abort() {
+    stop(FaultKind::assertion, __builtin_return_address(0));
+}
+[[noreturn]] void __cxa_pure_virtual() {
+    stop(FaultKind::pure_virtual_call, __builtin_return_address(0));
+}
+}

@@ -1,0 +1,21 @@
+// What start-up calls and the vector table points at. The handlers of peripherals are the application's: it
+// knows the objects.
+#pragma once
+
+extern "C" {
+
+// fault_handlers.cpp
+void nmi_handler();
+void fault_handler();
+void unexpected_interrupt();
+
+// the application
+[[noreturn]] void application();
+void can_interrupt();
+void timer_interrupt();
+void i2c1_interrupt();
+void i2c2_interrupt();
+void i2c3_interrupt();
+void i2c4_interrupt();
+void serial_interrupt();
+}

@@ -1,0 +1,132 @@
+// How registers are named here. Each peripheral's map is a table of register offsets and bit fields under
+// ST's names; code names an entry by its text, looked up while compiling:
+//
+//     rcc.set("CR.HSEON", 1);
+//
+// So a misspelt name does not compile, no string reaches the image, and whatever code can name is in a table:
+// a test on the PC compares every entry with ST's SVD file.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "firmware/port/stm32g4/registers/memory_access.hpp"
+
+namespace octoskin::stm32g4 {
+
+struct Instance {
+    std::string_view name;
+    Address base = 0;
+};
+
+/// `count` registers of 4 bytes, one after the other, for a name that ends in '#': "ISER#" is ISER0, ISER1,
+/// ...
+struct RegisterEntry {
+    std::string_view name;
+    std::uint16_t offset = 0;
+    std::uint8_t count = 1;
+};
+
+/// `count` fields of the same width side by side, for a name that ends in '#', numbered from `first`.
+struct FieldEntry {
+    std::string_view name;  ///< "REGISTER.FIELD"
+    std::uint8_t lsb = 0;
+    std::uint8_t width = 1;
+    std::uint8_t count = 1;
+    std::uint8_t first = 0;
+};
+
+/// Never defined: calling it while compiling is the error message.
+void no_such_name_in_the_register_map();
+
+template <class Map>
+consteval std::uint16_t offset_of(std::string_view name) {
+    for (const RegisterEntry& entry : Map::kRegisters) {
+        if (entry.name == name) return entry.offset;
+    }
+    no_such_name_in_the_register_map();
+    return 0;
+}
+
+/// A register of a peripheral with this map.
+template <class Map>
+struct Register {
+    std::uint16_t offset;
+
+    consteval Register(const char* name) : offset(offset_of<Map>(name)) {}
+    constexpr explicit Register(std::uint16_t register_offset) : offset(register_offset) {}
+    /// The n-th of several.
+    [[nodiscard]] constexpr Register operator[](std::uint32_t n) const {
+        return Register(static_cast<std::uint16_t>(offset + 4 * n));
+    }
+};
+
+/// Some bits of a register.
+template <class Map>
+struct Field {
+    Register<Map> in;
+    std::uint8_t lsb;
+    std::uint8_t width;
+
+    consteval Field(const char* name) : Field(entry_of(name), name) {}
+    constexpr Field(Register<Map> where, std::uint8_t bit, std::uint8_t bits)
+        : in(where), lsb(bit), width(bits) {}
+
+    [[nodiscard]] constexpr std::uint32_t mask() const {
+        return (width >= 32 ? 0xFFFF'FFFFU : (1U << width) - 1U) << lsb;
+    }
+    /// `value` moved to its place; bits that do not fit are cut off.
+    [[nodiscard]] constexpr std::uint32_t operator()(std::uint32_t value) const {
+        return (value << lsb) & mask();
+    }
+    [[nodiscard]] constexpr std::uint32_t of(std::uint32_t word) const { return (word & mask()) >> lsb; }
+    /// The n-th of several.
+    [[nodiscard]] constexpr Field operator[](std::uint32_t n) const {
+        return Field(in, static_cast<std::uint8_t>(lsb + n * width), width);
+    }
+
+  private:
+    consteval Field(const FieldEntry& entry, std::string_view name)
+        : in(offset_of<Map>(name.substr(0, name.find('.')))), lsb(entry.lsb), width(entry.width) {}
+
+    [[nodiscard]] static consteval FieldEntry entry_of(std::string_view name) {
+        for (const FieldEntry& entry : Map::kFields) {
+            if (entry.name == name) return entry;
+        }
+        no_such_name_in_the_register_map();
+        return {};
+    }
+};
+
+/// One peripheral in the address space.
+template <class Map>
+class Peripheral {
+  public:
+    /// By its name in the map's table.
+    consteval explicit Peripheral(const char* name) : base_(base_of(name)) {}
+
+    [[nodiscard]] std::uint32_t read(Register<Map> where) const { return load(base_ + where.offset); }
+    void write(Register<Map> where, std::uint32_t value) const { store(base_ + where.offset, value); }
+
+    [[nodiscard]] std::uint32_t get(Field<Map> field) const { return field.of(read(field.in)); }
+    [[nodiscard]] bool is_set(Field<Map> field) const { return get(field) != 0; }
+    /// Reads, changes and writes: not for registers that an interrupt changes too.
+    void set(Field<Map> field, std::uint32_t value) const {
+        write(field.in, (read(field.in) & ~field.mask()) | field(value));
+    }
+
+    [[nodiscard]] constexpr Address base() const { return base_; }
+
+  private:
+    [[nodiscard]] static consteval Address base_of(std::string_view name) {
+        for (const Instance& instance : Map::kInstances) {
+            if (instance.name == name) return instance.base;
+        }
+        no_such_name_in_the_register_map();
+        return 0;
+    }
+
+    Address base_;
+};
+
+}  // namespace octoskin::stm32g4
