@@ -148,6 +148,10 @@ void Device::collect(NodeTime now) {
 void Device::on_transfer_done(NodeTime now) {
     was_retried_ = false;
     const Step& step = steps_[step_];
+    if (step.kind != Step::Kind::read) {
+        const auto index = static_cast<reg::Index>(step.index + transfers_done_);
+        read_back_.note(index, std::span(sent_).subspan(kIndexBytes, step.count));
+    }
     if (++transfers_done_ < step.transfers) return;
     transfers_done_ = 0;
     ++step_;
@@ -166,12 +170,16 @@ void Device::on_transfer_done(NodeTime now) {
 
 void Device::on_transfer_failed(i2c::TransferError error) {
     transfer_error_ = error;
-    if (i2c_error_count_ < std::numeric_limits<std::uint16_t>::max()) ++i2c_error_count_;
+    count_i2c_error();
     if (!was_retried_) {
         was_retried_ = true;  // the step stands as it was: `proceed` submits it again
         return;
     }
     fail(error == i2c::TransferError::nack_address ? Error::no_answer : Error::bus_error);
+}
+
+void Device::count_i2c_error() noexcept {
+    if (i2c_error_count_ < std::numeric_limits<std::uint16_t>::max()) ++i2c_error_count_;
 }
 
 Device::Verdict Device::fail(Error error) {

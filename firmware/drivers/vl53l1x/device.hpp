@@ -13,6 +13,7 @@
 #include "firmware/drivers/vl53l1x/default_configuration.hpp"
 #include "firmware/drivers/vl53l1x/measurement.hpp"
 #include "firmware/drivers/vl53l1x/options.hpp"
+#include "firmware/drivers/vl53l1x/read_back.hpp"
 #include "firmware/drivers/vl53l1x/registers.hpp"
 #include "firmware/drivers/vl53l1x/result_block.hpp"
 #include "firmware/drivers/vl53l1x/settings.hpp"
@@ -95,6 +96,15 @@ class Device {
     /// Reads 1 <= count <= 4 bytes at `index` for supervision; `register_bytes()` afterwards.
     void begin_read_register(reg::Index index, std::uint8_t count);
 
+    // --- supervision
+    /// Reads the whole configuration back and compares it with what was written since it was last loaded;
+    /// what was not (a factory offset) it learns. A register that differs is read again; if it still does,
+    /// the end is `config_mismatch`: initialise the sensor. <= 20 ms; all registers are looked at.
+    void begin_verify_configuration();
+    /// The same for one of the `kSteeringGroups` groups of registers that scale or steer the range; also
+    /// while ranging. One transfer, two if it differs: <= 3 ms.
+    void begin_verify_steering(std::size_t group);
+
     // --- progress
     /// Advances the operation. `done` and `failed` are told once, then `idle`.
     [[nodiscard]] Progress poll(NodeTime now);
@@ -117,12 +127,15 @@ class Device {
     /// The latest time at which it was surely not ready yet: the start of the transfer that found no data, or
     /// that cleared the interrupt. Empty if there was none.
     [[nodiscard]] std::optional<NodeTime> not_ready_seen() const noexcept { return reading_.not_ready_seen; }
+    /// What the sensor's registers should hold, and which were found to differ.
+    [[nodiscard]] const ReadBack& read_back() const noexcept { return read_back_; }
     /// What the last `begin_read_register` read.
     [[nodiscard]] std::span<const std::uint8_t> register_bytes() const noexcept {
         return std::span(register_bytes_).first(register_count_);
     }
     [[nodiscard]] i2c::Address live_address() const noexcept { return live_address_; }
-    /// Transfers that failed, retried ones included; saturates.
+    /// Transfers that failed, retried ones included, and read-backs that a second one contradicted;
+    /// saturates.
     [[nodiscard]] std::uint16_t i2c_error_count() const noexcept { return i2c_error_count_; }
 
   private:
@@ -168,6 +181,7 @@ class Device {
     void collect(NodeTime now);
     void on_transfer_done(NodeTime now);
     void on_transfer_failed(i2c::TransferError error);
+    void count_i2c_error() noexcept;
     Verdict fail(Error error);
 
     // For the stages.
@@ -209,6 +223,7 @@ class Device {
     // What is known of the sensor.
     i2c::Address live_address_ = kDefaultAddress;
     std::uint16_t i2c_error_count_ = 0;
+    ReadBack read_back_;
     DistanceMode mode_ = DistanceMode::long_range;
     std::uint16_t budget_ms_ = 0;
     std::optional<Roi> written_roi_;
@@ -218,6 +233,7 @@ class Device {
     // What the operation is about to set or has read so far.
     Settings settings_;
     Microseconds period_{0};
+    std::uint16_t oscillator_ = 0;
     Roi roi_;
     RangeThreshold threshold_;
     std::uint8_t mode_start_ = 0;
@@ -228,6 +244,8 @@ class Device {
     ResultBlock block_{};
     NodeTime ready_seen_{};
     bool has_read_again_ = false;
+    std::size_t run_ = 0;  ///< the next of `kRegisterRuns`
+    bool has_mismatch_ = false;
 
     // Results.
     bool has_measurement_ = false;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <iterator>
 
 #include "firmware/drivers/vl53l1x/device.hpp"
 #include "firmware/drivers/vl53l1x/roi.hpp"
@@ -36,6 +37,7 @@ struct Device::Method {
     }
 
     static void write_default_configuration(Device& d) {
+        d.read_back_.forget();
         constexpr auto kCount = static_cast<std::uint8_t>(kDefaultConfiguration.size());
         const bool in_burst = d.options_.writes_config_in_burst;
         d.line_up({.kind = Step::Kind::write_defaults,
@@ -120,13 +122,23 @@ struct Device::Method {
         if (d.options_.rereads_settings) write_same_budget(d);
     }
 
+    /// Read twice: a wrong value would make a wrong period, written and read back without a fault.
     static void ask_oscillator(Device& d) {
         d.read(reg::RESULT_OSC_CALIBRATE_VAL, 2, [](Device& device, NodeTime) {
-            const auto value = period_register(device.answer16(), device.period_);
-            if (!value) return device.fail(Error::oscillator_zero);
-            device.write32(reg::SYSTEM_INTERMEASUREMENT_PERIOD, *value);
+            device.oscillator_ = device.answer16();
+            if (!device.options_.reads_twice) return write_period(device);
+            device.read(reg::RESULT_OSC_CALIBRATE_VAL, 2, compare_oscillator);
             return Verdict::proceed;
         });
+    }
+    static Verdict compare_oscillator(Device& d, NodeTime) {
+        return d.answer16() == d.oscillator_ ? write_period(d) : d.fail(Error::reads_disagree);
+    }
+    static Verdict write_period(Device& d) {
+        const auto value = period_register(d.oscillator_, d.period_);
+        if (!value) return d.fail(Error::oscillator_zero);
+        d.write32(reg::SYSTEM_INTERMEASUREMENT_PERIOD, *value);
+        return Verdict::proceed;
     }
 
     // --- region of interest
@@ -295,6 +307,40 @@ struct Device::Method {
         });
     }
 
+    // --- supervision
+
+    static void verify_run(Device& d) {
+        const RegisterRun& run = kRegisterRuns[d.run_];
+        d.read(run.first, run.count, judge_run);
+    }
+    static Verdict judge_run(Device& d, NodeTime) {
+        const RegisterRun& run = kRegisterRuns[d.run_];
+        if (!d.read_back_.agrees(run, d.answer_)) {
+            d.read(run.first, run.count, judge_run_again);
+            return Verdict::proceed;
+        }
+        d.read_back_.learn(run, d.answer_);
+        ++d.run_;
+        return Verdict::proceed;
+    }
+    /// A bit may have flipped on its way to us.
+    static Verdict judge_run_again(Device& d, NodeTime) {
+        const RegisterRun& run = kRegisterRuns[d.run_++];
+        if (d.read_back_.agrees(run, d.answer_)) {
+            d.count_i2c_error();
+        } else if (d.read_back_.record(run, d.answer_)) {
+            d.has_mismatch_ = true;
+        }
+        return Verdict::proceed;
+    }
+    static void judge_configuration(Device& d) {
+        if (d.has_mismatch_) d.fail(Error::config_mismatch);
+    }
+    static void judge_steering(Device& d) {
+        judge_configuration(d);
+        if (!d.has_mismatch_) d.read_back_.on_clean_check();
+    }
+
     // --- the stages that wait
 
     static constexpr Stage kAwaitBoot{ask_boot_state, 1'000, 500'000, Error::boot_timeout};
@@ -342,6 +388,11 @@ struct Device::Method {
     static constexpr Stage kUpdateTemperature[]{
         {allow_full_vhv_search}, {choose_timed}, {clear_before_start}, {start}, kAwaitReady, {clear}, {stop},
         {bound_vhv_search}};
+    static constexpr Stage kVerifyConfiguration[]{
+        {verify_run}, {verify_run}, {verify_run}, {verify_run}, {verify_run},         {verify_run},
+        {verify_run}, {verify_run}, {verify_run}, {verify_run}, {judge_configuration}};
+    static_assert(std::size(kVerifyConfiguration) == kRegisterRuns.size() + 1);
+    static constexpr Stage kVerifySteering[]{{verify_run}, {judge_steering}};
     static constexpr Stage kReadRegister[]{{read_bytes}};
 };
 

@@ -137,6 +137,19 @@ void Device::begin_update_temperature() {
     begin(Method::kUpdateTemperature);
 }
 
+void Device::begin_verify_configuration() {
+    begin(Method::kVerifyConfiguration);
+    run_ = 0;
+    has_mismatch_ = false;
+}
+
+void Device::begin_verify_steering(std::size_t group) {
+    assert(group < kSteeringGroups);
+    begin(Method::kVerifySteering);
+    run_ = group;
+    has_mismatch_ = false;
+}
+
 void Device::begin_read_register(reg::Index index, std::uint8_t count) {
     assert(count >= 1 && count <= register_bytes_.size());
     begin(Method::kReadRegister);

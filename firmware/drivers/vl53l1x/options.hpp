@@ -14,7 +14,7 @@ enum class Error : std::uint8_t {
     unsupported_config,  ///< budget not allowed for the mode, period < budget + 5 ms, ROI that does not fit,
                          ///< limits
     oscillator_zero,     ///< RESULT__OSC_CALIBRATE_VAL reads 0: the period cannot be set
-    reads_disagree,      ///< two reads of the result block never agreed
+    reads_disagree,      ///< two reads of the result block, or of the oscillator value, did not agree
     implausible_block,   ///< all 0xFF or impossible fields: a bus error read as data
     config_mismatch,     ///< read-back differs from what was written
 };
@@ -24,12 +24,12 @@ struct Options {
     bool is_io_2v8 = true;                ///< 0x2E, 0x2F
     bool is_interrupt_active_low = true;  ///< 0x30 bit 4
     bool writes_config_in_burst = true;   ///< 91 bytes in one transfer rather than 91 transfers
-    bool reads_twice = true;
-    bool caches_polarity = true;      ///< false: 0x30 is read before every 0x31, as ST's driver does
-    bool clears_before_start = true;  ///< write 0x86 before 0x87 = 0x40
-    bool verifies_address = true;     ///< the id is read at a new address once it is set
-    bool rereads_settings = false;    ///< mode and budget are read back before they are built on
-    std::uint32_t i2c_hz = 400'000;   ///< for the deadline of a transfer: 3 x nominal time + 1 ms
+    bool reads_twice = true;              ///< the result block and the oscillator value
+    bool caches_polarity = true;          ///< false: 0x30 is read before every 0x31, as ST's driver does
+    bool clears_before_start = true;      ///< write 0x86 before 0x87 = 0x40
+    bool verifies_address = true;         ///< the id is read at a new address once it is set
+    bool rereads_settings = false;        ///< mode and budget are read back before they are built on
+    std::uint32_t i2c_hz = 400'000;       ///< for the deadline of a transfer: 3 x nominal time + 1 ms
     [[nodiscard]] static constexpr Options as_st_uld() noexcept {
         return {.is_io_2v8 = false,
                 .is_interrupt_active_low = false,

@@ -114,6 +114,8 @@ void SensorModel::on_clocks(std::uint32_t count, SimTime) {
 
 void SensorModel::write_register(std::uint16_t index, std::uint8_t value, SimTime time) {
     if (index >= registers_.size() || is_read_only(index)) return;
+    if (faults_.stuck_register && faults_.stuck_register->index == index)
+        value = faults_.stuck_register->value;
     switch (index) {
         case reg::kSoftReset:
             write_soft_reset(value, time);

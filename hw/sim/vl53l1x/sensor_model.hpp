@@ -15,6 +15,12 @@
 
 namespace octoskin::sim {
 
+/// A register that is what it is, whatever is written.
+struct StuckRegister {
+    std::uint16_t index = 0;
+    std::uint8_t value = 0;
+};
+
 /// What can be wrong with a part.
 struct SensorFaults {
     bool is_absent = false;  ///< never acknowledges
@@ -26,6 +32,7 @@ struct SensorFaults {
     bool is_always_ready = false;  ///< its interrupt cannot be cleared
     std::optional<std::uint8_t>
         device_status{};  ///< every result carries this RESULT__RANGE_STATUS byte, high bits included
+    std::optional<StuckRegister> stuck_register{};  ///< from its next write on
     Microseconds status_two_for{0};  ///< 0xE5 reads 0x02 for so long after boot, as real parts were seen to
     std::uint32_t holds_sda_clocks = 0;  ///< holds SDA low until it got so many clocks, or XSHUT
 };
@@ -49,6 +56,9 @@ class SensorModel final : public I2cTarget {
     [[nodiscard]] const SensorFaults& faults() const noexcept { return faults_; }
     /// The supply dips: everything is forgotten and, XSHUT being high, the part boots at 0x29.
     void brown_out(SimTime time);
+
+    /// A register changes by itself, as by a particle or a write that went astray.
+    void alter_register(std::uint16_t index, std::uint8_t value) { registers_.at(index) = value; }
 
     /// Level of the GPIO1 pin.
     [[nodiscard]] bool gpio1_level(SimTime time);

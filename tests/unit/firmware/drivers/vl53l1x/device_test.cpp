@@ -85,7 +85,7 @@ TEST_F(DeviceOnScript, configures_without_reading_back) {
     expect_done(R"(
         W 004B 0E | W 0060 0B | W 0063 09 | W 0069 78 | W 0078 0B 09 | W 007A 0A 0A
         W 005E 00 80 | W 0061 00 9A
-        R 00DE 2 -> 00 25 | W 006C 00 00 07 C4
+        R 00DE 2 -> 00 25 | R 00DE 2 -> 00 25 | W 006C 00 00 07 C4
         W 007F A7 77
         W 0064 01 68 | W 0066 00 80
         W 0018 00 00 | W 001A 00 00 | W 0016 00 00)");
@@ -100,7 +100,7 @@ TEST_F(DeviceOnScript, writes_the_offset_only_if_there_is_one) {
     expect_done(R"(
         W 004B 0A | W 0060 0F | W 0063 0D | W 0069 B8 | W 0078 0F 0D | W 007A 0E 0E
         W 005E 00 1E | W 0061 00 22
-        R 00DE 2 -> 00 25 | W 006C 00 00 05 20
+        R 00DE 2 -> 00 25 | R 00DE 2 -> 00 25 | W 006C 00 00 05 20
         W 007F C7
         W 0064 01 68 | W 0066 00 80
         W 001E 00 25 | W 0020 00 00 | W 0022 00 00
@@ -152,9 +152,14 @@ TEST_F(DeviceOnScript, a_refused_budget_leaves_the_one_in_force) {
 
 TEST_F(DeviceOnScript, an_oscillator_that_reads_0_is_an_error) {
     device_.begin_set_inter_measurement(Microseconds{33'000});
-    expect_failed(Error::oscillator_zero, "R 00DE 2 -> 04 00");
+    expect_failed(Error::oscillator_zero, "R 00DE 2 -> 04 00 | R 00DE 2 -> 04 00");
     device_.begin_set_inter_measurement(Microseconds{34'567});
-    expect_done("R 00DE 2 -> FC 25 | W 006C 00 00 05 5E");
+    expect_done("R 00DE 2 -> FC 25 | R 00DE 2 -> FC 25 | W 006C 00 00 05 5E");
+}
+
+TEST_F(DeviceOnScript, an_oscillator_that_reads_differently_sets_no_period) {
+    device_.begin_set_inter_measurement(Microseconds{33'000});
+    expect_failed(Error::reads_disagree, "R 00DE 2 -> 00 25 | R 00DE 2 -> 00 A5");
 }
 
 TEST_F(DeviceOnScript, trims_polarity_and_threshold_are_written_outright) {

@@ -1,0 +1,108 @@
+#include "firmware/drivers/vl53l1x/read_back.hpp"
+
+#include <algorithm>
+
+namespace octoskin::vl53l1x {
+namespace {
+
+constexpr std::size_t total(std::size_t runs) noexcept {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < runs; ++i) count += kRegisterRuns[i].count;
+    return count;
+}
+static_assert(total(kRegisterRuns.size()) == kRegistersReadBack);
+constexpr std::size_t kSteeringRegisters = total(kSteeringGroups);
+
+/// Where a register stands in the arrays; empty if it is not read back.
+std::optional<std::size_t> slot_of(reg::Index index) noexcept {
+    std::size_t before = 0;
+    for (const RegisterRun& run : kRegisterRuns) {
+        if (index >= run.first && index < run.first + run.count) return before + (index - run.first);
+        before += run.count;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+void ReadBack::note(reg::Index first, std::span<const std::uint8_t> bytes) noexcept {
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        if (const auto slot = slot_of(static_cast<reg::Index>(first + i))) {
+            expected_[*slot] = bytes[i];
+            is_known_.set(*slot);
+        }
+    }
+}
+
+void ReadBack::learn(const RegisterRun& run, std::span<const std::uint8_t> bytes) noexcept {
+    for (std::size_t i = 0; i < run.count; ++i) {
+        const auto slot = slot_of(static_cast<reg::Index>(run.first + i));
+        if (!is_known_[*slot]) note(static_cast<reg::Index>(run.first + i), bytes.subspan(i, 1));
+    }
+}
+
+bool ReadBack::differs(std::size_t slot, reg::Index index, std::uint8_t found) const noexcept {
+    return is_known_[slot] && ((expected_[slot] ^ found) & compared_bits(index)) != 0;
+}
+
+bool ReadBack::agrees(const RegisterRun& run, std::span<const std::uint8_t> bytes) const noexcept {
+    for (std::size_t i = 0; i < run.count; ++i) {
+        const auto index = static_cast<reg::Index>(run.first + i);
+        const auto slot = slot_of(index);
+        if (!is_exempt_[*slot] && differs(*slot, index, bytes[i])) return false;
+    }
+    return true;
+}
+
+bool ReadBack::record(const RegisterRun& run, std::span<const std::uint8_t> bytes) noexcept {
+    bool counts = false;
+    clean_checks_ = 0;
+    for (std::size_t i = 0; i < run.count; ++i) {
+        const auto index = static_cast<reg::Index>(run.first + i);
+        const auto slot = slot_of(index);
+        if (is_exempt_[*slot] || !differs(*slot, index, bytes[i])) continue;
+        last_ = {.index = index, .expected = expected_[*slot], .found = bytes[i]};
+        if (is_third_sighting(*last_) && is_exempt_.count() < kExemptMax) {
+            is_exempt_.set(*slot);
+            last_exempt_ = last_;
+        } else {
+            counts = true;
+        }
+    }
+    return counts;
+}
+
+/// A difference that finds no free place is not counted, only acted on: others leave theirs in time.
+bool ReadBack::is_third_sighting(const RegisterDifference& difference) noexcept {
+    const auto same_register = [&](const Sighting& sighting) {
+        return sighting.count != 0 && sighting.difference.index == difference.index;
+    };
+    auto place = std::find_if(sightings_.begin(), sightings_.end(), same_register);
+    if (place == sightings_.end()) {
+        place = std::find_if(sightings_.begin(), sightings_.end(),
+                             [](const Sighting& sighting) { return sighting.count == 0; });
+        if (place == sightings_.end()) return false;
+    }
+    const bool is_the_same = place->count != 0 && place->difference == difference;
+    *place = {.difference = difference,
+              .count = is_the_same ? static_cast<std::uint8_t>(place->count + 1) : std::uint8_t{1}};
+    if (place->count < kSightingsUntilExempt) return false;
+    *place = {};
+    return true;
+}
+
+void ReadBack::on_clean_check() noexcept {
+    if (++clean_checks_ < kCleanChecksUntilForgotten) return;
+    clean_checks_ = 0;
+    sightings_.fill({});
+}
+
+bool ReadBack::is_steering_exempt() const noexcept {
+    // The steering runs come first.
+    for (std::size_t slot = 0; slot < kSteeringRegisters; ++slot) {
+        if (is_exempt_[slot]) return true;
+    }
+    return false;
+}
+
+}  // namespace octoskin::vl53l1x
