@@ -16,6 +16,7 @@ find_package(sdformat12 REQUIRED)
 pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)
 find_package(embree 3 REQUIRED)
 find_package(assimp REQUIRED)
+pkg_check_modules(UNICORN QUIET IMPORTED_TARGET unicorn)  # optional: only the emulated board is made of it
 pkg_check_modules(OPENNI2 REQUIRED IMPORTED_TARGET libopenni2)
 
 # OctoMap, KDL and urdfdom name directories and files rather than targets: give them one each. SYSTEM keeps our

@@ -1,0 +1,139 @@
+// The Cortex-M4F: Unicorn executes the instructions; exceptions, sleep, time and faults are done here, as
+// ARMv7-M ARM B1.5 has them. Only the main stack is used: a program that selects the process stack is
+// reported.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "hw/sim/stm32g474/board_time.hpp"
+#include "hw/sim/stm32g474/cpu/system_control.hpp"
+#include "hw/sim/stm32g474/violation.hpp"
+
+struct uc_struct;
+
+namespace octoskin::sim::stm32 {
+
+/// Where loads and stores go that do not hit memory. Reads and writes of 1, 2 or 4 bytes.
+class MemoryMappedDevices {
+  public:
+    virtual std::uint32_t read(std::uint32_t address, std::uint32_t size) = 0;
+    virtual void write(std::uint32_t address, std::uint32_t value, std::uint32_t size) = 0;
+
+  protected:
+    ~MemoryMappedDevices() = default;
+};
+
+/// Memory that the core executes from and works in; owned by the board, and kept over a reset.
+struct MemoryRegion {
+    std::uint32_t address;
+    std::span<std::uint8_t> bytes;
+    bool is_writable;
+};
+
+/// The core at the time of a report.
+enum class CoreState : std::uint8_t { running, sleeping, locked_up };
+
+class CortexM4 {
+  public:
+    /// Everything must outlive the core. Each instruction takes `cycles_per_instruction` cycles, exception
+    /// entry and return 12 each.
+    CortexM4(BoardTime& now, ViolationLog& log, std::span<const MemoryRegion> memory,
+             MemoryMappedDevices& devices, std::uint32_t cycles_per_instruction);
+    ~CortexM4();
+    CortexM4(const CortexM4&) = delete;
+    CortexM4& operator=(const CortexM4&) = delete;
+
+    /// The system control space must be reset before: SP and PC come from its vector table.
+    void attach(SystemControl& control) { control_ = &control; }
+    void reset();
+    void set_hclk(std::uint32_t hz) { ps_per_cycle_ = period_ps(hz); }
+
+    /// Runs to `limit` or to the first basic block after it, or until it sleeps or locks up, or until
+    /// `interrupt_slice`. `now` moves on with each block.
+    void run(BoardTime limit);
+    /// Ends `run` before the next basic block. May be called from `devices`.
+    void interrupt_slice() noexcept { is_slice_interrupted_ = true; }
+    /// The slice need not end before `limit`, if that is earlier than before.
+    void shorten_slice(BoardTime limit) noexcept {
+        if (limit < limit_) limit_ = limit;
+    }
+
+    /// Asleep with nothing to wake it: until an interrupt comes, time may jump.
+    [[nodiscard]] bool is_idle() const;
+    [[nodiscard]] CoreState state() const noexcept { return state_; }
+    [[nodiscard]] std::uint64_t instructions() const noexcept { return instructions_; }
+    [[nodiscard]] std::uint64_t cycles() const noexcept { return cycles_; }
+    [[nodiscard]] std::uint32_t pc() const;
+    [[nodiscard]] std::uint32_t general_register(std::uint32_t number) const;
+    /// The lowest stack pointer seen at an exception entry or the end of a slice.
+    [[nodiscard]] std::uint32_t lowest_stack() const noexcept { return lowest_stack_; }
+    /// For tests: starts somewhere else than the reset handler.
+    void jump(std::uint32_t address);
+
+  private:
+    struct Fault {
+        std::uint32_t cfsr_bits;
+        std::optional<std::uint32_t> address;
+    };
+    struct Frame;
+
+    // --- engine (cortex_m4.cpp)
+    void map_memory(std::span<const MemoryRegion> memory);
+    void add_hooks();
+    void before_block(std::uint32_t address, std::uint32_t size);
+    [[nodiscard]] bool must_stop() const;
+    void execute();
+    void on_engine_interrupt(std::uint32_t number);
+    void after_engine_error(int error);
+    [[nodiscard]] std::uint32_t instruction_count(std::uint32_t address, std::uint32_t size);
+    [[nodiscard]] std::uint32_t count_instructions(std::uint32_t address, std::uint32_t size) const;
+    [[nodiscard]] std::uint16_t half_word(std::uint32_t address) const;
+    [[nodiscard]] std::uint32_t get(int engine_register) const;
+    void set(int engine_register, std::uint32_t value);
+    void spend(std::uint32_t cycles);
+    void check_fpu_use();
+    void check_stack_use();
+
+    // --- exceptions (exceptions.cpp)
+    [[nodiscard]] ExceptionMasks masks() const;
+    void sleep();
+    void enter(std::uint32_t number);
+    void set_program_state(std::uint32_t xpsr, std::uint32_t pc);
+    [[nodiscard]] bool push(const Frame& frame);
+    void leave(std::uint32_t exc_return);
+    [[nodiscard]] bool pop(std::uint32_t exc_return);
+    void raise(const Fault& fault);
+    void raise_enabled_fault(std::uint32_t number);
+    void lock_up(const char* why);
+
+    BoardTime& now_;
+    ViolationLog& log_;
+    MemoryMappedDevices& devices_;
+    SystemControl* control_ = nullptr;
+    uc_struct* engine_ = nullptr;
+    std::vector<std::pair<MemoryMappedDevices*, std::uint32_t>> windows_;  ///< devices and base address
+    std::uint32_t cycles_per_instruction_;
+    std::int64_t ps_per_cycle_ = period_ps(16'000'000);
+
+    BoardTime limit_{};
+    CoreState state_ = CoreState::running;
+    bool is_slice_interrupted_ = false;
+    bool has_stopped_itself_ = false;  ///< the engine was told to stop
+    std::optional<std::uint32_t> engine_interrupt_;
+    std::optional<std::uint32_t> fault_address_;
+    std::uint64_t instructions_ = 0;
+    std::uint64_t cycles_ = 0;
+    std::uint32_t lowest_stack_ = 0xFFFF'FFFF;
+
+    struct CountedBlock {
+        std::uint32_t size = 0;
+        std::uint32_t instructions = 0;
+    };
+    std::vector<CountedBlock> counted_;  ///< of flash, by half-word
+};
+
+}  // namespace octoskin::sim::stm32
