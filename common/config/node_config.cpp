@@ -201,7 +201,7 @@ std::uint32_t u32_at(Bytes bytes, std::size_t at) {
 }  // namespace
 
 bool is_valid(const NodeConfig& config) noexcept {
-    bool holds = is_within<int>(config.node_id, 1, 62);
+    bool holds = is_within<int>(config.node_id, 1, kUnconfiguredNodeId - 1);
     holds &= is_within<std::uint32_t>(config.nominal_bitrate, 10'000, 1'000'000);
     holds &= is_within<std::uint32_t>(config.data_bitrate, config.nominal_bitrate, 8'000'000);
     holds &= is_within<std::uint32_t>(config.i2c_hz, 10'000, 400'000);

@@ -47,7 +47,7 @@ struct SensorConfig {
 };
 
 struct NodeConfig {
-    std::uint8_t node_id = 1;     ///< 1..62
+    std::uint8_t node_id = 1;     ///< 1..61
     std::uint8_t board_type = 0;  ///< hw/boards/
     bool uses_can_fd = true;
     std::uint32_t nominal_bitrate = 1'000'000;
@@ -62,6 +62,17 @@ struct NodeConfig {
     std::array<SensorConfig, kNodeSensorsMax> sensors{};
     friend constexpr bool operator==(const NodeConfig&, const NodeConfig&) = default;
 };
+
+/// Speaks as nobody of a rig: never valid in a configuration.
+inline constexpr std::uint8_t kUnconfiguredNodeId = 62;
+/// For a board whose block `decode_node_config` refuses: not valid, so that the node does not range and says
+/// `bad_config` in its heartbeat. At which bit rate nobody told it: a port sends nothing before it has heard
+/// a valid frame at the rate it tries.
+[[nodiscard]] constexpr NodeConfig without_configuration() noexcept {
+    NodeConfig config;
+    config.node_id = kUnconfiguredNodeId;
+    return config;
+}
 
 /// Whether every field is within what a board can do: counts, indices, addresses (8..119, never 0x29), bit
 /// rates, ROI sizes, offsets of 13 bits; two sensors share neither an XSHUT line nor an address on one bus.

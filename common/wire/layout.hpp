@@ -183,9 +183,10 @@ void walk(Walker& walker, Of<Walker, InfoTraffic>& info) {
 template <class Walker>
 void walk(Walker& walker, Of<Walker, InfoFault>& info) {
     walk_page(walker, InfoPage::fault);
-    walker.number(Field("fault_kind", 8), info.kind);
-    walker.number(Field("fault_count", 8), info.count);
+    walker.choice(Field("fault_kind", 4), info.kind);
+    walker.saturated(Field("fault_count", 4), info.count);
     walker.number(Field("fault_where", 32), info.where);
+    walker.number(Field("fault_uptime", 8, Unit::second), info.uptime_s);
 }
 
 template <class Walker>

@@ -92,6 +92,7 @@ enum class NodeState : std::uint8_t {
     bad_config = 4,   ///< configuration block missing, damaged or for another board: no ranging
     id_conflict = 5,  ///< heard its own node id: ranges stopped
     bus_fault = 6,    ///< no I2C bus usable
+    can_fault = 7,    ///< was bus-off less than a second ago, or is error-passive; ranges all the same
 };
 enum class ResetCause : std::uint8_t {
     power_on = 0,
@@ -158,10 +159,23 @@ struct InfoTraffic {                 ///< since start, saturating
     std::uint8_t rx_rejected = 0;  ///< frames for us that failed length, CRC or version
     friend constexpr bool operator==(const InfoTraffic&, const InfoTraffic&) = default;
 };
-struct InfoFault {  ///< the last recorded fault; all zero if there is none
-    std::uint8_t kind = 0;
-    std::uint8_t count = 0;
-    std::uint32_t where = 0;  ///< program counter or assertion id
+enum class FaultKind : std::uint8_t {
+    none = 0,
+    assertion = 1,     ///< where: number of the assertion, as the build's map has it
+    hard_fault = 2,    ///< where: program counter
+    stack_guard = 3,   ///< where: program counter
+    watchdog = 4,      ///< nobody wrote anything down before the reset
+    brown_out = 5,     ///<
+    clock_fault = 6,   ///< the crystal failed
+    xshut_stuck = 7,   ///< now, no reset: where is the XSHUT line that does not put its sensor in reset
+    stray_sensor = 8,  ///< now, no reset: where is the I2C bus on which somebody answered at 0x29 unasked
+    unknown = 15,
+};
+struct InfoFault {  ///< what is wrong with the node now, else its last recorded fault; else all zero
+    FaultKind kind = FaultKind::none;
+    std::uint8_t count = 0;     ///< resets that nobody ordered, since power-on; saturates at 15
+    std::uint32_t where = 0;    ///< by kind
+    std::uint8_t uptime_s = 0;  ///< how long the run that the fault ended had lasted; saturates at 255
     friend constexpr bool operator==(const InfoFault&, const InfoFault&) = default;
 };
 using NodeInfo =
@@ -187,6 +201,7 @@ enum class SensorFault : std::uint8_t {
     implausible_block = 8,
     bus_error = 9,
     address_conflict = 10,
+    xshut_stuck = 11,  ///< its XSHUT line does not put it in reset
 };
 /// On change and once a second.
 struct SensorHealth {

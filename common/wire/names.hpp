@@ -24,6 +24,7 @@ inline constexpr auto kNodeState = std::to_array<Named<NodeState>>({
     {NodeState::bad_config, "bad_config"},
     {NodeState::id_conflict, "id_conflict"},
     {NodeState::bus_fault, "bus_fault"},
+    {NodeState::can_fault, "can_fault"},
 });
 inline constexpr auto kResetCause = std::to_array<Named<ResetCause>>({
     {ResetCause::power_on, "power_on"},
@@ -33,6 +34,18 @@ inline constexpr auto kResetCause = std::to_array<Named<ResetCause>>({
     {ResetCause::pin, "pin"},
     {ResetCause::fault, "fault"},
     {ResetCause::unknown, "unknown"},
+});
+inline constexpr auto kFaultKind = std::to_array<Named<FaultKind>>({
+    {FaultKind::none, "none"},
+    {FaultKind::assertion, "assertion"},
+    {FaultKind::hard_fault, "hard_fault"},
+    {FaultKind::stack_guard, "stack_guard"},
+    {FaultKind::watchdog, "watchdog"},
+    {FaultKind::brown_out, "brown_out"},
+    {FaultKind::clock_fault, "clock_fault"},
+    {FaultKind::xshut_stuck, "xshut_stuck"},
+    {FaultKind::stray_sensor, "stray_sensor"},
+    {FaultKind::unknown, "unknown"},
 });
 inline constexpr auto kInfoPage = std::to_array<Named<InfoPage>>({
     {InfoPage::uid_low, "uid_low"},
@@ -63,6 +76,7 @@ inline constexpr auto kSensorFault = std::to_array<Named<SensorFault>>({
     {SensorFault::implausible_block, "implausible_block"},
     {SensorFault::bus_error, "bus_error"},
     {SensorFault::address_conflict, "address_conflict"},
+    {SensorFault::xshut_stuck, "xshut_stuck"},
 });
 inline constexpr auto kMarkKind = std::to_array<Named<MarkKind>>({
     {MarkKind::stop, "stop"},
@@ -85,6 +99,9 @@ inline constexpr auto kCommandCode = std::to_array<Named<CommandCode>>({
 }
 [[nodiscard]] constexpr std::span<const Named<ResetCause>> values_of(ResetCause) {
     return tables::kResetCause;
+}
+[[nodiscard]] constexpr std::span<const Named<FaultKind>> values_of(FaultKind) {
+    return tables::kFaultKind;
 }
 [[nodiscard]] constexpr std::span<const Named<InfoPage>> values_of(InfoPage) {
     return tables::kInfoPage;

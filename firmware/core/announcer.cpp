@@ -30,11 +30,14 @@ bool Announcer::Rhythm::beats(NodeTime now) noexcept {
 
 void Announcer::update(NodeTime now) noexcept {
     if (heartbeat_.beats(now)) is_heartbeat_due_ = true;
-    if (info_.beats(now)) {
+    const bool is_info_beat = info_.beats(now);
+    const bool is_health_beat = health_.beats(now);
+    if (is_quiet_) return;
+    if (is_info_beat) {
         info_due_ |= static_cast<std::uint8_t>(1U << info_turn_);
         info_turn_ = static_cast<std::uint8_t>((info_turn_ + 1U) % wire::kInfoPages);
     }
-    if (health_.beats(now) && sensor_count_ > 0) {
+    if (is_health_beat && sensor_count_ > 0) {
         request_health(health_turn_);
         health_turn_ = static_cast<std::uint8_t>((health_turn_ + 1U) % sensor_count_);
     }
@@ -45,8 +48,16 @@ NodeTime Announcer::next_due() const noexcept {
     return earlier_of(heartbeat_.next, status);
 }
 
+void Announcer::set_quiet(bool is_quiet) noexcept {
+    is_quiet_ = is_quiet;
+    info_due_ = 0;
+    health_due_ = 0;
+    if (!is_quiet) request_all();
+}
+
 void Announcer::request_all() noexcept {
     info_due_ = kAllPages;
+    if (is_quiet_) return;  // of sensors that are not at work there is nothing to say
     for (std::uint8_t sensor = 0; sensor < sensor_count_; ++sensor) request_health(sensor);
 }
 

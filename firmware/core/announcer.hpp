@@ -21,7 +21,14 @@ class Announcer {
     /// When `update` next has something to note.
     [[nodiscard]] NodeTime next_due() const noexcept;
 
+    /// Quiet: of its own accord the node says nothing but its heartbeat, though it answers what is asked.
+    /// Ends with everything to be said at once.
+    void set_quiet(bool is_quiet) noexcept;
+
     void request_all() noexcept;
+    void request_info(wire::InfoPage page) noexcept {
+        info_due_ = static_cast<std::uint8_t>(info_due_ | (1U << static_cast<unsigned>(page)));
+    }
     void request_health(std::uint8_t sensor) noexcept { health_due_ |= std::uint64_t{1} << sensor; }
 
     [[nodiscard]] bool is_heartbeat_due() const noexcept { return is_heartbeat_due_; }
@@ -47,6 +54,7 @@ class Announcer {
     Rhythm info_;
     Rhythm health_;
     bool is_heartbeat_due_ = true;
+    bool is_quiet_ = false;
     std::uint8_t info_due_;         ///< bit i: page i
     std::uint64_t health_due_ = 0;  ///< bit i: sensor i
     std::uint8_t info_turn_ = 0;

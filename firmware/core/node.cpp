@@ -11,13 +11,12 @@ namespace octoskin::node {
 namespace {
 
 constexpr Microseconds kBlinkHalfPeriod{250'000};
-constexpr Microseconds kSecond{1'000'000};
 
 // A full transmit mailbox has no event of its own here: look again soon.
 constexpr Microseconds kTransmitRetry{1'000};
 
-bool is_usable(const NodeConfig& config, std::size_t bus_count) noexcept {
-    if (!is_valid(config)) return false;
+bool is_usable(const NodeConfig& config, std::size_t bus_count, std::uint8_t board_type) noexcept {
+    if (!is_valid(config) || config.board_type != board_type) return false;
     const auto sensors = std::span(config.sensors).first(config.sensor_count);
     return std::all_of(sensors.begin(), sensors.end(),
                        [=](const SensorConfig& sensor) { return sensor.bus < bus_count; });
@@ -43,22 +42,25 @@ Node::Node(const NodeConfig& config, const Identity& identity, const Ports& port
       identity_(identity),
       ports_(ports),
       policy_(policy),
-      is_config_usable_(is_usable(config, ports.buses.size())),
+      is_config_usable_(is_usable(config, ports.buses.size(), identity.board_type)),
       node_hash_(is_config_usable_ ? node_hash(config) : 0),
       uid_crc_(crc16(identity.uid)),
       queue_(config.uses_can_fd, config.aux_every, policy_),
       announcer_(is_config_usable_ ? config.sensor_count : std::uint8_t{0}, policy_, now),
       tokens_(frame_budget(config), now),
-      uptime_counted_(now) {
-    if (!is_config_usable_) config_.sensor_count = 0;
-    create_sensors(now);
+      bus_off_(policy_),
+      uptime_counted_(now),
+      feed_at_(now) {
+    start_run(now);
 }
 
 void Node::create_sensors(NodeTime now) {
+    if (!is_config_usable_) return;
     const RangingRules rules{.stream_gate = config_.stream_gate,
                              .zone_guard = Microseconds{config_.zone_guard_us},
                              .i2c_hz = config_.i2c_hz};
-    for (std::size_t i = 0; i < config_.sensor_count; ++i) {
+    sensor_count_ = config_.sensor_count;
+    for (std::size_t i = 0; i < sensor_count_; ++i) {
         const SensorConfig& sensor = config_.sensors[i];
         const vl53l1x::Options options = device_options(config_);
         i2c::Bus& bus = *ports_.buses[sensor.bus];
@@ -69,10 +71,11 @@ void Node::create_sensors(NodeTime now) {
         sensors_[i].emplace(sensor, surroundings, options, rules, policy_, now);
         worker->add(*sensors_[i]);
     }
-    commanded_to_range_ = (std::uint64_t{1} << config_.sensor_count) - 1;
+    commanded_to_range_ = (std::uint64_t{1} << sensor_count_) - 1;
 }
 
 void Node::poll(NodeTime now) {
+    supervise_can(now);
     advance_buses(now);
     collect_readings(now);
     note_health_changes();
@@ -80,6 +83,7 @@ void Node::poll(NodeTime now) {
     blink(now);
     announcer_.update(now);
     transmit(now);
+    feed_watchdog(now);
 }
 
 void Node::advance_buses(NodeTime now) {
@@ -89,16 +93,17 @@ void Node::advance_buses(NodeTime now) {
 }
 
 void Node::collect_readings(NodeTime now) {
-    for (std::uint8_t i = 0; i < config_.sensor_count; ++i) {
+    for (std::uint8_t i = 0; i < sensor_count_; ++i) {
         const auto reading = sensors_[i]->take_reading();
         if (!reading) continue;
         told_[i].bound_since = std::max(told_[i].bound_since, reading->capture_bound);
+        ++accepted_;
         queue_.push(i, *reading, now);
     }
 }
 
 void Node::note_health_changes() {
-    for (std::uint8_t i = 0; i < config_.sensor_count; ++i) {
+    for (std::uint8_t i = 0; i < sensor_count_; ++i) {
         const Told& told = told_[i];
         const bool is_changed = sensors_[i]->state() != told.state || sensors_[i]->fault() != told.fault;
         const bool is_bound_exceeded = bound_on_wire(told.bound_since) > bound_on_wire(told.bound);
@@ -107,10 +112,7 @@ void Node::note_health_changes() {
 }
 
 void Node::end_what_has_expired(NodeTime now) {
-    if (elapsed(uptime_counted_, now) >= kSecond) {
-        uptime_counted_ = uptime_counted_ + kSecond;
-        ++uptime_s_;
-    }
+    count_uptime(now);
     if (last_command_ && elapsed(last_command_->received, now) >= policy_.command_repeat) {
         last_command_.reset();
     }
@@ -135,6 +137,9 @@ NodeTime Node::wake_time(NodeTime now) const {
         if (bus) wake = earlier(wake, bus->wake_time());
     }
     if (identify_until_) wake = earlier_of(wake, blink_at_);
+    if (ports_.watchdog != nullptr) wake = earlier_of(wake, feed_at_);
+    wake = earlier(wake, bus_off_.wake_time());
+    if (bus_off_.is_off()) return later_of(wake, now);
     if (has_unsent_) {
         wake = earlier_of(wake, now + std::max(tokens_.wait(), kTransmitRetry));
     } else if (!own_id_heard_) {
@@ -146,19 +151,25 @@ NodeTime Node::wake_time(NodeTime now) const {
 wire::NodeState Node::state() const noexcept {
     using wire::NodeState;
     if (!is_config_usable_) return NodeState::bad_config;
+    if (is_safe()) return NodeState::safe;
     if (own_id_heard_) return NodeState::id_conflict;
     const auto is_unusable = [](const auto& bus) { return !bus || bus->is_faulty(); };
     const auto is_settled = [](const auto& sensor) { return sensor->is_settled(); };
-    const bool has_sensors = config_.sensor_count > 0;
+    const bool has_sensors = sensor_count_ > 0;
     if (has_sensors && std::all_of(buses_.begin(), buses_.end(), is_unusable)) return NodeState::bus_fault;
     if (has_sensors && commanded_to_range_ == 0) return NodeState::stopped;
     const auto all = sensors();
-    return std::all_of(all.begin(), all.end(), is_settled) ? NodeState::ranging : NodeState::starting;
+    if (!std::all_of(all.begin(), all.end(), is_settled)) return NodeState::starting;
+    const bool is_can_well = can_state_ == CanState::active && !bus_off_.is_recent();
+    return is_can_well ? NodeState::ranging : NodeState::can_fault;
 }
 
 NodeCounts Node::counts() const noexcept {
     NodeCounts counts{.displaced = queue_.losses().displaced,
                       .late = queue_.losses().late,
+                      .given_up = given_up_,
+                      .bus_off = bus_off_.count(),
+                      .accepted = accepted_,
                       .frames_sent = frames_sent_,
                       .rx_rejected = rx_rejected_};
     for (const auto& sensor : sensors()) {

@@ -13,10 +13,12 @@
 #include "common/wire/can_frame.hpp"
 #include "common/wire/messages.hpp"
 #include "firmware/core/announcer.hpp"
+#include "firmware/core/bus_off_recovery.hpp"
 #include "firmware/core/bus_worker.hpp"
 #include "firmware/core/policy.hpp"
 #include "firmware/core/ports.hpp"
 #include "firmware/core/reading_queue.hpp"
+#include "firmware/core/run_record.hpp"
 #include "firmware/core/sensor.hpp"
 #include "firmware/core/token_bucket.hpp"
 
@@ -31,10 +33,16 @@ struct NodeCounts {
     std::uint32_t sensor_restarts = 0;
     std::uint32_t displaced = 0;  ///< readings displaced by a newer one of the same sensor before being sent
     std::uint32_t late = 0;       ///< readings that waited too long to be sent
+    std::uint32_t given_up = 0;   ///< frames that the controller held when it went bus-off
+    std::uint32_t bus_off = 0;    ///< times that the controller went bus-off
+    std::uint32_t accepted = 0;   ///< readings: sent, displaced, late, or still waiting
     std::uint32_t frames_sent = 0;
     std::uint32_t rx_rejected = 0;  ///< frames for us that failed a check, and commands that were refused
 };
 
+/// `config` that is not valid, or for another type of board: the node does not range, and its heartbeat says
+/// `bad_config`. For a configuration block that is missing or damaged see `without_configuration`.
+///
 /// Call `poll` in a loop of 100 us or faster, or at `wake_time` and whenever an I2C transfer ends or a
 /// transmit mailbox falls free; and `on_frame` for every frame received (never for own ones), with the time
 /// of its end. One thread only; nothing waits. A `poll` takes at most 4 steps on each I2C bus and sends at
@@ -53,6 +61,11 @@ class Node {
     /// When `poll` next has something to do of its own accord, never before `now`. The ends of I2C transfers
     /// and of transmissions come on top: they are events of the ports.
     [[nodiscard]] NodeTime wake_time(NodeTime now) const;
+
+    /// Readings that wait to be sent.
+    [[nodiscard]] std::size_t waiting() const noexcept { return queue_.waiting(); }
+    /// Readings handed to the controller.
+    [[nodiscard]] std::uint32_t readings_sent() const noexcept { return queue_.total_sent(); }
 
     /// The host asked for a reset: the application performs it.
     [[nodiscard]] bool is_reset_requested() const noexcept { return is_reset_requested_; }
@@ -87,14 +100,25 @@ class Node {
     void end_what_has_expired(NodeTime now);
     void blink(NodeTime now);
     [[nodiscard]] std::span<const std::optional<Sensor>> sensors() const noexcept {
-        return std::span(sensors_).first(config_.sensor_count);
+        return std::span(sensors_).first(sensor_count_);
     }
+
+    // --- the node as a whole (node_supervision.cpp)
+    void start_run(NodeTime now);
+    void supervise_can(NodeTime now);
+    void count_uptime(NodeTime now);
+    void judge_run(NodeTime now);
+    void leave_safe_mode(RunMode mode, NodeTime now);
+    [[nodiscard]] bool is_safe() const noexcept { return run_.mode == RunMode::safe; }
+    void keep_run_record() noexcept;
+    void feed_watchdog(NodeTime now);
 
     // --- frames in (node_receive.cpp)
     [[nodiscard]] bool is_for_us(const wire::CanFrame& frame) const noexcept;
     void on_own_id_heard(NodeTime now);
     void apply_order_to_range(NodeTime now);
     void on_command(const wire::Command& command, NodeTime now);
+    [[nodiscard]] bool perform_in_safe_mode(const wire::Command& command, NodeTime now);
     [[nodiscard]] bool perform(const wire::Command& command, NodeTime now);
     [[nodiscard]] bool set_rate(const Selection& selection, std::uint16_t period_ms, NodeTime now);
     [[nodiscard]] Selection selected(std::uint8_t sensor) const noexcept;
@@ -106,6 +130,7 @@ class Node {
     [[nodiscard]] bool send(const wire::Message& message);
     [[nodiscard]] wire::Heartbeat heartbeat() const noexcept;
     [[nodiscard]] wire::NodeInfo info(wire::InfoPage page) const noexcept;
+    [[nodiscard]] wire::InfoFault fault_to_tell() const noexcept;
     [[nodiscard]] wire::SensorHealth health(std::uint8_t sensor) const noexcept;
     [[nodiscard]] Microseconds bound_to_tell(std::uint8_t sensor) const noexcept;
     [[nodiscard]] std::uint8_t bound_on_wire(Microseconds bound) const noexcept;
@@ -118,6 +143,7 @@ class Node {
     bool is_config_usable_;
     std::uint32_t node_hash_;
     std::uint16_t uid_crc_;
+    std::uint8_t sensor_count_ = 0;  ///< of those at work: none in safe mode, or with a bad configuration
 
     std::array<std::optional<BusWorker>, kNodeBusesMax> buses_{};
     std::array<std::optional<Sensor>, kNodeSensorsMax> sensors_{};
@@ -125,9 +151,15 @@ class Node {
     ReadingQueue queue_;
     Announcer announcer_;
     TokenBucket tokens_;
+    BusOffRecovery bus_off_;
+    CanState can_state_ = CanState::active;
+    RunRecord run_;
+    wire::ResetCause reset_cause_ = wire::ResetCause::unknown;
 
     bool has_unsent_ = false;
     std::uint32_t frames_sent_ = 0;
+    std::uint32_t given_up_ = 0;
+    std::uint32_t accepted_ = 0;
     std::uint32_t rx_rejected_ = 0;
     std::optional<wire::SyncReport> sync_report_;
     std::optional<ReceivedCommand> last_command_;
@@ -137,8 +169,10 @@ class Node {
     NodeTime blink_at_;
     bool is_lit_ = false;
     bool is_reset_requested_ = false;
-    std::uint32_t uptime_s_ = 0;
+    std::uint32_t uptime_ms_ = 0;
     NodeTime uptime_counted_;
+    std::uint32_t mode_since_ms_ = 0;  ///< of `run_.mode`, in uptime
+    NodeTime feed_at_;
 };
 
 }  // namespace octoskin::node

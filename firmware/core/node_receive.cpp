@@ -21,6 +21,7 @@ void Node::on_frame(const wire::CanFrame& frame, NodeTime received) {
         return;
     }
     if (const auto* sync = std::get_if<wire::Sync>(&decoded->message)) {
+        if (is_safe()) return;
         // Answered at once, not after FOLLOW_UP: the note is the node's own, and one lost frame costs less.
         sync_report_ = wire::SyncReport{.sequence = sync->sequence, .heard = received};
     } else if (const auto* command = std::get_if<wire::Command>(&decoded->message)) {
@@ -55,7 +56,7 @@ void Node::on_own_id_heard(NodeTime now) {
 }
 
 void Node::apply_order_to_range(NodeTime now) {
-    for (std::uint8_t i = 0; i < config_.sensor_count; ++i) {
+    for (std::uint8_t i = 0; i < sensor_count_; ++i) {
         const bool is_commanded = ((commanded_to_range_ >> i) & 1U) != 0;
         if (is_commanded && !own_id_heard_) {
             sensors_[i]->order_start(now);
@@ -68,7 +69,26 @@ void Node::apply_order_to_range(NodeTime now) {
 void Node::on_command(const wire::Command& command, NodeTime now) {
     if (last_command_ && last_command_->command == command) return;  // the same frame once more
     last_command_ = {.command = command, .received = now};
-    if (!perform(command, now)) ++rx_rejected_;
+    const bool is_done = is_safe() ? perform_in_safe_mode(command, now) : perform(command, now);
+    if (!is_done) ++rx_rejected_;
+}
+
+/// What a node does that keeps still: it can be woken, found, asked and reset.
+bool Node::perform_in_safe_mode(const wire::Command& command, NodeTime now) {
+    switch (command.code) {
+        case wire::CommandCode::start:
+            leave_safe_mode(RunMode::normal, now);
+            return true;
+        case wire::CommandCode::identify:
+        case wire::CommandCode::reset:
+        case wire::CommandCode::send_info:
+            return perform(command, now);
+        case wire::CommandCode::stop:
+        case wire::CommandCode::set_rate:
+        case wire::CommandCode::reinitialise_sensor:
+            return false;
+    }
+    return false;
 }
 
 bool Node::perform(const wire::Command& command, NodeTime now) {
@@ -116,8 +136,8 @@ bool Node::set_rate(const Selection& selection, std::uint16_t period_ms, NodeTim
 }
 
 Node::Selection Node::selected(std::uint8_t sensor) const noexcept {
-    if (sensor == wire::kAllSensors) return {.first = 0, .end = config_.sensor_count};
-    if (sensor >= config_.sensor_count) return {};
+    if (sensor == wire::kAllSensors) return {.first = 0, .end = sensor_count_};
+    if (sensor >= sensor_count_) return {};
     return {.first = sensor, .end = static_cast<std::uint8_t>(sensor + 1U)};
 }
 

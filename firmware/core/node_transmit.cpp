@@ -23,6 +23,7 @@ void Node::transmit(NodeTime now) {
     tokens_.refill(now);
     queue_.drop_late(now);
     has_unsent_ = false;
+    if (bus_off_.is_off()) return;  // all it has to say stays as new as it can
     // A node without a valid id of its own has no right to speak.
     if (!wire::is_allowed(wire::Party::from_node, config_.node_id)) return;
     for (int i = 0; i < kFramesPerPoll; ++i) {
@@ -75,7 +76,7 @@ wire::Heartbeat Node::heartbeat() const noexcept {
     const bool is_overridden = std::any_of(all.begin(), all.end(),
                                            [](const auto& sensor) { return sensor->is_period_overridden(); });
     return {.state = state(),
-            .reset_cause = identity_.reset_cause,
+            .reset_cause = reset_cause_,
             .is_rate_overridden = is_overridden,
             .degraded_sensors = static_cast<std::uint8_t>(degraded),
             .uid_crc = uid_crc_,
@@ -100,20 +101,28 @@ wire::NodeInfo Node::info(wire::InfoPage page) const noexcept {
                                       .board_type = config_.board_type};
         case wire::InfoPage::build:
             return wire::InfoBuild{.build_id = identity_.build_id,
-                                   .uptime_s = saturated<std::uint16_t>(uptime_s_)};
+                                   .uptime_s = saturated<std::uint16_t>(uptime_ms_ / 1'000)};
         case wire::InfoPage::counters:
             return wire::InfoCounters{.i2c_errors = saturated<std::uint16_t>(counted.i2c_errors),
                                       .reads_disagreed = saturated<std::uint16_t>(counted.reads_disagreed),
                                       .sensor_restarts = saturated<std::uint16_t>(counted.sensor_restarts)};
         case wire::InfoPage::traffic:
-            return wire::InfoTraffic{.tx_dropped = saturated<std::uint16_t>(counted.displaced),
-                                     .late_dropped = saturated<std::uint16_t>(counted.late),
-                                     .bus_off_count = 0,
-                                     .rx_rejected = saturated<std::uint8_t>(counted.rx_rejected)};
+            return wire::InfoTraffic{
+                .tx_dropped = saturated<std::uint16_t>(counted.displaced + counted.given_up),
+                .late_dropped = saturated<std::uint16_t>(counted.late),
+                .bus_off_count = saturated<std::uint8_t>(counted.bus_off),
+                .rx_rejected = saturated<std::uint8_t>(counted.rx_rejected)};
         case wire::InfoPage::fault:
-            return wire::InfoFault{};
+            return fault_to_tell();
     }
-    return wire::InfoFault{};
+    return fault_to_tell();
+}
+
+wire::InfoFault Node::fault_to_tell() const noexcept {
+    return {.kind = run_.fault,
+            .count = saturated<std::uint8_t>(run_.resets),
+            .where = run_.where,
+            .uptime_s = saturated<std::uint8_t>(run_.fault_uptime_ms / 1'000)};
 }
 
 wire::SensorHealth Node::health(std::uint8_t sensor) const noexcept {

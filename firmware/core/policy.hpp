@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "common/time.hpp"
+#include "firmware/core/run_record.hpp"
 
 namespace octoskin::node {
 
@@ -44,6 +45,16 @@ struct Policy {
     Microseconds reading_age_max{50'000};
     Microseconds heartbeat_period{100'000};
     Microseconds status_period{1'000'000};  ///< NODE_INFO's pages and every sensor's health, once each
+
+    // --- the CAN controller: ISO 11898-1 leaves it to us when to come back from bus-off
+    Microseconds bus_off_first{100'000};
+    Microseconds bus_off_longest{800'000};
+    Microseconds can_proven{1'000'000};  ///< so long on the bus, and the next bus-off counts as the first
+
+    // --- the node as a whole
+    Microseconds watchdog_feed{20'000};  ///< the watchdog bites after 200 ms
+    RunRules run_rules;                  ///< when resets are too many
+    std::uint32_t retry_proven_s = 60;   ///< so long after safe mode, and it is over for good
 
     // --- frames in
     Microseconds command_repeat{500'000};  ///< the same command within this time is a duplicate frame

@@ -7,6 +7,7 @@
 
 #include "common/wire/can_frame.hpp"
 #include "common/wire/messages.hpp"
+#include "firmware/core/run_record.hpp"
 #include "firmware/drivers/i2c/i2c_bus.hpp"
 
 namespace octoskin::node {
@@ -20,14 +21,43 @@ class XshutLines {
     ~XshutLines() = default;
 };
 
-/// The transmit side of the CAN controller.
+/// The error states of a CAN controller: ISO 11898-1, fault confinement.
+enum class CanState : std::uint8_t {
+    active,   ///< takes part without restriction
+    passive,  ///< over 127 errors in one of its counters: nobody acknowledges, or the lines are disturbed
+    bus_off,  ///< over 255 transmit errors: it has left the bus, and comes back only by `restart`
+};
+
+/// The transmit side of the CAN controller. Who decides when to leave bus-off is the core (`BusOffRecovery`);
+/// the port only tells and obeys.
 class CanTransmitter {
   public:
     /// Takes a frame if there is room; false means try again later. Never waits.
     [[nodiscard]] virtual bool send(const wire::CanFrame& frame) = 0;
+    /// As it is now: asked for once a poll, so no more than a register's read.
+    [[nodiscard]] virtual CanState state() const = 0;
+    /// Gives up every frame that was taken and is not sent yet, so that nothing stale goes out once the bus
+    /// is back. One that is on the wire at this moment may still end. Returns how many were given up.
+    virtual std::uint32_t discard() = 0;
+    /// Lets a controller that is bus-off begin its way back: 128 times 11 recessive bits, after which
+    /// `state` says `active`. Returns at once. For a controller that is not bus-off, or that is on its way
+    /// already, it does nothing.
+    virtual void restart() = 0;
 
   protected:
     ~CanTransmitter() = default;
+};
+
+/// The watchdog, which the port has set to bite 200 ms at most after the last feed. Nobody but the core
+/// feeds it, and only a core that is alive does: its loop turns, its clock moves, and no I2C transfer is
+/// overdue. What the port must guard by itself (an interrupt that never ends starves the loop, and so is
+/// covered) it does by leaving the loop.
+class Watchdog {
+  public:
+    virtual void feed() = 0;
+
+  protected:
+    ~Watchdog() = default;
 };
 
 /// A light by which a person finds the board that the `identify` command means.
@@ -43,6 +73,9 @@ class Indicator {
 struct Identity {
     std::array<std::uint8_t, 12> uid{};
     std::uint32_t build_id = 0;
+    std::uint8_t board_type = 0;  ///< hw/boards/: a configuration for another type is not used
+    /// What the hardware says. The core itself tells from `Ports::kept` whether a recorded fault was behind
+    /// a software reset.
     wire::ResetCause reset_cause = wire::ResetCause::power_on;
 };
 
@@ -52,6 +85,10 @@ struct Ports {
     XshutLines& xshut;
     CanTransmitter& can;
     Indicator* indicator = nullptr;  ///< boards without a light have none
+    Watchdog* watchdog = nullptr;    ///< a process on Linux has none of its own
+    /// Memory that outlives a reset and that no start-up code clears. Without it every start is the first:
+    /// no fault is told after a reset, and there is no safe mode.
+    KeptMemory* kept = nullptr;
 };
 
 }  // namespace octoskin::node

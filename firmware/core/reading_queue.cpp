@@ -59,6 +59,7 @@ void ReadingQueue::pop() noexcept {
         note_aux(queue_[i]);
         ++sent_[queue_[i].sensor];
     }
+    total_sent_ += count;
     remove_first(count);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -46,6 +47,8 @@ class ReadingQueue {
     [[nodiscard]] const std::optional<wire::RangeAux>& aux() const noexcept { return aux_; }
     void pop_aux() noexcept { aux_.reset(); }
 
+    [[nodiscard]] std::size_t waiting() const noexcept { return waiting_; }
+    [[nodiscard]] std::uint32_t total_sent() const noexcept { return total_sent_; }
     [[nodiscard]] std::uint16_t sent(std::uint8_t sensor) const noexcept { return sent_[sensor]; }
     [[nodiscard]] const QueueLosses& losses() const noexcept { return losses_; }
 
@@ -68,6 +71,7 @@ class ReadingQueue {
     std::uint8_t waiting_ = 0;
     std::array<Waiting, kNodeSensorsMax> queue_{};  ///< oldest first
     std::array<std::uint16_t, kNodeSensorsMax> sent_{};
+    std::uint32_t total_sent_ = 0;
     std::optional<wire::RangeAux> aux_;
     QueueLosses losses_;
 };

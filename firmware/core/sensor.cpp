@@ -18,6 +18,7 @@ SensorState state_after(SensorFault fault, bool has_ever_answered) noexcept {
         case SensorFault::no_answer:
         case SensorFault::bus_error:
         case SensorFault::address_conflict:
+        case SensorFault::xshut_stuck:
             return has_ever_answered ? SensorState::lost : SensorState::absent;
         case SensorFault::none:
         case SensorFault::wrong_id:

@@ -15,7 +15,7 @@ namespace octoskin::rig {
 namespace {
 
 constexpr double kI2cLoadMax = 0.7;
-constexpr std::size_t kNodesMax = 62;
+constexpr std::size_t kNodesMax = 61;
 
 /// Remembers who took a thing first.
 class Taken {
@@ -34,7 +34,7 @@ class Taken {
 
 NodeConfig read_node_settings(const Table& table, const NodeContext& context, const Board& board) {
     NodeConfig config;
-    config.node_id = table.integer<std::uint8_t>("node_id", {1, 62});
+    config.node_id = table.integer<std::uint8_t>("node_id", {1, kUnconfiguredNodeId - 1});
     config.board_type = board.board_type;
     config.uses_can_fd = context.bus.uses_can_fd;
     config.nominal_bitrate = context.bus.nominal_bitrate;

@@ -120,7 +120,7 @@ std::vector<std::string> read_joint_names(const Table& table, const UrdfDocument
 JointSource read_joints(const Value& value, const UrdfDocument& robot, const Rig& rig) {
     const Table table(value, "joints", {"node_id", "names", "rate_hz"});
     JointSource joints;
-    joints.node_id = table.integer<std::uint8_t>("node_id", {1, 62});
+    joints.node_id = table.integer<std::uint8_t>("node_id", {1, kUnconfiguredNodeId - 1});
     for (const Node& node : rig.nodes) {
         if (node.config.node_id != joints.node_id) continue;
         table.fail("node_id", fmt::format("expected an id of its own, found {}: node '{}' has it",

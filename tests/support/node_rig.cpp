@@ -11,9 +11,9 @@ namespace {
 constexpr std::uint32_t kDistances = 1'000;
 constexpr std::uint16_t kFirstDistanceMm = 200;
 
-constexpr node::Identity kIdentity{.uid = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12},
-                                   .build_id = 0x1234ABCD,
-                                   .reset_cause = wire::ResetCause::pin};
+node::Identity identity(wire::ResetCause cause) {
+    return {.uid = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, .build_id = 0x1234ABCD, .reset_cause = cause};
+}
 
 }  // namespace
 
@@ -44,7 +44,10 @@ NodeRig::FittedSensor::FittedSensor(const SensorSetup& setup)
 
 NodeRig::NodeRig(const NodeConfig& config, const std::vector<SensorSetup>& setups, sim::NodeClock clock,
                  const node::Policy& policy)
-    : config_(config), clock_(clock), can_({.nominal = config.nominal_bitrate, .data = config.data_bitrate}) {
+    : config_(config),
+      policy_(policy),
+      clock_(clock),
+      can_({.nominal = config.nominal_bitrate, .data = config.data_bitrate}) {
     for (std::size_t bus = 0; bus < kNodeBusesMax; ++bus) {
         buses_.emplace_back(present_, config.i2c_hz);
         bus_pointers_.push_back(&buses_.back());
@@ -55,11 +58,39 @@ NodeRig::NodeRig(const NodeConfig& config, const std::vector<SensorSetup>& setup
     }
     can_.tap([this](const wire::CanFrame& frame, sim::SimTime end) { record(frame, end); });
     controller_ = &can_.attach([this](const wire::CanFrame& frame, sim::SimTime end) {
-        node_->on_frame(frame, clock_.to_node(end));
+        if (node_) node_->on_frame(frame, clock_.to_node(end));
     });
     host_ = &can_.attach({}, 64);
-    const node::Ports ports{.buses = bus_pointers_, .xshut = *this, .can = *this, .indicator = this};
-    node_ = std::make_unique<node::Node>(config_, kIdentity, ports, node_now(), policy);
+    start_node(wire::ResetCause::pin);
+}
+
+void NodeRig::start_node(wire::ResetCause cause) {
+    const node::Ports ports{.buses = bus_pointers_,
+                            .xshut = *this,
+                            .can = *this,
+                            .indicator = this,
+                            .watchdog = this,
+                            .kept = &kept_};
+    node_ = std::make_unique<node::Node>(config_, identity(cause), ports, node_now(), policy_);
+}
+
+void NodeRig::reset(const Reset& reset) {
+    can_.advance(present_.time);
+    controller_->discard();
+    for (sim::SimulatedI2cBus& bus : buses_) bus.abandon();
+    node_.reset();
+    if (!reset.is_xshut_kept) {
+        for (std::uint8_t i = 0; i < config_.sensor_count; ++i) set(config_.sensors[i].xshut_line, false);
+    }
+    const sim::SimTime end{present_.time.us + reset.takes.count()};
+    can_.advance(end);
+    present_.time = end;
+    start_node(reset.cause);
+}
+
+void NodeRig::hang_for(Microseconds duration) {
+    present_.time.us += duration.count();
+    can_.advance(present_.time);
 }
 
 void NodeRig::set(std::uint8_t line, bool is_high) {

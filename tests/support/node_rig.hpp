@@ -54,7 +54,17 @@ struct XshutEvent {
     sim::SimTime time{};
 };
 
-class NodeRig final : private node::XshutLines, private node::Indicator, private node::CanTransmitter {
+/// A reset of the node's controller: what the reset register will say, and what its pins do meanwhile.
+struct Reset {
+    wire::ResetCause cause = wire::ResetCause::watchdog;
+    bool is_xshut_kept = false;  ///< the lines keep their levels, as those of a latch do
+    Microseconds takes{1'000};
+};
+
+class NodeRig final : private node::XshutLines,
+                      private node::Indicator,
+                      private node::CanTransmitter,
+                      private node::Watchdog {
   public:
     /// `setups`: one for each sensor of the configuration.
     NodeRig(const NodeConfig& config, const std::vector<SensorSetup>& setups, sim::NodeClock clock = {},
@@ -69,6 +79,14 @@ class NodeRig final : private node::XshutLines, private node::Indicator, private
     void send_from_host(const wire::CanFrame& frame);
     /// While blocked, the node's controller takes no frame, as if every mailbox were full.
     void block_transmission(bool is_blocked) { is_transmission_blocked_ = is_blocked; }
+    /// The controller starts anew, in the middle of whatever it does. Its memory is lost except `kept()`.
+    void reset(const Reset& reset);
+    /// Nothing happens on the node: its loop hangs.
+    void hang_for(Microseconds duration);
+    [[nodiscard]] node::KeptMemory& kept() { return kept_; }
+    /// When the watchdog was fed.
+    [[nodiscard]] const std::vector<sim::SimTime>& feeds() const noexcept { return feeds_; }
+
     /// A sensor more, whose XSHUT nobody drives: it answers at 0x29 from the start.
     void attach_stray_sensor(std::size_t bus, const sim::SensorFaults& faults = {});
 
@@ -120,11 +138,18 @@ class NodeRig final : private node::XshutLines, private node::Indicator, private
     void set(std::uint8_t line, bool is_high) override;
     void set(bool is_on) override { lit_.push_back(is_on); }
     bool send(const wire::CanFrame& frame) override;
+    [[nodiscard]] node::CanState state() const override { return controller_->state(); }
+    std::uint32_t discard() override { return controller_->discard(); }
+    void restart() override { controller_->restart(); }
+    void feed() override { feeds_.push_back(present_.time); }
+    void start_node(wire::ResetCause cause);
     void turn();
     [[nodiscard]] sim::SimTime next_event() const;
     void record(const wire::CanFrame& frame, sim::SimTime end);
 
     NodeConfig config_;
+    node::Policy policy_;
+    node::KeptMemory kept_{};
     sim::NodeClock clock_;
     sim::Present present_;
     std::vector<std::unique_ptr<FittedSensor>> sensors_;
@@ -138,6 +163,7 @@ class NodeRig final : private node::XshutLines, private node::Indicator, private
     std::vector<SaidMessage> said_;
     std::vector<XshutEvent> xshut_events_;
     std::vector<bool> lit_;
+    std::vector<sim::SimTime> feeds_;
     bool is_transmission_blocked_ = false;
     std::unique_ptr<FittedSensor> stray_;
     std::uint32_t undecodable_count_ = 0;

@@ -14,6 +14,8 @@ enum class CanFaultKind : std::uint8_t {
     duplicate,  ///< everybody hears it twice
     corrupt,    ///< one bit arrives flipped, past CAN's own checksum
     delay,      ///< everybody hears it later
+    disturb,    ///< its sender sees an error, so nobody hears it: it is sent again, unless that was one too
+                ///< many
 };
 
 struct CanFault {

@@ -8,6 +8,11 @@ namespace octoskin::sim {
 
 namespace {
 
+constexpr std::uint32_t kErrorsPerFrame = 8;
+constexpr std::uint32_t kErrorsUntilPassive = 128;
+constexpr std::uint32_t kErrorsUntilBusOff = 256;
+constexpr std::int64_t kRecoveryBits = 128 * 11;
+
 void flip_bit(wire::CanFrame& frame, std::uint16_t bit) {
     if (frame.payload_len == 0) return;
     const std::size_t index = bit % (8U * frame.payload_len);
@@ -44,9 +49,50 @@ void SimulatedCanBus::add_fault(const CanFault& fault) {
 }
 
 bool SimulatedCanBus::Controller::send(const wire::CanFrame& frame) {
-    if (pending.size() >= mailbox_count_) return false;
+    if (pending.size() >= mailbox_count_ || !is_on_bus(bus_.now_)) return false;
     pending.push_back({.frame = frame, .given = bus_.now_});
     return true;
+}
+
+bool SimulatedCanBus::Controller::is_on_bus(SimTime time) const {
+    return !is_off_ || (back_at_ && *back_at_ <= time);
+}
+
+node::CanState SimulatedCanBus::Controller::state() const {
+    if (is_off_) return is_on_bus(bus_.now_) ? node::CanState::active : node::CanState::bus_off;
+    return transmit_errors_ >= kErrorsUntilPassive ? node::CanState::passive : node::CanState::active;
+}
+
+std::uint32_t SimulatedCanBus::Controller::discard() {
+    const auto count = static_cast<std::uint32_t>(pending.size());
+    pending.clear();
+    return count;
+}
+
+void SimulatedCanBus::Controller::restart() {
+    if (!is_off_ || back_at_) return;
+    const std::int64_t way_back_us =
+        (kRecoveryBits * 1'000'000 + bus_.rates_.nominal - 1) / bus_.rates_.nominal;
+    back_at_ = later(bus_.now_, way_back_us);
+}
+
+void SimulatedCanBus::Controller::on_sent() {
+    settle();
+    if (transmit_errors_ > 0) --transmit_errors_;
+}
+
+void SimulatedCanBus::Controller::settle() {
+    if (!is_off_ || !is_on_bus(bus_.now_)) return;
+    is_off_ = false;
+    transmit_errors_ = 0;
+    back_at_.reset();
+}
+
+void SimulatedCanBus::Controller::on_error(const Pending& disturbed) {
+    settle();
+    transmit_errors_ += kErrorsPerFrame;
+    is_off_ = transmit_errors_ >= kErrorsUntilBusOff;
+    pending.insert(pending.begin(), disturbed);
 }
 
 void SimulatedCanBus::advance(SimTime now) {
@@ -70,16 +116,34 @@ void SimulatedCanBus::end_transmission() {
     const Transmission ended = *std::exchange(under_way_, std::nullopt);
     now_ = ended.end;
     idle_since_ = ended.end;
+    if (take_disturbance(ended.frame)) {
+        ended.sender->on_error({.frame = ended.frame, .given = ended.end});
+        return;
+    }
+    ended.sender->on_sent();
     schedule_heard(ended);
+}
+
+bool SimulatedCanBus::take_disturbance(const wire::CanFrame& frame) {
+    bool is_disturbed = false;
+    for (ActiveFault& active : faults_) {
+        if (active.fault.kind != CanFaultKind::disturb) continue;
+        if (active.fault.can_id && *active.fault.can_id != frame.can_id) continue;
+        is_disturbed = active.fault.hits(active.matches++) || is_disturbed;
+    }
+    return is_disturbed;
 }
 
 void SimulatedCanBus::schedule_heard(const Transmission& ended) {
     Transmission heard = ended;
     int times = 1;
     for (ActiveFault& active : faults_) {
+        if (active.fault.kind == CanFaultKind::disturb) continue;
         if (active.fault.can_id && *active.fault.can_id != ended.frame.can_id) continue;
         if (!active.fault.hits(active.matches++)) continue;
         switch (active.fault.kind) {
+            case CanFaultKind::disturb:
+                break;
             case CanFaultKind::drop:
                 times = 0;
                 break;
@@ -108,6 +172,7 @@ void SimulatedCanBus::deliver_due(SimTime time) {
 void SimulatedCanBus::deliver(const Transmission& heard) {
     for (const FrameHandler& tap : taps_) tap(heard.frame, heard.end);
     for (const Controller& controller : controllers_) {
+        if (!controller.is_on_bus(now_)) continue;
         if (&controller != heard.sender && controller.on_frame) controller.on_frame(heard.frame, heard.end);
     }
 }
@@ -121,6 +186,7 @@ bool SimulatedCanBus::start_transmission(SimTime now) {
     Controller* winner = nullptr;
     std::vector<Pending>::iterator winning;
     for (Controller& controller : controllers_) {
+        if (!controller.is_on_bus(start)) continue;
         for (auto it = controller.pending.begin(); it != controller.pending.end(); ++it) {
             if (it->given > start) continue;
             if (winner != nullptr && winning->frame.can_id <= it->frame.can_id) continue;
@@ -138,6 +204,7 @@ bool SimulatedCanBus::start_transmission(SimTime now) {
 std::optional<SimTime> SimulatedCanBus::earliest_given() const {
     std::optional<SimTime> earliest;
     for (const Controller& controller : controllers_) {
+        if (!controller.is_on_bus(now_)) continue;
         for (const Pending& pending : controller.pending) {
             if (!earliest || pending.given < *earliest) earliest = pending.given;
         }
@@ -151,6 +218,9 @@ std::optional<SimTime> SimulatedCanBus::next_event() const {
         if (!next || time < *next) next = time;
     };
     if (!heard_.empty()) consider(heard_.begin()->first);
+    for (const Controller& controller : controllers_) {
+        if (controller.back_at() && *controller.back_at() > now_) consider(*controller.back_at());
+    }
     if (under_way_) {
         consider(under_way_->end);
     } else if (const auto given = earliest_given()) {

@@ -18,6 +18,10 @@
 
 namespace octoskin::sim {
 
+/// A controller that is bus-off hears nothing and sends nothing. Only transmit errors are modelled: 8 for
+/// each frame that is disturbed, one less for each that is sent; over 127 the controller is passive, over 255
+/// bus-off (ISO 11898-1, fault confinement).
+///
 /// Called at the end of a frame, the instant that "heard SYNC" and receive stamps mean.
 using FrameHandler = std::function<void(const wire::CanFrame& frame, SimTime end_of_frame)>;
 
@@ -64,17 +68,31 @@ class SimulatedCanBus {
         Controller(const SimulatedCanBus& bus, FrameHandler handler, std::size_t mailbox_count)
             : on_frame(std::move(handler)), bus_(bus), mailbox_count_(mailbox_count) {}
         bool send(const wire::CanFrame& frame) override;
+        [[nodiscard]] node::CanState state() const override;
+        std::uint32_t discard() override;
+        void restart() override;
+
+        void on_sent();
+        void on_error(const Pending& disturbed);
+        /// Bus-off, and on its way back since.
+        [[nodiscard]] std::optional<SimTime> back_at() const { return back_at_; }
+        [[nodiscard]] bool is_on_bus(SimTime time) const;
 
         FrameHandler on_frame;
         std::vector<Pending> pending;  ///< in the order given; the one under way has left
 
       private:
+        void settle();
+
         const SimulatedCanBus& bus_;
         std::size_t mailbox_count_;
+        std::uint32_t transmit_errors_ = 0;
+        bool is_off_ = false;
+        std::optional<SimTime> back_at_;
     };
     struct Transmission {
         wire::CanFrame frame;
-        const Controller* sender = nullptr;
+        Controller* sender = nullptr;
         SimTime end;
     };
     struct ActiveFault {
@@ -83,6 +101,7 @@ class SimulatedCanBus {
     };
 
     void end_transmission();
+    [[nodiscard]] bool take_disturbance(const wire::CanFrame& frame);
     [[nodiscard]] bool start_transmission(SimTime now);
     void deliver_due(SimTime now);
     void deliver(const Transmission& heard);

@@ -22,8 +22,8 @@ SensorPart draw_part(std::mt19937_64& random) {
     return part;
 }
 
-node::Identity identity_of(std::mt19937_64& random) {
-    node::Identity identity{.build_id = kSimulatedBuildId};
+node::Identity identity_of(std::uint8_t board_type, std::mt19937_64& random) {
+    node::Identity identity{.build_id = kSimulatedBuildId, .board_type = board_type};
     for (std::uint8_t& byte : identity.uid) byte = static_cast<std::uint8_t>(random() & 0xFFU);
     return identity;
 }
@@ -45,7 +45,8 @@ SimulatedBoard::SimulatedBoard(const NodeConfig& config, NodeClock clock, std::u
     node::CanTransmitter& transmitter = can.attach(
         [this](const wire::CanFrame& frame, SimTime end) { node_->on_frame(frame, clock_.to_node(end)); });
     const node::Ports ports{.buses = bus_pointers_, .xshut = *this, .can = transmitter};
-    node_ = std::make_unique<node::Node>(config_, identity_of(random), ports, clock_.to_node(present.time));
+    node_ = std::make_unique<node::Node>(config_, identity_of(config.board_type, random), ports,
+                                         clock_.to_node(present.time));
 }
 
 void SimulatedBoard::poll() {

@@ -57,6 +57,14 @@ bool SimulatedI2cBus::recover() {
     return !is_sda_low(present_.time);
 }
 
+void SimulatedI2cBus::abandon() {
+    if (!transfer_) return;
+    const auto end = transfer_end();
+    const bool is_mid_byte = end && present_.time < *end && !transfer_->read.empty();
+    end_transfer(present_.time);
+    if (is_mid_byte) stuck_clocks_ = kFreeingClocks;
+}
+
 void SimulatedI2cBus::end_transfer(SimTime ended) {
     busy_time_ += Microseconds{ended.us - started_.us};
     bit_count_ += bits_;

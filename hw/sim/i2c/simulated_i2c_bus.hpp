@@ -52,6 +52,10 @@ class SimulatedI2cBus final : public i2c::Bus {
     /// Drops the transfer in flight.
     bool recover() override;
 
+    /// The controller was reset: it forgets its transfer, and a target that was about to answer stays in the
+    /// middle of its byte, holding SDA.
+    void abandon();
+
     /// When the transfer in flight ends; empty if none is, or if it never ends by itself.
     [[nodiscard]] std::optional<SimTime> transfer_end() const;
     [[nodiscard]] std::uint64_t transfer_count() const noexcept { return transfer_count_; }

@@ -35,6 +35,10 @@ template <class T>
 FieldCase field(const char* name, unsigned start, unsigned bits, void (*set)(T&, std::uint64_t)) {
     return {name, start, bits, [set](Message& m, std::uint64_t raw) { set(as<T>(m), raw); }};
 }
+FieldCase valid_if(bool (*is_valid)(std::uint64_t), FieldCase field) {
+    field.is_valid = is_valid;
+    return field;
+}
 FieldCase valid_below(std::uint64_t limit, FieldCase field) {
     field.is_valid = [limit](std::uint64_t raw) { return raw < limit; };
     return field;
@@ -181,7 +185,7 @@ MessageCase heartbeat_case() {
             false,
             8,
             2,
-            {valid_below(7, plain("state", 3, 3, &Heartbeat::state)), reset_cause,
+            {valid_below(8, plain("state", 3, 3, &Heartbeat::state)), reset_cause,
              plain("is_rate_overridden", 9, 1, &Heartbeat::is_rate_overridden),
              plain("is_time_suspect", 10, 1, &Heartbeat::is_time_suspect),
              plain("degraded_sensors", 11, 5, &Heartbeat::degraded_sensors),
@@ -217,9 +221,11 @@ void add_info_cases(std::vector<MessageCase>& cases) {
                                plain("bus_off_count", 40, 8, &InfoTraffic::bus_off_count),
                                plain("rx_rejected", 48, 8, &InfoTraffic::rx_rejected)}));
     cases.push_back(info_case(
-        "NODE_INFO fault", InfoFault{5, 6, 0x0800'1234},
-        {plain("fault_kind", 8, 8, &InfoFault::kind), plain("fault_count", 16, 8, &InfoFault::count),
-         plain("fault_where", 24, 32, &InfoFault::where)}));
+        "NODE_INFO fault", InfoFault{FaultKind::hard_fault, 6, 0x0800'1234, 77},
+        {valid_if([](std::uint64_t raw) { return raw < 9 || raw == 15; },
+                  plain("fault_kind", 8, 4, &InfoFault::kind)),
+         plain("fault_count", 12, 4, &InfoFault::count), plain("fault_where", 16, 32, &InfoFault::where),
+         plain("fault_uptime", 48, 8, &InfoFault::uptime_s)}));
 }
 
 MessageCase health_case() {
@@ -239,7 +245,7 @@ MessageCase health_case() {
             1,
             {valid_below(63, plain("sensor", 3, 6, &SensorHealth::sensor)),
              valid_below(6, plain("state", 9, 3, &SensorHealth::state)),
-             valid_below(11, plain("fault", 12, 4, &SensorHealth::fault)),
+             valid_below(12, plain("fault", 12, 4, &SensorHealth::fault)),
              plain("sent", 16, 16, &SensorHealth::sent),
              plain("capture_bound", 32, 8, &SensorHealth::capture_bound_64us),
              plain("rejected", 40, 8, &SensorHealth::rejected),

@@ -110,9 +110,10 @@ json expected(const InfoTraffic& m) {
 }
 json expected(const InfoFault& m) {
     return {{"page", choice(InfoPage::fault)},
-            {"fault_kind", m.kind},
+            {"fault_kind", choice(m.kind)},
             {"fault_count", m.count},
-            {"fault_where", m.where}};
+            {"fault_where", m.where},
+            {"fault_uptime", m.uptime_s}};
 }
 json expected(const SensorHealth& m) {
     return {{"sensor", m.sensor},

@@ -38,7 +38,7 @@ constexpr std::array<Golden, 22> kGolden = {{
     {"NODE_INFO build", "2C7#190DF0FECA31D42F"},
     {"NODE_INFO counters", "2C7#212D012E012F01F2"},
     {"NODE_INFO traffic", "2C7#29910192012B2CB6"},
-    {"NODE_INFO fault", "2C7#31050634120008E1"},
+    {"NODE_INFO fault", "2C7#3162341200084DC8"},
     {"SYNC", "040#A99BCC"},
     {"FOLLOW_UP", "080#A9CB04FB711F01E0"},
     {"SYNC_REPORT", "1C3#A998BADCFE24DB"},

@@ -105,7 +105,8 @@ TEST(Names, are_those_of_the_protocol) {
                              {3, "safe"},
                              {4, "bad_config"},
                              {5, "id_conflict"},
-                             {6, "bus_fault"}});
+                             {6, "bus_fault"},
+                             {7, "can_fault"}});
     expect_names<ResetCause>({{0, "power_on"},
                               {1, "brown_out"},
                               {2, "watchdog"},
@@ -113,6 +114,16 @@ TEST(Names, are_those_of_the_protocol) {
                               {4, "pin"},
                               {5, "fault"},
                               {7, "unknown"}});
+    expect_names<FaultKind>({{0, "none"},
+                             {1, "assertion"},
+                             {2, "hard_fault"},
+                             {3, "stack_guard"},
+                             {4, "watchdog"},
+                             {5, "brown_out"},
+                             {6, "clock_fault"},
+                             {7, "xshut_stuck"},
+                             {8, "stray_sensor"},
+                             {15, "unknown"}});
     expect_names<InfoPage>({{0, "uid_low"},
                             {1, "uid_high"},
                             {2, "identity"},
@@ -132,7 +143,8 @@ TEST(Names, are_those_of_the_protocol) {
                                {7, "reads_disagree"},
                                {8, "implausible_block"},
                                {9, "bus_error"},
-                               {10, "address_conflict"}});
+                               {10, "address_conflict"},
+                               {11, "xshut_stuck"}});
     expect_names<MarkKind>({{0, "stop"}, {1, "start"}});
     expect_names<CommandCode>({{1, "start"},
                                {2, "stop"},

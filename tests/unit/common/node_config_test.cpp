@@ -54,7 +54,7 @@ SensorConfig sensor_config(std::uint8_t i) {
     return sensor;
 }
 NodeConfig node_config(std::uint8_t sensors) {
-    NodeConfig config{.node_id = 0x3E,
+    NodeConfig config{.node_id = 0x3D,
                       .board_type = 0x77,
                       .uses_can_fd = false,
                       .nominal_bitrate = 0x0007A120,
@@ -76,7 +76,7 @@ TEST(NodeConfig, canonical_form_is_these_bytes) {
     // Header, node, one sensor with two zones, and room for the CRC-32 (its own oracle is in crc_test.cpp).
     const Block expected = {
         'O',  'S',  'K',  'C',  1,    0,    61,   0,     // magic, version, length
-        0x3E, 0x77, 0,                                   // node id, board type, CAN FD
+        0x3D, 0x77, 0,                                   // node id, board type, CAN FD
         0x20, 0xA1, 0x07, 0,    0x80, 0x84, 0x1E, 0,     // bit rates
         0xE0, 0x93, 0x04, 0,    0,    0,    1,    9,     // I2C, 2.8 V, double read, gate, aux
         0xB8, 0x0B, 1,                                   // zone guard, sensors
@@ -215,7 +215,7 @@ std::vector<FieldRange> field_ranges() {
     const auto u16 = [](int value) { return static_cast<std::uint16_t>(value); };
     const auto u32 = [](int value) { return static_cast<std::uint32_t>(value); };
     return {
-        {"node_id", [=](N& c, int v) { c.node_id = u8(v); }, {1, 62}, {0, 63, 255}},
+        {"node_id", [=](N& c, int v) { c.node_id = u8(v); }, {1, 61}, {0, 62, 63, 255}},
         {"board_type", [=](N& c, int v) { c.board_type = u8(v); }, {0, 255}, {}},
         {"nominal_bitrate",
          [=](N& c, int v) { c.nominal_bitrate = u32(v); },

@@ -1,0 +1,138 @@
+#include "firmware/core/run_record.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "common/wire/crc.hpp"
+#include "common/wire/names.hpp"
+
+namespace octoskin::node {
+
+namespace {
+
+using wire::FaultKind;
+using wire::ResetCause;
+
+constexpr std::uint32_t kLayout = 0x4F53'4B01;  // memory of another layout is no record
+
+// Index of each word.
+enum : std::size_t {
+    layout,
+    flags,
+    resets,
+    where,
+    fault_uptime,
+    uptime,
+    ended_last,
+    ended_before,
+    crc,
+    count
+};
+static_assert(count == decltype(KeptMemory::words){}.size());
+
+std::uint32_t crc_of(const KeptMemory& memory) noexcept {
+    std::array<std::uint8_t, 4 * crc> bytes{};
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        bytes[i] = static_cast<std::uint8_t>(memory.words[i / 4] >> (8 * (i % 4)));
+    }
+    return crc32(bytes);
+}
+
+bool is_ordered(ResetCause cause) noexcept {
+    switch (cause) {
+        case ResetCause::power_on:
+        case ResetCause::software:
+        case ResetCause::pin:
+            return true;
+        case ResetCause::brown_out:
+        case ResetCause::watchdog:
+        case ResetCause::fault:
+        case ResetCause::unknown:
+            return false;
+    }
+    return false;
+}
+
+FaultKind unwritten_fault(ResetCause cause) noexcept {
+    if (cause == ResetCause::watchdog) return FaultKind::watchdog;
+    return cause == ResetCause::brown_out ? FaultKind::brown_out : FaultKind::unknown;
+}
+
+RunMode mode_after_fault(const RunRecord& record, const RunRules& rules) noexcept {
+    if (record.mode != RunMode::normal) return RunMode::safe;
+    const std::uint64_t together = std::uint64_t{record.ended_uptime_ms[0]} + record.ended_uptime_ms[1];
+    const bool is_often = record.resets >= rules.resets_until_safe;
+    return is_often && together <= rules.resets_within_ms ? RunMode::safe : RunMode::normal;
+}
+
+}  // namespace
+
+RunRecord load(const KeptMemory& memory) noexcept {
+    const auto& words = memory.words;
+    if (words[layout] != kLayout || words[crc] != crc_of(memory)) return {};
+    const auto byte = [flag_word = words[flags]](unsigned which) {
+        return static_cast<std::uint8_t>(flag_word >> (8 * which));
+    };
+    const auto fault = static_cast<FaultKind>(byte(0));
+    return {.fault = wire::is_known(fault) ? fault : FaultKind::unknown,
+            .is_fault_new = byte(1) != 0,
+            .mode = static_cast<RunMode>(std::min<std::uint8_t>(byte(2), 2)),
+            .retries = byte(3),
+            .resets = words[resets],
+            .where = words[where],
+            .fault_uptime_ms = words[fault_uptime],
+            .uptime_ms = words[uptime],
+            .ended_uptime_ms = {words[ended_last], words[ended_before]}};
+}
+
+void save(const RunRecord& record, KeptMemory& memory) noexcept {
+    auto& words = memory.words;
+    words[layout] = kLayout;
+    words[flags] = static_cast<std::uint32_t>(record.fault) | (record.is_fault_new ? 0x100U : 0U) |
+                   static_cast<std::uint32_t>(record.mode) << 16U | std::uint32_t{record.retries} << 24U;
+    words[resets] = record.resets;
+    words[where] = record.where;
+    words[fault_uptime] = record.fault_uptime_ms;
+    words[uptime] = record.uptime_ms;
+    words[ended_last] = record.ended_uptime_ms[0];
+    words[ended_before] = record.ended_uptime_ms[1];
+    words[crc] = crc_of(memory);
+}
+
+void note_fault(KeptMemory& memory, FaultKind fault, std::uint32_t where) noexcept {
+    RunRecord record = load(memory);
+    if (record.is_fault_new) return;
+    record.fault = fault;
+    record.where = where;
+    record.fault_uptime_ms = record.uptime_ms;
+    record.is_fault_new = true;
+    save(record, memory);
+}
+
+RunStart begin_run(const RunRecord& last, ResetCause hardware, const RunRules& rules) noexcept {
+    // After power-on memory may still hold what it held: it is of no run any more.
+    if (hardware == ResetCause::power_on) return {.record = {}, .cause = hardware};
+
+    RunStart start{.record = last, .cause = last.is_fault_new ? ResetCause::fault : hardware};
+    RunRecord& record = start.record;
+    record.is_fault_new = false;
+    record.uptime_ms = 0;
+    if (is_ordered(start.cause)) {
+        record.mode = RunMode::normal;
+        record.retries = 0;
+        record.resets = 0;
+        return start;
+    }
+    if (!last.is_fault_new) {
+        record.fault = unwritten_fault(start.cause);
+        record.where = 0;
+        record.fault_uptime_ms = last.uptime_ms;
+    }
+    ++record.resets;
+    record.ended_uptime_ms = {last.uptime_ms, last.ended_uptime_ms[0]};
+    if (last.mode == RunMode::retry && record.retries < 255) ++record.retries;
+    record.mode = mode_after_fault(record, rules);
+    return start;
+}
+
+}  // namespace octoskin::node
