@@ -67,6 +67,9 @@ class Node {
     /// Readings handed to the controller.
     [[nodiscard]] std::uint32_t readings_sent() const noexcept { return queue_.total_sent(); }
 
+    /// Times that the CAN controller went bus-off.
+    [[nodiscard]] std::uint32_t bus_off_count() const noexcept { return bus_off_.count(); }
+
     /// The host asked for a reset: the application performs it.
     [[nodiscard]] bool is_reset_requested() const noexcept { return is_reset_requested_; }
 

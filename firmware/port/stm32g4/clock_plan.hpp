@@ -58,6 +58,9 @@ static_assert(kCrystalPlan.is_allowed() && kInternalPlan.is_allowed());
 static_assert(kCrystalPlan.core_hz() == 160'000'000 && kCrystalPlan.can_hz() == 80'000'000);
 static_assert(kInternalPlan.core_hz() == 160'000'000);
 
+/// The CAN controller's clock, if there is one that it may use.
+inline constexpr std::uint32_t kCanHz = kCrystalPlan.can_hz();
+
 /// Wait states of the flash in range 1 boost mode: one for each 34 MHz begun after the first (RM0440).
 [[nodiscard]] constexpr std::uint32_t flash_wait_states(std::uint32_t core_hz) {
     return (core_hz - 1) / 34'000'000;

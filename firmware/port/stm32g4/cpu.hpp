@@ -13,8 +13,9 @@ namespace octoskin::stm32g4::cpu {
 inline void mask_interrupts() {
     __asm volatile("cpsid i" ::: "memory");
 }
+/// What is pending is handled before the next instruction.
 inline void unmask_interrupts() {
-    __asm volatile("cpsie i" ::: "memory");
+    __asm volatile("cpsie i\n\tisb" ::: "memory");
 }
 /// Sleeps until an interrupt is pending, masked or not.
 inline void wait_for_interrupt() {

@@ -19,6 +19,7 @@ namespace octoskin::stm32g4 {
 namespace {
 
 [[gnu::section(".noinit")]] FaultRecord the_record;
+[[gnu::section(".noinit")]] node::KeptMemory the_kept_memory;
 
 /// What the core pushes when an exception begins (ARMv7-M).
 struct StackedFrame {
@@ -47,12 +48,17 @@ FaultRecord& fault_record() {
     return the_record;
 }
 
+node::KeptMemory& kept_memory() {
+    return the_kept_memory;
+}
+
 void record_and_reset(const Fault& fault) {
     cpu::mask_interrupts();
     silence_can();
     Fault timed = fault;
     timed.uptime = uptime();
     the_record.write(timed);
+    node::note_fault(the_kept_memory, fault.kind, fault.where);
     cpu::reset();
 }
 
@@ -61,11 +67,12 @@ void record_and_reset(const Fault& fault) {
 namespace {
 
 using octoskin::stm32g4::Fault;
-using octoskin::stm32g4::FaultKind;
+using octoskin::wire::FaultKind;
 
-[[noreturn]] void stop(FaultKind kind, const void* where) {
+[[noreturn]] void stop(const void* where) {
     octoskin::stm32g4::record_and_reset(
-        {.kind = kind, .where = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(where))});
+        {.kind = FaultKind::assertion,
+         .where = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(where))});
 }
 
 }  // namespace
@@ -76,7 +83,7 @@ extern "C" {
     using namespace octoskin::stm32g4;
     using F = Field<ScbMap>;
     const StackedFrame* frame = frame_at(stack);
-    Fault fault{.kind = frame != nullptr ? FaultKind::hard_fault : FaultKind::stack_overflow,
+    Fault fault{.kind = frame != nullptr ? FaultKind::hard_fault : FaultKind::stack_guard,
                 .where = frame != nullptr ? frame->pc : 0,
                 .called_from = frame != nullptr ? frame->lr : exception_return,
                 .status = scb.read("CFSR_UFSR_BFSR_MMFSR")};
@@ -87,7 +94,7 @@ extern "C" {
 
 [[noreturn, gnu::used]] void record_unexpected_interrupt() {
     using namespace octoskin::stm32g4;
-    record_and_reset({.kind = FaultKind::unexpected_interrupt, .where = scb.get("ICSR.VECTACTIVE")});
+    record_and_reset({.kind = FaultKind::unknown, .where = scb.get("ICSR.VECTACTIVE")});
 }
 
 /// The only enabled source of the NMI is the clock security system: the crystal failed.
@@ -96,7 +103,7 @@ extern "C" {
     silence_can();
     const StackedFrame* frame = frame_at(stack);
     const bool is_clock = rcc.is_set("CIFR.CSSF");
-    record_and_reset({.kind = is_clock ? FaultKind::clock_lost : FaultKind::unexpected_interrupt,
+    record_and_reset({.kind = is_clock ? FaultKind::clock_fault : FaultKind::unknown,
                       .where = frame != nullptr ? frame->pc : 0,
                       .called_from = frame != nullptr ? frame->lr : 0});
 }
@@ -131,12 +138,12 @@ extern "C" {
 
 // What the C and C++ libraries call when a program must not go on.
 [[noreturn]] void __assert_func(const char*, int, const char*, const char*) {
-    stop(FaultKind::assertion, __builtin_return_address(0));
+    stop(__builtin_return_address(0));
 }
 [[noreturn]] void abort() {
-    stop(FaultKind::assertion, __builtin_return_address(0));
+    stop(__builtin_return_address(0));
 }
 [[noreturn]] void __cxa_pure_virtual() {
-    stop(FaultKind::pure_virtual_call, __builtin_return_address(0));
+    stop(__builtin_return_address(0));
 }
 }

@@ -1,12 +1,14 @@
 // Where everything ends that must not happen: CAN falls silent, the cause is recorded, the chip is reset.
 #pragma once
 
+#include "firmware/core/run_record.hpp"
 #include "firmware/port/stm32g4/fault_record.hpp"
 
 namespace octoskin::stm32g4 {
 
-/// The record of the last fault, in memory that resets leave alone.
+/// In memory that resets leave alone: the details of the last fault, and the core's record of its runs.
 [[nodiscard]] FaultRecord& fault_record();
+[[nodiscard]] node::KeptMemory& kept_memory();
 
 [[noreturn]] void record_and_reset(const Fault& fault);
 

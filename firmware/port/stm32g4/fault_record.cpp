@@ -4,6 +4,7 @@
 #include <span>
 
 #include "common/wire/crc.hpp"
+#include "common/wire/names.hpp"
 
 namespace octoskin::stm32g4 {
 
@@ -11,8 +12,7 @@ namespace octoskin::stm32g4 {
 std::uint32_t FaultRecord::checksum() const noexcept {
     constexpr std::uint32_t kMark = 0x0C70'5C1A;
     std::uint32_t crc = kMark;
-    for (const std::uint32_t word :
-         {kind_, where_, called_from_, status_, address_, uptime_us_, count_, is_new_}) {
+    for (const std::uint32_t word : {kind_, where_, called_from_, status_, address_, uptime_us_}) {
         const std::array<std::uint8_t, 4> bytes = {
             static_cast<std::uint8_t>(word & 0xFFU), static_cast<std::uint8_t>((word >> 8U) & 0xFFU),
             static_cast<std::uint8_t>((word >> 16U) & 0xFFU), static_cast<std::uint8_t>(word >> 24U)};
@@ -21,43 +21,25 @@ std::uint32_t FaultRecord::checksum() const noexcept {
     return crc;
 }
 
-void FaultRecord::seal() noexcept {
-    crc_ = checksum();
-}
-
-std::optional<FaultRecord::Kept> FaultRecord::read() const noexcept {
-    if (crc_ != checksum() || kind_ > static_cast<std::uint32_t>(FaultKind::pure_virtual_call)) {
-        return std::nullopt;
-    }
-    return Kept{.fault = {.kind = static_cast<FaultKind>(kind_),
-                          .where = where_,
-                          .called_from = called_from_,
-                          .status = status_,
-                          .address = address_,
-                          .uptime = {uptime_us_}},
-                .count = count_,
-                .is_new = is_new_ != 0};
+std::optional<Fault> FaultRecord::read() const noexcept {
+    const auto kind = static_cast<wire::FaultKind>(kind_);
+    if (crc_ != checksum() || !wire::is_known(kind)) return std::nullopt;
+    return Fault{.kind = kind,
+                 .where = where_,
+                 .called_from = called_from_,
+                 .status = status_,
+                 .address = address_,
+                 .uptime = {uptime_us_}};
 }
 
 void FaultRecord::write(const Fault& fault) noexcept {
-    const auto kept = read();
     kind_ = static_cast<std::uint32_t>(fault.kind);
     where_ = fault.where;
     called_from_ = fault.called_from;
     status_ = fault.status;
     address_ = fault.address;
     uptime_us_ = fault.uptime.us;
-    count_ = (kept ? kept->count : 0) + 1;
-    is_new_ = 1;
-    seal();
-}
-
-void FaultRecord::acknowledge() noexcept {
-    if (!read()) {
-        kind_ = where_ = called_from_ = status_ = address_ = uptime_us_ = count_ = 0;
-    }
-    is_new_ = 0;
-    seal();
+    crc_ = checksum();
 }
 
 }  // namespace octoskin::stm32g4

@@ -16,7 +16,7 @@ enum class Flashes : std::uint8_t {
     all_is_well = 1,
     no_crystal = 2,  ///< silent on CAN
     bad_config = 3,  ///< no ranging
-    bus_off = 4,     ///< CAN is out of order
+    can_fault = 4,   ///< CAN is out of order
 };
 
 class StatusLight final : public node::Indicator {

@@ -12,15 +12,15 @@ constexpr std::uint32_t kDivideBy16 = 2;  // IWDG_PR
 static_assert(kWatchdogDivider == 16);
 }  // namespace
 
-void start_watchdog() {
+void IndependentWatchdog::start() {
     iwdg.write("KR", kStart);
     iwdg.write("KR", kUnlock);
     iwdg.write("PR", kDivideBy16);
     iwdg.write("RLR", kWatchdogCounts - 1);
-    refresh_watchdog();
+    feed();
 }
 
-void refresh_watchdog() {
+void IndependentWatchdog::feed() {
     iwdg.write("KR", kRefresh);
 }
 

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "firmware/core/ports.hpp"
+
 namespace octoskin::stm32g4 {
 
 /// The watchdog's own oscillator is about 32 kHz; a quarter off either way is more than the datasheet allows
@@ -19,9 +21,12 @@ inline constexpr std::uint32_t kWatchdogUsMax =
     static_cast<std::uint32_t>(std::uint64_t{kWatchdogCounts} * kWatchdogDivider * 1'000'000 / kLsiHzMin);
 static_assert(kWatchdogUsMin >= 100'000 && kWatchdogUsMax <= 200'000);
 
-/// Cannot be undone. The first period may be the longest possible, half a second, until the registers of the
-/// slow clock took the new one over.
-void start_watchdog();
-void refresh_watchdog();
+class IndependentWatchdog final : public node::Watchdog {
+  public:
+    /// Cannot be undone. The first period may be the longest possible, half a second, until the registers of
+    /// the slow clock took the new one over.
+    void start();
+    void feed() override;
+};
 
 }  // namespace octoskin::stm32g4

@@ -1,0 +1,108 @@
+#include "firmware/app/stm32g4_node/report.hpp"
+
+#include <string_view>
+
+#include "common/wire/names.hpp"
+#include "firmware/port/stm32g4/text_line.hpp"
+
+namespace octoskin::stm32g4 {
+
+namespace {
+
+std::string_view words(ClockSource source) {
+    switch (source) {
+        case ClockSource::crystal:
+            return "160 MHz from the crystal";
+        case ClockSource::internal:
+            return "160 MHz without the crystal: CAN is silent";
+        case ClockSource::unlocked:
+            return "16 MHz, neither crystal nor PLL: CAN is silent";
+    }
+    return "?";
+}
+
+std::string_view words(NodeConfigError error) {
+    switch (error) {
+        case NodeConfigError::truncated:
+            return "truncated";
+        case NodeConfigError::wrong_magic:
+            return "missing";
+        case NodeConfigError::wrong_length:
+            return "of impossible length";
+        case NodeConfigError::wrong_crc:
+            return "damaged";
+        case NodeConfigError::wrong_version:
+            return "of another version";
+        case NodeConfigError::invalid_field:
+            return "whole but impossible";
+    }
+    return "?";
+}
+
+}  // namespace
+
+void Report::started(std::uint32_t build_id, wire::ResetCause cause, const Clocks& clocks) {
+    has_crystal_ = clocks.source == ClockSource::crystal;
+    TextLine line;
+    line.text("octoskin ").hex(build_id, 8).text(": reset ").text(wire::name(cause));
+    serial_.say(line.text(", ").text(words(clocks.source)).view());
+}
+
+void Report::fault(const Fault& fault) {
+    TextLine line;
+    line.text("fault ").text(wire::name(fault.kind)).text(" at ").hex(fault.where, 8);
+    line.text(" from ").hex(fault.called_from, 8).text(", status ").hex(fault.status, 8);
+    line.text(", address ").hex(fault.address, 8);
+    serial_.say(line.text(", after us ").number(fault.uptime.us).view());
+}
+
+void Report::config_accepted(const NodeConfig& config) {
+    TextLine line;
+    line.text("node ").number(config.node_id).text(": ").number(config.sensor_count).text(" sensors, CAN ");
+    line.number(config.nominal_bitrate / 1000);
+    if (config.uses_can_fd) line.text("/").number(config.data_bitrate / 1000);
+    serial_.say(line.text(" kbit/s, hash ").hex(node_hash(config), 8).view());
+}
+
+void Report::config_refused(NodeConfigError error) {
+    TextLine line;
+    line.text("configuration block at 0807F800 is ").text(words(error));
+    serial_.say(line.text(": no ranging, CAN is silent; flash one").view());
+}
+
+void Report::config_unsuitable(const NodeConfig& config) {
+    TextLine line;
+    line.text("configuration block of node ").number(config.node_id).text(", board type ");
+    serial_.say(line.number(config.board_type).text(", is not for this board: no ranging").view());
+}
+
+void Report::update(const node::Node& node, bool is_can_started) {
+    const wire::NodeState state = node.state();
+    if (state_ != state) {
+        TextLine line;
+        serial_.say(line.text("state ").text(wire::name(state)).view());
+    }
+    const std::uint32_t bus_off_count = node.bus_off_count();
+    if (bus_off_count_ != bus_off_count) {
+        TextLine line;
+        serial_.say(line.text("CAN bus-off, ").number(bus_off_count).text(" since start").view());
+    }
+    state_ = state;
+    bus_off_count_ = bus_off_count;
+    show(state, is_can_started);
+}
+
+/// One thing at a time: what must be mended first.
+void Report::show(wire::NodeState state, bool is_can_started) {
+    if (!has_crystal_) {
+        light_.show(Flashes::no_crystal);
+    } else if (state == wire::NodeState::bad_config) {
+        light_.show(Flashes::bad_config);
+    } else if (state == wire::NodeState::can_fault || !is_can_started) {
+        light_.show(Flashes::can_fault);
+    } else {
+        light_.show(Flashes::all_is_well);
+    }
+}
+
+}  // namespace octoskin::stm32g4

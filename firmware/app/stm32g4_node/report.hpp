@@ -1,0 +1,42 @@
+// Tells a person at the board how it is: lines on the serial port, each said once when something happens, and
+// the light's flashes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/config/node_config.hpp"
+#include "common/wire/messages.hpp"
+#include "firmware/core/node.hpp"
+#include "firmware/port/stm32g4/clocks.hpp"
+#include "firmware/port/stm32g4/fault_record.hpp"
+#include "firmware/port/stm32g4/serial_port.hpp"
+#include "firmware/port/stm32g4/status_light.hpp"
+
+namespace octoskin::stm32g4 {
+
+class Report {
+  public:
+    constexpr Report(SerialPort& serial, StatusLight& light) : serial_(serial), light_(light) {}
+
+    void started(std::uint32_t build_id, wire::ResetCause cause, const Clocks& clocks);
+    void fault(const Fault& fault);
+    void config_accepted(const NodeConfig& config);
+    void config_refused(NodeConfigError error);
+    /// Whole, but not for this board, or with rates that it cannot make.
+    void config_unsuitable(const NodeConfig& config);
+
+    /// Says what changed since the last call.
+    void update(const node::Node& node, bool is_can_started);
+
+  private:
+    void show(wire::NodeState state, bool is_can_started);
+
+    SerialPort& serial_;
+    StatusLight& light_;
+    bool has_crystal_ = false;
+    std::optional<wire::NodeState> state_;
+    std::uint32_t bus_off_count_ = 0;
+};
+
+}  // namespace octoskin::stm32g4

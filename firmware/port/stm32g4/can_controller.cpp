@@ -1,0 +1,197 @@
+#include "firmware/port/stm32g4/can_controller.hpp"
+
+#include "firmware/port/stm32g4/can_bit_timing.hpp"
+#include "firmware/port/stm32g4/cpu.hpp"
+#include "firmware/port/stm32g4/pin.hpp"
+#include "firmware/port/stm32g4/registers/clocks_and_power.hpp"
+#include "firmware/port/stm32g4/registers/fdcan.hpp"
+
+namespace octoskin::stm32g4 {
+
+namespace {
+
+using F = Field<FdcanMap>;
+
+constexpr Pin kReceivePin{gpio_a, 11};
+constexpr Pin kTransmitPin{gpio_a, 12};
+constexpr std::uint8_t kFunction = 9;  // datasheet DS12288, alternate functions
+
+constexpr std::uint32_t kReject = 2;  // RXGFC.ANFS, ANFE
+constexpr std::uint32_t kAllPlaces = (1U << kFifoElements) - 1;
+constexpr Microseconds kModeLimit{1'000};  // the controller follows within a few of its clocks
+
+/// More than three new frames would have to come within one interrupt.
+constexpr std::uint32_t kFramesPerInterrupt = 2 * kFifoElements;
+
+CanElement read_element(Address address) {
+    CanElement element{};
+    element[0] = load(address);
+    element[1] = load(address + 4);
+    const std::uint32_t words = words_in_use(decode_element(element).payload_len);
+    for (std::uint32_t i = 2; i < words; ++i) element[i] = load(address + 4 * i);
+    return element;
+}
+
+}  // namespace
+
+bool CanController::start(const NodeConfig& config, std::uint32_t clock_hz) {
+    const auto nominal = nominal_timing(clock_hz, config.nominal_bitrate);
+    const auto data = data_timing(clock_hz, config.data_bitrate);
+    if (clock_hz == 0 || !nominal || (config.uses_can_fd && !data)) return false;
+
+    rcc.set("APB1ENR1.FDCANEN", 1);
+    (void)rcc.read("APB1ENR1");
+    if (!set_init(true)) return false;
+    fdcan1.set("CCCR.CCE", 1);
+    const BitTiming fast = data.value_or(BitTiming{});
+    configure(config, nbtp(*nominal), dbtp(config.data_bitrate, fast), tdcr(fast));
+
+    kReceivePin.make_alternate(kFunction, Drive::push_pull);
+    kTransmitPin.make_alternate(kFunction, Drive::push_pull, Speed::high);
+    cpu::enable(Interrupt::fdcan1_it0, cpu::Priority::stamp);
+    if (!set_init(false)) return false;
+    is_started_ = true;
+    return true;
+}
+
+void CanController::configure(const NodeConfig& config, std::uint32_t nominal, std::uint32_t data,
+                              std::uint32_t delay) {
+    fdcan1.write("CKDIV", 0);
+    fdcan1.write("NBTP", nominal);
+    if (config.uses_can_fd) {
+        fdcan1.write("DBTP", data);
+        fdcan1.write("TDCR", delay);
+        fdcan1.set("CCCR.FDOE", 1);
+        fdcan1.set("CCCR.BRSE", 1);
+    }
+    for (std::uint32_t i = 0; i < kMessageRamBytes; i += 4) store(kMessageRam + i, 0);
+    std::uint32_t index = 0;
+    for (const std::uint32_t filter : node_filters(config.node_id))
+        store(kStandardFilters + 4 * index++, filter);
+    // Remote frames under an identifier of ours pass, so that the node can count them.
+    fdcan1.write("RXGFC", F("RXGFC.RRFE")(1) | F("RXGFC.ANFE")(kReject) | F("RXGFC.ANFS")(kReject) |
+                              F("RXGFC.LSS")(kFilterCount));
+    fdcan1.write("TXBC", 0);  // first in, first out
+    fdcan1.write("TXBTIE", F("TXBTIE.TIE")(kAllPlaces));
+    fdcan1.write("IE",
+                 F("IE.RF0NE")(1) | F("IE.RF0LE")(1) | F("IE.TCE")(1) | F("IE.EPE")(1) | F("IE.BOE")(1));
+    fdcan1.write("ILS", 0);
+    fdcan1.write("ILE", F("ILE.EINT0")(1));
+}
+
+/// The bit shows its new value only when the controller followed; until then it must not be written again.
+bool CanController::set_init(bool is_set) const {
+    fdcan1.set("CCCR.INIT", is_set ? 1 : 0);
+    const NodeTime begun = timer_.now();
+    while (fdcan1.is_set("CCCR.INIT") != is_set) {
+        if (elapsed(begun, timer_.now()) > kModeLimit) return false;
+    }
+    return true;
+}
+
+bool CanController::send(const wire::CanFrame& frame) {
+    if (!is_started_ || fdcan1.is_set("PSR.BO") || fdcan1.is_set("TXFQS.TFQF")) return false;
+    const std::uint32_t index = fdcan1.get("TXFQS.TFQPI");
+    if (index >= kFifoElements) return false;
+    const CanElement element = encode_element(frame);
+    const Address address = element_address(kTransmitFifo, index);
+    const std::uint32_t words = words_in_use(frame.payload_len);
+    for (std::uint32_t i = 0; i < words; ++i) store(address + 4 * i, element[i]);
+    places_[index] = {.given = timer_.now(), .is_pending = true, .is_taken_back = false};
+    fdcan1.write("TXBAR", 1U << index);
+    return true;
+}
+
+std::optional<ReceivedFrame> CanController::receive() {
+    if (!has_received()) return std::nullopt;
+    const ReceivedFrame oldest = queue_[taken_ % kQueueFrames];
+    taken_ = taken_ + 1;
+    return oldest;
+}
+
+node::CanState CanController::state() const {
+    if (!is_started_) return node::CanState::passive;
+    const std::uint32_t status = fdcan1.read("PSR");
+    if (F("PSR.BO").of(status) != 0) return node::CanState::bus_off;
+    return F("PSR.EP").of(status) != 0 ? node::CanState::passive : node::CanState::active;
+}
+
+/// Requests outlive bus-off: what is not cancelled is sent late.
+std::uint32_t CanController::discard() {
+    note_sent();
+    std::uint32_t count = 0;
+    for (Place& place : places_) {
+        if (!place.is_pending || place.is_taken_back) continue;
+        place.is_taken_back = true;
+        ++count;
+    }
+    if (is_started_) fdcan1.write("TXBCR", kAllPlaces);
+    return count;
+}
+
+/// The hardware set INIT when it went bus-off, and never clears it by itself.
+void CanController::restart() {
+    if (state() == node::CanState::bus_off && fdcan1.is_set("CCCR.INIT")) fdcan1.set("CCCR.INIT", 0);
+}
+
+void CanController::note_sent() {
+    const std::uint32_t requests = fdcan1.get("TXBRP.TRP");
+    for (std::uint32_t i = 0; i < kFifoElements; ++i) {
+        if (((requests >> i) & 1U) == 0) places_[i].is_pending = false;
+    }
+}
+
+void CanController::poll(NodeTime now) {
+    if (!is_started_) return;
+    note_sent();
+    for (std::uint32_t i = 0; i < kFifoElements; ++i) {
+        Place& place = places_[i];
+        if (!place.is_pending || place.is_taken_back || elapsed(place.given, now) < kTransmitAgeMax) continue;
+        fdcan1.write("TXBCR", 1U << i);
+        place.is_taken_back = true;
+        ++counts_.expired;
+    }
+}
+
+std::optional<NodeTime> CanController::wake_time() const {
+    std::optional<NodeTime> wake;
+    for (const Place& place : places_) {
+        if (!place.is_pending || place.is_taken_back) continue;
+        const NodeTime expires = place.given + kTransmitAgeMax;
+        if (!wake || is_reached(expires, *wake)) wake = expires;
+    }
+    return wake;
+}
+
+CanCounts CanController::counts() const {
+    CanCounts counts = counts_;
+    counts.received = put_;
+    counts.receive_lost = lost_;
+    return counts;
+}
+
+void CanController::on_interrupt() {
+    const NodeTime now = timer_.now();
+    const std::uint32_t flags = fdcan1.read("IR");
+    fdcan1.write("IR", flags);
+    if (F("IR.RF0L").of(flags) != 0) lost_ = lost_ + 1;
+    receive_all(now);
+    has_event_ = true;
+}
+
+void CanController::receive_all(NodeTime now) {
+    for (std::uint32_t i = 0; i < kFramesPerInterrupt && fdcan1.get("RXF0S.F0FL") > 0; ++i) {
+        const std::uint32_t index = fdcan1.get("RXF0S.F0GI");
+        const bool has_room = put_ - taken_ < kQueueFrames;
+        if (has_room) {
+            const CanElement element = read_element(element_address(kReceiveFifo, index));
+            queue_[put_ % kQueueFrames] = {.frame = decode_element(element), .received = now};
+            put_ = put_ + 1;
+        } else {
+            lost_ = lost_ + 1;
+        }
+        fdcan1.write("RXF0A", F("RXF0A.F0AI")(index));
+    }
+}
+
+}  // namespace octoskin::stm32g4

@@ -1,0 +1,94 @@
+// The CAN controller: frames out as soon as they are given, frames in with the time of their end, and back
+// again after bus-off. RM0440, "FDCAN".
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include "common/config/node_config.hpp"
+#include "common/time.hpp"
+#include "common/wire/can_frame.hpp"
+#include "firmware/core/ports.hpp"
+#include "firmware/port/stm32g4/can_message_ram.hpp"
+#include "firmware/port/stm32g4/microsecond_timer.hpp"
+
+namespace octoskin::stm32g4 {
+
+struct CanCounts {
+    std::uint32_t expired = 0;  ///< frames taken back because nobody acknowledged them in time
+    std::uint32_t received = 0;
+    std::uint32_t receive_lost = 0;  ///< frames for which there was no room
+};
+
+struct ReceivedFrame {
+    wire::CanFrame frame;
+    NodeTime received;  ///< end of the frame, as the interrupt saw it
+};
+
+class CanController final : public node::CanTransmitter {
+  public:
+    /// A frame that has not been acknowledged for so long is taken back: nothing old is ever sent.
+    static constexpr Microseconds kTransmitAgeMax{20'000};
+
+    constexpr explicit CanController(const MicrosecondTimer& timer) : timer_(timer) {}
+
+    /// Joins the bus with the configuration's rates and listens to what is for its node id. False, and
+    /// silent, if `clock_hz` is 0 or cannot make these rates.
+    [[nodiscard]] bool start(const NodeConfig& config, std::uint32_t clock_hz);
+
+    /// Takes the frame if one of the three places is free. Frames leave in the order in which they came: of
+    /// two of the same identifier the older one first, which a queue by identifier would not promise.
+    [[nodiscard]] bool send(const wire::CanFrame& frame) override;
+    /// The oldest frame received and not yet taken.
+    [[nodiscard]] std::optional<ReceivedFrame> receive();
+    [[nodiscard]] bool has_received() const { return put_ != taken_; }
+
+    /// Silent counts as passive: nobody acknowledges what is not sent.
+    [[nodiscard]] node::CanState state() const override;
+    std::uint32_t discard() override;
+    void restart() override;
+    /// Whether it ever joined the bus.
+    [[nodiscard]] bool is_started() const { return is_started_; }
+
+    /// Takes back what is too old. Call at `wake_time` and after each event.
+    void poll(NodeTime now);
+    /// When the oldest frame that waits becomes too old.
+    [[nodiscard]] std::optional<NodeTime> wake_time() const;
+    /// Whether the interrupt saw something that `poll` or the node should look at, since the last
+    /// `acknowledge_event`; call that before looking.
+    [[nodiscard]] bool has_event() const { return has_event_; }
+    void acknowledge_event() { has_event_ = false; }
+
+    [[nodiscard]] CanCounts counts() const;
+
+    /// From its interrupt's handler.
+    void on_interrupt();
+
+  private:
+    struct Place {
+        NodeTime given;
+        bool is_pending = false;
+        bool is_taken_back = false;
+    };
+
+    void configure(const NodeConfig& config, std::uint32_t nominal, std::uint32_t data, std::uint32_t delay);
+    [[nodiscard]] bool set_init(bool is_set) const;
+    void note_sent();
+    void receive_all(NodeTime now);
+
+    const MicrosecondTimer& timer_;
+    bool is_started_ = false;
+    std::array<Place, kFifoElements> places_{};
+    CanCounts counts_;
+
+    static constexpr std::uint32_t kQueueFrames = 16;  // a power of two: the counters below wrap freely
+    std::array<ReceivedFrame, kQueueFrames> queue_{};
+    std::atomic<std::uint32_t> put_ = 0;    ///< written by the interrupt
+    std::atomic<std::uint32_t> taken_ = 0;  ///< written by the main loop
+    std::atomic<std::uint32_t> lost_ = 0;
+    std::atomic<bool> has_event_ = false;
+};
+
+}  // namespace octoskin::stm32g4
