@@ -172,6 +172,7 @@ std::string canonical_text(const Rig& rig, const std::string& urdf) {
     out.line("  min_m: {}", number(rig.range_limits.min_m));
     out.line("  max_m: {}", number(rig.range_limits.max_m));
     out.line("  sigma_max_m: {}", number(rig.range_limits.sigma_max_m));
+    out.line("  time_uncertainty_max_ms: {}", number(rig.range_limits.time_uncertainty_max_ms));
     write_joints(out, rig.joints);
     if (rig.camera) write_camera(out, *rig.camera);
     out.line("nodes:");

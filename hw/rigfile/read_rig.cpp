@@ -153,11 +153,16 @@ Camera read_camera(const Value& value) {
 }
 
 RangeLimits read_range_limits(const Value& value) {
-    const Table table(value, "range_limits", {"min_m", "max_m", "sigma_max_m"});
+    // SENSOR_HEALTH tells a bound of up to 16.32 ms, and that one also for anything above it: no limit
+    // reaches it.
+    constexpr Range<double> kUncertaintyMs{0.1, 16.0};
+    const Table table(value, "range_limits", {"min_m", "max_m", "sigma_max_m", "time_uncertainty_max_ms"});
     RangeLimits limits;
     limits.min_m = table.number("min_m", {0.0, 8.0}, limits.min_m);
     limits.max_m = table.number("max_m", {0.0, 8.0}, limits.max_m);
     limits.sigma_max_m = table.number("sigma_max_m", {0.001, 1.0}, limits.sigma_max_m);
+    limits.time_uncertainty_max_ms =
+        table.number("time_uncertainty_max_ms", kUncertaintyMs, limits.time_uncertainty_max_ms);
     if (!(limits.min_m < limits.max_m)) table.fail("max_m", "expected more than min_m");
     return limits;
 }

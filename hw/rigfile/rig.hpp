@@ -70,6 +70,8 @@ struct RangeLimits {
     double min_m = 0.04;
     double max_m = 4.0;
     double sigma_max_m = 0.2;
+    double time_uncertainty_max_ms =
+        5.0;  ///< of a capture time: the clock map's bound and the node's together
 };
 
 struct Rig {

@@ -209,7 +209,7 @@ CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::FollowUp& message, 
     host_clock_.learn(*stamp);
     for (const auto& [node, clock] : clocks_) {
         if (host_clock_.relocks() > relocks_before) {
-            ranges_.forget(node);  // what came since the step had wrong times
+            ranges_.forget_order(node);  // what came since the step had wrong times
         }
         add_exchange(node);
     }

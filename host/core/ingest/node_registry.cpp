@@ -11,12 +11,6 @@ namespace {
 
 using wire::NodeState;
 
-std::string differs(const char* what, std::uint32_t found, std::uint32_t expected) {
-    std::array<char, 96> text{};
-    std::snprintf(text.data(), text.size(), "%s %08x, the rig has %08x", what, found, expected);
-    return text.data();
-}
-
 /// A hold ends only when "now" is known and the last sign is old enough.
 bool is_held(bool is_set, std::optional<HostTime> since, std::optional<HostTime> now, Nanoseconds hold) {
     return is_set && !(since && now && *now - *since >= hold);
@@ -38,27 +32,33 @@ bool NodeRecord::is_info_complete() const {
     return std::ranges::all_of(pages, [](const auto& entry) { return entry.has_value(); });
 }
 
-std::optional<std::string> NodeRecord::mismatch() const {
+std::string NodeMismatch::text() const {
+    std::array<char, 48> text{};
+    std::snprintf(text.data(), text.size(), " %08x, the rig has %08x", found, expected);
+    return std::string(what) + text.data();
+}
+
+std::optional<NodeMismatch> NodeRecord::mismatch() const noexcept {
     if (!has_block || !heartbeat) {
         return std::nullopt;
     }
     if (heartbeat->node_hash_low != (expected.node_hash & 0xFFFFU)) {
-        return differs("low half of node_hash", heartbeat->node_hash_low, expected.node_hash & 0xFFFFU);
+        return NodeMismatch{"low half of node_hash", heartbeat->node_hash_low, expected.node_hash & 0xFFFFU};
     }
     if (!is_info_complete()) {
         return std::nullopt;
     }
     const auto& identity = *page<wire::InfoIdentity>();
     if (identity.node_hash != expected.node_hash) {
-        return differs("node_hash", identity.node_hash, expected.node_hash);
+        return NodeMismatch{"node_hash", identity.node_hash, expected.node_hash};
     }
     if (identity.sensor_count != expected.sensors.size()) {
-        return differs("number of sensors", identity.sensor_count,
-                       static_cast<std::uint32_t>(expected.sensors.size()));
+        return NodeMismatch{"number of sensors", identity.sensor_count,
+                            static_cast<std::uint32_t>(expected.sensors.size())};
     }
     const std::uint16_t uid_crc = crc16(page<wire::InfoUidHigh>()->uid, crc16(page<wire::InfoUidLow>()->uid));
     if (uid_crc != heartbeat->uid_crc) {
-        return differs("checksum of the unique id in NODE_INFO", uid_crc, heartbeat->uid_crc);
+        return NodeMismatch{"checksum of the unique id in NODE_INFO", uid_crc, heartbeat->uid_crc};
     }
     return std::nullopt;
 }
@@ -156,7 +156,7 @@ std::string NodeRegistry::describe(wire::NodeId node, std::optional<HostTime> no
     const auto mismatch = judged == NodeVerdict::info_mismatch ? record.mismatch() : std::nullopt;
     return "node " + std::to_string(node) + " '" + record.expected.name +
            "': " + names_of(NodeVerdict{})[static_cast<std::size_t>(judged)] +
-           (mismatch ? " (" + *mismatch + ")" : "");
+           (mismatch ? " (" + mismatch->text() + ")" : "");
 }
 
 }  // namespace octoskin

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "common/time.hpp"
 #include "common/wire/messages.hpp"
@@ -31,6 +32,16 @@ enum class NodeVerdict : std::uint8_t {
             "info_incomplete", "info_mismatch", "build_refused", "usable"};
 }
 
+/// A claim of a node that differs from the rig.
+struct NodeMismatch {
+    std::string_view what;  ///< a literal
+    std::uint32_t found = 0;
+    std::uint32_t expected = 0;
+    /// For a person: "node_hash 1a2b3c4d, the rig has 5e6f7a8b".
+    [[nodiscard]] std::string text() const;
+    friend bool operator==(const NodeMismatch&, const NodeMismatch&) = default;
+};
+
 /// All that is known of one node.
 struct NodeRecord {
     HostNode expected;
@@ -44,8 +55,8 @@ struct NodeRecord {
     std::optional<HostTime> other_version;  ///< the newest heartbeat of another version
     bool is_other_version = false;
 
-    /// Which of the node's claims differs from the rig: "node_hash 1a2b3c4d, the rig compiles to 5e6f7a8b".
-    [[nodiscard]] std::optional<std::string> mismatch() const;
+    /// The first of the node's claims that differs from the rig. Asked for every reading: allocates nothing.
+    [[nodiscard]] std::optional<NodeMismatch> mismatch() const noexcept;
     [[nodiscard]] bool is_info_complete() const;
     template <class Page>
     [[nodiscard]] const Page* page() const {

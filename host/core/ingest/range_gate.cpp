@@ -45,6 +45,11 @@ RangeGate::RangeGate(const HostRig& rig, bool uses_no_return)
     }
 }
 
+bool RangeGate::is_certain(const Sensor& sensor, const MappedTime& captured) const {
+    const auto& told = sensor.record.capture_bound;
+    return told && captured.error_bound + *told <= limits_.time_uncertainty_max;
+}
+
 std::optional<ReadingReason> RangeGate::place_fault(Sensor& sensor, const wire::RangeReading& reading,
                                                     HostTime captured, HostTime now) const {
     // Ranging windows of one sensor do not overlap. The sensor's oscillator may be 7 % fast, and each time
@@ -84,6 +89,10 @@ std::optional<ReadingReason> RangeGate::figure_fault(double range_m, double sigm
 Result<RangeMeasurement, ReadingReason> RangeGate::check(wire::NodeId node, const wire::RangeReading& reading,
                                                          const MappedTime& captured, HostTime now) {
     Sensor& sensor = sensors_.at({node, reading.sensor});
+    if (!is_certain(sensor, captured)) {
+        sensor.record.sequence.skip();  // such a time is no evidence of what came before what
+        return unexpected(ReadingReason::time_uncertain);
+    }
     if (const auto fault = place_fault(sensor, reading, captured.time, now)) {
         return unexpected(*fault);
     }
@@ -124,6 +133,7 @@ void RangeGate::on_health(wire::NodeId node, const wire::SensorHealth& health) {
         record.sent_total += static_cast<std::uint16_t>(health.sent - record.health->sent);
     }
     record.health = health;
+    record.capture_bound = Microseconds{wire::kClassicalTimeStepUs} * health.capture_bound_64us;
     const std::uint64_t received = record.received - record.received_before;
     record.lost = record.sent_total > received ? record.sent_total - received : 0;
 }
@@ -133,10 +143,19 @@ void RangeGate::on_signal(wire::NodeId node, std::uint8_t sensor, const wire::Si
 }
 
 void RangeGate::forget(wire::NodeId node) {
+    forget_order(node);
+    for (auto& [key, sensor] : sensors_) {
+        if (key.first == node) {
+            sensor.record.health.reset();
+            sensor.record.capture_bound.reset();
+        }
+    }
+}
+
+void RangeGate::forget_order(wire::NodeId node) {
     for (auto& [key, sensor] : sensors_) {
         if (key.first == node) {
             sensor.record.sequence = {};
-            sensor.record.health.reset();
         }
     }
 }

@@ -1,5 +1,5 @@
-// The last check before a reading becomes a measurement: its place in the sequence, its age, its status, its
-// zone, its figures.
+// The last check before a reading becomes a measurement: how certain its time is, its place in the sequence,
+// its age, its status, its zone, its figures.
 #pragma once
 
 #include <array>
@@ -26,6 +26,8 @@ struct SensorRecord {
     SequenceTracker sequence;
     std::optional<wire::SensorHealth> health;
     std::optional<wire::SignalReading> signal;
+    /// Bound on the error of its capture times, as the node told it last in its present life.
+    std::optional<Nanoseconds> capture_bound;
     /// Readings that the node sent and that never came: exact as of the newest health message.
     std::uint64_t lost = 0;
     std::uint64_t sent_total = 0;       ///< by the node's own count, since its first health message
@@ -55,8 +57,10 @@ class RangeGate {
 
     void on_health(wire::NodeId node, const wire::SensorHealth& health);
     void on_signal(wire::NodeId node, std::uint8_t sensor, const wire::SignalReading& signal);
-    /// The node's sequences began anew, or the times of the newest readings were wrong.
+    /// The node began anew: its sequences, its counts, and what it told.
     void forget(wire::NodeId node);
+    /// The times of the newest readings were wrong: their order says nothing.
+    void forget_order(wire::NodeId node);
 
     [[nodiscard]] const SensorRecord& record(wire::NodeId node, std::uint8_t sensor) const {
         return sensors_.at({node, sensor}).record;
@@ -67,6 +71,7 @@ class RangeGate {
         HostSensor expected;
         SensorRecord record;
     };
+    [[nodiscard]] bool is_certain(const Sensor& sensor, const MappedTime& captured) const;
     [[nodiscard]] std::optional<ReadingReason> place_fault(Sensor& sensor, const wire::RangeReading& reading,
                                                            HostTime captured, HostTime now) const;
     [[nodiscard]] std::optional<ReadingReason> figure_fault(double range_m, double sigma_m) const;

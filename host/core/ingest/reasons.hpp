@@ -60,6 +60,7 @@ enum class ReadingReason : std::uint8_t {
     clock_not_ready,  ///< ClockFault
     clock_in_doubt,
     clock_silent,
+    time_uncertain,  ///< it may be further off than the rig allows, or its node has not told how far
     // Its place among the sensor's readings.
     duplicate,
     out_of_window,  ///< older than the last 32 of its sensor, or its number does not fit its time
@@ -84,7 +85,7 @@ enum class ReadingReason : std::uint8_t {
     beam_not_valid,  ///< a pose or range that is no number
     outside_map,     ///< beyond the octree
 };
-[[nodiscard]] constexpr std::array<const char*, 33> names_of(ReadingReason) {
+[[nodiscard]] constexpr std::array<const char*, 34> names_of(ReadingReason) {
     return {"node_absent",
             "node_lost",
             "node_version",
@@ -98,6 +99,7 @@ enum class ReadingReason : std::uint8_t {
             "clock_not_ready",
             "clock_in_doubt",
             "clock_silent",
+            "time_uncertain",
             "duplicate",
             "out_of_window",
             "too_soon",

@@ -69,6 +69,8 @@ struct HostRangeLimits {
     double min_m = 0.04;
     double max_m = 4.0;
     double sigma_max_m = 0.2;
+    /// Of a capture time: the clock map's error bound and the node's own together.
+    Nanoseconds time_uncertainty_max{5'000'000};
 };
 
 struct HostRig {

@@ -1,5 +1,6 @@
 #include "host/io/rig/host_rig_reader.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "host/io/urdf/urdf_robot.hpp"
@@ -45,6 +46,13 @@ HostCamera to_host(const rig::Camera& camera) {
     return host;
 }
 
+HostRangeLimits to_host(const rig::RangeLimits& limits) {
+    return {.min_m = limits.min_m,
+            .max_m = limits.max_m,
+            .sigma_max_m = limits.sigma_max_m,
+            .time_uncertainty_max = Nanoseconds{std::llround(1e6 * limits.time_uncertainty_max_ms)}};
+}
+
 HostRig to_host(const rig::Rig& rig) {
     HostRig host;
     host.name = rig.name;
@@ -56,7 +64,7 @@ HostRig to_host(const rig::Rig& rig) {
     host.links_ignored_by_sensors = rig.links_ignored_by_sensors;
     host.depth_self_margin_m = rig.depth_self_margin_m;
     host.range_self_margin_m = rig.range_self_margin_m;
-    host.range_limits = {rig.range_limits.min_m, rig.range_limits.max_m, rig.range_limits.sigma_max_m};
+    host.range_limits = to_host(rig.range_limits);
     return host;
 }
 

@@ -97,6 +97,19 @@ void ScriptedBus::heartbeat(double at_s, const HostNode& node) {
          node.node_id);
 }
 
+void ScriptedBus::health(double at_s, wire::NodeId node, std::uint8_t sensor,
+                         std::uint8_t capture_bound_64us) {
+    send(at_s,
+         wire::SensorHealth{.sensor = sensor,
+                            .state = wire::SensorState::ranging,
+                            .fault = wire::SensorFault::none,
+                            .sent = 0,
+                            .capture_bound_64us = capture_bound_64us,
+                            .rejected = 0,
+                            .period_error_permille = 0},
+         node);
+}
+
 void ScriptedBus::joints(double sampled_s, wire::NodeId node, std::span<const double> position_rad) {
     const std::uint8_t sequence = joint_sequence_;
     joint_sequence_ = next(joint_sequence_, wire::kJointSequenceCount);

@@ -34,6 +34,8 @@ class ScriptedBus {
     /// All pages of NODE_INFO, right for `node`.
     void info(double at_s, const HostNode& node, std::uint32_t build_id = 0);
     void heartbeat(double at_s, const HostNode& node);
+    /// SENSOR_HEALTH of a sensor that is well, with this bound on the error of its capture times.
+    void health(double at_s, wire::NodeId node, std::uint8_t sensor, std::uint8_t capture_bound_64us = 3);
     /// Four frames, the last one 0.4 ms after the sample.
     void joints(double sampled_s, wire::NodeId node, std::span<const double> position_rad);
     /// A classical RANGE frame, `delay_s` after its capture. Sequence: one more than the one before it of

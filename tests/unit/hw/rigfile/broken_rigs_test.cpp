@@ -88,6 +88,8 @@ const Broken kBroken[] = {
     {"camera-depth-reversed.yaml", 11, "camera.depth_max_m", "expected more than depth_min_m"},
     {"camera-centre-outside.yaml", 7, "camera.cx_px", "expected a number from 0 to 64, found '65'"},
     {"range-limits-reversed.yaml", 4, "range_limits.max_m", "expected more than min_m"},
+    {"time-uncertainty-beyond-what-nodes-tell.yaml", 3, "range_limits.time_uncertainty_max_ms",
+     "expected a number from 0.1 to 16, found '17'"},
     // References.
     {"sensor-on-a-missing-link.yaml", 3, "nodes[0].sensors[0].link",
      "expected a link of two-links.urdf at or below base, found 'gripper'"},

@@ -32,7 +32,7 @@ T_map_base: {xyz_m: [0.002990, 0.020829, -0.001814], rpy_deg: [10, 20, 30]}
 bus:
   protocol: can
   nominal_bitrate_bps: 500000
-range_limits: {min_m: 0.05, max_m: 3.9, sigma_max_m: 0.15}
+range_limits: {min_m: 0.05, max_m: 3.9, sigma_max_m: 0.15, time_uncertainty_max_ms: 2.5}
 joints: {node_id: 9, rate_hz: 100.5, names: [elbow]}
 camera:
   width_px: 64
@@ -115,6 +115,7 @@ TEST_F(RigText, every_value_of_a_full_rig_arrives) {
     EXPECT_EQ(rig.urdf, std::filesystem::absolute(folder_ / "two-links.urdf"));
     EXPECT_EQ(rig.link_padding_m.at("arm"), 0.015625);
     EXPECT_EQ(rig.range_limits.sigma_max_m, 0.15);
+    EXPECT_EQ(rig.range_limits.time_uncertainty_max_ms, 2.5);
     EXPECT_EQ(rig.camera->fy, 60.5);
     EXPECT_EQ(rig.joints.rate_hz, 100.5);
     const Node& node = rig.nodes.at(0);
@@ -259,6 +260,7 @@ const Change kChanges[] = {
     {"range_self_margin_m: 0.125", "range_self_margin_m: 0.12", false},
     {"xyz_m: [0.002990", "xyz_m: [0.002991", false},
     {"max_m: 3.9", "max_m: 4", false},
+    {"time_uncertainty_max_ms: 2.5", "time_uncertainty_max_ms: 2", false},
     {"rate_hz: 100.5", "rate_hz: 100", false},
     {"node_id: 9", "node_id: 8", false},
     {"fx_px: 60.25", "fx_px: 60", false},

@@ -38,6 +38,7 @@ ScriptedBus bus(double quiet_from_s = 99.0, double quiet_to_s = 99.0) {
     bus.set_clock(kNode, 0xFFFF0000U, 50e-6);
     bus.info(0.01, rig().nodes[0]);
     for (int k = 0; k < 8; ++k) {
+        bus.health(0.5 + k, kNode, 0);
         bus.exchange(0.1 + k, {kNode, kJointNode});
     }
     for (int k = 0; k < 80; ++k) {
@@ -60,8 +61,8 @@ ScriptedBus bus(double quiet_from_s = 99.0, double quiet_to_s = 99.0) {
 }
 
 using Visit = std::function<void(const FrameOutcome&, HostTime now)>;
-CanIntake take(const ScriptedBus& bus, const Visit& visit) {
-    CanIntake intake(rig());
+CanIntake take(const ScriptedBus& bus, const Visit& visit, const HostRig& of_rig = rig()) {
+    CanIntake intake(of_rig);
     for (const StampedFrame& entry : bus.frames()) {
         const FrameOutcome outcome = intake.on_frame(entry.frame, entry.stamp);
         visit(outcome, intake.now().value_or(HostTime{0}));
@@ -99,6 +100,31 @@ TEST(CanIntake, accepts_all_readings_of_a_node_that_is_well_and_counts_no_gap) {
     EXPECT_EQ(intake.ranges().record(kNode, 0).sequence.gaps(), 0U);
     EXPECT_EQ(intake.ranges().record(kNode, 0).received, 182U);
     EXPECT_EQ(intake.ranges().record(kNode, 0).device_status[9], 182U);
+}
+
+TEST(CanIntake, rejects_readings_while_the_clock_map_is_less_certain_than_the_rig_asks) {
+    // The node tells 192 us. Of the map: 100 us for each exchange, more so where two of them are drawn out by
+    // a second, and less with every further one.
+    HostRig strict = rig();
+    strict.range_limits.time_uncertainty_max = Microseconds{192 + 250};
+    int accepted = 0;
+    int uncertain = 0;
+    HostTime uncertain_last;
+    (void)take(
+        bus(),
+        [&](const FrameOutcome& outcome, HostTime now) {
+            for (const auto& reading : outcome.readings) {
+                accepted += reading ? 1 : 0;
+                if (!reading && reading.error() == ReadingReason::time_uncertain) {
+                    ++uncertain;
+                    uncertain_last = now;
+                }
+            }
+        },
+        strict);
+    EXPECT_EQ(accepted + uncertain, 182);
+    EXPECT_GT(uncertain, 5);
+    EXPECT_LT(uncertain_last.ns, 5'000'000'000);
 }
 
 TEST(CanIntake, trusts_the_clock_of_a_node_that_restarted_only_after_two_more_exchanges) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <type_traits>
+#include <utility>
 
 #include "common/wire/crc.hpp"
 
@@ -79,7 +81,7 @@ TEST(NodeRegistry, names_what_differs_from_the_rig) {
         NodeRegistry registry(rig());
         identify(registry, 0, info);
         EXPECT_EQ(registry.verdict(kNode, ms(0)), NodeVerdict::info_mismatch);
-        return registry.records().at(kNode).mismatch().value_or("");
+        return registry.records().at(kNode).mismatch().value_or(NodeMismatch{}).text();
     };
     EXPECT_EQ(mismatch(pages(0xAABBCCDE)), "node_hash aabbccde, the rig has aabbccdd");
     EXPECT_EQ(mismatch(pages(kHash, 4)), "number of sensors 00000004, the rig has 00000003");
@@ -87,6 +89,10 @@ TEST(NodeRegistry, names_what_differs_from_the_rig) {
     other_board[0] = wire::InfoUidLow{{9, 9, 9, 9, 9, 9}};
     EXPECT_NE(mismatch(other_board).find("checksum of the unique id"), std::string::npos);
 }
+
+// The verdict is asked for every reading, and so must neither format nor allocate.
+static_assert(
+    std::is_trivially_copyable_v<NodeMismatch>&& noexcept(std::declval<const NodeRecord&>().mismatch()));
 
 TEST(NodeRegistry, describes_a_node_by_name) {
     NodeRegistry registry(rig());
@@ -104,8 +110,8 @@ TEST(NodeRegistry, refuses_another_configuration_at_its_first_heartbeat) {
     other.node_hash_low = 0x1234;
     (void)registry.on_heartbeat(kNode, other, ms(100));
     EXPECT_EQ(registry.verdict(kNode, ms(100)), NodeVerdict::info_mismatch);
-    EXPECT_EQ(*registry.records().at(kNode).mismatch(),
-              "low half of node_hash 00001234, the rig has 0000ccdd");
+    EXPECT_EQ(registry.records().at(kNode).mismatch(),
+              (NodeMismatch{"low half of node_hash", 0x1234, 0xCCDD}));
 }
 
 TEST(NodeRegistry, refuses_another_build_only_where_the_rig_pins_it) {

@@ -36,9 +36,27 @@ wire::RangeReading reading() {
             .capture = {}};
 }
 
+wire::SensorHealth health(std::uint8_t sensor, std::uint16_t sent = 0, std::uint8_t capture_bound_64us = 1) {
+    return {.sensor = sensor,
+            .state = wire::SensorState::ranging,
+            .fault = wire::SensorFault::none,
+            .sent = sent,
+            .capture_bound_64us = capture_bound_64us,
+            .rejected = 0,
+            .period_error_permille = 0};
+}
+
+/// Its node has told a capture bound for both sensors.
+RangeGate informed_gate(bool uses_no_return = false) {
+    RangeGate gate(rig(), uses_no_return);
+    gate.on_health(kNode, health(0));
+    gate.on_health(kNode, health(1));
+    return gate;
+}
+
 Result<RangeMeasurement, ReadingReason> check(const wire::RangeReading& reading, bool uses_no_return = false,
                                               std::int64_t age_ms = 20) {
-    RangeGate gate(rig(), uses_no_return);
+    RangeGate gate = informed_gate(uses_no_return);
     gate.on_arrival(kNode, reading.sensor);
     return gate.check(kNode, reading, {kNow - Nanoseconds{age_ms * 1'000'000}, Nanoseconds{0}}, kNow);
 }
@@ -135,39 +153,86 @@ TEST(RangeGate, refuses_what_arrives_before_half_the_budget_has_passed_or_later_
     EXPECT_EQ(check(reading(), false, 111).error(), ReadingReason::too_old);
 }
 
+/// One reading whose time the clock map knows within `map_us`.
+Result<RangeMeasurement, ReadingReason> check_with(RangeGate& gate, std::int64_t map_us) {
+    gate.on_arrival(kNode, 0);
+    return gate.check(kNode, reading(), {kNow - Nanoseconds{20'000'000}, Microseconds{map_us}}, kNow);
+}
+
+TEST(RangeGate, refuses_a_time_whose_two_bounds_together_exceed_the_limit) {
+    for (unsigned told = 0; told <= 255; ++told) {
+        for (const std::int64_t map_us : {0, 100, 2'000, 4'936, 5'000, 5'001}) {
+            RangeGate gate(rig(), false);
+            gate.on_health(kNode, health(0, 0, static_cast<std::uint8_t>(told)));
+            const auto outcome = check_with(gate, map_us);
+            ASSERT_EQ(outcome.has_value(), 64 * told + map_us <= 5'000) << told << " " << map_us;
+            if (!outcome) {
+                ASSERT_EQ(outcome.error(), ReadingReason::time_uncertain);
+            }
+        }
+    }
+}
+
+TEST(RangeGate, takes_the_limit_on_uncertain_times_from_the_rig) {
+    HostRig strict = rig();
+    strict.range_limits.time_uncertainty_max = Microseconds{300};
+    RangeGate gate(strict, false);
+    gate.on_health(kNode, health(0, 0, 3));
+    EXPECT_EQ(check_with(gate, 109).error(), ReadingReason::time_uncertain);
+    EXPECT_TRUE(check_with(gate, 108).has_value());
+}
+
+TEST(RangeGate, does_not_trust_a_time_while_the_node_has_not_told_how_good_it_is) {
+    RangeGate gate(rig(), false);
+    EXPECT_EQ(check_with(gate, 0).error(), ReadingReason::time_uncertain);
+    gate.on_health(kNode, health(0));
+    EXPECT_TRUE(check_with(gate, 0).has_value());
+    gate.forget_order(kNode);  // the host's clock, not the node's
+    EXPECT_TRUE(check_with(gate, 0).has_value());
+    gate.forget(kNode);
+    EXPECT_EQ(check_with(gate, 0).error(), ReadingReason::time_uncertain);
+    gate.on_health(kNode, health(0));
+    EXPECT_TRUE(check_with(gate, 0).has_value());
+}
+
+TEST(RangeGate, counts_no_gap_across_readings_of_uncertain_time) {
+    RangeGate gate = informed_gate();
+    EXPECT_TRUE(check_with(gate, 0).has_value());
+    wire::RangeReading given = reading();
+    for (std::uint8_t k = 1; k <= 5; ++k) {
+        given.sequence = k;
+        const HostTime later = kNow + Nanoseconds{k * 33'000'000};
+        const Nanoseconds bound{k < 5 ? 6'000'000 : 0};
+        const auto outcome = gate.check(kNode, given, {later - Nanoseconds{20'000'000}, bound}, later);
+        EXPECT_EQ(outcome.has_value(), k == 5);
+    }
+    EXPECT_EQ(gate.record(kNode, 0).sequence.gaps(), 0U);
+}
+
 TEST(RangeGate, counts_what_came_and_what_was_lost_by_the_nodes_own_count) {
     RangeGate gate(rig(), false);
-    const auto health = [](std::uint16_t sent) {
-        return wire::SensorHealth{.sensor = 0,
-                                  .state = wire::SensorState::ranging,
-                                  .fault = wire::SensorFault::none,
-                                  .sent = sent,
-                                  .capture_bound_64us = 1,
-                                  .rejected = 0,
-                                  .period_error_permille = 0};
-    };
     const auto arrive = [&](int count) {
         for (int i = 0; i < count; ++i) {
             gate.on_arrival(kNode, 0);
         }
     };
     arrive(7);
-    gate.on_health(kNode, health(65'000));
+    gate.on_health(kNode, health(0, 65'000));
     EXPECT_EQ(gate.record(kNode, 0).lost, 0U) << "what was sent before is not known";
     arrive(90);
-    gate.on_health(kNode, health(65'100));
+    gate.on_health(kNode, health(0, 65'100));
     EXPECT_EQ(gate.record(kNode, 0).lost, 10U);
     arrive(900);
-    gate.on_health(kNode, health(464));  // 65'100 + 900, modulo 65'536
+    gate.on_health(kNode, health(0, 464));  // 65'100 + 900, modulo 65'536
     EXPECT_EQ(gate.record(kNode, 0).lost, 10U);
     EXPECT_EQ(gate.record(kNode, 0).received, 997U);
     arrive(11);
-    gate.on_health(kNode, health(464));
+    gate.on_health(kNode, health(0, 464));
     EXPECT_EQ(gate.record(kNode, 0).lost, 0U) << "readings overtook the message";
 }
 
 TEST(RangeGate, counts_a_duplicate_as_received_once) {
-    RangeGate gate(rig(), false);
+    RangeGate gate = informed_gate();
     const MappedTime captured{kNow - Nanoseconds{20'000'000}, Nanoseconds{0}};
     for (int i = 0; i < 2; ++i) {
         gate.on_arrival(kNode, 0);
@@ -178,12 +243,13 @@ TEST(RangeGate, counts_a_duplicate_as_received_once) {
 }
 
 TEST(RangeGate, begins_sequences_anew_for_a_node_that_restarted) {
-    RangeGate gate(rig(), false);
+    RangeGate gate = informed_gate();
     wire::RangeReading given = reading();
     given.sequence = 40;
     const Nanoseconds age{20'000'000};
     EXPECT_TRUE(gate.check(kNode, given, {kNow - age, Nanoseconds{0}}, kNow).has_value());
     gate.forget(kNode);
+    gate.on_health(kNode, health(0));
     given.sequence = 0;
     const HostTime later = kNow + Nanoseconds{1'000'000'000};
     EXPECT_TRUE(gate.check(kNode, given, {later - age, Nanoseconds{0}}, later).has_value());

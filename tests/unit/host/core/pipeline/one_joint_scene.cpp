@@ -121,6 +121,11 @@ void keep_alive(Scene& scene, wire::NodeId node, double from_s) {
     for (double t = from_s; t < 9.0; t += 0.1) {
         scene.bus.heartbeat(t, node_of(scene, node));
     }
+    for (double t = from_s + 0.02; t < 9.0; t += 1.0) {
+        for (std::uint8_t sensor = 0; sensor < node_of(scene, node).sensors.size(); ++sensor) {
+            scene.bus.health(t, node, sensor);
+        }
+    }
 }
 
 Scene good_scene() {

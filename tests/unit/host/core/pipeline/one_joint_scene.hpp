@@ -69,7 +69,7 @@ struct Scene {
 };
 /// As described at the top, and depth frames at 4.0, 4.1, ... 4.5 s.
 [[nodiscard]] Scene good_scene();
-/// Heartbeats and NODE_INFO of a node, from `from_s` to 9 s.
+/// Heartbeats, NODE_INFO and SENSOR_HEALTH of a node, from `from_s` to 9 s.
 void keep_alive(Scene& scene, wire::NodeId node, double from_s = 0.0);
 [[nodiscard]] const HostNode& node_of(const Scene& scene, wire::NodeId node);
 

@@ -140,6 +140,11 @@ const std::vector<ReadingCase>& cases() {
              let_third_hear(s, 3);
              of_node(s, kThird, 7.5);  // 5.4 s after the last exchange
          }},
+        {R::time_uncertain,
+         [](Scene& s) {
+             s.bus.health(3.9, kLeft, kSpare, 79);  // 5.056 ms
+             s.bus.range(4.0, kLeft, good_reading(kSpare));
+         }},
         {R::duplicate,
          [](Scene& s) {
              for (const StampedFrame& entry : s.bus.frames()) {

@@ -65,11 +65,11 @@ TEST(Replay, reports_its_progress_every_1000_frames_and_at_the_end) {
         frames.push_back(progress.can_frames);
         last = progress;
     });
-    EXPECT_EQ(frames, (std::vector<std::uint64_t>{1000, 2000, 3000, 3433}));
+    EXPECT_EQ(frames, (std::vector<std::uint64_t>{1000, 2000, 3000, 3487}));
     EXPECT_EQ(last.depth_frames, 6U);
     EXPECT_EQ(last.begin, host_at(0.101)) << "the first FOLLOW_UP";
     EXPECT_EQ(last.now, host_at(9.0004)) << "the last joint frame";
-    EXPECT_EQ(outcome.progress.can_frames, 3433U);
+    EXPECT_EQ(outcome.progress.can_frames, 3487U);
 }
 
 TEST(Replay, uses_what_a_source_gave_before_it_failed_and_says_why_it_did) {

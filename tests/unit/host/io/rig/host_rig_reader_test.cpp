@@ -55,6 +55,7 @@ TEST(HostRigReader, takes_over_everything_the_host_needs) {
     EXPECT_EQ(host.range_limits.min_m, 0.04);
     EXPECT_EQ(host.range_limits.max_m, 4.0);
     EXPECT_EQ(host.range_limits.sigma_max_m, 0.2);
+    EXPECT_EQ(host.range_limits.time_uncertainty_max, std::chrono::milliseconds(5));
 }
 
 TEST(HostRigReader, takes_over_the_camera_or_its_absence) {
