@@ -42,8 +42,7 @@ enum class Priority : std::uint8_t { stamp = 0, transfer = 1, text = 2 };
 
 inline void enable(Interrupt interrupt, Priority priority) {
     const auto number = static_cast<std::uint32_t>(interrupt);
-    const Register<NvicMap> levels = Register<NvicMap>("IPR#")[number / 4];
-    const Field<NvicMap> level{levels, static_cast<std::uint8_t>(8 * (number % 4)), 8};
+    const auto level = Field<NvicMap>("IPR#.IPR_N#").in_register(number / 4)[number % 4];
     nvic.set(level, static_cast<std::uint32_t>(priority) << 4U);
     nvic.write(Register<NvicMap>("ISER#")[number / 32], 1U << (number % 32));
 }

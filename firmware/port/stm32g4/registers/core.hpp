@@ -16,7 +16,7 @@ struct NvicMap {
         {"IPR#", 0x300, 26},
     });
     static constexpr auto kFields = std::to_array<FieldEntry>({
-        {"IPR0.IPR_N#", 0, 8, 4},  // one byte an interrupt, in every IPR
+        {"IPR#.IPR_N#", 0, 8, 4},  // one byte an interrupt
     });
 };
 inline constexpr Peripheral<NvicMap> nvic{"NVIC"};

@@ -54,11 +54,13 @@ struct Register {
     std::uint16_t offset;
 
     consteval Register(const char* name) : offset(offset_of<Map>(name)) {}
-    constexpr explicit Register(std::uint16_t register_offset) : offset(register_offset) {}
     /// The n-th of several.
     [[nodiscard]] constexpr Register operator[](std::uint32_t n) const {
         return Register(static_cast<std::uint16_t>(offset + 4 * n));
     }
+
+    /// For `operator[]` alone; GCC 12 refuses it where it is private.
+    constexpr explicit Register(std::uint16_t register_offset) : offset(register_offset) {}
 };
 
 /// Some bits of a register.
@@ -69,8 +71,6 @@ struct Field {
     std::uint8_t width;
 
     consteval Field(const char* name) : Field(entry_of(name), name) {}
-    constexpr Field(Register<Map> where, std::uint8_t bit, std::uint8_t bits)
-        : in(where), lsb(bit), width(bits) {}
 
     [[nodiscard]] constexpr std::uint32_t mask() const {
         return (width >= 32 ? 0xFFFF'FFFFU : (1U << width) - 1U) << lsb;
@@ -84,8 +84,12 @@ struct Field {
     [[nodiscard]] constexpr Field operator[](std::uint32_t n) const {
         return Field(in, static_cast<std::uint8_t>(lsb + n * width), width);
     }
+    /// The same bits in the n-th of several registers.
+    [[nodiscard]] constexpr Field in_register(std::uint32_t n) const { return Field(in[n], lsb, width); }
 
   private:
+    constexpr Field(Register<Map> where, std::uint8_t bit, std::uint8_t bits)
+        : in(where), lsb(bit), width(bits) {}
     consteval Field(const FieldEntry& entry, std::string_view name)
         : in(offset_of<Map>(name.substr(0, name.find('.')))), lsb(entry.lsb), width(entry.width) {}
 
