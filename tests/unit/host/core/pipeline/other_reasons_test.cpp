@@ -92,8 +92,8 @@ const std::vector<Case<FrameReason>>& frame_cases() {
          [](Scene& s) { s.bus.send(4.0, forged(wire::Range{good_reading()}, kLeft, 0, 3, 2)); }},
         {R::nonzero_padding,  // the bit before RANGE_AUX's checksum
          [](Scene& s) { s.bus.send(4.0, forged(wire::RangeAux{}, kLeft, 47, 1, 1)); }},
-        {R::invalid_field,  // heartbeat: state 7
-         [](Scene& s) { s.bus.send(4.0, forged(wire::Heartbeat{}, kLeft, 3, 3, 7)); }},
+        {R::invalid_field,  // heartbeat: reset cause 6
+         [](Scene& s) { s.bus.send(4.0, forged(wire::Heartbeat{}, kLeft, 6, 3, 6)); }},
         {R::unknown_node, message(wire::Range{good_reading()}, 50)},
         {R::unknown_sensor, message(wire::RangeAux{.sensor = 9, .sequence = 0, .signal = {}}, kLeft)},
         {R::for_nodes, message(wire::Command{}, kLeft)},
