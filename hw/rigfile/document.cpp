@@ -11,6 +11,8 @@
 #include <sstream>
 #include <utility>
 
+#include "hw/rigfile/bounded_text.hpp"
+
 namespace octoskin::rig {
 namespace {
 
@@ -24,9 +26,7 @@ std::string read_text(const std::filesystem::path& file) {
     if (!stream || std::filesystem::is_directory(file, error)) {
         throw Fault{{file, 0, "", "cannot be opened: give the path of an existing, readable YAML file"}};
     }
-    std::string text(kFileBytesMax + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
+    std::string text = read_bounded(stream, kFileBytesMax);
     if (text.size() > kFileBytesMax) {
         throw Fault{
             {file, 0, "", fmt::format("expected a file of at most {} bytes, found more", kFileBytesMax)}};

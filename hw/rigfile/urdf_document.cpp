@@ -8,6 +8,8 @@
 #include <fstream>
 #include <utility>
 
+#include "hw/rigfile/bounded_text.hpp"
+
 namespace octoskin::rig {
 namespace {
 
@@ -39,7 +41,7 @@ Result<std::string, RigError> read_text(const std::filesystem::path& file) {
         return unexpected(
             RigError{file, 0, "", "cannot be opened: give the path of an existing, readable URDF file"});
     }
-    std::string text(std::istreambuf_iterator<char>(stream), {});
+    std::string text = read_bounded(stream, kFileBytesMax);
     if (text.size() > kFileBytesMax) {
         return unexpected(
             RigError{file, 0, "", fmt::format("expected at most {} bytes, found more", kFileBytesMax)});
