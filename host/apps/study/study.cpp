@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <fstream>
 #include <mutex>
-#include <optional>
-#include <thread>
 
 #include "host/apps/evaluation/survey.hpp"
 #include "host/apps/report/report.hpp"
 #include "host/apps/study/configuration.hpp"
+#include "host/apps/study/parallel.hpp"
 #include "host/apps/study/part_timer.hpp"
 #include "host/apps/study/seed_study.hpp"
 #include "host/apps/study/study_pictures.hpp"
@@ -62,7 +60,7 @@ Result<std::vector<StudyConfiguration>, AppError> find_configurations(const std:
     return found;
 }
 
-/// Works through the seeds with `jobs` threads; the first error stops the rest.
+/// Studies every seed, `jobs` of them at once.
 class SeedWorkers {
   public:
     SeedWorkers(const StudyRequest& request, const std::vector<StudyConfiguration>& configurations,
@@ -70,43 +68,19 @@ class SeedWorkers {
         : request_(request),
           configurations_(configurations),
           ground_{ground.world, ground.survey, ground.truth},
-          say_(say) {
-        outcomes_.resize(request.seeds.size());
-    }
+          say_(say) {}
 
     Result<std::vector<SeedOutcome>, AppError> run() {
-        {
-            std::vector<std::jthread> threads;
-            const std::size_t count =
-                std::min<std::size_t>(std::max(request_.jobs, 1U), request_.seeds.size());
-            for (std::size_t i = 0; i < count; ++i) threads.emplace_back([this] { work(); });
-        }
-        if (error_) return unexpected(*error_);
-        std::vector<SeedOutcome> done;
-        for (auto& outcome : outcomes_) done.push_back(std::move(*outcome));
-        return done;
+        return work_in_parallel<SeedOutcome, AppError>(
+            request_.seeds.size(), request_.jobs, [this](std::size_t index) {
+                return study_seed(request_for(index), ground_, [this, index](const std::string& line) {
+                    const std::lock_guard lock(say_mutex_);
+                    say_(fmt::format("seed {}: {}", request_.seeds[index], line));
+                });
+            });
     }
 
   private:
-    void work() {
-        for (;;) {
-            const std::size_t index = next_++;
-            if (index >= request_.seeds.size() || is_failed_) return;
-            const std::uint64_t seed = request_.seeds[index];
-            auto outcome = study_seed(request_for(index), ground_, [this, seed](const std::string& line) {
-                const std::lock_guard lock(mutex_);
-                say_(fmt::format("seed {}: {}", seed, line));
-            });
-            const std::lock_guard lock(mutex_);
-            if (outcome) {
-                outcomes_[index].emplace(std::move(*outcome));
-            } else if (!error_) {
-                error_ = outcome.error();
-                is_failed_ = true;
-            }
-        }
-    }
-
     SeedRequest request_for(std::size_t index) const {
         const bool is_first = index == 0;
         const std::string seed = std::to_string(request_.seeds[index]);
@@ -133,11 +107,7 @@ class SeedWorkers {
     const std::vector<StudyConfiguration>& configurations_;
     StudyGround ground_;
     const Say& say_;
-    std::mutex mutex_;
-    std::atomic<std::size_t> next_{0};
-    std::atomic<bool> is_failed_{false};
-    std::optional<AppError> error_;
-    std::vector<std::optional<SeedOutcome>> outcomes_;
+    std::mutex say_mutex_;
 };
 
 Status<AppError> write_text(const fs::path& file, const std::string& text) {
