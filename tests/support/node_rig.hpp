@@ -101,9 +101,9 @@ class NodeRig final : private node::XshutLines,
     [[nodiscard]] const std::vector<TrueRange>& truth(std::size_t sensor) const {
         return sensors_.at(sensor)->truth;
     }
-    [[nodiscard]] const std::vector<wire::CanFrame>& frames() const noexcept { return frames_; }
+    [[nodiscard]] const std::deque<wire::CanFrame>& frames() const noexcept { return frames_; }
     /// What was said on the bus, decoded; the host's part too.
-    [[nodiscard]] const std::vector<SaidMessage>& said() const noexcept { return said_; }
+    [[nodiscard]] const std::deque<SaidMessage>& said() const noexcept { return said_; }
     [[nodiscard]] std::vector<SaidReading> readings_of(std::uint8_t sensor) const;
     [[nodiscard]] std::optional<wire::SensorHealth> last_health(std::uint8_t sensor) const;
     [[nodiscard]] const std::vector<XshutEvent>& xshut_events() const noexcept { return xshut_events_; }
@@ -159,8 +159,9 @@ class NodeRig final : private node::XshutLines,
     node::CanTransmitter* controller_ = nullptr;
     node::CanTransmitter* host_ = nullptr;
     std::unique_ptr<node::Node> node_;
-    std::vector<wire::CanFrame> frames_;
-    std::vector<SaidMessage> said_;
+    // These grow with the time simulated. A deque never needs the memory twice, which counts on the target.
+    std::deque<wire::CanFrame> frames_;
+    std::deque<SaidMessage> said_;
     std::vector<XshutEvent> xshut_events_;
     std::vector<bool> lit_;
     std::vector<sim::SimTime> feeds_;

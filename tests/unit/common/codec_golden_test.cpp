@@ -50,7 +50,7 @@ constexpr std::array<Golden, 22> kGolden = {{
 
 std::string text_of(const wire::CanFrame& frame) {
     std::array<char, 8> buffer{};
-    std::snprintf(buffer.data(), buffer.size(), "%03X#", frame.can_id);
+    std::snprintf(buffer.data(), buffer.size(), "%03X#", static_cast<unsigned>(frame.can_id));
     std::string text = buffer.data();
     for (const std::uint8_t byte : frame.payload()) {
         std::snprintf(buffer.data(), buffer.size(), "%02X", byte);
