@@ -24,6 +24,11 @@ if(OCTOSKIN_COVERAGE)
     target_link_options(octoskin_compile_options INTERFACE --coverage)
 endif()
 if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
+    # Simulation and tests, which no board runs outside an emulator, may throw.
+    set(may_throw $<IN_LIST:$<TARGET_PROPERTY:OCTOSKIN_ROOM>,hw/sim$<SEMICOLON>tests>)
     target_compile_options(octoskin_compile_options INTERFACE
-        -fno-exceptions -fno-rtti -fno-threadsafe-statics -ffunction-sections -fdata-sections -fstack-usage)
+        $<$<NOT:${may_throw}>:-fno-exceptions> -fno-rtti -fno-threadsafe-statics
+        -ffunction-sections -fdata-sections -fstack-usage
+        # Says only that arguments are passed otherwise than before GCC 7.1; everything here is one compiler's work.
+        -Wno-psabi)
 endif()

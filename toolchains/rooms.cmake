@@ -3,10 +3,13 @@
 #   octoskin_library(<name> ROOM <room> SOURCES a.cpp ... HEADERS a.hpp ... [DEPENDS octoskin::x ...]
 #                    [PRIVATE_DEPENDS octoskin::y ...] [EXTERNAL lib ...] [PRIVATE_EXTERNAL lib ...])
 #   octoskin_program(<name> ROOM <room> SOURCES ... [DEPENDS ...] [EXTERNAL ...])
-#   octoskin_test(<name> LABELS unit SOURCES ... DEPENDS ... [EXTERNAL ...])
+#   octoskin_test(<name> LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...])
 #
 # DEPENDS names our own targets only; EXTERNAL names third-party ones. Includes are written from the
 # repository's root ("common/wire/codec.hpp"), so every include line says which room it reaches into.
+#
+# Built for a board (preset target-tests), a test program is left out if it depends on a library that is not built for
+# one, and of the others the HOST_SOURCES, which need an operating system. Each is named when configuring.
 
 set(OCTOSKIN_MAY_USE_common common)
 set(OCTOSKIN_MAY_USE_firmware/drivers common firmware/drivers)
@@ -100,9 +103,22 @@ function(octoskin_program name)
 endfunction()
 
 function(octoskin_test name)
-    cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS;SOURCES;DEPENDS;EXTERNAL" ${ARGN})
+    cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS;SOURCES;HOST_SOURCES;DEPENDS;EXTERNAL" ${ARGN})
     if(NOT ARG_TIMEOUT)
         set(ARG_TIMEOUT 60)
+    endif()
+    if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
+        foreach(dependency IN LISTS ARG_DEPENDS ARG_EXTERNAL)
+            if(NOT TARGET ${dependency})
+                message(STATUS "Not on the target: ${name}, for it needs ${dependency}")
+                return()
+            endif()
+        endforeach()
+        foreach(source IN LISTS ARG_HOST_SOURCES)
+            message(STATUS "Not on the target: ${source} of ${name}, for it needs an operating system")
+        endforeach()
+    else()
+        list(APPEND ARG_SOURCES ${ARG_HOST_SOURCES})
     endif()
     octoskin_check_room(${name} tests ${ARG_DEPENDS})
     add_executable(${name} ${ARG_SOURCES})
@@ -111,6 +127,7 @@ function(octoskin_test name)
     target_compile_definitions(${name} PRIVATE OCTOSKIN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     target_link_libraries(${name} PRIVATE octoskin_compile_options ${ARG_DEPENDS} ${ARG_EXTERNAL}
         GTest::gmock GTest::gtest_main)
+    set_target_properties(${name} PROPERTIES OCTOSKIN_ROOM tests)
     if("unit" IN_LIST ARG_LABELS)
         add_dependencies(octoskin_unit_tests ${name})
     endif()
