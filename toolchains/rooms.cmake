@@ -8,8 +8,8 @@
 # DEPENDS names our own targets only; EXTERNAL names third-party ones. Includes are written from the
 # repository's root ("common/wire/codec.hpp"), so every include line says which room it reaches into.
 #
-# Built for a board (preset target-tests), a test program is left out if it depends on a library that is not built for
-# one, and of the others the HOST_SOURCES, which need an operating system. Each is named when configuring.
+# Built for a board (preset target-tests), a test program or a library of tests is left out if it depends on a library that
+# is not built for one, and of the others the HOST_SOURCES, which need an operating system. Each is named when configuring.
 
 set(OCTOSKIN_MAY_USE_common common)
 set(OCTOSKIN_MAY_USE_firmware/drivers common firmware/drivers)
@@ -64,10 +64,31 @@ function(octoskin_check_includes target room)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
 endfunction()
 
+# TRUE and a message if this is a build for a board and one of the dependencies is not built for it.
+function(octoskin_is_left_out result target)
+    set(${result} FALSE PARENT_SCOPE)
+    if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
+        foreach(dependency IN LISTS ARGN)
+            if(NOT TARGET ${dependency})
+                message(STATUS "Not on the target: ${target}, for it needs ${dependency}")
+                set(${result} TRUE PARENT_SCOPE)
+                return()
+            endif()
+        endforeach()
+    endif()
+endfunction()
+
 function(octoskin_library name)
     cmake_parse_arguments(ARG "" "ROOM" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS;EXTERNAL;PRIVATE_EXTERNAL" ${ARGN})
     if(ARG_UNPARSED_ARGUMENTS)
         message(FATAL_ERROR "octoskin_library(${name}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
+    endif()
+    if(ARG_ROOM STREQUAL "tests")
+        octoskin_is_left_out(is_left_out octoskin::${name}
+            ${ARG_DEPENDS} ${ARG_PRIVATE_DEPENDS} ${ARG_EXTERNAL} ${ARG_PRIVATE_EXTERNAL})
+        if(is_left_out)
+            return()
+        endif()
     endif()
     octoskin_check_room(octoskin::${name} ${ARG_ROOM} ${ARG_DEPENDS} ${ARG_PRIVATE_DEPENDS})
     list(TRANSFORM ARG_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE headers)
@@ -107,13 +128,11 @@ function(octoskin_test name)
     if(NOT ARG_TIMEOUT)
         set(ARG_TIMEOUT 60)
     endif()
+    octoskin_is_left_out(is_left_out ${name} ${ARG_DEPENDS} ${ARG_EXTERNAL})
+    if(is_left_out)
+        return()
+    endif()
     if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
-        foreach(dependency IN LISTS ARG_DEPENDS ARG_EXTERNAL)
-            if(NOT TARGET ${dependency})
-                message(STATUS "Not on the target: ${name}, for it needs ${dependency}")
-                return()
-            endif()
-        endforeach()
         foreach(source IN LISTS ARG_HOST_SOURCES)
             message(STATUS "Not on the target: ${source} of ${name}, for it needs an operating system")
         endforeach()
