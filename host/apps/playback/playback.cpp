@@ -1,11 +1,10 @@
 #include "host/apps/playback/playback.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include "common/wire/codec.hpp"
+#include "host/apps/playback/log_survey.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/io/candump/log_source.hpp"
 #include "host/io/openni2/oni_reader.hpp"
@@ -38,38 +37,24 @@ Result<candump::LogReader, AppError> open_reader(const RecordingPaths& recording
     return std::move(*reader);
 }
 
-/// The interface that the rig is on: the first that carries a heartbeat of one of its nodes. A log may hold
-/// several, and the same bus twice. Empty if none does: then every frame is looked at, and counted for what
-/// it is.
-Result<std::string, AppError> interface_of(const RecordingPaths& recording, const HostRig& rig) {
+/// Reads the log through once before it is replayed: to its first START, or to its end.
+Result<LogSurvey, AppError> survey_log(const RecordingPaths& recording, const HostRig& rig) {
     auto reader = open_reader(recording);
     if (!reader) return unexpected(reader.error());
-    for (;;) {
+    LogSurvey survey(rig);
+    while (!survey.is_complete()) {
         const auto entry = reader->next();
         if (!entry) return fail(ExitCode::bad_data, entry.error().message());
-        if (!*entry) return std::string();
-        const auto decoded = wire::decode((*entry)->frame);
-        if (!decoded || !std::holds_alternative<wire::Heartbeat>(decoded->message)) continue;
-        const bool is_of_rig = std::any_of(rig.nodes.begin(), rig.nodes.end(), [&](const HostNode& node) {
-            return node.node_id == decoded->node_id;
-        });
-        if (is_of_rig) return (*entry)->interface;
+        if (!*entry) break;
+        survey.take(**entry);
     }
+    return survey;
 }
 
 Result<candump::LogSource, AppError> open_log(const RecordingPaths& recording, const std::string& interface) {
     auto reader = open_reader(recording);
     if (!reader) return unexpected(reader.error());
     return candump::LogSource(std::move(*reader), interface);
-}
-
-/// Whether the map begins at a START mark: read through once before.
-Result<MapBegin, AppError> begin_of(const RecordingPaths& recording, const std::string& interface) {
-    auto log = open_log(recording, interface);
-    if (!log) return unexpected(log.error());
-    const auto marked = has_start_mark(*log);
-    if (!marked) return fail(ExitCode::bad_data, marked.error().what);
-    return *marked ? MapBegin::start_mark : MapBegin::first_usable;
 }
 
 /// The recording's depth frames. Not being able to read them is a camera fault: the ranges are mapped all the
@@ -162,16 +147,14 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
     auto setup = read_setup(request);
     if (!setup) return unexpected(setup.error());
     const HostRig& rig = setup->host.rig;
-    const auto interface = interface_of(request.recording, rig);
-    if (!interface) return unexpected(interface.error());
-    const auto begin = begin_of(request.recording, *interface);
-    if (!begin) return unexpected(begin.error());
-    auto log = open_log(request.recording, *interface);
+    const auto survey = survey_log(request.recording, rig);
+    if (!survey) return unexpected(survey.error());
+    auto log = open_log(request.recording, survey->interface());
     if (!log) return unexpected(log.error());
     DepthInput depth = open_depth(request.recording);
     PipelineConfig config;
     config.maps = request.maps;
-    config.begin = *begin;
+    config.begin = survey->begin();
     auto pipeline = Pipeline::build(rig, std::move(setup->host.robot), request.mapping, config);
     if (!pipeline) {
         return fail(ExitCode::bad_config, request.recording.rig().string() + ": the robot has no '" +
@@ -187,6 +170,7 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
     if (const DepthStage* stage = playback.pipeline.depth_stage())
         playback.accounts.push_back(pixel_table(*stage));
     playback.notes = take_notes(playback.pipeline, rig);
+    if (auto warning = survey->warning()) playback.warnings.push_back(std::move(*warning));
     find_warnings(*meta, rig, depth, playback);
     return playback;
 }

@@ -10,11 +10,6 @@ namespace {
 
 /// A depth frame this far in the future has a wrong epoch.
 constexpr Nanoseconds kDepthAheadMax{1'000'000'000};
-/// A mark is sent at about the time that it names; one further from "now" is damaged or another host's.
-constexpr Nanoseconds kMarkApartMax{1'000'000'000};
-/// "Now" is unknown for two exchanges at most; after five seconds without any, nothing is mapped anyhow.
-constexpr Nanoseconds kMarkWaitMax{5'000'000'000};
-constexpr std::size_t kMarksWaitingMax = 16;
 /// Far less than any timing budget: two readings of one source this close are one and the same, placed by two
 /// states of the clock map.
 constexpr Nanoseconds kSameReading{5'000'000};
@@ -85,11 +80,11 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     assert(!is_finished_);
     accounts_.frames.take_in();
     FrameOutcome outcome = intake_.on_frame(frame, stamp);
-    const std::optional<bool> is_taken = outcome.mark ? take_mark(*outcome.mark) : true;
-    if (is_taken && !*is_taken) {
+    const auto fate = outcome.mark ? marks_.take(*outcome.mark, now()) : MarkGate::Fate::taken;
+    if (fate == MarkGate::Fate::ignored) {
         outcome.rejected = FrameReason::mark_ignored;
     }
-    if (is_taken) {
+    if (fate != MarkGate::Fate::waits) {
         outcome.rejected ? accounts_.frames.reject(*outcome.rejected) : accounts_.frames.use();
     }
     queue(outcome);
@@ -100,25 +95,9 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     }
 }
 
-std::optional<bool> Pipeline::take_mark(const wire::Mark& mark) {
-    const auto now_known = now();
-    if (now_known) {
-        const Nanoseconds apart = MarkWindow::time_of(mark) - *now_known;
-        return std::chrono::abs(apart) <= kMarkApartMax && marks_.take(mark);
-    }
-    if (marks_waiting_.size() == kMarksWaitingMax) {
-        return false;
-    }
-    marks_waiting_.push_back(mark);
-    return std::nullopt;
-}
-
 void Pipeline::settle_marks(HostTime now) {
-    for (const wire::Mark& mark : std::exchange(marks_waiting_, {})) {
-        const Nanoseconds ahead = MarkWindow::time_of(mark) - now;
-        const bool is_plausible = ahead <= kMarkApartMax && ahead >= -(kMarkApartMax + kMarkWaitMax);
-        is_plausible&& marks_.take(mark) ? accounts_.frames.use()
-                                         : accounts_.frames.reject(FrameReason::mark_ignored);
+    for (const MarkGate::Settled& settled : marks_.settle(now)) {
+        settled.is_taken ? accounts_.frames.use() : accounts_.frames.reject(FrameReason::mark_ignored);
     }
 }
 
@@ -267,7 +246,7 @@ void Pipeline::finish_can() {
 }
 
 void Pipeline::finish() {
-    for (; !marks_waiting_.empty(); marks_waiting_.pop_back()) {
+    for (std::size_t i = marks_.give_up(); i > 0; --i) {
         accounts_.frames.reject(FrameReason::mark_ignored);
     }
     release_joints(kEndOfTime);
@@ -288,7 +267,7 @@ bool Pipeline::is_camera_stale() const {
 
 std::vector<AccountTable> Pipeline::account_tables() const {
     const std::uint64_t samples_open = is_finished_ ? 0 : intake_.joint_samples_pending();
-    return {tabulate("CAN frames", accounts_.frames, marks_waiting_.size()),
+    return {tabulate("CAN frames", accounts_.frames, marks_.waiting()),
             tabulate("readings", accounts_.readings, readings_waiting_.size()),
             tabulate("joint samples", accounts_.joint_samples, joints_waiting_.size() + samples_open),
             tabulate("depth frames", accounts_.depth_frames, depth_waiting_.size())};

@@ -21,6 +21,7 @@
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/pipeline/depth_stage.hpp"
 #include "host/core/pipeline/map_set.hpp"
+#include "host/core/pipeline/mark_gate.hpp"
 #include "host/core/pipeline/mark_window.hpp"
 #include "host/core/pipeline/reorder_buffer.hpp"
 #include "host/core/pipeline/robot_tracker.hpp"
@@ -92,8 +93,6 @@ class Pipeline {
     Pipeline(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
              const PipelineConfig& config);
 
-    /// Empty if the mark has to wait until "now" is known.
-    [[nodiscard]] std::optional<bool> take_mark(const wire::Mark& mark);
     void settle_marks(HostTime now);
     void queue(const FrameOutcome& outcome);
     void queue(const RangeMeasurement& measurement);
@@ -111,8 +110,7 @@ class Pipeline {
 
     PipelineConfig config_;
     CanIntake intake_;
-    MarkWindow marks_;
-    std::vector<wire::Mark> marks_waiting_;  ///< for "now" to be known
+    MarkGate marks_;
     ReorderBuffer<JointMeasurement> joints_waiting_;
     ReorderBuffer<RangeMeasurement> readings_waiting_;
     ReorderBuffer<DepthFrame> depth_waiting_;

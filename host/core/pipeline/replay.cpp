@@ -1,12 +1,6 @@
 #include "host/core/pipeline/replay.hpp"
 
-#include <algorithm>
-#include <chrono>
 #include <utility>
-#include <variant>
-#include <vector>
-
-#include "common/wire/codec.hpp"
 
 namespace octoskin {
 namespace {
@@ -51,13 +45,6 @@ class DepthFeed {
     std::optional<DepthFrame> next_;
 };
 
-/// Three exchanges: without "now" the map would not know the mark's time either.
-constexpr Nanoseconds kMarkNearExchange{3'000'000'000};
-
-bool is_near(HostTime mark, HostTime exchange) {
-    return std::chrono::abs(mark - exchange) <= kMarkNearExchange;
-}
-
 std::optional<StampedFrame> next_frame(CanSource& can, ReplayOutcome& outcome) {
     Result<std::optional<StampedFrame>, CanSourceError> frame = can.next();
     if (frame) {
@@ -91,38 +78,6 @@ ReplayOutcome replay(Pipeline& pipeline, CanSource& can, DepthSource* depth, con
         report(progress);
     }
     return outcome;
-}
-
-Result<bool, CanSourceError> has_start_mark(CanSource& can) {
-    std::optional<HostTime> exchange;
-    std::vector<HostTime> starts;  // before the first exchange
-    while (true) {                 // ends with the source
-        const auto entry = can.next();
-        if (!entry) {
-            return unexpected(entry.error());
-        }
-        if (!*entry) {
-            return false;
-        }
-        const auto decoded = wire::decode((*entry)->frame);
-        if (!decoded) {
-            continue;
-        }
-        if (const auto* follow_up = std::get_if<wire::FollowUp>(&decoded->message)) {
-            exchange = HostTime{static_cast<std::int64_t>(follow_up->host_time_us) * 1000};
-        }
-        const auto* mark = std::get_if<wire::Mark>(&decoded->message);
-        if (mark != nullptr && mark->kind == wire::MarkKind::start) {
-            starts.push_back(MarkWindow::time_of(*mark));
-        }
-        const auto is_plausible = [&](HostTime start) { return is_near(start, *exchange); };
-        if (exchange && std::ranges::any_of(starts, is_plausible)) {
-            return true;
-        }
-        if (exchange) {
-            starts.clear();
-        }
-    }
 }
 
 }  // namespace octoskin

@@ -39,8 +39,4 @@ inline constexpr std::uint64_t kReplayReportEvery = 1000;
 [[nodiscard]] ReplayOutcome replay(Pipeline& pipeline, CanSource& can, DepthSource* depth,
                                    const ReplayReport& report = {});
 
-/// Whether a START mark is among the frames, and names a time near an exchange of the host's clock; reads
-/// until it finds one. Then `PipelineConfig::begin` should say `start_mark`.
-[[nodiscard]] Result<bool, CanSourceError> has_start_mark(CanSource& can);
-
 }  // namespace octoskin

@@ -158,6 +158,24 @@ TEST_F(BadInput, a_recording_without_joints_maps_nothing_and_says_why) {
     EXPECT_THAT(said.output, HasSubstr("nothing came into the map"));
 }
 
+TEST_F(BadInput, a_start_mark_more_than_a_second_off_is_told_and_leaves_no_map_empty) {
+    record_short("rec");
+    // The recording's START, sent 1.25 s later than the time that it names: MARK of the host is 0x100.
+    ASSERT_EQ(
+        run("awk '/ 100#/ && !seen { held = $3; seen = 1; match($1, /[0-9.]+/); due = "
+            "substr($1, RSTART, RLENGTH) + 1.25; next } held { match($1, /[0-9.]+/); if (substr($1, RSTART, "
+            "RLENGTH) + 0 >= due) { print $1, $2, held; held = \"\" } } { print }' " +
+            path("rec/can.log") + " > " + path("moved.log") + " && mv " + path("moved.log") + " " +
+            path("rec/can.log"))
+            .exit_code,
+        0);
+    const std::string map = replayed_map();
+    EXPECT_GT(map.size(), 1000U);
+    EXPECT_THAT(said_, HasSubstr("mark_ignored"));
+    EXPECT_THAT(said_, testing::ContainsRegex("START not used.* -1\\.2[0-9]+ s from when it came"));
+    EXPECT_THAT(said_, HasSubstr("the map begins at the first usable reading"));
+}
+
 TEST_F(BadInput, a_node_with_another_configuration_is_refused_by_name) {
     record_short("rec");
     // Another period on node 1's sensors: another node_hash than the one that the recording's nodes told.

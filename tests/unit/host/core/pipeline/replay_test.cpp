@@ -94,22 +94,6 @@ TEST(Replay, needs_no_depth_source) {
     EXPECT_EQ(pipeline.accounts().readings.used(), 10U);
 }
 
-TEST(Replay, finds_a_start_mark_and_nothing_that_looks_like_one) {
-    const auto has_start = [](const wire::Message& message, wire::NodeId node) {
-        ScriptedBus bus;
-        bus.exchange(0.0, {1});
-        bus.send(1.0, message, node);
-        ScriptedSource can(bus.frames());
-        return has_start_mark(can).value();
-    };
-    EXPECT_TRUE(has_start(wire::Mark{wire::MarkKind::start, 1}, wire::kHostId));
-    EXPECT_FALSE(has_start(wire::Mark{wire::MarkKind::stop, 1}, wire::kHostId));
-    EXPECT_FALSE(has_start(wire::Sync{3}, wire::kHostId));
-    EXPECT_FALSE(has_start(wire::Mark{wire::MarkKind::start, (1ULL << 48) - 1}, wire::kHostId)) << "damaged";
-    FailingCan broken({});
-    EXPECT_FALSE(has_start_mark(broken).has_value());
-}
-
 TEST(Replay, of_a_log_twice_in_succession_gives_the_map_of_once) {
     const Scene scene = good_scene();
     const RunResult once = run(scene);

@@ -1,0 +1,51 @@
+#include "host/apps/playback/log_survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <variant>
+
+#include "common/wire/codec.hpp"
+
+namespace octoskin {
+
+bool LogSurvey::is_heartbeat_of_rig(const wire::CanFrame& frame) const {
+    const auto decoded = wire::decode(frame);
+    return decoded && std::holds_alternative<wire::Heartbeat>(decoded->message) &&
+           std::ranges::any_of(rig_.nodes,
+                               [&](const HostNode& node) { return node.node_id == decoded->node_id; });
+}
+
+void LogSurvey::take(const candump::LogEntry& entry) {
+    if (interface_ && entry.interface != *interface_) return;
+    const bool is_chosen = interface_ || is_heartbeat_of_rig(entry.frame);
+    if (is_chosen || scans_.size() < kInterfacesMax) scans_.try_emplace(entry.interface, rig_);
+    if (const auto scan = scans_.find(entry.interface); scan != scans_.end())
+        scan->second.on_frame(entry.frame, entry.stamp);
+    if (is_chosen) {
+        interface_ = entry.interface;
+    } else {
+        all_.on_frame(entry.frame, entry.stamp);
+    }
+}
+
+std::optional<std::string> LogSurvey::warning() const {
+    const StartScan& scan = chosen();
+    if (scan.has_start()) return std::nullopt;
+    if (scan.ignored().count > 0) {
+        return fmt::format(
+            "can.log: {} START not used (mark_ignored), the last because it names a time {:+.3f} s from when "
+            "it "
+            "came, and {} s are allowed; the map begins at the first usable reading",
+            scan.ignored().count, 1e-9 * static_cast<double>(scan.ignored().ahead.count()),
+            MarkGate::kApartMax.count() / 1'000'000'000);
+    }
+    if (scan.waiting() > 0) {
+        return "can.log: a START or STOP not used (mark_ignored): no SYNC with its FOLLOW_UP tells what time "
+               "it "
+               "was; the map begins at the first usable reading";
+    }
+    return std::nullopt;
+}
+
+}  // namespace octoskin
