@@ -10,13 +10,14 @@ string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}
 string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_MINSIZEREL "${CMAKE_CXX_FLAGS_MINSIZEREL}")
 
-set(OCTOSKIN_SANITIZE "" CACHE STRING "Sanitizers, as GCC's -fsanitize= takes them")
+set(OCTOSKIN_SANITIZE "" CACHE STRING "Sanitizers, as -fsanitize= takes them")
+option(OCTOSKIN_LIBFUZZER "Link the fuzz targets with clang's libFuzzer; needs fuzzer-no-link among the sanitizers" OFF)
 option(OCTOSKIN_COVERAGE "Instrument for gcov" OFF)
 if(OCTOSKIN_SANITIZE)
     target_compile_options(octoskin_compile_options INTERFACE
         -fsanitize=${OCTOSKIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
         # GCC 12's flow analysis misfires on instrumented code (std::regex, fmt); the plain builds keep the warning.
-        -Wno-maybe-uninitialized)
+        $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     target_link_options(octoskin_compile_options INTERFACE -fsanitize=${OCTOSKIN_SANITIZE})
 endif()
 if(OCTOSKIN_COVERAGE)

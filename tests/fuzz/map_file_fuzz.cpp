@@ -1,0 +1,84 @@
+// A .ot or .bt map: what our reader accepts, OctoMap's reader understands the same way, and our writers
+// bring back.
+#include <octomap/OcTree.h>
+
+#include <cassert>
+#include <memory>
+#include <sstream>
+
+#include "host/io/mapfile/octomap_reader.hpp"
+#include "host/io/mapfile/octomap_writer.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+
+namespace octoskin {
+namespace {
+
+MapReadLimits limits() {
+    MapReadLimits limits;
+    limits.map.memory_max_mib = 4;
+    limits.nodes_max = 100'000;
+    return limits;
+}
+
+std::unique_ptr<octomap::OcTree> read_with_octomap(std::string_view bytes) {
+    std::istringstream stream{std::string(bytes)};
+    if (!bytes.starts_with("# Octomap OcTree binary file")) {
+        std::unique_ptr<octomap::AbstractOcTree> tree(octomap::AbstractOcTree::read(stream));
+        return std::unique_ptr<octomap::OcTree>(dynamic_cast<octomap::OcTree*>(tree.release()));
+    }
+    auto tree = std::make_unique<octomap::OcTree>(1.0);
+    return tree->readBinary(stream) ? std::move(tree) : nullptr;
+}
+
+/// The oracle: every leaf of OctoMap's tree, at its lowest and highest voxel.
+void compare_with_octomap(const FusedMap& map, std::string_view bytes) {
+    const auto tree = read_with_octomap(bytes);
+    assert(tree);
+    const bool is_binary = bytes.starts_with("# Octomap OcTree binary file");
+    std::size_t voxels = 0;
+    for (auto leaf = tree->begin_leafs(); leaf != tree->end_leafs(); ++leaf) {
+        const unsigned height = tree->getTreeDepth() - leaf.getDepth();
+        voxels += std::size_t{1} << (3 * height);
+        const octomap::OcTreeKey lowest = leaf.getIndexKey();
+        const auto last = static_cast<std::uint16_t>((1U << height) - 1);
+        const VoxelKey ends[] = {
+            {lowest[0], lowest[1], lowest[2]},
+            {static_cast<std::uint16_t>(lowest[0] + last), static_cast<std::uint16_t>(lowest[1] + last),
+             static_cast<std::uint16_t>(lowest[2] + last)}};
+        for (const VoxelKey& key : ends) {
+            const auto log_odds = map.log_odds(key);
+            assert(log_odds);
+            assert(is_binary ? (*log_odds > 0.0F) == tree->isNodeOccupied(*leaf)
+                             : *log_odds == leaf->getLogOdds());
+        }
+    }
+    assert(voxels == map.known_voxels());
+}
+
+void check_written(const FusedMap& map) {
+    const std::string ot = encode_ot(map);
+    MapReadLimits ours = limits();
+    ours.map.memory_max_mib = 8;  // the same voxels in another order may need more room
+    const auto from_ot = decode_octomap(ot, ours);
+    assert(from_ot && from_ot->known_voxels() == map.known_voxels());
+    assert(encode_ot(*from_ot) == ot);
+    const std::string bt = encode_bt(map);
+    const auto from_bt = decode_octomap(bt, ours);
+    assert(from_bt && from_bt->known_voxels() == map.known_voxels());
+    assert(encode_bt(*from_bt) == bt);
+}
+
+}  // namespace
+}  // namespace octoskin
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view bytes = octoskin::fuzz::text_of({data, size});
+    const auto map = octoskin::decode_octomap(bytes, octoskin::limits());
+    if (!map) {
+        assert(!map.error().what.empty());
+        return 0;
+    }
+    octoskin::compare_with_octomap(*map, bytes);
+    octoskin::check_written(*map);
+    return 0;
+}
