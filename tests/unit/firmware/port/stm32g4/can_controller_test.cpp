@@ -1,0 +1,258 @@
+#include "firmware/port/stm32g4/can_controller.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <vector>
+
+#include "tests/support/stm32g4/address_space.hpp"
+
+namespace octoskin::stm32g4 {
+namespace {
+
+using wire::CanFrame;
+
+constexpr std::uint32_t kClock = 80'000'000;
+constexpr Address kBase = 0x4000'6400;
+constexpr Address kCccr = kBase + 0x18;
+constexpr Address kPsr = kBase + 0x44;
+constexpr Address kIr = kBase + 0x50;
+constexpr Address kRxf0s = kBase + 0x90;
+constexpr Address kRxf0a = kBase + 0x94;
+constexpr Address kTxfqs = kBase + 0xC4;
+constexpr Address kTxbrp = kBase + 0xC8;
+constexpr Address kTxbar = kBase + 0xCC;
+constexpr Address kTxbcr = kBase + 0xD0;
+constexpr std::uint32_t kBusOff = 1U << 7U;
+constexpr std::uint32_t kPassive = 1U << 5U;
+
+/// The hardware's FIFOs and its request bits, as RM0440 has them.
+class CanControllerTest : public ::testing::Test {
+  protected:
+    CanControllerTest() {
+        space_[kCccr] = 1;
+        space_.on_write(kTxbar, [this](std::uint32_t&, std::uint32_t request) {
+            space_[kTxbrp] |= request;
+            put_ = (put_ + 1) % 3;
+            update_queue();
+        });
+        space_.on_write(kTxbcr,
+                        [this](std::uint32_t& cancelled, std::uint32_t value) { cancelled |= value; });
+        space_.on_write(kIr, [](std::uint32_t& flags, std::uint32_t value) { flags &= ~value; });
+        space_.on_write(kRxf0a, [this](std::uint32_t&, std::uint32_t index) {
+            EXPECT_EQ(index, received_get_);
+            received_get_ = (received_get_ + 1) % 3;
+            --received_;
+            update_fifo();
+        });
+        space_.time_us() = 0;
+    }
+    void update_queue() {
+        const bool is_full = (space_[kTxbrp] & (1U << put_)) != 0;
+        space_[kTxfqs] = (put_ << 16U) | (is_full ? 1U << 21U : 0);
+    }
+    void update_fifo() { space_[kRxf0s] = received_ | (received_get_ << 8U); }
+    /// The bus takes the frame at this place, or the hardware confirms that it was cancelled.
+    void end(std::uint32_t place) {
+        space_[kTxbrp] &= ~(1U << place);
+        update_queue();
+    }
+    void arrive(const CanFrame& frame) {
+        const std::uint32_t index = (received_get_ + received_) % 3;
+        const CanElement element = encode_element(frame);
+        for (std::uint32_t i = 0; i < element.size(); ++i) {
+            space_[element_address(kReceiveFifo, index) + 4 * i] = element[i];
+        }
+        ++received_;
+        update_fifo();
+        space_[kIr] |= 1;
+    }
+    static CanFrame frame(std::uint32_t id, std::uint8_t first) {
+        CanFrame result{.can_id = id, .payload_len = 8};
+        result.data[0] = first;
+        return result;
+    }
+
+    test::AddressSpace space_;
+    MicrosecondTimer timer_;
+    CanController can_{timer_};
+    NodeConfig config_{.node_id = 7};
+    std::uint32_t put_ = 0;
+    std::uint32_t received_ = 0;
+    std::uint32_t received_get_ = 0;
+};
+
+TEST_F(CanControllerTest, joins_with_the_rates_of_the_configuration) {
+    ASSERT_TRUE(can_.start(config_, kClock));
+    EXPECT_EQ(space_[kBase + 0x1C], (15U << 25U) | (62U << 8U) | 15U);             // 1 Mbit/s
+    EXPECT_EQ(space_[kBase + 0x0C], (1U << 23U) | (10U << 8U) | (3U << 4U) | 3U);  // 5 Mbit/s
+    EXPECT_EQ(space_[kBase + 0x48], 12U << 8U);
+    EXPECT_EQ(space_[kCccr] & 1U, 0U) << "off INIT";
+    EXPECT_EQ(space_[kCccr] & 0x300U, 0x300U) << "FD, with rate switch";
+    EXPECT_EQ(space_[kBase + 0x80], (2U << 16U) | (2U << 4U) | (2U << 2U) | 1U);
+    EXPECT_EQ(space_[0x4000'A400], (1U << 30U) | (1U << 27U) | (0x040U << 16U) | 0x0FFU);
+    EXPECT_EQ(space_[0x4000'A404], (2U << 30U) | (1U << 27U) | (7U << 16U) | 0x3FU);
+    EXPECT_EQ(can_.state(), node::CanState::active);
+}
+
+TEST_F(CanControllerTest, zeroes_its_whole_message_ram_and_no_more) {
+    ASSERT_TRUE(can_.start(config_, kClock));
+    std::set<Address> zeroed;
+    for (const auto& write : space_.writes()) {
+        const bool is_behind = write.address >= 0x4000'A400 && write.address < 0x4800'0000;
+        if (is_behind && write.value == 0) zeroed.insert(write.address);
+    }
+    EXPECT_EQ(zeroed.size(), 0x350U / 4);
+    EXPECT_EQ(*zeroed.rbegin(), 0x4000'A74CU);
+}
+
+TEST_F(CanControllerTest, speaks_classical_can_only_if_told_so) {
+    config_.uses_can_fd = false;
+    ASSERT_TRUE(can_.start(config_, kClock));
+    EXPECT_EQ(space_[kCccr] & 0x300U, 0U);
+}
+
+TEST_F(CanControllerTest, stays_silent_without_a_clock_or_a_rate) {
+    EXPECT_FALSE(can_.start(config_, 0));
+    config_.data_bitrate = 7'000'000;
+    EXPECT_FALSE(can_.start(config_, kClock));
+    EXPECT_TRUE(space_.writes().empty()) << "not a register touched";
+    EXPECT_FALSE(can_.send(frame(0x145, 1)));
+    EXPECT_EQ(can_.state(), node::CanState::passive);
+    can_.restart();
+    EXPECT_EQ(can_.discard(), 0U);
+    can_.poll(NodeTime{1'000'000});
+    EXPECT_TRUE(space_.writes().empty());
+}
+
+TEST_F(CanControllerTest, gives_up_if_the_controller_does_not_follow) {
+    space_.on_write(kCccr, [](std::uint32_t& word, std::uint32_t value) { word = value | 1U; });
+    EXPECT_FALSE(can_.start(config_, kClock));
+    EXPECT_FALSE(can_.is_started());
+}
+
+TEST_F(CanControllerTest, sends_three_frames_in_order_and_refuses_the_fourth) {
+    ASSERT_TRUE(can_.start(config_, kClock));
+    space_.forget_writes();
+    for (std::uint8_t i = 0; i < 3; ++i) EXPECT_TRUE(can_.send(frame(0x145, i)));
+    EXPECT_FALSE(can_.send(frame(0x145, 9)));
+    EXPECT_EQ(space_.written_to(kTxbar), (std::vector<std::uint32_t>{1, 2, 4}));
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(space_[0x4000'A678 + 72 * i], 0x145U << 18U);
+        EXPECT_EQ(space_[0x4000'A678 + 72 * i + 8], i);
+    }
+    end(0);
+    EXPECT_TRUE(can_.send(frame(0x145, 3)));
+    EXPECT_EQ(space_[0x4000'A678 + 8], 3U);
+}
+
+TEST_F(CanControllerTest, fills_the_place_before_it_asks_for_it) {
+    ASSERT_TRUE(can_.start(config_, kClock));
+    space_.forget_writes();
+    ASSERT_TRUE(can_.send(frame(0x145, 1)));
+    EXPECT_EQ(space_.writes().back().address, kTxbar);
+}
+
+TEST_F(CanControllerTest, takes_back_what_nobody_acknowledged) {
+    ASSERT_TRUE(can_.start(config_, kClock));
+    space_.time_us() = 1'000;
+    ASSERT_TRUE(can_.send(frame(0x145, 1)));
+    space_.time_us() = 2'000;
+    ASSERT_TRUE(can_.send(frame(0x145, 2)));
+    const NodeTime first_expires = *can_.wake_time();
+    EXPECT_NEAR(first_expires.us, 21'000, 10);
+    can_.poll(NodeTime{20'999});
+    EXPECT_TRUE(space_.written_to(kTxbcr).empty());
+    can_.poll(NodeTime{first_expires.us});
+    can_.poll(NodeTime{first_expires.us + 10});
+    EXPECT_EQ(space_.written_to(kTxbcr), std::vector<std::uint32_t>{1}) << "once, and only that one";
+    EXPECT_EQ(can_.counts().expired, 1U);
+    can_.poll(NodeTime{30'000});
+    EXPECT_EQ(space_.written_to(kTxbcr), (std::vector<std::uint32_t>{1, 2}));
+    EXPECT_FALSE(can_.wake_time());
+}
+
+TEST_F(CanControllerTest, does_not_take_back_what_was_sent) {
+    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.send(frame(0x145, 1)));
+    end(0);
+    can_.poll(NodeTime{100'000});
+    EXPECT_TRUE(space_.written_to(kTxbcr).empty());
+    EXPECT_EQ(can_.counts().expired, 0U);
+}
+
+TEST_F(CanControllerTest, receives_with_the_time_of_the_interrupt) {
+    ASSERT_TRUE(can_.start(config_, kClock));
+    arrive(frame(0x040, 1));
+    arrive(frame(0x0FF, 2));
+    space_.time_us() = 0xFFFF'FFF0;
+    EXPECT_FALSE(can_.has_event());
+    can_.on_interrupt();
+    EXPECT_TRUE(can_.has_event());
+    EXPECT_EQ(space_[kIr], 0U);
+    EXPECT_EQ(received_, 0U);
+    const auto first = can_.receive();
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->frame, frame(0x040, 1));
+    EXPECT_EQ(first->received.us, 0xFFFF'FFF1);
+    EXPECT_EQ(can_.receive()->frame, frame(0x0FF, 2));
+    EXPECT_FALSE(can_.receive());
+    can_.acknowledge_event();
+    EXPECT_FALSE(can_.has_event());
+}
+
+TEST_F(CanControllerTest, keeps_sixteen_frames_and_counts_what_is_lost) {
+    ASSERT_TRUE(can_.start(config_, kClock));
+    for (std::uint8_t i = 0; i < 18; ++i) {
+        arrive(frame(0x040, i));
+        can_.on_interrupt();
+    }
+    space_[kIr] |= 1U << 2U;  // the hardware's own loss
+    can_.on_interrupt();
+    EXPECT_EQ(can_.counts().receive_lost, 3U);
+    EXPECT_EQ(can_.counts().received, 16U);
+    for (std::uint8_t i = 0; i < 16; ++i) EXPECT_EQ(can_.receive()->frame.data[0], i) << "the oldest stay";
+    EXPECT_FALSE(can_.receive());
+}
+
+TEST_F(CanControllerTest, does_not_hang_on_a_fifo_that_never_empties) {
+    ASSERT_TRUE(can_.start(config_, kClock));
+    space_.on_write(kRxf0a, [](std::uint32_t&, std::uint32_t) {});
+    arrive(frame(0x040, 1));
+    can_.on_interrupt();
+    EXPECT_LE(can_.counts().received, 6U);
+}
+
+TEST_F(CanControllerTest, tells_its_error_states_apart) {
+    ASSERT_TRUE(can_.start(config_, kClock));
+    space_[kPsr] = kPassive;
+    EXPECT_EQ(can_.state(), node::CanState::passive);
+    EXPECT_TRUE(can_.send(frame(0x145, 1))) << "passive is no reason to be silent";
+    space_[kPsr] = kPassive | kBusOff;
+    EXPECT_EQ(can_.state(), node::CanState::bus_off);
+    EXPECT_FALSE(can_.send(frame(0x145, 1)));
+}
+
+TEST_F(CanControllerTest, comes_back_from_bus_off_when_told_and_sends_nothing_old) {
+    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.send(frame(0x145, 1)));
+    ASSERT_TRUE(can_.send(frame(0x145, 2)));
+    space_[kPsr] = kBusOff;
+    space_[kCccr] |= 1;  // the hardware does both
+    EXPECT_EQ(can_.discard(), 2U);
+    EXPECT_EQ(space_[kTxbcr], 7U);
+    EXPECT_EQ(can_.discard(), 0U) << "each frame is given up once";
+    space_.forget_writes();
+    can_.restart();
+    EXPECT_EQ(space_[kCccr] & 1U, 0U);
+    can_.restart();
+    EXPECT_EQ(space_.written_to(kCccr).size(), 1U) << "it is on its way already";
+    EXPECT_EQ(can_.state(), node::CanState::bus_off);
+    space_[kPsr] = 0;
+    EXPECT_EQ(can_.state(), node::CanState::active);
+    can_.restart();
+    EXPECT_EQ(space_.written_to(kCccr).size(), 1U);
+}
+
+}  // namespace
+}  // namespace octoskin::stm32g4
