@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <memory>
+#include <span>
 
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/playback/playback.hpp"
@@ -54,6 +55,7 @@ void replay_recording(const ReplayOptions& options) {
     if (!playback) throw CommandFailure(playback.error());
 
     for (const AccountTable& table : playback->accounts) fmt::print("{}", to_text(table));
+    fmt::print("{}", to_text(std::span<const NodeSummary>(playback->nodes)));
     for (const std::string& note : playback->notes) fmt::print("{}\n", note);
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     std::error_code error;

@@ -13,10 +13,6 @@
 namespace octoskin {
 namespace {
 
-Unexpected<AppError> fail(ExitCode code, std::string message) {
-    return unexpected(AppError{code, std::move(message)});
-}
-
 struct Setup {
     rig::Rig rig;
     HostSetup host;
@@ -95,11 +91,8 @@ AccountTable pixel_table(const DepthStage& depth) {
     return table;
 }
 
-std::vector<std::string> take_notes(const Pipeline& pipeline, const HostRig& rig) {
+std::vector<std::string> take_notes(const Pipeline& pipeline) {
     std::vector<std::string> notes;
-    for (const HostNode& node : rig.nodes) {
-        notes.push_back(pipeline.intake().nodes().describe(node.node_id, pipeline.now()));
-    }
     const HostClockEstimate& clock = pipeline.intake().host_clock();
     if (clock.steps_back() + clock.steps_ahead() + clock.stamps_ignored() > 0) {
         notes.push_back("stamps of the log: " + std::to_string(clock.steps_back()) + " steps back, " +
@@ -163,13 +156,14 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
 
     ReplayOutcome outcome = replay(*pipeline, *log, depth.reader ? &*depth.reader : nullptr, report);
     if (depth.error) outcome.depth_error = depth.error;
-    Playback playback{std::move(setup->rig), std::move(*pipeline), std::move(outcome), {}, {}, {}, false};
+    Playback playback{std::move(setup->rig), std::move(*pipeline), std::move(outcome), {}, {}, {}, {}, false};
     playback.accounts.push_back(line_table(*log));
     for (AccountTable& table : playback.pipeline.account_tables())
         playback.accounts.push_back(std::move(table));
     if (const DepthStage* stage = playback.pipeline.depth_stage())
         playback.accounts.push_back(pixel_table(*stage));
-    playback.notes = take_notes(playback.pipeline, rig);
+    playback.nodes = summarise(playback.pipeline.intake());
+    playback.notes = take_notes(playback.pipeline);
     if (auto warning = survey->warning()) playback.warnings.push_back(std::move(*warning));
     find_warnings(*meta, rig, depth, playback);
     return playback;

@@ -8,6 +8,7 @@
 #include "host/apps/recording/app_error.hpp"
 #include "host/apps/recording/recording.hpp"
 #include "host/core/account/account.hpp"
+#include "host/core/ingest/node_summary.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/pipeline/pipeline.hpp"
 #include "host/core/pipeline/replay.hpp"
@@ -28,8 +29,8 @@ struct Playback {
     Pipeline pipeline;  ///< finished: its maps and its accounts
     ReplayOutcome outcome;
     std::vector<AccountTable> accounts;  ///< log lines, then the pipeline's, then the pixels
-    /// How each node and the host's clock stood at the end: "node 1 'rear_rings': info_mismatch (node_hash
-    /// ...)".
+    std::vector<NodeSummary> nodes;      ///< how each stood at the end
+    /// How the host's clock fared, if there is something to tell.
     std::vector<std::string> notes;
     std::vector<std::string> warnings;  ///< what a person should know about this recording
     bool is_map_incomplete = false;     ///< a map had no room for some of its voxels

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <string>
+#include <utility>
+
+#include "common/result.hpp"
 
 namespace octoskin {
 
@@ -20,5 +23,9 @@ struct AppError {
     ExitCode code = ExitCode::failed;
     std::string message;  ///< what, where, the value, what to do
 };
+
+[[nodiscard]] inline Unexpected<AppError> fail(ExitCode code, std::string message) {
+    return unexpected(AppError{code, std::move(message)});
+}
 
 }  // namespace octoskin

@@ -18,10 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Unexpected<AppError> fail(ExitCode code, std::string message) {
-    return unexpected(AppError{code, std::move(message)});
-}
-
 /// Everything that is read before anything is simulated.
 struct Inputs {
     sim::Scenario scenario;

@@ -23,10 +23,6 @@ namespace {
 using Say = std::function<void(const std::string&)>;
 namespace fs = std::filesystem;
 
-Unexpected<AppError> fail(ExitCode code, std::string message) {
-    return unexpected(AppError{code, std::move(message)});
-}
-
 struct StudyWorld {
     sim::Scenario scenario;
     sim::World world;
@@ -60,6 +56,13 @@ Result<std::vector<StudyConfiguration>, AppError> find_configurations(const std:
     return found;
 }
 
+/// The one whose maps are kept and reported: the default, if it was asked for.
+std::string main_configuration(const StudyRequest& request) {
+    const auto& names = request.configurations;
+    const bool has_default = std::find(names.begin(), names.end(), "robust") != names.end();
+    return has_default ? "robust" : names.front();
+}
+
 /// Studies every seed, `jobs` of them at once.
 class SeedWorkers {
   public:
@@ -90,17 +93,10 @@ class SeedWorkers {
             .recording = request_.out / (is_first ? "recording" : "recording-seed-" + seed),
             .scratch = request_.out / ("recording-noise-free-seed-" + seed),
             .keeps_recording = is_first,
-            .main_configuration = main_configuration(),
+            .main_configuration = main_configuration(request_),
             .keeps_maps = is_first};
         seed_request.simulation.seed = request_.seeds[index];
         return seed_request;
-    }
-
-    std::string main_configuration() const {
-        for (const auto& configuration : configurations_) {
-            if (configuration.name == "robust") return "robust";
-        }
-        return configurations_.front().name;
     }
 
     const StudyRequest& request_;
@@ -231,10 +227,7 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
         return unexpected(written.error());
     }
     say(fmt::format("seed {}: drawing the report", first.seed));
-    const auto& names = request.configurations;
-    const bool has_robust = std::find(names.begin(), names.end(), "robust") != names.end();
-    const auto reported =
-        write_report(request, *ground, results, first, has_robust ? "robust" : names.front());
+    const auto reported = write_report(request, *ground, results, first, main_configuration(request));
     if (!reported) return unexpected(reported.error());
     return results;
 }

@@ -84,7 +84,8 @@ FrameOutcome CanIntake::on_frame(const wire::CanFrame& frame, WallTime stamp) {
         const wire::NodeId sender = wire::node_of(frame.can_id);
         if (decoded.error() == wire::DecodeError::wrong_version &&
             wire::type_of(frame.can_id) == wire::FrameType::heartbeat && nodes_.knows(sender)) {
-            nodes_.on_other_version(sender, now());
+            constexpr unsigned kVersionMask = 7;  // frozen for all versions: docs/protocol.md
+            nodes_.on_other_version(sender, static_cast<std::uint8_t>(frame.data[0] & kVersionMask), now());
         }
         return outcome;
     }

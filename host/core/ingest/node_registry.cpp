@@ -33,9 +33,15 @@ bool NodeRecord::is_info_complete() const {
 }
 
 std::string NodeMismatch::text() const {
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), " %08x, the rig has %08x", found, expected);
-    return std::string(what) + text.data();
+    constexpr std::uint32_t kCountsBelow = 256;  // counts and versions; hashes are larger
+    const bool is_count = found < kCountsBelow && expected < kCountsBelow;
+    const auto written = [&](std::uint32_t value) {
+        std::array<char, 16> text{};
+        std::snprintf(text.data(), text.size(), is_count ? "%u" : "%08x", value);
+        return std::string(text.data());
+    };
+    return std::string(what) + " " + written(found) + ", " + std::string(expected_by) + " " +
+           written(expected);
 }
 
 std::optional<NodeMismatch> NodeRecord::mismatch() const noexcept {
@@ -101,8 +107,9 @@ NodeRegistry::Life NodeRegistry::on_heartbeat(wire::NodeId node, const wire::Hea
     return is_other_board || is_back_at_start ? Life::restarted : Life::goes_on;
 }
 
-void NodeRegistry::on_other_version(wire::NodeId node, std::optional<HostTime> now) {
+void NodeRegistry::on_other_version(wire::NodeId node, std::uint8_t version, std::optional<HostTime> now) {
     NodeRecord& record = records_.at(node);
+    record.version_told = version;
     record.is_other_version = true;
     record.other_version = now;
     record.pages = {};
@@ -150,13 +157,24 @@ NodeVerdict NodeRegistry::verdict(wire::NodeId node, std::optional<HostTime> now
                                                                          : NodeVerdict::usable;
 }
 
-std::string NodeRegistry::describe(wire::NodeId node, std::optional<HostTime> now) const {
+std::optional<NodeMismatch> NodeRegistry::reason(wire::NodeId node, std::optional<HostTime> now) const {
     const NodeRecord& record = records_.at(node);
     const NodeVerdict judged = verdict(node, now);
-    const auto mismatch = judged == NodeVerdict::info_mismatch ? record.mismatch() : std::nullopt;
-    return "node " + std::to_string(node) + " '" + record.expected.name +
-           "': " + names_of(NodeVerdict{})[static_cast<std::size_t>(judged)] +
-           (mismatch ? " (" + mismatch->text() + ")" : "");
+    if (judged == NodeVerdict::other_version) {
+        return NodeMismatch{"version", record.version_told, wire::kProtocolVersion, "this host speaks"};
+    }
+    if (judged == NodeVerdict::build_refused) {
+        return NodeMismatch{"build_id", record.page<wire::InfoBuild>()->build_id,
+                            *record.expected.pinned_build_id, "the rig pins"};
+    }
+    return judged == NodeVerdict::info_mismatch ? record.mismatch() : std::nullopt;
+}
+
+std::string NodeRegistry::describe(wire::NodeId node, std::optional<HostTime> now) const {
+    const auto differs = reason(node, now);
+    return "node " + std::to_string(node) + " '" + records_.at(node).expected.name +
+           "': " + names_of(NodeVerdict{})[static_cast<std::size_t>(verdict(node, now))] +
+           (differs ? " (" + differs->text() + ")" : "");
 }
 
 }  // namespace octoskin

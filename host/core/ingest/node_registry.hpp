@@ -37,6 +37,7 @@ struct NodeMismatch {
     std::string_view what;  ///< a literal
     std::uint32_t found = 0;
     std::uint32_t expected = 0;
+    std::string_view expected_by = "the rig has";  ///< a literal
     /// For a person: "node_hash 1a2b3c4d, the rig has 5e6f7a8b".
     [[nodiscard]] std::string text() const;
     friend bool operator==(const NodeMismatch&, const NodeMismatch&) = default;
@@ -54,6 +55,7 @@ struct NodeRecord {
     bool is_in_conflict = false;
     std::optional<HostTime> other_version;  ///< the newest heartbeat of another version
     bool is_other_version = false;
+    std::uint8_t version_told = 0;  ///< in that heartbeat
 
     /// The first of the node's claims that differs from the rig. Asked for every reading: allocates nothing.
     [[nodiscard]] std::optional<NodeMismatch> mismatch() const noexcept;
@@ -89,11 +91,13 @@ class NodeRegistry {
     [[nodiscard]] Life on_heartbeat(wire::NodeId node, const wire::Heartbeat& heartbeat,
                                     std::optional<HostTime> now);
     /// A heartbeat with a valid checksum and another version.
-    void on_other_version(wire::NodeId node, std::optional<HostTime> now);
+    void on_other_version(wire::NodeId node, std::uint8_t version, std::optional<HostTime> now);
     /// False if the page was not taken: the node is quarantined or speaks another version.
     [[nodiscard]] bool on_info(wire::NodeId node, const wire::NodeInfo& info, std::optional<HostTime> now);
 
     [[nodiscard]] NodeVerdict verdict(wire::NodeId node, std::optional<HostTime> now) const;
+    /// What the node told and what it should have told, where that is what the verdict rests on.
+    [[nodiscard]] std::optional<NodeMismatch> reason(wire::NodeId node, std::optional<HostTime> now) const;
     /// For a person: "node 7 'upper ring': info_mismatch (node_hash 1a2b3c4d, the rig has 5e6f7a8b)".
     [[nodiscard]] std::string describe(wire::NodeId node, std::optional<HostTime> now) const;
 

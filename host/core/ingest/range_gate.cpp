@@ -135,7 +135,7 @@ void RangeGate::on_health(wire::NodeId node, const wire::SensorHealth& health) {
     record.health = health;
     record.capture_bound = Microseconds{wire::kClassicalTimeStepUs} * health.capture_bound_64us;
     const std::uint64_t received = record.received - record.received_before;
-    record.lost = record.sent_total > received ? record.sent_total - received : 0;
+    record.lost = record.lost_before + (record.sent_total > received ? record.sent_total - received : 0);
 }
 
 void RangeGate::on_signal(wire::NodeId node, std::uint8_t sensor, const wire::SignalReading& signal) {
@@ -146,6 +146,7 @@ void RangeGate::forget(wire::NodeId node) {
     forget_order(node);
     for (auto& [key, sensor] : sensors_) {
         if (key.first == node) {
+            sensor.record.lost_before = sensor.record.lost;
             sensor.record.health.reset();
             sensor.record.capture_bound.reset();
         }
@@ -155,7 +156,7 @@ void RangeGate::forget(wire::NodeId node) {
 void RangeGate::forget_order(wire::NodeId node) {
     for (auto& [key, sensor] : sensors_) {
         if (key.first == node) {
-            sensor.record.sequence = {};
+            sensor.record.sequence.restart();
         }
     }
 }

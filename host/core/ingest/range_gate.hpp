@@ -30,6 +30,7 @@ struct SensorRecord {
     std::optional<Nanoseconds> capture_bound;
     /// Readings that the node sent and that never came: exact as of the newest health message.
     std::uint64_t lost = 0;
+    std::uint64_t lost_before = 0;      ///< of these, in the node's earlier lives
     std::uint64_t sent_total = 0;       ///< by the node's own count, since its first health message
     std::uint64_t received_before = 0;  ///< `received` at that message
 };

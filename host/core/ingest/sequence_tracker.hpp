@@ -28,6 +28,14 @@ class SequenceTracker {
     /// A reading came whose time nobody knows: what the next one leaves out is no gap.
     void skip() noexcept { has_skipped_ = true; }
 
+    /// The numbers begin anew, or the times of the newest readings were wrong. Gaps found so far stay
+    /// counted.
+    void restart() noexcept {
+        captured_ = {};
+        newest_.reset();
+        has_skipped_ = false;
+    }
+
     /// Readings that never came, so far as sequence numbers tell: exact while fewer than 64 are lost at once.
     /// A late one that is still used is taken off again.
     [[nodiscard]] std::uint64_t gaps() const noexcept { return gaps_; }

@@ -125,6 +125,7 @@ SampleVerdict ClockMap::add(const SyncSample& sample) {
         points_ = {{suspect_->heard.us, suspect_->host}};
         heard_last_ = suspect_->heard;
         verdict = SampleVerdict::relocked;
+        ++relocks_;
     }
     const std::int64_t node_us = points_.empty()
                                      ? sample.heard.us

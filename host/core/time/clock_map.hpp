@@ -72,6 +72,8 @@ class ClockMap {
     [[nodiscard]] std::optional<ClockFault> fault(HostTime now) const;
     /// Relative rate of the node's clock, host seconds per node second - 1; empty before two exchanges.
     [[nodiscard]] std::optional<double> drift() const;
+    /// How often two exchanges in a row agreed on another map than before.
+    [[nodiscard]] std::uint64_t relocks() const noexcept { return relocks_; }
 
   private:
     /// Node time without wrap: congruent to the counter modulo 2^32.
@@ -92,6 +94,7 @@ class ClockMap {
     NodeTime heard_last_;        ///< the counter at points_.back()
     std::optional<SyncSample> suspect_;
     bool is_doubted_ = false;
+    std::uint64_t relocks_ = 0;
 };
 
 }  // namespace octoskin

@@ -84,7 +84,7 @@ TEST(NodeRegistry, names_what_differs_from_the_rig) {
         return registry.records().at(kNode).mismatch().value_or(NodeMismatch{}).text();
     };
     EXPECT_EQ(mismatch(pages(0xAABBCCDE)), "node_hash aabbccde, the rig has aabbccdd");
-    EXPECT_EQ(mismatch(pages(kHash, 4)), "number of sensors 00000004, the rig has 00000003");
+    EXPECT_EQ(mismatch(pages(kHash, 4)), "number of sensors 4, the rig has 3");
     auto other_board = pages();
     other_board[0] = wire::InfoUidLow{{9, 9, 9, 9, 9, 9}};
     EXPECT_NE(mismatch(other_board).find("checksum of the unique id"), std::string::npos);
@@ -120,6 +120,8 @@ TEST(NodeRegistry, refuses_another_build_only_where_the_rig_pins_it) {
     NodeRegistry registry(pinned);
     identify(registry, 0);
     EXPECT_EQ(registry.verdict(kNode, ms(0)), NodeVerdict::build_refused);
+    EXPECT_EQ(registry.describe(kNode, ms(0)),
+              "node 7 'upper ring': build_refused (build_id 42, the rig pins 43)");
     EXPECT_TRUE(registry.on_info(kNode, wire::InfoBuild{43, 10}, ms(0)));
     EXPECT_EQ(registry.verdict(kNode, ms(0)), NodeVerdict::usable);
 }
@@ -185,8 +187,10 @@ TEST(NodeRegistry, notices_a_restart) {
 TEST(NodeRegistry, refuses_a_node_of_another_version_until_it_is_silent_for_a_second) {
     NodeRegistry registry(rig());
     identify(registry, 0);
-    registry.on_other_version(kNode, ms(100));
+    registry.on_other_version(kNode, 2, ms(100));
     EXPECT_EQ(registry.verdict(kNode, ms(100)), NodeVerdict::other_version);
+    EXPECT_EQ(registry.describe(kNode, ms(100)),
+              "node 7 'upper ring': other_version (version 2, this host speaks 1)");
     (void)registry.on_heartbeat(kNode, heartbeat(), ms(1000));
     EXPECT_FALSE(registry.on_info(kNode, pages()[0], ms(1000)));
     EXPECT_EQ(registry.verdict(kNode, ms(1099)), NodeVerdict::other_version);
@@ -195,7 +199,7 @@ TEST(NodeRegistry, refuses_a_node_of_another_version_until_it_is_silent_for_a_se
 
 TEST(NodeRegistry, holds_a_refusal_while_no_time_is_known) {
     NodeRegistry registry(rig());
-    registry.on_other_version(kNode, std::nullopt);
+    registry.on_other_version(kNode, 2, std::nullopt);
     EXPECT_EQ(registry.verdict(kNode, std::nullopt), NodeVerdict::other_version);
     EXPECT_EQ(registry.verdict(kNode, ms(99'999)), NodeVerdict::other_version) << "nobody knows since when";
     (void)registry.on_heartbeat(kNode, heartbeat(), ms(100'000));

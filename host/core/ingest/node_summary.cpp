@@ -1,0 +1,60 @@
+#include "host/core/ingest/node_summary.hpp"
+
+#include <iomanip>
+#include <sstream>
+
+namespace octoskin {
+namespace {
+
+std::optional<NodeSummary::Readings> readings_of(const RangeGate& ranges, const HostNode& node) {
+    if (node.sensors.empty()) {
+        return std::nullopt;
+    }
+    NodeSummary::Readings sum;
+    for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+        const SensorRecord& record = ranges.record(node.node_id, static_cast<std::uint8_t>(i));
+        sum.received += record.received;
+        sum.lost += record.lost;
+        sum.gaps += record.sequence.gaps();
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::vector<NodeSummary> summarise(const CanIntake& intake) {
+    std::vector<NodeSummary> nodes;
+    for (const auto& [id, record] : intake.nodes().records()) {
+        nodes.push_back({.node_id = id,
+                         .name = record.expected.name,
+                         .readings = readings_of(intake.ranges(), record.expected),
+                         .clock_relocks = intake.clock(id).relocks(),
+                         .verdict = intake.nodes().verdict(id, intake.now()),
+                         .reason = intake.nodes().reason(id, intake.now())});
+    }
+    return nodes;
+}
+
+std::string to_text(std::span<const NodeSummary> nodes) {
+    std::ostringstream text;
+    const auto row = [&](const std::string& name, const auto&... cells) {
+        text << std::left << std::setw(20) << name << std::right;
+        ((text << std::setw(10) << cells), ...);
+    };
+    row("node", "readings", "lost", "gaps", "re-locks");
+    text << "  verdict\n";
+    for (const NodeSummary& node : nodes) {
+        const std::string id = std::to_string(node.node_id);
+        const std::string name = std::string(id.size() < 3 ? 3 - id.size() : 0, ' ') + id + " " + node.name;
+        if (node.readings) {
+            row(name, node.readings->received, node.readings->lost, node.readings->gaps, node.clock_relocks);
+        } else {
+            row(name, "-", "-", "-", node.clock_relocks);
+        }
+        text << "  " << names_of(NodeVerdict{})[static_cast<std::size_t>(node.verdict)];
+        text << (node.reason ? ": " + node.reason->text() : "") << "\n";
+    }
+    return text.str();
+}
+
+}  // namespace octoskin
