@@ -44,6 +44,8 @@ class Acceptance {
 
     /// The last accepted reading.
     [[nodiscard]] const Reading& reading() const noexcept { return reading_; }
+    /// Whether a result was accepted since the start: the next one's stream count tells whether it is new.
+    [[nodiscard]] bool has_accepted() const noexcept { return last_stream_.has_value(); }
     /// Whether the last accepted result was seen to follow another: the sensor measures.
     [[nodiscard]] bool is_proven() const noexcept { return is_proven_; }
 

@@ -40,6 +40,7 @@ std::optional<NodeTime> BringUp::due() const noexcept {
         case Step::initialising:
         case Step::collecting:
         case Step::configuring:
+        case Step::verifying:
             return step_due_;
     }
     return std::nullopt;
@@ -108,6 +109,9 @@ void BringUp::start_step(Step step, NodeTime now) {
         case Step::configuring:
             device_.begin_configure(config_);
             break;
+        case Step::verifying:
+            device_.begin_verify(run_);
+            break;
         case Step::idle:
         case Step::held_low:
             break;
@@ -134,8 +138,12 @@ void BringUp::on_step_done(NodeTime now) {
             start_step(Step::configuring, now);
             break;
         case Step::configuring:
-            outcome_ = Outcome::done;
-            step_ = Step::idle;
+            run_ = 0;
+            is_mismatched_ = false;
+            start_step(Step::verifying, now);
+            break;
+        case Step::verifying:
+            on_run_verified(now);
             break;
         case Step::idle:
         case Step::held_low:
@@ -146,7 +154,10 @@ void BringUp::on_step_done(NodeTime now) {
 
 void BringUp::on_step_failed(vl53l1x::Error error, NodeTime now) {
     const bool was_watching = step_ == Step::checking_silence || step_ == Step::confirming_silence;
-    if (!was_watching) {
+    if (step_ == Step::verifying && error == vl53l1x::Error::config_mismatch) {
+        is_mismatched_ = true;
+        on_run_verified(now);
+    } else if (!was_watching) {
         fail(sensor_fault(error));
     } else if (error == vl53l1x::Error::no_answer) {
         start_step(step_ == Step::checking_silence ? Step::booting : Step::initialising, now);
@@ -154,6 +165,19 @@ void BringUp::on_step_failed(vl53l1x::Error error, NodeTime now) {
         fail(wire::SensorFault::bus_error);
     } else {
         fail(wire::SensorFault::address_conflict);  // somebody answered, however badly
+    }
+}
+
+/// A run of registers at a time, so that the others on the bus need not wait for all of them; and all of
+/// them, whatever the first one says, so that every register that differs is seen at each attempt.
+void BringUp::on_run_verified(NodeTime now) {
+    if (++run_ < vl53l1x::kRegisterRuns.size()) {
+        start_step(Step::verifying, now);
+    } else if (is_mismatched_) {
+        fail(wire::SensorFault::config_mismatch);
+    } else {
+        outcome_ = Outcome::done;
+        step_ = Step::idle;
     }
 }
 

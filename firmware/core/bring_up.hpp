@@ -2,7 +2,8 @@
 // and do all the rest side by side, so that the 100 ms of the first range are waited for once:
 //
 //   XSHUT low >= 1 ms | 0x29 must be silent | XSHUT high, 2 ms | identify | new address, verified |
-//   0x29 must be silent again || boot, default configuration, first range | collect it | settings
+//   0x29 must be silent again || boot, default configuration, first range | collect it | settings |
+//   all of it read back
 //
 // ST AN5776 section 2.2 has the order up to the new address.
 #pragma once
@@ -56,12 +57,14 @@ class BringUp {
         initialising,
         collecting,
         configuring,
+        verifying,
     };
 
     [[nodiscard]] vl53l1x::Device& active_device() noexcept;
     void start_step(Step step, NodeTime now);
     void on_step_done(NodeTime now);
     void on_step_failed(vl53l1x::Error error, NodeTime now);
+    void on_run_verified(NodeTime now);
     void fail(wire::SensorFault fault);
 
     vl53l1x::Device& device_;
@@ -75,6 +78,8 @@ class BringUp {
     Outcome outcome_ = Outcome::under_way;
     wire::SensorFault fault_ = wire::SensorFault::none;
     bool has_answered_ = false;
+    std::size_t run_ = 0;  ///< of the registers, being read back
+    bool is_mismatched_ = false;
 };
 
 }  // namespace octoskin::node

@@ -26,6 +26,9 @@ struct Policy {
     Microseconds capture_bound_max{10'000};
     std::int32_t stale_after_periods = 3;
     std::uint8_t rejections_until_degraded = 10;
+    /// One of the three groups of steering registers is read back after so many readings: each group
+    /// within 10.
+    std::uint8_t readings_per_steering_check = 3;
 
     // --- trimming the inter-measurement register to the configured period
     std::int32_t trim_tolerance_permille = 5;

@@ -27,7 +27,8 @@ Ranging::Ranging(vl53l1x::Device& device, const SensorConfig& config, const Rang
       polls_(rules.i2c_hz, policy),
       acceptance_(rules.stream_gate, Microseconds{std::int64_t{config.timing_budget_ms} * 1'000}, policy),
       trim_(Microseconds{std::int64_t{config.inter_measurement_ms} * 1'000}, policy),
-      zones_(config.zone_count, rules.zone_guard) {}
+      zones_(config.zone_count, rules.zone_guard),
+      checks_(policy) {}
 
 void Ranging::begin(NodeTime now) {
     is_stop_requested_ = false;
@@ -102,6 +103,9 @@ void Ranging::start_step(Step step, NodeTime now) {
         case Step::setting_period:
             device_.begin_set_inter_measurement(trim_.commanded());
             break;
+        case Step::checking_period:
+            device_.begin_verify(vl53l1x::kTimingGroup);
+            break;
         case Step::awaiting_phase:
             step_due_ = next_phase(now);
             break;
@@ -109,13 +113,16 @@ void Ranging::start_step(Step step, NodeTime now) {
             device_.begin_start();
             break;
         case Step::reading:
-            device_.begin_read();
+            device_.begin_read(!acceptance_.has_accepted());
             break;
         case Step::writing_zone:
             device_.begin_set_zone(config_.zones[zones_.next()]);
             break;
         case Step::checking_zone:
             device_.begin_read_register(kRoiRegister, kRoiBytes);
+            break;
+        case Step::checking_steering:
+            device_.begin_verify(checks_.group());
             break;
         case Step::stopping:
             device_.begin_stop();
@@ -132,6 +139,9 @@ void Ranging::start_step(Step step, NodeTime now) {
 Ranging::Event Ranging::on_step_done(NodeTime now) {
     switch (step_) {
         case Step::setting_period:
+            start_step(Step::checking_period, now);
+            break;
+        case Step::checking_period:
             start_step(Step::awaiting_phase, now);
             break;
         case Step::starting:
@@ -145,6 +155,10 @@ Ranging::Event Ranging::on_step_done(NodeTime now) {
             break;
         case Step::checking_zone:
             if (!is_zone_as_written()) return fail(SensorFault::config_mismatch);
+            check_or_await(now);
+            break;
+        case Step::checking_steering:
+            checks_.on_clean();
             await_next_result(now);
             break;
         case Step::stopping:
@@ -160,13 +174,17 @@ Ranging::Event Ranging::on_step_done(NodeTime now) {
 }
 
 Ranging::Event Ranging::on_step_failed(vl53l1x::Error error, NodeTime now) {
+    const Step step = step_;
     const bool is_bad_result =
         error == vl53l1x::Error::reads_disagree || error == vl53l1x::Error::implausible_block;
-    if (step_ == Step::reading && is_bad_result) {
+    if (step == Step::reading && is_bad_result) {
         acceptance_.on_unreadable();
         return refuse(sensor_fault(error), now);
     }
-    return fail(sensor_fault(error));
+    const Event failed = fail(sensor_fault(error));
+    if (step == Step::checking_steering && error == vl53l1x::Error::config_mismatch)
+        suspect_readings_ = checks_.suspects();
+    return failed;
 }
 
 Ranging::Event Ranging::on_drained(NodeTime now) {
@@ -220,16 +238,26 @@ Ranging::Event Ranging::refuse(SensorFault fault, NodeTime now) {
 
 Ranging::Event Ranging::fail(SensorFault fault) {
     fault_ = fault;
+    suspect_readings_ = 0;
     step_ = Step::idle;
     return Event::failed;
 }
 
 void Ranging::after_result(NodeTime now) {
+    checks_.on_reading();
     if (const auto measured = acceptance_.measured_period(); measured && trim_.wants_trim(*measured, now)) {
         is_trim_due_ = true;
     }
     if (is_zone_write_due(now)) {
         start_step(Step::writing_zone, now);
+    } else {
+        check_or_await(now);
+    }
+}
+
+void Ranging::check_or_await(NodeTime now) {
+    if (checks_.is_due()) {
+        start_step(Step::checking_steering, now);
     } else {
         await_next_result(now);
     }

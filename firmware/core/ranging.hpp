@@ -14,6 +14,7 @@
 #include "firmware/core/policy.hpp"
 #include "firmware/core/poll_plan.hpp"
 #include "firmware/core/reading.hpp"
+#include "firmware/core/steering_checks.hpp"
 #include "firmware/core/zone_cycle.hpp"
 #include "firmware/drivers/vl53l1x/device.hpp"
 
@@ -44,8 +45,11 @@ class Ranging {
     Ranging(vl53l1x::Device& device, const SensorConfig& config, const RangingRules& rules,
             const Policy& policy) noexcept;
 
-    /// The sensor was just configured, which puts it in its first zone.
-    void on_configured() noexcept { zones_.restart(); }
+    /// The sensor was just configured, which puts it in its first zone, and all of it read back.
+    void on_configured() noexcept {
+        zones_.restart();
+        checks_.restart();
+    }
     /// The sensor is configured and stopped: start it at its next phase.
     void begin(NodeTime now);
     /// Stop and start again, to bring a silent sensor back.
@@ -66,6 +70,9 @@ class Ranging {
     /// Whether the last reading was seen to follow another: the sensor measures.
     [[nodiscard]] bool is_proven() const noexcept { return acceptance_.is_proven(); }
     [[nodiscard]] wire::SensorFault fault() const noexcept { return fault_; }
+    /// Readings accepted since the registers that are now found wrong were last seen to be right; of a
+    /// failure of another kind: 0.
+    [[nodiscard]] std::uint32_t suspect_readings() const noexcept { return suspect_readings_; }
     /// Whether the failed sensor might be helped by stopping and starting it.
     [[nodiscard]] bool can_restart() const noexcept;
     /// The measured period against the configured one; 0 until measured.
@@ -75,12 +82,14 @@ class Ranging {
     enum class Step : std::uint8_t {
         idle,
         setting_period,
+        checking_period,
         awaiting_phase,
         starting,
         awaiting_data,
         reading,
         writing_zone,
         checking_zone,
+        checking_steering,
         stopping,
         draining,  ///< the range under way at the stop may still end with a result
     };
@@ -96,6 +105,7 @@ class Ranging {
     [[nodiscard]] Event fail(wire::SensorFault fault);
     void on_started(NodeTime now);
     void after_result(NodeTime now);
+    void check_or_await(NodeTime now);
     void await_next_result(NodeTime now);
     [[nodiscard]] bool is_zone_write_due(NodeTime now) const noexcept;
     [[nodiscard]] bool is_zone_as_written() const;
@@ -109,6 +119,7 @@ class Ranging {
     Acceptance acceptance_;
     PeriodTrim trim_;
     ZoneCycle zones_;
+    SteeringChecks checks_;
 
     Step step_ = Step::idle;
     NodeTime step_due_;
@@ -116,6 +127,7 @@ class Ranging {
     bool is_stop_requested_ = false;
     bool is_trim_due_ = false;
     wire::SensorFault fault_ = wire::SensorFault::none;
+    std::uint32_t suspect_readings_ = 0;
 };
 
 }  // namespace octoskin::node

@@ -169,6 +169,7 @@ BusUse Sensor::advance_ranging(NodeTime now) {
             range_or_rest(now);
             break;
         case Ranging::Event::failed:
+            counts_.suspect += ranging_.suspect_readings();
             on_failure(ranging_.fault(), ranging_.can_restart(), now);
             break;
     }
@@ -177,6 +178,7 @@ BusUse Sensor::advance_ranging(NodeTime now) {
 
 void Sensor::on_reading() {
     is_settled_ = true;
+    if (device_.read_back().is_steering_exempt()) ++counts_.suspect;
     if (ranging_.is_proven()) {
         refused_in_row_ = 0;
         recovery_.on_proven_reading();
@@ -223,6 +225,7 @@ void Sensor::recover(NodeTime now) {
 
 bool Sensor::is_degraded() const noexcept {
     if (!is_ordered_to_range_ || !is_settled_) return false;
+    if (device_.read_back().exempt_count() > 0) return true;
     return state_ != SensorState::ranging && state_ != SensorState::stopped;
 }
 

@@ -32,7 +32,8 @@ struct SensorCounts {
     std::uint32_t rejected = 0;         ///< results that did not become readings, for whatever reason
     std::uint32_t reads_disagreed = 0;  ///< of these: never read twice alike
     std::uint32_t undated = 0;          ///< of these: time or zone not known well enough
-    std::uint32_t restarts = 0;         ///< attempts to bring it back
+    std::uint32_t suspect = 0;   ///< readings sent while a register that steers the range may have been wrong
+    std::uint32_t restarts = 0;  ///< attempts to bring it back
 };
 
 class Sensor {
@@ -67,7 +68,8 @@ class Sensor {
     // --- health
     [[nodiscard]] wire::SensorState state() const noexcept { return state_; }
     [[nodiscard]] wire::SensorFault fault() const noexcept { return fault_; }
-    /// Not ranging as configured, though it should, and not for being still in its first bring-up.
+    /// Not ranging as configured, though it should, and not for being still in its first bring-up. A register
+    /// that will not take its value makes it so for good.
     [[nodiscard]] bool is_degraded() const noexcept;
     /// Has ended its first bring-up, well or badly.
     [[nodiscard]] bool is_settled() const noexcept { return is_settled_; }
@@ -77,6 +79,7 @@ class Sensor {
         return ranging_.period_error_permille();
     }
     [[nodiscard]] const SensorCounts& counts() const noexcept { return counts_; }
+    [[nodiscard]] const vl53l1x::ReadBack& read_back() const noexcept { return device_.read_back(); }
     [[nodiscard]] std::uint16_t i2c_error_count() const noexcept { return device_.i2c_error_count(); }
 
   private:

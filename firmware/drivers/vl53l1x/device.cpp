@@ -217,6 +217,12 @@ void Device::write32(reg::Index index, std::uint32_t value) {
     line_up(step);
 }
 
+ResultBlock Device::answered_block() const {
+    ResultBlock block{};
+    std::copy_n(answer_.begin(), block.size(), block.begin());
+    return block;
+}
+
 std::uint16_t Device::answer16() const {
     return static_cast<std::uint16_t>((answer_[0] << 8U) | answer_[1]);
 }

@@ -88,8 +88,10 @@ class Device {
     /// Stops at once.
     void begin_abort();
     /// Polls data ready once, if it is ready reads the result block (twice if so set) and clears the
-    /// interrupt; done with or without a measurement: see `has_measurement`. <= 5 ms.
-    void begin_read();
+    /// interrupt; done with or without a measurement: see `has_measurement`. <= 5 ms. `confirms_ready`: if it
+    /// is ready, asks once more, for the first result of a run: no stream count tells it from the last one of
+    /// the run before, which is what a bit flipped in one poll would bring.
+    void begin_read(bool confirms_ready = false);
     /// Ranges once with a full search of the VHV voltage; for a part that was stopped while its temperature
     /// moved by more than 8 degrees. <= 1 s + one period; only while stopped.
     void begin_update_temperature();
@@ -97,13 +99,12 @@ class Device {
     void begin_read_register(reg::Index index, std::uint8_t count);
 
     // --- supervision
-    /// Reads the whole configuration back and compares it with what was written since it was last loaded;
-    /// what was not (a factory offset) it learns. A register that differs is read again; if it still does,
-    /// the end is `config_mismatch`: initialise the sensor. <= 20 ms; all registers are looked at.
-    void begin_verify_configuration();
-    /// The same for one of the `kSteeringGroups` groups of registers that scale or steer the range; also
-    /// while ranging. One transfer, two if it differs: <= 3 ms.
-    void begin_verify_steering(std::size_t group);
+    /// Reads one of `kRegisterRuns` back and compares it with what was written since the configuration was
+    /// loaded; what was not (a factory offset) it learns. A difference is read again; if it is still there,
+    /// the end is `config_mismatch`: initialise the sensor. Also while ranging. One transfer, two if it
+    /// differs:
+    /// <= 3 ms.
+    void begin_verify(std::size_t run);
 
     // --- progress
     /// Advances the operation. `done` and `failed` are told once, then `idle`.
@@ -191,6 +192,7 @@ class Device {
     void write16(reg::Index index, std::uint16_t value, Judge judge = nullptr);
     void write32(reg::Index index, std::uint32_t value);
     [[nodiscard]] std::uint16_t answer16() const;
+    [[nodiscard]] ResultBlock answered_block() const;
 
     static constexpr std::size_t kIndexBytes = 2;
     static constexpr std::size_t kStepsMax = 8;
@@ -218,7 +220,8 @@ class Device {
     std::optional<NodeTime> bus_awaited_since_;
     i2c::TransferError transfer_error_ = i2c::TransferError::timeout;
     std::array<std::uint8_t, kIndexBytes + kDefaultConfiguration.size()> sent_{};
-    std::array<std::uint8_t, ResultBlock{}.size()> answer_{};
+    std::array<std::uint8_t, kRunBytesMax> answer_{};
+    static_assert(ResultBlock{}.size() <= kRunBytesMax);
 
     // What is known of the sensor.
     i2c::Address live_address_ = kDefaultAddress;
@@ -244,8 +247,8 @@ class Device {
     ResultBlock block_{};
     NodeTime ready_seen_{};
     bool has_read_again_ = false;
-    std::size_t run_ = 0;  ///< the next of `kRegisterRuns`
-    bool has_mismatch_ = false;
+    bool confirms_ready_ = false;
+    std::size_t run_ = 0;  ///< of `kRegisterRuns`
 
     // Results.
     bool has_measurement_ = false;

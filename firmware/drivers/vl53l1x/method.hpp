@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <iterator>
 
 #include "firmware/drivers/vl53l1x/device.hpp"
 #include "firmware/drivers/vl53l1x/roi.hpp"
@@ -252,25 +251,32 @@ struct Device::Method {
     static void ask_ready(Device& d) {
         ask_polarity(d);
         d.read(reg::GPIO_TIO_HV_STATUS, 1, [](Device& device, NodeTime now) {
-            if (is_ready(device)) {
-                device.ready_seen_ = now;
-                return Verdict::proceed;
-            }
-            device.not_ready_seen_ = device.submitted_;
-            return Verdict::end;
+            if (!is_ready(device)) return end_without_data(device);
+            device.ready_seen_ = now;
+            if (device.confirms_ready_) device.read(reg::GPIO_TIO_HV_STATUS, 1, confirm_ready);
+            return Verdict::proceed;
         });
+    }
+    static Verdict confirm_ready(Device& d, NodeTime) {
+        if (is_ready(d)) return Verdict::proceed;
+        d.count_i2c_error();
+        return end_without_data(d);
+    }
+    static Verdict end_without_data(Device& d) {
+        d.not_ready_seen_ = d.submitted_;
+        return Verdict::end;
     }
 
     // I2C has no checksum: a result counts if two reads of it agree.
     static void read_result(Device& d) {
         d.read(reg::RESULT_RANGE_STATUS, ResultBlock{}.size(), [](Device& device, NodeTime) {
-            device.block_ = device.answer_;
+            device.block_ = device.answered_block();
             return device.options_.reads_twice ? Verdict::proceed : judge_result(device);
         });
         if (d.options_.reads_twice) d.read(reg::RESULT_RANGE_STATUS, ResultBlock{}.size(), compare_result);
     }
     static Verdict compare_result(Device& d, NodeTime) {
-        if (d.answer_ == d.block_) return judge_result(d);
+        if (d.answered_block() == d.block_) return judge_result(d);
         // A new result between the two reads is no error, but it comes once a period.
         const bool has_moved = d.answer_[kStreamCountOffset] != d.block_[kStreamCountOffset];
         if (!has_moved || d.has_read_again_) return d.fail(Error::reads_disagree);
@@ -315,30 +321,23 @@ struct Device::Method {
     }
     static Verdict judge_run(Device& d, NodeTime) {
         const RegisterRun& run = kRegisterRuns[d.run_];
-        if (!d.read_back_.agrees(run, d.answer_)) {
+        if (d.read_back_.agrees(run, d.answer_)) {
+            d.read_back_.learn(run, d.answer_);
+            if (d.run_ < kSteeringGroups) d.read_back_.on_clean_check();
+        } else {
             d.read(run.first, run.count, judge_run_again);
-            return Verdict::proceed;
         }
-        d.read_back_.learn(run, d.answer_);
-        ++d.run_;
         return Verdict::proceed;
     }
     /// A bit may have flipped on its way to us.
     static Verdict judge_run_again(Device& d, NodeTime) {
-        const RegisterRun& run = kRegisterRuns[d.run_++];
+        const RegisterRun& run = kRegisterRuns[d.run_];
         if (d.read_back_.agrees(run, d.answer_)) {
             d.count_i2c_error();
         } else if (d.read_back_.record(run, d.answer_)) {
-            d.has_mismatch_ = true;
+            return d.fail(Error::config_mismatch);
         }
         return Verdict::proceed;
-    }
-    static void judge_configuration(Device& d) {
-        if (d.has_mismatch_) d.fail(Error::config_mismatch);
-    }
-    static void judge_steering(Device& d) {
-        judge_configuration(d);
-        if (!d.has_mismatch_) d.read_back_.on_clean_check();
     }
 
     // --- the stages that wait
@@ -388,11 +387,7 @@ struct Device::Method {
     static constexpr Stage kUpdateTemperature[]{
         {allow_full_vhv_search}, {choose_timed}, {clear_before_start}, {start}, kAwaitReady, {clear}, {stop},
         {bound_vhv_search}};
-    static constexpr Stage kVerifyConfiguration[]{
-        {verify_run}, {verify_run}, {verify_run}, {verify_run}, {verify_run},         {verify_run},
-        {verify_run}, {verify_run}, {verify_run}, {verify_run}, {judge_configuration}};
-    static_assert(std::size(kVerifyConfiguration) == kRegisterRuns.size() + 1);
-    static constexpr Stage kVerifySteering[]{{verify_run}, {judge_steering}};
+    static constexpr Stage kVerify[]{{verify_run}};
     static constexpr Stage kReadRegister[]{{read_bytes}};
 };
 

@@ -127,8 +127,9 @@ void Device::begin_abort() {
     begin(Method::kAbort);
 }
 
-void Device::begin_read() {
+void Device::begin_read(bool confirms_ready) {
     begin(Method::kRead);
+    confirms_ready_ = confirms_ready;
     has_measurement_ = false;
     has_read_again_ = false;
 }
@@ -137,17 +138,10 @@ void Device::begin_update_temperature() {
     begin(Method::kUpdateTemperature);
 }
 
-void Device::begin_verify_configuration() {
-    begin(Method::kVerifyConfiguration);
-    run_ = 0;
-    has_mismatch_ = false;
-}
-
-void Device::begin_verify_steering(std::size_t group) {
-    assert(group < kSteeringGroups);
-    begin(Method::kVerifySteering);
-    run_ = group;
-    has_mismatch_ = false;
+void Device::begin_verify(std::size_t run) {
+    assert(run < kRegisterRuns.size());
+    begin(Method::kVerify);
+    run_ = run;
 }
 
 void Device::begin_read_register(reg::Index index, std::uint8_t count) {

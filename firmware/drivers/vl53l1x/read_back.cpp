@@ -11,6 +11,8 @@ constexpr std::size_t total(std::size_t runs) noexcept {
     return count;
 }
 static_assert(total(kRegisterRuns.size()) == kRegistersReadBack);
+static_assert(std::all_of(kRegisterRuns.begin(), kRegisterRuns.end(),
+                          [](const RegisterRun& run) { return run.count <= kRunBytesMax; }));
 constexpr std::size_t kSteeringRegisters = total(kSteeringGroups);
 
 /// Where a register stands in the arrays; empty if it is not read back.

@@ -17,14 +17,17 @@ namespace octoskin::vl53l1x {
 /// Registers that are read back in one transfer.
 struct RegisterRun {
     reg::Index first = 0;
-    std::uint8_t count = 0;  ///< at most 17: the driver's buffer
+    std::uint8_t count = 0;  ///< at most `kRunBytesMax`
 };
 /// All that the driver configures. Not in it: 0x31 and 0x32 (levels of pins), 0x86 and 0x87 (orders). The
-/// first three scale or steer the range: offset; time-outs, VCSEL periods, limits, valid phase; windows,
-/// initial phases, region of interest, sequence.
+/// first three scale, steer or time the range: offset; time-outs, VCSEL periods, limits, valid phase and
+/// inter-measurement period; windows, initial phases, region of interest, sequence.
 inline constexpr std::size_t kSteeringGroups = 3;
+/// The one of them with the period in it.
+inline constexpr std::size_t kTimingGroup = 1;
+inline constexpr std::size_t kRunBytesMax = 18;
 inline constexpr std::array<RegisterRun, 10> kRegisterRuns{{{0x1E, 6},
-                                                            {0x5E, 12},
+                                                            {0x5E, 18},
                                                             {0x78, 14},
                                                             {0x08, 4},
                                                             {0x16, 6},
@@ -32,7 +35,7 @@ inline constexpr std::array<RegisterRun, 10> kRegisterRuns{{{0x1E, 6},
                                                             {0x33, 16},
                                                             {0x43, 16},
                                                             {0x53, 11},
-                                                            {0x6A, 14}}};
+                                                            {0x70, 8}}};
 inline constexpr std::size_t kRegistersReadBack = 103;
 
 /// The bits of a register that are compared. Left out: the VHV start value, which is the sensor's own once it
@@ -94,7 +97,7 @@ class ReadBack {
     [[nodiscard]] const std::optional<RegisterDifference>& last_exempt() const noexcept {
         return last_exempt_;
     }
-    /// One of them scales or steers the range: no reading can be trusted fully.
+    /// One of them scales, steers or times the range: no reading can be trusted fully.
     [[nodiscard]] bool is_steering_exempt() const noexcept;
 
   private:

@@ -92,7 +92,7 @@ TEST(NodeZones, notices_a_zone_that_was_not_written_as_meant) {
     rig.run_for(2 * kSecond);
     for (std::uint64_t i = 0; i < 40; ++i) {
         rig.bus(0).inject(
-            {.kind = sim::I2cFaultKind::lose_write, .first = rig.bus(0).transfer_count() + 97 * i});
+            {.kind = sim::I2cFaultKind::lose_write, .first = rig.bus(0).transfer_count() + 211 * i});
     }
     rig.run_for(20 * kSecond);
     int readings = 0;

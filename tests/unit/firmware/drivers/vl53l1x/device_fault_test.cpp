@@ -55,8 +55,7 @@ std::vector<Operation> all_operations() {
         {"abort", [](Device& d) { d.begin_abort(); }},
         {"read", [](Device& d) { d.begin_read(); }, result},
         {"read_register", [](Device& d) { d.begin_read_register(0x007F, 2); }},
-        {"verify_configuration", [](Device& d) { d.begin_verify_configuration(); }},
-        {"verify_steering", [](Device& d) { d.begin_verify_steering(1); }},
+        {"verify", [](Device& d) { d.begin_verify(7); }},
         {"update_temperature", [](Device& d) { d.begin_update_temperature(); }},
     };
 }

@@ -40,6 +40,23 @@ TEST_F(DeviceOnScript, nothing_ready_is_done_without_a_measurement) {
     EXPECT_FALSE(device_.has_measurement());
 }
 
+TEST_F(DeviceOnScript, ready_is_confirmed_if_so_asked) {
+    device_.begin_read(true);
+    bus_.expect("R 0031 1 -> 02 | R 0031 1 -> 03");
+    expect_done("");
+    EXPECT_FALSE(device_.has_measurement()) << "the first answer was wrong";
+    EXPECT_EQ(device_.i2c_error_count(), 1);
+    device_.begin_read(true);
+    bus_.expect("R 0031 1 -> 02 | R 0031 1 -> 02");
+    bus_.expect(kBlock5);
+    bus_.expect(kBlock5);
+    expect_done(kClear);
+    EXPECT_TRUE(device_.has_measurement());
+    device_.begin_read(true);
+    expect_done("R 0031 1 -> 03");
+    EXPECT_FALSE(device_.has_measurement()) << "no is enough";
+}
+
 TEST_F(DeviceOnScript, reads_twice_then_clears) {
     device_.begin_read();
     bus_.expect(kReadyLow);

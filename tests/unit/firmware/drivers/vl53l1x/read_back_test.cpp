@@ -35,6 +35,8 @@ TEST(RegisterRuns, first_three_hold_all_that_steers_the_range) {
     EXPECT_TRUE(contains_all(steering, interval(0x1E, 0x23)));
     EXPECT_TRUE(contains_all(steering, interval(0x5E, 0x63)));
     EXPECT_TRUE(contains_all(steering, {0x69}));
+    EXPECT_TRUE(contains_all(steering, interval(0x6C, 0x6F)))
+        << "the period: a reading's time follows from it";
     EXPECT_TRUE(contains_all(steering, interval(0x78, 0x7B)));
     EXPECT_TRUE(contains_all(steering, {0x7F, 0x80}));
 }
