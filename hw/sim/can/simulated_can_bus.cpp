@@ -40,6 +40,21 @@ node::CanTransmitter& SimulatedCanBus::attach(FrameHandler on_frame, std::size_t
     return controllers_.emplace_back(*this, std::move(on_frame), mailboxes);
 }
 
+CanSeat& SimulatedCanBus::attach_seat(CanSeatHandlers handlers) {
+    Controller& controller = controllers_.emplace_back(*this, handlers.on_frame, 1);
+    controller.seat = std::move(handlers);
+    return controller;
+}
+
+void SimulatedCanBus::Controller::offer(const std::optional<wire::CanFrame>& frame) {
+    pending.clear();
+    if (frame) pending.push_back({.frame = *frame, .given = bus_.now_});
+}
+
+bool SimulatedCanBus::Controller::is_sending() const {
+    return bus_.under_way_ && bus_.under_way_->sender == this;
+}
+
 void SimulatedCanBus::tap(FrameHandler on_frame) {
     taps_.push_back(std::move(on_frame));
 }
@@ -76,7 +91,11 @@ void SimulatedCanBus::Controller::restart() {
     back_at_ = later(bus_.now_, way_back_us);
 }
 
-void SimulatedCanBus::Controller::on_sent() {
+void SimulatedCanBus::Controller::on_sent(const wire::CanFrame& frame, SimTime end) {
+    if (seat) {
+        if (seat->on_sent) seat->on_sent(frame, end);
+        return;
+    }
     settle();
     if (transmit_errors_ > 0) --transmit_errors_;
 }
@@ -89,6 +108,10 @@ void SimulatedCanBus::Controller::settle() {
 }
 
 void SimulatedCanBus::Controller::on_error(const Pending& disturbed) {
+    if (seat) {
+        if (seat->on_disturbed) seat->on_disturbed(disturbed.frame, disturbed.given);
+        return;
+    }
     settle();
     transmit_errors_ += kErrorsPerFrame;
     is_off_ = transmit_errors_ >= kErrorsUntilBusOff;
@@ -120,7 +143,7 @@ void SimulatedCanBus::end_transmission() {
         ended.sender->on_error({.frame = ended.frame, .given = ended.end});
         return;
     }
-    ended.sender->on_sent();
+    ended.sender->on_sent(ended.frame, ended.end);
     schedule_heard(ended);
 }
 

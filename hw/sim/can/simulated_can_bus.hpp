@@ -29,6 +29,27 @@ using FrameHandler = std::function<void(const wire::CanFrame& frame, SimTime end
 /// microseconds.
 [[nodiscard]] std::int64_t frame_duration_us(const wire::CanFrame& frame, const wire::BitRates& rates);
 
+/// A controller that decides itself what it sends next, counts its own errors and repeats its own frames: a
+/// model of the hardware on an emulated board.
+class CanSeat {
+  public:
+    /// What it wants to send next, in place of what it wanted before; empty: nothing. A frame under way ends
+    /// in any case.
+    virtual void offer(const std::optional<wire::CanFrame>& frame) = 0;
+    /// A frame of its own is under way.
+    [[nodiscard]] virtual bool is_sending() const = 0;
+
+  protected:
+    ~CanSeat() = default;
+};
+
+/// What its holder hears, at the end of a frame each.
+struct CanSeatHandlers {
+    FrameHandler on_frame;      ///< of the others
+    FrameHandler on_sent;       ///< its own
+    FrameHandler on_disturbed;  ///< its own, destroyed by a fault of the bus: nobody heard it
+};
+
 class SimulatedCanBus {
   public:
     explicit SimulatedCanBus(const wire::BitRates& rates);
@@ -40,6 +61,8 @@ class SimulatedCanBus {
     /// in the order given. A frame counts as given at the bus's present time: call `advance(now)` before
     /// whoever sends at `now`.
     node::CanTransmitter& attach(FrameHandler on_frame, std::size_t mailboxes = 3);
+    /// For one that governs itself. Lives as long as the bus.
+    CanSeat& attach_seat(CanSeatHandlers handlers);
 
     /// Hears every frame of every controller: the recorder.
     void tap(FrameHandler on_frame);
@@ -63,23 +86,26 @@ class SimulatedCanBus {
         wire::CanFrame frame;
         SimTime given;
     };
-    class Controller final : public node::CanTransmitter {
+    class Controller final : public node::CanTransmitter, public CanSeat {
       public:
         Controller(const SimulatedCanBus& bus, FrameHandler handler, std::size_t mailbox_count)
             : on_frame(std::move(handler)), bus_(bus), mailbox_count_(mailbox_count) {}
         bool send(const wire::CanFrame& frame) override;
         [[nodiscard]] node::CanState state() const override;
         std::uint32_t discard() override;
+        void offer(const std::optional<wire::CanFrame>& frame) override;
+        [[nodiscard]] bool is_sending() const override;
         void restart() override;
 
-        void on_sent();
+        void on_sent(const wire::CanFrame& frame, SimTime end);
         void on_error(const Pending& disturbed);
         /// Bus-off, and on its way back since.
         [[nodiscard]] std::optional<SimTime> back_at() const { return back_at_; }
         [[nodiscard]] bool is_on_bus(SimTime time) const;
 
         FrameHandler on_frame;
-        std::vector<Pending> pending;  ///< in the order given; the one under way has left
+        std::optional<CanSeatHandlers> seat;  ///< governs itself
+        std::vector<Pending> pending;         ///< in the order given; the one under way has left
 
       private:
         void settle();

@@ -1,0 +1,20 @@
+// What differs from one board of a type to the next: its sensors' constants and its unique id. A function of
+// the seed and the node, so that every home of the node core gets the same parts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/config/node_config.hpp"
+#include "hw/sim/vl53l1x/ranging_timing.hpp"
+
+namespace octoskin::sim {
+
+struct BoardParts {
+    std::vector<SensorPart> sensors;  ///< by local index
+    std::array<std::uint8_t, 12> unique_id{};
+};
+[[nodiscard]] BoardParts draw_board_parts(std::uint64_t seed, const NodeConfig& config);
+
+}  // namespace octoskin::sim
