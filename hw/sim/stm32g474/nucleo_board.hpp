@@ -1,0 +1,146 @@
+// The NUCLEO-G474RE with the sensor carrier: chip, crystal, four I2C buses, the XSHUT chain, CAN, the virtual
+// COM port and the light. Pins: docs/bring-up, hw/boards.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hw/sim/stm32g474/cpu/cortex_m4.hpp"
+#include "hw/sim/stm32g474/elf_image.hpp"
+#include "hw/sim/stm32g474/nets/shift_register_chain.hpp"
+#include "hw/sim/stm32g474/peripherals/fdcan.hpp"
+#include "hw/sim/stm32g474/peripherals/flash_interface.hpp"
+#include "hw/sim/stm32g474/peripherals/gpio.hpp"
+#include "hw/sim/stm32g474/peripherals/i2c.hpp"
+#include "hw/sim/stm32g474/peripherals/iwdg.hpp"
+#include "hw/sim/stm32g474/peripherals/lpuart.hpp"
+#include "hw/sim/stm32g474/peripherals/plain_registers.hpp"
+#include "hw/sim/stm32g474/peripherals/pwr.hpp"
+#include "hw/sim/stm32g474/peripherals/rcc.hpp"
+#include "hw/sim/stm32g474/peripherals/timer2.hpp"
+#include "hw/sim/stm32g474/system_bus.hpp"
+
+namespace octoskin::sim::stm32 {
+
+inline constexpr std::uint32_t kConfigurationPage = 0x0807'F800;  ///< the last page of flash
+
+struct NucleoOptions {
+    Crystal crystal{};
+    double drift_ppm = 0.0;  ///< of all the board's clocks against true time
+    std::uint32_t lsi_hz = 32'000;
+    std::uint32_t cycles_per_instruction = 1;
+    BusEdges edges = BusEdges::typical;
+    wire::BitRates bit_rates{};
+    std::array<std::uint8_t, 12> unique_id{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    std::uint64_t seed = 1;  ///< of what RAM holds at power-up
+};
+
+class NucleoBoard final : private InterruptLines, private CanBusSide {
+  public:
+    static constexpr std::size_t kI2cBuses = 4;
+
+    /// Powered at true time 0. `configuration` goes to its page of flash; empty leaves the page erased.
+    NucleoBoard(const NucleoOptions& options, const ElfImage& image,
+                std::span<const std::uint8_t> configuration);
+    ~NucleoBoard();
+
+    /// Runs the program up to `time`, or to the end of the basic block that reaches it.
+    void run_until(SimTime time);
+    [[nodiscard]] SimTime now() const { return true_time(now_); }
+    [[nodiscard]] BoardTime board_time() const noexcept { return now_; }
+    /// When an instant of the board's clock truly is.
+    [[nodiscard]] SimTime true_time(BoardTime time) const;
+    [[nodiscard]] BoardTime to_board_time(SimTime time) const;
+    /// The user presses the reset button.
+    void press_reset() { reset(ResetFlag::pin); }
+    /// Power off and on: RAM is lost.
+    void cycle_power();
+
+    [[nodiscard]] I2cWire& wire(std::size_t bus) { return wires_.at(bus); }
+    [[nodiscard]] std::int64_t i2c_busy_ps(std::size_t bus) const { return i2c_.at(bus)->busy_ps(); }
+    /// Each XSHUT output that changes.
+    void on_xshut(ShiftRegisterChain::Listener listener) { on_xshut_ = std::move(listener); }
+    /// What the CAN controller wants to send next, at every change.
+    void on_offer(std::function<void(const std::optional<wire::CanFrame>&)> listener) {
+        on_offer_ = std::move(listener);
+    }
+    [[nodiscard]] Fdcan& can() noexcept { return *fdcan_; }
+    [[nodiscard]] bool is_led_lit() const { return ports_[0]->drives_high(5); }
+    [[nodiscard]] const std::string& serial_text() const noexcept { return serial_text_; }
+    [[nodiscard]] const Timer2& timer2() const noexcept { return *timer2_; }
+
+    [[nodiscard]] ViolationLog& log() noexcept { return log_; }
+    [[nodiscard]] const CortexM4& core() const noexcept { return *core_; }
+    [[nodiscard]] const ElfImage& image() const noexcept { return image_; }
+    [[nodiscard]] std::uint32_t reset_count() const noexcept { return reset_count_; }
+    [[nodiscard]] std::uint32_t ram_word(std::uint32_t address) const;
+    /// For tests: the core goes on at `symbol`.
+    void jump(const std::string& symbol);
+
+  private:
+    struct Pin {
+        std::uint32_t port;  ///< 0 is A
+        std::uint32_t number;
+    };
+    struct I2cPins {
+        Pin scl;
+        Pin sda;
+        std::uint32_t function;
+    };
+    static const std::array<I2cPins, kI2cBuses> kI2cPins;
+
+    void load(const ElfImage& image, std::span<const std::uint8_t> configuration);
+    void fill_ram(std::uint64_t seed);
+    void make_peripherals(const NucleoOptions& options);
+    void place_peripherals();
+    void connect_pins();
+    void reset(ResetFlag flag);
+    void drive_xshut();
+    void drive_i2c(std::size_t bus);
+    [[nodiscard]] bool has_function(const Pin& pin, std::uint32_t function) const;
+    void after_clock_change();
+
+    void set_line(std::uint32_t irq, bool is_high) override;
+    void pend_nmi() override;
+    void offer(const std::optional<wire::CanFrame>& frame) override;
+
+    BoardTime now_{};
+    ViolationLog log_{now_};
+    double rate_;  ///< board seconds per true second
+    ElfImage image_;
+    std::vector<std::uint8_t> flash_;
+    std::vector<std::uint8_t> ram_;
+    std::vector<std::uint8_t> system_memory_;
+
+    std::array<I2cWire, kI2cBuses> wires_{};
+    std::unique_ptr<SystemControl> control_;
+    std::unique_ptr<Rcc> rcc_;
+    std::unique_ptr<Pwr> pwr_;
+    std::unique_ptr<FlashInterface> flash_interface_;
+    std::array<std::unique_ptr<GpioPort>, 7> ports_{};
+    std::unique_ptr<Timer2> timer2_;
+    std::unique_ptr<Iwdg> iwdg_;
+    std::unique_ptr<Lpuart> lpuart_;
+    std::array<std::unique_ptr<I2c>, kI2cBuses> i2c_{};
+    std::unique_ptr<FdcanRam> fdcan_ram_;
+    std::unique_ptr<Fdcan> fdcan_;
+    std::unique_ptr<PlainRegisters> syscfg_;
+    std::unique_ptr<PlainRegisters> debug_;
+    std::unique_ptr<SystemBus> bus_;
+    std::unique_ptr<CortexM4> core_;
+    std::unique_ptr<ShiftRegisterChain> xshut_;
+
+    ShiftRegisterChain::Listener on_xshut_;
+    std::function<void(const std::optional<wire::CanFrame>&)> on_offer_;
+    std::string serial_text_;
+    std::optional<ResetFlag> wanted_reset_;
+    std::uint32_t reset_count_ = 0;
+};
+
+}  // namespace octoskin::sim::stm32
