@@ -1,0 +1,86 @@
+// octoskin_board: the flashed image on an emulated NUCLEO-G474RE. A program of its own because of Unicorn's
+// licence.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+
+#include "host/apps/octoskin_board/arguments.hpp"
+#include "host/apps/octoskin_board/bench.hpp"
+#include "host/io/candump/log_writer.hpp"
+#include "hw/sim/experiment/sync_master.hpp"
+
+namespace octoskin::board {
+namespace {
+
+constexpr WallTime kLogEpoch{1'750'000'000'000'000'000};
+constexpr HostTime kHostAtStart{4'321'000'000'000};
+constexpr Microseconds kSyncPeriod{1'000'000};
+
+int fail(const AppError& error) {
+    fmt::print(stderr, "octoskin_board: {}\n", error.message);
+    return static_cast<int>(error.code);
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begun) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
+/// The board alone with a partner that acknowledges, and perhaps the host's SYNC.
+Status<AppError> run(const Arguments& arguments, Bench& bench) {
+    sim::SimulatedCanBus bus({bench.config().nominal_bitrate, bench.config().data_bitrate});
+    std::optional<candump::LogWriter> log;
+    if (!arguments.can_log.empty()) {
+        auto created = candump::LogWriter::create(arguments.can_log);
+        if (!created) return unexpected(AppError{ExitCode::cannot_create, created.error().message()});
+        log.emplace(std::move(*created));
+    }
+    sim::SyncMaster master(sim::SimulatedHostClock(kHostAtStart), kSyncPeriod);
+    std::optional<std::string> write_error;
+    bus.tap([&](const wire::CanFrame& frame, sim::SimTime end) {
+        master.on_frame(frame, end);
+        if (!log || write_error) return;
+        if (const auto written = log->write(WallTime{kLogEpoch.ns + end.us * 1000}, frame); !written)
+            write_error = written.error().message();
+    });
+    node::CanTransmitter& host = bus.attach({}, 16);
+    sim::stm32::BoardOnBus on_bus(bench.board(), bus);
+    on_bus.run_until({static_cast<std::int64_t>(arguments.seconds * 1e6)}, [&](sim::SimTime now) {
+        const std::vector<wire::CanFrame> frames = master.poll(now);
+        if (!arguments.sends_sync) return;
+        for (const wire::CanFrame& frame : frames) static_cast<void>(host.send(frame));
+    });
+    if (log && !write_error) {
+        if (const auto closed = log->close(); !closed) write_error = closed.error().message();
+    }
+    if (write_error) return unexpected(AppError{ExitCode::cannot_create, *write_error});
+    return Done{};
+}
+
+int run_alone(const Arguments& arguments) {
+    auto bench = Bench::build(arguments, wall_at(arguments.wall_m));
+    if (!bench) return fail(bench.error());
+    const auto begun = std::chrono::steady_clock::now();
+    if (const auto ran = run(arguments, **bench); !ran) return fail(ran.error());
+    if (arguments.shows_serial) fmt::print("{}", (*bench)->board().serial_text());
+    fmt::print("{}", use_report(**bench, seconds_since(begun)));
+    fmt::print(stderr, "{}", violation_report((*bench)->board()));
+    const bool is_clean = (*bench)->board().log().count() == 0 || arguments.allows_violations;
+    return static_cast<int>(is_clean ? ExitCode::ok : ExitCode::failed);
+}
+
+}  // namespace
+}  // namespace octoskin::board
+
+int main(int argc, char** argv) {
+    using namespace octoskin;
+    CLI::App app{"Runs a flashed image on an emulated NUCLEO-G474RE with simulated sensors."};
+    board::Arguments arguments;
+    board::describe(app, arguments);
+    try {
+        app.parse(argc, argv);
+        return board::run_alone(arguments);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+    }
+}
