@@ -19,6 +19,7 @@
 #include "firmware/port/stm32g4/interrupt_handlers.hpp"
 #include "firmware/port/stm32g4/microsecond_timer.hpp"
 #include "firmware/port/stm32g4/pin.hpp"
+#include "firmware/port/stm32g4/rate_search.hpp"
 #include "firmware/port/stm32g4/reset_cause.hpp"
 #include "firmware/port/stm32g4/serial_port.hpp"
 #include "firmware/port/stm32g4/status_light.hpp"
@@ -39,12 +40,13 @@ constinit StatusLight light;
 constinit Report report{serial, light};
 constinit XshutChain xshut;
 constinit CanController can{timer};
+constinit std::optional<RateSearch> rate_search;  // while nobody told the rates
 constinit std::array<I2cController, kI2cWirings.size()> i2c_controllers{
     I2cController{kI2cWirings[0], timer}, I2cController{kI2cWirings[1], timer},
     I2cController{kI2cWirings[2], timer}, I2cController{kI2cWirings[3], timer}};
 constinit std::array<i2c::Bus*, kI2cWirings.size()> buses{&i2c_controllers[0], &i2c_controllers[1],
                                                           &i2c_controllers[2], &i2c_controllers[3]};
-constinit NodeConfig config;
+constinit NodeConfig config = without_configuration();
 constinit std::optional<node::Node> the_node;
 
 void start_buses(const Clocks& clocks) {
@@ -52,8 +54,8 @@ void start_buses(const Clocks& clocks) {
     if (timing) {
         for (I2cController& controller : i2c_controllers) controller.start(*timing);
     }
-    const bool has_rates = is_possible(config, kCanHz);
-    if (has_rates) (void)can.start(config, clocks.can_hz);
+    const bool has_rates = is_possible(rates_of(config), kCanHz);
+    if (has_rates) (void)can.start(rates_of(config), config.node_id, clocks.can_hz);
     if (timing && has_rates && config.board_type == kBoardType) return report.config_accepted(config);
     report.config_unsuitable(config);
     // Not valid: the node does not range, and says so. (A wrong board type it finds by itself.)
@@ -66,8 +68,10 @@ void load_configuration(const Clocks& clocks) {
         config = *decoded;
         start_buses(clocks);
     } else {
-        config = without_configuration();
         report.config_refused(decoded.error());
+        rate_search.emplace();
+        rate_search->begin(timer.now());
+        if (!can.listen(rate_search->rates(), config.node_id, clocks.can_hz)) rate_search.reset();
     }
 }
 
@@ -94,6 +98,14 @@ void start() {
                             .watchdog = &watchdog,
                             .kept = &kept_memory()};
     the_node.emplace(config, identity, ports, timer.now());
+}
+
+void search_rates(NodeTime now) {
+    if (!rate_search) return;
+    const RateSearch::Verdict verdict = rate_search->judge(can.heard(), now);
+    if (verdict == RateSearch::Verdict::try_next)
+        (void)can.listen(rate_search->rates(), config.node_id, kCanHz);
+    if (verdict == RateSearch::Verdict::found && can.join()) rate_search.reset();
 }
 
 /// When something must be done even if no event comes.
@@ -130,8 +142,9 @@ void turn() {
     while (const auto received = can.receive()) the_node->on_frame(received->frame, received->received);
     const NodeTime now = timer.now();
     can.poll(now);
+    search_rates(now);
     the_node->poll(now);
-    report.update(*the_node, can.is_started());
+    report.update(*the_node, can, now);
     if (the_node->is_reset_requested()) cpu::reset();
     sleep_until(wake_time(light.poll(timer.now())));
 }

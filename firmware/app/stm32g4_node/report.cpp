@@ -9,6 +9,8 @@ namespace octoskin::stm32g4 {
 
 namespace {
 
+constexpr Microseconds kLossesPause{10'000'000};
+
 std::string_view words(ClockSource source) {
     switch (source) {
         case ClockSource::crystal:
@@ -67,7 +69,7 @@ void Report::config_accepted(const NodeConfig& config) {
 void Report::config_refused(NodeConfigError error) {
     TextLine line;
     line.text("configuration block at 0807F800 is ").text(words(error));
-    serial_.say(line.text(": no ranging, CAN is silent; flash one").view());
+    serial_.say(line.text(": no ranging; flash one").view());
 }
 
 void Report::config_unsuitable(const NodeConfig& config) {
@@ -76,7 +78,7 @@ void Report::config_unsuitable(const NodeConfig& config) {
     serial_.say(line.number(config.board_type).text(", is not for this board: no ranging").view());
 }
 
-void Report::update(const node::Node& node, bool is_can_started) {
+void Report::update(const node::Node& node, const CanController& can, NodeTime now) {
     const wire::NodeState state = node.state();
     if (state_ != state) {
         TextLine line;
@@ -89,7 +91,19 @@ void Report::update(const node::Node& node, bool is_can_started) {
     }
     state_ = state;
     bus_off_count_ = bus_off_count;
-    show(state, is_can_started);
+    tell_losses(can.counts(), now);
+    show(state, can.is_started());
+}
+
+/// With nobody to acknowledge there are some every second: a line now and then is enough.
+void Report::tell_losses(const CanCounts& counts, NodeTime now) {
+    const bool is_news = counts.expired != told_.expired || counts.receive_lost != told_.receive_lost;
+    if (!is_news || elapsed(told_at_, now) < kLossesPause) return;
+    TextLine line;
+    line.text("CAN: ").number(counts.expired).text(" frames not acknowledged, ");
+    serial_.say(line.number(counts.receive_lost).text(" not received, since start").view());
+    told_ = counts;
+    told_at_ = now;
 }
 
 /// One thing at a time: what must be mended first.

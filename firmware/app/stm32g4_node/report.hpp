@@ -8,6 +8,7 @@
 #include "common/config/node_config.hpp"
 #include "common/wire/messages.hpp"
 #include "firmware/core/node.hpp"
+#include "firmware/port/stm32g4/can_controller.hpp"
 #include "firmware/port/stm32g4/clocks.hpp"
 #include "firmware/port/stm32g4/fault_record.hpp"
 #include "firmware/port/stm32g4/serial_port.hpp"
@@ -27,9 +28,10 @@ class Report {
     void config_unsuitable(const NodeConfig& config);
 
     /// Says what changed since the last call.
-    void update(const node::Node& node, bool is_can_started);
+    void update(const node::Node& node, const CanController& can, NodeTime now);
 
   private:
+    void tell_losses(const CanCounts& counts, NodeTime now);
     void show(wire::NodeState state, bool is_can_started);
 
     SerialPort& serial_;
@@ -37,6 +39,8 @@ class Report {
     bool has_crystal_ = false;
     std::optional<wire::NodeState> state_;
     std::uint32_t bus_off_count_ = 0;
+    CanCounts told_;
+    NodeTime told_at_;
 };
 
 }  // namespace octoskin::stm32g4

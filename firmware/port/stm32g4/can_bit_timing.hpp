@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
 #include <cstdint>
 #include <optional>
 
@@ -62,10 +63,18 @@ inline constexpr std::uint32_t kQuantaMin = 8;
     return bit_timing(clock_hz, rate, 750, kDataRange);
 }
 
-/// Whether all of the configuration's rates can be made.
-[[nodiscard]] constexpr bool is_possible(const NodeConfig& config, std::uint32_t clock_hz) {
-    return nominal_timing(clock_hz, config.nominal_bitrate) &&
-           (!config.uses_can_fd || data_timing(clock_hz, config.data_bitrate));
+/// Of a bus, in bit/s.
+struct CanRates {
+    std::uint32_t nominal = 0;
+    std::uint32_t data = 0;
+    bool has_fd = false;  ///< else the data rate means nothing
+    friend constexpr auto operator<=>(const CanRates&, const CanRates&) = default;
+};
+[[nodiscard]] constexpr CanRates rates_of(const NodeConfig& config) {
+    return {.nominal = config.nominal_bitrate, .data = config.data_bitrate, .has_fd = config.uses_can_fd};
+}
+[[nodiscard]] constexpr bool is_possible(const CanRates& rates, std::uint32_t clock_hz) {
+    return nominal_timing(clock_hz, rates.nominal) && (!rates.has_fd || data_timing(clock_hz, rates.data));
 }
 
 [[nodiscard]] constexpr std::uint32_t nbtp(const BitTiming& timing) {

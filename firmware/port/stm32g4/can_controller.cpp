@@ -1,6 +1,5 @@
 #include "firmware/port/stm32g4/can_controller.hpp"
 
-#include "firmware/port/stm32g4/can_bit_timing.hpp"
 #include "firmware/port/stm32g4/cpu.hpp"
 #include "firmware/port/stm32g4/pin.hpp"
 #include "firmware/port/stm32g4/registers/clocks_and_power.hpp"
@@ -16,6 +15,9 @@ constexpr Pin kReceivePin{gpio_a, 11};
 constexpr Pin kTransmitPin{gpio_a, 12};
 constexpr std::uint8_t kFunction = 9;  // datasheet DS12288, alternate functions
 
+constexpr std::uint32_t kInterrupts =
+    F("IE.RF0NE")(1) | F("IE.RF0LE")(1) | F("IE.TCE")(1) | F("IE.EPE")(1) | F("IE.BOE")(1);
+constexpr std::uint32_t kAccept = 0;  // RXGFC.ANFS: into FIFO 0
 constexpr std::uint32_t kReject = 2;  // RXGFC.ANFS, ANFE
 constexpr std::uint32_t kAllPlaces = (1U << kFifoElements) - 1;
 constexpr Microseconds kModeLimit{1'000};  // the controller follows within a few of its clocks
@@ -34,47 +36,80 @@ CanElement read_element(Address address) {
 
 }  // namespace
 
-bool CanController::start(const NodeConfig& config, std::uint32_t clock_hz) {
-    const auto nominal = nominal_timing(clock_hz, config.nominal_bitrate);
-    const auto data = data_timing(clock_hz, config.data_bitrate);
-    if (clock_hz == 0 || !nominal || (config.uses_can_fd && !data)) return false;
+bool CanController::start(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz) {
+    is_started_ = enter(rates, node_id, clock_hz) && set_init(false);
+    return is_started_;
+}
 
+bool CanController::listen(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz) {
+    is_started_ = false;
+    heard_ = 0;
+    has_errors_ = false;
+    if (!enter(rates, node_id, clock_hz)) return false;
+    listen_to_all();
+    is_listening_ = set_init(false);
+    return is_listening_;
+}
+
+/// Ready to start, still in INIT.
+bool CanController::enter(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz) {
+    is_listening_ = false;
+    if (clock_hz == 0 || !is_possible(rates, clock_hz)) return false;
     rcc.set("APB1ENR1.FDCANEN", 1);
     (void)rcc.read("APB1ENR1");
     if (!set_init(true)) return false;
     fdcan1.set("CCCR.CCE", 1);
-    const BitTiming fast = data.value_or(BitTiming{});
-    configure(config, nbtp(*nominal), dbtp(config.data_bitrate, fast), tdcr(fast));
-
+    set_timing(rates, clock_hz);
+    prepare(node_id);
     kReceivePin.make_alternate(kFunction, Drive::push_pull);
     kTransmitPin.make_alternate(kFunction, Drive::push_pull, Speed::high);
     cpu::enable(Interrupt::fdcan1_it0, cpu::Priority::stamp);
-    if (!set_init(false)) return false;
-    is_started_ = true;
     return true;
 }
 
-void CanController::configure(const NodeConfig& config, std::uint32_t nominal, std::uint32_t data,
-                              std::uint32_t delay) {
+void CanController::set_timing(const CanRates& rates, std::uint32_t clock_hz) const {
     fdcan1.write("CKDIV", 0);
-    fdcan1.write("NBTP", nominal);
-    if (config.uses_can_fd) {
-        fdcan1.write("DBTP", data);
-        fdcan1.write("TDCR", delay);
-        fdcan1.set("CCCR.FDOE", 1);
-        fdcan1.set("CCCR.BRSE", 1);
-    }
+    if (const auto nominal = nominal_timing(clock_hz, rates.nominal)) fdcan1.write("NBTP", nbtp(*nominal));
+    const auto data = data_timing(clock_hz, rates.data);
+    if (!rates.has_fd || !data) return;
+    fdcan1.write("DBTP", dbtp(rates.data, *data));
+    fdcan1.write("TDCR", tdcr(*data));
+    fdcan1.set("CCCR.FDOE", 1);
+    fdcan1.set("CCCR.BRSE", 1);
+}
+
+/// Bus monitoring: only recessive bits, so neither acknowledges nor error frames.
+void CanController::listen_to_all() const {
+    fdcan1.set("CCCR.MON", 1);
+    fdcan1.set("RXGFC.ANFS", kAccept);
+    fdcan1.write("IE", fdcan1.read("IE") | F("IE.PEAE")(1) | F("IE.PEDE")(1));
+}
+
+bool CanController::join() {
+    if (!is_listening_ || !set_init(true)) return false;
+    fdcan1.set("CCCR.CCE", 1);
+    fdcan1.set("CCCR.MON", 0);
+    fdcan1.set("RXGFC.ANFS", kReject);
+    fdcan1.write("IE", kInterrupts);
+    is_listening_ = false;
+    is_started_ = set_init(false);
+    return is_started_;
+}
+
+Heard CanController::heard() const {
+    return {.frames = heard_, .has_errors = has_errors_};
+}
+
+void CanController::prepare(wire::NodeId node_id) const {
     for (std::uint32_t i = 0; i < kMessageRamBytes; i += 4) store(kMessageRam + i, 0);
     std::uint32_t index = 0;
-    for (const std::uint32_t filter : node_filters(config.node_id))
-        store(kStandardFilters + 4 * index++, filter);
+    for (const std::uint32_t filter : node_filters(node_id)) store(kStandardFilters + 4 * index++, filter);
     // Remote frames under an identifier of ours pass, so that the node can count them.
     fdcan1.write("RXGFC", F("RXGFC.RRFE")(1) | F("RXGFC.ANFE")(kReject) | F("RXGFC.ANFS")(kReject) |
                               F("RXGFC.LSS")(kFilterCount));
     fdcan1.write("TXBC", 0);  // first in, first out
     fdcan1.write("TXBTIE", F("TXBTIE.TIE")(kAllPlaces));
-    fdcan1.write("IE",
-                 F("IE.RF0NE")(1) | F("IE.RF0LE")(1) | F("IE.TCE")(1) | F("IE.EPE")(1) | F("IE.BOE")(1));
+    fdcan1.write("IE", kInterrupts);
     fdcan1.write("ILS", 0);
     fdcan1.write("ILE", F("ILE.EINT0")(1));
 }
@@ -175,6 +210,7 @@ void CanController::on_interrupt() {
     const std::uint32_t flags = fdcan1.read("IR");
     fdcan1.write("IR", flags);
     if (F("IR.RF0L").of(flags) != 0) lost_ = lost_ + 1;
+    if (F("IR.PEA").of(flags) != 0 || F("IR.PED").of(flags) != 0) has_errors_ = true;
     receive_all(now);
     has_event_ = true;
 }
@@ -182,6 +218,7 @@ void CanController::on_interrupt() {
 void CanController::receive_all(NodeTime now) {
     for (std::uint32_t i = 0; i < kFramesPerInterrupt && fdcan1.get("RXF0S.F0FL") > 0; ++i) {
         const std::uint32_t index = fdcan1.get("RXF0S.F0GI");
+        heard_ = heard_ + 1;
         const bool has_room = put_ - taken_ < kQueueFrames;
         if (has_room) {
             const CanElement element = read_element(element_address(kReceiveFifo, index));

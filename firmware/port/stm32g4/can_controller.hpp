@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "common/config/node_config.hpp"
 #include "common/time.hpp"
 #include "common/wire/can_frame.hpp"
 #include "firmware/core/ports.hpp"
+#include "firmware/port/stm32g4/can_bit_timing.hpp"
 #include "firmware/port/stm32g4/can_message_ram.hpp"
 #include "firmware/port/stm32g4/microsecond_timer.hpp"
 
@@ -20,6 +20,12 @@ struct CanCounts {
     std::uint32_t expired = 0;  ///< frames taken back because nobody acknowledged them in time
     std::uint32_t received = 0;
     std::uint32_t receive_lost = 0;  ///< frames for which there was no room
+};
+
+/// Of a bus whose rates are being tried.
+struct Heard {
+    std::uint32_t frames = 0;
+    bool has_errors = false;  ///< some frame could not be read: other rates, or a disturbed line
 };
 
 struct ReceivedFrame {
@@ -34,9 +40,17 @@ class CanController final : public node::CanTransmitter {
 
     constexpr explicit CanController(const MicrosecondTimer& timer) : timer_(timer) {}
 
-    /// Joins the bus with the configuration's rates and listens to what is for its node id. False, and
+    /// Joins the bus at these rates and listens to what is for `node_id`. False, and
     /// silent, if `clock_hz` is 0 or cannot make these rates.
-    [[nodiscard]] bool start(const NodeConfig& config, std::uint32_t clock_hz);
+    [[nodiscard]] bool start(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz);
+
+    /// As `start`, but hears every frame, sends nothing, and disturbs nobody whatever the bus's rates are.
+    /// May be called again with other rates.
+    [[nodiscard]] bool listen(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz);
+    /// After `listen`: takes part from now on.
+    [[nodiscard]] bool join();
+    /// What was heard since `listen`.
+    [[nodiscard]] Heard heard() const;
 
     /// Takes the frame if one of the three places is free. Frames leave in the order in which they came: of
     /// two of the same identifier the older one first, which a queue by identifier would not promise.
@@ -73,13 +87,17 @@ class CanController final : public node::CanTransmitter {
         bool is_taken_back = false;
     };
 
-    void configure(const NodeConfig& config, std::uint32_t nominal, std::uint32_t data, std::uint32_t delay);
+    [[nodiscard]] bool enter(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz);
+    void set_timing(const CanRates& rates, std::uint32_t clock_hz) const;
+    void prepare(wire::NodeId node_id) const;
+    void listen_to_all() const;
     [[nodiscard]] bool set_init(bool is_set) const;
     void note_sent();
     void receive_all(NodeTime now);
 
     const MicrosecondTimer& timer_;
     bool is_started_ = false;
+    bool is_listening_ = false;
     std::array<Place, kFifoElements> places_{};
     CanCounts counts_;
 
@@ -88,6 +106,8 @@ class CanController final : public node::CanTransmitter {
     std::atomic<std::uint32_t> put_ = 0;    ///< written by the interrupt
     std::atomic<std::uint32_t> taken_ = 0;  ///< written by the main loop
     std::atomic<std::uint32_t> lost_ = 0;
+    std::atomic<std::uint32_t> heard_ = 0;
+    std::atomic<bool> has_errors_ = false;
     std::atomic<bool> has_event_ = false;
 };
 

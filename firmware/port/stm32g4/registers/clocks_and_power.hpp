@@ -18,7 +18,7 @@ struct RccMap {
         {"APB1ENR1", 0x58},
         {"APB1ENR2", 0x5C},
         {"CCIPR", 0x88},
-        {"CCIPR2", 0x9C},
+
         {"CSR", 0x94},
     });
     static constexpr auto kFields = std::to_array<FieldEntry>({
@@ -31,12 +31,11 @@ struct RccMap {
         {"AHB2ENR.GPIOAEN", 0},    {"AHB2ENR.GPIOBEN", 1},   {"AHB2ENR.GPIOCEN", 2},
         {"APB1ENR1.TIM2EN", 0},    {"APB1ENR1.I2C1EN", 21},  {"APB1ENR1.I2C2EN", 22},
         {"APB1ENR1.FDCANEN", 25},  {"APB1ENR1.PWREN", 28},   {"APB1ENR1.I2C3EN", 30},
-        {"APB1ENR2.LPUART1EN", 0}, {"APB1ENR2.I2C4EN", 1},   {"CCIPR.LPUART1SEL", 10, 2},
-        {"CCIPR.I2C1SEL", 12, 2},  {"CCIPR.I2C2SEL", 14, 2}, {"CCIPR.I2C3SEL", 16, 2},
-        {"CCIPR.FDCANSEL", 24, 2}, {"CCIPR2.I2C4SEL", 0, 2}, {"CSR.RMVF", 23},
-        {"CSR.OBLRSTF", 25},       {"CSR.PINRSTF", 26},      {"CSR.BORRSTF", 27},
-        {"CSR.SFTRSTF", 28},       {"CSR.IWDGRSTF", 29},     {"CSR.WWDGRSTF", 30},
-        {"CSR.LPWRRSTF", 31},
+        {"APB1ENR2.LPUART1EN", 0}, {"APB1ENR2.I2C4EN", 1},
+
+        {"CCIPR.FDCANSEL", 24, 2}, {"CSR.RMVF", 23},         {"CSR.OBLRSTF", 25},
+        {"CSR.PINRSTF", 26},       {"CSR.BORRSTF", 27},      {"CSR.SFTRSTF", 28},
+        {"CSR.IWDGRSTF", 29},      {"CSR.WWDGRSTF", 30},     {"CSR.LPWRRSTF", 31},
     });
 };
 inline constexpr Peripheral<RccMap> rcc{"RCC"};

@@ -29,7 +29,7 @@ struct ScbMap {
         {"AIRCR", 0x0C},
         {"CCR", 0x14},
         {"CFSR_UFSR_BFSR_MMFSR", 0x28},
-        {"HFSR", 0x2C},
+
         {"MMFAR", 0x34},
         {"BFAR", 0x38},
     });
@@ -48,7 +48,7 @@ struct FpuMap {
     static constexpr auto kInstances = std::to_array<Instance>({{"FPU", 0xE000'EF34}});
     static constexpr auto kRegisters = std::to_array<RegisterEntry>({{"FPCCR", 0x00}});
     static constexpr auto kFields = std::to_array<FieldEntry>({
-        {"FPCCR.LSPEN", 30},
+
         {"FPCCR.ASPEN", 31},
     });
 };

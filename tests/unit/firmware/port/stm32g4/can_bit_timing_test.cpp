@@ -87,13 +87,13 @@ TEST(CanBitTiming, is_exact_and_in_range_wherever_the_clock_divides) {
 
 TEST(CanBitTiming, knows_a_configuration_that_cannot_be_made) {
     NodeConfig config;
-    EXPECT_TRUE(is_possible(config, kClock));
+    EXPECT_TRUE(is_possible(rates_of(config), kClock));
     config.data_bitrate = 7'000'000;
-    EXPECT_FALSE(is_possible(config, kClock));
+    EXPECT_FALSE(is_possible(rates_of(config), kClock));
     config.uses_can_fd = false;
-    EXPECT_TRUE(is_possible(config, kClock)) << "classical CAN has no data rate";
+    EXPECT_TRUE(is_possible(rates_of(config), kClock)) << "classical CAN has no data rate";
     config.nominal_bitrate = 300'000;
-    EXPECT_FALSE(is_possible(config, kClock));
+    EXPECT_FALSE(is_possible(rates_of(config), kClock));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "firmware/port/stm32g4/rate_search.hpp"
 #include "tests/support/stm32g4/address_space.hpp"
 
 namespace octoskin::stm32g4 {
@@ -12,6 +13,7 @@ namespace {
 
 using wire::CanFrame;
 
+constexpr wire::NodeId kNode = 7;
 constexpr std::uint32_t kClock = 80'000'000;
 constexpr Address kBase = 0x4000'6400;
 constexpr Address kCccr = kBase + 0x18;
@@ -76,14 +78,14 @@ class CanControllerTest : public ::testing::Test {
     test::AddressSpace space_;
     MicrosecondTimer timer_;
     CanController can_{timer_};
-    NodeConfig config_{.node_id = 7};
+    CanRates rates_{.nominal = 1'000'000, .data = 5'000'000, .has_fd = true};
     std::uint32_t put_ = 0;
     std::uint32_t received_ = 0;
     std::uint32_t received_get_ = 0;
 };
 
 TEST_F(CanControllerTest, joins_with_the_rates_of_the_configuration) {
-    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     EXPECT_EQ(space_[kBase + 0x1C], (15U << 25U) | (62U << 8U) | 15U);             // 1 Mbit/s
     EXPECT_EQ(space_[kBase + 0x0C], (1U << 23U) | (10U << 8U) | (3U << 4U) | 3U);  // 5 Mbit/s
     EXPECT_EQ(space_[kBase + 0x48], 12U << 8U);
@@ -96,7 +98,7 @@ TEST_F(CanControllerTest, joins_with_the_rates_of_the_configuration) {
 }
 
 TEST_F(CanControllerTest, zeroes_its_whole_message_ram_and_no_more) {
-    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     std::set<Address> zeroed;
     for (const auto& write : space_.writes()) {
         const bool is_behind = write.address >= 0x4000'A400 && write.address < 0x4800'0000;
@@ -107,15 +109,15 @@ TEST_F(CanControllerTest, zeroes_its_whole_message_ram_and_no_more) {
 }
 
 TEST_F(CanControllerTest, speaks_classical_can_only_if_told_so) {
-    config_.uses_can_fd = false;
-    ASSERT_TRUE(can_.start(config_, kClock));
+    rates_.has_fd = false;
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     EXPECT_EQ(space_[kCccr] & 0x300U, 0U);
 }
 
 TEST_F(CanControllerTest, stays_silent_without_a_clock_or_a_rate) {
-    EXPECT_FALSE(can_.start(config_, 0));
-    config_.data_bitrate = 7'000'000;
-    EXPECT_FALSE(can_.start(config_, kClock));
+    EXPECT_FALSE(can_.start(rates_, kNode, 0));
+    rates_.data = 7'000'000;
+    EXPECT_FALSE(can_.start(rates_, kNode, kClock));
     EXPECT_TRUE(space_.writes().empty()) << "not a register touched";
     EXPECT_FALSE(can_.send(frame(0x145, 1)));
     EXPECT_EQ(can_.state(), node::CanState::passive);
@@ -127,12 +129,12 @@ TEST_F(CanControllerTest, stays_silent_without_a_clock_or_a_rate) {
 
 TEST_F(CanControllerTest, gives_up_if_the_controller_does_not_follow) {
     space_.on_write(kCccr, [](std::uint32_t& word, std::uint32_t value) { word = value | 1U; });
-    EXPECT_FALSE(can_.start(config_, kClock));
+    EXPECT_FALSE(can_.start(rates_, kNode, kClock));
     EXPECT_FALSE(can_.is_started());
 }
 
 TEST_F(CanControllerTest, sends_three_frames_in_order_and_refuses_the_fourth) {
-    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     space_.forget_writes();
     for (std::uint8_t i = 0; i < 3; ++i) EXPECT_TRUE(can_.send(frame(0x145, i)));
     EXPECT_FALSE(can_.send(frame(0x145, 9)));
@@ -147,14 +149,14 @@ TEST_F(CanControllerTest, sends_three_frames_in_order_and_refuses_the_fourth) {
 }
 
 TEST_F(CanControllerTest, fills_the_place_before_it_asks_for_it) {
-    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     space_.forget_writes();
     ASSERT_TRUE(can_.send(frame(0x145, 1)));
     EXPECT_EQ(space_.writes().back().address, kTxbar);
 }
 
 TEST_F(CanControllerTest, takes_back_what_nobody_acknowledged) {
-    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     space_.time_us() = 1'000;
     ASSERT_TRUE(can_.send(frame(0x145, 1)));
     space_.time_us() = 2'000;
@@ -173,7 +175,7 @@ TEST_F(CanControllerTest, takes_back_what_nobody_acknowledged) {
 }
 
 TEST_F(CanControllerTest, does_not_take_back_what_was_sent) {
-    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     ASSERT_TRUE(can_.send(frame(0x145, 1)));
     end(0);
     can_.poll(NodeTime{100'000});
@@ -182,7 +184,7 @@ TEST_F(CanControllerTest, does_not_take_back_what_was_sent) {
 }
 
 TEST_F(CanControllerTest, receives_with_the_time_of_the_interrupt) {
-    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     arrive(frame(0x040, 1));
     arrive(frame(0x0FF, 2));
     space_.time_us() = 0xFFFF'FFF0;
@@ -202,7 +204,7 @@ TEST_F(CanControllerTest, receives_with_the_time_of_the_interrupt) {
 }
 
 TEST_F(CanControllerTest, keeps_sixteen_frames_and_counts_what_is_lost) {
-    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     for (std::uint8_t i = 0; i < 18; ++i) {
         arrive(frame(0x040, i));
         can_.on_interrupt();
@@ -216,7 +218,7 @@ TEST_F(CanControllerTest, keeps_sixteen_frames_and_counts_what_is_lost) {
 }
 
 TEST_F(CanControllerTest, does_not_hang_on_a_fifo_that_never_empties) {
-    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     space_.on_write(kRxf0a, [](std::uint32_t&, std::uint32_t) {});
     arrive(frame(0x040, 1));
     can_.on_interrupt();
@@ -224,7 +226,7 @@ TEST_F(CanControllerTest, does_not_hang_on_a_fifo_that_never_empties) {
 }
 
 TEST_F(CanControllerTest, tells_its_error_states_apart) {
-    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     space_[kPsr] = kPassive;
     EXPECT_EQ(can_.state(), node::CanState::passive);
     EXPECT_TRUE(can_.send(frame(0x145, 1))) << "passive is no reason to be silent";
@@ -234,7 +236,7 @@ TEST_F(CanControllerTest, tells_its_error_states_apart) {
 }
 
 TEST_F(CanControllerTest, comes_back_from_bus_off_when_told_and_sends_nothing_old) {
-    ASSERT_TRUE(can_.start(config_, kClock));
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     ASSERT_TRUE(can_.send(frame(0x145, 1)));
     ASSERT_TRUE(can_.send(frame(0x145, 2)));
     space_[kPsr] = kBusOff;
@@ -252,6 +254,53 @@ TEST_F(CanControllerTest, comes_back_from_bus_off_when_told_and_sends_nothing_ol
     EXPECT_EQ(can_.state(), node::CanState::active);
     can_.restart();
     EXPECT_EQ(space_.written_to(kCccr).size(), 1U);
+}
+
+TEST_F(CanControllerTest, listens_without_taking_part_then_joins) {
+    ASSERT_TRUE(can_.listen(rates_, kNode, kClock));
+    EXPECT_EQ(space_[kCccr] & 0x21U, 0x20U) << "MON, off INIT";
+    EXPECT_EQ((space_[kBase + 0x80] >> 4U) & 3U, 0U) << "hears all";
+    EXPECT_FALSE(can_.is_started());
+    EXPECT_FALSE(can_.send(frame(0x145, 1)));
+    arrive(frame(0x7FF, 1));
+    can_.on_interrupt();
+    EXPECT_EQ(can_.heard().frames, 1U);
+    EXPECT_FALSE(can_.heard().has_errors);
+    for (const std::uint32_t error : {1U << 21U, 1U << 22U}) {
+        ASSERT_TRUE(can_.listen(rates_, kNode, kClock));
+        EXPECT_EQ(can_.heard().frames, 0U);
+        space_[kIr] = error;
+        EXPECT_NE(space_[kBase + 0x54] & error, 0U) << "enabled";
+        can_.on_interrupt();
+        EXPECT_TRUE(can_.heard().has_errors);
+    }
+    ASSERT_TRUE(can_.join());
+    EXPECT_EQ(space_[kCccr] & 0x21U, 0U);
+    EXPECT_EQ((space_[kBase + 0x80] >> 4U) & 3U, 2U);
+    EXPECT_TRUE(can_.send(frame(0x145, 1)));
+    EXPECT_FALSE(can_.join()) << "once";
+}
+
+TEST(RateSearch, joins_only_where_frames_came_and_no_error) {
+    RateSearch search;
+    search.begin(NodeTime{0xFFFF'F000});
+    const NodeTime end{0xFFFF'F000 + 1'500'000};
+    using Verdict = RateSearch::Verdict;
+    EXPECT_EQ(search.judge({.frames = 100, .has_errors = false}, NodeTime{0xFFFF'F001}), Verdict::wait);
+    EXPECT_EQ(search.judge({.frames = 100, .has_errors = false}, end), Verdict::found);
+    EXPECT_EQ(search.judge({.frames = 2, .has_errors = false}, end), Verdict::try_next) << "hardly anybody";
+    EXPECT_EQ(search.judge({.frames = 100, .has_errors = true}, end), Verdict::try_next);
+}
+
+TEST(RateSearch, tries_every_pair_in_turn_and_each_can_be_made) {
+    RateSearch search;
+    std::set<CanRates> tried;
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_TRUE(is_possible(search.rates(), kClock));
+        EXPECT_TRUE(tried.insert(search.rates()).second) << "each once";
+        (void)search.judge({.frames = 0, .has_errors = true}, NodeTime{0});
+    }
+    EXPECT_TRUE(tried.contains(search.rates())) << "and then from the start";
 }
 
 }  // namespace

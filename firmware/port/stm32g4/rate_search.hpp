@@ -1,0 +1,54 @@
+// Finds out by listening at which rates a bus runs, for a board that nobody told: one without a valid
+// configuration block, which has to say so in its heartbeat and must not disturb the others.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/time.hpp"
+#include "firmware/port/stm32g4/can_bit_timing.hpp"
+#include "firmware/port/stm32g4/can_controller.hpp"
+
+namespace octoskin::stm32g4 {
+
+class RateSearch {
+  public:
+    /// Every host sends SYNC once a second.
+    static constexpr Microseconds kPatience{1'500'000};
+    /// So many frames and no error in that time: these are the bus's rates.
+    static constexpr std::uint32_t kFramesMin = 3;
+
+    enum class Verdict : std::uint8_t {
+        wait,
+        try_next,  ///< listen at `rates()` from now on
+        found,     ///< join at the rates tried
+    };
+
+    /// To try now.
+    [[nodiscard]] CanRates rates() const noexcept { return kRates[turn_]; }
+    void begin(NodeTime now) noexcept { begun_ = now; }
+
+    /// An error ends the try at once; silence only proves nothing.
+    [[nodiscard]] Verdict judge(const Heard& heard, NodeTime now) noexcept {
+        const bool is_over = elapsed(begun_, now) >= kPatience;
+        if (!heard.has_errors && !is_over) return Verdict::wait;
+        if (!heard.has_errors && heard.frames >= kFramesMin) return Verdict::found;
+        turn_ = (turn_ + 1) % kRates.size();
+        begun_ = now;
+        return Verdict::try_next;
+    }
+
+  private:
+    /// The usual ones for CAN FD. Classical frames are heard at whichever data rate.
+    static constexpr std::array<CanRates, 5> kRates = {{{1'000'000, 5'000'000, true},
+                                                        {500'000, 2'000'000, true},
+                                                        {1'000'000, 2'000'000, true},
+                                                        {250'000, 1'000'000, true},
+                                                        {125'000, 500'000, true}}};
+
+    std::size_t turn_ = 0;
+    NodeTime begun_;
+};
+
+}  // namespace octoskin::stm32g4
