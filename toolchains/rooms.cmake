@@ -9,7 +9,8 @@
 # repository's root ("common/wire/codec.hpp"), so every include line says which room it reaches into.
 #
 # Built for a board (preset target-tests), a test program or a library of tests is left out if it depends on a library that
-# is not built for one, and of the others the HOST_SOURCES, which need an operating system. Each is named when configuring.
+# is not built for one, and of the others the HOST_SOURCES, which need an operating system, or minutes there. Each is named
+# when configuring.
 
 set(OCTOSKIN_MAY_USE_common common)
 set(OCTOSKIN_MAY_USE_firmware/drivers common firmware/drivers)
@@ -134,7 +135,7 @@ function(octoskin_test name)
     endif()
     if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
         foreach(source IN LISTS ARG_HOST_SOURCES)
-            message(STATUS "Not on the target: ${source} of ${name}, for it needs an operating system")
+            message(STATUS "Not on the target: ${source} of ${name}, for it needs an operating system or minutes")
         endforeach()
     else()
         list(APPEND ARG_SOURCES ${ARG_HOST_SOURCES})

@@ -22,6 +22,7 @@ class Random {
   public:
     explicit Random(std::uint64_t seed) : engine_(seed) {}
     std::uint64_t below(std::uint64_t limit) { return engine_() % limit; }
+    std::size_t index_below(std::size_t size) { return static_cast<std::size_t>(below(size)); }
     bool one_in(std::uint64_t n) { return below(n) == 0; }
     void fill(std::span<std::uint8_t> bytes) {
         std::ranges::generate(bytes, [this] { return static_cast<std::uint8_t>(engine_()); });
@@ -45,7 +46,7 @@ TEST(WireRandom, random_payloads_pass_the_checksum_at_2_to_the_minus_its_width) 
         std::array<std::size_t, 3> passed{};
         const auto cases = all_message_cases();
         for (int i = 0; i < 500'000; ++i) {
-            const MessageCase& layout = cases[random.below(cases.size())];
+            const MessageCase& layout = cases[random.index_below(cases.size())];
             CanFrame frame = encode(layout.message, layout.node_id);
             random.fill(std::span(frame.data).first(frame.payload_len));
             const auto decoded = decode(frame);
@@ -66,11 +67,11 @@ TEST(WireRandom, frames_with_4_or_more_flipped_bits_pass_at_most_at_2_to_the_min
     std::array<std::size_t, 3> accepted{};
     const auto cases = all_message_cases();
     for (int i = 0; i < 500'000; ++i) {
-        const MessageCase& layout = cases[random.below(cases.size())];
+        const MessageCase& layout = cases[random.index_below(cases.size())];
         CanFrame frame = encode(layout.message, layout.node_id);
         const CanFrame good = frame;
         for (std::uint64_t flips = 4 + random.below(20); flips > 0; --flips) {
-            const std::uint64_t bit = random.below(8U * frame.payload_len);
+            const std::size_t bit = random.index_below(8U * frame.payload_len);
             frame.data[bit / 8] = static_cast<std::uint8_t>(frame.data[bit / 8] ^ (1U << (bit % 8)));
         }
         ++trials.at(layout.checksum_len);
@@ -97,7 +98,7 @@ CanFrame any_frame(Random& random) {
     frame.has_bit_rate_switch = random.one_in(2);
     constexpr std::array<std::uint8_t, 8> kOurLengths = {3, 7, 8, 8, 20, 32, 48, 64};
     frame.payload_len =
-        random.one_in(4) ? static_cast<std::uint8_t>(random.below(256)) : kOurLengths[random.below(8)];
+        random.one_in(4) ? static_cast<std::uint8_t>(random.below(256)) : kOurLengths[random.index_below(8)];
     random.fill(frame.data);
     if (frame.payload_len > 64 || random.one_in(2)) {
         return frame;
@@ -135,7 +136,7 @@ TEST(WireRandom, every_accepted_frame_is_the_one_that_its_message_encodes_to) {
     const auto cases = all_message_cases();
     std::size_t accepted = 0;
     for (int i = 0; i < 300'000; ++i) {
-        const MessageCase& layout = cases[random.below(cases.size())];
+        const MessageCase& layout = cases[random.index_below(cases.size())];
         Payload payload = payload_of(encode(layout.message, layout.node_id));
         const std::uint8_t selector = payload[0];
         for (const FieldCase& field : layout.fields) {
