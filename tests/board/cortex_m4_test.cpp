@@ -6,11 +6,13 @@
 
 #include <cstring>
 
-#include "hw/sim/stm32g474/elf_image.hpp"
+#include "hw/image/elf_image.hpp"
 
 namespace octoskin::sim::stm32 {
 namespace {
 
+using image::ElfImage;
+using image::ElfSegment;
 using testing::ElementsAre;
 
 class CoreTest : public testing::Test, private MemoryMappedDevices {

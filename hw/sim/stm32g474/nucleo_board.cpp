@@ -84,7 +84,7 @@ NucleoBoard::NucleoBoard(const NucleoOptions& options, const ElfImage& image,
 NucleoBoard::~NucleoBoard() = default;
 
 void NucleoBoard::load(const ElfImage& image, std::span<const std::uint8_t> configuration) {
-    for (const ElfSegment& segment : image.segments()) {
+    for (const image::ElfSegment& segment : image.segments()) {
         const std::uint32_t offset = segment.physical_address - kFlashBase;
         if (offset > kFlashBytes || segment.bytes.size() > kFlashBytes - offset) {
             throw std::runtime_error(

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "hw/image/elf_image.hpp"
 #include "hw/sim/stm32g474/cpu/cortex_m4.hpp"
-#include "hw/sim/stm32g474/elf_image.hpp"
 #include "hw/sim/stm32g474/nets/shift_register_chain.hpp"
 #include "hw/sim/stm32g474/peripherals/fdcan.hpp"
 #include "hw/sim/stm32g474/peripherals/flash_interface.hpp"
@@ -27,6 +27,8 @@
 #include "hw/sim/stm32g474/system_bus.hpp"
 
 namespace octoskin::sim::stm32 {
+
+using image::ElfImage;
 
 inline constexpr std::uint32_t kConfigurationPage = 0x0807'F800;  ///< the last page of flash
 

@@ -1,0 +1,57 @@
+// The program for a board: an ELF file as a flashing tool takes it, what it says about itself, and its
+// symbols.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+
+namespace octoskin::image {
+
+struct ElfSegment {
+    std::uint32_t physical_address;  ///< where the flashing tool puts it
+    std::vector<std::uint8_t> bytes;
+};
+
+struct ElfError {
+    std::string what;
+};
+
+class ElfImage {
+  public:
+    /// A little-endian 32-bit ARM executable; segments without file contents are left out. Errors: the file
+    /// cannot be read, and those of `parse`; the message names the file.
+    [[nodiscard]] static Result<ElfImage, ElfError> load(const std::string& path);
+    /// `file`: the whole ELF file. Errors: not such an executable; a header or a segment reaches past the
+    /// end.
+    [[nodiscard]] static Result<ElfImage, ElfError> parse(std::span<const std::uint8_t> file);
+
+    [[nodiscard]] const std::vector<ElfSegment>& segments() const noexcept { return segments_; }
+    /// Where execution starts, the Thumb bit included.
+    [[nodiscard]] std::uint32_t entry() const noexcept { return entry_; }
+    /// The contents of `.ARM.attributes`, for `build_attributes`; empty if there are none.
+    [[nodiscard]] std::span<const std::uint8_t> attributes() const noexcept { return attributes_; }
+    /// Address of a function (without the Thumb bit) or object.
+    [[nodiscard]] std::optional<std::uint32_t> address_of(const std::string& symbol) const;
+    /// "function+0x12", or the bare address where no function is known.
+    [[nodiscard]] std::string place(std::uint32_t address) const;
+
+  private:
+    using Bytes = std::span<const std::uint8_t>;
+    [[nodiscard]] bool take_segments(Bytes file);
+    void take_sections(Bytes file);
+    void take_symbols(Bytes file, std::uint64_t table, std::uint64_t size, std::uint64_t names);
+
+    std::uint32_t entry_ = 0;
+    std::vector<ElfSegment> segments_;
+    std::vector<std::uint8_t> attributes_;
+    std::map<std::string, std::uint32_t> symbols_;
+    std::map<std::uint32_t, std::string> functions_;
+};
+
+}  // namespace octoskin::image
