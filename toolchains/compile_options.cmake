@@ -29,9 +29,7 @@ if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
     set(may_throw $<IN_LIST:$<TARGET_PROPERTY:OCTOSKIN_ROOM>,hw/sim$<SEMICOLON>tests>)
     target_compile_options(octoskin_compile_options INTERFACE
         $<$<NOT:${may_throw}>:-fno-exceptions> -fno-rtti -fno-threadsafe-statics
-        -ffunction-sections -fdata-sections
-        # For the bound on the stack: toolchains/stack_bound.
-        -fstack-usage -fcallgraph-info=su
+        -ffunction-sections -fdata-sections -fstack-usage
         # Says only that arguments are passed otherwise than before GCC 7.1; everything here is one compiler's work.
         -Wno-psabi)
 endif()
