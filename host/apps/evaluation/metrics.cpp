@@ -99,21 +99,21 @@ std::optional<double> as_double(std::uint64_t count) {
 }
 
 constexpr std::array<MetricField, 15> kFields{{
-    {"occupied", true, [](const Metrics& m) { return as_double(m.occupied); }},
-    {"free", true, [](const Metrics& m) { return as_double(m.free); }},
-    {"missed", true, [](const Metrics& m) { return as_double(m.missed); }},
-    {"incorrect", true, [](const Metrics& m) { return as_double(m.incorrect); }},
-    {"lost", true, [](const Metrics& m) { return as_double(m.lost); }},
-    {"precision", false, [](const Metrics& m) { return m.precision; }},
-    {"recall", false, [](const Metrics& m) { return m.recall; }},
-    {"f1", false, [](const Metrics& m) { return m.f1; }},
-    {"iou", false, [](const Metrics& m) { return m.iou; }},
-    {"precision_tolerant", false, [](const Metrics& m) { return m.precision_tolerant; }},
-    {"occluded_recall", false, [](const Metrics& m) { return m.occluded_recall; }},
-    {"object_recall", false, [](const Metrics& m) { return m.object_recall; }},
-    {"coverage", false, [](const Metrics& m) { return m.coverage; }},
-    {"log_loss", false, [](const Metrics& m) { return m.log_loss; }},
-    {"brier", false, [](const Metrics& m) { return m.brier; }},
+    {"occupied", true, true, [](const Metrics& m) { return as_double(m.occupied); }},
+    {"free", true, true, [](const Metrics& m) { return as_double(m.free); }},
+    {"missed", true, false, [](const Metrics& m) { return as_double(m.missed); }},
+    {"incorrect", true, false, [](const Metrics& m) { return as_double(m.incorrect); }},
+    {"lost", true, false, [](const Metrics& m) { return as_double(m.lost); }},
+    {"precision", false, true, [](const Metrics& m) { return m.precision; }},
+    {"recall", false, true, [](const Metrics& m) { return m.recall; }},
+    {"f1", false, true, [](const Metrics& m) { return m.f1; }},
+    {"iou", false, true, [](const Metrics& m) { return m.iou; }},
+    {"precision_tolerant", false, true, [](const Metrics& m) { return m.precision_tolerant; }},
+    {"occluded_recall", false, true, [](const Metrics& m) { return m.occluded_recall; }},
+    {"object_recall", false, true, [](const Metrics& m) { return m.object_recall; }},
+    {"coverage", false, true, [](const Metrics& m) { return m.coverage; }},
+    {"log_loss", false, false, [](const Metrics& m) { return m.log_loss; }},
+    {"brier", false, false, [](const Metrics& m) { return m.brier; }},
 }};
 
 }  // namespace

@@ -66,9 +66,11 @@ struct Metrics {
 [[nodiscard]] Metrics evaluate(const FusedMap& map, const Truth& truth);
 
 /// A scalar metric by name, for tables and files. `is_count`: print without decimals.
+/// `is_more_better`: a larger value is the better one.
 struct MetricField {
     std::string_view name;
     bool is_count;
+    bool is_more_better;
     std::optional<double> (*value)(const Metrics&);
 };
 /// All scalar metrics, in the order in which they are printed.

@@ -58,6 +58,10 @@ struct Column {
     bool is_difference;
 };
 
+std::string seeds_text(std::size_t seeds) {
+    return seeds == 1 ? "one seed" : fmt::format("mean ± sd of {} seeds", seeds);
+}
+
 void add_columns(std::string& text, std::string_view heading, const std::vector<Column>& columns) {
     auto out = std::back_inserter(text);
     fmt::format_to(out, "\n{:<20}", heading);
@@ -95,7 +99,7 @@ void add_configurations(std::string& text, const Results& results) {
         if (difference != results.paired.end()) {
             columns.push_back({"fused - depth", &difference->metrics, true});
         }
-        fmt::format_to(out, "\n{}, mean ± sd of {} seed(s)", first.configuration, first.seeds.size());
+        fmt::format_to(out, "\n{}, {}", first.configuration, seeds_text(first.seeds.size()));
         add_columns(text, "metric", columns);
     }
 }

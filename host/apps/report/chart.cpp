@@ -16,15 +16,6 @@ constexpr double kRight = 18.0;
 constexpr double kTop = 16.0;
 constexpr double kBottom = 52.0;
 
-/// The decimals that tell neighbouring ticks apart.
-int digits_for(const std::vector<double>& ticks) {
-    if (ticks.size() < 2) {
-        return 2;
-    }
-    const double step = ticks[1] - ticks[0];
-    return std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
-}
-
 }  // namespace
 
 std::vector<double> round_ticks(double low, double high, int count) {
@@ -40,6 +31,14 @@ std::vector<double> round_ticks(double low, double high, int count) {
         ticks.push_back(static_cast<double>(i) * step);
     }
     return ticks;
+}
+
+int tick_digits(const std::vector<double>& ticks) {
+    if (ticks.size() < 2) {
+        return 2;
+    }
+    const double step = ticks[1] - ticks[0];
+    return std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
 }
 
 Chart::Chart(Axis x, Axis y, double width, double height)
@@ -85,14 +84,14 @@ std::string Chart::axes() const {
         svg += fmt::format("<line class=\"grid\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>",
                            left, right, row(tick), row(tick));
         svg += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n",
-                           left - 8.0, row(tick) + 4.0, ratio_text(tick, digits_for(y_ticks)));
+                           left - 8.0, row(tick) + 4.0, ratio_text(tick, tick_digits(y_ticks)));
     }
     for (const double tick : x_ticks) {
         svg += fmt::format("<line class=\"axis\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>",
                            column(tick), column(tick), bottom, bottom + 5.0);
         svg +=
             fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
-                        column(tick), bottom + 20.0, ratio_text(tick, digits_for(x_ticks)));
+                        column(tick), bottom + 20.0, ratio_text(tick, tick_digits(x_ticks)));
     }
     svg += fmt::format("<line class=\"axis\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>\n",
                        left, right, bottom, bottom);

@@ -11,6 +11,9 @@ namespace octoskin::report {
 /// Round numbers (1, 2 or 5 times a power of ten apart) within [low, high], about `count` of them.
 [[nodiscard]] std::vector<double> round_ticks(double low, double high, int count);
 
+/// The decimals that tell neighbouring ticks apart, 0 to 6; 2 for fewer than two ticks.
+[[nodiscard]] int tick_digits(const std::vector<double>& ticks);
+
 struct Axis {
     double low = 0.0;
     double high = 1.0;

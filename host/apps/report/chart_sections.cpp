@@ -22,6 +22,10 @@ constexpr std::string_view kPairedText =
     R"(<p>Each dot is one seed’s fused map minus the same seed’s depth map, the bar their mean (configuration
 <code>{}</code>). The spread of a metric over seeds is mostly the phase of the voxel grid against the furniture; a
 paired difference cancels it.</p>
+<ul class="legend">
+<li><i class="swatch-better"></i>better</li>
+<li><i class="swatch-worse"></i>worse</li>
+</ul>
 <div class="charts">
 )";
 
@@ -48,7 +52,9 @@ constexpr std::string_view kCalibrationText =
 <h2>Can the probabilities be believed?</h2>
 <div>
 <p>Known voxels in ten bins of predicted probability, all seeds pooled. On the dotted diagonal a map that says 70 % is
-right seven times in ten; above it the map is too timid, below too bold. The larger a dot, the more voxels (on a
+right seven times in ten. A dot above it: more of these voxels are surface than the map says; below: fewer. So for what
+a map calls occupied (over 0.5), above is too timid and below too bold; for what it calls free, above is too bold and
+below too timid. The larger a dot, the more voxels (on a
 logarithmic scale).</p>
 <ul class="legend">
 )";

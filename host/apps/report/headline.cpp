@@ -50,16 +50,15 @@ std::string share_tile(const Contest& contest, std::string_view metric, std::str
                 paired_note(contest.difference.metrics.find(metric)->second, {.is_difference = true}, true));
 }
 
-std::string missed_tile(const Contest& contest) {
-    const double before = *contest.depth.at("missed").mean;
-    const double after = *contest.fused.at("missed").mean;
-    const auto& paired = contest.difference.metrics.find("missed")->second;
+std::string fewer_is_better_tile(const Contest& contest, std::string_view metric, std::string_view what) {
+    const double before = *contest.depth.at(metric).mean;
+    const double after = *contest.fused.at(metric).mean;
+    const auto& paired = contest.difference.metrics.find(metric)->second;
     std::string note = paired_note(paired, {.is_count = true, .is_difference = true}, false);
     if (before > 0.0) {
         note = signed_text(percent_text(after / before - 1.0)) + "; " + note;
     }
-    return tile("Missed: occupied voxels that the map does not know", count_text(before), count_text(after),
-                note);
+    return tile(what, count_text(before), count_text(after), note);
 }
 
 std::string f1_tile(const Contest& contest) {
@@ -117,7 +116,9 @@ std::string headline_section(const ReportInput& input) {
         html +=
             share_tile(contest, "occluded_recall", "Surfaces out of the camera’s sight that the map holds");
         html += share_tile(contest, "object_recall", "The same, on the hidden objects only");
-        html += missed_tile(contest) + f1_tile(contest) + "</div>\n";
+        html += fewer_is_better_tile(contest, "missed", "Missed: occupied voxels that the map does not know");
+        html += fewer_is_better_tile(contest, "lost", "Lost: occupied voxels that the map calls free");
+        html += f1_tile(contest) + "</div>\n";
         html += origin_line(input.main_configuration, fused->seeds.size());
     }
     return html + "</header>\n";

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 
 #include "host/apps/report/chart.hpp"
 #include "host/apps/report/charts.hpp"
@@ -53,10 +55,17 @@ Scale scale_of(const std::vector<Row>& rows) {
     return {scale.low - margin, scale.high + margin};
 }
 
-bool is_count(std::string_view metric) {
+/// The rows are metrics that the difference has, so that each has its field.
+const evaluation::MetricField& field_of(std::string_view metric) {
     const auto fields = evaluation::metric_fields();
     const auto found = std::ranges::find(fields, metric, &evaluation::MetricField::name);
-    return found != fields.end() && found->is_count;
+    assert(found != fields.end());
+    return *found;
+}
+
+/// The colour speaks of the change's worth, not of its sign: fewer missed voxels are better.
+std::string_view worth_of(const evaluation::MetricField& field, double change) {
+    return (change >= 0.0) == field.is_more_better ? "better" : "worse";
 }
 
 std::string row_svg(const Row& row, double middle, const Scale& scale) {
@@ -68,7 +77,7 @@ std::string row_svg(const Row& row, double middle, const Scale& scale) {
     const double zero = scale.column(0.0);
     const double mean = scale.column(*row.summary->mean);
     svg += fmt::format("<rect class=\"bar {}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"12\"/>\n",
-                       *row.summary->mean < 0.0 ? "less" : "more", std::min(zero, mean), middle - 6.0,
+                       worth_of(field_of(row.metric), *row.summary->mean), std::min(zero, mean), middle - 6.0,
                        std::abs(mean - zero));
     for (const auto& value : row.summary->per_seed) {
         if (value) {
@@ -76,7 +85,7 @@ std::string row_svg(const Row& row, double middle, const Scale& scale) {
                                scale.column(*value), middle);
         }
     }
-    const Style style{.is_count = is_count(row.metric), .is_difference = true};
+    const Style style{.is_count = field_of(row.metric).is_count, .is_difference = true};
     svg += fmt::format("\n<text class=\"value\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n",
                        kWidth, middle + 4.5, summary_text(*row.summary, style));
     return svg;
@@ -85,13 +94,12 @@ std::string row_svg(const Row& row, double middle, const Scale& scale) {
 std::string scale_svg(const Scale& scale, double bottom, std::string_view unit) {
     std::string svg;
     const auto ticks = round_ticks(scale.low, scale.high, 6);
-    const bool is_fine = ticks.size() > 1 && ticks[1] - ticks[0] < 0.1;
     for (const double tick : ticks) {
         const double column = scale.column(tick);
         svg += fmt::format("<line class=\"{}\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"4\" y2=\"{:.1f}\"/>",
                            tick == 0.0 ? "axis" : "grid", column, column, bottom);
         const std::string number =
-            scale.high - scale.low > 20.0 ? count_text(tick) : ratio_text(tick, is_fine ? 2 : 1);
+            scale.high - scale.low > 20.0 ? count_text(tick) : ratio_text(tick, tick_digits(ticks));
         svg +=
             fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
                         column, bottom + 16.0, tick == 0.0 ? "0" : signed_text(number));

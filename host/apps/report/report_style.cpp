@@ -73,6 +73,7 @@ figcaption b { color: var(--ink); }
 .legend .line { height: 0; width: 1.5rem; border-top: 3px solid; border-radius: 0; vertical-align: .25rem; }
 .swatch-right { background: var(--right); } .swatch-hidden { background: var(--hidden); }
 .swatch-wrong { background: var(--wrong); } .swatch-floor { background: var(--floor); }
+.swatch-better { background: var(--depth); opacity: .5; } .swatch-worse { background: var(--proximity); opacity: .5; }
 .swatch-lost { border: 2px solid var(--lost); }
 .line.depth { border-color: var(--depth); } .line.proximity { border-color: var(--proximity); }
 .line.fused { border-color: var(--fused); }
@@ -109,7 +110,7 @@ svg .dot.depth { fill: var(--depth); } svg .dot.proximity { fill: var(--proximit
 svg .dot.fused { fill: var(--fused); }
 svg .note.depth { fill: var(--depth); } svg .note.proximity { fill: var(--proximity); }
 svg .note.miss { fill: var(--miss); }
-svg .bar { fill-opacity: .38; } svg .bar.more { fill: var(--depth); } svg .bar.less { fill: var(--proximity); }
+svg .bar { fill-opacity: .38; } svg .bar.better { fill: var(--depth); } svg .bar.worse { fill: var(--proximity); }
 svg .seed { fill: var(--ink); fill-opacity: .85; }
 @media print { .zoom { break-inside: avoid; } h2 { break-after: avoid; } }
 )css";

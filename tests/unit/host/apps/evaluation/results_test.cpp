@@ -125,6 +125,12 @@ TEST(MetricsTable, keeps_its_columns_aligned_under_long_names) {
               end_of(name + "/fused - " + name + "/depth          +0.000"));
 }
 
+TEST(MetricsTable, counts_its_seeds_in_words_that_fit) {
+    EXPECT_NE(metrics_table(two_seeds()).find("robust, mean ± sd of 2 seeds\n"), std::string::npos);
+    const Runs one = {judge("robust", "fused", 0, 10)};
+    EXPECT_NE(metrics_table(collect(one)).find("robust, one seed\n"), std::string::npos);
+}
+
 TEST(MetricsTable, shows_undefined_figures_as_a_dash) {
     const std::string table = metrics_table(two_seeds());
     EXPECT_EQ(table.find("nan"), std::string::npos);

@@ -104,6 +104,43 @@ TEST(Paired, draws_a_dot_for_each_seed_and_leaves_out_undefined_rows) {
     EXPECT_THAT(svg, HasSubstr(">+0.080 ± 0.014<"));
 }
 
+/// The class of the only bar of a chart of one metric.
+std::string bar_of(std::string_view metric, double change) {
+    evaluation::PairedDifference difference{"robust/fused - robust/depth", {0}, {}};
+    difference.metrics.emplace(std::string(metric), evaluation::summarise({change}));
+    const std::string svg = paired_svg(difference, {metric}, "unit");
+    const bool is_better = svg.find("class=\"bar better\"") != std::string::npos;
+    const bool is_worse = svg.find("class=\"bar worse\"") != std::string::npos;
+    return is_better == is_worse ? "unclear" : is_better ? "better" : "worse";
+}
+
+TEST(Paired, colours_a_change_by_its_worth_and_not_by_its_sign) {
+    for (const char* metric : {"missed", "incorrect", "lost", "log_loss", "brier"}) {
+        EXPECT_EQ(bar_of(metric, -739.0), "better") << metric;
+        EXPECT_EQ(bar_of(metric, 390.0), "worse") << metric;
+    }
+    for (const char* metric : {"occupied", "free", "precision", "recall", "f1", "iou", "precision_tolerant",
+                               "occluded_recall", "object_recall", "coverage"}) {
+        EXPECT_EQ(bar_of(metric, 0.1), "better") << metric;
+        EXPECT_EQ(bar_of(metric, -0.1), "worse") << metric;
+    }
+}
+
+TEST(Paired, labels_its_ticks_with_as_many_digits_as_tell_them_apart) {
+    const std::string svg = paired_svg(difference_of({0.012, 0.008, 0.010}), {"f1"}, "unit");
+    for (const char* label : {">+0.002<", ">+0.004<", ">+0.010<", ">+0.012<"}) {
+        EXPECT_EQ(occurrences(svg, label), 1) << label;
+    }
+    EXPECT_THAT(svg, Not(HasSubstr(">+0.00<")));
+}
+
+TEST(TickDigits, tell_neighbours_apart) {
+    EXPECT_EQ(tick_digits({0.0, 100.0}), 0);
+    EXPECT_EQ(tick_digits({0.0, 0.5}), 1);
+    EXPECT_EQ(tick_digits({0.0, 0.002}), 3);
+    EXPECT_EQ(tick_digits({0.0}), 2);
+}
+
 TEST(Paired, shows_zero_even_if_every_seed_is_far_from_it) {
     EXPECT_THAT(paired_svg(difference_of({0.9, 1.0, 0.95}), {"f1"}, "unit"),
                 HasSubstr("text-anchor=\"middle\">0<"));

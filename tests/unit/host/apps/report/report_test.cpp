@@ -103,6 +103,21 @@ TEST(Report, says_first_what_fusion_found) {
     EXPECT_THAT(html, HasSubstr("\u221229.0\u00a0%; \u2212610 ± 14, better in 2 of 2 seeds"));
 }
 
+TEST(Report, names_what_fusion_costs_beside_what_it_gains) {
+    ReportInput input = two_seeds();
+    for (auto& map : input.results.maps) {
+        const bool is_fused = map.map == "fused";
+        map.metrics["lost"] = evaluation::summarise({is_fused ? 860.0 : 470.0, is_fused ? 900.0 : 480.0});
+    }
+    EXPECT_THAT(report_html(input), HasSubstr("Lost: occupied voxels that the map calls free</div><div "
+                                              "class=\"big\"><span class=\"from\">475 →</span> 880</div>"));
+    EXPECT_THAT(report_html(input), HasSubstr("+85.3\u00a0%; +405 ± 21, better in 0 of 2 seeds"));
+}
+
+TEST(Report, judges_timid_and_bold_by_the_side_of_one_half) {
+    EXPECT_THAT(report_html(two_seeds()), HasSubstr("for what it calls free, above is too bold"));
+}
+
 TEST(Report, shows_the_papers_table_beside_ours) {
     const std::string html = report_html(two_seeds());
     for (const char* cell : {"970", "27\u202f510", "3\u202f523", "299", "587", "47\u202f847", "3\u202f697",
