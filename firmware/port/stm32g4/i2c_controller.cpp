@@ -158,7 +158,9 @@ void I2cController::fail(i2c::TransferError error) {
 
 void I2cController::on_interrupt() {
     const std::uint32_t isr = wiring_.registers.read("ISR");
-    const auto is_set = [isr](F flag) { return flag.of(isr) != 0; };
+    const auto is_set = [isr](F flag) __attribute__((always_inline)) {
+        return flag.of(isr) != 0;
+    };
     if (!is_in_flight()) {
         wiring_.registers.write("ICR", kAllFlags);
         return;

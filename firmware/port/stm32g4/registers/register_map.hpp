@@ -63,7 +63,8 @@ struct Register {
     constexpr explicit Register(std::uint16_t register_offset) : offset(register_offset) {}
 };
 
-/// Some bits of a register.
+/// Some bits of a register. Known while compiling nearly everywhere, so that what is done with them is a
+/// constant or one instruction: always inline, which -Os would not see.
 template <class Map>
 struct Field {
     Register<Map> in;
@@ -72,14 +73,16 @@ struct Field {
 
     consteval Field(const char* name) : Field(entry_of(name), name) {}
 
-    [[nodiscard]] constexpr std::uint32_t mask() const {
+    [[nodiscard, gnu::always_inline]] constexpr std::uint32_t mask() const {
         return (width >= 32 ? 0xFFFF'FFFFU : (1U << width) - 1U) << lsb;
     }
     /// `value` moved to its place; bits that do not fit are cut off.
-    [[nodiscard]] constexpr std::uint32_t operator()(std::uint32_t value) const {
+    [[nodiscard, gnu::always_inline]] constexpr std::uint32_t operator()(std::uint32_t value) const {
         return (value << lsb) & mask();
     }
-    [[nodiscard]] constexpr std::uint32_t of(std::uint32_t word) const { return (word & mask()) >> lsb; }
+    [[nodiscard, gnu::always_inline]] constexpr std::uint32_t of(std::uint32_t word) const {
+        return (word & mask()) >> lsb;
+    }
     /// The n-th of several.
     [[nodiscard]] constexpr Field operator[](std::uint32_t n) const {
         return Field(in, static_cast<std::uint8_t>(lsb + n * width), width);
@@ -112,10 +115,12 @@ class Peripheral {
     [[nodiscard]] std::uint32_t read(Register<Map> where) const { return load(base_ + where.offset); }
     void write(Register<Map> where, std::uint32_t value) const { store(base_ + where.offset, value); }
 
-    [[nodiscard]] std::uint32_t get(Field<Map> field) const { return field.of(read(field.in)); }
-    [[nodiscard]] bool is_set(Field<Map> field) const { return get(field) != 0; }
+    [[nodiscard, gnu::always_inline]] std::uint32_t get(Field<Map> field) const {
+        return field.of(read(field.in));
+    }
+    [[nodiscard, gnu::always_inline]] bool is_set(Field<Map> field) const { return get(field) != 0; }
     /// Reads, changes and writes: not for registers that an interrupt changes too.
-    void set(Field<Map> field, std::uint32_t value) const {
+    [[gnu::always_inline]] void set(Field<Map> field, std::uint32_t value) const {
         write(field.in, (read(field.in) & ~field.mask()) | field(value));
     }
 
