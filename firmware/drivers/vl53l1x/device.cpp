@@ -136,11 +136,11 @@ void Device::collect(NodeTime now) {
             return;
         case i2c::TransferState::failed:
             is_in_flight_ = false;
-            on_transfer_failed(bus_.error());
+            on_transfer_failed(bus_.error(), now);
             return;
         case i2c::TransferState::idle:  // the bus was recovered under it
             is_in_flight_ = false;
-            on_transfer_failed(i2c::TransferError::timeout);
+            on_transfer_failed(i2c::TransferError::timeout, now);
             return;
     }
 }
@@ -155,8 +155,11 @@ void Device::on_transfer_done(NodeTime now) {
     if (++transfers_done_ < step.transfers) return;
     transfers_done_ = 0;
     ++step_;
-    if (step.judge == nullptr) return;
-    switch (step.judge(*this, now)) {
+    if (step.judge != nullptr) follow(step.judge(*this, now), now);
+}
+
+void Device::follow(Verdict verdict, NodeTime now) {
+    switch (verdict) {
         case Verdict::proceed:
             return;
         case Verdict::repeat_stage:
@@ -168,14 +171,20 @@ void Device::on_transfer_done(NodeTime now) {
     }
 }
 
-void Device::on_transfer_failed(i2c::TransferError error) {
+void Device::on_transfer_failed(i2c::TransferError error, NodeTime now) {
+    const bool is_refused = error == i2c::TransferError::nack_address;
+    const Judge on_refused = is_refused ? steps_[step_].on_refused : nullptr;
     transfer_error_ = error;
+    if (on_refused != nullptr) {
+        follow(on_refused(*this, now), now);
+        return;
+    }
     count_i2c_error();
     if (!was_retried_) {
         was_retried_ = true;  // the step stands as it was: `proceed` submits it again
         return;
     }
-    fail(error == i2c::TransferError::nack_address ? Error::no_answer : Error::bus_error);
+    fail(is_refused ? Error::no_answer : Error::bus_error);
 }
 
 void Device::count_i2c_error() noexcept {

@@ -41,6 +41,9 @@ class Device {
     void begin_probe(i2c::Address address);
     /// Writes the new address at the live one, then reads the id back at the new address. <= 10 ms.
     void begin_set_address(i2c::Address address);
+    /// Resets the part without XSHUT: it forgets everything, its address too, and is back at 0x29 with
+    /// `probe`'s check passed. Nobody else may be at 0x29. <= 500 ms, about 3 ms.
+    void begin_soft_reset();
     /// Waits for the firmware's boot, <= 500 ms: bit 0 of the status, since real parts answer 0x02 first.
     void begin_await_boot();
     /// Writes the default configuration and starts the first range, without waiting for boot. <= 10 ms in
@@ -70,6 +73,8 @@ class Device {
     void begin_set_interrupt_polarity(bool is_active_low);
     /// Interrupts only for ranges in a window. Whether the results are gated too is not documented.
     void begin_set_range_threshold(const RangeThreshold& threshold);
+    /// Interrupts for every sample again, as after initialising.
+    void begin_set_interrupt_on_every_sample();
     /// ST's SetROI: the size, with the centre put to the part's own optical centre, or to 199 for a side over
     /// 10.
     void begin_set_roi_size(std::uint8_t width, std::uint8_t height);
@@ -134,6 +139,8 @@ class Device {
     [[nodiscard]] std::span<const std::uint8_t> register_bytes() const noexcept {
         return std::span(register_bytes_).first(register_count_);
     }
+    /// Whether measurements carry the gain factor.
+    [[nodiscard]] bool applies_gain_factor() const noexcept { return settings_.applies_gain_factor; }
     [[nodiscard]] i2c::Address live_address() const noexcept { return live_address_; }
     /// Transfers that failed, retried ones included, and read-backs that a second one contradicted;
     /// saturates.
@@ -153,6 +160,9 @@ class Device {
         std::uint8_t transfers = 1;  ///< the index advances by one from each to the next
         std::array<std::uint8_t, 4> bytes{};
         Judge judge = nullptr;  ///< looks at the last answer; none: proceed
+        /// For a silence that may be in order: says what to do if nobody acknowledges the address. `proceed`:
+        /// try again. None: as any failure.
+        Judge on_refused = nullptr;
     };
 
     /// A named part of an operation: it lines up its transfers when its turn comes. If a judge asks for it,
@@ -181,7 +191,8 @@ class Device {
     [[nodiscard]] i2c::Transfer compose(const Step& step);
     void collect(NodeTime now);
     void on_transfer_done(NodeTime now);
-    void on_transfer_failed(i2c::TransferError error);
+    void on_transfer_failed(i2c::TransferError error, NodeTime now);
+    void follow(Verdict verdict, NodeTime now);
     void count_i2c_error() noexcept;
     Verdict fail(Error error);
 

@@ -24,6 +24,47 @@ struct Device::Method {
         return d.answer16() == kModelAndModuleType ? Verdict::proceed : d.fail(Error::wrong_id);
     }
 
+    // It may answer at its address or at 0x29 until it is released: nothing public says when it forgets.
+    static void enter_soft_reset(Device& d) {
+        d.read_back_.forget();
+        d.written_roi_.reset();
+        d.not_ready_seen_.reset();
+        d.write8(reg::SOFT_RESET, 0x00, [](Device& device, NodeTime now) {
+            constexpr Microseconds kHeld{100};  // full API
+            device.resume_at_ = now + kHeld;
+            return Verdict::proceed;
+        });
+    }
+    static void leave_soft_reset(Device& d) {
+        d.line_up({.kind = Step::Kind::write,
+                   .index = reg::SOFT_RESET,
+                   .count = 1,
+                   .bytes = {0x01},
+                   .judge =
+                       [](Device& device, NodeTime) {
+                           device.live_address_ = kDefaultAddress;
+                           return Verdict::proceed;
+                       },
+                   .on_refused =
+                       [](Device& device, NodeTime) {
+                           if (!device.was_retried_) {
+                               device.was_retried_ = true;
+                               return Verdict::proceed;
+                           }
+                           if (device.live_address_ == kDefaultAddress) return device.fail(Error::no_answer);
+                           device.live_address_ = kDefaultAddress;
+                           device.was_retried_ = false;
+                           return Verdict::proceed;
+                       }});
+    }
+    /// While it boots it does not answer.
+    static void ask_boot_state_patiently(Device& d) {
+        d.line_up({.index = reg::FIRMWARE_SYSTEM_STATUS,
+                   .count = 1,
+                   .judge = judge_boot_state,
+                   .on_refused = [](Device&, NodeTime) { return Verdict::repeat_stage; }});
+    }
+
     // The part listens at its new address from the next START on.
     static void write_address(Device& d) {
         d.write8(reg::I2C_SLAVE_DEVICE_ADDRESS, d.new_address_, [](Device& device, NodeTime) {
@@ -208,11 +249,17 @@ struct Device::Method {
                  });
     }
 
+    static constexpr std::uint8_t kOnEverySample = 0x20;
+    static constexpr std::uint8_t kWithoutTargetToo = 0x40;
+    static void write_every_sample(Device& d) { d.write8(reg::SYSTEM_INTERRUPT_CONFIG_GPIO, kOnEverySample); }
+
     // ST's driver keeps the old window's bits and merges two windows into a third; here the new one replaces
     // it.
     static void write_range_threshold(Device& d) {
         if (d.options_.rereads_settings) d.read(reg::SYSTEM_INTERRUPT_CONFIG_GPIO, 1, nullptr);
-        d.write8(reg::SYSTEM_INTERRUPT_CONFIG_GPIO, static_cast<std::uint8_t>(d.threshold_.window));
+        const unsigned without_target = d.threshold_.fires_without_target ? kWithoutTargetToo : 0U;
+        d.write8(reg::SYSTEM_INTERRUPT_CONFIG_GPIO,
+                 static_cast<std::uint8_t>(static_cast<unsigned>(d.threshold_.window) | without_target));
         d.write16(reg::SYSTEM_THRESH_HIGH, d.threshold_.high_mm);
         d.write16(reg::SYSTEM_THRESH_LOW, d.threshold_.low_mm);
     }
@@ -351,6 +398,10 @@ struct Device::Method {
 
     static constexpr Stage kProbe[]{{ask_identity}};
     static constexpr Stage kSetAddress[]{{write_address}, {verify_address}};
+    static constexpr Stage kSoftReset[]{{enter_soft_reset},
+                                        {leave_soft_reset},
+                                        {ask_boot_state_patiently, 1'000, 500'000, Error::boot_timeout},
+                                        {ask_identity}};
     static constexpr Stage kAwaitBootOnly[]{kAwaitBoot};
     static constexpr Stage kLoadConfiguration[]{
         {write_default_configuration}, {choose_timed}, {clear_before_start}, {start}};
@@ -378,6 +429,7 @@ struct Device::Method {
     static constexpr Stage kSetCrosstalk[]{{write_crosstalk}};
     static constexpr Stage kSetPolarity[]{{write_polarity}};
     static constexpr Stage kSetRangeThreshold[]{{write_range_threshold}};
+    static constexpr Stage kSetEverySample[]{{write_every_sample}};
     static constexpr Stage kSetRoiSize[]{{write_roi_size}};
     static constexpr Stage kSetZone[]{{write_roi}};
     static constexpr Stage kStart[]{{clear_before_start}, {start}};

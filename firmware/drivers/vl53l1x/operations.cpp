@@ -17,6 +17,10 @@ void Device::begin_set_address(i2c::Address address) {
     new_address_ = address;
 }
 
+void Device::begin_soft_reset() {
+    begin(Method::kSoftReset);
+}
+
 void Device::begin_await_boot() {
     begin(Method::kAwaitBootOnly);
 }
@@ -89,6 +93,10 @@ void Device::begin_set_range_threshold(const RangeThreshold& threshold) {
     if (threshold.low_mm > threshold.high_mm) return begin_refused();
     begin(Method::kSetRangeThreshold);
     threshold_ = threshold;
+}
+
+void Device::begin_set_interrupt_on_every_sample() {
+    begin(Method::kSetEverySample);
 }
 
 void Device::begin_set_roi_size(std::uint8_t width, std::uint8_t height) {

@@ -10,6 +10,7 @@ namespace octoskin::vl53l1x::reg {
 /// 16-bit index, sent most significant byte first; wider quantities lie MSB first at consecutive indices.
 using Index = std::uint16_t;
 
+inline constexpr Index SOFT_RESET = 0x0000;
 inline constexpr Index I2C_SLAVE_DEVICE_ADDRESS = 0x0001;
 inline constexpr Index VHV_CONFIG_TIMEOUT_MACROP_LOOP_BOUND = 0x0008;
 inline constexpr Index VHV_CONFIG_INIT = 0x000B;

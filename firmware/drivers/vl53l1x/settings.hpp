@@ -28,6 +28,7 @@ struct RangeThreshold {
     std::uint16_t low_mm = 0;
     std::uint16_t high_mm = 0;
     RangeWindow window = RangeWindow::inside;
+    bool fires_without_target = false;  ///< for a range that found no target too (bit 6)
 };
 
 }  // namespace octoskin::vl53l1x

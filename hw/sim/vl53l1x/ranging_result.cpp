@@ -17,6 +17,12 @@ constexpr double kRateScale = 128.0;    // 9.7 Mcps
 constexpr double kSpadScale = 256.0;    // 8.8
 constexpr double kPhaseScale = 2048.0;  // 5.11
 constexpr double kPhaseUnit_m = 0.2;
+constexpr double kCrosstalkScale = 512.0;  // 7.9 kcps per SPAD
+constexpr double kActiveSpads = 0.8;       // of those in the region: some are off in every part
+
+double active_spads(const Roi& roi) {
+    return roi.width * roi.height * kActiveSpads;
+}
 
 std::uint16_t fixed_point(double value, double scale) {
     return static_cast<std::uint16_t>(std::clamp(std::round(value * scale), 0.0, 65535.0));
@@ -54,12 +60,14 @@ bool is_on_array(const Roi& roi) noexcept {
     return left >= 0 && left + roi.width <= 16 && bottom <= 15 && bottom - roi.height + 1 >= 0;
 }
 
-RangingConfig ranging_config(const Registers& registers) {
+RangingConfig ranging_config(const Registers& registers, double crosstalk_kcps) {
     // The optics are off by the factory's value, so that the factory offset gives the true range.
     const double factory_offset_m = offset_m(read16(reset_registers(), reg::kPartToPartOffset));
     return {.roi = region_of_interest(registers),
             .range_max_m = valid_range_m(registers.at(reg::kValidPhaseHigh)),
             .offset_m = offset_m(read16(registers, reg::kPartToPartOffset)) - factory_offset_m,
+            .crosstalk_kcps = crosstalk_kcps,
+            .compensation_kcps = read16(registers, reg::kCrosstalkPlaneOffset) / kCrosstalkScale,
             .sigma_limit_m = read16(registers, reg::kSigmaThreshold) / kSigmaScale * 1e-3,
             .signal_limit_mcps = read16(registers, reg::kSignalThreshold) / kRateScale,
             .interrupt_condition = registers.at(reg::kInterruptConfig),
@@ -81,26 +89,29 @@ std::int16_t reported_range_mm(const RangingConfig& config, const RangingReturn&
     // Beyond the window the phase wraps round.
     const double range_m = config.range_max_m > 0.0 ? std::fmod(*seen.range_m, config.range_max_m) : 0.0;
     const double unwrapped_m = *seen.range_m > config.range_max_m ? range_m : *seen.range_m;
-    const double range_mm = std::round((unwrapped_m + config.offset_m) * 1e3);
+    const double excess_kcps = (config.crosstalk_kcps - config.compensation_kcps) * active_spads(config.roi);
+    const double signal_kcps = seen.peak_signal_mcps * 1e3;
+    const double share = signal_kcps > 0.0 ? excess_kcps / signal_kcps : 0.0;
+    const double range_mm = std::round((unwrapped_m * (1.0 - share) + config.offset_m) * 1e3);
     return static_cast<std::int16_t>(std::clamp(range_mm, -32768.0, 32767.0));
 }
 
 void write_result(Registers& registers, const RangingConfig& config, const RangingReturn& seen,
                   const RangingResult& result) {
-    constexpr double kActiveSpads = 0.8;  // of those in the region: some are off in every part
     const double phase = std::max<int>(result.range_mm, 0) * 1e-3 / kPhaseUnit_m;
     registers.at(reg::kResultInterruptStatus) = 0x20;
     registers.at(reg::kResultRangeStatus) = result.range_status;
     registers.at(reg::kResultRangeStatus + 1U) = 0;
     registers.at(reg::kResultStreamCount) = result.stream_count;
-    write16(registers, reg::kResultSpads,
-            fixed_point(config.roi.width * config.roi.height * kActiveSpads, kSpadScale));
+    write16(registers, reg::kResultSpads, fixed_point(active_spads(config.roi), kSpadScale));
     write16(registers, reg::kResultPeakSignal, fixed_point(seen.peak_signal_mcps, kRateScale));
     write16(registers, reg::kResultAmbient, fixed_point(seen.ambient_mcps, kRateScale));
     write16(registers, reg::kResultSigma, fixed_point(seen.sigma_m * 1e3, kSigmaScale));
     write16(registers, reg::kResultPhase, fixed_point(phase, kPhaseScale));
     write16(registers, reg::kResultRange, static_cast<std::uint16_t>(result.range_mm));
-    write16(registers, reg::kResultCorrectedSignal, fixed_point(seen.peak_signal_mcps, kRateScale));
+    const double compensated_mcps =
+        seen.peak_signal_mcps - config.compensation_kcps * active_spads(config.roi) * 1e-3;
+    write16(registers, reg::kResultCorrectedSignal, fixed_point(compensated_mcps, kRateScale));
 }
 
 bool fires_interrupt(const RangingConfig& config, const RangingResult& result) {

@@ -18,15 +18,17 @@ namespace octoskin::sim {
 /// What a range is judged by and corrected with.
 struct RangingConfig {
     Roi roi{};
-    double range_max_m = 0.0;  ///< of the valid phase: beyond it the device reports status 5
-    double offset_m = 0.0;     ///< added to the true range: the set offset less the part's own
+    double range_max_m = 0.0;        ///< of the valid phase: beyond it the device reports status 5
+    double offset_m = 0.0;           ///< added to the true range: the set offset less the part's own
+    double crosstalk_kcps = 0.0;     ///< of the cover glass, per SPAD
+    double compensation_kcps = 0.0;  ///< what the part is told that it is
     double sigma_limit_m = 0.0;
     double signal_limit_mcps = 0.0;
     std::uint8_t interrupt_condition = 0;  ///< SYSTEM__INTERRUPT_CONFIG_GPIO
     std::uint16_t threshold_low_mm = 0;
     std::uint16_t threshold_high_mm = 0;
 };
-[[nodiscard]] RangingConfig ranging_config(const Registers& registers);
+[[nodiscard]] RangingConfig ranging_config(const Registers& registers, double crosstalk_kcps = 0.0);
 
 /// The device code (RESULT__RANGE_STATUS bits 4:0) that a range ends in.
 [[nodiscard]] std::uint8_t device_status(const RangingConfig& config, const RangingReturn& seen);
@@ -38,7 +40,9 @@ struct RangingResult {
     /// what users see who do not look at the status.
     std::int16_t range_mm = 0;
 };
-/// The range as the device would give it, in mm; a function of the arguments only.
+/// The range as the device would give it, in mm; a function of the arguments only. Crosstalk that is not
+/// compensated shortens it by its share of the signal, which is what ST's calibration solves for (ULD 3.5.2,
+/// VL53L1X_CalibrateXtalk).
 [[nodiscard]] std::int16_t reported_range_mm(const RangingConfig& config, const RangingReturn& seen,
                                              std::uint32_t ranging_index);
 

@@ -19,6 +19,9 @@ struct SensorPart {
     std::uint8_t optical_centre_spad = 199;
     Microseconds boot_time{1000};  ///< at most 1.2 ms (DS12385, 2.6.1)
     Microseconds slot_guard = kSlotGuard;
+    double crosstalk_kcps = 0.0;  ///< what the cover glass sends back, per SPAD
+    /// Whether a soft reset takes the address back when it begins or when it ends; nothing public says.
+    bool forgets_address_as_soft_reset_begins = false;
 };
 
 struct RangingTiming {

@@ -7,6 +7,7 @@ namespace octoskin::sim {
 namespace {
 
 constexpr std::size_t kHistoryMax = 64;
+constexpr Microseconds kSoftResetMin{100};  // full API: a shorter one does not count
 
 bool is_read_only(std::uint16_t index) {
     const bool is_identification = index >= reg::kModelId && index <= reg::kModelId + 2U;
@@ -47,6 +48,7 @@ void SensorModel::boot(SimTime time) {
     ranging_index_ = 0;
     stream_count_ = 0;
     is_interrupt_asserted_ = false;
+    is_held_ = false;
     index_bytes_ = 0;
 }
 
@@ -125,6 +127,14 @@ void SensorModel::write_register(std::uint16_t index, std::uint8_t value, SimTim
             registers_.at(index) = static_cast<std::uint8_t>((value & 0xFEU) | live);
             return;
         }
+        case reg::kGroupedHold0:
+        case reg::kGroupedHold1:
+        case reg::kGroupedHold:
+            registers_.at(index) = value;
+            // Pololu's library: the first two set the hold, and only 0 in the last ends it.
+            if (value != 0) is_held_ = true;
+            if (value == 0 && index == reg::kGroupedHold) is_held_ = false;
+            return;
         case reg::kInterruptClear:
             write_interrupt_clear(value, time);
             return;
@@ -141,8 +151,10 @@ void SensorModel::write_register(std::uint16_t index, std::uint8_t value, SimTim
 void SensorModel::write_soft_reset(std::uint8_t value, SimTime time) {
     if (value == 0) {
         power_ = Power::soft_reset;
+        soft_reset_since_ = time;
         ranging_.reset();
-    } else if (power_ == Power::soft_reset) {
+        if (part_.forgets_address_as_soft_reset_begins) registers_.at(reg::kI2cAddress) = 0x29;
+    } else if (power_ == Power::soft_reset && time.us - soft_reset_since_.us >= kSoftResetMin.count()) {
         boot(time);
     }
 }
@@ -176,6 +188,7 @@ void SensorModel::start_mode(std::uint8_t value, SimTime time) {
         }
         return;
     }
+    if ((registers_.at(reg::kFirmwareEnable) & 1U) == 0) return;
     stream_count_ = 0;
     is_first_of_run_ = true;
     stops_after_this_ = false;
@@ -191,11 +204,15 @@ void SensorModel::start_mode(std::uint8_t value, SimTime time) {
 void SensorModel::latch_ranging() {
     ranging_->is_latched = true;
     ranging_->timing = ranging_timing(registers_, part_);
-    ranging_->config = ranging_config(registers_);
+    ranging_->config = ranging_config(registers_, part_.crosstalk_kcps);
 }
 
 void SensorModel::finish_ranging() {
     const Ranging ranging = *ranging_;
+    if (is_held_) {
+        schedule_next(ranging);
+        return;
+    }
     const SimTime middle{ranging.start.us + ranging.timing.budget.count() / 2};
     const SimTime ready{ranging.start.us + ranging.timing.budget.count()};
     const RangingReturn seen = scene_(ranging_index_, middle, ranging.config.roi);
@@ -235,8 +252,11 @@ void SensorModel::step_stream_count() {
 }
 
 bool SensorModel::pin_level() const {
-    const bool is_active_low = (registers_.at(reg::kGpioMux) & 0x10U) != 0;
-    return is_interrupt_asserted_ != is_active_low;
+    constexpr unsigned kInterruptFunction = 1;
+    const unsigned control = registers_.at(reg::kGpioMux);
+    const bool is_active_low = (control & 0x10U) != 0;
+    const bool is_active = is_interrupt_asserted_ && (control & 0x0FU) == kInterruptFunction;
+    return is_active != is_active_low;
 }
 
 bool SensorModel::gpio1_level(SimTime time) {

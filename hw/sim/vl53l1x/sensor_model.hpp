@@ -108,6 +108,8 @@ class SensorModel final : public I2cTarget {
     std::uint32_t ranging_index_ = 0;
     std::uint8_t stream_count_ = 0;
     bool is_first_of_run_ = true;
+    bool is_held_ = false;  ///< parameters are being changed as a group: no result comes
+    SimTime soft_reset_since_{};
     bool is_interrupt_asserted_ = false;
     std::uint16_t index_ = 0;
     std::uint8_t index_bytes_ = 0;

@@ -46,6 +46,7 @@ std::vector<Operation> all_operations() {
         {"crosstalk", [](Device& d) { d.begin_set_crosstalk(1); }},
         {"polarity", [](Device& d) { d.begin_set_interrupt_polarity(true); }},
         {"threshold", [](Device& d) { d.begin_set_range_threshold({.low_mm = 1, .high_mm = 2}); }},
+        {"every_sample", [](Device& d) { d.begin_set_interrupt_on_every_sample(); }},
         {"roi_size", [](Device& d) { d.begin_set_roi_size(8, 8); }},
         {"roi_centre", [](Device& d) { d.begin_set_roi_centre(199); }},
         {"zone", [](Device& d) { d.begin_set_zone({.centre_spad = 167, .width = 8, .height = 8}); }},
@@ -156,6 +157,38 @@ TEST_P(EveryTransfer, refused_once_is_repeated_and_refused_twice_ends_the_operat
         }
     }
     EXPECT_GT(refused, 300);
+}
+
+// Silence is in order while the part boots; anything else is as in every operation.
+TEST_P(EveryTransfer, of_a_soft_reset_may_be_refused_once) {
+    const Operation reset{"soft_reset", [](Device& d) { d.begin_soft_reset(); }, Operation::After::boot};
+    const std::uint64_t transfers = transfers_of(reset, options());
+    ASSERT_GE(transfers, 4U);
+    for (std::uint64_t n = 0; n < transfers; ++n) {
+        for (const Refusal& refusal : kRefusals) {
+            Refused once(reset, options(), refusal, n, 1);
+            EXPECT_EQ(once.progress, Progress::done) << n;
+            EXPECT_LE(once.on.device_.i2c_error_count(), 1) << n;
+            once.on.device_.begin_probe(kDefaultAddress);
+            EXPECT_EQ(once.on.bench_.finish(once.on.device_), Progress::done) << n;
+            if (refusal.error != Error::bus_error || refusal.kind == I2cFaultKind::nack_byte) continue;
+            const Refused twice(reset, options(), refusal, n, 2);
+            EXPECT_EQ(twice.progress, Progress::failed) << n;
+            EXPECT_EQ(twice.on.device_.error(), Error::bus_error) << n;
+        }
+    }
+}
+
+TEST(Waits, soft_reset_of_a_part_that_never_boots_ends_after_half_a_second) {
+    const Operation reset{"soft_reset", [](Device& d) { d.begin_soft_reset(); }, Operation::After::boot};
+    Case on(reset, Options{});
+    on.sensor_->advance(on.bench_.time());  // this once it did boot
+    on.sensor_->set_faults({.never_boots = true});
+    const std::int64_t before_us = on.bench_.time().us;
+    on.device_.begin_soft_reset();
+    EXPECT_EQ(on.bench_.finish(on.device_), Progress::failed);
+    EXPECT_EQ(on.device_.error(), Error::boot_timeout);
+    EXPECT_LE(on.bench_.time().us - before_us, 505'000);
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, EveryTransfer, testing::Bool(),

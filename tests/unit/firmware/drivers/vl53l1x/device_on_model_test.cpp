@@ -234,6 +234,46 @@ TEST(DeviceOnModel, one_more_result_may_come_after_a_stop) {
     EXPECT_FALSE(bench.await_measurement(device, Microseconds{100'000}));
 }
 
+TEST(DeviceOnModel, soft_reset_forgets_everything_whenever_the_part_forgets_its_address) {
+    for (const bool forgets_at_once : {false, true}) {
+        test::SensorBench bench;
+        sim::SensorModel& sensor =
+            bench.add(test::wall_at(1.0), {.forgets_address_as_soft_reset_begins = forgets_at_once});
+        Device device(bench.bus(), Options{});
+        bench.bring_up(device, sensor, kSettings);
+        const std::int64_t before_us = bench.time().us;
+        device.begin_soft_reset();
+        ASSERT_EQ(bench.finish(device), Progress::done);
+        EXPECT_LE(bench.time().us - before_us, 5'000);
+        EXPECT_EQ(device.live_address(), kDefaultAddress);
+        EXPECT_EQ(bench.read(0x0087, 1), test::Bytes{0x00});
+        bench.bring_up(device, sensor, kSettings);
+        EXPECT_TRUE(bench.await_measurement(device));
+    }
+}
+
+// Whether results are gated too is not documented; the model goes on giving them.
+TEST(DeviceOnModel, a_window_fires_only_for_ranges_inside_it) {
+    double range_m = 1.0;
+    test::SensorBench bench;
+    sim::SensorModel& sensor = bench.add([&range_m](std::uint32_t index, sim::SimTime time, const Roi& roi) {
+        return test::wall_at(range_m)(index, time, roi);
+    });
+    Device device(bench.bus(), Options{});
+    bench.bring_up(device, sensor, kSettings);
+    device.begin_set_range_threshold({.low_mm = 500, .high_mm = 800, .window = RangeWindow::inside});
+    ASSERT_EQ(bench.finish(device), Progress::done);
+    EXPECT_FALSE(bench.await_measurement(device, Microseconds{200'000}));
+    range_m = 0.7;
+    ASSERT_TRUE(bench.await_measurement(device, Microseconds{100'000}));
+    EXPECT_EQ(device.measurement().range_mm, 700);
+    range_m = 1.0;
+    static_cast<void>(bench.await_measurement(device, Microseconds{50'000}));
+    device.begin_set_interrupt_on_every_sample();
+    ASSERT_EQ(bench.finish(device), Progress::done);
+    EXPECT_TRUE(bench.await_measurement(device, Microseconds{100'000}));
+}
+
 TEST(DeviceOnModel, temperature_update_ends_stopped) {
     test::SensorBench bench;
     sim::SensorModel& sensor = bench.add(test::wall_at(1.0));

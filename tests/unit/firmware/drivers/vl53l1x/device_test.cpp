@@ -24,6 +24,34 @@ TEST_F(DeviceOnScript, st_headers_misprinted_id_is_a_wrong_id) {
     expect_failed(Error::wrong_id, "R 010F 2 -> EE AC");
 }
 
+TEST_F(DeviceOnScript, soft_reset_ends_at_the_default_address) {
+    device_.begin_set_address(0x2A);
+    bus_.expect("W 0001 2A");
+    expect_done("ADDRESS 2A | R 010F 2 -> EA CC");
+    device_.begin_soft_reset();
+    bus_.expect("ADDRESS 2A | W 0000 00 | W 0000 01");
+    // It boots: nobody acknowledges, and that is no error.
+    bus_.expect_failure("R 00E5 1 -> 00", TransferError::nack_address);
+    bus_.expect_failure("R 00E5 1 -> 00", TransferError::nack_address);
+    bus_.expect_failure("R 00E5 1 -> 00", TransferError::nack_address);
+    bus_.expect("R 00E5 1 -> 02");
+    expect_done("R 00E5 1 -> 03 | R 010F 2 -> EA CC");
+    EXPECT_EQ(device_.live_address(), kDefaultAddress);
+    EXPECT_EQ(device_.i2c_error_count(), 0);
+}
+
+TEST_F(DeviceOnScript, soft_reset_without_anybody_is_told) {
+    device_.begin_probe(0x2A);
+    expect_done("ADDRESS 2A | R 010F 2 -> EA CC");
+    device_.begin_soft_reset();
+    bus_.expect("ADDRESS 2A | W 0000 00");
+    for (const char* address : {"ADDRESS 2A | W 0000 01", "W 0000 01"}) {
+        bus_.expect_failure(address, TransferError::nack_address);
+        bus_.expect_failure(address, TransferError::nack_address);
+    }
+    expect_failed(Error::no_answer, "");
+}
+
 TEST_F(DeviceOnScript, address_stays_the_old_one_until_the_new_one_is_acknowledged) {
     device_.begin_set_address(0x30);
     bus_.expect_failure("W 0001 30 | W 0001 30", TransferError::nack_data);
@@ -167,6 +195,16 @@ TEST_F(DeviceOnScript, trims_polarity_and_threshold_are_written_outright) {
     expect_done("W 0030 01");
     device_.begin_set_range_threshold({.low_mm = 100, .high_mm = 300, .window = RangeWindow::outside});
     expect_done("W 0046 02 | W 0072 01 2C | W 0074 00 64");
+}
+
+TEST_F(DeviceOnScript, a_window_replaces_the_one_before_and_every_sample_takes_it_back) {
+    device_.begin_set_range_threshold({.low_mm = 100, .high_mm = 300, .window = RangeWindow::above_high});
+    expect_done("W 0046 01 | W 0072 01 2C | W 0074 00 64");
+    device_.begin_set_range_threshold(
+        {.low_mm = 1, .high_mm = 2, .window = RangeWindow::outside, .fires_without_target = true});
+    expect_done("W 0046 42 | W 0072 00 02 | W 0074 00 01");
+    device_.begin_set_interrupt_on_every_sample();
+    expect_done("W 0046 20");
 }
 
 TEST_F(DeviceOnScript, zone_costs_one_write_and_carries_the_size_only_if_it_differs) {

@@ -99,6 +99,42 @@ TEST_F(PartOnBus, forgets_its_address_by_soft_reset_and_brown_out) {
     EXPECT_TRUE(answers(0x29));
 }
 
+TEST_F(PartOnBus, soft_reset_shorter_than_100_us_does_not_end) {
+    // A write of one byte takes 95 us, and its last byte comes 9 us before the end.
+    boot();
+    bench_.write(0x0000, {0x00});
+    bench_.write(0x0000, {0x01});
+    bench_.wait(Microseconds{2'000});
+    EXPECT_FALSE(answers(0x29));
+    bench_.write(0x0000, {0x01});
+    bench_.wait(Microseconds{1'200});
+    EXPECT_TRUE(answers(0x29));
+}
+
+TEST_F(PartOnBus, parts_may_forget_their_address_as_the_soft_reset_begins) {
+    SensorModel& other = bench_.add(test::wall_at(1.0), {.forgets_address_as_soft_reset_begins = true});
+    bench_.set_xshut(other, true);
+    bench_.wait(Microseconds{1'300});
+    bench_.write(0x0001, {0x2A});
+    bench_.write(0x0000, {0x00}, 0x2A);
+    bench_.wait(Microseconds{100});
+    EXPECT_FALSE(bench_.transfer(0x2A, {0x00, 0x00, 0x01}, 0));
+    bench_.write(0x0000, {0x01});
+    bench_.wait(Microseconds{1'200});
+    EXPECT_TRUE(answers(0x29));
+}
+
+TEST_F(PartOnBus, a_stuck_register_keeps_its_value_and_an_altered_one_does_not) {
+    boot();
+    part_.set_faults({.stuck_register = StuckRegister{.index = 0x004C, .value = 0x20}});
+    bench_.write(0x004B, {0x0A, 0x21, 0x01});
+    EXPECT_EQ(bench_.read(0x004B, 3), (Bytes{0x0A, 0x20, 0x01}));
+    part_.alter_register(0x004B, 0x0B);
+    EXPECT_EQ(bench_.read(0x004B, 1), Bytes{0x0B});
+    bench_.write(0x004B, {0x0A});
+    EXPECT_EQ(bench_.read(0x004B, 1), Bytes{0x0A});
+}
+
 TEST_F(PartOnBus, brown_out_does_not_lift_it_out_of_xshut) {
     part_.brown_out(bench_.time());
     bench_.wait(Microseconds{2'000});

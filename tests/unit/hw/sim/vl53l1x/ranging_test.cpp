@@ -216,6 +216,44 @@ TEST_F(RangingPart, pin_follows_result_and_clear_in_both_polarities) {
     }
 }
 
+TEST_F(RangingPart, pin_stays_idle_unless_its_function_is_the_interrupt) {
+    use({});
+    configure(1312);
+    bench_.write(0x0030, {0x00});
+    bench_.write(0x0087, {0x40});
+    ASSERT_EQ(ready_times(1).size(), 1U);
+    EXPECT_FALSE(part_->gpio1_level(bench_.time())) << "bits 3:0 select the interrupt";
+    bench_.write(0x0030, {0x01});
+    EXPECT_TRUE(part_->gpio1_level(bench_.time()));
+}
+
+TEST_F(RangingPart, does_not_start_unless_its_firmware_is_enabled) {
+    use({});
+    configure(1312);
+    bench_.write(0x0085, {0x00});
+    bench_.write(0x0087, {0x40});
+    EXPECT_TRUE(ready_times(1).empty());
+    bench_.write(0x0085, {0x01});
+    bench_.write(0x0087, {0x40});
+    EXPECT_EQ(ready_times(1).size(), 1U);
+}
+
+// Pololu's library notes that a 1 in 0x71 or 0x7C asks for a 0 in 0x82.
+TEST_F(RangingPart, gives_no_result_while_its_parameters_are_held) {
+    for (const std::uint16_t held : {std::uint16_t{0x71}, std::uint16_t{0x7C}, std::uint16_t{0x82}}) {
+        use({});
+        configure(1312);
+        bench_.write(held, {0x01});
+        bench_.write(0x0087, {0x40});
+        EXPECT_TRUE(ready_times(1).empty()) << held;
+        bench_.write(held, {0x00});
+        EXPECT_EQ(ready_times(1).empty(), held != 0x82) << held;
+        bench_.write(0x0082, {0x00});
+        EXPECT_EQ(ready_times(1).size(), 1U) << held;
+        bench_.set_xshut(*part_, false);
+    }
+}
+
 TEST_F(RangingPart, results_go_on_while_nobody_clears) {
     use({});
     configure(1312);

@@ -145,6 +145,22 @@ TEST_F(Status, range_carries_the_set_offset_less_the_factorys) {
     EXPECT_EQ(range_mm(seen_at(0.010)), -16) << "signed";
 }
 
+// 204.8 of 256 SPADs are active: 10 kcps each are 2.048 of 16 Mcps, 12.8 %.
+TEST_F(Status, crosstalk_shortens_the_range_by_its_share_until_it_is_compensated) {
+    const auto range_with = [&](double crosstalk_kcps) {
+        return reported_range_mm(ranging_config(registers_, crosstalk_kcps), seen_at(1.0), 0);
+    };
+    EXPECT_EQ(range_with(0.0), 1000);
+    EXPECT_EQ(range_with(10.0), 872);
+    write16(registers_, 0x16, 5 * 512);
+    EXPECT_EQ(range_with(10.0), 936);
+    EXPECT_EQ(range_with(5.0), 1000);
+    EXPECT_EQ(range_with(0.0), 1064) << "compensated too much";
+    RangingReturn dark = seen_at(1.0);
+    dark.peak_signal_mcps = 0.0;
+    EXPECT_EQ(reported_range_mm(ranging_config(registers_, 10.0), dark, 0), 1000) << "no signal, no share";
+}
+
 TEST_F(Status, beyond_the_window_the_range_wraps) {
     EXPECT_EQ(range_mm(seen_at(5.6)), 1000);
 }
