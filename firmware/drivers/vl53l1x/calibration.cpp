@@ -1,0 +1,193 @@
+#include "firmware/drivers/vl53l1x/calibration.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "common/range_status.hpp"
+
+namespace octoskin::vl53l1x {
+namespace {
+
+constexpr Microseconds kPollEvery{1'000};
+constexpr Microseconds kRangeWithin{2'000'000};
+
+/// To the nearest, halves away from zero.
+std::int64_t divided(std::int64_t dividend, std::int64_t divisor) noexcept {
+    const std::int64_t half = dividend < 0 ? -divisor / 2 : divisor / 2;
+    return (dividend + half) / divisor;
+}
+
+}  // namespace
+
+void CalibrationRun::begin_offset(std::uint16_t target_mm) {
+    begin(Quantity::offset, target_mm);
+}
+
+void CalibrationRun::begin_crosstalk(std::uint16_t target_mm) {
+    begin(Quantity::crosstalk, target_mm);
+}
+
+void CalibrationRun::begin(Quantity quantity, std::uint16_t target_mm) {
+    assert(progress_ == Progress::idle && !device_.is_busy());
+    quantity_ = quantity;
+    target_mm_ = target_mm;
+    has_failed_ = false;
+    has_waited_ = false;
+    ranges_ = 0;
+    ranges_invalid_ = 0;
+    range_sum_mm_ = 0;
+    signal_sum_ = 0;
+    spads_sum_ = 0;
+    offset_quarter_mm_ = 0;
+    crosstalk_raw_ = 0;
+    progress_ = Progress::busy;
+    if (target_mm == 0 || target_mm > kTargetMax_mm) {
+        error_ = CalibrationError::unsupported_target;
+        progress_ = Progress::failed;
+        return;
+    }
+    start_step(Step::zeroing);
+}
+
+Progress CalibrationRun::poll(NodeTime now) {
+    if (progress_ != Progress::busy) return end(progress_);
+    if (!has_waited_) {
+        last_result_ = now;
+        has_waited_ = true;
+    }
+    if (step_ == Step::pausing) {
+        if (!is_reached(resume_at_, now)) return Progress::busy;
+        start_step(Step::ranging);
+    }
+    switch (device_.poll(now)) {
+        case Progress::done:
+            return on_step_done(now);
+        case Progress::failed:
+            // One that was stopping for another reason keeps that reason.
+            if (!has_failed_) error_ = CalibrationError::device;
+            return end(Progress::failed);
+        case Progress::idle:
+        case Progress::busy:
+            break;
+    }
+    return Progress::busy;
+}
+
+void CalibrationRun::start_step(Step step) {
+    step_ = step;
+    switch (step) {
+        case Step::zeroing:
+            write(0, 0);
+            break;
+        case Step::starting:
+            device_.begin_start();
+            break;
+        case Step::ranging:
+            device_.begin_read();
+            break;
+        case Step::pausing:
+            break;
+        case Step::stopping:
+            device_.begin_abort();
+            break;
+        case Step::applying:
+            write(offset_quarter_mm_, crosstalk_raw_);
+            break;
+    }
+}
+
+void CalibrationRun::write(std::int16_t offset_quarter_mm, std::uint16_t crosstalk_raw) {
+    if (quantity_ == Quantity::offset) {
+        device_.begin_set_offset(offset_quarter_mm);
+    } else {
+        device_.begin_set_crosstalk(crosstalk_raw);
+    }
+}
+
+Progress CalibrationRun::on_step_done(NodeTime now) {
+    switch (step_) {
+        case Step::zeroing:
+            start_step(Step::starting);
+            break;
+        case Step::starting:
+            resume_at_ = now + kPollEvery;
+            start_step(Step::pausing);
+            break;
+        case Step::ranging:
+            return on_range(now);
+        case Step::pausing:
+            break;
+        case Step::stopping:
+            if (has_failed_) return end(Progress::failed);
+            start_step(Step::applying);
+            break;
+        case Step::applying:
+            return end(Progress::done);
+    }
+    return Progress::busy;
+}
+
+Progress CalibrationRun::on_range(NodeTime now) {
+    if (device_.has_measurement()) {
+        last_result_ = now;
+        add(device_.measurement());
+    }
+    if (ranges_invalid_ > kRangesInvalidMax) return stop_and_fail(CalibrationError::no_target);
+    if (elapsed(last_result_, now) > kRangeWithin) return stop_and_fail(CalibrationError::no_result);
+    if (ranges_ == kRanges) {
+        if (!compute()) return stop_and_fail(CalibrationError::out_of_range);
+        start_step(Step::stopping);
+        return Progress::busy;
+    }
+    resume_at_ = now + kPollEvery;
+    start_step(Step::pausing);
+    return Progress::busy;
+}
+
+void CalibrationRun::add(const Measurement& measurement) noexcept {
+    if (measurement.stream_count == 0) return;  // no wrap check
+    if (measurement.device_status != kDeviceStatusComplete) {
+        ++ranges_invalid_;
+        return;
+    }
+    ++ranges_;
+    // Without an offset a near target may come out behind the sensor.
+    range_sum_mm_ += static_cast<std::int16_t>(measurement.range_mm);
+    signal_sum_ += measurement.corrected_signal;
+    spads_sum_ += measurement.effective_spads;
+}
+
+bool CalibrationRun::compute() noexcept {
+    const std::int64_t target_sum_mm = std::int64_t{kRanges} * target_mm_;
+    const std::int64_t shortfall_mm = target_sum_mm - range_sum_mm_;
+    if (quantity_ == Quantity::offset) {
+        // The sensor adds it before the driver applies the gain factor, which would shrink it too.
+        const std::int64_t dividend = device_.applies_gain_factor() ? 2048 : 1;
+        const std::int64_t divisor = device_.applies_gain_factor() ? 2011 : 1;
+        const std::int64_t quarters = divided(4 * shortfall_mm * dividend, kRanges * divisor);
+        if (quarters < kOffsetQuarterMmMin || quarters > kOffsetQuarterMmMax) return false;
+        offset_quarter_mm_ = static_cast<std::int16_t>(quarters);
+        return true;
+    }
+    // 512 * signal in kcps * (1 - range / target) / SPADs, with the signal in 128ths of Mcps and the SPADs in
+    // 256ths. There are SPADs: the driver refuses a complete range without.
+    const std::int64_t signal_per_spad = 1'024'000 * signal_sum_ / spads_sum_;
+    const std::int64_t raw =
+        divided(signal_per_spad * std::max<std::int64_t>(shortfall_mm, 0), target_sum_mm);
+    crosstalk_raw_ = static_cast<std::uint16_t>(std::min<std::int64_t>(raw, 0xFFFF));
+    return true;
+}
+
+Progress CalibrationRun::stop_and_fail(CalibrationError error) {
+    error_ = error;
+    has_failed_ = true;
+    start_step(Step::stopping);
+    return Progress::busy;
+}
+
+Progress CalibrationRun::end(Progress progress) noexcept {
+    progress_ = Progress::idle;
+    return progress;
+}
+
+}  // namespace octoskin::vl53l1x

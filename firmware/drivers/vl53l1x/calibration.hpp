@@ -1,0 +1,83 @@
+// Finds a part's offset, or the crosstalk of its cover glass, from 50 ranges to a target at a known range, as
+// ST's ULD 3.5.2 does (VL53L1X_CalibrateOffset, _CalibrateXtalk; UM2510 section 4), without its waits and its
+// 16-bit overflows. The results are what a rig's device_offset_mm and crosstalk_kcps hold, as `Settings` has
+// them.
+#pragma once
+
+#include <cstdint>
+
+#include "common/time.hpp"
+#include "firmware/drivers/vl53l1x/device.hpp"
+
+namespace octoskin::vl53l1x {
+
+enum class CalibrationError : std::uint8_t {
+    device,              ///< an operation of the device failed: see its `error()`
+    unsupported_target,  ///< 0, or beyond `CalibrationRun::kTargetMax_mm`
+    no_result,           ///< no range for 2 s
+    no_target,           ///< too many ranges without a valid result
+    out_of_range,        ///< the offset does not fit its 13 bits
+};
+
+/// One device, configured and stopped, offset before crosstalk. Not thread-safe; no call waits; ends within
+/// 60 ranges, each given up after 2 s. The part ranges with the new value from then on; after a failure with
+/// none.
+class CalibrationRun {
+  public:
+    static constexpr std::uint16_t kTargetMax_mm = 4'000;
+    static constexpr std::uint8_t kRanges = 50;
+    static constexpr std::uint8_t kRangesInvalidMax =
+        10;  ///< the first one, without wrap check, is none of them
+
+    explicit CalibrationRun(Device& device) noexcept : device_(device) {}
+
+    /// UM2510: a grey target (17 %) at 140 mm, in the dark. `target_mm` from the sensor's front.
+    void begin_offset(std::uint16_t target_mm);
+    /// UM2510: a grey target (17 %) where ranges begin to fall short, in the dark. Crosstalk that lengthens
+    /// ranges does not exist: such a result is 0.
+    void begin_crosstalk(std::uint16_t target_mm);
+
+    /// As a device's. Poll the device through this only.
+    [[nodiscard]] Progress poll(NodeTime now);
+    [[nodiscard]] CalibrationError error() const noexcept { return error_; }
+
+    /// After `done`; the other one is 0.
+    [[nodiscard]] std::int16_t offset_quarter_mm() const noexcept { return offset_quarter_mm_; }
+    [[nodiscard]] std::uint16_t crosstalk_raw() const noexcept { return crosstalk_raw_; }
+
+  private:
+    enum class Quantity : std::uint8_t { offset, crosstalk };
+    enum class Step : std::uint8_t { zeroing, starting, ranging, pausing, stopping, applying };
+
+    void begin(Quantity quantity, std::uint16_t target_mm);
+    void start_step(Step step);
+    [[nodiscard]] Progress on_step_done(NodeTime now);
+    [[nodiscard]] Progress on_range(NodeTime now);
+    void write(std::int16_t offset_quarter_mm, std::uint16_t crosstalk_raw);
+    void add(const Measurement& measurement) noexcept;
+    [[nodiscard]] bool compute() noexcept;
+    [[nodiscard]] Progress stop_and_fail(CalibrationError error);
+    [[nodiscard]] Progress end(Progress progress) noexcept;
+
+    Device& device_;
+    Quantity quantity_ = Quantity::offset;
+    std::uint16_t target_mm_ = 0;
+    Step step_ = Step::zeroing;
+    Progress progress_ = Progress::idle;
+    bool has_failed_ = false;
+    bool has_waited_ = false;
+    NodeTime last_result_{};
+    NodeTime resume_at_{};
+
+    std::uint8_t ranges_ = 0;
+    std::uint8_t ranges_invalid_ = 0;
+    std::int64_t range_sum_mm_ = 0;
+    std::int64_t signal_sum_ = 0;  ///< 9.7 Mcps
+    std::int64_t spads_sum_ = 0;   ///< 8.8
+
+    CalibrationError error_ = CalibrationError::device;
+    std::int16_t offset_quarter_mm_ = 0;
+    std::uint16_t crosstalk_raw_ = 0;
+};
+
+}  // namespace octoskin::vl53l1x
