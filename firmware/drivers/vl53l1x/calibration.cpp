@@ -33,6 +33,7 @@ void CalibrationRun::begin(Quantity quantity, std::uint16_t target_mm) {
     target_mm_ = target_mm;
     has_failed_ = false;
     has_waited_ = false;
+    resume_at_.reset();
     ranges_ = 0;
     ranges_invalid_ = 0;
     range_sum_mm_ = 0;
@@ -55,8 +56,9 @@ Progress CalibrationRun::poll(NodeTime now) {
         last_result_ = now;
         has_waited_ = true;
     }
-    if (step_ == Step::pausing) {
-        if (!is_reached(resume_at_, now)) return Progress::busy;
+    if (resume_at_) {
+        if (!is_reached(*resume_at_, now)) return Progress::busy;
+        resume_at_.reset();
         start_step(Step::ranging);
     }
     switch (device_.poll(now)) {
@@ -85,8 +87,6 @@ void CalibrationRun::start_step(Step step) {
         case Step::ranging:
             device_.begin_read();
             break;
-        case Step::pausing:
-            break;
         case Step::stopping:
             device_.begin_abort();
             break;
@@ -110,13 +110,9 @@ Progress CalibrationRun::on_step_done(NodeTime now) {
             start_step(Step::starting);
             break;
         case Step::starting:
-            resume_at_ = now + kPollEvery;
-            start_step(Step::pausing);
-            break;
+            return pause(now);
         case Step::ranging:
             return on_range(now);
-        case Step::pausing:
-            break;
         case Step::stopping:
             if (has_failed_) return end(Progress::failed);
             start_step(Step::applying);
@@ -139,8 +135,11 @@ Progress CalibrationRun::on_range(NodeTime now) {
         start_step(Step::stopping);
         return Progress::busy;
     }
+    return pause(now);
+}
+
+Progress CalibrationRun::pause(NodeTime now) {
     resume_at_ = now + kPollEvery;
-    start_step(Step::pausing);
     return Progress::busy;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "common/time.hpp"
 #include "firmware/drivers/vl53l1x/device.hpp"
@@ -47,12 +48,13 @@ class CalibrationRun {
 
   private:
     enum class Quantity : std::uint8_t { offset, crosstalk };
-    enum class Step : std::uint8_t { zeroing, starting, ranging, pausing, stopping, applying };
+    enum class Step : std::uint8_t { zeroing, starting, ranging, stopping, applying };
 
     void begin(Quantity quantity, std::uint16_t target_mm);
     void start_step(Step step);
     [[nodiscard]] Progress on_step_done(NodeTime now);
     [[nodiscard]] Progress on_range(NodeTime now);
+    [[nodiscard]] Progress pause(NodeTime now);
     void write(std::int16_t offset_quarter_mm, std::uint16_t crosstalk_raw);
     void add(const Measurement& measurement) noexcept;
     [[nodiscard]] bool compute() noexcept;
@@ -67,7 +69,7 @@ class CalibrationRun {
     bool has_failed_ = false;
     bool has_waited_ = false;
     NodeTime last_result_{};
-    NodeTime resume_at_{};
+    std::optional<NodeTime> resume_at_;  ///< then the next poll for a range
 
     std::uint8_t ranges_ = 0;
     std::uint8_t ranges_invalid_ = 0;

@@ -94,12 +94,14 @@ std::optional<std::uint16_t> budget_of_timeout_a(std::uint16_t timeout_a) noexce
 
 std::optional<std::uint32_t> period_register(std::uint16_t oscillator, Microseconds nominal) noexcept {
     constexpr std::uint16_t kOscillatorMask = 0x03FF;
-    constexpr std::int64_t kPeriodUsMax = 3'600'000'000;  // an hour, so that the product stays in 64 bits
+    constexpr std::int64_t kPeriodUsMax =
+        3'600'000'000;  // an hour: the register holds it at every oscillator value
+    static_assert(std::uint64_t{kOscillatorMask} * kPeriodUsMax * 1075 / 1'000'000 <= UINT32_MAX);
     const auto ticks = static_cast<std::uint64_t>(oscillator & kOscillatorMask);
     if (ticks == 0 || nominal.count() <= 0 || nominal.count() > kPeriodUsMax) return std::nullopt;
     const std::uint64_t value =
         ticks * static_cast<std::uint64_t>(nominal.count()) * 1075 / (std::uint64_t{1000} * 1000);
-    if (value == 0 || value > UINT32_MAX) return std::nullopt;
+    if (value == 0) return std::nullopt;
     return static_cast<std::uint32_t>(value);
 }
 

@@ -90,12 +90,15 @@ TEST(OffsetCalibration, averages_to_a_quarter_of_a_millimetre) {
 }
 
 TEST(OffsetCalibration, that_fits_no_13_bits_is_refused_and_leaves_none) {
-    Part part(target_at(2.500, 8.0), {});
-    CalibrationRun run(part.device);
-    run.begin_offset(140);
-    ASSERT_EQ(part.finish(run), Progress::failed);
-    EXPECT_EQ(run.error(), CalibrationError::out_of_range);
-    EXPECT_EQ(part.bench.read(0x001E, 2, 0x30), (test::Bytes{0, 0}));
+    for (const auto& [range_m, target_mm] :
+         {std::pair{2.500, std::uint16_t{140}}, {0.140, std::uint16_t{2'500}}}) {
+        Part part(target_at(range_m, 8.0), {});
+        CalibrationRun run(part.device);
+        run.begin_offset(target_mm);
+        ASSERT_EQ(part.finish(run), Progress::failed);
+        EXPECT_EQ(run.error(), CalibrationError::out_of_range);
+        EXPECT_EQ(part.bench.read(0x001E, 2, 0x30), (test::Bytes{0, 0}));
+    }
 }
 
 // 4 kcps of each of 204.8 SPADs in 4 Mcps: 20.48 % short.

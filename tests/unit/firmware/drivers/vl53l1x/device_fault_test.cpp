@@ -224,6 +224,17 @@ TEST(EveryBit, flipped_in_a_read_never_makes_a_wrong_measurement) {
 
 // --- waits
 
+TEST(Counts, failed_transfers_saturate) {
+    test::SensorBench bench;
+    Device device(bench.bus(), Options{});
+    EXPECT_EQ(device.wake_time(), std::nullopt) << "nothing to wait for";
+    for (int probe = 1; probe <= 32'770; ++probe) {
+        device.begin_probe(0x29);
+        ASSERT_EQ(bench.finish(device), Progress::failed);
+        ASSERT_EQ(device.i2c_error_count(), std::min(2 * probe, 65'535));
+    }
+}
+
 TEST(Waits, boot_that_never_completes_ends_after_half_a_second) {
     test::SensorBench bench;
     sim::SensorModel& sensor = bench.add(test::wall_at(1.0));

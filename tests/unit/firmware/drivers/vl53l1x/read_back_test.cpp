@@ -97,6 +97,8 @@ TEST_F(Registers, what_was_never_written_is_learnt_and_what_was_is_not) {
     read_back_.forget();
     registers_[0x1E] = 1;
     EXPECT_TRUE(all_agree()) << "nothing is known";
+    EXPECT_FALSE(record_all());
+    EXPECT_EQ(read_back_.last_difference(), std::nullopt);
     read_back_.note(0x20, std::vector<std::uint8_t>{7});
     registers_[0x20] = 8;
     read_back_.learn(kRegisterRuns[0], bytes(kRegisterRuns[0]));
