@@ -12,7 +12,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::uint32_t kMagic = 0x434B534F;  // "OSKC" in memory
-constexpr std::uint16_t kLayoutVersion = 1;
+constexpr std::uint16_t kLayoutVersion = 2;
 constexpr std::size_t kHeaderBytes = 8;
 constexpr std::size_t kCrcBytes = 4;
 
@@ -113,6 +113,7 @@ void walk(Walker& walker, Of<Walker, SensorConfig>& sensor) {
     walker.number(sensor.crosstalk_raw);
     walker.number(sensor.sigma_limit_quarter_mm);
     walker.number(sensor.signal_limit_raw);
+    walker.number(sensor.reflex_below_mm);
     walker.flag(sensor.applies_gain_factor);
     walker.count(sensor.zone_count, kSensorZonesMax);
     for (std::size_t i = 0; i < sensor.zone_count; ++i) {
@@ -163,6 +164,7 @@ bool is_valid(const SensorConfig& sensor) {
     holds &= is_within<int>(sensor.inter_measurement_ms, sensor.timing_budget_ms, 60'000);
     holds &= sensor.phase_us < 1000U * sensor.inter_measurement_ms;
     holds &= is_within<int>(sensor.offset_quarter_mm, -4096, 4095);
+    holds &= sensor.reflex_below_mm <= kReflexLimitMaxMm;
     holds &= is_within<std::size_t>(sensor.zone_count, 1, kSensorZonesMax);
     for (std::size_t i = 0; holds && i < sensor.zone_count; ++i) {
         holds = is_valid(sensor.zones[i]);

@@ -14,7 +14,8 @@ namespace octoskin {
 inline constexpr std::size_t kNodeSensorsMax = 34;
 inline constexpr std::size_t kNodeBusesMax = 4;
 inline constexpr std::size_t kSensorZonesMax = 9;
-inline constexpr std::uint8_t kNodeXshutLinesMax = 40;  ///< five 74HC595
+inline constexpr std::uint16_t kReflexLimitMaxMm = 4'000;  ///< the sensor sees no farther
+inline constexpr std::uint8_t kNodeXshutLinesMax = 40;     ///< five 74HC595
 
 enum class DistanceMode : std::uint8_t { short_range = 1, medium_range = 2, long_range = 3 };
 enum class StreamGate : std::uint8_t { off = 0, differs = 1, advanced = 2 };
@@ -40,6 +41,7 @@ struct SensorConfig {
     std::uint16_t crosstalk_raw = 0;             ///< 7.9 kcps per SPAD
     std::uint16_t sigma_limit_quarter_mm = 360;  ///< 14.2: 90 mm
     std::uint16_t signal_limit_raw = 128;        ///< 9.7 Mcps: 1.0
+    std::uint16_t reflex_below_mm = 0;           ///< a hit closer than this is told by REFLEX; 0: never
     bool applies_gain_factor = false;            ///< 2011/2048 of ST's full API; off as in ST's ULD
     std::uint8_t zone_count = 1;
     std::array<Roi, kSensorZonesMax> zones{};

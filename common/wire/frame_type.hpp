@@ -12,7 +12,7 @@ namespace octoskin::wire {
 
 /// Type in the upper 5 bits of the 11-bit identifier, node id in the lower 6. Lower wins arbitration.
 enum class FrameType : std::uint8_t {
-    reflex = 0,  ///< reserved
+    reflex = 0,
     sync = 1,
     follow_up = 2,
     command = 3,
@@ -25,7 +25,7 @@ enum class FrameType : std::uint8_t {
     sensor_health = 10,
     node_info = 11,
     range_aux = 12,
-    black_box = 31,  ///< reserved
+    black_box = 31,
 };
 
 inline constexpr std::uint32_t kStandardIdMax = 0x7FF;
@@ -61,7 +61,8 @@ struct FrameSpec {
 
 /// Every assigned type, by priority. Fixed for all protocol versions: identifier, checksum, and HEARTBEAT's
 /// length.
-inline constexpr std::array<FrameSpec, 12> kFrameSpecs = {{
+inline constexpr std::array<FrameSpec, 14> kFrameSpecs = {{
+    {FrameType::reflex, "REFLEX", Party::from_node, false, 8, Checksum::crc16},
     {FrameType::sync, "SYNC", Party::from_host, false, 3, Checksum::crc16},
     {FrameType::follow_up, "FOLLOW_UP", Party::from_host, false, 8, Checksum::crc8},
     {FrameType::command, "COMMAND", Party::to_node, false, 7, Checksum::crc16},
@@ -74,9 +75,10 @@ inline constexpr std::array<FrameSpec, 12> kFrameSpecs = {{
     {FrameType::sensor_health, "SENSOR_HEALTH", Party::from_node, false, 8, Checksum::crc8},
     {FrameType::node_info, "NODE_INFO", Party::from_node, false, 8, Checksum::crc8},
     {FrameType::range_aux, "RANGE_AUX", Party::from_node, false, 8, Checksum::crc16},
+    {FrameType::black_box, "BLACK_BOX", Party::from_node, false, 8, Checksum::crc8},
 }};
 
-/// Null for a reserved or unassigned type.
+/// Null for an unassigned type.
 [[nodiscard]] constexpr const FrameSpec* frame_spec(FrameType type) noexcept {
     for (const FrameSpec& spec : kFrameSpecs) {
         if (spec.type == type) {

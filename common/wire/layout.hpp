@@ -96,6 +96,24 @@ void walk(Walker& walker, Of<Walker, Range>& range) {
 }
 
 template <class Walker>
+void walk(Walker& walker, Of<Walker, Reflex>& reflex) {
+    walker.number(kSensorField, reflex.sensor);
+    walker.number(kZoneField, reflex.zone);
+    walker.saturated(Field("range", 13, Unit::millimetre), reflex.range_mm);
+    walker.residue(Field("capture_time", 12, Unit::step_of_64_us), reflex.capture);
+    walker.number(kReadingSequenceField, reflex.sequence);
+    walker.zeros(4);
+}
+
+template <class Walker>
+void walk(Walker& walker, Of<Walker, BlackBox>& piece) {
+    walker.number(Field("bus", 2), piece.bus);
+    walker.number(Field("dump", 2), piece.dump);
+    walker.number(Field("index", 9), piece.index);
+    walker.bytes(Field("bytes", 8 * kBlackBoxBytes), piece.bytes);
+}
+
+template <class Walker>
 void walk(Walker& walker, Of<Walker, RangeAux>& aux) {
     walker.number(kSensorField, aux.sensor);
     walker.number(kReadingSequenceField, aux.sequence);

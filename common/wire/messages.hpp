@@ -84,6 +84,28 @@ struct RangeFd {  ///< CAN FD: 1..4 lossless readings
     friend constexpr bool operator==(const RangeFd&, const RangeFd&) = default;
 };
 
+/// Something came closer than a sensor's configured limit: one frame an event, before everything else on the
+/// bus, for whoever must stop an arm at once. The reading itself follows as a RANGE.
+struct Reflex {
+    std::uint8_t sensor = 0;
+    std::uint8_t zone = 0;
+    std::uint16_t range_mm = 0;  ///< saturates at 8191
+    TimeResidue capture;         ///< classical_residue
+    std::uint8_t sequence = 0;   ///< counts the node's events, modulo 64
+    friend constexpr bool operator==(const Reflex&, const Reflex&) = default;
+};
+
+inline constexpr std::uint8_t kBlackBoxBytes = 5;
+inline constexpr std::uint16_t kBlackBoxFramesMax = 512;
+/// A piece of what was last transferred on one I2C bus: black_box.hpp has what the pieces make together.
+struct BlackBox {
+    std::uint8_t bus = 0;     ///< 0..3
+    std::uint8_t dump = 0;    ///< which one: counts the node's dumps modulo 4
+    std::uint16_t index = 0;  ///< of this piece in its dump
+    std::array<std::uint8_t, kBlackBoxBytes> bytes{};
+    friend constexpr bool operator==(const BlackBox&, const BlackBox&) = default;
+};
+
 enum class NodeState : std::uint8_t {
     starting = 0,  ///< sensors are being brought up
     ranging = 1,
@@ -268,6 +290,7 @@ enum class CommandCode : std::uint8_t {
     identify = 5,
     reset = 6,
     send_info = 7,
+    send_black_box = 8,  ///< what was last transferred on the I2C bus of a sensor, or on all of them
 };
 struct Command {
     CommandCode code = CommandCode::start;
@@ -278,6 +301,6 @@ struct Command {
 };
 
 using Message = std::variant<Range, RangeAux, RangeFd, Heartbeat, NodeInfo, SensorHealth, Sync, FollowUp,
-                             SyncReport, JointState, Mark, Command>;
+                             SyncReport, JointState, Mark, Command, Reflex, BlackBox>;
 
 }  // namespace octoskin::wire

@@ -90,6 +90,7 @@ inline constexpr auto kCommandCode = std::to_array<Named<CommandCode>>({
     {CommandCode::identify, "identify"},
     {CommandCode::reset, "reset"},
     {CommandCode::send_info, "send_info"},
+    {CommandCode::send_black_box, "send_black_box"},
 });
 }  // namespace tables
 

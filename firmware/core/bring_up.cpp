@@ -6,6 +6,13 @@
 
 namespace octoskin::node {
 
+namespace {
+
+// One at 0x29 and one at the sensor's own address; who comes back after that cannot be parked.
+constexpr std::uint8_t kParkingsMax = 2;
+
+}  // namespace
+
 BringUp::BringUp(vl53l1x::Device& device, DefaultAddress& default_address, XshutLines& xshut,
                  const SensorConfig& config, const Policy& policy) noexcept
     : device_(device), default_address_(default_address), xshut_(xshut), config_(config), policy_(policy) {}
@@ -15,6 +22,7 @@ void BringUp::begin(NodeTime now) {
     outcome_ = Outcome::under_way;
     fault_ = wire::SensorFault::none;
     has_answered_ = false;
+    parkings_ = 0;
     step_ = Step::held_low;
     step_due_ = now + policy_.xshut_low;
 }
@@ -33,6 +41,9 @@ std::optional<NodeTime> BringUp::due() const noexcept {
         case Step::held_low:
             return default_address_.is_free() ? std::optional(step_due_) : std::nullopt;
         case Step::checking_silence:
+        case Step::checking_own_address:
+        case Step::parking:
+        case Step::checking_parked:
         case Step::booting:
         case Step::identifying:
         case Step::addressing:
@@ -46,9 +57,13 @@ std::optional<NodeTime> BringUp::due() const noexcept {
     return std::nullopt;
 }
 
+bool BringUp::is_watching() const noexcept {
+    return step_ == Step::checking_silence || step_ == Step::checking_own_address ||
+           step_ == Step::checking_parked || step_ == Step::confirming_silence;
+}
+
 vl53l1x::Device& BringUp::active_device() noexcept {
-    const bool is_watching = step_ == Step::checking_silence || step_ == Step::confirming_silence;
-    return is_watching ? default_address_.watcher() : device_;
+    return is_watching() || step_ == Step::parking ? default_address_.watcher() : device_;
 }
 
 BusUse BringUp::advance(NodeTime now) {
@@ -89,6 +104,15 @@ void BringUp::start_step(Step step, NodeTime now) {
         case Step::confirming_silence:
             default_address_.watcher().begin_probe(vl53l1x::kDefaultAddress);
             break;
+        case Step::checking_own_address:
+            default_address_.watcher().begin_probe(config_.address);
+            break;
+        case Step::parking:
+            default_address_.watcher().begin_set_address(default_address_.parking());
+            break;
+        case Step::checking_parked:
+            default_address_.watcher().begin_probe(default_address_.parking());
+            break;
         case Step::booting:
             xshut_.set(config_.xshut_line, true);
             step_due_ = now + policy_.xshut_boot;
@@ -121,11 +145,18 @@ void BringUp::start_step(Step step, NodeTime now) {
 void BringUp::on_step_done(NodeTime now) {
     switch (step_) {
         case Step::checking_silence:
+        case Step::checking_own_address:
+        case Step::checking_parked:
         case Step::confirming_silence:
-            fail(wire::SensorFault::address_conflict);
+            on_somebody_answered(now);
+            break;
+        case Step::parking:
+            start_step(parked_from_, now);
             break;
         case Step::identifying:
             has_answered_ = true;
+            is_known_stuck_ = false;
+            cleared_ = default_address_.parkings();
             start_step(Step::addressing, now);
             break;
         case Step::addressing:
@@ -153,18 +184,21 @@ void BringUp::on_step_done(NodeTime now) {
 }
 
 void BringUp::on_step_failed(vl53l1x::Error error, NodeTime now) {
-    const bool was_watching = step_ == Step::checking_silence || step_ == Step::confirming_silence;
     if (step_ == Step::verifying && error == vl53l1x::Error::config_mismatch) {
         is_mismatched_ = true;
         on_run_verified(now);
-    } else if (!was_watching) {
+    } else if (step_ == Step::identifying && error == vl53l1x::Error::no_answer) {
+        on_nobody_came();
+    } else if (step_ == Step::parking && error != vl53l1x::Error::bus_error) {
+        fail(wire::SensorFault::address_conflict);  // whoever it is does not let itself be moved
+    } else if (!is_watching() || error == vl53l1x::Error::bus_error) {
         fail(sensor_fault(error));
     } else if (error == vl53l1x::Error::no_answer) {
-        start_step(step_ == Step::checking_silence ? Step::booting : Step::initialising, now);
-    } else if (error == vl53l1x::Error::bus_error) {
-        fail(wire::SensorFault::bus_error);
+        on_silence(now);
+    } else if (step_ == Step::checking_parked) {
+        start_step(Step::booting, now);
     } else {
-        fail(wire::SensorFault::address_conflict);  // somebody answered, however badly
+        fail(wire::SensorFault::address_conflict);  // somebody answered who is no VL53L1X, or hardly one
     }
 }
 
@@ -179,6 +213,61 @@ void BringUp::on_run_verified(NodeTime now) {
         outcome_ = Outcome::done;
         step_ = Step::idle;
     }
+}
+
+void BringUp::on_somebody_answered(NodeTime now) {
+    if (step_ == Step::checking_parked) {
+        start_step(Step::booting, now);
+        return;
+    }
+    const bool is_own = step_ == Step::checking_own_address;
+    if (step_ == Step::confirming_silence || parkings_ == kParkingsMax) {
+        fail(is_own ? wire::SensorFault::xshut_stuck : wire::SensorFault::address_conflict);
+        return;
+    }
+    ++parkings_;
+    if (is_own) is_known_stuck_ = true;
+    if (!is_own) default_address_.note_parked();
+    parked_from_ = step_;
+    start_step(Step::parking, now);
+}
+
+void BringUp::on_silence(NodeTime now) {
+    const bool is_to_be_sought = is_known_stuck_ || default_address_.is_somebody_parked();
+    switch (step_) {
+        case Step::checking_silence:
+            start_step(Step::checking_own_address, now);
+            break;
+        case Step::checking_own_address:
+            start_step(is_to_be_sought ? Step::checking_parked : Step::booting, now);
+            break;
+        case Step::checking_parked:
+            // This sensor's reset, or another's, has brought it back to 0x29 and to silence.
+            is_known_stuck_ = false;
+            default_address_.forget_parked();
+            start_step(Step::booting, now);
+            break;
+        case Step::confirming_silence:
+            start_step(Step::initialising, now);
+            break;
+        case Step::idle:
+        case Step::held_low:
+        case Step::parking:
+        case Step::booting:
+        case Step::identifying:
+        case Step::addressing:
+        case Step::initialising:
+        case Step::collecting:
+        case Step::configuring:
+        case Step::verifying:
+            break;
+    }
+}
+
+/// Somebody is parked who is none of those that came since: then it is this one, which XSHUT does not move.
+void BringUp::on_nobody_came() {
+    const bool is_suspect = default_address_.is_somebody_parked() && cleared_ != default_address_.parkings();
+    fail(is_known_stuck_ || is_suspect ? wire::SensorFault::xshut_stuck : wire::SensorFault::no_answer);
 }
 
 void BringUp::fail(wire::SensorFault fault) {

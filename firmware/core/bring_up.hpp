@@ -1,9 +1,12 @@
 // Brings one sensor from reset to configured. Sensors of a bus pass the default address one after the other
 // and do all the rest side by side, so that the 100 ms of the first range are waited for once:
 //
-//   XSHUT low >= 1 ms | 0x29 must be silent | XSHUT high, 2 ms | identify | new address, verified |
-//   0x29 must be silent again || boot, default configuration, first range | collect it | settings |
-//   all of it read back
+//   XSHUT low >= 1 ms | 0x29 and its own address must be silent | XSHUT high, 2 ms | identify |
+//   new address, verified | 0x29 must be silent again ||
+//   boot, default configuration, first range | collect it | settings | all of it read back
+//
+// Whoever answers where all should be silent is parked (default_address.hpp), and the bring-up goes on. If
+// then nobody comes when XSHUT rises, the one parked is this sensor: its line is stuck.
 //
 // ST AN5776 section 2.2 has the order up to the new address.
 #pragma once
@@ -50,6 +53,9 @@ class BringUp {
         idle,
         held_low,
         checking_silence,
+        checking_own_address,
+        parking,
+        checking_parked,
         booting,
         identifying,
         addressing,
@@ -61,6 +67,10 @@ class BringUp {
     };
 
     [[nodiscard]] vl53l1x::Device& active_device() noexcept;
+    [[nodiscard]] bool is_watching() const noexcept;
+    void on_somebody_answered(NodeTime now);
+    void on_silence(NodeTime now);
+    void on_nobody_came();
     void start_step(Step step, NodeTime now);
     void on_step_done(NodeTime now);
     void on_step_failed(vl53l1x::Error error, NodeTime now);
@@ -80,6 +90,11 @@ class BringUp {
     bool has_answered_ = false;
     std::size_t run_ = 0;  ///< of the registers, being read back
     bool is_mismatched_ = false;
+
+    Step parked_from_ = Step::idle;  ///< the check that found somebody
+    std::uint8_t parkings_ = 0;      ///< in this attempt
+    bool is_known_stuck_ = false;    ///< answered at its own address while XSHUT was low; parked since
+    std::uint32_t cleared_ = 0;      ///< came when XSHUT rose after this many parkings on the bus
 };
 
 }  // namespace octoskin::node

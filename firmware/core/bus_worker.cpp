@@ -19,6 +19,7 @@ BusWorker::BusWorker(i2c::Bus& bus, const vl53l1x::Options& options, const Polic
 void BusWorker::add(Sensor& sensor) {
     assert(sensor_count_ < sensors_.size());
     sensors_[sensor_count_++] = &sensor;
+    default_address_.reserve(sensor.address());
 }
 
 void BusWorker::poll(NodeTime now) {

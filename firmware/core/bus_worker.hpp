@@ -24,6 +24,8 @@ class BusWorker {
     /// The sensor must outlive the worker. Call for all before the first `poll`.
     void add(Sensor& sensor);
     [[nodiscard]] DefaultAddress& default_address() noexcept { return default_address_; }
+    /// Somebody answered at 0x29 whom no XSHUT line put there; parked since.
+    [[nodiscard]] bool has_parked() const noexcept { return default_address_.is_somebody_parked(); }
 
     /// Advances the owner and hands the bus on, a few steps at most. O(steps * sensors of the bus).
     void poll(NodeTime now);

@@ -1,6 +1,12 @@
 // The one place on a bus where a freshly reset sensor answers, 0x29, and who may use it. Two sensors there at
 // once would both take the same new address, so one at a time goes through it, and all others watch.
+//
+// Whoever is found there unasked, because its XSHUT does not put it in reset, or because nobody drives it, is
+// *parked*: given an address that no sensor of the bus has, where it disturbs nobody.
 #pragma once
+
+#include <array>
+#include <cstdint>
 
 #include "firmware/drivers/i2c/i2c_bus.hpp"
 #include "firmware/drivers/vl53l1x/device.hpp"
@@ -19,12 +25,34 @@ class DefaultAddress {
         if (holder_ == who) holder_ = nullptr;
     }
 
-    /// For asking whether anybody answers at 0x29; only for the holder.
+    /// For asking whether anybody answers where nobody should, and for parking; only for the holder.
     [[nodiscard]] vl53l1x::Device& watcher() noexcept { return watcher_; }
 
+    /// A sensor of this bus is to have `address`: before the first bring-up, for all.
+    void reserve(i2c::Address address) noexcept { is_taken_[address] = true; }
+    /// The highest address that I2C leaves to devices and no sensor of this bus is to have.
+    [[nodiscard]] i2c::Address parking() const noexcept {
+        i2c::Address address = kAddressLast;
+        while (is_taken_[address]) --address;  // a bus has fewer sensors than addresses
+        return address;
+    }
+
+    /// Somebody was parked from 0x29, and nobody knows who it is. Counts how often, so that who answered
+    /// since is known not to be the one.
+    void note_parked() noexcept { ++parkings_, is_parked_ = true; }
+    /// Nobody answers at the parking address any more.
+    void forget_parked() noexcept { is_parked_ = false; }
+    [[nodiscard]] bool is_somebody_parked() const noexcept { return is_parked_; }
+    [[nodiscard]] std::uint32_t parkings() const noexcept { return parkings_; }
+
   private:
+    static constexpr i2c::Address kAddressLast = 0x77;
+
     vl53l1x::Device watcher_;
     const void* holder_ = nullptr;
+    std::array<bool, kAddressLast + 1> is_taken_{};
+    std::uint32_t parkings_ = 0;
+    bool is_parked_ = false;
 };
 
 }  // namespace octoskin::node

@@ -48,6 +48,7 @@ Node::Node(const NodeConfig& config, const Identity& identity, const Ports& port
       queue_(config.uses_can_fd, config.aux_every, policy_),
       announcer_(is_config_usable_ ? config.sensor_count : std::uint8_t{0}, policy_, now),
       tokens_(frame_budget(config), now),
+      black_box_(recorders_, policy_),
       bus_off_(policy_),
       uptime_counted_(now),
       feed_at_(now) {
@@ -63,13 +64,16 @@ void Node::create_sensors(NodeTime now) {
     for (std::size_t i = 0; i < sensor_count_; ++i) {
         const SensorConfig& sensor = config_.sensors[i];
         const vl53l1x::Options options = device_options(config_);
-        i2c::Bus& bus = *ports_.buses[sensor.bus];
+        auto& recorder = recorders_[sensor.bus];
+        if (!recorder) recorder.emplace(*ports_.buses[sensor.bus]);
+        BusRecorder& bus = *recorder;
         auto& worker = buses_[sensor.bus];
         if (!worker) worker.emplace(bus, options, policy_);
         const SensorSurroundings surroundings{
             .bus = bus, .default_address = worker->default_address(), .xshut = ports_.xshut};
         sensors_[i].emplace(sensor, surroundings, options, rules, policy_, now);
         worker->add(*sensors_[i]);
+        reflexes_[i].emplace(sensor.reflex_below_mm, policy_);
     }
     commanded_to_range_ = (std::uint64_t{1} << sensor_count_) - 1;
 }
@@ -78,7 +82,7 @@ void Node::poll(NodeTime now) {
     supervise_can(now);
     advance_buses(now);
     collect_readings(now);
-    note_health_changes();
+    note_health_changes(now);
     end_what_has_expired(now);
     blink(now);
     announcer_.update(now);
@@ -98,12 +102,27 @@ void Node::collect_readings(NodeTime now) {
         if (!reading) continue;
         told_[i].bound_since = std::max(told_[i].bound_since, reading->capture_bound);
         ++accepted_;
+        watch_reflex(i, *reading, now);
         queue_.push(i, *reading, now);
     }
 }
 
-void Node::note_health_changes() {
+void Node::watch_reflex(std::uint8_t sensor, const Reading& reading, NodeTime now) {
+    if (!reflexes_[sensor]->begins(reading, now)) return;
+    reflex_events_[sensor] = {.sensor = sensor,
+                              .zone = reading.zone,
+                              .range_mm = reading.range_mm,
+                              .capture = wire::classical_residue(reading.capture)};
+    reflex_due_ |= std::uint64_t{1} << sensor;
+}
+
+void Node::note_health_changes(NodeTime now) {
+    if (const wire::InfoFault fault = fault_to_tell(); !(fault == told_fault_)) {
+        told_fault_ = fault;
+        announcer_.request_info(wire::InfoPage::fault);
+    }
     for (std::uint8_t i = 0; i < sensor_count_; ++i) {
+        if (sensors_[i]->take_failure()) black_box_.on_fault(config_.sensors[i].bus, now);
         const Told& told = told_[i];
         const bool is_changed = sensors_[i]->state() != told.state || sensors_[i]->fault() != told.fault;
         // The first comparison spares nearly every poll the division by the wire's step.
@@ -142,6 +161,7 @@ NodeTime Node::wake_time(NodeTime now) const {
     if (ports_.watchdog != nullptr) wake = earlier_of(wake, feed_at_);
     wake = earlier(wake, bus_off_.wake_time());
     if (bus_off_.is_off()) return later_of(wake, now);
+    wake = earlier(wake, black_box_.wake_time());
     if (has_unsent_) {
         wake = earlier_of(wake, now + std::max(tokens_.wait(), kTransmitRetry));
     } else if (!own_id_heard_) {

@@ -13,11 +13,13 @@
 #include "common/wire/can_frame.hpp"
 #include "common/wire/messages.hpp"
 #include "firmware/core/announcer.hpp"
+#include "firmware/core/black_box.hpp"
 #include "firmware/core/bus_off_recovery.hpp"
 #include "firmware/core/bus_worker.hpp"
 #include "firmware/core/policy.hpp"
 #include "firmware/core/ports.hpp"
 #include "firmware/core/reading_queue.hpp"
+#include "firmware/core/reflex.hpp"
 #include "firmware/core/run_record.hpp"
 #include "firmware/core/sensor.hpp"
 #include "firmware/core/token_bucket.hpp"
@@ -100,7 +102,8 @@ class Node {
     void create_sensors(NodeTime now);
     void advance_buses(NodeTime now);
     void collect_readings(NodeTime now);
-    void note_health_changes();
+    void watch_reflex(std::uint8_t sensor, const Reading& reading, NodeTime now);
+    void note_health_changes(NodeTime now);
     void end_what_has_expired(NodeTime now);
     void blink(NodeTime now);
     [[nodiscard]] std::span<const std::optional<Sensor>> sensors() const noexcept {
@@ -124,6 +127,7 @@ class Node {
     void on_command(const wire::Command& command, NodeTime now);
     [[nodiscard]] bool perform_in_safe_mode(const wire::Command& command, NodeTime now);
     [[nodiscard]] bool perform(const wire::Command& command, NodeTime now);
+    [[nodiscard]] bool request_black_box(const Selection& selection, NodeTime now);
     [[nodiscard]] bool set_rate(const Selection& selection, std::uint16_t period_ms, NodeTime now);
     [[nodiscard]] Selection selected(std::uint8_t sensor) const noexcept;
     [[nodiscard]] static std::uint64_t mask_of(const Selection& selection) noexcept;
@@ -132,9 +136,11 @@ class Node {
     void transmit(NodeTime now);
     [[nodiscard]] bool send_most_urgent(NodeTime now);
     [[nodiscard]] bool send(const wire::Message& message);
+    [[nodiscard]] bool send_reflex();
     [[nodiscard]] wire::Heartbeat heartbeat() const noexcept;
     [[nodiscard]] wire::NodeInfo info(wire::InfoPage page) const noexcept;
     [[nodiscard]] wire::InfoFault fault_to_tell() const noexcept;
+    [[nodiscard]] std::optional<wire::InfoFault> present_fault() const noexcept;
     [[nodiscard]] wire::SensorHealth health(std::uint8_t sensor) const noexcept;
     [[nodiscard]] Microseconds bound_to_tell(std::uint8_t sensor) const noexcept;
     [[nodiscard]] std::uint8_t bound_on_wire(Microseconds bound) const noexcept;
@@ -149,12 +155,19 @@ class Node {
     std::uint16_t uid_crc_;
     std::uint8_t sensor_count_ = 0;  ///< of those at work: none in safe mode, or with a bad configuration
 
+    BusRecorders recorders_{};
     std::array<std::optional<BusWorker>, kNodeBusesMax> buses_{};
     std::array<std::optional<Sensor>, kNodeSensorsMax> sensors_{};
     std::array<Told, kNodeSensorsMax> told_{};
+    std::array<std::optional<Reflex>, kNodeSensorsMax> reflexes_{};
+    std::array<wire::Reflex, kNodeSensorsMax> reflex_events_{};
+    std::uint64_t reflex_due_ = 0;  ///< bit i: `reflex_events_[i]` is to be sent
+    std::uint8_t reflex_sequence_ = 0;
+    wire::InfoFault told_fault_;
     ReadingQueue queue_;
     Announcer announcer_;
     TokenBucket tokens_;
+    BlackBox black_box_;
     BusOffRecovery bus_off_;
     CanState can_state_ = CanState::active;
     RunRecord run_;

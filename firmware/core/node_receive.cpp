@@ -86,6 +86,7 @@ bool Node::perform_in_safe_mode(const wire::Command& command, NodeTime now) {
         case wire::CommandCode::stop:
         case wire::CommandCode::set_rate:
         case wire::CommandCode::reinitialise_sensor:
+        case wire::CommandCode::send_black_box:
             return false;
     }
     return false;
@@ -119,8 +120,17 @@ bool Node::perform(const wire::Command& command, NodeTime now) {
         case wire::CommandCode::send_info:
             announcer_.request_all();
             return true;
+        case wire::CommandCode::send_black_box:
+            return request_black_box(selection, now);
     }
     return false;
+}
+
+bool Node::request_black_box(const Selection& selection, NodeTime now) {
+    for (std::uint8_t i = selection.first; i < selection.end; ++i) {
+        black_box_.on_request(config_.sensors[i].bus, now);
+    }
+    return !selection.is_empty();
 }
 
 /// Each sensor decides for itself whether the period fits its budget; the command counts as refused unless

@@ -83,6 +83,9 @@ void Node::supervise_can(NodeTime now) {
 /// By the node's own clock: one that stands still never feeds.
 void Node::feed_watchdog(NodeTime now) {
     if (ports_.watchdog == nullptr || !is_reached(feed_at_, now)) return;
+    for (const auto& recorder : recorders_) {
+        if (recorder && recorder->is_overdue(now)) return;
+    }
     feed_at_ = now + policy_.watchdog_feed;
     ports_.watchdog->feed();
 }

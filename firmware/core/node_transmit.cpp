@@ -1,6 +1,7 @@
 // What the node says, in which order. Everything is composed at the moment the controller takes it, so a full
 // mailbox delays what is said but never makes it old; only readings queue, and they have an age limit.
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "common/wire/codec.hpp"
@@ -34,7 +35,9 @@ void Node::transmit(NodeTime now) {
 
 /// In the order of the identifiers, as the bus would arbitrate them.
 bool Node::send_most_urgent(NodeTime now) {
-    if (announcer_.is_heartbeat_due()) {
+    if (reflex_due_ != 0 && !own_id_heard_) {
+        if (!send_reflex()) return false;
+    } else if (announcer_.is_heartbeat_due()) {
         if (!send(heartbeat())) return false;
         announcer_.heartbeat_sent();
     } else if (sync_report_) {
@@ -53,9 +56,28 @@ bool Node::send_most_urgent(NodeTime now) {
     } else if (queue_.aux()) {
         if (!send(*queue_.aux())) return false;
         queue_.pop_aux();
+    } else if (const auto piece = black_box_.due(now)) {
+        if (!send(*piece)) return false;
+        black_box_.sent(now);
     } else {
         return false;
     }
+    return true;
+}
+
+/// Whatever else was sent of late: one frame an event, and few events, so that it cannot babble either.
+bool Node::send_reflex() {
+    const auto sensor = static_cast<std::size_t>(std::countr_zero(reflex_due_));
+    wire::Reflex event = reflex_events_[sensor];
+    event.sequence = reflex_sequence_;
+    if (!ports_.can.send(wire::encode(event, config_.node_id))) {
+        has_unsent_ = true;
+        return false;
+    }
+    tokens_.overdraw();
+    ++frames_sent_;
+    reflex_due_ &= reflex_due_ - 1;  // its lowest bit was this sensor's
+    reflex_sequence_ = static_cast<std::uint8_t>((reflex_sequence_ + 1U) % wire::kSequenceCount);
     return true;
 }
 
@@ -119,10 +141,27 @@ wire::NodeInfo Node::info(wire::InfoPage page) const noexcept {
 }
 
 wire::InfoFault Node::fault_to_tell() const noexcept {
+    if (const auto present = present_fault()) return *present;
     return {.kind = run_.fault,
             .count = saturated<std::uint8_t>(run_.resets),
             .where = run_.where,
             .uptime_s = saturated<std::uint8_t>(run_.fault_uptime_ms / 1'000)};
+}
+
+std::optional<wire::InfoFault> Node::present_fault() const noexcept {
+    const auto count = saturated<std::uint8_t>(run_.resets);
+    for (std::uint8_t i = 0; i < sensor_count_; ++i) {
+        const Sensor& sensor = *sensors_[i];
+        const bool is_ranging = sensor.state() == wire::SensorState::ranging;
+        if (is_ranging || sensor.fault() != wire::SensorFault::xshut_stuck) continue;
+        return wire::InfoFault{
+            .kind = wire::FaultKind::xshut_stuck, .count = count, .where = config_.sensors[i].xshut_line};
+    }
+    for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
+        if (!buses_[bus] || !buses_[bus]->has_parked()) continue;
+        return wire::InfoFault{.kind = wire::FaultKind::stray_sensor, .count = count, .where = bus};
+    }
+    return std::nullopt;
 }
 
 wire::SensorHealth Node::health(std::uint8_t sensor) const noexcept {

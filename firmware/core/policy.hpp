@@ -49,6 +49,14 @@ struct Policy {
     Microseconds heartbeat_period{100'000};
     Microseconds status_period{1'000'000};  ///< NODE_INFO's pages and every sensor's health, once each
 
+    Microseconds black_box_period{50'000};     ///< between two pieces of it
+    Microseconds black_box_pause{60'000'000};  ///< between two dumps of a bus for faults
+
+    // --- the reflex: an event is over once nothing came so near the limit for so long
+    Microseconds reflex_rearm{200'000};
+    std::int32_t reflex_margin_mm = 20;
+    std::int32_t reflex_margin_permille = 100;
+
     // --- the CAN controller: ISO 11898-1 leaves it to us when to come back from bus-off
     Microseconds bus_off_first{100'000};
     Microseconds bus_off_longest{800'000};

@@ -25,6 +25,8 @@ class Recovery {
 
     /// What to do about a failure at `now`. `can_restart`: the sensor answers and was ranging.
     [[nodiscard]] RecoveryPlan on_failure(bool can_restart, NodeTime now) noexcept;
+    /// A failure was not followed by enough proven readings yet.
+    [[nodiscard]] bool is_under_way() const noexcept { return failures_ > 0; }
     /// A reading that proves that the sensor measures. Enough of them in a row and the next failure counts as
     /// the first.
     void on_proven_reading() noexcept;

@@ -201,6 +201,7 @@ void Sensor::on_failure(wire::SensorFault fault, bool can_restart, NodeTime now)
     is_settled_ = true;
     is_bus_suspect_ = fault == SensorFault::bus_error;
     ++counts_.restarts;
+    if (!recovery_.is_under_way()) has_failed_ = true;
     plan_ = recovery_.on_failure(can_restart, now);
     // Whoever may be at the default address unasked waits in reset.
     if (plan_.step == RecoveryStep::xshut_cycle) bring_up_.hold_in_reset();
@@ -231,6 +232,10 @@ bool Sensor::is_degraded() const noexcept {
 
 std::optional<Reading> Sensor::take_reading() noexcept {
     return std::exchange(reading_, std::nullopt);
+}
+
+bool Sensor::take_failure() noexcept {
+    return std::exchange(has_failed_, false);
 }
 
 bool Sensor::take_bus_suspicion() noexcept {

@@ -58,6 +58,8 @@ class Sensor {
     [[nodiscard]] BusUse advance(NodeTime now);
     /// The reading that the last step accepted; told once.
     [[nodiscard]] std::optional<Reading> take_reading() noexcept;
+    /// Whether it failed, having worked before or for the first time; told once.
+    [[nodiscard]] bool take_failure() noexcept;
     /// Whether the last failure may be the whole bus's; told once.
     [[nodiscard]] bool take_bus_suspicion() noexcept;
 
@@ -73,6 +75,7 @@ class Sensor {
     [[nodiscard]] bool is_degraded() const noexcept;
     /// Has ended its first bring-up, well or badly.
     [[nodiscard]] bool is_settled() const noexcept { return is_settled_; }
+    [[nodiscard]] i2c::Address address() const noexcept { return config_.address; }
     [[nodiscard]] bool is_period_overridden() const noexcept { return is_period_overridden_; }
     [[nodiscard]] bool is_ordered_to_range() const noexcept { return is_ordered_to_range_; }
     [[nodiscard]] std::int32_t period_error_permille() const noexcept {
@@ -114,6 +117,7 @@ class Sensor {
     bool is_settled_ = false;
     bool has_ever_answered_ = false;
     bool is_bus_suspect_ = false;
+    bool has_failed_ = false;
     std::uint8_t refused_in_row_ = 0;
     SensorCounts counts_;
     std::optional<Reading> reading_;

@@ -25,6 +25,8 @@ class TokenBucket {
     [[nodiscard]] bool has_token() const noexcept { return level_ >= kToken; }
     /// Only while `has_token()`.
     void take() noexcept { level_ -= kToken; }
+    /// For what cannot wait, with or without a token: everybody else waits the longer for it.
+    void overdraw() noexcept { level_ -= kToken; }
     /// How long until a token is there.
     [[nodiscard]] Microseconds wait() const noexcept {
         if (has_token()) return Microseconds{0};

@@ -65,17 +65,17 @@ bool is_sent_by(NodeKind kind, FrameType type) {
         case FrameType::range_fd:
         case FrameType::range_aux:
         case FrameType::sensor_health:
+        case FrameType::reflex:
+        case FrameType::black_box:
             return kind == NodeKind::sensor_board;
         case FrameType::heartbeat:
         case FrameType::sync_report:
         case FrameType::node_info:
             return true;
-        case FrameType::reflex:
         case FrameType::sync:
         case FrameType::follow_up:
         case FrameType::command:
         case FrameType::mark:
-        case FrameType::black_box:
             return false;
     }
     return false;

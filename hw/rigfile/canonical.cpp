@@ -134,6 +134,9 @@ void write_sensor(Writer& out, const Sensor& sensor, const SensorConfig& config)
     out.line("        crosstalk_kcps: {}", number(config.crosstalk_raw / 512.0));
     out.line("        sigma_limit_mm: {}", number(config.sigma_limit_quarter_mm / 4.0));
     out.line("        signal_limit_mcps: {}", number(config.signal_limit_raw / 128.0));
+    if (config.reflex_below_mm > 0) {
+        out.line("        reflex_below_m: {}", number(config.reflex_below_mm / 1000.0));
+    }
     out.line("        applies_gain_factor: {}", config.applies_gain_factor);
     out.line("        zones:");
     for (std::size_t i = 0; i < config.zone_count; ++i) {

@@ -95,6 +95,8 @@ void read_device_settings(const Table& table, SensorConfig& config) {
                                                                config.sigma_limit_quarter_mm);
     config.signal_limit_raw =
         fixed_point<std::uint16_t>(table, "signal_limit_mcps", {0.0, 511.0}, 128.0, config.signal_limit_raw);
+    config.reflex_below_mm = fixed_point<std::uint16_t>(
+        table, "reflex_below_m", {0.0, kReflexLimitMaxMm / 1000.0}, 1000.0, config.reflex_below_mm);
     config.applies_gain_factor = table.flag("applies_gain_factor", config.applies_gain_factor);
 }
 
@@ -140,7 +142,7 @@ Table sensor_table(const Value& value, const std::string& path) {
             path,
             {"name", "link", "pose", "bus", "xshut_line", "address", "distance_mode", "timing_budget_ms",
              "inter_measurement_ms", "phase_us", "device_offset_mm", "crosstalk_kcps", "sigma_limit_mm",
-             "signal_limit_mcps", "applies_gain_factor", "zones"}};
+             "signal_limit_mcps", "reflex_below_m", "applies_gain_factor", "zones"}};
 }
 
 SensorEntry read_sensor(const Table& table, const UrdfDocument& robot, const std::string& base_link,

@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
     app::add_experiment_command(app);
     app::add_rig_command(app);
     app::add_mapping_command(app);
+    app::add_black_box_command(app);
     try {
         app.parse(argc, argv);
         return static_cast<int>(ExitCode::ok);

@@ -226,6 +226,19 @@ CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::Command&, FrameOutc
     return FrameReason::for_nodes;
 }
 
+CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Reflex& message, FrameOutcome&) {
+    if (!ranges_.knows(node, message.sensor)) {
+        return FrameReason::unknown_sensor;
+    }
+    ranges_.on_reflex(node, message);
+    return std::nullopt;
+}
+
+/// Nothing for the map in it: `octoskin black-box` reads it out of the log.
+CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::BlackBox&, FrameOutcome&) {
+    return FrameReason::for_people;
+}
+
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::JointState& message,
                                    FrameOutcome& outcome) {
     const auto now_known = now();

@@ -78,6 +78,8 @@ class CanIntake {
     Rejection on(wire::NodeId host, const wire::FollowUp& message, FrameOutcome& outcome);
     Rejection on(wire::NodeId host, const wire::Mark& message, FrameOutcome& outcome);
     Rejection on(wire::NodeId node, const wire::Command& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId node, const wire::Reflex& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId node, const wire::BlackBox& message, FrameOutcome& outcome);
 
     /// In host time, if the node is usable and its clock known.
     [[nodiscard]] Result<MappedTime, ReadingReason> capture_time(wire::NodeId node,

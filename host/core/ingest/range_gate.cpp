@@ -142,6 +142,12 @@ void RangeGate::on_signal(wire::NodeId node, std::uint8_t sensor, const wire::Si
     sensors_.at({node, sensor}).record.signal = signal;
 }
 
+void RangeGate::on_reflex(wire::NodeId node, const wire::Reflex& reflex) {
+    SensorRecord& record = sensors_.at({node, reflex.sensor}).record;
+    ++record.reflexes;
+    record.reflex = reflex;
+}
+
 void RangeGate::forget(wire::NodeId node) {
     forget_order(node);
     for (auto& [key, sensor] : sensors_) {

@@ -28,6 +28,8 @@ struct SensorRecord {
     std::optional<wire::SignalReading> signal;
     /// Bound on the error of its capture times, as the node told it last in its present life.
     std::optional<Nanoseconds> capture_bound;
+    std::uint64_t reflexes = 0;          ///< times that something came closer than the sensor's limit
+    std::optional<wire::Reflex> reflex;  ///< the newest
     /// Readings that the node sent and that never came: exact as of the newest health message.
     std::uint64_t lost = 0;
     std::uint64_t lost_before = 0;      ///< of these, in the node's earlier lives
@@ -58,6 +60,8 @@ class RangeGate {
 
     void on_health(wire::NodeId node, const wire::SensorHealth& health);
     void on_signal(wire::NodeId node, std::uint8_t sensor, const wire::SignalReading& signal);
+    /// Counted whoever the node is: it is for people and for arms, and does not touch the map.
+    void on_reflex(wire::NodeId node, const wire::Reflex& reflex);
     /// The node began anew: its sequences, its counts, and what it told.
     void forget(wire::NodeId node);
     /// The times of the newest readings were wrong: their order says nothing.

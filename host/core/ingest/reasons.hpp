@@ -23,7 +23,7 @@ enum class FrameReason : std::uint8_t {
     nonzero_padding,
     invalid_field,
     unknown_node,        ///< a node id that the rig does not have
-    unknown_sensor,      ///< health or signal of a sensor that the node does not have
+    unknown_sensor,      ///< health, signal or reflex of a sensor that the node does not have
     for_nodes,           ///< a command: nothing for the host in it
     sync_unmatched,      ///< FOLLOW_UP or SYNC_REPORT without their SYNC
     sync_repeated,       ///< a second SYNC, FOLLOW_UP or SYNC_REPORT where one belongs
@@ -31,13 +31,14 @@ enum class FrameReason : std::uint8_t {
     not_joint_source,    ///< joint states of a node that the rig does not name for it
     joint_repeated,      ///< a joint frame that the sample has already
     joint_no_host_time,  ///< a joint frame while "now" is unknown
+    for_people,          ///< a piece of a node's black box: nothing for the map in it
     mark_ignored,        ///< a MARK where the map does not wait for one, or over 1 s from "now"
 };
-[[nodiscard]] constexpr std::array<const char*, 17> names_of(FrameReason) {
+[[nodiscard]] constexpr std::array<const char*, 18> names_of(FrameReason) {
     return {"foreign_format",     "unknown_type",  "wrong_length", "wrong_crc",        "wrong_version",
             "nonzero_padding",    "invalid_field", "unknown_node", "unknown_sensor",   "for_nodes",
             "sync_unmatched",     "sync_repeated", "node_refused", "not_joint_source", "joint_repeated",
-            "joint_no_host_time", "mark_ignored"};
+            "joint_no_host_time", "for_people",    "mark_ignored"};
 }
 static_assert(static_cast<std::size_t>(FrameReason::invalid_field) + 1 == wire::kDecodeErrors);
 [[nodiscard]] constexpr FrameReason reason_of(wire::DecodeError error) noexcept {

@@ -1,7 +1,9 @@
 #include "tests/support/i2c/i2c_trace.hpp"
 
+#include <array>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace octoskin::test {
 namespace {
@@ -18,12 +20,34 @@ std::vector<std::uint8_t> index_bytes(const std::string& word) {
     return {static_cast<std::uint8_t>(index >> 8U), static_cast<std::uint8_t>(index & 0xFFU)};
 }
 
+i2c::TransferError parse_error(std::istringstream& words) {
+    using i2c::TransferError;
+    constexpr std::array<std::pair<std::string_view, TransferError>, 5> kErrors = {
+        {{"nack_address", TransferError::nack_address},
+         {"nack_data", TransferError::nack_data},
+         {"timeout", TransferError::timeout},
+         {"arbitration_lost", TransferError::arbitration_lost},
+         {"bus_stuck", TransferError::bus_stuck}}};
+    std::string word;
+    words >> word;
+    for (const auto& [name, error] : kErrors) {
+        if (word == name) return error;
+    }
+    throw std::invalid_argument("unknown error '" + word + "'");
+}
+
 void parse_read(std::istringstream& words, TraceEntry& entry) {
     std::string word;
     std::size_t length = 0;
     words >> word >> length;
     entry.write = index_bytes(word);
-    if (!(words >> word) || word != "->") throw std::invalid_argument("expected '->'");
+    if (!(words >> word)) throw std::invalid_argument("expected '->' or '!'");
+    if (word == "!") {
+        entry.read.assign(length, std::nullopt);
+        entry.error = parse_error(words);
+        return;
+    }
+    if (word != "->") throw std::invalid_argument("expected '->'");
     while (words >> word) {
         entry.read.push_back(word == "??" ? std::nullopt
                                           : std::optional(static_cast<std::uint8_t>(hex(word, 2))));
@@ -35,7 +59,8 @@ void parse_write(std::istringstream& words, TraceEntry& entry) {
     std::string word;
     words >> word;
     entry.write = index_bytes(word);
-    while (words >> word) entry.write.push_back(static_cast<std::uint8_t>(hex(word, 2)));
+    while (words >> word && word != "!") entry.write.push_back(static_cast<std::uint8_t>(hex(word, 2)));
+    if (words && word == "!") entry.error = parse_error(words);
     if (entry.write.size() == 2) throw std::invalid_argument("a write without bytes");
 }
 

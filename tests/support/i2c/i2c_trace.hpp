@@ -2,6 +2,7 @@
 //
 //     W 0087 40                register index and bytes of a write
 //     R 0089 2 -> 09 ??        register index and length of a read, and what it brings; ?? is any byte
+//     R 0089 2 ! timeout       a transfer that fails, a write as well: with a name of i2c::TransferError
 //     ADDRESS 2A               the 7-bit address from here on, 29 at first
 //     WAIT 110                 milliseconds
 //

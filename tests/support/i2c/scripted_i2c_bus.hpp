@@ -21,6 +21,7 @@ class ScriptedI2cBus final : public i2c::Bus {
 
     /// Adds to the end of the script.
     void expect(std::string_view script);
+    void expect(const Trace& script) { script_.insert(script_.end(), script.begin(), script.end()); }
     /// The next transfers expected end in these errors instead of an answer.
     void expect_failure(std::string_view entry, i2c::TransferError error);
     [[nodiscard]] bool is_finished() const noexcept { return next_ == script_.size(); }

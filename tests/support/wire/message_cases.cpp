@@ -168,6 +168,49 @@ MessageCase range_fd_case(std::uint8_t readings) {
     return result;
 }
 
+MessageCase reflex_case() {
+    const Reflex reflex{
+        .sensor = 33, .zone = 5, .range_mm = 1234, .capture = {2741 * 64, 262'144}, .sequence = 42};
+    return {"REFLEX",
+            reflex,
+            2,
+            0x002,
+            false,
+            8,
+            2,
+            {valid_below(63, plain("sensor", 3, 6, &Reflex::sensor)), plain("zone", 9, 4, &Reflex::zone),
+             plain("range", 13, 13, &Reflex::range_mm),
+             field<Reflex>("capture_time", 26, 12,
+                           [](Reflex& r, std::uint64_t raw) {
+                               r.capture = {static_cast<std::uint32_t>(raw * 64), 262'144};
+                           }),
+             plain("sequence", 38, 6, &Reflex::sequence)},
+            {},
+            {{44, 4}}};
+}
+
+MessageCase black_box_case() {
+    const BlackBox piece{.bus = 2, .dump = 1, .index = 300, .bytes = {1, 2, 3, 4, 5}};
+    return {"BLACK_BOX",
+            piece,
+            2,
+            0x7C2,
+            false,
+            8,
+            1,
+            {plain("bus", 3, 2, &BlackBox::bus), plain("dump", 5, 2, &BlackBox::dump),
+             plain("index", 7, 9, &BlackBox::index),
+             field<BlackBox>("bytes", 16, 40,
+                             [](BlackBox& box, std::uint64_t raw) {
+                                 for (std::uint8_t& byte : box.bytes) {
+                                     byte = static_cast<std::uint8_t>(raw & 0xFFU);
+                                     raw >>= 8U;
+                                 }
+                             })},
+            {},
+            {}};
+}
+
 MessageCase heartbeat_case() {
     const Heartbeat beat{.state = NodeState::safe,
                          .reset_cause = ResetCause::watchdog,
@@ -336,7 +379,7 @@ void add_host_cases(std::vector<MessageCase>& cases) {
          {},
          {}});
     FieldCase code = plain("code", 3, 5, &Command::code);
-    code.is_valid = [](std::uint64_t raw) { return raw >= 1 && raw <= 7; };
+    code.is_valid = [](std::uint64_t raw) { return raw >= 1 && raw <= 8; };
     cases.push_back(
         {"COMMAND",
          Command{CommandCode::set_rate, 62, 33, 129},
@@ -362,6 +405,8 @@ std::vector<MessageCase> all_message_cases() {
     add_sync_cases(cases);
     add_joint_cases(cases);
     add_host_cases(cases);
+    cases.push_back(reflex_case());
+    cases.push_back(black_box_case());
     return cases;
 }
 

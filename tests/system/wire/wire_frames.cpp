@@ -48,6 +48,18 @@ json expected(const Range& m) {
             {"capture_time", r.capture.value_us},
             {"sequence", r.sequence}};
 }
+json expected(const Reflex& m) {
+    return {{"sensor", m.sensor},
+            {"zone", m.zone},
+            {"range", m.range_mm},
+            {"capture_time", m.capture.value_us},
+            {"sequence", m.sequence}};
+}
+json expected(const BlackBox& m) {
+    std::uint64_t bytes = 0;
+    for (std::size_t i = m.bytes.size(); i-- > 0;) bytes = bytes * 256 + m.bytes[i];
+    return {{"bus", m.bus}, {"dump", m.dump}, {"index", m.index}, {"bytes", bytes}};
+}
 json expected(const RangeAux& m) {
     return {{"sensor", m.sensor},
             {"sequence", m.sequence},

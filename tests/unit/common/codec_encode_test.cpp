@@ -70,7 +70,7 @@ TEST(CodecEncode, fd_readings_beyond_the_count_are_not_sent) {
 }
 
 TEST(CodecEncode, every_message_goes_under_its_own_type) {
-    const std::array<std::pair<Message, FrameType>, 12> types = {{{Range{}, FrameType::range},
+    const std::array<std::pair<Message, FrameType>, 14> types = {{{Range{}, FrameType::range},
                                                                   {RangeAux{}, FrameType::range_aux},
                                                                   {RangeFd{}, FrameType::range_fd},
                                                                   {Heartbeat{}, FrameType::heartbeat},
@@ -81,7 +81,9 @@ TEST(CodecEncode, every_message_goes_under_its_own_type) {
                                                                   {SyncReport{}, FrameType::sync_report},
                                                                   {JointState{}, FrameType::joint_state},
                                                                   {Mark{}, FrameType::mark},
-                                                                  {Command{}, FrameType::command}}};
+                                                                  {Command{}, FrameType::command},
+                                                                  {Reflex{}, FrameType::reflex},
+                                                                  {BlackBox{}, FrameType::black_box}}};
     for (const auto& [message, type] : types) {
         EXPECT_EQ(type_of(message), type) << message.index();
     }

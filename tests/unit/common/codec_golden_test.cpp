@@ -19,7 +19,7 @@ struct Golden {
     const char* frame;  ///< identifier#payload, hexadecimal
 };
 
-constexpr std::array<Golden, 22> kGolden = {{
+constexpr std::array<Golden, 24> kGolden = {{
     {"RANGE", "202#092B49934AADAA17"},
     {"RANGE_AUX", "302#095500040800AE23"},
     {"HEARTBEAT", "17E#998AEFBE3412B840"},
@@ -46,6 +46,8 @@ constexpr std::array<Golden, 22> kGolden = {{
     {"JOINT_STATE last", "183#B90A04F4EFCDABF7"},
     {"MARK", "100#09CB04FB711F0173"},
     {"COMMAND", "0FF#193E2100817FFA"},
+    {"REFLEX", "002#094B9AD4AA0ABC52"},
+    {"BLACK_BOX", "7C2#3196010203040586"},
 }};
 
 std::string text_of(const wire::CanFrame& frame) {

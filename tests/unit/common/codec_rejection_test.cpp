@@ -47,12 +47,14 @@ TypeRule rule_of(unsigned type) {
             return {0, 0, false, {8}};
         case 3:
             return {1, 63, false, {7}};
+        case 0:
         case 5:
         case 6:
         case 8:
         case 10:
         case 11:
         case 12:
+        case 31:
             return {1, 62, false, {8}};
         case 7:
             return {1, 62, false, {7}};

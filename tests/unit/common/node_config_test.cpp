@@ -47,6 +47,7 @@ SensorConfig sensor_config(std::uint8_t i) {
                         .crosstalk_raw = 0xBCDE,
                         .sigma_limit_quarter_mm = 0x0F12,
                         .signal_limit_raw = 0x3456,
+                        .reflex_below_mm = 0x0789,
                         .applies_gain_factor = true,
                         .zone_count = 2};
     sensor.zones[0] = {.centre_spad = 145, .width = 8, .height = 16};
@@ -75,14 +76,14 @@ NodeConfig node_config(std::uint8_t sensors) {
 TEST(NodeConfig, canonical_form_is_these_bytes) {
     // Header, node, one sensor with two zones, and room for the CRC-32 (its own oracle is in crc_test.cpp).
     const Block expected = {
-        'O',  'S',  'K',  'C',  1,    0,    61,   0,     // magic, version, length
+        'O',  'S',  'K',  'C',  2,    0,    63,   0,     // magic, version, length
         0x3D, 0x77, 0,                                   // node id, board type, CAN FD
         0x20, 0xA1, 0x07, 0,    0x80, 0x84, 0x1E, 0,     // bit rates
         0xE0, 0x93, 0x04, 0,    0,    0,    1,    9,     // I2C, 2.8 V, double read, gate, aux
         0xB8, 0x0B, 1,                                   // zone guard, sensors
         0,    39,   0x30, 1,    0x23, 0x01, 0x56, 0x04,  // bus, line, address, mode, budget, period
         0x9A, 0x78, 0xCC, 0xFF, 1,    0xDE, 0xBC,        // phase, offset, has it, crosstalk
-        0x12, 0x0F, 0x56, 0x34, 1,    2,                 // sigma, signal, gain, zones
+        0x12, 0x0F, 0x56, 0x34, 0x89, 0x07, 1,    2,     // sigma, signal, reflex, gain, zones
         145,  8,    16,   49,   4,    5,                 //
         0,    0,    0,    0};
     Block block = block_of(node_config(1));
@@ -104,7 +105,7 @@ TEST(NodeConfig, the_largest_one_fits_its_block) {
     for (SensorConfig& sensor : config.sensors) {
         sensor.zone_count = kSensorZonesMax;
     }
-    EXPECT_LE(block_of(config).size(), 1700U);
+    EXPECT_EQ(block_of(config).size(), 1734U);  // of 2048
     EXPECT_EQ(*decode_node_config(block_of(config)), config);
 }
 
@@ -157,10 +158,10 @@ TEST(NodeConfig, an_impossible_length_is_refused_before_it_is_used) {
 
 TEST(NodeConfig, another_layout_version_is_told_as_one_if_the_block_is_whole) {
     Block block = block_of(node_config(1));
-    block[4] = 2;
+    block[4] = 1;
     EXPECT_EQ(error_of(block), NodeConfigError::wrong_crc);
     EXPECT_EQ(error_of(signed_again(block)), NodeConfigError::wrong_version);
-    block[4] = 1;
+    block[4] = 2;
     block[5] = 1;
     EXPECT_EQ(error_of(signed_again(block)), NodeConfigError::wrong_version);
 }
@@ -187,7 +188,7 @@ TEST(NodeConfig, fields_that_end_before_or_after_the_length_are_refused) {
 
 TEST(NodeConfig, a_flag_is_0_or_1_and_a_count_at_most_its_maximum) {
     const Block good = block_of(node_config(1));
-    for (const std::size_t flag : {10U, 23U, 24U, 42U, 49U}) {
+    for (const std::size_t flag : {10U, 23U, 24U, 42U, 51U}) {
         for (const unsigned value : {2U, 255U}) {
             Block block = good;
             block[flag] = static_cast<std::uint8_t>(value);
@@ -195,7 +196,7 @@ TEST(NodeConfig, a_flag_is_0_or_1_and_a_count_at_most_its_maximum) {
         }
     }
     for (const auto& [at, value] :
-         std::vector<std::pair<std::size_t, int>>{{29, 35}, {29, 255}, {50, 10}, {50, 255}}) {
+         std::vector<std::pair<std::size_t, int>>{{29, 35}, {29, 255}, {52, 10}, {52, 255}}) {
         Block block = good;
         block[at] = static_cast<std::uint8_t>(value);
         EXPECT_EQ(error_of(signed_again(block)), NodeConfigError::invalid_field) << at;
@@ -266,6 +267,7 @@ std::vector<FieldRange> field_ranges() {
         {"crosstalk", [=](N& c, int v) { c.sensors[1].crosstalk_raw = u16(v); }, {0, 65'535}, {}},
         {"sigma limit", [=](N& c, int v) { c.sensors[1].sigma_limit_quarter_mm = u16(v); }, {0, 65'535}, {}},
         {"signal limit", [=](N& c, int v) { c.sensors[1].signal_limit_raw = u16(v); }, {0, 65'535}, {}},
+        {"reflex", [=](N& c, int v) { c.sensors[1].reflex_below_mm = u16(v); }, {0, 4'000}, {4'001, 65'535}},
         {"zone_count",
          [=](N& c, int v) { c.sensors[1].zone_count = u8(v), c.sensors[1].zones[1] = {}; },
          {1, 2, 9},

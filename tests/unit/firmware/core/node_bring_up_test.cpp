@@ -92,7 +92,8 @@ TEST(NodeBringUp, starts_each_sensor_in_its_phase) {
         // the first range of a start ends one period after it.
         const std::int64_t start_us = rig.truth(i).at(1).window_middle.us + 10'000 - 33'000;
         const std::int64_t into_phase_us = (start_us - phases_us[i] + 33'000) % 33'000;
-        EXPECT_LE(into_phase_us, 1'500) << i;
+        // The bus may be taken by a neighbour's longest transfer: its configuration, 94 bytes, 2.2 ms.
+        EXPECT_LE(into_phase_us, 3'000) << i;
     }
 }
 
@@ -135,17 +136,20 @@ TEST(NodeBringUp, leaves_a_failed_sensor_in_reset_so_that_it_is_not_taken_for_it
     EXPECT_EQ(rig.last_health(1)->state, SensorState::ranging);
 }
 
-TEST(NodeBringUp, refuses_a_bus_where_somebody_answers_at_0x29_while_all_are_in_reset) {
+TEST(NodeBringUp, moves_a_stray_sensor_out_of_the_way_and_says_on_which_bus_it_is) {
     NodeRig rig(fleet_config(4, 2), fleet(4));
     rig.attach_stray_sensor(1);
-    rig.run_for(1'000 * kMillisecond);
-    for (const std::uint8_t sensor : std::array<std::uint8_t, 2>{0, 2})
-        EXPECT_EQ(rig.last_health(sensor)->state, SensorState::ranging);
-    for (const std::uint8_t sensor : std::array<std::uint8_t, 2>{1, 3}) {
-        EXPECT_EQ(rig.last_health(sensor)->state, SensorState::absent);
-        EXPECT_EQ(rig.last_health(sensor)->fault, SensorFault::address_conflict);
-        EXPECT_TRUE(rig.readings_of(sensor).empty());
+    rig.run_for(2'000 * kMillisecond);
+    for (std::uint8_t sensor = 0; sensor < 4; ++sensor) {
+        EXPECT_EQ(rig.last_health(sensor)->state, SensorState::ranging) << int{sensor};
+        EXPECT_EQ(rig.last_health(sensor)->fault, SensorFault::none) << int{sensor};
+        EXPECT_GE(rig.readings_of(sensor).size(), 50U) << int{sensor};
     }
+    wire::InfoFault told;
+    for (const wire::NodeInfo& info : rig.said_of<wire::NodeInfo>()) {
+        if (const auto* fault = std::get_if<wire::InfoFault>(&info)) told = *fault;
+    }
+    EXPECT_EQ(told, (wire::InfoFault{.kind = wire::FaultKind::stray_sensor, .where = 1}));
 }
 
 TEST(NodeBringUp, refuses_a_bus_where_a_stranger_answers_at_0x29) {

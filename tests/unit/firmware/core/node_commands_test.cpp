@@ -186,7 +186,7 @@ TEST_F(NodeCommandsTest, counts_a_damaged_command_and_does_not_obey_it) {
 }
 
 TEST_F(NodeCommandsTest, does_not_care_for_foreign_frames) {
-    for (const std::uint32_t can_id : {0x000U, 0x03FU, 0x3FFU, 0x7C5U, 0x7FFU}) {
+    for (const std::uint32_t can_id : {0x000U, 0x03FU, 0x3FFU, 0x4C5U, 0x7FFU}) {
         wire::CanFrame frame;
         frame.can_id = can_id;
         frame.payload_len = 8;

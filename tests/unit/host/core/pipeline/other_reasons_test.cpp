@@ -85,7 +85,7 @@ const std::vector<Case<FrameReason>>& frame_cases() {
     using R = FrameReason;
     static const std::vector<Case<FrameReason>> all = {
         {R::foreign_format, frame([](auto& f) { f.is_extended = true; })},
-        {R::unknown_type, frame([](auto& f) { f.can_id = (31U << 6U) | kLeft; })},
+        {R::unknown_type, frame([](auto& f) { f.can_id = (30U << 6U) | kLeft; })},
         {R::wrong_length, frame([](auto& f) { f.payload_len = 7; })},
         {R::wrong_crc, frame([](auto& f) { f.data[3] ^= 0x10U; })},
         {R::wrong_version,
@@ -123,6 +123,7 @@ const std::vector<Case<FrameReason>>& frame_cases() {
              }
          }},
         {R::joint_no_host_time, message(wire::JointState{wire::JointPair{}}, kJoints, 0.05)},
+        {R::for_people, message(wire::BlackBox{}, kLeft)},
         {R::mark_ignored, message(wire::Mark{wire::MarkKind::stop, 3'500'000}, wire::kHostId, 3.5)},
     };
     return all;

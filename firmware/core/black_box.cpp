@@ -1,0 +1,61 @@
+#include "firmware/core/black_box.hpp"
+
+#include <bit>
+
+namespace octoskin::node {
+
+static_assert((wire::kDumpHeaderBytes + kRecordedBytesMax + wire::kBlackBoxBytes - 1) /
+                  wire::kBlackBoxBytes <=
+              wire::kBlackBoxFramesMax);
+
+BlackBox::BlackBox(BusRecorders& recorders, const Policy& policy) noexcept
+    : recorders_(recorders), policy_(policy) {}
+
+void BlackBox::on_fault(std::uint8_t bus, NodeTime now) noexcept {
+    auto& last = fault_sent_[bus];
+    if (last && elapsed(*last, now) < policy_.black_box_pause) return;
+    last = now;
+    on_request(bus, now);
+}
+
+void BlackBox::on_request(std::uint8_t bus, NodeTime now) noexcept {
+    if (is_pending(bus) || !recorders_[bus]) return;
+    if (pending_ == 0) {
+        index_ = 0;
+        next_ = now;
+    }
+    recorders_[bus]->freeze(now);
+    pending_ = static_cast<std::uint8_t>(pending_ | (1U << bus));
+}
+
+std::uint8_t BlackBox::current() const noexcept {
+    return static_cast<std::uint8_t>(std::countr_zero(pending_));
+}
+
+std::optional<wire::BlackBox> BlackBox::due(NodeTime now) noexcept {
+    if (pending_ == 0 || !is_reached(next_, now)) return std::nullopt;
+    const BusRecorder& recorder = *recorders_[current()];
+    wire::BlackBox piece{.bus = current(), .dump = dump_, .index = index_};
+    const std::size_t first = std::size_t{index_} * wire::kBlackBoxBytes;
+    for (std::size_t i = 0; i < piece.bytes.size() && first + i < recorder.dump_size(); ++i) {
+        piece.bytes[i] = recorder.dump_byte(first + i);
+    }
+    return piece;
+}
+
+void BlackBox::sent(NodeTime now) noexcept {
+    next_ = now + policy_.black_box_period;
+    ++index_;
+    BusRecorder& recorder = *recorders_[current()];
+    if (std::size_t{index_} * wire::kBlackBoxBytes < recorder.dump_size()) return;
+    recorder.thaw();
+    pending_ = static_cast<std::uint8_t>(pending_ & (pending_ - 1U));  // its lowest bit was the current one
+    index_ = 0;
+    dump_ = static_cast<std::uint8_t>((dump_ + 1U) % 4U);
+}
+
+std::optional<NodeTime> BlackBox::wake_time() const noexcept {
+    return pending_ == 0 ? std::nullopt : std::optional(next_);
+}
+
+}  // namespace octoskin::node

@@ -1,0 +1,32 @@
+// Has something come too close to a sensor? Told once an event: it is over only when the sensor has seen
+// nothing near its limit for a while. Only a hit counts as close, and only a hit farther off, or a look at
+// nothing, as far: a reading that is a fault says neither.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/time.hpp"
+#include "firmware/core/policy.hpp"
+#include "firmware/core/reading.hpp"
+
+namespace octoskin::node {
+
+class Reflex {
+  public:
+    /// `limit_mm` 0: never.
+    Reflex(std::uint16_t limit_mm, const Policy& policy) noexcept : limit_mm_(limit_mm), policy_(policy) {}
+
+    /// Every accepted reading, as it comes. True if an event begins with it. O(1).
+    [[nodiscard]] bool begins(const Reading& reading, NodeTime now) noexcept;
+
+  private:
+    [[nodiscard]] bool is_far(const Reading& reading) const noexcept;
+
+    std::uint16_t limit_mm_;
+    const Policy& policy_;
+    bool is_armed_ = true;
+    std::optional<NodeTime> far_since_;
+};
+
+}  // namespace octoskin::node
