@@ -1,0 +1,222 @@
+// The rows "CAN" of the reliability goals that a node keeps, and the reflex. Which test shows which row:
+// docs/reliability.md.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "firmware/core/frame_budget.hpp"
+#include "tests/sim/reliability/oracles.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using sim::CanFaultKind;
+using wire::Command;
+using wire::CommandCode;
+using wire::NodeState;
+
+constexpr wire::NodeId kOwnId = 5;
+
+class ReliabilityCanTest : public testing::Test {
+  protected:
+    ReliabilityCanTest() : rig_(fleet_config(4, 2), std::vector<SensorSetup>(4), kWrapsAfter5s) {
+        rig_.run_for(2 * kSecond);
+    }
+    /// Every frame of the node is disturbed, as by a short of the lines, from now on for so many attempts.
+    void disturb(std::uint32_t attempts) {
+        rig_.can().add_fault({.kind = CanFaultKind::disturb, .count = attempts});
+    }
+    std::size_t readings() const {
+        std::size_t count = 0;
+        for (std::uint8_t sensor = 0; sensor < 4; ++sensor) count += rig_.readings_of(sensor).size();
+        return count;
+    }
+    /// When something was next said after `us`; -1 if never.
+    std::int64_t next_said_us(std::int64_t us) const {
+        for (const SaidMessage& item : rig_.said()) {
+            if (item.end.us > us) return item.end.us;
+        }
+        return -1;
+    }
+    NodeRig rig_;
+};
+
+// C8: 32 errors of 8 are bus-off. Each attempt to come back needs 32 more to fail.
+TEST_F(ReliabilityCanTest, C8_bus_off_is_left_after_100_ms_and_then_after_twice_as_long_up_to_800_ms) {
+    for (const std::int64_t wait_ms : {100, 200, 400, 800, 800}) {
+        const std::int64_t begin_us = rig_.now().us;
+        const std::uint32_t before = rig_.node().counts().bus_off;
+        disturb(32);
+        while (rig_.node().counts().bus_off == before) rig_.run_for(kMillisecond);
+        const std::int64_t off_us = rig_.now().us;
+        EXPECT_LE(off_us - begin_us, 200'000);
+        rig_.run_for(wait_ms * kMillisecond - 3 * kMillisecond);
+        EXPECT_EQ(next_said_us(off_us), -1) << "not a bit before its time";
+        rig_.run_for(10 * kMillisecond);
+        EXPECT_GT(next_said_us(off_us), 0) << wait_ms;
+        rig_.run_for(90 * kMillisecond);
+    }
+    EXPECT_EQ(rig_.node().counts().bus_off, 5U);
+}
+
+TEST_F(ReliabilityCanTest, C8_after_bus_off_traffic_is_back_within_a_second_newest_first_and_all_is_counted) {
+    disturb(32 * 4);                     // three attempts to come back fail too
+    rig_.run_for(1'500 * kMillisecond);  // 100 + 200 + 400 + 800 ms
+    ASSERT_EQ(rig_.node().counts().bus_off, 4U);
+    const std::int64_t gone_us = rig_.now().us - 800'000;
+    rig_.run_for(1 * kSecond);
+    const std::int64_t back_us = next_said_us(gone_us);
+    ASSERT_GT(back_us, 0);
+    EXPECT_LE(back_us - gone_us, 1'000'000);
+    EXPECT_EQ(rig_.said_of<wire::Heartbeat>().back().state, NodeState::can_fault);
+    EXPECT_EQ(last_page<wire::InfoTraffic>(rig_)->bus_off_count, 4);
+    expect_readings_accounted_for(rig_.node());
+    for (std::uint8_t sensor = 0; sensor < 4; ++sensor) {
+        expect_only_the_truth(rig_, sensor);
+        const auto all = rig_.readings_of(sensor);
+        const auto first =
+            std::ranges::find_if(all, [&](const SaidReading& said) { return said.end.us >= back_us; });
+        ASSERT_NE(first, all.end());
+        const auto& ranges = rig_.truth(sensor);
+        const auto truth = std::ranges::find(ranges, first->reading.range_mm, &TrueRange::range_mm);
+        EXPECT_GT(truth->window_middle.us, back_us - 100'000) << "no stale frame";
+    }
+    rig_.run_for(1 * kSecond);
+    EXPECT_EQ(rig_.said_of<wire::Heartbeat>().back().state, NodeState::ranging);
+}
+
+TEST_F(ReliabilityCanTest, C8_error_passive_is_told_and_nothing_is_lost) {
+    const std::size_t before = rig_.node().counts().late + rig_.node().counts().displaced;
+    disturb(20);
+    rig_.run_for(110 * kMillisecond);
+    EXPECT_EQ(rig_.said_of<wire::Heartbeat>().back().state, NodeState::can_fault);
+    EXPECT_EQ(rig_.node().counts().bus_off, 0U);
+    rig_.run_for(3 * kSecond);
+    EXPECT_EQ(rig_.said_of<wire::Heartbeat>().back().state, NodeState::ranging);
+    EXPECT_EQ(rig_.node().counts().late + rig_.node().counts().displaced, before);
+}
+
+// C11: the node's half. At 40 phases of its rhythm; from the first foreign frame under its id on not one more
+// reading is sent, its heartbeat says why within one beat, and every reading that it gave up is counted.
+TEST_F(ReliabilityCanTest, C11_hearing_its_own_id_stops_its_ranges_is_told_and_every_reading_is_counted) {
+    for (int i = 0; i < 40; ++i) {
+        rig_.run_for(6'000 * kMillisecond + i * Microseconds{2'711});
+        ASSERT_EQ(rig_.node().state(), NodeState::ranging);
+        rig_.send_from_host(wire::Heartbeat{.state = NodeState::ranging, .uid_crc = 1}, kOwnId);
+        rig_.run_for(1 * kMillisecond);  // what its controller already held may still go
+        ASSERT_EQ(rig_.node().state(), NodeState::id_conflict);
+        const std::size_t sent = readings();
+        rig_.run_for(120 * kMillisecond);
+        EXPECT_EQ(readings(), sent) << i;
+        EXPECT_EQ(rig_.said_of<wire::Heartbeat>().back().state, NodeState::id_conflict) << i;
+        expect_readings_accounted_for(rig_.node());
+        EXPECT_EQ(rig_.node().waiting(), 0U) << "given up after 50 ms, and counted so";
+    }
+}
+
+TEST(ReliabilityCan, C11_two_nodes_under_one_id_both_fall_silent_within_two_heartbeats) {
+    sim::Present present;
+    // Two whole rigs whose buses are tied together frame by frame.
+    NodeRig a(fleet_config(2, 1), std::vector<SensorSetup>(2));
+    NodeRig b(fleet_config(2, 1), std::vector<SensorSetup>(2), kWrapsAfter5s);
+    a.run_for(1 * kSecond);
+    b.run_for(1 * kSecond + 37 * kMillisecond);
+    std::size_t heard_a = a.frames().size();
+    std::size_t heard_b = b.frames().size();
+    for (int i = 0; i < 200; ++i) {
+        a.run_for(kMillisecond);
+        b.run_for(kMillisecond);
+        for (; heard_a < a.frames().size(); ++heard_a) b.node().on_frame(a.frames()[heard_a], b.node_now());
+        for (; heard_b < b.frames().size(); ++heard_b) a.node().on_frame(b.frames()[heard_b], a.node_now());
+    }
+    for (NodeRig* rig : {&a, &b}) {
+        EXPECT_EQ(rig->node().state(), NodeState::id_conflict);
+        EXPECT_EQ(rig->said_of<wire::Heartbeat>().back().state, NodeState::id_conflict);
+        expect_readings_accounted_for(rig->node());
+    }
+}
+
+// C12: whatever makes it speak: orders to tell everything every millisecond, sensors that fail and come back,
+// black boxes. In no second more than twice what it says by itself.
+TEST(ReliabilityCan, C12_the_token_bucket_holds_a_node_to_twice_its_rate_in_any_second) {
+    for (const std::uint8_t sensors : std::array<std::uint8_t, 3>{1, 4, 17}) {
+        NodeConfig config = fleet_config(sensors, 4);
+        config.uses_can_fd = false;
+        NodeRig rig(config, std::vector<SensorSetup>(sensors), kWrapsAfter5s);
+        for (int ms = 0; ms < 3'000; ++ms) {
+            const std::uint8_t sequence = static_cast<std::uint8_t>(ms);
+            rig.send_from_host(
+                Command{.code = ms % 2 == 0 ? CommandCode::send_info : CommandCode::send_black_box,
+                        .sequence = sequence},
+                kOwnId);
+            if (ms % 700 == 0) rig.sensor(0).brown_out(rig.now());
+            rig.run_for(kMillisecond);
+        }
+        // By hand: 10 heartbeats, a SYNC report, 7 pages; 31 readings and one health of each sensor.
+        const std::size_t nominal = 18U + 32U * sensors;
+        std::vector<std::int64_t> own;
+        for (const SaidMessage& item : rig.said()) {
+            if (!std::holds_alternative<Command>(item.message)) own.push_back(item.end.us);
+        }
+        std::size_t first = 0;
+        std::size_t most = 0;
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            while (own[i] - own[first] >= 1'000'000) ++first;
+            most = std::max(most, i - first + 1);
+        }
+        // What waits in the controller when a second begins was counted in the one before.
+        EXPECT_LE(most, 2 * nominal + 3) << int{sensors};
+        EXPECT_GE(most, nominal) << "it was hardly driven";
+        EXPECT_LE(longest_silence_us(rig, 0), 110'000) << "heartbeats go first";
+    }
+}
+
+// The reflex. The distances of the rig grow by a millimetre a range from 200 mm on, and begin anew after
+// 1000.
+class ReliabilityReflexTest : public testing::Test {
+  protected:
+    static NodeConfig config() {
+        NodeConfig config = fleet_config(2, 1);
+        config.sensors[1].reflex_below_mm = 500;
+        return config;
+    }
+    NodeRig rig_{config(), std::vector<SensorSetup>(2), kWrapsAfter5s};
+};
+
+TEST_F(ReliabilityReflexTest, one_frame_an_event_without_any_host_and_within_5_ms_of_the_reading) {
+    rig_.run_for(80 * kSecond);  // 2,400 ranges: below the limit from the start, and twice more
+    const auto events = rig_.said_of<wire::Reflex>();
+    const auto times = rig_.times_of<wire::Reflex>();
+    ASSERT_EQ(events.size(), 3U);
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        EXPECT_EQ(events[i].sensor, 1);
+        EXPECT_EQ(events[i].sequence, i);
+        EXPECT_LT(events[i].range_mm, 500);
+        const TrueRange& truth =
+            *std::ranges::find_if(rig_.truth(1).rbegin(), rig_.truth(1).rend(), [&](const TrueRange& range) {
+                return range.range_mm == events[i].range_mm && range.window_middle < times[i];
+            });
+        // Half the budget of 20 ms after the middle of the window the sensor is ready; 1 ms is the poll's.
+        const std::int64_t ready_us = truth.window_middle.us + 10'000;
+        EXPECT_LE(times[i].us - ready_us, 5'000 + 1'000);
+    }
+    // The readings themselves come as always.
+    EXPECT_GE(rig_.readings_of(1).size(), 2'380U);
+}
+
+TEST_F(ReliabilityReflexTest, goes_out_before_everything_else_and_without_a_token) {
+    // All tokens are gone, and the mailboxes are full, when the event comes.
+    for (int ms = 0; ms < 2'000; ++ms) {
+        rig_.send_from_host(
+            Command{.code = CommandCode::send_info, .sequence = static_cast<std::uint8_t>(ms)}, kOwnId);
+        rig_.run_for(kMillisecond);
+    }
+    const auto times = rig_.times_of<wire::Reflex>();
+    ASSERT_EQ(times.size(), 1U);
+    EXPECT_LE(times[0].us, 300'000);
+}
+
+}  // namespace
+}  // namespace octoskin::test
