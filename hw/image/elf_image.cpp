@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -47,9 +48,11 @@ bool is_arm_executable(const Elf32_Ehdr& header) {
 
 Result<ElfImage, ElfError> ElfImage::load(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
-    const std::vector<std::uint8_t> file{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream.is_open() || stream.bad())
+    // A folder opens, and reading it throws.
+    std::error_code ignored;
+    if (!stream || !std::filesystem::is_regular_file(path, ignored))
         return unexpected(ElfError{fmt::format("{}: cannot be read", path)});
+    const std::vector<std::uint8_t> file{std::istreambuf_iterator<char>(stream), {}};
     auto image = parse(file);
     if (!image) return unexpected(ElfError{fmt::format("{}: {}", path, image.error().what)});
     return image;

@@ -1,0 +1,21 @@
+// Whether a program can be flashed to a board and will start there.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hw/image/elf_image.hpp"
+#include "hw/rigfile/board_hardware.hpp"
+
+namespace octoskin::image {
+
+/// One sentence for each thing that is wrong, in the order of the checks; empty if the image is fit:
+/// - every segment lies within flash, before the configuration page, and overlaps no other;
+/// - the vector table is whole and at the start of flash; the initial stack pointer is in RAM, or at its end,
+///   and a multiple of 8; the reset vector is the entry; every vector but the core's and the chip's reserved
+///   ones is Thumb code within the image (ARMv7-M ARM, "Vector table"; RM0440, "Nested vectored interrupt
+///   controller");
+/// - compiled for ARMv7E-M with FPv4-D16 in single precision, arguments in floating-point registers.
+[[nodiscard]] std::vector<std::string> faults_of(const ElfImage& image, const rig::BoardHardware& board);
+
+}  // namespace octoskin::image

@@ -1,0 +1,31 @@
+// The option bytes of the STM32G474 that decide whether a board starts and stays sound: FLASH_OPTR. RM0440,
+// "Option bytes"; bit positions as in ST's CMSIS header.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace octoskin::image {
+
+/// FLASH_OPTR itself, and its offset from the flash interface's base, as OpenOCD wants it.
+inline constexpr std::uint32_t kOptionRegister = 0x4002'2020;
+inline constexpr std::uint32_t kOptionRegisterOffset = 0x20;
+
+/// The fields that a board must have, and their values: what `--write-option-bytes` writes. The read
+/// protection is not among them: changing it would erase the chip, or close it for ever.
+struct MaskedWord {
+    std::uint32_t mask = 0;
+    std::uint32_t value = 0;
+};
+[[nodiscard]] MaskedWord wanted_option_bytes();
+
+/// A sentence for each field that differs from what a board must have; empty if none does.
+[[nodiscard]] std::vector<std::string> option_byte_faults(std::uint32_t flash_optr);
+
+/// Whether the chip refuses to be programmed (read protection level 1 or 2).
+[[nodiscard]] constexpr bool is_read_protected(std::uint32_t flash_optr) {
+    return (flash_optr & 0xFFU) != 0xAA;
+}
+
+}  // namespace octoskin::image
