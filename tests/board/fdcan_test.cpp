@@ -114,5 +114,24 @@ TEST_F(FdcanTest, thirty_two_disturbed_frames_are_bus_off) {
     EXPECT_THAT(heard_, ElementsAre(frame_of(0x100, 1, 0)));
 }
 
+TEST_F(FdcanTest, who_only_monitors_hears_tells_errors_and_says_nothing) {
+    node::CanTransmitter& host = bus_.attach({}, 16);
+    tiny_.jump("overhear");
+    ASSERT_TRUE(run(2));
+    wire::CanFrame fast = frame_of(0x123, 12, 0, true);
+    fast.has_bit_rate_switch = true;
+    ASSERT_TRUE(host.send(frame_of(0x555, 4, 0)));
+    on_bus_.run_until({now_ += 300});
+    ASSERT_TRUE(host.send(fast));
+    ASSERT_TRUE(run());
+    EXPECT_EQ(tiny_.result(0), 1U << 22U | 1U) << "an error in the data, none in the arbitration, one frame";
+    EXPECT_EQ(tiny_.result(1), 1U);
+    EXPECT_EQ(tiny_.result(2), 0x555U);
+    EXPECT_EQ(tiny_.result(3), 0U) << "the counters stand still";
+    EXPECT_EQ(tiny_.result(4), 1U) << "what was asked for stays";
+    EXPECT_THAT(heard_, ElementsAre(frame_of(0x555, 4, 0), fast)) << "nothing of its own";
+    EXPECT_THAT(tiny_.violations(), testing::HasSubstr("only monitoring"));
+}
+
 }  // namespace
 }  // namespace octoskin::sim::stm32

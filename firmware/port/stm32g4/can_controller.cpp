@@ -59,6 +59,7 @@ bool CanController::enter(const CanRates& rates, wire::NodeId node_id, std::uint
     (void)rcc.read("APB1ENR1");
     if (!set_init(true)) return false;
     fdcan1.set("CCCR.CCE", 1);
+    fdcan1.set("CCCR.MON", 0);
     set_timing(rates, clock_hz);
     prepare(node_id);
     kReceivePin.make_alternate(kFunction, Drive::push_pull);

@@ -113,3 +113,27 @@ void bus_off(void) {
     while (REG(CAN + 0xC8)) {}
     finish();
 }
+// Bus monitoring with the data rate of another bus: classical frames are heard, fast ones are errors, nothing is sent.
+void overhear(void) {
+    start();
+    CCCR |= 1;
+    while (!(CCCR & 1)) {}
+    CCCR |= 2;
+    CCCR |= 1u << 5;
+    REG(CAN + 0x0C) = 1u << 23 | 28u << 8 | 9u << 4 | 9;  // 2 Mbit/s
+    REG(CAN + 0x48) = 30u << 8;
+    REG(CAN + 0x80) = 2u << 2;  // every standard frame to FIFO 0
+    CCCR &= ~1u;
+    while (CCCR & 1) {}
+    wait(500);
+    is_finished = 2;
+    while (!(REG(CAN + 0x50) & 1u << 22)) {}
+    result[0] = REG(CAN + 0x50) & 0x600001;  // PED, PEA, RF0N
+    result[1] = REG(CAN + 0x90) & 15;
+    result[2] = REG(RAM + 0xB0) >> 18;
+    result[3] = REG(CAN + 0x40) & 0x7FFF;  // error counters
+    put(0x321, 8u << 16, 2);
+    wait(20000);
+    result[4] = REG(CAN + 0xC8);
+    finish();
+}

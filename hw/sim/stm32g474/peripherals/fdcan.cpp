@@ -87,8 +87,9 @@ constexpr std::uint32_t kClockStopAcknowledge = 1U << 3;
 constexpr std::uint32_t kClockStopRequest = 1U << 4;
 constexpr std::uint32_t kFdEnable = 8;
 constexpr std::uint32_t kRateSwitchEnable = 9;
-constexpr std::uint32_t kFree = kInit | kCce | kClockStopRequest;              // the others need CCE
-constexpr std::uint32_t kNotModelled = 1U << 2 | 1U << 5 | 1U << 6 | 1U << 7;  // ASM, MON, DAR, TEST
+constexpr std::uint32_t kFree = kInit | kCce | kClockStopRequest;  // the others need CCE
+constexpr std::uint32_t kMonitoring = 5;
+constexpr std::uint32_t kNotModelled = 1U << 2 | 1U << 6 | 1U << 7;  // ASM, DAR, TEST
 
 // IR
 constexpr std::uint32_t kNewInFifo0 = 1U << 0;
@@ -98,6 +99,8 @@ constexpr std::uint32_t kTxFifoEmpty = 1U << 9;
 constexpr std::uint32_t kNewEvent = 1U << 10;
 constexpr std::uint32_t kEventLost = 1U << 12;
 constexpr std::uint32_t kErrorPassive = 1U << 17;
+constexpr std::uint32_t kErrorInArbitration = 1U << 21;
+constexpr std::uint32_t kErrorInData = 1U << 22;
 constexpr std::uint32_t kErrorWarning = 1U << 18;
 constexpr std::uint32_t kBusOff = 1U << 19;
 constexpr std::uint32_t kArbitrationPhaseError = 1U << 21;
@@ -291,10 +294,14 @@ void Fdcan::check_bit_timing() {
         env_.log.report(Rule::clock_tree, "FDCAN1 started on the internal oscillator");
     if (!hooks_.has_pins()) env_.log.report(Rule::pin_function, "FDCAN1 started without its pins");
     has_wrong_timing_ = nominal_bitrate() != rates_.nominal;
-    if (has_wrong_timing_)
+    has_wrong_data_timing_ = false;
+    const bool is_listening = is_set(kCccr, kMonitoring);  // who only listens may try
+    if (has_wrong_timing_ && !is_listening)
         complain(fmt::format("FDCAN1 at {} bit/s on a bus of {}", nominal_bitrate(), rates_.nominal));
     if (!is_set(kCccr, kFdEnable) || !is_set(kCccr, kRateSwitchEnable)) return;
     if (data_bitrate() != rates_.data) {
+        has_wrong_data_timing_ = true;
+        if (is_listening) return;
         has_wrong_timing_ = true;
         complain(fmt::format("FDCAN1 at {} bit/s for data on a bus of {}", data_bitrate(), rates_.data));
     }
@@ -320,6 +327,8 @@ void Fdcan::check_delay_compensation() {
 void Fdcan::request(std::uint32_t places) {
     for (std::uint32_t place = 0; place < kPlaces; ++place) {
         if ((places >> place & 1U) == 0) continue;
+        if (is_set(kCccr, kMonitoring))
+            env_.log.report(Rule::wrong_state, "FDCAN1.TXBAR written while only monitoring");
         if ((bank_.get(kCccr) & kInit) != 0)
             env_.log.report(Rule::wrong_state, "FDCAN1.TXBAR written while INIT=1");
         if ((pending_ >> place & 1U) != 0) {
@@ -369,7 +378,8 @@ void Fdcan::update_offer() {
     if (has_started_ && is_on_bus()) return;
     has_started_ = false;
     const bool is_good = link_ == CanLink::good && !has_wrong_timing_;
-    const std::optional<std::uint32_t> next = is_on_bus() ? next_place() : std::nullopt;
+    const bool is_mute = !is_on_bus() || is_set(kCccr, kMonitoring);
+    const std::optional<std::uint32_t> next = is_mute ? std::nullopt : next_place();
     offered_ = next;
     bus_.offer(next && is_good ? std::optional(ram_.tx_element(*next).frame) : std::nullopt);
     if (!next || is_good) {
@@ -495,8 +505,23 @@ std::uint32_t Fdcan::read_protocol_status() {
 
 // --- reception
 
+/// Bus monitoring: neither acknowledges nor error frames, and the error counters stand still.
+void Fdcan::on_overheard(const wire::CanFrame& frame) {
+    const bool is_unreadable = frame.is_fd && !is_set(kCccr, kFdEnable);
+    if (link_ != CanLink::good || has_wrong_timing_ || is_unreadable) {
+        raise(kErrorInArbitration);
+    } else if (frame.has_bit_rate_switch && has_wrong_data_timing_) {
+        raise(kErrorInData);
+    } else {
+        last_error_ = 0;
+        store(frame);
+    }
+    update_lines();
+}
+
 void Fdcan::on_received(const wire::CanFrame& frame) {
     if (!is_on_bus()) return;
+    if (is_set(kCccr, kMonitoring)) return on_overheard(frame);
     if (link_ != CanLink::good || has_wrong_timing_ || (frame.is_fd && !is_set(kCccr, kFdEnable))) {
         count_errors(0, 1);
     } else {

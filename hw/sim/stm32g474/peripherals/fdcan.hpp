@@ -1,5 +1,5 @@
-// FDCAN1 (RM0440 44): modes, bit timing, filters, FIFOs, error counting and bus-off. Test and monitoring
-// modes are not modelled.
+// FDCAN1 (RM0440 44): modes, bit timing, filters, FIFOs, error counting, bus-off, bus monitoring. Test and
+// restricted modes are not modelled.
 #pragma once
 
 #include <array>
@@ -84,6 +84,7 @@ class Fdcan final : public Peripheral {
     void fail_attempt();
     void count_errors(int transmit, int receive);
     void enter_bus_off();
+    void on_overheard(const wire::CanFrame& frame);
     void store(const wire::CanFrame& frame);
     [[nodiscard]] Verdict judge(const wire::CanFrame& frame) const;
     [[nodiscard]] Verdict judge_standard(std::uint32_t id) const;
@@ -101,6 +102,7 @@ class Fdcan final : public Peripheral {
 
     CanLink link_ = CanLink::good;
     bool has_wrong_timing_ = false;
+    bool has_wrong_data_timing_ = false;
     BoardTime joins_at_ = kNever;  ///< 11 recessive bits, or 129 times that after bus-off
     BoardTime init_follows_at_ = kNever;
     BoardTime attempt_fails_at_ = kNever;
