@@ -33,6 +33,8 @@ namespace {
 constexpr std::uint8_t kBoardType = 1;     // hw/boards/nucleo_g474re.yaml
 constexpr Microseconds kSleepMax{50'000};  // in case a wake-up was missed
 
+constexpr Microseconds kSayMax{40'000};  // two lines and a half
+
 constinit IndependentWatchdog watchdog;
 constinit MicrosecondTimer timer;
 constinit SerialPort serial;
@@ -75,6 +77,14 @@ void load_configuration(const Clocks& clocks) {
     }
 }
 
+/// Before anything else is tried: what failed may fail again at once.
+void tell_fault(const Fault& fault) {
+    report.fault(fault);
+    const NodeTime begun = timer.now();
+    while (!serial.is_quiet() && elapsed(begun, timer.now()) < kSayMax) {
+    }
+}
+
 void start() {
     watchdog.start();
     const std::optional<Fault> last = fault_record().read();
@@ -86,8 +96,9 @@ void start() {
     light.start();
     xshut.start();
     serial.start(clocks.core_hz);
-    report.started(OCTOSKIN_BUILD_ID, cause, clocks);
-    if (last && last->kind != wire::FaultKind::none) report.fault(*last);
+    const bool is_fault_new = node::load(kept_memory()).is_fault_new;
+    report.started(OCTOSKIN_BUILD_ID, is_fault_new ? wire::ResetCause::fault : cause, clocks);
+    if (last && last->kind != wire::FaultKind::none) tell_fault(*last);
     load_configuration(clocks);
     const node::Identity identity{
         .uid = unique_id(), .build_id = OCTOSKIN_BUILD_ID, .board_type = kBoardType, .reset_cause = cause};

@@ -22,6 +22,8 @@ class SerialPort {
 
     /// Queues the line and its end, whole or, if there is no room, not at all. From the main loop only.
     bool say(std::string_view line);
+    /// Whether all that was said is out, but for the last character or two.
+    [[nodiscard]] bool is_quiet() const { return put_ == taken_; }
     /// Lines that found no room.
     [[nodiscard]] std::uint32_t lost_count() const { return lost_count_; }
 

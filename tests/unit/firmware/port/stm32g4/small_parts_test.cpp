@@ -106,7 +106,9 @@ TEST_F(SerialPortTest, says_lines_whole_and_then_rests) {
     EXPECT_EQ(space_[0x4000'800C], 0x56CE4U);
     EXPECT_TRUE(serial_.say("node 3"));
     EXPECT_TRUE(serial_.say("ranging"));
+    EXPECT_FALSE(serial_.is_quiet());
     run();
+    EXPECT_TRUE(serial_.is_quiet());
     EXPECT_EQ(heard_, "node 3\r\nranging\r\n");
     EXPECT_EQ(space_[kControl] & (1U << 7U), 0U);
 }
