@@ -30,7 +30,8 @@ void add_table_one(std::string& text, const Results& results) {
     constexpr std::string_view kPaper = "Strong et al. 2021, Table I";
     constexpr std::string_view kColumns = "{:<{}}{:<12}{:>11}{:>11}{:>11}{:>11}{:>11}\n";
     auto out = std::back_inserter(text);
-    std::size_t width = kPaper.size();
+    std::size_t width = results.is_papers_experiment ? kPaper.size() : 0;
+    width = std::max(width, std::string_view("configuration").size());
     for (const auto& map : results.maps) {
         width = std::max(width, map.configuration.size());
     }
@@ -38,9 +39,11 @@ void add_table_one(std::string& text, const Results& results) {
     fmt::format_to(out, "Voxels against the camera ground truth, mean of the seeds\n");
     fmt::format_to(out, kColumns, "configuration", width, "map", "Occupied", "Free", "Missed", "Incorrect",
                    "Lost");
-    for (const auto& row : kPaperTable) {
-        fmt::format_to(out, kColumns, kPaper, width, row.map, row.occupied, row.free, row.missed,
-                       row.incorrect, kUndefined);
+    if (results.is_papers_experiment) {
+        for (const auto& row : kPaperTable) {
+            fmt::format_to(out, kColumns, kPaper, width, row.map, row.occupied, row.free, row.missed,
+                           row.incorrect, kUndefined);
+        }
     }
     for (const auto& map : results.maps) {
         fmt::format_to(out, "{:<{}}{:<12}", map.configuration, width, map.map);

@@ -25,6 +25,8 @@ struct Results {
     std::vector<PartTime> times;
     /// What the figures depend on: program version, world, rig, recording ("key", "value").
     std::vector<std::pair<std::string, std::string>> provenance;
+    /// The paper's experiment, re-enacted: only then do its figures belong beside these.
+    bool is_papers_experiment = false;
 };
 
 /// Aggregates and pairs.
@@ -36,8 +38,8 @@ struct Results {
 /// configuration may be called "run" (asserted). Equal results give equal text.
 [[nodiscard]] std::string metrics_json(const Results& results);
 
-/// Text tables for a terminal, about 100 columns: Table I and Lost beside the paper's figures, all metrics as
-/// mean +- sd, the paired differences, the times.
+/// Text tables for a terminal, about 100 columns: Table I and Lost (beside the paper's figures if the
+/// experiment is the paper's), all metrics as mean +- sd, the paired differences, the times.
 [[nodiscard]] std::string metrics_table(const Results& results);
 
 /// Table I of Strong et al. 2021.

@@ -50,7 +50,17 @@ evaluation::Truth build(const World& world, const rig::Rig& rig, double resoluti
                                    config, rig.T_map_base);
 }
 
-std::vector<evaluation::Run> judge_recording(const EvaluateOptions& options, const World& world) {
+struct Judgement {
+    std::vector<evaluation::Run> runs;
+    bool is_papers_experiment = false;
+};
+
+bool is_papers(const rig::Rig& rig, const EvaluateOptions& options) {
+    return is_papers_experiment(rig, options.scenario, options.world,
+                                shipped_file("hw/worlds/experiment.scenario.yaml"));
+}
+
+Judgement judge_recording(const EvaluateOptions& options, const World& world) {
     const auto mapping = read_mapping(options.configuration);
     if (!mapping) throw CommandFailure({ExitCode::bad_config, mapping.error().message()});
     const RecordingPaths recording(options.input);
@@ -70,12 +80,17 @@ std::vector<evaluation::Run> judge_recording(const EvaluateOptions& options, con
     const std::string name = std::filesystem::path(options.configuration).stem().string();
     const MapSet& maps = playback->pipeline.maps();
     const std::uint64_t seed = meta->seed.value_or(0);
-    return {{name, "depth", seed, evaluation::evaluate(*maps.depth(), truth)},
-            {name, "proximity", seed, evaluation::evaluate(*maps.proximity(), truth)},
-            {name, "fused", seed, evaluation::evaluate(*maps.fused(), truth)}};
+    Judgement judgement{.runs = {}, .is_papers_experiment = is_papers(playback->rig, options)};
+    judgement.runs.push_back({name, "proximity", seed, evaluation::evaluate(*maps.proximity(), truth)});
+    if (playback->rig.camera) {
+        judgement.runs.insert(judgement.runs.begin(),
+                              {name, "depth", seed, evaluation::evaluate(*maps.depth(), truth)});
+        judgement.runs.push_back({name, "fused", seed, evaluation::evaluate(*maps.fused(), truth)});
+    }
+    return judgement;
 }
 
-std::vector<evaluation::Run> judge_map(const EvaluateOptions& options, const World& world) {
+Judgement judge_map(const EvaluateOptions& options, const World& world) {
     MapReadLimits limits;
     // Whoever made the map may have clamped wider than octoskin does (OctoMap's own defaults are -2
     // and 3.511).
@@ -90,14 +105,16 @@ std::vector<evaluation::Run> judge_map(const EvaluateOptions& options, const Wor
     const auto rig = rig::read_rig(options.rig, options.robot);
     if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
     const evaluation::Truth truth = build(world, *rig, map->resolution_m());
-    return {{"map", options.input.stem().string(), 0, evaluation::evaluate(*map, truth)}};
+    return {{{"map", options.input.stem().string(), 0, evaluation::evaluate(*map, truth)}},
+            is_papers(*rig, options)};
 }
 
 void evaluate_input(const EvaluateOptions& options) {
     const World world = read_world(options);
-    const auto runs = std::filesystem::is_directory(options.input) ? judge_recording(options, world)
-                                                                   : judge_map(options, world);
-    const evaluation::Results results = evaluation::collect(runs);
+    const Judgement judgement = std::filesystem::is_directory(options.input) ? judge_recording(options, world)
+                                                                             : judge_map(options, world);
+    evaluation::Results results = evaluation::collect(judgement.runs);
+    results.is_papers_experiment = judgement.is_papers_experiment;
     fmt::print("{}", evaluation::metrics_table(results));
     if (options.json.empty()) return;
     std::ofstream file(options.json);

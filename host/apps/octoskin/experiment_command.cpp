@@ -29,6 +29,7 @@ void add_experiment_command(CLI::App& app) {
     auto request = std::make_shared<StudyRequest>();
     request->inputs.rig = shipped_file("hw/rigs/experiment.yaml");
     request->inputs.scenario = shipped_file("hw/worlds/experiment.scenario.yaml");
+    request->papers_scenario = request->inputs.scenario;
     request->seeds = {0};
     request->configurations = {"robust"};
     request->jobs = std::max(1U, std::thread::hardware_concurrency());

@@ -62,12 +62,12 @@ logarithmic scale).</p>
 }  // namespace
 
 std::string paired_section(const ReportInput& input) {
-    std::string html = "<section id=\"paired\">\n<h2>What fusion adds, seed by seed</h2>\n";
     const auto* fused = find_map(input.results.maps, input.main_configuration, "fused");
     const auto* depth = find_map(input.results.maps, input.main_configuration, "depth");
     if (fused == nullptr || depth == nullptr) {
-        return html + "<p>This run has no pair of a fused map and a depth map to compare.</p>\n</section>\n";
+        return {};
     }
+    std::string html = "<section id=\"paired\">\n<h2>What fusion adds, seed by seed</h2>\n";
     const auto difference = paired_difference(*fused, *depth);
     html += fmt::format(fmt::runtime(kPairedText), escaped(input.main_configuration));
     html += chart_figure(

@@ -74,7 +74,7 @@ constexpr std::string_view kLeadText =
     R"(Of the surfaces that the external camera cannot see, its own map holds {}; with the range sensors on the arm, the
 fused map holds {}.)";
 
-std::string lead_sentence(const Contest& contest) {
+std::string lead_sentence(const Contest& contest, const std::string& hidden_objects) {
     if (!contest.has("occluded_recall")) {
         return {};
     }
@@ -82,8 +82,8 @@ std::string lead_sentence(const Contest& contest) {
         fmt::format(fmt::runtime(kLeadText), percent_text(*contest.depth.at("occluded_recall").mean),
                     percent_text(*contest.fused.at("occluded_recall").mean));
     if (contest.has("object_recall")) {
-        text += fmt::format(" Of the objects hidden behind the furniture: {} and {}.",
-                            percent_text(*contest.depth.at("object_recall").mean),
+        text += fmt::format(" Of the objects that the scenario names as hidden ({}): {} and {}.",
+                            hidden_objects, percent_text(*contest.depth.at("object_recall").mean),
                             percent_text(*contest.fused.at("object_recall").mean));
     }
     if (contest.has("precision")) {
@@ -93,18 +93,44 @@ std::string lead_sentence(const Contest& contest) {
     return text;
 }
 
-std::string origin_line(std::string_view configuration, std::size_t seeds) {
-    const std::string over = seeds == 1 ? "one seed."
-                                        : fmt::format(
-                                              "mean of {} seeds; differences are paired seed by seed, "
-                                              "± one standard deviation.",
-                                              seeds);
-    return fmt::format(
-        "<p class=\"soft\">Depth camera alone → fused, configuration <code>{}</code>, {}</p>\n",
-        escaped(configuration), over);
+std::string plain_tile(std::string_view what, const std::string& value) {
+    return fmt::format("<div class=\"tile\"><div class=\"what\">{}</div><div class=\"big\">{}</div></div>\n",
+                       what, value);
+}
+
+/// Of a rig without a camera: nothing to compare with, so the figures stand alone.
+std::string ranges_headline(const MapSummary& map, const ReportInput& input) {
+    const auto share = [&](std::string_view metric, std::string_view what) {
+        const auto& mean = map.at(metric).mean;
+        return mean ? plain_tile(what, percent_text(*mean)) : std::string();
+    };
+    std::string html =
+        "<p class=\"lead\">What the range sensors on the arm found; this rig has no camera.</p>\n";
+    html += "<div class=\"tiles\">\n" + share("recall", "Surfaces that the map holds");
+    html += share("object_recall", "The same, on " + hidden_objects_text(input) + " only");
+    html += share("precision", "Of what it calls occupied, truly surface");
+    html +=
+        plain_tile("Missed: occupied voxels that the map does not know", count_text(*map.at("missed").mean));
+    html += plain_tile("Lost: occupied voxels that the map calls free", count_text(*map.at("lost").mean));
+    return html + "</div>\n";
+}
+
+std::string origin_line(std::string_view what, std::string_view configuration, std::size_t seeds,
+                        std::string_view spread) {
+    const std::string over = seeds == 1 ? "one seed" : fmt::format("mean of {} seeds{}", seeds, spread);
+    return fmt::format("<p class=\"soft\">{}, configuration <code>{}</code>, {}.</p>\n", what,
+                       escaped(configuration), over);
 }
 
 }  // namespace
+
+std::string hidden_objects_text(const ReportInput& input) {
+    std::string text;
+    for (const auto& object : input.hidden_objects) {
+        text += (text.empty() ? "" : ", ") + escaped(object);
+    }
+    return text;
+}
 
 std::string headline_section(const ReportInput& input) {
     std::string html = fmt::format("<header>\n<h1>{}</h1>\n", escaped(input.title));
@@ -112,14 +138,20 @@ std::string headline_section(const ReportInput& input) {
     const auto* fused = find_map(input.results.maps, input.main_configuration, "fused");
     if (depth != nullptr && fused != nullptr) {
         const Contest contest{*depth, *fused, paired_difference(*fused, *depth)};
-        html += fmt::format("<p class=\"lead\">{}</p>\n<div class=\"tiles\">\n", lead_sentence(contest));
+        const std::string lead = lead_sentence(contest, hidden_objects_text(input));
+        html += lead.empty() ? "" : fmt::format("<p class=\"lead\">{}</p>\n", lead);
+        html += "<div class=\"tiles\">\n";
         html +=
             share_tile(contest, "occluded_recall", "Surfaces out of the camera’s sight that the map holds");
-        html += share_tile(contest, "object_recall", "The same, on the hidden objects only");
+        html += share_tile(contest, "object_recall", "The same, on the objects named as hidden");
         html += fewer_is_better_tile(contest, "missed", "Missed: occupied voxels that the map does not know");
         html += fewer_is_better_tile(contest, "lost", "Lost: occupied voxels that the map calls free");
         html += f1_tile(contest) + "</div>\n";
-        html += origin_line(input.main_configuration, fused->seeds.size());
+        html += origin_line("Depth camera alone → fused", input.main_configuration, fused->seeds.size(),
+                            "; differences are paired seed by seed, ± one standard deviation");
+    } else if (const auto* ranges = find_map(input.results.maps, input.main_configuration, "proximity")) {
+        html += ranges_headline(*ranges, input);
+        html += origin_line("Range sensors only", input.main_configuration, ranges->seeds.size(), "");
     }
     return html + "</header>\n";
 }

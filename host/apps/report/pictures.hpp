@@ -42,6 +42,11 @@ struct PaintedVoxel {
 /// The analytic surface voxels themselves: what a perfect map would look like.
 [[nodiscard]] std::vector<PaintedVoxel> paint_truth(const evaluation::Truth& truth);
 
+/// What is worth a look of several lists of voxels: the box round all of them but the floor, map frame. Empty
+/// if there is none.
+[[nodiscard]] Eigen::AlignedBox3d content_of(std::span<const std::vector<PaintedVoxel>> lists,
+                                             double resolution_m);
+
 /// Voxel cubes, map frame. Deterministic. About 2 s on two cores for both pictures.
 [[nodiscard]] ImagePair render_voxels(std::span<const PaintedVoxel> voxels, double resolution_m,
                                       const ViewPair& views);

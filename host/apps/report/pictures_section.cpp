@@ -19,14 +19,13 @@ std::string figure(const PicturePair& pair) {
     return fmt::format(
         "<figure><div class=\"pair\">\n{}{}</div>\n<figcaption><b>{}.</b> {}</figcaption></figure>\n",
         picture(pair.front, pair.title, "from the robot’s side"),
-        picture(pair.back, pair.title, "from the camera’s side"), escaped(pair.title), escaped(pair.caption));
+        picture(pair.back, pair.title, "from the far side"), escaped(pair.title), escaped(pair.caption));
 }
 
 constexpr std::string_view kLegend =
     R"(<ul class="legend">
 <li><i class="swatch-right"></i>occupied, and a surface is there</li>
-<li><i class="swatch-hidden"></i>the same, on a hidden object</li>
-<li><i class="swatch-wrong"></i>occupied, but nothing is there</li>
+{}<li><i class="swatch-wrong"></i>occupied, but nothing is there</li>
 <li><i class="swatch-lost"></i>called free, but a surface is there</li>
 <li><i class="swatch-floor"></i>floor, not judged</li>
 </ul>
@@ -46,7 +45,11 @@ std::string pictures_section(const ReportInput& input) {
     }
     html += fmt::format("<div class=\"pictures scene\">\n{}</div>\n<h3>Maps of seed {}</h3>\n",
                         figure(input.pictures.front()), input.picture_seed);
-    html += kLegend;
+    const std::string hidden = hidden_objects_text(input);
+    html += fmt::format(
+        fmt::runtime(kLegend),
+        hidden.empty() ? ""
+                       : fmt::format("<li><i class=\"swatch-hidden\"></i>the same, on {}</li>\n", hidden));
     html += "<div class=\"pictures\">\n";
     for (std::size_t i = 1; i < input.pictures.size(); ++i) {
         html += figure(input.pictures[i]);

@@ -6,22 +6,6 @@
 
 namespace octoskin::report {
 
-std::vector<std::string> experiment_idealisations() {
-    return {
-        ("The range sensors run in long mode with a 20 ms timing budget every 33 ms. ST's driver allows it; "
-         "the datasheet asks for at least 33 ms, and for 140 ms to reach 4 m."),
-        ("Their noise (2 cm) and reach (0.04 to 4 m) are set by the simulated world, not by budget, target "
-         "or ambient light."),
-        ("A range is measured along one ideal ray. The real sensor sees a cone of 27 degrees and answers "
-         "with something like the nearest part of it."),
-        ("The camera's noise (3 cm along the ray, independent from pixel to pixel) knows no flying pixels, "
-         "no reflections and no dependence on distance or material."),
-        ("Extrinsics, link lengths and joint angles are exactly those of the rig file and the robot "
-         "description."),
-        "Nothing in the scene moves but the arm.",
-    };
-}
-
 std::string report_html(const ReportInput& input) {
     std::string html =
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"

@@ -37,15 +37,14 @@ struct ReportInput {
     std::vector<PicturePair> pictures;  ///< scene first, then the maps
     UpdateModel update_model;
     std::vector<Account> accounts;
-    std::vector<std::string> idealisations;  ///< one sentence each
-    std::vector<std::string> reproduce;      ///< shell commands
+    std::vector<std::string> hidden_objects;  ///< what the scenario names as hidden: "cone", "crate"
+    std::vector<std::string> idealisations;   ///< one sentence each
+    std::vector<std::string> reproduce;       ///< shell commands
 };
 
-/// What the simulated experiment leaves out, in the words of the report. For `ReportInput::idealisations`.
-[[nodiscard]] std::vector<std::string> experiment_idealisations();
-
-/// The whole document, UTF-8, no reference to anything outside itself. Text in the input may hold any
-/// characters: it is escaped. Equal inputs give equal bytes.
+/// What the input has nothing of is left out: the camera's share if no map of it was judged, the paper's
+/// figures if the experiment is another. The whole document, UTF-8, no reference to anything outside itself.
+/// Text in the input may hold any characters: it is escaped. Equal inputs give equal bytes.
 [[nodiscard]] std::string report_html(const ReportInput& input);
 
 }  // namespace octoskin::report

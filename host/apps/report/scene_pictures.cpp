@@ -11,13 +11,17 @@ namespace {
 
 constexpr float kLineRadius_m = 0.004F;
 
-/// A solid as wide as a room and no higher than a step is a floor.
-bool is_floor(const sim::Solid& solid) {
+Eigen::AlignedBox3d bounds_of(const sim::Solid& solid) {
     Eigen::AlignedBox3d bounds;
     for (const auto& vertex : solid.vertices) {
         bounds.extend(vertex);
     }
-    const Eigen::Vector3d size = bounds.sizes();
+    return bounds;
+}
+
+/// A solid as wide as a room and no higher than a step is a floor.
+bool is_floor(const sim::Solid& solid) {
+    const Eigen::Vector3d size = bounds_of(solid).sizes();
     return size.x() > 3.0 && size.y() > 3.0 && size.z() < 0.3;
 }
 
@@ -36,25 +40,51 @@ void add_world(Geometry& geometry, const sim::World& world, const std::vector<st
     }
 }
 
-/// Its housing, and the edges of what it sees as far as `kReach_m`.
-void add_camera(Geometry& geometry, const rig::Camera& camera) {
-    constexpr double kReach_m = 0.3;
-    const Colour colour = colour_of(palette::kCamera);
-    const Eigen::Vector3f eye = camera.T_base_camera.translation().cast<float>();
-    const auto corner = [&](double column, double row) -> Eigen::Vector3f {
-        const Eigen::Vector3d p_camera =
-            kReach_m * Eigen::Vector3d((column - camera.cx) / camera.fx, (row - camera.cy) / camera.fy, 1.0);
-        return (camera.T_base_camera * p_camera).cast<float>();
+/// A camera as it is drawn: its housing, and the edges of what it sees as far as `kReach_m`.
+struct CameraGlyph {
+    Eigen::Vector3d eye;
+    Eigen::Vector3d right;
+    std::array<Eigen::Vector3d, 4> corners;  ///< of the view, in turn
+
+    static constexpr double kReach_m = 0.3;
+    static constexpr double kHousingHalf_m = 0.08;
+    static constexpr double kHousingRadius_m = 0.035;
+};
+
+CameraGlyph glyph_of(const rig::Camera& camera) {
+    const auto corner = [&](double column, double row) -> Eigen::Vector3d {
+        return camera.T_base_camera *
+               (CameraGlyph::kReach_m *
+                Eigen::Vector3d((column - camera.cx) / camera.fx, (row - camera.cy) / camera.fy, 1.0));
     };
-    const std::array<Eigen::Vector3f, 4> corners = {
-        corner(0, 0), corner(camera.width, 0), corner(camera.width, camera.height), corner(0, camera.height)};
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        geometry.lines.push_back({eye, corners[i], kLineRadius_m, colour});
-        geometry.lines.push_back({corners[i], corners[(i + 1) % corners.size()], kLineRadius_m, colour});
+    return {camera.T_base_camera.translation(),
+            camera.T_base_camera.linear().col(0),
+            {corner(0, 0), corner(camera.width, 0), corner(camera.width, camera.height),
+             corner(0, camera.height)}};
+}
+
+/// What must be in the picture for the camera not to be cut off.
+std::vector<Eigen::Vector3d> outline_of(const CameraGlyph& glyph) {
+    std::vector<Eigen::Vector3d> points(glyph.corners.begin(), glyph.corners.end());
+    const Eigen::Vector3d housing =
+        Eigen::Vector3d::Constant(CameraGlyph::kHousingHalf_m + CameraGlyph::kHousingRadius_m);
+    std::ranges::copy(corners_of({glyph.eye - housing, glyph.eye + housing}), std::back_inserter(points));
+    return points;
+}
+
+void add_camera(Geometry& geometry, const CameraGlyph& glyph) {
+    const Colour colour = colour_of(palette::kCamera);
+    const Eigen::Vector3f eye = glyph.eye.cast<float>();
+    for (std::size_t i = 0; i < glyph.corners.size(); ++i) {
+        const Eigen::Vector3f corner = glyph.corners[i].cast<float>();
+        const Eigen::Vector3f next = glyph.corners[(i + 1) % glyph.corners.size()].cast<float>();
+        geometry.lines.push_back({eye, corner, kLineRadius_m, colour});
+        geometry.lines.push_back({corner, next, kLineRadius_m, colour});
     }
-    const Eigen::Vector3f right = camera.T_base_camera.linear().col(0).cast<float>();
+    const Eigen::Vector3f half = (CameraGlyph::kHousingHalf_m * glyph.right).cast<float>();
     // A line, since the shadow of a camera on the floor would puzzle whoever does not see it.
-    geometry.lines.push_back({eye - 0.08F * right, eye + 0.08F * right, 0.035F, colour});
+    geometry.lines.push_back(
+        {eye - half, eye + half, static_cast<float>(CameraGlyph::kHousingRadius_m), colour});
 }
 
 /// The part of a beam that begins in the stage and stays there.
@@ -74,20 +104,43 @@ void add_beam(Geometry& geometry, const Segment& beam, const Eigen::AlignedBox3d
     }
 }
 
-/// The stage without the empty space above everything that stands on it.
-Eigen::AlignedBox3d occupied_part(Eigen::AlignedBox3d stage, const Geometry& geometry) {
-    constexpr double kHeadroom_m = 0.05;
-    double highest = stage.min().z();
-    for (const auto& triangle : geometry.triangles) {
-        for (const auto& corner : triangle.corners) {
-            highest = std::max(highest, static_cast<double>(corner.z()));
+/// The part of the stage that the furniture and the robot take up; all of it if that is empty.
+Eigen::AlignedBox3d occupied_part(const sim::World& world, const SceneDressing& dressing) {
+    Eigen::AlignedBox3d content;
+    for (const auto& solid : world.solids()) {
+        const Eigen::AlignedBox3d on_stage = bounds_of(solid).intersection(dressing.stage);
+        if (!is_floor(solid) && !on_stage.isEmpty()) {
+            content.extend(on_stage);
         }
     }
-    for (const auto& body : geometry.bodies) {
-        highest = std::max(highest, static_cast<double>(std::max(body.a.z(), body.b.z()) + body.radius_m));
+    for (const auto& capsule : dressing.robot) {
+        const Eigen::Vector3d radius = Eigen::Vector3d::Constant(capsule.radius_m);
+        for (const Eigen::Vector3d& end : {capsule.p_base_a, capsule.p_base_b}) {
+            content.extend(Eigen::AlignedBox3d(end - radius, end + radius));
+        }
     }
-    stage.max().z() = std::min(stage.max().z(), highest + kHeadroom_m);
-    return stage;
+    if (content.isEmpty()) {
+        return dressing.stage;
+    }
+    constexpr double kRoom_m = 0.05;
+    return {content.min() - Eigen::Vector3d::Constant(kRoom_m),
+            content.max() + Eigen::Vector3d::Constant(kRoom_m)};
+}
+
+/// A view pair from the front and from behind, in which the camera is either whole or absent.
+ViewPair scene_views(const sim::World& world, const SceneDressing& dressing) {
+    std::vector<Eigen::Vector3d> shown = corners_of(occupied_part(world, dressing));
+    ViewPair views = views_of(shown, dressing.size);
+    if (!dressing.camera) {
+        return views;
+    }
+    const auto outline = outline_of(glyph_of(*dressing.camera));
+    const bool is_in_front =
+        std::ranges::any_of(outline, [&](const auto& point) { return shows(views.front, point); });
+    // Usually it stands behind what the front shows; the back always makes room for it.
+    std::ranges::copy(outline, std::back_inserter(shown));
+    const ViewPair with_camera = views_of(shown, dressing.size);
+    return {is_in_front ? with_camera.front : views.front, with_camera.back};
 }
 
 }  // namespace
@@ -107,18 +160,12 @@ ImagePair render_scene(const sim::World& world, const SceneDressing& dressing) {
     for (const auto& beam : dressing.beams) {
         add_beam(geometry, beam, stage);
     }
-    // The camera stands behind what the front shows; only the back makes room for it.
-    std::vector<Eigen::Vector3d> shown = corners_of(occupied_part(dressing.stage, geometry));
-    const View front = views_of(shown, dressing.size).front;
     if (dressing.camera) {
-        add_camera(geometry, *dressing.camera);
-        const Eigen::Vector3d p_base_camera = dressing.camera->T_base_camera.translation();
-        const Eigen::Vector3d housing = Eigen::Vector3d::Constant(0.14);
-        std::ranges::copy(corners_of({p_base_camera - housing, p_base_camera + housing}),
-                          std::back_inserter(shown));
+        add_camera(geometry, glyph_of(*dressing.camera));
     }
+    const ViewPair views = scene_views(world, dressing);
     const Tracer tracer(geometry);
-    return {tracer.render(front), tracer.render(views_of(shown, dressing.size).back)};
+    return {tracer.render(views.front), tracer.render(views.back)};
 }
 
 }  // namespace octoskin::report

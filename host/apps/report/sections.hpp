@@ -19,6 +19,9 @@ namespace octoskin::report {
 [[nodiscard]] std::string times_section(const ReportInput& input);
 [[nodiscard]] std::string reproduce_section(const ReportInput& input);
 
+/// "cone, crate", escaped.
+[[nodiscard]] std::string hidden_objects_text(const ReportInput& input);
+
 /// "the fused map" in the words of the report; unknown names as they are, escaped.
 [[nodiscard]] std::string map_title(std::string_view map);
 

@@ -104,13 +104,13 @@ std::string configuration_table(const ReportInput& input, const std::string& con
         metric_rows(maps, difference));
 }
 
-constexpr std::string_view kPaperText =
+constexpr std::string_view kTableText =
     R"(<section id="paper">
-<h2>Beside the paper’s table</h2>
+<h2>{}</h2>
 <p>Voxels of the judged region against a ground truth that a noise-free camera, moved by hand round the scene without
 the robot, would have mapped. Occupied and free: right in both. Missed: occupied in truth, unknown in the map.
-Incorrect: occupied in the map, not in truth. Lost, the column that the paper leaves out: occupied in truth, but called
-free; without it Missed could be lowered by clearing more.</p>
+Incorrect: occupied in the map, not in truth. Lost{}: occupied in truth, but called free; without it Missed could be
+lowered by clearing more.</p>
 <div class="table"><table>
 <thead><tr><th></th><th>Occupied</th><th>Free</th><th>Missed</th><th>Incorrect</th><th>Lost</th></tr></thead>
 <tbody>
@@ -126,7 +126,7 @@ constexpr std::string_view kMetricsText =
 <h2>All metrics</h2>
 <p>The first five as above. The others against the voxels that the world’s surfaces pass through; voxels inside a solid
 are not judged. Occluded recall looks at surface voxels more than two voxels from anything that the camera sees, object
-recall at those of the hidden objects. Coverage is the known share of the region; log loss and Brier score its
+recall at those of the objects that the scenario names as hidden. Coverage is the known share of the region; log loss and Brier score its
 probabilities, unknown voxels counting as one half. Mean ± standard deviation over the seeds.</p>
 )";
 
@@ -143,18 +143,27 @@ std::string map_title(std::string_view map) {
 }
 
 std::string paper_section(const ReportInput& input) {
-    std::string html(kPaperText);
+    const bool is_papers = input.results.is_papers_experiment;
+    std::string html = fmt::format(fmt::runtime(kTableText),
+                                   is_papers ? "Beside the paper’s table" : "Against a camera’s ground truth",
+                                   is_papers ? ", the column that the paper leaves out" : "");
     for (const auto& row : evaluation::kPaperTable) {
-        html += fmt::format("<tr class=\"group\"><th colspan=\"6\">{}</th></tr>\n", map_title(row.map));
-        html += paper_row(row);
+        std::string rows = is_papers ? paper_row(row) : "";
         for (const auto& map : input.results.maps) {
             if (map.map == row.map) {
-                html += our_row(map, map.configuration == input.main_configuration);
+                rows += our_row(map, map.configuration == input.main_configuration);
             }
         }
+        if (!rows.empty()) {
+            html += fmt::format("<tr class=\"group\"><th colspan=\"6\">{}</th></tr>\n{}", map_title(row.map),
+                                rows);
+        }
     }
-    return html + "</tbody></table></div>\n<p>" + missed_sentence(input) + std::string(kPaperCaveat) +
-           "</section>\n";
+    html += "</tbody></table></div>\n";
+    if (is_papers) {
+        html += "<p>" + missed_sentence(input) + std::string(kPaperCaveat);
+    }
+    return html + "</section>\n";
 }
 
 std::string metrics_section(const ReportInput& input) {

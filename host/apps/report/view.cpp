@@ -4,8 +4,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "host/core/mapping/voxel_lattice.hpp"
-
 namespace octoskin::report {
 namespace {
 
@@ -64,17 +62,6 @@ View framed(std::span<const Eigen::Vector3d> points, PictureSize size, const Bea
     return view;
 }
 
-/// The layer of the highest surface voxel.
-std::uint16_t highest_surface(const evaluation::Truth& truth) {
-    std::uint16_t highest = truth.region().min.z;
-    for (std::size_t i = 0; i < truth.surface.size(); ++i) {
-        if (truth.surface[i].is_surface) {
-            highest = std::max(highest, truth.region().key_at(i).z);
-        }
-    }
-    return highest;
-}
-
 }  // namespace
 
 ViewPair views_of(std::span<const Eigen::Vector3d> points, PictureSize size) {
@@ -82,14 +69,14 @@ ViewPair views_of(std::span<const Eigen::Vector3d> points, PictureSize size) {
     return {framed(points, size, kFront), framed(points, size, kBack)};
 }
 
-ViewPair views_of(const evaluation::Truth& truth, PictureSize size) {
-    const VoxelLattice lattice(truth.resolution_m);
-    const Eigen::Vector3d half = Eigen::Vector3d::Constant(truth.resolution_m / 2.0);
-    Eigen::Vector3d p_min = lattice.centre_of(truth.region().min) - half;
-    Eigen::Vector3d p_max = lattice.centre_of(truth.region().max) + half;
-    p_min.z() -= truth.resolution_m;
-    p_max.z() = lattice.centre_of(highest_surface(truth)) + 3.0 * truth.resolution_m;
-    return views_of(corners_of({p_min, p_max}), size);
+bool shows(const View& view, const Eigen::Vector3d& point) {
+    const Eigen::Vector3d forward = (view.target - view.eye).normalized();
+    const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+    const Eigen::Vector3d offset = point - view.eye;
+    const double ahead = offset.dot(forward);
+    const Eigen::Vector2d half_size = ahead * half_size_of(view);
+    return ahead > 0.0 && std::abs(offset.dot(right)) < half_size.x() &&
+           std::abs(offset.dot(forward.cross(right))) < half_size.y();
 }
 
 std::vector<Eigen::Vector3d> corners_of(const Eigen::AlignedBox3d& box) {

@@ -6,8 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "host/apps/evaluation/truth.hpp"
-
 namespace octoskin::report {
 
 /// In pixels.
@@ -32,8 +30,8 @@ struct ViewPair {
 };
 /// Both just hold all the points.
 [[nodiscard]] ViewPair views_of(std::span<const Eigen::Vector3d> points, PictureSize size = {});
-/// The judged region of a map up to a little above its highest surface, and the floor's layer; map frame.
-[[nodiscard]] ViewPair views_of(const evaluation::Truth& truth, PictureSize size = {});
+/// Whether a point lies within the picture, whatever may stand before it.
+[[nodiscard]] bool shows(const View& view, const Eigen::Vector3d& point);
 
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_of(const Eigen::AlignedBox3d& box);
 

@@ -129,6 +129,21 @@ std::vector<PaintedVoxel> paint_truth(const evaluation::Truth& truth) {
     return painted;
 }
 
+Eigen::AlignedBox3d content_of(std::span<const std::vector<PaintedVoxel>> lists, double resolution_m) {
+    const VoxelLattice lattice(resolution_m);
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(resolution_m / 2.0);
+    Eigen::AlignedBox3d content;
+    for (const auto& voxels : lists) {
+        for (const auto& voxel : voxels) {
+            if (voxel.kind != VoxelKind::floor) {
+                const Eigen::Vector3d centre = lattice.centre_of(voxel.key);
+                content.extend(Eigen::AlignedBox3d(centre - half, centre + half));
+            }
+        }
+    }
+    return content;
+}
+
 ImagePair render_voxels(std::span<const PaintedVoxel> voxels, double resolution_m, const ViewPair& views) {
     const VoxelLattice lattice(resolution_m);
     KeySet drawn;

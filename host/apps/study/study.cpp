@@ -8,6 +8,7 @@
 
 #include "host/apps/evaluation/survey.hpp"
 #include "host/apps/report/report.hpp"
+#include "host/apps/study/captions.hpp"
 #include "host/apps/study/configuration.hpp"
 #include "host/apps/study/parallel.hpp"
 #include "host/apps/study/part_timer.hpp"
@@ -114,10 +115,11 @@ Status<AppError> write_text(const fs::path& file, const std::string& text) {
     return Done{};
 }
 
-Status<AppError> save_maps(const MapSet& maps, const fs::path& out) {
+Status<AppError> save_maps(const MapSet& maps, bool has_camera, const fs::path& out) {
     const std::pair<const char*, const FusedMap*> named[] = {
         {"depth", maps.depth()}, {"proximity", maps.proximity()}, {"fused", maps.fused()}};
     for (const auto& [name, map] : named) {
+        if (!has_camera && map == maps.depth()) continue;
         for (const char* extension : {".ot", ".bt", ".ply"}) {
             if (const auto saved = save_map(*map, out / (std::string(name) + extension)); !saved) {
                 return fail(ExitCode::cannot_create, saved.error().message);
@@ -162,9 +164,13 @@ Status<AppError> write_report(const StudyRequest& request, const StudyWorld& gro
                                                         main.pipeline.maps(), *first.truth),
                               .update_model = study_configuration(main_configuration)->mapping.model,
                               .accounts = {},
-                              .idealisations = report::experiment_idealisations(),
-                              .reproduce = {"./demo", "./demo --full"}};
-    for (const AccountTable& table : main.accounts) input.accounts.push_back(report_account(table));
+                              .hidden_objects = ground.scenario.hidden_models,
+                              .idealisations = idealisations_of(main.rig, ground.scenario),
+                              .reproduce = {command_of(request)}};
+    if (!main.rig.camera) input.title = "octoskin: what the range sensors see";
+    for (const AccountTable& table : main.accounts) {
+        if (table.in > 0) input.accounts.push_back(report_account(table));
+    }
     return write_text(request.out / "report.html", report::report_html(input));
 }
 
@@ -180,6 +186,14 @@ evaluation::TruthConfig truth_config_of(const sim::Scenario& scenario, double re
     config.region = {scenario.region.p_base_min, scenario.region.p_base_max, scenario.region.floor_top_m};
     config.hidden_models = scenario.hidden_models;
     return config;
+}
+
+bool is_papers_experiment(const rig::Rig& rig, const fs::path& scenario, const fs::path& world,
+                          const fs::path& papers_scenario) {
+    constexpr std::string_view kRigs[] = {"experiment", "experiment_classical", "experiment_low_camera"};
+    std::error_code error;  // a file that is not there is not the paper's
+    return world.empty() && std::ranges::find(kRigs, rig.name) != std::end(kRigs) &&
+           fs::equivalent(scenario, papers_scenario, error);
 }
 
 evaluation::SurveyConfig survey_config_of(const sim::Scenario& scenario) {
@@ -217,10 +231,14 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
         {"scenario", request.inputs.scenario.filename().string()},
         {"rig", request.inputs.rig.filename().string()}};
     evaluation::Results results = evaluation::collect(runs, times, provenance);
+    results.is_papers_experiment = is_papers_experiment(outcomes->front().main->rig, request.inputs.scenario,
+                                                        request.inputs.world, request.papers_scenario);
 
     const SeedOutcome& first = outcomes->front();
     say(fmt::format("seed {}: saving maps", first.seed));
-    if (const auto saved = save_maps(first.main->pipeline.maps(), request.out); !saved)
+    if (const auto saved =
+            save_maps(first.main->pipeline.maps(), first.main->rig.camera.has_value(), request.out);
+        !saved)
         return unexpected(saved.error());
     if (const auto written = write_text(request.out / "metrics.json", evaluation::metrics_json(results));
         !written) {

@@ -19,14 +19,23 @@ struct StudyRequest {
     std::vector<std::uint64_t> seeds;
     std::vector<std::string> configurations;
     unsigned jobs = 1;
+    /// The scenario that re-enacts the paper's experiment, to tell whether this is it.
+    std::filesystem::path papers_scenario;
     std::filesystem::path out;
 };
 
-/// Writes into `out`: metrics.json, report.html, the maps depth, proximity and fused (.ot .bt .ply) and
+/// Writes into `out`: metrics.json, report.html, the maps depth (if the rig has a camera), proximity
+/// and fused (.ot .bt .ply) and
 /// recording/ of the first seed in its main configuration (robust if it is among them). `say`: progress, one
 /// line each, called under a lock.
 [[nodiscard]] Result<evaluation::Results, AppError> run_study(
     const StudyRequest& request, const std::function<void(const std::string&)>& say);
+
+/// Whether a run is the paper's experiment, so that the paper's table belongs beside it: one of the shipped
+/// rigs experiment*.yaml by its name, in `papers_scenario` itself and in its world (`world` empty).
+[[nodiscard]] bool is_papers_experiment(const rig::Rig& rig, const std::filesystem::path& scenario,
+                                        const std::filesystem::path& world,
+                                        const std::filesystem::path& papers_scenario);
 
 /// The judged region and what else the evaluation takes from a scenario.
 [[nodiscard]] evaluation::TruthConfig truth_config_of(const sim::Scenario& scenario, double resolution_m);

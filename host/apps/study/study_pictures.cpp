@@ -2,6 +2,7 @@
 
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/report/pictures.hpp"
+#include "host/apps/study/captions.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/sim/arm/arm.hpp"
 #include "hw/sim/arm/body.hpp"
@@ -12,7 +13,25 @@ namespace {
 
 using report::PicturePair;
 
-/// The robot as it stands a quarter of the way round, with one range of each sensor.
+using Beams = std::vector<report::Segment>;
+
+/// One range of each sensor that meets something of the world.
+Beams beams_at(const sim::World& world, const rig::Rig& rig, const sim::Arm::LinkPoses& poses) {
+    Beams beams;
+    for (const rig::Node& node : rig.nodes) {
+        for (const rig::Sensor& sensor : node.sensors) {
+            const Eigen::Isometry3d T_base_sensor = poses.at(sensor.link) * sensor.T_link_sensor;
+            const Eigen::Vector3d origin = T_base_sensor.translation();
+            const Eigen::Vector3d direction = T_base_sensor.linear().col(2);
+            if (const auto hit = world.cast(origin, direction, rig.range_limits.max_m)) {
+                beams.push_back({origin, origin + hit->range_m * direction});
+            }
+        }
+    }
+    return beams;
+}
+
+/// The robot at the one of a few instants of its motion at which most sensors see something.
 void dress_with_robot(const sim::World& world, const sim::Scenario& scenario, const rig::Rig& rig,
                       report::SceneDressing& dressing) {
     const auto lock = lock_reading();
@@ -21,29 +40,50 @@ void dress_with_robot(const sim::World& world, const sim::Scenario& scenario, co
     if (!arm || !capsules) return;  // the same files were read before; a picture without a robot beats none
     const auto trajectory = sim::Trajectory::circle(*arm, scenario.motion, sim::SimTime{0});
     if (!trajectory) return;
-    const sim::SimTime instant{trajectory->end().us / 8};
-    const auto poses = arm->forward(trajectory->at(instant));
-    for (const sim::BodyCapsule& capsule : sim::posed_body(*capsules, poses)) {
-        dressing.robot.push_back({capsule.p_base_a, capsule.p_base_b, capsule.radius_m});
-    }
-    for (const rig::Node& node : rig.nodes) {
-        for (const rig::Sensor& sensor : node.sensors) {
-            const Eigen::Isometry3d T_base_sensor = poses.at(sensor.link) * sensor.T_link_sensor;
-            const Eigen::Vector3d origin = T_base_sensor.translation();
-            const Eigen::Vector3d direction = T_base_sensor.linear().col(2);
-            if (const auto hit = world.cast(origin, direction, rig.range_limits.max_m);
-                hit && direction.z() < 0.3) {
-                dressing.beams.push_back({origin, origin + hit->range_m * direction});
-            }
+    constexpr int kInstants = 8;
+    for (int i = 0; i < kInstants; ++i) {
+        const auto poses = arm->forward(trajectory->at(sim::SimTime{trajectory->end().us * i / kInstants}));
+        Beams beams = beams_at(world, rig, poses);
+        if (i > 0 && beams.size() <= dressing.beams.size()) continue;
+        dressing.beams = std::move(beams);
+        dressing.robot.clear();
+        for (const sim::BodyCapsule& capsule : sim::posed_body(*capsules, poses)) {
+            dressing.robot.push_back({capsule.p_base_a, capsule.p_base_b, capsule.radius_m});
         }
     }
 }
 
-PicturePair draw_map(const char* title, const char* caption, const FusedMap& map,
-                     const evaluation::Truth& truth) {
-    report::ImagePair images =
-        report::render_voxels(report::paint_map(map, truth), truth.resolution_m, report::views_of(truth));
-    return {title, caption, std::move(images.front), std::move(images.back)};
+/// A map, and how it is called and described.
+struct NamedMap {
+    const char* title;
+    const char* caption;
+    const FusedMap* map;
+};
+
+std::vector<NamedMap> maps_to_draw(const MapSet& maps, bool has_camera) {
+    const NamedMap ranges = {"Range sensors only", "What the sensors on the arm found during its motion.",
+                             maps.proximity()};
+    if (!has_camera) return {ranges};
+    return {{"Depth camera only", "What a planner with the external camera alone knows.", maps.depth()},
+            ranges,
+            {"Fused", "One map of both.", maps.fused()}};
+}
+
+/// All in one frame, so that they can be laid over each other.
+std::vector<PicturePair> draw_maps(const std::vector<NamedMap>& named, const evaluation::Truth& truth) {
+    std::vector<std::vector<report::PaintedVoxel>> painted;
+    for (const NamedMap& one : named) painted.push_back(report::paint_map(*one.map, truth));
+    painted.push_back(report::paint_truth(truth));
+    const Eigen::AlignedBox3d content = report::content_of(painted, truth.resolution_m);
+    if (content.isEmpty()) return {};
+    const report::ViewPair views = report::views_of(report::corners_of(content));
+    std::vector<PicturePair> pictures;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+        report::ImagePair images = report::render_voxels(painted[i], truth.resolution_m, views);
+        pictures.push_back(
+            {named[i].title, named[i].caption, std::move(images.front), std::move(images.back)});
+    }
+    return pictures;
 }
 
 PicturePair draw_scene(const sim::World& world, const sim::Scenario& scenario, const rig::Rig& rig) {
@@ -54,11 +94,8 @@ PicturePair draw_scene(const sim::World& world, const sim::Scenario& scenario, c
     dressing.hidden_models = scenario.hidden_models;
     dress_with_robot(world, scenario, rig, dressing);
     report::ImagePair images = report::render_scene(world, dressing);
-    return {"The scene",
-            "The arm with its range sensors' beams, the external camera, and what the camera cannot see: the "
-            "hidden objects, and the "
-            "insides of the compartments.",
-            std::move(images.front), std::move(images.back)};
+    return {"The scene", scene_caption(rig, scenario, dressing.beams.size()), std::move(images.front),
+            std::move(images.back)};
 }
 
 }  // namespace
@@ -66,19 +103,8 @@ PicturePair draw_scene(const sim::World& world, const sim::Scenario& scenario, c
 std::vector<PicturePair> draw_pictures(const sim::World& world, const sim::Scenario& scenario,
                                        const rig::Rig& rig, const MapSet& maps,
                                        const evaluation::Truth& truth) {
-    std::vector<PicturePair> pictures;
-    pictures.push_back(draw_scene(world, scenario, rig));
-    pictures.push_back(draw_map("Depth camera only",
-                                "What a planner with the external camera knows: the shelves' backs and tops, "
-                                "and nothing behind them.",
-                                *maps.depth(), truth));
-    pictures.push_back(draw_map("Range sensors only",
-                                "What the sensors on the arm found in one revolution: thin bands where beams "
-                                "met the objects and the compartments.",
-                                *maps.proximity(), truth));
-    pictures.push_back(draw_map(
-        "Fused", "One map of both: the backs from the camera; objects and compartments from the arm.",
-        *maps.fused(), truth));
+    std::vector<PicturePair> pictures = draw_maps(maps_to_draw(maps, rig.camera.has_value()), truth);
+    pictures.insert(pictures.begin(), draw_scene(world, scenario, rig));
     return pictures;
 }
 

@@ -25,7 +25,9 @@ Results two_seeds() {
         judge("robust", "depth", 1, 2200), judge("robust", "fused", 1, 1600),
         judge("paper", "fused", 1, 1100),
     };
-    return collect(runs, {{"simulate", 12.5, 14.25}}, {{"world", "experiment.sdf"}});
+    Results results = collect(runs, {{"simulate", 12.5, 14.25}}, {{"world", "experiment.sdf"}});
+    results.is_papers_experiment = true;
+    return results;
 }
 
 TEST(Collect, lists_each_seed_once_in_order) {
@@ -129,6 +131,14 @@ TEST(MetricsTable, counts_its_seeds_in_words_that_fit) {
     EXPECT_NE(metrics_table(two_seeds()).find("robust, mean ± sd of 2 seeds\n"), std::string::npos);
     const Runs one = {judge("robust", "fused", 0, 10)};
     EXPECT_NE(metrics_table(collect(one)).find("robust, one seed\n"), std::string::npos);
+}
+
+TEST(MetricsTable, leaves_the_papers_figures_to_the_papers_experiment) {
+    Results results = two_seeds();
+    results.is_papers_experiment = false;
+    EXPECT_EQ(metrics_table(results).find("Strong"), std::string::npos);
+    EXPECT_NE(metrics_table(results).find("robust          depth                 0          0       2100"),
+              std::string::npos);
 }
 
 TEST(MetricsTable, shows_undefined_figures_as_a_dash) {

@@ -112,6 +112,57 @@ TEST(RenderVoxels, of_an_empty_map_is_a_blank_picture) {
     EXPECT_TRUE(is_blank(render_voxels({}, 0.04, views_of(corners, kSmall)).front));
 }
 
+TEST(ContentOf, is_the_box_round_all_voxels_but_the_floor) {
+    const std::vector<std::vector<PaintedVoxel>> lists = {
+        {{key(0, 0, 1), VoxelKind::right}, {key(90, 90, 0), VoxelKind::floor}},
+        {{key(2, 0, 1), VoxelKind::lost}, {key(0, 1, 3), VoxelKind::wrong}}};
+    const Eigen::AlignedBox3d content = content_of(lists, 0.04);
+    EXPECT_NEAR((content.min() - Eigen::Vector3d(0.0, 0.0, 0.04)).norm(), 0.0, 1e-9);
+    EXPECT_TRUE(content.sizes().isApprox(Eigen::Vector3d(0.12, 0.08, 0.12), 1e-9));
+    EXPECT_TRUE(content_of({}, 0.04).isEmpty());
+}
+
+/// The smallest rectangle round what is painted, as a share of the picture's width and height.
+Eigen::Vector2d painted_share(const Image& image) {
+    Eigen::AlignedBox2d painted;
+    for (std::uint32_t row = 0; row < image.height; ++row) {
+        for (std::uint32_t column = 0; column < image.width; ++column) {
+            if (image.rgba[4 * (std::size_t{row} * image.width + column) + 3] != 0) {
+                painted.extend(Eigen::Vector2d(column, row));
+            }
+        }
+    }
+    return painted.sizes().cwiseQuotient(Eigen::Vector2d(image.width, image.height));
+}
+
+TEST(RenderScene, fills_the_picture_with_a_small_scene_on_a_large_stage) {
+    const sim::World world({box("mug", {0.4, -0.05, 0.0}, {0.5, 0.05, 0.1})});
+    SceneDressing dressing;
+    dressing.size = kSmall;
+    dressing.stage = Eigen::AlignedBox3d(Eigen::Vector3d(-2.0, -2.0, 0.0), Eigen::Vector3d(2.0, 2.0, 2.0));
+    // With the room round it the mug is 20 cm wide, of which it takes up half.
+    EXPECT_GT(painted_share(render_scene(world, dressing).front).maxCoeff(), 0.4);
+}
+
+TEST(RenderScene, never_cuts_a_camera_off) {
+    const sim::World world({box("crate", {0.4, -0.2, 0.0}, {0.8, 0.2, 0.4})});
+    SceneDressing dressing;
+    dressing.size = kSmall;
+    dressing.stage = Eigen::AlignedBox3d(Eigen::Vector3d(-0.5, -1.0, 0.0), Eigen::Vector3d(1.2, 1.0, 1.0));
+    dressing.camera = rig::Camera{.width = 40, .height = 30, .fx = 30, .fy = 30, .cx = 20, .cy = 15};
+    for (const double y : {0.0, 0.3, 0.4, 0.5, 0.6, 0.9}) {
+        dressing.camera->T_base_camera.translation() << 0.6, y, 0.3;
+        const ImagePair images = render_scene(world, dressing);
+        for (const Image& image : {images.front, images.back}) {
+            for (std::uint32_t row = 0; row < image.height; ++row) {
+                const std::size_t first = std::size_t{row} * image.width;
+                EXPECT_EQ(image.rgba[4 * first + 3], 0) << "y " << y << ", row " << row;
+                EXPECT_EQ(image.rgba[4 * (first + image.width - 1) + 3], 0) << "y " << y << ", row " << row;
+            }
+        }
+    }
+}
+
 TEST(RenderScene, shows_world_robot_camera_and_beams) {
     const sim::World world(
         {box("floor", {-5.0, -5.0, -0.1}, {5.0, 5.0, 0.0}), box("crate", {0.4, -0.2, 0.0}, {0.8, 0.2, 0.4})});

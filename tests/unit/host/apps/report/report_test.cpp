@@ -36,8 +36,10 @@ ReportInput two_seeds() {
     const Image dot{1, 1, {10, 20, 30, 255}};
     input.pictures = {{"The scene", "A room.", dot, dot}, {"Fused", "Both.", dot, dot}};
     input.accounts = {{"ranges", 100, 90, {{"no_target", 7}, {"stale", 3}, {"duplicate", 0}}}};
-    input.idealisations = experiment_idealisations();
-    input.reproduce = {"./demo --full"};
+    input.results.is_papers_experiment = true;
+    input.hidden_objects = {"cone"};
+    input.idealisations = {"Nothing moves."};
+    input.reproduce = {"octoskin experiment --seeds 0 1"};
     return input;
 }
 
@@ -187,6 +189,39 @@ TEST(Report, of_a_single_seed_claims_no_spread) {
     const std::string html = report_html(input);
     EXPECT_THAT(html, HasSubstr("\u221230.0\u00a0%; \u2212600</div>"));
     EXPECT_THAT(html, HasSubstr("</code>, one seed.</p>"));
+}
+
+TEST(Report, of_another_experiment_leaves_the_papers_figures_out) {
+    ReportInput input = two_seeds();
+    input.results.is_papers_experiment = false;
+    const std::string html = report_html(input);
+    EXPECT_THAT(html, Not(HasSubstr("Strong et al.")));
+    EXPECT_THAT(html, Not(HasSubstr("in the paper")));
+    EXPECT_THAT(html, Not(HasSubstr("27\u202f510")));
+    EXPECT_THAT(html, HasSubstr("<td>12\u202f345 ± 0</td>")) << "our own row stays";
+    EXPECT_EQ(first_unbalanced_tag(html), "");
+}
+
+TEST(Report, of_a_rig_without_camera_says_nothing_of_one) {
+    ReportInput input = two_seeds();
+    const std::vector<evaluation::Run> runs = {judged("robust", "proximity", 0, 1400, 0.10)};
+    input.results = evaluation::collect(runs);
+    const std::string html = report_html(input);
+    EXPECT_THAT(html, HasSubstr("this rig has no camera"));
+    EXPECT_THAT(html, Not(HasSubstr("camera alone")));
+    EXPECT_THAT(html, Not(HasSubstr("Depth camera only")));
+    EXPECT_THAT(html, Not(HasSubstr("fused − depth")));
+    EXPECT_THAT(html, Not(HasSubstr("<section id=\"paired\"")));
+    EXPECT_THAT(html, HasSubstr("98.0\u00a0%"));
+    EXPECT_EQ(first_unbalanced_tag(html), "");
+}
+
+TEST(Report, names_the_hidden_objects_or_none) {
+    ReportInput input = two_seeds();
+    input.hidden_objects = {"mug", "<b>"};
+    EXPECT_THAT(report_html(input), HasSubstr("the same, on mug, &lt;b&gt;</li>"));
+    input.hidden_objects.clear();
+    EXPECT_THAT(report_html(input), Not(HasSubstr("swatch-hidden\"")));
 }
 
 TEST(Report, is_the_same_text_for_the_same_input) {

@@ -47,20 +47,14 @@ TEST(Views, of_a_single_point_are_finite) {
     EXPECT_TRUE(views_of(point).front.eye.allFinite());
 }
 
-TEST(Views, of_a_truth_reach_from_the_floor_to_just_above_the_highest_surface) {
-    using evaluation::SurfaceVoxel;
-    const auto key = [](int i) { return static_cast<std::uint16_t>(32768 + i); };
-    const evaluation::KeyBox box{{key(0), key(0), key(0)}, {key(9), key(9), key(30)}};
-    evaluation::Truth truth{0.1, evaluation::VoxelGrid<Occupancy>(box),
-                            evaluation::VoxelGrid<SurfaceVoxel>(box)};
-    truth.surface.at({key(5), key(5), key(4)}).is_surface = true;
-    const ViewPair views = views_of(truth);
-    for (const View& view : {views.front, views.back}) {
-        EXPECT_LT(projected(view, {0.0, 0.0, -0.1}).cwiseAbs().maxCoeff(), 1.0);
-        EXPECT_LT(projected(view, {1.0, 1.0, 0.7}).cwiseAbs().maxCoeff(), 1.0);
-        EXPECT_GT(projected(view, {0.5, 0.5, 2.9}).cwiseAbs().maxCoeff(), 1.0)
-            << "empty space above is cut off";
-    }
+TEST(Views, show_what_lies_within_the_picture_and_before_the_eye) {
+    const View view{.eye = {0, 0, 0}, .target = {1, 0, 0}, .vertical_fov_rad = 1.0, .size = {40, 20}};
+    // Half the picture is tan(0.5) = 0.546 high and 1.093 wide at 1 m.
+    EXPECT_TRUE(shows(view, {1.0, 0.0, 0.54}));
+    EXPECT_FALSE(shows(view, {1.0, 0.0, 0.55}));
+    EXPECT_TRUE(shows(view, {1.0, -1.09, 0.0}));
+    EXPECT_FALSE(shows(view, {1.0, -1.10, 0.0}));
+    EXPECT_FALSE(shows(view, {-1.0, 0.0, 0.0}));
 }
 
 TEST(ViewRays, run_through_the_middle_and_to_the_right_and_down) {

@@ -1,0 +1,25 @@
+// What the report says of one run in words: captions, idealisations, the command. All of it follows from the
+// rig, the scenario and the request.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "host/apps/study/study.hpp"
+#include "hw/rigfile/rig.hpp"
+#include "hw/sim/scenario/scenario.hpp"
+
+namespace octoskin {
+
+/// What the scene picture shows. `beams`: of how many range sensors a beam is drawn.
+[[nodiscard]] std::string scene_caption(const rig::Rig& rig, const sim::Scenario& scenario,
+                                        std::size_t beams);
+
+/// What this simulation leaves out or makes kinder than a robot cell, one sentence each.
+[[nodiscard]] std::vector<std::string> idealisations_of(const rig::Rig& rig, const sim::Scenario& scenario);
+
+/// The shell command that does a study again, every choice written out.
+[[nodiscard]] std::string command_of(const StudyRequest& request);
+
+}  // namespace octoskin
