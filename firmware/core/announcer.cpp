@@ -69,6 +69,7 @@ std::optional<wire::InfoPage> Announcer::info_page_due() const noexcept {
 }
 
 std::optional<std::uint8_t> Announcer::health_due() const noexcept {
+    if (health_due_ == 0) return std::nullopt;  // nearly always, and asked in every poll
     for (std::uint8_t i = 0; i < sensor_count_; ++i) {
         const auto sensor = static_cast<std::uint8_t>((health_first_ + i) % sensor_count_);
         if ((health_due_ >> sensor) & 1U) return sensor;
