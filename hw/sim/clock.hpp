@@ -21,6 +21,8 @@ class NodeClock {
         return at_start_ + Microseconds{time.us + static_cast<std::int64_t>(std::floor(drift_us))};
     }
 
+    [[nodiscard]] constexpr double drift_ppm() const noexcept { return drift_ppm_; }
+
   private:
     NodeTime at_start_{};
     double drift_ppm_ = 0.0;

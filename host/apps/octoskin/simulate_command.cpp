@@ -10,7 +10,36 @@
 namespace octoskin::app {
 namespace {
 
-void simulate(const SimulationRequest& request) {
+struct SimulateOptions {
+    SimulationRequest request;
+    std::string board = "core";
+    std::filesystem::path image;
+    std::uint32_t cycles_per_instruction = 1;
+    bool allows_violations = false;
+};
+
+/// octoskin_board lies beside this program.
+std::filesystem::path board_program() {
+    std::error_code error;
+    return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "octoskin_board";
+}
+
+sim::EmulatedBoards emulated_boards(const SimulateOptions& options) {
+    const sim::EmulatedBoards boards{board_program(), options.image, options.cycles_per_instruction};
+    if (!std::filesystem::exists(boards.program)) {
+        throw CommandFailure({ExitCode::no_input, boards.program.string() +
+                                                      ": not there; install libunicorn-dev and build again"});
+    }
+    if (!std::filesystem::exists(boards.image)) {
+        throw CommandFailure(
+            {ExitCode::no_input, boards.image.string() +
+                                     ": no such image; build preset firmware-release or name one "
+                                     "with --image"});
+    }
+    return boards;
+}
+
+void simulate(const SimulationRequest& request, bool allows_violations) {
     int last_percent = -10;
     const auto on_progress = [&last_percent](double fraction) {
         const int percent = static_cast<int>(fraction * 100.0);
@@ -27,12 +56,17 @@ void simulate(const SimulationRequest& request) {
         request.out.string(), summary->duration_s, summary->can_frames, summary->depth_frames,
         summary->first_range_s, 100.0 * summary->can_busy_fraction,
         100.0 * *std::max_element(summary->i2c_busy_fraction.begin(), summary->i2c_busy_fraction.end()));
+    if (summary->violations.empty() || allows_violations) return;
+    throw CommandFailure(
+        {ExitCode::failed, "the image does what the chip's manuals forbid:\n" + summary->violations});
 }
 
 }  // namespace
 
 void add_simulate_command(CLI::App& app) {
-    auto request = std::make_shared<SimulationRequest>();
+    auto options = std::make_shared<SimulateOptions>();
+    SimulationRequest* request = &options->request;
+    options->image = shipped_file("build/firmware-release/bin/octoskin_node_nucleo_g474re.elf");
     request->rig = shipped_file("hw/rigs/experiment.yaml");
     request->scenario = shipped_file("hw/worlds/experiment.scenario.yaml");
     CLI::App* command =
@@ -52,7 +86,24 @@ void add_simulate_command(CLI::App& app) {
         ->capture_default_str()
         ->check(CLI::NonNegativeNumber);
     command->add_flag("--noise-free-depth", request->is_depth_noise_free, "A camera without noise");
-    command->callback([request] { simulate(*request); });
+    command
+        ->add_option(
+            "--board", options->board,
+            "What reads the sensors: the node core in this process, or the flashed image on emulated boards")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"core", "emulated"}));
+    command->add_option("--image", options->image, "ELF for the emulated boards")->capture_default_str();
+    command
+        ->add_option("--cycles-per-instruction", options->cycles_per_instruction,
+                     "Of the emulated boards' cores")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 20));
+    command->add_flag("--allow-violations", options->allows_violations,
+                      "Exit code 0 although the image does what the chip's manuals forbid");
+    command->callback([options] {
+        if (options->board == "emulated") options->request.emulated = emulated_boards(*options);
+        simulate(options->request, options->allows_violations);
+    });
 }
 
 }  // namespace octoskin::app

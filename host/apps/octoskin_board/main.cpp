@@ -7,6 +7,7 @@
 
 #include "host/apps/octoskin_board/arguments.hpp"
 #include "host/apps/octoskin_board/bench.hpp"
+#include "host/apps/octoskin_board/server.hpp"
 #include "host/io/candump/log_writer.hpp"
 #include "hw/sim/experiment/sync_master.hpp"
 
@@ -17,7 +18,7 @@ constexpr WallTime kLogEpoch{1'750'000'000'000'000'000};
 constexpr HostTime kHostAtStart{4'321'000'000'000};
 constexpr Microseconds kSyncPeriod{1'000'000};
 
-int fail(const AppError& error) {
+int report(const AppError& error) {
     fmt::print(stderr, "octoskin_board: {}\n", error.message);
     return static_cast<int>(error.code);
 }
@@ -59,14 +60,27 @@ Status<AppError> run(const Arguments& arguments, Bench& bench) {
 
 int run_alone(const Arguments& arguments) {
     auto bench = Bench::build(arguments, wall_at(arguments.wall_m));
-    if (!bench) return fail(bench.error());
+    if (!bench) return report(bench.error());
     const auto begun = std::chrono::steady_clock::now();
-    if (const auto ran = run(arguments, **bench); !ran) return fail(ran.error());
+    if (const auto ran = run(arguments, **bench); !ran) return report(ran.error());
     if (arguments.shows_serial) fmt::print("{}", (*bench)->board().serial_text());
     fmt::print("{}", use_report(**bench, seconds_since(begun)));
     fmt::print(stderr, "{}", violation_report((*bench)->board()));
     const bool is_clean = (*bench)->board().log().count() == 0 || arguments.allows_violations;
     return static_cast<int>(is_clean ? ExitCode::ok : ExitCode::failed);
+}
+
+int run_for_simulator(const Arguments& arguments) {
+    sim::LinkSocket socket(arguments.socket);
+    try {
+        auto bench = Bench::build(arguments, scene_over(socket));
+        if (!bench) return report(bench.error());
+        serve(**bench, socket);
+        const bool is_clean = (*bench)->board().log().count() == 0 || arguments.allows_violations;
+        return static_cast<int>(is_clean ? ExitCode::ok : ExitCode::failed);
+    } catch (const sim::BoardLinkError& error) {
+        return report({ExitCode::bad_data, error.what()});
+    }
 }
 
 }  // namespace
@@ -79,7 +93,7 @@ int main(int argc, char** argv) {
     board::describe(app, arguments);
     try {
         app.parse(argc, argv);
-        return board::run_alone(arguments);
+        return arguments.socket >= 0 ? board::run_for_simulator(arguments) : board::run_alone(arguments);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
     }

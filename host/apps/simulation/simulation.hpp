@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
@@ -19,6 +21,8 @@ struct SimulationRequest {
     std::filesystem::path world;  ///< SDF in place of the scenario's; empty: the scenario's
     std::uint64_t seed = 0;
     bool is_depth_noise_free = false;
+    std::optional<sim::EmulatedBoards> emulated{};  ///< boards run the flashed image
+    std::vector<sim::BoardStart> board_starts{};    ///< of boards in this process; see there
     std::filesystem::path out;  ///< made if it is not there; files of a former recording are replaced
 };
 

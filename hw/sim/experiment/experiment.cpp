@@ -20,6 +20,9 @@ namespace {
 // The turn of the simulation's loop: every board polls this often. Longer than a byte on the bus, a fifth of
 // a transfer.
 constexpr std::int64_t kTurnUs = 50;
+// With boards in processes of their own, each turn costs a round trip. What they send reaches the bus at a
+// turn's end; what they hear, they hear at its own time.
+constexpr std::int64_t kRemoteTurnUs = 200;
 constexpr Microseconds kSyncPeriod{1'000'000};
 // Frames before START: they must not enter the map, so a recording has some.
 constexpr int kFramesBeforeStart = 2;
@@ -44,6 +47,7 @@ class RigInOneProcess {
     RigInOneProcess(const ExperimentInput& input, const Trajectory& trajectory,
                     const ExperimentOutput& output)
         : output_(output),
+          turn_us_(input.emulated ? kRemoteTurnUs : kTurnUs),
           surroundings_{.world = input.world,
                         .arm = input.arm,
                         .trajectory = trajectory,
@@ -59,10 +63,10 @@ class RigInOneProcess {
         for (const rig::Node& node : input.rig.nodes) {
             const NodeClock clock = draw_clock(random, boards_.empty());
             const SceneOfSensor scene = [&](std::uint8_t sensor) {
-                return ranging_scene(surroundings_, mount_of(node, sensor));
+                return told(ranging_scene(surroundings_, mount_of(node, sensor)), node.config.node_id,
+                            sensor);
             };
-            boards_.push_back(
-                std::make_unique<SimulatedBoard>(node.config, clock, input.seed, present_, bus_, scene));
+            boards_.push_back(make_board(input, node.config, clock, scene));
         }
         const JointPositions positions = [&trajectory](SimTime time) {
             const Eigen::VectorXd q = trajectory.at(time);
@@ -79,10 +83,11 @@ class RigInOneProcess {
 
     void run_until(SimTime end) {
         while (present_.time < end) {
-            present_.time.us += kTurnUs;
+            present_.time.us += turn_us_;
             bus_.advance(present_.time);
             send_marks();
-            for (const auto& board : boards_) board->poll();
+            for (const auto& board : boards_) board->begin_turn(present_.time);
+            for (const auto& board : boards_) board->finish_turn();
             send_all(joints_->poll(present_.time), *joint_transmitter_);
             send_all(master_.poll(present_.time), *host_);
         }
@@ -96,14 +101,41 @@ class RigInOneProcess {
         summary.can_busy_fraction = bus_.busy_fraction();
         for (const auto& board : boards_) {
             for (std::size_t bus = 0; bus < kNodeBusesMax; ++bus) {
-                summary.i2c_busy_fraction.push_back(static_cast<double>(board->bus(bus).busy_time().count()) /
-                                                    static_cast<double>(present_.time.us));
+                summary.i2c_busy_fraction.push_back(board->i2c_busy_s(bus) / summary.duration_s);
             }
+            summary.node_clocks.push_back(board->clock());
+            summary.violations += board->violations();
         }
         return summary;
     }
 
   private:
+    /// The same scene; whoever wants to know is told.
+    RangingScene told(RangingScene scene, std::uint8_t node_id, std::uint8_t sensor) const {
+        if (!output_.on_ranging) return scene;
+        return [this, scene = std::move(scene), node_id, sensor](std::uint32_t index, SimTime middle,
+                                                                 const Roi& roi) {
+            const RangingReturn seen = scene(index, middle, roi);
+            output_.on_ranging({node_id, sensor, index, middle, seen});
+            return seen;
+        };
+    }
+
+    std::unique_ptr<RigBoard> make_board(const ExperimentInput& input, const NodeConfig& config,
+                                         NodeClock clock, const SceneOfSensor& scene) {
+        if (input.emulated) {
+            return std::make_unique<EmulatedBoard>(*input.emulated, config, clock.drift_ppm(), input.seed,
+                                                   bus_, scene);
+        }
+        SimTime starts_at{};
+        if (!input.board_starts.empty()) {
+            const BoardStart& start = input.board_starts.at(boards_.size());
+            clock = start.clock;
+            starts_at = start.first_turn;
+        }
+        return std::make_unique<SimulatedBoard>(config, clock, input.seed, present_, bus_, scene, starts_at);
+    }
+
     struct ScheduledMark {
         wire::MarkKind kind;
         SimTime at;
@@ -144,12 +176,13 @@ class RigInOneProcess {
     }
 
     const ExperimentOutput& output_;
+    std::int64_t turn_us_;
     SensorSurroundings surroundings_;
     Present present_;
     SimulatedCanBus bus_;
     SyncMaster master_;
     node::CanTransmitter* host_ = nullptr;
-    std::vector<std::unique_ptr<SimulatedBoard>> boards_;
+    std::vector<std::unique_ptr<RigBoard>> boards_;
     std::unique_ptr<JointNode> joints_;
     node::CanTransmitter* joint_transmitter_ = nullptr;
     std::deque<ScheduledMark> marks_;
@@ -158,8 +191,9 @@ class RigInOneProcess {
 
 }  // namespace
 
-Result<ExperimentSummary, ExperimentError> run_experiment(const ExperimentInput& input,
-                                                          const ExperimentOutput& output) {
+namespace {
+
+Result<ExperimentSummary, ExperimentError> run(const ExperimentInput& input, const ExperimentOutput& output) {
     const SimTime start = from_seconds(input.scenario.rest_s);
     const auto trajectory = Trajectory::circle(input.arm, input.scenario.motion, start);
     if (!trajectory) return unexpected(ExperimentError{trajectory.error().what});
@@ -192,6 +226,17 @@ Result<ExperimentSummary, ExperimentError> run_experiment(const ExperimentInput&
     ExperimentSummary summary = rig.summary();
     summary.depth_frames = frames;
     return summary;
+}
+
+}  // namespace
+
+Result<ExperimentSummary, ExperimentError> run_experiment(const ExperimentInput& input,
+                                                          const ExperimentOutput& output) {
+    try {
+        return run(input, output);
+    } catch (const BoardLinkError& error) {
+        return unexpected(ExperimentError{error.what()});
+    }
 }
 
 }  // namespace octoskin::sim

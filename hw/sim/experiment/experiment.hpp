@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,17 @@
 #include "hw/rigfile/rig.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/sim/arm/arm.hpp"
+#include "hw/sim/experiment/emulated_board.hpp"
 #include "hw/sim/scenario/scenario.hpp"
 #include "hw/sim/world/world.hpp"
 
 namespace octoskin::sim {
+
+/// How boards in this process start. Without it they run from time 0, and their counters start anywhere.
+struct BoardStart {
+    NodeClock clock{};
+    SimTime first_turn{};  ///< when the node core begins to work
+};
 
 struct ExperimentInput {
     const rig::Rig& rig;
@@ -27,6 +35,17 @@ struct ExperimentInput {
     const Scenario& scenario;
     std::uint64_t seed = 0;
     bool is_depth_noise_free = false;
+    std::optional<EmulatedBoards> emulated{};  ///< the flashed image in place of the node core here
+    std::vector<BoardStart> board_starts{};    ///< one for each node, or none
+};
+
+/// What a sensor truly did: the oracle that no recorder has.
+struct TrueRanging {
+    std::uint8_t node_id = 0;
+    std::uint8_t sensor = 0;
+    std::uint32_t index = 0;  ///< since the sensor's power-up
+    SimTime window_middle{};
+    RangingReturn seen;
 };
 
 /// A recorder's view. `captured` and `stamp` are on the clocks that a real recorder has.
@@ -36,6 +55,7 @@ struct ExperimentOutput {
                        std::vector<std::uint16_t> depth_mm)>
         on_depth;
     std::function<void(double fraction)> on_progress;
+    std::function<void(const TrueRanging&)> on_ranging{};  ///< for tests
 };
 
 struct ExperimentSummary {
@@ -45,6 +65,8 @@ struct ExperimentSummary {
     double can_busy_fraction = 0.0;
     std::vector<double> i2c_busy_fraction;  ///< per node and bus
     double first_range_s = 0.0;             ///< when the first range was on the bus
+    std::vector<NodeClock> node_clocks;     ///< the true ones
+    std::string violations;                 ///< of emulated boards, one a line
 };
 
 struct ExperimentError {

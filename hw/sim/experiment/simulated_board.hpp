@@ -10,6 +10,7 @@
 #include "firmware/core/node.hpp"
 #include "hw/sim/can/simulated_can_bus.hpp"
 #include "hw/sim/clock.hpp"
+#include "hw/sim/experiment/rig_board.hpp"
 #include "hw/sim/i2c/simulated_i2c_bus.hpp"
 #include "hw/sim/vl53l1x/sensor_model.hpp"
 
@@ -18,25 +19,33 @@ namespace octoskin::sim {
 /// The scene that the sensor with this local index looks at.
 using SceneOfSensor = std::function<RangingScene(std::uint8_t sensor)>;
 
-class SimulatedBoard final : private node::XshutLines {
+class SimulatedBoard final : public RigBoard, private node::XshutLines {
   public:
     /// `present` and `can` must outlive the board. Every sensor's part differs: its constants are a function
-    /// of `seed`, node and sensor.
+    /// of `seed`, node and sensor. Nothing happens before `starts_at`.
     SimulatedBoard(const NodeConfig& config, NodeClock clock, std::uint64_t seed, const Present& present,
-                   SimulatedCanBus& can, const SceneOfSensor& scene);
+                   SimulatedCanBus& can, const SceneOfSensor& scene, SimTime starts_at = {});
 
     /// One turn of the board's loop at the present time.
     void poll();
+    void begin_turn(SimTime) override { poll(); }
+    void finish_turn() override {}
+    [[nodiscard]] double i2c_busy_s(std::size_t bus) override;
+    [[nodiscard]] NodeClock clock() override { return clock_; }
     [[nodiscard]] SensorModel& sensor(std::size_t index) { return *sensors_.at(index); }
     [[nodiscard]] SimulatedI2cBus& bus(std::size_t index) { return *buses_.at(index); }
     [[nodiscard]] const node::Node& node() const noexcept { return *node_; }
 
   private:
+    void start();
     void set(std::uint8_t line, bool is_high) override;
 
     NodeConfig config_;
     NodeClock clock_;
     const Present& present_;
+    SimTime starts_at_;
+    node::Identity identity_;
+    node::CanTransmitter* transmitter_ = nullptr;
     std::vector<std::unique_ptr<SensorModel>> sensors_;
     std::vector<std::unique_ptr<SimulatedI2cBus>> buses_;
     std::vector<i2c::Bus*> bus_pointers_;

@@ -79,6 +79,7 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
 
     [[nodiscard]] ViolationLog& log() noexcept { return log_; }
     [[nodiscard]] const CortexM4& core() const noexcept { return *core_; }
+    void forget_longest_awake() { core_->forget_longest_awake(); }
     [[nodiscard]] const ElfImage& image() const noexcept { return image_; }
     [[nodiscard]] std::uint32_t reset_count() const noexcept { return reset_count_; }
     [[nodiscard]] std::uint32_t ram_word(std::uint32_t address) const;

@@ -166,6 +166,7 @@ void CortexM4::run(BoardTime limit) {
         if (state_ == CoreState::sleeping) {
             if (is_idle()) return;
             state_ = CoreState::running;
+            woken_at_ = now_;
         }
         if (const auto next = control_->nvic().deliverable(masks())) enter(*next);
         execute();

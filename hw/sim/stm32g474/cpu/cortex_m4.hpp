@@ -71,6 +71,9 @@ class CortexM4 {
     [[nodiscard]] std::uint32_t general_register(std::uint32_t number) const;
     /// The lowest stack pointer seen at an exception entry or the end of a slice.
     [[nodiscard]] std::uint32_t lowest_stack() const noexcept { return lowest_stack_; }
+    /// The longest time between two sleeps: no turn of a main loop that sleeps takes longer.
+    [[nodiscard]] std::int64_t longest_awake_ps() const noexcept { return longest_awake_ps_; }
+    void forget_longest_awake() noexcept { longest_awake_ps_ = 0; }
     /// For tests: starts somewhere else than the reset handler.
     void jump(std::uint32_t address);
 
@@ -128,6 +131,8 @@ class CortexM4 {
     std::uint64_t instructions_ = 0;
     std::uint64_t cycles_ = 0;
     std::uint32_t lowest_stack_ = 0xFFFF'FFFF;
+    BoardTime woken_at_{};
+    std::int64_t longest_awake_ps_ = 0;
 
     struct CountedBlock {
         std::uint32_t size = 0;

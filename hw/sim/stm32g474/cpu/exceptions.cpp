@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <unicorn/unicorn.h>
 
+#include <algorithm>
 #include <array>
 
 #include "hw/sim/stm32g474/cpu/cortex_m4.hpp"
@@ -40,6 +41,7 @@ ExceptionMasks CortexM4::masks() const {
 void CortexM4::sleep() {
     if (control_->sleeps_deeply()) log_.report(Rule::not_modelled, "WFI with SLEEPDEEP");
     state_ = CoreState::sleeping;
+    longest_awake_ps_ = std::max(longest_awake_ps_, now_.ps - woken_at_.ps);
 }
 
 // WFI wakes for what would preempt with PRIMASK clear; whether the handler then runs is another question.

@@ -1,0 +1,107 @@
+#include "hw/sim/experiment/emulated_board.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+
+namespace octoskin::sim {
+namespace {
+
+std::filesystem::path write_block(const NodeConfig& config) {
+    std::string name = (std::filesystem::temp_directory_path() / "octoskin-block-XXXXXX").string();
+    const int file = mkstemp(name.data());
+    if (file < 0) throw BoardLinkError(name + ": cannot create a file for the configuration block");
+    std::array<std::uint8_t, kNodeConfigBytesMax> bytes{};
+    const auto block = encode(config, bytes);
+    const bool is_written = write(file, block.data(), block.size()) == static_cast<ssize_t>(block.size());
+    close(file);
+    if (!is_written) throw BoardLinkError(name + ": cannot write the configuration block");
+    return name;
+}
+
+std::vector<std::string> arguments_of(const EmulatedBoards& emulated, const std::filesystem::path& block,
+                                      double drift_ppm, std::uint64_t seed) {
+    return {"--elf",
+            emulated.image.string(),
+            "--config",
+            block.string(),
+            "--drift-ppm=" + std::to_string(drift_ppm),
+            "--seed",
+            std::to_string(seed),
+            "--cycles-per-instruction",
+            std::to_string(emulated.cycles_per_instruction)};
+}
+
+}  // namespace
+
+EmulatedBoard::EmulatedBoard(const EmulatedBoards& emulated, const NodeConfig& config, double drift_ppm,
+                             std::uint64_t seed, SimulatedCanBus& can, const SceneOfSensor& scene)
+    : drift_ppm_(drift_ppm), block_(write_block(config)) {
+    for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) scenes_.push_back(scene(sensor));
+    process_ = std::make_unique<BoardProcess>(
+        emulated.program, arguments_of(emulated, block_, drift_ppm, seed),
+        [this](const WhatIsSeen& question) {
+            return scenes_.at(question.sensor)(question.ranging_index, question.window_middle, question.roi);
+        });
+    const auto noting = [this](BusEventKind kind) {
+        return [this, kind](const wire::CanFrame& frame, SimTime end) { note(kind, end, frame); };
+    };
+    seat_ = &can.attach_seat({.on_frame = noting(BusEventKind::received),
+                              .on_sent = noting(BusEventKind::sent),
+                              .on_disturbed = noting(BusEventKind::disturbed)});
+}
+
+EmulatedBoard::~EmulatedBoard() {
+    process_.reset();
+    std::error_code ignored;  // a file left in the temporary directory harms nobody
+    std::filesystem::remove(block_, ignored);
+}
+
+void EmulatedBoard::note(BusEventKind kind, SimTime time, const wire::CanFrame& frame) {
+    // A frame may begin and end within one turn: the board must know that it began.
+    if (kind != BusEventKind::received) {
+        if (!has_told_start_) turn_.events.push_back({BusEventKind::started, turn_.time, {}});
+        has_told_start_ = false;
+        offered_.reset();
+    }
+    turn_.events.push_back({kind, time, frame});
+}
+
+void EmulatedBoard::begin_turn(SimTime now) {
+    if (seat_->is_sending() && !has_told_start_) {
+        turn_.events.push_back({BusEventKind::started, now, {}});
+        has_told_start_ = true;
+    }
+    turn_.time = now;
+    process_->begin(turn_);
+    turn_.events.clear();
+}
+
+void EmulatedBoard::finish_turn() {
+    const HasRun done = process_->finish();
+    // A frame that the bus has begun stays on offer until it has ended.
+    if (seat_->is_sending() || done.offer == offered_) return;
+    offered_ = done.offer;
+    seat_->offer(offered_);
+}
+
+const BoardSummary& EmulatedBoard::summary() {
+    if (!summary_) summary_ = process_->summary();
+    return *summary_;
+}
+
+double EmulatedBoard::i2c_busy_s(std::size_t bus) {
+    return summary().i2c_busy_s.at(bus);
+}
+
+NodeClock EmulatedBoard::clock() {
+    const SimTime zero = summary().counter_zero;
+    const double drifted_us = static_cast<double>(zero.us) * (1.0 + drift_ppm_ * 1e-6);
+    return {NodeTime{} - Microseconds{static_cast<std::int64_t>(drifted_us)}, drift_ppm_};
+}
+
+std::string EmulatedBoard::violations() {
+    return summary().report;
+}
+
+}  // namespace octoskin::sim
