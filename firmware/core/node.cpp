@@ -161,12 +161,11 @@ NodeTime Node::wake_time(NodeTime now) const {
     if (ports_.watchdog != nullptr) wake = earlier_of(wake, feed_at_);
     wake = earlier(wake, bus_off_.wake_time());
     if (bus_off_.is_off()) return later_of(wake, now);
-    wake = earlier(wake, black_box_.wake_time());
     if (has_unsent_) {
-        wake = earlier_of(wake, now + std::max(tokens_.wait(), kTransmitRetry));
-    } else if (!own_id_heard_) {
-        wake = earlier(wake, queue_.ready_time());
+        return later_of(earlier_of(wake, now + std::max(tokens_.wait(), kTransmitRetry)), now);
     }
+    wake = earlier(wake, black_box_.wake_time());
+    if (!own_id_heard_) wake = earlier(wake, queue_.ready_time());
     return later_of(wake, now);
 }
 

@@ -336,5 +336,17 @@ TEST_F(ReliabilityFirmwareTest, F8_with_a_full_transmit_queue_the_newest_reading
     EXPECT_EQ(last_page<wire::InfoTraffic>(rig_)->late_dropped, counts.late);
 }
 
+// Found by the campaign: what is due and cannot be sent is looked at once a millisecond, not all the time.
+TEST_F(ReliabilityFirmwareTest, F8_a_black_box_that_nobody_takes_does_not_keep_the_loop_busy) {
+    rig_.run_for(2 * kSecond);
+    command(CommandCode::send_black_box);
+    rig_.run_for(100 * kMillisecond);
+    ASSERT_FALSE(rig_.said_of<wire::BlackBox>().empty());
+    const std::uint64_t polls = rig_.poll_count();
+    rig_.block_transmission(true);
+    rig_.run_for(1 * kSecond);
+    EXPECT_LE(rig_.poll_count() - polls, 4'000U);
+}
+
 }  // namespace
 }  // namespace octoskin::test
