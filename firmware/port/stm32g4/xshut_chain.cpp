@@ -45,7 +45,9 @@ void XshutChain::start() {
 void XshutChain::set(std::uint8_t line, bool is_high) {
     assert(line < kNodeXshutLinesMax);
     const std::uint64_t bit = std::uint64_t{1} << line;
-    levels_ = is_high ? levels_ | bit : levels_ & ~bit;
+    const std::uint64_t levels = is_high ? levels_ | bit : levels_ & ~bit;
+    if (levels == levels_) return;  // at bring-up every sensor asks for the reset that it is in
+    levels_ = levels;
     shift_out();
 }
 

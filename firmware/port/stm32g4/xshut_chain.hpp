@@ -14,7 +14,7 @@ class XshutChain final : public node::XshutLines {
     /// All lines low, then outputs on.
     void start();
 
-    /// Shifts all 40 levels out and shows them at once: about 60 us at 160 MHz.
+    /// Shifts all 40 levels out and shows them at once: about 30 us at 160 MHz.
     void set(std::uint8_t line, bool is_high) override;
 
   private:

@@ -80,6 +80,15 @@ TEST_F(XshutChainTest, keeps_the_others_as_they_are) {
         EXPECT_EQ(is_high(line), line % 3 == 0 && line != 9) << line;
 }
 
+TEST_F(XshutChainTest, costs_nothing_where_nothing_changes) {
+    chain_.start();
+    chain_.set(4, true);
+    space_.forget_writes();
+    chain_.set(3, false);
+    chain_.set(4, true);
+    EXPECT_TRUE(space_.writes().empty());
+}
+
 // --- serial port
 
 class SerialPortTest : public ::testing::Test {
