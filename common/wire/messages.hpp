@@ -191,6 +191,9 @@ enum class FaultKind : std::uint8_t {
     clock_fault = 6,   ///< the crystal failed
     xshut_stuck = 7,   ///< now, no reset: where is the XSHUT line that does not put its sensor in reset
     stray_sensor = 8,  ///< now, no reset: where is the I2C bus on which somebody answered at 0x29 unasked
+    /// Now, no reset: a sensor's register will not take its value. where: sensor in bits 31:24, register
+    /// index in 23:8, the value found in 7:0.
+    register_fixed = 9,
     unknown = 15,
 };
 struct InfoFault {  ///< what is wrong with the node now, else its last recorded fault; else all zero

@@ -45,6 +45,7 @@ inline constexpr auto kFaultKind = std::to_array<Named<FaultKind>>({
     {FaultKind::clock_fault, "clock_fault"},
     {FaultKind::xshut_stuck, "xshut_stuck"},
     {FaultKind::stray_sensor, "stray_sensor"},
+    {FaultKind::register_fixed, "register_fixed"},
     {FaultKind::unknown, "unknown"},
 });
 inline constexpr auto kInfoPage = std::to_array<Named<InfoPage>>({

@@ -161,6 +161,13 @@ std::optional<wire::InfoFault> Node::present_fault() const noexcept {
         if (!buses_[bus] || !buses_[bus]->has_parked()) continue;
         return wire::InfoFault{.kind = wire::FaultKind::stray_sensor, .count = count, .where = bus};
     }
+    for (std::uint8_t i = 0; i < sensor_count_; ++i) {
+        const auto& fixed = sensors_[i]->read_back().last_exempt();
+        if (!fixed) continue;
+        const std::uint32_t where =
+            std::uint32_t{i} << 24U | std::uint32_t{fixed->index} << 8U | fixed->found;
+        return wire::InfoFault{.kind = wire::FaultKind::register_fixed, .count = count, .where = where};
+    }
     return std::nullopt;
 }
 

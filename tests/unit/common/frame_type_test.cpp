@@ -127,6 +127,7 @@ TEST(Names, are_those_of_the_protocol) {
                              {6, "clock_fault"},
                              {7, "xshut_stuck"},
                              {8, "stray_sensor"},
+                             {9, "register_fixed"},
                              {15, "unknown"}});
     expect_names<InfoPage>({{0, "uid_low"},
                             {1, "uid_high"},

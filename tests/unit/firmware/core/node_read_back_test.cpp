@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <variant>
 #include <vector>
 
 #include "firmware/core/steering_checks.hpp"
@@ -129,6 +130,13 @@ TEST(NodeReadBack, a_register_that_never_takes_its_value_is_tried_three_times_th
     EXPECT_EQ(rig.said_of<wire::Heartbeat>().back().degraded_sensors, 1) << "not as configured";
     EXPECT_GT(rig.readings_of(0).size(), 500U);
     EXPECT_EQ(rig.node().counts().suspect, 0U) << "it does not steer the range";
+    const auto pages = rig.said_of<wire::NodeInfo>();
+    const auto named = std::find_if(pages.rbegin(), pages.rend(), [](const wire::NodeInfo& page) {
+        return std::holds_alternative<wire::InfoFault>(page);
+    });
+    ASSERT_NE(named, pages.rend());
+    EXPECT_EQ(std::get<wire::InfoFault>(*named).kind, wire::FaultKind::register_fixed);
+    EXPECT_EQ(std::get<wire::InfoFault>(*named).where, 0x00'004C'20U) << "sensor 0, 0x4C holds 0x20";
 }
 
 TEST(NodeReadBack, readings_on_a_steering_register_that_will_not_take_its_value_stay_suspect) {
