@@ -473,7 +473,9 @@ void Fdcan::count_errors(int transmit, int receive) {
     const bool was_passive = is_passive();
     const bool was_warning = is_warning();
     transmit_errors_ = std::max(0, transmit_errors_ + transmit);
-    receive_errors_ = std::max(0, receive_errors_ + receive);
+    // One good frame ends being passive for what was received: ISO 11898-1 sets the counter to 119..127.
+    const bool ends_passive = receive < 0 && receive_errors_ >= kPassiveLimit;
+    receive_errors_ = ends_passive ? kPassiveLimit - 1 : std::max(0, receive_errors_ + receive);
     if (is_passive() != was_passive) raise(kErrorPassive);
     if (is_warning() != was_warning) raise(kErrorWarning);
     if (transmit_errors_ >= kBusOffLimit) enter_bus_off();
