@@ -23,20 +23,24 @@ constexpr unsigned kReadBackBits = read_bits(1);  ///< one register of the confi
 constexpr unsigned kZoneBits = write_bits(1);
 static_assert(kPollBits + 2 * kResultBits + kClearBits + kReadBackBits == 518);
 
-double bits_per_second(const NodeConfig& node, const SensorConfig& sensor) {
-    const unsigned bits = kPollBits + (node.reads_twice ? 2 : 1) * kResultBits + kClearBits + kReadBackBits +
-                          (sensor.zone_count > 1 ? kZoneBits : 0);
-    return bits * 1000.0 / sensor.inter_measurement_ms;
+unsigned bits_of_reading(const NodeConfig& node, const SensorConfig& sensor) {
+    return kPollBits + (node.reads_twice ? 2 : 1) * kResultBits + kClearBits + kReadBackBits +
+           (sensor.zone_count > 1 ? kZoneBits : 0);
 }
 
 }  // namespace
 
+double reading_s(const NodeConfig& node, const SensorConfig& sensor) {
+    return bits_of_reading(node, sensor) / (node.i2c_hz * kSlowestShare);
+}
+
 double i2c_load(const NodeConfig& node, std::uint8_t bus) {
-    double load_bps = 0.0;
+    double load = 0.0;
     for (std::size_t i = 0; i < std::min<std::size_t>(node.sensor_count, kNodeSensorsMax); ++i) {
-        if (node.sensors[i].bus == bus) load_bps += bits_per_second(node, node.sensors[i]);
+        const SensorConfig& sensor = node.sensors[i];
+        if (sensor.bus == bus) load += reading_s(node, sensor) * 1000.0 / sensor.inter_measurement_ms;
     }
-    return load_bps / (node.i2c_hz * kSlowestShare);
+    return load;
 }
 
 }  // namespace octoskin::rig

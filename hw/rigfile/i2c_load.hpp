@@ -5,6 +5,9 @@
 
 namespace octoskin::rig {
 
+/// How long one reading of a sensor occupies its bus, at that clock; seconds.
+[[nodiscard]] double reading_s(const NodeConfig& node, const SensorConfig& sensor);
+
 /// Share of the time that bus `bus` is occupied while all its sensors range, 0..1 and beyond. At the slowest
 /// clock that the bus may have: filters and rise times stretch a nominal 400 kHz to 283.
 [[nodiscard]] double i2c_load(const NodeConfig& node, std::uint8_t bus);

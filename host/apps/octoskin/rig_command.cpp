@@ -7,6 +7,7 @@
 #include "host/apps/octoskin/commands.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
+#include "hw/rigfile/phase_spread.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin::app {
@@ -18,11 +19,27 @@ struct RigOptions {
     bool prints_canonical = false;
 };
 
+/// What a person can mend by other values of phase_us.
+void describe_turns(const rig::Node& node) {
+    for (std::uint8_t bus = 0; bus < node.board.i2c_bus_count; ++bus) {
+        const rig::PhaseSpread spread = rig::phase_spread(node.config, bus);
+        if (spread.mean == 0.0) continue;
+        fmt::print("    I2C bus {}: read {:.0f} % of the time, {:.0f} % of its busiest 5 ms{}\n", bus,
+                   100.0 * spread.mean, 100.0 * spread.peak,
+                   spread.is_even() ? "" : ": phase_us could spread the readings better");
+    }
+    for (const auto& [first, second] : rig::pairs_ranging_together(node)) {
+        fmt::print("    {} and {} see the same light and range at once: set phase_us apart\n",
+                   node.sensors[first].name, node.sensors[second].name);
+    }
+}
+
 void describe(const rig::Rig& rig) {
     fmt::print("rig {}: hash {:08x}, robot {}\n", rig.name, rig::rig_hash(rig), rig.urdf.filename().string());
     for (const rig::Node& node : rig.nodes) {
         fmt::print("  node {} '{}': {} sensors, node_hash {:08x}\n", node.config.node_id, node.name,
                    node.sensors.size(), node_hash(node.config));
+        describe_turns(node);
     }
     fmt::print("  node {} sends {} joints at {:g} Hz\n", rig.joints.node_id, rig.joints.joints.size(),
                rig.joints.rate_hz);

@@ -11,6 +11,7 @@
 #include "common/config/node_config.hpp"
 #include "hw/rigfile/can_load.hpp"
 #include "hw/rigfile/i2c_load.hpp"
+#include "hw/rigfile/phase_spread.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin::rig {
@@ -154,6 +155,24 @@ TEST(ShippedRigs, i2c_load_equals_the_count_of_bits) {
     const Rig rig = shipped("experiment.yaml");
     EXPECT_NEAR(i2c_load(rig.nodes[0].config, 0), 518.0 * 5 * (1000.0 / 33.0) / 283'000.0, 1e-12);
     EXPECT_NEAR(i2c_load(rig.nodes[0].config, 1), 518.0 * 4 * (1000.0 / 33.0) / 283'000.0, 1e-12);
+}
+
+TEST(ShippedRigs, sensors_take_turns_on_every_bus_and_in_the_light) {
+    for (const char* name : {"experiment.yaml", "experiment_classical.yaml", "experiment_low_camera.yaml",
+                             "bench_one_board.yaml"}) {
+        const Rig rig = shipped(name);
+        for (const Node& node : rig.nodes) {
+            for (std::uint8_t bus = 0; bus < node.board.i2c_bus_count; ++bus) {
+                const PhaseSpread spread = phase_spread(node.config, bus);
+                EXPECT_TRUE(spread.is_even()) << name << ' ' << node.name << ' ' << int{bus} << ": "
+                                              << spread.peak << " of " << spread.mean;
+            }
+            for (const auto& [first, second] : pairs_ranging_together(node)) {
+                ADD_FAILURE() << name << ": " << node.sensors[first].name << " and "
+                              << node.sensors[second].name;
+            }
+        }
+    }
 }
 
 TEST(ShippedRigs, can_load_stays_far_below_the_limit) {
