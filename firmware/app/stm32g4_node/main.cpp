@@ -51,13 +51,18 @@ constinit std::array<i2c::Bus*, kI2cWirings.size()> buses{&i2c_controllers[0], &
 constinit NodeConfig config = without_configuration();
 constinit std::optional<node::Node> the_node;
 
+/// Without the crystal it was said already.
+void note_silence(const Clocks& clocks) {
+    if (clocks.can_hz != 0) report.can_dead();
+}
+
 void start_buses(const Clocks& clocks) {
     const auto timing = i2c_timing(clocks.core_hz, config.i2c_hz);
     if (timing) {
         for (I2cController& controller : i2c_controllers) controller.start(*timing);
     }
     const bool has_rates = is_possible(rates_of(config), kCanHz);
-    if (has_rates) (void)can.start(rates_of(config), config.node_id, clocks.can_hz);
+    if (has_rates && !can.start(rates_of(config), config.node_id, clocks.can_hz)) note_silence(clocks);
     if (timing && has_rates && config.board_type == kBoardType) return report.config_accepted(config);
     report.config_unsuitable(config);
     // Not valid: the node does not range, and says so. (A wrong board type it finds by itself.)
@@ -73,7 +78,10 @@ void load_configuration(const Clocks& clocks) {
         report.config_refused(decoded.error());
         rate_search.emplace();
         rate_search->begin(timer.now());
-        if (!can.listen(rate_search->rates(), config.node_id, clocks.can_hz)) rate_search.reset();
+        if (!can.listen(rate_search->rates(), config.node_id, clocks.can_hz)) {
+            rate_search.reset();
+            note_silence(clocks);
+        }
     }
 }
 

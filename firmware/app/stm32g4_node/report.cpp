@@ -78,6 +78,10 @@ void Report::config_unsuitable(const NodeConfig& config) {
     serial_.say(line.number(config.board_type).text(", is not for this board: no ranging").view());
 }
 
+void Report::can_dead() {
+    serial_.say("the CAN controller does not start: CAN is silent");
+}
+
 void Report::update(const node::Node& node, const CanController& can, NodeTime now) {
     const wire::NodeState state = node.state();
     if (state_ != state) {

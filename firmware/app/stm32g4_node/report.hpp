@@ -26,6 +26,8 @@ class Report {
     void config_refused(NodeConfigError error);
     /// Whole, but not for this board, or with rates that it cannot make.
     void config_unsuitable(const NodeConfig& config);
+    /// The controller does not follow its orders: silent.
+    void can_dead();
 
     /// Says what changed since the last call.
     void update(const node::Node& node, const CanController& can, NodeTime now);
