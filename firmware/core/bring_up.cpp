@@ -189,16 +189,15 @@ void BringUp::on_step_failed(vl53l1x::Error error, NodeTime now) {
         on_run_verified(now);
     } else if (step_ == Step::identifying && error == vl53l1x::Error::no_answer) {
         on_nobody_came();
-    } else if (step_ == Step::parking && error != vl53l1x::Error::bus_error) {
-        fail(wire::SensorFault::address_conflict);  // whoever it is does not let itself be moved
-    } else if (!is_watching() || error == vl53l1x::Error::bus_error) {
+    } else if (error == vl53l1x::Error::bus_error || !(is_watching() || step_ == Step::parking)) {
         fail(sensor_fault(error));
-    } else if (error == vl53l1x::Error::no_answer) {
+    } else if (error == vl53l1x::Error::no_answer && step_ != Step::parking) {
         on_silence(now);
     } else if (step_ == Step::checking_parked) {
         start_step(Step::booting, now);
     } else {
-        fail(wire::SensorFault::address_conflict);  // somebody answered who is no VL53L1X, or hardly one
+        // Somebody answered who is no VL53L1X, or hardly one, or does not let itself be moved.
+        fail(wire::SensorFault::address_conflict);
     }
 }
 

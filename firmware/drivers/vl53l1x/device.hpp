@@ -259,7 +259,7 @@ class Device {
     NodeTime ready_seen_{};
     bool has_read_again_ = false;
     bool confirms_ready_ = false;
-    std::size_t run_ = 0;  ///< of `kRegisterRuns`
+    std::uint8_t run_ = 0;  ///< of `kRegisterRuns`
 
     // Results.
     bool has_measurement_ = false;

@@ -149,7 +149,7 @@ void Device::begin_update_temperature() {
 void Device::begin_verify(std::size_t run) {
     assert(run < kRegisterRuns.size());
     begin(Method::kVerify);
-    run_ = run;
+    run_ = static_cast<std::uint8_t>(run);
 }
 
 void Device::begin_read_register(reg::Index index, std::uint8_t count) {
