@@ -1,0 +1,228 @@
+// The flashed image and its promises (docs, reliability): times after reset, every reading taken, and the
+// main loop's length whatever a bus does.
+#include <gmock/gmock.h>
+
+#include "tests/board/flashed_board.hpp"
+
+namespace octoskin::sim::stm32 {
+namespace {
+
+using namespace std::chrono_literals;
+
+NodeConfig seventeen_at_50_hz() {
+    return fleet(17, DistanceMode::short_range, 15, 20);
+}
+NodeConfig thirty_four_at_30_hz() {
+    return fleet(34, DistanceMode::long_range, 20, 33);
+}
+
+/// An instruction costs one cycle or three; I2C edges are typical or as slow as the specification allows.
+struct Speed {
+    std::uint32_t cycles_per_instruction;
+    BusEdges edges;
+};
+void PrintTo(const Speed& speed, std::ostream* out) {
+    *out << speed.cycles_per_instruction
+         << (speed.edges == BusEdges::slowest ? "_slow_edges" : "_typical_edges");
+}
+NucleoOptions options_of(const Speed& speed) {
+    NucleoOptions options;
+    options.cycles_per_instruction = speed.cycles_per_instruction;
+    options.edges = speed.edges;
+    return options;
+}
+
+class ImageTest : public testing::TestWithParam<Speed> {
+  protected:
+    /// After three seconds to come up and to trim: two more in which nothing may be missed.
+    void expect_every_reading_taken(const NodeConfig& config, double bus_share_max) {
+        FlashedBoard flashed(config, options_of(GetParam()));
+        flashed.run_for(3s);
+        const auto counts = [&] {
+            std::vector<std::pair<std::size_t, std::uint32_t>> all;
+            for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor)
+                all.emplace_back(flashed.readings(sensor).size(), flashed.rangings(sensor));
+            return all;
+        };
+        const auto before = counts();
+        std::array<std::int64_t, 4> busy{};
+        for (std::size_t bus = 0; bus < 4; ++bus) busy.at(bus) = flashed.board().i2c_busy_ps(bus);
+        const std::uint64_t instructions = flashed.board().core().instructions();
+        const std::uint64_t cycles = flashed.board().core().cycles();
+        flashed.board().forget_longest_awake();
+        flashed.run_for(2s);
+        const auto after = counts();
+
+        std::size_t readings = 0;
+        const double periods = 2000.0 / config.sensors[0].inter_measurement_ms;
+        for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) {
+            SCOPED_TRACE(testing::Message() << "sensor " << int{sensor});
+            const auto taken = static_cast<double>(after[sensor].first - before[sensor].first);
+            const auto made = static_cast<double>(after[sensor].second - before[sensor].second);
+            EXPECT_NEAR(made, periods, rate_tolerance() * periods + 1) << "the sensor keeps its rate";
+            EXPECT_NEAR(taken, made, 1.0) << "one may be under way at either end";
+            expect_unbroken(flashed.readings(sensor));
+            readings += after[sensor].first - before[sensor].first;
+        }
+        EXPECT_EQ(flashed.violations(), "");
+        const double per_reading = static_cast<double>(flashed.board().core().instructions() - instructions) /
+                                   static_cast<double>(readings);
+        std::printf(
+            "%zu readings in 2 s, %.0f instructions each, core %.1f %% busy, longest turn %.0f us; buses",
+            readings, per_reading, static_cast<double>(flashed.board().core().cycles() - cycles) / 3.2e6,
+            static_cast<double>(flashed.board().core().longest_awake_ps()) * 1e-6);
+        for (std::size_t bus = 0; bus < 4; ++bus) {
+            const double share =
+                static_cast<double>(flashed.board().i2c_busy_ps(bus) - busy.at(bus)) * 0.5e-12;
+            std::printf(" %.1f %%", 100.0 * share);
+            EXPECT_LT(share, bus_share_max) << "bus " << bus;
+        }
+        std::printf("\n");
+        EXPECT_LE(flashed.board().core().longest_awake_ps(), 5'000 * kPsPerUs);
+    }
+
+    /// At three cycles an instruction the core of 34 sensors is nine tenths busy: ready times are seen late,
+    /// and a sensor's period may stay a few per cent off until its next trim. Its readings are all taken
+    /// nevertheless.
+    static double rate_tolerance() { return GetParam().cycles_per_instruction == 1 ? 0.02 : 0.05; }
+
+    static void expect_unbroken(const std::vector<SaidReading>& readings) {
+        for (std::size_t i = 1; i < readings.size(); ++i) {
+            ASSERT_EQ(readings[i].reading.sequence,
+                      (readings[i - 1].reading.sequence + 1) % wire::kSequenceCount);
+            ASSERT_NE(readings[i].reading.range_mm, readings[i - 1].reading.range_mm) << "a value said twice";
+        }
+    }
+};
+
+TEST_P(ImageTest, seventeen_sensors_at_50_hz_on_four_buses_lose_nothing) {
+    expect_every_reading_taken(seventeen_at_50_hz(), 0.50);
+}
+
+TEST_P(ImageTest, thirty_four_sensors_at_30_hz_on_four_buses_lose_nothing) {
+    expect_every_reading_taken(thirty_four_at_30_hz(), 0.60);
+}
+
+TEST_P(ImageTest, heartbeat_and_ranges_come_in_time_after_reset) {
+    FlashedBoard flashed(thirty_four_at_30_hz(), options_of(GetParam()));
+    flashed.run_for(4s);
+    const auto& beats = flashed.heartbeats();
+    ASSERT_GE(beats.size(), 35U);
+    EXPECT_LE(beats.front().end.us, 300'000);
+    EXPECT_EQ(beats.front().heartbeat.reset_cause, wire::ResetCause::power_on);
+    EXPECT_GT(flashed.first_range().us, 0);
+    EXPECT_LE(flashed.first_range().us, 2'000'000);
+    for (std::uint8_t sensor = 0; sensor < 34; ++sensor) {
+        ASSERT_FALSE(flashed.readings(sensor).empty()) << int{sensor};
+        EXPECT_LE(flashed.readings(sensor).front().end.us, 2'000'000) << int{sensor};
+    }
+    std::int64_t jitter_max_us = 0;
+    for (std::size_t i = 1; i < beats.size(); ++i) {
+        const std::int64_t interval = beats[i].end.us - beats[i - 1].end.us;
+        jitter_max_us = std::max(jitter_max_us, std::abs(interval - 100'000));
+    }
+    EXPECT_LE(jitter_max_us, 10'000);
+    std::printf("first heartbeat after %.1f ms, first range after %.1f ms, jitter %.2f ms\n",
+                static_cast<double>(beats.front().end.us) * 1e-3,
+                static_cast<double>(flashed.first_range().us) * 1e-3,
+                static_cast<double>(jitter_max_us) * 1e-3);
+    EXPECT_EQ(flashed.violations(), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Speeds, ImageTest,
+                         testing::Values(Speed{1, BusEdges::typical}, Speed{3, BusEdges::slowest}),
+                         testing::PrintToStringParamName());
+
+// --- one fault on one bus
+
+class I2cFaultTest : public testing::TestWithParam<I2cFault> {};
+
+TEST_P(I2cFaultTest, keeps_the_loop_short_and_the_others_ranging) {
+    const NodeConfig config = fleet(8, DistanceMode::long_range, 20, 33);
+    NucleoOptions options;
+    options.cycles_per_instruction = 3;
+    FlashedBoard flashed(config, options);
+    flashed.run_for(1s);
+    flashed.board().forget_longest_awake();
+    const std::size_t neighbour_before = flashed.readings(1).size();
+    I2cFault fault = GetParam();
+    fault.first = flashed.board().wire(0).transfer_count() + 3;
+    flashed.board().wire(0).inject(fault);
+    flashed.run_for(3s);
+
+    EXPECT_LE(flashed.board().core().longest_awake_ps(), 5'000 * kPsPerUs);
+    EXPECT_EQ(flashed.board().reset_count(), 0U);
+    EXPECT_EQ(flashed.violations(), "");
+    // 3 s at 30.3 Hz; sensor 1 is on another bus.
+    EXPECT_NEAR(static_cast<double>(flashed.readings(1).size() - neighbour_before), 91.0, 3.0);
+    // And the bus itself is back: its sensor's last reading is no older than three periods.
+    ASSERT_FALSE(flashed.readings(0).empty());
+    EXPECT_GE(flashed.readings(0).back().end.us, flashed.now().us - 100'000);
+}
+
+std::string name_of_fault(const testing::TestParamInfo<I2cFault>& tested) {
+    constexpr const char* kNames[] = {"nack_address",     "nack_byte",    "nack_read", "flip_bit",
+                                      "flip_written_bit", "lose_write",   "read_ones", "lose_arbitration",
+                                      "stretch",          "sda_stuck_low"};
+    return std::string(kNames[static_cast<std::size_t>(tested.param.kind)]) + "_at_" +
+           std::to_string(tested.param.position);
+}
+
+constexpr I2cFault kFaults[] = {
+    {.kind = I2cFaultKind::nack_address},
+    {.kind = I2cFaultKind::nack_byte},
+    {.kind = I2cFaultKind::nack_byte, .position = 1},
+    {.kind = I2cFaultKind::nack_read},
+    {.kind = I2cFaultKind::flip_bit, .position = 9},
+    {.kind = I2cFaultKind::flip_written_bit, .position = 5},
+    {.kind = I2cFaultKind::lose_write},
+    {.kind = I2cFaultKind::read_ones},
+    {.kind = I2cFaultKind::lose_arbitration},
+    {.kind = I2cFaultKind::stretch},
+    {.kind = I2cFaultKind::sda_stuck_low, .position = 5},
+};
+INSTANTIATE_TEST_SUITE_P(Kinds, I2cFaultTest, testing::ValuesIn(kFaults), name_of_fault);
+
+// --- clocks
+
+TEST(ImageCrystal, without_it_the_node_says_so_on_the_serial_line_and_is_silent_on_can) {
+    NucleoOptions options;
+    options.crystal.is_present = false;
+    FlashedBoard flashed(fleet(4, DistanceMode::long_range, 20, 33), options);
+    flashed.run_for(500ms);
+    EXPECT_THAT(flashed.board().serial_text(), testing::HasSubstr("without the crystal"));
+    EXPECT_TRUE(flashed.heartbeats().empty());
+    EXPECT_EQ(flashed.violations(), "");
+}
+
+TEST(ImageCrystal, failing_while_it_runs_resets_the_node_into_silence) {
+    NucleoOptions options;
+    options.crystal.fails_at = BoardTime{700'000 * kPsPerUs};
+    FlashedBoard flashed(fleet(4, DistanceMode::long_range, 20, 33), options);
+    flashed.run_for(2s);
+    ASSERT_FALSE(flashed.heartbeats().empty());
+    EXPECT_LE(flashed.heartbeats().back().end.us, 700'500);
+    EXPECT_EQ(flashed.board().reset_count(), 1U);
+    EXPECT_THAT(flashed.board().serial_text(), testing::HasSubstr("without the crystal"));
+    EXPECT_EQ(flashed.violations(), "");
+}
+
+// --- CAN
+
+TEST(ImageCan, comes_back_within_a_second_after_bus_off) {
+    FlashedBoard flashed(fleet(4, DistanceMode::long_range, 20, 33));
+    flashed.run_for(1s);
+    flashed.board().can().set_link(CanLink::broken);
+    flashed.run_for(1s);
+    EXPECT_LE(flashed.heartbeats().back().end.us, 1'000'500);
+    flashed.board().can().set_link(CanLink::good);
+    flashed.run_for(2s);
+    const auto again = std::ranges::find_if(
+        flashed.heartbeats(), [](const SaidHeartbeat& beat) { return beat.end.us > 2'000'000; });
+    ASSERT_NE(again, flashed.heartbeats().end());
+    EXPECT_LE(again->end.us, 3'000'000);
+    EXPECT_EQ(flashed.violations(), "");
+}
+
+}  // namespace
+}  // namespace octoskin::sim::stm32
