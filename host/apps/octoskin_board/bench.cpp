@@ -110,15 +110,16 @@ std::string violation_report(NucleoBoard& board) {
     return text;
 }
 
-std::string use_report(Bench& bench, double wall_s) {
+std::string use_report(Bench& bench, double cpu_s) {
     NucleoBoard& board = bench.board();
     const double seconds = static_cast<double>(board.now().us) * 1e-6;
     const auto& core = board.core();
     std::string text = fmt::format(
-        "{:.3f} s simulated in {:.3f} s ({:.1f} times real time); {:.1f} million instructions, the core "
+        "{:.3f} s simulated in {:.3f} s of CPU time ({:.1f} times real time); {:.1f} million instructions, "
+        "the core "
         "{:.1f} % "
         "busy; {} resets; lowest stack 0x{:08X}; violations {}\n",
-        seconds, wall_s, seconds / wall_s, static_cast<double>(core.instructions()) * 1e-6,
+        seconds, cpu_s, seconds / cpu_s, static_cast<double>(core.instructions()) * 1e-6,
         static_cast<double>(core.cycles()) / (160e4 * seconds), board.reset_count(), core.lowest_stack(),
         board.log().count());
     for (std::size_t bus = 0; bus < NucleoBoard::kI2cBuses; ++bus) {

@@ -34,6 +34,7 @@ class Bench {
 
 /// The violations, one a line, with their places in the program; and what the run took.
 [[nodiscard]] std::string violation_report(sim::stm32::NucleoBoard& board);
-[[nodiscard]] std::string use_report(Bench& bench, double wall_s);
+/// `cpu_s`: of this process. Wall time would measure the other programs of the machine too.
+[[nodiscard]] std::string use_report(Bench& bench, double cpu_s);
 
 }  // namespace octoskin::board
