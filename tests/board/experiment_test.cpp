@@ -18,7 +18,8 @@ using Source = std::pair<std::uint8_t, std::uint8_t>;  ///< node, sensor
 struct Heard {
     std::map<Source, std::vector<wire::RangeReading>> readings;
     std::map<Source, std::vector<TrueRanging>> truth;
-    std::map<std::uint8_t, SimTime> first_frame;  ///< of each node: when it began
+    std::map<Source, std::int64_t> told_bound_us;  ///< the largest bound on capture times that was told
+    std::map<std::uint8_t, SimTime> first_frame;   ///< of each node: when it began
     ExperimentSummary summary;
 };
 
@@ -73,6 +74,10 @@ class ExperimentTest : public testing::Test {
         const std::int64_t end_us = stamp.ns / 1000 - kWallAtStartUs;
         const wire::BitRates rates{rig_.bus.nominal_bitrate, rig_.bus.data_bitrate};
         heard.first_frame.try_emplace(decoded->node_id, SimTime{end_us - frame_duration_us(frame, rates)});
+        if (const auto* health = std::get_if<wire::SensorHealth>(&decoded->message)) {
+            std::int64_t& told = heard.told_bound_us[{decoded->node_id, health->sensor}];
+            told = std::max<std::int64_t>(told, 64 * health->capture_bound_64us);
+        }
         if (const auto* range = std::get_if<wire::RangeFd>(&decoded->message)) {
             for (std::uint8_t i = 0; i < range->count; ++i) {
                 const wire::RangeReading& reading = range->entries.at(i).reading;
@@ -99,6 +104,7 @@ class ExperimentTest : public testing::Test {
                 }
                 const std::int64_t off = off_us(readings[i], clock, truth[at]);
                 errors.capture_us_max = std::max(errors.capture_us_max, off);
+                EXPECT_LE(off, heard.told_bound_us.at(source)) << "beyond the bound that the node told";
                 if (i >= 40) errors.settled_capture_us_max = std::max(errors.settled_capture_us_max, off);
                 if (is_valid_status(readings[i]) && truth[at].seen.range_m) {
                     const double mm = *truth[at].seen.range_m * 1000.0;
@@ -171,12 +177,16 @@ TEST_F(ExperimentTest, the_flashed_image_says_what_the_node_core_says) {
     }
     EXPECT_EQ(compared, 34U * kReadingsAtRest);
 
-    // Moving or not, each home tells what was true, and when: as exactly as the other.
+    // Moving or not, each home tells what was true, and when: within the bound that it promises, as exactly
+    // as the other. (Nearer than that the capture times of the homes themselves cannot be compared: each
+    // trims its sensors' periods by its own measurements.)
     const Errors of_flashed = errors_of(flashed);
     const Errors of_core = errors_of(core);
     for (const Errors& errors : {of_flashed, of_core}) {
         EXPECT_GT(errors.compared, 34U * 100U);
-        EXPECT_LE(errors.settled_capture_us_max, 500);
+        std::printf("%zu readings, capture times within %ld us, settled %ld us\n", errors.compared,
+                    static_cast<long>(errors.capture_us_max),
+                    static_cast<long>(errors.settled_capture_us_max));
         EXPECT_EQ(errors.range_mm_max, 0);
         EXPECT_EQ(errors.unread, 0U);
     }
