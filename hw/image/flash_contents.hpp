@@ -22,8 +22,9 @@ struct FlashPart {
 /// Ascending, without overlaps; what is between parts stays erased.
 using FlashContents = std::vector<FlashPart>;
 
-/// The image alone, from the first byte of flash to the image's last, 0xFF in its gaps: the file that
-/// `objcopy -O binary --gap-fill 0xff` makes. The image must have passed `faults_of`.
+/// The image alone, from the first byte of flash to the image's last, 0xFF between its
+/// segments: the file that `objcopy -O binary` makes, if no two segments have a gap between. The image must
+/// have passed `faults_of`.
 [[nodiscard]] std::vector<std::uint8_t> binary(const ElfImage& image, const rig::BoardHardware& board);
 
 /// The image and, in its page, the block; each part's end is filled with 0xFF up to the flash's own unit of 8

@@ -12,7 +12,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 done; 1 done, with a bad result; 64 command line; 65 unusable data;\n"
-    "66 no such file; 70 a defect of octoskin; 73 cannot write; 78 rig, robot, scenario or mapping file.";
+    "66 no such file; 69 a program or device is missing; 70 a defect of octoskin; 73 cannot write;\n"
+    "74 a device failed; 77 no permission; 78 rig, robot, scenario or mapping file.";
 
 int run(int argc, char** argv) {
     using namespace octoskin;
@@ -26,6 +27,7 @@ int run(int argc, char** argv) {
     app::add_experiment_command(app);
     app::add_rig_command(app);
     app::add_mapping_command(app);
+    app::add_flash_command(app);
     app::add_black_box_command(app);
     try {
         app.parse(argc, argv);

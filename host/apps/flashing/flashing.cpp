@@ -1,0 +1,124 @@
+#include "host/apps/flashing/flashing.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "common/wire/crc.hpp"
+#include "host/apps/flashing/openocd_script.hpp"
+#include "hw/image/image_check.hpp"
+
+namespace octoskin::flashing {
+namespace {
+
+constexpr std::chrono::seconds kPatience{60};
+constexpr std::chrono::seconds kRehearsalPatience{20};
+
+Result<image::ElfImage, AppError> load_image(const Order& order) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(order.elf, ignored)) {
+        return fail(ExitCode::no_input,
+                    fmt::format("{}: no such file: `firmware/flash` builds it", order.elf.string()));
+    }
+    auto image = image::ElfImage::load(order.elf.string());
+    if (!image) return fail(ExitCode::bad_data, image.error().what);
+    const std::vector<std::string> faults = image::faults_of(*image, order.board);
+    if (faults.empty()) return image.value();
+    std::string message =
+        fmt::format("{}: not an image for the board {}:", order.elf.string(), order.board.name);
+    for (const std::string& fault : faults) message += "\n  " + fault;
+    return fail(ExitCode::bad_data, message);
+}
+
+/// The block as the board will read it, out of the bytes that are going to be written.
+Result<std::size_t, AppError> check_block(const Order& order, const image::FlashContents& contents) {
+    const image::FlashPart& page = contents.back();
+    const auto decoded = decode_node_config(page.bytes);
+    const bool is_nodes = decoded && *decoded == order.node.config;
+    if (!is_nodes || page.address != order.board.configuration_page.address) {
+        return fail(ExitCode::bad_config,
+                    fmt::format("node {}: its configuration block does not read back as what the rig says",
+                                order.node.name));
+    }
+    return page.bytes.size();
+}
+
+Result<Done, AppError> write_file(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream) return fail(ExitCode::cannot_create, fmt::format("{}: cannot be written", file.string()));
+    return Done{};
+}
+
+Result<Done, AppError> write_files(const Order& order, const image::FlashContents& contents) {
+    std::error_code error;
+    std::filesystem::create_directories(order.folder, error);
+    if (error) {
+        return fail(ExitCode::cannot_create,
+                    fmt::format("{}: cannot be made: {}", order.folder.string(), error.message()));
+    }
+    if (auto done = write_file(order.folder / kHexFile, image::intel_hex(contents)); !done) return done;
+    return write_file(order.folder / kScriptFile,
+                      openocd_script({.openocd_board = order.board.openocd_board,
+                                      .device_id = order.board.device_id,
+                                      .adapter_serial = order.adapter_serial,
+                                      .writes_option_bytes = order.writes_option_bytes}));
+}
+
+Result<OpenocdRun, AppError> run(const Order& order, std::vector<std::string> arguments,
+                                 std::chrono::seconds patience) {
+    const OpenocdRun run = run_openocd(order.folder, std::move(arguments), patience);
+    if (auto done = write_file(order.folder / "openocd.log", run.output); !done)
+        return unexpected(done.error());
+    return run;
+}
+
+}  // namespace
+
+Result<rig::Node, AppError> choose_node(const rig::Rig& rig, const std::string& wanted) {
+    std::string names;
+    for (const rig::Node& node : rig.nodes) {
+        const bool is_only = wanted.empty() && rig.nodes.size() == 1;
+        if (is_only || node.name == wanted || std::to_string(node.config.node_id) == wanted) return node;
+        names += (names.empty() ? "" : ", ") + node.name;
+    }
+    if (wanted.empty())
+        return fail(ExitCode::usage, fmt::format("which node? --node takes one of: {}", names));
+    return fail(ExitCode::usage, fmt::format("no node '{}' in rig {}: it has {}", wanted, rig.name, names));
+}
+
+Result<Prepared, AppError> prepare(const Order& order) {
+    if (order.node.board.name != order.board.name) {
+        return fail(ExitCode::bad_config, fmt::format("node {} is a {}, not a {}", order.node.name,
+                                                      order.node.board.name, order.board.name));
+    }
+    const auto image = load_image(order);
+    if (!image) return unexpected(image.error());
+    Prepared prepared;
+    const auto bytes = image::binary(*image, order.board);
+    prepared.image_bytes = bytes.size();
+    prepared.image_crc32 = crc32(bytes);
+    prepared.contents = image::merge(*image, order.node.config, order.board);
+    const auto block_bytes = check_block(order, prepared.contents);
+    if (!block_bytes) return unexpected(block_bytes.error());
+    prepared.block_bytes = *block_bytes;
+    if (const auto written = write_files(order, prepared.contents); !written)
+        return unexpected(written.error());
+    return prepared;
+}
+
+Result<Programmed, AppError> program(const Order& order) {
+    const auto ended = run(order, {"-f", kScriptFile}, kPatience);
+    if (!ended) return unexpected(ended.error());
+    return judge(*ended, {.device_id = order.board.device_id, .adapter_serial = order.adapter_serial});
+}
+
+Result<Done, AppError> rehearse(const Order& order) {
+    const auto ended = run(order, {"-c", "set octoskin_dry_run 1", "-f", kScriptFile}, kRehearsalPatience);
+    if (!ended) return unexpected(ended.error());
+    if (const auto fault = judge_dry_run(*ended)) return unexpected(*fault);
+    return Done{};
+}
+
+}  // namespace octoskin::flashing

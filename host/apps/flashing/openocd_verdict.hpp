@@ -1,0 +1,31 @@
+// From what OpenOCD said to one sentence: programmed, or what was in the way and what to do.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/result.hpp"
+#include "host/apps/flashing/openocd_run.hpp"
+#include "host/apps/recording/app_error.hpp"
+
+namespace octoskin::flashing {
+
+/// The image is in flash, verified, and was started.
+struct Programmed {
+    std::uint32_t flash_optr = 0;  ///< option bytes as last read
+};
+
+struct Expected {
+    std::uint32_t device_id = 0;
+    std::string adapter_serial;  ///< empty: any
+};
+
+/// After a run of the whole script. Codes: `unavailable` if OpenOCD, the adapter or the chip is missing,
+/// `no_permission`, `io_failed` if programming, verifying or starting failed.
+[[nodiscard]] Result<Programmed, AppError> judge(const OpenocdRun& run, const Expected& expected);
+
+/// After a dry run: nothing if OpenOCD has read the script.
+[[nodiscard]] std::optional<AppError> judge_dry_run(const OpenocdRun& run);
+
+}  // namespace octoskin::flashing

@@ -1,0 +1,137 @@
+// octoskin flash: an image and one node's configuration into a sensor board.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <memory>
+
+#include "host/apps/flashing/flashing.hpp"
+#include "host/apps/flashing/record.hpp"
+#include "host/apps/octoskin/commands.hpp"
+#include "hw/image/option_bytes.hpp"
+
+namespace octoskin::app {
+namespace {
+
+constexpr const char* kAbout =
+    "Check the image, merge the node's configuration block, program and verify through OpenOCD and the "
+    "board's "
+    "ST-LINK. The files, what OpenOCD said and a record go to --out. docs/bring-up.md has the whole way";
+
+struct FlashOptions {
+    std::filesystem::path rig;
+    std::string node;
+    std::filesystem::path elf;
+    std::filesystem::path folder;
+    std::string adapter_serial;
+    bool writes_option_bytes = false;
+    bool is_dry_run = false;
+};
+
+template <class T>
+T value_or_fail(Result<T, AppError> result) {
+    if (!result) throw CommandFailure(result.error());
+    return std::move(result).value();
+}
+
+rig::BoardHardware read_board(const rig::Node& node) {
+    const auto file = shipped_file("hw/boards/" + node.board.name + ".hardware.yaml");
+    const auto board = rig::read_board_hardware(file);
+    if (!board) throw CommandFailure({ExitCode::bad_config, board.error().message()});
+    return *board;
+}
+
+flashing::Order make_order(const FlashOptions& options) {
+    if (!std::all_of(options.adapter_serial.begin(), options.adapter_serial.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0; })) {
+        throw CommandFailure({ExitCode::usage, "--adapter-serial: expected letters and digits"});
+    }
+    const auto rig = rig::read_rig(options.rig);
+    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    const rig::Node node = value_or_fail(flashing::choose_node(*rig, options.node));
+    flashing::Order order{.elf = options.elf,
+                          .node = node,
+                          .board = read_board(node),
+                          .folder = options.folder,
+                          .adapter_serial = options.adapter_serial,
+                          .writes_option_bytes = options.writes_option_bytes};
+    if (order.elf.empty())
+        order.elf = shipped_file("build/firmware-release/bin/octoskin_node_" + node.board.name + ".elf");
+    if (order.folder.empty())
+        order.folder = std::filesystem::path("out/flash") / (rig->name + "_" + node.name);
+    return order;
+}
+
+void write_record(const flashing::Order& order, const flashing::Prepared& prepared,
+                  const std::optional<flashing::Programmed>& programmed) {
+    std::ofstream stream(order.folder / flashing::kRecordFile, std::ios::binary);
+    stream << flashing::record(order, prepared, programmed);
+    stream.close();
+    if (!stream) {
+        throw CommandFailure(
+            {ExitCode::cannot_create,
+             fmt::format("{}: cannot be written", (order.folder / flashing::kRecordFile).string())});
+    }
+}
+
+void describe(const flashing::Order& order, const flashing::Prepared& prepared) {
+    const rig::BoardHardware& board = order.board;
+    const std::uint32_t room = board.configuration_page.address - board.flash.address;
+    fmt::print("image {}: fit for {}, {} bytes ({:.0f} % of its flash), CRC-32 {:08x}\n",
+               order.elf.filename().string(), board.name, prepared.image_bytes,
+               100.0 * static_cast<double>(prepared.image_bytes) / room, prepared.image_crc32);
+    fmt::print("node {} '{}': {} sensors, node_hash {:08x}, {} bytes at 0x{:08X}\n",
+               order.node.config.node_id, order.node.name, order.node.sensors.size(),
+               node_hash(order.node.config), prepared.block_bytes, board.configuration_page.address);
+    fmt::print("files in {}\n", order.folder.string());
+}
+
+/// Programmed all the same, but the board is not as it should be: exit code 1.
+void report_option_bytes(const flashing::Programmed& programmed) {
+    const auto faults = image::option_byte_faults(programmed.flash_optr);
+    if (faults.empty()) {
+        fmt::print("option bytes 0x{:08X}: as they must be\n", programmed.flash_optr);
+        return;
+    }
+    std::string message =
+        fmt::format("programmed and running, but the option bytes (0x{:08X}) are not as they must be:",
+                    programmed.flash_optr);
+    for (const std::string& fault : faults) message += "\n  " + fault;
+    throw CommandFailure({ExitCode::failed, message + "\nrun the same command with --write-option-bytes"});
+}
+
+void flash(const FlashOptions& options) {
+    const flashing::Order order = make_order(options);
+    const flashing::Prepared prepared = value_or_fail(flashing::prepare(order));
+    describe(order, prepared);
+    write_record(order, prepared, std::nullopt);
+    if (options.is_dry_run) {
+        (void)value_or_fail(flashing::rehearse(order));
+        fmt::print("dry run: OpenOCD has read the script; nothing was programmed\n");
+        return;
+    }
+    const flashing::Programmed programmed = value_or_fail(flashing::program(order));
+    write_record(order, prepared, programmed);
+    fmt::print("programmed, verified, started\n");
+    report_option_bytes(programmed);
+}
+
+}  // namespace
+
+void add_flash_command(CLI::App& app) {
+    auto options = std::make_shared<FlashOptions>();
+    CLI::App* command = app.add_subcommand("flash", kAbout);
+    command->add_option("--rig", options->rig, "Rig (YAML)")->required();
+    command->add_option("--node", options->node, "Name or number of the node; needed if the rig has several");
+    command->add_option("--elf", options->elf, "Image; default: what the preset firmware-release built");
+    command->add_option("--out", options->folder, "Folder for the files; default: out/flash/RIG_NODE");
+    command->add_option("--adapter-serial", options->adapter_serial,
+                        "Serial number of the ST-LINK, if there are several");
+    command->add_flag("--write-option-bytes", options->writes_option_bytes,
+                      "Also set brown-out level and start from flash, if they differ");
+    command->add_flag("--dry-run", options->is_dry_run, "Everything but the adapter");
+    command->callback([options] { flash(*options); });
+}
+
+}  // namespace octoskin::app

@@ -1,0 +1,180 @@
+// The command line of `octoskin flash`: with Debian's OpenOCD and no adapter; with another `openocd` on the
+// PATH that says what the real one says; and with the real one running the whole script on hardware that its
+// Tcl pretends.
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+
+#include "tests/support/image/elf_builder.hpp"
+#include "tests/system/cli/program.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class FlashTest : public ProgramTest {
+  protected:
+    FlashTest() {
+        std::filesystem::create_directories(path("bin"));
+        write(path("image.elf"), test::ElfBuilder().text());
+    }
+    /// `more`: options, as typed.
+    [[nodiscard]] Said flash(const std::string& more = "") const {
+        return run("PATH=" + path("bin") + ":$PATH " OCTOSKIN_PROGRAM " flash --rig " +
+                   source("hw/rigs/bench_one_board.yaml") + " --node bench --elf " + path("image.elf") +
+                   " --out " + path("out") + " " + more);
+    }
+    void put_openocd(const std::string& script) const {
+        write(path("bin/openocd"), "#!/bin/sh\n" + script);
+        std::filesystem::permissions(path("bin/openocd"), std::filesystem::perms::owner_all);
+    }
+    /// The real OpenOCD, with Tcl in the place of what needs hardware.
+    void put_pretended_chip(const std::string& device_word, const std::string& option_word) const {
+        write(path("chip.tcl"), "set optr " + option_word + "\nset idcode " + device_word + R"(
+proc init {} {}
+proc reset {mode} { echo "chip: reset $mode" }
+proc read_memory {address width count} {
+    global optr idcode
+    if {$address == 0xE0042000} { return $idcode }
+    if {$address == 0x40022020} { return $optr }
+    error "no memory at $address"
+}
+proc flash {command args} {
+    if {$command eq "bank"} { return }
+    if {[lindex $args 0] ne "erase"} { error "not erased" }
+    if {![file exists [lindex $args 1]]} { error "no such file" }
+    echo "chip: write_image $args"
+}
+proc verify_image {file} { echo "chip: verify_image $file" }
+proc stm32l4x {command bank args} {
+    global optr
+    echo "chip: $command $bank $args"
+    if {$command eq "option_write"} {
+        set mask [lindex $args 2]
+        set optr [expr {($optr & ~$mask & 0xFFFFFFFF) | [lindex $args 1]}]
+    }
+    if {$command eq "option_load"} { error "the chip was reset meanwhile" }
+}
+)");
+        put_openocd("exec /usr/bin/openocd -f " + path("chip.tcl") + " \"$@\"\n");
+    }
+    [[nodiscard]] static bool has_openocd() { return std::filesystem::exists("/usr/bin/openocd"); }
+};
+
+TEST_F(FlashTest, a_dry_run_does_everything_but_the_adapter) {
+    if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
+    const Said said = flash("--dry-run");
+    EXPECT_EQ(said.exit_code, 0) << said.output;
+    EXPECT_THAT(said.output, AllOf(HasSubstr("fit for nucleo_g474re, 548 bytes"),
+                                   HasSubstr("4 sensors, node_hash"), HasSubstr("nothing was programmed")));
+    EXPECT_THAT(content(path("out/record.yaml")), HasSubstr("is_programmed: false"));
+    EXPECT_THAT(content(path("out/flash.hex")), HasSubstr(":00000001FF"));
+}
+
+TEST_F(FlashTest, without_an_adapter_it_says_so_in_one_sentence) {
+    if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
+    if (run("lsusb -d 0483: ").exit_code == 0) GTEST_SKIP() << "an ST-LINK may be connected";
+    const Said said = flash();
+    EXPECT_EQ(said.exit_code, 69) << said.output;
+    EXPECT_THAT(said.output, AllOf(HasSubstr("no ST-LINK found"), Not(HasSubstr("Error:"))));
+    EXPECT_THAT(content(path("out/openocd.log")), HasSubstr("open failed"));
+    const Said named = flash("--adapter-serial 0042003A");
+    EXPECT_EQ(named.exit_code, 69);
+    EXPECT_THAT(named.output, HasSubstr("serial number 0042003A"));
+}
+
+TEST_F(FlashTest, a_factory_board_is_programmed_and_its_option_bytes_are_told) {
+    if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
+    put_pretended_chip("0x20016469", "0xFFEFF8AA");
+    const Said said = flash();
+    EXPECT_EQ(said.exit_code, 1) << said.output << content(path("out/openocd.log"));
+    EXPECT_THAT(said.output,
+                AllOf(HasSubstr("programmed, verified, started"), HasSubstr("BOR_LEV is 0, not 4"),
+                      HasSubstr("nSWBOOT0 is 1, not 0"), HasSubstr("--write-option-bytes")));
+    EXPECT_THAT(content(path("out/openocd.log")), Not(HasSubstr("option_write")));
+    EXPECT_THAT(content(path("out/record.yaml")),
+                AllOf(HasSubstr("is_programmed: true"), HasSubstr("flash_optr: 0xffeff8aa")));
+}
+
+TEST_F(FlashTest, option_bytes_are_written_when_told_and_read_again) {
+    if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
+    put_pretended_chip("0x20016469", "0xFFEFF8AA");
+    const Said said = flash("--write-option-bytes");
+    EXPECT_EQ(said.exit_code, 0) << said.output << content(path("out/openocd.log"));
+    EXPECT_THAT(said.output, HasSubstr("option bytes 0xFBEFFCAA: as they must be"));
+    EXPECT_THAT(content(path("out/openocd.log")),
+                AllOf(HasSubstr("chip: option_write 0 0x20 0x08000400 0x0C100700"),
+                      HasSubstr("chip: option_load 0")));
+}
+
+TEST_F(FlashTest, option_bytes_that_are_right_are_not_written_again) {
+    if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
+    put_pretended_chip("0x20016469", "0xFBEFFCAA");
+    const Said said = flash("--write-option-bytes");
+    EXPECT_EQ(said.exit_code, 0) << said.output << content(path("out/openocd.log"));
+    EXPECT_THAT(content(path("out/openocd.log")), Not(HasSubstr("option_write")));
+}
+
+TEST_F(FlashTest, nothing_is_written_to_another_chip) {
+    if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
+    put_pretended_chip("0x20016468", "0xFFEFF8AA");
+    const Said said = flash("--write-option-bytes");
+    EXPECT_EQ(said.exit_code, 69) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("device id 0x468, expected 0x469"));
+    EXPECT_THAT(content(path("out/openocd.log")),
+                AllOf(Not(HasSubstr("write_image")), Not(HasSubstr("option_write"))));
+}
+
+TEST_F(FlashTest, what_the_real_one_says_becomes_a_sentence_and_a_code) {
+    const struct {
+        const char* says;
+        int exit_code;
+        const char* words;
+    } cases[] = {
+        {"Error: libusb_open() failed with LIBUSB_ERROR_ACCESS\\nError: open failed", 77, "plugdev"},
+        {"Error: open failed", 69, "no ST-LINK found"},
+        {"Info : Target voltage: 3.2\\nError: init mode failed (unable to connect to the target)", 69,
+         "the chip does not answer"},
+        {"octoskin: device 0x469\\noctoskin: options 0xFFEFF8AA\\nError: flash write failed", 74,
+         "programming failed"},
+    };
+    for (const auto& each : cases) {
+        put_openocd(std::string("printf '") + each.says + "\\n' >&2\nexit 1\n");
+        const Said said = flash();
+        EXPECT_EQ(said.exit_code, each.exit_code) << said.output;
+        EXPECT_THAT(said.output, HasSubstr(each.words));
+        EXPECT_THAT(content(path("out/record.yaml")), HasSubstr("is_programmed: false"));
+    }
+}
+
+TEST_F(FlashTest, without_openocd_it_names_the_package) {
+    const Said said =
+        run("PATH=" + path("bin") + " " OCTOSKIN_PROGRAM " flash --dry-run --rig " +
+            source("hw/rigs/bench_one_board.yaml") + " --elf " + path("image.elf") + " --out " + path("out"));
+    EXPECT_EQ(said.exit_code, 69) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("apt install openocd"));
+}
+
+TEST_F(FlashTest, bad_input_has_its_code_and_is_never_programmed) {
+    put_openocd("touch " + path("was_started") + "\n");
+    EXPECT_EQ(octoskin("flash --node nobody --rig " + source("hw/rigs/bench_one_board.yaml")).exit_code, 64);
+    EXPECT_EQ(flash("--adapter-serial 'a; b'").exit_code, 64);
+    std::filesystem::rename(path("image.elf"), path("aside.elf"));
+    EXPECT_EQ(flash().exit_code, 66);
+    write(path("image.elf"), content(path("aside.elf")).substr(0, 300));
+    EXPECT_EQ(flash().exit_code, 65);
+    test::ElfBuilder soft;
+    soft.set_attribute(28, 0);
+    write(path("image.elf"), soft.text());
+    const Said said = flash();
+    EXPECT_EQ(said.exit_code, 65);
+    EXPECT_THAT(said.output, HasSubstr("floating-point registers"));
+    EXPECT_EQ(octoskin("flash --rig " + source("tests/data/rigs/metres-for-millimetres.yaml")).exit_code, 78);
+    EXPECT_FALSE(std::filesystem::exists(path("was_started")));
+}
+
+}  // namespace
+}  // namespace octoskin
