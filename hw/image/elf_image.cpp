@@ -32,6 +32,9 @@ std::optional<Bytes> part(Bytes file, std::uint64_t offset, std::uint64_t size) 
 /// Symbols' names are short; a file that says otherwise is not believed.
 constexpr std::size_t kNameLengthMax = 4096;
 
+/// Nor one with more segments, each of which could be the whole file.
+constexpr std::uint32_t kSegmentsMax = 64;
+
 std::string text_at(Bytes file, std::uint64_t offset) {
     if (offset >= file.size()) return {};
     const Bytes rest = file.subspan(static_cast<std::size_t>(offset));
@@ -63,6 +66,10 @@ Result<ElfImage, ElfError> ElfImage::parse(Bytes file) {
     if (!header || !is_arm_executable(*header)) {
         return unexpected(ElfError{"not an executable for 32-bit ARM"});
     }
+    if (header->e_phnum > kSegmentsMax) {
+        return unexpected(
+            ElfError{fmt::format("it has {} segments, over {}", header->e_phnum, kSegmentsMax)});
+    }
     ElfImage image;
     image.entry_ = header->e_entry;
     if (!image.take_segments(file)) return unexpected(ElfError{"truncated"});
@@ -88,13 +95,16 @@ void ElfImage::take_sections(Bytes file) {
     const auto section = [&](std::uint32_t i) {
         return at<Elf32_Shdr>(file, header->e_shoff + std::uint64_t{i} * header->e_shentsize);
     };
+    bool has_symbols = false;
     for (std::uint32_t i = 0; i < header->e_shnum; ++i) {
         const auto found = section(i);
         if (found && found->sh_type == SHT_ARM_ATTRIBUTES) {
             const auto bytes = part(file, found->sh_offset, found->sh_size);
             if (bytes) attributes_.assign(bytes->begin(), bytes->end());
         }
-        if (!found || found->sh_type != SHT_SYMTAB) continue;
+        // There is one table of symbols at most (System V ABI, "Sections").
+        if (!found || found->sh_type != SHT_SYMTAB || has_symbols) continue;
+        has_symbols = true;
         const auto names = section(found->sh_link);
         if (names) take_symbols(file, found->sh_offset, found->sh_size, names->sh_offset);
     }

@@ -27,8 +27,8 @@ class ElfImage {
     /// A little-endian 32-bit ARM executable; segments without file contents are left out. Errors: the file
     /// cannot be read, and those of `parse`; the message names the file.
     [[nodiscard]] static Result<ElfImage, ElfError> load(const std::string& path);
-    /// `file`: the whole ELF file. Errors: not such an executable; a header or a segment reaches past the
-    /// end.
+    /// `file`: the whole ELF file. Errors: not such an executable; over 64 segments; a header or a segment
+    /// reaches past the end.
     [[nodiscard]] static Result<ElfImage, ElfError> parse(std::span<const std::uint8_t> file);
 
     [[nodiscard]] const std::vector<ElfSegment>& segments() const noexcept { return segments_; }

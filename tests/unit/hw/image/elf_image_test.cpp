@@ -44,6 +44,16 @@ TEST(ElfImage, refuses_what_is_no_program_for_arm) {
     EXPECT_FALSE(ElfImage::load("/"));
 }
 
+TEST(ElfImage, refuses_more_segments_than_an_image_has) {
+    ElfBuilder builder;
+    builder.segments.resize(64, {.physical_address = 0x0800'0400, .bytes = {1}});
+    EXPECT_TRUE(ElfImage::parse(builder.bytes()));
+    builder.segments.resize(65, {.physical_address = 0x0800'0400, .bytes = {1}});
+    const auto image = ElfImage::parse(builder.bytes());
+    ASSERT_FALSE(image);
+    EXPECT_THAT(image.error().what, HasSubstr("65 segments, over 64"));
+}
+
 TEST(ElfImage, every_truncation_is_refused_or_has_all_that_is_programmed) {
     const auto whole = ElfBuilder().bytes();
     const auto image = ElfImage::parse(whole);
