@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 namespace octoskin {
@@ -58,6 +59,24 @@ TEST(OctoskinBoard, runs_the_flashed_image_and_logs_its_frames) {
     }
     // Four sensors at 50 Hz from 0.2 s on, heartbeats and information.
     EXPECT_GT(lines, 80U);
+    std::remove(log.c_str());
+}
+
+std::string contents(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(OctoskinBoard, says_the_same_bytes_on_every_run_and_others_with_another_crystal) {
+    const std::string log = testing::TempDir() + "octoskin_board_same.log";
+    const auto logged = [&](const std::string& more) {
+        EXPECT_EQ(run(kImage + kRig + "--seconds 0.6 --sync --can-log " + log + more).exit_code, 0);
+        return contents(log);
+    };
+    const std::string first = logged("");
+    EXPECT_EQ(logged(""), first);
+    EXPECT_NE(logged(" --drift-ppm 100"), first);
+    EXPECT_NE(logged(" --cycles-per-instruction 3"), first);
     std::remove(log.c_str());
 }
 
