@@ -124,6 +124,11 @@ TEST_F(CoreTest, faultmask_holds_back_priority_zero) {
     EXPECT_THAT(results(5), ElementsAre(0x11, 0xB0, 0xB1, 0x12, 0));
 }
 
+TEST_F(CoreTest, faultmask_ends_with_the_handler_that_set_it) {
+    run("faultmask_in_handler");
+    EXPECT_THAT(results(7), ElementsAre(0xA0, 0xA1, 0x11, 0xB0, 0xB1, 0x12, 0));
+}
+
 TEST_F(CoreTest, wfi_wakes_with_primask_set_without_entering_the_handler) {
     run("wfi_masked");
     EXPECT_THAT(results(4), ElementsAre(0, 1, 1, 0));

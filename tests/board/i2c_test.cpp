@@ -95,6 +95,12 @@ TEST_F(I2cTest, refused_index_byte_stops_by_itself) {
     }
 }
 
+TEST_F(I2cTest, refused_it_no_longer_asks_for_bytes) {
+    inject(I2cFaultKind::nack_byte, 0);
+    run("refused_unfed");
+    EXPECT_EQ(tiny_.result(0), 0x11U) << "TXE and NACKF without TXIS";
+}
+
 TEST_F(I2cTest, refused_read_address_stops_by_itself) {
     inject(I2cFaultKind::nack_read);
     run("refused_then_good");

@@ -121,6 +121,25 @@ TEST(SerialPort, says_what_was_written) {
     EXPECT_EQ(tiny.board().serial_text(), "ok");
 }
 
+TEST(Interrupts, come_again_while_their_flag_stays_set) {
+    TinyBoard tiny("strictness");
+    tiny.jump("level_interrupt");
+    ASSERT_TRUE(tiny.run_until_finished());
+    EXPECT_EQ(tiny.result(0), 3U);
+    EXPECT_LT(tiny.board().now().us, 200) << "without waiting for the timer's next periods";
+}
+
+TEST(Timer2, compares_when_the_counter_arrives_and_once_a_period) {
+    TinyBoard tiny("strictness");
+    tiny.jump("timer_compare");
+    ASSERT_TRUE(tiny.run_until_finished());
+    EXPECT_NEAR(tiny.result(0), 500.0, 5.0);
+    EXPECT_EQ(tiny.result(1), 0U) << "it was put there, it did not arrive";
+    EXPECT_NEAR(tiny.result(2), 500.0, 5.0);
+    EXPECT_EQ(tiny.result(3), 1U) << "the counter came round in between";
+    EXPECT_EQ(tiny.violations(), "");
+}
+
 TEST(Watchdog, bites_after_300_counts_of_16_slow_clocks_and_keeps_ram) {
     TinyBoard tiny("strictness");
     tiny.jump("watchdog_bites");

@@ -105,6 +105,7 @@ void bus_off(void) {
     REG(CAN + 0xD0) = 7;
     is_finished = 2;  // the test mends the bus now
     wait(20000);
+    is_finished = 3;
     CCCR &= ~1u;
     while (REG(CAN + 0x44) & 1u << 7) {}
     result[2] = REG(CAN + 0x40) & 0xFF;

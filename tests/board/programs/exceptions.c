@@ -18,7 +18,7 @@
 static volatile uint32_t position;
 static volatile uint32_t ticks;
 static volatile uint32_t mode;  // what the handlers do
-enum { kPlain, kNestingB, kFloating, kFault };
+enum { kPlain, kNestingB, kFloating, kFault, kMasking };
 
 static void note(uint32_t what) { result[position++] = what; }
 static void start(uint32_t new_mode) {
@@ -51,6 +51,7 @@ void irq_a(void) {
     if (mode == kFloating) use_fpu(100.0f);
     if (mode == kNestingB) pend(1);
     if (mode == kFloating) pend(1);
+    if (mode == kMasking) __asm volatile("cpsid f");
     note(0xA1);
 }
 void irq_b(void) {
@@ -194,6 +195,18 @@ void faultmask(void) {
     pend(1);
     note(0x11);
     __asm volatile("cpsie f\n isb");
+    note(0x12);
+    finish();
+}
+
+// A handler that sets FAULTMASK: its return clears it (ARMv7-M ARM B1.4.3).
+void faultmask_in_handler(void) {
+    start(kMasking);
+    enable(0, 4);
+    enable(1, 4);
+    pend(0);
+    note(0x11);
+    pend(1);
     note(0x12);
     finish();
 }

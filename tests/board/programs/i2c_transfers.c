@@ -57,6 +57,15 @@ void refused_then_good(void) {
     result[4] = transfer(0x42, 2, 5);
     finish();
 }
+// Nobody feeds the second byte: refused, the controller no longer asks for it.
+void refused_unfed(void) {
+    start();
+    REG(I2C + 0x28) = 0x01;
+    CR2 = 0x42u << 1 | 2u << 16 | 1u << 13;
+    while (!(ISR & 1u << 4)) {}
+    result[0] = ISR & 0x13;  // TXE, TXIS, NACKF
+    finish();
+}
 void stretched(void) {
     start();
     result[0] = transfer(0x42, 3, 1);

@@ -322,6 +322,47 @@ void reset_without_key(void) { REG(0xE000ED0C) = 4; finish(); }
 void deep_sleep(void) { REG(0xE000ED10) = 4; finish(); }
 
 // --- what must happen without a violation
+static void microsecond_timer(uint32_t period) {
+    RCC_APB1ENR1 |= 1;
+    (void)RCC_APB1ENR1;
+    REG(0x40000028) = 15;
+    REG(0x4000002C) = period - 1;
+    REG(0x40000014) = 1;
+    REG(0x40000010) = 0;
+    REG(0x40000000) = 1;
+}
+// An interrupt whose flag stays set comes again and again.
+void level_interrupt(void) {
+    result[0] = 0;
+    microsecond_timer(100);
+    REG(0x4000000C) = 1;
+    REG(0xE000E100) = 1u << 28;
+    while (result[0] < 3) {}
+    wait(10);
+    finish();
+}
+void irq_tim2(void) {
+    if (++result[0] == 3) {
+        REG(0x4000000C) = 0;
+        REG(0x40000010) = 0;
+    }
+}
+// A compare matches when the counter arrives, not while it is there; then once a period.
+void timer_compare(void) {
+    microsecond_timer(1000);
+    REG(0x40000034) = 500;
+    REG(0x40000010) = 0;
+    while (!(REG(0x40000010) & 2)) {}
+    result[0] = REG(0x40000024);
+    REG(0x40000024) = 500;
+    REG(0x40000010) = 0;
+    wait(200);
+    result[1] = REG(0x40000010) & 2;
+    while (!(REG(0x40000010) & 2)) {}
+    result[2] = REG(0x40000024);
+    result[3] = REG(0x40000010) & 1;
+    finish();
+}
 void watchdog_bites(void) {
     REG(IWDG) = 0xCCCC;
     REG(IWDG) = 0x5555;
