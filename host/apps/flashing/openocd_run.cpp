@@ -64,6 +64,7 @@ class Child {
 int spawn(const std::filesystem::path& folder, std::vector<std::string>& arguments, int output,
           pid_t& process) {
     std::vector<char*> raw;
+    raw.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) raw.push_back(argument.data());
     raw.push_back(nullptr);
     posix_spawn_file_actions_t actions;
