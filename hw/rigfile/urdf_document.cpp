@@ -2,9 +2,11 @@
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
+#include <urdf_model/joint.h>
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <cmath>
 #include <fstream>
 #include <utility>
 
@@ -62,6 +64,38 @@ std::pair<urdf::ModelInterfaceSharedPtr, std::string> parse(const std::string& t
     }
 }
 
+constexpr double kOriginMax_m = 10.0;             ///< no arm's link is longer
+constexpr double kTurnMax_rad = 4.0 * 3.1415927;  ///< no arm's joint turns further than twice round
+
+bool is_within(double value, double max) {
+    return std::abs(value) <= max;  // false for what is no number
+}
+
+/// What gives away that a joint is written in millimetres or degrees; empty if nothing does.
+std::string unit_fault(const urdf::Joint& joint) {
+    const urdf::Vector3& at = joint.parent_to_joint_origin_transform.position;
+    if (!is_within(at.x, kOriginMax_m) || !is_within(at.y, kOriginMax_m) || !is_within(at.z, kOriginMax_m)) {
+        return fmt::format(
+            "origin at ({:g}, {:g}, {:g}), expected metres up to {:g}: is it written in millimetres?", at.x,
+            at.y, at.z, kOriginMax_m);
+    }
+    if (!joint.limits) return "";
+    const auto outside = [&](double max) {
+        return !is_within(joint.limits->lower, max) || !is_within(joint.limits->upper, max);
+    };
+    if (joint.type == urdf::Joint::REVOLUTE && outside(kTurnMax_rad)) {
+        return fmt::format(
+            "limits {:g} to {:g}, expected radians, at most two turns: are they written in degrees?",
+            joint.limits->lower, joint.limits->upper);
+    }
+    if (joint.type == urdf::Joint::PRISMATIC && outside(kOriginMax_m)) {
+        return fmt::format(
+            "limits {:g} to {:g}, expected metres up to {:g}: are they written in millimetres?",
+            joint.limits->lower, joint.limits->upper, kOriginMax_m);
+    }
+    return "";
+}
+
 }  // namespace
 
 Result<UrdfDocument, RigError> UrdfDocument::read(const std::filesystem::path& file) {
@@ -76,6 +110,11 @@ Result<UrdfDocument, RigError> UrdfDocument::read(const std::filesystem::path& f
     if (!model || !model->getRoot()) {
         return unexpected(RigError{
             file, 0, "", "not a usable URDF: " + (complaint.empty() ? "no robot found" : complaint)});
+    }
+    for (const auto& [name, joint] : model->joints_) {
+        if (auto fault = unit_fault(*joint); !fault.empty()) {
+            return unexpected(document.error("joint", name, std::move(fault)));
+        }
     }
     document.model_ = std::move(model);
     return document;

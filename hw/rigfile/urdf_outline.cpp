@@ -29,6 +29,10 @@ Result<UrdfOutline, RigError> UrdfOutline::read(const std::filesystem::path& fil
     outline.file_ = file;
     for (const auto* element = robot->FirstChildElement(); element; element = element->NextSiblingElement()) {
         const std::string tag = element->Name();
+        if (tag.starts_with("xacro:")) {
+            return unexpected(RigError{file, element->GetLineNum(), tag,
+                                       "a macro that is not expanded: run xacro first, and give its output"});
+        }
         if (tag != "link" && tag != "joint") continue;
         outline.elements_.push_back({tag, attribute(element, "name"), element->GetLineNum(),
                                      attribute(element->FirstChildElement("parent"), "link"),

@@ -235,11 +235,17 @@ std::optional<Eigen::VectorXd> Arm::inverse(const std::string& link, const Eigen
     return std::nullopt;
 }
 
-std::optional<std::string> Arm::joint_outside_limits(const Eigen::VectorXd& position) const {
+std::vector<std::string> Arm::links() const {
+    std::vector<std::string> names;
+    for (const Link& link : links_) names.push_back(link.name);
+    return names;
+}
+
+std::optional<Arm::JointOutside> Arm::joint_outside_limits(const Eigen::VectorXd& position) const {
     for (std::size_t i = 0; i < joints_.size(); ++i) {
         const double value = position[static_cast<Eigen::Index>(i)];
         if (!(value >= joints_[i].lower && value <= joints_[i].upper)) {
-            return joints_[i].joint;
+            return JointOutside{joints_[i].joint, value, joints_[i].lower, joints_[i].upper};
         }
     }
     return std::nullopt;

@@ -42,8 +42,18 @@ class Arm {
                                                          const Eigen::VectorXd& start,
                                                          double tolerance = 2e-7) const;
 
-    /// The first joint outside its limits in the URDF, by name; empty if all are within.
-    [[nodiscard]] std::optional<std::string> joint_outside_limits(const Eigen::VectorXd& position) const;
+    /// Every link, parents before children.
+    [[nodiscard]] std::vector<std::string> links() const;
+
+    /// A joint beyond its limits in the URDF, radians (metres for a sliding joint).
+    struct JointOutside {
+        std::string joint;
+        double position;
+        double lower;
+        double upper;
+    };
+    /// The first joint outside its limits; empty if all are within.
+    [[nodiscard]] std::optional<JointOutside> joint_outside_limits(const Eigen::VectorXd& position) const;
 
   private:
     enum class Motion { fixed, turning, sliding };

@@ -20,7 +20,11 @@ Result<Trajectory, MotionError> Trajectory::circle(const Arm& arm, const CircleM
     assert(motion.ticks() > 0 && motion.tick_rate_hz > 0.0);
     const auto failure = [](std::string what) { return unexpected(MotionError{std::move(what)}); };
     if (!arm.has_link(motion.link)) {
-        return failure("the robot has no link '" + motion.link + "' to be moved");
+        std::string links;
+        for (const std::string& link : arm.links()) links.append(links.empty() ? "" : ", ").append(link);
+        return failure("the scenario moves link '" + motion.link +
+                       "' (motion.circle.link), but the robot's links are " + links +
+                       ": give --scenario one that is made for this robot");
     }
     if (static_cast<std::size_t>(motion.start_position.size()) != arm.joint_count()) {
         return failure("the start posture has " + std::to_string(motion.start_position.size()) +
@@ -36,8 +40,10 @@ Result<Trajectory, MotionError> Trajectory::circle(const Arm& arm, const CircleM
         }
         position = *solved;
         if (const auto joint = arm.joint_outside_limits(position)) {
-            return failure("joint '" + *joint + "' is outside its limits at tick " + std::to_string(tick) +
-                           "; move the circle or the start posture");
+            return failure("joint '" + joint->joint + "' is outside its limits at tick " +
+                           std::to_string(tick) + ": at " + std::to_string(joint->position) +
+                           ", allowed are " + std::to_string(joint->lower) + " to " +
+                           std::to_string(joint->upper) + "; move the circle or the start posture");
         }
         trajectory.ticks_.push_back(position);
     }

@@ -14,13 +14,21 @@ namespace {
 using ignition::math::eigen3::convert;
 using MeshOrError = Result<TriangleMesh, std::string>;
 
-bool is_size(double value) {
+/// Further than anything in a robot's cell; a ground plane may be as large as it likes.
+constexpr double kSizeMax_m = 100.0;
+
+bool is_positive(double value) {
     return std::isfinite(value) && value > 0.0;
+}
+
+bool is_size(double value) {
+    return is_positive(value) && value <= kSizeMax_m;
 }
 
 MeshOrError checked(bool sizes_are_good, const TriangleMesh& mesh) {
     if (!sizes_are_good) {
-        return unexpected(std::string("expected sizes in metres that are positive and finite"));
+        return unexpected(
+            std::string("expected sizes in metres, above 0 and up to 100: is it written in millimetres?"));
     }
     return mesh;
 }
@@ -32,7 +40,7 @@ MeshOrError box_of(const sdf::Box& box) {
 
 MeshOrError plane_of(const sdf::Plane& plane) {
     const Eigen::Vector2d size(plane.Size().X(), plane.Size().Y());
-    return checked(is_size(size.x()) && is_size(size.y()), plane_mesh(convert(plane.Normal()), size));
+    return checked(is_positive(size.x()) && is_positive(size.y()), plane_mesh(convert(plane.Normal()), size));
 }
 
 MeshOrError ellipsoid_of(const sdf::Ellipsoid& ellipsoid) {

@@ -101,7 +101,10 @@ TEST_F(PandaCircle, out_of_reach_is_refused_with_the_tick) {
     EXPECT_THAT(refused.error().what, testing::HasSubstr("tick 0"));
     motion = paper_circle();
     motion.link = "gripper";
-    EXPECT_THAT(Trajectory::circle(arm_, motion, kStart).error().what, testing::HasSubstr("gripper"));
+    EXPECT_THAT(
+        Trajectory::circle(arm_, motion, kStart).error().what,
+        testing::AllOf(testing::HasSubstr("link 'gripper' (motion.circle.link)"),
+                       testing::HasSubstr("panda_link0, panda_link1"), testing::HasSubstr("--scenario")));
     motion = paper_circle();
     motion.start_position.resize(3);
     EXPECT_THAT(Trajectory::circle(arm_, motion, kStart).error().what, testing::HasSubstr("3 joints"));

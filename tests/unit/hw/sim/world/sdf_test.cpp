@@ -92,7 +92,7 @@ TEST(Sdf, passes_on_the_parsers_message_for_a_broken_file) {
 
 TEST(Sdf, refuses_sizes_and_meshes_that_make_no_solid) {
     EXPECT_THAT(error_of("negative-radius.sdf"), AllOf(HasSubstr("model 'ball', link 'body', visual 'ball'"),
-                                                       HasSubstr("positive and finite")));
+                                                       HasSubstr("above 0 and up to 100")));
     EXPECT_THAT(error_of("nan-pose.sdf"), HasSubstr("nan-pose.sdf"));
     EXPECT_THAT(error_of("missing-mesh.sdf"),
                 AllOf(HasSubstr("visual 'shell'"), HasSubstr("no-such-mesh.obj")));
