@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "hw/rigfile/bounded_text.hpp"
+#include "hw/rigfile/syntax_hint.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -181,7 +182,8 @@ const Value* Value::find(std::string_view wanted) const noexcept {
 }
 
 Value load_document(const std::filesystem::path& file) {
-    std::istringstream stream(read_text(file));
+    const std::string text = read_text(file);
+    std::istringstream stream(text);
     TreeBuilder builder(std::make_shared<const std::filesystem::path>(file));
     try {
         YAML::Parser parser(stream);
@@ -196,7 +198,9 @@ Value load_document(const std::filesystem::path& file) {
         }
         return root;
     } catch (const YAML::Exception& exception) {
-        throw Fault{{file, exception.mark.line + 1, "", fmt::format("not YAML: {}", exception.msg)}};
+        const int line = exception.mark.line + 1;
+        throw Fault{{file, line, "", "not YAML: " + yaml_syntax_hint(exception.msg, text, line),
+                     exception.mark.column + 1}};
     }
 }
 
@@ -206,7 +210,7 @@ std::filesystem::path existing_file(const Value& value, const std::string& key_p
     if (value.kind != Value::Kind::scalar || !std::filesystem::is_regular_file(path, error)) {
         throw Fault{{*value.file, value.line, key_path,
                      fmt::format("expected the path of a file, relative to this one, found none at '{}'",
-                                 path.string())}};
+                                 std::filesystem::absolute(path, error).lexically_normal().string())}};
     }
     return path;
 }
@@ -219,9 +223,10 @@ Value merge(Value base, const Value& overlay) {
     return base;
 }
 
-Value load_with_extends(const std::filesystem::path& file) {
+Value load_with_extends(const std::filesystem::path& file, std::vector<std::filesystem::path>* extended) {
     std::vector<Value> layers = {load_document(file)};
     for (auto next = take_extends(layers.back()); !next.empty(); next = take_extends(layers.back())) {
+        if (extended != nullptr) extended->push_back(next);
         if (layers.size() == kExtendsMax) {
             throw Fault{
                 {file, 0, "extends",

@@ -46,7 +46,9 @@ struct Value {
 [[nodiscard]] Value merge(Value base, const Value& overlay);
 
 /// load_document(), then every file that `extends:` names, each relative to the file that names it, laid one
-/// over the other. Throws Fault also for a circle and for more than 8 files.
-[[nodiscard]] Value load_with_extends(const std::filesystem::path& file);
+/// over the other. Throws Fault also for a circle and for more than 8 files. `extended` is told those files,
+/// the nearest first.
+[[nodiscard]] Value load_with_extends(const std::filesystem::path& file,
+                                      std::vector<std::filesystem::path>* extended = nullptr);
 
 }  // namespace octoskin::rig

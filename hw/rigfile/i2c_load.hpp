@@ -5,6 +5,8 @@
 
 namespace octoskin::rig {
 
+inline constexpr double kI2cLoadMax = 0.7;
+
 /// How long one reading of a sensor occupies its bus, at that clock; seconds.
 [[nodiscard]] double reading_s(const NodeConfig& node, const SensorConfig& sensor);
 

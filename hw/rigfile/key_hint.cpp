@@ -39,6 +39,14 @@ std::size_t edit_distance(std::string_view from, std::string_view to) {
 
 }  // namespace
 
+std::optional<std::string> nearest_word(std::string_view word, std::span<const std::string> known) {
+    const std::string_view short_word = word.substr(0, 64);
+    const auto near = std::find_if(known.begin(), known.end(), [&](const std::string& one) {
+        return edit_distance(short_word, one) <= kSlipMax;
+    });
+    return near == known.end() ? std::nullopt : std::optional(*near);
+}
+
 std::string hint_for_key(std::string_view key, std::initializer_list<std::string_view> known_keys,
                          const std::string& table_path) {
     const std::string prefix = table_path.empty() ? "" : table_path + ".";
@@ -47,11 +55,8 @@ std::string hint_for_key(std::string_view key, std::initializer_list<std::string
         return "did you mean " + prefix + std::string(known) +
                "? (the unit is part of the name, and the value must be in it)";
     }
-    const std::string_view short_key = key.substr(0, 64);
-    for (const auto known : known_keys) {
-        if (edit_distance(short_key, known) <= kSlipMax)
-            return "did you mean " + prefix + std::string(known) + "?";
-    }
+    const std::vector<std::string> all(known_keys.begin(), known_keys.end());
+    if (const auto near = nearest_word(key, all)) return "did you mean " + prefix + *near + "?";
     return "known here are " + joined(known_keys);
 }
 

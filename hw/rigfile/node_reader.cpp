@@ -14,7 +14,6 @@
 namespace octoskin::rig {
 namespace {
 
-constexpr double kI2cLoadMax = 0.7;
 constexpr std::size_t kNodesMax = 61;
 
 /// Remembers who took a thing first.

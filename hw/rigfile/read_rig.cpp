@@ -32,7 +32,8 @@ void require_link(const Value& value, const std::string& path, const std::string
                   const UrdfDocument& robot) {
     if (robot.model().links_.contains(link)) return;
     fail(value, path,
-         fmt::format("expected a link of {}, found '{}'", robot.file().filename().string(), link));
+         fmt::format("expected a link of {}, found '{}'; it has {}", robot.file().filename().string(), link,
+                     joined(robot.link_names())));
 }
 
 void read_self_filter(const Table& robot, const UrdfDocument& document, Rig& rig) {
@@ -178,11 +179,11 @@ void refuse_overloaded_bus(const Table& top, const Rig& rig) {
 }
 
 Rig read_checked(const std::filesystem::path& file, const std::filesystem::path& urdf_instead) {
-    const Value document = load_with_extends(file);
+    Rig rig;
+    const Value document = load_with_extends(file, &rig.extended_files);
     const Table top(document, "",
                     {"name", "robot", "T_map_base", "bus", "range_limits", "joints", "camera",
                      "sensor_defaults", "nodes"});
-    Rig rig;
     rig.name = top.name("name");
     const Table robot(top.require("robot"), "robot",
                       {"urdf", "base_link", "link_padding_m", "links_ignored_by_sensors",
@@ -208,6 +209,7 @@ Rig read_checked(const std::filesystem::path& file, const std::filesystem::path&
 std::string RigError::message() const {
     std::string place = file.string();
     if (line > 0) place += fmt::format(":{}", line);
+    if (line > 0 && column > 0) place += fmt::format(":{}", column);
     return key.empty() ? fmt::format("{}: {}", place, what) : fmt::format("{}: {}: {}", place, key, what);
 }
 

@@ -75,6 +75,7 @@ struct RangeLimits {
 };
 
 struct Rig {
+    std::vector<std::filesystem::path> extended_files;  ///< that its file extends, the nearest first
     std::string name;
     std::filesystem::path urdf;  ///< absolute
     std::string base_link;
@@ -97,6 +98,7 @@ struct RigError {
     int line = 0;  ///< 1-based; 0 if it concerns the whole file
     std::string key;
     std::string what;
+    int column = 0;  ///< 1-based; 0 unless the parser could not go on there
     [[nodiscard]] std::string message() const;
 };
 

@@ -129,8 +129,9 @@ void read_zones(const Table& table, SensorEntry& entry) {
 std::string read_link(const Table& table, const UrdfDocument& robot, const std::string& base_link) {
     auto link = table.name("link");
     if (!robot.is_below(base_link, link)) {
-        table.fail("link", fmt::format("expected a link of {} at or below {}, found '{}'",
-                                       robot.file().filename().string(), base_link, link));
+        table.fail("link", fmt::format("expected a link of {} at or below {}, found '{}'; there are {}",
+                                       robot.file().filename().string(), base_link, link,
+                                       joined(robot.link_names(base_link))));
     }
     return link;
 }

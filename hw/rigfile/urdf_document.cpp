@@ -131,6 +131,14 @@ bool UrdfDocument::is_below(const std::string& base_link, const std::string& lin
     return false;
 }
 
+std::vector<std::string> UrdfDocument::link_names(const std::string& base_link) const {
+    std::vector<std::string> names;
+    for (const auto& [name, link] : model_->links_) {
+        if (base_link.empty() || is_below(base_link, name)) names.push_back(name);
+    }
+    return names;
+}
+
 std::vector<std::string> UrdfDocument::moving_joints(const std::string& base_link) const {
     std::vector<std::string> names;
     for (const auto& [name, joint] : model_->joints_) {

@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "hw/rigfile/syntax_hint.hpp"
+
 namespace octoskin::rig {
 namespace {
 
@@ -15,13 +17,22 @@ std::string attribute(const tinyxml2::XMLElement* element, const char* name) {
     return text ? text : "";
 }
 
+/// The element that tinyxml2 tells with its error, if any: "...: XMLElement name=link".
+std::string element_of(const tinyxml2::XMLDocument& document) {
+    constexpr std::string_view kMark = "XMLElement name=";
+    const std::string text = document.ErrorStr();
+    const auto at = text.find(kMark);
+    return at == std::string::npos ? "" : text.substr(at + kMark.size());
+}
+
 }  // namespace
 
 Result<UrdfOutline, RigError> UrdfOutline::read(const std::filesystem::path& file, const std::string& text) {
     tinyxml2::XMLDocument document;
     if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
         return unexpected(
-            RigError{file, document.ErrorLineNum(), "", fmt::format("not XML: {}", document.ErrorName())});
+            RigError{file, document.ErrorLineNum(), "",
+                     "not XML: " + xml_syntax_hint(document.ErrorName(), element_of(document))});
     }
     const auto* robot = document.FirstChildElement("robot");
     if (!robot) return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
