@@ -8,8 +8,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kReservedKey = "run";
-
 Json number(const std::optional<double>& value) {
     return value ? Json(*value) : Json(nullptr);
 }
@@ -71,10 +69,10 @@ Json run_json(const Results& results) {
 std::string metrics_json(const Results& results) {
     Json root = Json::object();
     for (const auto& map : results.maps) {
-        assert(map.configuration != kReservedKey);
+        assert(map.configuration != kReservedName);
         root[map.configuration][map.map] = metrics_object(map.metrics);
     }
-    root[kReservedKey] = run_json(results);
+    root[std::string(kReservedName)] = run_json(results);
     // A path or a name may hold any bytes; JSON may not.
     return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

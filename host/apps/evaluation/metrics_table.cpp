@@ -15,14 +15,22 @@ std::string count_text(const std::optional<double>& value) {
     return value ? fmt::format("{:.0f}", *value) : std::string(kUndefined);
 }
 
+/// A difference that rounds to nothing has no sign worth showing.
+std::string without_negative_zero(std::string number) {
+    const bool is_zero = number.find_first_of("123456789") == std::string::npos;
+    if (is_zero && number.starts_with('-')) number.erase(0, 1);
+    return number;
+}
+
 /// "0.620 ± 0.045", "2165 ± 30", with a sign if it is a difference.
 std::string summary_text(const Summary& summary, bool is_count, bool is_difference) {
     if (!summary.mean) {
         return std::string(kUndefined);
     }
     const int digits = is_count ? 0 : 3;
-    const std::string mean = is_difference ? fmt::format("{:+.{}f}", *summary.mean, digits)
-                                           : fmt::format("{:.{}f}", *summary.mean, digits);
+    const std::string mean =
+        without_negative_zero(is_difference ? fmt::format("{:+.{}f}", *summary.mean, digits)
+                                            : fmt::format("{:.{}f}", *summary.mean, digits));
     return summary.sd ? fmt::format("{} ± {:.{}f}", mean, *summary.sd, digits) : mean;
 }
 

@@ -8,12 +8,14 @@
 #include "host/apps/evaluation/results.hpp"
 #include "host/apps/evaluation/survey.hpp"
 #include "host/apps/evaluation/truth.hpp"
+#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/recorded_scene.hpp"
 #include "host/apps/playback/playback.hpp"
+#include "host/apps/study/configuration.hpp"
 #include "host/apps/study/study.hpp"
 #include "host/io/mapfile/map_file.hpp"
-#include "host/io/mapping/mapping_file.hpp"
-#include "hw/sim/scenario/scenario.hpp"
+#include "hw/rigfile/rig.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -28,69 +30,109 @@ struct EvaluateOptions {
     std::string configuration = "robust";
 };
 
-struct World {
-    sim::Scenario scenario;
-    sim::World solids;
-};
-
-World read_world(const EvaluateOptions& options) {
-    auto scenario = sim::read_scenario(options.scenario);
-    if (!scenario) throw CommandFailure({ExitCode::bad_config, scenario.error().message()});
-    auto solids = sim::World::read(options.world.empty() ? scenario->world : options.world);
-    if (!solids) throw CommandFailure({ExitCode::bad_data, solids.error().message()});
-    return {std::move(*scenario), std::move(*solids)};
+/// The scene of `recording`, with whatever is given in its place.
+Scene recorded_scene(const std::filesystem::path& recording, const EvaluateOptions& options) {
+    auto found = read_recorded_scene(recording, {options.scenario, options.world});
+    if (!found) throw CommandFailure(found.error());
+    for (const std::string& warning : found->warnings) spdlog::warn("{}", warning);
+    return std::move(found->scene);
 }
 
-evaluation::Truth build(const World& world, const rig::Rig& rig, double resolution_m) {
+evaluation::Truth build(const Scene& scene, const rig::Rig& rig, double resolution_m) {
+    spdlog::info("judging in {}, {}", scene.world_file.file.string(), scene.scenario_file.file.string());
     spdlog::info("ground truth: a noise-free camera goes round the scene");
-    evaluation::TruthConfig config = truth_config_of(world.scenario, resolution_m);
+    evaluation::TruthConfig config = truth_config_of(scene.scenario, resolution_m);
     config.external_camera = rig.camera;
-    return evaluation::build_truth(world.solids,
-                                   evaluation::render_survey(world.solids, survey_config_of(world.scenario)),
+    return evaluation::build_truth(scene.world,
+                                   evaluation::render_survey(scene.world, survey_config_of(scene.scenario)),
                                    config, rig.T_map_base);
 }
 
-struct Judgement {
-    std::vector<evaluation::Run> runs;
-    bool is_papers_experiment = false;
-};
-
-bool is_papers(const rig::Rig& rig, const EvaluateOptions& options) {
-    return is_papers_experiment(rig, options.scenario, options.world,
+bool is_papers(const rig::Rig& rig, const Scene& scene) {
+    std::error_code error;
+    const auto& world = scene.world_file.file;
+    const bool is_own_world = std::filesystem::equivalent(world, scene.scenario.world, error);
+    return is_papers_experiment(rig, scene.scenario_file.file, is_own_world ? std::filesystem::path() : world,
                                 shipped_file("hw/worlds/experiment.scenario.yaml"));
 }
 
-Judgement judge_recording(const EvaluateOptions& options, const World& world) {
-    const auto mapping = read_mapping(options.configuration);
-    if (!mapping) throw CommandFailure({ExitCode::bad_config, mapping.error().message()});
+/// The figures with all that they depend on.
+evaluation::Results results_of(const std::vector<evaluation::Run>& runs, const rig::Rig& rig,
+                               const Scene& scene, const std::filesystem::path& rig_file) {
+    auto results =
+        evaluation::collect(runs, {}, provenance_of(scene, source_file(rig_file, rig.extended_files)));
+    results.is_papers_experiment = is_papers(rig, scene);
+    return results;
+}
+
+evaluation::Results judge_recording(const EvaluateOptions& options) {
+    const auto configuration = study_configuration(options.configuration);
+    if (!configuration) throw CommandFailure(configuration.error());
+    const MappingConfig& mapping = configuration->mapping;
     const RecordingPaths recording(options.input);
+    if (const auto checked = check_recording(recording, !options.rig.empty()); !checked)
+        throw CommandFailure({ExitCode::no_input, checked.error().message()});
+    const Scene scene = recorded_scene(options.input, options);
     const auto meta = read_meta(recording);
-    if (!meta) throw CommandFailure({ExitCode::no_input, meta.error().message()});
+    if (!meta) throw CommandFailure({ExitCode::bad_data, meta.error().message()});
     spdlog::info("replaying {}", options.input.string());
-    const auto playback = play_recording({.recording = recording,
-                                          .mapping = *mapping,
-                                          .maps = {},
-                                          .rig = options.rig,
-                                          .robot = options.robot});
+    const auto playback = play_recording(
+        {.recording = recording, .mapping = mapping, .maps = {}, .rig = options.rig, .robot = options.robot});
     if (!playback) throw CommandFailure(playback.error());
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     if (const auto& failed = playback->outcome.depth_error) spdlog::warn("{}", failed->what);
     if (const auto& failed = playback->outcome.can_error) spdlog::warn("{}", failed->what);
-    const evaluation::Truth truth = build(world, playback->rig, mapping->map.resolution_m);
-    const std::string name = std::filesystem::path(options.configuration).stem().string();
+    const evaluation::Truth truth = build(scene, playback->rig, mapping.map.resolution_m);
+    const std::string& name = configuration->name;
     const MapSet& maps = playback->pipeline.maps();
     const std::uint64_t seed = meta->seed.value_or(0);
-    Judgement judgement{.runs = {}, .is_papers_experiment = is_papers(playback->rig, options)};
-    judgement.runs.push_back({name, "proximity", seed, evaluation::evaluate(*maps.proximity(), truth)});
+    std::vector<evaluation::Run> runs = {
+        {name, "proximity", seed, evaluation::evaluate(*maps.proximity(), truth)}};
     if (playback->rig.camera) {
-        judgement.runs.insert(judgement.runs.begin(),
-                              {name, "depth", seed, evaluation::evaluate(*maps.depth(), truth)});
-        judgement.runs.push_back({name, "fused", seed, evaluation::evaluate(*maps.fused(), truth)});
+        runs.insert(runs.begin(), {name, "depth", seed, evaluation::evaluate(*maps.depth(), truth)});
+        runs.push_back({name, "fused", seed, evaluation::evaluate(*maps.fused(), truth)});
     }
-    return judgement;
+    return results_of(runs, playback->rig, scene, options.rig.empty() ? recording.rig() : options.rig);
 }
 
-Judgement judge_map(const EvaluateOptions& options, const World& world) {
+/// The rig that says where the map's grid lies; one that is not the rig of the recording beside the map is
+/// most likely a mistake.
+rig::Rig rig_of_map(const EvaluateOptions& options, const std::optional<std::filesystem::path>& recording) {
+    const std::string own = recording ? RecordingPaths(*recording).rig().string() : "RECORDING/rig.yaml";
+    if (options.rig.empty()) {
+        throw CommandFailure(
+            {ExitCode::usage,
+             "a map alone does not say where the robot and the camera stood in it: give --rig " + own +
+                 ", which has the map's shift (T_map_base)"});
+    }
+    auto rig = rig::read_rig(options.rig, options.robot);
+    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    if (!recording) return std::move(*rig);
+    const auto recorded = rig::read_rig(own);
+    if (recorded && rig::rig_hash(*recorded) != rig::rig_hash(*rig)) {
+        spdlog::warn(
+            "{} is another rig than {}, of the recording beside the map; unless the map was made with it, "
+            "the figures are wrong",
+            options.rig.string(), own);
+    }
+    return std::move(*rig);
+}
+
+Scene scene_of_map(const EvaluateOptions& options, const std::optional<std::filesystem::path>& recording) {
+    if (recording) return recorded_scene(*recording, options);
+    if (options.scenario.empty()) {
+        throw CommandFailure(
+            {ExitCode::usage,
+             "no recording lies beside this map, and a map does not say in which world it was "
+             "made: give --scenario (shipped: " +
+                 shipped_file("hw/worlds/experiment.scenario.yaml").string() + ")"});
+    }
+    auto scene = read_scene(options.scenario, options.world);
+    if (!scene) throw CommandFailure(scene.error());
+    return std::move(*scene);
+}
+
+evaluation::Results judge_map(const EvaluateOptions& options) {
     MapReadLimits limits;
     // Whoever made the map may have clamped wider than octoskin does (OctoMap's own defaults are -2
     // and 3.511).
@@ -98,23 +140,18 @@ Judgement judge_map(const EvaluateOptions& options, const World& world) {
     limits.map.log_odds_max = 20.0F;
     const auto map = load_map(options.input, limits);
     if (!map) throw CommandFailure({ExitCode::bad_data, map.error().message});
-    if (options.rig.empty()) {
-        throw CommandFailure(
-            {ExitCode::usage, "a map alone does not say where the robot and the camera stood: give --rig"});
-    }
-    const auto rig = rig::read_rig(options.rig, options.robot);
-    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
-    const evaluation::Truth truth = build(world, *rig, map->resolution_m());
-    return {{{"map", options.input.stem().string(), 0, evaluation::evaluate(*map, truth)}},
-            is_papers(*rig, options)};
+    const auto recording = recording_beside(options.input);
+    const rig::Rig rig = rig_of_map(options, recording);
+    const Scene scene = scene_of_map(options, recording);
+    const evaluation::Truth truth = build(scene, rig, map->resolution_m());
+    const std::vector<evaluation::Run> runs = {
+        {"map", options.input.stem().string(), 0, evaluation::evaluate(*map, truth)}};
+    return results_of(runs, rig, scene, options.rig);
 }
 
 void evaluate_input(const EvaluateOptions& options) {
-    const World world = read_world(options);
-    const Judgement judgement = std::filesystem::is_directory(options.input) ? judge_recording(options, world)
-                                                                             : judge_map(options, world);
-    evaluation::Results results = evaluation::collect(judgement.runs);
-    results.is_papers_experiment = judgement.is_papers_experiment;
+    const evaluation::Results results =
+        std::filesystem::is_directory(options.input) ? judge_recording(options) : judge_map(options);
     fmt::print("{}", evaluation::metrics_table(results));
     if (options.json.empty()) return;
     std::ofstream file(options.json);
@@ -127,25 +164,27 @@ void evaluate_input(const EvaluateOptions& options) {
 
 void add_evaluate_command(CLI::App& app) {
     auto options = std::make_shared<EvaluateOptions>();
-    options->scenario = shipped_file("hw/worlds/experiment.scenario.yaml");
     CLI::App* command =
         app.add_subcommand("evaluate", "Judge a recording, or a map, against the world it was made in");
     command->add_option("input", options->input, "A recording's directory, or a map (.ot, .bt)")
         ->required()
-        ->check(CLI::ExistingPath);
-    command->add_option("--scenario", options->scenario, "Judged region, hidden objects, world (YAML)")
-        ->capture_default_str()
-        ->check(CLI::ExistingFile);
-    command->add_option("--world", options->world, "World (SDF) in place of the scenario's")
-        ->check(CLI::ExistingFile);
+        ->check(existing_path());
     command
-        ->add_option("--rig", options->rig, "Rig (YAML): required for a map; in place of a recording's own")
-        ->check(CLI::ExistingFile);
+        ->add_option("--scenario", options->scenario,
+                     "Judged region, hidden objects, world (YAML) in place of the recording's; one that is "
+                     "another is used, with a warning")
+        ->check(existing_file());
+    command->add_option("--world", options->world, "World (SDF) in place of the recording's; likewise")
+        ->check(existing_file());
+    command
+        ->add_option(
+            "--rig", options->rig,
+            "Rig (YAML) in place of the recording's. For a map it is required: give RECORDING/rig.yaml, "
+            "which has the seed's shift of the map's grid")
+        ->check(existing_file());
     command->add_option("--robot", options->robot, "Robot (URDF) in place of the rig's")
-        ->check(CLI::ExistingFile);
-    command
-        ->add_option("--configuration", options->configuration,
-                     "For a recording: paper, robust, or a YAML file")
+        ->check(existing_file());
+    command->add_option("--configuration", options->configuration, configuration_help("For a recording"))
         ->capture_default_str();
     command->add_option("--json", options->json, "Write every figure to this file too");
     command->callback([options] { evaluate_input(*options); });

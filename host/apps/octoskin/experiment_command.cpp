@@ -6,8 +6,8 @@
 #include <memory>
 #include <thread>
 
+#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/study/configuration.hpp"
 #include "host/apps/study/study.hpp"
 
 namespace octoskin::app {
@@ -38,23 +38,23 @@ void add_experiment_command(CLI::App& app) {
     command->add_option("--out", request->out, "Directory of the results")->required();
     command->add_option("--seeds", request->seeds, "Seeds; the first one's maps and recording are kept")
         ->capture_default_str()
-        ->check(CLI::NonNegativeNumber);
+        ->check(seed());
     command->add_option("--configurations", request->configurations)
-        ->description("Any of paper, paper_noise_free_robot_seen, robust")
+        ->description(configuration_help("Any of"))
         ->capture_default_str();
     command->add_option("--jobs", request->jobs, "Seeds at once")
         ->capture_default_str()
         ->check(CLI::Range(1, 64));
     command->add_option("--rig", request->inputs.rig, "Rig (YAML)")
         ->capture_default_str()
-        ->check(CLI::ExistingFile);
+        ->check(existing_file());
     command->add_option("--robot", request->inputs.robot, "Robot (URDF) in place of the rig's")
-        ->check(CLI::ExistingFile);
+        ->check(existing_file());
     command->add_option("--scenario", request->inputs.scenario, "Motion, noise, seeds, judged region (YAML)")
         ->capture_default_str()
-        ->check(CLI::ExistingFile);
+        ->check(existing_file());
     command->add_option("--world", request->inputs.world, "World (SDF) in place of the scenario's")
-        ->check(CLI::ExistingFile);
+        ->check(existing_file());
     command->callback([request] { run_experiment(*request); });
 }
 

@@ -6,7 +6,9 @@
 #include <csignal>
 #include <exception>
 
+#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/version/version.hpp"
 
 namespace {
 
@@ -18,7 +20,7 @@ constexpr const char* kFooter =
 int run(int argc, char** argv) {
     using namespace octoskin;
     CLI::App app{"One map of what a depth camera and the range sensors on a robot arm see."};
-    app.set_version_flag("--version", "octoskin " OCTOSKIN_VERSION);
+    app.set_version_flag("--version", program_version());
     app.require_subcommand(1);
     app.footer(kFooter);
     app::add_simulate_command(app);
@@ -30,6 +32,7 @@ int run(int argc, char** argv) {
     app::add_flash_command(app);
     app::add_black_box_command(app);
     try {
+        app::check_command_name(app, argc, argv);
         app.parse(argc, argv);
         return static_cast<int>(ExitCode::ok);
     } catch (const CLI::ParseError& error) {

@@ -5,10 +5,11 @@
 #include <memory>
 #include <span>
 
+#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/playback/map_folder.hpp"
 #include "host/apps/playback/playback.hpp"
-#include "host/io/mapfile/map_file.hpp"
-#include "host/io/mapping/mapping_file.hpp"
+#include "host/apps/study/configuration.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -31,23 +32,42 @@ void report_progress(const ReplayProgress& progress, int& last_second) {
                  progress.depth_frames);
 }
 
-void save(const FusedMap& map, const std::filesystem::path& out, const std::string& name) {
-    for (const char* extension : {".ot", ".bt", ".ply"}) {
-        const auto file = out / (name + extension);
-        if (const auto saved = save_map(map, file); !saved)
-            throw CommandFailure({ExitCode::cannot_create, saved.error().message});
+/// A replay that failed leaves the maps of the one before as they are.
+void refuse_failed(const Playback& playback) {
+    if (const auto& failed = playback.outcome.can_error)
+        throw CommandFailure({ExitCode::bad_data, failed->what + "; no map is written"});
+    if (const auto& failed = playback.outcome.depth_error) {
+        throw CommandFailure(
+            {ExitCode::bad_data, failed->what +
+                                     "; no map is written (to map the ranges alone, move depth.oni and "
+                                     "depth.epoch.yaml away)"});
     }
-    fmt::print("{}: {} known voxels\n", (out / (name + ".ot")).string(), map.known_voxels());
+    if (!playback.pipeline.is_balanced())
+        throw CommandFailure({ExitCode::failed, "the account does not balance; no map is written"});
+    if (playback.is_map_incomplete)
+        throw CommandFailure({ExitCode::failed, "the map is not complete; no map is written"});
+    if (playback.pipeline.maps().fused()->known_voxels() == 0) {
+        throw CommandFailure(
+            {ExitCode::failed, "nothing came into the map, the account above says why; no map is written"});
+    }
+}
+
+void save(const Playback& playback, const std::filesystem::path& out) {
+    const auto maps = named_maps(playback);
+    if (const auto saved = save_maps(maps, out); !saved) throw CommandFailure(saved.error());
+    for (const auto& [name, map] : maps) {
+        fmt::print("{}: {} known voxels\n", (out / (name + ".ot")).string(), map->known_voxels());
+    }
 }
 
 void replay_recording(const ReplayOptions& options) {
-    const auto mapping = read_mapping(options.configuration);
-    if (!mapping) throw CommandFailure({ExitCode::bad_config, mapping.error().message()});
+    const auto configuration = study_configuration(options.configuration);
+    if (!configuration) throw CommandFailure(configuration.error());
     const bool wants_all = !options.is_fused_only;
     int last_second = 0;
     const auto playback =
         play_recording({.recording = RecordingPaths(options.recording),
-                        .mapping = *mapping,
+                        .mapping = configuration->mapping,
                         .maps = {.depth = wants_all, .proximity = wants_all, .fused = true},
                         .rig = options.rig,
                         .robot = options.robot},
@@ -58,24 +78,8 @@ void replay_recording(const ReplayOptions& options) {
     fmt::print("{}", to_text(std::span<const NodeSummary>(playback->nodes)));
     for (const std::string& note : playback->notes) fmt::print("{}\n", note);
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
-    std::error_code error;
-    std::filesystem::create_directories(options.out, error);
-    if (error) throw CommandFailure({ExitCode::cannot_create, options.out.string() + ": " + error.message()});
-    const MapSet& maps = playback->pipeline.maps();
-    if (maps.depth() != nullptr) save(*maps.depth(), options.out, "depth");
-    if (maps.proximity() != nullptr) save(*maps.proximity(), options.out, "proximity");
-    save(*maps.fused(), options.out, "fused");
-
-    if (const auto& failed = playback->outcome.can_error)
-        throw CommandFailure({ExitCode::bad_data, failed->what});
-    if (const auto& failed = playback->outcome.depth_error)
-        throw CommandFailure({ExitCode::bad_data, failed->what});
-    if (!playback->pipeline.is_balanced())
-        throw CommandFailure({ExitCode::failed, "the account does not balance"});
-    if (playback->is_map_incomplete) throw CommandFailure({ExitCode::failed, "the map is not complete"});
-    if (maps.fused()->known_voxels() == 0) {
-        throw CommandFailure({ExitCode::failed, "nothing came into the map; the account above says why"});
-    }
+    refuse_failed(*playback);
+    save(*playback, options.out);
 }
 
 }  // namespace
@@ -88,12 +92,12 @@ void add_replay_command(CLI::App& app) {
     command->add_option("--out", options->out, "Where the maps go (default: RECORDING/maps)");
     command
         ->add_option("--configuration", options->configuration,
-                     "How measurements become voxels: paper, robust, or a YAML file")
+                     configuration_help("How measurements become voxels"))
         ->capture_default_str();
     command->add_option("--rig", options->rig, "Rig (YAML) in place of the recording's")
-        ->check(CLI::ExistingFile);
+        ->check(existing_file());
     command->add_option("--robot", options->robot, "Robot (URDF) in place of the recording's")
-        ->check(CLI::ExistingFile);
+        ->check(existing_file());
     command->add_flag("--fused-only", options->is_fused_only,
                       "Leave out the maps of the camera alone and the sensors alone");
     command->callback([options] {

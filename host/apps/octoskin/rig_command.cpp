@@ -4,9 +4,11 @@
 #include <memory>
 
 #include "common/wire/bus_load.hpp"
+#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
+#include "hw/rigfile/i2c_load.hpp"
 #include "hw/rigfile/phase_spread.hpp"
 #include "hw/rigfile/rig.hpp"
 
@@ -19,13 +21,15 @@ struct RigOptions {
     bool prints_canonical = false;
 };
 
-/// What a person can mend by other values of phase_us.
-void describe_turns(const rig::Node& node) {
+/// Each bus's load, and what a person can mend by other values of phase_us.
+void describe_i2c(const rig::Node& node) {
     for (std::uint8_t bus = 0; bus < node.board.i2c_bus_count; ++bus) {
+        const double load = rig::i2c_load(node.config, bus);
+        if (load == 0.0) continue;
         const rig::PhaseSpread spread = rig::phase_spread(node.config, bus);
-        if (spread.mean == 0.0) continue;
-        fmt::print("    I2C bus {}: read {:.0f} % of the time, {:.0f} % of its busiest 5 ms{}\n", bus,
-                   100.0 * spread.mean, 100.0 * spread.peak,
+        fmt::print("    I2C bus {} at {} kHz: load {:.1f} %, at most {:.0f} %; {:.0f} % of its busiest 5 ms{}\n",
+                   bus, node.config.i2c_hz / 1000, 100.0 * load, 100.0 * rig::kI2cLoadMax,
+                   100.0 * spread.peak,
                    spread.is_even() ? "" : ": phase_us could spread the readings better");
     }
     for (const auto& [first, second] : rig::pairs_ranging_together(node)) {
@@ -39,7 +43,7 @@ void describe(const rig::Rig& rig) {
     for (const rig::Node& node : rig.nodes) {
         fmt::print("  node {} '{}': {} sensors, node_hash {:08x}\n", node.config.node_id, node.name,
                    node.sensors.size(), node_hash(node.config));
-        describe_turns(node);
+        describe_i2c(node);
     }
     fmt::print("  node {} sends {} joints at {:g} Hz\n", rig.joints.node_id, rig.joints.joints.size(),
                rig.joints.rate_hz);
@@ -57,11 +61,11 @@ void describe(const rig::Rig& rig) {
 
 void add_rig_command(CLI::App& app) {
     auto options = std::make_shared<RigOptions>();
-    CLI::App* command =
-        app.add_subcommand("rig", "Check a rig and its robot; print nodes, hashes and bus loads");
-    command->add_option("rig", options->rig, "Rig (YAML)")->required();
+    CLI::App* command = app.add_subcommand(
+        "rig", "Check a rig and its robot; print nodes, hashes, and the loads of CAN and I2C");
+    command->add_option("rig", options->rig, "Rig (YAML)")->required()->check(existing_file());
     command->add_option("--robot", options->robot, "Robot (URDF) in place of the rig's")
-        ->check(CLI::ExistingFile);
+        ->check(existing_file());
     command->add_flag("--canonical", options->prints_canonical,
                       "Print the rig in full, in its canonical form");
     command->callback([options] {

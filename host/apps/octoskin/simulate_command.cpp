@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/simulation/simulation.hpp"
 
@@ -42,8 +43,8 @@ sim::EmulatedBoards emulated_boards(const SimulateOptions& options) {
 void simulate(const SimulationRequest& request, bool allows_violations) {
     int last_percent = -10;
     const auto on_progress = [&last_percent](double fraction) {
-        const int percent = static_cast<int>(fraction * 100.0);
-        if (percent < last_percent + 10) return;
+        const int percent = static_cast<int>(fraction * 10.0) * 10;
+        if (percent <= last_percent) return;
         last_percent = percent;
         spdlog::info("simulating: {} %", percent);
     };
@@ -72,19 +73,23 @@ void add_simulate_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("simulate", "Simulate the rig down to its sensors' registers; write a recording");
     command->add_option("out", request->out, "Directory of the recording")->required();
-    command->add_option("--rig", request->rig, "Rig (YAML)")->capture_default_str()->check(CLI::ExistingFile);
+    command->add_option("--rig", request->rig, "Rig (YAML)")->capture_default_str()->check(existing_file());
     command->add_option("--robot", request->robot, "Robot (URDF) in place of the rig's")
-        ->check(CLI::ExistingFile);
+        ->check(existing_file());
     command->add_option("--scenario", request->scenario, "Motion, noise, seeds (YAML)")
         ->capture_default_str()
-        ->check(CLI::ExistingFile);
+        ->check(existing_file());
     command->add_option("--world", request->world, "World (SDF) in place of the scenario's")
-        ->check(CLI::ExistingFile);
+        ->check(existing_file());
     command
         ->add_option("--seed", request->seed,
                      "Noise, parts, clocks, and where the world stands in the map's grid")
         ->capture_default_str()
-        ->check(CLI::NonNegativeNumber);
+        ->check(seed());
+    command->add_flag(
+        "--force", request->may_replace,
+        "Replace the simulated recording, and the maps made of it, that the directory holds; one that "
+        "is not known to be simulated is never replaced");
     command->add_flag("--noise-free-depth", request->is_depth_noise_free, "A camera without noise");
     command
         ->add_option(

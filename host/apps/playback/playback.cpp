@@ -21,7 +21,11 @@ struct Setup {
 Result<Setup, AppError> read_setup(const PlaybackRequest& request) {
     const auto lock = lock_reading();
     auto rig = rig::read_rig(request.rig.empty() ? request.recording.rig() : request.rig, request.robot);
-    if (!rig) return fail(ExitCode::bad_config, rig.error().message());
+    if (!rig) {
+        const bool is_robot_absent = request.rig.empty() && request.robot.empty() &&
+                                     !std::filesystem::exists(request.recording.robot());
+        return fail(is_robot_absent ? ExitCode::no_input : ExitCode::bad_config, rig.error().message());
+    }
     auto host = make_host_setup(*rig);
     if (!host) return fail(ExitCode::bad_config, host.error().message());
     return Setup{std::move(*rig), std::move(*host)};
@@ -132,7 +136,7 @@ void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInp
 }  // namespace
 
 Result<Playback, AppError> play_recording(const PlaybackRequest& request, const ReplayReport& report) {
-    if (const auto checked = check_recording(request.recording); !checked) {
+    if (const auto checked = check_recording(request.recording, !request.rig.empty()); !checked) {
         return fail(ExitCode::no_input, checked.error().message());
     }
     const auto meta = read_meta(request.recording);

@@ -10,15 +10,29 @@ namespace octoskin {
 namespace {
 
 constexpr const char* kSchema = "octoskin-recording/1";
+constexpr const char* kMetaMissing =
+    "no such file; the least that it can be is two lines, 'schema: octoskin-recording/1' and 'source: robot'";
 
 Unexpected<RecordingError> failure(const std::filesystem::path& file, std::string what) {
     return unexpected(RecordingError{file, std::move(what)});
 }
 
+void write_source(YAML::Emitter& out, const std::string& key, const SourceFile& source) {
+    if (source.file.empty()) return;
+    out << YAML::Key << key << YAML::Value << source.file.string();
+    if (source.crc32) out << YAML::Key << key + "_crc32" << YAML::Value << crc_text(*source.crc32);
+}
+
+SourceFile read_source(const YAML::Node& root, const std::string& key) {
+    SourceFile source{root[key].as<std::string>(""), std::nullopt};
+    if (const YAML::Node crc = root[key + "_crc32"]) source.crc32 = crc.as<std::uint32_t>();
+    return source;
+}
+
 Status<RecordingError> check_keys(const std::filesystem::path& file, const YAML::Node& root) {
     static const std::set<std::string> known{
-        "schema", "made_by",    "source",     "world",        "scenario",
-        "seed",   "duration_s", "can_frames", "depth_frames", "is_depth_noise_free"};
+        "schema", "made_by",   "source", "world",      "world_crc32", "scenario",     "scenario_crc32",
+        "rig",    "rig_crc32", "seed",   "duration_s", "can_frames",  "depth_frames", "is_depth_noise_free"};
     for (const auto& entry : root) {
         const auto key = entry.first.as<std::string>();
         if (!known.contains(key)) {
@@ -37,8 +51,9 @@ Status<RecordingError> write_meta(const RecordingPaths& recording, const Recordi
     out << YAML::Key << "schema" << YAML::Value << kSchema;
     out << YAML::Key << "made_by" << YAML::Value << meta.made_by;
     out << YAML::Key << "source" << YAML::Value << meta.source;
-    out << YAML::Key << "world" << YAML::Value << meta.world;
-    out << YAML::Key << "scenario" << YAML::Value << meta.scenario;
+    write_source(out, "world", meta.world);
+    write_source(out, "scenario", meta.scenario);
+    write_source(out, "rig", meta.rig);
     if (meta.seed) out << YAML::Key << "seed" << YAML::Value << *meta.seed;
     out << YAML::Key << "is_depth_noise_free" << YAML::Value << meta.is_depth_noise_free;
     out << YAML::Key << "can_frames" << YAML::Value << meta.can_frames;
@@ -55,8 +70,7 @@ Status<RecordingError> write_meta(const RecordingPaths& recording, const Recordi
 Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording) {
     const auto path = recording.meta();
     std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error))
-        return failure(path, "no such file; a recording must have it");
+    if (!std::filesystem::is_regular_file(path, error)) return failure(path, kMetaMissing);
     try {
         const YAML::Node root = YAML::LoadFile(path.string());
         if (!root.IsMap() || root["schema"].as<std::string>("") != kSchema) {
@@ -66,8 +80,9 @@ Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording)
         RecordingMeta meta;
         meta.made_by = root["made_by"].as<std::string>("");
         meta.source = root["source"].as<std::string>("");
-        meta.world = root["world"].as<std::string>("");
-        meta.scenario = root["scenario"].as<std::string>("");
+        meta.world = read_source(root, "world");
+        meta.scenario = read_source(root, "scenario");
+        meta.rig = read_source(root, "rig");
         if (root["seed"]) meta.seed = root["seed"].as<std::uint64_t>();
         meta.is_depth_noise_free = root["is_depth_noise_free"].as<bool>(false);
         meta.can_frames = root["can_frames"].as<std::uint64_t>(0);
@@ -79,15 +94,24 @@ Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording)
     }
 }
 
-Status<RecordingError> check_recording(const RecordingPaths& recording) {
+Status<RecordingError> check_recording(const RecordingPaths& recording, bool is_rig_given) {
     std::error_code error;
-    if (!std::filesystem::is_directory(recording.directory)) {
+    if (std::filesystem::is_regular_file(recording.directory, error)) {
+        return failure(recording.directory,
+                       "is a file; give the recording's directory, " +
+                           std::filesystem::absolute(recording.directory).parent_path().string());
+    }
+    if (!std::filesystem::is_directory(recording.directory, error)) {
         return failure(recording.directory,
                        "no such directory; `octoskin simulate` and `./demo` make recordings");
     }
-    for (const auto& file : {recording.can_log(), recording.rig(), recording.robot(), recording.meta()}) {
-        if (!std::filesystem::is_regular_file(file, error))
-            return failure(file, "no such file; a recording must have it");
+    const std::pair<std::filesystem::path, const char*> needed[] = {
+        {recording.can_log(), "no such file; it is what `candump -L` writes"},
+        {recording.rig(), "no such file; put the rig there, or give --rig"},
+        {recording.meta(), kMetaMissing}};
+    for (const auto& [file, what] : needed) {
+        if (is_rig_given && file == recording.rig()) continue;
+        if (!std::filesystem::is_regular_file(file, error)) return failure(file, what);
     }
     if (std::filesystem::exists(recording.depth()) != std::filesystem::exists(recording.depth_epoch())) {
         return failure(recording.directory, "depth.oni and depth.epoch.yaml must both be there, or neither");

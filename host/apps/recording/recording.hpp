@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/result.hpp"
+#include "host/apps/recording/source_file.hpp"
 
 namespace octoskin {
 
@@ -28,13 +29,16 @@ struct RecordingPaths {
 struct RecordingMeta {
     std::string made_by;                ///< program, version, build
     std::string source;                 ///< "simulation" or "robot"
-    std::string world;                  ///< file name of the simulated world; empty for a robot
-    std::string scenario;               ///< file name of the simulated motion; empty for a robot
+    SourceFile world;                   ///< that was simulated; empty for a robot
+    SourceFile scenario;                ///< that was simulated; empty for a robot
+    SourceFile rig;                     ///< as it was given: the recording's own has the seed's shift
     std::optional<std::uint64_t> seed;  ///< of the simulation
     bool is_depth_noise_free = false;
     std::uint64_t can_frames = 0;
     std::uint64_t depth_frames = 0;
     double duration_s = 0.0;
+
+    [[nodiscard]] bool is_simulated() const { return source == "simulation"; }
 };
 
 struct RecordingError {
@@ -48,8 +52,10 @@ struct RecordingError {
 /// Reads meta.yaml. Unknown keys are refused, as everywhere.
 [[nodiscard]] Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording);
 
-/// That `directory` holds every file a recording must have; names the one that is missing. A recording
-/// without a camera has neither depth.oni nor its sidecar.
-[[nodiscard]] Status<RecordingError> check_recording(const RecordingPaths& recording);
+/// That `directory` holds every file a recording must have (docs/recording.md); names the one that is
+/// missing, and what to put there. rig.yaml may be missing if another one `is_rig_given`; a recording without
+/// a camera has neither depth.oni nor its sidecar. The robot is not looked for: the rig names it.
+[[nodiscard]] Status<RecordingError> check_recording(const RecordingPaths& recording,
+                                                     bool is_rig_given = false);
 
 }  // namespace octoskin

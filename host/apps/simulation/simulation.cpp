@@ -4,14 +4,14 @@
 #include <optional>
 
 #include "host/apps/recording/reading.hpp"
-#include "host/apps/recording/recording.hpp"
+#include "host/apps/recording/recording_draft.hpp"
+#include "host/apps/simulation/scene.hpp"
+#include "host/apps/version/version.hpp"
 #include "host/io/candump/log_writer.hpp"
 #include "host/io/openni2/oni_writer.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/sim/arm/arm.hpp"
-#include "hw/sim/scenario/scenario.hpp"
-#include "hw/sim/world/world.hpp"
 
 namespace octoskin {
 namespace {
@@ -20,30 +20,24 @@ namespace fs = std::filesystem;
 
 /// Everything that is read before anything is simulated.
 struct Inputs {
-    sim::Scenario scenario;
+    Scene scene;
     rig::Rig rig;
-    sim::World world;
     sim::Arm arm;
     std::vector<rig::Capsule> body;  ///< the real one: without the rig's padding
-    fs::path world_file;
 };
 
 Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
     const auto lock = lock_reading();
-    auto scenario = sim::read_scenario(request.scenario);
-    if (!scenario) return fail(ExitCode::bad_config, scenario.error().message());
+    auto scene = read_scene(request.scenario, request.world);
+    if (!scene) return unexpected(scene.error());
     auto rig = rig::read_rig(request.rig, request.robot);
     if (!rig) return fail(ExitCode::bad_config, rig.error().message());
-    const fs::path world_file = request.world.empty() ? scenario->world : request.world;
-    auto world = sim::World::read(world_file);
-    if (!world) return fail(ExitCode::bad_data, world.error().message());
     auto arm = sim::Arm::read(rig->urdf, rig->base_link, rig->joints.joints);
     if (!arm) return fail(ExitCode::bad_config, arm.error().message());
     auto body = rig::read_capsules(rig->urdf, {});
     if (!body) return fail(ExitCode::bad_config, body.error().message());
-    rig->T_map_base.pretranslate(scenario->map_shift_m(request.seed));
-    return Inputs{std::move(*scenario), std::move(*rig),  std::move(*world),
-                  std::move(*arm),      std::move(*body), world_file};
+    rig->T_map_base.pretranslate(scene->scenario.map_shift_m(request.seed));
+    return Inputs{std::move(*scene), std::move(*rig), std::move(*arm), std::move(*body)};
 }
 
 /// The files of the recording that is being made; the first error stops the writing and is kept.
@@ -51,9 +45,6 @@ class Recorder {
   public:
     static Result<Recorder, AppError> create(const RecordingPaths& paths, const rig::Rig& rig) {
         std::error_code error;
-        fs::create_directories(paths.directory, error);
-        if (error) return fail(ExitCode::cannot_create, paths.directory.string() + ": " + error.message());
-        for (const auto& stale : {paths.depth(), paths.depth_epoch()}) fs::remove(stale, error);
         fs::copy_file(rig.urdf, paths.robot(), fs::copy_options::overwrite_existing, error);
         if (error) return fail(ExitCode::cannot_create, paths.robot().string() + ": " + error.message());
         std::ofstream rig_file(paths.rig());
@@ -105,15 +96,16 @@ Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequ
                                                             const std::function<void(double)>& on_progress) {
     auto inputs = read_inputs(request);
     if (!inputs) return unexpected(inputs.error());
-    const RecordingPaths paths(request.out);
-    auto recorder = Recorder::create(paths, inputs->rig);
+    auto draft = RecordingDraft::create(request.out, request.may_replace);
+    if (!draft) return unexpected(draft.error());
+    auto recorder = Recorder::create(draft->paths(), inputs->rig);
     if (!recorder) return unexpected(recorder.error());
 
     const sim::ExperimentInput input{.rig = inputs->rig,
                                      .capsules = inputs->body,
-                                     .world = inputs->world,
+                                     .world = inputs->scene.world,
                                      .arm = inputs->arm,
-                                     .scenario = inputs->scenario,
+                                     .scenario = inputs->scene.scenario,
                                      .seed = request.seed,
                                      .is_depth_noise_free = request.is_depth_noise_free,
                                      .emulated = request.emulated,
@@ -123,22 +115,25 @@ Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequ
         .on_depth = [&](HostTime captured, std::uint32_t, std::uint32_t,
                         const std::vector<std::uint16_t>& depth_mm) { recorder->write(captured, depth_mm); },
         .on_progress = on_progress};
+    if (on_progress) on_progress(0.0);
     const auto summary = sim::run_experiment(input, output);
     if (!summary) return fail(ExitCode::bad_config, request.scenario.string() + ": " + summary.error().what);
     if (const auto closed = recorder->close(); !closed) return unexpected(closed.error());
 
-    const RecordingMeta meta{.made_by = "octoskin " OCTOSKIN_VERSION,
+    const RecordingMeta meta{.made_by = program_version(),
                              .source = "simulation",
-                             .world = inputs->world_file.filename().string(),
-                             .scenario = request.scenario.filename().string(),
+                             .world = inputs->scene.world_file,
+                             .scenario = inputs->scene.scenario_file,
+                             .rig = source_file(request.rig, inputs->rig.extended_files),
                              .seed = request.seed,
                              .is_depth_noise_free = request.is_depth_noise_free,
                              .can_frames = summary->can_frames,
                              .depth_frames = summary->depth_frames,
                              .duration_s = summary->duration_s};
-    if (const auto written = write_meta(paths, meta); !written) {
+    if (const auto written = write_meta(draft->paths(), meta); !written) {
         return fail(ExitCode::cannot_create, written.error().message());
     }
+    if (const auto committed = draft->commit(); !committed) return unexpected(committed.error());
     return *summary;
 }
 

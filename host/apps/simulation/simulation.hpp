@@ -23,12 +23,13 @@ struct SimulationRequest {
     bool is_depth_noise_free = false;
     std::optional<sim::EmulatedBoards> emulated{};  ///< boards run the flashed image
     std::vector<sim::BoardStart> board_starts{};    ///< of boards in this process; see there
-    std::filesystem::path out;  ///< made if it is not there; files of a former recording are replaced
+    std::filesystem::path out;                      ///< made if it is not there
+    bool may_replace = false;                       ///< what is in `out`, if that is a simulated recording
 };
 
-/// Simulates and records. The recording's rig has the seed's shift in T_map_base. Several threads may each
-/// make a recording. state: not to be called while another thread reads a rig, world or robot, except for
-/// `read_lock` below.
+/// Simulates and records; unless it succeeds, `out` stays as it was. The recording's rig has the seed's shift
+/// in T_map_base. Several threads may each make a recording. state: not to be called while another thread
+/// reads a rig, world or robot, except for `read_lock` below.
 [[nodiscard]] Result<sim::ExperimentSummary, AppError> simulate_recording(
     const SimulationRequest& request, const std::function<void(double)>& on_progress = {});
 

@@ -1,23 +1,40 @@
 #include "host/apps/study/configuration.hpp"
 
-namespace octoskin {
+#include <algorithm>
+#include <filesystem>
+#include <vector>
 
-std::optional<StudyConfiguration> study_configuration(std::string_view name) {
-    if (name == "paper") {
-        return StudyConfiguration{"paper", paper_mapping(), false,
-                                  "the paper's equations, 3 cm noise on every depth pixel"};
+#include "host/apps/evaluation/results.hpp"
+#include "host/io/mapping/mapping_file.hpp"
+#include "hw/rigfile/joined.hpp"
+#include "hw/rigfile/key_hint.hpp"
+
+namespace octoskin {
+namespace {
+
+AppError absent(const std::string& name) {
+    const std::vector<std::string> built_in(kBuiltInMappings.begin(), kBuiltInMappings.end());
+    const auto near = rig::nearest_word(name, built_in);
+    return {ExitCode::no_input, "configuration '" + name + "': no such file, and built in are " +
+                                    rig::joined(built_in) + (near ? "; did you mean " + *near + "?" : "")};
+}
+
+}  // namespace
+
+Result<StudyConfiguration, AppError> study_configuration(const std::string& name_or_file) {
+    const bool is_built_in =
+        std::find(kBuiltInMappings.begin(), kBuiltInMappings.end(), name_or_file) != kBuiltInMappings.end();
+    std::error_code error;
+    if (!is_built_in && !std::filesystem::exists(name_or_file, error))
+        return unexpected(absent(name_or_file));
+    const auto mapping = read_mapping(name_or_file);
+    if (!mapping) return unexpected(AppError{ExitCode::bad_config, mapping.error().message()});
+    const std::string name = is_built_in ? name_or_file : std::filesystem::path(name_or_file).stem().string();
+    if (name == evaluation::kReservedName) {
+        return fail(ExitCode::usage,
+                    "a configuration cannot be called '" + name + "': rename " + name_or_file);
     }
-    if (name == "paper_noise_free_robot_seen") {
-        MappingConfig mapping = paper_mapping();
-        mapping.removes_robot_from_depth = false;
-        return StudyConfiguration{"paper_noise_free_robot_seen", mapping, true,
-                                  "the paper's equations, depth without noise, the robot left in the image"};
-    }
-    if (name == "robust") {
-        return StudyConfiguration{"robust", robust_mapping(), false,
-                                  "depth filtered; a voxel's term is the mean of its beams'"};
-    }
-    return std::nullopt;
+    return StudyConfiguration{name, *mapping, is_built_in && name == "paper_noise_free_robot_seen"};
 }
 
 }  // namespace octoskin

@@ -1,27 +1,24 @@
-// The named configurations of the experiment.
+// How measurements become voxels, as a person names it: one that ships, or a file.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 
+#include "common/result.hpp"
+#include "host/apps/recording/app_error.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 
 namespace octoskin {
 
 struct StudyConfiguration {
-    std::string name;
+    std::string name;  ///< of a file: its name without folder and extension
     MappingConfig mapping;
-    bool is_depth_noise_free = false;  ///< which of the two recordings it is made from
-    std::string text;                  ///< what it is, for people
+    bool is_depth_noise_free = false;  ///< which of the two recordings the experiment makes it from
 };
 
-/// `paper`: the paper's equations on noisy depth. `paper_noise_free_robot_seen`: the same on noise-free depth
-/// with the robot left in the image, which is what the paper's own figures suggest it did. `robust`: depth
-/// filtered, and voted. Empty for any other name.
-[[nodiscard]] std::optional<StudyConfiguration> study_configuration(std::string_view name);
-
-/// Their names, in the order in which they are reported.
-inline constexpr std::string_view kStudyConfigurations[] = {"paper", "paper_noise_free_robot_seen", "robust"};
+/// One of kBuiltInMappings (host/io/mapping), or the path of a YAML file. Errors: neither (no_input, with the
+/// name that was meant, if one is like it); a file with a mistake (bad_config); a file
+/// called as metrics.json calls something else (usage).
+[[nodiscard]] Result<StudyConfiguration, AppError> study_configuration(const std::string& name_or_file);
 
 }  // namespace octoskin

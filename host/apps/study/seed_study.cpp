@@ -33,6 +33,7 @@ Status<AppError> simulate(const SeedRequest& request, bool is_noise_free, const 
     SimulationRequest simulation = request.simulation;
     simulation.is_depth_noise_free = is_noise_free;
     simulation.out = is_noise_free ? request.scratch : request.recording;
+    simulation.may_replace = true;
     const PartTimer timer("simulate");
     Quarters quarters(say, is_noise_free ? "simulating without depth noise" : "simulating");
     const auto summary = simulate_recording(simulation, [&](double fraction) { quarters.reach(fraction); });

@@ -5,18 +5,19 @@
 #include <algorithm>
 #include <fstream>
 #include <mutex>
+#include <set>
 
 #include "host/apps/evaluation/survey.hpp"
+#include "host/apps/playback/map_folder.hpp"
 #include "host/apps/report/report.hpp"
+#include "host/apps/simulation/scene.hpp"
 #include "host/apps/study/captions.hpp"
 #include "host/apps/study/configuration.hpp"
 #include "host/apps/study/parallel.hpp"
 #include "host/apps/study/part_timer.hpp"
 #include "host/apps/study/seed_study.hpp"
 #include "host/apps/study/study_pictures.hpp"
-#include "host/io/mapfile/map_file.hpp"
-#include "hw/sim/scenario/scenario.hpp"
-#include "hw/sim/world/world.hpp"
+#include "host/apps/version/version.hpp"
 
 namespace octoskin {
 namespace {
@@ -25,43 +26,68 @@ using Say = std::function<void(const std::string&)>;
 namespace fs = std::filesystem;
 
 struct StudyWorld {
-    sim::Scenario scenario;
-    sim::World world;
+    Scene scene;
+    SourceFile rig_file;
     evaluation::TruthConfig truth;
     evaluation::Survey survey;
 };
 
 Result<StudyWorld, AppError> prepare_world(const SimulationRequest& inputs, double resolution_m) {
-    auto scenario = sim::read_scenario(inputs.scenario);
-    if (!scenario) return fail(ExitCode::bad_config, scenario.error().message());
-    auto world = sim::World::read(inputs.world.empty() ? scenario->world : inputs.world);
-    if (!world) return fail(ExitCode::bad_data, world.error().message());
-    evaluation::TruthConfig truth = truth_config_of(*scenario, resolution_m);
-    evaluation::Survey survey = evaluation::render_survey(*world, survey_config_of(*scenario));
-    return StudyWorld{std::move(*scenario), std::move(*world), std::move(truth), std::move(survey)};
+    auto scene = read_scene(inputs.scenario, inputs.world);
+    if (!scene) return unexpected(scene.error());
+    const auto rig = rig::read_rig(inputs.rig, inputs.robot);
+    if (!rig) return fail(ExitCode::bad_config, rig.error().message());
+    evaluation::TruthConfig truth = truth_config_of(scene->scenario, resolution_m);
+    evaluation::Survey survey = evaluation::render_survey(scene->world, survey_config_of(scene->scenario));
+    return StudyWorld{std::move(*scene), source_file(inputs.rig, rig->extended_files), std::move(truth),
+                      std::move(survey)};
+}
+
+/// That a configuration can be told from those before it, and compared with them.
+Status<AppError> check_next(const std::vector<StudyConfiguration>& before, const StudyConfiguration& next) {
+    for (const StudyConfiguration& one : before) {
+        if (one.name == next.name)
+            return fail(ExitCode::usage, fmt::format("configuration '{}' is given twice", next.name));
+        if (one.mapping.map.resolution_m != next.mapping.map.resolution_m) {
+            return fail(
+                ExitCode::usage,
+                fmt::format("configurations '{}' and '{}' have voxels of {} m and {} m: their figures cannot "
+                            "be compared; run one at a time",
+                            one.name, next.name, one.mapping.map.resolution_m,
+                            next.mapping.map.resolution_m));
+        }
+    }
+    return Done{};
 }
 
 Result<std::vector<StudyConfiguration>, AppError> find_configurations(const std::vector<std::string>& names) {
     std::vector<StudyConfiguration> found;
     for (const std::string& name : names) {
         auto configuration = study_configuration(name);
-        if (!configuration) {
-            std::string known;
-            for (const std::string_view one : kStudyConfigurations)
-                known.append(known.empty() ? "" : ", ").append(one);
-            return fail(ExitCode::usage,
-                        fmt::format("unknown configuration '{}'; there are {}", name, known));
-        }
+        if (!configuration) return unexpected(configuration.error());
+        if (const auto checked = check_next(found, *configuration); !checked)
+            return unexpected(checked.error());
         found.push_back(std::move(*configuration));
     }
     return found;
 }
 
-/// The one whose maps are kept and reported: the default, if it was asked for.
-std::string main_configuration(const StudyRequest& request) {
-    const auto& names = request.configurations;
-    const bool has_default = std::find(names.begin(), names.end(), "robust") != names.end();
-    return has_default ? "robust" : names.front();
+Status<AppError> check_seeds(const std::vector<std::uint64_t>& seeds) {
+    std::set<std::uint64_t> seen;
+    for (const std::uint64_t seed : seeds) {
+        if (!seen.insert(seed).second)
+            return fail(ExitCode::usage,
+                        fmt::format("--seeds: {} is given twice; each seed counts once", seed));
+    }
+    return Done{};
+}
+
+/// The one that the maps, the pictures and the headline are of.
+const StudyConfiguration& main_of(const std::vector<StudyConfiguration>& configurations) {
+    const auto robust =
+        std::find_if(configurations.begin(), configurations.end(),
+                     [](const auto& configuration) { return configuration.name == "robust"; });
+    return robust == configurations.end() ? configurations.front() : *robust;
 }
 
 /// Studies every seed, `jobs` of them at once.
@@ -71,7 +97,7 @@ class SeedWorkers {
                 const StudyWorld& ground, const Say& say)
         : request_(request),
           configurations_(configurations),
-          ground_{ground.world, ground.survey, ground.truth},
+          ground_{ground.scene.world, ground.survey, ground.truth},
           say_(say) {}
 
     Result<std::vector<SeedOutcome>, AppError> run() {
@@ -94,7 +120,7 @@ class SeedWorkers {
             .recording = request_.out / (is_first ? "recording" : "recording-seed-" + seed),
             .scratch = request_.out / ("recording-noise-free-seed-" + seed),
             .keeps_recording = is_first,
-            .main_configuration = main_configuration(request_),
+            .main_configuration = main_of(configurations_).name,
             .keeps_maps = is_first};
         seed_request.simulation.seed = request_.seeds[index];
         return seed_request;
@@ -112,20 +138,6 @@ Status<AppError> write_text(const fs::path& file, const std::string& text) {
     out << text;
     out.close();
     if (!out) return fail(ExitCode::cannot_create, file.string() + ": cannot write; is the disk full?");
-    return Done{};
-}
-
-Status<AppError> save_maps(const MapSet& maps, bool has_camera, const fs::path& out) {
-    const std::pair<const char*, const FusedMap*> named[] = {
-        {"depth", maps.depth()}, {"proximity", maps.proximity()}, {"fused", maps.fused()}};
-    for (const auto& [name, map] : named) {
-        if (!has_camera && map == maps.depth()) continue;
-        for (const char* extension : {".ot", ".bt", ".ply"}) {
-            if (const auto saved = save_map(*map, out / (std::string(name) + extension)); !saved) {
-                return fail(ExitCode::cannot_create, saved.error().message);
-            }
-        }
-    }
     return Done{};
 }
 
@@ -155,17 +167,17 @@ report::Account report_account(const AccountTable& table) {
 
 Status<AppError> write_report(const StudyRequest& request, const StudyWorld& ground,
                               const evaluation::Results& results, const SeedOutcome& first,
-                              const std::string& main_configuration) {
+                              const StudyConfiguration& main_configuration) {
     const Playback& main = *first.main;
     report::ReportInput input{.results = results,
-                              .main_configuration = main_configuration,
+                              .main_configuration = main_configuration.name,
                               .picture_seed = first.seed,
-                              .pictures = draw_pictures(ground.world, ground.scenario, main.rig,
+                              .pictures = draw_pictures(ground.scene.world, ground.scene.scenario, main.rig,
                                                         main.pipeline.maps(), *first.truth),
-                              .update_model = study_configuration(main_configuration)->mapping.model,
+                              .update_model = main_configuration.mapping.model,
                               .accounts = {},
-                              .hidden_objects = ground.scenario.hidden_models,
-                              .idealisations = idealisations_of(main.rig, ground.scenario),
+                              .hidden_objects = ground.scene.scenario.hidden_models,
+                              .idealisations = idealisations_of(main.rig, ground.scene.scenario),
                               .reproduce = {command_of(request)}};
     if (!main.rig.camera) input.title = "octoskin: what the range sensors see";
     for (const AccountTable& table : main.accounts) {
@@ -174,11 +186,18 @@ Status<AppError> write_report(const StudyRequest& request, const StudyWorld& gro
     return write_text(request.out / "report.html", report::report_html(input));
 }
 
-std::string program_version() {
-    return "octoskin " OCTOSKIN_VERSION;
+std::string with_crc(const SourceFile& source) {
+    return source.file.filename().string() + (source.crc32 ? ", CRC-32 " + crc_text(*source.crc32) : "");
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> provenance_of(const Scene& scene, const SourceFile& rig) {
+    return {{"program", program_version()},
+            {"world", with_crc(scene.world_file)},
+            {"scenario", with_crc(scene.scenario_file)},
+            {"rig", with_crc(rig)}};
+}
 
 evaluation::TruthConfig truth_config_of(const sim::Scenario& scenario, double resolution_m) {
     evaluation::TruthConfig config;
@@ -206,6 +225,7 @@ evaluation::SurveyConfig survey_config_of(const sim::Scenario& scenario) {
 }
 
 Result<evaluation::Results, AppError> run_study(const StudyRequest& request, const Say& say) {
+    if (const auto checked = check_seeds(request.seeds); !checked) return unexpected(checked.error());
     const auto configurations = find_configurations(request.configurations);
     if (!configurations) return unexpected(configurations.error());
     std::error_code error;
@@ -225,27 +245,21 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
         runs.insert(runs.end(), outcome.runs.begin(), outcome.runs.end());
     std::vector<evaluation::PartTime> times = total_times(*outcomes);
     times.push_back(survey_time);
-    const std::vector<std::pair<std::string, std::string>> provenance{
-        {"program", program_version()},
-        {"world", ground->scenario.world.filename().string()},
-        {"scenario", request.inputs.scenario.filename().string()},
-        {"rig", request.inputs.rig.filename().string()}};
-    evaluation::Results results = evaluation::collect(runs, times, provenance);
+    evaluation::Results results =
+        evaluation::collect(runs, times, provenance_of(ground->scene, ground->rig_file));
     results.is_papers_experiment = is_papers_experiment(outcomes->front().main->rig, request.inputs.scenario,
                                                         request.inputs.world, request.papers_scenario);
 
     const SeedOutcome& first = outcomes->front();
     say(fmt::format("seed {}: saving maps", first.seed));
-    if (const auto saved =
-            save_maps(first.main->pipeline.maps(), first.main->rig.camera.has_value(), request.out);
-        !saved)
+    if (const auto saved = save_maps(named_maps(*first.main), request.out); !saved)
         return unexpected(saved.error());
     if (const auto written = write_text(request.out / "metrics.json", evaluation::metrics_json(results));
         !written) {
         return unexpected(written.error());
     }
     say(fmt::format("seed {}: drawing the report", first.seed));
-    const auto reported = write_report(request, *ground, results, first, main_configuration(request));
+    const auto reported = write_report(request, *ground, results, first, main_of(*configurations));
     if (!reported) return unexpected(reported.error());
     return results;
 }

@@ -3,12 +3,14 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/result.hpp"
 #include "host/apps/evaluation/results.hpp"
 #include "host/apps/evaluation/survey.hpp"
 #include "host/apps/evaluation/truth.hpp"
+#include "host/apps/simulation/scene.hpp"
 #include "host/apps/simulation/simulation.hpp"
 #include "hw/sim/scenario/scenario.hpp"
 
@@ -36,6 +38,10 @@ struct StudyRequest {
 [[nodiscard]] bool is_papers_experiment(const rig::Rig& rig, const std::filesystem::path& scenario,
                                         const std::filesystem::path& world,
                                         const std::filesystem::path& papers_scenario);
+
+/// What figures depend on, for `evaluation::Results`: this program, and the files with their CRC-32.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> provenance_of(const Scene& scene,
+                                                                             const SourceFile& rig);
 
 /// The judged region and what else the evaluation takes from a scenario.
 [[nodiscard]] evaluation::TruthConfig truth_config_of(const sim::Scenario& scenario, double resolution_m);

@@ -104,6 +104,11 @@ std::string hit_text(std::string_view key, const HitModel& hit) {
 Result<MappingConfig, MappingFileError> read_mapping(const std::string& name_or_file) {
     if (name_or_file == "paper") return paper_mapping();
     if (name_or_file == "robust") return robust_mapping();
+    if (name_or_file == "paper_noise_free_robot_seen") {
+        MappingConfig mapping = paper_mapping();
+        mapping.removes_robot_from_depth = false;
+        return mapping;
+    }
     try {
         return read_checked(name_or_file);
     } catch (const rig::Fault& fault) {

@@ -89,6 +89,8 @@ void read_seeds(const Table& top, Scenario& scenario) {
 
 void read_judgement(const Table& top, Scenario& scenario) {
     const auto& models = rig::read_list(top.require("hidden_models"), "hidden_models");
+    scenario.hidden_models_file = *top.require("hidden_models").file;
+    scenario.hidden_models_line = top.require("hidden_models").line;
     for (std::size_t i = 0; i < models.size(); ++i) {
         scenario.hidden_models.push_back(
             rig::read_name(models[i], "hidden_models[" + std::to_string(i) + "]"));
@@ -115,10 +117,11 @@ std::filesystem::path read_world(const Table& top) {
 }
 
 Scenario read_checked(const std::filesystem::path& file) {
-    const Value document = rig::load_with_extends(file);
+    Scenario scenario;
+    scenario.file = file;
+    const Value document = rig::load_with_extends(file, &scenario.extended_files);
     const Table top(document, "",
                     {"name", "world", "motion", "depth", "ranges", "seeds", "hidden_models", "region"});
-    Scenario scenario;
     scenario.name = top.name("name");
     scenario.world = read_world(top);
     read_motion(top, scenario);

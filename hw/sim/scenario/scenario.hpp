@@ -30,6 +30,8 @@ struct ScenarioRegion {
 };
 
 struct Scenario {
+    std::filesystem::path file;                         ///< that it was read from
+    std::vector<std::filesystem::path> extended_files;  ///< that this file extends
     std::string name;
     std::filesystem::path world;  ///< absolute
     double rest_s = 0.0;          ///< at rest from the start of the recording to the START mark
@@ -40,7 +42,9 @@ struct Scenario {
     /// grid.
     std::vector<Eigen::Vector3d> map_shifts_m;
     double further_map_shift_max_m = 0.0;
-    std::vector<std::string> hidden_models;  ///< SDF models that the camera is not supposed to see
+    std::vector<std::string> hidden_models;    ///< SDF models that the camera is not supposed to see
+    std::filesystem::path hidden_models_file;  ///< where that is written
+    int hidden_models_line = 0;
     ScenarioRegion region;
 
     /// The shift of any seed: of those listed, else uniform in [0, further_map_shift_max_m) on each axis.

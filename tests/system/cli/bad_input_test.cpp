@@ -76,7 +76,6 @@ TEST_F(BadInput, a_mapping_file_with_an_unknown_key_is_refused) {
     const Said said = octoskin("replay " + path("rec") + " --configuration " + path("mapping.yaml"));
     EXPECT_EQ(said.exit_code, 78);
     EXPECT_THAT(said.output, HasSubstr("mapping.yaml:2"));
-    EXPECT_EQ(octoskin("replay " + path("rec") + " --configuration best").exit_code, 78);
 }
 
 TEST_F(BadInput, foreign_lines_and_frames_in_the_log_are_counted_and_change_no_voxel) {
@@ -208,6 +207,7 @@ TEST_F(BadInput, a_broken_meta_file_is_named) {
         EXPECT_THAT(said.output, HasSubstr("meta.yaml")) << text;
     }
     for (const char* file : {"meta.yaml", "depth.epoch.yaml", "can.log"}) {
+        std::filesystem::remove_all(path("rec"));
         record_short("rec");
         std::filesystem::remove(path(std::string("rec/") + file));
         std::filesystem::create_directory(path(std::string("rec/") + file));
@@ -235,10 +235,13 @@ TEST_F(BadInput, a_recording_without_its_depth_maps_the_ranges_and_says_so) {
     EXPECT_THAT(said.output, HasSubstr("no depth.oni"));
 }
 
-TEST_F(BadInput, a_truncated_oni_is_an_error_that_keeps_what_came_before) {
+// OpenNI2 opens no recording without the index at its end, so the frames before the cut are lost with it. A
+// map of the ranges alone would look like a fused one: it is made only of a recording that says that it has
+// no camera.
+TEST_F(BadInput, a_truncated_oni_is_an_error_that_writes_no_map) {
     record_short("rec");
     static_cast<void>(replayed_map());
-    const std::string ranges_only = content(path("maps/proximity.ot"));
+    const std::string proximity = content(path("maps/proximity.ot"));
     const std::string oni = content(path("rec/depth.oni"));
     for (const std::size_t part : {8U, 4U, 2U}) {
         write(path("rec/depth.oni"), oni.substr(0, oni.size() / part));
@@ -246,8 +249,14 @@ TEST_F(BadInput, a_truncated_oni_is_an_error_that_keeps_what_came_before) {
         EXPECT_EQ(said.exit_code, 65) << said.output;
         EXPECT_THAT(said.output, HasSubstr("depth.oni: "));
         EXPECT_THAT(said.output, HasSubstr("in = "));
-        EXPECT_EQ(content(path("cut/proximity.ot")), ranges_only) << "1/" << part;
+        EXPECT_THAT(said.output, HasSubstr("no map is written"));
+        EXPECT_FALSE(std::filesystem::exists(path("cut"))) << "1/" << part;
     }
+    std::filesystem::rename(path("rec/depth.oni"), path("depth.oni"));
+    std::filesystem::rename(path("rec/depth.epoch.yaml"), path("depth.epoch.yaml"));
+    ASSERT_EQ(octoskin("replay " + path("rec") + " --out " + path("cut")).exit_code, 0);
+    EXPECT_EQ(content(path("cut/proximity.ot")), proximity);
+    std::filesystem::rename(path("depth.epoch.yaml"), path("rec/depth.epoch.yaml"));
     write(path("rec/depth.oni"), "foreign");
     const Said foreign = octoskin("replay " + path("rec"));
     EXPECT_EQ(foreign.exit_code, 65);

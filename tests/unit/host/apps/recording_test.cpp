@@ -5,6 +5,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <vector>
+
+#include "common/wire/crc.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
 namespace {
@@ -27,8 +31,9 @@ class RecordingTest : public testing::Test {
 TEST_F(RecordingTest, meta_reads_back_as_written) {
     const RecordingMeta meta{.made_by = "octoskin 0.1.0",
                              .source = "simulation",
-                             .world = "a b: c.sdf",
-                             .scenario = "s.yaml",
+                             .world = {"/w/a b: c.sdf", 0xDEADBEEFU},
+                             .scenario = {"/w/s.yaml", 7U},
+                             .rig = {"rig.yaml", std::nullopt},
                              .seed = 18446744073709551615U,
                              .is_depth_noise_free = true,
                              .can_frames = 7,
@@ -38,7 +43,11 @@ TEST_F(RecordingTest, meta_reads_back_as_written) {
     const auto read = read_meta(recording_);
     ASSERT_TRUE(read) << read.error().message();
     EXPECT_EQ(read->made_by, "octoskin 0.1.0");
-    EXPECT_EQ(read->world, "a b: c.sdf");
+    EXPECT_EQ(read->world.file, "/w/a b: c.sdf");
+    EXPECT_EQ(read->world.crc32, 0xDEADBEEFU);
+    EXPECT_EQ(read->scenario.crc32, 7U);
+    EXPECT_EQ(read->rig.file, "rig.yaml");
+    EXPECT_EQ(read->rig.crc32, std::nullopt);
     EXPECT_EQ(read->seed, 18446744073709551615U);
     EXPECT_TRUE(read->is_depth_noise_free);
     EXPECT_EQ(read->can_frames, 7U);
@@ -62,10 +71,48 @@ TEST_F(RecordingTest, foreign_or_broken_meta_is_an_error) {
     }
 }
 
+TEST_F(RecordingTest, meta_of_two_lines_is_enough_for_a_robot) {
+    write(recording_.meta(), "schema: octoskin-recording/1\nsource: robot\n");
+    const auto read = read_meta(recording_);
+    ASSERT_TRUE(read) << read.error().message();
+    EXPECT_FALSE(read->is_simulated());
+    EXPECT_TRUE(read->world.file.empty());
+}
+
+TEST_F(RecordingTest, a_file_in_its_place_is_said_to_be_one) {
+    write(recording_.can_log(), "x");
+    const auto checked = check_recording(RecordingPaths(recording_.can_log()));
+    ASSERT_FALSE(checked);
+    EXPECT_THAT(checked.error().message(), testing::AllOf(testing::HasSubstr("is a file"),
+                                                          testing::HasSubstr(recording_.directory.string())));
+}
+
+TEST_F(RecordingTest, needs_no_rig_of_its_own_if_another_is_given) {
+    write(recording_.can_log(), "x");
+    write(recording_.meta(), "x");
+    EXPECT_FALSE(check_recording(recording_));
+    EXPECT_TRUE(check_recording(recording_, true));
+}
+
+TEST(SourceFileTest, checksum_is_that_of_all_bytes_in_order) {
+    const testing_support::ScratchFolder folder;
+    const auto digits = folder.write("digits", "123456789");
+    EXPECT_EQ(crc32_of(digits), 0xCBF43926U);  // the check value of CRC-32/ISO-HDLC
+    const std::vector<std::filesystem::path> parts{folder.write("a", "1234"), folder.write("b", "56789")};
+    EXPECT_EQ(crc32_of(parts), 0xCBF43926U);
+    const auto large = folder.write("large", std::string(200'001, 'x'));
+    EXPECT_EQ(crc32_of(large), crc32(std::vector<std::uint8_t>(200'001, 'x')));
+    EXPECT_EQ(crc32_of(folder / "absent"), std::nullopt);
+    EXPECT_EQ(crc32_of(folder.path()), std::nullopt);
+    EXPECT_EQ(source_file(parts[0], std::span(parts).subspan(1)).crc32, 0xCBF43926U);
+    EXPECT_TRUE(source_file("x").file.is_absolute());
+    EXPECT_EQ(crc_text(0xABC), "0x00000abc");
+}
+
 TEST_F(RecordingTest, each_missing_file_is_named) {
     const RecordingPaths absent(recording_.directory / "absent");
     EXPECT_THAT(check_recording(absent).error().what, testing::HasSubstr("no such directory"));
-    for (const auto& file : {recording_.can_log(), recording_.rig(), recording_.robot(), recording_.meta()}) {
+    for (const auto& file : {recording_.can_log(), recording_.rig(), recording_.meta()}) {
         const auto checked = check_recording(recording_);
         ASSERT_FALSE(checked);
         EXPECT_EQ(checked.error().file, file);

@@ -148,5 +148,23 @@ TEST(MetricsTable, shows_undefined_figures_as_a_dash) {
               std::string::npos);
 }
 
+TEST(MetricsTable, one_seed_has_no_spread) {
+    const Runs runs = {judge("robust", "fused", 7, 1500)};
+    const std::string table = metrics_table(collect(runs));
+    EXPECT_NE(table.find("robust, one seed"), std::string::npos) << table;
+    EXPECT_EQ(table.find("±"), std::string::npos) << table;
+    EXPECT_NE(metrics_table(two_seeds()).find("robust, mean ± sd of 2 seeds"), std::string::npos);
+}
+
+TEST(MetricsTable, nothing_has_no_sign) {
+    Runs runs = {judge("robust", "depth", 0, 10), judge("robust", "fused", 0, 10),
+                 judge("robust", "depth", 1, 10), judge("robust", "fused", 1, 10)};
+    runs[1].metrics.f1 = *runs[0].metrics.f1 - 1e-5;  // a difference of -0.00001 that rounds to zero
+    const std::string table = metrics_table(collect(runs));
+    EXPECT_EQ(table.find("-0.000"), std::string::npos) << table;
+    runs[1].metrics.f1 = *runs[0].metrics.f1 - 0.1;
+    EXPECT_NE(metrics_table(collect(runs)).find("-0.050"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace octoskin::evaluation

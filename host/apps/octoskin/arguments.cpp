@@ -1,0 +1,71 @@
+#include "host/apps/octoskin/arguments.hpp"
+
+#include <charconv>
+#include <filesystem>
+#include <string_view>
+
+#include "host/apps/octoskin/commands.hpp"
+#include "host/io/mapping/mapping_file.hpp"
+#include "hw/rigfile/joined.hpp"
+#include "hw/rigfile/key_hint.hpp"
+
+namespace octoskin::app {
+namespace {
+
+std::string absolute(const std::string& path) {
+    std::error_code error;
+    const auto whole = std::filesystem::absolute(path, error);
+    return error ? path : whole.lexically_normal().string();
+}
+
+std::string is_seed(std::string& text) {
+    std::uint64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, value);
+    if (parsed.ec == std::errc{} && parsed.ptr == end) return {};
+    return "expected a whole number from 0 to 2^64 - 1, found '" + text + "'";
+}
+
+}  // namespace
+
+CLI::Validator existing_file() {
+    return {[](std::string& path) -> std::string {
+                std::error_code error;
+                if (std::filesystem::is_directory(path, error)) return path + " is a directory, not a file";
+                if (std::filesystem::exists(path, error)) return {};
+                throw CommandFailure({ExitCode::no_input, absolute(path) + ": no such file"});
+            },
+            "FILE"};
+}
+
+CLI::Validator existing_path() {
+    return {[](std::string& path) -> std::string {
+                std::error_code error;
+                if (std::filesystem::exists(path, error)) return {};
+                throw CommandFailure({ExitCode::no_input, absolute(path) + ": no such file or directory"});
+            },
+            "PATH"};
+}
+
+CLI::Validator seed() {
+    return {is_seed, "SEED"};
+}
+
+std::string configuration_help(const std::string& use) {
+    return use + ": " + rig::joined(kBuiltInMappings) + ", or a YAML file";
+}
+
+void check_command_name(const CLI::App& app, int argc, const char* const* argv) {
+    if (argc < 2 || std::string_view(argv[1]).starts_with('-')) return;
+    const std::string word = argv[1];
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), word) != names.end()) return;
+    const auto near = rig::nearest_word(word, names);
+    throw CommandFailure({ExitCode::usage, "there is no command '" + word + "'" +
+                                               (near ? ": did you mean '" + *near + "'?" : "") +
+                                               " There are " + rig::joined(names) +
+                                               "; octoskin --help says what they do"});
+}
+
+}  // namespace octoskin::app

@@ -1,0 +1,115 @@
+#include "host/apps/octoskin/recorded_scene.hpp"
+
+#include <functional>
+
+#include "host/apps/octoskin/commands.hpp"
+#include "host/apps/recording/recording.hpp"
+
+namespace octoskin::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Checksum = std::function<std::optional<std::uint32_t>(const fs::path&)>;
+
+/// A kind of file that a recording is judged with.
+struct Part {
+    std::string kind;      ///< "world"; with dashes before it, the option that gives another one
+    SourceFile recorded;   ///< as meta.yaml has it
+    fs::path given;        ///< as the command line has it; empty: not at all
+    Checksum checksum_of;  ///< as it was made when recording
+};
+
+bool is_file(const fs::path& path) {
+    std::error_code error;
+    return fs::is_regular_file(path, error);
+}
+
+std::string describe(const fs::path& file, const std::optional<std::uint32_t>& crc32) {
+    return file.filename().string() + (crc32 ? " (CRC-32 " + crc_text(*crc32) + ")" : "");
+}
+
+/// Whether `file` is what was recorded: by its content, or by its name where meta.yaml has no more.
+bool is_recorded(const Part& part, const fs::path& file) {
+    if (part.recorded.crc32) return part.checksum_of(file) == part.recorded.crc32;
+    return file.filename() == part.recorded.file.filename();
+}
+
+fs::path take_given(const Part& part, std::vector<std::string>& warnings) {
+    if (!part.recorded.file.empty() && !is_recorded(part, part.given)) {
+        warnings.push_back("recorded in " + describe(part.recorded.file, part.recorded.crc32) +
+                           ", judging in " + describe(part.given, part.checksum_of(part.given)) + ", as --" +
+                           part.kind + " says");
+    }
+    return part.given;
+}
+
+Result<fs::path, AppError> find(const Part& part, const RecordingPaths& recording,
+                                std::vector<std::string>& warnings) {
+    if (!part.given.empty()) return take_given(part, warnings);
+    const std::string remedy = ": give --" + part.kind;
+    if (part.recorded.file.empty()) {
+        return unexpected(
+            AppError{ExitCode::usage, recording.meta().string() + " names no " + part.kind + remedy});
+    }
+    const fs::path name = part.recorded.file.filename();
+    std::optional<fs::path> other;
+    for (const fs::path& candidate :
+         {part.recorded.file, recording.directory / name, shipped_file("hw/worlds/" + name.string())}) {
+        if (!candidate.is_absolute() && candidate == part.recorded.file) continue;  // a bare name of old
+        if (!is_file(candidate)) continue;
+        if (is_recorded(part, candidate)) return candidate;
+        if (!other) other = candidate;
+    }
+    if (!other) {
+        return unexpected(AppError{ExitCode::no_input, recording.directory.string() + ": recorded in " +
+                                                           part.recorded.file.string() +
+                                                           ", which is not there" + remedy});
+    }
+    return unexpected(AppError{ExitCode::bad_data, recording.directory.string() + ": recorded in " +
+                                                       describe(part.recorded.file, part.recorded.crc32) +
+                                                       ", judging in " + other->string() + " (CRC-32 " +
+                                                       crc_text(part.checksum_of(*other).value_or(0)) +
+                                                       "), which is another" + remedy});
+}
+
+std::optional<std::uint32_t> scenario_checksum(const fs::path& file) {
+    const auto scenario = sim::read_scenario(file);
+    if (!scenario) return std::nullopt;
+    return source_file(file, scenario->extended_files).crc32;
+}
+
+}  // namespace
+
+Result<RecordedScene, AppError> read_recorded_scene(const fs::path& directory, const GivenScene& given) {
+    const RecordingPaths recording(directory);
+    const auto meta = read_meta(recording);
+    if (!meta) return unexpected(AppError{ExitCode::bad_data, meta.error().message()});
+    std::vector<std::string> warnings;
+    const auto scenario =
+        find({"scenario", meta->scenario, given.scenario, scenario_checksum}, recording, warnings);
+    if (!scenario) return unexpected(scenario.error());
+    // A robot's recording names no world: then the scenario's own is meant.
+    fs::path world = given.world;
+    if (!meta->world.file.empty()) {
+        const auto found =
+            find({"world", meta->world, given.world, [](const fs::path& file) { return crc32_of(file); }},
+                 recording, warnings);
+        if (!found) return unexpected(found.error());
+        world = *found;
+    }
+    auto scene = read_scene(*scenario, world);
+    if (!scene) return unexpected(scene.error());
+    return RecordedScene{std::move(*scene), std::move(warnings)};
+}
+
+std::optional<fs::path> recording_beside(const fs::path& map) {
+    std::error_code error;
+    const auto folder = fs::absolute(map, error).lexically_normal().parent_path();
+    for (const fs::path& candidate : {folder / "recording", folder.parent_path(), folder}) {
+        if (read_meta(RecordingPaths(candidate))) return candidate;
+    }
+    return std::nullopt;
+}
+
+}  // namespace octoskin::app

@@ -1,0 +1,36 @@
+// The scenario and the world that a recording was made in, found again: judging in another one gives figures
+// that look right and mean nothing.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+#include "host/apps/recording/app_error.hpp"
+#include "host/apps/simulation/scene.hpp"
+
+namespace octoskin::app {
+
+/// What the command line says; empty: not given.
+struct GivenScene {
+    std::filesystem::path scenario;
+    std::filesystem::path world;
+};
+
+struct RecordedScene {
+    Scene scene;
+    std::vector<std::string> warnings;  ///< where what was given is not what meta.yaml names
+};
+
+/// The recording's scenario and world, found where they were, in the recording itself, or among the shipped
+/// worlds, by the CRC-32 that its meta.yaml has of them. What is given goes first, with a warning if it is
+/// something else. Refuses what is not there, what has changed, and what meta.yaml does not name.
+[[nodiscard]] Result<RecordedScene, AppError> read_recorded_scene(const std::filesystem::path& recording,
+                                                                  const GivenScene& given);
+
+/// The recording beside a map, where `octoskin replay` and `octoskin experiment` put their maps.
+[[nodiscard]] std::optional<std::filesystem::path> recording_beside(const std::filesystem::path& map);
+
+}  // namespace octoskin::app

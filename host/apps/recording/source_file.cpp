@@ -1,0 +1,43 @@
+#include "host/apps/recording/source_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <vector>
+
+#include "common/wire/crc.hpp"
+
+namespace octoskin {
+
+std::optional<std::uint32_t> crc32_of(std::span<const std::filesystem::path> files) {
+    std::uint32_t crc = 0;
+    std::array<char, 65'536> buffer{};
+    for (const auto& file : files) {
+        std::ifstream stream(file, std::ios::binary);
+        std::error_code error;
+        if (!stream || !std::filesystem::is_regular_file(file, error)) return std::nullopt;
+        while (stream.read(buffer.data(), buffer.size()), stream.gcount() > 0) {
+            const auto* bytes = reinterpret_cast<const std::uint8_t*>(buffer.data());
+            crc = crc32({bytes, static_cast<std::size_t>(stream.gcount())}, crc);
+        }
+        if (stream.bad()) return std::nullopt;
+    }
+    return crc;
+}
+
+std::optional<std::uint32_t> crc32_of(const std::filesystem::path& file) {
+    return crc32_of(std::span(&file, 1));
+}
+
+SourceFile source_file(const std::filesystem::path& file, std::span<const std::filesystem::path> further) {
+    std::vector<std::filesystem::path> all{file};
+    all.insert(all.end(), further.begin(), further.end());
+    return {std::filesystem::absolute(file).lexically_normal(), crc32_of(all)};
+}
+
+std::string crc_text(std::uint32_t crc) {
+    return fmt::format("0x{:08x}", crc);
+}
+
+}  // namespace octoskin

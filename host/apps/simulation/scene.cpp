@@ -1,0 +1,23 @@
+#include "host/apps/simulation/scene.hpp"
+
+#include "hw/sim/scenario/hidden_models.hpp"
+
+namespace octoskin {
+
+Result<Scene, AppError> read_scene(const std::filesystem::path& scenario_file,
+                                   const std::filesystem::path& world_instead) {
+    auto scenario = sim::read_scenario(scenario_file);
+    if (!scenario) return unexpected(AppError{ExitCode::bad_config, scenario.error().message()});
+    const auto world_file = world_instead.empty() ? scenario->world : world_instead;
+    auto world = sim::World::read(world_file);
+    if (!world) return unexpected(AppError{ExitCode::bad_data, world.error().message()});
+    if (const auto checked = sim::check_hidden_models(*scenario, *world); !checked) {
+        return unexpected(
+            AppError{ExitCode::bad_config, checked.error().message() + " (" + world_file.string() + ")"});
+    }
+    SourceFile scenario_source = source_file(scenario_file, scenario->extended_files);
+    return Scene{std::move(*scenario), std::move(*world), std::move(scenario_source),
+                 source_file(world_file)};
+}
+
+}  // namespace octoskin

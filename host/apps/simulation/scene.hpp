@@ -1,0 +1,26 @@
+// What a simulation happens in and an evaluation judges in: a scenario, and its world or another one.
+#pragma once
+
+#include <filesystem>
+
+#include "common/result.hpp"
+#include "host/apps/recording/app_error.hpp"
+#include "host/apps/recording/source_file.hpp"
+#include "hw/sim/scenario/scenario.hpp"
+#include "hw/sim/world/world.hpp"
+
+namespace octoskin {
+
+struct Scene {
+    sim::Scenario scenario;
+    sim::World world;
+    SourceFile scenario_file;  ///< its CRC-32 is over the files that it extends, too
+    SourceFile world_file;     ///< its CRC-32 leaves out the files of meshes
+};
+
+/// Reads both, and checks that one fits the other. `world_instead`: in place of the scenario's; empty: the
+/// scenario's. Under lock_reading(), if other threads may read.
+[[nodiscard]] Result<Scene, AppError> read_scene(const std::filesystem::path& scenario,
+                                                 const std::filesystem::path& world_instead);
+
+}  // namespace octoskin

@@ -1,0 +1,21 @@
+#include "hw/sim/scenario/hidden_models.hpp"
+
+#include <set>
+
+#include "hw/rigfile/joined.hpp"
+
+namespace octoskin::sim {
+
+Status<rig::RigError> check_hidden_models(const Scenario& scenario, const World& world) {
+    std::set<std::string> models;
+    for (const Solid& solid : world.solids()) models.insert(solid.model);
+    for (const std::string& hidden : scenario.hidden_models) {
+        if (models.contains(hidden)) continue;
+        return unexpected(rig::RigError{
+            scenario.hidden_models_file, scenario.hidden_models_line, "hidden_models",
+            "expected models of the world, found '" + hidden + "'; it has " + rig::joined(models)});
+    }
+    return Done{};
+}
+
+}  // namespace octoskin::sim

@@ -1,0 +1,108 @@
+// What is typed wrongly: one exit code for each kind of mistake, and words that name the culprit and the way
+// out.
+#include <gmock/gmock.h>
+
+#include "tests/system/cli/program.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class CommandLine : public ProgramTest {};
+
+TEST_F(CommandLine, names_the_command_that_is_none_and_the_one_that_is_like_it) {
+    const Said near = octoskin("reply x");
+    EXPECT_EQ(near.exit_code, 64);
+    EXPECT_THAT(near.output, AllOf(HasSubstr("'reply'"), HasSubstr("did you mean 'replay'?")));
+    const Said far = octoskin("frobnicate");
+    EXPECT_EQ(far.exit_code, 64);
+    EXPECT_THAT(far.output,
+                AllOf(HasSubstr("'frobnicate'"), Not(HasSubstr("did you mean")), HasSubstr("evaluate")));
+}
+
+TEST_F(CommandLine, says_what_a_seed_is) {
+    for (const std::string seed : {"-1", "abc", "1.5", "18446744073709551616"}) {
+        for (const std::string& command : {"simulate " + path("out") + " --seed " + seed,
+                                           "experiment --out " + path("out") + " --seeds " + seed}) {
+            const Said said = octoskin(command);
+            EXPECT_EQ(said.exit_code, 64) << said.output;
+            EXPECT_THAT(said.output, AllOf(HasSubstr("whole number from 0 to 2^64 - 1"), HasSubstr(seed)))
+                << command;
+            EXPECT_LT(said.output.size(), 300U) << said.output;
+        }
+    }
+}
+
+TEST_F(CommandLine, takes_each_seed_and_each_configuration_once) {
+    const Said seeds = octoskin("experiment --seeds 3 0 3 --out " + path("out"));
+    EXPECT_EQ(seeds.exit_code, 64) << seeds.output;
+    EXPECT_THAT(seeds.output, HasSubstr("3 is given twice"));
+    const Said names = octoskin("experiment --configurations paper robust paper --out " + path("out"));
+    EXPECT_EQ(names.exit_code, 64) << names.output;
+    EXPECT_THAT(names.output, HasSubstr("'paper' is given twice"));
+    EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
+TEST_F(CommandLine, answers_66_wherever_a_file_is_not_there) {
+    record_short("rec");
+    const std::string nope = path("nope.yaml");
+    for (const std::string& command :
+         {"simulate " + path("o") + " --rig " + nope, "simulate " + path("o") + " --world " + nope,
+          "simulate " + path("o") + " --scenario " + nope, "simulate " + path("o") + " --robot " + nope,
+          "replay " + path("rec") + " --rig " + nope, "replay " + nope, "rig " + nope,
+          "replay " + path("rec") + " --configuration " + nope, "mapping " + nope, "evaluate " + nope,
+          "evaluate " + path("rec") + " --scenario " + nope,
+          "experiment --out " + path("o") + " --rig " + nope,
+          "experiment --out " + path("o") + " --configurations " + nope}) {
+        const Said said = octoskin(command);
+        EXPECT_EQ(said.exit_code, 66) << command << ": " << said.output;
+        EXPECT_THAT(said.output, HasSubstr(nope)) << command;
+    }
+    EXPECT_FALSE(std::filesystem::exists(path("o")));
+}
+
+TEST_F(CommandLine, knows_the_same_configurations_in_every_command) {
+    const Said near = octoskin("mapping robsut");
+    EXPECT_EQ(near.exit_code, 66);
+    EXPECT_THAT(near.output, AllOf(HasSubstr("paper, paper_noise_free_robot_seen, robust"),
+                                   HasSubstr("did you mean robust?")));
+    const Said seen = octoskin("mapping paper_noise_free_robot_seen");
+    EXPECT_EQ(seen.exit_code, 0);
+    EXPECT_THAT(seen.output,
+                AllOf(HasSubstr("removes_robot_from_depth: false"), HasSubstr("depth_update: paper")));
+
+    write(path("mine.yaml"), "base: paper\n");
+    write(path("coarse.yaml"), "map: {resolution_m: 0.08}\n");
+    write(path("run.yaml"), "base: paper\n");
+    const std::string experiment = "experiment --rig " + source("tests/data/short/rig.yaml") +
+                                   " --scenario " + source("tests/data/short/scenario.yaml") + " --out " +
+                                   path("out") + " --configurations ";
+    const Said coarse = octoskin(experiment + "robust " + path("coarse.yaml"));
+    EXPECT_EQ(coarse.exit_code, 64) << coarse.output;
+    EXPECT_THAT(coarse.output, AllOf(HasSubstr("0.04 m and 0.08 m"), HasSubstr("'coarse'")));
+    EXPECT_EQ(octoskin(experiment + path("run.yaml")).exit_code, 64);  // metrics.json's own key
+    const Said both = octoskin(experiment + "paper " + path("mine.yaml"));
+    ASSERT_EQ(both.exit_code, 0) << both.output;
+    // The same equations under another name give the same figures.
+    EXPECT_THAT(both.output, AllOf(HasSubstr("mine, one seed"), HasSubstr("paper, one seed")));
+}
+
+TEST_F(CommandLine, tells_the_version_with_its_commit) {
+    const Said said = octoskin("--version");
+    EXPECT_EQ(said.exit_code, 0);
+    EXPECT_THAT(said.output, testing::ContainsRegex(
+                                 "octoskin [0-9.]+ \\(commit ([0-9a-f]{12}|unknown)(, with changes)?\\)"));
+}
+
+TEST_F(CommandLine, tells_the_load_of_every_bus_of_a_rig) {
+    const Said said = octoskin("rig " + source("hw/rigs/experiment.yaml"));
+    EXPECT_EQ(said.exit_code, 0);
+    EXPECT_THAT(said.output, testing::ContainsRegex("I2C bus 0 at [0-9]+ kHz: load [0-9.]+ %, at most 70 %"));
+    EXPECT_THAT(said.output, testing::ContainsRegex("CAN FD .*load [0-9.]+ %"));
+}
+
+}  // namespace
+}  // namespace octoskin

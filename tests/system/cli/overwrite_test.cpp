@@ -1,0 +1,114 @@
+// What is on disk already: never destroyed unasked, and never mixed with what failed.
+#include <gmock/gmock.h>
+
+#include "tests/system/cli/program.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class Overwrite : public ProgramTest {
+  protected:
+    [[nodiscard]] Said record(const std::string& more) const {
+        return octoskin("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
+                        " --scenario " + source("tests/data/short/scenario.yaml") + " " + more);
+    }
+    [[nodiscard]] std::string names_in(const std::string& folder) const {
+        return run("ls -A " + path(folder)).output;
+    }
+};
+
+TEST_F(Overwrite, a_recording_is_replaced_only_by_force_and_with_its_maps) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    const std::string log = content(path("rec/can.log"));
+    const Said refused = record("--seed 1");
+    EXPECT_EQ(refused.exit_code, 73) << refused.output;
+    EXPECT_THAT(refused.output, AllOf(HasSubstr("not empty"), HasSubstr("--force")));
+    EXPECT_EQ(content(path("rec/can.log")), log);
+    EXPECT_TRUE(std::filesystem::exists(path("rec/maps/fused.ot")));
+    const Said forced = record("--seed 1 --force");
+    EXPECT_EQ(forced.exit_code, 0) << forced.output;
+    EXPECT_NE(content(path("rec/can.log")), log);
+    EXPECT_FALSE(std::filesystem::exists(path("rec/maps")));
+}
+
+TEST_F(Overwrite, a_robots_recording_is_not_replaced_even_by_force) {
+    record_short("rec");
+    write(path("rec/meta.yaml"), "schema: octoskin-recording/1\nsource: robot\n");
+    const std::string log = content(path("rec/can.log"));
+    const Said refused = record("--force");
+    EXPECT_EQ(refused.exit_code, 73) << refused.output;
+    EXPECT_EQ(content(path("rec/can.log")), log);
+}
+
+TEST_F(Overwrite, a_simulation_that_fails_leaves_nothing) {
+    write(path("wide.yaml"), "extends: " + source("tests/data/short/rig.yaml") +
+                                 "\ncamera: {width_px: 2048, height_px: 2048, cx_px: 1024, cy_px: 1024}\n");
+    const Said said = octoskin("simulate " + path("rec") + " --rig " + path("wide.yaml") + " --scenario " +
+                               source("tests/data/short/scenario.yaml"));
+    EXPECT_EQ(said.exit_code, 73) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("2048 x 2048"));
+    EXPECT_FALSE(std::filesystem::exists(path("rec")));
+}
+
+TEST_F(Overwrite, a_replay_that_fails_leaves_the_maps_as_they_were) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    const std::string fused = content(path("rec/maps/fused.ot"));
+    const std::string names = names_in("rec/maps");
+    // A rig of other nodes: nothing of this log comes into its map.
+    const Said wrong = octoskin("replay " + path("rec") + " --rig " + source("tests/data/gantry/rig.yaml"));
+    EXPECT_EQ(wrong.exit_code, 1) << wrong.output;
+    EXPECT_THAT(wrong.output, HasSubstr("no map is written"));
+    EXPECT_EQ(content(path("rec/maps/fused.ot")), fused);
+    EXPECT_EQ(names_in("rec/maps"), names);
+}
+
+TEST_F(Overwrite, maps_that_cannot_all_be_written_leave_those_before_as_they_were) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    const std::string fused = content(path("rec/maps/fused.ot"));
+    // The files beside may have a few blocks only: the first map is whole, a later one is not.
+    const Said full = run("ulimit -f 300; trap '' XFSZ; " OCTOSKIN_PROGRAM " replay " + path("rec") +
+                          " --configuration paper");
+    EXPECT_EQ(full.exit_code, 73) << full.output;
+    EXPECT_EQ(content(path("rec/maps/fused.ot")), fused);
+    EXPECT_EQ(names_in("rec/maps"),
+              "depth.bt\ndepth.ot\ndepth.ply\nfused.bt\nfused.ot\nfused.ply\nproximity.bt\nproximity.ot\n"
+              "proximity.ply\n");
+}
+
+TEST_F(Overwrite, no_map_of_a_camera_that_is_not_there) {
+    const Said made = octoskin("simulate " + path("rec") + " --rig " + source("tests/data/gantry/rig.yaml") +
+                               " --scenario " + source("tests/data/gantry/scenario.yaml"));
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    EXPECT_EQ(names_in("rec/maps"),
+              "fused.bt\nfused.ot\nfused.ply\nproximity.bt\nproximity.ot\nproximity.ply\n");
+}
+
+TEST_F(Overwrite, a_log_with_its_rig_elsewhere_is_enough) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    const std::string fused = content(path("rec/maps/fused.ot"));
+    std::filesystem::create_directory(path("elsewhere"));
+    std::filesystem::rename(path("rec/rig.yaml"), path("elsewhere/rig.yaml"));
+    std::filesystem::rename(path("rec/robot.urdf"), path("elsewhere/robot.urdf"));
+    write(path("rec/meta.yaml"), "schema: octoskin-recording/1\nsource: robot\n");
+    const Said refused = octoskin("replay " + path("rec"));
+    EXPECT_EQ(refused.exit_code, 66);
+    EXPECT_THAT(refused.output, AllOf(HasSubstr("rig.yaml"), HasSubstr("give --rig")));
+    const Said said =
+        octoskin("replay " + path("rec") + " --rig " + path("elsewhere/rig.yaml") + " --out " + path("maps"));
+    ASSERT_EQ(said.exit_code, 0) << said.output;
+    EXPECT_EQ(content(path("maps/fused.ot")), fused);
+    const Said file = octoskin("replay " + path("rec/can.log"));
+    EXPECT_EQ(file.exit_code, 66);
+    EXPECT_THAT(file.output, AllOf(HasSubstr("is a file"), HasSubstr("directory")));
+}
+
+}  // namespace
+}  // namespace octoskin

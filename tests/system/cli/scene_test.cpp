@@ -1,0 +1,133 @@
+// What a recording is judged in: the world it was made in, found again, or none.
+#include <gmock/gmock.h>
+
+#include "tests/system/cli/program.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class SceneOfARecording : public ProgramTest {
+  protected:
+    /// The experiment's world with the crate moved, in a folder with its meshes.
+    void make_kitchen() const {
+        std::filesystem::copy(source("hw/worlds"), path("worlds"), std::filesystem::copy_options::recursive);
+        std::string world = content(path("worlds/experiment.sdf"));
+        const std::string place = "0.67 0.34 0.14 0 0 0";  // of the crate
+        ASSERT_NE(world.find(place), std::string::npos);
+        world.replace(world.find(place), place.size(), "0.87 0.34 0.14 0 0 0");
+        write(path("worlds/kitchen.sdf"), world);
+    }
+    [[nodiscard]] std::string kitchen() const { return path("worlds/kitchen.sdf"); }
+};
+
+/// The figures alone: every line of the table.
+std::string table_of(const Said& said) {
+    return said.output.substr(said.output.find("Voxels against"));
+}
+
+TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
+    make_kitchen();
+    record_short("rec", "--world " + kitchen());
+    const std::string meta = content(path("rec/meta.yaml"));
+    EXPECT_THAT(meta,
+                AllOf(HasSubstr("world: " + kitchen()), HasSubstr("world_crc32: 0x"),
+                      HasSubstr("scenario_crc32: 0x"), HasSubstr("rig_crc32: 0x"), HasSubstr("commit ")));
+    const Said own = octoskin("evaluate " + path("rec") + " --json " + path("figures.json"));
+    ASSERT_EQ(own.exit_code, 0) << own.output;
+    EXPECT_THAT(own.output, HasSubstr("judging in " + kitchen()));
+    EXPECT_THAT(content(path("figures.json")),
+                AllOf(HasSubstr("kitchen.sdf, CRC-32 0x"), HasSubstr("commit ")));
+
+    const Said other = octoskin("evaluate " + path("rec") + " --world " + source("hw/worlds/experiment.sdf"));
+    ASSERT_EQ(other.exit_code, 0) << other.output;
+    EXPECT_THAT(other.output,
+                AllOf(HasSubstr("recorded in kitchen.sdf"), HasSubstr("judging in experiment.sdf")));
+    EXPECT_NE(table_of(own), table_of(other));
+
+    std::filesystem::rename(kitchen(), path("worlds/moved.sdf"));
+    const Said absent = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(absent.exit_code, 66) << absent.output;
+    EXPECT_THAT(absent.output, AllOf(HasSubstr("recorded in " + kitchen()), HasSubstr("give --world")));
+    const Said moved = octoskin("evaluate " + path("rec") + " --world " + path("worlds/moved.sdf"));
+    ASSERT_EQ(moved.exit_code, 0) << moved.output;
+    EXPECT_THAT(moved.output, Not(HasSubstr("recorded in kitchen.sdf")));
+    EXPECT_EQ(table_of(moved), table_of(own));
+
+    write(kitchen(), content(path("worlds/moved.sdf")) + "<!-- edited -->\n");
+    const Said changed = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(changed.exit_code, 65) << changed.output;
+    EXPECT_THAT(changed.output,
+                AllOf(HasSubstr("recorded in kitchen.sdf (CRC-32 0x"), HasSubstr("give --world")));
+}
+
+TEST_F(SceneOfARecording, has_the_scenario_too_with_what_that_extends) {
+    write(path("base.yaml"), "extends: " + source("tests/data/short/scenario.yaml") + "\n");
+    write(path("mine.yaml"), "extends: base.yaml\nname: mine\n");
+    const Said made = octoskin("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
+                               " --scenario " + path("mine.yaml"));
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+    write(path("base.yaml"), content(path("base.yaml")) + "depth: {sigma_m: 0.01}\n");
+    const Said changed = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(changed.exit_code, 65) << changed.output;
+    EXPECT_THAT(changed.output, AllOf(HasSubstr("mine.yaml"), HasSubstr("give --scenario")));
+}
+
+TEST_F(SceneOfARecording, of_a_robot_has_to_be_given) {
+    record_short("rec");
+    write(path("rec/meta.yaml"), "schema: octoskin-recording/1\nsource: robot\n");
+    const Said said = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(said.exit_code, 64) << said.output;
+    EXPECT_THAT(said.output, AllOf(HasSubstr("names no scenario"), HasSubstr("give --scenario")));
+}
+
+TEST_F(SceneOfARecording, without_a_checksum_goes_by_its_name) {
+    record_short("rec");
+    write(path("rec/meta.yaml"),
+          "schema: octoskin-recording/1\nsource: simulation\nworld: kitchen.sdf\n"
+          "scenario: experiment.scenario.yaml\n");
+    const Said other = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(other.exit_code, 66) << other.output;
+    EXPECT_THAT(other.output, AllOf(HasSubstr("recorded in kitchen.sdf"), HasSubstr("give --world")));
+}
+
+TEST_F(SceneOfARecording, serves_the_maps_beside_it) {
+    record_short("rec", "--seed 1");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    const std::string map = path("rec/maps/fused.ot");
+    const Said no_rig = octoskin("evaluate " + map);
+    EXPECT_EQ(no_rig.exit_code, 64);
+    EXPECT_THAT(no_rig.output, HasSubstr("give --rig " + path("rec/rig.yaml")));
+    const Said own = octoskin("evaluate " + map + " --rig " + path("rec/rig.yaml"));
+    ASSERT_EQ(own.exit_code, 0) << own.output;
+    EXPECT_THAT(own.output, Not(HasSubstr("is another rig")));
+    const Said other = octoskin("evaluate " + map + " --rig " + source("tests/data/short/rig.yaml"));
+    EXPECT_EQ(other.exit_code, 0) << other.output;
+    EXPECT_THAT(other.output,
+                AllOf(HasSubstr("is another rig than " + path("rec/rig.yaml")), HasSubstr("wrong")));
+    EXPECT_NE(table_of(other), table_of(own));
+
+    std::filesystem::copy(map, path("alone.ot"));
+    const Said alone = octoskin("evaluate " + path("alone.ot") + " --rig " + path("rec/rig.yaml"));
+    EXPECT_EQ(alone.exit_code, 64) << alone.output;
+    EXPECT_THAT(alone.output, HasSubstr("give --scenario"));
+}
+
+TEST_F(SceneOfARecording, hides_no_model_that_is_not_there) {
+    write(path("my.scenario.yaml"),
+          "extends: " + source("tests/data/short/scenario.yaml") + "\nhidden_models: [crate, conne]\n");
+    for (const std::string& command : {"simulate " + path("rec"), "experiment --out " + path("out")}) {
+        const Said said = octoskin(command + " --rig " + source("tests/data/short/rig.yaml") +
+                                   " --scenario " + path("my.scenario.yaml"));
+        EXPECT_EQ(said.exit_code, 78) << said.output;
+        EXPECT_THAT(said.output,
+                    AllOf(HasSubstr("my.scenario.yaml:2"), HasSubstr("'conne'"), HasSubstr("cone, crate")));
+    }
+    EXPECT_FALSE(std::filesystem::exists(path("rec")));
+}
+
+}  // namespace
+}  // namespace octoskin

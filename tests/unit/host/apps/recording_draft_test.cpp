@@ -1,0 +1,124 @@
+#include "host/apps/recording/recording_draft.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::ScratchFolder;
+
+constexpr const char* kSimulated = "schema: octoskin-recording/1\nsource: simulation\n";
+constexpr const char* kRobot = "schema: octoskin-recording/1\nsource: robot\n";
+
+void write(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream(file) << text;
+}
+
+/// Writes a whole recording without a camera into the draft.
+void fill(const RecordingDraft& draft, const std::string& log) {
+    for (const auto& file : {draft.paths().rig(), draft.paths().robot()}) write(file, "new");
+    write(draft.paths().can_log(), log);
+    write(draft.paths().meta(), kSimulated);
+}
+
+TEST(RecordingDraftTest, appears_whole_when_committed) {
+    const ScratchFolder folder;
+    const RecordingPaths recording(folder / "a/b");
+    auto draft = RecordingDraft::create(recording.directory, false);
+    ASSERT_TRUE(draft) << draft.error().message;
+    fill(*draft, "log");
+    EXPECT_FALSE(std::filesystem::exists(recording.can_log()));
+    ASSERT_TRUE(draft->commit());
+    EXPECT_EQ(ScratchFolder::read(recording.can_log()), "log");
+    EXPECT_TRUE(check_recording(recording));
+    EXPECT_FALSE(std::filesystem::exists(draft->paths().directory));
+}
+
+TEST(RecordingDraftTest, leaves_nothing_if_it_is_given_up) {
+    const ScratchFolder folder;
+    {
+        auto draft = RecordingDraft::create(folder / "rec", false);
+        ASSERT_TRUE(draft);
+        fill(*draft, "log");
+        const RecordingDraft moved = std::move(*draft);
+        EXPECT_TRUE(std::filesystem::exists(folder / "rec"));
+    }
+    EXPECT_EQ(folder.entries(), 0);
+}
+
+TEST(RecordingDraftTest, never_enters_an_occupied_directory_unasked) {
+    const ScratchFolder folder;
+    folder.write("letter.txt", "mine");
+    const auto refused = RecordingDraft::create(folder.path(), false);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+    EXPECT_THAT(refused.error().message, HasSubstr("--force"));
+    EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(RecordingDraftTest, replaces_a_simulated_recording_and_its_maps_and_nothing_else) {
+    const ScratchFolder folder;
+    std::filesystem::create_directory(folder / "maps");
+    folder.write("meta.yaml", kSimulated);
+    for (const char* old : {"can.log", "depth.oni", "depth.epoch.yaml", "maps/fused.ot", "maps/depth.ply"}) {
+        folder.write(old, "old");
+    }
+    folder.write("letter.txt", "mine");
+    folder.write("maps/mine.ot", "mine");
+    auto draft = RecordingDraft::create(folder.path(), true);
+    ASSERT_TRUE(draft) << draft.error().message;
+    fill(*draft, "new log");
+    EXPECT_EQ(ScratchFolder::read(folder / "can.log"), "old");
+    ASSERT_TRUE(draft->commit());
+    EXPECT_EQ(ScratchFolder::read(folder / "can.log"), "new log");
+    for (const char* stale : {"depth.oni", "depth.epoch.yaml", "maps/fused.ot", "maps/depth.ply"}) {
+        EXPECT_FALSE(std::filesystem::exists(folder / stale)) << stale;
+    }
+    EXPECT_EQ(ScratchFolder::read(folder / "letter.txt"), "mine");
+    EXPECT_EQ(ScratchFolder::read(folder / "maps/mine.ot"), "mine");
+}
+
+TEST(RecordingDraftTest, keeps_the_former_recording_if_it_is_given_up) {
+    const ScratchFolder folder;
+    folder.write("meta.yaml", kSimulated);
+    folder.write("can.log", "old");
+    {
+        auto draft = RecordingDraft::create(folder.path(), true);
+        ASSERT_TRUE(draft);
+        fill(*draft, "new");
+    }
+    EXPECT_EQ(ScratchFolder::read(folder / "can.log"), "old");
+    EXPECT_EQ(folder.entries(), 2);
+}
+
+TEST(RecordingDraftTest, never_replaces_what_is_not_known_to_be_simulated) {
+    for (const char* meta : {kRobot, "", "schema: octoskin-recording/1\n", "broken: ["}) {
+        const ScratchFolder folder;
+        folder.write("can.log", "a robot's");
+        folder.write("meta.yaml", meta);
+        EXPECT_FALSE(RecordingDraft::create(folder.path(), true)) << meta;
+        std::filesystem::remove(folder / "meta.yaml");
+        const auto refused = RecordingDraft::create(folder.path(), true);
+        ASSERT_FALSE(refused);
+        EXPECT_THAT(refused.error().message, HasSubstr("has a can.log"));
+        EXPECT_EQ(ScratchFolder::read(folder / "can.log"), "a robot's");
+    }
+}
+
+TEST(RecordingDraftTest, clears_away_what_a_killed_one_left) {
+    const ScratchFolder folder;
+    std::filesystem::create_directory(folder / ".octoskin-part");
+    folder.write(".octoskin-part/depth.oni", "half");
+    auto draft = RecordingDraft::create(folder.path(), false);
+    ASSERT_TRUE(draft) << draft.error().message;
+    fill(*draft, "log");
+    ASSERT_TRUE(draft->commit());
+    EXPECT_FALSE(std::filesystem::exists(folder / "depth.oni"));
+}
+
+}  // namespace
+}  // namespace octoskin
