@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <optional>
+#include <string>
 
 #include "host/apps/evaluation/voxel_grid.hpp"
 
@@ -17,8 +18,14 @@ struct RegionConfig {
     std::optional<double> floor_top_m = -0.02;
 };
 
+/// Why there is nothing to be judged in the box at this resolution, with what to do; empty if there is: no
+/// voxel above the floor, outside the map's keys, or over 50 million voxels, which no machine of today judges
+/// in reasonable time.
+[[nodiscard]] std::optional<std::string> region_fault(const RegionConfig& config, double resolution_m,
+                                                      const Eigen::Isometry3d& T_map_base);
+
 /// The voxels whose centres lie in the box and whose layer is above the floor's. `T_map_base` puts the world
-/// into the map. The box must hold at least one voxel (asserted).
+/// into the map. `region_fault` must find nothing (asserted).
 [[nodiscard]] KeyBox region_of(const RegionConfig& config, double resolution_m,
                                const Eigen::Isometry3d& T_map_base);
 

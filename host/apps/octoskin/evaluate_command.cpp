@@ -40,9 +40,11 @@ Scene recorded_scene(const std::filesystem::path& recording, const EvaluateOptio
 
 evaluation::Truth build(const Scene& scene, const rig::Rig& rig, double resolution_m) {
     spdlog::info("judging in {}, {}", scene.world_file.file.string(), scene.scenario_file.file.string());
-    spdlog::info("ground truth: a noise-free camera goes round the scene");
     evaluation::TruthConfig config = truth_config_of(scene.scenario, resolution_m);
     config.external_camera = rig.camera;
+    if (const auto fault = evaluation::region_fault(config.region, resolution_m, rig.T_map_base))
+        throw CommandFailure({ExitCode::bad_config, scene.scenario_file.file.string() + ": " + *fault});
+    spdlog::info("ground truth: a noise-free camera goes round the scene");
     return evaluation::build_truth(scene.world,
                                    evaluation::render_survey(scene.world, survey_config_of(scene.scenario)),
                                    config, rig.T_map_base);
@@ -80,8 +82,7 @@ evaluation::Results judge_recording(const EvaluateOptions& options) {
         {.recording = recording, .mapping = mapping, .maps = {}, .rig = options.rig, .robot = options.robot});
     if (!playback) throw CommandFailure(playback.error());
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
-    if (const auto& failed = playback->outcome.depth_error) spdlog::warn("{}", failed->what);
-    if (const auto& failed = playback->outcome.can_error) spdlog::warn("{}", failed->what);
+    if (const auto failure = failure_of(*playback)) throw CommandFailure(*failure);
     const evaluation::Truth truth = build(scene, playback->rig, mapping.map.resolution_m);
     const std::string& name = configuration->name;
     const MapSet& maps = playback->pipeline.maps();
@@ -154,6 +155,12 @@ void evaluate_input(const EvaluateOptions& options) {
         std::filesystem::is_directory(options.input) ? judge_recording(options) : judge_map(options);
     fmt::print("{}", evaluation::metrics_table(results));
     if (options.json.empty()) return;
+    std::error_code error;
+    if (options.json.extension() != ".json" && std::filesystem::is_regular_file(options.json, error)) {
+        throw CommandFailure(
+            {ExitCode::cannot_create,
+             options.json.string() + ": is there, and is no .json file; it is not overwritten"});
+    }
     std::ofstream file(options.json);
     file << evaluation::metrics_json(results);
     file.close();

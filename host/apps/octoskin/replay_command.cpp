@@ -34,21 +34,9 @@ void report_progress(const ReplayProgress& progress, int& last_second) {
 
 /// A replay that failed leaves the maps of the one before as they are.
 void refuse_failed(const Playback& playback) {
-    if (const auto& failed = playback.outcome.can_error)
-        throw CommandFailure({ExitCode::bad_data, failed->what + "; no map is written"});
-    if (const auto& failed = playback.outcome.depth_error) {
-        throw CommandFailure(
-            {ExitCode::bad_data, failed->what +
-                                     "; no map is written (to map the ranges alone, move depth.oni and "
-                                     "depth.epoch.yaml away)"});
-    }
-    if (!playback.pipeline.is_balanced())
-        throw CommandFailure({ExitCode::failed, "the account does not balance; no map is written"});
-    if (playback.is_map_incomplete)
-        throw CommandFailure({ExitCode::failed, "the map is not complete; no map is written"});
-    if (playback.pipeline.maps().fused()->known_voxels() == 0) {
-        throw CommandFailure(
-            {ExitCode::failed, "nothing came into the map, the account above says why; no map is written"});
+    if (auto failure = failure_of(playback)) {
+        failure->message += "; no map is written";
+        throw CommandFailure(std::move(*failure));
     }
 }
 

@@ -1,5 +1,6 @@
 #include "host/apps/playback/playback.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -22,8 +23,9 @@ Result<Setup, AppError> read_setup(const PlaybackRequest& request) {
     const auto lock = lock_reading();
     auto rig = rig::read_rig(request.rig.empty() ? request.recording.rig() : request.rig, request.robot);
     if (!rig) {
+        std::error_code error;
         const bool is_robot_absent = request.rig.empty() && request.robot.empty() &&
-                                     !std::filesystem::exists(request.recording.robot());
+                                     !std::filesystem::exists(request.recording.robot(), error);
         return fail(is_robot_absent ? ExitCode::no_input : ExitCode::bad_config, rig.error().message());
     }
     auto host = make_host_setup(*rig);
@@ -134,6 +136,25 @@ void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInp
 }
 
 }  // namespace
+
+std::optional<AppError> failure_of(const Playback& playback) {
+    if (const auto& failed = playback.outcome.can_error) return AppError{ExitCode::bad_data, failed->what};
+    if (const auto& failed = playback.outcome.depth_error) {
+        return AppError{ExitCode::bad_data, failed->what +
+                                                " (to map the ranges alone, move depth.oni and "
+                                                "depth.epoch.yaml away)"};
+    }
+    const bool is_balanced =
+        playback.pipeline.is_balanced() && std::all_of(playback.accounts.begin(), playback.accounts.end(),
+                                                       [](const auto& table) { return table.is_balanced; });
+    if (!is_balanced) return AppError{ExitCode::failed, "the account does not balance"};
+    if (playback.is_map_incomplete) return AppError{ExitCode::failed, "the map is not complete"};
+    if (playback.pipeline.maps().fused()->known_voxels() == 0) {
+        return AppError{ExitCode::failed,
+                        "nothing came into the map; `octoskin replay` shows the account that says why"};
+    }
+    return std::nullopt;
+}
 
 Result<Playback, AppError> play_recording(const PlaybackRequest& request, const ReplayReport& report) {
     if (const auto checked = check_recording(request.recording, !request.rig.empty()); !checked) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "common/result.hpp"
@@ -35,6 +36,10 @@ struct Playback {
     std::vector<std::string> warnings;  ///< what a person should know about this recording
     bool is_map_incomplete = false;     ///< a map had no room for some of its voxels
 };
+
+/// Why what came of a recording must not be used as a map; empty if nothing speaks against it: a source that
+/// failed on the way, an account that does not balance, a map without room, or nothing in any map.
+[[nodiscard]] std::optional<AppError> failure_of(const Playback& playback);
 
 /// Opens a recording and plays it to its end. A source that fails on the way (a truncated .oni) is told in
 /// `outcome`, and what came before it is on the maps. Several threads may play at once.

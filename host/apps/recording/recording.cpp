@@ -29,12 +29,24 @@ SourceFile read_source(const YAML::Node& root, const std::string& key) {
     return source;
 }
 
+/// An absent key has its default; a value of another type throws.
+template <typename T>
+T value_or(const YAML::Node& root, const char* key, T otherwise) {
+    const YAML::Node value = root[key];
+    return value ? value.as<T>() : otherwise;
+}
+
 Status<RecordingError> check_keys(const std::filesystem::path& file, const YAML::Node& root) {
     static const std::set<std::string> known{
         "schema", "made_by",   "source", "world",      "world_crc32", "scenario",     "scenario_crc32",
         "rig",    "rig_crc32", "seed",   "duration_s", "can_frames",  "depth_frames", "is_depth_noise_free"};
+    std::set<std::string> seen;
     for (const auto& entry : root) {
         const auto key = entry.first.as<std::string>();
+        if (!seen.insert(key).second) {
+            return failure(file, "line " + std::to_string(entry.first.Mark().line + 1) + ": key '" + key +
+                                     "' stands there twice");
+        }
         if (!known.contains(key)) {
             return failure(
                 file, "line " + std::to_string(entry.first.Mark().line + 1) + ": unknown key '" + key + "'");
@@ -78,16 +90,16 @@ Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording)
         }
         if (const auto checked = check_keys(path, root); !checked) return unexpected(checked.error());
         RecordingMeta meta;
-        meta.made_by = root["made_by"].as<std::string>("");
-        meta.source = root["source"].as<std::string>("");
+        meta.made_by = value_or<std::string>(root, "made_by", "");
+        meta.source = value_or<std::string>(root, "source", "");
         meta.world = read_source(root, "world");
         meta.scenario = read_source(root, "scenario");
         meta.rig = read_source(root, "rig");
         if (root["seed"]) meta.seed = root["seed"].as<std::uint64_t>();
-        meta.is_depth_noise_free = root["is_depth_noise_free"].as<bool>(false);
-        meta.can_frames = root["can_frames"].as<std::uint64_t>(0);
-        meta.depth_frames = root["depth_frames"].as<std::uint64_t>(0);
-        meta.duration_s = root["duration_s"].as<double>(0.0);
+        meta.is_depth_noise_free = value_or(root, "is_depth_noise_free", false);
+        meta.can_frames = value_or<std::uint64_t>(root, "can_frames", 0);
+        meta.depth_frames = value_or<std::uint64_t>(root, "depth_frames", 0);
+        meta.duration_s = value_or(root, "duration_s", 0.0);
         return meta;
     } catch (const std::exception& broken) {  // yaml-cpp's own, and the stream's
         return failure(path, broken.what());
@@ -113,7 +125,8 @@ Status<RecordingError> check_recording(const RecordingPaths& recording, bool is_
         if (is_rig_given && file == recording.rig()) continue;
         if (!std::filesystem::is_regular_file(file, error)) return failure(file, what);
     }
-    if (std::filesystem::exists(recording.depth()) != std::filesystem::exists(recording.depth_epoch())) {
+    if (std::filesystem::exists(recording.depth(), error) !=
+        std::filesystem::exists(recording.depth_epoch(), error)) {
         return failure(recording.directory, "depth.oni and depth.epoch.yaml must both be there, or neither");
     }
     return Done{};

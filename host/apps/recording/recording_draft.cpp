@@ -94,7 +94,8 @@ Result<RecordingDraft, AppError> RecordingDraft::create(const fs::path& director
 
 Status<AppError> RecordingDraft::commit() {
     std::error_code error;
-    fs::remove(final_.meta(), error);
+    // create() made sure that a recording here is a simulated one; without one, its maps are somebody's.
+    const bool replaces_recording = fs::remove(final_.meta(), error);
     const auto from = files_of(draft_);
     const auto to = files_of(final_);
     for (std::size_t i = 0; i < from.size(); ++i) {
@@ -105,7 +106,7 @@ Status<AppError> RecordingDraft::commit() {
         }
         if (error) return fail(to[i], error.message());
     }
-    remove_maps(final_.directory / "maps");
+    if (replaces_recording) remove_maps(final_.directory / "maps");
     fs::remove_all(draft_.directory, error);
     is_open_ = false;
     return Done{};

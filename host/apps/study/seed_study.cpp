@@ -54,11 +54,7 @@ Result<Playback, AppError> play(const SeedRequest& request, const StudyConfigura
     auto playback = play_recording(
         {.recording = recording, .mapping = configuration.mapping, .maps = {}, .rig = {}, .robot = {}});
     if (!playback) return playback;
-    if (!playback->outcome.is_complete() || !playback->pipeline.is_balanced()) {
-        const auto& error = playback->outcome.depth_error;
-        return unexpected(
-            AppError{ExitCode::bad_data, error ? error->what : "the replay's account does not balance"});
-    }
+    if (auto failure = failure_of(*playback)) return unexpected(std::move(*failure));
     outcome.times.push_back(timer.stop());
     say(fmt::format("replayed as '{}' ({:.1f} s)", configuration.name, outcome.times.back().wall_s));
     return playback;
@@ -78,10 +74,13 @@ void judge(const Playback& playback, const std::string& configuration, const eva
     outcome.times.push_back(timer.stop());
 }
 
-evaluation::Truth make_truth(const StudyGround& ground, const rig::Rig& rig, SeedOutcome& outcome) {
+Result<evaluation::Truth, AppError> make_truth(const StudyGround& ground, const rig::Rig& rig,
+                                               SeedOutcome& outcome) {
     const PartTimer timer("ground truth");
     evaluation::TruthConfig config = ground.truth;
     config.external_camera = rig.camera;
+    if (auto fault = evaluation::region_fault(config.region, config.resolution_m, rig.T_map_base))
+        return fail(ExitCode::bad_config, std::move(*fault));
     evaluation::Truth truth = evaluation::build_truth(ground.world, ground.survey, config, rig.T_map_base);
     outcome.times.push_back(timer.stop());
     return truth;
@@ -105,7 +104,11 @@ Result<SeedOutcome, AppError> study_seed(const SeedRequest& request, const Study
             if (!matches(configuration)) continue;
             auto playback = play(request, configuration, say, outcome);
             if (!playback) return unexpected(playback.error());
-            if (!outcome.truth) outcome.truth = make_truth(ground, playback->rig, outcome);
+            if (!outcome.truth) {
+                auto truth = make_truth(ground, playback->rig, outcome);
+                if (!truth) return unexpected(truth.error());
+                outcome.truth = std::move(*truth);
+            }
             judge(*playback, configuration.name, *outcome.truth, outcome);
             if (request.keeps_maps && configuration.name == request.main_configuration) {
                 outcome.main.emplace(std::move(*playback));

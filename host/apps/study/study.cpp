@@ -17,6 +17,7 @@
 #include "host/apps/study/part_timer.hpp"
 #include "host/apps/study/seed_study.hpp"
 #include "host/apps/study/study_pictures.hpp"
+#include "host/apps/study/work_folder.hpp"
 #include "host/apps/version/version.hpp"
 
 namespace octoskin {
@@ -93,9 +94,11 @@ const StudyConfiguration& main_of(const std::vector<StudyConfiguration>& configu
 /// Studies every seed, `jobs` of them at once.
 class SeedWorkers {
   public:
+    /// What is not kept is made, and removed, in `work`.
     SeedWorkers(const StudyRequest& request, const std::vector<StudyConfiguration>& configurations,
-                const StudyWorld& ground, const Say& say)
+                const StudyWorld& ground, const fs::path& work, const Say& say)
         : request_(request),
+          work_(work),
           configurations_(configurations),
           ground_{ground.scene.world, ground.survey, ground.truth},
           say_(say) {}
@@ -117,8 +120,8 @@ class SeedWorkers {
         SeedRequest seed_request{
             .simulation = request_.inputs,
             .configurations = configurations_,
-            .recording = request_.out / (is_first ? "recording" : "recording-seed-" + seed),
-            .scratch = request_.out / ("recording-noise-free-seed-" + seed),
+            .recording = is_first ? request_.out / "recording" : work_ / ("seed-" + seed),
+            .scratch = work_ / ("noise-free-seed-" + seed),
             .keeps_recording = is_first,
             .main_configuration = main_of(configurations_).name,
             .keeps_maps = is_first};
@@ -127,6 +130,7 @@ class SeedWorkers {
     }
 
     const StudyRequest& request_;
+    const fs::path work_;
     const std::vector<StudyConfiguration>& configurations_;
     StudyGround ground_;
     const Say& say_;
@@ -237,8 +241,16 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     const auto ground = prepare_world(request.inputs, configurations->front().mapping.map.resolution_m);
     if (!ground) return unexpected(ground.error());
     const evaluation::PartTime survey_time = survey_timer.stop();
+    // Each seed shifts the map a little and is looked at again: this is for what is hopeless, before
+    // simulating.
+    const auto& truth = ground->truth;
+    if (auto fault =
+            evaluation::region_fault(truth.region, truth.resolution_m, Eigen::Isometry3d::Identity()))
+        return fail(ExitCode::bad_config, request.inputs.scenario.string() + ": " + *fault);
 
-    auto outcomes = SeedWorkers(request, *configurations, *ground, say).run();
+    const auto work = WorkFolder::create(request.out);
+    if (!work) return unexpected(work.error());
+    auto outcomes = SeedWorkers(request, *configurations, *ground, work->path(), say).run();
     if (!outcomes) return unexpected(outcomes.error());
     std::vector<evaluation::Run> runs;
     for (const SeedOutcome& outcome : *outcomes)

@@ -31,14 +31,14 @@ DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config)
       T_map_camera_(rig.T_map_base * camera_.T_base_camera),
       integrator_(config, camera_.intrinsics) {}
 
-void DepthStage::take_robot_out(DepthImage& image, const RobotPose& robot) {
+std::uint64_t DepthStage::take_robot_out(DepthImage& image, const RobotPose& robot) {
     const Eigen::Isometry3d T_camera_base = camera_.T_base_camera.inverse();
     body_camera_ = robot.body_base;
     for (PosedCapsule& capsule : body_camera_) {
         capsule.p_a = T_camera_base * capsule.p_a;
         capsule.p_b = T_camera_base * capsule.p_b;
     }
-    robot_pixels_ += remove_robot(image, camera_.intrinsics, body_camera_, self_margin_m_);
+    return remove_robot(image, camera_.intrinsics, body_camera_, self_margin_m_);
 }
 
 Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, const RobotPose* robot) {
@@ -53,13 +53,12 @@ Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, c
     if (config_.depth_filter.is_enabled) {
         image = filter_depth(image, config_.depth_filter);
     }
-    if (needs_robot()) {
-        take_robot_out(image, *robot);
-    }
+    const std::uint64_t robot_pixels = needs_robot() ? take_robot_out(image, *robot) : 0;
     Result<DepthUpdates, DepthRejection> updates = integrator_.integrate(image, T_map_camera_);
     if (!updates) {
         return unexpected(reason_of(updates.error()));
     }
+    robot_pixels_ += robot_pixels;
     pixels_.used += updates->pixels.used;
     pixels_.no_value += updates->pixels.no_value;
     pixels_.bad_value += updates->pixels.bad_value;

@@ -24,13 +24,14 @@ class DepthStage {
     /// `robot`: at the frame's capture time; may be null unless `needs_robot()`.
     [[nodiscard]] Result<DepthUpdates, DepthReason> updates(const DepthFrame& frame, const RobotPose* robot);
 
-    /// Pixels set to nothing because they show the robot, over all frames.
+    /// Pixels set to nothing because they show the robot, over all frames that came into the map.
     [[nodiscard]] std::uint64_t robot_pixels() const noexcept { return robot_pixels_; }
     /// What became of the others, over all frames used.
     [[nodiscard]] const DepthPixelCounts& pixels() const noexcept { return pixels_; }
 
   private:
-    void take_robot_out(DepthImage& image, const RobotPose& robot);
+    /// How many pixels showed it.
+    [[nodiscard]] std::uint64_t take_robot_out(DepthImage& image, const RobotPose& robot);
 
     HostCamera camera_;
     MappingConfig config_;

@@ -120,5 +120,24 @@ TEST(RecordingDraftTest, clears_away_what_a_killed_one_left) {
     EXPECT_FALSE(std::filesystem::exists(folder / "depth.oni"));
 }
 
+TEST(RecordingDraftTest, leaves_maps_that_belong_to_no_recording) {
+    const ScratchFolder folder;
+    std::filesystem::create_directories(folder / "rec/maps");
+    write(folder / "rec/maps/fused.ot", "mine");
+    auto draft = RecordingDraft::create(folder / "rec", true);
+    ASSERT_TRUE(draft);
+    fill(*draft, "log");
+    ASSERT_TRUE(draft->commit());
+    EXPECT_EQ(ScratchFolder::read(folder / "rec/maps/fused.ot"), "mine");
+}
+
+TEST(RecordingDraftTest, believes_no_meta_that_says_two_things) {
+    const ScratchFolder folder;
+    write(folder / "meta.yaml", std::string(kSimulated) + "source: robot\n");
+    const auto refused = RecordingDraft::create(folder.path(), true);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+}
+
 }  // namespace
 }  // namespace octoskin

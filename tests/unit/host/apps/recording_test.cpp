@@ -94,6 +94,18 @@ TEST_F(RecordingTest, needs_no_rig_of_its_own_if_another_is_given) {
     EXPECT_TRUE(check_recording(recording_, true));
 }
 
+TEST_F(RecordingTest, a_value_of_another_type_or_a_key_given_twice_is_refused) {
+    const std::string schema = "schema: octoskin-recording/1\n";
+    write(recording_.meta(), schema + "can_frames: 7\n");
+    ASSERT_TRUE(read_meta(recording_));
+    for (const char* line :
+         {"can_frames: lots", "can_frames: -1", "depth_frames: [a]", "is_depth_noise_free: perhaps",
+          "duration_s: long", "schema: octoskin-recording/1", "can_frames: 1\ncan_frames: 1"}) {
+        write(recording_.meta(), schema + line + "\n");
+        EXPECT_FALSE(read_meta(recording_)) << line;
+    }
+}
+
 TEST(SourceFileTest, checksum_is_that_of_all_bytes_in_order) {
     const testing_support::ScratchFolder folder;
     const auto digits = folder.write("digits", "123456789");
