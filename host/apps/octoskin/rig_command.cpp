@@ -27,10 +27,10 @@ void describe_i2c(const rig::Node& node) {
         const double load = rig::i2c_load(node.config, bus);
         if (load == 0.0) continue;
         const rig::PhaseSpread spread = rig::phase_spread(node.config, bus);
-        fmt::print("    I2C bus {} at {} kHz: load {:.1f} %, at most {:.0f} %; {:.0f} % of its busiest 5 ms{}\n",
-                   bus, node.config.i2c_hz / 1000, 100.0 * load, 100.0 * rig::kI2cLoadMax,
-                   100.0 * spread.peak,
-                   spread.is_even() ? "" : ": phase_us could spread the readings better");
+        fmt::print(
+            "    I2C bus {} at {} kHz: load {:.1f} %, at most {:.0f} %; {:.0f} % of its busiest 5 ms{}\n",
+            bus, node.config.i2c_hz / 1000, 100.0 * load, 100.0 * rig::kI2cLoadMax, 100.0 * spread.peak,
+            spread.is_even() ? "" : ": phase_us could spread the readings better");
     }
     for (const auto& [first, second] : rig::pairs_ranging_together(node)) {
         fmt::print("    {} and {} see the same light and range at once: set phase_us apart\n",
