@@ -83,7 +83,7 @@ void BusRecorder::record(const InFlight& ended, wire::TransferOutcome outcome) n
 
 void BusRecorder::make_room(std::size_t bytes) noexcept {
     // Two spans of at most 255 bytes and a header: whatever comes fits once the rest is gone.
-    static_assert(kRecordedBytesMax >= wire::kTransferHeaderBytes + 2 * 255);
+    static_assert(kRecordedBytesMax >= wire::kTransferHeaderBytes + std::size_t{2} * 255);
     while (transfers_ == kRecordedTransfersMax || used_ + bytes > ring_.size()) drop_oldest();
 }
 
