@@ -55,7 +55,8 @@ TEST_F(StTrace, main_path_equals_st_call_by_call) {
     bus_.expect(st::kGetResult);
     expect_done(st::kClearInterrupt);
     ASSERT_TRUE(device_.has_measurement());
-    // The stub's block decodes to 26 SPADs, 16.0 and 0.125 Mcps, 4.00 mm sigma, 1234 mm, 15.0 Mcps.
+    // The block of fixed registers decodes to 26 SPADs, 16.0 and 0.125 Mcps, 4.00 mm sigma, 1234 mm, 15.0
+    // Mcps.
     const Measurement expected{.device_status = 9,
                                .stream_count = 5,
                                .effective_spads = 0x1A00,
