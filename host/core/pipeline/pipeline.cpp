@@ -174,12 +174,24 @@ void Pipeline::on_depth(DepthFrame frame) {
         depth_waiting_.push({captured, kCameraSource}, std::move(frame)) != Pushed::waits) {
         accounts_.depth_frames.reject(DepthReason::queue_overflow);
     }
+    if (now_known && config_.release == Release::once_placed) {
+        advance(*now_known);
+    }
 }
 
 void Pipeline::advance(HostTime now) {
     // The samples that surround an instant may be as far apart as the history allows.
-    release_joints(now - (config_.lag - config_.joints.bracket_max));
+    const bool is_live = config_.release == Release::once_placed;
+    release_joints(is_live ? kEndOfTime : now - (config_.lag - config_.joints.bracket_max));
     release_measurements(now - config_.lag);
+}
+
+bool Pipeline::is_placed(const ReleaseKey& key) const {
+    if (config_.release == Release::by_capture_time) {
+        return false;
+    }
+    const bool needs_robot = key.source != kCameraSource || depth_stage_->needs_robot();
+    return !needs_robot || robot_.is_settled(key.captured);
 }
 
 void Pipeline::release_joints(HostTime until) {
@@ -194,7 +206,7 @@ void Pipeline::release_measurements(HostTime until) {
         const auto depth = depth_waiting_.front();
         const bool is_depth_next = depth && (!reading || *depth < *reading);
         const auto next = is_depth_next ? depth : reading;
-        if (!next || next->captured > until) {
+        if (!next || (next->captured > until && !is_placed(*next))) {
             return;
         }
         const bool is_used = is_depth_next ? settle(accounts_.depth_frames, integrate(depth_waiting_.pop()))

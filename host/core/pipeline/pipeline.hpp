@@ -29,12 +29,21 @@
 
 namespace octoskin {
 
+/// When a measurement that waits enters the map.
+enum class Release : std::uint8_t {
+    /// `lag` after it was captured, in the order (capture time, source): whatever order frames came in, the
+    /// map is the same.
+    by_capture_time,
+    /// As soon as it is known where the robot was: a live map. Its bytes depend on the order of the calls.
+    once_placed,
+};
+
 struct PipelineConfig {
     MapChoice maps;
     MapBegin begin = MapBegin::first_usable;
-    /// A measurement enters the map this long after it was captured, and waits no longer for what was
-    /// captured before it. More than the longest gap that joints are interpolated over, and than the age
-    /// limit of a range.
+    Release release = Release::by_capture_time;
+    /// A measurement waits so long at most after it was captured. More than the longest gap that joints are
+    /// interpolated over, and than the age limit of a range.
     Nanoseconds lag{250'000'000};
     JointHistoryConfig joints;
     IntakeConfig intake;  ///< `uses_no_return` follows from the mapping
@@ -99,13 +108,17 @@ class Pipeline {
     void queue(const JointMeasurement& joints);
     [[nodiscard]] std::optional<DepthReason> fault_on_arrival(const DepthFrame& frame) const;
 
-    /// Integrates what was captured long enough before `now`.
+    /// Integrates what need not wait any longer.
     void advance(HostTime now);
     void release_joints(HostTime until);
+    /// Those captured until then, and those that are placed if that is enough.
     void release_measurements(HostTime until);
+    [[nodiscard]] bool is_placed(const ReleaseKey& key) const;
     [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
     [[nodiscard]] Status<DepthReason> integrate(const DepthFrame& frame);
-    [[nodiscard]] bool is_late(const ReleaseKey& key) const { return integrated_ && key <= *integrated_; }
+    [[nodiscard]] bool is_late(const ReleaseKey& key) const {
+        return config_.release == Release::by_capture_time && integrated_ && key <= *integrated_;
+    }
     [[nodiscard]] bool is_repeated(const ReleaseKey& key) const;
 
     PipelineConfig config_;

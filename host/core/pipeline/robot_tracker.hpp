@@ -23,6 +23,9 @@ class RobotTracker {
     /// Joint samples in the order of their times.
     [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
 
+    /// Whether the samples about `instant` are here, or will never come: `at` answers the same for ever.
+    [[nodiscard]] bool is_settled(HostTime instant) const;
+
     /// The robot at `instant`, or null if no samples surround it closely enough. Valid until the next call.
     /// About 2 us.
     [[nodiscard]] const RobotPose* at(HostTime instant);

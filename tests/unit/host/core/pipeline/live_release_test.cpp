@@ -1,0 +1,149 @@
+// A live map: measurements enter it as soon as it is known where the robot was, and no later than the lag.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "host/core/pipeline/pipeline.hpp"
+#include "host/io/mapfile/octomap_writer.hpp"
+#include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
+
+namespace octoskin {
+namespace {
+
+using namespace test;
+
+Scene live_scene() {
+    Scene scene = good_scene();
+    scene.config.release = Release::once_placed;
+    return scene;
+}
+
+/// Frames and depth frames in the order of their times, and a look at the pipeline after each.
+template <class Look>
+Pipeline play(const Scene& scene, const std::vector<StampedFrame>& frames, const Look& look) {
+    Pipeline pipeline = make_pipeline(scene);
+    auto depth = scene.depth.begin();
+    for (const StampedFrame& entry : frames) {
+        pipeline.on_can(entry.frame, entry.stamp);
+        while (depth != scene.depth.end() && pipeline.now() && depth->captured <= *pipeline.now()) {
+            pipeline.on_depth(*depth++);
+        }
+        look(pipeline);
+    }
+    pipeline.finish();
+    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
+    return pipeline;
+}
+
+template <class Look>
+Pipeline play(const Scene& scene, const Look& look) {
+    return play(scene, scene.bus.frames(), look);
+}
+
+std::vector<StampedFrame> with_late_joints(std::vector<StampedFrame> frames) {
+    for (StampedFrame& entry : frames) {
+        const bool is_joints = wire::type_of(entry.frame.can_id) == wire::FrameType::joint_state;
+        entry.stamp.ns += is_joints ? 20'000'000 : 0;
+    }
+    std::ranges::stable_sort(frames, {}, &StampedFrame::stamp);
+    return frames;
+}
+
+TEST(LiveRelease, takes_a_reading_with_the_first_joint_sample_after_it) {
+    Scene scene = live_scene();
+    scene.depth.clear();
+    // A reading arrives 15 ms after it was captured; joints, sampled every 10 ms, 20 ms after that.
+    const auto frames = with_late_joints(scene.bus.frames());
+    std::uint64_t taken_in = 0;
+    Nanoseconds longest{0};
+    HostTime came{};
+    play(scene, frames, [&](const Pipeline& pipeline) {
+        const auto& readings = pipeline.accounts().readings;
+        if (!pipeline.now()) return;
+        if (readings.in() > taken_in) came = *pipeline.now();
+        taken_in = readings.in();
+        const bool is_waiting = readings.used() + readings.rejected() < taken_in;
+        if (is_waiting) longest = std::max(longest, *pipeline.now() - came);
+    });
+    EXPECT_EQ(taken_in, 10U);
+    EXPECT_GT(longest, Nanoseconds{0});
+    EXPECT_LE(longest, std::chrono::milliseconds(10 + 20 - 15 + 1));
+}
+
+TEST(LiveRelease, builds_the_map_that_the_order_of_capture_builds_where_the_order_is_the_same) {
+    const Pipeline live = play(live_scene(), [](const Pipeline&) {});
+    EXPECT_EQ(live.accounts().readings.used(), 10U);
+    EXPECT_EQ(live.accounts().depth_frames.used(), 6U);
+    EXPECT_EQ(encode_ot(*live.maps().fused()), run(good_scene()).fused_ot);
+}
+
+TEST(LiveRelease, gives_the_same_bytes_for_the_same_calls) {
+    const Pipeline once = play(live_scene(), [](const Pipeline&) {});
+    const Pipeline again = play(live_scene(), [](const Pipeline&) {});
+    EXPECT_EQ(encode_ot(*once.maps().fused()), encode_ot(*again.maps().fused()));
+}
+
+TEST(LiveRelease, gives_up_a_reading_without_joints_once_the_lag_is_over) {
+    Scene scene = live_scene();
+    // Joints end at 9 s; other frames go on.
+    scene.bus.range(8.998, kLeft, good_reading());
+    scene.bus.range(9.005, kLeft, good_reading(kSpare));
+    for (int k = 0; k < 10; ++k) {
+        scene.bus.send(9.1 + 0.05 * k, wire::Heartbeat{.state = wire::NodeState::ranging}, kLeft);
+    }
+    std::optional<HostTime> given_up;
+    const Pipeline pipeline = play(scene, [&](const Pipeline& now) {
+        if (!given_up && now.accounts().readings.rejected(ReadingReason::joints_missing) > 0) {
+            given_up = now.now();
+        }
+    });
+    EXPECT_EQ(pipeline.accounts().readings.used(), 11U) << pipeline.account_text();
+    ASSERT_TRUE(given_up) << pipeline.account_text();
+    EXPECT_GT(*given_up, host_at(9.005) + scene.config.lag - std::chrono::milliseconds(1));
+    EXPECT_LT(*given_up, host_at(9.005) + scene.config.lag + std::chrono::milliseconds(60));
+}
+
+TEST(LiveRelease, counts_a_reading_in_a_gap_of_the_joints_as_soon_as_the_gap_is_over) {
+    Scene scene = live_scene();
+    scene.bus.range(7.15, kLeft, good_reading());  // no joints between 7.0 and 7.3 s
+    const Pipeline pipeline = play(scene, [](const Pipeline&) {});
+    EXPECT_EQ(pipeline.accounts().readings.rejected(ReadingReason::joints_missing), 1U);
+    EXPECT_EQ(pipeline.accounts().readings.used(), 10U);
+}
+
+TEST(LiveRelease, takes_an_older_reading_after_a_younger_one) {
+    Scene scene = live_scene();
+    scene.bus.range(3.80, kLeft, good_reading(kSpare), 0.1);  // captured early, arrives 0.1 s later
+    const Pipeline pipeline = play(scene, [](const Pipeline&) {});
+    EXPECT_EQ(pipeline.accounts().readings.rejected(ReadingReason::late), 0U);
+    EXPECT_EQ(pipeline.accounts().readings.used(), 11U) << pipeline.account_text();
+}
+
+TEST(LiveRelease, takes_a_depth_frame_at_once_if_the_robot_is_not_removed_from_it) {
+    Scene scene = live_scene();
+    scene.mapping.removes_robot_from_depth = false;
+    Pipeline pipeline = make_pipeline(scene);
+    pipeline.on_depth(flat_frame(4.0));
+    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 1U);
+}
+
+TEST(LiveRelease, holds_a_depth_frame_until_its_joints_are_here) {
+    Scene scene = live_scene();
+    scene.depth.clear();
+    Pipeline pipeline = make_pipeline(scene);
+    bool is_given = false;
+    for (const StampedFrame& entry : scene.bus.frames()) {
+        pipeline.on_can(entry.frame, entry.stamp);
+        if (!is_given && pipeline.now() && *pipeline.now() >= host_at(4.0)) {
+            pipeline.on_depth(flat_frame(4.05));
+            EXPECT_EQ(pipeline.accounts().depth_frames.used(), 0U);
+            is_given = true;
+        }
+        if (is_given && *pipeline.now() >= host_at(4.07)) break;
+    }
+    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 1U);
+    pipeline.finish();
+}
+
+}  // namespace
+}  // namespace octoskin
