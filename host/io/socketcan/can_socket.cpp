@@ -1,0 +1,194 @@
+#include "host/io/socketcan/can_socket.hpp"
+
+#include <fcntl.h>
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <vector>
+
+#include "common/wire/socketcan_layout.hpp"
+
+namespace octoskin::socketcan {
+namespace {
+
+constexpr std::int64_t kNsPerS = 1'000'000'000;
+
+WallTime wall_time(const timespec& time) {
+    return {static_cast<std::int64_t>(time.tv_sec) * kNsPerS + time.tv_nsec};
+}
+
+WallTime wall_now() {
+    timespec now{};
+    ::clock_gettime(CLOCK_REALTIME, &now);
+    return wall_time(now);
+}
+
+std::string remedy(int error_number) {
+    switch (error_number) {
+        case ENODEV:
+            return " (is the adapter plugged in? `ip link show type can` names the interfaces there are)";
+        case ENETDOWN:
+            return " (bring it up: `sudo ip link set NAME up type can bitrate 500000`, with your rates)";
+        case EAFNOSUPPORT:
+            return " (this kernel has no CAN: `sudo modprobe can-raw`)";
+        case EPERM:
+        case EACCES:
+            return " (not permitted here)";
+        default:
+            return {};
+    }
+}
+
+std::vector<can_filter> kernel_filters(std::span<const IdFilter> filters) {
+    std::vector<can_filter> kernel;
+    for (const IdFilter& filter : filters) {
+        // Only standard data frames are ours.
+        kernel.push_back({filter.can_id, filter.mask | CAN_EFF_FLAG | CAN_RTR_FLAG});
+    }
+    return kernel;
+}
+
+template <class Value>
+bool set(int descriptor, int level, int option, const Value& value) {
+    return ::setsockopt(descriptor, level, option, &value, sizeof(value)) == 0;
+}
+
+bool set_options(int descriptor, const SocketOptions& options) {
+    const std::vector<can_filter> filters = kernel_filters(options.filters);
+    const can_err_mask_t errors = options.wants_error_frames ? CAN_ERR_MASK : 0;
+    const auto filter_bytes = static_cast<socklen_t>(filters.size() * sizeof(can_filter));
+    const bool is_filtered = filters.empty() || ::setsockopt(descriptor, SOL_CAN_RAW, CAN_RAW_FILTER,
+                                                             filters.data(), filter_bytes) == 0;
+    // As large as the system allows, which may be less than asked for.
+    (void)set(descriptor, SOL_SOCKET, SO_RCVBUF, options.receive_buffer_bytes);
+    return is_filtered && set(descriptor, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1) &&
+           set(descriptor, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) &&
+           set(descriptor, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, options.hears_itself ? 1 : 0) &&
+           set(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, 1) && set(descriptor, SOL_SOCKET, SO_RXQ_OVFL, 1);
+}
+
+/// 0, or why not.
+int bind_to(int descriptor, const std::string& interface) {
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = static_cast<int>(::if_nametoindex(interface.c_str()));
+    if (address.can_ifindex == 0) return errno;
+    const auto* generic = reinterpret_cast<const sockaddr*>(&address);
+    return ::bind(descriptor, generic, sizeof(address)) == 0 ? 0 : errno;
+}
+
+/// What the kernel says beside a frame.
+struct Beside {
+    std::optional<WallTime> stamp;
+    std::optional<std::uint32_t> dropped;
+};
+
+Beside read_beside(msghdr& message) {
+    Beside beside;
+    for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part)) {
+        if (part->cmsg_level != SOL_SOCKET) continue;
+        if (part->cmsg_type == SO_TIMESTAMPNS) {
+            timespec time{};
+            std::memcpy(&time, CMSG_DATA(part), sizeof(time));
+            beside.stamp = wall_time(time);
+        } else if (part->cmsg_type == SO_RXQ_OVFL) {
+            std::uint32_t dropped = 0;
+            std::memcpy(&dropped, CMSG_DATA(part), sizeof(dropped));
+            beside.dropped = dropped;
+        }
+    }
+    return beside;
+}
+
+}  // namespace
+
+bool SocketFault::is_down() const noexcept {
+    return error_number == ENETDOWN;
+}
+
+Result<CanSocket, SocketFault> CanSocket::open(const std::string& interface, const SocketOptions& options) {
+    CanSocket socket(interface, ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
+    if (socket.descriptor_ < 0) return unexpected(socket.fault(errno, "cannot open a CAN socket"));
+    if (!set_options(socket.descriptor_, options))
+        return unexpected(socket.fault(errno, "cannot set up the CAN socket"));
+    if (const int error = bind_to(socket.descriptor_, interface); error != 0)
+        return unexpected(socket.fault(error, "cannot use this CAN interface"));
+    return socket;
+}
+
+CanSocket::CanSocket(std::string interface, int descriptor)
+    : interface_(std::move(interface)), descriptor_(descriptor) {
+    if (descriptor_ >= 0) (void)::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
+}
+
+CanSocket::~CanSocket() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+CanSocket::CanSocket(CanSocket&& other) noexcept
+    : interface_(std::move(other.interface_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      dropped_(other.dropped_),
+      dropped_raw_(other.dropped_raw_),
+      malformed_(other.malformed_) {}
+
+CanSocket& CanSocket::operator=(CanSocket&& other) noexcept {
+    std::swap(interface_, other.interface_);
+    std::swap(descriptor_, other.descriptor_);
+    dropped_ = other.dropped_;
+    dropped_raw_ = other.dropped_raw_;
+    malformed_ = other.malformed_;
+    return *this;
+}
+
+Result<std::optional<Received>, SocketFault> CanSocket::receive() {
+    while (true) {  // ends at the first frame; what is none was taken out of the socket
+        std::array<std::byte, CANFD_MTU + 1> bytes{};
+        alignas(cmsghdr) std::array<char, 128> control{};
+        iovec part{bytes.data(), bytes.size()};
+        msghdr message{};
+        message.msg_iov = &part;
+        message.msg_iovlen = 1;
+        message.msg_control = control.data();
+        message.msg_controllen = control.size();
+        const ssize_t count = ::recvmsg(descriptor_, &message, MSG_DONTWAIT);
+        if (count < 0) {
+            if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return std::optional<Received>{};
+            return unexpected(fault(errno, "cannot receive"));
+        }
+        if (count == 0) return unexpected(fault(ENODEV, "closed"));
+        const Beside beside = read_beside(message);
+        if (beside.dropped) dropped_ += *beside.dropped - std::exchange(dropped_raw_, *beside.dropped);
+        const auto frame = wire::from_socketcan(std::span(bytes).first(static_cast<std::size_t>(count)));
+        if (!frame) {
+            ++malformed_;
+            continue;
+        }
+        return std::optional(Received{.entry = {beside.stamp ? *beside.stamp : wall_now(), *frame},
+                                      .is_own = (message.msg_flags & MSG_CONFIRM) != 0});
+    }
+}
+
+Result<bool, SocketFault> CanSocket::send(const wire::CanFrame& frame) {
+    const wire::SocketCanBytes raw = wire::to_socketcan(frame);
+    const ssize_t count = ::send(descriptor_, raw.bytes().data(), raw.size, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (count == static_cast<ssize_t>(raw.size)) return true;
+    // ENOBUFS: the interface's queue is full, as when nobody acknowledges.
+    if (errno == EAGAIN || errno == EWOULDBLOCK || errno == ENOBUFS || errno == EINTR) return false;
+    return unexpected(fault(errno, "cannot send"));
+}
+
+SocketFault CanSocket::fault(int error_number, const std::string& doing) const {
+    return {.interface = interface_,
+            .error_number = error_number,
+            .what = doing + ": " + std::strerror(error_number) + remedy(error_number)};
+}
+
+}  // namespace octoskin::socketcan
