@@ -123,8 +123,8 @@ Result<CanSocket, SocketFault> CanSocket::open(const std::string& interface, con
     return socket;
 }
 
-CanSocket::CanSocket(std::string interface, int descriptor)
-    : interface_(std::move(interface)), descriptor_(descriptor) {
+CanSocket::CanSocket(std::string interface, int descriptor, bool hears_itself)
+    : interface_(std::move(interface)), descriptor_(descriptor), has_echo_(hears_itself) {
     if (descriptor_ >= 0) (void)::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
 }
 
@@ -137,7 +137,9 @@ CanSocket::CanSocket(CanSocket&& other) noexcept
       descriptor_(std::exchange(other.descriptor_, -1)),
       dropped_(other.dropped_),
       dropped_raw_(other.dropped_raw_),
-      malformed_(other.malformed_) {}
+      malformed_(other.malformed_),
+      has_echo_(other.has_echo_),
+      echo_(std::move(other.echo_)) {}
 
 CanSocket& CanSocket::operator=(CanSocket&& other) noexcept {
     std::swap(interface_, other.interface_);
@@ -145,41 +147,57 @@ CanSocket& CanSocket::operator=(CanSocket&& other) noexcept {
     dropped_ = other.dropped_;
     dropped_raw_ = other.dropped_raw_;
     malformed_ = other.malformed_;
+    has_echo_ = other.has_echo_;
+    echo_ = std::move(other.echo_);
     return *this;
 }
 
 Result<std::optional<Received>, SocketFault> CanSocket::receive() {
-    while (true) {  // ends at the first frame; what is none was taken out of the socket
-        std::array<std::byte, CANFD_MTU + 1> bytes{};
-        alignas(cmsghdr) std::array<char, 128> control{};
-        iovec part{bytes.data(), bytes.size()};
-        msghdr message{};
-        message.msg_iov = &part;
-        message.msg_iovlen = 1;
-        message.msg_control = control.data();
-        message.msg_controllen = control.size();
-        const ssize_t count = ::recvmsg(descriptor_, &message, MSG_DONTWAIT);
-        if (count < 0) {
-            if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return std::optional<Received>{};
-            return unexpected(fault(errno, "cannot receive"));
-        }
-        if (count == 0) return unexpected(fault(ENODEV, "closed"));
-        const Beside beside = read_beside(message);
-        if (beside.dropped) dropped_ += *beside.dropped - std::exchange(dropped_raw_, *beside.dropped);
-        const auto frame = wire::from_socketcan(std::span(bytes).first(static_cast<std::size_t>(count)));
-        if (!frame) {
-            ++malformed_;
-            continue;
-        }
-        return std::optional(Received{.entry = {beside.stamp ? *beside.stamp : wall_now(), *frame},
-                                      .is_own = (message.msg_flags & MSG_CONFIRM) != 0});
+    if (!echo_.empty()) {
+        Received oldest = std::move(echo_.front());
+        echo_.pop_front();
+        return std::optional(std::move(oldest));
     }
+    while (true) {  // each round takes one datagram out of the socket
+        const std::uint64_t malformed_before = malformed_;
+        auto received = read_one();
+        if (malformed_ == malformed_before) return received;
+    }
+}
+
+Result<std::optional<Received>, SocketFault> CanSocket::read_one() {
+    std::array<std::byte, CANFD_MTU + 1> bytes{};
+    alignas(cmsghdr) std::array<char, 128> control{};
+    iovec part{bytes.data(), bytes.size()};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = control.size();
+    const ssize_t count = ::recvmsg(descriptor_, &message, MSG_DONTWAIT);
+    if (count < 0) {
+        if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return std::optional<Received>{};
+        return unexpected(fault(errno, "cannot receive"));
+    }
+    if (count == 0) return unexpected(fault(ENODEV, "closed"));
+    const Beside beside = read_beside(message);
+    if (beside.dropped) dropped_ += *beside.dropped - std::exchange(dropped_raw_, *beside.dropped);
+    const auto frame = wire::from_socketcan(std::span(bytes).first(static_cast<std::size_t>(count)));
+    if (!frame) {
+        ++malformed_;
+        return std::optional<Received>{};
+    }
+    return std::optional(Received{.entry = {beside.stamp ? *beside.stamp : wall_now(), *frame},
+                                  .is_own = (message.msg_flags & MSG_CONFIRM) != 0});
 }
 
 Result<bool, SocketFault> CanSocket::send(const wire::CanFrame& frame) {
     const wire::SocketCanBytes raw = wire::to_socketcan(frame);
     const ssize_t count = ::send(descriptor_, raw.bytes().data(), raw.size, MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (count == static_cast<ssize_t>(raw.size)) return true;
+    if (count == static_cast<ssize_t>(raw.size)) {
+        if (has_echo_) echo_.push_back({.entry = {wall_now(), frame}, .is_own = true});
+        return true;
+    }
     // ENOBUFS: the interface's queue is full, as when nobody acknowledges.
     if (errno == EAGAIN || errno == EWOULDBLOCK || errno == ENOBUFS || errno == EINTR) return false;
     return unexpected(fault(errno, "cannot send"));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,8 +52,9 @@ class CanSocket {
     [[nodiscard]] static Result<CanSocket, SocketFault> open(const std::string& interface,
                                                              const SocketOptions& options = {});
     /// A descriptor that carries frames as a raw CAN socket does (one each datagram), such as one end of a
-    /// socketpair; becomes the socket's. Stamps are then the time of reading, if nobody gives a better one.
-    CanSocket(std::string interface, int descriptor);
+    /// socketpair; becomes the socket's. Stamps are then the time of reading. `hears_itself`: what was sent
+    /// comes back, stamped when it was handed over.
+    CanSocket(std::string interface, int descriptor, bool hears_itself = false);
     ~CanSocket();
     CanSocket(CanSocket&& other) noexcept;
     CanSocket& operator=(CanSocket&& other) noexcept;
@@ -71,6 +73,8 @@ class CanSocket {
     [[nodiscard]] std::uint64_t malformed() const noexcept { return malformed_; }
 
   private:
+    /// One frame out of the descriptor; empty if none is there.
+    [[nodiscard]] Result<std::optional<Received>, SocketFault> read_one();
     [[nodiscard]] SocketFault fault(int error_number, const std::string& doing) const;
 
     std::string interface_;
@@ -78,6 +82,8 @@ class CanSocket {
     std::uint64_t dropped_ = 0;
     std::uint32_t dropped_raw_ = 0;  ///< as the kernel counts, modulo 2^32
     std::uint64_t malformed_ = 0;
+    bool has_echo_ = false;      ///< nobody else gives back what was sent
+    std::deque<Received> echo_;  ///< what was sent and not yet received
 };
 
 }  // namespace octoskin::socketcan

@@ -187,6 +187,24 @@ TEST_F(CanSocketTest, stamps_with_the_time_of_reading_if_nobody_knows_better) {
     EXPECT_LT((*received)->entry.stamp.ns, before_ns + 10'000'000'000LL);
 }
 
+TEST(CanSocketEcho, gives_back_what_it_sent_before_what_came) {
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data()), 0);
+    CanSocket one("a", ends[0], true);
+    CanSocket other("b", ends[1]);
+    ASSERT_TRUE(other.send(frame_of(2, 1)).value());
+    ASSERT_TRUE(one.send(frame_of(1, 8)).value());
+    const auto first = one.receive();
+    ASSERT_TRUE(first && *first);
+    EXPECT_TRUE((*first)->is_own);
+    EXPECT_EQ((*first)->entry.frame, frame_of(1, 8));
+    const auto second = one.receive();
+    ASSERT_TRUE(second && *second);
+    EXPECT_FALSE((*second)->is_own);
+    EXPECT_EQ((*second)->entry.frame, frame_of(2, 1));
+    EXPECT_FALSE(one.receive().value());
+}
+
 TEST(CanSocketOpen, names_the_interface_and_what_to_do) {
     const auto socket = CanSocket::open("nocan9");
     ASSERT_FALSE(socket);

@@ -1,0 +1,48 @@
+// Joint states that come from this machine rather than from the bus: a node in all but the wire, whose clock
+// is the host's own. So they take the same way, and a recording's log holds them, as if a node had sent them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "common/wire/can_frame.hpp"
+#include "common/wire/messages.hpp"
+
+namespace octoskin {
+
+/// Why a sample cannot be put into frames.
+enum class LocalJointFault : std::uint8_t {
+    wrong_count,  ///< not one value for each of the rig's joints
+    not_a_number,
+    too_large,  ///< beyond the +-8.38 rad of the wire
+};
+[[nodiscard]] constexpr std::array<const char*, 3> names_of(LocalJointFault) {
+    return {"wrong_count", "not_a_number", "too_large"};
+}
+
+class LocalJoints {
+  public:
+    /// `node_id`: the rig's source of joint states; `joint_count`: as many as it sends, 1..7.
+    LocalJoints(wire::NodeId node_id, std::size_t joint_count)
+        : node_id_(node_id), joint_count_(joint_count) {}
+
+    static constexpr std::size_t kFrames = 4;
+    /// The frames of one sample, taken at `sampled` on the host's clock. Radians (metres for a prismatic
+    /// joint), in the rig's order.
+    [[nodiscard]] Result<std::array<wire::CanFrame, kFrames>, LocalJointFault> frames(
+        HostTime sampled, std::span<const double> position);
+
+    /// The answer to a SYNC that ended at `ended`.
+    [[nodiscard]] wire::CanFrame report(std::uint8_t sequence, HostTime ended) const;
+
+  private:
+    wire::NodeId node_id_;
+    std::size_t joint_count_;
+    std::uint8_t sequence_ = 0;
+};
+
+}  // namespace octoskin

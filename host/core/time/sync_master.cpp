@@ -1,0 +1,20 @@
+#include "host/core/time/sync_master.hpp"
+
+#include <utility>
+
+namespace octoskin {
+
+std::optional<wire::Sync> SyncMaster::poll(HostTime now) {
+    if (now < due_) return std::nullopt;
+    due_ = now + period_;
+    sequence_ = static_cast<std::uint8_t>((sequence_ + 1U) % wire::kSyncSequenceCount);
+    is_awaited_ = true;
+    return wire::Sync{sequence_};
+}
+
+std::optional<wire::FollowUp> SyncMaster::on_sent(std::uint8_t sequence, HostTime ended) {
+    if (sequence != sequence_ || !std::exchange(is_awaited_, false)) return std::nullopt;
+    return wire::FollowUp{sequence, static_cast<std::uint64_t>(ended.ns / 1000)};
+}
+
+}  // namespace octoskin

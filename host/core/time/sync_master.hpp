@@ -1,0 +1,33 @@
+// The host's half of the two-step synchronisation: when SYNC goes out, and the FOLLOW_UP that tells when it
+// was on the bus. The nodes' answers come back through SyncExchange, as everybody's do.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/time.hpp"
+#include "common/wire/messages.hpp"
+
+namespace octoskin {
+
+class SyncMaster {
+  public:
+    explicit SyncMaster(Nanoseconds period = Nanoseconds{1'000'000'000}) : period_(period) {}
+
+    /// The SYNC to send now, if one is due. One that could not be sent is not made up for.
+    [[nodiscard]] std::optional<wire::Sync> poll(HostTime now);
+    /// Our SYNC of this number was on the bus, its end at `ended`: the FOLLOW_UP to send. Empty for any but
+    /// the newest, and for the second time: which of two was meant cannot be told.
+    [[nodiscard]] std::optional<wire::FollowUp> on_sent(std::uint8_t sequence, HostTime ended);
+
+    /// When `poll` is next worth a call.
+    [[nodiscard]] HostTime due() const noexcept { return due_; }
+
+  private:
+    Nanoseconds period_;
+    HostTime due_{};
+    std::uint8_t sequence_ = wire::kSyncSequenceCount - 1;
+    bool is_awaited_ = false;
+};
+
+}  // namespace octoskin
