@@ -80,6 +80,7 @@ void Node::create_sensors(NodeTime now) {
 
 void Node::poll(NodeTime now) {
     supervise_can(now);
+    count_given_up();
     advance_buses(now);
     collect_readings(now);
     note_health_changes(now);
@@ -189,6 +190,7 @@ NodeCounts Node::counts() const noexcept {
     NodeCounts counts{.displaced = queue_.losses().displaced,
                       .late = queue_.losses().late,
                       .given_up = given_up_,
+                      .others_given_up = others_given_up_,
                       .bus_off = bus_off_.count(),
                       .accepted = accepted_,
                       .frames_sent = frames_sent_,

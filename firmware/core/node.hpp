@@ -36,11 +36,12 @@ struct NodeCounts {
     std::uint32_t sensor_restarts = 0;
     std::uint32_t displaced = 0;  ///< readings displaced by a newer one of the same sensor before being sent
     std::uint32_t late = 0;       ///< readings that waited too long to be sent
-    std::uint32_t given_up = 0;   ///< frames that the controller held when it went bus-off
-    std::uint32_t bus_off = 0;    ///< times that the controller went bus-off
-    std::uint32_t accepted = 0;   ///< readings: sent, displaced, late, or still waiting
-    std::uint32_t frames_sent = 0;
-    std::uint32_t rx_rejected = 0;  ///< frames for us that failed a check, and commands that were refused
+    std::uint32_t given_up = 0;   ///< readings in frames that the controller took and could not send
+    std::uint32_t others_given_up = 0;  ///< such frames without a reading
+    std::uint32_t bus_off = 0;          ///< times that the controller went bus-off
+    std::uint32_t accepted = 0;         ///< readings: sent, displaced, late, given up, or still waiting
+    std::uint32_t frames_sent = 0;      ///< handed to the controller
+    std::uint32_t rx_rejected = 0;      ///< frames for us that failed a check, and commands that were refused
 };
 
 /// `config` that is not valid, or for another type of board: the node does not range, and its heartbeat says
@@ -67,8 +68,8 @@ class Node {
 
     /// Readings that wait to be sent.
     [[nodiscard]] std::size_t waiting() const noexcept { return queue_.waiting(); }
-    /// Readings handed to the controller.
-    [[nodiscard]] std::uint32_t readings_sent() const noexcept { return queue_.total_sent(); }
+    /// Readings handed to the controller and not given up by it since.
+    [[nodiscard]] std::uint32_t readings_sent() const noexcept { return queue_.total_sent() - given_up_; }
 
     /// Times that the CAN controller went bus-off.
     [[nodiscard]] std::uint32_t bus_off_count() const noexcept { return bus_off_.count(); }
@@ -133,6 +134,7 @@ class Node {
     [[nodiscard]] static std::uint64_t mask_of(const Selection& selection) noexcept;
 
     // --- frames out (node_transmit.cpp)
+    void count_given_up();
     void transmit(NodeTime now);
     [[nodiscard]] bool send_most_urgent(NodeTime now);
     [[nodiscard]] bool send(const wire::Message& message);
@@ -176,6 +178,7 @@ class Node {
     bool has_unsent_ = false;
     std::uint32_t frames_sent_ = 0;
     std::uint32_t given_up_ = 0;
+    std::uint32_t others_given_up_ = 0;
     std::uint32_t accepted_ = 0;
     std::uint32_t rx_rejected_ = 0;
     std::optional<wire::SyncReport> sync_report_;

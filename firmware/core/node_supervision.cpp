@@ -69,7 +69,7 @@ void Node::supervise_can(NodeTime now) {
         case BusOffRecovery::Action::none:
             break;
         case BusOffRecovery::Action::discard:
-            given_up_ += ports_.can.discard();
+            ports_.can.discard();
             break;
         case BusOffRecovery::Action::restart:
             ports_.can.restart();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <variant>
 
 #include "common/wire/codec.hpp"
 #include "firmware/core/node.hpp"
@@ -18,7 +19,26 @@ constexpr To saturated(std::uint32_t value) {
     return static_cast<To>(std::min<std::uint32_t>(value, std::numeric_limits<To>::max()));
 }
 
+std::uint32_t reading_count(const wire::CanFrame& frame) {
+    const auto decoded = wire::decode(frame);
+    if (!decoded) return 0;
+    if (const auto* several = std::get_if<wire::RangeFd>(&decoded->message)) return several->count;
+    return std::holds_alternative<wire::Range>(decoded->message) ? 1 : 0;
+}
+
 }  // namespace
+
+/// A frame counts as many as it holds readings, so that every reading accepted is accounted for; one without
+/// counts one.
+void Node::count_given_up() {
+    for (int i = 0; i < kFramesPerPoll; ++i) {
+        const auto frame = ports_.can.take_given_up();
+        if (!frame) return;
+        const std::uint32_t readings = reading_count(*frame);
+        given_up_ += readings;
+        if (readings == 0) ++others_given_up_;
+    }
+}
 
 void Node::transmit(NodeTime now) {
     tokens_.refill(now);
@@ -129,11 +149,11 @@ wire::NodeInfo Node::info(wire::InfoPage page) const noexcept {
                                       .reads_disagreed = saturated<std::uint16_t>(counted.reads_disagreed),
                                       .sensor_restarts = saturated<std::uint16_t>(counted.sensor_restarts)};
         case wire::InfoPage::traffic:
-            return wire::InfoTraffic{
-                .tx_dropped = saturated<std::uint16_t>(counted.displaced + counted.given_up),
-                .late_dropped = saturated<std::uint16_t>(counted.late),
-                .bus_off_count = saturated<std::uint8_t>(counted.bus_off),
-                .rx_rejected = saturated<std::uint8_t>(counted.rx_rejected)};
+            return wire::InfoTraffic{.tx_dropped = saturated<std::uint16_t>(
+                                         counted.displaced + counted.given_up + counted.others_given_up),
+                                     .late_dropped = saturated<std::uint16_t>(counted.late),
+                                     .bus_off_count = saturated<std::uint8_t>(counted.bus_off),
+                                     .rx_rejected = saturated<std::uint8_t>(counted.rx_rejected)};
         case wire::InfoPage::fault:
             return fault_to_tell();
     }

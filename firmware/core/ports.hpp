@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "common/wire/can_frame.hpp"
@@ -37,8 +38,12 @@ class CanTransmitter {
     /// As it is now: asked for once a poll, so no more than a register's read.
     [[nodiscard]] virtual CanState state() const = 0;
     /// Gives up every frame that was taken and is not sent yet, so that nothing stale goes out once the bus
-    /// is back. One that is on the wire at this moment may still end. Returns how many were given up.
-    virtual std::uint32_t discard() = 0;
+    /// is back. One that is on the wire at this moment may still end. What was given up `take_given_up`
+    /// tells.
+    virtual void discard() = 0;
+    /// A frame that was taken and is now certain never to be sent: discarded, or taken back by the port
+    /// because nobody acknowledged it in time. Each once; empty if there is none.
+    [[nodiscard]] virtual std::optional<wire::CanFrame> take_given_up() = 0;
     /// Lets a controller that is bus-off begin its way back: 128 times 11 recessive bits, after which
     /// `state` says `active`. Returns at once. For a controller that is not bus-off, or that is on its way
     /// already, it does nothing.

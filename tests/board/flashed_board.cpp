@@ -50,6 +50,9 @@ void FlashedBoard::note(const wire::CanFrame& frame, SimTime end) {
     if (!decoded) return;
     if (const auto* heartbeat = std::get_if<wire::Heartbeat>(&decoded->message))
         heartbeats_.push_back({*heartbeat, end});
+    if (const auto* info = std::get_if<wire::NodeInfo>(&decoded->message)) {
+        if (const auto* traffic = std::get_if<wire::InfoTraffic>(info)) traffic_ = *traffic;
+    }
     if (const auto* range = std::get_if<wire::Range>(&decoded->message)) note(range->reading, end);
     if (const auto* range = std::get_if<wire::RangeFd>(&decoded->message)) {
         for (std::uint8_t i = 0; i < range->count; ++i) note(range->entries.at(i).reading, end);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/wire/codec.hpp"
@@ -37,6 +38,8 @@ class FlashedBoard {
     [[nodiscard]] const std::vector<SaidHeartbeat>& heartbeats() const noexcept { return heartbeats_; }
     /// Rangings that ended since power-up.
     [[nodiscard]] std::uint32_t rangings(std::size_t sensor) const { return rangings_.at(sensor); }
+    /// As last said.
+    [[nodiscard]] const std::optional<wire::InfoTraffic>& traffic() const noexcept { return traffic_; }
     [[nodiscard]] SimTime first_range() const noexcept { return first_range_; }
     [[nodiscard]] std::string violations() const;
 
@@ -52,6 +55,7 @@ class FlashedBoard {
     std::unique_ptr<BoardOnBus> on_bus_;
     std::map<std::uint8_t, std::vector<SaidReading>> readings_;
     std::vector<SaidHeartbeat> heartbeats_;
+    std::optional<wire::InfoTraffic> traffic_;
     SimTime first_range_{};
     SimTime now_{};
 };

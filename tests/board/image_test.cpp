@@ -224,5 +224,32 @@ TEST(ImageCan, comes_back_within_a_second_after_bus_off) {
     EXPECT_EQ(flashed.violations(), "");
 }
 
+// The controller takes frames and takes them back: each reading of them is told as dropped. What the host is
+// told, as sent and as dropped, is all that the sensors measured.
+TEST(ImageCan, tells_every_reading_that_nobody_acknowledged) {
+    FlashedBoard flashed(fleet(4, DistanceMode::long_range, 20, 33));
+    flashed.run_for(2s);
+    ASSERT_TRUE(flashed.traffic());
+    EXPECT_EQ(flashed.traffic()->tx_dropped, 0);
+    const auto heard = [&] {
+        std::size_t count = 0;
+        for (std::uint8_t sensor = 0; sensor < 4; ++sensor) count += flashed.readings(sensor).size();
+        return count;
+    };
+    const std::size_t before = heard();
+    flashed.board().can().set_link(CanLink::nobody_acknowledges);
+    flashed.run_for(5s);
+    const std::size_t during = heard() - before;
+    EXPECT_LE(during, 12U) << "what had begun";
+    flashed.board().can().set_link(CanLink::good);
+    flashed.run_for(2s);
+    const std::uint32_t told = flashed.traffic()->tx_dropped + flashed.traffic()->late_dropped;
+    // 4 sensors at 30.3 Hz for 5 s, and at most 50 heartbeats, 35 pages of information and 20 of health.
+    const double readings = 4 * 5 / 0.033;
+    EXPECT_GE(told, readings - 12);
+    EXPECT_LE(told, readings + 50 + 35 + 20 + 12);
+    EXPECT_EQ(flashed.violations(), "");
+}
+
 }  // namespace
 }  // namespace octoskin::sim::stm32

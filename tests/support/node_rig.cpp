@@ -10,6 +10,8 @@ namespace {
 // Distances repeat after this many ranges: long after any reading of the earlier one is gone.
 constexpr std::uint32_t kDistances = 1'000;
 constexpr std::uint16_t kFirstDistanceMm = 200;
+constexpr std::size_t kMailboxes = 3;
+constexpr std::int64_t kTakenBackAfterUs = 20'000;
 
 node::Identity identity(wire::ResetCause cause) {
     return {.uid = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, .build_id = 0x1234ABCD, .reset_cause = cause};
@@ -77,6 +79,9 @@ void NodeRig::start_node(wire::ResetCause cause) {
 void NodeRig::reset(const Reset& reset) {
     can_.advance(present_.time);
     controller_->discard();
+    while (controller_->take_given_up()) {
+    }
+    unacknowledged_.clear();
     for (sim::SimulatedI2cBus& bus : buses_) bus.abandon();
     node_.reset();
     if (!reset.is_xshut_kept) {
@@ -107,7 +112,32 @@ void NodeRig::attach_stray_sensor(std::size_t bus, const sim::SensorFaults& faul
 }
 
 bool NodeRig::send(const wire::CanFrame& frame) {
-    return !is_transmission_blocked_ && controller_->send(frame);
+    if (!is_alone_) return !is_transmission_blocked_ && controller_->send(frame);
+    if (unacknowledged_.size() == kMailboxes) return false;
+    unacknowledged_.push_back({.frame = frame, .given = present_.time});
+    return true;
+}
+
+void NodeRig::leave_unacknowledged(bool is_alone) {
+    is_alone_ = is_alone;
+    for (const Unacknowledged& waiting : unacknowledged_) {
+        if (!controller_->send(waiting.frame)) throw std::runtime_error("the mailboxes were not empty");
+    }
+    unacknowledged_.clear();
+}
+
+void NodeRig::discard() {
+    controller_->discard();
+    for (Unacknowledged& waiting : unacknowledged_) waiting.given.us -= kTakenBackAfterUs;
+}
+
+std::optional<wire::CanFrame> NodeRig::take_given_up() {
+    if (auto given_up = controller_->take_given_up()) return given_up;
+    if (unacknowledged_.empty()) return std::nullopt;
+    const Unacknowledged oldest = unacknowledged_.front();
+    if (present_.time.us - oldest.given.us < kTakenBackAfterUs) return std::nullopt;
+    unacknowledged_.pop_front();
+    return oldest.frame;
 }
 
 void NodeRig::turn() {

@@ -79,6 +79,9 @@ class NodeRig final : private node::XshutLines,
     void send_from_host(const wire::CanFrame& frame);
     /// While blocked, the node's controller takes no frame, as if every mailbox were full.
     void block_transmission(bool is_blocked) { is_transmission_blocked_ = is_blocked; }
+    /// Nobody acknowledges: the node's controller takes what it is given, and takes each frame back after
+    /// 20 ms.
+    void leave_unacknowledged(bool is_alone);
     /// The controller starts anew, in the middle of whatever it does. Its memory is lost except `kept()`.
     void reset(const Reset& reset);
     /// Nothing happens on the node: its loop hangs.
@@ -139,7 +142,8 @@ class NodeRig final : private node::XshutLines,
     void set(bool is_on) override { lit_.push_back(is_on); }
     bool send(const wire::CanFrame& frame) override;
     [[nodiscard]] node::CanState state() const override { return controller_->state(); }
-    std::uint32_t discard() override { return controller_->discard(); }
+    void discard() override;
+    [[nodiscard]] std::optional<wire::CanFrame> take_given_up() override;
     void restart() override { controller_->restart(); }
     void feed() override { feeds_.push_back(present_.time); }
     void start_node(wire::ResetCause cause);
@@ -166,6 +170,12 @@ class NodeRig final : private node::XshutLines,
     std::vector<bool> lit_;
     std::vector<sim::SimTime> feeds_;
     bool is_transmission_blocked_ = false;
+    struct Unacknowledged {
+        wire::CanFrame frame;
+        sim::SimTime given{};
+    };
+    bool is_alone_ = false;
+    std::deque<Unacknowledged> unacknowledged_;
     std::unique_ptr<FittedSensor> stray_;
     std::uint32_t undecodable_count_ = 0;
     std::uint64_t poll_count_ = 0;

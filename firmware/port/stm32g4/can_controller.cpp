@@ -1,5 +1,7 @@
 #include "firmware/port/stm32g4/can_controller.hpp"
 
+#include <algorithm>
+
 #include "firmware/port/stm32g4/cpu.hpp"
 #include "firmware/port/stm32g4/pin.hpp"
 #include "firmware/port/stm32g4/registers/clocks_and_power.hpp"
@@ -129,11 +131,13 @@ bool CanController::send(const wire::CanFrame& frame) {
     if (!is_started_ || fdcan1.is_set("PSR.BO") || fdcan1.is_set("TXFQS.TFQF")) return false;
     const std::uint32_t index = fdcan1.get("TXFQS.TFQPI");
     if (index >= kFifoElements) return false;
+    note_ended();
+    if (places_[index].is_given_up) return false;
     const CanElement element = encode_element(frame);
     const Address address = element_address(kTransmitFifo, index);
     const std::uint32_t words = words_in_use(frame.payload_len);
     for (std::uint32_t i = 0; i < words; ++i) store(address + 4 * i, element[i]);
-    places_[index] = {.given = timer_.now(), .is_pending = true, .is_taken_back = false};
+    places_[index] = {.frame = frame, .given = timer_.now(), .is_pending = true};
     fdcan1.write("TXBAR", 1U << index);
     return true;
 }
@@ -153,16 +157,10 @@ node::CanState CanController::state() const {
 }
 
 /// Requests outlive bus-off: what is not cancelled is sent late.
-std::uint32_t CanController::discard() {
-    note_sent();
-    std::uint32_t count = 0;
-    for (Place& place : places_) {
-        if (!place.is_pending || place.is_taken_back) continue;
-        place.is_taken_back = true;
-        ++count;
-    }
-    if (is_started_) fdcan1.write("TXBCR", kAllPlaces);
-    return count;
+void CanController::discard() {
+    if (!is_started_) return;
+    note_ended();
+    for (std::uint32_t i = 0; i < kFifoElements; ++i) take_back(i);
 }
 
 /// The hardware set INIT when it went bus-off, and never clears it by itself.
@@ -170,22 +168,46 @@ void CanController::restart() {
     if (state() == node::CanState::bus_off && fdcan1.is_set("CCCR.INIT")) fdcan1.set("CCCR.INIT", 0);
 }
 
-void CanController::note_sent() {
+/// A request ends with its frame sent or taken back. One that was on the wire when it was taken back may have
+/// been sent after all: then both TXBTO and TXBCF are set. So TXBTO decides; it is read after TXBRP, or it
+/// could be of an earlier instant.
+void CanController::note_ended() {
+    const bool is_any_pending =
+        std::any_of(places_.begin(), places_.end(), [](const Place& place) { return place.is_pending; });
+    if (!is_any_pending) return;
     const std::uint32_t requests = fdcan1.get("TXBRP.TRP");
+    const std::uint32_t sent = fdcan1.get("TXBTO.TO");
     for (std::uint32_t i = 0; i < kFifoElements; ++i) {
-        if (((requests >> i) & 1U) == 0) places_[i].is_pending = false;
+        Place& place = places_[i];
+        if (!place.is_pending || ((requests >> i) & 1U) != 0) continue;
+        place.is_pending = false;
+        place.is_given_up = ((sent >> i) & 1U) == 0;
+        if (place.is_given_up) ++counts_.given_up;
     }
+}
+
+void CanController::take_back(std::uint32_t index) {
+    Place& place = places_[index];
+    if (!place.is_pending || place.is_taken_back) return;
+    place.is_taken_back = true;
+    fdcan1.write("TXBCR", 1U << index);
+}
+
+std::optional<wire::CanFrame> CanController::take_given_up() {
+    if (is_started_) note_ended();
+    for (Place& place : places_) {
+        if (!place.is_given_up) continue;
+        place.is_given_up = false;
+        return place.frame;
+    }
+    return std::nullopt;
 }
 
 void CanController::poll(NodeTime now) {
     if (!is_started_) return;
-    note_sent();
+    note_ended();
     for (std::uint32_t i = 0; i < kFifoElements; ++i) {
-        Place& place = places_[i];
-        if (!place.is_pending || place.is_taken_back || elapsed(place.given, now) < kTransmitAgeMax) continue;
-        fdcan1.write("TXBCR", 1U << i);
-        place.is_taken_back = true;
-        ++counts_.expired;
+        if (elapsed(places_[i].given, now) >= kTransmitAgeMax) take_back(i);
     }
 }
 

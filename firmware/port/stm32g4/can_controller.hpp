@@ -17,7 +17,7 @@
 namespace octoskin::stm32g4 {
 
 struct CanCounts {
-    std::uint32_t expired = 0;  ///< frames taken back because nobody acknowledged them in time
+    std::uint32_t given_up = 0;  ///< frames taken and not sent: nobody acknowledged them in time, or bus-off
     std::uint32_t received = 0;
     std::uint32_t receive_lost = 0;  ///< frames for which there was no room
 };
@@ -61,7 +61,8 @@ class CanController final : public node::CanTransmitter {
 
     /// Silent counts as passive: nobody acknowledges what is not sent.
     [[nodiscard]] node::CanState state() const override;
-    std::uint32_t discard() override;
+    void discard() override;
+    [[nodiscard]] std::optional<wire::CanFrame> take_given_up() override;
     void restart() override;
     /// Whether it ever joined the bus.
     [[nodiscard]] bool is_started() const { return is_started_; }
@@ -82,9 +83,11 @@ class CanController final : public node::CanTransmitter {
 
   private:
     struct Place {
+        wire::CanFrame frame;
         NodeTime given;
         bool is_pending = false;
         bool is_taken_back = false;
+        bool is_given_up = false;  ///< and not told yet: until then nothing else may go here
     };
 
     [[nodiscard]] bool enter(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz);
@@ -92,7 +95,8 @@ class CanController final : public node::CanTransmitter {
     void prepare(wire::NodeId node_id) const;
     void listen_to_all() const;
     [[nodiscard]] bool set_init(bool is_set) const;
-    void note_sent();
+    void note_ended();
+    void take_back(std::uint32_t index);
     void receive_all(NodeTime now);
 
     const MicrosecondTimer& timer_;

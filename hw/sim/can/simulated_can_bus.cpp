@@ -78,10 +78,16 @@ node::CanState SimulatedCanBus::Controller::state() const {
     return transmit_errors_ >= kErrorsUntilPassive ? node::CanState::passive : node::CanState::active;
 }
 
-std::uint32_t SimulatedCanBus::Controller::discard() {
-    const auto count = static_cast<std::uint32_t>(pending.size());
+void SimulatedCanBus::Controller::discard() {
+    for (const Pending& frame : pending) given_up_.push_back(frame.frame);
     pending.clear();
-    return count;
+}
+
+std::optional<wire::CanFrame> SimulatedCanBus::Controller::take_given_up() {
+    if (given_up_.empty()) return std::nullopt;
+    const wire::CanFrame oldest = given_up_.front();
+    given_up_.pop_front();
+    return oldest;
 }
 
 void SimulatedCanBus::Controller::restart() {

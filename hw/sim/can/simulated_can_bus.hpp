@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <list>
 #include <map>
@@ -92,7 +93,8 @@ class SimulatedCanBus {
             : on_frame(std::move(handler)), bus_(bus), mailbox_count_(mailbox_count) {}
         bool send(const wire::CanFrame& frame) override;
         [[nodiscard]] node::CanState state() const override;
-        std::uint32_t discard() override;
+        void discard() override;
+        [[nodiscard]] std::optional<wire::CanFrame> take_given_up() override;
         void offer(const std::optional<wire::CanFrame>& frame) override;
         [[nodiscard]] bool is_sending() const override;
         void restart() override;
@@ -112,6 +114,7 @@ class SimulatedCanBus {
 
         const SimulatedCanBus& bus_;
         std::size_t mailbox_count_;
+        std::deque<wire::CanFrame> given_up_;
         std::uint32_t transmit_errors_ = 0;
         bool is_off_ = false;
         std::optional<SimTime> back_at_;

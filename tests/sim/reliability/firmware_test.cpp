@@ -86,7 +86,8 @@ class NoLines final : public node::XshutLines {
 class NoCan final : public node::CanTransmitter {
     bool send(const wire::CanFrame&) override { return true; }
     [[nodiscard]] node::CanState state() const override { return node::CanState::active; }
-    std::uint32_t discard() override { return 0; }
+    void discard() override {}
+    std::optional<wire::CanFrame> take_given_up() override { return std::nullopt; }
     void restart() override {}
 };
 class CountingDog final : public node::Watchdog {
@@ -334,6 +335,33 @@ TEST_F(ReliabilityFirmwareTest, F8_with_a_full_transmit_queue_the_newest_reading
         expect_only_the_truth(rig_, sensor);
     }
     EXPECT_EQ(last_page<wire::InfoTraffic>(rig_)->late_dropped, counts.late);
+}
+
+// F8 as a real controller has it: it takes frames, and takes them back when nobody acknowledged.
+TEST_F(ReliabilityFirmwareTest, F8_what_nobody_acknowledges_is_counted_reading_by_reading) {
+    rig_.run_for(2 * kSecond);
+    const std::uint32_t sent_before = rig_.node().readings_sent();
+    const std::uint64_t polls_before = rig_.poll_count();
+    rig_.leave_unacknowledged(true);
+    rig_.run_for(10 * kSecond);
+    const auto counts = rig_.node().counts();
+    // Three frames of at most four readings go into the controller every 20 ms: most readings go that way.
+    EXPECT_GE(counts.given_up, 300U);
+    EXPECT_GE(counts.others_given_up, 50U);
+    EXPECT_LE(rig_.node().readings_sent() - sent_before, 12U) << "what the controller holds now";
+    expect_readings_accounted_for(rig_.node());
+    EXPECT_LE(rig_.poll_count() - polls_before, 40'000U);
+
+    rig_.leave_unacknowledged(false);
+    rig_.run_for(2 * kSecond);
+    expect_readings_accounted_for(rig_.node());
+    const auto after = rig_.node().counts();
+    EXPECT_EQ(last_page<wire::InfoTraffic>(rig_)->tx_dropped,
+              after.displaced + after.given_up + after.others_given_up);
+    std::size_t heard = 0;
+    for (std::uint8_t sensor = 0; sensor < 4; ++sensor) heard += rig_.readings_of(sensor).size();
+    EXPECT_NEAR(static_cast<double>(heard), static_cast<double>(rig_.node().readings_sent()), 12.0)
+        << "sent is what was heard, but for what is on its way";
 }
 
 // Found by the campaign: what is due and cannot be sent is looked at once a millisecond, not all the time.

@@ -192,7 +192,8 @@ class NoLines final : public node::XshutLines {
 class NoCan final : public node::CanTransmitter {
     bool send(const wire::CanFrame&) override { return true; }
     [[nodiscard]] node::CanState state() const override { return node::CanState::active; }
-    std::uint32_t discard() override { return 0; }
+    void discard() override {}
+    std::optional<wire::CanFrame> take_given_up() override { return std::nullopt; }
     void restart() override {}
 };
 

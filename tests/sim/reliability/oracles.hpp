@@ -60,7 +60,8 @@ inline void expect_only_the_truth(NodeRig& rig, std::uint8_t sensor) {
 /// P2: every reading accepted was sent, lost for a reason that was counted, or waits.
 inline void expect_readings_accounted_for(const node::Node& node) {
     const node::NodeCounts counts = node.counts();
-    EXPECT_EQ(counts.accepted, node.readings_sent() + counts.displaced + counts.late + node.waiting());
+    EXPECT_EQ(counts.accepted,
+              node.readings_sent() + counts.displaced + counts.late + counts.given_up + node.waiting());
 }
 
 /// The newest page of NODE_INFO of this kind.

@@ -11,10 +11,10 @@ namespace octoskin::stm32g4 {
 struct FdcanMap {
     static constexpr auto kInstances = std::to_array<Instance>({{"FDCAN1", 0x4000'6400}});
     static constexpr auto kRegisters = std::to_array<RegisterEntry>({
-        {"DBTP", 0x00C},  {"CCCR", 0x018},  {"NBTP", 0x01C},   {"PSR", 0x044},   {"TDCR", 0x048},
-        {"IR", 0x050},    {"IE", 0x054},    {"ILS", 0x058},    {"ILE", 0x05C},   {"RXGFC", 0x080},
-        {"RXF0S", 0x090}, {"RXF0A", 0x094}, {"TXBC", 0x0C0},   {"TXFQS", 0x0C4}, {"TXBRP", 0x0C8},
-        {"TXBAR", 0x0CC}, {"TXBCR", 0x0D0}, {"TXBTIE", 0x0DC}, {"CKDIV", 0x100},
+        {"DBTP", 0x00C},  {"CCCR", 0x018},  {"NBTP", 0x01C},  {"PSR", 0x044},    {"TDCR", 0x048},
+        {"IR", 0x050},    {"IE", 0x054},    {"ILS", 0x058},   {"ILE", 0x05C},    {"RXGFC", 0x080},
+        {"RXF0S", 0x090}, {"RXF0A", 0x094}, {"TXBC", 0x0C0},  {"TXFQS", 0x0C4},  {"TXBRP", 0x0C8},
+        {"TXBAR", 0x0CC}, {"TXBCR", 0x0D0}, {"TXBTO", 0x0D4}, {"TXBTIE", 0x0DC}, {"CKDIV", 0x100},
     });
     static constexpr auto kFields = std::to_array<FieldEntry>({
         {"DBTP.DSJW", 0, 4},  {"DBTP.DTSEG2", 4, 4}, {"DBTP.DTSEG1", 8, 5}, {"DBTP.DBRP", 16, 5},
@@ -27,7 +27,7 @@ struct FdcanMap {
         {"RXGFC.RRFE", 0},    {"RXGFC.ANFE", 2, 2},  {"RXGFC.ANFS", 4, 2},  {"RXGFC.LSS", 16, 5},
         {"RXF0S.F0FL", 0, 4}, {"RXF0S.F0GI", 8, 2},  {"RXF0A.F0AI", 0, 3},  {"TXFQS.TFQPI", 16, 2},
         {"TXFQS.TFQF", 21},   {"TXBRP.TRP", 0, 3},   {"TXBAR.AR", 0, 3},    {"TXBCR.CR", 0, 3},
-        {"TXBTIE.TIE", 0, 3}, {"CKDIV.PDIV", 0, 4},
+        {"TXBTO.TO", 0, 3},   {"TXBTIE.TIE", 0, 3},  {"CKDIV.PDIV", 0, 4},
     });
 };
 inline constexpr Peripheral<FdcanMap> fdcan1{"FDCAN1"};

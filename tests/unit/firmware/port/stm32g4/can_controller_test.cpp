@@ -25,6 +25,7 @@ constexpr Address kTxfqs = kBase + 0xC4;
 constexpr Address kTxbrp = kBase + 0xC8;
 constexpr Address kTxbar = kBase + 0xCC;
 constexpr Address kTxbcr = kBase + 0xD0;
+constexpr Address kTxbto = kBase + 0xD4;
 constexpr std::uint32_t kBusOff = 1U << 7U;
 constexpr std::uint32_t kPassive = 1U << 5U;
 
@@ -35,6 +36,7 @@ class CanControllerTest : public ::testing::Test {
         space_[kCccr] = 1;
         space_.on_write(kTxbar, [this](std::uint32_t&, std::uint32_t request) {
             space_[kTxbrp] |= request;
+            space_[kTxbto] &= ~request;
             put_ = (put_ + 1) % 3;
             update_queue();
         });
@@ -54,8 +56,13 @@ class CanControllerTest : public ::testing::Test {
         space_[kTxfqs] = (put_ << 16U) | (is_full ? 1U << 21U : 0);
     }
     void update_fifo() { space_[kRxf0s] = received_ | (received_get_ << 8U); }
-    /// The bus takes the frame at this place, or the hardware confirms that it was cancelled.
-    void end(std::uint32_t place) {
+    /// The bus took the frame at this place.
+    void end_sent(std::uint32_t place) {
+        space_[kTxbto] |= 1U << place;
+        end_cancelled(place);
+    }
+    /// The hardware confirms that it was cancelled.
+    void end_cancelled(std::uint32_t place) {
         space_[kTxbrp] &= ~(1U << place);
         update_queue();
     }
@@ -122,7 +129,8 @@ TEST_F(CanControllerTest, stays_silent_without_a_clock_or_a_rate) {
     EXPECT_FALSE(can_.send(frame(0x145, 1)));
     EXPECT_EQ(can_.state(), node::CanState::passive);
     can_.restart();
-    EXPECT_EQ(can_.discard(), 0U);
+    can_.discard();
+    EXPECT_FALSE(can_.take_given_up());
     can_.poll(NodeTime{1'000'000});
     EXPECT_TRUE(space_.writes().empty());
 }
@@ -143,7 +151,7 @@ TEST_F(CanControllerTest, sends_three_frames_in_order_and_refuses_the_fourth) {
         EXPECT_EQ(space_[0x4000'A678 + 72 * i], 0x145U << 18U);
         EXPECT_EQ(space_[0x4000'A678 + 72 * i + 8], i);
     }
-    end(0);
+    end_sent(0);
     EXPECT_TRUE(can_.send(frame(0x145, 3)));
     EXPECT_EQ(space_[0x4000'A678 + 8], 3U);
 }
@@ -168,7 +176,11 @@ TEST_F(CanControllerTest, takes_back_what_nobody_acknowledged) {
     can_.poll(NodeTime{first_expires.us});
     can_.poll(NodeTime{first_expires.us + 10});
     EXPECT_EQ(space_.written_to(kTxbcr), std::vector<std::uint32_t>{1}) << "once, and only that one";
-    EXPECT_EQ(can_.counts().expired, 1U);
+    EXPECT_FALSE(can_.take_given_up()) << "it may still go out";
+    end_cancelled(0);
+    EXPECT_EQ(can_.take_given_up(), frame(0x145, 1));
+    EXPECT_FALSE(can_.take_given_up()) << "told once";
+    EXPECT_EQ(can_.counts().given_up, 1U);
     can_.poll(NodeTime{30'000});
     EXPECT_EQ(space_.written_to(kTxbcr), (std::vector<std::uint32_t>{1, 2}));
     EXPECT_FALSE(can_.wake_time());
@@ -177,10 +189,66 @@ TEST_F(CanControllerTest, takes_back_what_nobody_acknowledged) {
 TEST_F(CanControllerTest, does_not_take_back_what_was_sent) {
     ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     ASSERT_TRUE(can_.send(frame(0x145, 1)));
-    end(0);
+    end_sent(0);
     can_.poll(NodeTime{100'000});
     EXPECT_TRUE(space_.written_to(kTxbcr).empty());
-    EXPECT_EQ(can_.counts().expired, 0U);
+    EXPECT_FALSE(can_.take_given_up());
+    EXPECT_EQ(can_.counts().given_up, 0U);
+}
+
+// It was on the wire when it was taken back, and ended well: TXBTO and TXBCF are both set.
+TEST_F(CanControllerTest, believes_the_hardware_that_a_frame_taken_back_was_sent_after_all) {
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
+    ASSERT_TRUE(can_.send(frame(0x145, 1)));
+    can_.poll(NodeTime{100'000});
+    ASSERT_EQ(space_[kTxbcr], 1U);
+    end_sent(0);
+    EXPECT_FALSE(can_.take_given_up());
+    EXPECT_EQ(can_.counts().given_up, 0U);
+}
+
+TEST_F(CanControllerTest, keeps_a_place_until_its_frames_end_was_told) {
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
+    for (std::uint8_t i = 0; i < 3; ++i) ASSERT_TRUE(can_.send(frame(0x145, i)));
+    can_.poll(NodeTime{100'000});
+    for (std::uint32_t place = 0; place < 3; ++place) end_cancelled(place);
+    EXPECT_FALSE(can_.send(frame(0x145, 3))) << "nobody knows yet that frame 0 is lost";
+    for (std::uint8_t i = 0; i < 3; ++i) EXPECT_EQ(can_.take_given_up(), frame(0x145, i));
+    EXPECT_TRUE(can_.send(frame(0x145, 3)));
+    EXPECT_FALSE(can_.take_given_up());
+}
+
+// Every way a frame can end, for each of the three places, in every order of sending and cancelling.
+TEST_F(CanControllerTest, tells_of_each_frame_given_up_exactly_once) {
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
+    std::uint32_t given = 0;
+    std::uint32_t lost = 0;
+    std::uint32_t told = 0;
+    for (std::uint32_t pattern = 0; pattern < 512; ++pattern) {
+        while (can_.send(frame(0x145, static_cast<std::uint8_t>(pattern)))) ++given;
+        if ((pattern & 64U) != 0) can_.poll(NodeTime{space_.time_us() + 100'000});
+        if ((pattern & 128U) != 0) can_.discard();
+        for (std::uint32_t place = 0; place < 3; ++place) {
+            const bool is_pending = (space_[kTxbrp] >> place & 1U) != 0;
+            const std::uint32_t fate = pattern >> (2 * place) & 3U;
+            if (!is_pending || fate == 0) continue;
+            if (fate == 1) {
+                end_sent(place);
+            } else if ((space_[kTxbcr] >> place & 1U) != 0) {
+                end_cancelled(place);
+                ++lost;
+            }
+            space_[kTxbcr] &= ~(1U << place);
+        }
+        if ((pattern & 256U) != 0) {
+            while (can_.take_given_up()) ++told;
+        }
+    }
+    while (can_.take_given_up()) ++told;
+    EXPECT_GT(given, 300U);
+    EXPECT_GT(lost, 50U);
+    EXPECT_EQ(told, lost);
+    EXPECT_EQ(can_.counts().given_up, lost);
 }
 
 TEST_F(CanControllerTest, receives_with_the_time_of_the_interrupt) {
@@ -241,9 +309,14 @@ TEST_F(CanControllerTest, comes_back_from_bus_off_when_told_and_sends_nothing_ol
     ASSERT_TRUE(can_.send(frame(0x145, 2)));
     space_[kPsr] = kBusOff;
     space_[kCccr] |= 1;  // the hardware does both
-    EXPECT_EQ(can_.discard(), 2U);
-    EXPECT_EQ(space_[kTxbcr], 7U);
-    EXPECT_EQ(can_.discard(), 0U) << "each frame is given up once";
+    can_.discard();
+    EXPECT_EQ(space_[kTxbcr], 3U);
+    end_cancelled(0);
+    end_cancelled(1);
+    EXPECT_EQ(can_.take_given_up(), frame(0x145, 1));
+    EXPECT_EQ(can_.take_given_up(), frame(0x145, 2));
+    can_.discard();
+    EXPECT_FALSE(can_.take_given_up()) << "each frame is given up once";
     space_.forget_writes();
     can_.restart();
     EXPECT_EQ(space_[kCccr] & 1U, 0U);
