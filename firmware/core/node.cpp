@@ -201,6 +201,7 @@ NodeCounts Node::counts() const noexcept {
         counts.rejected += own.rejected;
         counts.reads_disagreed += own.reads_disagreed;
         counts.undated += own.undated;
+        counts.withheld += own.withheld;
         counts.suspect += own.suspect;
         counts.sensor_restarts += own.restarts;
     }

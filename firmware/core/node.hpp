@@ -32,7 +32,8 @@ struct NodeCounts {
     std::uint32_t rejected = 0;         ///< results that did not become readings
     std::uint32_t reads_disagreed = 0;  ///< of these: never read twice alike
     std::uint32_t undated = 0;          ///< of these: time or zone not known well enough
-    std::uint32_t suspect = 0;  ///< readings sent while a register that steers the range may have been wrong
+    std::uint32_t withheld = 0;  ///< of these: a register that decides the range will not take its value
+    std::uint32_t suspect = 0;   ///< readings sent while a register may have been wrong
     std::uint32_t sensor_restarts = 0;
     std::uint32_t displaced = 0;  ///< readings displaced by a newer one of the same sensor before being sent
     std::uint32_t late = 0;       ///< readings that waited too long to be sent

@@ -182,7 +182,7 @@ std::optional<wire::InfoFault> Node::present_fault() const noexcept {
         return wire::InfoFault{.kind = wire::FaultKind::stray_sensor, .count = count, .where = bus};
     }
     for (std::uint8_t i = 0; i < sensor_count_; ++i) {
-        const auto& fixed = sensors_[i]->read_back().last_exempt();
+        const auto& fixed = sensors_[i]->read_back().fixed_register();
         if (!fixed) continue;
         const std::uint32_t where =
             std::uint32_t{i} << 24U | std::uint32_t{fixed->index} << 8U | fixed->found;

@@ -149,11 +149,16 @@ void Sensor::range_or_rest(NodeTime now) {
 }
 
 BusUse Sensor::advance_ranging(NodeTime now) {
+    const bool are_readings_withheld = device_.read_back().is_distrusted();
     const Ranging::Result result = ranging_.advance(now);
     switch (result.event) {
         case Ranging::Event::none:
             break;
         case Ranging::Event::reading:
+            if (are_readings_withheld) {
+                on_withheld();
+                break;
+            }
             reading_ = ranging_.reading();
             on_reading();
             break;
@@ -169,7 +174,7 @@ BusUse Sensor::advance_ranging(NodeTime now) {
             range_or_rest(now);
             break;
         case Ranging::Event::failed:
-            counts_.suspect += ranging_.suspect_readings();
+            if (!are_readings_withheld) counts_.suspect += ranging_.suspect_readings();
             on_failure(ranging_.fault(), ranging_.can_restart(), now);
             break;
     }
@@ -178,7 +183,7 @@ BusUse Sensor::advance_ranging(NodeTime now) {
 
 void Sensor::on_reading() {
     is_settled_ = true;
-    if (device_.read_back().is_steering_exempt()) ++counts_.suspect;
+    if (device_.read_back().exempt_count() > 0) ++counts_.suspect;
     if (ranging_.is_proven()) {
         refused_in_row_ = 0;
         recovery_.on_proven_reading();
@@ -193,6 +198,16 @@ void Sensor::on_refused() {
     if (fault_ == SensorFault::reads_disagree) ++counts_.reads_disagreed;
     if (refused_in_row_ < policy_.rejections_until_degraded) ++refused_in_row_;
     if (refused_in_row_ == policy_.rejections_until_degraded) state_ = SensorState::degraded;
+}
+
+/// It ranges, but looks elsewhere or means another distance than configured. That it ranges proves nothing:
+/// after the next failure it is left alone for longer.
+void Sensor::on_withheld() {
+    is_settled_ = true;
+    fault_ = SensorFault::config_mismatch;
+    state_ = SensorState::degraded;
+    ++counts_.rejected;
+    ++counts_.withheld;
 }
 
 void Sensor::on_failure(wire::SensorFault fault, bool can_restart, NodeTime now) {
@@ -226,7 +241,8 @@ void Sensor::recover(NodeTime now) {
 
 bool Sensor::is_degraded() const noexcept {
     if (!is_ordered_to_range_ || !is_settled_) return false;
-    if (device_.read_back().exempt_count() > 0) return true;
+    const vl53l1x::ReadBack& read_back = device_.read_back();
+    if (read_back.exempt_count() > 0 || read_back.is_distrusted()) return true;
     return state_ != SensorState::ranging && state_ != SensorState::stopped;
 }
 

@@ -32,7 +32,8 @@ struct SensorCounts {
     std::uint32_t rejected = 0;         ///< results that did not become readings, for whatever reason
     std::uint32_t reads_disagreed = 0;  ///< of these: never read twice alike
     std::uint32_t undated = 0;          ///< of these: time or zone not known well enough
-    std::uint32_t suspect = 0;   ///< readings sent while a register that steers the range may have been wrong
+    std::uint32_t withheld = 0;  ///< of these: a register that decides the range will not take its value
+    std::uint32_t suspect = 0;   ///< readings sent while a register may have been wrong
     std::uint32_t restarts = 0;  ///< attempts to bring it back
 };
 
@@ -70,8 +71,8 @@ class Sensor {
     // --- health
     [[nodiscard]] wire::SensorState state() const noexcept { return state_; }
     [[nodiscard]] wire::SensorFault fault() const noexcept { return fault_; }
-    /// Not ranging as configured, though it should, and not for being still in its first bring-up. A register
-    /// that will not take its value makes it so for good.
+    /// Not ranging as configured, though it should, and not for being still in its first bring-up. Also while
+    /// a register will not take its value.
     [[nodiscard]] bool is_degraded() const noexcept;
     /// Has ended its first bring-up, well or badly.
     [[nodiscard]] bool is_settled() const noexcept { return is_settled_; }
@@ -94,6 +95,7 @@ class Sensor {
     void range_or_rest(NodeTime now);
     void on_reading();
     void on_refused();
+    void on_withheld();
     void on_failure(wire::SensorFault fault, bool can_restart, NodeTime now);
     void recover(NodeTime now);
     [[nodiscard]] bool is_reinitialisation_due() const noexcept;

@@ -13,7 +13,6 @@ constexpr std::size_t total(std::size_t runs) noexcept {
 static_assert(total(kRegisterRuns.size()) == kRegistersReadBack);
 static_assert(std::all_of(kRegisterRuns.begin(), kRegisterRuns.end(),
                           [](const RegisterRun& run) { return run.count <= kRunBytesMax; }));
-constexpr std::size_t kSteeringRegisters = total(kSteeringGroups);
 
 /// Where a register stands in the arrays; empty if it is not read back.
 std::optional<std::size_t> slot_of(reg::Index index) noexcept {
@@ -64,12 +63,14 @@ bool ReadBack::record(const RegisterRun& run, std::span<const std::uint8_t> byte
         const auto slot = slot_of(index);
         if (is_exempt_[*slot] || !differs(*slot, index, bytes[i])) continue;
         last_ = {.index = index, .expected = expected_[*slot], .found = bytes[i]};
-        if (is_third_sighting(*last_) && is_exempt_.count() < kExemptMax) {
+        const bool is_fixed = is_third_sighting(*last_);
+        if (is_fixed && !decides_range(index) && is_exempt_.count() < kExemptMax) {
             is_exempt_.set(*slot);
             last_exempt_ = last_;
-        } else {
-            counts = true;
+            continue;
         }
+        if (is_fixed && decides_range(index)) distrusted_ = last_;
+        counts = true;
     }
     return counts;
 }
@@ -88,7 +89,7 @@ bool ReadBack::is_third_sighting(const RegisterDifference& difference) noexcept 
     const bool is_the_same = place->count != 0 && place->difference == difference;
     *place = {.difference = difference,
               .count = is_the_same ? static_cast<std::uint8_t>(place->count + 1) : std::uint8_t{1}};
-    if (place->count < kSightingsUntilExempt) return false;
+    if (place->count < kSightingsUntilFixed) return false;
     *place = {};
     return true;
 }
@@ -97,14 +98,7 @@ void ReadBack::on_clean_check() noexcept {
     if (++clean_checks_ < kCleanChecksUntilForgotten) return;
     clean_checks_ = 0;
     sightings_.fill({});
-}
-
-bool ReadBack::is_steering_exempt() const noexcept {
-    // The steering runs come first.
-    for (std::size_t slot = 0; slot < kSteeringRegisters; ++slot) {
-        if (is_exempt_[slot]) return true;
-    }
-    return false;
+    distrusted_.reset();
 }
 
 }  // namespace octoskin::vl53l1x

@@ -56,6 +56,20 @@ inline constexpr std::size_t kRegistersReadBack = 103;
     }
 }
 
+/// Whether a register decides where or when the sensor looks, or what its range means: a reading under a
+/// wrong one is a wrong range. The steering groups; the crosstalk, which is taken from the range; and what of
+/// the distance mode and the choice of SPADs lies outside the groups.
+[[nodiscard]] constexpr bool decides_range(reg::Index index) noexcept {
+    for (std::size_t group = 0; group < kSteeringGroups; ++group) {
+        const RegisterRun& run = kRegisterRuns[group];
+        if (index >= run.first && index < run.first + run.count) return true;
+    }
+    const bool is_crosstalk = index >= reg::ALGO_CROSSTALK_COMPENSATION_PLANE_OFFSET_KCPS &&
+                              index <= reg::ALGO_CROSSTALK_COMPENSATION_Y_PLANE_GRADIENT_KCPS + 1;
+    return is_crosstalk || index == reg::PHASECAL_CONFIG_TIMEOUT_MACROP ||
+           index == reg::DSS_CONFIG_ROI_MODE_CONTROL;
+}
+
 struct RegisterDifference {
     reg::Index index = 0;
     std::uint8_t expected = 0;
@@ -64,13 +78,15 @@ struct RegisterDifference {
 };
 
 /// Every difference has the sensor initialised again. One that is there again, the same, after two such
-/// attempts is how this part is: the register counts no more, and is named. At most `kExemptMax` registers of
-/// a part: one that would need more is broken.
+/// attempts is how this part is, and is named. If the register decides the range, the part is *distrusted*:
+/// each difference goes on counting, and no reading of it may be used until it has been right for long. Any
+/// other register counts no more: at most `kExemptMax` of a part, for one that would need more is broken.
 class ReadBack {
   public:
-    static constexpr std::uint8_t kSightingsUntilExempt = 3;
+    static constexpr std::uint8_t kSightingsUntilFixed = 3;
     static constexpr std::uint8_t kExemptMax = 8;
-    /// So many checks of the steering registers without any difference: those seen before were accidents.
+    /// So many checks of the steering registers without any difference, and those seen before were accidents:
+    /// the part is trusted again.
     static constexpr std::uint8_t kCleanChecksUntilForgotten = 100;
 
     /// The sensor starts afresh: nothing is known of its registers. Differences seen are remembered.
@@ -93,12 +109,13 @@ class ReadBack {
     [[nodiscard]] std::uint8_t exempt_count() const noexcept {
         return static_cast<std::uint8_t>(is_exempt_.count());
     }
-    /// The register that was exempted last.
-    [[nodiscard]] const std::optional<RegisterDifference>& last_exempt() const noexcept {
-        return last_exempt_;
+    /// A register that decides the range would not take its value.
+    [[nodiscard]] bool is_distrusted() const noexcept { return distrusted_.has_value(); }
+    /// A register that will not take its value: the one that the part is distrusted for, else the one that
+    /// was exempted last.
+    [[nodiscard]] const std::optional<RegisterDifference>& fixed_register() const noexcept {
+        return distrusted_ ? distrusted_ : last_exempt_;
     }
-    /// One of them scales, steers or times the range: no reading can be trusted fully.
-    [[nodiscard]] bool is_steering_exempt() const noexcept;
 
   private:
     struct Sighting {
@@ -116,6 +133,7 @@ class ReadBack {
     std::uint8_t clean_checks_ = 0;
     std::optional<RegisterDifference> last_;
     std::optional<RegisterDifference> last_exempt_;
+    std::optional<RegisterDifference> distrusted_;
 };
 
 }  // namespace octoskin::vl53l1x

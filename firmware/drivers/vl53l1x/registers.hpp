@@ -27,6 +27,7 @@ inline constexpr Index GPIO_HV_MUX_CTRL = 0x0030;
 inline constexpr Index GPIO_TIO_HV_STATUS = 0x0031;
 inline constexpr Index SYSTEM_INTERRUPT_CONFIG_GPIO = 0x0046;
 inline constexpr Index PHASECAL_CONFIG_TIMEOUT_MACROP = 0x004B;
+inline constexpr Index DSS_CONFIG_ROI_MODE_CONTROL = 0x004F;
 inline constexpr Index RANGE_CONFIG_TIMEOUT_MACROP_A = 0x005E;
 inline constexpr Index RANGE_CONFIG_VCSEL_PERIOD_A = 0x0060;
 inline constexpr Index RANGE_CONFIG_TIMEOUT_MACROP_B = 0x0061;

@@ -34,6 +34,13 @@ ReadingReason reason_of(SequenceFault fault) {
     return ReadingReason::out_of_window;
 }
 
+/// By its node's last word. A node sends no readings of such a sensor; one that does, or one that comes
+/// before the word that all is well again, has no right to the map.
+bool is_misconfigured(const SensorRecord& record) {
+    return record.health && record.health->state == wire::SensorState::degraded &&
+           record.health->fault == wire::SensorFault::config_mismatch;
+}
+
 }  // namespace
 
 RangeGate::RangeGate(const HostRig& rig, bool uses_no_return)
@@ -97,6 +104,9 @@ Result<RangeMeasurement, ReadingReason> RangeGate::check(wire::NodeId node, cons
         return unexpected(*fault);
     }
     ++sensor.record.device_status[reading.device_status];
+    if (is_misconfigured(sensor.record)) {
+        return unexpected(ReadingReason::sensor_misconfigured);
+    }
     const RangeUse use = range_status(reading.device_status).use;
     if (use == RangeUse::nothing) {
         return unexpected(ReadingReason::status_fault);

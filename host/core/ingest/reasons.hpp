@@ -69,10 +69,11 @@ enum class ReadingReason : std::uint8_t {
     too_young,      ///< arrived before its ranging window can have ended
     too_old,        ///< arrived later than budget / 2 + 100 ms after its capture
     // What it says.
-    no_return,        ///< no target, and the map leaves such beams alone
-    status_fault,     ///< any status but "valid" and "no target"
-    zone_unknown,     ///< the node does not know which zone was in force
-    zone_not_in_rig,  ///< a zone that the sensor does not have
+    sensor_misconfigured,  ///< its node says that the sensor's registers are not as configured
+    no_return,             ///< no target, and the map leaves such beams alone
+    status_fault,          ///< any status but "valid" and "no target"
+    zone_unknown,          ///< the node does not know which zone was in force
+    zone_not_in_rig,       ///< a zone that the sensor does not have
     not_finite,
     below_range_min,
     above_range_max,
@@ -86,7 +87,7 @@ enum class ReadingReason : std::uint8_t {
     beam_not_valid,  ///< a pose or range that is no number
     outside_map,     ///< beyond the octree
 };
-[[nodiscard]] constexpr std::array<const char*, 34> names_of(ReadingReason) {
+[[nodiscard]] constexpr std::array<const char*, 35> names_of(ReadingReason) {
     return {"node_absent",
             "node_lost",
             "node_version",
@@ -106,6 +107,7 @@ enum class ReadingReason : std::uint8_t {
             "too_soon",
             "too_young",
             "too_old",
+            "sensor_misconfigured",
             "no_return",
             "status_fault",
             "zone_unknown",

@@ -126,8 +126,8 @@ TEST_F(Registers, third_time_the_same_exempts_the_register_alone) {
     EXPECT_TRUE(record_all());
     EXPECT_FALSE(record_all()) << "this part is like that";
     EXPECT_EQ(read_back_.exempt_count(), 1);
-    EXPECT_EQ(read_back_.last_exempt()->index, 0x4E);
-    EXPECT_FALSE(read_back_.is_steering_exempt());
+    EXPECT_EQ(read_back_.fixed_register()->index, 0x4E);
+    EXPECT_FALSE(read_back_.is_distrusted());
     registers_[0x4E] ^= 0x03U;
     EXPECT_FALSE(record_all()) << "it counts no more, whatever it reads";
     EXPECT_TRUE(all_agree());
@@ -146,19 +146,54 @@ TEST_F(Registers, another_value_is_another_difference) {
     }
 }
 
-TEST_F(Registers, every_register_that_steers_is_told_as_such_when_exempt) {
+// Offset; time-outs, VCSEL periods, limits, valid phase, period; windows, phases, region of interest,
+// sequence; crosstalk; the mode's phase calibration; how SPADs are chosen.
+TEST_F(Registers, one_that_decides_the_range_is_never_exempt_but_makes_the_part_distrusted) {
+    auto deciding = interval(0x1E, 0x23);
+    for (const auto& more : {interval(0x5E, 0x6F), interval(0x78, 0x85), interval(0x16, 0x1B)})
+        deciding.insert(more.begin(), more.end());
+    deciding.insert({0x4B, 0x4F});
+    for (reg::Index index = 0; index < 0x200; ++index)
+        EXPECT_EQ(decides_range(index), deciding.contains(index)) << index;
     for (const reg::Index index : registers_of(0, kRegisterRuns.size() - 1)) {
         ReadBack read_back;
         read_back.note(0, registers_);
         auto changed = registers_;
         changed[index] ^= 0x81U;
-        for (const RegisterRun& run : kRegisterRuns) {
-            for (int i = 0; i < 3; ++i)
-                static_cast<void>(read_back.record(run, std::span(changed).subspan(run.first, run.count)));
-        }
-        ASSERT_EQ(read_back.exempt_count(), 1) << index;
-        EXPECT_EQ(read_back.is_steering_exempt(), registers_of(0, 2).contains(index)) << index;
+        const auto record_all_of = [&] {
+            bool counts = false;
+            for (const RegisterRun& run : kRegisterRuns)
+                counts |= read_back.record(run, std::span(changed).subspan(run.first, run.count));
+            return counts;
+        };
+        EXPECT_TRUE(record_all_of()) << index;
+        EXPECT_TRUE(record_all_of()) << index;
+        EXPECT_FALSE(read_back.is_distrusted()) << index << ": it may have been an accident";
+        EXPECT_EQ(read_back.fixed_register(), std::nullopt) << index;
+        EXPECT_EQ(record_all_of(), deciding.contains(index)) << index;
+        EXPECT_EQ(read_back.is_distrusted(), deciding.contains(index)) << index;
+        EXPECT_EQ(read_back.exempt_count(), deciding.contains(index) ? 0 : 1) << index;
+        ASSERT_TRUE(read_back.fixed_register().has_value()) << index;
+        EXPECT_EQ(read_back.fixed_register()->index, index);
+        for (int i = 0; i < 20; ++i) EXPECT_EQ(record_all_of(), deciding.contains(index)) << index;
     }
+}
+
+TEST_F(Registers, a_distrusted_part_is_trusted_again_after_a_hundred_clean_checks_in_a_row) {
+    registers_[0x7F] ^= 0x01U;
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(record_all());
+    for (int i = 0; i < 99; ++i) read_back_.on_clean_check();
+    read_back_.forget();
+    EXPECT_TRUE(read_back_.is_distrusted());
+    read_back_.note(0, registers_);
+    registers_[0x7E] ^= 0x01U;
+    EXPECT_TRUE(record_all()) << "another one";
+    EXPECT_EQ(read_back_.fixed_register()->index, 0x7F) << "the one that was seen thrice";
+    for (int i = 0; i < 99; ++i) read_back_.on_clean_check();
+    EXPECT_TRUE(read_back_.is_distrusted());
+    read_back_.on_clean_check();
+    EXPECT_FALSE(read_back_.is_distrusted());
+    EXPECT_EQ(read_back_.fixed_register(), std::nullopt);
 }
 
 TEST_F(Registers, a_part_that_needs_more_than_eight_exempted_is_broken) {
@@ -180,7 +215,9 @@ TEST_F(Registers, accidents_are_forgotten_after_a_hundred_clean_checks_in_a_row)
     for (int i = 0; i < 10; ++i) EXPECT_TRUE(sight_then_check(100)) << i;
     EXPECT_TRUE(sight_then_check(99));
     EXPECT_TRUE(sight_then_check(99));
-    EXPECT_FALSE(sight_then_check(99)) << "99 are not enough, however often";
+    EXPECT_FALSE(read_back_.is_distrusted());
+    EXPECT_TRUE(sight_then_check(99));
+    EXPECT_TRUE(read_back_.is_distrusted()) << "99 are not enough, however often";
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/range_status.hpp"
+#include "common/wire/names.hpp"
 
 namespace octoskin {
 namespace {
@@ -110,6 +111,28 @@ TEST(RangeGate, refuses_every_distance_outside_its_limits) {
             ASSERT_EQ(outcome.error(), ReadingReason::above_range_max) << range_mm;
         } else {
             ASSERT_TRUE(outcome.has_value()) << range_mm;
+        }
+    }
+}
+
+// Exhaustive: each state and fault that SENSOR_HEALTH knows.
+TEST(RangeGate, refuses_a_sensor_whose_node_says_that_it_is_not_as_configured_and_no_other) {
+    for (const auto& state : wire::values_of(wire::SensorState{})) {
+        for (const auto& fault : wire::values_of(wire::SensorFault{})) {
+            RangeGate gate(rig(), false);
+            wire::SensorHealth told = health(0);
+            told.state = state.value;
+            told.fault = fault.value;
+            gate.on_health(kNode, told);
+            gate.on_arrival(kNode, 0);
+            const auto outcome =
+                gate.check(kNode, reading(), {kNow - Nanoseconds{20'000'000}, Nanoseconds{0}}, kNow);
+            const bool is_refused = state.value == wire::SensorState::degraded &&
+                                    fault.value == wire::SensorFault::config_mismatch;
+            EXPECT_EQ(outcome.has_value(), !is_refused) << state.name << ' ' << fault.name;
+            if (is_refused) {
+                EXPECT_EQ(outcome.error(), ReadingReason::sensor_misconfigured);
+            }
         }
     }
 }

@@ -170,6 +170,18 @@ const std::vector<ReadingCase>& cases() {
          }},
         {R::too_young, spare([](auto&) {}, 4.0, 0.004)},
         {R::too_old, spare([](auto&) {}, 4.0, 0.112)},
+        {R::sensor_misconfigured,
+         [](Scene& s) {
+             const wire::SensorHealth health{.sensor = kSpare,
+                                             .state = wire::SensorState::degraded,
+                                             .fault = wire::SensorFault::config_mismatch,
+                                             .sent = 0,
+                                             .capture_bound_64us = 3,
+                                             .rejected = 0,
+                                             .period_error_permille = 0};
+             s.bus.send(3.95, health, kLeft);
+             s.bus.range(4.0, kLeft, good_reading(kSpare));
+         }},
         {R::no_return, spare([](auto& reading) { reading.device_status = kDeviceStatusNoTarget; })},
         {R::status_fault,
          spare([](auto& reading) { reading.device_status = kDeviceStatusCompleteNoWrapCheck; })},
