@@ -12,18 +12,16 @@ BlackBox::BlackBox(BusRecorders& recorders, const Policy& policy) noexcept
     : recorders_(recorders), policy_(policy) {}
 
 void BlackBox::on_fault(std::uint8_t bus, NodeTime now) noexcept {
-    auto& last = fault_sent_[bus];
-    if (last && elapsed(*last, now) < policy_.black_box_pause) return;
-    last = now;
+    Pause& pause = fault_pauses_[bus];
+    pause.update(now);
+    if (!pause.is_over()) return;
+    pause.begin(now, policy_.black_box_pause);
     on_request(bus, now);
 }
 
 void BlackBox::on_request(std::uint8_t bus, NodeTime now) noexcept {
     if (is_pending(bus) || !recorders_[bus]) return;
-    if (pending_ == 0) {
-        index_ = 0;
-        next_ = now;
-    }
+    if (pending_ == 0) index_ = 0;
     recorders_[bus]->freeze(now);
     pending_ = static_cast<std::uint8_t>(pending_ | (1U << bus));
 }
@@ -32,8 +30,13 @@ std::uint8_t BlackBox::current() const noexcept {
     return static_cast<std::uint8_t>(std::countr_zero(pending_));
 }
 
-std::optional<wire::BlackBox> BlackBox::due(NodeTime now) noexcept {
-    if (pending_ == 0 || !is_reached(next_, now)) return std::nullopt;
+void BlackBox::update(NodeTime now) noexcept {
+    piece_pause_.update(now);
+    for (Pause& pause : fault_pauses_) pause.update(now);
+}
+
+std::optional<wire::BlackBox> BlackBox::due() const noexcept {
+    if (pending_ == 0 || !piece_pause_.is_over()) return std::nullopt;
     const BusRecorder& recorder = *recorders_[current()];
     wire::BlackBox piece{.bus = current(), .dump = dump_, .index = index_};
     const std::size_t first = std::size_t{index_} * wire::kBlackBoxBytes;
@@ -44,7 +47,7 @@ std::optional<wire::BlackBox> BlackBox::due(NodeTime now) noexcept {
 }
 
 void BlackBox::sent(NodeTime now) noexcept {
-    next_ = now + policy_.black_box_period;
+    piece_pause_.begin(now, policy_.black_box_period);
     ++index_;
     BusRecorder& recorder = *recorders_[current()];
     if (std::size_t{index_} * wire::kBlackBoxBytes < recorder.dump_size()) return;
@@ -54,8 +57,9 @@ void BlackBox::sent(NodeTime now) noexcept {
     dump_ = static_cast<std::uint8_t>((dump_ + 1U) % 4U);
 }
 
-std::optional<NodeTime> BlackBox::wake_time() const noexcept {
-    return pending_ == 0 ? std::nullopt : std::optional(next_);
+std::optional<NodeTime> BlackBox::wake_time(NodeTime now) const noexcept {
+    if (pending_ == 0) return std::nullopt;
+    return piece_pause_.end().value_or(now);
 }
 
 }  // namespace octoskin::node

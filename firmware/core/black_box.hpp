@@ -11,6 +11,7 @@
 #include "common/time.hpp"
 #include "common/wire/messages.hpp"
 #include "firmware/core/bus_recorder.hpp"
+#include "firmware/core/pause.hpp"
 #include "firmware/core/policy.hpp"
 
 namespace octoskin::node {
@@ -28,12 +29,14 @@ class BlackBox {
     /// On somebody's order, whenever it was sent last. Nothing for a bus that is not there.
     void on_request(std::uint8_t bus, NodeTime now) noexcept;
 
+    /// Notes which pauses are over. Call in every turn, before `due`.
+    void update(NodeTime now) noexcept;
     /// The piece to send now; empty while there is none, or the last one was sent too short a time ago.
-    [[nodiscard]] std::optional<wire::BlackBox> due(NodeTime now) noexcept;
+    [[nodiscard]] std::optional<wire::BlackBox> due() const noexcept;
     /// `due()` was handed to the bus.
     void sent(NodeTime now) noexcept;
     /// When `due` next has something; empty if nothing is to be sent.
-    [[nodiscard]] std::optional<NodeTime> wake_time() const noexcept;
+    [[nodiscard]] std::optional<NodeTime> wake_time(NodeTime now) const noexcept;
 
   private:
     [[nodiscard]] bool is_pending(std::uint8_t bus) const noexcept { return ((pending_ >> bus) & 1U) != 0; }
@@ -44,8 +47,8 @@ class BlackBox {
     std::uint8_t pending_ = 0;  ///< bit i: bus i is frozen, and to be sent or being sent
     std::uint16_t index_ = 0;
     std::uint8_t dump_ = 0;
-    NodeTime next_;
-    std::array<std::optional<NodeTime>, kNodeBusesMax> fault_sent_{};
+    Pause piece_pause_;
+    std::array<Pause, kNodeBusesMax> fault_pauses_{};
 };
 
 }  // namespace octoskin::node

@@ -60,7 +60,9 @@ void BusWorker::free_bus(NodeTime now) {
     // come back one after the other, and the culprit is the one whose bring-up fails.
     retry_at_ = now + (is_faulty_ ? policy_.bus_retry : policy_.bus_isolation);
     is_faulty_ = true;
-    for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) sensor->isolate();
+    owner_ = nullptr;
+    default_address_.watcher().abandon();
+    for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) sensor->isolate(now);
 }
 
 std::optional<NodeTime> BusWorker::wake_time() const {

@@ -135,6 +135,10 @@ void Node::note_health_changes(NodeTime now) {
 
 void Node::end_what_has_expired(NodeTime now) {
     count_uptime(now);
+    black_box_.update(now);
+    for (auto& reflex : reflexes_) {
+        if (reflex) reflex->update(now);
+    }
     if (last_command_ && elapsed(last_command_->received, now) >= policy_.command_repeat) {
         last_command_.reset();
     }
@@ -145,7 +149,7 @@ void Node::end_what_has_expired(NodeTime now) {
 }
 
 void Node::blink(NodeTime now) {
-    if (!identify_until_ || ports_.indicator == nullptr || !is_reached(blink_at_, now)) return;
+    if (!identify_until_ || !is_reached(blink_at_, now)) return;
     const bool is_over = is_reached(*identify_until_, now);
     is_lit_ = !is_lit_ && !is_over;
     ports_.indicator->set(is_lit_);
@@ -165,7 +169,7 @@ NodeTime Node::wake_time(NodeTime now) const {
     if (has_unsent_) {
         return later_of(earlier_of(wake, now + std::max(tokens_.wait(), kTransmitRetry)), now);
     }
-    wake = earlier(wake, black_box_.wake_time());
+    wake = earlier(wake, black_box_.wake_time(now));
     if (!own_id_heard_) wake = earlier(wake, queue_.ready_time());
     return later_of(wake, now);
 }

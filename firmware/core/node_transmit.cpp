@@ -76,7 +76,7 @@ bool Node::send_most_urgent(NodeTime now) {
     } else if (queue_.aux()) {
         if (!send(*queue_.aux())) return false;
         queue_.pop_aux();
-    } else if (const auto piece = black_box_.due(now)) {
+    } else if (const auto piece = black_box_.due()) {
         if (!send(*piece)) return false;
         black_box_.sent(now);
     } else {

@@ -245,6 +245,8 @@ Ranging::Event Ranging::fail(SensorFault fault) {
 
 void Ranging::after_result(NodeTime now) {
     checks_.on_reading();
+    const Reading& judged = acceptance_.reading();
+    zones_.note_range(judged.capture - judged.capture_bound - budget() / 2);
     if (const auto measured = acceptance_.measured_period(); measured && trim_.wants_trim(*measured, now)) {
         is_trim_due_ = true;
     }

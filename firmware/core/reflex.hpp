@@ -20,6 +20,9 @@ class Reflex {
     /// Every accepted reading, as it comes. True if an event begins with it. O(1).
     [[nodiscard]] bool begins(const Reading& reading, NodeTime now) noexcept;
 
+    /// Call at least every 35 minutes, with or without readings.
+    void update(NodeTime now) noexcept;
+
   private:
     [[nodiscard]] bool is_far(const Reading& reading) const noexcept;
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "firmware/core/time_bracket.hpp"
+
 namespace octoskin::node {
 
 namespace {
@@ -223,11 +225,20 @@ void Sensor::on_failure(wire::SensorFault fault, bool can_restart, NodeTime now)
     mode_ = Mode::awaiting_recovery;
 }
 
-void Sensor::isolate() {
-    xshut_.set(config_.xshut_line, false);
+void Sensor::isolate(NodeTime now) {
+    device_.abandon();
+    ranging_.abandon();
+    if (mode_ != Mode::awaiting_recovery) {
+        on_failure(SensorFault::bus_error, false, now);
+        is_bus_suspect_ = false;  // it is known
+    }
     fault_ = SensorFault::bus_error;
     state_ = state_after(fault_, has_ever_answered_);
-    is_settled_ = true;
+    plan_.step = RecoveryStep::xshut_cycle;
+    bring_up_.hold_in_reset();
+    // What fell due meanwhile stays due: half an hour later its time would lie in the future.
+    plan_.at = later_of(plan_.at, now);
+    if (reinitialise_ordered_) reinitialise_ordered_ = now;
 }
 
 void Sensor::recover(NodeTime now) {

@@ -64,9 +64,10 @@ class Sensor {
     /// Whether the last failure may be the whole bus's; told once.
     [[nodiscard]] bool take_bus_suspicion() noexcept;
 
-    /// Puts the sensor in reset, whatever it is doing, because somebody holds the bus. It finds out by itself
-    /// and comes back the usual way.
-    void isolate();
+    /// Puts the sensor in reset, whatever it is doing, because somebody holds the bus; no transfer may be in
+    /// flight. It counts as failed, and comes back through XSHUT once it is asked again. Call it at every
+    /// attempt to free the bus that fails, at least every 35 minutes.
+    void isolate(NodeTime now);
 
     // --- health
     [[nodiscard]] wire::SensorState state() const noexcept { return state_; }

@@ -39,6 +39,10 @@ void ZoneCycle::written(const TimeBracket& when) noexcept {
     write_ = when;
 }
 
+void ZoneCycle::note_range(NodeTime earliest) noexcept {
+    if (write_ && elapsed(write_->latest, earliest) > guard_) settle();
+}
+
 std::uint8_t ZoneCycle::in_force(const TimeBracket& begin) const noexcept {
     if (!write_) return after_;
     if (elapsed(begin.latest, write_->earliest) > guard_) return before_;

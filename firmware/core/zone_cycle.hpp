@@ -30,6 +30,10 @@ class ZoneCycle {
     /// `next()` was written some time within `when`, and from there on is in force.
     void written(const TimeBracket& when) noexcept;
 
+    /// A range was judged that began at `earliest` or later; all that are judged from now on begin later. A
+    /// write from before it is settled: kept for half an hour, its time would lie in the future.
+    void note_range(NodeTime earliest) noexcept;
+
     /// The zone of a range that began within `begin`; `wire::kZoneUnknown` within the guard of a write.
     [[nodiscard]] std::uint8_t in_force(const TimeBracket& begin) const noexcept;
 

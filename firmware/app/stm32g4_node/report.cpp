@@ -102,12 +102,13 @@ void Report::update(const node::Node& node, const CanController& can, NodeTime n
 /// With nobody to acknowledge there are some every second: a line now and then is enough.
 void Report::tell_losses(const CanCounts& counts, NodeTime now) {
     const bool is_news = counts.given_up != told_.given_up || counts.receive_lost != told_.receive_lost;
-    if (!is_news || elapsed(told_at_, now) < kLossesPause) return;
+    losses_pause_.update(now);
+    if (!is_news || !losses_pause_.is_over()) return;
     TextLine line;
     line.text("CAN: ").number(counts.given_up).text(" frames not acknowledged, ");
     serial_.say(line.number(counts.receive_lost).text(" not received, since start").view());
     told_ = counts;
-    told_at_ = now;
+    losses_pause_.begin(now, kLossesPause);
 }
 
 /// One thing at a time: what must be mended first.

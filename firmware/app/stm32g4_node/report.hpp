@@ -8,6 +8,7 @@
 #include "common/config/node_config.hpp"
 #include "common/wire/messages.hpp"
 #include "firmware/core/node.hpp"
+#include "firmware/core/pause.hpp"
 #include "firmware/port/stm32g4/can_controller.hpp"
 #include "firmware/port/stm32g4/clocks.hpp"
 #include "firmware/port/stm32g4/fault_record.hpp"
@@ -42,7 +43,7 @@ class Report {
     std::optional<wire::NodeState> state_;
     std::uint32_t bus_off_count_ = 0;
     CanCounts told_;
-    NodeTime told_at_;
+    node::Pause losses_pause_;
 };
 
 }  // namespace octoskin::stm32g4

@@ -114,6 +114,9 @@ class Device {
     // --- progress
     /// Advances the operation. `done` and `failed` are told once, then `idle`.
     [[nodiscard]] Progress poll(NodeTime now);
+    /// The operation is over, and its end will not be told: for a part that was taken away. Not while a
+    /// transfer is in flight.
+    void abandon() noexcept { progress_ = Progress::idle; }
     /// From `begin_...` until its end has been told.
     [[nodiscard]] bool is_busy() const noexcept { return progress_ != Progress::idle; }
     /// After `failed`.

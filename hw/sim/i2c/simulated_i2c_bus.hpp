@@ -56,6 +56,8 @@ class SimulatedI2cBus final : public i2c::Bus {
     /// middle of its byte, holding SDA.
     void abandon();
 
+    /// Whether a line is held by a fault, and not yet let go.
+    [[nodiscard]] bool is_held() const noexcept { return stuck_clocks_ > 0; }
     /// When the transfer in flight ends; empty if none is, or if it never ends by itself.
     [[nodiscard]] std::optional<SimTime> transfer_end() const;
     [[nodiscard]] std::uint64_t transfer_count() const noexcept { return transfer_count_; }

@@ -175,7 +175,8 @@ class BlackBoxTest : public testing::Test {
     std::vector<wire::BlackBox> pieces_within(int ms) {
         std::vector<wire::BlackBox> pieces;
         for (int i = 0; i < ms; ++i) {
-            if (const auto piece = black_box_.due(now_)) {
+            black_box_.update(now_);
+            if (const auto piece = black_box_.due()) {
                 pieces.push_back(*piece);
                 black_box_.sent(now_);
             }
@@ -192,7 +193,7 @@ class BlackBoxTest : public testing::Test {
 
 TEST_F(BlackBoxTest, sends_nothing_unless_something_failed_or_somebody_asked) {
     EXPECT_TRUE(pieces_within(1'000).empty());
-    EXPECT_FALSE(black_box_.wake_time());
+    EXPECT_FALSE(black_box_.wake_time(now_));
 }
 
 TEST_F(BlackBoxTest, sends_the_whole_dump_at_20_pieces_a_second_and_thaws_the_recorder) {
@@ -236,6 +237,29 @@ TEST_F(BlackBoxTest, sends_at_most_one_dump_a_minute_for_faults_and_always_one_f
     static_cast<void>(pieces_within(30'000));
     black_box_.on_fault(1, now_);
     EXPECT_EQ(pieces_within(10'000).size(), 46U);
+}
+
+// Times are compared modulo 2^32 us: 36 to 71 minutes later what was looks like what will be.
+TEST_F(BlackBoxTest, sends_the_dump_of_a_fault_however_long_ago_the_last_one_was) {
+    for (const int minutes : {36, 50, 70, 72}) {
+        black_box_.on_fault(1, now_);
+        EXPECT_EQ(pieces_within(10'000).size(), 46U) << minutes;
+        for (int minute = 0; minute < minutes; ++minute) {
+            now_ = now_ + Microseconds{60'000'000};
+            black_box_.update(now_);
+        }
+    }
+}
+
+TEST_F(BlackBoxTest, goes_on_at_once_with_a_dump_that_nobody_took_for_long) {
+    black_box_.on_fault(1, now_);
+    EXPECT_EQ(pieces_within(1'000).size(), 20U);
+    for (int minute = 0; minute < 40; ++minute) {
+        now_ = now_ + Microseconds{60'000'000};
+        black_box_.update(now_);
+    }
+    EXPECT_EQ(black_box_.wake_time(now_), now_);
+    EXPECT_EQ(pieces_within(2'000).size(), 26U);
 }
 
 TEST_F(BlackBoxTest, has_nothing_of_a_bus_that_is_not_there) {

@@ -87,6 +87,29 @@ TEST(NodeZones, knows_the_zone_after_forty_minutes_at_rest) {
     }
 }
 
+// A loop that has become too slow for the pause between two ranges writes no zone any more: the last write
+// lies ever further back, until its time looks like one to come.
+TEST(NodeZones, knows_the_zone_forty_minutes_after_it_was_last_written) {
+    NodeConfig config = zoned_config(1, 1);
+    config.sensors[0].timing_budget_ms = 500;
+    config.sensors[0].inter_measurement_ms = 510;
+    NodeRig rig(config, std::vector<SensorSetup>(1));
+    rig.run_for(20 * kSecond);
+    const auto first = rig.readings_of(0);
+    ASSERT_GE(first.size(), 20U);
+    ASSERT_NE(first.back().reading.zone, first.at(first.size() - 2).reading.zone) << "it cycles";
+    rig.run_in_steps_for(45 * 60 * kSecond, Microseconds{2'500});
+    const auto readings = rig.readings_of(0);
+    ASSERT_GE(readings.size(), 4'000U);
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+        const TrueRange* truth = truth_of(rig, 0, readings[i]);
+        ASSERT_NE(truth, nullptr);
+        ASSERT_EQ(truth->roi, kZones.at(readings[i].reading.zone)) << i << ' ' << readings[i].end.us;
+    }
+    for (std::size_t i = first.size() + 10; i < readings.size(); ++i)
+        ASSERT_EQ(readings[i].reading.zone, readings.back().reading.zone) << "no zone was written " << i;
+}
+
 TEST(NodeZones, notices_a_zone_that_was_not_written_as_meant) {
     NodeRig rig(zoned_config(1, 1), std::vector<SensorSetup>(1));
     rig.run_for(2 * kSecond);

@@ -88,6 +88,24 @@ TEST(Reflex, of_a_limit_of_zero_never_happens) {
     }
 }
 
+// An event, one look at something farther off, and then no usable result for longer than half the clock's
+// period.
+TEST(Reflex, is_armed_by_the_next_look_at_something_far_however_long_the_last_one_is_ago) {
+    const Policy policy{};
+    for (const std::uint32_t minutes : {1U, 36U, 50U, 71U, 80U}) {
+        Reflex reflex{300, policy};
+        NodeTime now{0xFFFF'FFFFU - 100'000U};
+        EXPECT_TRUE(reflex.begins(reading(kHit, 100), now));
+        EXPECT_FALSE(reflex.begins(reading(kHit, 1'000), now));
+        for (std::uint32_t minute = 0; minute < minutes; ++minute) {
+            now = now + Microseconds{60'000'000};
+            reflex.update(now);
+        }
+        EXPECT_FALSE(reflex.begins(reading(kHit, 1'000), now));
+        EXPECT_TRUE(reflex.begins(reading(kHit, 100), now)) << minutes;
+    }
+}
+
 TEST(Reflex, keeps_at_least_20_mm_of_margin_for_small_limits) {
     const Policy policy{};
     Reflex reflex{50, policy};

@@ -64,6 +64,26 @@ TEST(ZoneCycle, works_across_the_wrap_of_the_clock) {
     EXPECT_EQ(zones.in_force(between(0x00010000U, 0x00010100U)), 1);
 }
 
+TEST(ZoneCycle, a_range_that_began_after_a_write_settles_it_and_one_from_before_does_not) {
+    ZoneCycle zones{2, kGuard};
+    zones.written(between(100'000, 100'200));
+    zones.note_range({101'200});
+    EXPECT_EQ(zones.in_force(between(90'000, 90'300)), 0) << "still remembered";
+    zones.note_range({101'201});
+    EXPECT_EQ(zones.in_force(between(90'000, 90'300)), 1) << "no such range is asked about any more";
+}
+
+TEST(ZoneCycle, knows_the_zone_however_long_ago_it_was_written) {
+    ZoneCycle zones{2, kGuard};
+    zones.written(between(100'000, 100'200));
+    NodeTime begin{133'000};
+    for (int minute = 0; minute < 150; ++minute) {
+        EXPECT_EQ(zones.in_force({begin, begin + Microseconds{100}}), 1) << minute;
+        zones.note_range(begin);
+        begin = begin + Microseconds{60'000'000};
+    }
+}
+
 TEST(ZoneCycle, writes_only_if_guard_and_write_are_over_before_the_next_range_begins) {
     const ZoneCycle zones{2, kGuard};
     EXPECT_TRUE(zones.fits_before({10'000}, {8'599}));  // 1000 us of guard, 400 us of writing
