@@ -102,7 +102,9 @@ bool Node::send_reflex() {
 }
 
 bool Node::send(const wire::Message& message) {
-    if (!tokens_.has_token() || !ports_.can.send(wire::encode(message, config_.node_id))) {
+    const bool goes_first = std::holds_alternative<wire::Heartbeat>(message);
+    const bool has_token = goes_first ? tokens_.has_token() : tokens_.has_spare_token();
+    if (!has_token || !ports_.can.send(wire::encode(message, config_.node_id))) {
         has_unsent_ = true;
         return false;
     }

@@ -23,14 +23,17 @@ class TokenBucket {
         filled_ = now;
     }
     [[nodiscard]] bool has_token() const noexcept { return level_ >= kToken; }
+    /// Whether one would be left for what goes first, the heartbeat: however much else there is to say, it
+    /// must not wait for a token.
+    [[nodiscard]] bool has_spare_token() const noexcept { return level_ >= 2 * kToken; }
     /// Only while `has_token()`.
     void take() noexcept { level_ -= kToken; }
     /// For what cannot wait, with or without a token: everybody else waits the longer for it.
     void overdraw() noexcept { level_ -= kToken; }
-    /// How long until a token is there.
+    /// How long until a spare token is there.
     [[nodiscard]] Microseconds wait() const noexcept {
-        if (has_token()) return Microseconds{0};
-        return Microseconds{(kToken - level_ + per_second_ - 1) / per_second_};
+        if (has_spare_token()) return Microseconds{0};
+        return Microseconds{(2 * kToken - level_ + per_second_ - 1) / per_second_};
     }
 
   private:

@@ -29,16 +29,25 @@ TEST(TokenBucket, works_across_the_wrap_of_the_clock) {
     EXPECT_EQ(frames_in(TokenBucket{{.per_second = 200, .burst = 30}, start}, start, 1), 30 + 199);
 }
 
-TEST(TokenBucket, tells_how_long_to_wait_for_a_token) {
-    TokenBucket bucket{{.per_second = 100, .burst = 1}, {0}};
+TEST(TokenBucket, keeps_one_token_for_what_goes_first_and_tells_how_long_to_wait_for_another) {
+    TokenBucket bucket{{.per_second = 100, .burst = 2}, {0}};
+    EXPECT_TRUE(bucket.has_spare_token());
     EXPECT_EQ(bucket.wait(), Microseconds{0});
     bucket.take();
-    EXPECT_FALSE(bucket.has_token());
+    EXPECT_TRUE(bucket.has_token());
+    EXPECT_FALSE(bucket.has_spare_token());
     EXPECT_EQ(bucket.wait(), Microseconds{10'000});
+    bucket.take();
+    EXPECT_FALSE(bucket.has_token());
+    EXPECT_EQ(bucket.wait(), Microseconds{20'000});
     bucket.refill({9'999});
     EXPECT_FALSE(bucket.has_token());
     bucket.refill({10'000});
     EXPECT_TRUE(bucket.has_token());
+    bucket.refill({19'999});
+    EXPECT_FALSE(bucket.has_spare_token());
+    bucket.refill({20'000});
+    EXPECT_TRUE(bucket.has_spare_token());
 }
 
 TEST(FrameBudget, is_twice_the_nominal_rate_in_any_second) {
