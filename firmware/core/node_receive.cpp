@@ -111,6 +111,7 @@ bool Node::perform(const wire::Command& command, NodeTime now) {
             }
             return !selection.is_empty();
         case wire::CommandCode::identify:
+            if (ports_.indicator == nullptr) return false;
             identify_until_ = now + Microseconds{1'000'000} * std::min(command.argument, kIdentifySecondsMax);
             blink_at_ = now;
             return true;

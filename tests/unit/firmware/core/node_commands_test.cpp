@@ -160,6 +160,32 @@ TEST_F(NodeCommandsTest, blinks_for_as_long_as_it_is_told) {
     EXPECT_LE(rig_.lit().size(), 9U);
 }
 
+class NoLines final : public XshutLines {
+    void set(std::uint8_t, bool) override {}
+};
+class NoCan final : public CanTransmitter {
+    bool send(const wire::CanFrame&) override { return true; }
+    [[nodiscard]] CanState state() const override { return CanState::active; }
+    void discard() override {}
+    std::optional<wire::CanFrame> take_given_up() override { return std::nullopt; }
+    void restart() override {}
+};
+
+TEST(NodeWithoutLight, refuses_to_identify_itself_and_sleeps_on) {
+    NoLines lines;
+    NoCan can;
+    Node node(without_configuration(), {}, {.buses = {}, .xshut = lines, .can = can}, NodeTime{});
+    const auto poll_until = [&node](std::uint32_t end_us) {
+        for (std::uint32_t us = 0; us < end_us; us += 1'000) node.poll(NodeTime{us});
+    };
+    poll_until(1'000'000);
+    node.on_frame(wire::encode(Command{.code = CommandCode::identify, .argument = 5}, wire::kBroadcastId),
+                  NodeTime{1'000'000});
+    EXPECT_EQ(node.counts().rx_rejected, 1U);
+    node.poll(NodeTime{1'000'000});
+    EXPECT_GT(elapsed(NodeTime{1'000'000}, node.wake_time(NodeTime{1'000'000})), Microseconds{500});
+}
+
 TEST_F(NodeCommandsTest, passes_a_reset_on_to_the_application) {
     EXPECT_FALSE(rig_.node().is_reset_requested());
     command(CommandCode::reset);
