@@ -17,6 +17,7 @@ pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)
 find_package(embree 3 REQUIRED)
 find_package(assimp REQUIRED)
 pkg_check_modules(UNICORN QUIET IMPORTED_TARGET unicorn)  # optional: only the emulated board is made of it
+pkg_check_modules(FUSE3 QUIET IMPORTED_TARGET fuse3)      # optional: only I2C devices for tests are made of it
 pkg_check_modules(OPENNI2 REQUIRED IMPORTED_TARGET libopenni2)
 
 # OctoMap, KDL and urdfdom name directories and files rather than targets: give them one each. SYSTEM keeps our

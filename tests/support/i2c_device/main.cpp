@@ -1,0 +1,72 @@
+// Serves modelled VL53L1X as a /dev/i2c-N of this machine, wired to GPIO lines of the kernel's simulator.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/support/i2c_device/i2c_dev_protocol.hpp"
+#include "tests/support/i2c_device/range_function.hpp"
+
+namespace {
+
+using octoskin::test::ServedSensor;
+
+struct Options {
+    std::string device;
+    std::uint32_t hz = 400'000;
+    std::string record;
+    std::vector<ServedSensor> sensors;
+};
+
+void declare(CLI::App& app, Options& options, std::vector<std::vector<std::string>>& sensors) {
+    app.add_option("--device", options.device, "name below /dev, such as i2c-7")->required();
+    app.add_option("--hz", options.hz, "clock of the bus")->check(CLI::Range(100'000, 1'000'000));
+    app.add_option(
+        "--record", options.record,
+        "append each ranging: NAME INDEX MIDDLE_US READY_US STATUS STREAM RANGE_MM (CLOCK_MONOTONIC)");
+    app.add_option(
+           "--sensor", sensors,
+           "NAME XSHUT GPIO1 RANGE: files of gpio-sim (sim_gpioN/value, sim_gpioN/pull) or '-'; none, "
+           "constant:MM, triangle:NEAR:FAR:PERIOD_MS or file:PATH")
+        ->type_size(4)
+        ->required();
+}
+
+// The lines are followed in a thread of its own: the pins move while nobody talks to the bus.
+int serve(const Options& options) {
+    octoskin::test::ServedBus bus(options.sensors, options.hz, options.record);
+    const std::jthread follower([&bus](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            bus.follow_lines();
+            std::this_thread::sleep_for(std::chrono::milliseconds{2});
+        }
+    });
+    return octoskin::test::serve_i2c_device(options.device, bus);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    std::vector<std::vector<std::string>> sensors;
+    CLI::App app{"Serves modelled VL53L1X sensors as /dev/i2c-N through CUSE."};
+    declare(app, options, sensors);
+    CLI11_PARSE(app, argc, argv);
+    for (const auto& sensor : sensors) {
+        options.sensors.push_back({sensor[0], sensor[1], sensor[2], sensor[3]});
+        if (!octoskin::test::true_range_mm(sensor[3], {})) {
+            std::fprintf(stderr, "i2c_device: %s: range '%s' is not understood\n", sensor[0].c_str(),
+                         sensor[3].c_str());
+            return 2;
+        }
+    }
+    try {
+        return serve(options);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "i2c_device: %s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,148 @@
+#include "tests/support/i2c_device/served_bus.hpp"
+
+#include <fcntl.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+
+#include "tests/support/i2c_device/range_function.hpp"
+
+namespace octoskin::test {
+namespace {
+
+constexpr const char* kNotWired = "-";
+
+sim::SimTime monotonic_now() {
+    timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    return {std::int64_t{now.tv_sec} * 1'000'000 + now.tv_nsec / 1'000};
+}
+
+void wait_until(sim::SimTime time) {
+    const timespec until{.tv_sec = time.us / 1'000'000, .tv_nsec = (time.us % 1'000'000) * 1'000};
+    while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+    }
+}
+
+// -1 if the pin is not wired.
+int open_line(const std::string& path, int flags) {
+    if (path == kNotWired) return -1;
+    const int line = ::open(path.c_str(), flags | O_CLOEXEC);
+    if (line < 0) throw std::runtime_error(path + ": " + std::strerror(errno));
+    return line;
+}
+
+// The error numbers of the kernel's Documentation/i2c/fault-codes.rst.
+int error_number(i2c::TransferError error) {
+    switch (error) {
+        case i2c::TransferError::nack_address:
+            return ENXIO;
+        case i2c::TransferError::nack_data:
+            return EIO;
+        case i2c::TransferError::timeout:
+            return ETIMEDOUT;
+        case i2c::TransferError::arbitration_lost:
+            return EAGAIN;
+        case i2c::TransferError::bus_stuck:
+            return EBUSY;
+    }
+    return EIO;
+}
+
+}  // namespace
+
+struct ServedBus::Wired {
+    Wired(const ServedSensor& wiring)
+        : name(wiring.name),
+          model(sim::SensorPart{}, scene_of(wiring.range)),
+          xshut(open_line(wiring.xshut_path, O_RDONLY)),
+          gpio1(open_line(wiring.gpio1_path, O_WRONLY)) {}
+    ~Wired() {
+        if (xshut >= 0) ::close(xshut);
+        if (gpio1 >= 0) ::close(gpio1);
+    }
+    Wired(const Wired&) = delete;
+    Wired& operator=(const Wired&) = delete;
+
+    [[nodiscard]] bool is_xshut_high() const {
+        char level = '1';
+        return xshut < 0 || ::pread(xshut, &level, 1, 0) != 1 || level == '1';
+    }
+
+    std::string name;
+    sim::SensorModel model;
+    int xshut;
+    int gpio1;
+    std::optional<bool> driven{};     // the level that GPIO1's line was last pulled to
+    sim::SimTime recorded_until{-1};  // when the newest ranging in the record was ready
+};
+
+ServedBus::ServedBus(std::span<const ServedSensor> sensors, std::uint32_t hz, const std::string& record_path)
+    : bus_(present_, hz) {
+    for (const ServedSensor& sensor : sensors) {
+        sensors_.push_back(std::make_unique<Wired>(sensor));
+        bus_.attach(sensors_.back()->model);
+    }
+    if (record_path.empty()) return;
+    record_.open(record_path, std::ios::app);
+    if (!record_) throw std::runtime_error(record_path + ": cannot be written");
+}
+
+ServedBus::~ServedBus() = default;
+
+int ServedBus::transfer(i2c::Address address, std::span<const std::uint8_t> write,
+                        std::span<std::uint8_t> read) {
+    constexpr Microseconds kLimit{1'000'000};  // the i2c core's own default
+    const std::lock_guard lock(mutex_);
+    present_.time = monotonic_now();
+    follow_xshut(present_.time);
+    const NodeTime begin = sim::NodeClock{}.to_node(present_.time);
+    bus_.submit({address, write, read}, begin, begin + kLimit);
+    present_.time = bus_.transfer_end().value_or(sim::SimTime{present_.time.us + kLimit.count()});
+    wait_until(present_.time);
+    const auto state = bus_.poll(sim::NodeClock{}.to_node(present_.time));
+    return state == i2c::TransferState::done ? 0 : error_number(bus_.error());
+}
+
+void ServedBus::follow_lines() {
+    const std::lock_guard lock(mutex_);
+    const sim::SimTime now = monotonic_now();
+    follow_xshut(now);
+    for (const auto& sensor : sensors_) {
+        drive_gpio1(*sensor, now);
+        record(*sensor);
+    }
+}
+
+void ServedBus::follow_xshut(sim::SimTime now) {
+    for (const auto& sensor : sensors_) sensor->model.set_xshut(sensor->is_xshut_high(), now);
+}
+
+void ServedBus::drive_gpio1(Wired& wired, sim::SimTime now) {
+    const bool is_high = wired.model.gpio1_level(now);
+    if (wired.gpio1 < 0 || wired.driven == is_high) return;
+    const std::string_view pull = is_high ? "pull-up" : "pull-down";
+    if (::pwrite(wired.gpio1, pull.data(), pull.size(), 0) == static_cast<ssize_t>(pull.size())) {
+        wired.driven = is_high;
+    }
+}
+
+void ServedBus::record(Wired& wired) {
+    if (!record_.is_open()) return;
+    for (const sim::RangingRecord& ranging : wired.model.history()) {
+        if (ranging.ready <= wired.recorded_until) continue;
+        wired.recorded_until = ranging.ready;
+        record_ << wired.name << ' ' << ranging.index << ' ' << ranging.window_middle.us << ' '
+                << ranging.ready.us << ' ' << unsigned{ranging.result.range_status} % 32 << ' '
+                << unsigned{ranging.result.stream_count} << ' ' << ranging.result.range_mm << std::endl;
+    }
+}
+
+}  // namespace octoskin::test

@@ -1,0 +1,58 @@
+// Modelled sensors on a modelled bus, run on the machine's own clock: their XSHUT follows a GPIO line and
+// their GPIO1 drives one. Simulated time is CLOCK_MONOTONIC.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hw/sim/i2c/simulated_i2c_bus.hpp"
+#include "hw/sim/vl53l1x/sensor_model.hpp"
+
+namespace octoskin::test {
+
+/// One sensor and the kernel's files its pins are wired to.
+struct ServedSensor {
+    std::string name;
+    std::string xshut_path;  ///< reads `0` or `1`: gpio-sim's `value`; `-`: pulled up
+    std::string gpio1_path;  ///< takes `pull-up` or `pull-down`: gpio-sim's `pull`; `-`: not wired
+    std::string range;       ///< see `true_range_mm`
+};
+
+class ServedBus {
+  public:
+    /// Throws std::runtime_error, saying which, if a file cannot be opened. `record_path` may be empty; else
+    /// one line is appended to it for each ranging as it truly was: `NAME INDEX MIDDLE_US READY_US STATUS
+    /// STREAM RANGE_MM`, times of CLOCK_MONOTONIC, STATUS the device's own code.
+    ServedBus(std::span<const ServedSensor> sensors, std::uint32_t hz, const std::string& record_path);
+    ~ServedBus();
+    ServedBus(const ServedBus&) = delete;
+    ServedBus& operator=(const ServedBus&) = delete;
+
+    /// One transfer; waits as long as it takes on the wire. 0, or the error number that the kernel's document
+    /// on I2C fault codes gives for it. Any thread.
+    [[nodiscard]] int transfer(i2c::Address address, std::span<const std::uint8_t> write,
+                               std::span<std::uint8_t> read);
+
+    /// Lets the pins follow: reads every XSHUT, drives every GPIO1 that moved, writes what was ranged. Any
+    /// thread; to be called every few milliseconds.
+    void follow_lines();
+
+  private:
+    struct Wired;
+    void follow_xshut(sim::SimTime now);
+    void drive_gpio1(Wired& wired, sim::SimTime now);
+    void record(Wired& wired);
+
+    std::mutex mutex_;
+    sim::Present present_;
+    sim::SimulatedI2cBus bus_;
+    std::vector<std::unique_ptr<Wired>> sensors_;
+    std::ofstream record_;
+};
+
+}  // namespace octoskin::test

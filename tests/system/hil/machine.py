@@ -1,0 +1,279 @@
+#!/usr/bin/env python3
+"""A machine with a real kernel's CAN, GPIO and I2C, in which commands are run one by one.
+
+    machine.py boot [--bin FOLDER] FOLDER            start it, leave it running
+    machine.py run [--seconds N] FOLDER COMMAND...   run a command inside; its output and exit code become ours
+    machine.py stop FOLDER
+
+FOLDER holds what is known of the machine: its console, and of each command the script, the output and the exit code.
+The machine is a virtual one, with this machine's own files, read-only; FOLDER is the only place it can write to. With
+OCTOSKIN_HIL=native it is this machine itself (needs root, vcan, gpio-sim and CUSE).
+Exit codes of its own: 77 nothing to boot with, 124 a time limit is over, 125 the machine is not as it should be.
+"""
+import argparse
+import contextlib
+import errno
+import fcntl
+import os
+import pathlib
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+PROJECT = HERE.parents[2]
+KERNEL = pathlib.Path(os.environ.get("OCTOSKIN_HIL_KERNEL", PROJECT / "build/hil_kernel"))
+SKIPPED, TIME_OVER, BROKEN = 77, 124, 125
+BOOT_S = 240      # 5 s on an idle machine
+PREPARE_S = 120
+ANSWER_S = 60     # longer than the command may take: then the machine hangs
+LIFE_S = 1800     # a machine that nobody stops ends by itself
+QEMU = "qemu-system-x86_64"
+BUSYBOX = pathlib.Path("/bin/busybox")
+
+
+class MachineError(Exception):
+    """Says what is wrong, and with which exit code to end."""
+
+    def __init__(self, message, code=BROKEN):
+        super().__init__(message)
+        self.code = code
+
+
+def wait_for(is_done, seconds):
+    """Asks every 20 ms; False once the time is over."""
+    end = time.monotonic() + seconds
+    while not is_done():
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.02)
+    return True
+
+
+class Machine:
+    """What the two kinds share: the folder, and a command as a script in it."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    @contextlib.contextmanager
+    def alone(self):
+        """One command at a time: another waits its turn."""
+        with open(self.folder / "lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            yield
+
+    def write_script(self, name, command):
+        """The environment is what board.sh left."""
+        script = self.folder / f"{name}.sh"
+        script.write_text(f"[ ! -e {self.quoted('board.env')} ] || . {self.quoted('board.env')}\nexec {shlex.join(command)}\n")
+        return script
+
+    def quoted(self, name):
+        return shlex.quote(str(self.folder / name))
+
+    def next_name(self):
+        return f"{len(list(self.folder.glob('*.sh'))):03}"
+
+    def run(self, command, seconds):
+        with self.alone():
+            return self.run_script(self.next_name(), command, seconds)
+
+
+class NativeMachine(Machine):
+    def boot(self):
+        pass
+
+    def run_script(self, name, command, seconds):
+        script = self.write_script(name, command)
+        done = subprocess.run(["timeout", "-k", "2", str(seconds), "bash", script], stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+        return done.returncode, done.stdout
+
+    def stop(self):
+        code, output = self.run([str(HERE / "board.sh"), "down", str(self.folder)], PREPARE_S)
+        if code != 0:
+            raise MachineError(f"board.sh down: {output.decode(errors='replace')}")
+
+
+class VirtualMachine(Machine):
+    def boot(self):
+        self.make_initramfs()
+        for end in ("in", "out"):
+            os.mkfifo(self.folder / f"control.{end}")
+        log = open(self.folder / "qemu.log", "wb")
+        qemu = subprocess.Popen(self.qemu_command(), stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)
+        (self.folder / "pid").write_text(str(qemu.pid))
+        is_up = wait_for(lambda: (self.folder / "up").exists() or qemu.poll() is not None, BOOT_S)
+        if not is_up or qemu.poll() is not None:
+            self.kill()
+            raise MachineError(self.with_tail("it does not boot" if is_up else f"it did not boot within {BOOT_S} s"))
+
+    def qemu_command(self):
+        """One processor: two spend as much time again on waiting for each other. Never KVM: its device may be there and hang."""
+        return [
+            "timeout", "-k", "5", str(LIFE_S), QEMU, "-accel", "tcg,thread=multi", "-cpu", "max", "-m", "1G", "-smp", "1",
+            "-nodefaults", "-display", "none", "-no-reboot", "-kernel", str(KERNEL / "vmlinux"),
+            "-initrd", str(self.folder / "initramfs"), "-append", "console=ttyS0 quiet panic=-1 mitigations=off",
+            "-chardev", f"file,id=console,path={self.folder}/console", "-serial", "chardev:console",
+            "-chardev", f"pipe,id=control,path={self.folder}/control", "-serial", "chardev:control",
+            "-fsdev", "local,id=root,path=/,security_model=none,readonly=on,multidevs=remap",
+            "-device", "virtio-9p-pci,fsdev=root,mount_tag=host_files",
+            "-fsdev", f"local,id=folder,path={self.folder},security_model=none,multidevs=remap",
+            "-device", "virtio-9p-pci,fsdev=folder,mount_tag=host_folder"]
+
+    def make_initramfs(self):
+        """busybox, the modules, and init.sh, which gives the machine this machine's own files."""
+        with tempfile.TemporaryDirectory() as name:
+            tree = pathlib.Path(name)
+            for folder in ("bin", "dev", "proc", "modules", "root"):
+                (tree / folder).mkdir()
+            shutil.copy(BUSYBOX, tree / "bin/busybox")
+            shutil.copy(HERE / "init.sh", tree / "init")
+            for module in (KERNEL / "modules.load").read_text().split():
+                shutil.copy(KERNEL / "modules" / module, tree / "modules")
+            shutil.copy(KERNEL / "modules.load", tree / "modules.load")
+            (tree / "folder").write_text(str(self.folder))
+            files = "\n".join(str(path.relative_to(tree)) for path in sorted(tree.rglob("*")))
+            with open(self.folder / "initramfs", "wb") as initramfs:
+                subprocess.run(["cpio", "--quiet", "-o", "-H", "newc"], cwd=tree, input=files.encode(), stdout=initramfs,
+                               check=True)
+
+    def tell(self, line):
+        """One line to init.sh; it is there only if the machine runs."""
+        try:
+            control = os.open(self.folder / "control.in", os.O_WRONLY | os.O_NONBLOCK)
+        except OSError as error:
+            if error.errno in (errno.ENXIO, errno.ENOENT):
+                raise MachineError(self.with_tail("it is not running")) from error
+            raise
+        with open(control, "w") as pipe:
+            pipe.write(line + "\n")
+
+    def run_script(self, name, command, seconds):
+        self.write_script(name, command)
+        code = self.folder / f"{name}.code"
+        self.tell(f"{name} {seconds}")
+        if not wait_for(code.exists, seconds + ANSWER_S):
+            raise MachineError(self.with_tail(f"no answer to '{shlex.join(command)}' within {seconds + ANSWER_S} s"), TIME_OVER)
+        return int(code.read_text()), (self.folder / f"{name}.out").read_bytes()
+
+    def stop(self):
+        with contextlib.suppress(MachineError):
+            self.tell("off")
+        if not wait_for(lambda: not self.is_running(), 10):
+            self.kill()
+
+    def pid(self):
+        """Of our QEMU; None if it is gone."""
+        try:
+            pid = int((self.folder / "pid").read_text())
+            is_ours = str(self.folder).encode() in pathlib.Path(f"/proc/{pid}/cmdline").read_bytes()
+        except (OSError, ValueError):
+            return None
+        return pid if is_ours else None
+
+    def is_running(self):
+        return self.pid() is not None
+
+    def kill(self):
+        if pid := self.pid():
+            os.killpg(pid, signal.SIGKILL)
+
+    def with_tail(self, message):
+        lines = [message]
+        for name in ("qemu.log", "console"):
+            with contextlib.suppress(OSError):
+                text = (self.folder / name).read_text(errors="replace").splitlines()[-25:]
+                lines += [f"-- the end of {self.folder / name}:", *text]
+        return "\n".join(lines)
+
+
+def missing():
+    """What there is not, to boot a virtual machine."""
+    if shutil.which(QEMU) is None:
+        return f"{QEMU} is not installed (toolchains/install_packages hil)"
+    if not BUSYBOX.exists() or shutil.which("cpio") is None:
+        return "busybox-static or cpio is not installed (toolchains/install_packages hil)"
+    if not (KERNEL / "modules.load").exists():
+        return f"no kernel in {KERNEL} (toolchains/fetch_hil_kernel)"
+    return None
+
+
+def boot(folder, binaries):
+    VirtualMachine(folder).kill()  # left over from a run that was broken off
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    try:
+        boot_in(folder, binaries)
+    except MachineError as error:
+        if error.code == SKIPPED:
+            (folder / "skipped").write_text(str(error))
+        raise
+
+
+def boot_in(folder, binaries):
+    began = time.monotonic()
+    is_native = os.environ.get("OCTOSKIN_HIL") == "native"
+    if not is_native and (why := missing()):
+        raise MachineError(f"skipped: {why}", SKIPPED)
+    (folder / "kind").write_text("native" if is_native else "virtual")
+    machine = machine_in(folder)
+    machine.boot()
+    up = time.monotonic()
+    code, output = machine.run([str(HERE / "board.sh"), "up", str(folder), str(binaries)], PREPARE_S)
+    if code != 0:
+        machine.stop()
+        raise MachineError(output.decode(errors="replace").strip(), SKIPPED if code == SKIPPED else BROKEN)
+    print(f"up after {up - began:.1f} s, its board after {time.monotonic() - up:.1f} s more")
+
+
+def machine_in(folder):
+    if (folder / "skipped").exists():
+        raise MachineError((folder / "skipped").read_text(), SKIPPED)
+    if not (folder / "kind").exists():
+        raise MachineError(f"no machine in {folder}; boot it first")
+    return NativeMachine(folder) if (folder / "kind").read_text() == "native" else VirtualMachine(folder)
+
+
+def run(folder, command, seconds):
+    began = time.monotonic()
+    code, output = machine_in(folder).run(command, seconds)
+    sys.stdout.buffer.write(output)
+    sys.stdout.flush()
+    print(f"{time.monotonic() - began:.1f} s, exit code {code}" + (": time limit" if code == TIME_OVER else ""))
+    return code
+
+
+def parsed_arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    for verb in ("boot", "run", "stop"):
+        verbs.add_parser(verb).add_argument("folder", type=lambda text: pathlib.Path(text).resolve())
+    verbs.choices["boot"].add_argument("--bin", type=pathlib.Path, default=PROJECT / "build/host-release/bin")
+    verbs.choices["run"].add_argument("--seconds", type=int, default=30)
+    verbs.choices["run"].add_argument("command", nargs=argparse.REMAINDER)
+    return parser.parse_args()
+
+
+def main():
+    arguments = parsed_arguments()
+    try:
+        if arguments.verb == "boot":
+            boot(arguments.folder, arguments.bin.resolve())
+        elif arguments.verb == "run":
+            return run(arguments.folder, arguments.command, arguments.seconds)
+        else:
+            machine_in(arguments.folder).stop()
+    except MachineError as error:
+        print(f"machine: {error}")
+        return error.code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
