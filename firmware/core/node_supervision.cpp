@@ -16,8 +16,10 @@ constexpr std::uint32_t kUptimeStepMs = 100;
 
 void Node::start_run(NodeTime now) {
     const RunRecord last = ports_.kept != nullptr ? load(*ports_.kept) : RunRecord{};
-    const RunStart start = begin_run(last, identity_.reset_cause, policy_.run_rules);
+    const RunStart start =
+        identity_.run ? *identity_.run : begin_run(last, identity_.reset_cause, policy_.run_rules);
     run_ = start.record;
+    run_.is_starting = false;
     reset_cause_ = start.cause;
     keep_run_record();
     if (is_safe()) {

@@ -82,6 +82,8 @@ struct Identity {
     /// What the hardware says. The core itself tells from `Ports::kept` whether a recorded fault was behind
     /// a software reset.
     wire::ResetCause reset_cause = wire::ResetCause::power_on;
+    /// What `begin_start_up` said, from a port that called it; else the node begins its run itself.
+    std::optional<RunStart> run = std::nullopt;
 };
 
 /// Everything referred to must outlive the node.

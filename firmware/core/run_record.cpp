@@ -13,7 +13,11 @@ namespace {
 using wire::FaultKind;
 using wire::ResetCause;
 
-constexpr std::uint32_t kLayout = 0x4F53'4B01;  // memory of another layout is no record
+constexpr std::uint32_t kLayout = 0x4F53'4B02;  // memory of another layout is no record
+
+// In byte 1 of the flags.
+constexpr std::uint32_t kFaultIsNew = 1;
+constexpr std::uint32_t kIsStarting = 2;
 
 // Index of each word.
 enum : std::size_t {
@@ -28,12 +32,12 @@ enum : std::size_t {
     crc,
     count
 };
-static_assert(count == decltype(KeptMemory::words){}.size());
+static_assert(count == KeptMemory::Copy{}.size());
 
-std::uint32_t crc_of(const KeptMemory& memory) noexcept {
+std::uint32_t crc_of(const KeptMemory::Copy& words) noexcept {
     std::array<std::uint8_t, 4 * crc> bytes{};
     for (std::size_t i = 0; i < bytes.size(); ++i) {
-        bytes[i] = static_cast<std::uint8_t>(memory.words[i / 4] >> (8 * (i % 4)));
+        bytes[i] = static_cast<std::uint8_t>(words[i / 4] >> (8 * (i % 4)));
     }
     return crc32(bytes);
 }
@@ -65,17 +69,23 @@ RunMode mode_after_fault(const RunRecord& record, const RunRules& rules) noexcep
     return is_often && together <= rules.resets_within_ms ? RunMode::safe : RunMode::normal;
 }
 
+bool is_whole(const KeptMemory::Copy& words) noexcept {
+    return words[layout] == kLayout && words[crc] == crc_of(words);
+}
+
 }  // namespace
 
 RunRecord load(const KeptMemory& memory) noexcept {
-    const auto& words = memory.words;
-    if (words[layout] != kLayout || words[crc] != crc_of(memory)) return {};
+    const bool is_first_whole = is_whole(memory.copies[0]);
+    if (!is_first_whole && !is_whole(memory.copies[1])) return {};
+    const KeptMemory::Copy& words = memory.copies[is_first_whole ? 0 : 1];
     const auto byte = [flag_word = words[flags]](unsigned which) {
         return static_cast<std::uint8_t>(flag_word >> (8 * which));
     };
     const auto fault = static_cast<FaultKind>(byte(0));
     return {.fault = wire::is_known(fault) ? fault : FaultKind::unknown,
-            .is_fault_new = byte(1) != 0,
+            .is_fault_new = (byte(1) & kFaultIsNew) != 0,
+            .is_starting = (byte(1) & kIsStarting) != 0,
             .mode = static_cast<RunMode>(std::min<std::uint8_t>(byte(2), 2)),
             .retries = byte(3),
             .resets = words[resets],
@@ -86,9 +96,11 @@ RunRecord load(const KeptMemory& memory) noexcept {
 }
 
 void save(const RunRecord& record, KeptMemory& memory) noexcept {
-    auto& words = memory.words;
+    KeptMemory::Copy words{};
     words[layout] = kLayout;
-    words[flags] = static_cast<std::uint32_t>(record.fault) | (record.is_fault_new ? 0x100U : 0U) |
+    const std::uint32_t marks =
+        (record.is_fault_new ? kFaultIsNew : 0U) | (record.is_starting ? kIsStarting : 0U);
+    words[flags] = static_cast<std::uint32_t>(record.fault) | marks << 8U |
                    static_cast<std::uint32_t>(record.mode) << 16U | std::uint32_t{record.retries} << 24U;
     words[resets] = record.resets;
     words[where] = record.where;
@@ -96,7 +108,12 @@ void save(const RunRecord& record, KeptMemory& memory) noexcept {
     words[uptime] = record.uptime_ms;
     words[ended_last] = record.ended_uptime_ms[0];
     words[ended_before] = record.ended_uptime_ms[1];
-    words[crc] = crc_of(memory);
+    words[crc] = crc_of(words);
+    // Volatile: both are written, and one is done before the other begins.
+    for (KeptMemory::Copy& copy : memory.copies) {
+        for (std::size_t i = 0; i < words.size(); ++i)
+            static_cast<volatile std::uint32_t&>(copy[i]) = words[i];
+    }
 }
 
 void note_fault(KeptMemory& memory, FaultKind fault, std::uint32_t where) noexcept {
@@ -116,6 +133,7 @@ RunStart begin_run(const RunRecord& last, ResetCause hardware, const RunRules& r
     RunStart start{.record = last, .cause = last.is_fault_new ? ResetCause::fault : hardware};
     RunRecord& record = start.record;
     record.is_fault_new = false;
+    record.is_starting = false;
     record.uptime_ms = 0;
     if (is_ordered(start.cause)) {
         record.mode = RunMode::normal;
@@ -132,7 +150,20 @@ RunStart begin_run(const RunRecord& last, ResetCause hardware, const RunRules& r
     record.ended_uptime_ms = {last.uptime_ms, last.ended_uptime_ms[0]};
     if (last.mode == RunMode::retry && record.retries < 255) ++record.retries;
     record.mode = mode_after_fault(record, rules);
+    start.is_start_up_failing = last.is_starting && record.mode == RunMode::safe;
     return start;
+}
+
+RunStart begin_start_up(KeptMemory& memory, ResetCause hardware, const RunRules& rules) noexcept {
+    RunStart start = begin_run(load(memory), hardware, rules);
+    start.record.is_starting = true;
+    save(start.record, memory);
+    return start;
+}
+
+void retry_start_up(KeptMemory& memory, RunStart& start) noexcept {
+    start.record.mode = RunMode::retry;
+    save(start.record, memory);
 }
 
 }  // namespace octoskin::node

@@ -12,10 +12,12 @@
 namespace octoskin::node {
 
 /// Memory that no start-up code clears: a port puts it where its linker script says so, and gives it away
-/// by `Ports::kept`. What it holds after power-on is anything; a CRC tells. Trivial on purpose, as a
+/// by `Ports::kept`. What it holds after power-on is anything; a CRC tells. Two copies, written one after the
+/// other: a reset that comes in the middle of one leaves the other whole. Trivial on purpose, as a
 /// constructor would clear it.
 struct KeptMemory {
-    std::array<std::uint32_t, 9> words;
+    using Copy = std::array<std::uint32_t, 9>;
+    std::array<Copy, 2> copies;
 };
 
 enum class RunMode : std::uint8_t {
@@ -27,6 +29,7 @@ enum class RunMode : std::uint8_t {
 struct RunRecord {
     wire::FaultKind fault = wire::FaultKind::none;  ///< the last one
     bool is_fault_new = false;                      ///< noted in this run: it is about to end
+    bool is_starting = false;  ///< there is no node yet: what fails now would fail in safe mode too
     RunMode mode = RunMode::normal;
     std::uint8_t retries = 0;           ///< after safe mode, which failed
     std::uint32_t resets = 0;           ///< that nobody ordered, since power-on
@@ -43,7 +46,7 @@ struct RunRules {
     std::uint32_t resets_within_ms = 10'000;
 };
 
-/// What `memory` holds; the record of a first run if it was never written, or is damaged.
+/// What `memory` holds; the record of a first run if it was never written, or both copies are damaged.
 [[nodiscard]] RunRecord load(const KeptMemory& memory) noexcept;
 void save(const RunRecord& record, KeptMemory& memory) noexcept;
 
@@ -57,9 +60,19 @@ void note_fault(KeptMemory& memory, wire::FaultKind fault, std::uint32_t where) 
 struct RunStart {
     RunRecord record;
     wire::ResetCause cause = wire::ResetCause::unknown;  ///< `fault` if one was noted
+    /// So many runs ended so soon, and the last one before there was a node. Whoever starts keeps still for
+    /// `safe_mode_s`, touching as little as possible, before it tries again (`retry_start_up`).
+    bool is_start_up_failing = false;
 };
 [[nodiscard]] RunStart begin_run(const RunRecord& last, wire::ResetCause hardware,
                                  const RunRules& rules) noexcept;
+
+/// For a port, before anything that may fail: begins the run and writes down that start-up is under way. From
+/// then on a reset counts, wherever it comes. The node, made with this `RunStart`, ends start-up.
+[[nodiscard]] RunStart begin_start_up(KeptMemory& memory, wire::ResetCause hardware,
+                                      const RunRules& rules) noexcept;
+/// After having kept still: this is the one try.
+void retry_start_up(KeptMemory& memory, RunStart& start) noexcept;
 
 /// How long safe mode lasts before the next try, in seconds.
 [[nodiscard]] constexpr std::uint32_t safe_mode_s(std::uint8_t failed_retries) noexcept {

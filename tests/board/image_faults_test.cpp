@@ -1,112 +1,13 @@
 // What the flashed image does when its board fails it: no sensors, one partner on the bus, one fault.
 #include <gmock/gmock.h>
 
-#include <array>
-#include <string>
-#include <variant>
-#include <vector>
-
-#include "common/config/node_config.hpp"
-#include "common/wire/codec.hpp"
-#include "common/wire/frame_type.hpp"
-#include "hw/sim/stm32g474/board_on_bus.hpp"
-#include "hw/sim/stm32g474/nucleo_board.hpp"
+#include "tests/board/image_bench.hpp"
 
 namespace octoskin::sim::stm32 {
 namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr std::uint8_t kNode = 9;
-constexpr std::uint8_t kNucleo = 1;  // hw/boards/nucleo_g474re.yaml
-
-NodeConfig bare_config() {
-    return {.node_id = kNode, .board_type = kNucleo};
-}
-
-std::vector<std::uint8_t> block_of(const NodeConfig& config) {
-    std::array<std::uint8_t, kNodeConfigBytesMax> bytes{};
-    const auto block = encode(config, bytes);
-    return {block.begin(), block.end()};
-}
-
-/// The image on its board, a host that says SYNC ten times a second, and what the node says.
-class ImageBench {
-  public:
-    explicit ImageBench(const std::vector<std::uint8_t>& block, const NucleoOptions& options = {})
-        : board_(options, ElfImage::load(OCTOSKIN_FLASHED_IMAGE).value(), block),
-          bus_(options.bit_rates),
-          on_bus_(board_, bus_),
-          host_(bus_.attach({}, 16)) {
-        bus_.tap([this](const wire::CanFrame& frame, SimTime end) { note(frame, end); });
-    }
-
-    void run(double seconds) {
-        const SimTime end{now_.us + static_cast<std::int64_t>(seconds * 1e6)};
-        on_bus_.run_until(end, [this](SimTime now) {
-            if (now.us < next_sync_) return;
-            next_sync_ = now.us + 100'000;
-            (void)host_.send(wire::encode(wire::Sync{.sequence = 0}, wire::kHostId));
-            (void)host_.send(
-                {.can_id = 0x7C0, .is_fd = true, .has_bit_rate_switch = true, .payload_len = 12});
-        });
-        now_ = end;
-    }
-    void forget() {
-        heartbeats_.clear();
-        fault_.reset();
-        first_s_.reset();
-    }
-
-    [[nodiscard]] NucleoBoard& board() { return board_; }
-    [[nodiscard]] double now_s() const { return static_cast<double>(now_.us) * 1e-6; }
-    [[nodiscard]] const std::vector<wire::Heartbeat>& heartbeats() const { return heartbeats_; }
-    [[nodiscard]] const std::optional<wire::InfoFault>& fault() const { return fault_; }
-    /// When the node's first frame ended.
-    [[nodiscard]] const std::optional<double>& first_s() const { return first_s_; }
-    [[nodiscard]] std::uint8_t speaker() const { return speaker_; }
-    [[nodiscard]] std::string violations() {
-        std::string text;
-        for (const auto& violation : board_.log().all()) text += violation.what + "\n";
-        return text;
-    }
-    /// Rising edges of the light within its period of 2^20 us.
-    int flashes() {
-        int count = 0;
-        bool was_lit = board_.is_led_lit();
-        for (int i = 0; i < 1049; ++i) {
-            run(0.001);
-            count += !was_lit && board_.is_led_lit() ? 1 : 0;
-            was_lit = board_.is_led_lit();
-        }
-        return count;
-    }
-
-  private:
-    void note(const wire::CanFrame& frame, SimTime end) {
-        const auto decoded = wire::decode(frame);
-        if (!decoded || decoded->node_id == wire::kHostId) return;
-        if (!first_s_) first_s_ = static_cast<double>(end.us) * 1e-6;
-        speaker_ = decoded->node_id;
-        if (const auto* heartbeat = std::get_if<wire::Heartbeat>(&decoded->message)) {
-            heartbeats_.push_back(*heartbeat);
-        } else if (const auto* info = std::get_if<wire::NodeInfo>(&decoded->message)) {
-            if (const auto* fault = std::get_if<wire::InfoFault>(info)) fault_ = *fault;
-        }
-    }
-
-    NucleoBoard board_;
-    SimulatedCanBus bus_;
-    BoardOnBus on_bus_;
-    node::CanTransmitter& host_;
-    SimTime now_{};
-    std::int64_t next_sync_ = 0;
-    std::vector<wire::Heartbeat> heartbeats_;
-    std::optional<wire::InfoFault> fault_;
-    std::optional<double> first_s_;
-    std::uint8_t speaker_ = 0;
-};
 
 TEST(ImageFaults, starts_within_300_ms_and_sleeps_when_nothing_is_due) {
     ImageBench bench(block_of(bare_config()));
@@ -262,6 +163,104 @@ TEST(ImageFaults, takes_back_what_nobody_acknowledges_and_goes_on) {
     bench.board().can().set_link(CanLink::good);
     bench.run(2.0);
     EXPECT_EQ(bench.heartbeats().back().state, wire::NodeState::ranging);
+    EXPECT_EQ(bench.violations(), "");
+}
+
+// --- clocks that come late, come back, or are only half there
+
+TEST(ImageFaults, uses_a_crystal_that_is_slow_to_start) {
+    for (const std::int64_t start_ms : {11, 40}) {
+        NucleoOptions options;
+        options.crystal.starts_in = BoardTime{start_ms * 1'000 * kPsPerUs};
+        ImageBench bench(block_of(bare_config()), options);
+        bench.run(0.5);
+        ASSERT_TRUE(bench.first_s()) << start_ms;
+        EXPECT_LT(*bench.first_s(), 0.3);
+        EXPECT_EQ(bench.board().reset_count(), 0U);
+        EXPECT_EQ(bench.violations(), "");
+    }
+}
+
+TEST(ImageFaults, joins_within_three_seconds_of_the_crystals_return_and_says_why_it_was_silent) {
+    NucleoOptions options;
+    options.crystal.fails_at = BoardTime{1'000'000 * kPsPerUs};
+    options.crystal.returns_at = BoardTime{5'000'000 * kPsPerUs};
+    ImageBench bench(block_of(bare_config()), options);
+    bench.run(1.001);
+    bench.forget();
+    bench.run(3.999);
+    EXPECT_FALSE(bench.first_s()) << "silent without it";
+    bench.run(4.0);
+    ASSERT_TRUE(bench.first_s());
+    EXPECT_LT(*bench.first_s(), 8.0);
+    EXPECT_EQ(bench.heartbeats().front().reset_cause, wire::ResetCause::fault);
+    ASSERT_TRUE(bench.fault());
+    EXPECT_EQ(bench.fault()->kind, wire::FaultKind::clock_fault);
+    EXPECT_EQ(bench.fault()->count, 2) << "its death, and its return";
+    EXPECT_THAT(bench.board().serial_text(), HasSubstr("the crystal runs now: starting anew"));
+    EXPECT_EQ(bench.flashes(), 1);
+    EXPECT_EQ(bench.violations(), "");
+}
+
+TEST(ImageFaults, does_not_reset_for_ever_for_a_crystal_that_is_never_in_time) {
+    NucleoOptions options;
+    options.crystal.starts_in = BoardTime{300'000 * kPsPerUs};
+    ImageBench bench(block_of(bare_config()), options);
+    bench.run(20.0);
+    EXPECT_FALSE(bench.first_s());
+    EXPECT_EQ(bench.board().reset_count(), 3U) << "then safe mode, for a minute";
+}
+
+TEST(ImageFaults, runs_on_what_it_has_if_the_core_cannot_be_switched_to_the_pll_and_says_how_fast) {
+    ImageBench bench(block_of(bare_config()));
+    bench.board().refuse_pll();
+    bench.run(0.9);
+    EXPECT_FALSE(bench.first_s()) << "CAN is silent";
+    EXPECT_THAT(bench.board().serial_text(), HasSubstr("16 MHz, without the PLL: CAN is silent"));
+    // A second lasts a second, by its own light: 131 ms on, 131 off.
+    EXPECT_EQ(bench.flashes(), 2);
+    EXPECT_EQ(bench.violations(), "") << "baud rate and I2C timing too are right for 16 MHz";
+}
+
+// --- the CAN controller
+
+TEST(ImageFaults, tries_a_controller_that_does_not_start_again_each_second) {
+    ImageBench bench(block_of(bare_config()));
+    bench.board().can().set_deaf(true);
+    bench.run(2.5);
+    EXPECT_FALSE(bench.first_s());
+    EXPECT_THAT(bench.board().serial_text(),
+                HasSubstr("does not start: CAN is silent, tried again each second"));
+    EXPECT_EQ(bench.flashes(), 4);
+    bench.board().can().set_deaf(false);
+    const double mended_s = bench.now_s();
+    bench.run(2.0);
+    ASSERT_TRUE(bench.first_s());
+    EXPECT_LT(*bench.first_s() - mended_s, 1.1);
+    EXPECT_EQ(bench.board().reset_count(), 0U);
+}
+
+TEST(ImageFaults, recovers_from_a_message_ram_that_failed_and_tells) {
+    ImageBench bench(block_of(bare_config()));
+    bench.run(2.0);
+    bench.forget();
+    bench.board().can().lose_ram();
+    bench.run(0.9);
+    ASSERT_FALSE(bench.heartbeats().empty());
+    EXPECT_EQ(bench.heartbeats().front().state, wire::NodeState::can_fault);
+    EXPECT_GE(bench.heartbeats().size(), 8U) << "it was mended at once";
+    bench.run(1.2);
+    EXPECT_EQ(bench.heartbeats().back().state, wire::NodeState::ranging);
+    EXPECT_THAT(bench.board().serial_text(), HasSubstr("CAN controller failed, 1 since start"));
+    // One that fails all the time is tried once a second, no more.
+    for (int i = 0; i < 400; ++i) {
+        bench.board().can().lose_ram();
+        bench.run(0.01);
+    }
+    EXPECT_THAT(bench.board().serial_text(), Not(HasSubstr("failed, 7 since")));
+    bench.run(3.0);
+    EXPECT_EQ(bench.heartbeats().back().state, wire::NodeState::ranging);
+    EXPECT_EQ(bench.board().reset_count(), 0U);
     EXPECT_EQ(bench.violations(), "");
 }
 

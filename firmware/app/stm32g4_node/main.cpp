@@ -9,6 +9,7 @@
 #include "firmware/core/time_bracket.hpp"
 #include "firmware/port/stm32g4/can_bit_timing.hpp"
 #include "firmware/port/stm32g4/can_controller.hpp"
+#include "firmware/port/stm32g4/can_entry.hpp"
 #include "firmware/port/stm32g4/clock_plan.hpp"
 #include "firmware/port/stm32g4/clocks.hpp"
 #include "firmware/port/stm32g4/configuration_page.hpp"
@@ -19,7 +20,6 @@
 #include "firmware/port/stm32g4/interrupt_handlers.hpp"
 #include "firmware/port/stm32g4/microsecond_timer.hpp"
 #include "firmware/port/stm32g4/pin.hpp"
-#include "firmware/port/stm32g4/rate_search.hpp"
 #include "firmware/port/stm32g4/reset_cause.hpp"
 #include "firmware/port/stm32g4/serial_port.hpp"
 #include "firmware/port/stm32g4/status_light.hpp"
@@ -30,10 +30,11 @@
 namespace octoskin::stm32g4 {
 namespace {
 
-constexpr std::uint8_t kBoardType = 1;     // hw/boards/nucleo_g474re.yaml
-constexpr Microseconds kSleepMax{50'000};  // in case a wake-up was missed
+constexpr std::uint8_t kBoardType = 1;  // hw/boards/nucleo_g474re.yaml
 
 constexpr Microseconds kSayMax{40'000};  // two lines and a half
+constexpr Microseconds kSecond{1'000'000};
+constexpr std::uint32_t kRestTurnsPerSecond = 50;
 
 constinit IndependentWatchdog watchdog;
 constinit MicrosecondTimer timer;
@@ -42,7 +43,7 @@ constinit StatusLight light;
 constinit Report report{serial, light};
 constinit XshutChain xshut;
 constinit CanController can{timer};
-constinit std::optional<RateSearch> rate_search;  // while nobody told the rates
+constinit CanEntry can_entry{can};
 constinit std::array<I2cController, kI2cWirings.size()> i2c_controllers{
     I2cController{kI2cWirings[0], timer}, I2cController{kI2cWirings[1], timer},
     I2cController{kI2cWirings[2], timer}, I2cController{kI2cWirings[3], timer}};
@@ -50,10 +51,13 @@ constinit std::array<i2c::Bus*, kI2cWirings.size()> buses{&i2c_controllers[0], &
                                                           &i2c_controllers[2], &i2c_controllers[3]};
 constinit NodeConfig config = without_configuration();
 constinit std::optional<node::Node> the_node;
+constinit bool is_crystal_missed = false;
+constinit NodeTime look_for_crystal_at;
 
 /// Without the crystal it was said already.
-void note_silence(const Clocks& clocks) {
-    if (clocks.can_hz != 0) report.can_dead();
+void enter_can(const std::optional<CanRates>& rates, const Clocks& clocks) {
+    can_entry.begin(rates, config.node_id, clocks.can_hz, timer.now());
+    if (clocks.can_hz != 0 && !can.is_started() && !can.is_listening()) report.can_dead();
 }
 
 void start_buses(const Clocks& clocks) {
@@ -62,7 +66,7 @@ void start_buses(const Clocks& clocks) {
         for (I2cController& controller : i2c_controllers) controller.start(*timing);
     }
     const bool has_rates = is_possible(rates_of(config), kCanHz);
-    if (has_rates && !can.start(rates_of(config), config.node_id, clocks.can_hz)) note_silence(clocks);
+    enter_can(has_rates ? std::optional(rates_of(config)) : std::nullopt, clocks);
     if (timing && has_rates && config.board_type == kBoardType) return report.config_accepted(config);
     report.config_unsuitable(config);
     // Not valid: the node does not range, and says so. (A wrong board type it finds by itself.)
@@ -76,67 +80,22 @@ void load_configuration(const Clocks& clocks) {
         start_buses(clocks);
     } else {
         report.config_refused(decoded.error());
-        rate_search.emplace();
-        rate_search->begin(timer.now());
-        if (!can.listen(rate_search->rates(), config.node_id, clocks.can_hz)) {
-            rate_search.reset();
-            note_silence(clocks);
-        }
+        enter_can(std::nullopt, clocks);
     }
 }
 
-/// Before anything else is tried: what failed may fail again at once.
-void tell_fault(const Fault& fault) {
-    report.fault(fault);
+/// What is said is said before anything else is tried: what failed may fail again at once.
+void finish_saying() {
     const NodeTime begun = timer.now();
     while (!serial.is_quiet() && elapsed(begun, timer.now()) < kSayMax) {
     }
 }
 
-void start() {
-    watchdog.start();
-    const std::optional<Fault> last = fault_record().read();
-    const wire::ResetCause cause = reset_cause(take_reset_flags(), last.has_value());
-    if (!last || cause == wire::ResetCause::power_on) fault_record().write({});
-    const Clocks clocks = start_clocks(timer);
+void start_telling(std::uint32_t core_hz) {
     cpu::enable(Interrupt::tim2, cpu::Priority::text);
     enable_pins();
     light.start();
-    xshut.start();
-    serial.start(clocks.core_hz);
-    const bool is_fault_new = node::load(kept_memory()).is_fault_new;
-    report.started(OCTOSKIN_BUILD_ID, is_fault_new ? wire::ResetCause::fault : cause, clocks);
-    if (last && last->kind != wire::FaultKind::none) tell_fault(*last);
-    load_configuration(clocks);
-    const node::Identity identity{
-        .uid = unique_id(), .build_id = OCTOSKIN_BUILD_ID, .board_type = kBoardType, .reset_cause = cause};
-    const node::Ports ports{.buses = buses,
-                            .xshut = xshut,
-                            .can = can,
-                            .indicator = &light,
-                            .watchdog = &watchdog,
-                            .kept = &kept_memory()};
-    the_node.emplace(config, identity, ports, timer.now());
-}
-
-void search_rates(NodeTime now) {
-    if (!rate_search) return;
-    const RateSearch::Verdict verdict = rate_search->judge(can.heard(), now);
-    if (verdict == RateSearch::Verdict::try_next)
-        (void)can.listen(rate_search->rates(), config.node_id, kCanHz);
-    if (verdict == RateSearch::Verdict::found && can.join()) rate_search.reset();
-}
-
-/// When something must be done even if no event comes.
-NodeTime wake_time(NodeTime light_due) {
-    const NodeTime now = timer.now();
-    NodeTime wake = node::earlier_of(now + kSleepMax, light_due);
-    wake = node::earlier_of(wake, the_node->wake_time(now));
-    if (const auto due = can.wake_time()) wake = node::earlier_of(wake, *due);
-    for (const I2cController& controller : i2c_controllers) {
-        if (const auto due = controller.deadline()) wake = node::earlier_of(wake, *due);
-    }
-    return wake;
+    serial.start(core_hz);
 }
 
 bool has_event() {
@@ -156,12 +115,86 @@ void sleep_until(NodeTime wake) {
     }
 }
 
+/// Start-up itself failed again and again: keeps still, with as little as can tell a person. CAN, buses and
+/// sensors are left as the reset left them.
+void rest(const std::optional<Fault>& last, std::uint32_t seconds) {
+    timer.start(kInternalHz);
+    start_telling(kInternalHz);
+    light.set(true);
+    report.start_up_failing(seconds);
+    if (last) report.fault(*last);
+    for (std::uint32_t turn = 0; turn < seconds * kRestTurnsPerSecond; ++turn) {
+        sleep_until(timer.now() + kSecond / kRestTurnsPerSecond);
+        watchdog.feed();
+    }
+}
+
+void start() {
+    watchdog.start();
+    const std::optional<Fault> last = fault_record().read();
+    const wire::ResetCause cause = reset_cause(take_reset_flags(), last.has_value());
+    node::RunStart run = node::begin_start_up(kept_memory(), cause, {});
+    if (!last || cause == wire::ResetCause::power_on) fault_record().write({});
+    if (run.is_start_up_failing) {
+        rest(last, node::safe_mode_s(run.record.retries));
+        node::retry_start_up(kept_memory(), run);
+    }
+    const Clocks clocks = start_clocks(timer);
+    start_telling(clocks.core_hz);
+    xshut.start();
+    report.started(OCTOSKIN_BUILD_ID, run.cause, clocks);
+    if (last && last->kind != wire::FaultKind::none) {
+        report.fault(*last);
+        finish_saying();
+    }
+    load_configuration(clocks);
+    is_crystal_missed = clocks.can_hz == 0;
+    look_for_crystal_at = timer.now() + kSecond;
+    const node::Identity identity{.uid = unique_id(),
+                                  .build_id = OCTOSKIN_BUILD_ID,
+                                  .board_type = kBoardType,
+                                  .reset_cause = cause,
+                                  .run = run};
+    const node::Ports ports{.buses = buses,
+                            .xshut = xshut,
+                            .can = can,
+                            .indicator = &light,
+                            .watchdog = &watchdog,
+                            .kept = &kept_memory()};
+    the_node.emplace(config, identity, ports, timer.now());
+}
+
+/// A node without its crystal is silent, so that nothing is lost by starting anew once it runs. That counts
+/// as a reset by a fault: a crystal that comes and goes leads to safe mode, in which nobody looks for it.
+void look_for_crystal(NodeTime now) {
+    if (!is_crystal_missed || !is_reached(look_for_crystal_at, now)) return;
+    look_for_crystal_at = now + kSecond;
+    const bool is_safe = node::load(kept_memory()).mode == node::RunMode::safe;
+    if (is_safe || !is_crystal_running()) return;
+    report.crystal_runs();
+    finish_saying();
+    record_and_reset({.kind = wire::FaultKind::clock_fault});
+}
+
+/// When something must be done even if no event comes. At most 20 ms away, for the watchdog's sake. Should
+/// that wake-up be missed, the watchdog itself is what helps: it has a clock of its own.
+NodeTime wake_time(NodeTime light_due) {
+    const NodeTime now = timer.now();
+    NodeTime wake = node::earlier_of(light_due, the_node->wake_time(now));
+    if (const auto due = can.wake_time()) wake = node::earlier_of(wake, *due);
+    for (const I2cController& controller : i2c_controllers) {
+        if (const auto due = controller.deadline()) wake = node::earlier_of(wake, *due);
+    }
+    return wake;
+}
+
 void turn() {
     can.acknowledge_event();
     while (const auto received = can.receive()) the_node->on_frame(received->frame, received->received);
     const NodeTime now = timer.now();
     can.poll(now);
-    search_rates(now);
+    can_entry.poll(now);
+    look_for_crystal(now);
     the_node->poll(now);
     report.update(*the_node, can, now);
     if (the_node->is_reset_requested()) cpu::reset();

@@ -14,11 +14,11 @@ constexpr Microseconds kLossesPause{10'000'000};
 std::string_view words(ClockSource source) {
     switch (source) {
         case ClockSource::crystal:
-            return "160 MHz from the crystal";
+            return " MHz from the crystal";
         case ClockSource::internal:
-            return "160 MHz without the crystal: CAN is silent";
+            return " MHz without the crystal: CAN is silent";
         case ClockSource::unlocked:
-            return "16 MHz, neither crystal nor PLL: CAN is silent";
+            return " MHz, without the PLL: CAN is silent";
     }
     return "?";
 }
@@ -47,7 +47,18 @@ void Report::started(std::uint32_t build_id, wire::ResetCause cause, const Clock
     has_crystal_ = clocks.source == ClockSource::crystal;
     TextLine line;
     line.text("octoskin ").hex(build_id, 8).text(": reset ").text(wire::name(cause));
-    serial_.say(line.text(", ").text(words(clocks.source)).view());
+    line.text(", ").number(clocks.core_hz / 1'000'000);
+    serial_.say(line.text(words(clocks.source)).view());
+}
+
+void Report::start_up_failing(std::uint32_t seconds) {
+    TextLine line;
+    line.text("start-up failed too often: nothing for ").number(seconds);
+    serial_.say(line.text(" s, then once more").view());
+}
+
+void Report::crystal_runs() {
+    serial_.say("the crystal runs now: starting anew");
 }
 
 void Report::fault(const Fault& fault) {
@@ -79,7 +90,7 @@ void Report::config_unsuitable(const NodeConfig& config) {
 }
 
 void Report::can_dead() {
-    serial_.say("the CAN controller does not start: CAN is silent");
+    serial_.say("the CAN controller does not start: CAN is silent, tried again each second");
 }
 
 void Report::update(const node::Node& node, const CanController& can, NodeTime now) {
@@ -92,6 +103,11 @@ void Report::update(const node::Node& node, const CanController& can, NodeTime n
     if (bus_off_count_ != bus_off_count) {
         TextLine line;
         serial_.say(line.text("CAN bus-off, ").number(bus_off_count).text(" since start").view());
+    }
+    if (const std::uint32_t failed = can.counts().failed; failed != can_failed_) {
+        TextLine line;
+        serial_.say(line.text("CAN controller failed, ").number(failed).text(" since start").view());
+        can_failed_ = failed;
     }
     state_ = state;
     bus_off_count_ = bus_off_count;

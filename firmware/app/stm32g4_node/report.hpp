@@ -23,11 +23,15 @@ class Report {
 
     void started(std::uint32_t build_id, wire::ResetCause cause, const Clocks& clocks);
     void fault(const Fault& fault);
+    /// Start-up failed too often: nothing more happens for so long.
+    void start_up_failing(std::uint32_t seconds);
+    /// The crystal that was missed runs now: the chip is about to be reset.
+    void crystal_runs();
     void config_accepted(const NodeConfig& config);
     void config_refused(NodeConfigError error);
     /// Whole, but not for this board, or with rates that it cannot make.
     void config_unsuitable(const NodeConfig& config);
-    /// The controller does not follow its orders: silent.
+    /// The controller does not follow its orders: silent until it does.
     void can_dead();
 
     /// Says what changed since the last call.
@@ -42,6 +46,7 @@ class Report {
     bool has_crystal_ = false;
     std::optional<wire::NodeState> state_;
     std::uint32_t bus_off_count_ = 0;
+    std::uint32_t can_failed_ = 0;
     CanCounts told_;
     node::Pause losses_pause_;
 };

@@ -18,7 +18,7 @@ constexpr Pin kTransmitPin{gpio_a, 12};
 constexpr std::uint8_t kFunction = 9;  // datasheet DS12288, alternate functions
 
 constexpr std::uint32_t kInterrupts =
-    F("IE.RF0NE")(1) | F("IE.RF0LE")(1) | F("IE.TCE")(1) | F("IE.EPE")(1) | F("IE.BOE")(1);
+    F("IE.RF0NE")(1) | F("IE.RF0LE")(1) | F("IE.TCE")(1) | F("IE.MRAFE")(1) | F("IE.EPE")(1) | F("IE.BOE")(1);
 constexpr std::uint32_t kAccept = 0;  // RXGFC.ANFS: into FIFO 0
 constexpr std::uint32_t kReject = 2;  // RXGFC.ANFS, ANFE
 constexpr std::uint32_t kAllPlaces = (1U << kFifoElements) - 1;
@@ -60,8 +60,11 @@ bool CanController::enter(const CanRates& rates, wire::NodeId node_id, std::uint
     rcc.set("APB1ENR1.FDCANEN", 1);
     (void)rcc.read("APB1ENR1");
     if (!set_init(true)) return false;
+    give_up_all();
     fdcan1.set("CCCR.CCE", 1);
+    fdcan1.set("CCCR.ASM", 0);
     fdcan1.set("CCCR.MON", 0);
+    has_lost_ram_ = false;
     set_timing(rates, clock_hz);
     prepare(node_id);
     kReceivePin.make_alternate(kFunction, Drive::push_pull);
@@ -153,7 +156,7 @@ node::CanState CanController::state() const {
     if (!is_started_) return node::CanState::passive;
     const std::uint32_t status = fdcan1.read("PSR");
     if (F("PSR.BO").of(status) != 0) return node::CanState::bus_off;
-    return F("PSR.EP").of(status) != 0 ? node::CanState::passive : node::CanState::active;
+    return F("PSR.EP").of(status) != 0 || failed_at_ ? node::CanState::passive : node::CanState::active;
 }
 
 /// Requests outlive bus-off: what is not cancelled is sent late.
@@ -186,6 +189,33 @@ void CanController::note_ended() {
     }
 }
 
+/// Setting CCE forgets every request.
+void CanController::give_up_all() {
+    note_ended();
+    for (Place& place : places_) {
+        if (!place.is_pending) continue;
+        place.is_pending = false;
+        place.is_given_up = true;
+        ++counts_.given_up;
+    }
+}
+
+/// RM0440, MRAF: the message RAM did not answer in time, after which the controller restricts itself (ASM):
+/// it acknowledges, but sends nothing any more. It is off the bus (INIT) by bus-off alone, or something went
+/// wrong; read first, as bus-off sets it together with PSR.BO.
+bool CanController::has_failed() const {
+    const std::uint32_t mode = fdcan1.read("CCCR");
+    const bool is_off = F("CCCR.INIT").of(mode) != 0 && !fdcan1.is_set("PSR.BO");
+    return has_lost_ram_ || F("CCCR.ASM").of(mode) != 0 || is_off;
+}
+
+void CanController::fall_silent(NodeTime now) {
+    fdcan1.set("CCCR.INIT", 1);
+    is_started_ = false;
+    failed_at_ = now;
+    ++counts_.failed;
+}
+
 void CanController::take_back(std::uint32_t index) {
     Place& place = places_[index];
     if (!place.is_pending || place.is_taken_back) return;
@@ -205,6 +235,8 @@ std::optional<wire::CanFrame> CanController::take_given_up() {
 
 void CanController::poll(NodeTime now) {
     if (!is_started_) return;
+    if (failed_at_ && elapsed(*failed_at_, now) >= kFailureShown) failed_at_.reset();
+    if (has_failed()) return fall_silent(now);
     note_ended();
     for (std::uint32_t i = 0; i < kFifoElements; ++i) {
         if (elapsed(places_[i].given, now) >= kTransmitAgeMax) take_back(i);
@@ -233,6 +265,7 @@ void CanController::on_interrupt() {
     const std::uint32_t flags = fdcan1.read("IR");
     fdcan1.write("IR", flags);
     if (F("IR.RF0L").of(flags) != 0) lost_ = lost_ + 1;
+    if (F("IR.MRAF").of(flags) != 0) has_lost_ram_ = true;
     if (F("IR.PEA").of(flags) != 0 || F("IR.PED").of(flags) != 0) has_errors_ = true;
     receive_all(now);
     has_event_ = true;

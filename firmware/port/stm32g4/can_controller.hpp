@@ -18,6 +18,7 @@ namespace octoskin::stm32g4 {
 
 struct CanCounts {
     std::uint32_t given_up = 0;  ///< frames taken and not sent: nobody acknowledged them in time, or bus-off
+    std::uint32_t failed = 0;    ///< times that the controller left the bus by itself, and not for bus-off
     std::uint32_t received = 0;
     std::uint32_t receive_lost = 0;  ///< frames for which there was no room
 };
@@ -37,6 +38,8 @@ class CanController final : public node::CanTransmitter {
   public:
     /// A frame that has not been acknowledged for so long is taken back: nothing old is ever sent.
     static constexpr Microseconds kTransmitAgeMax{20'000};
+    /// A failure shows in `state` for so long after the start that mends it.
+    static constexpr Microseconds kFailureShown{1'000'000};
 
     constexpr explicit CanController(const MicrosecondTimer& timer) : timer_(timer) {}
 
@@ -59,15 +62,18 @@ class CanController final : public node::CanTransmitter {
     [[nodiscard]] std::optional<ReceivedFrame> receive();
     [[nodiscard]] bool has_received() const { return put_ != taken_; }
 
-    /// Silent counts as passive: nobody acknowledges what is not sent.
+    /// Silent counts as passive: nobody acknowledges what is not sent. So does one that failed a short while
+    /// ago: somebody must hear of it.
     [[nodiscard]] node::CanState state() const override;
     void discard() override;
     [[nodiscard]] std::optional<wire::CanFrame> take_given_up() override;
     void restart() override;
-    /// Whether it ever joined the bus.
+    /// Takes part, or is bus-off.
     [[nodiscard]] bool is_started() const { return is_started_; }
+    [[nodiscard]] bool is_listening() const { return is_listening_; }
 
-    /// Takes back what is too old. Call at `wake_time` and after each event.
+    /// Takes back what is too old. Finds out whether the controller failed: it is silent then until it is
+    /// started again. Call at `wake_time` and after each event.
     void poll(NodeTime now);
     /// When the oldest frame that waits becomes too old.
     [[nodiscard]] std::optional<NodeTime> wake_time() const;
@@ -98,10 +104,14 @@ class CanController final : public node::CanTransmitter {
     void note_ended();
     void take_back(std::uint32_t index);
     void receive_all(NodeTime now);
+    void give_up_all();
+    [[nodiscard]] bool has_failed() const;
+    void fall_silent(NodeTime now);
 
     const MicrosecondTimer& timer_;
     bool is_started_ = false;
     bool is_listening_ = false;
+    std::optional<NodeTime> failed_at_;  ///< for a while
     std::array<Place, kFifoElements> places_{};
     CanCounts counts_;
 
@@ -112,6 +122,7 @@ class CanController final : public node::CanTransmitter {
     std::atomic<std::uint32_t> lost_ = 0;
     std::atomic<std::uint32_t> heard_ = 0;
     std::atomic<bool> has_errors_ = false;
+    std::atomic<bool> has_lost_ram_ = false;
     std::atomic<bool> has_event_ = false;
 };
 

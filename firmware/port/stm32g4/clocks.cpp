@@ -7,11 +7,14 @@ namespace octoskin::stm32g4 {
 
 namespace {
 
-constexpr Microseconds kCrystalLimit{10'000};  // crystals of this size start within 2 ms
-constexpr Microseconds kLockLimit{1'000};      // the PLL locks within 40 us
+constexpr Microseconds kCrystalLimit{
+    50'000};                               // crystals of this size start within 2 ms; a slow one is used too
+constexpr Microseconds kLockLimit{1'000};  // the PLL locks within 40 us
 constexpr Microseconds kSwitchLimit{1'000};
 
-constexpr std::uint32_t kSelectPll = 3;      // CFGR.SW
+constexpr std::uint32_t kSelectInternal = 1;  // CFGR.SW
+constexpr std::uint32_t kSelectCrystal = 2;
+constexpr std::uint32_t kSelectPll = 3;
 constexpr std::uint32_t kHalfSpeed = 8;      // CFGR.HPRE: divided by 2
 constexpr std::uint32_t kFullSpeed = 0;      // CFGR.HPRE: not divided
 constexpr std::uint32_t kCanFromPllq = 1;    // CCIPR.FDCANSEL
@@ -76,6 +79,25 @@ bool switch_to_pll(MicrosecondTimer& timer, const ClockPlan& plan) {
     return true;
 }
 
+/// As fast as the registers say that the core runs.
+std::uint32_t core_hz_now(const ClockPlan& plan) {
+    const std::uint32_t source = rcc.get("CFGR.SWS");
+    const bool is_half = rcc.get("CFGR.HPRE") == kHalfSpeed;
+    const std::uint32_t system_hz = source == kSelectPll       ? plan.core_hz()
+                                    : source == kSelectCrystal ? kCrystalHz
+                                                               : kInternalHz;
+    return is_half ? system_hz / 2 : system_hz;
+}
+
+/// Back to what reset leaves, from wherever the way up ended.
+Clocks fall_back(MicrosecondTimer& timer, const ClockPlan& plan) {
+    rcc.set("CFGR.SW", kSelectInternal);
+    if (shows(timer, "CFGR.SWS", kSelectInternal, kSwitchLimit)) rcc.set("CFGR.HPRE", kFullSpeed);
+    const std::uint32_t core_hz = core_hz_now(plan);
+    timer.start(core_hz);
+    return {.source = ClockSource::unlocked, .core_hz = core_hz, .can_hz = 0};
+}
+
 }  // namespace
 
 Clocks start_clocks(MicrosecondTimer& timer) {
@@ -84,12 +106,17 @@ Clocks start_clocks(MicrosecondTimer& timer) {
     const bool has_crystal = start_crystal(timer);
     const ClockPlan& plan = has_crystal ? kCrystalPlan : kInternalPlan;
     if (!lock_pll(timer, plan) || !prepare_flash(timer, plan.core_hz()) || !switch_to_pll(timer, plan)) {
-        return {.source = ClockSource::unlocked, .core_hz = kInternalHz, .can_hz = 0};
+        return fall_back(timer, plan);
     }
     if (!has_crystal) return {.source = ClockSource::internal, .core_hz = plan.core_hz(), .can_hz = 0};
     rcc.set("CR.CSSON", 1);
     rcc.set("CCIPR.FDCANSEL", kCanFromPllq);
     return {.source = ClockSource::crystal, .core_hz = plan.core_hz(), .can_hz = plan.can_hz()};
+}
+
+bool is_crystal_running() {
+    rcc.set("CR.HSEON", 1);
+    return rcc.is_set("CR.HSERDY");
 }
 
 }  // namespace octoskin::stm32g4

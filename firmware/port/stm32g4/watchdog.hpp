@@ -23,8 +23,8 @@ static_assert(kWatchdogUsMin >= 100'000 && kWatchdogUsMax <= 200'000);
 
 class IndependentWatchdog final : public node::Watchdog {
   public:
-    /// Cannot be undone. The first period may be the longest possible, half a second, until the registers of
-    /// the slow clock took the new one over.
+    /// Cannot be undone. Call at the speed that the core has after reset. Waits until the slow clock took the
+    /// period over: about 0.3 ms, at most 2; should it never do so, the first period lasts up to two seconds.
     void start();
     void feed() override;
 };

@@ -275,6 +275,14 @@ std::uint32_t NucleoBoard::ram_word(std::uint32_t address) const {
     return value;
 }
 
+std::vector<std::uint16_t> NucleoBoard::patch(std::uint32_t address,
+                                              const std::vector<std::uint16_t>& instructions) {
+    std::vector<std::uint16_t> before(instructions.size());
+    std::memcpy(before.data(), flash_.data() + (address - kFlashBase), 2 * before.size());
+    core_->patch(address, instructions);
+    return before;
+}
+
 void NucleoBoard::jump(const std::string& symbol) {
     const auto address = image_.address_of(symbol);
     if (!address) throw std::runtime_error(fmt::format("the program has no symbol '{}'", symbol));

@@ -85,6 +85,12 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
     [[nodiscard]] std::uint32_t ram_word(std::uint32_t address) const;
     /// For tests: the core goes on at `symbol`.
     void jump(const std::string& symbol);
+    void jump(std::uint32_t address) { core_->jump(address); }
+    /// For tests: other instructions in flash, until they are put back. Returns what was there.
+    std::vector<std::uint16_t> patch(std::uint32_t address, const std::vector<std::uint16_t>& instructions);
+    /// For tests: what a debugger would write.
+    void poke(std::uint32_t address, std::uint32_t value) { bus_->write(address, value, 4); }
+    void refuse_pll() { rcc_->refuse_pll(); }
 
   private:
     struct Pin {

@@ -159,6 +159,13 @@ void CortexM4::jump(std::uint32_t address) {
     set(UC_ARM_REG_PC, address | 1U);
 }
 
+void CortexM4::patch(std::uint32_t address, std::span<const std::uint16_t> instructions) {
+    require(uc_mem_write(engine_, address, instructions.data(), instructions.size_bytes()), "patch");
+    // What was translated is forgotten, whatever block it is part of.
+    require(uc_ctl_remove_cache(engine_, address, address + instructions.size_bytes()), "patch");
+    counted_.assign(counted_.size(), {});
+}
+
 void CortexM4::run(BoardTime limit) {
     limit_ = limit;
     is_slice_interrupted_ = false;

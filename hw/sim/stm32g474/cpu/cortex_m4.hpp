@@ -76,6 +76,8 @@ class CortexM4 {
     void forget_longest_awake() noexcept { longest_awake_ps_ = 0; }
     /// For tests: starts somewhere else than the reset handler.
     void jump(std::uint32_t address);
+    /// For tests: other instructions in memory that the core does not write.
+    void patch(std::uint32_t address, std::span<const std::uint16_t> instructions);
 
   private:
     struct Fault {

@@ -33,8 +33,10 @@ const I2cFault* I2cWire::fault(I2cFaultKind kind) const {
 
 void I2cWire::note_stuck_sda() {
     for (const I2cFault& candidate : faults_) {
-        if (candidate.kind == I2cFaultKind::sda_stuck_low && candidate.first == transfer_count_)
+        if (candidate.kind == I2cFaultKind::sda_stuck_low && candidate.first == transfer_count_) {
             stuck_clocks_ = candidate.position;
+            ++fault_hits_;
+        }
     }
 }
 
@@ -57,9 +59,11 @@ I2cWire::Answer I2cWire::start(std::uint8_t address, bool is_read, SimTime time)
     byte_being_read_.reset();
     if (fault(I2cFaultKind::stretch) != nullptr) {
         is_stretched_ = true;
+        ++fault_hits_;
         return Answer::stretched;
     }
     if (fault(I2cFaultKind::lose_arbitration) != nullptr) {
+        ++fault_hits_;
         end_transfer();
         return Answer::arbitration_lost;
     }
@@ -67,18 +71,23 @@ I2cWire::Answer I2cWire::start(std::uint8_t address, bool is_read, SimTime time)
     for (I2cTarget* target : targets_) {
         if (target->on_start(address, is_read, time)) selected_.push_back(target);
     }
-    const bool is_refused = selected_.empty() || fault(I2cFaultKind::nack_address) != nullptr ||
-                            (is_read && fault(I2cFaultKind::nack_read) != nullptr);
+    const bool is_faulty = fault(I2cFaultKind::nack_address) != nullptr ||
+                           (is_read && fault(I2cFaultKind::nack_read) != nullptr);
+    const bool is_refused = selected_.empty() || is_faulty;
     if (is_refused) ++refused_count_;
+    if (is_faulty && !selected_.empty()) ++fault_hits_;
     return is_refused ? Answer::refused : Answer::acknowledged;
 }
 
 I2cWire::Answer I2cWire::write(std::uint8_t byte, SimTime time) {
     const std::uint32_t position = written_++;
     const I2cFault* refused = fault(I2cFaultKind::nack_byte);
-    if (refused != nullptr && refused->position == position) return Answer::refused;
-    if (position >= kIndexBytes && fault(I2cFaultKind::lose_write) != nullptr) return Answer::acknowledged;
+    const bool is_refused = refused != nullptr && refused->position == position;
+    const bool is_lost = position >= kIndexBytes && fault(I2cFaultKind::lose_write) != nullptr;
     const std::uint8_t arriving = with_bit_flipped(byte, position, fault(I2cFaultKind::flip_written_bit));
+    if (is_refused || is_lost || arriving != byte) ++fault_hits_;
+    if (is_refused) return Answer::refused;
+    if (is_lost) return Answer::acknowledged;
     bool is_acknowledged = false;
     for (I2cTarget* target : selected_) is_acknowledged = target->on_write(arriving, time) || is_acknowledged;
     return is_acknowledged ? Answer::acknowledged : Answer::refused;
@@ -88,9 +97,11 @@ std::uint8_t I2cWire::read(SimTime time) {
     const std::uint32_t position = read_++;
     std::uint8_t byte = 0xFF;  // the pull-ups: whoever drives a 0 wins
     for (I2cTarget* target : selected_) byte = static_cast<std::uint8_t>(byte & target->on_read(time));
+    const std::uint8_t driven = byte;
     const I2cFault* ones = fault(I2cFaultKind::read_ones);
     if (ones != nullptr && position >= ones->position) byte = 0xFF;
     byte_being_read_ = byte = with_bit_flipped(byte, position, fault(I2cFaultKind::flip_bit));
+    if (byte != driven) ++fault_hits_;
     return byte;
 }
 

@@ -17,6 +17,10 @@ class I2cWire {
     void attach(I2cTarget& target) { targets_.push_back(&target); }
     void inject(const I2cFault& fault);
     void clear_faults() { faults_.clear(); }
+    /// Whoever held SDA lets go.
+    void let_go_of_sda() { stuck_clocks_ = 0; }
+    /// Times that a fault changed what would have happened.
+    [[nodiscard]] std::uint64_t fault_hits() const noexcept { return fault_hits_; }
 
     // --- the controller's side; a transfer lasts from a START on an idle bus to its STOP
     enum class Answer : std::uint8_t { acknowledged, refused, arbitration_lost, stretched };
@@ -61,6 +65,7 @@ class I2cWire {
     std::uint64_t transfer_count_ = 0;
     std::uint64_t bit_count_ = 0;
     std::uint64_t refused_count_ = 0;
+    std::uint64_t fault_hits_ = 0;
 };
 
 }  // namespace octoskin::sim::stm32

@@ -1,5 +1,5 @@
-// FDCAN1 (RM0440 44): modes, bit timing, filters, FIFOs, error counting, bus-off, bus monitoring. Test and
-// restricted modes are not modelled.
+// FDCAN1 (RM0440 44): modes, bit timing, filters, FIFOs, error counting, bus-off, bus monitoring; the
+// restricted mode only as what a failure of the message RAM leads to. The test modes are not modelled.
 #pragma once
 
 #include <array>
@@ -42,6 +42,12 @@ class Fdcan final : public Peripheral {
     void on_disturbed();
     void on_received(const wire::CanFrame& frame);
     [[nodiscard]] bool is_bus_off() const noexcept { return is_bus_off_; }
+
+    // --- for tests
+    /// The message RAM does not answer in time, once.
+    void lose_ram();
+    /// INIT does not follow what is written, until told otherwise: the controller does not start.
+    void set_deaf(bool is_deaf) { is_deaf_ = is_deaf; }
 
   private:
     static constexpr std::uint32_t kPlaces = FdcanRam::kFifoElements;
@@ -108,6 +114,7 @@ class Fdcan final : public Peripheral {
     BoardTime attempt_fails_at_ = kNever;
     bool is_joined_ = false;
     bool is_bus_off_ = false;
+    bool is_deaf_ = false;
     int transmit_errors_ = 0;
     int receive_errors_ = 0;
     std::uint32_t last_error_ = 7;

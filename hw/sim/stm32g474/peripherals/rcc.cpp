@@ -74,8 +74,7 @@ constexpr std::uint32_t kSwitchHse = 2;
 constexpr std::uint32_t kSwitchPll = 3;
 constexpr std::uint32_t kCssFlag = 1U << 8;
 
-constexpr std::int64_t kCrystalStart = 2'000 * kPsPerUs;  // DS12288: 2 ms typical
-constexpr std::int64_t kPllLock = 40 * kPsPerUs;          // DS12288: at most 40 us
+constexpr std::int64_t kPllLock = 40 * kPsPerUs;  // DS12288: at most 40 us
 constexpr std::int64_t kLsiStart = 130 * kPsPerUs;
 constexpr std::int64_t kStepPause = kPsPerUs;
 constexpr std::uint32_t kStepAbove = 80'000'000;  // RM0440 7.2.7
@@ -111,7 +110,13 @@ std::uint32_t Rcc::read(std::uint32_t offset) {
 void Rcc::advance() {
     if (env_.now >= crystal_.fails_at && crystal_.is_present) {
         crystal_.is_present = false;
+        crystal_.fails_at = kNever;
         lose_crystal();
+    }
+    if (env_.now >= crystal_.returns_at) {
+        crystal_.returns_at = kNever;
+        crystal_.is_present = true;
+        if (is_set(kCr, kHseOn)) crystal_ready_at_ = env_.now + crystal_.starts_in.ps;
     }
     if (env_.now >= crystal_ready_at_) {
         crystal_ready_at_ = kNever;
@@ -129,7 +134,7 @@ void Rcc::advance() {
 
 BoardTime Rcc::next_event() const {
     const BoardTime failure = crystal_.is_present ? crystal_.fails_at : kNever;
-    return std::min({crystal_ready_at_, pll_ready_at_, lsi_ready_at_, failure});
+    return std::min({crystal_ready_at_, pll_ready_at_, lsi_ready_at_, failure, crystal_.returns_at});
 }
 
 // RM0440 7.2.11: with the security system on, the core falls back to the internal oscillator and gets an NMI.
@@ -204,7 +209,7 @@ void Rcc::write_control(std::uint32_t value) {
     if (turns(kPllOn, false) && is_pll_used) keep(kPllOn, "PLL");
     if (turns(kHseOn, false) && is_crystal_used) keep(kHseOn, "HSE");
     if (turns(kHsiOn, false) && source == kSwitchHsi) keep(kHsiOn, "HSI");
-    if (turns(kHseOn, true) && crystal_.is_present) crystal_ready_at_ = env_.now + kCrystalStart;
+    if (turns(kHseOn, true) && crystal_.is_present) crystal_ready_at_ = env_.now + crystal_.starts_in.ps;
     if (turns(kHseOn, false)) {
         crystal_ready_at_ = kNever;
         stored &= ~(1U << kHseReady);
@@ -264,8 +269,9 @@ void Rcc::write_configuration(std::uint32_t value) {
     const std::uint32_t hclk_before = hclk_hz();
     const std::uint32_t divider_before = ahb_divider();
     hooks_.before_change();
-    bank_.set(kCfgr, (stored & ~0xCU) | (stored & 3U) << 2U);
-    check_step(hclk_before, divider_before, present != (stored & 3U));
+    const std::uint32_t shown = wanted == kSwitchPll && refuses_pll_ ? present : stored & 3U;
+    bank_.set(kCfgr, (stored & ~0xCU) | shown << 2U);
+    check_step(hclk_before, divider_before, present != shown);
     hooks_.after_change();
 }
 

@@ -14,6 +14,8 @@ namespace octoskin::sim::stm32 {
 struct Crystal {
     bool is_present = true;
     BoardTime fails_at = kNever;
+    BoardTime returns_at = kNever;                      ///< after it failed, or if it was never there
+    BoardTime starts_in = BoardTime{2'000 * kPsPerUs};  ///< DS12288: 2 ms typical
 };
 
 /// Bits of RCC_CSR.
@@ -42,6 +44,8 @@ class Rcc final : public Peripheral {
     [[nodiscard]] BoardTime next_event() const override;
 
     void note_reset(ResetFlag flag);
+    /// For tests: the core's clock can never be switched to the PLL.
+    void refuse_pll() { refuses_pll_ = true; }
     [[nodiscard]] bool is_enabled(ClockEnable enable) const;
     /// The core's clock is gone: only the watchdog helps.
     [[nodiscard]] bool is_stopped() const noexcept { return is_stopped_; }
@@ -85,6 +89,7 @@ class Rcc final : public Peripheral {
     BoardTime lsi_ready_at_ = kNever;
     BoardTime switched_to_pll_at_{};
     bool is_stopped_ = false;
+    bool refuses_pll_ = false;
 };
 
 }  // namespace octoskin::sim::stm32

@@ -46,6 +46,7 @@ class Board {
 TEST(RunRecord, survives_being_saved_and_loaded) {
     const RunRecord record{.fault = FaultKind::stack_guard,
                            .is_fault_new = true,
+                           .is_starting = true,
                            .mode = RunMode::retry,
                            .retries = 5,
                            .resets = 0x12345678,
@@ -58,13 +59,46 @@ TEST(RunRecord, survives_being_saved_and_loaded) {
     EXPECT_EQ(load(memory), record);
 }
 
-TEST(RunRecord, holds_nothing_where_any_bit_is_wrong) {
+constexpr std::size_t kCopyBits = 32 * KeptMemory::Copy{}.size();
+
+TEST(RunRecord, holds_nothing_where_any_bit_of_both_copies_is_wrong) {
     KeptMemory memory{};
     save({.fault = FaultKind::assertion, .resets = 2, .where = 99}, memory);
-    for (std::size_t bit = 0; bit < 32 * memory.words.size(); ++bit) {
+    for (std::size_t bit = 0; bit < kCopyBits; ++bit) {
         KeptMemory damaged = memory;
-        damaged.words[bit / 32] ^= 1U << (bit % 32);
+        for (auto& copy : damaged.copies) copy[bit / 32] ^= 1U << (bit % 32);
         EXPECT_EQ(load(damaged), RunRecord{}) << bit;
+    }
+}
+
+TEST(RunRecord, outlives_any_damage_to_one_copy) {
+    const RunRecord record{.fault = FaultKind::assertion, .mode = RunMode::safe, .resets = 2, .where = 99};
+    KeptMemory memory{};
+    save(record, memory);
+    for (std::size_t bit = 0; bit < 2 * kCopyBits; ++bit) {
+        KeptMemory damaged = memory;
+        damaged.copies[bit / kCopyBits][bit % kCopyBits / 32] ^= 1U << (bit % 32);
+        EXPECT_EQ(load(damaged), record) << bit;
+    }
+}
+
+// Word by word, in the order in which they are written: what is read is the old record or the new one.
+TEST(RunRecord, is_the_old_or_the_new_one_wherever_a_reset_cuts_saving_short) {
+    const RunRecord old{.resets = 1, .uptime_ms = 100};
+    const RunRecord later{.fault = FaultKind::assertion, .mode = RunMode::safe, .resets = 2, .uptime_ms = 7};
+    KeptMemory before{};
+    KeptMemory after{};
+    save(old, before);
+    save(later, after);
+    const std::size_t words = KeptMemory::Copy{}.size();
+    for (std::size_t written = 0; written <= 2 * words; ++written) {
+        KeptMemory cut = before;
+        for (std::size_t i = 0; i < written; ++i) {
+            cut.copies[i / words][i % words] = after.copies[i / words][i % words];
+        }
+        const RunRecord found = load(cut);
+        EXPECT_TRUE(found == old || found == later) << written;
+        EXPECT_EQ(found == later, written >= words) << written;
     }
 }
 
@@ -72,12 +106,14 @@ TEST(RunRecord, holds_nothing_after_power_on_whatever_memory_may_hold) {
     std::mt19937 random(1);
     for (int i = 0; i < 10'000; ++i) {
         KeptMemory memory{};
-        for (auto& word : memory.words) word = static_cast<std::uint32_t>(random());
+        for (auto& copy : memory.copies) {
+            for (auto& word : copy) word = static_cast<std::uint32_t>(random());
+        }
         EXPECT_EQ(load(memory), RunRecord{});
     }
     for (const std::uint32_t pattern : {0U, 0xFFFF'FFFFU, 0xAAAA'AAAAU, 0x5555'5555U}) {
         KeptMemory memory{};
-        memory.words.fill(pattern);
+        for (auto& copy : memory.copies) copy.fill(pattern);
         EXPECT_EQ(load(memory), RunRecord{}) << pattern;
     }
 }
@@ -178,6 +214,37 @@ TEST(RunRecord, stays_in_safe_mode_over_resets_and_counts_the_retries_that_faile
         EXPECT_EQ(start.record.mode, RunMode::safe);
         EXPECT_EQ(start.record.retries, failed);
     }
+}
+
+TEST(RunRecord, counts_a_run_that_ends_before_there_is_a_node_and_tells_when_to_keep_still) {
+    KeptMemory memory{};
+    EXPECT_FALSE(begin_start_up(memory, ResetCause::power_on, kRules).is_start_up_failing);
+    for (std::uint32_t reset = 1; reset < 3; ++reset) {
+        note_fault(memory, FaultKind::assertion, 5);
+        const RunStart start = begin_start_up(memory, ResetCause::software, kRules);
+        EXPECT_EQ(start.record.resets, reset);
+        EXPECT_FALSE(start.is_start_up_failing);
+    }
+    for (std::uint8_t retries = 0; retries < 4; ++retries) {
+        note_fault(memory, FaultKind::assertion, 5);
+        RunStart start = begin_start_up(memory, ResetCause::software, kRules);
+        EXPECT_TRUE(start.is_start_up_failing);
+        EXPECT_EQ(start.record.retries, retries);
+        retry_start_up(memory, start);
+        EXPECT_EQ(load(memory).mode, RunMode::retry);
+        EXPECT_TRUE(load(memory).is_starting);
+    }
+    EXPECT_FALSE(begin_start_up(memory, ResetCause::pin, kRules).is_start_up_failing)
+        << "somebody ordered it";
+}
+
+TEST(RunRecord, lets_a_node_in_safe_mode_start) {
+    Board board;
+    board.begin(ResetCause::power_on);
+    for (int i = 0; i < 3; ++i) board.reset(ResetCause::watchdog, 100);
+    const RunStart start = begin_start_up(board.memory(), ResetCause::watchdog, kRules);
+    EXPECT_EQ(start.record.mode, RunMode::safe);
+    EXPECT_FALSE(start.is_start_up_failing) << "there was a node each time: it can say so itself";
 }
 
 TEST(RunRecord, doubles_the_time_of_safe_mode_from_a_minute_to_an_hour) {

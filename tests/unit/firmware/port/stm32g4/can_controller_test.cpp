@@ -329,6 +329,65 @@ TEST_F(CanControllerTest, comes_back_from_bus_off_when_told_and_sends_nothing_ol
     EXPECT_EQ(space_.written_to(kCccr).size(), 1U);
 }
 
+// MRAF, restricted operation (CCCR.ASM), or off the bus without bus-off: each alone is enough.
+TEST_F(CanControllerTest, falls_silent_when_it_failed_and_tells_for_a_second_after_it_was_mended) {
+    const auto fail = [this](int how) {
+        if (how == 0) {
+            EXPECT_NE(space_[kBase + 0x54] & (1U << 14U), 0U) << "enabled";
+            space_[kIr] |= 1U << 14U;
+            can_.on_interrupt();
+        } else {
+            space_[kCccr] |= how == 1 ? 4U : 1U;
+        }
+    };
+    for (const int how : {0, 1, 2}) {
+        SCOPED_TRACE(how);
+        ASSERT_TRUE(can_.start(rates_, kNode, kClock));
+        const std::uint32_t failed_before = can_.counts().failed;
+        ASSERT_TRUE(can_.send(frame(0x145, 1)));
+        const NodeTime now{space_.time_us() + 1'000'000};
+        can_.poll(now);
+        ASSERT_EQ(can_.state(), node::CanState::active);
+        while (can_.take_given_up()) {
+        }
+        end_cancelled(0);
+        end_cancelled(1);
+        end_cancelled(2);
+        while (can_.take_given_up()) {
+        }
+        ASSERT_TRUE(can_.send(frame(0x145, 2)));
+        fail(how);
+        can_.poll(now);
+        EXPECT_FALSE(can_.is_started());
+        EXPECT_EQ(can_.counts().failed, failed_before + 1);
+        EXPECT_EQ(space_[kCccr] & 1U, 1U) << "INIT";
+        EXPECT_FALSE(can_.send(frame(0x145, 3)));
+        EXPECT_EQ(can_.state(), node::CanState::passive);
+        can_.poll(now);
+        EXPECT_EQ(can_.counts().failed, failed_before + 1) << "once";
+
+        ASSERT_TRUE(can_.start(rates_, kNode, kClock));
+        EXPECT_EQ(space_[kCccr] & 0x5U, 0U) << "neither INIT nor ASM";
+        EXPECT_EQ(can_.take_given_up(), frame(0x145, 2)) << "setting CCE forgot it";
+        space_[kTxbrp] = 0;
+        update_queue();
+        can_.poll(now + Microseconds{999'999});
+        EXPECT_EQ(can_.state(), node::CanState::passive) << "so that a heartbeat says it";
+        can_.poll(now + Microseconds{1'000'000});
+        EXPECT_EQ(can_.state(), node::CanState::active);
+    }
+}
+
+TEST_F(CanControllerTest, does_not_take_bus_off_for_a_failure) {
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
+    space_[kPsr] = kBusOff;
+    space_[kCccr] |= 1U;
+    can_.poll(NodeTime{1'000'000});
+    EXPECT_TRUE(can_.is_started());
+    EXPECT_EQ(can_.counts().failed, 0U);
+    EXPECT_EQ(can_.state(), node::CanState::bus_off);
+}
+
 TEST_F(CanControllerTest, listens_without_taking_part_then_joins) {
     ASSERT_TRUE(can_.listen(rates_, kNode, kClock));
     EXPECT_EQ(space_[kCccr] & 0x21U, 0x20U) << "MON, off INIT";

@@ -218,6 +218,31 @@ TEST(Watchdog, bites_within_200_ms_of_the_slowest_oscillator) {
     EXPECT_EQ(space.written_to(0x4000'3000).back(), 0xAAAAU);
 }
 
+// RM0440: a feed before PVU and RVU are 0 loads the old period.
+TEST(Watchdog, feeds_first_when_the_slow_clock_has_taken_the_period_over) {
+    test::AddressSpace space;
+    std::uint32_t looks = 0;
+    space.before_read(0x4000'300C, [&looks](std::uint32_t& status) {
+        ++looks;
+        status = looks < 20 ? 3U : looks < 30 ? 2U : looks < 40 ? 1U : 0U;
+    });
+    std::uint32_t looks_at_feed = 0;
+    space.on_write(0x4000'3000, [&](std::uint32_t&, std::uint32_t key) {
+        if (key == 0xAAAA) looks_at_feed = looks;
+    });
+    IndependentWatchdog watchdog;
+    watchdog.start();
+    EXPECT_EQ(looks_at_feed, 40U);
+}
+
+TEST(Watchdog, does_not_wait_for_ever_for_it) {
+    test::AddressSpace space;
+    space.before_read(0x4000'300C, [](std::uint32_t& status) { status = 3; });
+    IndependentWatchdog watchdog;
+    watchdog.start();
+    EXPECT_EQ(space.written_to(0x4000'3000).back(), 0xAAAAU);
+}
+
 // --- reset cause
 
 TEST(ResetCause, is_found_for_every_combination_of_flags) {
