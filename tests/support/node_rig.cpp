@@ -7,9 +7,10 @@ namespace octoskin::test {
 
 namespace {
 
-// Distances repeat after this many ranges: long after any reading of the earlier one is gone.
-constexpr std::uint32_t kDistances = 1'000;
-constexpr std::uint16_t kFirstDistanceMm = 200;
+constexpr std::uint32_t kFirstDistanceMm = 200;
+// What each mode ranges without wrapping round, with some to spare.
+constexpr std::uint32_t kLongDistancesMm = 4'200;
+constexpr std::uint32_t kShortDistancesMm = 1'100;
 constexpr std::size_t kMailboxes = 3;
 constexpr std::int64_t kTakenBackAfterUs = 20'000;
 
@@ -33,10 +34,19 @@ NodeConfig fleet_config(std::uint8_t count, std::uint8_t buses) {
     return config;
 }
 
-NodeRig::FittedSensor::FittedSensor(const SensorSetup& setup)
-    : model(setup.part, [this](std::uint32_t, sim::SimTime middle, const Roi& roi) {
-          const auto index = static_cast<std::uint32_t>(truth.size()) % kDistances;
-          const auto range_mm = static_cast<std::uint16_t>(kFirstDistanceMm + index);
+NodeRig::Distances NodeRig::distances_of(std::size_t sensor) const {
+    const bool is_long =
+        sensor < config_.sensor_count && config_.sensors[sensor].distance_mode == DistanceMode::long_range;
+    const std::uint32_t step_mm = config_.sensor_count + 1U;  // and the stray one
+    return {.first_mm = kFirstDistanceMm + static_cast<std::uint32_t>(sensor),
+            .step_mm = step_mm,
+            .count = (is_long ? kLongDistancesMm : kShortDistancesMm) / step_mm};
+}
+
+NodeRig::FittedSensor::FittedSensor(const SensorSetup& setup, const Distances& distances)
+    : model(setup.part, [this, distances](std::uint32_t, sim::SimTime middle, const Roi& roi) {
+          const auto index = static_cast<std::uint32_t>(truth.size()) % distances.count;
+          const auto range_mm = static_cast<std::uint16_t>(distances.first_mm + distances.step_mm * index);
           truth.push_back({.range_mm = range_mm, .window_middle = middle, .roi = roi});
           return sim::RangingReturn{
               .range_m = range_mm * 1e-3, .sigma_m = 0.005, .peak_signal_mcps = 10.0, .ambient_mcps = 0.5};
@@ -55,7 +65,7 @@ NodeRig::NodeRig(const NodeConfig& config, const std::vector<SensorSetup>& setup
         bus_pointers_.push_back(&buses_.back());
     }
     for (std::size_t i = 0; i < config.sensor_count; ++i) {
-        sensors_.push_back(std::make_unique<FittedSensor>(setups.at(i)));
+        sensors_.push_back(std::make_unique<FittedSensor>(setups.at(i), distances_of(i)));
         if (setups[i].is_fitted) buses_.at(config.sensors[i].bus).attach(sensors_.back()->model);
     }
     can_.tap([this](const wire::CanFrame& frame, sim::SimTime end) { record(frame, end); });
@@ -106,7 +116,8 @@ void NodeRig::set(std::uint8_t line, bool is_high) {
 }
 
 void NodeRig::attach_stray_sensor(std::size_t bus, const sim::SensorFaults& faults) {
-    stray_ = std::make_unique<FittedSensor>(SensorSetup{.part = {}, .faults = faults});
+    stray_ = std::make_unique<FittedSensor>(SensorSetup{.part = {}, .faults = faults},
+                                            distances_of(config_.sensor_count));
     stray_->model.set_xshut(true, present_.time);
     buses_.at(bus).attach(stray_->model);
 }

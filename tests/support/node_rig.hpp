@@ -30,7 +30,8 @@ struct SensorSetup {
     bool is_fitted = true;
 };
 
-/// A range as the sensor truly took it. Its distance in millimetres tells it from its neighbours in time.
+/// A range as the sensor truly took it. Its distance in millimetres tells it from its neighbours in time, and
+/// from those of all other sensors.
 struct TrueRange {
     std::uint16_t range_mm = 0;
     sim::SimTime window_middle{};
@@ -93,6 +94,7 @@ class NodeRig final : private node::XshutLines,
     /// A sensor more, whose XSHUT nobody drives: it answers at 0x29 from the start.
     void attach_stray_sensor(std::size_t bus, const sim::SensorFaults& faults = {});
 
+    [[nodiscard]] const NodeConfig& config() const noexcept { return config_; }
     [[nodiscard]] sim::SimTime now() const noexcept { return present_.time; }
     [[nodiscard]] NodeTime node_now() const { return clock_.to_node(present_.time); }
     [[nodiscard]] const sim::NodeClock& clock() const noexcept { return clock_; }
@@ -132,8 +134,18 @@ class NodeRig final : private node::XshutLines,
     }
 
   private:
+    /// Those of one sensor, one range after the other, then from the first on again: after 26 s at 30 Hz if
+    /// there are four, after 4 s if there are 34. No two sensors have one in common, so that a reading under
+    /// another's name is seen.
+    struct Distances {
+        std::uint32_t first_mm = 0;
+        std::uint32_t step_mm = 0;
+        std::uint32_t count = 0;
+    };
+    [[nodiscard]] Distances distances_of(std::size_t sensor) const;
+
     struct FittedSensor {
-        FittedSensor(const SensorSetup& setup);
+        FittedSensor(const SensorSetup& setup, const Distances& distances);
         std::vector<TrueRange> truth;
         sim::SensorModel model;
     };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/sim/reliability/oracles.hpp"
+#include "tests/support/idle_ports.hpp"
 
 namespace octoskin::test {
 namespace {
@@ -79,16 +80,6 @@ class DeafBus final : public i2c::Bus {
 
   private:
     bool is_busy_ = false;
-};
-class NoLines final : public node::XshutLines {
-    void set(std::uint8_t, bool) override {}
-};
-class NoCan final : public node::CanTransmitter {
-    bool send(const wire::CanFrame&) override { return true; }
-    [[nodiscard]] node::CanState state() const override { return node::CanState::active; }
-    void discard() override {}
-    std::optional<wire::CanFrame> take_given_up() override { return std::nullopt; }
-    void restart() override {}
 };
 class CountingDog final : public node::Watchdog {
   public:

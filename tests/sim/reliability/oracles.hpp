@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "tests/support/node_rig.hpp"
 
@@ -17,8 +20,11 @@ inline constexpr Microseconds kSecond{1'000'000};
 inline constexpr std::int64_t kPeriodUs = 33'000;
 /// reliability: 3 periods to notice, 300 ms to re-initialise, 2 periods to range.
 inline constexpr std::int64_t kReinitialisedUs = 3 * kPeriodUs + 300'000 + 2 * kPeriodUs;
-/// The clock of a node that wraps 5 s after the start.
-inline const sim::NodeClock kWrapsAfter5s{{0xFFFF'FFFFU - 5'000'000U}, 0.0};
+/// The clock of a node that wraps so long after the start.
+inline sim::NodeClock wraps_after(Microseconds time) {
+    return {NodeTime{} - time, 0.0};
+}
+inline const sim::NodeClock kWrapsAfter5s = wraps_after(5 * kSecond);
 
 /// The longest time without a reading of `sensor` from `us` on.
 inline std::int64_t longest_gap_us(const NodeRig& rig, std::uint8_t sensor, std::int64_t us) {
@@ -44,17 +50,56 @@ inline std::int64_t longest_silence_us(const NodeRig& rig, std::int64_t us) {
     return std::max(longest, rig.now().us - last);
 }
 
-/// P1 as far as a node can keep it: every distance sent of `sensor` was truly measured, each once and in this
-/// order.
-inline void expect_only_the_truth(NodeRig& rig, std::uint8_t sensor) {
-    std::size_t truth = 0;
+/// How far `said` was captured from `truth`, in microseconds of the node's clock.
+inline std::int64_t capture_error_us(const NodeRig& rig, const SaidReading& said, const TrueRange& truth) {
+    const std::uint32_t true_us = rig.clock().to_node(truth.window_middle).us;
+    const std::int64_t span_us = said.reading.capture.span_us;
+    const std::int64_t ahead_us = (std::int64_t{said.reading.capture.value_us} - true_us) % span_us;
+    return ahead_us > span_us / 2    ? ahead_us - span_us
+           : ahead_us < -span_us / 2 ? ahead_us + span_us
+                                     : ahead_us;
+}
+
+/// What is wrong with the readings sent of `sensor`; empty if nothing is. Each must be one that this sensor
+/// truly took: this distance, which no other sensor has, within the two seconds before, in this zone, at this
+/// time; none twice, all in their order.
+inline std::vector<std::string> untruths(const NodeRig& rig, std::uint8_t sensor) {
+    // The bound that is told at most, and a poll that a flipped bit answered wrongly.
+    constexpr std::int64_t kCaptureErrorMaxUs = 12'000;
+    constexpr std::int64_t kAgeMaxUs = 2'000'000;
+    const SensorConfig& config = rig.config().sensors.at(sensor);
+    std::vector<std::string> wrong;
     const auto& ranges = rig.truth(sensor);
+    std::size_t next = 0;
     for (const SaidReading& said : rig.readings_of(sensor)) {
-        while (truth < ranges.size() && ranges[truth].range_mm != said.reading.range_mm) ++truth;
-        ASSERT_LT(truth, ranges.size())
-            << "sensor " << int{sensor} << " sent " << said.reading.range_mm << " mm at " << said.end.us;
-        ++truth;
+        const auto describe = [&](const std::string& what) {
+            wrong.push_back("sensor " + std::to_string(sensor) + " sent " +
+                            std::to_string(said.reading.range_mm) + " mm at " + std::to_string(said.end.us) +
+                            " us: " + what);
+        };
+        while (next < ranges.size() && ranges[next].window_middle.us < said.end.us - kAgeMaxUs) ++next;
+        std::size_t found = next;
+        while (found < ranges.size() && ranges[found].window_middle < said.end &&
+               ranges[found].range_mm != said.reading.range_mm) {
+            ++found;
+        }
+        if (found == ranges.size() || !(ranges[found].window_middle < said.end)) {
+            describe("not measured of late, or sent already");
+            continue;
+        }
+        next = found + 1;
+        if (!(ranges[found].roi == config.zones.at(said.reading.zone))) describe("in another zone");
+        const std::int64_t error_us = capture_error_us(rig, said, ranges[found]);
+        if (std::abs(error_us) > kCaptureErrorMaxUs)
+            describe("captured " + std::to_string(error_us) + " us beside the truth");
     }
+    return wrong;
+}
+
+/// P1 as far as a node can keep it.
+inline void expect_only_the_truth(const NodeRig& rig, std::uint8_t sensor) {
+    const auto wrong = untruths(rig, sensor);
+    EXPECT_TRUE(wrong.empty()) << wrong.size() << " readings, first: " << wrong.front();
 }
 
 /// P2: every reading accepted was sent, lost for a reason that was counted, or waits.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tests/support/idle_ports.hpp"
 #include "tests/support/node_rig.hpp"
 
 namespace octoskin::node {
@@ -160,20 +161,9 @@ TEST_F(NodeCommandsTest, blinks_for_as_long_as_it_is_told) {
     EXPECT_LE(rig_.lit().size(), 9U);
 }
 
-class NoLines final : public XshutLines {
-    void set(std::uint8_t, bool) override {}
-};
-class NoCan final : public CanTransmitter {
-    bool send(const wire::CanFrame&) override { return true; }
-    [[nodiscard]] CanState state() const override { return CanState::active; }
-    void discard() override {}
-    std::optional<wire::CanFrame> take_given_up() override { return std::nullopt; }
-    void restart() override {}
-};
-
 TEST(NodeWithoutLight, refuses_to_identify_itself_and_sleeps_on) {
-    NoLines lines;
-    NoCan can;
+    test::NoLines lines;
+    test::NoCan can;
     Node node(without_configuration(), {}, {.buses = {}, .xshut = lines, .can = can}, NodeTime{});
     const auto poll_until = [&node](std::uint32_t end_us) {
         for (std::uint32_t us = 0; us < end_us; us += 1'000) node.poll(NodeTime{us});
