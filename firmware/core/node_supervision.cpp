@@ -77,7 +77,7 @@ void Node::supervise_can(NodeTime now) {
             ports_.can.restart();
             break;
         case BusOffRecovery::Action::resume:
-            announcer_.request_info(wire::InfoPage::traffic);
+            if (!is_safe()) announcer_.request_info(wire::InfoPage::traffic);
             break;
     }
 }

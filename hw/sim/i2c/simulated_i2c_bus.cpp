@@ -123,13 +123,21 @@ SimulatedI2cBus::Failure SimulatedI2cBus::run_write() {
 
 bool SimulatedI2cBus::pass_to_targets(std::size_t position, std::uint8_t byte) {
     constexpr std::size_t kIndexBytes = 2;
-    if (position >= kIndexBytes && fault(I2cFaultKind::lose_write) != nullptr) return true;
+    if (position >= kIndexBytes && fault(I2cFaultKind::lose_write) != nullptr) {
+        note_altered_write();
+        return true;
+    }
     const std::uint8_t arriving = with_bit_flipped(byte, position, fault(I2cFaultKind::flip_written_bit));
+    if (arriving != byte) note_altered_write();
     bool is_acknowledged = false;
     for (I2cTarget* target : selected_) {
         is_acknowledged = target->on_write(arriving, after_bits(bits_)) || is_acknowledged;
     }
     return is_acknowledged;
+}
+
+void SimulatedI2cBus::note_altered_write() {
+    if (altered_writes_.empty() || altered_writes_.back() != started_) altered_writes_.push_back(started_);
 }
 
 SimulatedI2cBus::Failure SimulatedI2cBus::run_read() {

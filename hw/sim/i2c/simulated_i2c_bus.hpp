@@ -58,6 +58,8 @@ class SimulatedI2cBus final : public i2c::Bus {
 
     /// Whether a line is held by a fault, and not yet let go.
     [[nodiscard]] bool is_held() const noexcept { return stuck_clocks_ > 0; }
+    /// When transfers began in which a fault altered what a target was told, or kept it from it.
+    [[nodiscard]] const std::vector<SimTime>& altered_writes() const noexcept { return altered_writes_; }
     /// When the transfer in flight ends; empty if none is, or if it never ends by itself.
     [[nodiscard]] std::optional<SimTime> transfer_end() const;
     [[nodiscard]] std::uint64_t transfer_count() const noexcept { return transfer_count_; }
@@ -78,6 +80,7 @@ class SimulatedI2cBus final : public i2c::Bus {
     [[nodiscard]] bool pass_to_targets(std::size_t position, std::uint8_t byte);
     [[nodiscard]] bool start(bool is_read);
     void stop();
+    void note_altered_write();
     void note_stuck_sda();
     void give_clocks(SimTime time);
     [[nodiscard]] bool is_sda_low(SimTime time);
@@ -100,6 +103,7 @@ class SimulatedI2cBus final : public i2c::Bus {
     std::uint64_t transfer_count_ = 0;
     std::uint64_t bit_count_ = 0;
     Microseconds busy_time_{0};
+    std::vector<SimTime> altered_writes_;
     std::uint32_t stuck_clocks_ = 0;  ///< still to be given before SDA is let go
     i2c::TransferError error_ = i2c::TransferError::timeout;
 };

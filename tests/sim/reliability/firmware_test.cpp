@@ -193,6 +193,19 @@ TEST_F(ReliabilityFirmwareTest, F6_three_resets_in_ten_seconds_leave_nothing_but
     EXPECT_EQ(last_page<wire::InfoFault>(rig_)->count, 3);
 }
 
+// Found by the campaign: a node back from bus-off told so.
+TEST_F(ReliabilityFirmwareTest, F6_safe_mode_stays_silent_over_bus_off) {
+    drive_into_safe_mode();
+    rig_.run_for(500 * kMillisecond);
+    const std::size_t said = rig_.said().size();
+    const std::size_t beats = rig_.said_of<wire::Heartbeat>().size();
+    rig_.can().add_fault({.kind = sim::CanFaultKind::disturb, .count = 32});
+    rig_.run_for(5 * kSecond);
+    EXPECT_EQ(rig_.node().counts().bus_off, 1U);
+    EXPECT_GE(rig_.said_of<wire::Heartbeat>().size(), beats + 40);
+    EXPECT_EQ(rig_.said().size() - said, rig_.said_of<wire::Heartbeat>().size() - beats);
+}
+
 TEST_F(ReliabilityFirmwareTest, F6_a_retry_that_fails_doubles_the_time_up_to_an_hour) {
     drive_into_safe_mode();
     for (const std::int64_t wait_s : {60, 120, 240, 480, 960, 1'920, 3'600, 3'600}) {

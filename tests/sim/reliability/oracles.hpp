@@ -63,19 +63,23 @@ inline std::int64_t capture_error_us(const NodeRig& rig, const SaidReading& said
 /// What is wrong with the readings sent of `sensor`; empty if nothing is. Each must be one that this sensor
 /// truly took: this distance, which no other sensor has, within the two seconds before, in this zone, at this
 /// time; none twice, all in their order.
-inline std::vector<std::string> untruths(const NodeRig& rig, std::uint8_t sensor) {
+struct Untruth {
+    sim::SimTime said{};
+    std::string what;
+};
+inline std::vector<Untruth> untruths(const NodeRig& rig, std::uint8_t sensor) {
     // The bound that is told at most, and a poll that a flipped bit answered wrongly.
     constexpr std::int64_t kCaptureErrorMaxUs = 12'000;
     constexpr std::int64_t kAgeMaxUs = 2'000'000;
     const SensorConfig& config = rig.config().sensors.at(sensor);
-    std::vector<std::string> wrong;
+    std::vector<Untruth> wrong;
     const auto& ranges = rig.truth(sensor);
     std::size_t next = 0;
     for (const SaidReading& said : rig.readings_of(sensor)) {
         const auto describe = [&](const std::string& what) {
-            wrong.push_back("sensor " + std::to_string(sensor) + " sent " +
-                            std::to_string(said.reading.range_mm) + " mm at " + std::to_string(said.end.us) +
-                            " us: " + what);
+            wrong.push_back({said.end, "sensor " + std::to_string(sensor) + " sent " +
+                                           std::to_string(said.reading.range_mm) + " mm at " +
+                                           std::to_string(said.end.us) + " us: " + what});
         };
         while (next < ranges.size() && ranges[next].window_middle.us < said.end.us - kAgeMaxUs) ++next;
         std::size_t found = next;
@@ -99,7 +103,7 @@ inline std::vector<std::string> untruths(const NodeRig& rig, std::uint8_t sensor
 /// P1 as far as a node can keep it.
 inline void expect_only_the_truth(const NodeRig& rig, std::uint8_t sensor) {
     const auto wrong = untruths(rig, sensor);
-    EXPECT_TRUE(wrong.empty()) << wrong.size() << " readings, first: " << wrong.front();
+    EXPECT_TRUE(wrong.empty()) << wrong.size() << " readings, first: " << wrong.front().what;
 }
 
 /// P2: every reading accepted was sent, lost for a reason that was counted, or waits.
