@@ -51,7 +51,7 @@ class TreeBuilder final : public YAML::EventHandler {
         add(make(mark, Value::Kind::null));
     }
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-        fail(mark, "aliases (*name) are not used in rig files: write the value out, or use sensor_defaults");
+        fail(mark, "aliases (*name) are not used here: write the value out, or use sensor_defaults");
     }
     void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   const std::string& text) override {
@@ -79,12 +79,12 @@ class TreeBuilder final : public YAML::EventHandler {
         throw Fault{{*file_, mark.line + 1, "", std::move(what)}};
     }
     void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
-        if (anchor != YAML::NullAnchor) fail(mark, "anchors (&name) are not used in rig files: remove it");
+        if (anchor != YAML::NullAnchor) fail(mark, "anchors (&name) are not used here: remove it");
     }
     void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
         // yaml-cpp's own marks: "?" for a plain value, "!" for a quoted one.
         if (!tag.empty() && tag != "?" && tag != "!") {
-            fail(mark, fmt::format("tags are not used in rig files: remove '{}'", tag));
+            fail(mark, fmt::format("tags are not used here: remove '{}'", tag));
         }
     }
     [[nodiscard]] Value make(const YAML::Mark& mark, Value::Kind kind) const {

@@ -15,6 +15,7 @@ namespace {
 constexpr double kSameM =
     1e-4;  ///< a sphere this close to a cylinder's end, and this close in radius, is its end
 constexpr double kRadiusMaxM = 5.0;
+constexpr std::size_t kCollisionsMax = 1000;  ///< of one link: each sphere is looked for at each cylinder
 
 Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
     Eigen::Isometry3d T_link_body = Eigen::Isometry3d::Identity();
@@ -116,6 +117,12 @@ Result<std::vector<Capsule>, RigError> read_capsules(const std::filesystem::path
     std::vector<Capsule> all;
     for (const auto& [name, link] : links) {
         Bodies bodies;
+        if (link->collision_array.size() > kCollisionsMax) {
+            return unexpected(document->error(
+                "link", name,
+                fmt::format("expected at most {} <collision> elements, found {}: take simpler shapes",
+                            kCollisionsMax, link->collision_array.size())));
+        }
         for (const auto& collision : link->collision_array) {
             auto fault = add_body(*collision, name, bodies);
             if (!fault.empty()) return unexpected(document->error("link", name, std::move(fault)));

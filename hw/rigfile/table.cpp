@@ -22,13 +22,14 @@ std::optional<T> parse_all(std::string_view text, auto... format) {
     return parsed;
 }
 
-std::optional<std::int64_t> parse_integer(std::string_view text) {
+template <class T>
+std::optional<T> parse_integer(std::string_view text) {
     if (text.starts_with("0x") || text.starts_with("0X")) {
         // No sign may hide behind the prefix: from_chars would read "0x-1".
         if (text.size() > 2 && text[2] == '-') return std::nullopt;
-        return parse_all<std::int64_t>(text.substr(2), 16);
+        return parse_all<T>(text.substr(2), 16);
     }
-    return parse_all<std::int64_t>(text, 10);
+    return parse_all<T>(text, 10);
 }
 
 bool is_name_character(char c) {
@@ -71,13 +72,28 @@ double read_number(const Value& value, const std::string& path, Range<double> ra
 }
 
 std::int64_t read_integer(const Value& value, const std::string& path, Range<std::int64_t> range) {
-    const auto number = is_plain_scalar(value) ? parse_integer(value.text) : std::nullopt;
+    const auto number = is_plain_scalar(value) ? parse_integer<std::int64_t>(value.text) : std::nullopt;
     if (!number || *number < range.min || *number > range.max) {
         fail(value, path,
              fmt::format("expected a whole number from {} to {}, found {}", range.min, range.max,
                          describe(value)));
     }
     return *number;
+}
+
+std::uint64_t read_unsigned(const Value& value, const std::string& path) {
+    const auto number = is_plain_scalar(value) ? parse_integer<std::uint64_t>(value.text) : std::nullopt;
+    if (!number) {
+        fail(value, path,
+             fmt::format("expected a whole number from 0 to 2^64 - 1, found {}", describe(value)));
+    }
+    return *number;
+}
+
+std::string read_text(const Value& value, const std::string& path) {
+    if (value.kind != Value::Kind::scalar)
+        fail(value, path, fmt::format("expected a text, found {}", describe(value)));
+    return value.text;
 }
 
 std::string read_name(const Value& value, const std::string& path) {
@@ -139,8 +155,18 @@ bool Table::flag(std::string_view key, std::optional<bool> fallback) const {
     return value.text == "true";
 }
 
+std::uint64_t Table::unsigned_integer(std::string_view key, std::uint64_t fallback) const {
+    const Value* found = find(key);
+    return found ? read_unsigned(*found, path_of(key)) : fallback;
+}
+
 std::string Table::name(std::string_view key) const {
     return read_name(require(key), path_of(key));
+}
+
+std::string Table::text(std::string_view key) const {
+    const Value* found = find(key);
+    return found ? read_text(*found, path_of(key)) : "";
 }
 
 void Table::fail(std::string_view key, std::string what) const {

@@ -4,13 +4,18 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <sstream>
 #include <utility>
 
 #include "hw/rigfile/syntax_hint.hpp"
 
 namespace octoskin::rig {
 namespace {
+
+/// A robot has a few dozen; urdfdom lets go of a chain of links by a recursion as deep as the chain.
+constexpr std::size_t kElementsMax = 4'000;
 
 std::string attribute(const tinyxml2::XMLElement* element, const char* name) {
     const char* text = element ? element->Attribute(name) : nullptr;
@@ -23,6 +28,37 @@ std::string element_of(const tinyxml2::XMLDocument& document) {
     const std::string text = document.ErrorStr();
     const auto at = text.find(kMark);
     return at == std::string::npos ? "" : text.substr(at + kMark.size());
+}
+
+/// What gives away that an `<origin rpy>` is written in degrees; empty if nothing does. urdfdom keeps no
+/// angles.
+std::string turn_fault(const tinyxml2::XMLElement* origin) {
+    constexpr double kTurnMax_rad = 6.29;  // once round, and what rounding adds
+    std::istringstream turns(attribute(origin, "rpy"));
+    for (double turn = 0.0; turns >> turn;) {
+        if (std::abs(turn) > kTurnMax_rad) {
+            return fmt::format("rpy=\"{}\", expected radians, at most once round: is it written in degrees?",
+                               attribute(origin, "rpy"));
+        }
+    }
+    return "";
+}
+
+/// The first element of a link or joint whose place we use and that is turned by too much.
+std::optional<RigError> find_turn_fault(const std::filesystem::path& file,
+                                        const tinyxml2::XMLElement& element) {
+    const auto fault_at = [&](const tinyxml2::XMLElement* origin) -> std::optional<RigError> {
+        auto fault = turn_fault(origin);
+        if (fault.empty()) return std::nullopt;
+        return RigError{file, origin->GetLineNum(),
+                        fmt::format("{} {}", element.Name(), attribute(&element, "name")), std::move(fault)};
+    };
+    if (auto fault = fault_at(element.FirstChildElement("origin"))) return fault;
+    for (const auto* body = element.FirstChildElement("collision"); body;
+         body = body->NextSiblingElement("collision")) {
+        if (auto fault = fault_at(body->FirstChildElement("origin"))) return fault;
+    }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -45,6 +81,13 @@ Result<UrdfOutline, RigError> UrdfOutline::read(const std::filesystem::path& fil
                                        "a macro that is not expanded: run xacro first, and give its output"});
         }
         if (tag != "link" && tag != "joint") continue;
+        if (outline.elements_.size() == kElementsMax) {
+            return unexpected(
+                RigError{file, element->GetLineNum(), tag,
+                         fmt::format("expected a robot of at most {} links and joints together, found more",
+                                     kElementsMax)});
+        }
+        if (auto fault = find_turn_fault(file, *element)) return unexpected(std::move(*fault));
         outline.elements_.push_back({tag, attribute(element, "name"), element->GetLineNum(),
                                      attribute(element->FirstChildElement("parent"), "link"),
                                      attribute(element->FirstChildElement("child"), "link")});
@@ -63,15 +106,18 @@ std::optional<RigError> UrdfOutline::find_loop() const {
                      fmt::format("expected one joint to hang from, found {} and {}: remove one",
                                  first->second->name, joint.name));
     }
+    // Every way up ends at a root or at a link that an earlier way has passed: each link is passed once.
+    std::map<std::string_view, const Element*> passed_from;
     for (const Element& link : elements_) {
         if (link.tag != "link") continue;
-        std::size_t steps = 0;
-        for (auto above = joint_above.find(link.name); above != joint_above.end();
-             above = joint_above.find(above->second->parent_link)) {
-            if (++steps > joint_above.size()) {
-                return error("link", link.name,
-                             "expected a way up to a root link, found a loop: remove one joint");
-            }
+        for (std::string_view at = link.name; passed_from.try_emplace(at, &link).second;) {
+            const auto above = joint_above.find(at);
+            if (above == joint_above.end()) break;
+            at = above->second->parent_link;
+            const auto before = passed_from.find(at);
+            if (before == passed_from.end() || before->second != &link) continue;
+            return error("link", link.name,
+                         "expected a way up to a root link, found a loop: remove one joint");
         }
     }
     return std::nullopt;

@@ -48,7 +48,7 @@ std::optional<Extents> extents_of(const RegionConfig& config, double resolution_
 std::optional<std::string> region_fault(const RegionConfig& config, double resolution_m,
                                         const Eigen::Isometry3d& T_map_base) {
     const auto fault = [&](const char* what) {
-        return "the judged region (the scenario's `region`) " + std::string(what) + " at a resolution of " +
+        return "the judged region " + std::string(what) + " at a resolution of " +
                std::to_string(resolution_m) + " m";
     };
     const auto box = extents_of(config, resolution_m, T_map_base);

@@ -43,7 +43,7 @@ evaluation::Truth build(const Scene& scene, const rig::Rig& rig, double resoluti
     evaluation::TruthConfig config = truth_config_of(scene.scenario, resolution_m);
     config.external_camera = rig.camera;
     if (const auto fault = evaluation::region_fault(config.region, resolution_m, rig.T_map_base))
-        throw CommandFailure({ExitCode::bad_config, scene.scenario_file.file.string() + ": " + *fault});
+        throw CommandFailure({ExitCode::bad_config, scene.scenario.error("region", *fault).message()});
     spdlog::info("ground truth: a noise-free camera goes round the scene");
     return evaluation::build_truth(scene.world,
                                    evaluation::render_survey(scene.world, survey_config_of(scene.scenario)),
@@ -110,7 +110,10 @@ rig::Rig rig_of_map(const EvaluateOptions& options, const std::optional<std::fil
     if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
     if (!recording) return std::move(*rig);
     const auto recorded = rig::read_rig(own);
-    if (recorded && rig::rig_hash(*recorded) != rig::rig_hash(*rig)) {
+    if (!recorded) {
+        spdlog::warn("{}; so nothing says whether {} is the rig that the map was made with",
+                     recorded.error().message(), options.rig.string());
+    } else if (rig::rig_hash(*recorded) != rig::rig_hash(*rig)) {
         spdlog::warn(
             "{} is another rig than {}, of the recording beside the map; unless the map was made with it, "
             "the figures are wrong",
@@ -141,7 +144,9 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
     limits.map.log_odds_max = 20.0F;
     const auto map = load_map(options.input, limits);
     if (!map) throw CommandFailure({ExitCode::bad_data, map.error().message});
-    const auto recording = recording_beside(options.input);
+    const auto beside = recording_beside(options.input);
+    for (const std::string& warning : beside.warnings) spdlog::warn("{}", warning);
+    const auto& recording = beside.directory;
     const rig::Rig rig = rig_of_map(options, recording);
     const Scene scene = scene_of_map(options, recording);
     const evaluation::Truth truth = build(scene, rig, map->resolution_m());

@@ -79,6 +79,19 @@ std::optional<std::uint32_t> scenario_checksum(const fs::path& file) {
     return source_file(file, scenario->extended_files).crc32;
 }
 
+/// The world; empty: the scenario's own, which only the recording of a robot may mean, and with a warning.
+Result<fs::path, AppError> find_world(const RecordingMeta& meta, const GivenScene& given,
+                                      const RecordingPaths& recording, const fs::path& scenario,
+                                      std::vector<std::string>& warnings) {
+    if (meta.world.file.empty() && given.world.empty() && !meta.is_simulated()) {
+        warnings.push_back(recording.meta().string() + " names no world: judging in the one that " +
+                           scenario.string() + " names; --world gives another");
+        return fs::path();
+    }
+    return find({"world", meta.world, given.world, [](const fs::path& file) { return crc32_of(file); }},
+                recording, warnings);
+}
+
 }  // namespace
 
 Result<RecordedScene, AppError> read_recorded_scene(const fs::path& directory, const GivenScene& given) {
@@ -89,27 +102,29 @@ Result<RecordedScene, AppError> read_recorded_scene(const fs::path& directory, c
     const auto scenario =
         find({"scenario", meta->scenario, given.scenario, scenario_checksum}, recording, warnings);
     if (!scenario) return unexpected(scenario.error());
-    // A robot's recording names no world: then the scenario's own is meant.
-    fs::path world = given.world;
-    if (!meta->world.file.empty()) {
-        const auto found =
-            find({"world", meta->world, given.world, [](const fs::path& file) { return crc32_of(file); }},
-                 recording, warnings);
-        if (!found) return unexpected(found.error());
-        world = *found;
-    }
-    auto scene = read_scene(*scenario, world);
+    const auto world = find_world(*meta, given, recording, *scenario, warnings);
+    if (!world) return unexpected(world.error());
+    auto scene = read_scene(*scenario, *world);
     if (!scene) return unexpected(scene.error());
     return RecordedScene{std::move(*scene), std::move(warnings)};
 }
 
-std::optional<fs::path> recording_beside(const fs::path& map) {
+RecordingBeside recording_beside(const fs::path& map) {
     std::error_code error;
     const auto folder = fs::absolute(map, error).lexically_normal().parent_path();
+    RecordingBeside found;
     for (const fs::path& candidate : {folder / "recording", folder.parent_path(), folder}) {
-        if (read_meta(RecordingPaths(candidate))) return candidate;
+        const RecordingPaths recording(candidate);
+        if (!fs::exists(recording.meta(), error)) continue;
+        const auto meta = read_meta(recording);
+        if (meta) {
+            found.directory = candidate;
+            return found;
+        }
+        found.warnings.push_back(meta.error().message() +
+                                 "; mend that file, or the map is not judged as this recording's");
     }
-    return std::nullopt;
+    return found;
 }
 
 }  // namespace octoskin::app

@@ -26,11 +26,17 @@ struct RecordedScene {
 
 /// The recording's scenario and world, found where they were, in the recording itself, or among the shipped
 /// worlds, by the CRC-32 that its meta.yaml has of them. What is given goes first, with a warning if it is
-/// something else. Refuses what is not there, what has changed, and what meta.yaml does not name.
+/// something else. Refuses what is not there, what has changed, and what meta.yaml does not name; but a
+/// robot's recording names no world: then the scenario's is taken, with a warning.
 [[nodiscard]] Result<RecordedScene, AppError> read_recorded_scene(const std::filesystem::path& recording,
                                                                   const GivenScene& given);
 
+struct RecordingBeside {
+    std::optional<std::filesystem::path> directory;
+    std::vector<std::string> warnings;  ///< of what would be one, but for a meta.yaml that cannot be read
+};
+
 /// The recording beside a map, where `octoskin replay` and `octoskin experiment` put their maps.
-[[nodiscard]] std::optional<std::filesystem::path> recording_beside(const std::filesystem::path& map);
+[[nodiscard]] RecordingBeside recording_beside(const std::filesystem::path& map);
 
 }  // namespace octoskin::app

@@ -2,9 +2,10 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <exception>
 #include <fstream>
-#include <set>
+#include <utility>
+
+#include "hw/rigfile/table.hpp"
 
 namespace octoskin {
 namespace {
@@ -14,7 +15,7 @@ constexpr const char* kMetaMissing =
     "no such file; the least that it can be is two lines, 'schema: octoskin-recording/1' and 'source: robot'";
 
 Unexpected<RecordingError> failure(const std::filesystem::path& file, std::string what) {
-    return unexpected(RecordingError{file, std::move(what)});
+    return unexpected(RecordingError{file, std::move(what), 0, ""});
 }
 
 void write_source(YAML::Emitter& out, const std::string& key, const SourceFile& source) {
@@ -23,39 +24,41 @@ void write_source(YAML::Emitter& out, const std::string& key, const SourceFile& 
     if (source.crc32) out << YAML::Key << key + "_crc32" << YAML::Value << crc_text(*source.crc32);
 }
 
-SourceFile read_source(const YAML::Node& root, const std::string& key) {
-    SourceFile source{root[key].as<std::string>(""), std::nullopt};
-    if (const YAML::Node crc = root[key + "_crc32"]) source.crc32 = crc.as<std::uint32_t>();
+SourceFile read_source(const rig::Table& table, const std::string& key) {
+    SourceFile source{table.text(key), std::nullopt};
+    constexpr std::int64_t kCrcMax = 0xFFFF'FFFF;
+    const std::string crc = key + "_crc32";
+    if (table.find(crc) != nullptr) source.crc32 = table.integer<std::uint32_t>(crc, {0, kCrcMax});
     return source;
 }
 
-/// An absent key has its default; a value of another type throws.
-template <typename T>
-T value_or(const YAML::Node& root, const char* key, T otherwise) {
-    const YAML::Node value = root[key];
-    return value ? value.as<T>() : otherwise;
-}
-
-Status<RecordingError> check_keys(const std::filesystem::path& file, const YAML::Node& root) {
-    static const std::set<std::string> known{
-        "schema", "made_by",   "source", "world",      "world_crc32", "scenario",     "scenario_crc32",
-        "rig",    "rig_crc32", "seed",   "duration_s", "can_frames",  "depth_frames", "is_depth_noise_free"};
-    std::set<std::string> seen;
-    for (const auto& entry : root) {
-        const auto key = entry.first.as<std::string>();
-        if (!seen.insert(key).second) {
-            return failure(file, "line " + std::to_string(entry.first.Mark().line + 1) + ": key '" + key +
-                                     "' stands there twice");
-        }
-        if (!known.contains(key)) {
-            return failure(
-                file, "line " + std::to_string(entry.first.Mark().line + 1) + ": unknown key '" + key + "'");
-        }
-    }
-    return Done{};
+RecordingMeta read_checked(const std::filesystem::path& file) {
+    const rig::Value document = rig::load_document(file);
+    const rig::Table table(
+        document, "",
+        {"schema", "made_by", "source", "world", "world_crc32", "scenario", "scenario_crc32", "rig",
+         "rig_crc32", "seed", "duration_s", "can_frames", "depth_frames", "is_depth_noise_free"});
+    static_cast<void>(table.choice<bool>("schema", {{kSchema, true}}));
+    constexpr double kDurationMax_s = 1e9;
+    RecordingMeta meta;
+    meta.made_by = table.text("made_by");
+    meta.source = table.text("source");
+    meta.world = read_source(table, "world");
+    meta.scenario = read_source(table, "scenario");
+    meta.rig = read_source(table, "rig");
+    if (table.find("seed") != nullptr) meta.seed = table.unsigned_integer("seed", 0);
+    meta.is_depth_noise_free = table.flag("is_depth_noise_free", false);
+    meta.can_frames = table.unsigned_integer("can_frames", 0);
+    meta.depth_frames = table.unsigned_integer("depth_frames", 0);
+    meta.duration_s = table.number("duration_s", {0.0, kDurationMax_s}, 0.0);
+    return meta;
 }
 
 }  // namespace
+
+std::string RecordingError::message() const {
+    return rig::RigError{file, line, key, what}.message();
+}
 
 Status<RecordingError> write_meta(const RecordingPaths& recording, const RecordingMeta& meta) {
     YAML::Emitter out;
@@ -84,25 +87,9 @@ Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording)
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) return failure(path, kMetaMissing);
     try {
-        const YAML::Node root = YAML::LoadFile(path.string());
-        if (!root.IsMap() || root["schema"].as<std::string>("") != kSchema) {
-            return failure(path, std::string("expected 'schema: ") + kSchema + "'");
-        }
-        if (const auto checked = check_keys(path, root); !checked) return unexpected(checked.error());
-        RecordingMeta meta;
-        meta.made_by = value_or<std::string>(root, "made_by", "");
-        meta.source = value_or<std::string>(root, "source", "");
-        meta.world = read_source(root, "world");
-        meta.scenario = read_source(root, "scenario");
-        meta.rig = read_source(root, "rig");
-        if (root["seed"]) meta.seed = root["seed"].as<std::uint64_t>();
-        meta.is_depth_noise_free = value_or(root, "is_depth_noise_free", false);
-        meta.can_frames = value_or<std::uint64_t>(root, "can_frames", 0);
-        meta.depth_frames = value_or<std::uint64_t>(root, "depth_frames", 0);
-        meta.duration_s = value_or(root, "duration_s", 0.0);
-        return meta;
-    } catch (const std::exception& broken) {  // yaml-cpp's own, and the stream's
-        return failure(path, broken.what());
+        return read_checked(path);
+    } catch (const rig::Fault& fault) {
+        return unexpected(RecordingError{path, fault.error.what, fault.error.line, fault.error.key});
     }
 }
 

@@ -44,12 +44,15 @@ struct RecordingMeta {
 struct RecordingError {
     std::filesystem::path file;
     std::string what;
-    [[nodiscard]] std::string message() const { return file.string() + ": " + what; }
+    int line = 0;     ///< 1-based; 0 if it concerns the whole file
+    std::string key;  ///< of meta.yaml; empty if it is about none
+    [[nodiscard]] std::string message() const;
 };
 
 [[nodiscard]] Status<RecordingError> write_meta(const RecordingPaths& recording, const RecordingMeta& meta);
 
-/// Reads meta.yaml. Unknown keys are refused, as everywhere.
+/// Reads meta.yaml, as strictly as a rig: unknown or repeated keys, values of another type or out of range,
+/// anchors and tags are refused, with their line.
 [[nodiscard]] Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording);
 
 /// That `directory` holds every file a recording must have (docs/recording.md); names the one that is

@@ -40,6 +40,11 @@ Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
     return Inputs{std::move(*scene), std::move(*rig), std::move(*arm), std::move(*body)};
 }
 
+std::string describe(const sim::ExperimentError& error, const sim::Scenario& scenario) {
+    if (error.scenario_key.empty()) return error.what;
+    return scenario.error(error.scenario_key, error.what).message();
+}
+
 /// The files of the recording that is being made; the first error stops the writing and is kept.
 class Recorder {
   public:
@@ -117,7 +122,7 @@ Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequ
         .on_progress = on_progress};
     if (on_progress) on_progress(0.0);
     const auto summary = sim::run_experiment(input, output);
-    if (!summary) return fail(ExitCode::bad_config, request.scenario.string() + ": " + summary.error().what);
+    if (!summary) return fail(ExitCode::bad_config, describe(summary.error(), inputs->scene.scenario));
     if (const auto closed = recorder->close(); !closed) return unexpected(closed.error());
 
     const RecordingMeta meta{.made_by = program_version(),

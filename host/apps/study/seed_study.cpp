@@ -80,7 +80,7 @@ Result<evaluation::Truth, AppError> make_truth(const StudyGround& ground, const 
     evaluation::TruthConfig config = ground.truth;
     config.external_camera = rig.camera;
     if (auto fault = evaluation::region_fault(config.region, config.resolution_m, rig.T_map_base))
-        return fail(ExitCode::bad_config, std::move(*fault));
+        return fail(ExitCode::bad_config, ground.scenario.error("region", std::move(*fault)).message());
     evaluation::Truth truth = evaluation::build_truth(ground.world, ground.survey, config, rig.T_map_base);
     outcome.times.push_back(timer.stop());
     return truth;

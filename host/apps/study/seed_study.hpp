@@ -14,6 +14,7 @@
 #include "host/apps/playback/playback.hpp"
 #include "host/apps/simulation/simulation.hpp"
 #include "host/apps/study/configuration.hpp"
+#include "hw/sim/scenario/scenario.hpp"
 #include "hw/sim/world/world.hpp"
 
 namespace octoskin {
@@ -21,6 +22,7 @@ namespace octoskin {
 /// What all seeds share.
 struct StudyGround {
     const sim::World& world;
+    const sim::Scenario& scenario;
     const evaluation::Survey& survey;
     const evaluation::TruthConfig& truth;  ///< without the external camera, which the seed's rig knows
 };

@@ -100,7 +100,7 @@ class SeedWorkers {
         : request_(request),
           work_(work),
           configurations_(configurations),
-          ground_{ground.scene.world, ground.survey, ground.truth},
+          ground_{ground.scene.world, ground.scene.scenario, ground.survey, ground.truth},
           say_(say) {}
 
     Result<std::vector<SeedOutcome>, AppError> run() {
@@ -246,7 +246,7 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     const auto& truth = ground->truth;
     if (auto fault =
             evaluation::region_fault(truth.region, truth.resolution_m, Eigen::Isometry3d::Identity()))
-        return fail(ExitCode::bad_config, request.inputs.scenario.string() + ": " + *fault);
+        return fail(ExitCode::bad_config, ground->scene.scenario.error("region", *fault).message());
 
     const auto work = WorkFolder::create(request.out);
     if (!work) return unexpected(work.error());

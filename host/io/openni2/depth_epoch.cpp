@@ -1,10 +1,10 @@
 #include "host/io/openni2/depth_epoch.hpp"
 
-#include <yaml-cpp/yaml.h>
-
-#include <exception>
 #include <fstream>
+#include <limits>
 #include <string>
+
+#include "hw/rigfile/table.hpp"
 
 namespace octoskin::openni2 {
 namespace {
@@ -13,6 +13,16 @@ constexpr const char* kSchema = "octoskin-depth-epoch/1";
 
 Unexpected<DepthSourceError> failure(const std::filesystem::path& file, const std::string& what) {
     return unexpected(DepthSourceError{file.string() + ": " + what});
+}
+
+DepthEpoch read_checked(const std::filesystem::path& file) {
+    const rig::Value document = rig::load_document(file);
+    const rig::Table table(document, "", {"schema", "first_frame_us", "frames"});
+    static_cast<void>(table.choice<bool>("schema", {{kSchema, true}}));
+    constexpr std::int64_t kUsMax = std::int64_t{1} << 48U;                         // what FOLLOW_UP can say
+    constexpr std::int64_t kFramesMax = std::numeric_limits<std::uint32_t>::max();  // an .oni numbers them so
+    const auto first_us = table.integer<std::int64_t>("first_frame_us", {0, kUsMax});
+    return DepthEpoch{HostTime{first_us * 1000}, table.integer<std::uint64_t>("frames", {0, kFramesMax})};
 }
 
 }  // namespace
@@ -35,24 +45,9 @@ Result<DepthEpoch, DepthSourceError> read_epoch(const std::filesystem::path& fil
         return failure(file, "no such file; without it the depth frames have no time");
     }
     try {
-        const YAML::Node root = YAML::LoadFile(file.string());
-        if (!root.IsMap() || root["schema"].as<std::string>("") != kSchema) {
-            return failure(file, std::string("expected 'schema: ") + kSchema + "'");
-        }
-        for (const auto& entry : root) {
-            const auto key = entry.first.as<std::string>();
-            if (key != "schema" && key != "first_frame_us" && key != "frames") {
-                return failure(file, "line " + std::to_string(entry.first.Mark().line + 1) +
-                                         ": unknown key '" + key + "'");
-            }
-        }
-        constexpr std::int64_t kMaxUs = std::int64_t{1} << 48U;  // what FOLLOW_UP can say
-        const auto first_us = root["first_frame_us"].as<std::int64_t>();
-        if (first_us < 0 || first_us > kMaxUs)
-            return failure(file, "first_frame_us: expected 0 to 2^48, microseconds");
-        return DepthEpoch{HostTime{first_us * 1000}, root["frames"].as<std::uint64_t>()};
-    } catch (const std::exception& broken) {  // yaml-cpp's own, and the stream's
-        return failure(file, broken.what());
+        return read_checked(file);
+    } catch (const rig::Fault& fault) {
+        return unexpected(DepthSourceError{fault.error.message()});
     }
 }
 

@@ -18,32 +18,38 @@ Eigen::Isometry3d CircleMotion::T_base_link(std::uint32_t tick) const {
 Result<Trajectory, MotionError> Trajectory::circle(const Arm& arm, const CircleMotion& motion,
                                                    SimTime start) {
     assert(motion.ticks() > 0 && motion.tick_rate_hz > 0.0);
-    const auto failure = [](std::string what) { return unexpected(MotionError{std::move(what)}); };
+    const auto failure = [](const char* key, std::string what) {
+        return unexpected(MotionError{key, std::move(what)});
+    };
     if (!arm.has_link(motion.link)) {
         std::string links;
         for (const std::string& link : arm.links()) links.append(links.empty() ? "" : ", ").append(link);
-        return failure("the scenario moves link '" + motion.link +
-                       "' (motion.circle.link), but the robot's links are " + links +
-                       ": give --scenario one that is made for this robot");
+        return failure("motion.circle.link", "the scenario moves link '" + motion.link +
+                                                 "', but the robot's links are " + links +
+                                                 ": give --scenario one that is made for this robot");
     }
     if (static_cast<std::size_t>(motion.start_position.size()) != arm.joint_count()) {
-        return failure("the start posture has " + std::to_string(motion.start_position.size()) +
-                       " joints, the robot " + std::to_string(arm.joint_count()));
+        return failure("motion.circle.start_position_rad",
+                       "the start posture has " + std::to_string(motion.start_position.size()) +
+                           " joints, the robot " + std::to_string(arm.joint_count()) +
+                           ": give one number for each");
     }
     Trajectory trajectory(start, motion.tick_rate_hz);
     Eigen::VectorXd position = motion.start_position;
     for (std::uint32_t tick = 0; tick <= motion.ticks(); ++tick) {
         const auto solved = arm.inverse(motion.link, motion.T_base_link(tick), position);
         if (!solved) {
-            return failure("'" + motion.link + "' does not reach its place at tick " + std::to_string(tick) +
-                           "; move the circle or the start posture");
+            return failure("motion.circle", "'" + motion.link + "' does not reach its place at tick " +
+                                                std::to_string(tick) +
+                                                "; move the circle or the start posture");
         }
         position = *solved;
         if (const auto joint = arm.joint_outside_limits(position)) {
-            return failure("joint '" + joint->joint + "' is outside its limits at tick " +
-                           std::to_string(tick) + ": at " + std::to_string(joint->position) +
-                           ", allowed are " + std::to_string(joint->lower) + " to " +
-                           std::to_string(joint->upper) + "; move the circle or the start posture");
+            return failure("motion.circle",
+                           "joint '" + joint->joint + "' is outside its limits at tick " +
+                               std::to_string(tick) + ": at " + std::to_string(joint->position) +
+                               ", allowed are " + std::to_string(joint->lower) + " to " +
+                               std::to_string(joint->upper) + "; move the circle or the start posture");
         }
         trajectory.ticks_.push_back(position);
     }

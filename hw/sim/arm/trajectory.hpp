@@ -34,6 +34,7 @@ struct CircleMotion {
 
 /// Why an arm cannot do a motion: what, where, what to do.
 struct MotionError {
+    std::string scenario_key;  ///< whose value it is about: "motion.circle.link"
     std::string what;
 };
 

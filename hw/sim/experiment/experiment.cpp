@@ -196,7 +196,9 @@ namespace {
 Result<ExperimentSummary, ExperimentError> run(const ExperimentInput& input, const ExperimentOutput& output) {
     const SimTime start = from_seconds(input.scenario.rest_s);
     const auto trajectory = Trajectory::circle(input.arm, input.scenario.motion, start);
-    if (!trajectory) return unexpected(ExperimentError{trajectory.error().what});
+    if (!trajectory) {
+        return unexpected(ExperimentError{trajectory.error().scenario_key, trajectory.error().what});
+    }
     const SimTime end = trajectory->end();
 
     RigInOneProcess rig(input, *trajectory, output);
@@ -235,7 +237,7 @@ Result<ExperimentSummary, ExperimentError> run_experiment(const ExperimentInput&
     try {
         return run(input, output);
     } catch (const BoardLinkError& error) {
-        return unexpected(ExperimentError{error.what()});
+        return unexpected(ExperimentError{"", error.what()});
     }
 }
 

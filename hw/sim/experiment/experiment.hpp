@@ -70,6 +70,7 @@ struct ExperimentSummary {
 };
 
 struct ExperimentError {
+    std::string scenario_key;  ///< whose value cannot be had; empty: the scenario is not at fault
     std::string what;
 };
 

@@ -11,9 +11,8 @@ Status<rig::RigError> check_hidden_models(const Scenario& scenario, const World&
     for (const Solid& solid : world.solids()) models.insert(solid.model);
     for (const std::string& hidden : scenario.hidden_models) {
         if (models.contains(hidden)) continue;
-        return unexpected(rig::RigError{
-            scenario.hidden_models_file, scenario.hidden_models_line, "hidden_models",
-            "expected models of the world, found '" + hidden + "'; it has " + rig::joined(models)});
+        return unexpected(scenario.error("hidden_models", "expected models of the world, found '" + hidden +
+                                                              "'; it has " + rig::joined(models)));
     }
     return Done{};
 }

@@ -38,7 +38,12 @@ Eigen::VectorXd joint_positions(const Table& table, std::string_view key) {
     return positions;
 }
 
-CircleMotion read_circle(const Value& value, const std::string& path) {
+void note_place(const Table& table, std::string_view key, Scenario& scenario) {
+    const Value& value = table.require(key);
+    scenario.places[table.path_of(key)] = {*value.file, value.line};
+}
+
+CircleMotion read_circle(const Value& value, const std::string& path, Scenario& scenario) {
     const Table table(value, path,
                       {"link", "centre", "radius_m", "towards_start", "towards_quarter",
                        "ticks_per_revolution", "tick_rate_hz", "revolutions", "start_position_rad"});
@@ -58,6 +63,8 @@ CircleMotion read_circle(const Value& value, const std::string& path) {
     motion.tick_rate_hz = table.number("tick_rate_hz", {1.0, 1000.0});
     motion.revolutions = table.integer<std::uint32_t>("revolutions", {1, 1000}, 1U);
     motion.start_position = joint_positions(table, "start_position_rad");
+    note_place(table, "link", scenario);
+    note_place(table, "start_position_rad", scenario);
     return motion;
 }
 
@@ -65,7 +72,8 @@ void read_motion(const Table& top, Scenario& scenario) {
     const Table table(top.require("motion"), "motion", {"rest_s", "circle"});
     // A node is usable after two SYNCs at 1 Hz, and START must find all of them usable.
     scenario.rest_s = table.number("rest_s", {3.0, 600.0});
-    scenario.motion = read_circle(table.require("circle"), table.path_of("circle"));
+    scenario.motion = read_circle(table.require("circle"), table.path_of("circle"), scenario);
+    note_place(table, "circle", scenario);
 }
 
 void read_sensing(const Table& top, Scenario& scenario) {
@@ -89,8 +97,8 @@ void read_seeds(const Table& top, Scenario& scenario) {
 
 void read_judgement(const Table& top, Scenario& scenario) {
     const auto& models = rig::read_list(top.require("hidden_models"), "hidden_models");
-    scenario.hidden_models_file = *top.require("hidden_models").file;
-    scenario.hidden_models_line = top.require("hidden_models").line;
+    note_place(top, "hidden_models", scenario);
+    note_place(top, "region", scenario);
     for (std::size_t i = 0; i < models.size(); ++i) {
         scenario.hidden_models.push_back(
             rig::read_name(models[i], "hidden_models[" + std::to_string(i) + "]"));
@@ -139,6 +147,12 @@ Eigen::Vector3d Scenario::map_shift_m(std::uint64_t seed) const {
     }
     const Noise noise(seed, NoiseSource::map_shift);
     return further_map_shift_max_m * Eigen::Vector3d(noise.uniform(0), noise.uniform(1), noise.uniform(2));
+}
+
+rig::RigError Scenario::error(std::string_view key, std::string what) const {
+    const auto place = places.find(key);
+    if (place == places.end()) return {file, 0, std::string(key), std::move(what)};
+    return {place->second.file, place->second.line, std::string(key), std::move(what)};
 }
 
 Result<Scenario, rig::RigError> read_scenario(const std::filesystem::path& file) {

@@ -5,8 +5,11 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/result.hpp"
@@ -29,6 +32,12 @@ struct ScenarioRegion {
     std::optional<double> floor_top_m;  ///< its layer of voxels is not judged
 };
 
+/// A line of a scenario or of a file that it extends.
+struct ScenarioPlace {
+    std::filesystem::path file;
+    int line = 0;  ///< 1-based
+};
+
 struct Scenario {
     std::filesystem::path file;                         ///< that it was read from
     std::vector<std::filesystem::path> extended_files;  ///< that this file extends
@@ -42,13 +51,15 @@ struct Scenario {
     /// grid.
     std::vector<Eigen::Vector3d> map_shifts_m;
     double further_map_shift_max_m = 0.0;
-    std::vector<std::string> hidden_models;    ///< SDF models that the camera is not supposed to see
-    std::filesystem::path hidden_models_file;  ///< where that is written
-    int hidden_models_line = 0;
+    std::vector<std::string> hidden_models;  ///< SDF models that the camera is not supposed to see
     ScenarioRegion region;
+    /// Where what may turn out wrong only later is written, by its key: "motion.circle.link".
+    std::map<std::string, ScenarioPlace, std::less<>> places;
 
     /// The shift of any seed: of those listed, else uniform in [0, further_map_shift_max_m) on each axis.
     [[nodiscard]] Eigen::Vector3d map_shift_m(std::uint64_t seed) const;
+    /// An error about the value of one key, at its line if that is among `places`.
+    [[nodiscard]] rig::RigError error(std::string_view key, std::string what) const;
 };
 
 /// Reads and checks a scenario, as strictly as read_rig(): unknown keys, types, units, ranges; `extends:`

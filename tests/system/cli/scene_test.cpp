@@ -84,6 +84,32 @@ TEST_F(SceneOfARecording, of_a_robot_has_to_be_given) {
     EXPECT_THAT(said.output, AllOf(HasSubstr("names no scenario"), HasSubstr("give --scenario")));
 }
 
+TEST_F(SceneOfARecording, that_names_no_world_is_not_guessed) {
+    record_short("rec");
+    ASSERT_EQ(run("sed -i '/^world/d' " + path("rec/meta.yaml")).exit_code, 0);
+    const Said said = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(said.exit_code, 64) << said.output;
+    EXPECT_THAT(said.output, AllOf(HasSubstr("meta.yaml names no world"), HasSubstr("give --world")));
+    const std::string scenario = " --scenario " + source("tests/data/short/scenario.yaml");
+    write(path("rec/meta.yaml"), "schema: octoskin-recording/1\nsource: robot\n");
+    const Said robot = octoskin("evaluate " + path("rec") + scenario);
+    EXPECT_EQ(robot.exit_code, 0) << robot.output;
+    EXPECT_THAT(robot.output, AllOf(HasSubstr("rec/meta.yaml names no world"), HasSubstr("--world")));
+    const Said given =
+        octoskin("evaluate " + path("rec") + scenario + " --world " + source("hw/worlds/experiment.sdf"));
+    EXPECT_EQ(given.exit_code, 0) << given.output;
+    EXPECT_THAT(given.output, Not(HasSubstr("names no world")));
+}
+
+TEST_F(SceneOfARecording, whose_meta_cannot_be_read_is_named_when_a_map_beside_it_is_judged) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    write(path("rec/meta.yaml"), "schema: octoskin-recording/1\nsource: simulation\nseed: some\n");
+    const Said said = octoskin("evaluate " + path("rec/maps/fused.ot") + " --rig " + path("rec/rig.yaml"));
+    EXPECT_NE(said.exit_code, 0) << said.output;
+    EXPECT_THAT(said.output, AllOf(HasSubstr("rec/meta.yaml:3: seed: "), HasSubstr("mend that file")));
+}
+
 TEST_F(SceneOfARecording, without_a_checksum_goes_by_its_name) {
     record_short("rec");
     write(path("rec/meta.yaml"),
@@ -114,6 +140,25 @@ TEST_F(SceneOfARecording, serves_the_maps_beside_it) {
     const Said alone = octoskin("evaluate " + path("alone.ot") + " --rig " + path("rec/rig.yaml"));
     EXPECT_EQ(alone.exit_code, 64) << alone.output;
     EXPECT_THAT(alone.output, HasSubstr("give --scenario"));
+}
+
+TEST_F(SceneOfARecording, that_cannot_be_had_is_refused_at_the_line_that_asks_for_it) {
+    const auto refusal = [&](const std::string& overlay) {
+        write(path("my.scenario.yaml"),
+              "extends: " + source("tests/data/short/scenario.yaml") + "\n" + overlay);
+        const Said said =
+            octoskin("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
+                     " --scenario " + path("my.scenario.yaml"));
+        EXPECT_EQ(said.exit_code, 78) << said.output;
+        return said.output;
+    };
+    EXPECT_THAT(refusal("motion:\n  circle:\n    link: hand_of_nobody\n"),
+                AllOf(HasSubstr("my.scenario.yaml:4: motion.circle.link: "), HasSubstr("'hand_of_nobody'")));
+    EXPECT_THAT(refusal("motion: {circle: {start_position_rad: [0, 0]}}\n"),
+                AllOf(HasSubstr("my.scenario.yaml:2: motion.circle.start_position_rad: "),
+                      HasSubstr("give one number for each")));
+    EXPECT_THAT(refusal("motion:\n  circle: {radius_m: 3}\n"),
+                AllOf(HasSubstr(":"), HasSubstr("motion.circle: "), HasSubstr("move the circle")));
 }
 
 TEST_F(SceneOfARecording, hides_no_model_that_is_not_there) {

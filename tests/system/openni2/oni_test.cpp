@@ -13,6 +13,7 @@
 
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "host/io/openni2/oni_reader.hpp"
@@ -260,6 +261,28 @@ TEST_F(OniTest, a_writer_whose_helper_ends_early_reports_it_instead_of_dying_of_
     bool has_failed = !writer;
     for (int i = 0; i < 500 && !has_failed; ++i) has_failed = !writer->write(time_of(i), noisy_frame(0));
     EXPECT_TRUE(has_failed);
+    EXPECT_FALSE(fs::exists(epoch()));
+}
+
+TEST_F(OniTest, a_file_that_is_removed_while_it_is_recorded_is_an_error_that_says_so) {
+    testing::internal::CaptureStderr();
+    auto writer = OniWriter::create(oni(), epoch(), kSize);
+    ASSERT_TRUE(writer);
+    for (int i = 0; i < 2000; ++i) ASSERT_TRUE(writer->write(time_of(i), noisy_frame(i % kFrames)));
+    std::jthread remover([this](const std::stop_token& stop) {
+        // Not before the recorder is in the middle of its work.
+        while (!stop.stop_requested()) {
+            std::error_code error;
+            const auto size = fs::file_size(oni(), error);
+            if (!error && size > 30'000) fs::remove(oni(), error);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    });
+    const auto closed = writer->close();
+    const std::string said = testing::internal::GetCapturedStderr();
+    ASSERT_FALSE(closed);
+    EXPECT_THAT(closed.error().what, testing::HasSubstr("exit code 1"));
+    EXPECT_THAT(said, testing::HasSubstr("depth.oni: the file was removed while it was recorded"));
     EXPECT_FALSE(fs::exists(epoch()));
 }
 

@@ -14,6 +14,21 @@ constexpr int kFps = 30;  // OpenNI2 wants a rate; the time stamps carry the tru
 constexpr std::chrono::milliseconds kPatience = 10s;
 constexpr int kStartsMax = 5;
 
+constexpr const char* kVanished =
+    "the file was removed while it was recorded; record again, and leave it alone until then";
+
+/// 0 for a file that is not there: somebody may remove it at any time.
+std::uintmax_t size_of(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    return error ? 0 : size;
+}
+
+bool is_there(const std::filesystem::path& file) {
+    std::error_code error;
+    return std::filesystem::exists(file, error);
+}
+
 std::string with_reason(const std::string& what) {
     const std::string reason = openni::OpenNI::getExtendedError();
     return reason.empty() ? what : what + ": " + reason;
@@ -69,22 +84,25 @@ std::string OniRecorder::begin(const PipedFrame* first) {
 
 bool OniRecorder::push(const PipedFrame& frame, std::chrono::milliseconds patience) {
     VirtualFrame pushed{frame.timestamp_us, frames_ + 1, frame.depth_mm.data()};
-    const auto size_before = std::filesystem::file_size(file_);
+    const auto size_before = size_of(file_);
     const bool is_written =
         stream_.setProperty(kPropertyPushFrame, &pushed, sizeof(pushed)) == openni::STATUS_OK &&
-        wait_for([&] { return std::filesystem::file_size(file_) > size_before; }, patience);
+        wait_for([&] { return size_of(file_) > size_before || !is_there(file_); }, patience) &&
+        is_there(file_);
     if (is_written) ++frames_;
     return is_written;
 }
 
 std::string OniRecorder::record(const PipedFrame& frame) {
     if (push(frame, kPatience)) return "";
+    if (!is_there(file_)) return kVanished;
     return "frame " + std::to_string(frames_ + 1) + " does not reach the file; is the disk full?";
 }
 
 std::string OniRecorder::finish() {
     recorder_->stop();
     recorder_->destroy();  // waits for the recorder's thread
+    if (!is_there(file_)) return kVanished;
     const OniOutline outline = outline_of(file_);
     if (!outline.length || outline.frames != static_cast<std::uint32_t>(frames_)) {
         return "the file holds " + std::to_string(outline.frames) + " of " + std::to_string(frames_) +

@@ -34,7 +34,7 @@ const Broken kBroken[] = {
     {"two-documents.yaml", 3, "", "expected one YAML document"},
     {"repeated-key.yaml", 4, "name", "first at line 2"},
     {"anchor.yaml", 2, "", "anchors"},
-    {"tag.yaml", 2, "", "tags are not used in rig files: remove '!text'"},
+    {"tag.yaml", 2, "", "tags are not used here: remove '!text'"},
     {"nested-too-deep.yaml", 2, "", "nested deeper than 16"},
     {"list-as-key.yaml", 2, "", "expected a key, found a list"},
     {"extends-itself.yaml", 0, "extends", "is it a circle?"},

@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
+#include "hw/rigfile/robot_description.hpp"
 #include "hw/rigfile/urdf_document.hpp"
 
 namespace octoskin::rig {
@@ -58,6 +60,59 @@ TEST_F(UrdfUnits, degrees_in_a_limit_are_refused) {
 TEST_F(UrdfUnits, millimetres_in_a_sliding_limit_are_refused) {
     EXPECT_THAT(error_of(joint("prismatic", "0 0 0", "0", "500")),
                 HasSubstr("are they written in millimetres?"));
+}
+
+TEST_F(UrdfUnits, degrees_in_a_turn_are_refused_wherever_it_counts) {
+    const std::string joint = "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>\n";
+    EXPECT_EQ(error_of(joint + "<origin rpy=\"6.2832 -6.2832 0\"/></joint>"), "");
+    for (const char* rpy : {"0 0 90", "-45 0 0", "0 6.3 0", "1e300 0 0", "inf 0 0"}) {
+        EXPECT_THAT(error_of(joint + "<origin rpy=\"" + rpy + "\"/></joint>"),
+                    testing::AnyOf(testing::AllOf(HasSubstr(":4: joint j"), HasSubstr(rpy),
+                                                  HasSubstr("is it written in degrees?")),
+                                   HasSubstr("not a usable URDF")))
+            << rpy;
+    }
+    const std::string link = "<link name=\"c\"><collision/>\n<collision>\n<origin rpy=\"0 180 0\"/>";
+    EXPECT_THAT(error_of(link + "</collision></link>"),
+                testing::AllOf(HasSubstr(":5: link c"), HasSubstr("is it written in degrees?")));
+    // What the picture of a robot looks like is none of our business.
+    EXPECT_THAT(
+        error_of(joint + "</joint><link name=\"d\"><visual><origin rpy=\"0 180 0\"/></visual></link>"),
+        testing::Not(HasSubstr("written in degrees")));
+}
+
+/// Below link b, a line for each.
+std::string chain_of(int links) {
+    std::ostringstream text;
+    for (int i = 0; i < links; ++i) {
+        text << "<link name=\"n" << i << "\"/><joint name=\"j" << i << "\" type=\"fixed\"><parent link=\"";
+        if (i == 0) text << "b";
+        if (i > 0) text << "n" << i - 1;
+        text << "\"/><child link=\"n" << i << "\"/></joint>\n";
+    }
+    text << "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>";
+    return text.str();
+}
+
+TEST_F(UrdfUnits, a_robot_of_more_links_than_any_has_is_refused_at_once) {
+    EXPECT_EQ(error_of(chain_of(1998)), "");
+    // 2 links and 1,999 more with their joints are 4,000 elements; then comes the one too many.
+    EXPECT_THAT(error_of(chain_of(1999)),
+                testing::AllOf(HasSubstr(":2002: joint: "), HasSubstr("at most 4000 links and joints")));
+    EXPECT_THAT(error_of(chain_of(100'000)), HasSubstr("at most 4000 links and joints"));
+}
+
+TEST_F(UrdfUnits, a_link_of_more_shapes_than_any_has_is_refused) {
+    std::string link = "<link name=\"c\">";
+    for (int i = 0; i < 1001; ++i)
+        link += "<collision><geometry><sphere radius=\"0.1\"/></geometry></collision>";
+    const std::string joint =
+        "<joint name=\"k\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>"
+        "<joint name=\"j\" type=\"fixed\"><parent link=\"b\"/><child link=\"c\"/></joint>";
+    EXPECT_EQ(error_of(joint + link + "</link>"), "");
+    const auto capsules = read_capsules(file_, {});
+    ASSERT_FALSE(capsules);
+    EXPECT_THAT(capsules.error().message(), testing::AllOf(HasSubstr(":3: link c"), HasSubstr("found 1001")));
 }
 
 TEST_F(UrdfUnits, a_macro_that_is_not_expanded_is_refused) {

@@ -30,8 +30,7 @@ TEST(HiddenModels, that_the_world_has_are_accepted) {
 TEST(HiddenModels, that_the_world_has_not_is_refused_with_those_it_has) {
     Scenario scenario;
     scenario.hidden_models = {"mug", "mugg"};
-    scenario.hidden_models_file = "my.scenario.yaml";
-    scenario.hidden_models_line = 20;
+    scenario.places["hidden_models"] = {"my.scenario.yaml", 20};
     const auto checked = check_hidden_models(scenario, world_of({"table", "mug", "mug"}));
     ASSERT_FALSE(checked);
     EXPECT_EQ(

@@ -107,6 +107,19 @@ TEST_F(ScenarioFile, with_a_wrong_value_is_refused_with_what_was_expected) {
     EXPECT_THAT(error_of("hidden_models: cone"), HasSubstr("hidden_models"));
 }
 
+TEST_F(ScenarioFile, knows_where_it_says_what_may_turn_out_wrong_later) {
+    const auto scenario = read_with("hidden_models: []\nmotion:\n  circle:\n    link: hand");
+    ASSERT_TRUE(scenario) << scenario.error().message();
+    EXPECT_THAT(scenario->error("motion.circle.link", "x").message(),
+                testing::EndsWith("changed.yaml:5: motion.circle.link: x"));
+    EXPECT_THAT(scenario->error("hidden_models", "x").message(), HasSubstr("changed.yaml:2: hidden_models"));
+    for (const char* key : {"region", "motion.circle.start_position_rad"}) {
+        EXPECT_THAT(scenario->error(key, "x").message(),
+                    testing::ContainsRegex("experiment.scenario.yaml:[0-9]+: "));
+    }
+    EXPECT_THAT(scenario->error("name", "x").message(), testing::EndsWith("changed.yaml: name: x"));
+}
+
 TEST_F(ScenarioFile, without_a_required_key_or_that_is_not_there_is_refused) {
     EXPECT_THAT(error_of("ranges: {sigma_m: null}"), HasSubstr("ranges.sigma_m"));
     EXPECT_THAT(error_of("motion: null"), HasSubstr("motion"));

@@ -1,0 +1,23 @@
+// The outline of an .oni file: whatever the bytes, it ends, and tells of no more than the file has room for.
+#include <cassert>
+
+#include "host/io/openni2/helpers/oni_outline.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+#include "tests/fuzz/input_file.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace octoskin;
+    constexpr std::size_t kRecordHeader = 28;
+    static const fuzz::InputDirectory directory;
+    const auto file = directory.write("input.oni", fuzz::text_of({data, size}));
+    const auto outline = openni2::outline_of(file);
+    assert(outline.frames <= size / kRecordHeader);
+    assert(!outline.length || *outline.length <= size);
+    // A file that had its end has the same outline up to there, whatever follows.
+    if (outline.length) {
+        std::filesystem::resize_file(file, *outline.length);
+        const auto cut = openni2::outline_of(file);
+        assert(cut.frames == outline.frames && cut.length == outline.length);
+    }
+    return 0;
+}
