@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
+
+#include "hw/rigfile/file_kind.hpp"
 
 namespace octoskin::image {
 namespace {
@@ -50,11 +51,10 @@ bool is_arm_executable(const Elf32_Ehdr& header) {
 }  // namespace
 
 Result<ElfImage, ElfError> ElfImage::load(const std::string& path) {
+    if (const auto kind = rig::other_than_a_file(path); !kind.empty())
+        return unexpected(ElfError{fmt::format("{}: is {}, not an ordinary file", path, kind)});
     std::ifstream stream(path, std::ios::binary);
-    // A folder opens, and reading it throws.
-    std::error_code ignored;
-    if (!stream || !std::filesystem::is_regular_file(path, ignored))
-        return unexpected(ElfError{fmt::format("{}: cannot be read", path)});
+    if (!stream) return unexpected(ElfError{fmt::format("{}: cannot be read", path)});
     const std::vector<std::uint8_t> file{std::istreambuf_iterator<char>(stream), {}};
     auto image = parse(file);
     if (!image) return unexpected(ElfError{fmt::format("{}: {}", path, image.error().what)});

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "hw/rigfile/bounded_text.hpp"
+#include "hw/rigfile/file_kind.hpp"
 #include "hw/rigfile/syntax_hint.hpp"
 
 namespace octoskin::rig {
@@ -22,9 +23,10 @@ constexpr std::size_t kDepthMax = 16;
 constexpr std::size_t kExtendsMax = 8;
 
 std::string read_text(const std::filesystem::path& file) {
+    if (const auto kind = other_than_a_file(file); !kind.empty())
+        throw Fault{{file, 0, "", fmt::format("is {}: give the path of an ordinary YAML file", kind)}};
     std::ifstream stream(file, std::ios::binary);
-    std::error_code error;
-    if (!stream || std::filesystem::is_directory(file, error)) {
+    if (!stream) {
         throw Fault{{file, 0, "", "cannot be opened: give the path of an existing, readable YAML file"}};
     }
     std::string text = read_bounded(stream, kFileBytesMax);

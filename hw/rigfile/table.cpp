@@ -37,6 +37,37 @@ bool is_name_character(char c) {
            c == '-' || c == '.' || c == '/';
 }
 
+/// The length of the character that `text`, which is not empty, begins with; 0 if it begins with none that
+/// can be written to a YAML file again: not UTF-8, a surrogate, or a code point that is set aside.
+std::size_t character_length(std::string_view text) {
+    const auto first = static_cast<unsigned char>(text[0]);
+    const std::size_t length = first < 0x80U   ? 1U
+                               : first < 0xC2U ? 0U
+                               : first < 0xE0U ? 2U
+                               : first < 0xF0U ? 3U
+                                               : 4U;
+    if (length == 0 || length > text.size() || first > 0xF4U) return 0;
+    std::uint32_t code = length == 1 ? first : first & (0x7FU >> length);
+    for (const char c : text.substr(1, length - 1)) {
+        const auto byte = static_cast<unsigned char>(c);
+        if ((byte & 0xC0U) != 0x80U) return 0;
+        code = (code << 6U) | (byte & 0x3FU);
+    }
+    constexpr std::array<std::uint32_t, 5> kLeast = {0, 0, 0x80, 0x800, 0x10000};
+    const bool is_set_aside = (code >= 0xD800 && code < 0xE000) || (code >= 0xFDD0 && code < 0xFDF0) ||
+                              (code & 0xFFFEU) == 0xFFFEU || code > 0x10FFFF;
+    return code < kLeast[length] || is_set_aside ? 0 : length;
+}
+
+bool is_writable_text(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t length = character_length(text);
+        if (length == 0) return false;
+        text.remove_prefix(length);
+    }
+    return true;
+}
+
 bool is_plain_scalar(const Value& value) {
     return value.kind == Value::Kind::scalar && !value.is_quoted;
 }
@@ -93,6 +124,7 @@ std::uint64_t read_unsigned(const Value& value, const std::string& path) {
 std::string read_text(const Value& value, const std::string& path) {
     if (value.kind != Value::Kind::scalar)
         fail(value, path, fmt::format("expected a text, found {}", describe(value)));
+    if (!is_writable_text(value.text)) fail(value, path, "expected a text in UTF-8, found other bytes");
     return value.text;
 }
 

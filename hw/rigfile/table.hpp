@@ -31,7 +31,7 @@ struct Range {
                                         Range<std::int64_t> range);
 /// Every whole number that 64 bits hold without a sign.
 [[nodiscard]] std::uint64_t read_unsigned(const Value& value, const std::string& path);
-/// Any scalar, as it is written.
+/// Any scalar in UTF-8, as it is written.
 [[nodiscard]] std::string read_text(const Value& value, const std::string& path);
 /// A name: 1..64 letters, digits and _ - . /
 [[nodiscard]] std::string read_name(const Value& value, const std::string& path);
@@ -60,7 +60,7 @@ class Table {
     [[nodiscard]] bool flag(std::string_view key, std::optional<bool> fallback = std::nullopt) const;
     [[nodiscard]] std::uint64_t unsigned_integer(std::string_view key, std::uint64_t fallback) const;
     [[nodiscard]] std::string name(std::string_view key) const;
-    /// Any scalar; empty if the key is absent.
+    /// read_text(); empty if the key is absent.
     [[nodiscard]] std::string text(std::string_view key) const;
     /// One of a few words.
     template <class Enum>

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "hw/rigfile/bounded_text.hpp"
+#include "hw/rigfile/file_kind.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -37,9 +38,12 @@ class CapturedLog final : public console_bridge::OutputHandler {
 };
 
 Result<std::string, RigError> read_text(const std::filesystem::path& file) {
+    if (const auto kind = other_than_a_file(file); !kind.empty()) {
+        return unexpected(
+            RigError{file, 0, "", fmt::format("is {}: give the path of an ordinary URDF file", kind)});
+    }
     std::ifstream stream(file, std::ios::binary);
-    std::error_code error;
-    if (!stream || std::filesystem::is_directory(file, error)) {
+    if (!stream) {
         return unexpected(
             RigError{file, 0, "", "cannot be opened: give the path of an existing, readable URDF file"});
     }

@@ -1,7 +1,9 @@
-// The outline of an .oni file: whatever the bytes, it ends, and tells of no more than the file has room for.
+// The outline of an .oni file: whatever the bytes, it ends, and tells of no more than the file has room for;
+// and what is salvaged of it has an end.
 #include <cassert>
 
 #include "host/io/openni2/helpers/oni_outline.hpp"
+#include "host/io/openni2/helpers/oni_salvage.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/input_file.hpp"
 
@@ -18,6 +20,12 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         std::filesystem::resize_file(file, *outline.length);
         const auto cut = openni2::outline_of(file);
         assert(cut.frames == outline.frames && cut.length == outline.length);
+    }
+    const auto copy = file.parent_path() / "copy.oni";
+    if (const auto frames = openni2::salvage(file, copy)) {
+        const auto salvaged = openni2::outline_of(copy);
+        assert(*frames > 0 && salvaged.frames == *frames);
+        assert(salvaged.length == std::filesystem::file_size(copy));
     }
     return 0;
 }

@@ -6,6 +6,7 @@
 
 #include "host/apps/octoskin/commands.hpp"
 #include "host/io/mapping/mapping_file.hpp"
+#include "hw/rigfile/file_kind.hpp"
 #include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/key_hint.hpp"
 
@@ -32,6 +33,11 @@ CLI::Validator existing_file() {
     return {[](std::string& path) -> std::string {
                 std::error_code error;
                 if (std::filesystem::is_directory(path, error)) return path + " is a directory, not a file";
+                if (const auto kind = rig::other_than_a_file(path); !kind.empty()) {
+                    throw CommandFailure({ExitCode::no_input, absolute(path) + ": is " + std::string(kind) +
+                                                                  "; give an ordinary file: it is read more "
+                                                                  "than once"});
+                }
                 if (std::filesystem::exists(path, error)) return {};
                 throw CommandFailure({ExitCode::no_input, absolute(path) + ": no such file"});
             },

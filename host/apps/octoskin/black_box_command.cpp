@@ -5,7 +5,9 @@
 #include <memory>
 
 #include "common/wire/codec.hpp"
+#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
 #include "host/core/black_box/dump_assembler.hpp"
 #include "host/core/black_box/transfer_script.hpp"
 #include "host/io/candump/log_reader.hpp"
@@ -18,17 +20,17 @@ struct Pieces {
     std::uint64_t dumps = 0;
     std::uint64_t incomplete = 0;
 
-    void print(const Dump& dump) {
+    void take(const Dump& dump) {
         ++dumps;
         incomplete += dump.is_complete ? 0U : 1U;
-        fmt::print("{}\n", transfer_script(dump));
+        print("{}\n", transfer_script(dump));
     }
     void take(const wire::CanFrame& frame) {
         const auto decoded = wire::decode(frame);
         if (!decoded) return;
         const auto* piece = std::get_if<wire::BlackBox>(&decoded->message);
         if (piece == nullptr) return;
-        if (const auto dump = assembler.take(decoded->node_id, *piece)) print(*dump);
+        if (const auto dump = assembler.take(decoded->node_id, *piece)) take(*dump);
     }
 };
 
@@ -42,7 +44,7 @@ void print_black_boxes(const std::filesystem::path& log) {
         if (!*entry) break;
         pieces.take((*entry)->frame);
     }
-    for (const Dump& dump : pieces.assembler.finish()) pieces.print(dump);
+    for (const Dump& dump : pieces.assembler.finish()) pieces.take(dump);
     spdlog::info("{}: {} dumps, {} of them incomplete", log.string(), pieces.dumps, pieces.incomplete);
 }
 
@@ -52,7 +54,9 @@ void add_black_box_command(CLI::App& app) {
     auto log = std::make_shared<std::filesystem::path>();
     CLI::App* command = app.add_subcommand(
         "black-box", "Print the I2C transfers that nodes recorded before a fault, as test scripts");
-    command->add_option("log", *log, "candump log with BLACK_BOX frames in it")->required();
+    command->add_option("log", *log, "candump log with BLACK_BOX frames in it")
+        ->required()
+        ->check(existing_file());
     command->callback([log] { print_black_boxes(*log); });
 }
 

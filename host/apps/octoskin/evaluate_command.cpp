@@ -10,7 +10,9 @@
 #include "host/apps/evaluation/truth.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/map_provenance.hpp"
 #include "host/apps/octoskin/recorded_scene.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/playback/playback.hpp"
 #include "host/apps/study/configuration.hpp"
 #include "host/apps/study/study.hpp"
@@ -72,14 +74,18 @@ evaluation::Results judge_recording(const EvaluateOptions& options) {
     if (!configuration) throw CommandFailure(configuration.error());
     const MappingConfig& mapping = configuration->mapping;
     const RecordingPaths recording(options.input);
-    if (const auto checked = check_recording(recording, !options.rig.empty()); !checked)
-        throw CommandFailure({ExitCode::no_input, checked.error().message()});
+    const PlaybackRequest request{.recording = recording,
+                                  .mapping = mapping,
+                                  .configuration = configuration->name,
+                                  .maps = {},
+                                  .rig = options.rig,
+                                  .robot = options.robot};
+    if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
     const Scene scene = recorded_scene(options.input, options);
     const auto meta = read_meta(recording);
     if (!meta) throw CommandFailure({ExitCode::bad_data, meta.error().message()});
     spdlog::info("replaying {}", options.input.string());
-    const auto playback = play_recording(
-        {.recording = recording, .mapping = mapping, .maps = {}, .rig = options.rig, .robot = options.robot});
+    const auto playback = play_recording(request);
     if (!playback) throw CommandFailure(playback.error());
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     if (const auto failure = failure_of(*playback)) throw CommandFailure(*failure);
@@ -96,29 +102,42 @@ evaluation::Results judge_recording(const EvaluateOptions& options) {
     return results_of(runs, playback->rig, scene, options.rig.empty() ? recording.rig() : options.rig);
 }
 
-/// The rig that says where the map's grid lies; one that is not the rig of the recording beside the map is
-/// most likely a mistake.
-rig::Rig rig_of_map(const EvaluateOptions& options, const std::optional<std::filesystem::path>& recording) {
-    const std::string own = recording ? RecordingPaths(*recording).rig().string() : "RECORDING/rig.yaml";
-    if (options.rig.empty()) {
-        throw CommandFailure(
-            {ExitCode::usage,
-             "a map alone does not say where the robot and the camera stood in it: give --rig " + own +
-                 ", which has the map's shift (T_map_base)"});
+/// Says so if `rig` is most likely not the one that the map was made with.
+void doubt_rig(const EvaluateOptions& options, const rig::Rig& rig, const MapProvenance& provenance) {
+    const std::uint32_t hash = rig::rig_hash(rig);
+    if (provenance.origin) {
+        if (hash == provenance.origin->rig_hash) return;
+        spdlog::warn("{} is another rig than {}, which the map was made with; the figures are wrong",
+                     options.rig.string(), provenance.origin->rig.string());
+        return;
     }
-    auto rig = rig::read_rig(options.rig, options.robot);
-    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
-    if (!recording) return std::move(*rig);
+    if (!provenance.recording) return;
+    const auto own = RecordingPaths(*provenance.recording).rig();
     const auto recorded = rig::read_rig(own);
     if (!recorded) {
         spdlog::warn("{}; so nothing says whether {} is the rig that the map was made with",
                      recorded.error().message(), options.rig.string());
-    } else if (rig::rig_hash(*recorded) != rig::rig_hash(*rig)) {
+    } else if (rig::rig_hash(*recorded) != hash) {
         spdlog::warn(
             "{} is another rig than {}, of the recording beside the map; unless the map was made with it, "
             "the figures are wrong",
-            options.rig.string(), own);
+            options.rig.string(), own.string());
     }
+}
+
+/// The rig that says where the map's grid lies.
+rig::Rig rig_of_map(const EvaluateOptions& options, const MapProvenance& provenance) {
+    if (options.rig.empty()) {
+        const auto& recording = provenance.recording;
+        throw CommandFailure(
+            {ExitCode::usage,
+             "a map alone does not say where the robot and the camera stood in it: give --rig " +
+                 (recording ? RecordingPaths(*recording).rig().string() : "RECORDING/rig.yaml") +
+                 ", which has the map's shift (T_map_base)"});
+    }
+    auto rig = rig::read_rig(options.rig, options.robot);
+    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    doubt_rig(options, *rig, provenance);
     return std::move(*rig);
 }
 
@@ -144,11 +163,11 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
     limits.map.log_odds_max = 20.0F;
     const auto map = load_map(options.input, limits);
     if (!map) throw CommandFailure({ExitCode::bad_data, map.error().message});
-    const auto beside = recording_beside(options.input);
-    for (const std::string& warning : beside.warnings) spdlog::warn("{}", warning);
-    const auto& recording = beside.directory;
-    const rig::Rig rig = rig_of_map(options, recording);
-    const Scene scene = scene_of_map(options, recording);
+    const auto provenance = provenance_of_map(options.input);
+    if (!provenance) throw CommandFailure(provenance.error());
+    for (const std::string& warning : provenance->warnings) spdlog::warn("{}", warning);
+    const rig::Rig rig = rig_of_map(options, *provenance);
+    const Scene scene = scene_of_map(options, provenance->recording);
     const evaluation::Truth truth = build(scene, rig, map->resolution_m());
     const std::vector<evaluation::Run> runs = {
         {"map", options.input.stem().string(), 0, evaluation::evaluate(*map, truth)}};
@@ -158,7 +177,7 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
 void evaluate_input(const EvaluateOptions& options) {
     const evaluation::Results results =
         std::filesystem::is_directory(options.input) ? judge_recording(options) : judge_map(options);
-    fmt::print("{}", evaluation::metrics_table(results));
+    print("{}", evaluation::metrics_table(results));
     if (options.json.empty()) return;
     std::error_code error;
     if (options.json.extension() != ".json" && std::filesystem::is_regular_file(options.json, error)) {

@@ -8,6 +8,7 @@
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/study/study.hpp"
 
 namespace octoskin::app {
@@ -18,9 +19,9 @@ void run_experiment(const StudyRequest& request) {
     const auto results = run_study(request, [](const std::string& line) { spdlog::info("{}", line); });
     if (!results) throw CommandFailure(results.error());
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    fmt::print("{}\n", evaluation::metrics_table(*results));
-    fmt::print("{:.0f} s in all. Look at {}\n", seconds,
-               std::filesystem::absolute(request.out / "report.html").string());
+    print("{}\n", evaluation::metrics_table(*results));
+    print("{:.0f} s in all. Look at {}\n", seconds,
+          std::filesystem::absolute(request.out / "report.html").string());
 }
 
 }  // namespace

@@ -8,7 +8,9 @@
 
 #include "host/apps/flashing/flashing.hpp"
 #include "host/apps/flashing/record.hpp"
+#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
 #include "hw/image/option_bytes.hpp"
 
 namespace octoskin::app {
@@ -78,20 +80,20 @@ void write_record(const flashing::Order& order, const flashing::Prepared& prepar
 void describe(const flashing::Order& order, const flashing::Prepared& prepared) {
     const rig::BoardHardware& board = order.board;
     const std::uint32_t room = board.configuration_page.address - board.flash.address;
-    fmt::print("image {}: fit for {}, {} bytes ({:.0f} % of its flash), CRC-32 {:08x}\n",
-               order.elf.filename().string(), board.name, prepared.image_bytes,
-               100.0 * static_cast<double>(prepared.image_bytes) / room, prepared.image_crc32);
-    fmt::print("node {} '{}': {} sensors, node_hash {:08x}, {} bytes at 0x{:08X}\n",
-               order.node.config.node_id, order.node.name, order.node.sensors.size(),
-               node_hash(order.node.config), prepared.block_bytes, board.configuration_page.address);
-    fmt::print("files in {}\n", order.folder.string());
+    print("image {}: fit for {}, {} bytes ({:.0f} % of its flash), CRC-32 {:08x}\n",
+          order.elf.filename().string(), board.name, prepared.image_bytes,
+          100.0 * static_cast<double>(prepared.image_bytes) / room, prepared.image_crc32);
+    print("node {} '{}': {} sensors, node_hash {:08x}, {} bytes at 0x{:08X}\n", order.node.config.node_id,
+          order.node.name, order.node.sensors.size(), node_hash(order.node.config), prepared.block_bytes,
+          board.configuration_page.address);
+    print("files in {}\n", order.folder.string());
 }
 
 /// Programmed all the same, but the board is not as it should be: exit code 1.
 void report_option_bytes(const flashing::Programmed& programmed) {
     const auto faults = image::option_byte_faults(programmed.flash_optr);
     if (faults.empty()) {
-        fmt::print("option bytes 0x{:08X}: as they must be\n", programmed.flash_optr);
+        print("option bytes 0x{:08X}: as they must be\n", programmed.flash_optr);
         return;
     }
     std::string message =
@@ -108,12 +110,12 @@ void flash(const FlashOptions& options) {
     write_record(order, prepared, std::nullopt);
     if (options.is_dry_run) {
         (void)value_or_fail(flashing::rehearse(order));
-        fmt::print("dry run: OpenOCD has read the script; nothing was programmed\n");
+        print("dry run: OpenOCD has read the script; nothing was programmed\n");
         return;
     }
     const flashing::Programmed programmed = value_or_fail(flashing::program(order));
     write_record(order, prepared, programmed);
-    fmt::print("programmed, verified, started\n");
+    print("programmed, verified, started\n");
     report_option_bytes(programmed);
 }
 
@@ -122,9 +124,10 @@ void flash(const FlashOptions& options) {
 void add_flash_command(CLI::App& app) {
     auto options = std::make_shared<FlashOptions>();
     CLI::App* command = app.add_subcommand("flash", kAbout);
-    command->add_option("--rig", options->rig, "Rig (YAML)")->required();
+    command->add_option("--rig", options->rig, "Rig (YAML)")->required()->check(existing_file());
     command->add_option("--node", options->node, "Name or number of the node; needed if the rig has several");
-    command->add_option("--elf", options->elf, "Image; default: what the preset firmware-release built");
+    command->add_option("--elf", options->elf, "Image; default: what the preset firmware-release built")
+        ->check(existing_file());
     command->add_option("--out", options->folder, "Folder for the files; default: out/flash/RIG_NODE");
     command->add_option("--adapter-serial", options->adapter_serial,
                         "Serial number of the ST-LINK, if there are several");

@@ -5,9 +5,12 @@
 
 #include <csignal>
 #include <exception>
+#include <iostream>
+#include <sstream>
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/version/version.hpp"
 
 namespace {
@@ -15,7 +18,7 @@ namespace {
 constexpr const char* kFooter =
     "Exit codes: 0 done; 1 done, with a bad result; 64 command line; 65 unusable data;\n"
     "66 no such file; 69 a program or device is missing; 70 a defect of octoskin; 73 cannot write;\n"
-    "74 a device failed; 77 no permission; 78 rig, robot, scenario or mapping file.";
+    "74 a device or the standard output failed; 77 no permission; 78 rig, robot, scenario or mapping file.";
 
 int run(int argc, char** argv) {
     using namespace octoskin;
@@ -36,23 +39,35 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
         return static_cast<int>(ExitCode::ok);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+        std::ostringstream said;
+        const int exit_code = app.exit(error, said, std::cerr);
+        app::print_text(said.str());
+        return exit_code == 0 ? 0 : static_cast<int>(ExitCode::usage);
     } catch (const app::CommandFailure& failure) {
         spdlog::error("{}", failure.what());
         return static_cast<int>(failure.code());
     }
 }
 
+/// What was done and could not be told is a failure, too.
+int checked(int exit_code) {
+    const auto failure = octoskin::app::flush_standard_output();
+    if (!failure) return exit_code;
+    spdlog::error("{}", failure->message);
+    return exit_code == 0 ? static_cast<int>(failure->code) : exit_code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    octoskin::app::reserve_standard_descriptors();
     constexpr int kInternal = 70;
     // A reader that goes away (`| head`) must not end the program in the middle of a file.
     std::signal(SIGPIPE, SIG_IGN);
     spdlog::set_default_logger(spdlog::stderr_color_mt("octoskin"));
     spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
     try {
-        return run(argc, argv);
+        return checked(run(argc, argv));
     } catch (const std::exception& error) {
         spdlog::critical("a defect of octoskin, please report it: {}", error.what());
         return kInternal;

@@ -5,6 +5,7 @@
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/study/configuration.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 
@@ -17,7 +18,7 @@ void add_mapping_command(CLI::App& app) {
     command->callback([name] {
         const auto configuration = study_configuration(*name);
         if (!configuration) throw CommandFailure(configuration.error());
-        fmt::print("{}", mapping_text(configuration->mapping));
+        print("{}", mapping_text(configuration->mapping));
     });
 }
 

@@ -7,9 +7,11 @@
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/playback/map_folder.hpp"
 #include "host/apps/playback/playback.hpp"
 #include "host/apps/study/configuration.hpp"
+#include "hw/rigfile/joined.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -40,11 +42,18 @@ void refuse_failed(const Playback& playback) {
     }
 }
 
-void save(const Playback& playback, const std::filesystem::path& out) {
+void save(const Playback& playback, MapFolder& folder, const std::filesystem::path& out) {
     const auto maps = named_maps(playback);
-    if (const auto saved = save_maps(maps, out); !saved) throw CommandFailure(saved.error());
+    const auto saved = folder.save(maps, playback.origin);
+    if (!saved) throw CommandFailure(saved.error());
     for (const auto& [name, map] : maps) {
-        fmt::print("{}: {} known voxels\n", (out / (name + ".ot")).string(), map->known_voxels());
+        print("{}: {} known voxels\n", (out / (name + ".ot")).string(), map->known_voxels());
+    }
+    if (!saved->removed.empty())
+        print("removed from {}, being of the replay before: {}\n", out.string(), rig::joined(saved->removed));
+    if (!saved->foreign.empty()) {
+        spdlog::warn("{}: {} lie there too, and are not of this replay", out.string(),
+                     rig::joined(saved->foreign));
     }
 }
 
@@ -52,22 +61,27 @@ void replay_recording(const ReplayOptions& options) {
     const auto configuration = study_configuration(options.configuration);
     if (!configuration) throw CommandFailure(configuration.error());
     const bool wants_all = !options.is_fused_only;
+    const PlaybackRequest request{.recording = RecordingPaths(options.recording),
+                                  .mapping = configuration->mapping,
+                                  .configuration = configuration->name,
+                                  .maps = {.depth = wants_all, .proximity = wants_all, .fused = true},
+                                  .rig = options.rig,
+                                  .robot = options.robot};
+    if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
+    // Before the work: of two that write there, the second would else find out after it.
+    auto folder = MapFolder::open(options.out);
+    if (!folder) throw CommandFailure(folder.error());
     int last_second = 0;
-    const auto playback =
-        play_recording({.recording = RecordingPaths(options.recording),
-                        .mapping = configuration->mapping,
-                        .maps = {.depth = wants_all, .proximity = wants_all, .fused = true},
-                        .rig = options.rig,
-                        .robot = options.robot},
-                       [&](const ReplayProgress& progress) { report_progress(progress, last_second); });
+    const auto playback = play_recording(
+        request, [&](const ReplayProgress& progress) { report_progress(progress, last_second); });
     if (!playback) throw CommandFailure(playback.error());
 
-    for (const AccountTable& table : playback->accounts) fmt::print("{}", to_text(table));
-    fmt::print("{}", to_text(std::span<const NodeSummary>(playback->nodes)));
-    for (const std::string& note : playback->notes) fmt::print("{}\n", note);
+    for (const AccountTable& table : playback->accounts) print("{}", to_text(table));
+    print("{}", to_text(std::span<const NodeSummary>(playback->nodes)));
+    for (const std::string& note : playback->notes) print("{}\n", note);
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     refuse_failed(*playback);
-    save(*playback, options.out);
+    save(*playback, *folder, options.out);
 }
 
 }  // namespace

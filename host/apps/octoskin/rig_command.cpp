@@ -6,6 +6,7 @@
 #include "common/wire/bus_load.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
 #include "hw/rigfile/i2c_load.hpp"
@@ -27,34 +28,32 @@ void describe_i2c(const rig::Node& node) {
         const double load = rig::i2c_load(node.config, bus);
         if (load == 0.0) continue;
         const rig::PhaseSpread spread = rig::phase_spread(node.config, bus);
-        fmt::print(
-            "    I2C bus {} at {} kHz: load {:.1f} %, at most {:.0f} %; {:.0f} % of its busiest 5 ms{}\n",
-            bus, node.config.i2c_hz / 1000, 100.0 * load, 100.0 * rig::kI2cLoadMax, 100.0 * spread.peak,
-            spread.is_even() ? "" : ": phase_us could spread the readings better");
+        print("    I2C bus {} at {} kHz: load {:.1f} %, at most {:.0f} %; {:.0f} % of its busiest 5 ms{}\n",
+              bus, node.config.i2c_hz / 1000, 100.0 * load, 100.0 * rig::kI2cLoadMax, 100.0 * spread.peak,
+              spread.is_even() ? "" : ": phase_us could spread the readings better");
     }
     for (const auto& [first, second] : rig::pairs_ranging_together(node)) {
-        fmt::print("    {} and {} see the same light and range at once: set phase_us apart\n",
-                   node.sensors[first].name, node.sensors[second].name);
+        print("    {} and {} see the same light and range at once: set phase_us apart\n",
+              node.sensors[first].name, node.sensors[second].name);
     }
 }
 
 void describe(const rig::Rig& rig) {
-    fmt::print("rig {}: hash {:08x}, robot {}\n", rig.name, rig::rig_hash(rig), rig.urdf.filename().string());
+    print("rig {}: hash {:08x}, robot {}\n", rig.name, rig::rig_hash(rig), rig.urdf.filename().string());
     for (const rig::Node& node : rig.nodes) {
-        fmt::print("  node {} '{}': {} sensors, node_hash {:08x}\n", node.config.node_id, node.name,
-                   node.sensors.size(), node_hash(node.config));
+        print("  node {} '{}': {} sensors, node_hash {:08x}\n", node.config.node_id, node.name,
+              node.sensors.size(), node_hash(node.config));
         describe_i2c(node);
     }
-    fmt::print("  node {} sends {} joints at {:g} Hz\n", rig.joints.node_id, rig.joints.joints.size(),
-               rig.joints.rate_hz);
+    print("  node {} sends {} joints at {:g} Hz\n", rig.joints.node_id, rig.joints.joints.size(),
+          rig.joints.rate_hz);
     if (rig.camera) {
-        fmt::print("  camera {} x {} at {:g} Hz\n", rig.camera->width, rig.camera->height,
-                   rig.camera->rate_hz);
+        print("  camera {} x {} at {:g} Hz\n", rig.camera->width, rig.camera->height, rig.camera->rate_hz);
     }
-    fmt::print("  CAN{} {} bit/s{}: load {:.1f} % in the worst case, at most {:.0f} %\n",
-               rig.bus.uses_can_fd ? " FD" : "", rig.bus.nominal_bitrate,
-               rig.bus.uses_can_fd ? fmt::format(" / {} bit/s", rig.bus.data_bitrate) : "",
-               100.0 * rig::can_load(rig), 100.0 * wire::kBusLoadLimit);
+    print("  CAN{} {} bit/s{}: load {:.1f} % in the worst case, at most {:.0f} %\n",
+          rig.bus.uses_can_fd ? " FD" : "", rig.bus.nominal_bitrate,
+          rig.bus.uses_can_fd ? fmt::format(" / {} bit/s", rig.bus.data_bitrate) : "",
+          100.0 * rig::can_load(rig), 100.0 * wire::kBusLoadLimit);
 }
 
 }  // namespace
@@ -75,7 +74,7 @@ void add_rig_command(CLI::App& app) {
             throw CommandFailure({ExitCode::bad_config, host.error().message()});
         }
         if (options->prints_canonical) {
-            fmt::print("{}", rig::canonical_text(*rig, rig->urdf.string()));
+            print("{}", rig::canonical_text(*rig, rig->urdf.string()));
         } else {
             describe(*rig);
         }

@@ -6,6 +6,7 @@
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/simulation/simulation.hpp"
 
 namespace octoskin::app {
@@ -50,7 +51,7 @@ void simulate(const SimulationRequest& request, bool allows_violations) {
     };
     const auto summary = simulate_recording(request, on_progress);
     if (!summary) throw CommandFailure(summary.error());
-    fmt::print(
+    print(
         "{}: {:.1f} s, {} CAN frames, {} depth frames; first range after {:.2f} s, CAN bus {:.1f} % busy, "
         "busiest I2C bus "
         "{:.1f} %\n",
@@ -97,7 +98,9 @@ void add_simulate_command(CLI::App& app) {
             "What reads the sensors: the node core in this process, or the flashed image on emulated boards")
         ->capture_default_str()
         ->check(CLI::IsMember({"core", "emulated"}));
-    command->add_option("--image", options->image, "ELF for the emulated boards")->capture_default_str();
+    command->add_option("--image", options->image, "ELF for the emulated boards")
+        ->capture_default_str()
+        ->check(existing_file());
     command
         ->add_option("--cycles-per-instruction", options->cycles_per_instruction,
                      "Of the emulated boards' cores")

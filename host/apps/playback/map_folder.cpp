@@ -7,23 +7,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kDraftFolder = ".octoskin-maps-part";
-
-Unexpected<AppError> fail(const fs::path& place, const std::error_code& error) {
-    return unexpected(AppError{ExitCode::cannot_create, place.string() + ": " + error.message()});
-}
-
-/// Removed on every way out.
-struct DraftFolder {
-    fs::path path;
-    explicit DraftFolder(fs::path path_in) : path(std::move(path_in)) {}
-    DraftFolder(const DraftFolder&) = delete;
-    DraftFolder& operator=(const DraftFolder&) = delete;
-    ~DraftFolder() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
+/// Maps that were there before and are none of the new ones.
+struct OtherMaps {
+    SavedMaps told;
+    std::vector<fs::path> retired;
 };
+
+OtherMaps look_at_others(const fs::path& folder, const MapOrigin& origin) {
+    const auto former = read_map_origin(folder);
+    OtherMaps others;
+    for (const std::string& name : map_file_names()) {
+        std::error_code error;
+        if (origin.maps.contains(name) || !fs::exists(folder / name, error)) continue;
+        // Only what is, byte for byte, what a replay left here.
+        const bool is_ours =
+            former && *former && (*former)->maps.contains(name) && !fault_of_map(folder / name, **former);
+        (is_ours ? others.told.removed : others.told.foreign).push_back(name);
+        if (is_ours) others.retired.emplace_back(name);
+    }
+    return others;
+}
 
 }  // namespace
 
@@ -37,24 +40,31 @@ NamedMaps named_maps(const Playback& playback) {
     return named;
 }
 
-Status<AppError> save_maps(const NamedMaps& maps, const fs::path& folder) {
-    const DraftFolder draft(folder / kDraftFolder);
-    std::error_code error;
-    fs::create_directories(draft.path, error);
-    if (error) return fail(folder, error);
-    std::vector<std::string> files;
+Result<MapFolder, AppError> MapFolder::open(const fs::path& folder) {
+    auto files = FileSet::begin(folder);
+    if (!files) return unexpected(files.error());
+    return MapFolder(std::move(*files));
+}
+
+Result<SavedMaps, AppError> MapFolder::save(const NamedMaps& maps, MapOrigin origin) {
+    std::vector<fs::path> files;
     for (const auto& [name, map] : maps) {
         for (const char* extension : {".ot", ".bt", ".ply"}) {
-            files.push_back(name + extension);
-            if (const auto saved = save_map(*map, draft.path / files.back()); !saved)
+            const fs::path& file = files.emplace_back(name + extension);
+            if (const auto saved = save_map(*map, files_.draft() / file); !saved)
                 return unexpected(AppError{ExitCode::cannot_create, saved.error().message});
+            const auto crc = crc32_of(files_.draft() / file);
+            if (!crc) return fail(ExitCode::cannot_create, file.string() + ": cannot be read back");
+            origin.maps[file.string()] = *crc;
         }
     }
-    for (const std::string& file : files) {
-        fs::rename(draft.path / file, folder / file, error);
-        if (error) return fail(folder / file, error);
-    }
-    return Done{};
+    const OtherMaps others = look_at_others(files_.folder(), origin);
+    if (const auto written = write_map_origin(files_.draft() / kMapOriginFile, origin); !written)
+        return unexpected(written.error());
+    files.emplace_back(kMapOriginFile);
+    if (const auto committed = files_.commit(files, others.retired); !committed)
+        return unexpected(committed.error());
+    return others.told;
 }
 
 }  // namespace octoskin

@@ -1,4 +1,5 @@
-// The maps of one playback in a folder: all of them, or those that were there before.
+// The maps of one playback in a folder, with what they were made from: all of them, or those that were there
+// before.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +8,10 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "host/apps/playback/map_origin.hpp"
 #include "host/apps/playback/playback.hpp"
 #include "host/apps/recording/app_error.hpp"
+#include "host/apps/recording/file_set.hpp"
 
 namespace octoskin {
 
@@ -18,8 +21,26 @@ using NamedMaps = std::vector<std::pair<std::string, const FusedMap*>>;
 /// the playback.
 [[nodiscard]] NamedMaps named_maps(const Playback& playback);
 
-/// Writes each as .ot, .bt and .ply into `folder`, which is made if it is not there. They are written beside
-/// and renamed when all are whole, so an error while writing leaves the former ones untouched.
-[[nodiscard]] Status<AppError> save_maps(const NamedMaps& maps, const std::filesystem::path& folder);
+/// What a person should know of a folder after a save.
+struct SavedMaps {
+    std::vector<std::string> removed;  ///< maps of the playback before, which this one has none of
+    std::vector<std::string>
+        foreign;  ///< maps beside that no octoskin put there, as far as is known: left alone
+};
+
+/// A folder that is ours from the moment it is opened, so that a second octoskin is refused before its work.
+class MapFolder {
+  public:
+    /// Makes the folder if it is not there, and locks it: see FileSet::begin().
+    [[nodiscard]] static Result<MapFolder, AppError> open(const std::filesystem::path& folder);
+
+    /// Writes each map as .ot, .bt and .ply, and maps.yaml; once. On an error those before are as they were.
+    /// `origin`: what the maps were made from; their checksums are filled in.
+    [[nodiscard]] Result<SavedMaps, AppError> save(const NamedMaps& maps, MapOrigin origin);
+
+  private:
+    explicit MapFolder(FileSet files) : files_(std::move(files)) {}
+    FileSet files_;
+};
 
 }  // namespace octoskin

@@ -7,7 +7,10 @@
 
 #include "host/apps/playback/log_survey.hpp"
 #include "host/apps/recording/reading.hpp"
+#include "host/apps/recording/recording_draft.hpp"
+#include "host/apps/version/version.hpp"
 #include "host/io/candump/log_source.hpp"
+#include "host/io/mapping/mapping_file.hpp"
 #include "host/io/openni2/oni_reader.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 
@@ -97,6 +100,24 @@ AccountTable pixel_table(const DepthStage& depth) {
     return table;
 }
 
+Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig::Rig& rig) {
+    const auto absolute = [](const std::filesystem::path& path) {
+        return std::filesystem::absolute(path).lexically_normal();
+    };
+    const auto crc32 = crc32_of_recording(request.recording);
+    if (!crc32) return fail(ExitCode::bad_data, request.recording.directory.string() + ": cannot be read");
+    return MapOrigin{.made_by = program_version(),
+                     .recording = absolute(request.recording.directory),
+                     .recording_crc32 = *crc32,
+                     .rig = absolute(request.rig.empty() ? request.recording.rig() : request.rig),
+                     .rig_hash = rig::rig_hash(rig),
+                     .robot = absolute(rig.urdf),
+                     .robot_crc32 = crc32_of(rig.urdf),
+                     .configuration = request.configuration,
+                     .mapping = mapping_text(request.mapping),
+                     .maps = {}};
+}
+
 std::vector<std::string> take_notes(const Pipeline& pipeline) {
     std::vector<std::string> notes;
     const HostClockEstimate& clock = pipeline.intake().host_clock();
@@ -156,15 +177,26 @@ std::optional<AppError> failure_of(const Playback& playback) {
     return std::nullopt;
 }
 
-Result<Playback, AppError> play_recording(const PlaybackRequest& request, const ReplayReport& report) {
-    if (const auto checked = check_recording(request.recording, !request.rig.empty()); !checked) {
+Status<AppError> check_playable(const PlaybackRequest& request) {
+    // First: a recording whose last file is still to be put in place has no meta.yaml.
+    if (const auto settled = settle_file_set(request.recording.directory); !settled)
+        return unexpected(settled.error());
+    if (const auto checked = check_recording(request.recording, !request.rig.empty()); !checked)
         return fail(ExitCode::no_input, checked.error().message());
-    }
+    return Done{};
+}
+
+Result<Playback, AppError> play_recording(const PlaybackRequest& request, const ReplayReport& report) {
+    if (const auto checked = check_playable(request); !checked) return unexpected(checked.error());
+    const auto lock = lock_recording(request.recording);
+    if (!lock) return unexpected(lock.error());
     const auto meta = read_meta(request.recording);
     if (!meta) return fail(ExitCode::bad_data, meta.error().message());
     auto setup = read_setup(request);
     if (!setup) return unexpected(setup.error());
     const HostRig& rig = setup->host.rig;
+    auto origin = origin_of(request, setup->rig);
+    if (!origin) return unexpected(origin.error());
     const auto survey = survey_log(request.recording, rig);
     if (!survey) return unexpected(survey.error());
     auto log = open_log(request.recording, survey->interface());
@@ -181,7 +213,8 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
 
     ReplayOutcome outcome = replay(*pipeline, *log, depth.reader ? &*depth.reader : nullptr, report);
     if (depth.error) outcome.depth_error = depth.error;
-    Playback playback{std::move(setup->rig), std::move(*pipeline), std::move(outcome), {}, {}, {}, {}, false};
+    Playback playback{std::move(setup->rig), std::move(*pipeline), std::move(outcome), {}, {}, {}, {}, false,
+                      std::move(*origin)};
     playback.accounts.push_back(line_table(*log));
     for (AccountTable& table : playback.pipeline.account_tables())
         playback.accounts.push_back(std::move(table));
@@ -190,6 +223,9 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
     playback.nodes = summarise(playback.pipeline.intake());
     playback.notes = take_notes(playback.pipeline);
     if (auto warning = survey->warning()) playback.warnings.push_back(std::move(*warning));
+    if (depth.reader) {
+        if (auto loss = depth.reader->loss()) playback.warnings.push_back(std::move(*loss));
+    }
     find_warnings(*meta, rig, depth, playback);
     return playback;
 }

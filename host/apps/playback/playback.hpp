@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/result.hpp"
+#include "host/apps/playback/map_origin.hpp"
 #include "host/apps/recording/app_error.hpp"
 #include "host/apps/recording/recording.hpp"
 #include "host/core/account/account.hpp"
@@ -20,6 +21,7 @@ namespace octoskin {
 struct PlaybackRequest {
     RecordingPaths recording;
     MappingConfig mapping;
+    std::string configuration;  ///< what `mapping` is called
     MapChoice maps;
     std::filesystem::path rig;    ///< in place of the recording's; empty: the recording's
     std::filesystem::path robot;  ///< in place of the recording's; empty: the recording's
@@ -35,14 +37,20 @@ struct Playback {
     std::vector<std::string> notes;
     std::vector<std::string> warnings;  ///< what a person should know about this recording
     bool is_map_incomplete = false;     ///< a map had no room for some of its voxels
+    MapOrigin origin;                   ///< of its maps, but for the maps' own checksums
 };
 
 /// Why what came of a recording must not be used as a map; empty if nothing speaks against it: a source that
 /// failed on the way, an account that does not balance, a map without room, or nothing in any map.
 [[nodiscard]] std::optional<AppError> failure_of(const Playback& playback);
 
+/// That the recording has its files, after settle_file_set(): cheap, for those who have something to prepare
+/// before they play it.
+[[nodiscard]] Status<AppError> check_playable(const PlaybackRequest& request);
+
 /// Opens a recording and plays it to its end. A source that fails on the way (a truncated .oni) is told in
-/// `outcome`, and what came before it is on the maps. Several threads may play at once.
+/// `outcome`, and what came before it is on the maps. Several threads may play at once; while
+/// one does, no octoskin replaces the recording.
 [[nodiscard]] Result<Playback, AppError> play_recording(const PlaybackRequest& request,
                                                         const ReplayReport& report = {});
 

@@ -112,6 +112,11 @@ Status<RecordingError> check_recording(const RecordingPaths& recording, bool is_
         if (is_rig_given && file == recording.rig()) continue;
         if (!std::filesystem::is_regular_file(file, error)) return failure(file, what);
     }
+    for (const auto& file : {recording.depth(), recording.depth_epoch()}) {
+        const auto status = std::filesystem::status(file, error);
+        if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+            return failure(file, "is no ordinary file; move it away, or put the recorded one there");
+    }
     if (std::filesystem::exists(recording.depth(), error) !=
         std::filesystem::exists(recording.depth_epoch(), error)) {
         return failure(recording.directory, "depth.oni and depth.epoch.yaml must both be there, or neither");

@@ -11,6 +11,9 @@
 
 namespace octoskin {
 
+/// Beside maps: what they were made from (host/apps/playback/map_origin.hpp).
+inline constexpr const char* kMapOriginFile = "maps.yaml";
+
 /// Where the files of a recording are.
 struct RecordingPaths {
     explicit RecordingPaths(std::filesystem::path directory_in) : directory(std::move(directory_in)) {}

@@ -10,8 +10,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kDraftFolder = ".octoskin-part";
-
 Unexpected<AppError> fail(const fs::path& place, const std::string& what) {
     return unexpected(AppError{ExitCode::cannot_create, place.string() + ": " + what});
 }
@@ -24,8 +22,9 @@ std::vector<fs::path> files_of(const RecordingPaths& paths) {
 bool is_occupied(const fs::path& directory) {
     std::error_code error;
     const fs::directory_iterator entries(directory, error);
-    return !error && std::any_of(begin(entries), end(entries),
-                                 [](const auto& entry) { return entry.path().filename() != kDraftFolder; });
+    return !error && std::any_of(begin(entries), end(entries), [](const auto& entry) {
+        return entry.path().filename() != FileSet::kDraftFolder;
+    });
 }
 
 Status<AppError> check_replaceable(const RecordingPaths& paths) {
@@ -43,73 +42,72 @@ Status<AppError> check_replaceable(const RecordingPaths& paths) {
                                      "overwritten; give another directory, or remove it yourself");
 }
 
-/// What replay made of a former recording.
-void remove_maps(const fs::path& folder) {
-    std::error_code ignored;
+/// What replay made of a former recording, in the recording's directory.
+std::vector<fs::path> maps_of_recording() {
+    std::vector<fs::path> maps = {fs::path("maps") / kMapOriginFile};
     for (const char* name : {"depth", "proximity", "fused"}) {
         for (const char* extension : {".ot", ".bt", ".ply"}) {
-            fs::remove(folder / (std::string(name) + extension), ignored);
+            maps.push_back(fs::path("maps") / (std::string(name) + extension));
         }
     }
-    if (fs::is_empty(folder, ignored)) fs::remove(folder, ignored);
+    return maps;
 }
 
 }  // namespace
 
-RecordingDraft::RecordingDraft(fs::path directory, bool is_new)
-    : final_(directory), draft_(directory / kDraftFolder), is_new_(is_new) {}
-
-RecordingDraft::RecordingDraft(RecordingDraft&& other) noexcept
-    : final_(std::move(other.final_)),
-      draft_(std::move(other.draft_)),
-      is_new_(other.is_new_),
-      is_open_(std::exchange(other.is_open_, false)) {}
-
-RecordingDraft::~RecordingDraft() {
-    if (!is_open_) return;
-    std::error_code ignored;
-    fs::remove_all(draft_.directory, ignored);
-    if (is_new_) fs::remove(final_.directory, ignored);  // only if it is empty
-}
+RecordingDraft::RecordingDraft(FileSet files, std::optional<FileLock> former)
+    : final_(files.folder()), draft_(files.draft()), files_(std::move(files)), former_(std::move(former)) {}
 
 Result<RecordingDraft, AppError> RecordingDraft::create(const fs::path& directory, bool may_replace) {
+    auto files = FileSet::begin(directory);
+    if (!files) return unexpected(files.error());
+    const RecordingPaths paths(directory);
+    std::optional<FileLock> former;
     if (is_occupied(directory)) {
         if (!may_replace) {
             return fail(directory,
                         "is not empty; give another directory, or --force to replace a simulated recording");
         }
-        if (const auto checked = check_replaceable(RecordingPaths(directory)); !checked) {
-            return unexpected(checked.error());
+        if (const auto checked = check_replaceable(paths); !checked) return unexpected(checked.error());
+        auto lock = FileLock::take(paths.meta(), FileLock::Kind::exclusive);
+        if (!lock) {
+            return fail(directory,
+                        "another octoskin reads this recording; wait until it has ended, or give another "
+                        "directory");
         }
+        former.emplace(std::move(*lock));
     }
-    std::error_code error;
-    const bool is_new = fs::create_directories(directory, error);
-    if (error) return fail(directory, error.message());
-    RecordingDraft draft(directory, is_new);
-    fs::remove_all(draft.draft_.directory, error);  // of a process that was killed
-    fs::create_directory(draft.draft_.directory, error);
-    if (error) return fail(directory, error.message());
-    return draft;
+    return RecordingDraft(std::move(*files), std::move(former));
 }
 
 Status<AppError> RecordingDraft::commit() {
     std::error_code error;
-    // create() made sure that a recording here is a simulated one; without one, its maps are somebody's.
-    const bool replaces_recording = fs::remove(final_.meta(), error);
-    const auto from = files_of(draft_);
-    const auto to = files_of(final_);
-    for (std::size_t i = 0; i < from.size(); ++i) {
-        if (fs::exists(from[i], error)) {
-            fs::rename(from[i], to[i], error);
-        } else {
-            fs::remove(to[i], error);
-        }
-        if (error) return fail(to[i], error.message());
+    std::vector<fs::path> files;
+    std::vector<fs::path> retired;
+    for (const fs::path& file : files_of(draft_)) {
+        (fs::exists(file, error) ? files : retired).push_back(file.filename());
     }
-    if (replaces_recording) remove_maps(final_.directory / "maps");
-    fs::remove_all(draft_.directory, error);
-    is_open_ = false;
+    // create() made sure that a recording here is a simulated one; without one, its maps are somebody's.
+    const bool replaces_recording = fs::exists(final_.meta(), error);
+    if (replaces_recording) {
+        const auto maps = maps_of_recording();
+        retired.insert(retired.end(), maps.begin(), maps.end());
+    }
+    if (const auto committed = files_.commit(files, retired); !committed) return committed;
+    const fs::path maps = final_.directory / "maps";
+    if (replaces_recording && fs::is_empty(maps, error) && !error) fs::remove(maps, error);
     return Done{};
+}
+
+Result<FileLock, AppError> lock_recording(const RecordingPaths& recording) {
+    auto lock = FileLock::take(recording.meta(), FileLock::Kind::shared);
+    if (!lock) {
+        return unexpected(
+            AppError{ExitCode::bad_data,
+                     recording.directory.string() +
+                         ": another octoskin is replacing this recording; wait until it has ended"});
+    }
+    return std::move(*lock);
 }
 
 }  // namespace octoskin

@@ -51,8 +51,12 @@ Result<Playback, AppError> play(const SeedRequest& request, const StudyConfigura
                                 const Say& say, SeedOutcome& outcome) {
     const RecordingPaths recording(configuration.is_depth_noise_free ? request.scratch : request.recording);
     const PartTimer timer("replay " + configuration.name);
-    auto playback = play_recording(
-        {.recording = recording, .mapping = configuration.mapping, .maps = {}, .rig = {}, .robot = {}});
+    auto playback = play_recording({.recording = recording,
+                                    .mapping = configuration.mapping,
+                                    .configuration = configuration.name,
+                                    .maps = {},
+                                    .rig = {},
+                                    .robot = {}});
     if (!playback) return playback;
     if (auto failure = failure_of(*playback)) return unexpected(std::move(*failure));
     outcome.times.push_back(timer.stop());

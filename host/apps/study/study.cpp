@@ -232,9 +232,8 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     if (const auto checked = check_seeds(request.seeds); !checked) return unexpected(checked.error());
     const auto configurations = find_configurations(request.configurations);
     if (!configurations) return unexpected(configurations.error());
-    std::error_code error;
-    fs::create_directories(request.out, error);
-    if (error) return fail(ExitCode::cannot_create, request.out.string() + ": " + error.message());
+    auto folder = MapFolder::open(request.out);
+    if (!folder) return unexpected(folder.error());
 
     say("ground truth: a noise-free camera goes round the scene");
     const PartTimer survey_timer("ground truth survey");
@@ -264,7 +263,7 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
 
     const SeedOutcome& first = outcomes->front();
     say(fmt::format("seed {}: saving maps", first.seed));
-    if (const auto saved = save_maps(named_maps(*first.main), request.out); !saved)
+    if (const auto saved = folder->save(named_maps(*first.main), first.main->origin); !saved)
         return unexpected(saved.error());
     if (const auto written = write_text(request.out / "metrics.json", evaluation::metrics_json(results));
         !written) {

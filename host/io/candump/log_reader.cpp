@@ -8,14 +8,20 @@
 namespace octoskin::candump {
 
 Result<LogReader, LogError> LogReader::open(const std::filesystem::path& file) {
+    // Opening a named pipe waits for ever, a device may have no end, and a directory fails only when it is
+    // read.
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (std::filesystem::is_directory(status)) {
+        return unexpected(LogError{file, "is a directory; give the log file itself"});
+    }
+    if (std::filesystem::is_other(status)) {
+        return unexpected(LogError{file, "is a pipe or a device; write the log into an ordinary file first"});
+    }
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
     if (!stream) {
         return unexpected(LogError{file, std::string("cannot open: ") + std::strerror(errno)});
-    }
-    // A directory opens, and fails only at the first read.
-    if (std::filesystem::is_directory(file)) {
-        return unexpected(LogError{file, "is a directory; give the log file itself"});
     }
     return LogReader(file, std::move(stream));
 }

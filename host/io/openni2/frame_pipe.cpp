@@ -12,7 +12,7 @@ namespace octoskin::openni2 {
 namespace {
 
 constexpr std::array<char, 4> kMagic{'O', 'S', 'K', 'D'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::uint64_t kEnd = ~std::uint64_t{0};
 
 struct Header {
@@ -20,6 +20,7 @@ struct Header {
     std::uint32_t version = kVersion;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
+    std::uint32_t is_salvaged = 0;
 };
 
 /// To a socket without blocking and without SIGPIPE, whoever handles that; to anything else as usual.
@@ -44,8 +45,10 @@ const char* name(PipeError error) noexcept {
     return "unknown error";
 }
 
-Status<PipeError> FramePipe::write_header(FrameSize size) {
-    const Header header{.width = size.width, .height = size.height};
+Status<PipeError> FramePipe::write_header(const StreamHeader& stream) {
+    const Header header{.width = stream.size.width,
+                        .height = stream.size.height,
+                        .is_salvaged = stream.is_salvaged ? 1U : 0U};
     return write_bytes(std::as_bytes(std::span(&header, 1)));
 }
 
@@ -60,7 +63,7 @@ Status<PipeError> FramePipe::write_end() {
     return write_bytes(std::as_bytes(std::span(&kEnd, 1)));
 }
 
-Result<FrameSize, PipeError> FramePipe::read_header() {
+Result<StreamHeader, PipeError> FramePipe::read_header() {
     Header header;
     if (const auto read = read_bytes(std::as_writable_bytes(std::span(&header, 1))); !read) {
         return unexpected(read.error());
@@ -70,7 +73,7 @@ Result<FrameSize, PipeError> FramePipe::read_header() {
                               FrameSize{header.width, header.height}.pixels() <= kPixelsMax;
     if (header.magic != kMagic || header.version != kVersion || !is_plausible)
         return unexpected(PipeError::wrong_format);
-    return FrameSize{header.width, header.height};
+    return StreamHeader{{header.width, header.height}, header.is_salvaged != 0};
 }
 
 Result<std::optional<PipedFrame>, PipeError> FramePipe::read_frame(FrameSize size) {

@@ -1,7 +1,7 @@
 // Depth frames through a pipe: the format between octoskin and the two helper programs that alone are linked
 // with OpenNI2.
 //
-//     stream  = "OSKD" version:u32 width:u32 height:u32  frame*  end
+//     stream  = "OSKD" version:u32 width:u32 height:u32 is_salvaged:u32  frame*  end
 //     frame   = timestamp_us:u64 pixels:u16[width * height]        timestamps relative to the first frame
 //     end     = 0xFFFFFFFFFFFFFFFF
 //
@@ -28,6 +28,11 @@ struct FrameSize {
 inline constexpr std::uint32_t kSideMax = 4096;
 inline constexpr std::size_t kPixelsMax = std::size_t{1600} * 1200;
 
+struct StreamHeader {
+    FrameSize size;
+    bool is_salvaged = false;  ///< the recording has no end: these are its whole frames
+};
+
 struct PipedFrame {
     std::uint64_t timestamp_us = 0;
     std::vector<std::uint16_t> depth_mm;
@@ -48,12 +53,12 @@ class FramePipe {
     FramePipe(int descriptor, std::chrono::milliseconds patience)
         : descriptor_(descriptor), patience_(patience) {}
 
-    [[nodiscard]] Status<PipeError> write_header(FrameSize size);
+    [[nodiscard]] Status<PipeError> write_header(const StreamHeader& header);
     [[nodiscard]] Status<PipeError> write_frame(std::uint64_t timestamp_us,
                                                 std::span<const std::uint16_t> depth_mm);
     [[nodiscard]] Status<PipeError> write_end();
 
-    [[nodiscard]] Result<FrameSize, PipeError> read_header();
+    [[nodiscard]] Result<StreamHeader, PipeError> read_header();
     /// The next frame; empty at the regular end.
     [[nodiscard]] Result<std::optional<PipedFrame>, PipeError> read_frame(FrameSize size);
 

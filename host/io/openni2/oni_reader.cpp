@@ -1,5 +1,6 @@
 #include "host/io/openni2/oni_reader.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace octoskin::openni2 {
@@ -32,12 +33,12 @@ Result<OniReader, DepthSourceError> OniReader::open(const std::filesystem::path&
                        " is neither beside this program nor in libexec; build or install it");
     auto process = HelperProcess::start(*helper, oni.string(), HelperPipe::its_output);
     if (!process) return failure(process.error());
-    const auto size = FramePipe(process->descriptor(), kPatience).read_header();
-    if (!size) {
+    const auto header = FramePipe(process->descriptor(), kPatience).read_header();
+    if (!header) {
         return failure(
             with_end("not a recording with depth that OpenNI2 can read", process->wait(kEndPatience)));
     }
-    return OniReader(oni, *epoch, std::move(*process), *size);
+    return OniReader(oni, *epoch, std::move(*process), *header);
 }
 
 Unexpected<DepthSourceError> OniReader::fail(const std::string& what) {
@@ -49,10 +50,11 @@ Unexpected<DepthSourceError> OniReader::fail(const std::string& what) {
 Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
     if (failure_) return unexpected(*failure_);
     if (is_ended_) return std::optional<DepthFrame>{};
-    auto piped = FramePipe(helper_.descriptor(), kPatience).read_frame(size_);
+    auto piped = FramePipe(helper_.descriptor(), kPatience).read_frame(header_.size);
     if (!piped) return fail(with_end(name(piped.error()), helper_.wait(kEndPatience)));
     if (!piped->has_value()) {
-        if (frames_read_ != epoch_.frames) return fail("the recording ends");
+        const bool is_short = frames_read_ < epoch_.frames && !header_.is_salvaged;
+        if (is_short || frames_read_ > epoch_.frames) return fail("the recording ends");
         is_ended_ = true;
         return std::optional<DepthFrame>{};
     }
@@ -63,7 +65,15 @@ Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
     if (frames_read_ > 0 && captured < last_) return fail("a time stamp that goes backwards");
     last_ = captured;
     ++frames_read_;
-    return std::optional(DepthFrame{captured, size_.width, size_.height, std::move((*piped)->depth_mm)});
+    return std::optional(
+        DepthFrame{captured, header_.size.width, header_.size.height, std::move((*piped)->depth_mm)});
+}
+
+std::optional<std::string> OniReader::loss() const {
+    if (!header_.is_salvaged) return std::nullopt;
+    return file_.string() + ": was cut off; " + std::to_string(frames_read_) + " of its " +
+           std::to_string(epoch_.frames) + " frames are whole and used, " +
+           std::to_string(epoch_.frames - std::min(epoch_.frames, frames_read_)) + " are lost";
 }
 
 }  // namespace octoskin::openni2

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_source.hpp"
@@ -22,20 +23,24 @@ class OniReader final : public DepthSource {
         std::optional<std::filesystem::path> helper = std::nullopt);
 
     /// Waits at most 15 s for a frame. A recording with fewer frames than its sidecar says ends with an error
-    /// after the last whole frame. After an error there is only that error.
+    /// after the last whole frame; one that was cut off ends there, and loss() says so. After an error there
+    /// is only that error.
     [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override;
 
-    [[nodiscard]] FrameSize frame_size() const noexcept { return size_; }
+    [[nodiscard]] FrameSize frame_size() const noexcept { return header_.size; }
+    /// After the end: what of a recording that was cut off could be had, for a person. Empty if it is whole.
+    [[nodiscard]] std::optional<std::string> loss() const;
 
   private:
-    OniReader(std::filesystem::path file, const DepthEpoch& epoch, HelperProcess helper, FrameSize size)
-        : file_(std::move(file)), epoch_(epoch), helper_(std::move(helper)), size_(size) {}
+    OniReader(std::filesystem::path file, const DepthEpoch& epoch, HelperProcess helper,
+              const StreamHeader& header)
+        : file_(std::move(file)), epoch_(epoch), helper_(std::move(helper)), header_(header) {}
     [[nodiscard]] Unexpected<DepthSourceError> fail(const std::string& what);
 
     std::filesystem::path file_;
     DepthEpoch epoch_;
     HelperProcess helper_;
-    FrameSize size_;
+    StreamHeader header_;
     std::uint64_t frames_read_ = 0;
     HostTime last_{};
     bool is_ended_ = false;

@@ -37,7 +37,7 @@ Result<OniWriter, DepthSourceError> OniWriter::create(const std::filesystem::pat
     for (const auto& stale : {oni, epoch}) std::filesystem::remove(stale, ignored);
     auto process = HelperProcess::start(*helper, oni.string(), HelperPipe::its_input);
     if (!process) return failure(process.error());
-    if (const auto written = FramePipe(process->descriptor(), kPatience).write_header(size); !written) {
+    if (const auto written = FramePipe(process->descriptor(), kPatience).write_header({size}); !written) {
         return failure(name(written.error()));
     }
     return OniWriter(oni, epoch, size, std::move(*process));

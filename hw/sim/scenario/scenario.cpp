@@ -117,7 +117,8 @@ void read_judgement(const Table& top, Scenario& scenario) {
 std::filesystem::path read_world(const Table& top) {
     const Value& value = top.require("world");
     auto world = std::filesystem::absolute(value.file->parent_path() / value.text).lexically_normal();
-    if (value.kind != Value::Kind::scalar || !std::filesystem::is_regular_file(world)) {
+    std::error_code error;  // a name too long, for one, is as absent as any
+    if (value.kind != Value::Kind::scalar || !std::filesystem::is_regular_file(world, error)) {
         top.fail("world", "expected the path of an SDF file, relative to this file; there is none at " +
                               world.string());
     }

@@ -5,6 +5,8 @@
 
 #include <assimp/Importer.hpp>
 
+#include "hw/rigfile/file_kind.hpp"
+
 namespace octoskin::sim {
 namespace {
 
@@ -28,6 +30,8 @@ void append(const aiMesh& part, TriangleMesh& mesh) {
 }  // namespace
 
 Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file) {
+    if (const auto kind = rig::other_than_a_file(file); !kind.empty())
+        return unexpected("mesh " + file.string() + " is " + std::string(kind) + ", not an ordinary file");
     Assimp::Importer importer;
     const aiScene* scene =
         importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);

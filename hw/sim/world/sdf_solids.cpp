@@ -8,6 +8,7 @@
 #include <optional>
 #include <sdf/sdf.hh>
 
+#include "hw/rigfile/file_kind.hpp"
 #include "hw/sim/world/sdf_shapes.hpp"
 
 namespace octoskin::sim {
@@ -59,6 +60,8 @@ class Silence {
 /// What keeps a file from being SDF at all, or nothing. sdformat would only say that it cannot read it, after
 /// trying it as a robot description.
 std::optional<std::string> xml_error_of(const std::filesystem::path& file) {
+    if (const auto kind = rig::other_than_a_file(file); !kind.empty())
+        return "is " + std::string(kind) + ", not an ordinary file";
     tinyxml2::XMLDocument document;
     if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) {
         return "line " + std::to_string(document.ErrorLineNum()) + ": not well-formed XML (" +

@@ -104,5 +104,90 @@ TEST_F(CommandLine, tells_the_load_of_every_bus_of_a_rig) {
     EXPECT_THAT(said.output, testing::ContainsRegex("CAN FD .*load [0-9.]+ %"));
 }
 
+/// With standard output as `redirection` says; only standard error is kept.
+Said octoskin_into(const std::string& redirection, const std::string& arguments) {
+    return run("( " OCTOSKIN_PROGRAM " " + arguments + " " + redirection + " )");
+}
+
+TEST_F(CommandLine, a_standard_output_that_takes_nothing_is_a_failure_of_every_command) {
+    const std::string short_files = " --rig " + source("tests/data/short/rig.yaml") + " --scenario " +
+                                    source("tests/data/short/scenario.yaml");
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    for (const std::string& arguments :
+         {std::string("--help"), std::string("--version"), std::string("replay --help"),
+          std::string("mapping"), "rig " + source("hw/rigs/experiment.yaml"),
+          "rig --canonical " + source("hw/rigs/experiment.yaml"), "simulate " + path("again") + short_files,
+          "replay " + path("rec") + " --out " + path("maps")}) {
+        const Said said = octoskin_into("> /dev/full", arguments);
+        EXPECT_EQ(said.exit_code, 74) << arguments << ": " << said.output;
+        EXPECT_THAT(said.output, HasSubstr("standard output: cannot write (No space left on device)"));
+    }
+    // What was to be written is written all the same.
+    EXPECT_EQ(content(path("maps/fused.ot")), content(path("rec/maps/fused.ot")));
+    EXPECT_EQ(content(path("again/can.log")), content(path("rec/can.log")));
+}
+
+TEST_F(CommandLine, a_reader_that_goes_away_is_no_failure) {
+    const Said said = run("( ( " OCTOSKIN_PROGRAM " rig --canonical " + source("hw/rigs/experiment.yaml") +
+                          "; echo code $? >&2 ) | true )");
+    EXPECT_EQ(said.output, "code 0\n");
+}
+
+TEST_F(CommandLine, a_closed_standard_output_is_told_and_goes_into_no_file) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    const Said said = octoskin_into("<&- >&-", "replay " + path("rec") + " --out " + path("maps"));
+    EXPECT_EQ(said.exit_code, 74) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("standard output: cannot write (Bad file descriptor)"));
+    for (const char* file : {"fused.ot", "fused.bt", "fused.ply", "depth.ot", "proximity.ot"}) {
+        EXPECT_EQ(content(path(std::string("maps/") + file)), content(path(std::string("rec/maps/") + file)));
+    }
+}
+
+TEST_F(CommandLine, a_pipe_or_a_device_for_a_file_is_refused_instead_of_waited_for) {
+    ASSERT_EQ(run("mkfifo " + path("pipe")).exit_code, 0);
+    const std::string rig = source("tests/data/short/rig.yaml");
+    const std::string base = "simulate " + path("rec") + " --rig " + rig + " ";
+    for (const std::string& other : {path("pipe"), std::string("/dev/zero")}) {
+        for (const std::string& arguments :
+             {"rig " + other,
+              "rig " + rig + " --robot " + other,
+              "mapping " + other,
+              "black-box " + other,
+              "evaluate " + other + " --rig " + rig,
+              "evaluate " + path("") + " --scenario " + other,
+              "evaluate " + path("") + " --world " + other,
+              "evaluate " + path("") + " --rig " + other,
+              "replay " + other,
+              "replay " + path("") + " --configuration " + other,
+              "replay " + path("") + " --rig " + other,
+              "replay " + path("") + " --robot " + other,
+              "simulate " + path("rec") + " --rig " + other,
+              base + "--robot " + other,
+              base + "--scenario " + other,
+              base + "--world " + other,
+              base + "--board emulated --image " + other,
+              "flash --dry-run --rig " + other,
+              "flash --dry-run --rig " + rig + " --elf " + other,
+              "experiment --out " + path("out") + " --rig " + other,
+              "experiment --out " + path("out") + " --configurations " + other}) {
+            const Said said = run("timeout 20 " OCTOSKIN_PROGRAM " " + arguments);
+            EXPECT_TRUE(said.exit_code >= 64 && said.exit_code <= 78 && said.exit_code != 70)
+                << arguments << ": " << said.exit_code << said.output;
+            EXPECT_THAT(said.output, HasSubstr(other)) << arguments;
+            EXPECT_THAT(said.output, testing::ContainsRegex("pipe|device|regular file|directory"))
+                << arguments;
+        }
+    }
+    // A scenario's world and a world's mesh are such files, too.
+    write(path("my.scenario.yaml"),
+          "extends: " + source("tests/data/short/scenario.yaml") + "\nworld: " + path("pipe") + "\n");
+    const Said world =
+        run("timeout 20 " OCTOSKIN_PROGRAM " " + base + "--scenario " + path("my.scenario.yaml"));
+    EXPECT_EQ(world.exit_code, 78) << world.output;
+    EXPECT_THAT(world.output, HasSubstr("my.scenario.yaml:2: world"));
+}
+
 }  // namespace
 }  // namespace octoskin

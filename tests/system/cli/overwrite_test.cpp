@@ -1,5 +1,6 @@
 // What is on disk already: never destroyed unasked, and never mixed with what failed.
 #include <gmock/gmock.h>
+#include <sys/file.h>
 
 #include "tests/system/cli/program.hpp"
 
@@ -77,7 +78,8 @@ TEST_F(Overwrite, maps_that_cannot_all_be_written_leave_those_before_as_they_wer
     EXPECT_EQ(full.exit_code, 73) << full.output;
     EXPECT_EQ(content(path("rec/maps/fused.ot")), fused);
     EXPECT_EQ(names_in("rec/maps"),
-              "depth.bt\ndepth.ot\ndepth.ply\nfused.bt\nfused.ot\nfused.ply\nproximity.bt\nproximity.ot\n"
+              "depth.bt\ndepth.ot\ndepth.ply\nfused.bt\nfused.ot\nfused.ply\nmaps.yaml\nproximity."
+              "bt\nproximity.ot\n"
               "proximity.ply\n");
 }
 
@@ -87,7 +89,7 @@ TEST_F(Overwrite, no_map_of_a_camera_that_is_not_there) {
     ASSERT_EQ(made.exit_code, 0) << made.output;
     ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
     EXPECT_EQ(names_in("rec/maps"),
-              "fused.bt\nfused.ot\nfused.ply\nproximity.bt\nproximity.ot\nproximity.ply\n");
+              "fused.bt\nfused.ot\nfused.ply\nmaps.yaml\nproximity.bt\nproximity.ot\nproximity.ply\n");
 }
 
 TEST_F(Overwrite, a_log_with_its_rig_elsewhere_is_enough) {
@@ -108,6 +110,85 @@ TEST_F(Overwrite, a_log_with_its_rig_elsewhere_is_enough) {
     const Said file = octoskin("replay " + path("rec/can.log"));
     EXPECT_EQ(file.exit_code, 66);
     EXPECT_THAT(file.output, AllOf(HasSubstr("is a file"), HasSubstr("directory")));
+}
+
+TEST_F(Overwrite, two_that_write_one_directory_at_once_are_kept_apart) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    const std::string log = content(path("rec/can.log"));
+    const std::string both = "( " OCTOSKIN_PROGRAM " simulate " + path("rec") + " --force --seed 7 --rig " +
+                             source("tests/data/short/rig.yaml") + " --scenario " +
+                             source("tests/data/short/scenario.yaml");
+    // Two simulations, started together: one is refused, and what is there is of the other alone.
+    const Said said = run(both + "; echo first $? ) & " + both + "; echo second $? ) & wait");
+    EXPECT_THAT(said.output, testing::AnyOf(AllOf(HasSubstr("first 0"), HasSubstr("second 73")),
+                                            AllOf(HasSubstr("first 73"), HasSubstr("second 0")),
+                                            // One may have been done before the other began.
+                                            AllOf(HasSubstr("first 0"), HasSubstr("second 0"))));
+    record_short("alone", "--seed 7");
+    for (const char* file : {"can.log", "depth.oni", "rig.yaml", "meta.yaml"})
+        EXPECT_EQ(content(path(std::string("rec/") + file)), content(path(std::string("alone/") + file)))
+            << file;
+    EXPECT_NE(content(path("rec/can.log")), log);
+    EXPECT_EQ(names_in("rec"), names_in("alone"));
+}
+
+TEST_F(Overwrite, a_directory_in_use_is_named_with_what_to_do) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    const std::string again = "simulate " + path("rec") + " --force --rig " +
+                              source("tests/data/short/rig.yaml") + " --scenario " +
+                              source("tests/data/short/scenario.yaml");
+    std::FILE* const held = std::fopen(path("rec/maps").c_str(), "r");
+    ASSERT_NE(held, nullptr);
+    ASSERT_EQ(::flock(::fileno(held), LOCK_EX), 0);
+    const Said maps = octoskin("replay " + path("rec"));
+    EXPECT_EQ(maps.exit_code, 73) << maps.output;
+    EXPECT_THAT(maps.output, AllOf(HasSubstr(path("rec/maps") + ": another octoskin is writing here"),
+                                   HasSubstr("another directory")));
+    EXPECT_EQ(octoskin("replay " + path("rec") + " --out " + path("elsewhere")).exit_code, 0);
+    std::fclose(held);
+
+    std::FILE* const read = std::fopen(path("rec/meta.yaml").c_str(), "r");
+    ASSERT_NE(read, nullptr);
+    ASSERT_EQ(::flock(::fileno(read), LOCK_SH), 0);
+    const Said writer = octoskin(again);
+    EXPECT_EQ(writer.exit_code, 73) << writer.output;
+    EXPECT_THAT(writer.output, HasSubstr(path("rec") + ": another octoskin reads this recording"));
+    EXPECT_EQ(octoskin("replay " + path("rec")).exit_code, 0);  // readers do not mind each other
+    ASSERT_EQ(::flock(::fileno(read), LOCK_EX), 0);
+    const Said reader = octoskin("replay " + path("rec"));
+    EXPECT_EQ(reader.exit_code, 65) << reader.output;
+    EXPECT_THAT(reader.output, HasSubstr("is replacing this recording"));
+    std::fclose(read);
+    EXPECT_EQ(octoskin(again).exit_code, 0);
+}
+
+TEST_F(Overwrite, maps_with_a_directory_in_their_way_are_refused_and_those_before_stay) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    const std::string fused = content(path("rec/maps/fused.ot"));
+    const std::string origin = content(path("rec/maps/maps.yaml"));
+    std::filesystem::remove(path("rec/maps/proximity.ply"));
+    std::filesystem::create_directory(path("rec/maps/proximity.ply"));
+    const Said said = octoskin("replay " + path("rec") + " --configuration paper");
+    EXPECT_EQ(said.exit_code, 73) << said.output;
+    EXPECT_THAT(said.output, AllOf(HasSubstr("maps/proximity.ply: is no file"), HasSubstr("move it away")));
+    EXPECT_EQ(content(path("rec/maps/fused.ot")), fused);
+    EXPECT_EQ(content(path("rec/maps/maps.yaml")), origin);
+    EXPECT_EQ(run("ls -A " + path("rec/maps") + " | grep -c octoskin").output, "0\n");
+}
+
+TEST_F(Overwrite, maps_that_a_replay_has_none_of_go_with_the_replay_before) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    write(path("rec/maps/depth.ot"), "somebody's own");
+    const Said said = octoskin("replay " + path("rec") + " --fused-only");
+    ASSERT_EQ(said.exit_code, 0) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("being of the replay before: depth.bt, depth.ply, proximity.ot"));
+    EXPECT_THAT(said.output, HasSubstr("depth.ot lie there too, and are not of this replay"));
+    EXPECT_EQ(names_in("rec/maps"), "depth.ot\nfused.bt\nfused.ot\nfused.ply\nmaps.yaml\n");
+    EXPECT_EQ(content(path("rec/maps/depth.ot")), "somebody's own");
 }
 
 }  // namespace

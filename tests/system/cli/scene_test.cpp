@@ -132,14 +132,54 @@ TEST_F(SceneOfARecording, serves_the_maps_beside_it) {
     EXPECT_THAT(own.output, Not(HasSubstr("is another rig")));
     const Said other = octoskin("evaluate " + map + " --rig " + source("tests/data/short/rig.yaml"));
     EXPECT_EQ(other.exit_code, 0) << other.output;
-    EXPECT_THAT(other.output,
-                AllOf(HasSubstr("is another rig than " + path("rec/rig.yaml")), HasSubstr("wrong")));
+    EXPECT_THAT(other.output, AllOf(HasSubstr("is another rig than " + path("rec/rig.yaml")),
+                                    HasSubstr("figures are wrong")));
     EXPECT_NE(table_of(other), table_of(own));
+
+    std::filesystem::copy(path("rec/maps"), path("copies"));
+    const Said copy = octoskin("evaluate " + path("copies/fused.ot") + " --rig " + path("rec/rig.yaml"));
+    EXPECT_EQ(copy.exit_code, 0) << copy.output;  // maps.yaml says where the recording is
+    EXPECT_EQ(table_of(copy), table_of(own));
 
     std::filesystem::copy(map, path("alone.ot"));
     const Said alone = octoskin("evaluate " + path("alone.ot") + " --rig " + path("rec/rig.yaml"));
     EXPECT_EQ(alone.exit_code, 64) << alone.output;
     EXPECT_THAT(alone.output, HasSubstr("give --scenario"));
+}
+
+TEST_F(SceneOfARecording, and_its_maps_know_each_other) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec") + " --configuration paper").exit_code, 0);
+    const std::string origin = content(path("rec/maps/maps.yaml"));
+    EXPECT_THAT(origin, AllOf(HasSubstr("schema: octoskin-maps/1"), HasSubstr("recording: " + path("rec")),
+                              HasSubstr("configuration: paper"), HasSubstr("depth_update: paper"),
+                              HasSubstr("rig_hash: 0x"), HasSubstr("fused.ot: 0x"), HasSubstr("commit ")));
+    const std::string fused = content(path("rec/maps/fused.ot"));
+    write(path("rec/maps/fused.ot"), content(path("rec/maps/depth.ot")));
+    const std::string rig = " --rig " + path("rec/rig.yaml");
+    const Said other_bytes = octoskin("evaluate " + path("rec/maps/fused.ot") + rig);
+    EXPECT_EQ(other_bytes.exit_code, 65) << other_bytes.output;
+    EXPECT_THAT(other_bytes.output, AllOf(HasSubstr("is not the map that maps.yaml beside it describes"),
+                                          HasSubstr("move maps.yaml away")));
+    write(path("rec/maps/fused.ot"), fused);
+
+    write(path("rec/maps/maps.yaml"), origin + "surprise: 1\n");
+    const Said broken = octoskin("evaluate " + path("rec/maps/fused.ot") + rig);
+    EXPECT_EQ(broken.exit_code, 65) << broken.output;
+    EXPECT_THAT(broken.output,
+                AllOf(testing::ContainsRegex("maps.yaml:[0-9]+: surprise"), HasSubstr("replay")));
+    write(path("rec/maps/maps.yaml"), origin);
+
+    write(path("rec/can.log"), content(path("rec/can.log")) + "\n");
+    const Said other = octoskin("evaluate " + path("rec/maps/fused.ot") + rig);
+    EXPECT_EQ(other.exit_code, 65) << other.output;
+    EXPECT_THAT(other.output,
+                AllOf(HasSubstr("was made from another recording"), HasSubstr("replay that one again")));
+    // One elsewhere whose recording has changed has none.
+    std::filesystem::copy(path("rec/maps"), path("copies"));
+    const Said elsewhere = octoskin("evaluate " + path("copies/fused.ot") + rig);
+    EXPECT_EQ(elsewhere.exit_code, 64) << elsewhere.output;
+    EXPECT_THAT(elsewhere.output, AllOf(HasSubstr("has changed since"), HasSubstr("give --scenario")));
 }
 
 TEST_F(SceneOfARecording, that_cannot_be_had_is_refused_at_the_line_that_asks_for_it) {

@@ -1,14 +1,18 @@
 // octoskin-oni-read FILE.oni: the depth frames of a recording to standard output (frame_pipe.hpp). OpenNI2
 // may crash or hang on a damaged file: that is why this is a process of its own, with limits.
 #include <OpenNI.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <string>
 
 #include "host/io/openni2/frame_pipe.hpp"
 #include "host/io/openni2/helpers/helper_limits.hpp"
+#include "host/io/openni2/helpers/oni_outline.hpp"
+#include "host/io/openni2/helpers/oni_salvage.hpp"
 
 namespace octoskin::openni2 {
 namespace {
@@ -40,9 +44,10 @@ std::vector<std::uint16_t> pixels_of(const openni::VideoFrameRef& frame, FrameSi
     return pixels;
 }
 
-int stream_frames(openni::VideoStream& stream, int frame_count, FrameSize size, int descriptor) {
+int stream_frames(openni::VideoStream& stream, int frame_count, const StreamHeader& header, int descriptor) {
+    const FrameSize size = header.size;
     FramePipe output(descriptor, kPatience);
-    if (!output.write_header(size)) return 1;
+    if (!output.write_header(header)) return 1;
     openni::VideoStream* const streams[] = {&stream};
     openni::VideoFrameRef frame;
     for (int read = 0; read < frame_count; ++read) {
@@ -63,12 +68,34 @@ int stream_frames(openni::VideoStream& stream, int frame_count, FrameSize size, 
     return output.write_end() ? 0 : 1;
 }
 
-int read_recording(const char* file, int descriptor) {
+/// What OpenNI2 is to open: the recording, or a copy of its whole frames if it has no end.
+struct Input {
+    std::string path;
+    bool is_salvaged = false;
+};
+
+Input input_of(const std::filesystem::path& file) {
+    const OniOutline outline = outline_of(file);
+    if (outline.length || outline.frames == 0) return {file.string()};
+    std::error_code error;
+    const auto folder = std::filesystem::temp_directory_path(error);
+    // Without a name, so that it goes when this process does; left open until then.
+    const int copy = error ? -1 : ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    const std::string path = "/proc/self/fd/" + std::to_string(copy);
+    if (copy >= 0 && salvage(file, path)) return {path, true};
+    std::fprintf(stderr,
+                 "octoskin-oni-read: %s: cut off, and there is no copying its %u whole frames to %s\n",
+                 file.c_str(), outline.frames, folder.c_str());
+    return {file.string()};
+}
+
+int read_recording(const std::filesystem::path& file, int descriptor) {
     openni::Device device;
     openni::VideoStream stream;
-    if (device.open(file) != openni::STATUS_OK || !device.isFile()) {
+    const Input input = input_of(file);
+    if (device.open(input.path.c_str()) != openni::STATUS_OK || !device.isFile()) {
         std::fprintf(stderr, "octoskin-oni-read: %s: not an .oni recording, or a damaged or cut off one\n",
-                     file);
+                     file.c_str());
         return 1;
     }
     openni::PlaybackControl* playback = device.getPlaybackControl();
@@ -86,7 +113,8 @@ int read_recording(const char* file, int descriptor) {
         return complain("a video mode that octoskin does not read");
     }
     if (stream.start() != openni::STATUS_OK) return complain("cannot start the stream");
-    const int outcome = stream_frames(stream, playback->getNumberOfFrames(stream), size, descriptor);
+    const int outcome =
+        stream_frames(stream, playback->getNumberOfFrames(stream), {size, input.is_salvaged}, descriptor);
     // No clean-up: this process ends here, and OpenNI2's shutdown is one more thing that may hang on a
     // damaged file.
     std::fflush(nullptr);
@@ -110,5 +138,5 @@ int main(int argc, char** argv) {
     const auto file = std::filesystem::absolute(argv[1]);
     if (openni::OpenNI::initialize() != openni::STATUS_OK)
         return octoskin::openni2::complain("cannot start OpenNI2");
-    return octoskin::openni2::read_recording(file.c_str(), descriptor);
+    return octoskin::openni2::read_recording(file, descriptor);
 }

@@ -59,12 +59,12 @@ class Frames {
 
 /// What went wrong; empty if the recording is whole.
 std::string record(const std::filesystem::path& file) {
-    const auto size = FramePipe(STDIN_FILENO, kPatience).read_header();
-    if (!size) return std::string("standard input: ") + name(size.error());
+    const auto header = FramePipe(STDIN_FILENO, kPatience).read_header();
+    if (!header) return std::string("standard input: ") + name(header.error());
     if (!std::ofstream(file, std::ios::binary | std::ios::trunc)) return "cannot create the file";
-    Frames frames(*size);
+    Frames frames(header->size);
     frames.read_ahead();
-    OniRecorder recorder(file, *size);
+    OniRecorder recorder(file, header->size);
     if (std::string what = recorder.open(); !what.empty()) return what;
     const auto first = frames.next();
     if (std::string what = recorder.begin(first ? &*first : nullptr); !what.empty()) return what;

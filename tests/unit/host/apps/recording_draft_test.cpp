@@ -120,6 +120,57 @@ TEST(RecordingDraftTest, clears_away_what_a_killed_one_left) {
     EXPECT_FALSE(std::filesystem::exists(folder / "depth.oni"));
 }
 
+TEST(RecordingDraftTest, takes_the_maps_origin_away_with_the_maps) {
+    const ScratchFolder folder;
+    std::filesystem::create_directory(folder / "maps");
+    folder.write("meta.yaml", kSimulated);
+    folder.write("maps/fused.ot", "old");
+    folder.write("maps/maps.yaml", "old");
+    auto draft = RecordingDraft::create(folder.path(), true);
+    ASSERT_TRUE(draft) << draft.error().message;
+    fill(*draft, "log");
+    ASSERT_TRUE(draft->commit());
+    EXPECT_FALSE(std::filesystem::exists(folder / "maps"));
+}
+
+TEST(RecordingDraftTest, two_at_once_and_one_that_is_read_are_refused) {
+    const ScratchFolder folder;
+    folder.write("meta.yaml", kSimulated);
+    folder.write("can.log", "old");
+    {
+        const auto first = RecordingDraft::create(folder.path(), true);
+        ASSERT_TRUE(first) << first.error().message;
+        const auto second = RecordingDraft::create(folder.path(), true);
+        ASSERT_FALSE(second);
+        EXPECT_THAT(second.error().message, HasSubstr("another octoskin is writing here"));
+        const auto reader = lock_recording(RecordingPaths(folder.path()));
+        ASSERT_FALSE(reader);
+        EXPECT_THAT(reader.error().message, HasSubstr("is replacing this recording"));
+    }
+    const auto one = lock_recording(RecordingPaths(folder.path()));
+    const auto two = lock_recording(RecordingPaths(folder.path()));
+    ASSERT_TRUE(one && two);
+    const auto writer = RecordingDraft::create(folder.path(), true);
+    ASSERT_FALSE(writer);
+    EXPECT_THAT(writer.error().message, HasSubstr("another octoskin reads this recording"));
+    EXPECT_EQ(folder.entries(), 2);
+}
+
+TEST(RecordingDraftTest, a_directory_in_the_way_leaves_the_former_recording_whole) {
+    const ScratchFolder folder;
+    folder.write("meta.yaml", kSimulated);
+    folder.write("can.log", "old");
+    std::filesystem::create_directory(folder / "robot.urdf");
+    auto draft = RecordingDraft::create(folder.path(), true);
+    ASSERT_TRUE(draft);
+    fill(*draft, "new");
+    const auto committed = draft->commit();
+    ASSERT_FALSE(committed);
+    EXPECT_THAT(committed.error().message, HasSubstr("robot.urdf: is no file"));
+    EXPECT_EQ(ScratchFolder::read(folder / "can.log"), "old");
+    EXPECT_TRUE(std::filesystem::exists(folder / "meta.yaml"));
+}
+
 TEST(RecordingDraftTest, leaves_maps_that_belong_to_no_recording) {
     const ScratchFolder folder;
     std::filesystem::create_directories(folder / "rec/maps");

@@ -98,12 +98,27 @@ TEST_F(RecordingTest, a_value_of_another_type_or_a_key_given_twice_is_refused) {
     const std::string schema = "schema: octoskin-recording/1\n";
     write(recording_.meta(), schema + "can_frames: 7\n");
     ASSERT_TRUE(read_meta(recording_));
-    for (const char* line :
-         {"can_frames: lots", "can_frames: -1", "depth_frames: [a]", "is_depth_noise_free: perhaps",
-          "is_depth_noise_free: yes", "can_frames: 07x", "seed: 18446744073709551616", "duration_s: .nan",
-          "duration_s: -1", "world_crc32: 0x100000000", "world_crc32: -1", "made_by: [a]", "seed: \"7\"",
-          "made_by: &anchor x", "seed: !!int 7", "duration_s: long", "schema: octoskin-recording/1",
-          "can_frames: 1\ncan_frames: 1"}) {
+    for (const char* line : {"can_frames: lots",
+                             "can_frames: -1",
+                             "depth_frames: [a]",
+                             "is_depth_noise_free: perhaps",
+                             "is_depth_noise_free: yes",
+                             "can_frames: 07x",
+                             "seed: 18446744073709551616",
+                             "duration_s: .nan",
+                             "duration_s: -1",
+                             "world_crc32: 0x100000000",
+                             "world_crc32: -1",
+                             "made_by: [a]",
+                             "seed: \"7\"",
+                             "world: \"w\xF0\x80\"",
+                             "world: \xEF\xBF\xBE",
+                             "source: \xC0\xAF",
+                             "made_by: &anchor x",
+                             "seed: !!int 7",
+                             "duration_s: long",
+                             "schema: octoskin-recording/1",
+                             "can_frames: 1\ncan_frames: 1"}) {
         write(recording_.meta(), schema + line + "\n");
         const auto read = read_meta(recording_);
         ASSERT_FALSE(read) << line;

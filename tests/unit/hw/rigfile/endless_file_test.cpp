@@ -1,11 +1,15 @@
-// A file without end, as a device has it, is refused after as many bytes as a real one may have.
+// What is no file, or has no end, is refused before it is opened.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <sstream>
+#include <utility>
 
 #include "hw/rigfile/bounded_text.hpp"
+#include "hw/rigfile/file_kind.hpp"
 #include "hw/rigfile/robot_description.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -13,12 +17,21 @@ namespace {
 using testing::HasSubstr;
 
 TEST(EndlessFile, is_refused_as_a_rig_and_as_a_robot) {
-    const auto rig = read_rig("/dev/zero");
-    ASSERT_FALSE(rig);
-    EXPECT_THAT(rig.error().message(), HasSubstr("at most 1048576 bytes"));
-    const auto robot = read_capsules("/dev/zero", {});
-    ASSERT_FALSE(robot);
-    EXPECT_THAT(robot.error().message(), HasSubstr("at most 16777216 bytes"));
+    const testing_support::ScratchFolder folder;
+    const auto pipe = folder / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const std::pair<std::filesystem::path, const char*> others[] = {
+        {"/dev/zero", "is a device"}, {pipe, "is a named pipe"}, {folder.path(), "is a directory"}};
+    for (const auto& [path, kind] : others) {
+        const auto rig = read_rig(path);
+        ASSERT_FALSE(rig);
+        EXPECT_THAT(rig.error().message(), HasSubstr(path.string() + ": " + kind));
+        const auto robot = read_capsules(path, {});
+        ASSERT_FALSE(robot);
+        EXPECT_THAT(robot.error().message(), HasSubstr(path.string() + ": " + kind));
+    }
+    EXPECT_EQ(other_than_a_file(folder.write("file", "")), "");
+    EXPECT_EQ(other_than_a_file(folder / "absent"), "");
 }
 
 TEST(BoundedText, is_the_whole_text_up_to_the_limit_and_one_byte_more_beyond_it) {

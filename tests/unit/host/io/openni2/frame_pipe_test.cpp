@@ -37,15 +37,15 @@ class FramePipeTest : public testing::Test {
     std::array<int, 2> ends_{-1, -1};
 };
 
-// 2 x 1 pixels; one frame at 0x0102 us with depths 0x0304 and 0x0506; the end.
+// 2 x 1 pixels, salvaged; one frame at 0x0102 us with depths 0x0304 and 0x0506; the end.
 constexpr std::string_view kStream =
-    "OSKD\x01\0\0\0\x02\0\0\0\x01\0\0\0"
+    "OSKD\x02\0\0\0\x02\0\0\0\x01\0\0\0\x01\0\0\0"
     "\x02\x01\0\0\0\0\0\0\x04\x03\x06\x05"
     "\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF"sv;
 
 TEST_F(FramePipeTest, writes_the_documented_bytes) {
     const std::array<std::uint16_t, 2> depth{0x0304, 0x0506};
-    ASSERT_TRUE(near_end().write_header({2, 1}));
+    ASSERT_TRUE(near_end().write_header({{2, 1}, true}));
     ASSERT_TRUE(near_end().write_frame(0x0102, depth));
     ASSERT_TRUE(near_end().write_end());
     std::array<char, 100> bytes{};
@@ -55,15 +55,16 @@ TEST_F(FramePipeTest, writes_the_documented_bytes) {
 
 TEST_F(FramePipeTest, reads_the_documented_bytes) {
     send(kStream);
-    const auto size = near_end().read_header();
-    ASSERT_TRUE(size);
-    EXPECT_EQ(size->width, 2U);
-    EXPECT_EQ(size->height, 1U);
-    const auto frame = near_end().read_frame(*size);
+    const auto header = near_end().read_header();
+    ASSERT_TRUE(header);
+    EXPECT_EQ(header->size.width, 2U);
+    EXPECT_EQ(header->size.height, 1U);
+    EXPECT_TRUE(header->is_salvaged);
+    const auto frame = near_end().read_frame(header->size);
     ASSERT_TRUE(frame && frame->has_value());
     EXPECT_EQ((*frame)->timestamp_us, 0x0102U);
     EXPECT_EQ((*frame)->depth_mm, (std::vector<std::uint16_t>{0x0304, 0x0506}));
-    const auto end = near_end().read_frame(*size);
+    const auto end = near_end().read_frame(header->size);
     ASSERT_TRUE(end);
     EXPECT_FALSE(end->has_value());
 }
@@ -78,9 +79,9 @@ TEST_F(FramePipeTest, finds_every_cut_of_the_stream) {
         std::optional<PipeError> error;
         if (const auto size = pipe.read_header(); !size) {
             error = size.error();
-        } else if (const auto frame = pipe.read_frame(*size); !frame) {
+        } else if (const auto frame = pipe.read_frame(size->size); !frame) {
             error = frame.error();
-        } else if (const auto end = pipe.read_frame(*size); !end) {
+        } else if (const auto end = pipe.read_frame(size->size); !end) {
             error = end.error();
         }
         EXPECT_EQ(error, PipeError::closed) << "cut to " << length << " bytes";
@@ -89,12 +90,13 @@ TEST_F(FramePipeTest, finds_every_cut_of_the_stream) {
 }
 
 TEST_F(FramePipeTest, refuses_another_format_version_or_an_impossible_size) {
-    for (const auto header : {"OSKE\x01\0\0\0\x02\0\0\0\x01\0\0\0"sv, "OSKD\x02\0\0\0\x02\0\0\0\x01\0\0\0"sv,
-                              "OSKD\x01\0\0\0\0\0\0\0\x01\0\0\0"sv, "OSKD\x01\0\0\0\x02\0\0\0\0\0\0\0"sv,
-                              "OSKD\x01\0\0\0\x01\x10\0\0\x01\0\0\0"sv,    // 4097 wide
-                              "OSKD\x01\0\0\0\xD0\x07\0\0\xD0\x07\0\0"sv,  // 2000 x 2000
-                              "OSKD\x01\0\0\0\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF"sv}) {
-        send(header);
+    const std::string tail("\0\0\0\0", 4);
+    for (const auto header : {"OSKE\x02\0\0\0\x02\0\0\0\x01\0\0\0"sv, "OSKD\x01\0\0\0\x02\0\0\0\x01\0\0\0"sv,
+                              "OSKD\x02\0\0\0\0\0\0\0\x01\0\0\0"sv, "OSKD\x02\0\0\0\x02\0\0\0\0\0\0\0"sv,
+                              "OSKD\x02\0\0\0\x01\x10\0\0\x01\0\0\0"sv,    // 4097 wide
+                              "OSKD\x02\0\0\0\xD0\x07\0\0\xD0\x07\0\0"sv,  // 2000 x 2000
+                              "OSKD\x02\0\0\0\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF"sv}) {
+        send(std::string(header) + tail);
         const auto size = near_end().read_header();
         ASSERT_FALSE(size);
         EXPECT_EQ(size.error(), PipeError::wrong_format);
@@ -102,10 +104,10 @@ TEST_F(FramePipeTest, refuses_another_format_version_or_an_impossible_size) {
 }
 
 TEST_F(FramePipeTest, does_not_wait_for_ever_for_data) {
-    send(kStream.substr(0, 20));
+    send(kStream.substr(0, 24));
     const auto size = near_end().read_header();
     ASSERT_TRUE(size);
-    const auto frame = near_end().read_frame(*size);
+    const auto frame = near_end().read_frame(size->size);
     ASSERT_FALSE(frame);
     EXPECT_EQ(frame.error(), PipeError::timeout);
 }

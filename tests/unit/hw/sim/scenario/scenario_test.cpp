@@ -104,6 +104,8 @@ TEST_F(ScenarioFile, with_a_wrong_value_is_refused_with_what_was_expected) {
     EXPECT_THAT(error_of("seeds: {map_shift_m: [[0, 0]]}"), HasSubstr("seeds.map_shift_m[0]"));
     EXPECT_THAT(error_of("world: no-such.sdf"), AllOf(HasSubstr(":2"), HasSubstr("no-such.sdf")));
     EXPECT_THAT(error_of("world: [a, b]"), HasSubstr("world"));
+    EXPECT_THAT(error_of("world: " + std::string(300, 'w')),
+                AllOf(HasSubstr(":2"), HasSubstr("there is none")));
     EXPECT_THAT(error_of("hidden_models: cone"), HasSubstr("hidden_models"));
 }
 

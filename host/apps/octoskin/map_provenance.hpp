@@ -1,0 +1,26 @@
+// Where a map comes from: its maps.yaml, and the recording that it was made from.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+#include "host/apps/playback/map_origin.hpp"
+#include "host/apps/recording/app_error.hpp"
+
+namespace octoskin::app {
+
+struct MapProvenance {
+    std::optional<MapOrigin> origin;                 ///< that speaks of this map
+    std::optional<std::filesystem::path> recording;  ///< its directory
+    std::vector<std::string> warnings;               ///< of what is not known, or cannot be read
+};
+
+/// The recording is the one beside the map, else the one that maps.yaml names. Refuses (bad_data) a maps.yaml
+/// that cannot be read, one that describes other bytes than the map has, and one that was written of another
+/// recording than lies beside the map.
+[[nodiscard]] Result<MapProvenance, AppError> provenance_of_map(const std::filesystem::path& map);
+
+}  // namespace octoskin::app

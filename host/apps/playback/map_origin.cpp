@@ -1,0 +1,119 @@
+#include "host/apps/playback/map_origin.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <fstream>
+#include <limits>
+
+#include "hw/rigfile/table.hpp"
+
+namespace octoskin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSchema = "octoskin-maps/1";
+constexpr std::int64_t kCrcMax = std::numeric_limits<std::uint32_t>::max();
+
+std::map<std::string, std::uint32_t> read_maps(const rig::Table& top) {
+    const rig::Table table(top.require("maps"), "maps",
+                           {"depth.ot", "depth.bt", "depth.ply", "proximity.ot", "proximity.bt",
+                            "proximity.ply", "fused.ot", "fused.bt", "fused.ply"});
+    std::map<std::string, std::uint32_t> maps;
+    for (const std::string& name : map_file_names()) {
+        if (table.find(name) != nullptr) maps[name] = table.integer<std::uint32_t>(name, {0, kCrcMax});
+    }
+    return maps;
+}
+
+MapOrigin read_checked(const fs::path& file) {
+    const rig::Value document = rig::load_document(file);
+    const rig::Table table(document, "",
+                           {"schema", "made_by", "recording", "recording_crc32", "rig", "rig_hash", "robot",
+                            "robot_crc32", "configuration", "mapping", "maps"});
+    static_cast<void>(table.choice<bool>("schema", {{kSchema, true}}));
+    MapOrigin origin;
+    origin.made_by = table.text("made_by");
+    origin.recording = table.text("recording");
+    origin.recording_crc32 = table.integer<std::uint32_t>("recording_crc32", {0, kCrcMax});
+    origin.rig = table.text("rig");
+    origin.rig_hash = table.integer<std::uint32_t>("rig_hash", {0, kCrcMax});
+    origin.robot = table.text("robot");
+    if (table.find("robot_crc32") != nullptr)
+        origin.robot_crc32 = table.integer<std::uint32_t>("robot_crc32", {0, kCrcMax});
+    origin.configuration = table.text("configuration");
+    origin.mapping = table.text("mapping");
+    origin.maps = read_maps(table);
+    return origin;
+}
+
+}  // namespace
+
+std::vector<std::string> map_file_names() {
+    std::vector<std::string> names;
+    for (const char* map : {"depth", "proximity", "fused"}) {
+        for (const char* extension : {".ot", ".bt", ".ply"}) names.push_back(std::string(map) + extension);
+    }
+    return names;
+}
+
+std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording) {
+    std::vector<fs::path> files = {recording.can_log()};
+    std::error_code error;
+    for (const fs::path& file : {recording.depth(), recording.depth_epoch()}) {
+        if (fs::exists(file, error)) files.push_back(file);
+    }
+    return crc32_of(files);
+}
+
+Status<AppError> write_map_origin(const fs::path& file, const MapOrigin& origin) {
+    YAML::Emitter out;
+    out << YAML::BeginMap;
+    const auto put = [&out](const char* key, const std::string& value) {
+        out << YAML::Key << key << YAML::Value << value;
+    };
+    put("schema", kSchema);
+    put("made_by", origin.made_by);
+    put("recording", origin.recording.string());
+    put("recording_crc32", crc_text(origin.recording_crc32));
+    put("rig", origin.rig.string());
+    put("rig_hash", crc_text(origin.rig_hash));
+    put("robot", origin.robot.string());
+    if (origin.robot_crc32) put("robot_crc32", crc_text(*origin.robot_crc32));
+    put("configuration", origin.configuration);
+    out << YAML::Key << "mapping" << YAML::Value << YAML::Literal << origin.mapping;
+    out << YAML::Key << "maps" << YAML::Value << YAML::BeginMap;
+    for (const auto& [name, crc] : origin.maps) put(name.c_str(), crc_text(crc));
+    out << YAML::EndMap << YAML::EndMap;
+    std::ofstream stream(file, std::ios::binary);
+    stream << out.c_str() << '\n';
+    stream.close();
+    if (!stream) return fail(ExitCode::cannot_create, file.string() + ": cannot write; is the disk full?");
+    return Done{};
+}
+
+Result<std::optional<MapOrigin>, AppError> read_map_origin(const fs::path& folder) {
+    std::error_code error;
+    if (!fs::exists(folder / kMapOriginFile, error)) return std::optional<MapOrigin>{};
+    try {
+        return std::optional(read_checked(folder / kMapOriginFile));
+    } catch (const rig::Fault& fault) {
+        return fail(ExitCode::bad_data,
+                    fault.error.message() + " (replay the recording again, or move this file away)");
+    }
+}
+
+std::optional<AppError> fault_of_map(const fs::path& map, const MapOrigin& origin) {
+    const auto described = origin.maps.find(map.filename().string());
+    if (described == origin.maps.end()) return std::nullopt;
+    const auto found = crc32_of(map);
+    if (found == described->second) return std::nullopt;
+    return AppError{
+        ExitCode::bad_data,
+        map.string() + ": is not the map that " + kMapOriginFile + " beside it describes (CRC-32 " +
+            (found ? crc_text(*found) : "cannot be had") + ", described is " + crc_text(described->second) +
+            "): it was changed, or is of another replay. Replay " + origin.recording.string() +
+            " again, or move " + kMapOriginFile + " away to judge the map without knowing its origin"};
+}
+
+}  // namespace octoskin

@@ -1,0 +1,222 @@
+#include "host/apps/recording/file_set.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing_support::ScratchFolder;
+
+const std::vector<fs::path> kFiles = {"a", "b", "voucher"};
+
+void write(const fs::path& file, const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+}
+
+/// What is in the folder, hidden things included: "a=new b=new".
+std::string told(const fs::path& folder) {
+    std::vector<std::string> entries;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        entries.push_back(entry.is_regular_file() ? name + "=" + ScratchFolder::read(entry.path()) : name);
+    }
+    std::sort(entries.begin(), entries.end());
+    std::string text;
+    for (const std::string& entry : entries) text.append(text.empty() ? "" : " ").append(entry);
+    return text;
+}
+
+constexpr const char* kOld = "a=old gone=old voucher=old";
+constexpr const char* kNew = "a=new b=new voucher=new";
+
+/// The old set; `b` is to be new, `gone` to go.
+void fill_old(const fs::path& folder) {
+    for (const char* name : {"a", "gone", "voucher"}) write(folder / name, "old");
+}
+
+Status<AppError> replace_by_new(const fs::path& folder) {
+    auto set = FileSet::begin(folder);
+    if (!set) return unexpected(set.error());
+    for (const fs::path& file : kFiles) write(set->draft() / file, "new");
+    return set->commit(kFiles, {"gone", "maps/absent"});
+}
+
+TEST(FileSetTest, puts_all_files_in_place_and_takes_the_retired_away) {
+    const ScratchFolder folder;
+    fill_old(folder.path());
+    const auto committed = replace_by_new(folder.path());
+    ASSERT_TRUE(committed) << committed.error().message;
+    EXPECT_EQ(told(folder.path()), kNew);
+}
+
+TEST(FileSetTest, leaves_the_folder_as_it_was_if_it_is_given_up) {
+    const ScratchFolder folder;
+    fill_old(folder.path());
+    {
+        auto set = FileSet::begin(folder.path());
+        ASSERT_TRUE(set);
+        write(set->draft() / "a", "new");
+        const FileSet moved = std::move(*set);
+        EXPECT_EQ(moved.folder(), folder.path());
+    }
+    EXPECT_EQ(told(folder.path()), kOld);
+    { ASSERT_TRUE(FileSet::begin(folder / "made/for/it")); }
+    EXPECT_FALSE(fs::exists(folder / "made/for/it"));
+}
+
+TEST(FileSetTest, of_two_at_once_the_second_is_refused_with_the_directory_and_a_way_out) {
+    const ScratchFolder folder;
+    const auto first = FileSet::begin(folder.path());
+    ASSERT_TRUE(first);
+    write(first->draft() / "a", "new");
+    const auto second = FileSet::begin(folder.path());
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, ExitCode::cannot_create);
+    EXPECT_THAT(second.error().message,
+                testing::AllOf(HasSubstr(folder.path().string() + ": another octoskin"), HasSubstr("wait"),
+                               HasSubstr("another directory")));
+    EXPECT_EQ(ScratchFolder::read(first->draft() / "a"), "new");
+}
+
+TEST(FileSetTest, the_lock_goes_with_its_process) {
+    const ScratchFolder folder;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const auto set = FileSet::begin(folder.path());
+        ::kill(::getpid(), SIGKILL);
+    }
+    ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+    EXPECT_TRUE(fs::exists(folder / FileSet::kDraftFolder));
+    EXPECT_TRUE(replace_by_new(folder.path()));
+    EXPECT_EQ(told(folder.path()), kNew);
+}
+
+TEST(FileSetTest, a_directory_in_the_way_is_named_and_changes_nothing) {
+    for (const char* in_the_way : {"a", "b", "gone", "voucher"}) {
+        const ScratchFolder folder;
+        fill_old(folder.path());
+        fs::remove(folder / in_the_way);
+        fs::create_directory(folder / in_the_way);
+        const std::string before = told(folder.path());
+        const auto committed = replace_by_new(folder.path());
+        ASSERT_FALSE(committed) << in_the_way;
+        EXPECT_THAT(committed.error().message, HasSubstr((folder / in_the_way).string() + ": is no file"));
+        EXPECT_EQ(told(folder.path()), before);
+    }
+}
+
+/// The ready folder as it is after the decision, with `moved` of the new files in their places already.
+void lay_out_half_done(const fs::path& folder, std::size_t moved, bool is_voucher_gone) {
+    fill_old(folder);
+    const fs::path ready = folder / ".octoskin-ready";
+    fs::create_directory(ready);
+    write(ready / ".journal", "octoskin-file-set/1\ndrop gone\nput a\nput b\nput voucher\n");
+    if (is_voucher_gone) fs::remove(folder / "voucher");
+    for (std::size_t i = 0; i < kFiles.size(); ++i) write((i < moved ? folder : ready) / kFiles[i], "new");
+}
+
+TEST(FileSetTest, what_was_killed_after_any_step_is_brought_to_its_end_by_the_next_one) {
+    for (std::size_t moved = 0; moved <= kFiles.size(); ++moved) {
+        const ScratchFolder folder;
+        lay_out_half_done(folder.path(), moved, moved > 0);
+        ASSERT_TRUE(settle_file_set(folder.path())) << moved;
+        EXPECT_EQ(told(folder.path()), kNew) << moved;
+        ASSERT_TRUE(settle_file_set(folder.path()));
+    }
+}
+
+TEST(FileSetTest, an_error_while_it_moves_takes_all_of_it_back_until_it_can_be_done) {
+    const std::pair<const char*, const char*> obstacles[] = {
+        {"gone", ".octoskin-ready a=old gone voucher=old"},
+        {"a", ".octoskin-ready a gone=old voucher=old"},
+        {"b", ".octoskin-ready a=old b gone=old voucher=old"},
+        {"voucher", ".octoskin-ready a=old gone=old voucher"}};
+    for (const auto& [obstacle, expected] : obstacles) {
+        const ScratchFolder folder;
+        lay_out_half_done(folder.path(), 0, false);
+        // It came into the way after the places were looked at.
+        fs::remove(folder / obstacle);
+        fs::create_directory(folder / obstacle);
+        const auto settled = settle_file_set(folder.path());
+        ASSERT_FALSE(settled) << obstacle;
+        EXPECT_THAT(settled.error().message,
+                    testing::AllOf(HasSubstr((folder / obstacle).string() + ": is no file"),
+                                   HasSubstr("wait in " + (folder / ".octoskin-ready").string())));
+        EXPECT_EQ(told(folder.path()), expected);
+        fs::remove(folder / obstacle);
+        ASSERT_TRUE(settle_file_set(folder.path())) << obstacle;
+        EXPECT_EQ(told(folder.path()), kNew);
+    }
+}
+
+TEST(FileSetTest, follows_no_journal_out_of_its_folder) {
+    for (const char* line :
+         {"put ../escaped", "drop /etc/passwd", "put a/../../escaped", "burn a", "put", ""}) {
+        const ScratchFolder folder;
+        fs::create_directories(folder / "in/.octoskin-ready");
+        folder.write("escaped", "mine");
+        folder.write("in/.octoskin-ready/.journal",
+                     std::string("octoskin-file-set/1\nput a\n") + line + "\n");
+        folder.write("in/.octoskin-ready/a", "new");
+        const auto settled = settle_file_set(folder / "in");
+        ASSERT_FALSE(settled) << line;
+        EXPECT_THAT(settled.error().message, HasSubstr("remove " + (folder / "in/.octoskin-ready").string()));
+        EXPECT_EQ(ScratchFolder::read(folder / "escaped"), "mine");
+        EXPECT_FALSE(fs::exists(folder / "in/a"));
+    }
+}
+
+TEST(FileSetTest, killed_at_any_instant_it_is_the_old_set_or_the_new_one) {
+    std::mt19937 random(1);
+    for (int i = 0; i < 30; ++i) {
+        const ScratchFolder folder;
+        fill_old(folder.path());
+        const pid_t child = ::fork();
+        if (child == 0) {
+            static_cast<void>(replace_by_new(folder.path()));
+            ::_exit(0);
+        }
+        ::usleep(static_cast<useconds_t>(random() % 3000));
+        ::kill(child, SIGKILL);
+        ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+        { ASSERT_TRUE(FileSet::begin(folder.path())); }
+        const std::string now = told(folder.path());
+        EXPECT_TRUE(now == kOld || now == kNew) << now;
+    }
+}
+
+TEST(FileLockTest, readers_share_and_a_writer_is_alone) {
+    const ScratchFolder folder;
+    const auto file = folder.write("meta.yaml", "x");
+    using Kind = FileLock::Kind;
+    {
+        const auto one = FileLock::take(file, Kind::shared);
+        ASSERT_TRUE(one);
+        EXPECT_TRUE(FileLock::take(file, Kind::shared));
+        EXPECT_FALSE(FileLock::take(file, Kind::exclusive));
+    }
+    const auto writer = FileLock::take(file, Kind::exclusive);
+    ASSERT_TRUE(writer);
+    EXPECT_FALSE(FileLock::take(file, Kind::shared));
+    // What cannot be opened is for others to complain of.
+    EXPECT_TRUE(FileLock::take(folder / "absent", Kind::exclusive));
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_TRUE(FileLock::take(folder / "pipe", Kind::exclusive));
+}
+
+}  // namespace
+}  // namespace octoskin
