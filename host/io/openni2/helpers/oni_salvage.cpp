@@ -47,10 +47,10 @@ Contents contents_of(const std::filesystem::path& oni) {
     while (const auto record = records.next()) {
         if (record->type == OniRecordType::node_removed || record->type == OniRecordType::end) break;
         if (record->type == OniRecordType::node_added) contents.streams[record->node].added = *record;
+        if (record->type != OniRecordType::new_data) continue;
         const auto stream = contents.streams.find(record->node);
-        const bool is_frame = record->type == OniRecordType::new_data &&
-                              record->fields_size >= kFrameFieldsSize && stream != contents.streams.end();
-        if (!is_frame) continue;
+        // A frame of no stream: here the file's sense ends.
+        if (record->fields_size < kFrameFieldsSize || stream == contents.streams.end()) break;
         stream->second.frames.push_back({timestamp_of(records.file(), *record), record->position});
         ++contents.frames;
         contents.length = record->end;

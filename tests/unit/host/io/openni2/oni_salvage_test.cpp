@@ -95,12 +95,14 @@ TEST_F(OniSalvageTest, of_a_file_that_is_cut_anywhere_keeps_what_is_whole) {
 }
 
 TEST_F(OniSalvageTest, tells_streams_apart) {
-    const std::string both = kHead + node_added(1) + node_added(2) + frame(1, 0, 1) + frame(2, 7, 1) +
-                             frame(3, 9, 1) + frame(2, 8, 2);
-    ASSERT_EQ(salvaged(both), 3U);  // stream 3 was never added
+    const std::string both =
+        kHead + node_added(1) + node_added(2) + frame(1, 0, 1) + frame(2, 7, 1) + frame(2, 8, 2);
+    ASSERT_EQ(salvaged(both), 3U);
     const std::size_t first = kHead.size() + node_added(1).size() - 28;
     EXPECT_EQ(value_at<std::uint32_t>(copy_, first), 1U);
     EXPECT_EQ(value_at<std::uint32_t>(copy_, first + node_added(2).size()), 2U);
+    // Stream 3 was never added: with its frame the file's sense ends.
+    EXPECT_EQ(salvaged(kBegun + frame(1, 0, 1) + frame(3, 9, 1) + frame(1, 5, 2)), 1U);
 }
 
 TEST_F(OniSalvageTest, refuses_what_no_recorder_writes) {
