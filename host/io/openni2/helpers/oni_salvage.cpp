@@ -46,7 +46,11 @@ Contents contents_of(const std::filesystem::path& oni) {
     OniRecords records(oni);
     while (const auto record = records.next()) {
         if (record->type == OniRecordType::node_removed || record->type == OniRecordType::end) break;
-        if (record->type == OniRecordType::node_added) contents.streams[record->node].added = *record;
+        if (record->type == OniRecordType::node_added) {
+            // Once each, with room for the totals: here, too, the file's sense ends.
+            const bool is_new = contents.streams.try_emplace(record->node, Stream{*record, {}}).second;
+            if (!is_new || record->fields_size < kNodeAddedFieldsMin) break;
+        }
         if (record->type != OniRecordType::new_data) continue;
         const auto stream = contents.streams.find(record->node);
         // A frame of no stream: here the file's sense ends.
@@ -55,6 +59,9 @@ Contents contents_of(const std::filesystem::path& oni) {
         ++contents.frames;
         contents.length = record->end;
     }
+    // What was added behind the last frame is not copied.
+    std::erase_if(contents.streams,
+                  [&](const auto& entry) { return entry.second.added.position >= contents.length; });
     return contents;
 }
 
@@ -126,18 +133,11 @@ void put_totals(Writer& out, const Stream& stream, std::uint64_t table) {
     out.put(table);
 }
 
-bool is_sound(const Contents& contents) {
-    return contents.frames > 0 && contents.streams.size() <= kStreamsMax &&
-           std::all_of(contents.streams.begin(), contents.streams.end(), [](const auto& entry) {
-               return entry.second.added.fields_size >= kNodeAddedFieldsMin;
-           });
-}
-
 }  // namespace
 
 std::optional<std::uint32_t> salvage(const std::filesystem::path& oni, const std::filesystem::path& copy) {
     const Contents contents = contents_of(oni);
-    if (!is_sound(contents)) return std::nullopt;
+    if (contents.frames == 0 || contents.streams.size() > kStreamsMax) return std::nullopt;
     std::ifstream from(oni, std::ios::binary);
     Writer out(copy);
     out.copy(from, contents.length);

@@ -103,6 +103,9 @@ TEST_F(OniSalvageTest, tells_streams_apart) {
     EXPECT_EQ(value_at<std::uint32_t>(copy_, first + node_added(2).size()), 2U);
     // Stream 3 was never added: with its frame the file's sense ends.
     EXPECT_EQ(salvaged(kBegun + frame(1, 0, 1) + frame(3, 9, 1) + frame(1, 5, 2)), 1U);
+    // So it does with a stream that is added again.
+    EXPECT_EQ(salvaged(kBegun + frame(1, 0, 1) + node_added(1) + frame(1, 5, 2)), 1U);
+    EXPECT_EQ(outline_of(scratch_ / "copy.oni").length, copy_.size());
 }
 
 TEST_F(OniSalvageTest, refuses_what_no_recorder_writes) {
