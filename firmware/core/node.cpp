@@ -136,9 +136,6 @@ void Node::note_health_changes(NodeTime now) {
 void Node::end_what_has_expired(NodeTime now) {
     count_uptime(now);
     black_box_.update(now);
-    for (auto& reflex : reflexes_) {
-        if (reflex) reflex->update(now);
-    }
     if (last_command_ && elapsed(last_command_->received, now) >= policy_.command_repeat) {
         last_command_.reset();
     }

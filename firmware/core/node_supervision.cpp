@@ -40,6 +40,10 @@ void Node::count_uptime(NodeTime now) {
     judge_run(now);
     run_.uptime_ms = uptime_ms_;
     keep_run_record();
+    // All sensors' in every poll would be a tenth of the core's time.
+    for (auto& reflex : reflexes_) {
+        if (reflex) reflex->update(now);
+    }
 }
 
 void Node::judge_run(NodeTime now) {
