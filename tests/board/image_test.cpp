@@ -147,9 +147,11 @@ TEST_P(I2cFaultTest, keeps_the_loop_short_and_the_others_ranging) {
     const std::size_t neighbour_before = flashed.readings(1).size();
     I2cFault fault = GetParam();
     fault.first = flashed.board().wire(0).transfer_count() + 3;
+    const std::uint64_t hits_before = flashed.board().wire(0).fault_hits();
     flashed.board().wire(0).inject(fault);
     flashed.run_for(3s);
 
+    EXPECT_GE(flashed.board().wire(0).fault_hits() - hits_before, 1U) << "the fault took effect";
     EXPECT_LE(flashed.board().core().longest_awake_ps(), 5'000 * kPsPerUs);
     EXPECT_EQ(flashed.board().reset_count(), 0U);
     EXPECT_EQ(flashed.violations(), "");
@@ -175,13 +177,66 @@ constexpr I2cFault kFaults[] = {
     {.kind = I2cFaultKind::nack_read},
     {.kind = I2cFaultKind::flip_bit, .position = 9},
     {.kind = I2cFaultKind::flip_written_bit, .position = 5},
-    {.kind = I2cFaultKind::lose_write},
+    {.kind = I2cFaultKind::lose_write, .count = 20},  // not every transfer writes something
     {.kind = I2cFaultKind::read_ones},
     {.kind = I2cFaultKind::lose_arbitration},
     {.kind = I2cFaultKind::stretch},
     {.kind = I2cFaultKind::sda_stuck_low, .position = 5},
 };
 INSTANTIATE_TEST_SUITE_P(Kinds, I2cFaultTest, testing::ValuesIn(kFaults), name_of_fault);
+
+// --- a line held, a controller reset in the middle
+
+// Nine clocks do not help: somebody holds SDA for ten seconds.
+TEST(ImageI2c, sda_held_long_costs_that_bus_alone_and_it_comes_back) {
+    NucleoOptions options;
+    options.cycles_per_instruction = 3;
+    FlashedBoard flashed(fleet(8, DistanceMode::long_range, 20, 33), options);
+    flashed.run_for(1s);
+    flashed.board().forget_longest_awake();
+    I2cWire& wire = flashed.board().wire(0);
+    const std::size_t neighbour_before = flashed.readings(1).size();
+    wire.inject(
+        {.kind = I2cFaultKind::sda_stuck_low, .first = wire.transfer_count() + 3, .position = 1'000'000});
+    flashed.run_for(500ms);
+    const std::size_t held = flashed.readings(0).size();
+    flashed.run_for(9'500ms);
+    EXPECT_TRUE(wire.is_sda_low(flashed.now())) << "nobody let go";
+    EXPECT_EQ(flashed.readings(0).size(), held);
+    EXPECT_NEAR(static_cast<double>(flashed.readings(1).size() - neighbour_before), 303.0, 5.0);
+    EXPECT_LE(flashed.board().core().longest_awake_ps(), 5'000 * kPsPerUs);
+    wire.clear_faults();
+    wire.let_go_of_sda();
+    flashed.run_for(2s);
+    // Tried again every second; then both sensors of the bus start as after power-up.
+    for (const std::uint8_t sensor : {std::uint8_t{0}, std::uint8_t{4}}) {
+        EXPECT_GE(flashed.readings(sensor).back().end.us, flashed.now().us - 100'000) << int{sensor};
+    }
+    EXPECT_EQ(flashed.board().reset_count(), 0U);
+    EXPECT_EQ(flashed.violations(), "");
+}
+
+// I12: the 74HC595 keep their levels, so that sensors stay at their addresses, in the middle of a byte. Each
+// time the controller is stopped within 50 us of some transfer's beginning or middle: of the bring-up, and
+// while ranging.
+TEST(ImageI2c, a_reset_in_the_middle_of_a_transfer_is_followed_by_a_clean_start) {
+    FlashedBoard flashed(fleet(4, DistanceMode::long_range, 20, 33));
+    for (int i = 0; i < 60; ++i) {
+        const I2cWire& wire = flashed.board().wire(static_cast<std::size_t>(i % 4));
+        flashed.run_for(i % 2 == 0 ? Microseconds{5'000 + 503 * i} : Microseconds{250'000 + 503 * i});
+        for (int turn = 0; turn < 2'000 && !wire.is_in_transfer(); ++turn) flashed.run_for(Microseconds{50});
+        ASSERT_TRUE(wire.is_in_transfer()) << i;
+        flashed.board().press_reset();
+    }
+    const std::int64_t reset_us = flashed.now().us;
+    flashed.run_for(600ms);
+    for (std::uint8_t sensor = 0; sensor < 4; ++sensor) {
+        ASSERT_FALSE(flashed.readings(sensor).empty());
+        EXPECT_GE(flashed.readings(sensor).back().end.us, reset_us + 500'000) << int{sensor};
+    }
+    EXPECT_EQ(flashed.heartbeats().back().heartbeat.state, wire::NodeState::ranging);
+    EXPECT_EQ(flashed.violations(), "");
+}
 
 // --- clocks
 

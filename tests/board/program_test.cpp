@@ -99,6 +99,9 @@ TEST(OctoskinBoard, refuses_what_it_cannot_use) {
     EXPECT_EQ(run(kImage + " --config " OCTOSKIN_SOURCE_DIR "/README.md").exit_code, 65);
     EXPECT_EQ(run(kImage + kRig + "--node nobody").exit_code, 78);
     EXPECT_EQ(run(kImage + kRig + "--seconds 0.01 --can-log /nowhere/at/all").exit_code, 73);
+    const Outcome no_interface = run(kImage + kRig + "--seconds 0.01 --can nocan7");
+    EXPECT_EQ(no_interface.exit_code, 69) << no_interface.text;
+    EXPECT_THAT(no_interface.text, testing::HasSubstr("nocan7"));
     EXPECT_EQ(run("--help").exit_code, 0);
 }
 

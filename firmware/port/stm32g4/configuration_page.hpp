@@ -12,8 +12,10 @@ namespace octoskin::stm32g4 {
 inline constexpr std::uint32_t kConfigurationPage = 0x0807'F800;
 
 [[nodiscard]] inline std::span<const std::uint8_t, kNodeConfigBytesMax> configuration_page() {
+    // NOLINTBEGIN(performance-no-int-to-ptr): it is at an address, not a variable.
     return std::span<const std::uint8_t, kNodeConfigBytesMax>(
         reinterpret_cast<const std::uint8_t*>(std::uintptr_t{kConfigurationPage}), kNodeConfigBytesMax);
+    // NOLINTEND(performance-no-int-to-ptr)
 }
 
 }  // namespace octoskin::stm32g4

@@ -30,6 +30,7 @@ struct StackedFrame {
 const StackedFrame* frame_at(std::uintptr_t address) {
     const bool is_in_ram = address >= reinterpret_cast<std::uintptr_t>(stack_bottom) &&
                            address + sizeof(StackedFrame) <= reinterpret_cast<std::uintptr_t>(ram_end);
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): an address is all that the core gives.
     return is_in_ram ? reinterpret_cast<const StackedFrame*>(address) : nullptr;
 }
 
@@ -66,7 +67,6 @@ void record_and_reset(const Fault& fault) {
 
 namespace {
 
-using octoskin::stm32g4::Fault;
 using octoskin::wire::FaultKind;
 
 [[noreturn]] void stop(const void* where) {
@@ -137,12 +137,14 @@ extern "C" {
 }
 
 // What the C and C++ libraries call when a program must not go on.
+// NOLINTNEXTLINE(bugprone-reserved-identifier): newlib's name.
 [[noreturn]] void __assert_func(const char*, int, const char*, const char*) {
     stop(__builtin_return_address(0));
 }
-[[noreturn]] void abort() {
+[[gnu::noreturn]] void abort() {
     stop(__builtin_return_address(0));
 }
+// NOLINTNEXTLINE(bugprone-reserved-identifier): the C++ ABI's name.
 [[noreturn]] void __cxa_pure_virtual() {
     stop(__builtin_return_address(0));
 }

@@ -86,6 +86,8 @@ void describe(CLI::App& app, Arguments& arguments) {
                    "Distance of the wall that each sensor looks at, metres; the list is repeated")
         ->capture_default_str();
     app.add_option("--can-log", arguments.can_log, "Write the bus's frames there, as candump -L does");
+    app.add_option("--can", arguments.can_interface,
+                   "Tie the bus to a CAN interface of this machine, such as vcan0; runs in real time then");
     app.add_flag("--sync", arguments.sends_sync, "Play the host's part: SYNC and FOLLOW_UP once a second");
     app.add_flag("--alone", arguments.is_alone_on_bus, "Nobody on the CAN bus acknowledges");
     app.add_option("--drift-ppm", arguments.drift_ppm, "Error of the board's crystal")->capture_default_str();
@@ -109,7 +111,8 @@ void describe(CLI::App& app, Arguments& arguments) {
                    "Serve a simulator over this inherited Unix socket instead of running alone");
     app.footer(
         "Violations are listed on standard error. Exit codes: 0 done; 1 the program did what the manuals\n"
-        "forbid; 64 command line; 65 unusable image or block; 73 cannot write; 78 rig.");
+        "forbid; 64 command line; 65 unusable image or block; 69 no such CAN\n"
+        "interface; 73 cannot write; 74 the CAN interface failed; 77 not allowed to use it; 78 rig.");
 }
 
 }  // namespace octoskin::board

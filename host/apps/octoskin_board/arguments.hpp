@@ -19,6 +19,7 @@ struct Arguments {
     double seconds = 5.0;
     std::vector<double> wall_m = {1.0};  ///< per sensor, repeated
     std::filesystem::path can_log;
+    std::string can_interface;  ///< of this machine; empty: none
     double drift_ppm = 0.0;
     std::uint32_t lsi_hz = 32'000;
     std::uint32_t cycles_per_instruction = 1;

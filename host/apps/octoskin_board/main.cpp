@@ -2,11 +2,14 @@
 // licence.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <ctime>
 #include <optional>
+#include <thread>
 
 #include "host/apps/octoskin_board/arguments.hpp"
 #include "host/apps/octoskin_board/bench.hpp"
+#include "host/apps/octoskin_board/can_gateway.hpp"
 #include "host/apps/octoskin_board/server.hpp"
 #include "host/io/candump/log_writer.hpp"
 #include "hw/sim/experiment/sync_master.hpp"
@@ -27,6 +30,12 @@ double cpu_seconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
+std::string gateway_report(const std::string& interface, const GatewayCounts& counts) {
+    return fmt::format("{}: {} frames sent, {} not; {} received, {} of them for want of room not passed on",
+                       interface, counts.sent, counts.not_sent, counts.received + counts.not_received,
+                       counts.not_received);
+}
+
 /// The board alone with a partner that acknowledges, and perhaps the host's SYNC.
 Status<AppError> run(const Arguments& arguments, Bench& bench) {
     sim::SimulatedCanBus bus({bench.config().nominal_bitrate, bench.config().data_bitrate});
@@ -44,13 +53,27 @@ Status<AppError> run(const Arguments& arguments, Bench& bench) {
         if (const auto written = log->write(WallTime{kLogEpoch.ns + end.us * 1000}, frame); !written)
             write_error = written.error().message();
     });
+    std::optional<CanGateway> gateway;
+    if (!arguments.can_interface.empty()) {
+        auto socket = open_interface(arguments.can_interface);
+        if (!socket) return unexpected(socket.error());
+        gateway.emplace(std::move(*socket), bus);
+    }
+    Status<AppError> tied = Done{};
+    const auto begun = std::chrono::steady_clock::now();
     node::CanTransmitter& host = bus.attach({}, 16);
     sim::stm32::BoardOnBus on_bus(bench.board(), bus);
     on_bus.run_until({static_cast<std::int64_t>(arguments.seconds * 1e6)}, [&](sim::SimTime now) {
+        if (gateway && tied) {
+            std::this_thread::sleep_until(begun + std::chrono::microseconds(now.us));
+            tied = gateway->poll();
+        }
         const std::vector<wire::CanFrame> frames = master.poll(now);
         if (!arguments.sends_sync) return;
         for (const wire::CanFrame& frame : frames) static_cast<void>(host.send(frame));
     });
+    if (!tied) return tied;
+    if (gateway) fmt::print("{}\n", gateway_report(arguments.can_interface, gateway->counts()));
     if (log && !write_error) {
         if (const auto closed = log->close(); !closed) write_error = closed.error().message();
     }
