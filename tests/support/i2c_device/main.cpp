@@ -12,21 +12,21 @@
 
 namespace {
 
-using octoskin::test::ServedSensor;
-
 struct Options {
     std::string device;
-    std::uint32_t hz = 400'000;
-    std::string record;
-    std::vector<ServedSensor> sensors;
+    octoskin::test::ServedBusOptions bus;
 };
 
 void declare(CLI::App& app, Options& options, std::vector<std::vector<std::string>>& sensors) {
     app.add_option("--device", options.device, "name below /dev, such as i2c-7")->required();
-    app.add_option("--hz", options.hz, "clock of the bus")->check(CLI::Range(100'000, 1'000'000));
+    app.add_option("--hz", options.bus.hz, "clock of the bus")->check(CLI::Range(100'000, 1'000'000));
     app.add_option(
-        "--record", options.record,
+        "--record", options.bus.record_path,
         "append each ranging: NAME INDEX MIDDLE_US READY_US STATUS STREAM RANGE_MM (CLOCK_MONOTONIC)");
+    app.add_option(
+        "--faults", options.bus.faults_path,
+        "a named pipe for faults: SENSOR none|absent|never_boots|wrong_id|ignores_xshut|freezes_stream|"
+        "never_ready|always_ready|brown_out, SENSOR status BYTE, bus KIND COUNT POSITION [ADDRESS]");
     app.add_option(
            "--sensor", sensors,
            "NAME XSHUT GPIO1 RANGE: files of gpio-sim (sim_gpioN/value, sim_gpioN/pull) or '-'; none, "
@@ -37,7 +37,7 @@ void declare(CLI::App& app, Options& options, std::vector<std::vector<std::strin
 
 // The lines are followed in a thread of its own: the pins move while nobody talks to the bus.
 int serve(const Options& options) {
-    octoskin::test::ServedBus bus(options.sensors, options.hz, options.record);
+    octoskin::test::ServedBus bus(options.bus);
     const std::jthread follower([&bus](const std::stop_token& stop) {
         while (!stop.stop_requested()) {
             bus.follow_lines();
@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
     declare(app, options, sensors);
     CLI11_PARSE(app, argc, argv);
     for (const auto& sensor : sensors) {
-        options.sensors.push_back({sensor[0], sensor[1], sensor[2], sensor[3]});
+        options.bus.sensors.push_back({sensor[0], sensor[1], sensor[2], sensor[3]});
         if (!octoskin::test::true_range_mm(sensor[3], {})) {
             std::fprintf(stderr, "i2c_device: %s: range '%s' is not understood\n", sensor[0].c_str(),
                          sensor[3].c_str());

@@ -5,12 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <variant>
 
 #include "tests/support/i2c_device/range_function.hpp"
 
@@ -84,15 +85,15 @@ struct ServedBus::Wired {
     sim::SimTime recorded_until{-1};  // when the newest ranging in the record was ready
 };
 
-ServedBus::ServedBus(std::span<const ServedSensor> sensors, std::uint32_t hz, const std::string& record_path)
-    : bus_(present_, hz) {
-    for (const ServedSensor& sensor : sensors) {
+ServedBus::ServedBus(const ServedBusOptions& options) : bus_(present_, options.hz) {
+    for (const ServedSensor& sensor : options.sensors) {
         sensors_.push_back(std::make_unique<Wired>(sensor));
         bus_.attach(sensors_.back()->model);
     }
-    if (record_path.empty()) return;
-    record_.open(record_path, std::ios::app);
-    if (!record_) throw std::runtime_error(record_path + ": cannot be written");
+    if (!options.faults_path.empty()) faults_.emplace(options.faults_path);
+    if (options.record_path.empty()) return;
+    record_.open(options.record_path, std::ios::app);
+    if (!record_) throw std::runtime_error(options.record_path + ": cannot be written");
 }
 
 ServedBus::~ServedBus() = default;
@@ -102,6 +103,7 @@ int ServedBus::transfer(i2c::Address address, std::span<const std::uint8_t> writ
     constexpr Microseconds kLimit{1'000'000};  // the i2c core's own default
     const std::lock_guard lock(mutex_);
     present_.time = monotonic_now();
+    take_faults(present_.time);
     follow_xshut(present_.time);
     const NodeTime begin = sim::NodeClock{}.to_node(present_.time);
     bus_.submit({address, write, read}, begin, begin + kLimit);
@@ -114,11 +116,42 @@ int ServedBus::transfer(i2c::Address address, std::span<const std::uint8_t> writ
 void ServedBus::follow_lines() {
     const std::lock_guard lock(mutex_);
     const sim::SimTime now = monotonic_now();
+    take_faults(now);
     follow_xshut(now);
     for (const auto& sensor : sensors_) {
         drive_gpio1(*sensor, now);
         record(*sensor);
     }
+}
+
+void ServedBus::take_faults(sim::SimTime now) {
+    if (!faults_) return;
+    while (const auto line = faults_->next()) {
+        auto command = parse_fault_command(*line);
+        bool is_applied = false;
+        if (command && std::holds_alternative<BusFaultCommand>(*command)) {
+            sim::I2cFault fault = std::get<BusFaultCommand>(*command).fault;
+            fault.first += bus_.transfer_count();
+            bus_.inject(fault);
+            is_applied = true;
+        } else if (command) {
+            is_applied = apply(std::get<SensorFaultCommand>(*command), now);
+        }
+        std::fprintf(stderr, "%s: %s\n", is_applied ? "fault" : "not understood", line->c_str());
+    }
+}
+
+bool ServedBus::apply(const SensorFaultCommand& command, sim::SimTime now) {
+    for (const auto& sensor : sensors_) {
+        if (sensor->name != command.sensor) continue;
+        if (command.is_brown_out) {
+            sensor->model.brown_out(now);
+        } else {
+            sensor->model.set_faults(command.faults);
+        }
+        return true;
+    }
+    return false;
 }
 
 void ServedBus::follow_xshut(sim::SimTime now) {

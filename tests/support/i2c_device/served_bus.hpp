@@ -6,12 +6,15 @@
 #include <fstream>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "hw/sim/i2c/simulated_i2c_bus.hpp"
 #include "hw/sim/vl53l1x/sensor_model.hpp"
+#include "tests/support/i2c_device/fault_command.hpp"
+#include "tests/support/i2c_device/line_pipe.hpp"
 
 namespace octoskin::test {
 
@@ -23,12 +26,21 @@ struct ServedSensor {
     std::string range;       ///< see `true_range_mm`
 };
 
+struct ServedBusOptions {
+    std::vector<ServedSensor> sensors;
+    std::uint32_t hz = 400'000;
+    /// If not empty: a line is appended for each ranging as it truly was: `NAME INDEX MIDDLE_US READY_US
+    /// STATUS STREAM RANGE_MM`, times of CLOCK_MONOTONIC, STATUS the device's own code.
+    std::string record_path{};
+    /// If not empty: a named pipe that takes `parse_fault_command`'s lines, each in force from the next
+    /// transfer on.
+    std::string faults_path{};
+};
+
 class ServedBus {
   public:
-    /// Throws std::runtime_error, saying which, if a file cannot be opened. `record_path` may be empty; else
-    /// one line is appended to it for each ranging as it truly was: `NAME INDEX MIDDLE_US READY_US STATUS
-    /// STREAM RANGE_MM`, times of CLOCK_MONOTONIC, STATUS the device's own code.
-    ServedBus(std::span<const ServedSensor> sensors, std::uint32_t hz, const std::string& record_path);
+    /// Throws std::runtime_error, saying which, if a file cannot be opened.
+    explicit ServedBus(const ServedBusOptions& options);
     ~ServedBus();
     ServedBus(const ServedBus&) = delete;
     ServedBus& operator=(const ServedBus&) = delete;
@@ -44,6 +56,8 @@ class ServedBus {
 
   private:
     struct Wired;
+    void take_faults(sim::SimTime now);
+    bool apply(const SensorFaultCommand& command, sim::SimTime now);
     void follow_xshut(sim::SimTime now);
     void drive_gpio1(Wired& wired, sim::SimTime now);
     void record(Wired& wired);
@@ -53,6 +67,7 @@ class ServedBus {
     sim::SimulatedI2cBus bus_;
     std::vector<std::unique_ptr<Wired>> sensors_;
     std::ofstream record_;
+    std::optional<LinePipe> faults_;
 };
 
 }  // namespace octoskin::test

@@ -7,6 +7,7 @@ set -euo pipefail
 verb=$1 folder=$2
 can=hil0
 config=/sys/kernel/config/gpio-sim/octoskin
+faults=/run/octoskin_hil
 # Lines 0-3 are XSHUT and 4-7 GPIO1 of the four sensors; 8 and 9 are free.
 line_names=(xshut0 xshut1 xshut2 xshut3 gpio1_0 gpio1_1 gpio1_2 gpio1_3 free0 free1)
 
@@ -36,19 +37,22 @@ make_lines() {
 serve() {
     local device=i2c-$1 a=$2 b=$(($2 + 1))
     [ ! -e "/dev/$device" ] || { echo "board: /dev/$device is there already"; exit 1; }
-    setsid "$bin/i2c_device" --device "$device" --record "$folder/ranged.$device" \
+    rm -f "$faults.$device"
+    mkfifo "$faults.$device"
+    setsid "$bin/i2c_device" --device "$device" --record "$folder/ranged.$device" --faults "$faults.$device" \
         --sensor "sensor$a" "$lines/sim_gpio$a/value" "$lines/sim_gpio$((a + 4))/pull" "$3" \
         --sensor "sensor$b" "$lines/sim_gpio$b/value" "$lines/sim_gpio$((b + 4))/pull" "$4" \
         </dev/null >"$folder/$device.log" 2>&1 &
     echo $! >"$folder/$device.pid"
 }
 
-await() {
+# await_device BUS: until it is there, or its server is not
+await_device() {
     local end=$((SECONDS + 60))
-    until [ -e "$1" ] || [ $SECONDS -ge $end ]; do sleep 0.1; done
-    [ ! -e "$1" ] || return 0
-    echo "board: $1 did not come within 60 s"
-    cat "$folder"/*.log
+    until [ -e "/dev/i2c-$1" ] || [ $SECONDS -ge $end ] || ! kill -0 "$(<"$folder/i2c-$1.pid")" 2>/dev/null; do sleep 0.1; done
+    [ ! -e "/dev/i2c-$1" ] || return 0
+    echo "board: /dev/i2c-$1 did not come"
+    cat "$folder/i2c-$1.log"
     exit 1
 }
 
@@ -61,10 +65,10 @@ up() {
     serve 7 0 "file:$folder/range0" constant:500
     serve 8 2 triangle:200:1000:4000 none
     cat >"$folder/board.env" <<TEXT
-export HIL_FOLDER='$folder' HIL_BIN='$bin' HIL_CAN=$can HIL_CHIP=$chip HIL_LINES=$lines
+export HIL_FOLDER='$folder' HIL_BIN='$bin' HIL_CAN=$can HIL_CHIP=$chip HIL_LINES=$lines HIL_FAULTS=$faults
 TEXT
-    await /dev/i2c-7
-    await /dev/i2c-8
+    await_device 7
+    await_device 8
 }
 
 down() {
@@ -76,6 +80,7 @@ down() {
         echo 0 >$config/live
         rmdir $config/bank0/line* $config/bank0 $config
     fi
+    rm -f $faults.*
     ip link del $can 2>/dev/null || true
 }
 
