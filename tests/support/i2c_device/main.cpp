@@ -1,8 +1,12 @@
 // Serves modelled VL53L1X as a /dev/i2c-N of this machine, wired to GPIO lines of the kernel's simulator.
+#include <sched.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <fstream>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -12,8 +16,11 @@
 
 namespace {
 
+using octoskin::test::ServedBus;
+
 struct Options {
     std::string device;
+    std::string record;
     octoskin::test::ServedBusOptions bus;
 };
 
@@ -21,7 +28,7 @@ void declare(CLI::App& app, Options& options, std::vector<std::vector<std::strin
     app.add_option("--device", options.device, "name below /dev, such as i2c-7")->required();
     app.add_option("--hz", options.bus.hz, "clock of the bus")->check(CLI::Range(100'000, 1'000'000));
     app.add_option(
-        "--record", options.bus.record_path,
+        "--record", options.record,
         "append each ranging: NAME INDEX MIDDLE_US READY_US STATUS STREAM RANGE_MM (CLOCK_MONOTONIC)");
     app.add_option(
         "--faults", options.bus.faults_path,
@@ -35,15 +42,36 @@ void declare(CLI::App& app, Options& options, std::vector<std::vector<std::strin
         ->required();
 }
 
-// The lines are followed in a thread of its own: the pins move while nobody talks to the bus.
-int serve(const Options& options) {
-    octoskin::test::ServedBus bus(options.bus);
-    const std::jthread follower([&bus](const std::stop_token& stop) {
+// The sensors go on whatever the programs of the machine do: else they would miss a short pulse of XSHUT
+// while those keep the processor busy.
+void run_before_others() {
+    const sched_param priority{.sched_priority = 1};
+    if (::sched_setscheduler(0, SCHED_FIFO, &priority) != 0) {
+        std::fprintf(stderr, "i2c_device: no real-time priority; a short pulse of XSHUT may be missed\n");
+    }
+}
+
+// Calls `step` every `period` until asked to stop, in a thread of its own.
+template <typename Step>
+std::jthread repeating(std::chrono::microseconds period, Step step) {
+    return std::jthread([period, step](const std::stop_token& stop) {
         while (!stop.stop_requested()) {
-            bus.follow_lines();
-            std::this_thread::sleep_for(std::chrono::milliseconds{2});
+            step();
+            std::this_thread::sleep_for(period);
         }
     });
+}
+
+// The pins move while nobody talks to the bus; and no pin waits for the record's file.
+int serve(const Options& options) {
+    ServedBus bus(options.bus);
+    std::ofstream record;
+    if (!options.record.empty()) record.open(options.record, std::ios::app);
+    if (!record) throw std::runtime_error(options.record + ": cannot be written");
+    const auto write_record = [&] { record << bus.take_record() << std::flush; };
+    const std::jthread recorder = repeating(std::chrono::milliseconds{10}, write_record);
+    run_before_others();
+    const std::jthread follower = repeating(octoskin::test::kLinePeriod, [&bus] { bus.follow_lines(); });
     return octoskin::test::serve_i2c_device(options.device, bus);
 }
 

@@ -8,9 +8,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 #include "tests/support/i2c_device/range_function.hpp"
@@ -19,6 +20,7 @@ namespace octoskin::test {
 namespace {
 
 constexpr const char* kNotWired = "-";
+constexpr Microseconds kBootTime{200};
 
 sim::SimTime monotonic_now() {
     timespec now{};
@@ -62,7 +64,7 @@ int error_number(i2c::TransferError error) {
 struct ServedBus::Wired {
     Wired(const ServedSensor& wiring)
         : name(wiring.name),
-          model(sim::SensorPart{}, scene_of(wiring.range)),
+          model({.boot_time = kBootTime}, scene_of(wiring.range)),
           xshut(open_line(wiring.xshut_path, O_RDONLY)),
           gpio1(open_line(wiring.gpio1_path, O_WRONLY)) {}
     ~Wired() {
@@ -91,9 +93,6 @@ ServedBus::ServedBus(const ServedBusOptions& options) : bus_(present_, options.h
         bus_.attach(sensors_.back()->model);
     }
     if (!options.faults_path.empty()) faults_.emplace(options.faults_path);
-    if (options.record_path.empty()) return;
-    record_.open(options.record_path, std::ios::app);
-    if (!record_) throw std::runtime_error(options.record_path + ": cannot be written");
 }
 
 ServedBus::~ServedBus() = default;
@@ -101,27 +100,31 @@ ServedBus::~ServedBus() = default;
 int ServedBus::transfer(i2c::Address address, std::span<const std::uint8_t> write,
                         std::span<std::uint8_t> read) {
     constexpr Microseconds kLimit{1'000'000};  // the i2c core's own default
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     present_.time = monotonic_now();
-    take_faults(present_.time);
-    follow_xshut(present_.time);
+    follow_lines_at(present_.time);
     const NodeTime begin = sim::NodeClock{}.to_node(present_.time);
     bus_.submit({address, write, read}, begin, begin + kLimit);
-    present_.time = bus_.transfer_end().value_or(sim::SimTime{present_.time.us + kLimit.count()});
-    wait_until(present_.time);
-    const auto state = bus_.poll(sim::NodeClock{}.to_node(present_.time));
+    const sim::SimTime end = bus_.transfer_end().value_or(sim::SimTime{present_.time.us + kLimit.count()});
+    lock.unlock();
+    wait_until(end);
+    lock.lock();
+    present_.time = end;
+    const auto state = bus_.poll(sim::NodeClock{}.to_node(end));
+    drive_gpio1(end);  // what this transfer did to a pin, before the next range undoes it
     return state == i2c::TransferState::done ? 0 : error_number(bus_.error());
 }
 
 void ServedBus::follow_lines() {
     const std::lock_guard lock(mutex_);
-    const sim::SimTime now = monotonic_now();
+    follow_lines_at(monotonic_now());
+    for (const auto& sensor : sensors_) record(*sensor);
+}
+
+void ServedBus::follow_lines_at(sim::SimTime now) {
     take_faults(now);
-    follow_xshut(now);
-    for (const auto& sensor : sensors_) {
-        drive_gpio1(*sensor, now);
-        record(*sensor);
-    }
+    for (const auto& sensor : sensors_) sensor->model.set_xshut(sensor->is_xshut_high(), now);
+    drive_gpio1(now);
 }
 
 void ServedBus::take_faults(sim::SimTime now) {
@@ -154,28 +157,32 @@ bool ServedBus::apply(const SensorFaultCommand& command, sim::SimTime now) {
     return false;
 }
 
-void ServedBus::follow_xshut(sim::SimTime now) {
-    for (const auto& sensor : sensors_) sensor->model.set_xshut(sensor->is_xshut_high(), now);
-}
-
-void ServedBus::drive_gpio1(Wired& wired, sim::SimTime now) {
-    const bool is_high = wired.model.gpio1_level(now);
-    if (wired.gpio1 < 0 || wired.driven == is_high) return;
-    const std::string_view pull = is_high ? "pull-up" : "pull-down";
-    if (::pwrite(wired.gpio1, pull.data(), pull.size(), 0) == static_cast<ssize_t>(pull.size())) {
-        wired.driven = is_high;
+void ServedBus::drive_gpio1(sim::SimTime time) {
+    for (const auto& sensor : sensors_) {
+        const bool is_high = sensor->model.gpio1_level(time);
+        if (sensor->gpio1 < 0 || sensor->driven == is_high) continue;
+        const std::string_view pull = is_high ? "pull-up" : "pull-down";
+        if (::pwrite(sensor->gpio1, pull.data(), pull.size(), 0) == static_cast<ssize_t>(pull.size())) {
+            sensor->driven = is_high;
+        }
     }
 }
 
 void ServedBus::record(Wired& wired) {
-    if (!record_.is_open()) return;
     for (const sim::RangingRecord& ranging : wired.model.history()) {
         if (ranging.ready <= wired.recorded_until) continue;
         wired.recorded_until = ranging.ready;
-        record_ << wired.name << ' ' << ranging.index << ' ' << ranging.window_middle.us << ' '
-                << ranging.ready.us << ' ' << unsigned{ranging.result.range_status} % 32 << ' '
-                << unsigned{ranging.result.stream_count} << ' ' << ranging.result.range_mm << std::endl;
+        std::ostringstream line;
+        line << wired.name << ' ' << ranging.index << ' ' << ranging.window_middle.us << ' '
+             << ranging.ready.us << ' ' << unsigned{ranging.result.range_status} % 32 << ' '
+             << unsigned{ranging.result.stream_count} << ' ' << ranging.result.range_mm << '\n';
+        record_ += line.str();
     }
+}
+
+std::string ServedBus::take_record() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(record_, {});
 }
 
 }  // namespace octoskin::test

@@ -7,7 +7,9 @@ set -euo pipefail
 verb=$1 folder=$2
 can=hil0
 config=/sys/kernel/config/gpio-sim/octoskin
+# Not in FOLDER: a sensor must never wait for the host.
 faults=/run/octoskin_hil
+range0=/run/octoskin_hil.range0
 # Lines 0-3 are XSHUT and 4-7 GPIO1 of the four sensors; 8 and 9 are free.
 line_names=(xshut0 xshut1 xshut2 xshut3 gpio1_0 gpio1_1 gpio1_2 gpio1_3 free0 free1)
 
@@ -61,11 +63,11 @@ up() {
     [ -x "$bin/i2c_device" ] || skip "i2c_device is not built (libfuse3-dev)"
     make_can
     make_lines
-    echo constant:250 >"$folder/range0"
-    serve 7 0 "file:$folder/range0" constant:500
+    echo constant:250 >$range0
+    serve 7 0 "file:$range0" constant:500
     serve 8 2 triangle:200:1000:4000 none
     cat >"$folder/board.env" <<TEXT
-export HIL_FOLDER='$folder' HIL_BIN='$bin' HIL_CAN=$can HIL_CHIP=$chip HIL_LINES=$lines HIL_FAULTS=$faults
+export HIL_FOLDER='$folder' HIL_BIN='$bin' HIL_CAN=$can HIL_CHIP=$chip HIL_LINES=$lines HIL_FAULTS=$faults HIL_RANGE0=$range0
 TEXT
     await_device 7
     await_device 8

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A sensor that is started by register writes becomes ready: its GPIO1 line moves, its result is what is there to be seen.
 . "$(dirname "$0")/bench.sh"
-wall() { echo "$1" >"$HIL_FOLDER/range0"; }
+wall() { echo "$1" >"$HIL_RANGE0"; }
 # On bus 7 for the first sensor, on bus 8 for the third.
 register16() { transfer "$1" w2@0x29 0x00 "$2" r2 | { read -r high low; echo $((high * 256 + low)); }; }
 status() { echo $(($(transfer "$1" w2@0x29 0x00 0x89 r1) & 0x1f)); }
