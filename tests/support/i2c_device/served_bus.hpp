@@ -46,7 +46,7 @@ class ServedBus {
     ServedBus& operator=(const ServedBus&) = delete;
 
     /// One transfer; waits as long as it takes on the wire. 0, or the error number that the kernel's document
-    /// on I2C fault codes gives for it. Any thread.
+    /// on I2C fault codes gives for it. One at a time.
     [[nodiscard]] int transfer(i2c::Address address, std::span<const std::uint8_t> write,
                                std::span<std::uint8_t> read);
 
