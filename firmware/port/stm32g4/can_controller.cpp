@@ -234,8 +234,8 @@ std::optional<wire::CanFrame> CanController::take_given_up() {
 }
 
 void CanController::poll(NodeTime now) {
-    if (!is_started_) return;
     if (failed_at_ && elapsed(*failed_at_, now) >= kFailureShown) failed_at_.reset();
+    if (!is_started_) return;
     if (has_failed()) return fall_silent(now);
     note_ended();
     for (std::uint32_t i = 0; i < kFifoElements; ++i) {

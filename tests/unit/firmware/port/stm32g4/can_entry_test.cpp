@@ -94,6 +94,19 @@ TEST_F(CanEntryTest, comes_back_at_once_even_after_half_the_clocks_range_on_the_
     EXPECT_TRUE(can_.is_started());
 }
 
+TEST_F(CanEntryTest, is_well_at_once_after_a_failure_that_lasted_for_half_the_clocks_range) {
+    entry_.begin(kRates, kNode, kClock, now_);
+    run_for(1'000);
+    follows_ = false;
+    space_[kCccr] = 1;
+    run_for(40 * 60'000);
+    EXPECT_EQ(can_.state(), node::CanState::passive);
+    follows_ = true;
+    run_for(2'000);
+    ASSERT_TRUE(can_.is_started());
+    EXPECT_EQ(can_.state(), node::CanState::active);
+}
+
 TEST_F(CanEntryTest, looks_for_the_rates_if_nobody_told_them_and_keeps_looking_when_listening_fails) {
     follows_ = false;
     entry_.begin(std::nullopt, kNode, kClock, now_);
