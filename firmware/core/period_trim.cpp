@@ -36,8 +36,13 @@ std::int32_t PeriodTrim::error_permille(Microseconds measured) const noexcept {
 }
 
 bool PeriodTrim::wants_trim(const MeasuredPeriod& measured, NodeTime now) noexcept {
-    // Forgotten once it no longer matters, long before the clock's wrap could make it look recent again.
-    if (last_trim_ && elapsed(*last_trim_, now) >= policy_.trim_interval) last_trim_.reset();
+    // Forgotten once it no longer matters. It may not have been asked for longer than half the clock's range
+    // (a sensor at rest), which looks like a time to come; after a whole one it looks recent, for one
+    // interval.
+    if (last_trim_) {
+        const Microseconds since = elapsed(*last_trim_, now);
+        if (since.count() < 0 || since >= policy_.trim_interval) last_trim_.reset();
+    }
 
     Microseconds real = measured.value;
     // A period that came out too short for the budget is seen doubled; half of it is what the register makes.

@@ -48,6 +48,15 @@ TEST(PeriodTrim, trims_twice_at_the_start_and_then_once_a_minute) {
     EXPECT_FALSE(trim.wants_trim(certain(34'000), kNow + Microseconds{61'000'000}));
 }
 
+TEST(PeriodTrim, trims_at_once_after_forty_minutes_at_rest) {
+    // Longer than half the clock's range, when the last trim looks like one to come.
+    PeriodTrim trim{kConfigured, kPolicy};
+    EXPECT_TRUE(trim.wants_trim(certain(34'000), kNow));
+    EXPECT_TRUE(trim.wants_trim(certain(34'000), kNow));
+    EXPECT_FALSE(trim.wants_trim(certain(34'000), kNow));
+    EXPECT_TRUE(trim.wants_trim(certain(34'000), kNow + Microseconds{2'400'000'000}));
+}
+
 TEST(PeriodTrim, takes_a_doubled_period_for_a_slot_too_short_and_lengthens_it) {
     // 20 ms asked for, a part 7 % fast makes 18.6 ms, too short for a 15 ms budget: every second slot is
     // used.
