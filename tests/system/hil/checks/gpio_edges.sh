@@ -8,7 +8,7 @@ expect "gpioget, pulled down" 0 "$(gpioget "$HIL_CHIP" 9)"
 
 log=$TMPDIR/edges.$$
 is_monitored() { gpioinfo "$HIL_CHIP" | grep -q 'line *9:.*"gpiomon"'; }
-timeout "$patience_s" stdbuf -oL gpiomon --num-events=6 --format='%e %s.%n' "$HIL_CHIP" 9 >"$log" &
+timeout "$patience_s" stdbuf -oL gpiomon --num-events=6 --format='%e %s %n' "$HIL_CHIP" 9 >"$log" &
 gpiomon=$!
 background+=("$gpiomon")
 await "gpiomon" is_monitored
@@ -22,4 +22,5 @@ for i in 1 3 5; do
 done
 wait "$gpiomon" || fail "not all edges were told: $(<"$log")"
 expect "edges" "1 0 1 0 1 0" "$(awk '{ print $1 }' "$log" | xargs)"
-expect "times" "$(awk '{ print $2 }' "$log" | xargs)" "$(awk '{ print $2 }' "$log" | sort -n -u | xargs)"
+times=$(awk '{ printf "%d%09d\n", $2, $3 }' "$log")
+expect "times, rising" "$times" "$(sort -n -u <<<"$times")"
