@@ -12,7 +12,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::uint32_t kMagic = 0x434B534F;  // "OSKC" in memory
-constexpr std::uint16_t kLayoutVersion = 2;
+constexpr std::uint16_t kLayoutVersion = 3;
 constexpr std::size_t kHeaderBytes = 8;
 constexpr std::size_t kCrcBytes = 4;
 
@@ -136,6 +136,7 @@ void walk(Walker& walker, Of<Walker, NodeConfig>& config) {
     walker.choice(config.stream_gate);
     walker.number(config.aux_every);
     walker.number(config.zone_guard_us);
+    walker.number(config.data_ready_buses);
     walker.count(config.sensor_count, kNodeSensorsMax);
     for (std::size_t i = 0; i < config.sensor_count; ++i) {
         walk(walker, config.sensors[i]);
@@ -208,6 +209,7 @@ bool is_valid(const NodeConfig& config) noexcept {
     holds &= is_within<std::uint32_t>(config.data_bitrate, config.nominal_bitrate, 8'000'000);
     holds &= is_within<std::uint32_t>(config.i2c_hz, 10'000, 400'000);
     holds &= is_within(config.stream_gate, StreamGate::off, StreamGate::advanced);
+    holds &= config.data_ready_buses < 1U << kNodeBusesMax;
     holds &= config.sensor_count <= kNodeSensorsMax;
     return holds && are_sensors_valid(sensors_of(config));
 }

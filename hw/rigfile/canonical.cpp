@@ -117,6 +117,7 @@ void write_board(Writer& out, const Board& board) {
     out.line("      sensors_max: {}", board.sensors_max);
     out.line("      sensors_per_bus_max: {}", board.sensors_per_bus_max);
     out.line("      supports_can_fd: {}", board.supports_can_fd);
+    out.line("      has_data_ready_lines: {}", board.has_data_ready_lines);
 }
 
 void write_sensor(Writer& out, const Sensor& sensor, const SensorConfig& config) {
@@ -156,6 +157,10 @@ void write_node(Writer& out, const Node& node) {
     out.line("    stream_gate: {}", word(node.config.stream_gate));
     out.line("    aux_every: {}", node.config.aux_every);
     out.line("    zone_guard_us: {}", node.config.zone_guard_us);
+    if (node.config.data_ready_buses != 0) out.line("    data_ready_buses:");
+    for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
+        if ((node.config.data_ready_buses >> bus & 1U) != 0) out.line("      - {}", bus);
+    }
     if (node.pinned_build_id) out.line("    pinned_build_id: 0x{:08x}", *node.pinned_build_id);
     out.line("    sensors:");
     for (std::size_t i = 0; i < node.sensors.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <span>
 
 #include "common/wire/messages.hpp"
 #include "hw/rigfile/i2c_load.hpp"
@@ -92,6 +93,30 @@ void read_sensors(const Table& node_table, const NodeContext& context, Node& nod
     }
 }
 
+/// `data_ready_buses: [0, 2]`: buses whose sensors' GPIO1 are wired to the board's input for that bus.
+void read_data_ready_buses(const Table& table, Node& node) {
+    const Value* list = table.find("data_ready_buses");
+    if (list == nullptr) return;
+    const std::string path = table.path_of("data_ready_buses");
+    if (!node.board.has_data_ready_lines) {
+        fail(*list, path,
+             fmt::format("expected a board with data-ready lines; {} has none", node.board.name));
+    }
+    const auto sensors = std::span(node.config.sensors).first(node.config.sensor_count);
+    for (const Value& item : read_list(*list, path)) {
+        const auto bus =
+            static_cast<std::uint8_t>(read_integer(item, path, {0, node.board.i2c_bus_count - 1}));
+        const auto bit = static_cast<std::uint8_t>(1U << bus);
+        if ((node.config.data_ready_buses & bit) != 0) {
+            fail(item, path, fmt::format("expected each bus once, found {} again", bus));
+        }
+        if (std::ranges::none_of(sensors, [bus](const SensorConfig& sensor) { return sensor.bus == bus; })) {
+            fail(item, path, fmt::format("expected a bus with sensors, found {}, which has none", bus));
+        }
+        node.config.data_ready_buses |= bit;
+    }
+}
+
 void refuse_overloaded_i2c(const Table& table, const Node& node) {
     for (std::uint8_t bus = 0; bus < node.board.i2c_bus_count; ++bus) {
         const double load = i2c_load(node.config, bus);
@@ -113,6 +138,7 @@ Node read_node(const Table& table, const NodeContext& context) {
         node.pinned_build_id = table.integer<std::uint32_t>("pinned_build_id", {0, 0xFFFF'FFFF});
     }
     read_sensors(table, context, node);
+    read_data_ready_buses(table, node);
     refuse_overloaded_i2c(table, node);
     return node;
 }
@@ -125,7 +151,7 @@ Board read_board(const Value& value, const std::string& path) {
     }
     const Table table(value, path,
                       {"name", "board_type", "i2c_bus_count", "xshut_line_count", "sensors_max",
-                       "sensors_per_bus_max", "supports_can_fd"});
+                       "sensors_per_bus_max", "supports_can_fd", "has_data_ready_lines"});
     Board board;
     board.name = table.name("name");
     board.board_type = table.integer<std::uint8_t>("board_type", {0, 255});
@@ -134,6 +160,7 @@ Board read_board(const Value& value, const std::string& path) {
     board.sensors_max = table.integer<std::uint8_t>("sensors_max", {1, kNodeSensorsMax});
     board.sensors_per_bus_max = table.integer<std::uint8_t>("sensors_per_bus_max", {1, kNodeSensorsMax});
     board.supports_can_fd = table.flag("supports_can_fd");
+    board.has_data_ready_lines = table.flag("has_data_ready_lines", false);
     return board;
 }
 
@@ -147,7 +174,7 @@ std::vector<Node> read_nodes(const Value& value, const std::string& path, const 
     for (std::size_t i = 0; i < items.size(); ++i) {
         const Table table(items[i], fmt::format("{}[{}]", path, i),
                           {"name", "node_id", "board", "i2c_hz", "io_level", "reads_twice", "stream_gate",
-                           "aux_every", "zone_guard_us", "pinned_build_id", "sensors"});
+                           "aux_every", "zone_guard_us", "data_ready_buses", "pinned_build_id", "sensors"});
         nodes.push_back(read_node(table, context));
         taken.take(table, "name", fmt::format("name '{}'", nodes.back().name));
         taken.take(table, "node_id", fmt::format("node_id {}", nodes.back().config.node_id));

@@ -32,6 +32,7 @@ struct Board {
     std::uint8_t sensors_max = 0;
     std::uint8_t sensors_per_bus_max = 0;
     bool supports_can_fd = false;
+    bool has_data_ready_lines = false;  ///< one input per I2C bus
 };
 
 struct Node {

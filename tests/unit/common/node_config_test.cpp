@@ -66,6 +66,7 @@ NodeConfig node_config(std::uint8_t sensors) {
                       .stream_gate = StreamGate::differs,
                       .aux_every = 9,
                       .zone_guard_us = 0x0BB8,
+                      .data_ready_buses = 0x0A,
                       .sensor_count = sensors};
     for (std::uint8_t i = 0; i < sensors; ++i) {
         config.sensors[i] = sensor_config(i);
@@ -76,11 +77,11 @@ NodeConfig node_config(std::uint8_t sensors) {
 TEST(NodeConfig, canonical_form_is_these_bytes) {
     // Header, node, one sensor with two zones, and room for the CRC-32 (its own oracle is in crc_test.cpp).
     const Block expected = {
-        'O',  'S',  'K',  'C',  2,    0,    63,   0,     // magic, version, length
+        'O',  'S',  'K',  'C',  3,    0,    64,   0,     // magic, version, length
         0x3D, 0x77, 0,                                   // node id, board type, CAN FD
         0x20, 0xA1, 0x07, 0,    0x80, 0x84, 0x1E, 0,     // bit rates
         0xE0, 0x93, 0x04, 0,    0,    0,    1,    9,     // I2C, 2.8 V, double read, gate, aux
-        0xB8, 0x0B, 1,                                   // zone guard, sensors
+        0xB8, 0x0B, 0x0A, 1,                             // zone guard, data-ready lines, sensors
         0,    39,   0x30, 1,    0x23, 0x01, 0x56, 0x04,  // bus, line, address, mode, budget, period
         0x9A, 0x78, 0xCC, 0xFF, 1,    0xDE, 0xBC,        // phase, offset, has it, crosstalk
         0x12, 0x0F, 0x56, 0x34, 0x89, 0x07, 1,    2,     // sigma, signal, reflex, gain, zones
@@ -105,7 +106,7 @@ TEST(NodeConfig, the_largest_one_fits_its_block) {
     for (SensorConfig& sensor : config.sensors) {
         sensor.zone_count = kSensorZonesMax;
     }
-    EXPECT_EQ(block_of(config).size(), 1734U);  // of 2048
+    EXPECT_EQ(block_of(config).size(), 1735U);  // of 2048
     EXPECT_EQ(*decode_node_config(block_of(config)), config);
 }
 
@@ -161,7 +162,7 @@ TEST(NodeConfig, another_layout_version_is_told_as_one_if_the_block_is_whole) {
     block[4] = 1;
     EXPECT_EQ(error_of(block), NodeConfigError::wrong_crc);
     EXPECT_EQ(error_of(signed_again(block)), NodeConfigError::wrong_version);
-    block[4] = 2;
+    block[4] = 3;
     block[5] = 1;
     EXPECT_EQ(error_of(signed_again(block)), NodeConfigError::wrong_version);
 }
@@ -178,7 +179,7 @@ Block resized(int bytes) {
 
 TEST(NodeConfig, fields_that_end_before_or_after_the_length_are_refused) {
     ASSERT_TRUE(decode_node_config(resized(0)));
-    for (int bytes = 1; bytes <= 76; ++bytes) {
+    for (int bytes = 1; bytes <= 77; ++bytes) {
         EXPECT_EQ(error_of(resized(bytes)), NodeConfigError::invalid_field) << bytes;
     }
     for (int bytes = 1; bytes <= 4; ++bytes) {
@@ -188,7 +189,7 @@ TEST(NodeConfig, fields_that_end_before_or_after_the_length_are_refused) {
 
 TEST(NodeConfig, a_flag_is_0_or_1_and_a_count_at_most_its_maximum) {
     const Block good = block_of(node_config(1));
-    for (const std::size_t flag : {10U, 23U, 24U, 42U, 51U}) {
+    for (const std::size_t flag : {10U, 23U, 24U, 43U, 52U}) {
         for (const unsigned value : {2U, 255U}) {
             Block block = good;
             block[flag] = static_cast<std::uint8_t>(value);
@@ -196,7 +197,7 @@ TEST(NodeConfig, a_flag_is_0_or_1_and_a_count_at_most_its_maximum) {
         }
     }
     for (const auto& [at, value] :
-         std::vector<std::pair<std::size_t, int>>{{29, 35}, {29, 255}, {52, 10}, {52, 255}}) {
+         std::vector<std::pair<std::size_t, int>>{{30, 35}, {30, 255}, {53, 10}, {53, 255}}) {
         Block block = good;
         block[at] = static_cast<std::uint8_t>(value);
         EXPECT_EQ(error_of(signed_again(block)), NodeConfigError::invalid_field) << at;
@@ -230,6 +231,7 @@ std::vector<FieldRange> field_ranges() {
         {"stream_gate", [](N& c, int v) { c.stream_gate = static_cast<StreamGate>(v); }, {0, 1, 2}, {3, 255}},
         {"aux_every", [=](N& c, int v) { c.aux_every = u8(v); }, {0, 255}, {}},
         {"zone_guard_us", [=](N& c, int v) { c.zone_guard_us = u16(v); }, {0, 65'535}, {}},
+        {"data_ready_buses", [=](N& c, int v) { c.data_ready_buses = u8(v); }, {0, 15}, {16, 255}},
         {"bus", [=](N& c, int v) { c.sensors[1].bus = u8(v); }, {0, 3}, {4, 255}},
         {"xshut_line", [=](N& c, int v) { c.sensors[1].xshut_line = u8(v); }, {0, 38}, {40, 255}},
         {"shared xshut_line", [=](N& c, int v) { c.sensors[1].xshut_line = u8(v); }, {}, {39}},

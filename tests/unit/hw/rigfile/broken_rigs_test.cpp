@@ -125,6 +125,10 @@ const Broken kBroken[] = {
     {"too-many-sensors-on-a-bus.yaml", 9, "nodes[0].sensors[2].bus", "expected at most 2 sensors on a bus"},
     {"no-sensors.yaml", 6, "nodes[0].sensors", "expected 1 to 3 sensors on a small, found 0"},
     {"can-fd-on-a-classical-board.yaml", 8, "nodes[0].board", "old has classical CAN only"},
+    {"data-ready-line-of-a-board-without.yaml", 6, "nodes[0].data_ready_buses", "small has none"},
+    {"data-ready-line-beyond-the-board.yaml", 6, "nodes[0].data_ready_buses", "from 0 to 1, found '2'"},
+    {"data-ready-line-twice.yaml", 6, "nodes[0].data_ready_buses", "expected each bus once, found 0 again"},
+    {"data-ready-line-without-sensors.yaml", 6, "nodes[0].data_ready_buses", "found 1, which has none"},
     // Timing.
     {"period-too-short-for-the-budget.yaml", 3, "nodes[0].sensors[0].inter_measurement_ms",
      "expected at least timing_budget_ms + 5 = 38, found 37"},

@@ -49,7 +49,7 @@ nodes:
   - name: board
     node_id: 1
     board: {name: odd, board_type: 7, i2c_bus_count: 2, xshut_line_count: 40, sensors_max: 34,
-            sensors_per_bus_max: 5, supports_can_fd: true}
+            sensors_per_bus_max: 5, supports_can_fd: true, has_data_ready_lines: true}
     i2c_hz: 390000
     io_level: 2v8
     reads_twice: true
@@ -125,6 +125,8 @@ TEST_F(RigText, every_value_of_a_full_rig_arrives) {
     EXPECT_EQ(node.config.i2c_hz, 390'000U);
     EXPECT_EQ(node.config.aux_every, 4);
     EXPECT_EQ(node.config.zone_guard_us, 900);
+    EXPECT_TRUE(node.board.has_data_ready_lines);
+    EXPECT_EQ(node.config.data_ready_buses, 0);
     EXPECT_FALSE(node.config.uses_can_fd);
     EXPECT_EQ(node.config.nominal_bitrate, 500'000U);
     const SensorConfig& sensor = node.config.sensors[0];
@@ -235,6 +237,7 @@ const Change kChanges[] = {
     {"stream_gate: advanced", "stream_gate: off", true},
     {"aux_every: 4", "aux_every: 0", true},
     {"zone_guard_us: 900", "zone_guard_us: 901", true},
+    {"zone_guard_us: 900", "zone_guard_us: 900\n    data_ready_buses: [1]", true},
     {"bus: 1", "bus: 0", true},
     {"xshut_line: 3", "xshut_line: 2", true},
     {"address: 0x30", "address: 0x31", true},
@@ -273,6 +276,15 @@ const Change kChanges[] = {
     {"rpy_deg: [0, 89, 1]", "rpy_deg: [0, 89, 2]", false},
     {"offset_m: 0.003", "offset_m: 0.004", false},
 };
+
+TEST_F(RigText, data_ready_lines_arrive_and_survive_the_canonical_text) {
+    const Rig rig =
+        read_good(replaced(kFullRig, "zone_guard_us: 900", "zone_guard_us: 900\n    data_ready_buses: [1]"));
+    EXPECT_EQ(rig.nodes.at(0).config.data_ready_buses, 0b10);
+    const Rig again = read_good(canonical_text(rig, "two-links.urdf"));
+    EXPECT_EQ(again.nodes.at(0).config, rig.nodes.at(0).config);
+    EXPECT_EQ(rig_hash(again), rig_hash(rig));
+}
 
 TEST_F(RigText, node_hash_changes_with_what_firmware_uses_and_with_nothing_else_and_rig_hash_with_all) {
     const Rig before = read_good(kFullRig);
