@@ -194,6 +194,9 @@ enum class FaultKind : std::uint8_t {
     /// Now, no reset: a sensor's register will not take its value. where: sensor in bits 31:24, register
     /// index in 23:8, the value found in 7:0.
     register_fixed = 9,
+    /// Now, no reset: the data-ready line of I2C bus `where` fell too often for nothing and is not listened
+    /// to. Its sensors are read all the same.
+    data_ready_ignored = 10,
     unknown = 15,
 };
 struct InfoFault {  ///< what is wrong with the node now, else its last recorded fault; else all zero

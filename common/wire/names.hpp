@@ -46,6 +46,7 @@ inline constexpr auto kFaultKind = std::to_array<Named<FaultKind>>({
     {FaultKind::xshut_stuck, "xshut_stuck"},
     {FaultKind::stray_sensor, "stray_sensor"},
     {FaultKind::register_fixed, "register_fixed"},
+    {FaultKind::data_ready_ignored, "data_ready_ignored"},
     {FaultKind::unknown, "unknown"},
 });
 inline constexpr auto kInfoPage = std::to_array<Named<InfoPage>>({

@@ -13,8 +13,9 @@ constexpr int kStepsPerPoll = 4;
 
 }  // namespace
 
-BusWorker::BusWorker(i2c::Bus& bus, const vl53l1x::Options& options, const Policy& policy)
-    : bus_(bus), default_address_(bus, options), policy_(policy) {}
+BusWorker::BusWorker(i2c::Bus& bus, const vl53l1x::Options& options, const Policy& policy,
+                     const DataReadyHint& hint)
+    : bus_(bus), default_address_(bus, options), hint_(hint), policy_(policy) {}
 
 void BusWorker::add(Sensor& sensor) {
     assert(sensor_count_ < sensors_.size());
@@ -28,14 +29,21 @@ void BusWorker::poll(NodeTime now) {
     const bool is_retry_due = is_faulty_ && is_reached(retry_at_, now);
     if (!std::exchange(has_started_, true) || is_retry_due) free_bus(now);
 
+    follow_hint(now);
     for (int step = 0; step < kStepsPerPoll && !is_faulty_; ++step) {
         if (owner_ == nullptr) owner_ = longest_due(now);
         if (owner_ == nullptr) return;
         Sensor& sensor = *owner_;
         if (sensor.advance(now) == BusUse::releases) owner_ = nullptr;
+        if (sensor.take_confirmation()) hint_.confirm();
         if (sensor.take_bus_suspicion()) free_bus(now);
         if (bus_.is_busy()) return;
     }
+}
+
+void BusWorker::follow_hint(NodeTime now) {
+    if (!hint_.take(now)) return;
+    for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) sensor->on_hint(now);
 }
 
 Sensor* BusWorker::longest_due(NodeTime now) const {

@@ -9,6 +9,7 @@
 
 #include "common/config/node_config.hpp"
 #include "common/time.hpp"
+#include "firmware/core/data_ready_hint.hpp"
 #include "firmware/core/default_address.hpp"
 #include "firmware/core/policy.hpp"
 #include "firmware/core/sensor.hpp"
@@ -19,7 +20,8 @@ namespace octoskin::node {
 
 class BusWorker {
   public:
-    BusWorker(i2c::Bus& bus, const vl53l1x::Options& options, const Policy& policy);
+    BusWorker(i2c::Bus& bus, const vl53l1x::Options& options, const Policy& policy,
+              const DataReadyHint& hint);
 
     /// The sensor must outlive the worker. Call for all before the first `poll`.
     void add(Sensor& sensor);
@@ -34,15 +36,18 @@ class BusWorker {
     [[nodiscard]] std::optional<NodeTime> wake_time() const;
 
     [[nodiscard]] bool has_sensors() const noexcept { return sensor_count_ > 0; }
+    [[nodiscard]] const DataReadyHint& hint() const noexcept { return hint_; }
     /// A line is held low and could not be freed.
     [[nodiscard]] bool is_faulty() const noexcept { return is_faulty_; }
 
   private:
+    void follow_hint(NodeTime now);
     [[nodiscard]] Sensor* longest_due(NodeTime now) const;
     void free_bus(NodeTime now);
 
     i2c::Bus& bus_;
     DefaultAddress default_address_;
+    DataReadyHint hint_;
     const Policy& policy_;
     std::array<Sensor*, kNodeSensorsMax> sensors_{};
     std::uint8_t sensor_count_ = 0;

@@ -68,7 +68,7 @@ void Node::create_sensors(NodeTime now) {
         if (!recorder) recorder.emplace(*ports_.buses[sensor.bus]);
         BusRecorder& bus = *recorder;
         auto& worker = buses_[sensor.bus];
-        if (!worker) worker.emplace(bus, options, policy_);
+        if (!worker) worker.emplace(bus, options, policy_, data_ready_hint(sensor.bus));
         const SensorSurroundings surroundings{
             .bus = bus, .default_address = worker->default_address(), .xshut = ports_.xshut};
         sensors_[i].emplace(sensor, surroundings, options, rules, policy_, now);
@@ -76,6 +76,11 @@ void Node::create_sensors(NodeTime now) {
         reflexes_[i].emplace(sensor.reflex_below_mm, policy_);
     }
     commanded_to_range_ = (std::uint64_t{1} << sensor_count_) - 1;
+}
+
+DataReadyHint Node::data_ready_hint(std::uint8_t bus) const noexcept {
+    const bool has_line = (config_.data_ready_buses >> bus & 1U) != 0;
+    return {has_line ? ports_.data_ready : nullptr, bus, policy_};
 }
 
 void Node::poll(NodeTime now) {
@@ -187,6 +192,14 @@ wire::NodeState Node::state() const noexcept {
     return is_can_well ? NodeState::ranging : NodeState::can_fault;
 }
 
+std::uint8_t Node::ignored_data_ready() const noexcept {
+    std::uint8_t ignored = 0;
+    for (std::size_t i = 0; i < buses_.size(); ++i) {
+        if (buses_[i] && buses_[i]->hint().is_ignored()) ignored |= static_cast<std::uint8_t>(1U << i);
+    }
+    return ignored;
+}
+
 NodeCounts Node::counts() const noexcept {
     NodeCounts counts{.displaced = queue_.losses().displaced,
                       .late = queue_.losses().late,
@@ -196,6 +209,9 @@ NodeCounts Node::counts() const noexcept {
                       .accepted = accepted_,
                       .frames_sent = frames_sent_,
                       .rx_rejected = rx_rejected_};
+    for (const auto& bus : buses_) {
+        if (bus) counts.spurious_hints += bus->hint().spurious_count();
+    }
     for (const auto& sensor : sensors()) {
         const SensorCounts& own = sensor->counts();
         counts.i2c_errors += sensor->i2c_error_count();

@@ -16,6 +16,7 @@
 #include "firmware/core/black_box.hpp"
 #include "firmware/core/bus_off_recovery.hpp"
 #include "firmware/core/bus_worker.hpp"
+#include "firmware/core/data_ready_hint.hpp"
 #include "firmware/core/policy.hpp"
 #include "firmware/core/ports.hpp"
 #include "firmware/core/reading_queue.hpp"
@@ -43,6 +44,7 @@ struct NodeCounts {
     std::uint32_t accepted = 0;         ///< readings: sent, displaced, late, given up, or still waiting
     std::uint32_t frames_sent = 0;      ///< handed to the controller
     std::uint32_t rx_rejected = 0;      ///< frames for us that failed a check, and commands that were refused
+    std::uint32_t spurious_hints = 0;   ///< falls of data-ready lines that no data answered to
 };
 
 /// `config` that is not valid, or for another type of board: the node does not range, and its heartbeat says
@@ -75,6 +77,10 @@ class Node {
     /// Times that the CAN controller went bus-off.
     [[nodiscard]] std::uint32_t bus_off_count() const noexcept { return bus_off_.count(); }
 
+    /// Bit b: the data-ready line of bus b brought too many falls that meant nothing, and is not listened to
+    /// before the next start. Its sensors are read all the same.
+    [[nodiscard]] std::uint8_t ignored_data_ready() const noexcept;
+
     /// The host asked for a reset: the application performs it.
     [[nodiscard]] bool is_reset_requested() const noexcept { return is_reset_requested_; }
 
@@ -102,6 +108,7 @@ class Node {
 
     // --- work (node.cpp)
     void create_sensors(NodeTime now);
+    [[nodiscard]] DataReadyHint data_ready_hint(std::uint8_t bus) const noexcept;
     void advance_buses(NodeTime now);
     void collect_readings(NodeTime now);
     void watch_reflex(std::uint8_t sensor, const Reading& reading, NodeTime now);

@@ -190,6 +190,10 @@ std::optional<wire::InfoFault> Node::present_fault() const noexcept {
             std::uint32_t{i} << 24U | std::uint32_t{fixed->index} << 8U | fixed->found;
         return wire::InfoFault{.kind = wire::FaultKind::register_fixed, .count = count, .where = where};
     }
+    for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
+        if (!buses_[bus] || !buses_[bus]->hint().is_ignored()) continue;
+        return wire::InfoFault{.kind = wire::FaultKind::data_ready_ignored, .count = count, .where = bus};
+    }
     return std::nullopt;
 }
 

@@ -30,6 +30,14 @@ struct Policy {
     /// within 10.
     std::uint8_t readings_per_steering_check = 3;
 
+    // --- the data-ready line of a bus that has one
+    /// Between two hints: one poll of the bus, and as much again for others.
+    Microseconds hint_interval{250};
+    std::uint16_t hint_doubt_max = 100;  ///< so many more spurious falls than confirmed ones make up for
+    /// A sensor whose data the line announced is not asked early again, as long as its ready time is known
+    /// this well.
+    Microseconds hinted_width_max{500};
+
     // --- trimming the inter-measurement register to the configured period
     std::int32_t trim_tolerance_permille = 5;
     std::uint8_t trims_at_start = 2;

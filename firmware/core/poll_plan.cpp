@@ -27,6 +27,10 @@ NodeTime PollPlan::first_poll(const TimeBracket& predicted) const noexcept {
     return predicted.earliest - poll_duration_ - kLoopDelay;
 }
 
+NodeTime PollPlan::poll_after_hint(const TimeBracket& predicted) const noexcept {
+    return predicted.latest + policy_.repoll_min;
+}
+
 NodeTime PollPlan::first_poll_after_start(NodeTime started, Microseconds timing_budget) const noexcept {
     return started + timing_budget * 9 / 10;
 }

@@ -18,6 +18,9 @@ class PollPlan {
 
     /// The first poll for data that should become ready within `predicted`.
     [[nodiscard]] NodeTime first_poll(const TimeBracket& predicted) const noexcept;
+    /// The first poll, and likely the only one, where a line tells when data is ready: after the line, should
+    /// it not.
+    [[nodiscard]] NodeTime poll_after_hint(const TimeBracket& predicted) const noexcept;
     /// The first poll after a start: nothing can be ready before the timing budget is used up.
     [[nodiscard]] NodeTime first_poll_after_start(NodeTime started,
                                                   Microseconds timing_budget) const noexcept;

@@ -65,6 +65,21 @@ class Watchdog {
     ~Watchdog() = default;
 };
 
+/// The data-ready lines of a board, one per bus: GPIO1 of the bus's sensors wired together, low while one of
+/// them has data. A fall is a hint to look now and nothing more: no time is taken from it, and what it hints
+/// at is asked of the sensors. So a port may lose falls, and report some that were none.
+class DataReadyLines {
+  public:
+    /// Whether the line of `bus` has fallen since this was last asked. Never waits. The core asks no more
+    /// often than `Policy::hint_interval`, and no more at all once it holds the line for broken: a port that
+    /// listens to a line only from one question to its next fall is safe from one that chatters. Wherever the
+    /// port waits for events, a fall is to end the wait.
+    [[nodiscard]] virtual bool take_fall(std::uint8_t bus) = 0;
+
+  protected:
+    ~DataReadyLines() = default;
+};
+
 /// A light by which a person finds the board that the `identify` command means.
 class Indicator {
   public:
@@ -91,8 +106,9 @@ struct Ports {
     std::span<i2c::Bus* const> buses;  ///< one per I2C bus of the board, index as in the configuration
     XshutLines& xshut;
     CanTransmitter& can;
-    Indicator* indicator = nullptr;  ///< boards without a light have none
-    Watchdog* watchdog = nullptr;    ///< a process on Linux has none of its own
+    DataReadyLines* data_ready = nullptr;  ///< asked about the buses that the configuration names
+    Indicator* indicator = nullptr;        ///< boards without a light have none
+    Watchdog* watchdog = nullptr;          ///< a process on Linux has none of its own
     /// Memory that outlives a reset and that no start-up code clears. Without it every start is the first:
     /// no fault is told after a reset, and there is no safe mode.
     KeptMemory* kept = nullptr;

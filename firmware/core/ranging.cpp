@@ -24,6 +24,7 @@ Ranging::Ranging(vl53l1x::Device& device, const SensorConfig& config, const Rang
     : device_(device),
       config_(config),
       rules_(rules),
+      policy_(policy),
       polls_(rules.i2c_hz, policy),
       acceptance_(rules.stream_gate, Microseconds{std::int64_t{config.timing_budget_ms} * 1'000}, policy),
       trim_(Microseconds{std::int64_t{config.inter_measurement_ms} * 1'000}, policy),
@@ -52,6 +53,14 @@ void Ranging::set_period(Microseconds period, NodeTime now) noexcept {
     trim_.set_configured(period);
     is_trim_due_ = true;
     if (is_waiting()) step_due_ = now;
+}
+
+void Ranging::on_hint(NodeTime now) noexcept {
+    const bool may_be_ready = step_ == Step::awaiting_data && is_reached(ready_from_, now);
+    if (!may_be_ready && step_ != Step::reading) return;
+    has_hint_ = true;
+    // One that is due keeps its place: who has waited longest is next.
+    if (may_be_ready) step_due_ = earlier_of(step_due_, now);
 }
 
 bool Ranging::is_waiting() const noexcept {
@@ -91,6 +100,7 @@ void Ranging::start_due_step(NodeTime now) {
     if (is_stop_requested_ || is_trim_due_) {
         start_step(Step::stopping, now);
     } else {
+        is_hinted_ = std::exchange(has_hint_, false);
         start_step(step_ == Step::awaiting_phase ? Step::starting : Step::reading, now);
     }
 }
@@ -201,7 +211,8 @@ void Ranging::on_started(NodeTime now) {
     acceptance_.restart(step_began_, trim_.configured(), trim_.uncertainty_permille());
     zones_.settle();
     step_ = Step::awaiting_data;
-    step_due_ = polls_.first_poll_after_start(now, budget());
+    step_due_ = ready_from_ = polls_.first_poll_after_start(now, budget());
+    has_hint_ = was_announced_ = false;
 }
 
 Ranging::Event Ranging::on_read(NodeTime now) {
@@ -211,9 +222,10 @@ Ranging::Event Ranging::on_read(NodeTime now) {
         const SensorFault silence = acceptance_.has_refused() ? fault_ : SensorFault::no_data_ready;
         if (acceptance_.is_silent(now)) return fail(silence);
         step_ = Step::awaiting_data;
-        step_due_ = polls_.repoll(acceptance_.next_ready(), acceptance_.period(), now);
+        step_due_ = has_hint_ ? now : polls_.repoll(acceptance_.next_ready(), acceptance_.period(), now);
         return Event::none;
     }
+    note_announcement();
     const ResultSeen seen{
         .measurement = device_.measurement(), .ready_seen = device_.ready_seen(), .read_end = now};
     switch (acceptance_.judge(seen, zones_)) {
@@ -268,9 +280,24 @@ void Ranging::check_or_await(NodeTime now) {
 void Ranging::await_next_result(NodeTime now) {
     step_ = Step::awaiting_data;
     const auto predicted = acceptance_.next_ready();
+    ready_from_ = predicted ? polls_.first_poll(*predicted) : now;
     step_due_ = is_trim_due_ || is_stop_requested_ ? now
-                : predicted                        ? polls_.first_poll(*predicted)
+                : predicted                        ? next_poll(*predicted)
                                                    : polls_.repoll(predicted, acceptance_.period(), now);
+}
+
+/// The line told of this data if it fell while data was awaited, or while the sensor was being asked.
+void Ranging::note_announcement() noexcept {
+    was_announced_ = is_hinted_ || has_hint_;
+    has_confirmed_ = has_confirmed_ || was_announced_;
+    has_hint_ = false;
+}
+
+/// A poll that comes too early bounds the ready time from below. Where the line is at work, that is needed
+/// only now and then: each time the bracket, which grows from range to range, has become too wide.
+NodeTime Ranging::next_poll(const TimeBracket& predicted) const noexcept {
+    const bool awaits_line = was_announced_ && predicted.width() <= policy_.hinted_width_max;
+    return awaits_line ? polls_.poll_after_hint(predicted) : polls_.first_poll(predicted);
 }
 
 bool Ranging::is_zone_write_due(NodeTime now) const noexcept {

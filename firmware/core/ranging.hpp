@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "common/config/node_config.hpp"
 #include "common/time.hpp"
@@ -56,6 +57,11 @@ class Ranging {
     void begin_restart(NodeTime now);
     /// Stop as soon as the transfers under way are over, then report `stopped`.
     void request_stop(NodeTime now) noexcept;
+    /// The bus's data-ready line fell: data is asked for now, if it may be there. Which sensor pulled the
+    /// line nobody knows, so this is no more than a reason to ask.
+    void on_hint(NodeTime now) noexcept;
+    /// Whether a hint was followed and data was there; told once.
+    [[nodiscard]] bool take_confirmation() noexcept { return std::exchange(has_confirmed_, false); }
     /// Another period: from the next start on, and if ranging, restart for it.
     void set_period(Microseconds period, NodeTime now) noexcept;
     /// The sensor was taken away (reset, lost): nothing is under way any more.
@@ -107,6 +113,8 @@ class Ranging {
     void after_result(NodeTime now);
     void check_or_await(NodeTime now);
     void await_next_result(NodeTime now);
+    void note_announcement() noexcept;
+    [[nodiscard]] NodeTime next_poll(const TimeBracket& predicted) const noexcept;
     [[nodiscard]] bool is_zone_write_due(NodeTime now) const noexcept;
     [[nodiscard]] bool is_zone_as_written() const;
     [[nodiscard]] NodeTime next_phase(NodeTime now) const noexcept;
@@ -115,6 +123,7 @@ class Ranging {
     vl53l1x::Device& device_;
     const SensorConfig& config_;
     RangingRules rules_;
+    const Policy& policy_;
     PollPlan polls_;
     Acceptance acceptance_;
     PeriodTrim trim_;
@@ -124,6 +133,11 @@ class Ranging {
     Step step_ = Step::idle;
     NodeTime step_due_;
     NodeTime step_began_;
+    NodeTime ready_from_;         ///< while data is awaited: there is none before
+    bool has_hint_ = false;       ///< since the poll under way began, or the last one
+    bool is_hinted_ = false;      ///< the poll under way follows a hint
+    bool has_confirmed_ = false;  ///< not taken yet
+    bool was_announced_ = false;  ///< the line told of the last data
     bool is_stop_requested_ = false;
     bool is_trim_due_ = false;
     wire::SensorFault fault_ = wire::SensorFault::none;

@@ -53,6 +53,12 @@ class Sensor {
     [[nodiscard]] bool order_period(std::optional<Microseconds> period, NodeTime now);
 
     // --- work
+    /// The bus's data-ready line fell: perhaps for this sensor.
+    void on_hint(NodeTime now) noexcept {
+        if (mode_ == Mode::ranging) ranging_.on_hint(now);
+    }
+    /// Whether a hint was followed and data was there; told once.
+    [[nodiscard]] bool take_confirmation() noexcept { return ranging_.take_confirmation(); }
     /// When the bus is wanted; empty while there is nothing to wait for.
     [[nodiscard]] std::optional<NodeTime> due() const noexcept;
     /// One step, with the bus free or taken by this sensor's own transfer.

@@ -67,6 +67,11 @@ struct Outcome {
     std::int64_t first_us = 0;  ///< of the sensor that came last
 };
 
+/// Every data-ready line chatters from then on.
+struct ChatterFrom {
+    std::int64_t begins_us = 0;
+};
+
 class FleetRun {
   public:
     FleetRun(const NodeConfig& config, Microseconds loop = Microseconds{0})
@@ -78,9 +83,16 @@ class FleetRun {
         } else {
             rig_.run_for(kDuration);
         }
-        note_bounds();
-        for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) judge(sensor);
-        std::sort(outcome_.errors_us.begin(), outcome_.errors_us.end());
+        judge_all();
+    }
+    FleetRun(const NodeConfig& config, ChatterFrom chatter)
+        : config_(config),
+          rig_(config, spread_fleet(config.sensor_count), sim::NodeClock{{0xFFFFFFFFU - 5'000'000U}, 100.0}) {
+        rig_.run_for(Microseconds{chatter.begins_us});
+        for (std::size_t bus = 0; bus < kNodeBusesMax; ++bus)
+            rig_.data_ready().line(bus).set_fault(sim::LineFault::chatters);
+        rig_.run_for(kDuration - Microseconds{chatter.begins_us});
+        judge_all();
     }
     [[nodiscard]] const Outcome& outcome() const { return outcome_; }
     [[nodiscard]] NodeRig& rig() { return rig_; }
@@ -90,6 +102,12 @@ class FleetRun {
             most = std::max(most, static_cast<double>(rig_.bus(bus).busy_time().count()));
         }
         return most / static_cast<double>(kDuration.count());
+    }
+    [[nodiscard]] double polls_per_reading() {
+        std::uint64_t polls = 0;
+        for (std::size_t sensor = 0; sensor < config_.sensor_count; ++sensor)
+            polls += rig_.sensor(sensor).poll_count();
+        return static_cast<double>(polls) / rig_.node().counts().accepted;
     }
     [[nodiscard]] std::int64_t error_us(double quantile) const {
         const auto last = static_cast<double>(outcome_.errors_us.size() - 1);
@@ -111,6 +129,11 @@ class FleetRun {
         std::int64_t bound_us = 0;
     };
 
+    void judge_all() {
+        note_bounds();
+        for (std::uint8_t sensor = 0; sensor < config_.sensor_count; ++sensor) judge(sensor);
+        std::sort(outcome_.errors_us.begin(), outcome_.errors_us.end());
+    }
     void note_bounds() {
         for (const auto& item : rig_.said()) {
             const auto* health = std::get_if<wire::SensorHealth>(&item.message);
@@ -203,6 +226,38 @@ TEST(NodeFleet, loses_no_reading_of_17_sensors_at_50_hz) {
     expect_trimmed(run.rig(), 17, 5);
     EXPECT_NEAR(static_cast<double>(run.outcome().used), 17 * 7'900.0 / 20.0, 80.0);
     EXPECT_LE(run.error_us(0.99), 1'000);
+}
+
+NodeConfig with_data_ready_lines(NodeConfig config) {
+    config.data_ready_buses = 0b1111;
+    return config;
+}
+
+TEST(NodeFleet, asks_less_often_where_lines_tell_of_data_and_knows_times_no_worse) {
+    for (const NodeConfig& config : {at_30_hz(17, 4), at_50_hz(17, 4), at_30_hz(34, 4)}) {
+        FleetRun without(config);
+        FleetRun with(with_data_ready_lines(config));
+        without.report("without data-ready lines");
+        with.report("with");
+        std::printf("polls per reading: %.2f without, %.2f with; %u spurious falls\n",
+                    without.polls_per_reading(), with.polls_per_reading(),
+                    with.rig().node().counts().spurious_hints);
+        expect_whole(with);
+        EXPECT_EQ(with.rig().node().ignored_data_ready(), 0);
+        EXPECT_LE(with.polls_per_reading(), 0.85 * without.polls_per_reading());
+        EXPECT_LE(with.bus_use(), without.bus_use());
+        EXPECT_LE(with.error_us(0.5), without.error_us(0.5) + 10);
+        EXPECT_LE(with.error_us(0.99), 1'000);
+    }
+}
+
+TEST(NodeFleet, loses_no_reading_and_tells_no_wrong_time_while_lines_chatter) {
+    for (const std::int64_t begins_us : {0, 3'000'000}) {
+        FleetRun run(with_data_ready_lines(at_50_hz(17, 4)), ChatterFrom{begins_us});
+        run.report("lines chatter");
+        expect_whole(run);
+        EXPECT_EQ(run.rig().node().ignored_data_ready(), 0b1111);
+    }
 }
 
 TEST(NodeFleet, loses_no_reading_in_classical_frames_at_500_kbit_per_second) {

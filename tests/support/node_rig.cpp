@@ -66,7 +66,9 @@ NodeRig::NodeRig(const NodeConfig& config, const std::vector<SensorSetup>& setup
     }
     for (std::size_t i = 0; i < config.sensor_count; ++i) {
         sensors_.push_back(std::make_unique<FittedSensor>(setups.at(i), distances_of(i)));
-        if (setups[i].is_fitted) buses_.at(config.sensors[i].bus).attach(sensors_.back()->model);
+        if (!setups[i].is_fitted) continue;
+        buses_.at(config.sensors[i].bus).attach(sensors_.back()->model);
+        data_ready_.line(config.sensors[i].bus).attach(sensors_.back()->model);
     }
     can_.tap([this](const wire::CanFrame& frame, sim::SimTime end) { record(frame, end); });
     controller_ = &can_.attach([this](const wire::CanFrame& frame, sim::SimTime end) {
@@ -80,6 +82,7 @@ void NodeRig::start_node(wire::ResetCause cause) {
     const node::Ports ports{.buses = bus_pointers_,
                             .xshut = *this,
                             .can = *this,
+                            .data_ready = &data_ready_,
                             .indicator = this,
                             .watchdog = this,
                             .kept = &kept_};
@@ -153,6 +156,7 @@ std::optional<wire::CanFrame> NodeRig::take_given_up() {
 
 void NodeRig::turn() {
     can_.advance(present_.time);
+    if (config_.data_ready_buses != 0) data_ready_.look(present_.time);
     node_->poll(node_now());
     ++poll_count_;
 }
@@ -170,6 +174,9 @@ sim::SimTime NodeRig::next_event() const {
     sim::SimTime next{present_.time.us + wait.count()};
     for (const sim::SimulatedI2cBus& bus : buses_) {
         if (const auto end = bus.transfer_end()) next = std::min(next, *end);
+    }
+    if (config_.data_ready_buses != 0) {
+        if (const auto change = data_ready_.next_change(present_.time)) next = std::min(next, *change);
     }
     if (const auto event = can_.next_event()) next = std::min(next, *event);
     // What is due at once is done in the next microsecond: the loop of no board is faster.

@@ -16,6 +16,7 @@
 #include "firmware/core/node.hpp"
 #include "hw/sim/can/simulated_can_bus.hpp"
 #include "hw/sim/clock.hpp"
+#include "hw/sim/data_ready/simulated_data_ready_lines.hpp"
 #include "hw/sim/i2c/simulated_i2c_bus.hpp"
 #include "hw/sim/vl53l1x/sensor_model.hpp"
 
@@ -103,6 +104,9 @@ class NodeRig final : private node::XshutLines,
     [[nodiscard]] sim::SimulatedI2cBus& bus(std::size_t index) { return buses_.at(index); }
     [[nodiscard]] sim::SimulatedCanBus& can() { return can_; }
 
+    /// Wired to the sensors of all buses; the node asks about those that its configuration names.
+    [[nodiscard]] sim::SimulatedDataReadyLines& data_ready() { return data_ready_; }
+
     [[nodiscard]] const std::vector<TrueRange>& truth(std::size_t sensor) const {
         return sensors_.at(sensor)->truth;
     }
@@ -171,6 +175,7 @@ class NodeRig final : private node::XshutLines,
     std::vector<std::unique_ptr<FittedSensor>> sensors_;
     std::deque<sim::SimulatedI2cBus> buses_;
     std::vector<i2c::Bus*> bus_pointers_;
+    sim::SimulatedDataReadyLines data_ready_;
     sim::SimulatedCanBus can_;
     node::CanTransmitter* controller_ = nullptr;
     node::CanTransmitter* host_ = nullptr;

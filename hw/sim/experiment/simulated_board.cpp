@@ -22,6 +22,7 @@ SimulatedBoard::SimulatedBoard(const NodeConfig& config, NodeClock clock, std::u
     for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) {
         sensors_.push_back(std::make_unique<SensorModel>(parts.sensors.at(sensor), scene(sensor)));
         buses_.at(config.sensors.at(sensor).bus)->attach(*sensors_.back());
+        data_ready_.line(config.sensors.at(sensor).bus).attach(*sensors_.back());
     }
     transmitter_ = &can.attach([this](const wire::CanFrame& frame, SimTime end) {
         if (node_) node_->on_frame(frame, clock_.to_node(end));
@@ -30,13 +31,15 @@ SimulatedBoard::SimulatedBoard(const NodeConfig& config, NodeClock clock, std::u
 }
 
 void SimulatedBoard::start() {
-    const node::Ports ports{.buses = bus_pointers_, .xshut = *this, .can = *transmitter_};
+    const node::Ports ports{
+        .buses = bus_pointers_, .xshut = *this, .can = *transmitter_, .data_ready = &data_ready_};
     node_ = std::make_unique<node::Node>(config_, identity_, ports, clock_.to_node(present_.time));
 }
 
 void SimulatedBoard::poll() {
     if (present_.time < starts_at_) return;
     if (!node_) start();
+    if (config_.data_ready_buses != 0) data_ready_.look(present_.time);
     node_->poll(clock_.to_node(present_.time));
 }
 

@@ -10,6 +10,7 @@
 #include "firmware/core/node.hpp"
 #include "hw/sim/can/simulated_can_bus.hpp"
 #include "hw/sim/clock.hpp"
+#include "hw/sim/data_ready/simulated_data_ready_lines.hpp"
 #include "hw/sim/experiment/rig_board.hpp"
 #include "hw/sim/i2c/simulated_i2c_bus.hpp"
 #include "hw/sim/vl53l1x/sensor_model.hpp"
@@ -49,6 +50,7 @@ class SimulatedBoard final : public RigBoard, private node::XshutLines {
     std::vector<std::unique_ptr<SensorModel>> sensors_;
     std::vector<std::unique_ptr<SimulatedI2cBus>> buses_;
     std::vector<i2c::Bus*> bus_pointers_;
+    SimulatedDataReadyLines data_ready_;
     std::unique_ptr<node::Node> node_;
 };
 

@@ -64,6 +64,16 @@ void SensorModel::advance(SimTime time) {
     }
 }
 
+std::optional<SimTime> SensorModel::next_event(SimTime now) const {
+    std::optional<SimTime> event;
+    if (power_ == Power::booting) event = booted_at_;
+    if (power_ == Power::running && ranging_) {
+        const Microseconds budget = ranging_->is_latched ? ranging_->timing.budget : Microseconds{0};
+        event = SimTime{ranging_->start.us + budget.count()};
+    }
+    return event && *event > now ? event : std::nullopt;
+}
+
 // Facts of a START: while shut down or booting nobody answers; the address counts from the next START after
 // it was written.
 bool SensorModel::on_start(std::uint8_t address, bool is_read, SimTime time) {
@@ -98,6 +108,7 @@ std::uint8_t SensorModel::on_read(SimTime) {
     // A read is one snapshot: time stands still from its START on.
     registers_.at(reg::kGpioStatus) =
         static_cast<std::uint8_t>((registers_.at(reg::kGpioStatus) & 0xFEU) | (pin_level() ? 1U : 0U));
+    if (index_ == reg::kGpioStatus) ++poll_count_;
     const std::uint8_t byte = index_ < registers_.size() ? registers_.at(index_) : std::uint8_t{0};
     ++index_;
     return byte;

@@ -62,6 +62,10 @@ class SensorModel final : public I2cTarget {
 
     /// Level of the GPIO1 pin.
     [[nodiscard]] bool gpio1_level(SimTime time);
+    /// When after `now` it next does something by itself: boots, begins or ends a ranging. Empty if never.
+    [[nodiscard]] std::optional<SimTime> next_event(SimTime now) const;
+    /// How often it was asked whether data is ready (0x31).
+    [[nodiscard]] std::uint64_t poll_count() const noexcept { return poll_count_; }
     /// Finishes the rangings that end by `time`.
     void advance(SimTime time);
     /// The newest finished rangings, oldest first, at most 64.
@@ -113,6 +117,7 @@ class SensorModel final : public I2cTarget {
     bool is_interrupt_asserted_ = false;
     std::uint16_t index_ = 0;
     std::uint8_t index_bytes_ = 0;
+    std::uint64_t poll_count_ = 0;
     std::deque<RangingRecord> history_;
 };
 

@@ -128,6 +128,7 @@ TEST(Names, are_those_of_the_protocol) {
                              {7, "xshut_stuck"},
                              {8, "stray_sensor"},
                              {9, "register_fixed"},
+                             {10, "data_ready_ignored"},
                              {15, "unknown"}});
     expect_names<InfoPage>({{0, "uid_low"},
                             {1, "uid_high"},

@@ -15,6 +15,11 @@ TEST(PollPlan, asks_first_just_before_the_data_can_be_ready) {
     EXPECT_EQ(plan.first_poll({{100'000}, {100'300}}), NodeTime{100'000 - 180 - 20});
 }
 
+TEST(PollPlan, lets_a_line_go_first_and_asks_just_after_the_data_must_be_ready) {
+    const PollPlan plan{400'000, kPolicy};
+    EXPECT_EQ(plan.poll_after_hint({{100'000}, {100'300}}), NodeTime{100'350});
+}
+
 TEST(PollPlan, asks_again_halfway_to_the_latest_time_it_can_be) {
     const PollPlan plan{400'000, kPolicy};
     const TimeBracket predicted{{100'000}, {101'000}};

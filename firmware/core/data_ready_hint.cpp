@@ -1,0 +1,34 @@
+#include "firmware/core/data_ready_hint.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace octoskin::node {
+
+namespace {
+
+// A confirmed fall makes up for so many spurious ones: a line may bring two in three, as when sensors of its
+// bus are started again and again, but not chatter between them.
+constexpr std::uint16_t kDoubtLifted = 2;
+
+}  // namespace
+
+bool DataReadyHint::take(NodeTime now) {
+    if (lines_ == nullptr || is_ignored()) return false;
+    if (asked_again_at_ && !is_reached(*asked_again_at_, now)) return false;
+    asked_again_at_.reset();
+    if (!lines_->take_fall(bus_)) return false;
+    asked_again_at_ = now + policy_.hint_interval;
+    if (std::exchange(is_unconfirmed_, true)) {
+        ++spurious_count_;
+        ++doubt_;
+    }
+    return !is_ignored();
+}
+
+void DataReadyHint::confirm() noexcept {
+    if (!std::exchange(is_unconfirmed_, false)) return;
+    doubt_ = static_cast<std::uint16_t>(doubt_ - std::min(doubt_, kDoubtLifted));
+}
+
+}  // namespace octoskin::node
