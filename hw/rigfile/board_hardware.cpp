@@ -71,16 +71,23 @@ std::map<BoardPin, std::string> read_reserved(const Table& top) {
 }
 
 BoardSignal read_signal(const Table& table) {
-    BoardSignal signal{
-        .signal = table.name("signal"),
-        .pin = read_pin(table),
-        .connector = table.name("connector"),
-        .function = table.name("function"),
-        .alternate = std::nullopt,
-        .is_open_drain = table.choice<bool>("drive", {{"open_drain", true}, {"push_pull", false}})};
+    BoardSignal signal{.signal = table.name("signal"),
+                       .pin = read_pin(table),
+                       .connector = table.name("connector"),
+                       .function = table.name("function"),
+                       .alternate = std::nullopt};
+    const bool is_input = signal.function == "input";
+    if (is_input) {
+        signal.is_pulled_up = table.choice<bool>("pull", {{"up", true}, {"none", false}});
+    } else {
+        signal.is_open_drain = table.choice<bool>("drive", {{"open_drain", true}, {"push_pull", false}});
+    }
+    if (table.find(is_input ? "drive" : "pull"))
+        table.fail("function", "expected `pull` with `input`, `drive` with every other function");
     if (table.find("alternate")) signal.alternate = table.integer<std::uint8_t>("alternate", {0, 15});
-    if (signal.alternate.has_value() == (signal.function == "output")) {
-        table.fail("function", "expected `output` without `alternate`, or another function with it");
+    if (signal.alternate.has_value() == (is_input || signal.function == "output")) {
+        table.fail("function",
+                   "expected `input` or `output` without `alternate`, or another function with it");
     }
     return signal;
 }
@@ -92,7 +99,7 @@ void read_signals(const Table& top, BoardHardware& board) {
     const auto& items = read_list(top.require("pins"), "pins");
     for (std::size_t i = 0; i < items.size(); ++i) {
         const Table table(items[i], fmt::format("pins[{}]", i),
-                          {"signal", "pin", "connector", "function", "alternate", "drive"});
+                          {"signal", "pin", "connector", "function", "alternate", "drive", "pull"});
         BoardSignal signal = read_signal(table);
         if (const auto found = reserved.find(signal.pin); found != reserved.end()) {
             table.fail("pin",

@@ -33,9 +33,10 @@ struct BoardSignal {
     std::string signal;  ///< what we call it
     BoardPin pin;
     std::string connector;  ///< "CN7-17"
-    std::string function;   ///< the datasheet's name of the pin's role; "output" for a plain output
+    std::string function;   ///< the datasheet's name of the pin's role; "input" or "output" for a plain one
     std::optional<std::uint8_t> alternate;  ///< number of the alternate function, 0..15
-    bool is_open_drain = false;
+    bool is_open_drain = false;             ///< what drives the pin, if anything does
+    bool is_pulled_up = false;              ///< an input, by the chip's own resistor
 };
 
 struct BoardHardware {

@@ -14,6 +14,7 @@
 #include "firmware/port/stm32g4/clocks.hpp"
 #include "firmware/port/stm32g4/configuration_page.hpp"
 #include "firmware/port/stm32g4/cpu.hpp"
+#include "firmware/port/stm32g4/data_ready_lines.hpp"
 #include "firmware/port/stm32g4/fault_handlers.hpp"
 #include "firmware/port/stm32g4/i2c_controller.hpp"
 #include "firmware/port/stm32g4/i2c_timing.hpp"
@@ -49,6 +50,7 @@ constinit std::array<I2cController, kI2cWirings.size()> i2c_controllers{
     I2cController{kI2cWirings[2], timer}, I2cController{kI2cWirings[3], timer}};
 constinit std::array<i2c::Bus*, kI2cWirings.size()> buses{&i2c_controllers[0], &i2c_controllers[1],
                                                           &i2c_controllers[2], &i2c_controllers[3]};
+constinit DataReadyLines data_ready;
 constinit NodeConfig config = without_configuration();
 constinit std::optional<node::Node> the_node;
 constinit bool is_crystal_missed = false;
@@ -64,6 +66,7 @@ void start_buses(const Clocks& clocks) {
     const auto timing = i2c_timing(clocks.core_hz, config.i2c_hz);
     if (timing) {
         for (I2cController& controller : i2c_controllers) controller.start(*timing);
+        data_ready.start(config.data_ready_buses);
     }
     const bool has_rates = is_possible(rates_of(config), kCanHz);
     enter_can(has_rates ? std::optional(rates_of(config)) : std::nullopt, clocks);
@@ -99,7 +102,7 @@ void start_telling(std::uint32_t core_hz) {
 }
 
 bool has_event() {
-    return can.has_event() ||
+    return can.has_event() || data_ready.has_event() ||
            std::any_of(i2c_controllers.begin(), i2c_controllers.end(),
                        [](const I2cController& controller) { return controller.has_ended(); });
 }
@@ -158,6 +161,7 @@ void start() {
     const node::Ports ports{.buses = buses,
                             .xshut = xshut,
                             .can = can,
+                            .data_ready = &data_ready,
                             .indicator = &light,
                             .watchdog = &watchdog,
                             .kept = &kept_memory()};
@@ -190,6 +194,7 @@ NodeTime wake_time(NodeTime light_due) {
 
 void turn() {
     can.acknowledge_event();
+    data_ready.acknowledge_event();
     while (const auto received = can.receive()) the_node->on_frame(received->frame, received->received);
     const NodeTime now = timer.now();
     can.poll(now);
@@ -214,6 +219,9 @@ void can_interrupt() {
 }
 void timer_interrupt() {
     octoskin::stm32g4::timer.on_interrupt();
+}
+void data_ready_interrupt() {
+    octoskin::stm32g4::data_ready.on_interrupt();
 }
 void serial_interrupt() {
     octoskin::stm32g4::serial.on_interrupt();

@@ -109,7 +109,13 @@ void Report::update(const node::Node& node, const CanController& can, NodeTime n
         serial_.say(line.text("CAN controller failed, ").number(failed).text(" since start").view());
         can_failed_ = failed;
     }
+    const std::uint8_t ignored = node.ignored_data_ready();
+    if (ignored_data_ready_ != ignored) {
+        TextLine line;
+        serial_.say(line.text("data-ready lines that are noise, ignored: buses ").hex(ignored, 1).view());
+    }
     state_ = state;
+    ignored_data_ready_ = ignored;
     bus_off_count_ = bus_off_count;
     tell_losses(can.counts(), now);
     show(state, can.is_started());

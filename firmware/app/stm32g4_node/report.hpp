@@ -46,6 +46,7 @@ class Report {
     bool has_crystal_ = false;
     std::optional<wire::NodeState> state_;
     std::uint32_t bus_off_count_ = 0;
+    std::uint8_t ignored_data_ready_ = 0;
     std::uint32_t can_failed_ = 0;
     CanCounts told_;
     node::Pause losses_pause_;

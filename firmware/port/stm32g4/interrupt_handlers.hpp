@@ -17,5 +17,6 @@ void i2c1_interrupt();
 void i2c2_interrupt();
 void i2c3_interrupt();
 void i2c4_interrupt();
+void data_ready_interrupt();
 void serial_interrupt();
 }

@@ -5,16 +5,21 @@
 namespace octoskin::stm32g4 {
 
 namespace {
-constexpr std::uint32_t kOutput = 1;  // MODER
+constexpr std::uint32_t kInput = 0;  // MODER
+constexpr std::uint32_t kOutput = 1;
 constexpr std::uint32_t kAlternate = 2;
 }  // namespace
 
-void Pin::configure(std::uint32_t mode, Drive drive, Speed speed) const {
+void Pin::configure(std::uint32_t mode, Drive drive, Speed speed, Pull pull) const {
     using F = Field<GpioMap>;
     port_.set(F("OTYPER.OT#")[number_], static_cast<std::uint32_t>(drive));
     port_.set(F("OSPEEDR.OSPEEDR#")[number_], static_cast<std::uint32_t>(speed));
-    port_.set(F("PUPDR.PUPDR#")[number_], 0);
+    port_.set(F("PUPDR.PUPDR#")[number_], static_cast<std::uint32_t>(pull));
     port_.set(F("MODER.MODER#")[number_], mode);
+}
+
+void Pin::make_input(Pull pull) const {
+    configure(kInput, Drive::push_pull, Speed::low, pull);
 }
 
 void Pin::make_output(Drive drive, Speed speed) const {

@@ -8,12 +8,14 @@
 namespace octoskin::stm32g4 {
 
 enum class Drive : std::uint8_t { push_pull = 0, open_drain = 1 };
+enum class Pull : std::uint8_t { none = 0, up = 1 };
 enum class Speed : std::uint8_t { low = 0, medium = 1, high = 2 };
 
 class Pin {
   public:
     constexpr Pin(const Peripheral<GpioMap>& port, std::uint8_t number) : port_(port), number_(number) {}
 
+    void make_input(Pull pull) const;
     /// Set a level first: it appears with the pin's new role.
     void make_output(Drive drive, Speed speed = Speed::low) const;
     /// `function`: the AF number of the datasheet's table.
@@ -23,7 +25,7 @@ class Pin {
     [[nodiscard]] bool is_high() const;
 
   private:
-    void configure(std::uint32_t mode, Drive drive, Speed speed) const;
+    void configure(std::uint32_t mode, Drive drive, Speed speed, Pull pull = Pull::none) const;
 
     Peripheral<GpioMap> port_;
     std::uint8_t number_;

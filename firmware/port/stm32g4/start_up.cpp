@@ -58,6 +58,7 @@ constexpr std::array<Handler, kInterruptCount> interrupt_handlers() {
     set(Interrupt::i2c3_error, &i2c3_interrupt);
     set(Interrupt::i2c4_event, &i2c4_interrupt);
     set(Interrupt::i2c4_error, &i2c4_interrupt);
+    set(Interrupt::exti10_to_15, &data_ready_interrupt);
     set(Interrupt::lpuart1, &serial_interrupt);
     return handlers;
 }

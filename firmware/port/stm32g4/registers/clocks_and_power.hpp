@@ -17,6 +17,7 @@ struct RccMap {
         {"AHB2ENR", 0x4C},
         {"APB1ENR1", 0x58},
         {"APB1ENR2", 0x5C},
+        {"APB2ENR", 0x60},
         {"CCIPR", 0x88},
 
         {"CSR", 0x94},
@@ -31,7 +32,7 @@ struct RccMap {
         {"AHB2ENR.GPIOAEN", 0},    {"AHB2ENR.GPIOBEN", 1},   {"AHB2ENR.GPIOCEN", 2},
         {"APB1ENR1.TIM2EN", 0},    {"APB1ENR1.I2C1EN", 21},  {"APB1ENR1.I2C2EN", 22},
         {"APB1ENR1.FDCANEN", 25},  {"APB1ENR1.PWREN", 28},   {"APB1ENR1.I2C3EN", 30},
-        {"APB1ENR2.LPUART1EN", 0}, {"APB1ENR2.I2C4EN", 1},
+        {"APB1ENR2.LPUART1EN", 0}, {"APB1ENR2.I2C4EN", 1},   {"APB2ENR.SYSCFGEN", 0},
 
         {"CCIPR.FDCANSEL", 24, 2}, {"CSR.RMVF", 23},         {"CSR.OBLRSTF", 25},
         {"CSR.PINRSTF", 26},       {"CSR.BORRSTF", 27},      {"CSR.SFTRSTF", 28},

@@ -14,6 +14,7 @@
 #include "firmware/port/stm32g4/can_controller.hpp"
 #include "firmware/port/stm32g4/clock_plan.hpp"
 #include "firmware/port/stm32g4/configuration_page.hpp"
+#include "firmware/port/stm32g4/data_ready_lines.hpp"
 #include "firmware/port/stm32g4/i2c_controller.hpp"
 #include "firmware/port/stm32g4/i2c_timing.hpp"
 #include "firmware/port/stm32g4/registers/interrupts.hpp"
@@ -34,10 +35,11 @@ struct PinState {
     std::uint32_t mode = 3;  ///< 0 input, 1 output, 2 alternate, 3 analog
     std::uint32_t alternate = 0;
     bool is_open_drain = false;
+    bool is_pulled_up = false;
     friend bool operator==(const PinState&, const PinState&) = default;
     friend std::ostream& operator<<(std::ostream& out, const PinState& state) {
         return out << "mode " << state.mode << " function " << state.alternate
-                   << (state.is_open_drain ? " open drain" : "");
+                   << (state.is_open_drain ? " open drain" : "") << (state.is_pulled_up ? " pulled up" : "");
     }
 };
 
@@ -50,6 +52,7 @@ PinState state_of(test::AddressSpace& space, const BoardPin& pin) {
     PinState state;
     state.mode = space[base] >> (2U * pin.number) & 3U;
     state.is_open_drain = (space[base + 0x04] >> pin.number & 1U) != 0;
+    state.is_pulled_up = (space[base + 0x0C] >> (2U * pin.number) & 3U) == 1;
     if (state.mode == 2)
         state.alternate = space[base + 0x20 + 4U * (pin.number / 8U)] >> (4U * (pin.number % 8U)) & 15U;
     return state;
@@ -88,9 +91,13 @@ class FirmwareOnBoard : public testing::Test {
         std::map<BoardPin, PinState> all;
         for (const BoardSignal& signal : board_.signals) {
             if (!signal.signal.starts_with(prefix)) continue;
-            all[signal.pin] = {.mode = signal.alternate ? 2U : 1U,
+            const bool is_input = signal.function == "input";
+            all[signal.pin] = {.mode = signal.alternate ? 2U
+                                       : is_input       ? 0U
+                                                        : 1U,
                                .alternate = signal.alternate.value_or(0),
-                               .is_open_drain = signal.is_open_drain};
+                               .is_open_drain = signal.is_open_drain,
+                               .is_pulled_up = signal.is_pulled_up};
         }
         return all;
     }
@@ -111,6 +118,7 @@ TEST_F(FirmwareOnBoard, sets_up_exactly_the_pins_of_the_file) {
     std::map<BoardPin, PinState> used = set_up_by([&] {
         stm32g4::StatusLight().start();
         stm32g4::XshutChain().start();
+        stm32g4::DataReadyLines().start(0b1111);
         stm32g4::SerialPort().start(stm32g4::kCrystalPlan.core_hz());
         stm32g4::CanController can{timer_};
         EXPECT_TRUE(can.start({.nominal = 1'000'000, .data = 5'000'000, .has_fd = true}, 1, stm32g4::kCanHz));
@@ -124,6 +132,11 @@ TEST_F(FirmwareOnBoard, each_part_sets_up_its_own_pins) {
     EXPECT_EQ(set_up_by([] { stm32g4::StatusLight().start(); }), described("light"));
     EXPECT_EQ(set_up_by([] { stm32g4::XshutChain().start(); }), described("xshut_"));
     EXPECT_EQ(set_up_by([] { stm32g4::SerialPort().start(160'000'000); }), described("serial_"));
+    for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
+        const auto buses = static_cast<std::uint8_t>(1U << bus);
+        EXPECT_EQ(set_up_by([=] { stm32g4::DataReadyLines().start(buses); }),
+                  described("data_ready" + std::to_string(bus)));
+    }
     for (std::size_t bus = 0; bus < stm32g4::kI2cWirings.size(); ++bus) {
         EXPECT_EQ(set_up_by([&] { stm32g4::I2cController(stm32g4::kI2cWirings[bus], timer_).start(0); }),
                   described("i2c" + std::to_string(bus)));
@@ -213,10 +226,11 @@ TEST(NucleoBoard, no_signal_is_on_a_pin_that_something_else_needs) {
 /// UM2505, "ST morpho connectors", of the pins in use.
 TEST(NucleoBoard, the_connectors_are_the_boards) {
     const std::map<std::string, std::string> morpho = {
-        {"PA15", "CN7-17"}, {"PB7", "CN7-21"},  {"PC0", "CN7-38"},   {"PC1", "CN7-36"},
-        {"PC2", "CN7-35"},  {"PC3", "CN7-37"},  {"PC9", "CN10-1"},   {"PC8", "CN10-2"},
-        {"PC6", "CN10-4"},  {"PA5", "CN10-11"}, {"PA12", "CN10-12"}, {"PA11", "CN10-14"},
-        {"PC7", "CN10-19"}, {"PA9", "CN10-21"}, {"PA8", "CN10-23"},  {"PA2", "CN10-35"}};
+        {"PA15", "CN7-17"},  {"PB7", "CN7-21"},   {"PC0", "CN7-38"},   {"PC1", "CN7-36"},
+        {"PC2", "CN7-35"},   {"PC3", "CN7-37"},   {"PC9", "CN10-1"},   {"PC8", "CN10-2"},
+        {"PC6", "CN10-4"},   {"PA5", "CN10-11"},  {"PA12", "CN10-12"}, {"PA11", "CN10-14"},
+        {"PC7", "CN10-19"},  {"PA9", "CN10-21"},  {"PA8", "CN10-23"},  {"PA2", "CN10-35"},
+        {"PB12", "CN10-16"}, {"PB13", "CN10-30"}, {"PB14", "CN10-28"}, {"PB15", "CN10-26"}};
     for (const BoardSignal& signal : nucleo().signals)
         EXPECT_EQ(morpho.at(text(signal.pin)), signal.connector);
 }
@@ -266,6 +280,11 @@ TEST(NucleoBoard, its_two_files_agree) {
     for (const BoardSignal& signal : board.signals) buses += signal.function.ends_with("_SCL") ? 1U : 0U;
     EXPECT_EQ(rig->nodes.at(0).board.i2c_bus_count, buses);
     EXPECT_EQ(rig->nodes.at(0).board.xshut_line_count, kNodeXshutLinesMax);
+    std::set<std::uint8_t> lines;  // EXTI has one for all the pins of a number
+    for (const BoardSignal& signal : board.signals) {
+        if (signal.signal.starts_with("data_ready")) lines.insert(signal.pin.number);
+    }
+    EXPECT_EQ(lines.size(), rig->nodes.at(0).board.has_data_ready_lines ? buses : 0U);
 }
 
 }  // namespace

@@ -17,9 +17,10 @@ std::string expected_table() {
     std::string text = "\n| Signal | Pin | Connector | Function |\n|---|---|---|---|\n";
     for (const BoardSignal& signal : nucleo().signals) {
         const std::string alternate = signal.alternate ? fmt::format(" (AF{})", *signal.alternate) : "";
-        text += fmt::format("| {} | {} | {} | {}{}{} |\n", signal.signal, octoskin::rig::text(signal.pin),
-                            signal.connector, signal.function, alternate,
-                            signal.is_open_drain ? ", open drain" : "");
+        text +=
+            fmt::format("| {} | {} | {} | {}{}{}{} |\n", signal.signal, octoskin::rig::text(signal.pin),
+                        signal.connector, signal.function, alternate,
+                        signal.is_open_drain ? ", open drain" : "", signal.is_pulled_up ? ", pulled up" : "");
     }
     return text;
 }

@@ -8,6 +8,7 @@
 
 #include "firmware/port/stm32g4/registers/clocks_and_power.hpp"
 #include "firmware/port/stm32g4/registers/core.hpp"
+#include "firmware/port/stm32g4/registers/external_interrupts.hpp"
 #include "firmware/port/stm32g4/registers/fdcan.hpp"
 #include "firmware/port/stm32g4/registers/gpio.hpp"
 #include "firmware/port/stm32g4/registers/i2c.hpp"
@@ -91,7 +92,7 @@ class RegisterMapTest : public ::testing::Test {
 };
 
 using Maps = ::testing::Types<RccMap, PwrMap, FlashMap, GpioMap, TimerMap, IwdgMap, LpuartMap, I2cMap,
-                              FdcanMap, NvicMap, ScbMap, FpuMap, CpacrMap>;
+                              FdcanMap, NvicMap, SyscfgMap, ExtiMap, ScbMap, FpuMap, CpacrMap>;
 TYPED_TEST_SUITE(RegisterMapTest, Maps);
 
 TYPED_TEST(RegisterMapTest, agrees_with_st) {
