@@ -32,6 +32,34 @@ NucleoOptions options_of(const Speed& speed) {
     return options;
 }
 
+/// What a second costs, after two to come up and to trim.
+struct PollsAndReadings {
+    double polls = 0.0;
+    double readings = 0.0;
+    double core_percent = 0.0;
+    [[nodiscard]] double polls_per_reading() const { return polls / readings; }
+};
+
+PollsAndReadings cost_of_a_second(const NodeConfig& config, const NucleoOptions& options) {
+    FlashedBoard flashed(config, options);
+    const auto so_far = [&] {
+        PollsAndReadings sum;
+        sum.core_percent = static_cast<double>(flashed.board().core().cycles()) / 1.6e6;
+        for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) {
+            sum.polls += static_cast<double>(flashed.sensor(sensor).poll_count());
+            sum.readings += static_cast<double>(flashed.readings(sensor).size());
+        }
+        return sum;
+    };
+    flashed.run_for(2s);
+    const PollsAndReadings before = so_far();
+    flashed.run_for(1s);
+    const PollsAndReadings after = so_far();
+    EXPECT_EQ(flashed.violations(), "");
+    return {after.polls - before.polls, after.readings - before.readings,
+            after.core_percent - before.core_percent};
+}
+
 class ImageTest : public testing::TestWithParam<Speed> {
   protected:
     /// After three seconds to come up and to trim: two more in which nothing may be missed.
@@ -237,6 +265,60 @@ TEST(ImageI2c, a_reset_in_the_middle_of_a_transfer_is_followed_by_a_clean_start)
     EXPECT_EQ(flashed.heartbeats().back().heartbeat.state, wire::NodeState::ranging);
     EXPECT_EQ(flashed.violations(), "");
 }
+
+// --- data-ready lines
+
+NodeConfig with_lines(NodeConfig config) {
+    config.data_ready_buses = 0b1111;
+    return config;
+}
+
+struct LineRun {
+    NodeConfig config;
+    std::uint32_t cycles_per_instruction;
+};
+
+TEST(ImageDataReady, lines_save_polls_at_full_rate) {
+    for (const LineRun& run : {LineRun{seventeen_at_50_hz(), 1}, LineRun{thirty_four_at_30_hz(), 3}}) {
+        NucleoOptions options;
+        options.cycles_per_instruction = run.cycles_per_instruction;
+        const PollsAndReadings without = cost_of_a_second(run.config, options);
+        const PollsAndReadings with = cost_of_a_second(with_lines(run.config), options);
+        std::printf(
+            "%d sensors, %u cycles: %.2f polls a reading without lines, %.2f with; core %.1f %%, %.1f %%\n",
+            int{run.config.sensor_count}, run.cycles_per_instruction, without.polls_per_reading(),
+            with.polls_per_reading(), without.core_percent, with.core_percent);
+        EXPECT_NEAR(with.readings, without.readings, 0.03 * without.readings);
+        EXPECT_LE(with.polls_per_reading(), 0.9 * without.polls_per_reading());
+    }
+}
+
+class BrokenLine : public testing::TestWithParam<LineFault> {};
+
+TEST_P(BrokenLine, costs_no_reading_and_no_time) {
+    FlashedBoard flashed(with_lines(fleet(8, DistanceMode::short_range, 15, 20)));
+    flashed.run_for(1s);
+    const std::size_t before = flashed.readings(0).size() + flashed.readings(1).size();
+    flashed.board().data_ready(0).set_fault(GetParam());
+    flashed.board().forget_longest_awake();
+    flashed.run_for(1s);
+    // Sensor 0 is on bus 0, sensor 1 on bus 1, whose line is whole.
+    EXPECT_NEAR(static_cast<double>(flashed.readings(0).size() + flashed.readings(1).size() - before), 100.0,
+                4.0);
+    EXPECT_LE(flashed.board().core().longest_awake_ps(), 5'000 * kPsPerUs);
+    EXPECT_EQ(flashed.board().reset_count(), 0U);
+    EXPECT_EQ(flashed.violations(), "");
+    const bool is_noise = GetParam() == LineFault::chatters;
+    EXPECT_EQ(flashed.board().serial_text().find("ignored: buses 1") != std::string::npos, is_noise)
+        << flashed.board().serial_text();
+}
+std::string name_of_line_fault(const testing::TestParamInfo<LineFault>& tested) {
+    constexpr const char* kNames[] = {"none", "stuck_low", "stuck_high", "chatters"};
+    return kNames[static_cast<std::size_t>(tested.param)];
+}
+INSTANTIATE_TEST_SUITE_P(Faults, BrokenLine,
+                         testing::Values(LineFault::stuck_low, LineFault::stuck_high, LineFault::chatters),
+                         name_of_line_fault);
 
 // --- clocks
 

@@ -70,6 +70,16 @@ constexpr Offence kOffences[] = {
     {"vector_table_alignment", Rule::exception_model, "VTOR"},
     {"reset_without_key", Rule::wrong_state, "AIRCR"},
     {"deep_sleep", Rule::not_modelled, "SLEEPDEEP"},
+    {"unclocked_syscfg", Rule::unclocked, "SYSCFG"},
+    {"syscfg_reserved_bits", Rule::reserved_bits, "SYSCFG.EXTICR4"},
+    {"line_of_no_port", Rule::wrong_state, "line 12"},
+    {"exti_reserved_bits", Rule::reserved_bits, "EXTI.RTSR1"},
+    {"exti_narrow_write", Rule::access_width, "EXTI"},
+    {"exti_line_of_no_pin", Rule::not_modelled, "lines of no pin"},
+    {"exti_second_bank", Rule::not_modelled, "0x20"},
+    {"exti_event", Rule::not_modelled, "events"},
+    {"exti_unknown_register", Rule::not_modelled, "EXTI"},
+    {"exti_analog_pin", Rule::pin_function, "line 12"},
 };
 
 /// Answers to everything.
@@ -112,7 +122,8 @@ TEST_P(RightTest, is_not_reported) {
     EXPECT_EQ(tiny.violations(), "");
 }
 INSTANTIATE_TEST_SUITE_P(Programs, RightTest,
-                         testing::Values("everything_right", "i2c_right", "can_right", "uart_right"));
+                         testing::Values("everything_right", "i2c_right", "can_right", "uart_right",
+                                         "exti_right"));
 
 TEST(SerialPort, says_what_was_written) {
     TinyBoard tiny("strictness");
@@ -127,6 +138,52 @@ TEST(Interrupts, come_again_while_their_flag_stays_set) {
     ASSERT_TRUE(tiny.run_until_finished());
     EXPECT_EQ(tiny.result(0), 3U);
     EXPECT_LT(tiny.board().now().us, 200) << "without waiting for the timer's next periods";
+}
+
+TEST(ExternalInterrupt, comes_by_software_and_not_from_a_line_at_rest) {
+    TinyBoard tiny("strictness");
+    tiny.jump("exti_right");
+    ASSERT_TRUE(tiny.run_until_finished());
+    EXPECT_EQ(tiny.result(2), 0U);
+    EXPECT_EQ(tiny.result(0), 1U);
+    EXPECT_EQ(tiny.result(3), 0U) << "clearing the one clears the other";
+}
+
+TEST(ExternalInterrupt, comes_with_each_fall_and_leaves_no_trace_of_those_that_are_masked) {
+    TinyBoard tiny("strictness");
+    tiny.board().data_ready(0).set_fault(LineFault::chatters);
+    tiny.jump("exti_falls");
+    ASSERT_TRUE(tiny.run_until_finished());
+    EXPECT_EQ(tiny.result(0), 5U);
+    EXPECT_EQ(tiny.result(2), 0U);
+    EXPECT_EQ(tiny.violations(), "");
+}
+
+TEST(ExternalInterrupt, comes_with_falls_or_with_both_edges_as_selected) {
+    TinyBoard tiny("strictness");
+    tiny.board().data_ready(0).set_fault(LineFault::chatters);
+    tiny.jump("exti_both_edges");
+    ASSERT_TRUE(tiny.run_until_finished());
+    EXPECT_NEAR(tiny.result(2), 50.0, 2.0);
+    // Twice as many, less those that come before the handler has cleared the one before: they are one.
+    EXPECT_GT(tiny.result(3), 75U);
+    EXPECT_LE(tiny.result(3), 101U);
+    EXPECT_EQ(tiny.violations(), "");
+}
+
+TEST(ExternalInterrupt, comes_again_until_it_is_cleared) {
+    TinyBoard tiny("strictness");
+    tiny.jump("exti_not_cleared");
+    ASSERT_TRUE(tiny.run_until_finished());
+    EXPECT_EQ(tiny.result(0), 3U);
+}
+
+TEST(ExternalInterrupt, of_another_line_is_not_this_ones) {
+    TinyBoard tiny("strictness");
+    tiny.board().data_ready(1).set_fault(LineFault::chatters);  // PB13
+    tiny.jump("exti_right");
+    ASSERT_TRUE(tiny.run_until_finished());
+    EXPECT_EQ(tiny.result(2), 0U);
 }
 
 TEST(Timer2, compares_when_the_counter_arrives_and_once_a_period) {

@@ -28,13 +28,6 @@ constexpr std::uint32_t kApb1 = 0x58;
 constexpr std::uint32_t kApb1Second = 0x5C;
 constexpr std::uint32_t kApb2 = 0x60;
 
-constexpr RegisterSpec kSyscfgRegisters[] = {
-    {0x00, "MEMRMP", 0, 0x107},     {0x04, "CFGR1", 0x7C00'0001, 0xFCFF'0300},
-    {0x08, "EXTICR1", 0, 0x7777},   {0x0C, "EXTICR2", 0, 0x7777},
-    {0x10, "EXTICR3", 0, 0x7777},   {0x14, "EXTICR4", 0, 0x7777},
-    {0x18, "SCSR", 0, 0x1},         {0x1C, "CFGR2", 0, 0x10F},
-    {0x20, "SWPR", 0, 0xFFFF'FFFF}, {0x24, "SKR", 0, 0xFF},
-};
 constexpr RegisterSpec kDebugRegisters[] = {
     {0x00, "IDCODE", 0x2003'6469, 0},   {0x04, "CR", 0, 0xE7},
     {0x08, "APB1FZR1", 0, 0xC060'1C3F}, {0x0C, "APB1FZR2", 0, 0x2},
@@ -44,7 +37,9 @@ constexpr RegisterSpec kDebugRegisters[] = {
 constexpr std::uint32_t kCanFunction = 9;
 constexpr std::uint32_t kSerialFunction = 12;
 constexpr std::uint32_t kPortA = 0;
+constexpr std::uint32_t kPortB = 1;
 constexpr std::uint32_t kPortC = 2;
+constexpr std::uint32_t kFirstDataReadyPin = 12;  // PB12 to PB15
 
 }  // namespace
 
@@ -151,11 +146,36 @@ void NucleoBoard::make_peripherals(const NucleoOptions& options) {
             [this] {
                 return has_function({kPortA, 11}, kCanFunction) && has_function({kPortA, 12}, kCanFunction);
             }});
-    syscfg_ = std::make_unique<PlainRegisters>(env, "SYSCFG", kSyscfgRegisters);
+    make_external_interrupts(env);
     debug_ = std::make_unique<PlainRegisters>(env, "DBGMCU", kDebugRegisters);
     xshut_ = std::make_unique<ShiftRegisterChain>([this](std::uint32_t output, bool is_high) {
         if (on_xshut_) on_xshut_(output, is_high);
+        exti_->sample();
     });
+}
+
+void NucleoBoard::make_external_interrupts(const Surroundings& env) {
+    syscfg_ = std::make_unique<Syscfg>(env, [this] { exti_->sample(); });
+    const auto source = [this](std::uint32_t line) -> const GpioPort& {
+        return *ports_.at(std::min<std::size_t>(syscfg_->port_of(line), ports_.size() - 1));
+    };
+    exti_ = std::make_unique<Exti>(
+        env, Exti::Hooks{[source](std::uint32_t line) { return source(line).level(line); },
+                         [source](std::uint32_t line) { return source(line).mode(line) == PinMode::analog; },
+                         [this](std::uint32_t lines) { return next_pin_change(lines); }});
+}
+
+/// Of all pins only those of the data-ready lines change by themselves.
+BoardTime NucleoBoard::next_pin_change(std::uint32_t lines) const {
+    BoardTime next = kNever;
+    for (std::uint32_t bus = 0; bus < kI2cBuses; ++bus) {
+        const std::uint32_t line = kFirstDataReadyPin + bus;
+        if ((lines >> line & 1U) == 0 || syscfg_->port_of(line) != kPortB) continue;
+        const auto change = data_ready_.at(bus).next_change(now());
+        // Rounding must not put it into the past, where it would be waited for without end.
+        if (change) next = std::min(next, std::max(to_board_time(*change), now_ + kPsPerUs));
+    }
+    return next;
 }
 
 void NucleoBoard::place_peripherals() {
@@ -171,6 +191,7 @@ void NucleoBoard::place_peripherals() {
     bus_->add(*i2c_[3], 0x4000'8400, 0x400, ClockEnable{kApb1Second, 1});
     bus_->add(*fdcan_ram_, 0x4000'A400, 3 * 0x350, ClockEnable{kApb1, 25});
     bus_->add(*syscfg_, 0x4001'0000, 0x30, ClockEnable{kApb2, 0});
+    bus_->add(*exti_, 0x4001'0400, 0x400, std::nullopt);
     bus_->add(*rcc_, 0x4002'1000, 0x400, std::nullopt);
     bus_->add(*flash_interface_, 0x4002'2000, 0x400, ClockEnable{kAhb1, 8});
     for (std::uint32_t i = 0; i < ports_.size(); ++i)
@@ -191,7 +212,11 @@ void NucleoBoard::connect_pins() {
         ports_.at(pins.sda.port)->connect(pins.sda.number, [this, bus] {
             return !wires_.at(bus).is_sda_low(now());
         });
+        wires_.at(bus).on_stop([this] { exti_->sample(); });
+        ports_[kPortB]->connect(kFirstDataReadyPin + static_cast<std::uint32_t>(bus),
+                                [this, bus] { return data_ready_.at(bus).is_high(now()); });
     }
+    for (const auto& port : ports_) port->on_change([this] { exti_->sample(); });
 }
 
 bool NucleoBoard::has_function(const Pin& pin, std::uint32_t function) const {

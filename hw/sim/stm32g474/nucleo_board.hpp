@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "hw/image/elf_image.hpp"
+#include "hw/sim/data_ready/data_ready_line.hpp"
 #include "hw/sim/stm32g474/cpu/cortex_m4.hpp"
 #include "hw/sim/stm32g474/nets/shift_register_chain.hpp"
+#include "hw/sim/stm32g474/peripherals/exti.hpp"
 #include "hw/sim/stm32g474/peripherals/fdcan.hpp"
 #include "hw/sim/stm32g474/peripherals/flash_interface.hpp"
 #include "hw/sim/stm32g474/peripherals/gpio.hpp"
@@ -23,6 +25,7 @@
 #include "hw/sim/stm32g474/peripherals/plain_registers.hpp"
 #include "hw/sim/stm32g474/peripherals/pwr.hpp"
 #include "hw/sim/stm32g474/peripherals/rcc.hpp"
+#include "hw/sim/stm32g474/peripherals/syscfg.hpp"
 #include "hw/sim/stm32g474/peripherals/timer2.hpp"
 #include "hw/sim/stm32g474/system_bus.hpp"
 
@@ -65,6 +68,8 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
     void cycle_power();
 
     [[nodiscard]] I2cWire& wire(std::size_t bus) { return wires_.at(bus); }
+    /// The line at the bus's data-ready input; a fault of it holds from the next look at it on.
+    [[nodiscard]] DataReadyLine& data_ready(std::size_t bus) { return data_ready_.at(bus); }
     [[nodiscard]] std::int64_t i2c_busy_ps(std::size_t bus) const { return i2c_.at(bus)->busy_ps(); }
     /// Each XSHUT output that changes.
     void on_xshut(ShiftRegisterChain::Listener listener) { on_xshut_ = std::move(listener); }
@@ -107,12 +112,14 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
     void load(const ElfImage& image, std::span<const std::uint8_t> configuration);
     void fill_ram(std::uint64_t seed);
     void make_peripherals(const NucleoOptions& options);
+    void make_external_interrupts(const Surroundings& env);
     void place_peripherals();
     void connect_pins();
     void reset(ResetFlag flag);
     void drive_xshut();
     void drive_i2c(std::size_t bus);
     [[nodiscard]] bool has_function(const Pin& pin, std::uint32_t function) const;
+    [[nodiscard]] BoardTime next_pin_change(std::uint32_t lines) const;
     void after_clock_change();
 
     void set_line(std::uint32_t irq, bool is_high) override;
@@ -128,6 +135,7 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
     std::vector<std::uint8_t> system_memory_;
 
     std::array<I2cWire, kI2cBuses> wires_{};
+    std::array<DataReadyLine, kI2cBuses> data_ready_{};
     std::unique_ptr<SystemControl> control_;
     std::unique_ptr<Rcc> rcc_;
     std::unique_ptr<Pwr> pwr_;
@@ -139,7 +147,8 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
     std::array<std::unique_ptr<I2c>, kI2cBuses> i2c_{};
     std::unique_ptr<FdcanRam> fdcan_ram_;
     std::unique_ptr<Fdcan> fdcan_;
-    std::unique_ptr<PlainRegisters> syscfg_;
+    std::unique_ptr<Syscfg> syscfg_;
+    std::unique_ptr<Exti> exti_;
     std::unique_ptr<PlainRegisters> debug_;
     std::unique_ptr<SystemBus> bus_;
     std::unique_ptr<CortexM4> core_;

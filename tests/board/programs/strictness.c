@@ -30,6 +30,14 @@
 #define SRAMCAN 0x4000A400
 #define IWDG 0x40003000
 #define LPUART 0x40008000
+#define RCC_APB2ENR REG(RCC + 0x60)
+#define EXTICR4 REG(0x40010014)
+#define EXTI 0x40010400
+#define IMR1 REG(EXTI + 0x00)
+#define RTSR1 REG(EXTI + 0x08)
+#define FTSR1 REG(EXTI + 0x0C)
+#define SWIER1 REG(EXTI + 0x10)
+#define PR1 REG(EXTI + 0x14)
 
 static void wait(uint32_t turns) { for (volatile uint32_t i = 0; i < turns; ++i) {} }
 
@@ -109,6 +117,29 @@ static void uart_ready(void) {
     REG(LPUART + 0x00) = 9;
 }
 
+static void syscfg_ready(void) {
+    RCC_APB2ENR |= 1;
+    (void)RCC_APB2ENR;
+}
+// PB12, pulled up, on line 12.
+static void pin_of_line_12(void) {
+    RCC_AHB2ENR |= 2;
+    (void)RCC_AHB2ENR;
+    REG(GPIOB + 0x0C) |= 1u << 24;
+    REG(GPIOB + 0x00) &= ~(3u << 24);
+    syscfg_ready();
+    EXTICR4 = 1;
+}
+static void listen_to_falls(void) {
+    fast_clock();
+    pin_of_line_12();
+    FTSR1 |= 1u << 12;
+    REG(0xE000E104) = 1u << (40 - 32);
+    result[0] = 0;
+    result[1] = 0;
+    IMR1 |= 1u << 12;
+}
+
 // --- what is right
 void everything_right(void) {
     fast_clock();
@@ -132,6 +163,76 @@ void uart_right(void) {
     while (!(REG(LPUART + 0x1C) & 1u << 7)) {}
     REG(LPUART + 0x28) = 'k';
     while (!(REG(LPUART + 0x1C) & 1u << 6)) {}
+    finish();
+}
+
+// The line: nothing, then an interrupt by software.
+void exti_right(void) {
+    listen_to_falls();
+    wait(1000);
+    result[2] = result[0];
+    result[1] = 1;
+    SWIER1 = 1u << 12;
+    wait(10);
+    result[3] = PR1 | SWIER1;
+    finish();
+}
+// Falls every second microsecond; the handler takes five, each once.
+void exti_falls(void) {
+    listen_to_falls();
+    result[1] = 1;
+    while (result[0] < 5) {}
+    IMR1 &= ~(1u << 12);
+    PR1 = 1u << 12;
+    wait(1000);
+    result[2] = PR1;
+    finish();
+}
+// Rises too: as many again.
+void exti_both_edges(void) {
+    RCC_APB1ENR1 |= 1;
+    listen_to_falls();
+    result[1] = 1;
+    REG(0x40000028) = 159;
+    REG(0x40000014) = 1;
+    REG(0x40000000) = 1;
+    const uint32_t begin = REG(0x40000024);
+    result[0] = 0;
+    while (REG(0x40000024) - begin < 100) {}
+    result[2] = result[0];
+    RTSR1 = 1u << 12;
+    const uint32_t middle = REG(0x40000024);
+    result[0] = 0;
+    while (REG(0x40000024) - middle < 100) {}
+    result[3] = result[0];
+    finish();
+}
+// Not cleared: it comes again, whatever the line does.
+void exti_not_cleared(void) {
+    listen_to_falls();
+    SWIER1 = 1u << 12;
+    while (result[0] < 3) {}
+    finish();
+}
+void irq_exti15_10(void) {
+    if (++result[0] == 3 || result[1] != 0) PR1 = 1u << 12;
+}
+
+// --- external interrupts
+void unclocked_syscfg(void) { EXTICR4 = 1; finish(); }
+void syscfg_reserved_bits(void) { syscfg_ready(); EXTICR4 = 8; finish(); }
+void line_of_no_port(void) { syscfg_ready(); EXTICR4 = 7; finish(); }
+void exti_reserved_bits(void) { RTSR1 = 1u << 17; finish(); }
+void exti_narrow_write(void) { REG16(EXTI + 0x0C) = 1u << 12; finish(); }
+void exti_line_of_no_pin(void) { IMR1 |= 1u << 18; finish(); }
+void exti_second_bank(void) { REG(EXTI + 0x20) = 0xFFFFFFFF; finish(); }
+void exti_event(void) { REG(EXTI + 0x04) = 1u << 12; finish(); }
+void exti_unknown_register(void) { (void)REG(EXTI + 0x18); finish(); }
+void exti_analog_pin(void) {
+    syscfg_ready();
+    EXTICR4 = 1;
+    FTSR1 = 1u << 12;
+    IMR1 |= 1u << 12;
     finish();
 }
 

@@ -109,6 +109,7 @@ void I2cWire::stop(SimTime time) {
     for (I2cTarget* target : selected_) target->on_stop(time);
     selected_.clear();
     end_transfer();
+    if (on_stop_) on_stop_();
 }
 
 // A target that was sending goes on as soon as it gets clocks: it holds SDA through every 0 up to the next 1

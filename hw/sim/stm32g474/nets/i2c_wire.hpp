@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -34,6 +35,9 @@ class I2cWire {
     void abandon(std::uint32_t bits_done);
     void count_bits(std::uint32_t bits) { bit_count_ += bits; }
 
+    /// Hears of each end of a transfer: a device may have let go of its pins.
+    void on_stop(std::function<void()> listener) { on_stop_ = std::move(listener); }
+
     // --- GPIO's side: open-drain outputs
     void drive(bool scl_low, bool sda_low, SimTime time);
 
@@ -50,6 +54,7 @@ class I2cWire {
     void end_transfer();
     void note_stuck_sda();
 
+    std::function<void()> on_stop_;
     std::vector<I2cTarget*> targets_;
     std::vector<I2cTarget*> selected_;
     std::vector<I2cFault> faults_;

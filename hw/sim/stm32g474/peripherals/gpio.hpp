@@ -30,6 +30,8 @@ class GpioPort final : public Peripheral {
     /// As an output: what it drives. In any other mode the pin drives nothing.
     [[nodiscard]] bool drives_low(std::uint32_t pin) const;
     [[nodiscard]] bool drives_high(std::uint32_t pin) const;
+    /// What the chip sees at the pin; low while it is analog.
+    [[nodiscard]] bool level(std::uint32_t pin) const;
 
     /// Called after every write that may have changed what pins drive.
     void on_change(std::function<void()> listener) { listeners_.push_back(std::move(listener)); }
@@ -37,8 +39,6 @@ class GpioPort final : public Peripheral {
     void connect(std::uint32_t pin, std::function<bool()> level) { levels_.at(pin) = std::move(level); }
 
   private:
-    [[nodiscard]] bool level(std::uint32_t pin) const;
-
     std::array<char, 5> name_;
     Surroundings env_;
     RegisterBank bank_;
