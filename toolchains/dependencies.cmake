@@ -19,6 +19,7 @@ find_package(assimp REQUIRED)
 pkg_check_modules(UNICORN QUIET IMPORTED_TARGET unicorn)  # optional: only the emulated board is made of it
 pkg_check_modules(FUSE3 QUIET IMPORTED_TARGET fuse3)      # optional: only I2C devices for tests are made of it
 pkg_check_modules(OPENNI2 REQUIRED IMPORTED_TARGET libopenni2)
+pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)
 
 # OctoMap, KDL and urdfdom name directories and files rather than targets: give them one each. SYSTEM keeps our
 # warnings out of their headers.

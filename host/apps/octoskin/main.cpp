@@ -30,6 +30,9 @@ int run(int argc, char** argv) {
     app::add_replay_command(app);
     app::add_evaluate_command(app);
     app::add_experiment_command(app);
+    app::add_run_command(app);
+    app::add_status_command(app);
+    app::add_joints_command(app);
     app::add_rig_command(app);
     app::add_mapping_command(app);
     app::add_flash_command(app);

@@ -124,7 +124,14 @@ Result<RangeMeasurement, ReadingReason> CanIntake::accept(wire::NodeId node,
     if (!ranges_.knows(node, reading.sensor)) {
         return unexpected(ReadingReason::unknown_sensor);
     }
-    ranges_.on_arrival(node, reading.sensor);
+    ranges_.on_arrival(node, reading, now());
+    auto measurement = measure(node, reading);
+    ranges_.on_fate(node, reading.sensor, measurement ? std::nullopt : std::optional(measurement.error()));
+    return measurement;
+}
+
+Result<RangeMeasurement, ReadingReason> CanIntake::measure(wire::NodeId node,
+                                                           const wire::RangeReading& reading) {
     const auto captured = capture_time(node, reading.capture);
     if (!captured) {
         ranges_.skip(node, reading.sensor);

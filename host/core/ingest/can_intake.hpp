@@ -86,6 +86,8 @@ class CanIntake {
                                                                  const wire::TimeResidue& capture) const;
     [[nodiscard]] Result<RangeMeasurement, ReadingReason> accept(wire::NodeId node,
                                                                  const wire::RangeReading& reading);
+    [[nodiscard]] Result<RangeMeasurement, ReadingReason> measure(wire::NodeId node,
+                                                                  const wire::RangeReading& reading);
     [[nodiscard]] Result<JointMeasurement, JointReason> place(const JointReading& reading,
                                                               HostTime now) const;
     void add_exchange(wire::NodeId node);

@@ -8,7 +8,6 @@ namespace octoskin {
 namespace {
 
 constexpr double kMicro = 1e6;
-constexpr std::int32_t kLargest = (1 << 23) - 1;  // 24 bits with sign
 
 /// A node's 32-bit counter of microseconds, running as the host's clock does.
 NodeTime node_time(HostTime time) {
@@ -23,9 +22,8 @@ Result<std::array<wire::CanFrame, LocalJoints::kFrames>, LocalJointFault> LocalJ
     std::array<std::int32_t, wire::kJointsPerSample> micro{};
     for (std::size_t i = 0; i < position.size(); ++i) {
         if (!std::isfinite(position[i])) return unexpected(LocalJointFault::not_a_number);
-        const double value = std::nearbyint(position[i] * kMicro);
-        if (std::abs(value) > kLargest) return unexpected(LocalJointFault::too_large);
-        micro[i] = static_cast<std::int32_t>(value);
+        if (std::abs(position[i]) > kLargest) return unexpected(LocalJointFault::too_large);
+        micro[i] = static_cast<std::int32_t>(std::nearbyint(position[i] * kMicro));
     }
     sequence_ = static_cast<std::uint8_t>((sequence_ + 1U) % wire::kJointSequenceCount);
     std::array<wire::CanFrame, kFrames> frames{};

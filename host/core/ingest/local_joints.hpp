@@ -31,6 +31,7 @@ class LocalJoints {
         : node_id_(node_id), joint_count_(joint_count) {}
 
     static constexpr std::size_t kFrames = 4;
+    static constexpr double kLargest = 8.388607;  ///< what a frame's 24 bits with sign hold
     /// The frames of one sample, taken at `sampled` on the host's clock. Radians (metres for a prismatic
     /// joint), in the rig's order.
     [[nodiscard]] Result<std::array<wire::CanFrame, kFrames>, LocalJointFault> frames(

@@ -52,6 +52,14 @@ RangeGate::RangeGate(const HostRig& rig, bool uses_no_return)
     }
 }
 
+void RangeGate::on_arrival(wire::NodeId node, const wire::RangeReading& reading,
+                           std::optional<HostTime> now) {
+    SensorRecord& record = sensors_.at({node, reading.sensor}).record;
+    ++record.received;
+    record.newest = reading;
+    record.newest_at = now;
+}
+
 bool RangeGate::is_certain(const Sensor& sensor, const MappedTime& captured) const {
     const auto& told = sensor.record.capture_bound;
     return told && captured.error_bound + *told <= limits_.time_uncertainty_max;

@@ -22,6 +22,9 @@ namespace octoskin {
 /// What is known of one sensor, for a person to read.
 struct SensorRecord {
     std::uint64_t received = 0;                     ///< readings that came, each counted once
+    std::optional<wire::RangeReading> newest;       ///< of those, whatever became of it
+    std::optional<HostTime> newest_at;              ///< its arrival, if "now" was known
+    std::optional<ReadingReason> newest_rejected;   ///< why it was not accepted
     std::array<std::uint64_t, 32> device_status{};  ///< how often each code came
     SequenceTracker sequence;
     std::optional<wire::SensorHealth> health;
@@ -48,7 +51,11 @@ class RangeGate {
         return sensors_.contains({node, sensor});
     }
     /// Any reading of a known sensor, whatever becomes of it.
-    void on_arrival(wire::NodeId node, std::uint8_t sensor) { ++sensors_.at({node, sensor}).record.received; }
+    void on_arrival(wire::NodeId node, const wire::RangeReading& reading, std::optional<HostTime> now);
+    /// What became of the newest reading, at this gate or before it.
+    void on_fate(wire::NodeId node, std::uint8_t sensor, std::optional<ReadingReason> rejected) {
+        sensors_.at({node, sensor}).record.newest_rejected = rejected;
+    }
     /// After `on_arrival`, for a reading whose node is usable and whose time is known.
     [[nodiscard]] Result<RangeMeasurement, ReadingReason> check(wire::NodeId node,
                                                                 const wire::RangeReading& reading,

@@ -24,6 +24,7 @@ constexpr std::size_t kBrickVoxels = std::size_t{1} << (3 * kBrickHeight);
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 using Brick = std::array<float, kBrickVoxels>;
+constexpr std::size_t kBytesPerBrick = sizeof(Brick) + 64;  // and its entry in the index
 
 /// Place of a voxel in its brick, in Morton order.
 std::size_t cell_of(VoxelKey key) {
@@ -76,12 +77,19 @@ FusedMap::FusedMap(const MapConfig& config)
     : config_(config), lattice_(config.resolution_m), bricks_(std::make_unique<Bricks>()) {
     assert(std::isfinite(config.log_odds_min) && std::isfinite(config.log_odds_max));
     assert(config.log_odds_min <= 0.0F && config.log_odds_max >= 0.0F);
-    constexpr std::size_t kBytesPerBrick = sizeof(Brick) + 64;  // and its entry in the index
     bricks_->bricks_max = (std::size_t{config.memory_max_mib} << 20U) / kBytesPerBrick;
 }
 FusedMap::FusedMap(FusedMap&&) noexcept = default;
 FusedMap& FusedMap::operator=(FusedMap&&) noexcept = default;
 FusedMap::~FusedMap() = default;
+
+FusedMap FusedMap::copy() const {
+    FusedMap other(config_);
+    other.counters_ = counters_;
+    other.bricks_->known_voxels = bricks_->known_voxels;
+    for (const auto& [id, brick] : bricks_->by_id) *other.bricks_->find_or_make(id) = *brick;
+    return other;
+}
 
 void FusedMap::apply(std::span<const VoxelUpdate> updates) {
     std::uint64_t brick_id = std::numeric_limits<std::uint64_t>::max();  // no brick has this one
@@ -141,6 +149,10 @@ const MapCounters& FusedMap::counters() const noexcept {
 }
 std::size_t FusedMap::known_voxels() const noexcept {
     return bricks_->known_voxels;
+}
+
+std::size_t FusedMap::memory_bytes() const noexcept {
+    return bricks_->storage.size() * kBytesPerBrick;
 }
 
 std::optional<VoxelKey> FusedMap::key_of(const Eigen::Vector3d& p_map) const noexcept {

@@ -1,5 +1,8 @@
 #include "host/core/pipeline/map_set.hpp"
 
+#include <cassert>
+#include <utility>
+
 namespace octoskin {
 
 MapSet::MapSet(const MapConfig& config, const MapChoice& choice) {
@@ -12,6 +15,11 @@ MapSet::MapSet(const MapConfig& config, const MapChoice& choice) {
     if (choice.fused) {
         fused_.emplace(config);
     }
+}
+
+void MapSet::begin_with(FusedMap fused) {
+    assert(fused_ && fused_->resolution_m() == fused.resolution_m());
+    fused_ = std::move(fused);
 }
 
 void MapSet::add_depth(std::span<const VoxelUpdate> updates) {

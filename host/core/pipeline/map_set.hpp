@@ -18,6 +18,9 @@ class MapSet {
   public:
     MapSet(const MapConfig& config, const MapChoice& choice);
 
+    /// In place of the empty fused map, which was chosen (asserted); of the same resolution (asserted).
+    void begin_with(FusedMap fused);
+
     /// To `depth` and `fused`.
     void add_depth(std::span<const VoxelUpdate> updates);
     /// To `proximity` and `fused`.

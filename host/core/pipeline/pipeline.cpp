@@ -76,6 +76,10 @@ Pipeline::Pipeline(const HostRig& rig, RobotTracker robot, BeamBuilder beams, co
     }
 }
 
+void Pipeline::begin_with(FusedMap fused) {
+    maps_.begin_with(std::move(fused));
+}
+
 void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     assert(!is_finished_);
     accounts_.frames.take_in();

@@ -70,6 +70,9 @@ class Pipeline {
                                                                  const MappingConfig& mapping,
                                                                  const PipelineConfig& config = {});
 
+    /// The fused map goes on from this one, which has the mapping's resolution (asserted).
+    void begin_with(FusedMap fused);
+
     /// Frames in the order of arrival. `stamp`: when it was received; it places nothing.
     void on_can(const wire::CanFrame& frame, WallTime stamp);
     /// Depth frames in the order of their capture, at about the time when they arrive among the CAN frames.

@@ -2,7 +2,8 @@
 // with OpenNI2.
 //
 //     stream  = "OSKD" version:u32 width:u32 height:u32 is_salvaged:u32  frame*  end
-//     frame   = timestamp_us:u64 pixels:u16[width * height]        timestamps relative to the first frame
+//     frame   = timestamp_us:u64 pixels:u16[width * height]   timestamps of a recording relative to its first
+//                                                             frame; of a camera, the host's monotonic clock
 //     end     = 0xFFFFFFFFFFFFFFFF
 //
 // Native byte order: both ends are on one machine. A stream that stops without `end` was cut off.

@@ -52,8 +52,8 @@ class CanSocket {
     [[nodiscard]] static Result<CanSocket, SocketFault> open(const std::string& interface,
                                                              const SocketOptions& options = {});
     /// A descriptor that carries frames as a raw CAN socket does (one each datagram), such as one end of a
-    /// socketpair; becomes the socket's. Stamps are then the time of reading. `hears_itself`: what was sent
-    /// comes back, stamped when it was handed over.
+    /// socketpair; becomes the socket's. Stamps are the kernel's where it gives one, else the time of
+    /// reading. `hears_itself`: what was sent comes back, stamped when it was handed over.
     CanSocket(std::string interface, int descriptor, bool hears_itself = false);
     ~CanSocket();
     CanSocket(CanSocket&& other) noexcept;

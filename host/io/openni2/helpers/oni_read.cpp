@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <string>
 
 #include "host/io/openni2/frame_pipe.hpp"
+#include "host/io/openni2/helpers/frame_pixels.hpp"
 #include "host/io/openni2/helpers/helper_limits.hpp"
 #include "host/io/openni2/helpers/oni_outline.hpp"
 #include "host/io/openni2/helpers/oni_salvage.hpp"
@@ -24,24 +24,6 @@ constexpr unsigned kProcessorSecondsPerFrame = 5;
 int complain(const char* what) {
     std::fprintf(stderr, "octoskin-oni-read: %s: %s\n", what, openni::OpenNI::getExtendedError());
     return 1;
-}
-
-/// The frame's pixels, whatever its stride; empty if it is not of the stream's size.
-std::vector<std::uint16_t> pixels_of(const openni::VideoFrameRef& frame, FrameSize size) {
-    const auto row_bytes = size.width * sizeof(std::uint16_t);
-    const auto stride = static_cast<std::size_t>(frame.getStrideInBytes());
-    const bool is_whole =
-        frame.getWidth() == static_cast<int>(size.width) &&
-        frame.getHeight() == static_cast<int>(size.height) && stride >= row_bytes &&
-        static_cast<std::size_t>(frame.getDataSize()) >= stride * (size.height - 1) + row_bytes;
-    if (!is_whole) return {};
-    std::vector<std::uint16_t> pixels(size.pixels());
-    const auto* source = static_cast<const std::byte*>(frame.getData());
-    for (std::uint32_t row = 0; row < size.height; ++row) {
-        std::memcpy(pixels.data() + static_cast<std::size_t>(row) * size.width, source + row * stride,
-                    row_bytes);
-    }
-    return pixels;
 }
 
 int stream_frames(openni::VideoStream& stream, int frame_count, const StreamHeader& header, int descriptor) {
@@ -104,17 +86,11 @@ int read_recording(const std::filesystem::path& file, int descriptor) {
     }
     playback->setRepeatEnabled(false);
     playback->setSpeed(-1.0F);  // as fast as they are taken, and none dropped
-    const openni::VideoMode mode = stream.getVideoMode();
-    const FrameSize size{static_cast<std::uint32_t>(mode.getResolutionX()),
-                         static_cast<std::uint32_t>(mode.getResolutionY())};
-    const bool is_depth_mm = mode.getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_1_MM;
-    if (!is_depth_mm || size.width == 0 || size.height == 0 || size.width > kSideMax ||
-        size.height > kSideMax || size.pixels() > kPixelsMax) {
-        return complain("a video mode that octoskin does not read");
-    }
+    const auto size = depth_size(stream);
+    if (!size) return complain("a video mode that octoskin does not read");
     if (stream.start() != openni::STATUS_OK) return complain("cannot start the stream");
     const int outcome =
-        stream_frames(stream, playback->getNumberOfFrames(stream), {size, input.is_salvaged}, descriptor);
+        stream_frames(stream, playback->getNumberOfFrames(stream), {*size, input.is_salvaged}, descriptor);
     // No clean-up: this process ends here, and OpenNI2's shutdown is one more thing that may hang on a
     // damaged file.
     std::fflush(nullptr);

@@ -58,7 +58,7 @@ RangeGate informed_gate(bool uses_no_return = false) {
 Result<RangeMeasurement, ReadingReason> check(const wire::RangeReading& reading, bool uses_no_return = false,
                                               std::int64_t age_ms = 20) {
     RangeGate gate = informed_gate(uses_no_return);
-    gate.on_arrival(kNode, reading.sensor);
+    gate.on_arrival(kNode, reading, std::nullopt);
     return gate.check(kNode, reading, {kNow - Nanoseconds{age_ms * 1'000'000}, Nanoseconds{0}}, kNow);
 }
 
@@ -178,7 +178,7 @@ TEST(RangeGate, refuses_what_arrives_before_half_the_budget_has_passed_or_later_
 
 /// One reading whose time the clock map knows within `map_us`.
 Result<RangeMeasurement, ReadingReason> check_with(RangeGate& gate, std::int64_t map_us) {
-    gate.on_arrival(kNode, 0);
+    gate.on_arrival(kNode, wire::RangeReading{}, std::nullopt);
     return gate.check(kNode, reading(), {kNow - Nanoseconds{20'000'000}, Microseconds{map_us}}, kNow);
 }
 
@@ -236,7 +236,7 @@ TEST(RangeGate, counts_what_came_and_what_was_lost_by_the_nodes_own_count) {
     RangeGate gate(rig(), false);
     const auto arrive = [&](int count) {
         for (int i = 0; i < count; ++i) {
-            gate.on_arrival(kNode, 0);
+            gate.on_arrival(kNode, wire::RangeReading{}, std::nullopt);
         }
     };
     arrive(7);
@@ -258,7 +258,7 @@ TEST(RangeGate, counts_a_duplicate_as_received_once) {
     RangeGate gate = informed_gate();
     const MappedTime captured{kNow - Nanoseconds{20'000'000}, Nanoseconds{0}};
     for (int i = 0; i < 2; ++i) {
-        gate.on_arrival(kNode, 0);
+        gate.on_arrival(kNode, wire::RangeReading{}, std::nullopt);
         const auto outcome = gate.check(kNode, reading(), captured, kNow);
         EXPECT_EQ(outcome.has_value(), i == 0);
     }

@@ -1,0 +1,122 @@
+#include "host/apps/daemon/camera_feed.hpp"
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <pthread.h>
+#include <cerrno>
+#include <csignal>
+#include <system_error>
+#include <utility>
+
+#include "host/apps/daemon/event_loop.hpp"
+#include "host/io/openni2/frame_pipe.hpp"
+#include "host/io/openni2/helper_process.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr const char* kHelper = "octoskin-camera";
+constexpr std::chrono::milliseconds kOpenPatience{15'000};  // a real device takes seconds to start
+
+}  // namespace
+
+CameraFeed::CameraFeed(std::string uri, std::chrono::milliseconds silence_max)
+    : uri_(std::move(uri)),
+      silence_max_(silence_max),
+      event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC | EFD_SEMAPHORE)) {
+    if (event_ < 0) throw std::system_error(errno, std::generic_category(), "cannot make an eventfd");
+    record_.why = "not opened yet";
+    sigset_t all;
+    sigset_t before;
+    sigfillset(&all);  // signals are for the thread that runs the event loop
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    thread_ = std::thread([this] { work(); });
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+CameraFeed::~CameraFeed() {
+    is_ending_ = true;
+    changed_.notify_all();
+    thread_.join();
+    ::close(event_);
+}
+
+std::optional<DepthFrame> CameraFeed::take() {
+    std::uint64_t taken = 0;
+    (void)!::read(event_, &taken, sizeof(taken));
+    const std::lock_guard lock(mutex_);
+    if (waiting_.empty()) return std::nullopt;
+    DepthFrame oldest = std::move(waiting_.front());
+    waiting_.pop_front();
+    return oldest;
+}
+
+CameraRecord CameraFeed::record() const {
+    const std::lock_guard lock(mutex_);
+    return record_;
+}
+
+void CameraFeed::work() {
+    while (!is_ending_) {
+        watch_camera();
+        wait_before_retry();
+    }
+}
+
+void CameraFeed::wait_before_retry() {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kRetry, [this] { return is_ending_.load(); });
+}
+
+void CameraFeed::watch_camera() {
+    const auto helper = openni2::find_helper(kHelper);
+    if (!helper) {
+        return note_closed(std::string(kHelper) + " is neither beside this program nor in libexec");
+    }
+    auto process = openni2::HelperProcess::start(*helper, uri_, openni2::HelperPipe::its_output);
+    if (!process) return note_closed(process.error());
+    openni2::FramePipe pipe(process->descriptor(), kOpenPatience);
+    const auto size = pipe.read_header();
+    if (!size) {
+        return note_closed(uri_.empty() ? "no camera found: is one plugged in, with a driver of OpenNI2?"
+                                        : uri_ + ": no camera there that gives depth");
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        record_.is_open = true;
+        record_.why.clear();
+        ++record_.opened;
+    }
+    openni2::FramePipe frames(process->descriptor(), silence_max_);
+    while (!is_ending_) {
+        auto frame = frames.read_frame(*size);
+        if (!frame || !frame->has_value()) {
+            return note_closed(frame ? "the camera ended" : std::string("camera: ") + name(frame.error()));
+        }
+        const HostTime captured{static_cast<std::int64_t>((*frame)->timestamp_us) * 1000};
+        put(DepthFrame{captured, size->width, size->height, std::move((*frame)->depth_mm)});
+    }
+}
+
+void CameraFeed::put(DepthFrame frame) {
+    const std::uint64_t one = 1;
+    const std::lock_guard lock(mutex_);
+    ++record_.frames;
+    record_.newest = monotonic_now();
+    waiting_.push_back(std::move(frame));
+    if (waiting_.size() > kWaitingMax) {
+        waiting_.pop_front();
+        ++record_.displaced;
+    } else {
+        (void)!::write(event_, &one, sizeof(one));
+    }
+}
+
+void CameraFeed::note_closed(const std::string& why) {
+    const std::lock_guard lock(mutex_);
+    record_.is_open = false;
+    record_.why = why;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,66 @@
+// Depth frames of a live camera, read by a thread of its own: a camera that hangs stops nothing but itself.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "common/time.hpp"
+#include "host/core/depth/depth_frame.hpp"
+
+namespace octoskin {
+
+struct CameraRecord {
+    bool is_open = false;
+    std::uint64_t frames = 0;     ///< that came
+    std::uint64_t displaced = 0;  ///< newer ones came before these were taken
+    std::uint64_t opened = 0;     ///< times
+    std::optional<HostTime> newest;
+    std::string why;  ///< not open, for a person
+};
+
+class CameraFeed {
+  public:
+    /// Frames that wait; beyond, the oldest gives way.
+    static constexpr std::size_t kWaitingMax = 3;
+    /// A camera that is gone is looked for this often.
+    static constexpr std::chrono::milliseconds kRetry{1'000};
+
+    /// `uri`: an OpenNI2 device, or the path of an .oni file that is played at its own speed, again and
+    /// again; empty: the first device there is. `silence_max`: a camera that shows nothing for so long is
+    /// opened anew.
+    CameraFeed(std::string uri, std::chrono::milliseconds silence_max);
+    ~CameraFeed();
+    CameraFeed(const CameraFeed&) = delete;
+    CameraFeed& operator=(const CameraFeed&) = delete;
+
+    /// Readable when a frame waits.
+    [[nodiscard]] int descriptor() const noexcept { return event_; }
+    [[nodiscard]] std::optional<DepthFrame> take();
+    [[nodiscard]] CameraRecord record() const;
+
+  private:
+    void work();
+    /// Until the camera ends or falls silent.
+    void watch_camera();
+    void put(DepthFrame frame);
+    void note_closed(const std::string& why);
+    void wait_before_retry();
+
+    std::string uri_;
+    std::chrono::milliseconds silence_max_;
+    int event_ = -1;
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<DepthFrame> waiting_;
+    CameraRecord record_;
+    std::atomic<bool> is_ending_ = false;
+    std::thread thread_;
+};
+
+}  // namespace octoskin

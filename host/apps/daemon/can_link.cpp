@@ -1,0 +1,117 @@
+#include "host/apps/daemon/can_link.hpp"
+
+#include <linux/can/error.h>
+
+#include <utility>
+
+namespace octoskin {
+
+using socketcan::Received;
+using socketcan::SocketFault;
+
+bool CanLink::attend(HostTime now) {
+    if (socket_ || (tried_ && now - *tried_ < kRetry)) return false;
+    tried_ = now;
+    auto opened = opener_();
+    if (!opened) {
+        on_fault(opened.error());
+        return false;
+    }
+    counts_.reopened += std::exchange(was_open_, true) ? 1U : 0U;
+    socket_ = std::move(opened).value();
+    set(LinkState::up, {});
+    return true;
+}
+
+std::optional<Received> CanLink::receive() {
+    while (socket_) {  // each round takes one frame out of the socket
+        auto received = socket_->receive();
+        if (!received) {
+            on_fault(received.error());
+            return std::nullopt;
+        }
+        if (!received->has_value()) return std::nullopt;
+        if (state_ == LinkState::down) set(LinkState::up, {});
+        if ((*received)->entry.frame.is_error) {
+            on_error_frame((*received)->entry.frame);
+            continue;
+        }
+        ++counts_.received;
+        return std::move(received).value();
+    }
+    return std::nullopt;
+}
+
+bool CanLink::send(const wire::CanFrame& frame) {
+    if (!socket_) {
+        ++counts_.not_sent;
+        return false;
+    }
+    const auto sent = socket_->send(frame);
+    if (sent && *sent) {
+        ++counts_.sent;
+        if (state_ == LinkState::down) set(LinkState::up, {});
+        return true;
+    }
+    ++counts_.not_sent;
+    if (!sent) on_fault(sent.error());
+    return false;
+}
+
+void CanLink::on_fault(const SocketFault& fault) {
+    if (fault.is_down()) {
+        counts_.went_down += state_ == LinkState::down ? 0U : 1U;
+        set(LinkState::down, fault.message());
+        return;
+    }
+    close();
+    set(LinkState::absent, fault.message());
+}
+
+void CanLink::reopen(Opener opener) {
+    opener_ = std::move(opener);
+    tried_.reset();
+    close();
+}
+
+void CanLink::close() {
+    if (!socket_) return;
+    counts_.dropped += socket_->dropped();
+    counts_.malformed += socket_->malformed();
+    socket_.reset();
+}
+
+/// <linux/can/error.h>: the identifier is a set of classes, the second byte says what a controller's problem
+/// is.
+void CanLink::on_error_frame(const wire::CanFrame& frame) {
+    ++counts_.error_frames;
+    const std::uint8_t controller = frame.data[1];
+    const bool is_controller = (frame.can_id & CAN_ERR_CRTL) != 0;
+    if ((frame.can_id & CAN_ERR_BUSOFF) != 0) {
+        ++counts_.bus_off;
+        set(LinkState::bus_off,
+            "the adapter is bus-off (`ip link set NAME type can restart-ms 100` lets it come back)");
+    } else if (is_controller && (controller & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE)) != 0) {
+        set(LinkState::error_passive,
+            "the adapter is error-passive: nobody acknowledges, other bit rates, or a disturbed line");
+    } else if ((frame.can_id & CAN_ERR_RESTARTED) != 0 ||
+               (is_controller && (controller & CAN_ERR_CRTL_ACTIVE) != 0)) {
+        set(LinkState::up, {});
+    }
+}
+
+void CanLink::set(LinkState state, std::string why) {
+    state_ = state;
+    why_ = std::move(why);
+}
+
+CanLink::Counts CanLink::counts() const {
+    Counts counts = counts_;
+    if (socket_) {
+        counts.dropped += socket_->dropped();
+        counts.malformed += socket_->malformed();
+    }
+    return counts;
+}
+
+}  // namespace octoskin

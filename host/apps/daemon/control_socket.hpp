@@ -1,0 +1,61 @@
+// How programs of this machine ask the daemon: a Unix socket, one line of request, one line of JSON back.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <list>
+#include <string>
+
+#include "common/result.hpp"
+#include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/recording/app_error.hpp"
+
+namespace octoskin {
+
+class ControlSocket {
+  public:
+    /// Answers a request (without its line feed) with one line (without a line feed).
+    using Answer = std::function<std::string(const std::string& request)>;
+
+    static constexpr std::size_t kClientsMax = 16;
+    static constexpr std::size_t kRequestMax = 4096;
+    /// What a client has not read yet; beyond, it is dropped.
+    static constexpr std::size_t kUnreadMax = 4 << 20;
+
+    [[nodiscard]] static Result<std::unique_ptr<ControlSocket>, AppError> open(
+        const std::filesystem::path& file, EventLoop& loop, Answer answer);
+    ~ControlSocket();
+    ControlSocket(const ControlSocket&) = delete;
+    ControlSocket& operator=(const ControlSocket&) = delete;
+
+    /// Clients that were dropped: too many, too slow, or a request without end.
+    [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
+
+  private:
+    struct Client {
+        int descriptor = -1;
+        std::string request;
+        EventSource readable;
+    };
+    ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer);
+    void accept();
+    /// False if the client is to be dropped.
+    [[nodiscard]] bool serve(Client& client);
+    [[nodiscard]] bool reply(const Client& client, std::string line) const;
+    void drop(int descriptor);
+
+    std::filesystem::path file_;
+    int descriptor_;
+    EventLoop& loop_;
+    Answer answer_;
+    EventSource acceptable_;
+    std::list<Client> clients_;
+    std::uint64_t dropped_ = 0;
+};
+
+/// Asks a daemon one thing, and waits 5 s at most for its line.
+[[nodiscard]] Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket,
+                                                       const std::string& request);
+
+}  // namespace octoskin

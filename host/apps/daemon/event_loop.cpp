@@ -1,0 +1,117 @@
+#include "host/apps/daemon/event_loop.hpp"
+
+#include <sys/epoll.h>
+#include <systemd/sd-event.h>
+
+#include <algorithm>
+#include <csignal>
+#include <ctime>
+#include <system_error>
+#include <utility>
+
+namespace octoskin {
+
+EventSource::Watch::~Watch() {
+    if (source != nullptr) sd_event_source_disable_unref(source);
+}
+
+namespace {
+
+void check(int result, const char* doing) {
+    if (result < 0) throw std::system_error(-result, std::generic_category(), doing);
+}
+
+/// What is called may end its own watch: so a copy is called.
+int call_copy(const void* watch) {
+    const std::function<void()> call = static_cast<const EventSource::Watch*>(watch)->call;
+    call();
+    return 0;
+}
+
+int call_ready(sd_event_source*, int, std::uint32_t, void* watch) {
+    return call_copy(watch);
+}
+
+int call_timer(sd_event_source* source, std::uint64_t due_us, void* given) {
+    auto* watch = static_cast<EventSource::Watch*>(given);
+    std::uint64_t now_us = 0;
+    sd_event_now(sd_event_source_get_event(source), CLOCK_MONOTONIC, &now_us);
+    // What was missed is not made up for.
+    const std::uint64_t next_us = std::max(due_us, now_us - watch->period_us) + watch->period_us;
+    sd_event_source_set_time(source, next_us);
+    return call_copy(watch);
+}
+
+int call_signal(sd_event_source*, const signalfd_siginfo*, void* watch) {
+    return call_copy(watch);
+}
+
+std::int64_t now_ns(clockid_t clock) {
+    timespec now{};
+    ::clock_gettime(clock, &now);
+    return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
+}
+
+}  // namespace
+
+EventLoop::EventLoop() {
+    check(sd_event_new(&loop_), "cannot make an event loop");
+    (void)sd_event_set_watchdog(loop_, 1);  // 0: nobody watches
+}
+
+EventLoop::~EventLoop() {
+    sd_event_unref(loop_);
+}
+
+EventSource EventLoop::on_readable(int descriptor, std::function<void()> on_ready) {
+    auto watch = std::make_unique<EventSource::Watch>();
+    watch->call = std::move(on_ready);
+    check(sd_event_add_io(loop_, &watch->source, descriptor, EPOLLIN, call_ready, watch.get()),
+          "cannot watch a descriptor");
+    return EventSource(std::move(watch));
+}
+
+EventSource EventLoop::every(std::chrono::microseconds period, std::function<void()> on_time) {
+    constexpr std::uint64_t kAccuracyUs = 1'000;
+    auto watch = std::make_unique<EventSource::Watch>();
+    watch->call = std::move(on_time);
+    watch->period_us = static_cast<std::uint64_t>(period.count());
+    const auto first_us = static_cast<std::uint64_t>(now_ns(CLOCK_MONOTONIC) / 1000) + watch->period_us;
+    check(sd_event_add_time(loop_, &watch->source, CLOCK_MONOTONIC, first_us, kAccuracyUs, call_timer,
+                            watch.get()),
+          "cannot set a timer");
+    check(sd_event_source_set_enabled(watch->source, SD_EVENT_ON), "cannot start a timer");
+    return EventSource(std::move(watch));
+}
+
+EventSource EventLoop::on_signal(int signal, std::function<void()> on_signal) {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, signal);
+    check(-pthread_sigmask(SIG_BLOCK, &signals, nullptr), "cannot block a signal");
+    auto watch = std::make_unique<EventSource::Watch>();
+    watch->call = std::move(on_signal);
+    check(sd_event_add_signal(loop_, &watch->source, signal, call_signal, watch.get()),
+          "cannot watch a signal");
+    return EventSource(std::move(watch));
+}
+
+int EventLoop::run() {
+    const int outcome = sd_event_loop(loop_);
+    check(outcome < 0 ? outcome : 0, "the event loop failed");
+    return outcome;
+}
+
+void EventLoop::stop(int outcome) {
+    check(sd_event_exit(loop_, outcome), "cannot end the event loop");
+}
+
+HostTime monotonic_now() {
+    return {now_ns(CLOCK_MONOTONIC)};
+}
+
+WallTime wall_now() {
+    return {now_ns(CLOCK_REALTIME)};
+}
+
+}  // namespace octoskin

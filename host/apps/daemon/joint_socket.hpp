@@ -1,0 +1,69 @@
+// Joint states from a program of this machine: one datagram of text a sample, to a Unix socket.
+//
+//     [TIME] Q1 Q2 ... QN        radians (metres for a prismatic joint), in the rig's order; TIME: seconds of
+//                                CLOCK_MONOTONIC at which it was sampled, with one more number than joints;
+//                                without it the time of arrival
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "host/apps/recording/app_error.hpp"
+
+namespace octoskin {
+
+struct JointSample {
+    HostTime sampled;
+    std::vector<double> position;
+};
+
+enum class JointTextFault : std::uint8_t {
+    not_a_number,  ///< a word that is no finite number
+    wrong_count,   ///< neither as many numbers as joints, nor one more
+    time_off,      ///< more than 1 s from now
+    too_large,     ///< a position beyond the +-8.38 rad of the wire
+    too_long,      ///< over kJointTextMax bytes
+};
+[[nodiscard]] constexpr std::array<const char*, 5> names_of(JointTextFault) {
+    return {"not_a_number", "wrong_count", "time_off", "too_large", "too_long"};
+}
+inline constexpr std::size_t kJointTextMax = 1024;
+
+/// One line or datagram. Any bytes are safe.
+[[nodiscard]] Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::size_t joint_count,
+                                                               HostTime now);
+
+class JointSocket {
+  public:
+    /// Makes the socket file, over one that a dead process left; refuses one that somebody listens on.
+    [[nodiscard]] static Result<JointSocket, AppError> open(const std::filesystem::path& file,
+                                                            std::size_t joint_count);
+    JointSocket(JointSocket&& other) noexcept;
+    JointSocket& operator=(JointSocket&& other) noexcept;
+    ~JointSocket();
+
+    [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
+    /// The next sample, if one is here; what is none is counted.
+    [[nodiscard]] std::optional<JointSample> receive();
+
+    [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
+    [[nodiscard]] const std::array<std::uint64_t, 5>& faults() const noexcept { return faults_; }
+
+  private:
+    JointSocket(std::filesystem::path file, int descriptor, std::size_t joint_count)
+        : file_(std::move(file)), descriptor_(descriptor), joint_count_(joint_count) {}
+
+    std::filesystem::path file_;
+    int descriptor_ = -1;
+    std::size_t joint_count_ = 0;
+    std::uint64_t samples_ = 0;
+    std::array<std::uint64_t, 5> faults_{};
+};
+
+}  // namespace octoskin

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include "common/wire/names.hpp"
+#include "host/apps/daemon/status.hpp"
+
+namespace octoskin {
+namespace {
+
+using Problems = std::vector<std::string>;
+
+void add_link(const DaemonView& view, Problems& problems) {
+    if (view.can->state() != LinkState::up) {
+        problems.push_back(fmt::format("CAN {}: {}",
+                                       names_of(LinkState{})[static_cast<std::size_t>(view.can->state())],
+                                       view.can->why()));
+    }
+    const CanLink::Counts counts = view.can->counts();
+    if (counts.dropped > 0) {
+        problems.push_back(fmt::format("{}: {} frames were lost in the kernel: this machine is too busy",
+                                       *view.interface, counts.dropped));
+    }
+}
+
+void add_clock(const DaemonView& view, Problems& problems) {
+    constexpr Nanoseconds kForeignHold{3'000'000'000};
+    if (view.foreign_sync && view.now - *view.foreign_sync < kForeignHold) {
+        problems.emplace_back(
+            "another host sends SYNC on this bus: only one may (start this one with --listen-only)");
+    }
+    if (view.pipeline->now()) return;
+    problems.emplace_back(
+        view.is_listen_only
+            ? "the time is not known: nobody on the bus sends SYNC and FOLLOW_UP (--listen-only sends none)"
+            : "the time is not known yet: no SYNC of ours came onto the bus, or no node is there");
+}
+
+void add_nodes(const DaemonView& view, Problems& problems) {
+    const NodeRegistry& nodes = view.pipeline->intake().nodes();
+    for (const HostNode& node : view.rig->nodes) {
+        const auto& record = nodes.records().at(node.node_id);
+        // A bus that fell silent has no "now" of its own: the daemon's clock tells how long.
+        const bool is_silent = record.heard && view.now - *record.heard > NodeRegistry::kLostAfter;
+        const NodeVerdict verdict = nodes.verdict(node.node_id, view.now);
+        if (verdict != NodeVerdict::usable || is_silent) {
+            problems.push_back(nodes.describe(node.node_id, view.now));
+            continue;
+        }
+        for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+            const SensorRecord& sensor =
+                view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(i));
+            const bool is_ranging = sensor.health && sensor.health->state == wire::SensorState::ranging;
+            if (sensor.health && !is_ranging && sensor.health->state != wire::SensorState::starting) {
+                problems.push_back(fmt::format("node {} '{}' sensor {} '{}': {}, {}", node.node_id, node.name,
+                                               i, node.sensors[i].name, wire::name(sensor.health->state),
+                                               wire::name(sensor.health->fault)));
+            }
+        }
+    }
+}
+
+void add_joints(const DaemonView& view, Problems& problems) {
+    const auto& joints = view.pipeline->accounts().joint_samples;
+    if (joints.in() == 0) {
+        problems.push_back(fmt::format(
+            "no joint states: neither from node {} on the bus{}", view.rig->joints.node_id,
+            view.joints != nullptr ? " nor through the socket (`octoskin joints`)" : " (and no --joints)"));
+    } else if (joints.used() == 0 && joints.rejected() > 0) {
+        problems.emplace_back("no joint state could be used: see the counters of joint samples");
+    }
+}
+
+void add_camera(const DaemonView& view, Problems& problems) {
+    if (!view.camera) return;
+    if (!view.camera->is_open) {
+        problems.push_back("camera: " + view.camera->why);
+    } else if (view.rig->camera && view.camera->newest) {
+        const Nanoseconds patience{static_cast<std::int64_t>(3e9 / view.rig->camera->rate_hz)};
+        if (view.now - *view.camera->newest > patience)
+            problems.emplace_back("camera: no frame for three periods");
+    }
+}
+
+void add_map(const DaemonView& view, Problems& problems) {
+    const FusedMap& map = *view.pipeline->maps().fused();
+    if (map.counters().no_room > 0) {
+        problems.push_back(fmt::format(
+            "the map is full ({} MiB): it takes no new space; raise map.memory_max_mib in the mapping file",
+            map.config().memory_max_mib));
+    }
+    if (!view.saves.error.empty()) problems.push_back("the map is not saved: " + view.saves.error);
+    if (!view.reload_error.empty())
+        problems.push_back("the newest reload was refused, and the old settings hold: " + view.reload_error);
+}
+
+}  // namespace
+
+std::vector<std::string> problems(const DaemonView& view) {
+    Problems problems;
+    add_link(view, problems);
+    add_clock(view, problems);
+    add_nodes(view, problems);
+    add_joints(view, problems);
+    add_camera(view, problems);
+    add_map(view, problems);
+    return problems;
+}
+
+}  // namespace octoskin

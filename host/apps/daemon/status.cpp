@@ -1,0 +1,159 @@
+#include "host/apps/daemon/status.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "common/range_status.hpp"
+#include "common/wire/names.hpp"
+#include "host/apps/version/version.hpp"
+
+namespace octoskin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double seconds(Nanoseconds duration) {
+    return static_cast<double>(duration.count()) * 1e-9;
+}
+double milliseconds(Nanoseconds duration) {
+    return static_cast<double>(duration.count()) * 1e-6;
+}
+Json age_s(const std::optional<HostTime>& since, HostTime now) {
+    return since ? Json(seconds(now - *since)) : Json(nullptr);
+}
+
+Json can_json(const DaemonView& view) {
+    const CanLink::Counts counts = view.can->counts();
+    return {{"interface", *view.interface},
+            {"state", names_of(LinkState{})[static_cast<std::size_t>(view.can->state())]},
+            {"why", view.can->why()},
+            {"listen_only", view.is_listen_only},
+            {"received", counts.received},
+            {"sent", counts.sent},
+            {"not_sent", counts.not_sent},
+            {"error_frames", counts.error_frames},
+            {"dropped_by_kernel", counts.dropped},
+            {"malformed", counts.malformed},
+            {"bus_off", counts.bus_off},
+            {"went_down", counts.went_down},
+            {"reopened", counts.reopened}};
+}
+
+Json clock_json(const Pipeline& pipeline) {
+    const HostClockEstimate& clock = pipeline.intake().host_clock();
+    return {{"known", pipeline.now().has_value()},
+            {"steps_back", clock.steps_back()},
+            {"steps_ahead", clock.steps_ahead()},
+            {"stamps_ignored", clock.stamps_ignored()},
+            {"relocks", clock.relocks()}};
+}
+
+Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index) {
+    const SensorRecord& record =
+        view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
+    Json json = {{"index", index},
+                 {"name", node.sensors[index].name},
+                 {"state", record.health ? Json(name(record.health->state)) : Json(nullptr)},
+                 {"fault", record.health ? Json(name(record.health->fault)) : Json(nullptr)},
+                 {"received", record.received},
+                 {"lost", record.lost},
+                 {"age_s", age_s(record.newest_at, view.now)}};
+    if (record.newest) {
+        json["range_m"] = record.newest->range_mm * 1e-3;
+        json["sigma_m"] = record.newest->sigma_quarter_mm * 0.25e-3;
+        json["device_status"] = record.newest->device_status;
+        json["zone"] = record.newest->zone;
+    }
+    json["rejected"] =
+        record.newest_rejected
+            ? Json(names_of(ReadingReason{})[static_cast<std::size_t>(*record.newest_rejected)])
+            : Json(nullptr);
+    return json;
+}
+
+Json node_json(const DaemonView& view, const HostNode& node) {
+    const CanIntake& intake = view.pipeline->intake();
+    const NodeRecord& record = intake.nodes().records().at(node.node_id);
+    const NodeVerdict verdict = intake.nodes().verdict(node.node_id, view.now);
+    const auto reason = intake.nodes().reason(node.node_id, view.now);
+    const auto clock_fault = intake.clock(node.node_id).fault(view.now);
+    const auto drift = intake.clock(node.node_id).drift();
+    Json json = {
+        {"id", node.node_id},
+        {"name", node.name},
+        {"verdict", names_of(NodeVerdict{})[static_cast<std::size_t>(verdict)]},
+        {"reason", reason ? Json(reason->text()) : Json(nullptr)},
+        {"state", record.heartbeat ? Json(name(record.heartbeat->state)) : Json(nullptr)},
+        {"age_s", age_s(record.heard, view.now)},
+        {"degraded_sensors", record.heartbeat ? Json(record.heartbeat->degraded_sensors) : Json(nullptr)},
+        {"clock_known", !clock_fault},
+        {"clock_ppm", drift ? Json(*drift * 1e6) : Json(nullptr)}};
+    Json sensors = Json::array();
+    for (std::size_t i = 0; i < node.sensors.size(); ++i) sensors.push_back(sensor_json(view, node, i));
+    json["sensors"] = std::move(sensors);
+    return json;
+}
+
+Json camera_json(const DaemonView& view) {
+    if (!view.camera) return nullptr;
+    return {{"open", view.camera->is_open},  {"why", view.camera->why},
+            {"frames", view.camera->frames}, {"displaced", view.camera->displaced},
+            {"opened", view.camera->opened}, {"age_s", age_s(view.camera->newest, view.now)}};
+}
+
+Json joints_json(const DaemonView& view) {
+    if (view.joints == nullptr) return nullptr;
+    Json json = {{"samples", view.joints->samples()}};
+    for (std::size_t i = 0; i < view.joints->faults().size(); ++i)
+        json[names_of(JointTextFault{}).at(i)] = view.joints->faults().at(i);
+    return json;
+}
+
+Json latency_json(const LatencyHistogram& latency) {
+    return {{"readings", latency.count()},
+            {"median_ms", milliseconds(latency.within(0.5))},
+            {"p99_ms", milliseconds(latency.within(0.99))},
+            {"max_ms", milliseconds(latency.longest())}};
+}
+
+Json map_json(const DaemonView& view) {
+    const FusedMap& map = *view.pipeline->maps().fused();
+    return {{"known_voxels", map.known_voxels()},
+            {"resolution_m", map.resolution_m()},
+            {"memory_mib", static_cast<double>(map.memory_bytes()) / (1U << 20U)},
+            {"memory_max_mib", map.config().memory_max_mib},
+            {"no_room", map.counters().no_room},
+            {"saved", view.saves.saved},
+            {"saves_failed", view.saves.failed},
+            {"saves_displaced", view.saves.displaced},
+            {"saved_age_s", age_s(view.saves.newest, view.now)}};
+}
+
+Json account_json(const Pipeline& pipeline) {
+    Json units = Json::object();
+    for (const AccountTable& table : pipeline.account_tables()) {
+        Json rejected = Json::object();
+        for (const AccountTable::Row& row : table.rejected)
+            if (row.count > 0) rejected[row.name] = row.count;
+        units[table.unit] = {{"in", table.in},
+                             {"used", table.used},
+                             {"pending", table.pending},
+                             {"rejected", std::move(rejected)},
+                             {"balanced", table.is_balanced}};
+    }
+    return units;
+}
+
+}  // namespace
+
+Json status_json(const DaemonView& view) {
+    Json nodes = Json::array();
+    for (const HostNode& node : view.rig->nodes) nodes.push_back(node_json(view, node));
+    return {{"octoskin", program_version()}, {"uptime_s", seconds(view.now - view.started)},
+            {"rig", view.rig->name},         {"problems", problems(view)},
+            {"can", can_json(view)},         {"clock", clock_json(*view.pipeline)},
+            {"nodes", std::move(nodes)},     {"joints_socket", joints_json(view)},
+            {"camera", camera_json(view)},   {"latency", latency_json(*view.latency)},
+            {"map", map_json(view)},         {"account", account_json(*view.pipeline)}};
+}
+
+}  // namespace octoskin

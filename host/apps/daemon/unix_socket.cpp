@@ -1,0 +1,90 @@
+#include "host/apps/daemon/unix_socket.hpp"
+
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <optional>
+
+namespace octoskin {
+namespace {
+
+constexpr int kWaiting = 16;
+
+std::optional<sockaddr_un> address_of(const std::filesystem::path& file) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const std::string name = file.string();
+    if (name.empty() || name.size() >= sizeof(address.sun_path)) return std::nullopt;
+    std::memcpy(address.sun_path, name.data(), name.size());
+    return address;
+}
+
+Unexpected<AppError> failure(const std::filesystem::path& file, const std::string& what, int error) {
+    const ExitCode code = error == EACCES || error == EPERM ? ExitCode::no_permission
+                          : error == ENOENT                 ? ExitCode::unavailable
+                                                            : ExitCode::cannot_create;
+    return fail(code, file.string() + ": " + what + ": " + std::strerror(error));
+}
+
+bool is_answered(const sockaddr_un& address, int type) {
+    const int probe = ::socket(AF_UNIX, type | SOCK_CLOEXEC, 0);
+    if (probe < 0) return false;
+    const bool is_connected =
+        ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+    ::close(probe);
+    return is_connected;
+}
+
+}  // namespace
+
+Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int type) {
+    const auto address = address_of(file);
+    if (!address) return fail(ExitCode::usage, file.string() + ": a socket's path has 1 to 107 bytes");
+    if (is_answered(*address, type)) {
+        return fail(ExitCode::cannot_create,
+                    file.string() + ": another octoskin has this socket; stop it, or name another one");
+    }
+    struct stat found {};
+    if (::lstat(file.c_str(), &found) == 0) {
+        if (!S_ISSOCK(found.st_mode))
+            return fail(ExitCode::cannot_create, file.string() + ": is there and is no socket");
+        ::unlink(file.c_str());
+    }
+    const int descriptor = ::socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (descriptor < 0) return failure(file, "no socket", errno);
+    const auto* generic = reinterpret_cast<const sockaddr*>(&*address);
+    const mode_t others = ::umask(0007);
+    const bool is_bound = ::bind(descriptor, generic, sizeof(*address)) == 0;
+    const int error = errno;
+    ::umask(others);
+    if (!is_bound || (type == SOCK_STREAM && ::listen(descriptor, kWaiting) != 0)) {
+        const int why = is_bound ? errno : error;
+        ::close(descriptor);
+        return failure(file, "cannot listen there", why);
+    }
+    return descriptor;
+}
+
+Result<int, AppError> connect_unix_socket(const std::filesystem::path& file, int type) {
+    const auto address = address_of(file);
+    if (!address) return fail(ExitCode::usage, file.string() + ": a socket's path has 1 to 107 bytes");
+    const int descriptor = ::socket(AF_UNIX, type | SOCK_CLOEXEC, 0);
+    if (descriptor < 0) return failure(file, "no socket", errno);
+    if (::connect(descriptor, reinterpret_cast<const sockaddr*>(&*address), sizeof(*address)) == 0)
+        return descriptor;
+    const int error = errno;
+    ::close(descriptor);
+    if (error == ECONNREFUSED || error == ENOENT) {
+        return fail(ExitCode::unavailable,
+                    file.string() +
+                        ": no octoskin listens there (is `octoskin run` running? --socket names "
+                        "another place)");
+    }
+    return failure(file, "cannot connect", error);
+}
+
+}  // namespace octoskin

@@ -1,0 +1,18 @@
+// Sockets of the local machine by the name of a file.
+#pragma once
+
+#include <filesystem>
+
+#include "common/result.hpp"
+#include "host/apps/recording/app_error.hpp"
+
+namespace octoskin {
+
+/// A socket bound to `file`; non-blocking. `type`: SOCK_DGRAM or SOCK_STREAM (then it listens). A file that a
+/// dead process left is replaced; one that somebody listens on is refused. Who may connect: owner and group.
+[[nodiscard]] Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int type);
+
+/// A socket connected to `file`.
+[[nodiscard]] Result<int, AppError> connect_unix_socket(const std::filesystem::path& file, int type);
+
+}  // namespace octoskin

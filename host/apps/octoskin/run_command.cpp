@@ -1,0 +1,96 @@
+// octoskin run: the daemon beside a robot.
+#include <fcntl.h>
+#include <spdlog/formatter.h>
+#include <spdlog/spdlog.h>
+
+#include <charconv>
+#include <cstdlib>
+#include <memory>
+
+#include "host/apps/daemon/daemon.hpp"
+#include "host/apps/daemon/places.hpp"
+#include "host/apps/octoskin/arguments.hpp"
+#include "host/apps/octoskin/commands.hpp"
+#include "host/apps/study/configuration.hpp"
+
+namespace octoskin::app {
+namespace {
+
+/// The journal has its own clock, and reads a level from "<4>" at the begin of a line (sd-daemon(3)).
+class JournalFormatter final : public spdlog::formatter {
+  public:
+    void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
+        constexpr std::array<char, 7> kPriority{'7', '7', '6', '4', '3', '2', '6'};  // by spdlog's level
+        line.push_back('<');
+        line.push_back(kPriority.at(static_cast<std::size_t>(message.level)));
+        line.push_back('>');
+        line.append(message.payload.begin(), message.payload.end());
+        line.push_back('\n');
+    }
+    [[nodiscard]] std::unique_ptr<spdlog::formatter> clone() const override {
+        return std::make_unique<JournalFormatter>();
+    }
+};
+
+/// "fd:N" names a descriptor that whoever started this program left open for it.
+void take_descriptor(DaemonRequest& request) {
+    constexpr std::string_view kPrefix = "fd:";
+    if (!request.interface.starts_with(kPrefix)) return;
+    int descriptor = -1;
+    const char* const first = request.interface.data() + kPrefix.size();
+    const char* const last = request.interface.data() + request.interface.size();
+    const auto [end, error] = std::from_chars(first, last, descriptor);
+    if (error != std::errc{} || end != last || descriptor < 0 || ::fcntl(descriptor, F_GETFD) < 0)
+        throw CommandFailure(
+            {ExitCode::usage, "--can " + request.interface + ": no descriptor of that number is open"});
+    request.can_descriptor = descriptor;
+}
+
+void run_daemon(DaemonRequest& request) {
+    take_descriptor(request);
+    if (std::getenv("JOURNAL_STREAM") != nullptr) spdlog::set_formatter(std::make_unique<JournalFormatter>());
+    auto daemon = Daemon::build(request);
+    if (!daemon) throw CommandFailure(daemon.error());
+    const ExitCode outcome = (*daemon)->run();
+    if (outcome != ExitCode::ok) throw CommandFailure({outcome, "ended with the map not saved"});
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+    auto request = std::make_shared<DaemonRequest>();
+    request->control_socket = default_control_socket();
+    request->map_folder = default_map_folder();
+    CLI::App* command = app.add_subcommand(
+        "run", "The daemon: a live CAN interface and camera into a map, for as long as the robot is there");
+    command->add_option("--rig", request->rig, "Rig (YAML)")->required()->check(existing_file());
+    command->add_option("--robot", request->robot, "Robot (URDF) in place of the rig's")
+        ->check(existing_file());
+    command
+        ->add_option("--can", request->interface,
+                     "CAN interface, or fd:N, an open socket that carries frames as one")
+        ->capture_default_str();
+    command->add_flag("--listen-only", request->is_listen_only,
+                      "Transmit nothing: somebody else must send SYNC");
+    command
+        ->add_option("--configuration", request->configuration,
+                     configuration_help("How measurements become voxels"))
+        ->capture_default_str();
+    command->add_option("--camera", request->camera_uri,
+                        "OpenNI2 device, or an .oni file to play (default: the first camera there is)");
+    command->add_flag("!--no-camera", request->has_camera, "Do without the rig's camera");
+    command->add_option("--joints", request->joint_socket,
+                        "Make this socket and take joint states from it (`octoskin joints`)");
+    command->add_option("--maps", request->map_folder, "Where the map is kept: fused.ot, fused.bt")
+        ->capture_default_str();
+    command->add_option("--save-every", request->save_period, "Seconds between two saves of the map")
+        ->check(CLI::Range(1, 3600))
+        ->capture_default_str();
+    command->add_option("--socket", request->control_socket, "Where `octoskin status` asks")
+        ->capture_default_str();
+    command->footer(
+        "SIGTERM, SIGINT: save the map and end. SIGHUP: read rig, robot and mapping again, all or none.");
+    command->callback([request] { run_daemon(*request); });
+}
+
+}  // namespace octoskin::app

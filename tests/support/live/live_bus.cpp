@@ -1,0 +1,134 @@
+#include "tests/support/live/live_bus.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+#include "common/wire/codec.hpp"
+
+namespace octoskin::test {
+namespace {
+
+std::int64_t steady_ns() {
+    return std::chrono::steady_clock::now().time_since_epoch().count();
+}
+
+bool is_of_host(const wire::CanFrame& frame) {
+    const wire::FrameType type = wire::type_of(frame.can_id);
+    return type == wire::FrameType::sync || type == wire::FrameType::follow_up ||
+           type == wire::FrameType::mark || type == wire::FrameType::command;
+}
+
+}  // namespace
+
+LiveBus::LiveBus(int descriptor, const std::vector<StampedFrame>& log) : socket_("live", descriptor) {
+    learn_clocks(log);
+    for (const StampedFrame& entry : log) {
+        const bool is_report = wire::type_of(entry.frame.can_id) == wire::FrameType::sync_report;
+        if (!is_of_host(entry.frame) && !is_report) frames_.push_back(entry);
+    }
+    begin_ns_ = frames_.front().stamp.ns;
+    begin_steady_ns_ = steady_ns();
+    thread_ = std::thread([this] { play(); });
+}
+
+LiveBus::~LiveBus() {
+    is_ending_ = true;
+    thread_.join();
+}
+
+/// Two exchanges tell a clock: where it stood at the first, and how fast it ran until the last.
+void LiveBus::learn_clocks(const std::vector<StampedFrame>& log) {
+    std::array<std::int64_t, wire::kSyncSequenceCount> sync_ns{};
+    for (const StampedFrame& entry : log) {
+        const auto decoded = wire::decode(entry.frame);
+        if (!decoded) continue;
+        if (const auto* sync = std::get_if<wire::Sync>(&decoded->message))
+            sync_ns.at(sync->sequence) = entry.stamp.ns;
+        const auto* report = std::get_if<wire::SyncReport>(&decoded->message);
+        if (report == nullptr) continue;
+        const std::int64_t at_ns = sync_ns.at(report->sequence);
+        const auto [known, is_first] =
+            clocks_.try_emplace(decoded->node_id, Clock{at_ns, report->heard.us, 1.0});
+        if (is_first) continue;
+        const double passed_us = static_cast<double>(at_ns - known->second.stamp_ns) * 1e-3;
+        const std::uint32_t ran_us = report->heard.us - known->second.heard_us;
+        known->second.us_per_us = static_cast<double>(ran_us) / passed_us;
+    }
+}
+
+std::int64_t LiveBus::log_now_ns() const {
+    return begin_ns_ + steady_ns() - begin_steady_ns_;
+}
+
+void LiveBus::play() {
+    for (const StampedFrame& entry : frames_) {
+        listen_until(entry.stamp.ns);
+        if (is_ending_) return;
+        played_s_ = static_cast<double>(entry.stamp.ns - begin_ns_) * 1e-9;
+        if (!is_silent(wire::node_of(entry.frame.can_id))) put(entry.frame);
+    }
+    is_over_ = true;
+    while (!is_ending_) listen_until(log_now_ns() + 10'000'000);
+}
+
+void LiveBus::listen_until(std::int64_t due_ns) {
+    while (!is_ending_) {
+        const std::int64_t left_ns = due_ns - log_now_ns();
+        pollfd readable{socket_.descriptor(), POLLIN, 0};
+        const timespec patience{0, std::clamp<std::int64_t>(left_ns, 0, 20'000'000)};
+        if (::ppoll(&readable, 1, &patience, nullptr) > 0 && !hear_one()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the other end is gone: time goes on
+        }
+        if (log_now_ns() >= due_ns) return;
+    }
+}
+
+bool LiveBus::hear_one() {
+    auto received = socket_.receive();
+    if (!received) return false;
+    if (*received) {
+        // A node's hardware stamps the end of a frame; here the kernel does, when it was handed over.
+        timespec now{};
+        ::clock_gettime(CLOCK_REALTIME, &now);
+        const std::int64_t wall_ns = std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+        answer((*received)->entry.frame, log_now_ns() - (wall_ns - (*received)->entry.stamp.ns));
+    }
+    return true;
+}
+
+void LiveBus::answer(const wire::CanFrame& frame, std::int64_t heard_ns) {
+    frames_heard_ += is_of_host(frame) ? 1U : 0U;
+    const auto decoded = wire::decode(frame);
+    const auto* const sync = decoded ? std::get_if<wire::Sync>(&decoded->message) : nullptr;
+    if (sync == nullptr) return;
+    ++syncs_heard_;
+    for (const auto& [node, clock] : clocks_) {
+        if (is_silent(node)) continue;
+        const double passed_us = static_cast<double>(heard_ns - clock.stamp_ns) * 1e-3;
+        const auto ran_us = static_cast<std::int64_t>(std::floor(passed_us * clock.us_per_us));
+        const NodeTime heard{clock.heard_us + static_cast<std::uint32_t>(ran_us)};
+        put(wire::encode(wire::SyncReport{sync->sequence, heard}, node));
+    }
+}
+
+void LiveBus::put(const wire::CanFrame& frame) {
+    (void)socket_.send(frame);  // an end that takes nothing any more loses it, as on a bus
+}
+
+void LiveBus::silence(wire::NodeId node, bool is_silent) {
+    const std::lock_guard lock(mutex_);
+    silent_[node] = is_silent;
+}
+
+bool LiveBus::is_silent(wire::NodeId node) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = silent_.find(node);
+    return found != silent_.end() && found->second;
+}
+
+}  // namespace octoskin::test

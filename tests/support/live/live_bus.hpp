@@ -1,0 +1,69 @@
+// A bus that is alive: the frames of a log, played at their own times into one end of a socketpair, by nodes
+// that answer the SYNC of whoever is at the other end.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "common/wire/messages.hpp"
+#include "host/core/pipeline/can_source.hpp"
+#include "host/io/socketcan/can_socket.hpp"
+
+namespace octoskin::test {
+
+class LiveBus {
+  public:
+    /// `descriptor`: our end; becomes the bus's. What the log's host sent is left out: SYNC, FOLLOW_UP and
+    /// MARK are for the host at the other end to send. The log must hold SYNC and the nodes' reports.
+    LiveBus(int descriptor, const std::vector<StampedFrame>& log);
+    ~LiveBus();
+    LiveBus(const LiveBus&) = delete;
+    LiveBus& operator=(const LiveBus&) = delete;
+
+    /// The log's time that has been played, seconds from its first frame.
+    [[nodiscard]] double played_s() const noexcept { return played_s_; }
+    [[nodiscard]] bool is_over() const noexcept { return is_over_; }
+    /// A node that is switched off: it sends and answers nothing.
+    void silence(wire::NodeId node, bool is_silent);
+    [[nodiscard]] std::uint64_t syncs_heard() const noexcept { return syncs_heard_; }
+    /// Frames of the other end that only a host may send: SYNC, FOLLOW_UP.
+    [[nodiscard]] std::uint64_t frames_heard() const noexcept { return frames_heard_; }
+
+  private:
+    /// A node's clock as its reports in the log tell it.
+    struct Clock {
+        std::int64_t stamp_ns = 0;
+        std::uint32_t heard_us = 0;
+        double us_per_us = 1.0;
+    };
+    void learn_clocks(const std::vector<StampedFrame>& log);
+    void play();
+    /// Until `due_ns` on the log's time scale, and answers what comes meanwhile.
+    void listen_until(std::int64_t due_ns);
+    /// False if the other end is gone.
+    bool hear_one();
+    void answer(const wire::CanFrame& frame, std::int64_t heard_ns);
+    void put(const wire::CanFrame& frame);
+    [[nodiscard]] std::int64_t log_now_ns() const;
+    [[nodiscard]] bool is_silent(wire::NodeId node) const;
+
+    socketcan::CanSocket socket_;
+    std::vector<StampedFrame> frames_;
+    std::map<wire::NodeId, Clock> clocks_;
+    std::int64_t begin_ns_ = 0;         ///< the log's first stamp
+    std::int64_t begin_steady_ns_ = 0;  ///< when that was played
+    std::atomic<double> played_s_ = 0.0;
+    std::atomic<bool> is_over_ = false;
+    std::atomic<bool> is_ending_ = false;
+    std::atomic<std::uint64_t> syncs_heard_ = 0;
+    std::atomic<std::uint64_t> frames_heard_ = 0;
+    mutable std::mutex mutex_;
+    std::map<wire::NodeId, bool> silent_;
+    std::thread thread_;
+};
+
+}  // namespace octoskin::test

@@ -1,0 +1,234 @@
+// The daemon as it is started beside a robot, on a bus that is alive: the sensor boards of the experiment,
+// played in real time, which answer the daemon's own SYNC.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include "host/io/mapfile/map_file.hpp"
+#include "hw/rigfile/rig.hpp"
+#include "hw/sim/experiment/experiment.hpp"
+#include "tests/support/live/live_bus.hpp"
+#include "tests/system/daemon/running_daemon.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+/// The frames of the experiment's rig: 2 s at rest, then the arm moves.
+std::vector<StampedFrame> make_log() {
+    rig::Rig rig = rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml").value();
+    sim::Scenario scenario =
+        sim::read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value();
+    const auto world = sim::World::read(scenario.world).value();
+    const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints).value();
+    const auto capsules = rig::read_capsules(rig.urdf, {}).value();
+    rig.camera.reset();
+    scenario.rest_s = 2.0;
+    std::vector<StampedFrame> log;
+    const sim::ExperimentInput input{.rig = rig,
+                                     .capsules = capsules,
+                                     .world = world,
+                                     .arm = arm,
+                                     .scenario = scenario,
+                                     .seed = 3,
+                                     .is_depth_noise_free = true};
+    const sim::ExperimentOutput output{.on_frame =
+                                           [&](const wire::CanFrame& frame, WallTime stamp) {
+                                               log.push_back({stamp, frame});
+                                           },
+                                       .on_depth = {},
+                                       .on_progress = {}};
+    EXPECT_TRUE(sim::run_experiment(input, output));
+    return log;
+}
+
+const std::vector<StampedFrame>& log_of_experiment() {
+    static const std::vector<StampedFrame> log = make_log();
+    return log;
+}
+
+class DaemonTest : public testing::Test {
+  protected:
+    DaemonTest() {
+        std::array<int, 2> ends{};
+        EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+        const int room = 1 << 20;
+        for (const int end : ends) ::setsockopt(end, SOL_SOCKET, SO_SNDBUF, &room, sizeof(room));
+        its_end_ = ends[0];
+        our_end_ = ends[1];
+    }
+    void start(const std::vector<std::string>& more_arguments = {"--no-camera"}) {
+        (void)log_of_experiment();  // made before anything runs in real time
+        daemon_.emplace(folder_, its_end_, more_arguments);
+        bus_.emplace(our_end_, log_of_experiment());
+    }
+    static bool is_ranging(const Json& status) {
+        return status["account"]["readings"]["used"].get<int>() > 100;
+    }
+    static bool has_problem(const Json& status, const std::string& text) {
+        for (const auto& problem : status["problems"])
+            if (problem.get<std::string>().find(text) != std::string::npos) return true;
+        return false;
+    }
+
+    testing_support::ScratchFolder folder_;
+    int its_end_ = -1;
+    int our_end_ = -1;
+    std::optional<RunningDaemon> daemon_;
+    std::optional<LiveBus> bus_;
+};
+
+TEST_F(DaemonTest, maps_a_live_bus_says_how_quick_it_is_and_saves_at_the_end) {
+    start();
+    const auto took = daemon_->wait_until(is_ranging, 15s);
+    ASSERT_TRUE(took) << daemon_->status().dump(1) << daemon_->log();
+    std::this_thread::sleep_for(3s);
+    const Json status = daemon_->status();
+    EXPECT_TRUE(status["problems"].empty()) << status["problems"].dump(1);
+    for (const auto& unit : status["account"]) EXPECT_TRUE(unit["balanced"].get<bool>()) << unit.dump();
+    const auto readings = status["account"]["readings"];
+    std::printf(
+        "first 100 readings %ld ms after the start; %d readings on the map; from frame to map %.2f ms "
+        "median, "
+        "%.2f ms 99 %%, %.2f ms at most\n",
+        static_cast<long>(took->count()), readings["used"].get<int>(),
+        status["latency"]["median_ms"].get<double>(), status["latency"]["p99_ms"].get<double>(),
+        status["latency"]["max_ms"].get<double>());
+    EXPECT_GT(readings["used"].get<int>(), 1'000);
+    EXPECT_LE(status["latency"]["median_ms"].get<double>(), 1.0);
+    EXPECT_EQ(status["can"]["not_sent"].get<int>(), 0);
+    EXPECT_GE(bus_->syncs_heard(), 4U);
+
+    daemon_->signal(SIGTERM);
+    const auto ended = daemon_->wait(5s);
+    ASSERT_TRUE(ended) << "did not end within 5 s";
+    EXPECT_EQ(*ended, 0) << daemon_->log();
+    const auto map = load_map(daemon_->maps() / "fused.ot");
+    ASSERT_TRUE(map) << map.error().message;
+    EXPECT_GE(map->known_voxels(), status["map"]["known_voxels"].get<std::size_t>());
+    EXPECT_GT(map->known_voxels(), 500U);
+}
+
+TEST_F(DaemonTest, names_a_node_that_falls_silent_within_a_second_and_takes_it_back) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    bus_->silence(2, true);
+    const auto lost =
+        daemon_->wait_until([](const Json& status) { return has_problem(status, "node 2"); }, 3s);
+    ASSERT_TRUE(lost);
+    EXPECT_LE(*lost, 1s);
+    bus_->silence(2, false);
+    const auto back =
+        daemon_->wait_until([](const Json& status) { return !has_problem(status, "node 2"); }, 5s);
+    ASSERT_TRUE(back) << daemon_->status()["problems"].dump(1);
+    std::printf("named %ld ms after it fell silent, taken back after %ld ms\n",
+                static_cast<long>(lost->count()), static_cast<long>(back->count()));
+}
+
+TEST_F(DaemonTest, transmits_nothing_when_it_only_listens) {
+    start({"--no-camera", "--listen-only"});
+    std::this_thread::sleep_for(3s);
+    const Json status = daemon_->status();
+    ASSERT_TRUE(status.is_object()) << daemon_->log();
+    EXPECT_EQ(bus_->frames_heard(), 0U);
+    EXPECT_GT(status["can"]["received"].get<int>(), 100);
+    EXPECT_TRUE(has_problem(status, "--listen-only")) << status["problems"].dump(1);
+}
+
+TEST_F(DaemonTest, takes_joint_states_from_a_program_of_this_machine) {
+    start();
+    bus_->silence(3, true);  // the node of the rig that would send them
+    // 100 samples a second, each sampled when it is written.
+    const std::string command =
+        "for i in $(seq 600); do echo 0 0 0 -1.5 0 1.5 0; sleep 0.01; done | " OCTOSKIN_PROGRAM
+        " joints --socket " +
+        daemon_->joints().string();
+    ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
+    std::thread forwarder([&] { EXPECT_EQ(std::system(command.c_str()), 0); });
+    const auto took = daemon_->wait_until(
+        [](const Json& status) {
+            return is_ranging(status) && status["account"]["joint samples"]["used"].get<int>() > 50;
+        },
+        15s);
+    EXPECT_TRUE(took) << daemon_->status().dump(1);
+    EXPECT_GT(daemon_->status()["joints_socket"]["samples"].get<int>(), 50);
+    forwarder.join();
+}
+
+TEST_F(DaemonTest, reloads_all_or_nothing) {
+    const auto rig_file = folder_ / "rig.yaml";
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    const auto voxels = daemon_->status()["map"]["known_voxels"].get<int>();
+    daemon_->signal(SIGHUP);
+    const auto again = daemon_->wait_until(is_ranging, 15s);
+    ASSERT_TRUE(again);
+    EXPECT_GE(daemon_->status()["map"]["known_voxels"].get<int>(), voxels) << "the map did not go on";
+}
+
+TEST_F(DaemonTest, goes_on_with_the_saved_map_after_it_was_killed) {
+    start({"--no-camera", "--save-every", "1"});
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    ASSERT_TRUE(
+        daemon_->wait_until([](const Json& status) { return status["map"]["saved"].get<int>() >= 2; }, 10s));
+    daemon_->signal(SIGKILL);
+    EXPECT_EQ(daemon_->wait(5s), -SIGKILL);
+    const auto map = load_map(daemon_->maps() / "fused.ot");
+    ASSERT_TRUE(map) << map.error().message;
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+    daemon_.emplace(folder_, ends[0], std::vector<std::string>{"--no-camera"});
+    const auto up = daemon_->wait_until(
+        [&](const Json& status) {
+            return status["map"]["known_voxels"].get<std::size_t>() >= map->known_voxels();
+        },
+        5s);
+    ASSERT_TRUE(up) << daemon_->log();
+    EXPECT_LE(*up, 3s);
+    ::close(ends[1]);
+}
+
+TEST_F(DaemonTest, says_that_the_adapter_is_gone) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    bus_.reset();
+    our_end_ = -1;
+    const auto told =
+        daemon_->wait_until([](const Json& status) { return status["can"]["state"] == "absent"; }, 3s);
+    ASSERT_TRUE(told);
+    EXPECT_LE(*told, 1s);
+    daemon_->signal(SIGTERM);
+    EXPECT_EQ(daemon_->wait(5s), 0) << daemon_->log();
+}
+
+TEST_F(DaemonTest, refuses_a_rig_with_a_mistake_with_exit_code_78) {
+    ::close(our_end_);
+    folder_.write("rig.yaml", "name: 5\nbogus: 1\n");
+    RunningDaemon daemon(folder_, its_end_, {"--rig", (folder_ / "rig.yaml").string()});
+    const auto ended = daemon.wait(5s);
+    ASSERT_TRUE(ended);
+    EXPECT_TRUE(*ended == 78 || *ended == 64) << *ended << daemon.log();
+    EXPECT_NE(daemon.log().find("rig"), std::string::npos);
+}
+
+TEST_F(DaemonTest, refuses_a_second_one_on_the_same_socket) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+    RunningDaemon second(folder_, ends[0]);
+    EXPECT_EQ(second.wait(5s), 73) << second.log();
+    EXPECT_NE(second.log().find("another octoskin"), std::string::npos);
+    EXPECT_TRUE(daemon_->status().is_object()) << "the first one lost its socket";
+    ::close(ends[1]);
+}
+
+}  // namespace
+}  // namespace octoskin::test

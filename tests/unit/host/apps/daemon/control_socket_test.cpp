@@ -1,0 +1,128 @@
+#include "host/apps/daemon/control_socket.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <thread>
+#include <vector>
+
+#include "host/apps/daemon/unix_socket.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin {
+namespace {
+
+using namespace std::chrono_literals;
+
+class ControlSocketTest : public testing::Test {
+  protected:
+    ControlSocketTest() {
+        auto opened = ControlSocket::open(file(), loop_, [this](const std::string& request) {
+            ++asked_;
+            return request == "large" ? std::string(1 << 20, 'x') : "you said " + request;
+        });
+        EXPECT_TRUE(opened) << opened.error().message;
+        if (opened) socket_ = std::move(opened).value();
+    }
+    [[nodiscard]] std::filesystem::path file() const { return folder_ / "control"; }
+    /// Runs the loop while `client` is at work in a thread of its own.
+    void serve(const std::function<void()>& client) {
+        std::atomic<bool> is_done = false;
+        std::thread thread([&] {
+            client();
+            is_done = true;
+        });
+        const auto watch = loop_.every(5ms, [&] {
+            if (is_done) loop_.stop(0);
+        });
+        EXPECT_EQ(loop_.run(), 0);
+        thread.join();
+    }
+    [[nodiscard]] int connect() const {
+        const auto descriptor = connect_unix_socket(file(), SOCK_STREAM);
+        EXPECT_TRUE(descriptor);
+        return descriptor ? *descriptor : -1;
+    }
+
+    testing_support::ScratchFolder folder_;
+    EventLoop loop_;
+    int asked_ = 0;
+    std::unique_ptr<ControlSocket> socket_;
+};
+
+TEST_F(ControlSocketTest, answers_each_line_with_one) {
+    serve([&] {
+        EXPECT_EQ(ask_daemon(file(), "status").value(), "you said status");
+        EXPECT_EQ(ask_daemon(file(), "large").value(), std::string(1 << 20, 'x'));
+        EXPECT_EQ(ask_daemon(file(), "").value(), "you said ");
+    });
+    EXPECT_EQ(asked_, 3);
+}
+
+TEST_F(ControlSocketTest, drops_a_request_without_end_and_goes_on) {
+    serve([&] {
+        const int client = connect();
+        const std::string endless(64 << 10, 'a');
+        (void)!::send(client, endless.data(), endless.size(), MSG_NOSIGNAL);
+        std::array<char, 8> bytes{};
+        EXPECT_LE(::recv(client, bytes.data(), bytes.size(), 0), 0) << "it was answered";
+        ::close(client);
+        EXPECT_TRUE(ask_daemon(file(), "still there"));
+    });
+    EXPECT_EQ(socket_->dropped(), 1U);
+}
+
+TEST_F(ControlSocketTest, is_not_stopped_by_clients_that_ask_and_never_read) {
+    serve([&] {
+        std::vector<int> clients;
+        for (int i = 0; i < 4; ++i) {
+            clients.push_back(connect());
+            for (int k = 0; k < 40; ++k) (void)!::send(clients.back(), "large\n", 6, MSG_NOSIGNAL);
+        }
+        EXPECT_TRUE(ask_daemon(file(), "status"));
+        for (const int client : clients) ::close(client);
+    });
+}
+
+TEST_F(ControlSocketTest, takes_so_many_clients_and_no_more) {
+    serve([&] {
+        std::vector<int> clients;
+        for (std::size_t i = 0; i < ControlSocket::kClientsMax + 4; ++i) clients.push_back(connect());
+        std::this_thread::sleep_for(50ms);
+        for (const int client : clients) ::close(client);
+        std::this_thread::sleep_for(50ms);
+        EXPECT_TRUE(ask_daemon(file(), "room again"));
+    });
+    EXPECT_EQ(socket_->dropped(), 4U);
+}
+
+TEST_F(ControlSocketTest, is_one_at_a_place_and_takes_over_from_the_dead) {
+    auto second = ControlSocket::open(file(), loop_, [](const std::string&) { return std::string(); });
+    ASSERT_FALSE(second);
+    EXPECT_NE(second.error().message.find("another octoskin"), std::string::npos) << second.error().message;
+    socket_.reset();
+    EXPECT_FALSE(std::filesystem::exists(file()));
+    // As a killed one leaves it: a name, and nobody behind.
+    const auto dead = bind_unix_socket(file(), SOCK_STREAM);
+    ASSERT_TRUE(dead);
+    ::close(*dead);
+    EXPECT_TRUE(ControlSocket::open(file(), loop_, [](const std::string&) { return std::string(); }));
+}
+
+TEST(UnixSocket, is_never_made_over_something_else) {
+    const testing_support::ScratchFolder folder;
+    const auto file = folder.write("precious", "words");
+    const auto bound = bind_unix_socket(file, SOCK_DGRAM);
+    ASSERT_FALSE(bound);
+    EXPECT_EQ(testing_support::ScratchFolder::read(file), "words");
+    EXPECT_FALSE(bind_unix_socket(folder / "no/such/folder", SOCK_DGRAM));
+    EXPECT_FALSE(bind_unix_socket(folder.path() / std::string(200, 'x'), SOCK_DGRAM));
+    const auto nobody = ask_daemon(folder / "nobody", "status");
+    ASSERT_FALSE(nobody);
+    EXPECT_EQ(nobody.error().code, ExitCode::unavailable);
+    EXPECT_NE(nobody.error().message.find("octoskin run"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,57 @@
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+
+#include "host/apps/daemon/joint_socket.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr HostTime kNow{100'000'000'000};
+
+std::optional<JointTextFault> fault_of(std::string_view text, std::size_t joints = 3) {
+    const auto sample = parse_joints(text, joints, kNow);
+    return sample ? std::nullopt : std::optional(sample.error());
+}
+
+TEST(JointText, is_positions_of_now_or_of_the_time_before_them) {
+    const auto now = parse_joints("0.5 -1e-3 8\n", 3, kNow);
+    ASSERT_TRUE(now);
+    EXPECT_EQ(now->sampled, kNow);
+    EXPECT_EQ(now->position, (std::vector<double>{0.5, -1e-3, 8.0}));
+    const auto timed = parse_joints("99.75, 1, 2,\t3", 3, kNow);
+    ASSERT_TRUE(timed);
+    EXPECT_EQ(timed->sampled, HostTime{99'750'000'000});
+    EXPECT_EQ(timed->position, (std::vector<double>{1, 2, 3}));
+}
+
+TEST(JointText, says_what_is_wrong) {
+    EXPECT_EQ(fault_of(""), JointTextFault::wrong_count);
+    EXPECT_EQ(fault_of("1 2"), JointTextFault::wrong_count);
+    EXPECT_EQ(fault_of("100 1 2 3 4"), JointTextFault::wrong_count);
+    EXPECT_EQ(fault_of("1 2 x"), JointTextFault::not_a_number);
+    EXPECT_EQ(fault_of("1 2 3x"), JointTextFault::not_a_number);
+    EXPECT_EQ(fault_of("1 2 nan"), JointTextFault::not_a_number);
+    EXPECT_EQ(fault_of("1 2 inf"), JointTextFault::not_a_number);
+    EXPECT_EQ(fault_of("1 2 1e999"), JointTextFault::not_a_number);
+    EXPECT_EQ(fault_of("98.9 1 2 3"), JointTextFault::time_off);
+    EXPECT_EQ(fault_of("101.1 1 2 3"), JointTextFault::time_off);
+    EXPECT_EQ(fault_of("99.1 1 2 3"), std::nullopt);
+    EXPECT_EQ(fault_of("1 2 8.388607"), std::nullopt);
+    EXPECT_EQ(fault_of("1 2 -8.3886071"), JointTextFault::too_large);
+    EXPECT_EQ(fault_of(std::string(kJointTextMax + 1, ' ')), JointTextFault::too_long);
+}
+
+TEST(JointText, takes_any_bytes) {
+    std::mt19937 random(11);
+    for (int i = 0; i < 20'000; ++i) {
+        std::string text(random() % 64, '\0');
+        for (char& letter : text) letter = "0123456789.-+e ,\n\tnaif\0\xff"[random() % 26];
+        const auto sample = parse_joints(text, 1 + random() % 7, kNow);
+        EXPECT_TRUE(!sample || !sample->position.empty());
+    }
+}
+
+}  // namespace
+}  // namespace octoskin
