@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "host/io/mapfile/map_file.hpp"
+#include "host/io/openni2/oni_writer.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/sim/experiment/experiment.hpp"
 #include "tests/support/live/live_bus.hpp"
@@ -160,6 +161,50 @@ TEST_F(DaemonTest, takes_joint_states_from_a_program_of_this_machine) {
     EXPECT_TRUE(took) << daemon_->status().dump(1);
     EXPECT_GT(daemon_->status()["joints_socket"]["samples"].get<int>(), 50);
     forwarder.join();
+}
+
+/// Twenty frames of a wall 3 m away, at 10 Hz, through OpenNI2's own recorder.
+std::filesystem::path record_wall(const testing_support::ScratchFolder& folder) {
+    constexpr openni2::FrameSize kSize{512, 424};
+    const auto file = folder / "wall.oni";
+    auto writer = openni2::OniWriter::create(file, folder / "wall.epoch.yaml", kSize);
+    EXPECT_TRUE(writer) << writer.error().what;
+    const std::vector<std::uint16_t> depth_mm(kSize.pixels(), 3'000);
+    for (int i = 0; i < 20; ++i)
+        EXPECT_TRUE(writer->write(HostTime{1'000'000'000LL + 100'000'000LL * i}, depth_mm));
+    EXPECT_TRUE(writer->close());
+    return file;
+}
+
+TEST_F(DaemonTest, takes_the_frames_of_a_camera_and_goes_on_without_it) {
+    const auto wall = record_wall(folder_);
+    start({"--camera", wall.string()});
+    const auto took = daemon_->wait_until(
+        [](const Json& status) { return status["account"]["depth frames"]["used"].get<int>() >= 5; }, 15s);
+    ASSERT_TRUE(took) << daemon_->status()["account"].dump(1) << daemon_->log();
+    const Json status = daemon_->status();
+    EXPECT_TRUE(status["camera"]["open"].get<bool>());
+    // The first ones come before there is a pose.
+    for (const auto& [reason, count] : status["account"]["depth frames"]["rejected"].items()) {
+        EXPECT_TRUE(reason == "joints_missing" || reason == "outside_marks") << reason << ": " << count;
+    }
+    EXPECT_GT(status["map"]["known_voxels"].get<int>(), 100'000);
+
+    std::filesystem::remove(wall);
+    const std::string helper = "pkill -KILL -f '[o]ctoskin-camera " + wall.string() + "'";
+    ASSERT_EQ(std::system(helper.c_str()), 0);
+    const auto told = daemon_->wait_until([](const Json& now) { return has_problem(now, "camera:"); }, 3s);
+    ASSERT_TRUE(told);
+    EXPECT_LE(*told, 1s);
+    const int used = daemon_->status()["account"]["readings"]["used"].get<int>();
+    (void)record_wall(folder_);
+    const auto back =
+        daemon_->wait_until([](const Json& now) { return now["camera"]["open"].get<bool>(); }, 10s);
+    ASSERT_TRUE(back) << daemon_->log();
+    std::printf("named %ld ms after it was gone, back %ld ms after it was there again\n",
+                static_cast<long>(told->count()), static_cast<long>(back->count()));
+    EXPECT_LE(*back, 5s);
+    EXPECT_GT(daemon_->status()["account"]["readings"]["used"].get<int>(), used) << "the ranges stood still";
 }
 
 TEST_F(DaemonTest, reloads_all_or_nothing) {
