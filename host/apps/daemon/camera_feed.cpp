@@ -77,8 +77,8 @@ void CameraFeed::watch_camera() {
     auto process = openni2::HelperProcess::start(*helper, uri_, openni2::HelperPipe::its_output);
     if (!process) return note_closed(process.error());
     openni2::FramePipe pipe(process->descriptor(), kOpenPatience);
-    const auto size = pipe.read_header();
-    if (!size) {
+    const auto header = pipe.read_header();
+    if (!header) {
         return note_closed(uri_.empty() ? "no camera found: is one plugged in, with a driver of OpenNI2?"
                                         : uri_ + ": no camera there that gives depth");
     }
@@ -90,12 +90,12 @@ void CameraFeed::watch_camera() {
     }
     openni2::FramePipe frames(process->descriptor(), silence_max_);
     while (!is_ending_) {
-        auto frame = frames.read_frame(*size);
+        auto frame = frames.read_frame(header->size);
         if (!frame || !frame->has_value()) {
             return note_closed(frame ? "the camera ended" : std::string("camera: ") + name(frame.error()));
         }
         const HostTime captured{static_cast<std::int64_t>((*frame)->timestamp_us) * 1000};
-        put(DepthFrame{captured, size->width, size->height, std::move((*frame)->depth_mm)});
+        put(DepthFrame{captured, header->size.width, header->size.height, std::move((*frame)->depth_mm)});
     }
 }
 

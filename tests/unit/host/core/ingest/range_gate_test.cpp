@@ -124,7 +124,7 @@ TEST(RangeGate, refuses_a_sensor_whose_node_says_that_it_is_not_as_configured_an
             told.state = state.value;
             told.fault = fault.value;
             gate.on_health(kNode, told);
-            gate.on_arrival(kNode, 0);
+            gate.on_arrival(kNode, reading(), std::nullopt);
             const auto outcome =
                 gate.check(kNode, reading(), {kNow - Nanoseconds{20'000'000}, Nanoseconds{0}}, kNow);
             const bool is_refused = state.value == wire::SensorState::degraded &&
