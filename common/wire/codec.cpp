@@ -19,10 +19,10 @@ using Bytes = std::span<const std::uint8_t>;
 
 /// In the order of Message's alternatives.
 constexpr std::array<FrameType, std::variant_size_v<Message>> kTypeOfAlternative = {
-    FrameType::range,       FrameType::range_aux,     FrameType::range_fd, FrameType::heartbeat,
-    FrameType::node_info,   FrameType::sensor_health, FrameType::sync,     FrameType::follow_up,
-    FrameType::sync_report, FrameType::joint_state,   FrameType::mark,     FrameType::command,
-    FrameType::reflex,      FrameType::black_box,
+    FrameType::range,       FrameType::range_aux,     FrameType::range_fd,    FrameType::heartbeat,
+    FrameType::node_info,   FrameType::sensor_health, FrameType::sync,        FrameType::follow_up,
+    FrameType::sync_report, FrameType::joint_state,   FrameType::mark,        FrameType::command,
+    FrameType::reflex,      FrameType::black_box,     FrameType::calibration,
 };
 
 /// The checksum over identifier, length and `data`: all that a CAN frame says except the checksum itself.
@@ -136,9 +136,9 @@ using Reader = DecodedMessage (*)(Bytes data);
 
 /// In the order of kFrameSpecs.
 constexpr std::array<Reader, kFrameSpecs.size()> kReaders = {
-    read<Reflex>,       read<Sync>,       read<FollowUp>,   read<Command>,  read<Mark>,
-    read<Heartbeat>,    read_joint_state, read<SyncReport>, read<Range>,    read_range_fd,
-    read<SensorHealth>, read_node_info,   read<RangeAux>,   read<BlackBox>,
+    read<Reflex>,       read<Sync>,       read<FollowUp>,   read<Command>,     read<Mark>,
+    read<Heartbeat>,    read_joint_state, read<SyncReport>, read<Range>,       read_range_fd,
+    read<SensorHealth>, read_node_info,   read<RangeAux>,   read<Calibration>, read<BlackBox>,
 };
 
 bool is_length_of(const FrameSpec& spec, std::size_t length) {

@@ -25,6 +25,7 @@ enum class FrameType : std::uint8_t {
     sensor_health = 10,
     node_info = 11,
     range_aux = 12,
+    calibration = 13,
     black_box = 31,
 };
 
@@ -61,7 +62,7 @@ struct FrameSpec {
 
 /// Every assigned type, by priority. Fixed for all protocol versions: identifier, checksum, and HEARTBEAT's
 /// length.
-inline constexpr std::array<FrameSpec, 14> kFrameSpecs = {{
+inline constexpr std::array<FrameSpec, 15> kFrameSpecs = {{
     {FrameType::reflex, "REFLEX", Party::from_node, false, 8, Checksum::crc16},
     {FrameType::sync, "SYNC", Party::from_host, false, 3, Checksum::crc16},
     {FrameType::follow_up, "FOLLOW_UP", Party::from_host, false, 8, Checksum::crc8},
@@ -75,6 +76,7 @@ inline constexpr std::array<FrameSpec, 14> kFrameSpecs = {{
     {FrameType::sensor_health, "SENSOR_HEALTH", Party::from_node, false, 8, Checksum::crc8},
     {FrameType::node_info, "NODE_INFO", Party::from_node, false, 8, Checksum::crc8},
     {FrameType::range_aux, "RANGE_AUX", Party::from_node, false, 8, Checksum::crc16},
+    {FrameType::calibration, "CALIBRATION", Party::from_node, false, 8, Checksum::crc8},
     {FrameType::black_box, "BLACK_BOX", Party::from_node, false, 8, Checksum::crc8},
 }};
 

@@ -36,6 +36,7 @@ enum class Unit : std::uint8_t {
     mcps_by_128,  ///< 1/128 million counts a second: the device's 9.7 format
     microradian,
     permille,
+    kcps_by_512,  ///< 1/512 thousand counts a second and SPAD: the device's 7.9 format
 };
 
 struct Field {
@@ -261,13 +262,26 @@ void walk(Walker& walker, Of<Walker, Mark>& mark) {
     walker.number(kHostTimeField, mark.host_time_us);
 }
 
+inline constexpr Field kCommandSequenceField = Field("sequence", 8);
+
 template <class Walker>
 void walk(Walker& walker, Of<Walker, Command>& command) {
     walker.choice(Field("code", 5), command.code);
     walker.number(Field("sensor", 6), command.sensor);
     walker.zeros(2);
     walker.number(Field("argument", 16), command.argument);
-    walker.number(Field("sequence", 8), command.sequence);
+    walker.number(kCommandSequenceField, command.sequence);
+}
+
+template <class Walker>
+void walk(Walker& walker, Of<Walker, Calibration>& calibration) {
+    walker.number(kSensorField, calibration.sensor);
+    walker.choice(Field("quantity", 1), calibration.quantity);
+    walker.choice(Field("outcome", 4), calibration.outcome);
+    walker.zeros(2);
+    walker.number(kCommandSequenceField, calibration.sequence);
+    walker.number(Field("offset", 16, Unit::quarter_millimetre), calibration.offset_quarter_mm);
+    walker.number(Field("crosstalk", 16, Unit::kcps_by_512), calibration.crosstalk_raw);
 }
 
 }  // namespace octoskin::wire

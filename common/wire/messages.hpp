@@ -297,16 +297,44 @@ enum class CommandCode : std::uint8_t {
     reset = 6,
     send_info = 7,
     send_black_box = 8,  ///< what was last transferred on the I2C bus of a sensor, or on all of them
+    /// One sensor, at a target of a known range; the node answers with CALIBRATION.
+    calibrate_offset = 9,
+    calibrate_crosstalk = 10,
 };
 struct Command {
     CommandCode code = CommandCode::start;
     std::uint8_t sensor = kAllSensors;
-    std::uint16_t argument = 0;  ///< set_rate: inter-measurement period in ms; identify: seconds; else 0
+    std::uint16_t argument = 0;  ///< set_rate: inter-measurement period in ms; identify: seconds;
+                                 ///< calibrate_...: range of the target in mm; else 0
     std::uint8_t sequence = 0;
     friend constexpr bool operator==(const Command&, const Command&) = default;
 };
 
+enum class CalibrationQuantity : std::uint8_t { offset = 0, crosstalk = 1 };
+enum class CalibrationOutcome : std::uint8_t {
+    under_way = 0,
+    done = 1,
+    refused = 2,         ///< no such sensor, no such target, or another calibration is under way on the node
+    not_brought_up = 3,  ///< the sensor could not be initialised: SENSOR_HEALTH says why
+    device_failed = 4,   ///< it failed in mid-calibration
+    no_result = 5,       ///< no range for 2 s
+    no_target = 6,       ///< too many ranges without a valid result
+    out_of_range = 7,    ///< the offset does not fit the device's 13 bits
+};
+/// The answer to a command to calibrate: at once `under_way` or `refused`, and `under_way` is followed by its
+/// end. The sensor itself is brought up anew as it was configured: nothing of a calibration stays on the
+/// node.
+struct Calibration {
+    std::uint8_t sensor = 0;
+    CalibrationQuantity quantity = CalibrationQuantity::offset;
+    CalibrationOutcome outcome = CalibrationOutcome::under_way;
+    std::uint8_t sequence = 0;           ///< of the command
+    std::int16_t offset_quarter_mm = 0;  ///< of `done`; 0 unless it was what was sought
+    std::uint16_t crosstalk_raw = 0;     ///< of `done`: 7.9 kcps per SPAD; 0 unless it was what was sought
+    friend constexpr bool operator==(const Calibration&, const Calibration&) = default;
+};
+
 using Message = std::variant<Range, RangeAux, RangeFd, Heartbeat, NodeInfo, SensorHealth, Sync, FollowUp,
-                             SyncReport, JointState, Mark, Command, Reflex, BlackBox>;
+                             SyncReport, JointState, Mark, Command, Reflex, BlackBox, Calibration>;
 
 }  // namespace octoskin::wire

@@ -93,6 +93,22 @@ inline constexpr auto kCommandCode = std::to_array<Named<CommandCode>>({
     {CommandCode::reset, "reset"},
     {CommandCode::send_info, "send_info"},
     {CommandCode::send_black_box, "send_black_box"},
+    {CommandCode::calibrate_offset, "calibrate_offset"},
+    {CommandCode::calibrate_crosstalk, "calibrate_crosstalk"},
+});
+inline constexpr auto kCalibrationQuantity = std::to_array<Named<CalibrationQuantity>>({
+    {CalibrationQuantity::offset, "offset"},
+    {CalibrationQuantity::crosstalk, "crosstalk"},
+});
+inline constexpr auto kCalibrationOutcome = std::to_array<Named<CalibrationOutcome>>({
+    {CalibrationOutcome::under_way, "under_way"},
+    {CalibrationOutcome::done, "done"},
+    {CalibrationOutcome::refused, "refused"},
+    {CalibrationOutcome::not_brought_up, "not_brought_up"},
+    {CalibrationOutcome::device_failed, "device_failed"},
+    {CalibrationOutcome::no_result, "no_result"},
+    {CalibrationOutcome::no_target, "no_target"},
+    {CalibrationOutcome::out_of_range, "out_of_range"},
 });
 }  // namespace tables
 
@@ -120,6 +136,12 @@ inline constexpr auto kCommandCode = std::to_array<Named<CommandCode>>({
 }
 [[nodiscard]] constexpr std::span<const Named<CommandCode>> values_of(CommandCode) {
     return tables::kCommandCode;
+}
+[[nodiscard]] constexpr std::span<const Named<CalibrationQuantity>> values_of(CalibrationQuantity) {
+    return tables::kCalibrationQuantity;
+}
+[[nodiscard]] constexpr std::span<const Named<CalibrationOutcome>> values_of(CalibrationOutcome) {
+    return tables::kCalibrationOutcome;
 }
 
 template <class E>

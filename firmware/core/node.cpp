@@ -88,6 +88,7 @@ void Node::poll(NodeTime now) {
     count_given_up();
     advance_buses(now);
     collect_readings(now);
+    collect_calibration();
     note_health_changes(now);
     end_what_has_expired(now);
     blink(now);
@@ -111,6 +112,11 @@ void Node::collect_readings(NodeTime now) {
         watch_reflex(i, *reading, now);
         queue_.push(i, *reading, now);
     }
+}
+
+void Node::collect_calibration() {
+    if (!calibration_.is_under_way()) return;
+    if (const auto result = sensors_[calibration_.sensor()]->take_calibration()) calibration_.end(*result);
 }
 
 void Node::watch_reflex(std::uint8_t sensor, const Reading& reading, NodeTime now) {

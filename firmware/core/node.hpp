@@ -16,6 +16,7 @@
 #include "firmware/core/black_box.hpp"
 #include "firmware/core/bus_off_recovery.hpp"
 #include "firmware/core/bus_worker.hpp"
+#include "firmware/core/calibration.hpp"
 #include "firmware/core/data_ready_hint.hpp"
 #include "firmware/core/policy.hpp"
 #include "firmware/core/ports.hpp"
@@ -111,6 +112,7 @@ class Node {
     [[nodiscard]] DataReadyHint data_ready_hint(std::uint8_t bus) const noexcept;
     void advance_buses(NodeTime now);
     void collect_readings(NodeTime now);
+    void collect_calibration();
     void watch_reflex(std::uint8_t sensor, const Reading& reading, NodeTime now);
     void note_health_changes(NodeTime now);
     void end_what_has_expired(NodeTime now);
@@ -136,6 +138,7 @@ class Node {
     void on_command(const wire::Command& command, NodeTime now);
     [[nodiscard]] bool perform_in_safe_mode(const wire::Command& command, NodeTime now);
     [[nodiscard]] bool perform(const wire::Command& command, NodeTime now);
+    [[nodiscard]] bool calibrate(const wire::Command& command, NodeTime now);
     [[nodiscard]] bool request_black_box(const Selection& selection, NodeTime now);
     [[nodiscard]] bool set_rate(const Selection& selection, std::uint16_t period_ms, NodeTime now);
     [[nodiscard]] Selection selected(std::uint8_t sensor) const noexcept;
@@ -178,6 +181,7 @@ class Node {
     Announcer announcer_;
     TokenBucket tokens_;
     BlackBox black_box_;
+    CalibrationDialogue calibration_;
     BusOffRecovery bus_off_;
     CanState can_state_ = CanState::active;
     RunRecord run_;

@@ -88,6 +88,9 @@ bool Node::perform_in_safe_mode(const wire::Command& command, NodeTime now) {
         case wire::CommandCode::reinitialise_sensor:
         case wire::CommandCode::send_black_box:
             return false;
+        case wire::CommandCode::calibrate_offset:
+        case wire::CommandCode::calibrate_crosstalk:
+            return perform(command, now);  // which refuses: no sensor is at work
     }
     return false;
 }
@@ -123,8 +126,24 @@ bool Node::perform(const wire::Command& command, NodeTime now) {
             return true;
         case wire::CommandCode::send_black_box:
             return request_black_box(selection, now);
+        case wire::CommandCode::calibrate_offset:
+        case wire::CommandCode::calibrate_crosstalk:
+            return calibrate(command, now);
     }
     return false;
+}
+
+/// One sensor, while no other is: a person holds the target.
+bool Node::calibrate(const wire::Command& command, NodeTime now) {
+    if (command.sensor == wire::kAllSensors) return false;
+    const bool is_possible = command.sensor < sensor_count_ && !calibration_.is_under_way() &&
+                             sensors_[command.sensor]->order_calibration(order_of(command), now);
+    if (is_possible) {
+        calibration_.accept(command);
+    } else {
+        calibration_.refuse(command);
+    }
+    return is_possible;
 }
 
 bool Node::request_black_box(const Selection& selection, NodeTime now) {

@@ -76,6 +76,9 @@ bool Node::send_most_urgent(NodeTime now) {
     } else if (queue_.aux()) {
         if (!send(*queue_.aux())) return false;
         queue_.pop_aux();
+    } else if (const auto answer = calibration_.due()) {
+        if (!send(*answer)) return false;
+        calibration_.sent();
     } else if (const auto piece = black_box_.due()) {
         if (!send(*piece)) return false;
         black_box_.sent(now);

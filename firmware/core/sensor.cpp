@@ -8,6 +8,7 @@ namespace octoskin::node {
 
 namespace {
 
+using wire::CalibrationOutcome;
 using wire::SensorFault;
 using wire::SensorState;
 
@@ -45,7 +46,8 @@ Sensor::Sensor(const SensorConfig& config, const SensorSurroundings& surrounding
       device_(surroundings.bus, options),
       bring_up_(device_, surroundings.default_address, surroundings.xshut, config_, policy),
       ranging_(device_, config_, rules, policy),
-      recovery_(policy) {
+      recovery_(policy),
+      calibration_(device_) {
     begin_bring_up(now);
 }
 
@@ -60,7 +62,15 @@ void Sensor::order_stop(NodeTime now) {
 }
 
 void Sensor::order_reinitialise(NodeTime now) {
-    if (mode_ != Mode::bringing_up) reinitialise_ordered_ = now;
+    // Both end with a bring-up anyway.
+    if (mode_ != Mode::bringing_up && mode_ != Mode::calibrating) reinitialise_ordered_ = now;
+}
+
+bool Sensor::order_calibration(const CalibrationOrder& order, NodeTime now) {
+    if (calibration_ordered_ || !vl53l1x::CalibrationRun::is_target_supported(order.target_mm)) return false;
+    order_reinitialise(now);
+    calibration_ordered_ = order;
+    return true;
 }
 
 bool Sensor::order_period(std::optional<Microseconds> period, NodeTime now) {
@@ -78,6 +88,8 @@ std::optional<NodeTime> Sensor::due() const noexcept {
     switch (mode_) {
         case Mode::bringing_up:
             return bring_up_.due();
+        case Mode::calibrating:
+            return calibration_due_;
         case Mode::ranging:
             return ranging_.due();
         case Mode::awaiting_recovery:
@@ -95,7 +107,7 @@ bool Sensor::is_reinitialisation_due() const noexcept {
 BusUse Sensor::advance(NodeTime now) {
     if (is_reinitialisation_due()) {
         recovery_.reset();
-        ++counts_.restarts;
+        if (!calibration_ordered_) ++counts_.restarts;
         state_ = SensorState::starting;
         begin_bring_up(now);
         return BusUse::releases;
@@ -103,6 +115,8 @@ BusUse Sensor::advance(NodeTime now) {
     switch (mode_) {
         case Mode::bringing_up:
             return advance_bring_up(now);
+        case Mode::calibrating:
+            return advance_calibrating(now);
         case Mode::ranging:
             return advance_ranging(now);
         case Mode::awaiting_recovery:
@@ -129,9 +143,14 @@ BusUse Sensor::advance_bring_up(NodeTime now) {
             break;
         case BringUp::Outcome::done:
             ranging_.on_configured();
-            range_or_rest(now);
+            if (calibration_ordered_) {
+                begin_calibration(now);
+            } else {
+                range_or_rest(now);
+            }
             break;
         case BringUp::Outcome::failed:
+            if (calibration_ordered_) end_calibration({.outcome = CalibrationOutcome::not_brought_up});
             on_failure(bring_up_.fault(), false, now);
             break;
     }
@@ -148,6 +167,36 @@ void Sensor::range_or_rest(NodeTime now) {
         is_settled_ = true;
         mode_ = Mode::stopped;
     }
+}
+
+void Sensor::begin_calibration(NodeTime now) {
+    if (calibration_ordered_->quantity == wire::CalibrationQuantity::offset) {
+        calibration_.begin_offset(calibration_ordered_->target_mm);
+    } else {
+        calibration_.begin_crosstalk(calibration_ordered_->target_mm);
+    }
+    calibration_due_ = now;
+    state_ = SensorState::stopped;
+    mode_ = Mode::calibrating;
+}
+
+void Sensor::end_calibration(const CalibrationResult& result) {
+    calibration_result_ = result;
+    calibration_ordered_.reset();
+}
+
+BusUse Sensor::advance_calibrating(NodeTime now) {
+    const vl53l1x::Progress progress = calibration_.poll(now);
+    if (progress == vl53l1x::Progress::busy) {
+        const auto wake = calibration_.wake_time();
+        if (!wake || is_reached(*wake, now)) return BusUse::keeps;
+        calibration_due_ = *wake;
+        return BusUse::releases;
+    }
+    end_calibration(result_of(calibration_, progress));
+    state_ = SensorState::starting;
+    begin_bring_up(now);
+    return BusUse::releases;
 }
 
 BusUse Sensor::advance_ranging(NodeTime now) {
@@ -259,6 +308,10 @@ bool Sensor::is_degraded() const noexcept {
 
 std::optional<Reading> Sensor::take_reading() noexcept {
     return std::exchange(reading_, std::nullopt);
+}
+
+std::optional<CalibrationResult> Sensor::take_calibration() noexcept {
+    return std::exchange(calibration_result_, std::nullopt);
 }
 
 bool Sensor::take_failure() noexcept {

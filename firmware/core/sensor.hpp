@@ -10,12 +10,14 @@
 #include "common/wire/messages.hpp"
 #include "firmware/core/bring_up.hpp"
 #include "firmware/core/bus_use.hpp"
+#include "firmware/core/calibration.hpp"
 #include "firmware/core/default_address.hpp"
 #include "firmware/core/policy.hpp"
 #include "firmware/core/ports.hpp"
 #include "firmware/core/ranging.hpp"
 #include "firmware/core/reading.hpp"
 #include "firmware/core/recovery.hpp"
+#include "firmware/drivers/vl53l1x/calibration.hpp"
 #include "firmware/drivers/vl53l1x/device.hpp"
 
 namespace octoskin::node {
@@ -48,6 +50,9 @@ class Sensor {
     void order_start(NodeTime now);
     void order_stop(NodeTime now);
     void order_reinitialise(NodeTime now);
+    /// Brings it up anew, calibrates it, and brings it up once more, as configured: nothing of it stays.
+    /// Returns whether it is going to; not for a target that the driver refuses, nor while one is under way.
+    [[nodiscard]] bool order_calibration(const CalibrationOrder& order, NodeTime now);
     /// Empty: the configured period. Returns whether the period fits the timing budget; if not, nothing is
     /// changed.
     [[nodiscard]] bool order_period(std::optional<Microseconds> period, NodeTime now);
@@ -65,6 +70,8 @@ class Sensor {
     [[nodiscard]] BusUse advance(NodeTime now);
     /// The reading that the last step accepted; told once.
     [[nodiscard]] std::optional<Reading> take_reading() noexcept;
+    /// How the calibration ended that was ordered; told once.
+    [[nodiscard]] std::optional<CalibrationResult> take_calibration() noexcept;
     /// Whether it failed, having worked before or for the first time; told once.
     [[nodiscard]] bool take_failure() noexcept;
     /// Whether the last failure may be the whole bus's; told once.
@@ -94,10 +101,13 @@ class Sensor {
     [[nodiscard]] std::uint16_t i2c_error_count() const noexcept { return device_.i2c_error_count(); }
 
   private:
-    enum class Mode : std::uint8_t { bringing_up, ranging, stopped, awaiting_recovery };
+    enum class Mode : std::uint8_t { bringing_up, calibrating, ranging, stopped, awaiting_recovery };
 
     [[nodiscard]] BusUse advance_bring_up(NodeTime now);
+    [[nodiscard]] BusUse advance_calibrating(NodeTime now);
     [[nodiscard]] BusUse advance_ranging(NodeTime now);
+    void begin_calibration(NodeTime now);
+    void end_calibration(const CalibrationResult& result);
     void begin_bring_up(NodeTime now);
     void range_or_rest(NodeTime now);
     void on_reading();
@@ -114,6 +124,11 @@ class Sensor {
     BringUp bring_up_;
     Ranging ranging_;
     Recovery recovery_;
+
+    vl53l1x::CalibrationRun calibration_;
+    std::optional<CalibrationOrder> calibration_ordered_;
+    std::optional<CalibrationResult> calibration_result_;
+    NodeTime calibration_due_;
 
     Mode mode_ = Mode::bringing_up;
     RecoveryPlan plan_;

@@ -53,6 +53,8 @@ Scale scale_of(Unit unit) {
             return {1e-6, "rad"};
         case Unit::permille:
             return {0.1, "%"};
+        case Unit::kcps_by_512:
+            return {0.001953125, "kcps"};
     }
     return {};
 }
@@ -66,6 +68,7 @@ bool is_sent_by(NodeKind kind, FrameType type) {
         case FrameType::range_aux:
         case FrameType::sensor_health:
         case FrameType::reflex:
+        case FrameType::calibration:
         case FrameType::black_box:
             return kind == NodeKind::sensor_board;
         case FrameType::heartbeat:

@@ -203,6 +203,9 @@ std::vector<Signal> fields_of(FrameType type) {
         case FrameType::reflex:
             list(signals, Reflex{});
             break;
+        case FrameType::calibration:
+            list(signals, Calibration{});
+            break;
         case FrameType::black_box:
             list(signals, BlackBox{});
             break;

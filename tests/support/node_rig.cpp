@@ -44,10 +44,12 @@ NodeRig::Distances NodeRig::distances_of(std::size_t sensor) const {
 }
 
 NodeRig::FittedSensor::FittedSensor(const SensorSetup& setup, const Distances& distances)
-    : model(setup.part, [this, distances](std::uint32_t, sim::SimTime middle, const Roi& roi) {
+    : model(setup.part, [this, distances, target = setup.target](std::uint32_t, sim::SimTime middle,
+                                                                 const Roi& roi) {
           const auto index = static_cast<std::uint32_t>(truth.size()) % distances.count;
           const auto range_mm = static_cast<std::uint16_t>(distances.first_mm + distances.step_mm * index);
           truth.push_back({.range_mm = range_mm, .window_middle = middle, .roi = roi});
+          if (target) return *target;
           return sim::RangingReturn{
               .range_m = range_mm * 1e-3, .sigma_m = 0.005, .peak_signal_mcps = 10.0, .ambient_mcps = 0.5};
       }) {

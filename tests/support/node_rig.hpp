@@ -29,6 +29,8 @@ struct SensorSetup {
     sim::SensorPart part;
     sim::SensorFaults faults;
     bool is_fitted = true;
+    /// What it sees, if it is always the same; else each range is another.
+    std::optional<sim::RangingReturn> target{};
 };
 
 /// A range as the sensor truly took it. Its distance in millimetres tells it from its neighbours in time, and

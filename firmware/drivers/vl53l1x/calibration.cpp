@@ -42,7 +42,7 @@ void CalibrationRun::begin(Quantity quantity, std::uint16_t target_mm) {
     offset_quarter_mm_ = 0;
     crosstalk_raw_ = 0;
     progress_ = Progress::busy;
-    if (target_mm == 0 || target_mm > kTargetMax_mm) {
+    if (!is_target_supported(target_mm)) {
         error_ = CalibrationError::unsupported_target;
         progress_ = Progress::failed;
         return;

@@ -32,6 +32,10 @@ class CalibrationRun {
 
     explicit CalibrationRun(Device& device) noexcept : device_(device) {}
 
+    [[nodiscard]] static constexpr bool is_target_supported(std::uint16_t target_mm) noexcept {
+        return target_mm > 0 && target_mm <= kTargetMax_mm;
+    }
+
     /// UM2510: a grey target (17 %) at 140 mm, in the dark. `target_mm` from the sensor's front.
     void begin_offset(std::uint16_t target_mm);
     /// UM2510: a grey target (17 %) where ranges begin to fall short, in the dark. Crosstalk that lengthens
@@ -41,6 +45,10 @@ class CalibrationRun {
     /// As a device's. Poll the device through this only.
     [[nodiscard]] Progress poll(NodeTime now);
     [[nodiscard]] CalibrationError error() const noexcept { return error_; }
+    /// The earliest time at which `poll` has something to do; empty if as soon as the bus is free.
+    [[nodiscard]] std::optional<NodeTime> wake_time() const noexcept {
+        return resume_at_ ? resume_at_ : device_.wake_time();
+    }
 
     /// After `done`; the other one is 0.
     [[nodiscard]] std::int16_t offset_quarter_mm() const noexcept { return offset_quarter_mm_; }

@@ -246,6 +246,11 @@ CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::BlackBox&, FrameOut
     return FrameReason::for_people;
 }
 
+/// `octoskin calibrate` waits for it.
+CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::Calibration&, FrameOutcome&) {
+    return FrameReason::for_people;
+}
+
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::JointState& message,
                                    FrameOutcome& outcome) {
     const auto now_known = now();

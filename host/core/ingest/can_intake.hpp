@@ -80,6 +80,7 @@ class CanIntake {
     Rejection on(wire::NodeId node, const wire::Command& message, FrameOutcome& outcome);
     Rejection on(wire::NodeId node, const wire::Reflex& message, FrameOutcome& outcome);
     Rejection on(wire::NodeId node, const wire::BlackBox& message, FrameOutcome& outcome);
+    Rejection on(wire::NodeId node, const wire::Calibration& message, FrameOutcome& outcome);
 
     /// In host time, if the node is usable and its clock known.
     [[nodiscard]] Result<MappedTime, ReadingReason> capture_time(wire::NodeId node,

@@ -31,8 +31,8 @@ enum class FrameReason : std::uint8_t {
     not_joint_source,    ///< joint states of a node that the rig does not name for it
     joint_repeated,      ///< a joint frame that the sample has already
     joint_no_host_time,  ///< a joint frame while "now" is unknown
-    for_people,          ///< a piece of a node's black box: nothing for the map in it
-    mark_ignored,        ///< a MARK where the map does not wait for one, or over 1 s from "now"
+    for_people,    ///< a piece of a node's black box, or a calibration's answer: nothing for the map in it
+    mark_ignored,  ///< a MARK where the map does not wait for one, or over 1 s from "now"
 };
 [[nodiscard]] constexpr std::array<const char*, 18> names_of(FrameReason) {
     return {"foreign_format",     "unknown_type",  "wrong_length", "wrong_crc",        "wrong_version",

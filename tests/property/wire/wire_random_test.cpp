@@ -45,7 +45,7 @@ TEST(WireRandom, random_payloads_pass_the_checksum_at_2_to_the_minus_its_width) 
         std::array<std::size_t, 3> trials{};
         std::array<std::size_t, 3> passed{};
         const auto cases = all_message_cases();
-        for (int i = 0; i < 500'000; ++i) {
+        for (int i = 0; i < 520'000; ++i) {
             const MessageCase& layout = cases[random.index_below(cases.size())];
             CanFrame frame = encode(layout.message, layout.node_id);
             random.fill(std::span(frame.data).first(frame.payload_len));
@@ -66,7 +66,7 @@ TEST(WireRandom, frames_with_4_or_more_flipped_bits_pass_at_most_at_2_to_the_min
     std::array<std::size_t, 3> trials{};
     std::array<std::size_t, 3> accepted{};
     const auto cases = all_message_cases();
-    for (int i = 0; i < 500'000; ++i) {
+    for (int i = 0; i < 520'000; ++i) {
         const MessageCase& layout = cases[random.index_below(cases.size())];
         CanFrame frame = encode(layout.message, layout.node_id);
         const CanFrame good = frame;

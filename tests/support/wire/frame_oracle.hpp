@@ -42,7 +42,7 @@ inline void sign(std::uint32_t can_id, Payload& payload, std::size_t checksum_le
 
 /// Bytes of the checksum of each type of frame, by docs/protocol.md; 0 for types that do not exist.
 inline std::size_t checksum_len_of(std::uint32_t can_id) {
-    constexpr std::uint8_t kLengths[32] = {2, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 1, 2};
+    constexpr std::uint8_t kLengths[32] = {2, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 1, 2, 1};
     const std::uint32_t type = (can_id >> 6U) & 31U;
     return type == 31 ? 1 : kLengths[type];
 }

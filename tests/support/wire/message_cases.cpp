@@ -211,6 +211,35 @@ MessageCase black_box_case() {
             {}};
 }
 
+MessageCase calibration_case() {
+    const Calibration calibration{.sensor = 33,
+                                  .quantity = CalibrationQuantity::crosstalk,
+                                  .outcome = CalibrationOutcome::no_target,
+                                  .sequence = 129,
+                                  .offset_quarter_mm = -1234,
+                                  .crosstalk_raw = 0x8421};
+    return {"CALIBRATION",
+            calibration,
+            2,
+            0x342,
+            false,
+            8,
+            1,
+            {valid_below(63, plain("sensor", 3, 6, &Calibration::sensor)),
+             plain("quantity", 9, 1, &Calibration::quantity),
+             valid_below(8, plain("outcome", 10, 4, &Calibration::outcome)),
+             plain("sequence", 16, 8, &Calibration::sequence),
+             field<Calibration>("offset", 24, 16,
+                                [](Calibration& c, std::uint64_t raw) {
+                                    const auto value = static_cast<int>(raw);
+                                    c.offset_quarter_mm =
+                                        static_cast<std::int16_t>(raw < 0x8000U ? value : value - 0x1'0000);
+                                }),
+             plain("crosstalk", 40, 16, &Calibration::crosstalk_raw)},
+            {},
+            {{14, 2}}};
+}
+
 MessageCase heartbeat_case() {
     const Heartbeat beat{.state = NodeState::safe,
                          .reset_cause = ResetCause::watchdog,
@@ -379,7 +408,7 @@ void add_host_cases(std::vector<MessageCase>& cases) {
          {},
          {}});
     FieldCase code = plain("code", 3, 5, &Command::code);
-    code.is_valid = [](std::uint64_t raw) { return raw >= 1 && raw <= 8; };
+    code.is_valid = [](std::uint64_t raw) { return raw >= 1 && raw <= 10; };
     cases.push_back(
         {"COMMAND",
          Command{CommandCode::set_rate, 62, 33, 129},
@@ -407,6 +436,7 @@ std::vector<MessageCase> all_message_cases() {
     add_host_cases(cases);
     cases.push_back(reflex_case());
     cases.push_back(black_box_case());
+    cases.push_back(calibration_case());
     return cases;
 }
 

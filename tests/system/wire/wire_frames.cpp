@@ -60,6 +60,14 @@ json expected(const BlackBox& m) {
     for (std::size_t i = m.bytes.size(); i-- > 0;) bytes = bytes * 256 + m.bytes[i];
     return {{"bus", m.bus}, {"dump", m.dump}, {"index", m.index}, {"bytes", bytes}};
 }
+json expected(const Calibration& m) {
+    return {{"sensor", m.sensor},
+            {"quantity", choice(m.quantity)},
+            {"outcome", choice(m.outcome)},
+            {"sequence", m.sequence},
+            {"offset", m.offset_quarter_mm / 4.0},
+            {"crosstalk", m.crosstalk_raw / 512.0}};
+}
 json expected(const RangeAux& m) {
     return {{"sensor", m.sensor},
             {"sequence", m.sequence},

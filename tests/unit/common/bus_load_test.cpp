@@ -186,7 +186,7 @@ TEST(BusLoad, of_nothing_is_nothing) {
 
 TEST(BusLoadDeathTest, asserts_on_a_type_that_is_not_assigned) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
-    const std::array<Traffic, 1> unassigned = {{{static_cast<FrameType>(13), 8, 1.0}}};
+    const std::array<Traffic, 1> unassigned = {{{static_cast<FrameType>(14), 8, 1.0}}};
     EXPECT_DEATH(static_cast<void>(bus_load(unassigned, k1M)), "spec != nullptr");
     EXPECT_DEATH(static_cast<void>(worst_case_bits_classical(9)), "payload_len");
     EXPECT_DEATH(static_cast<void>(worst_case_bits_fd(9)), "is_fd_length");

@@ -70,7 +70,7 @@ TEST(CodecEncode, fd_readings_beyond_the_count_are_not_sent) {
 }
 
 TEST(CodecEncode, every_message_goes_under_its_own_type) {
-    const std::array<std::pair<Message, FrameType>, 14> types = {{{Range{}, FrameType::range},
+    const std::array<std::pair<Message, FrameType>, 15> types = {{{Range{}, FrameType::range},
                                                                   {RangeAux{}, FrameType::range_aux},
                                                                   {RangeFd{}, FrameType::range_fd},
                                                                   {Heartbeat{}, FrameType::heartbeat},
@@ -83,7 +83,8 @@ TEST(CodecEncode, every_message_goes_under_its_own_type) {
                                                                   {Mark{}, FrameType::mark},
                                                                   {Command{}, FrameType::command},
                                                                   {Reflex{}, FrameType::reflex},
-                                                                  {BlackBox{}, FrameType::black_box}}};
+                                                                  {BlackBox{}, FrameType::black_box},
+                                                                  {Calibration{}, FrameType::calibration}}};
     for (const auto& [message, type] : types) {
         EXPECT_EQ(type_of(message), type) << message.index();
     }

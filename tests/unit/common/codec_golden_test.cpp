@@ -19,7 +19,7 @@ struct Golden {
     const char* frame;  ///< identifier#payload, hexadecimal
 };
 
-constexpr std::array<Golden, 24> kGolden = {{
+constexpr std::array<Golden, 25> kGolden = {{
     {"RANGE", "202#092B49934AADAA17"},
     {"RANGE_AUX", "302#095500040800AE23"},
     {"HEARTBEAT", "17E#998AEFBE3412B840"},
@@ -48,6 +48,7 @@ constexpr std::array<Golden, 24> kGolden = {{
     {"COMMAND", "0FF#193E2100817FFA"},
     {"REFLEX", "002#094B9AD4AA0ABC52"},
     {"BLACK_BOX", "7C2#3196010203040586"},
+    {"CALIBRATION", "342#091B812EFB21843C"},
 }};
 
 std::string text_of(const wire::CanFrame& frame) {

@@ -54,6 +54,7 @@ TypeRule rule_of(unsigned type) {
         case 10:
         case 11:
         case 12:
+        case 13:
         case 31:
             return {1, 62, false, {8}};
         case 7:

@@ -36,7 +36,7 @@ TEST(FrameType, each_assigned_type_has_one_specification_in_order_of_priority) {
         EXPECT_EQ(static_cast<std::size_t>(kFrameSpecs.at(i).type), i + 1 < kFrameSpecs.size() ? i : 31);
         EXPECT_EQ(frame_spec(kFrameSpecs.at(i).type), &kFrameSpecs.at(i));
     }
-    for (unsigned type = 13; type <= 30; ++type) {
+    for (unsigned type = 14; type <= 30; ++type) {
         EXPECT_EQ(frame_spec(static_cast<FrameType>(type)), nullptr) << type;
     }
 }
@@ -159,7 +159,18 @@ TEST(Names, are_those_of_the_protocol) {
                                {5, "identify"},
                                {6, "reset"},
                                {7, "send_info"},
-                               {8, "send_black_box"}});
+                               {8, "send_black_box"},
+                               {9, "calibrate_offset"},
+                               {10, "calibrate_crosstalk"}});
+    expect_names<CalibrationQuantity>({{0, "offset"}, {1, "crosstalk"}});
+    expect_names<CalibrationOutcome>({{0, "under_way"},
+                                      {1, "done"},
+                                      {2, "refused"},
+                                      {3, "not_brought_up"},
+                                      {4, "device_failed"},
+                                      {5, "no_result"},
+                                      {6, "no_target"},
+                                      {7, "out_of_range"}});
 }
 
 TEST(Bits, fields_follow_one_another_lowest_bit_first_across_byte_borders) {

@@ -1,0 +1,65 @@
+#include "firmware/core/calibration.hpp"
+
+namespace octoskin::node {
+
+namespace {
+
+using wire::CalibrationOutcome;
+
+CalibrationOutcome outcome_of(vl53l1x::CalibrationError error) noexcept {
+    switch (error) {
+        case vl53l1x::CalibrationError::device:
+            return CalibrationOutcome::device_failed;
+        case vl53l1x::CalibrationError::unsupported_target:
+            return CalibrationOutcome::refused;
+        case vl53l1x::CalibrationError::no_result:
+            return CalibrationOutcome::no_result;
+        case vl53l1x::CalibrationError::no_target:
+            return CalibrationOutcome::no_target;
+        case vl53l1x::CalibrationError::out_of_range:
+            return CalibrationOutcome::out_of_range;
+    }
+    return CalibrationOutcome::device_failed;
+}
+
+wire::Calibration answer_to(const wire::Command& command, CalibrationOutcome outcome) noexcept {
+    return {.sensor = command.sensor,
+            .quantity = order_of(command).quantity,
+            .outcome = outcome,
+            .sequence = command.sequence};
+}
+
+}  // namespace
+
+CalibrationResult result_of(const vl53l1x::CalibrationRun& run, vl53l1x::Progress progress) noexcept {
+    if (progress != vl53l1x::Progress::done) return {.outcome = outcome_of(run.error())};
+    return {.outcome = CalibrationOutcome::done,
+            .offset_quarter_mm = run.offset_quarter_mm(),
+            .crosstalk_raw = run.crosstalk_raw()};
+}
+
+CalibrationOrder order_of(const wire::Command& command) noexcept {
+    const bool is_offset = command.code == wire::CommandCode::calibrate_offset;
+    return {.quantity = is_offset ? wire::CalibrationQuantity::offset : wire::CalibrationQuantity::crosstalk,
+            .target_mm = command.argument};
+}
+
+void CalibrationDialogue::accept(const wire::Command& command) noexcept {
+    under_way_ = answer_to(command, CalibrationOutcome::under_way);
+    answer_ = under_way_;
+    ended_.reset();
+}
+
+void CalibrationDialogue::refuse(const wire::Command& command) noexcept {
+    answer_ = answer_to(command, CalibrationOutcome::refused);
+}
+
+void CalibrationDialogue::end(const CalibrationResult& result) noexcept {
+    ended_ = under_way_;
+    ended_->outcome = result.outcome;
+    ended_->offset_quarter_mm = result.offset_quarter_mm;
+    ended_->crosstalk_raw = result.crosstalk_raw;
+    under_way_.reset();
+}
+
+}  // namespace octoskin::node

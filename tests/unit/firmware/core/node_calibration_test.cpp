@@ -1,0 +1,194 @@
+// A sensor is calibrated by command while its neighbours range; the node answers, keeps nothing of it, and
+// with what it found as configuration the sensor ranges right. The modelled optics are the oracle.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <vector>
+
+#include "tests/support/node_rig.hpp"
+
+namespace octoskin::node {
+namespace {
+
+using test::fleet_config;
+using test::NodeRig;
+using test::SensorSetup;
+using wire::Calibration;
+using wire::CalibrationOutcome;
+using wire::CalibrationQuantity;
+using wire::Command;
+using wire::CommandCode;
+using wire::SensorState;
+
+constexpr Microseconds kSecond{1'000'000};
+constexpr wire::NodeId kOwnId = 5;
+constexpr std::uint8_t kBad = 1;  ///< the sensor to be calibrated, one of four on two buses
+
+sim::RangingReturn grey_target(double range_m, double signal_mcps) {
+    return {.range_m = range_m, .sigma_m = 0.003, .peak_signal_mcps = signal_mcps, .ambient_mcps = 0.1};
+}
+std::vector<SensorSetup> setups_with(const sim::RangingReturn& target, double crosstalk_kcps = 0.0) {
+    std::vector<SensorSetup> setups(4);
+    setups[kBad].part.crosstalk_kcps = crosstalk_kcps;
+    setups[kBad].target = target;
+    return setups;
+}
+void command(NodeRig& rig, CommandCode code, std::uint8_t sensor, std::uint16_t argument,
+             std::uint8_t sequence = 77) {
+    rig.send_from_host(Command{.code = code, .sensor = sensor, .argument = argument, .sequence = sequence},
+                       kOwnId);
+}
+std::vector<CalibrationOutcome> outcomes(const NodeRig& rig) {
+    std::vector<CalibrationOutcome> all;
+    for (const Calibration& said : rig.said_of<Calibration>()) all.push_back(said.outcome);
+    return all;
+}
+int last_range_mm(const NodeRig& rig) {
+    const auto readings = rig.readings_of(kBad);
+    return readings.empty() ? -1 : readings.back().reading.range_mm;
+}
+
+using enum CalibrationOutcome;
+
+// Reads 30 mm too far: found to a quarter of a millimetre.
+TEST(NodeCalibration, finds_an_offset_with_which_the_sensor_then_ranges_right) {
+    NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.170, 8.0)));
+    rig.run_for(1 * kSecond);
+    EXPECT_EQ(last_range_mm(rig), 170);
+    const std::size_t before = rig.readings_of(0).size();
+    command(rig, CommandCode::calibrate_offset, kBad, 140);
+    rig.run_for(4 * kSecond);
+    const auto said = rig.said_of<Calibration>();
+    ASSERT_EQ(outcomes(rig), (std::vector{under_way, done}));
+    const Calibration expected{.sensor = kBad,
+                               .quantity = CalibrationQuantity::offset,
+                               .outcome = done,
+                               .sequence = 77,
+                               .offset_quarter_mm = 4 * (13 - 30),
+                               .crosstalk_raw = 0};
+    EXPECT_EQ(said[1], expected);
+    EXPECT_LT((rig.times_of<Calibration>()[0].us - 1'000'000) / 1'000, 20) << "answered at once";
+    for (const std::uint8_t neighbour : std::vector<std::uint8_t>{0, 2, 3})
+        EXPECT_GE(rig.readings_of(neighbour).size(), before + 4 * 30 - 2) << int{neighbour};
+    EXPECT_EQ(rig.last_health(kBad)->state, SensorState::ranging);
+    EXPECT_EQ(last_range_mm(rig), 170) << "as configured: nothing stays on the node";
+    EXPECT_EQ(rig.node().counts().sensor_restarts, 0U);
+    EXPECT_EQ(rig.node().counts().rx_rejected, 0U);
+
+    NodeConfig mended = fleet_config(4, 2);
+    mended.sensors[kBad].has_offset = true;
+    mended.sensors[kBad].offset_quarter_mm = said[1].offset_quarter_mm;
+    NodeRig again(mended, setups_with(grey_target(0.170, 8.0)));
+    again.run_for(1 * kSecond);
+    EXPECT_EQ(last_range_mm(again), 140);
+}
+
+TEST(NodeCalibration, finds_a_crosstalk_with_which_the_sensor_then_ranges_right) {
+    NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.600, 4.0), 4.0));
+    rig.run_for(1 * kSecond);
+    EXPECT_LT(last_range_mm(rig), 500);
+    command(rig, CommandCode::calibrate_crosstalk, kBad, 600);
+    rig.run_for(4 * kSecond);
+    ASSERT_EQ(outcomes(rig), (std::vector{under_way, done}));
+    const Calibration found = rig.said_of<Calibration>()[1];
+    EXPECT_EQ(found.quantity, CalibrationQuantity::crosstalk);
+    EXPECT_NEAR(found.crosstalk_raw, 4.0 * 512, 18.0);
+    EXPECT_EQ(found.offset_quarter_mm, 0);
+
+    NodeConfig mended = fleet_config(4, 2);
+    mended.sensors[kBad].crosstalk_raw = found.crosstalk_raw;
+    NodeRig again(mended, setups_with(grey_target(0.600, 4.0), 4.0));
+    again.run_for(1 * kSecond);
+    EXPECT_NEAR(last_range_mm(again), 600, 1);
+}
+
+TEST(NodeCalibration, refuses_what_it_cannot_do_and_says_so) {
+    NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.140, 8.0)));
+    rig.run_for(1 * kSecond);
+    command(rig, CommandCode::calibrate_offset, 4, 140, 1);  // there are four
+    rig.run_for(kSecond / 10);
+    command(rig, CommandCode::calibrate_offset, kBad, 0, 2);
+    rig.run_for(kSecond / 10);
+    command(rig, CommandCode::calibrate_crosstalk, kBad, 4'001, 3);
+    rig.run_for(kSecond / 10);
+    EXPECT_EQ(outcomes(rig), (std::vector{refused, refused, refused}));
+    EXPECT_EQ(rig.said_of<Calibration>()[0].sensor, 4);
+    EXPECT_EQ(rig.said_of<Calibration>()[2].quantity, CalibrationQuantity::crosstalk);
+    command(rig, CommandCode::calibrate_offset, wire::kAllSensors, 140, 4);
+    rig.run_for(kSecond / 10);
+    EXPECT_EQ(rig.said_of<Calibration>().size(), 3U) << "all of them: whom should it name?";
+    EXPECT_EQ(rig.node().counts().rx_rejected, 4U);
+    command(rig, CommandCode::calibrate_offset, kBad, 4'000, 5);
+    rig.run_for(kSecond / 10);
+    command(rig, CommandCode::calibrate_offset, 0, 140, 6);
+    rig.run_for(kSecond / 10);
+    EXPECT_EQ(outcomes(rig), (std::vector{refused, refused, refused, under_way, refused}));
+    rig.run_for(4 * kSecond);
+    EXPECT_EQ(outcomes(rig).back(), out_of_range) << "3.86 m of offset";
+    EXPECT_EQ(rig.said_of<Calibration>().back().sequence, 5);
+    EXPECT_EQ(rig.last_health(kBad)->state, SensorState::ranging);
+}
+
+TEST(NodeCalibration, without_a_target_it_fails_and_the_sensor_ranges_again) {
+    NodeRig rig(fleet_config(4, 2), setups_with({}));
+    rig.run_for(1 * kSecond);
+    command(rig, CommandCode::calibrate_offset, kBad, 140);
+    rig.run_for(3 * kSecond);
+    EXPECT_EQ(outcomes(rig), (std::vector{under_way, no_target}));
+    EXPECT_EQ(rig.last_health(kBad)->state, SensorState::ranging);
+}
+
+TEST(NodeCalibration, of_a_sensor_that_dies_ends_and_says_why) {
+    NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.140, 8.0)));
+    rig.run_for(1 * kSecond);
+    command(rig, CommandCode::calibrate_offset, kBad, 140, 1);
+    rig.run_for(1 * kSecond);
+    EXPECT_EQ(rig.last_health(kBad)->state, SensorState::stopped) << "in mid-calibration";
+    EXPECT_EQ(rig.said_of<wire::Heartbeat>().back().degraded_sensors, 0);
+    rig.sensor(kBad).set_faults({.is_absent = true});
+    rig.run_for(1 * kSecond);
+    EXPECT_EQ(outcomes(rig), (std::vector{under_way, device_failed}));
+    EXPECT_EQ(rig.last_health(kBad)->state, SensorState::lost);
+    command(rig, CommandCode::calibrate_offset, kBad, 140, 2);
+    rig.run_for(1 * kSecond);
+    EXPECT_EQ(outcomes(rig).back(), not_brought_up);
+    rig.sensor(kBad).set_faults({.never_ready = true});
+    rig.run_for(10 * kSecond);
+    rig.sensor(kBad).set_faults({});
+    rig.run_for(15 * kSecond);
+    EXPECT_EQ(rig.last_health(kBad)->state, SensorState::ranging) << "it comes back as ever";
+}
+
+TEST(NodeCalibration, gives_up_a_sensor_that_gives_no_ranges) {
+    NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.140, 8.0)));
+    rig.run_for(1 * kSecond);
+    command(rig, CommandCode::calibrate_offset, kBad, 140);
+    rig.run_for(1 * kSecond);
+    rig.sensor(kBad).set_faults({.never_ready = true});
+    rig.run_for(3 * kSecond);
+    EXPECT_EQ(outcomes(rig), (std::vector{under_way, no_result}));
+}
+
+// Orders in mid-calibration: a stopped sensor stays stopped, and nothing is begun twice.
+TEST(NodeCalibration, ends_before_other_orders_are_obeyed) {
+    NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.170, 8.0)));
+    rig.run_for(1 * kSecond);
+    command(rig, CommandCode::calibrate_offset, kBad, 140, 1);
+    rig.run_for(1 * kSecond);
+    command(rig, CommandCode::reinitialise_sensor, kBad, 0, 2);
+    command(rig, CommandCode::stop, kBad, 0, 3);
+    rig.run_for(3 * kSecond);
+    EXPECT_EQ(outcomes(rig), (std::vector{under_way, done}));
+    EXPECT_EQ(rig.last_health(kBad)->state, SensorState::stopped);
+    const std::size_t readings = rig.readings_of(kBad).size();
+    rig.run_for(1 * kSecond);
+    EXPECT_EQ(rig.readings_of(kBad).size(), readings);
+    command(rig, CommandCode::calibrate_offset, kBad, 140, 4);
+    rig.run_for(4 * kSecond);
+    EXPECT_EQ(outcomes(rig), (std::vector{under_way, done, under_way, done})) << "a stopped one too";
+    EXPECT_EQ(rig.said_of<Calibration>().back().offset_quarter_mm, -68);
+    EXPECT_EQ(rig.last_health(kBad)->state, SensorState::stopped);
+}
+
+}  // namespace
+}  // namespace octoskin::node
