@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
     app::add_mapping_command(app);
     app::add_flash_command(app);
     app::add_black_box_command(app);
+    app::add_calibrate_command(app);
     try {
         app::check_command_name(app, argc, argv);
         app.parse(argc, argv);

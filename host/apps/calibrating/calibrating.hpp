@@ -1,0 +1,41 @@
+// Calibrates one sensor over a CAN interface.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "host/apps/calibrating/dialogue.hpp"
+#include "host/io/socketcan/can_socket.hpp"
+#include "hw/rigfile/rig.hpp"
+#include "hw/rigfile/sensor_edit.hpp"
+
+namespace octoskin::calibrating {
+
+/// What a person asks for, by name.
+struct Wish {
+    std::string node;  ///< name or number; empty if the rig has one only
+    std::string sensor;
+    wire::CalibrationQuantity quantity = wire::CalibrationQuantity::offset;
+    std::uint16_t target_mm = 0;
+};
+
+/// Errors, all `usage`: no such node or sensor, naming those there are.
+[[nodiscard]] Result<Question, AppError> question_of(const rig::Rig& rig, const Wish& wish,
+                                                     std::uint8_t sequence);
+
+/// The world outside, so that a test can be it.
+struct Outside {
+    std::function<HostTime()> now;
+    /// Returns once the descriptor can be read, or at that time; spurious returns are harmless.
+    std::function<void(int descriptor, HostTime until)> wait;
+};
+[[nodiscard]] Outside this_machine();
+
+/// Blocks until the dialogue has ended. Errors: its own, and a CAN interface that does not work.
+[[nodiscard]] Dialogue::Outcome converse(Dialogue& dialogue, socketcan::CanSocket& socket,
+                                         const Outside& outside);
+
+/// What to write into the rig.
+[[nodiscard]] rig::SensorEdit edit_of(const Question& question, const wire::Calibration& found);
+
+}  // namespace octoskin::calibrating

@@ -1,0 +1,136 @@
+#include "host/apps/calibrating/dialogue.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <variant>
+
+#include "common/wire/codec.hpp"
+
+namespace octoskin::calibrating {
+namespace {
+
+using wire::CalibrationOutcome;
+
+constexpr Nanoseconds kHeartbeatWithin{2'000'000'000};
+constexpr Nanoseconds kAnswerWithin{1'000'000'000};
+constexpr Nanoseconds kEndWithin{10'000'000'000};
+constexpr std::int64_t kPeriodsMax = 100;  // 60 ranges, at worst at half the rate
+
+const char* explanation(CalibrationOutcome outcome) {
+    switch (outcome) {
+        case CalibrationOutcome::refused:
+            return "the node refuses: another calibration is under way on it, or it does not range (safe "
+                   "mode, no "
+                   "valid configuration)";
+        case CalibrationOutcome::not_brought_up:
+            return "the sensor could not be initialised: its SENSOR_HEALTH says why";
+        case CalibrationOutcome::device_failed:
+            return "the sensor failed meanwhile: its SENSOR_HEALTH says why";
+        case CalibrationOutcome::no_result:
+            return "the sensor gave no range for 2 s";
+        case CalibrationOutcome::no_target:
+            return "it saw no valid target in more than 10 of 50 ranges: is the target before it, grey, and "
+                   "the "
+                   "room dark?";
+        case CalibrationOutcome::out_of_range:
+            return "its ranges are over a metre off: is the target where --target-mm says?";
+        case CalibrationOutcome::under_way:
+        case CalibrationOutcome::done:
+            break;
+    }
+    return "it ended in a way that this program does not know";
+}
+
+}  // namespace
+
+Dialogue::Dialogue(Question question, HostTime now)
+    : question_(std::move(question)), deadline_(now + kHeartbeatWithin) {}
+
+std::string Dialogue::whom() const {
+    return fmt::format("node {} '{}', sensor {} '{}'", question_.node_id, question_.node_name,
+                       question_.sensor, question_.sensor_name);
+}
+
+void Dialogue::give_up(ExitCode code, const std::string& why) {
+    outcome_ = fail(code, whom() + ": " + why);
+}
+
+void Dialogue::on_frame(const wire::CanFrame& frame, HostTime now) {
+    if (outcome_) return;
+    const auto decoded = wire::decode(frame);
+    if (!decoded) {
+        const bool is_its_heartbeat =
+            frame.can_id == wire::can_id(wire::FrameType::heartbeat, question_.node_id);
+        if (is_its_heartbeat && decoded.error() == wire::DecodeError::wrong_version) {
+            give_up(ExitCode::bad_config,
+                    fmt::format("it speaks protocol version {}, this program {}: flash it",
+                                frame.data[0] & 7U, wire::kProtocolVersion));
+        }
+        return;
+    }
+    if (decoded->node_id != question_.node_id) return;
+    if (const auto* heartbeat = std::get_if<wire::Heartbeat>(&decoded->message)) {
+        on_heartbeat(*heartbeat, now);
+    } else if (const auto* said = std::get_if<wire::Calibration>(&decoded->message)) {
+        on_calibration(*said, now);
+    }
+}
+
+void Dialogue::on_heartbeat(const wire::Heartbeat& heartbeat, HostTime now) {
+    if (step_ != Step::awaiting_heartbeat) return;
+    const std::uint32_t expected = question_.node_hash & 0xFFFFU;
+    if (heartbeat.node_hash_low != expected) {
+        give_up(
+            ExitCode::bad_config,
+            fmt::format("it has another configuration than the rig file (low half of node_hash {:04x}, the "
+                        "rig has {:04x}): flash it first",
+                        heartbeat.node_hash_low, expected));
+        return;
+    }
+    const auto code = question_.quantity == wire::CalibrationQuantity::offset
+                          ? wire::CommandCode::calibrate_offset
+                          : wire::CommandCode::calibrate_crosstalk;
+    to_send_ = wire::encode(wire::Command{.code = code,
+                                          .sensor = question_.sensor,
+                                          .argument = question_.target_mm,
+                                          .sequence = question_.sequence},
+                            question_.node_id);
+    step_ = Step::awaiting_answer;
+    deadline_ = now + kAnswerWithin;
+}
+
+void Dialogue::on_calibration(const wire::Calibration& said, HostTime now) {
+    const bool is_ours = said.sensor == question_.sensor && said.quantity == question_.quantity &&
+                         said.sequence == question_.sequence;
+    if (!is_ours || step_ == Step::awaiting_heartbeat) return;
+    if (said.outcome == CalibrationOutcome::done) {
+        outcome_ = said;
+    } else if (said.outcome == CalibrationOutcome::under_way) {
+        step_ = Step::awaiting_end;
+        const auto periods = std::chrono::milliseconds(kPeriodsMax * question_.inter_measurement_ms);
+        deadline_ = now + kEndWithin + periods;
+    } else {
+        give_up(ExitCode::failed, explanation(said.outcome));
+    }
+}
+
+void Dialogue::on_time(HostTime now) {
+    if (outcome_ || now < deadline_) return;
+    switch (step_) {
+        case Step::awaiting_heartbeat:
+            return give_up(ExitCode::unavailable,
+                           "no heartbeat for 2 s: has it power, is it on this bus, at this bit rate?");
+        case Step::awaiting_answer:
+            return give_up(ExitCode::unavailable,
+                           "it does not answer: its firmware may be older than the command; flash it");
+        case Step::awaiting_end:
+            return give_up(ExitCode::io_failed, "it began, and its end never came");
+    }
+}
+
+std::optional<wire::CanFrame> Dialogue::take_frame() {
+    return std::exchange(to_send_, std::nullopt);
+}
+
+}  // namespace octoskin::calibrating

@@ -1,0 +1,66 @@
+// The host's half of a calibration: what is asked of which node, what it answers, and when to give up. Frames
+// and times in, frames and an outcome out.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "common/wire/can_frame.hpp"
+#include "common/wire/messages.hpp"
+#include "host/apps/recording/app_error.hpp"
+
+namespace octoskin::calibrating {
+
+struct Question {
+    wire::NodeId node_id = 0;
+    std::string node_name;
+    std::uint32_t node_hash = 0;  ///< of the configuration that the rig compiles to
+    std::uint8_t sensor = 0;      ///< index on the node
+    std::string sensor_name;
+    wire::CalibrationQuantity quantity = wire::CalibrationQuantity::offset;
+    std::uint16_t target_mm = 0;
+    std::uint16_t inter_measurement_ms = 0;
+    std::uint8_t sequence = 0;  ///< another than that of the last command
+};
+
+/// Hears a heartbeat of the node, which must have the rig's configuration: else the index may mean another
+/// sensor. Then asks, and waits for the answer and the end. Every wait ends: 2 s for a heartbeat, 1 s for the
+/// answer, 10 s and 100 periods for the end.
+class Dialogue {
+  public:
+    using Outcome = Result<wire::Calibration, AppError>;
+
+    Dialogue(Question question, HostTime now);
+
+    void on_frame(const wire::CanFrame& frame, HostTime now);
+    /// The time is now, whatever came.
+    void on_time(HostTime now);
+
+    /// To be sent; told once.
+    [[nodiscard]] std::optional<wire::CanFrame> take_frame();
+    /// The node ranges for it.
+    [[nodiscard]] bool is_under_way() const noexcept { return step_ == Step::awaiting_end; }
+    /// When `on_time` has something to do.
+    [[nodiscard]] HostTime deadline() const noexcept { return deadline_; }
+    /// Once it has ended: `done`, or why not.
+    [[nodiscard]] const std::optional<Outcome>& outcome() const noexcept { return outcome_; }
+
+  private:
+    enum class Step : std::uint8_t { awaiting_heartbeat, awaiting_answer, awaiting_end };
+
+    void on_heartbeat(const wire::Heartbeat& heartbeat, HostTime now);
+    void on_calibration(const wire::Calibration& said, HostTime now);
+    void give_up(ExitCode code, const std::string& why);
+    [[nodiscard]] std::string whom() const;
+
+    Question question_;
+    Step step_ = Step::awaiting_heartbeat;
+    HostTime deadline_;
+    std::optional<wire::CanFrame> to_send_;
+    std::optional<Outcome> outcome_;
+};
+
+}  // namespace octoskin::calibrating

@@ -1,0 +1,94 @@
+// octoskin calibrate: one sensor's offset or crosstalk, from a target at a known range.
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <memory>
+
+#include "common/wire/frame_type.hpp"
+#include "host/apps/calibrating/calibrating.hpp"
+#include "host/apps/octoskin/commands.hpp"
+
+namespace octoskin::app {
+namespace {
+
+constexpr const char* kAbout =
+    "Calibrate one sensor's offset, or the crosstalk of its cover glass, with a grey target (17 %) in the "
+    "dark.\n"
+    "Offset first (target at 140 mm), flash, then crosstalk (target where ranges begin to fall short: "
+    "docs/bring-up.md).";
+
+struct CalibrateOptions {
+    std::string quantity;
+    std::filesystem::path rig;
+    std::string interface;
+    calibrating::Wish wish;
+    bool is_written = false;
+};
+
+template <class T>
+T value_or_fail(Result<T, AppError> result) {
+    if (!result) throw CommandFailure(result.error());
+    return std::move(result).value();
+}
+
+/// Another one each time, or the node takes the command for a repeated frame.
+std::uint8_t new_sequence() {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    return static_cast<std::uint8_t>(std::chrono::duration_cast<std::chrono::milliseconds>(now).count() /
+                                     500);
+}
+
+wire::Calibration calibrate(const calibrating::Question& question, const std::string& interface) {
+    const std::array<socketcan::IdFilter, 2> filters{
+        {{wire::can_id(wire::FrameType::heartbeat, question.node_id), wire::kStandardIdMax},
+         {wire::can_id(wire::FrameType::calibration, question.node_id), wire::kStandardIdMax}}};
+    auto socket = socketcan::CanSocket::open(interface, {.filters = filters, .wants_error_frames = false});
+    if (!socket) throw CommandFailure({ExitCode::unavailable, socket.error().message()});
+    const calibrating::Outside outside = calibrating::this_machine();
+    calibrating::Dialogue dialogue(question, outside.now());
+    return value_or_fail(calibrating::converse(dialogue, *socket, outside));
+}
+
+void run(CalibrateOptions options) {
+    options.wish.quantity = options.quantity == "offset" ? wire::CalibrationQuantity::offset
+                                                         : wire::CalibrationQuantity::crosstalk;
+    const auto rig = rig::read_rig(options.rig);
+    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    const auto question = value_or_fail(calibrating::question_of(*rig, options.wish, new_sequence()));
+    fmt::print(stderr, "{} of node {} '{}', sensor '{}', target at {} mm: 50 ranges\n", options.quantity,
+               question.node_id, question.node_name, question.sensor_name, question.target_mm);
+    const rig::SensorEdit edit = calibrating::edit_of(question, calibrate(question, options.interface));
+    fmt::print("{}: {}\n", edit.key, edit.value);
+    if (!options.is_written) {
+        fmt::print(stderr, "not written; --write puts it into the sensor's entry of the rig\n");
+        return;
+    }
+    const auto file = rig::edit_sensor(options.rig, edit);
+    if (!file) throw CommandFailure({ExitCode::cannot_create, file.error().message()});
+    fmt::print(stderr,
+               "written to {}; it counts once the node is flashed: firmware/flash --rig {} --node {}\n",
+               file->string(), options.rig.string(), question.node_name);
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& app) {
+    auto options = std::make_shared<CalibrateOptions>();
+    CLI::App* command = app.add_subcommand("calibrate", kAbout);
+    command->add_option("quantity", options->quantity, "offset or crosstalk")
+        ->required()
+        ->check(CLI::IsMember({"offset", "crosstalk"}));
+    command->add_option("--rig", options->rig, "Rig (YAML)")->required();
+    command->add_option("--node", options->wish.node,
+                        "Name or number of the node; needed if the rig has several");
+    command->add_option("--sensor", options->wish.sensor, "Name of the sensor")->required();
+    command->add_option("--target-mm", options->wish.target_mm, "From the sensor's front to the target, mm")
+        ->required()
+        ->check(CLI::Range(1, 4'000));
+    command->add_option("--can", options->interface, "CAN interface of Linux, such as can0")->required();
+    command->add_flag("--write", options->is_written, "Write what was found into the rig");
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace octoskin::app

@@ -1,0 +1,129 @@
+#include "hw/rigfile/sensor_edit.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+namespace octoskin::rig {
+namespace {
+
+bool is_named(const YAML::Node& table, const std::string& name) {
+    return table.IsMap() && table["name"] && table["name"].IsScalar() && table["name"].Scalar() == name;
+}
+
+std::optional<YAML::Node> find_sensor(const YAML::Node& top, const SensorEdit& edit) {
+    if (!top.IsMap() || !top["nodes"] || !top["nodes"].IsSequence()) return std::nullopt;
+    for (const YAML::Node& node : top["nodes"]) {
+        if (!is_named(node, edit.node) || !node["sensors"] || !node["sensors"].IsSequence()) continue;
+        for (const YAML::Node& sensor : node["sensors"]) {
+            if (is_named(sensor, edit.sensor)) return sensor;
+        }
+    }
+    return std::nullopt;
+}
+
+struct Place {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+};
+
+/// Where a scalar on one line is written; empty for one that is written in any other way.
+std::optional<Place> place_of(const YAML::Node& scalar, const std::string& text) {
+    const auto begin = static_cast<std::size_t>(scalar.Mark().pos);
+    if (!scalar.IsScalar() || begin >= text.size()) return std::nullopt;
+    const bool is_quoted = text[begin] == '"' || text[begin] == '\'';
+    const Place place{begin, begin + scalar.Scalar().size() + (is_quoted ? 2U : 0U)};
+    const std::size_t first = begin + (is_quoted ? 1U : 0U);
+    if (text.compare(first, scalar.Scalar().size(), scalar.Scalar()) != 0) return std::nullopt;
+    return place;
+}
+
+std::optional<std::string> with_value(const std::string& text, const YAML::Node& sensor,
+                                      const SensorEdit& edit) {
+    for (const auto& item : sensor) {
+        if (item.first.Scalar() != edit.key) continue;
+        const auto place = place_of(item.second, text);
+        if (!place) return std::nullopt;
+        return text.substr(0, place->begin) + edit.value + text.substr(place->end);
+    }
+    for (const auto& item : sensor) {
+        if (item.first.Scalar() != "name") continue;
+        const auto place = place_of(item.second, text);
+        if (!place) return std::nullopt;
+        const std::string entry = edit.key + ": " + edit.value;
+        if (sensor.Style() == YAML::EmitterStyle::Flow)
+            return text.substr(0, place->end) + ", " + entry + text.substr(place->end);
+        const std::size_t line_end = std::min(text.find('\n', place->end), text.size());
+        const std::string indent(static_cast<std::size_t>(item.first.Mark().column), ' ');
+        return text.substr(0, line_end) + "\n" + indent + entry + text.substr(line_end);
+    }
+    return std::nullopt;
+}
+
+Unexpected<RigError> failed(const std::filesystem::path& file, std::string what) {
+    return unexpected(RigError{.file = file, .line = 0, .key = {}, .what = std::move(what)});
+}
+
+std::string content_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+bool write(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+    stream << text;
+    stream.close();
+    return stream.good();
+}
+
+/// With the one sensor as it is in `other`.
+Rig with_sensor_of(Rig rig, const Rig& other, const SensorEdit& edit) {
+    for (std::size_t n = 0; n < rig.nodes.size() && n < other.nodes.size(); ++n) {
+        const auto& sensors = rig.nodes[n].sensors;
+        for (std::size_t s = 0; rig.nodes[n].name == edit.node && s < sensors.size(); ++s) {
+            if (sensors[s].name == edit.sensor)
+                rig.nodes[n].config.sensors[s] = other.nodes[n].config.sensors[s];
+        }
+    }
+    return rig;
+}
+
+}  // namespace
+
+std::optional<std::string> edited(const std::string& text, const SensorEdit& edit) {
+    try {
+        const auto sensor = find_sensor(YAML::Load(text), edit);
+        return sensor ? with_value(text, *sensor, edit) : std::nullopt;
+    } catch (const YAML::Exception&) {
+        return std::nullopt;
+    }
+}
+
+Result<std::filesystem::path, RigError> edit_sensor(const std::filesystem::path& file,
+                                                    const SensorEdit& edit) {
+    const auto before = read_rig(file);
+    if (!before) return unexpected(before.error());
+    std::vector<std::filesystem::path> files{file};
+    files.insert(files.end(), before->extended_files.begin(), before->extended_files.end());
+    for (const auto& candidate : files) {
+        const std::string text = content_of(candidate);
+        const auto changed = edited(text, edit);
+        if (!changed) continue;
+        if (!write(candidate, *changed)) return failed(candidate, "cannot be written");
+        const auto after = read_rig(file);
+        const bool is_as_meant =
+            after && rig_hash(with_sensor_of(*after, *before, edit)) == rig_hash(*before);
+        if (is_as_meant) return candidate;
+        if (!write(candidate, text)) return failed(candidate, "was changed and cannot be put back");
+        return after ? failed(candidate, "its sensor cannot be changed by a program: set " + edit.key + ": " +
+                                             edit.value + " by hand")
+                     : unexpected(after.error());
+    }
+    return failed(file, "no sensor '" + edit.sensor + "' of node '" + edit.node + "' is written in it");
+}
+
+}  // namespace octoskin::rig

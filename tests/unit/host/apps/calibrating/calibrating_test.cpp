@@ -1,0 +1,110 @@
+// The whole way of a calibration: the command's own code on a socket, real node core and driver, modelled
+// sensors. What is found, written into the rig, makes the sensor range right.
+#include "host/apps/calibrating/calibrating.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <array>
+
+#include "tests/support/node_rig.hpp"
+
+namespace octoskin::calibrating {
+namespace {
+
+using test::fleet_config;
+using test::NodeRig;
+using test::SensorSetup;
+
+/// A simulated node at the other end of a pair of sockets; its time is the time.
+class SimulatedBus {
+  public:
+    explicit SimulatedBus(const std::vector<SensorSetup>& setups) : rig_(fleet_config(4, 2), setups) {
+        std::array<int, 2> ends{};
+        EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, ends.data()), 0);
+        host_.emplace("can0", ends[0]);
+        node_.emplace("node", ends[1]);
+        rig_.run_for(Microseconds{1'000'000});
+    }
+    [[nodiscard]] Outside outside() {
+        return {[this] { return HostTime{rig_.now().us * 1'000}; }, [this](int, HostTime) { step(); }};
+    }
+    [[nodiscard]] socketcan::CanSocket& host() { return *host_; }
+    [[nodiscard]] NodeRig& rig() { return rig_; }
+
+  private:
+    void step() {
+        while (const auto received = node_->receive().value()) rig_.send_from_host(received->entry.frame);
+        const std::size_t before = rig_.frames().size();
+        rig_.run_for(Microseconds{1'000});
+        for (std::size_t i = before; i < rig_.frames().size(); ++i) {
+            if (wire::node_of(rig_.frames()[i].can_id) == 5 && !rig_.frames()[i].is_fd)
+                (void)node_->send(rig_.frames()[i]);
+        }
+    }
+    NodeRig rig_;
+    std::optional<socketcan::CanSocket> host_;
+    std::optional<socketcan::CanSocket> node_;
+};
+
+Question question(std::uint16_t target_mm, std::uint8_t sensor = 1) {
+    return {.node_id = 5,
+            .node_name = "n",
+            .node_hash = node_hash(fleet_config(4, 2)),
+            .sensor = sensor,
+            .sensor_name = "s",
+            .quantity = wire::CalibrationQuantity::offset,
+            .target_mm = target_mm,
+            .inter_measurement_ms = 33,
+            .sequence = 1};
+}
+
+TEST(Calibrating, finds_the_offset_of_a_modelled_sensor_over_a_socket) {
+    std::vector<SensorSetup> setups(4);
+    setups[1].target =
+        sim::RangingReturn{.range_m = 0.170, .sigma_m = 0.003, .peak_signal_mcps = 8.0, .ambient_mcps = 0.1};
+    SimulatedBus bus(setups);
+    Dialogue dialogue(question(140), bus.outside().now());
+    const auto outcome = converse(dialogue, bus.host(), bus.outside());
+    ASSERT_TRUE(outcome) << outcome.error().message;
+    EXPECT_EQ(outcome->offset_quarter_mm, -68);
+    EXPECT_EQ(edit_of(question(140), *outcome).key, "device_offset_mm");
+    EXPECT_EQ(edit_of(question(140), *outcome).value, "-17.00");
+    EXPECT_LT(bus.rig().now().us, 6'000'000);
+}
+
+TEST(Calibrating, tells_a_persons_mistakes_and_a_dead_node_apart) {
+    SimulatedBus bus(std::vector<SensorSetup>(4));
+    Dialogue no_such(question(140, 9), bus.outside().now());
+    EXPECT_NE(converse(no_such, bus.host(), bus.outside()).error().message.find("refuses"),
+              std::string::npos);
+    Question stranger = question(140);
+    stranger.node_id = 6;
+    Dialogue nobody(stranger, bus.outside().now());
+    EXPECT_EQ(converse(nobody, bus.host(), bus.outside()).error().code, ExitCode::unavailable);
+}
+
+rig::Rig bench() {
+    const auto rig = rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/bench_one_board.yaml");
+    EXPECT_TRUE(rig) << rig.error().message();
+    return *rig;
+}
+
+TEST(Calibrating, finds_node_and_sensor_by_name) {
+    const auto question =
+        question_of(bench(), {.node = "", .sensor = "back", .quantity = {}, .target_mm = 140}, 3);
+    ASSERT_TRUE(question);
+    EXPECT_EQ(question->node_id, 1);
+    EXPECT_EQ(question->sensor, 2);
+    EXPECT_EQ(question->node_hash, node_hash(bench().nodes[0].config));
+    EXPECT_EQ(question->inter_measurement_ms, 20);
+    const auto no_sensor =
+        question_of(bench(), {.node = "1", .sensor = "top", .quantity = {}, .target_mm = 1}, 3);
+    EXPECT_EQ(no_sensor.error().message, "no sensor 'top' on node bench: it has front, left, back, right");
+    const auto no_node =
+        question_of(bench(), {.node = "x", .sensor = "back", .quantity = {}, .target_mm = 1}, 3);
+    EXPECT_EQ(no_node.error().message, "no node 'x' in rig bench_one_board: it has bench");
+}
+
+}  // namespace
+}  // namespace octoskin::calibrating

@@ -1,0 +1,108 @@
+// What was found of a sensor goes into the file that a person keeps, and nothing else of it changes.
+#include "hw/rigfile/sensor_edit.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin::rig {
+namespace {
+
+const std::filesystem::path kRigs = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw/rigs";
+
+SensorEdit edit(const std::string& sensor, const std::string& key = "device_offset_mm",
+                const std::string& value = "-17.25") {
+    return {.node = "bench", .sensor = sensor, .key = key, .value = value};
+}
+
+TEST(SensorEdit, adds_the_key_after_the_name_and_keeps_the_rest) {
+    const std::string text =
+        "# a rig\n"
+        "nodes:\n"
+        "  - name: bench\n"
+        "    sensors:\n"
+        "      - name: front  # the one above the cable\n"
+        "        bus: 0\n"
+        "      - {name: 'left', bus: 0}\n";
+    EXPECT_EQ(edited(text, edit("front")).value(),
+              "# a rig\n"
+              "nodes:\n"
+              "  - name: bench\n"
+              "    sensors:\n"
+              "      - name: front  # the one above the cable\n"
+              "        device_offset_mm: -17.25\n"
+              "        bus: 0\n"
+              "      - {name: 'left', bus: 0}\n");
+    EXPECT_EQ(edited(text, edit("left")).value(),
+              "# a rig\n"
+              "nodes:\n"
+              "  - name: bench\n"
+              "    sensors:\n"
+              "      - name: front  # the one above the cable\n"
+              "        bus: 0\n"
+              "      - {name: 'left', device_offset_mm: -17.25, bus: 0}\n");
+}
+
+TEST(SensorEdit, replaces_a_value_that_is_there) {
+    const std::string text =
+        "nodes:\n- name: bench\n  sensors:\n  - device_offset_mm: \"12.5\"  # of 2025\n    name: front";
+    EXPECT_EQ(edited(text, edit("front")).value(),
+              "nodes:\n- name: bench\n  sensors:\n  - device_offset_mm: -17.25  # of 2025\n    name: front");
+    EXPECT_EQ(
+        edited(text, edit("front", "crosstalk_kcps", "0.5")).value(),
+        "nodes:\n- name: bench\n  sensors:\n  - device_offset_mm: \"12.5\"  # of 2025\n    name: front\n"
+        "    crosstalk_kcps: 0.5");
+}
+
+TEST(SensorEdit, finds_nothing_where_nothing_is) {
+    for (const char* text : {"", "nodes: 3", "nodes: [{name: bench}]", "nodes: [{name: bench, sensors: [3]}]",
+                             "nodes: [{name: other, sensors: [{name: front}]}]", "{", "- a\n- b"})
+        EXPECT_EQ(edited(text, edit("front")), std::nullopt) << text;
+}
+
+class ShippedRig : public testing::Test {
+  protected:
+    ShippedRig() {
+        for (const char* folder : {"rigs", "boards", "robots"})
+            std::filesystem::copy(kRigs.parent_path() / folder, folder_.path() / folder,
+                                  std::filesystem::copy_options::recursive);
+    }
+    testing_support::ScratchFolder folder_;
+};
+
+TEST_F(ShippedRig, gets_the_value_and_keeps_all_else) {
+    const auto file = folder_ / "rigs/bench_one_board.yaml";
+    const auto before = read_rig(file);
+    ASSERT_TRUE(before);
+    ASSERT_TRUE(edit_sensor(file, edit("back")));
+    ASSERT_TRUE(edit_sensor(file, edit("back", "crosstalk_kcps", "1.001953")));
+    auto after = read_rig(file);
+    ASSERT_TRUE(after) << after.error().message();
+    const SensorConfig& changed = after->nodes[0].config.sensors[2];
+    EXPECT_TRUE(changed.has_offset);
+    EXPECT_EQ(changed.offset_quarter_mm, -69);
+    EXPECT_EQ(changed.crosstalk_raw, 513);
+    after->nodes[0].config.sensors[2] = before->nodes[0].config.sensors[2];
+    EXPECT_EQ(rig_hash(*after), rig_hash(*before));
+}
+
+TEST_F(ShippedRig, of_another_that_it_extends_is_changed_where_the_sensor_is_written) {
+    const auto base = folder_ / "rigs/bench_one_board.yaml";
+    const auto heir = folder_.write("rigs/heir.yaml", "extends: bench_one_board.yaml\nname: heir\n");
+    const auto changed = edit_sensor(heir, edit("left"));
+    ASSERT_TRUE(changed) << changed.error().message();
+    EXPECT_EQ(changed->filename(), base.filename());
+    EXPECT_EQ(read_rig(heir)->nodes[0].config.sensors[1].offset_quarter_mm, -69);
+}
+
+TEST_F(ShippedRig, is_put_back_if_it_would_not_be_a_rig) {
+    const auto file = folder_ / "rigs/bench_one_board.yaml";
+    const std::string before = testing_support::ScratchFolder::read(file);
+    EXPECT_FALSE(edit_sensor(file, edit("back", "device_offset_mm", "4000")));
+    EXPECT_FALSE(edit_sensor(file, edit("back", "link", "panda_link7"))) << "more than its device settings";
+    EXPECT_FALSE(edit_sensor(file, edit("top")));
+    EXPECT_EQ(testing_support::ScratchFolder::read(file), before);
+}
+
+}  // namespace
+}  // namespace octoskin::rig
