@@ -120,7 +120,7 @@ TEST(Dbc, units_and_factors_are_those_of_the_protocol) {
 
 TEST(DbcDeathTest, asserts_on_a_type_that_has_no_layout) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
-    EXPECT_DEATH(static_cast<void>(signals_of(static_cast<wire::FrameType>(13))), "spec");
+    EXPECT_DEATH(static_cast<void>(signals_of(static_cast<wire::FrameType>(14))), "spec");
 }
 
 }  // namespace
