@@ -4,6 +4,7 @@
 #include <concepts>
 #include <type_traits>
 
+#include "common/config/image_identity.hpp"
 #include "common/wire/crc.hpp"
 
 namespace octoskin {
@@ -12,7 +13,6 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::uint32_t kMagic = 0x434B534F;  // "OSKC" in memory
-constexpr std::uint16_t kLayoutVersion = 3;
 constexpr std::size_t kHeaderBytes = 8;
 constexpr std::size_t kCrcBytes = 4;
 
@@ -220,7 +220,7 @@ Bytes encode(const NodeConfig& config, std::span<std::uint8_t, kNodeConfigBytesM
     const std::size_t covered = kHeaderBytes + fields.used();
     ByteWriter header(out.first(kHeaderBytes));
     header.number(kMagic);
-    header.number(kLayoutVersion);
+    header.number(kNodeConfigLayout);
     header.number(static_cast<std::uint16_t>(covered + kCrcBytes));
     ByteWriter end(out.subspan(covered));
     end.number(crc32(out.first(covered)));
@@ -245,7 +245,7 @@ Result<NodeConfig, NodeConfigError> decode_node_config(Bytes memory) noexcept {
     if (u32_at(memory, covered) != crc32(memory.first(covered))) {
         return unexpected(NodeConfigError::wrong_crc);
     }
-    if ((u32_at(memory, 4) & 0xFFFFU) != kLayoutVersion) {
+    if ((u32_at(memory, 4) & 0xFFFFU) != kNodeConfigLayout) {
         return unexpected(NodeConfigError::wrong_version);
     }
     ByteReader reader(memory.subspan(kHeaderBytes, covered - kHeaderBytes));

@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 
+#include "common/config/image_identity.hpp"
 #include "hw/image/build_attributes.hpp"
 
 namespace octoskin::image {
@@ -117,6 +118,37 @@ void check_target(const ElfImage& image, Faults& faults) {
     expect(BuildTag::vfp_arguments, kArgumentsInVfpRegisters, "with arguments in floating-point registers");
 }
 
+/// The layout that the image says it reads.
+std::optional<std::uint16_t> layout_of(const ElfImage& image) {
+    for (const ElfSegment& segment : image.segments()) {
+        auto from = segment.bytes.begin();
+        while (true) {  // each round passes one occurrence of the magic
+            from = std::search(from, segment.bytes.end(), kImageIdentityMagic.begin(),
+                               kImageIdentityMagic.end());
+            if (segment.bytes.end() - from < static_cast<std::ptrdiff_t>(kImageIdentityBytes)) break;
+            const auto layout = static_cast<std::uint16_t>(from[4] | from[5] << 8);
+            const auto whole = image_identity(layout);
+            if (std::equal(whole.begin(), whole.end(), from)) return layout;
+            ++from;
+        }
+    }
+    return std::nullopt;
+}
+
+void check_layout(const ElfImage& image, Faults& faults) {
+    const auto layout = layout_of(image);
+    if (!layout) {
+        faults.push_back(
+            "it does not say which layout of configuration block it reads: it is no image of octoskin, or an "
+            "old one");
+    } else if (*layout != kNodeConfigLayout) {
+        faults.push_back(
+            fmt::format("it reads configuration blocks of layout {}, and this octoskin writes layout {}: "
+                        "build both from the same commit (firmware/flash does)",
+                        *layout, kNodeConfigLayout));
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> faults_of(const ElfImage& image, const rig::BoardHardware& board) {
@@ -125,6 +157,7 @@ std::vector<std::string> faults_of(const ElfImage& image, const rig::BoardHardwa
     check_start(image, board, faults);
     check_vectors(image, board, faults);
     check_target(image, faults);
+    check_layout(image, faults);
     return faults;
 }
 

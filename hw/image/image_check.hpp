@@ -15,7 +15,8 @@ namespace octoskin::image {
 ///   and a multiple of 8; the reset vector is the entry; every vector but the core's and the chip's reserved
 ///   ones is Thumb code within the image (ARMv7-M ARM, "Vector table"; RM0440, "Nested vectored interrupt
 ///   controller");
-/// - compiled for ARMv7E-M with FPv4-D16 in single precision, arguments in floating-point registers.
+/// - compiled for ARMv7E-M with FPv4-D16 in single precision, arguments in floating-point registers;
+/// - it reads the layout of configuration block that this program writes (common/config/image_identity.hpp).
 [[nodiscard]] std::vector<std::string> faults_of(const ElfImage& image, const rig::BoardHardware& board);
 
 }  // namespace octoskin::image

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "common/config/image_identity.hpp"
 #include "common/config/node_config.hpp"
 #include "firmware/app/stm32g4_node/report.hpp"
 #include "firmware/core/node.hpp"
@@ -30,6 +31,9 @@
 
 namespace octoskin::stm32g4 {
 namespace {
+
+// For whoever flashes: the linker keeps it, nobody here reads it.
+[[gnu::used, gnu::section(".identity")]] constexpr auto kIdentity = image_identity(kNodeConfigLayout);
 
 constexpr std::uint8_t kBoardType = 1;  // hw/boards/nucleo_g474re.yaml
 

@@ -31,7 +31,7 @@ struct MapOrigin {
 [[nodiscard]] std::vector<std::string> map_file_names();
 
 /// CRC-32 of what a recording measured: can.log, and depth.oni and its sidecar if they are there. Rig and
-/// robot have their own. Empty if one cannot be read. About 150 MB/s.
+/// robot have their own. Empty if one cannot be read.
 [[nodiscard]] std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording);
 
 [[nodiscard]] Status<AppError> write_map_origin(const std::filesystem::path& file, const MapOrigin& origin);

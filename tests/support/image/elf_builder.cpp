@@ -2,8 +2,11 @@
 
 #include <elf.h>
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
+
+#include "common/config/image_identity.hpp"
 
 namespace octoskin::test {
 namespace {
@@ -39,10 +42,22 @@ ElfBuilder::ElfBuilder() : attributes(kAttributes) {
     set_vector(0, 0x2000'2800);
     set_vector(1, entry);
     for (std::uint32_t i = 2; i < kVectors; ++i) set_vector(i, 0x0800'01E1);
+    set_layout(kNodeConfigLayout);
 }
 
 void ElfBuilder::set_vector(std::uint32_t index, std::uint32_t value) {
     std::memcpy(segments.at(0).bytes.data() + 4 * std::size_t{index}, &value, sizeof value);
+}
+
+void ElfBuilder::set_layout(std::uint16_t layout) {
+    const auto identity = image_identity(layout);
+    std::vector<std::uint8_t>& bytes = segments.at(0).bytes;
+    const auto at = bytes.end() - static_cast<std::ptrdiff_t>(identity.size());
+    if (layout == 0) {
+        std::fill(at, bytes.end(), std::uint8_t{0xBF});
+    } else {
+        std::copy(identity.begin(), identity.end(), at);
+    }
 }
 
 void ElfBuilder::set_attribute(std::uint8_t tag, std::uint8_t value) {

@@ -16,7 +16,8 @@ struct BuiltSegment {
 
 /// The parts of a fit image; a test changes one.
 struct ElfBuilder {
-    /// A vector table of 118 entries and 64 bytes of code, then 12 bytes of data that start-up copies to RAM.
+    /// A vector table of 118 entries and 64 bytes of code, the last 8 its identity, then 12 bytes of data
+    /// that start-up copies to RAM.
     ElfBuilder();
 
     std::uint32_t entry = 0x0800'01D9;
@@ -27,6 +28,8 @@ struct ElfBuilder {
 
     /// Entry `index` of the vector table.
     void set_vector(std::uint32_t index, std::uint32_t value);
+    /// Which layout of configuration block it says it reads; 0: it says nothing.
+    void set_layout(std::uint16_t layout);
     /// Changes one numeric build attribute.
     void set_attribute(std::uint8_t tag, std::uint8_t value);
 

@@ -81,7 +81,7 @@ TEST(FlashContents, are_the_image_and_the_nodes_block) {
     EXPECT_EQ(contents[0].address, 0x0800'0000U);
     // 536 of program, a gap of 5, 12 of data, up to a multiple of 8.
     ASSERT_EQ(contents[0].bytes.size(), 560U);
-    EXPECT_EQ(contents[0].bytes[535], 0xBF);
+    EXPECT_EQ(contents[0].bytes[527], 0xBF);
     for (std::size_t gap = 536; gap < 541; ++gap) EXPECT_EQ(contents[0].bytes[gap], 0xFF);
     EXPECT_EQ(contents[0].bytes[541], 1);
     EXPECT_EQ(contents[0].bytes[552], 12);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <ostream>
 
+#include "common/config/image_identity.hpp"
 #include "tests/support/image/elf_builder.hpp"
 #include "tests/unit/hw/boards/shipped_board.hpp"
 
@@ -85,6 +86,13 @@ INSTANTIATE_TEST_SUITE_P(
                "not compiled for ARMv7E-M: build attribute 6 is 10, expected 13"},
         Defect{"without an FPU", [](ElfBuilder& b) { b.set_attribute(10, 0); }, "not compiled for FPv4-D16"},
         Defect{"in double precision", [](ElfBuilder& b) { b.set_attribute(27, 3); }, "single precision"},
+        Defect{"of the layout before", [](ElfBuilder& b) { b.set_layout(kNodeConfigLayout - 1); },
+               "it reads configuration blocks of layout 2, and this octoskin writes layout 3"},
+        Defect{"of the next layout", [](ElfBuilder& b) { b.set_layout(kNodeConfigLayout + 1); },
+               "of layout 4"},
+        Defect{"without a layout", [](ElfBuilder& b) { b.set_layout(0); }, "does not say which layout"},
+        Defect{"with a damaged layout", [](ElfBuilder& b) { b.segments[0].bytes.back() ^= 1U; },
+               "does not say which layout"},
         Defect{"with soft arguments", [](ElfBuilder& b) { b.set_attribute(28, 0); },
                "not compiled with arguments in floating-point registers"}));
 
