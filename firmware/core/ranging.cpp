@@ -296,7 +296,8 @@ void Ranging::note_announcement() noexcept {
 /// A poll that comes too early bounds the ready time from below. Where the line is at work, that is needed
 /// only now and then: each time the bracket, which grows from range to range, has become too wide.
 NodeTime Ranging::next_poll(const TimeBracket& predicted) const noexcept {
-    const bool awaits_line = was_announced_ && predicted.width() <= policy_.hinted_width_max;
+    const bool awaits_line =
+        was_announced_ && !acceptance_.has_refused() && predicted.width() <= policy_.hinted_width_max;
     return awaits_line ? polls_.poll_after_hint(predicted) : polls_.first_poll(predicted);
 }
 

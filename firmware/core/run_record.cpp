@@ -150,7 +150,9 @@ RunStart begin_run(const RunRecord& last, ResetCause hardware, const RunRules& r
     record.ended_uptime_ms = {last.uptime_ms, last.ended_uptime_ms[0]};
     if (last.mode == RunMode::retry && record.retries < 255) ++record.retries;
     record.mode = mode_after_fault(record, rules);
-    start.is_start_up_failing = last.is_starting && record.mode == RunMode::safe;
+    // A supply that bounces is no program that fails: with it, the node says so itself.
+    const bool was_supply = start.cause == ResetCause::brown_out;
+    start.is_start_up_failing = last.is_starting && !was_supply && record.mode == RunMode::safe;
     return start;
 }
 

@@ -67,6 +67,8 @@ void Sensor::order_reinitialise(NodeTime now) {
 }
 
 bool Sensor::order_calibration(const CalibrationOrder& order, NodeTime now) {
+    // What such a part measures is no measurement.
+    if (device_.read_back().is_distrusted()) return false;
     if (calibration_ordered_ || !vl53l1x::CalibrationRun::is_target_supported(order.target_mm)) return false;
     order_reinitialise(now);
     calibration_ordered_ = order;
@@ -211,9 +213,14 @@ BusUse Sensor::advance_ranging(NodeTime now) {
                 break;
             }
             reading_ = ranging_.reading();
+            if (device_.read_back().exempt_count() > 0) ++counts_.suspect;
             on_reading();
             break;
         case Ranging::Event::undated:
+            if (are_readings_withheld) {
+                on_withheld();
+                break;
+            }
             ++counts_.rejected;
             ++counts_.undated;
             on_reading();
@@ -234,7 +241,6 @@ BusUse Sensor::advance_ranging(NodeTime now) {
 
 void Sensor::on_reading() {
     is_settled_ = true;
-    if (device_.read_back().exempt_count() > 0) ++counts_.suspect;
     if (ranging_.is_proven()) {
         refused_in_row_ = 0;
         recovery_.on_proven_reading();
@@ -277,6 +283,9 @@ void Sensor::on_failure(wire::SensorFault fault, bool can_restart, NodeTime now)
 void Sensor::isolate(NodeTime now) {
     device_.abandon();
     ranging_.abandon();
+    calibration_.abandon();
+    // Hours may pass, and the target with them.
+    if (calibration_ordered_) end_calibration({.outcome = CalibrationOutcome::device_failed});
     if (mode_ != Mode::awaiting_recovery) {
         on_failure(SensorFault::bus_error, false, now);
         is_bus_suspect_ = false;  // it is known
@@ -301,6 +310,7 @@ void Sensor::recover(NodeTime now) {
 
 bool Sensor::is_degraded() const noexcept {
     if (!is_ordered_to_range_ || !is_settled_) return false;
+    if (calibration_ordered_) return false;
     const vl53l1x::ReadBack& read_back = device_.read_back();
     if (read_back.exempt_count() > 0 || read_back.is_distrusted()) return true;
     return state_ != SensorState::ranging && state_ != SensorState::stopped;

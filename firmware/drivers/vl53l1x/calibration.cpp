@@ -4,12 +4,21 @@
 #include <cassert>
 
 #include "common/range_status.hpp"
+#include "firmware/drivers/vl53l1x/read_back.hpp"
 
 namespace octoskin::vl53l1x {
 namespace {
 
 constexpr Microseconds kPollEvery{1'000};
 constexpr Microseconds kRangeWithin{2'000'000};
+
+// Read-back runs: kRegisterRuns.
+constexpr std::size_t kOffsetRun = 0;
+constexpr std::size_t kCrosstalkRun = 4;
+static_assert(kRegisterRuns[kOffsetRun].first == 0x1E && kRegisterRuns[kCrosstalkRun].first == 0x16);
+
+/// 127 kcps in 512ths: what a rig file takes.
+constexpr std::int64_t kCrosstalkRawMax = 127 * 512;
 
 /// To the nearest, halves away from zero.
 std::int64_t divided(std::int64_t dividend, std::int64_t divisor) noexcept {
@@ -39,6 +48,7 @@ void CalibrationRun::begin(Quantity quantity, std::uint16_t target_mm) {
     range_sum_mm_ = 0;
     signal_sum_ = 0;
     spads_sum_ = 0;
+    stream_last_ = 0;
     offset_quarter_mm_ = 0;
     crosstalk_raw_ = 0;
     progress_ = Progress::busy;
@@ -48,6 +58,11 @@ void CalibrationRun::begin(Quantity quantity, std::uint16_t target_mm) {
         return;
     }
     start_step(Step::zeroing);
+}
+
+void CalibrationRun::abandon() noexcept {
+    progress_ = Progress::idle;
+    resume_at_.reset();
 }
 
 Progress CalibrationRun::poll(NodeTime now) {
@@ -81,6 +96,11 @@ void CalibrationRun::start_step(Step step) {
         case Step::zeroing:
             write(0, 0);
             break;
+        case Step::checking:
+        case Step::checking_again:
+            // What is measured under another offset or crosstalk than 0 would be off by that, and be kept.
+            device_.begin_verify(quantity_ == Quantity::offset ? kOffsetRun : kCrosstalkRun);
+            break;
         case Step::starting:
             device_.begin_start();
             break;
@@ -107,10 +127,17 @@ void CalibrationRun::write(std::int16_t offset_quarter_mm, std::uint16_t crossta
 Progress CalibrationRun::on_step_done(NodeTime now) {
     switch (step_) {
         case Step::zeroing:
+            start_step(Step::checking);
+            break;
+        case Step::checking:
             start_step(Step::starting);
             break;
         case Step::starting:
             return pause(now);
+        case Step::checking_again:
+            if (!compute()) return stop_and_fail(CalibrationError::out_of_range);
+            start_step(Step::stopping);
+            break;
         case Step::ranging:
             return on_range(now);
         case Step::stopping:
@@ -124,15 +151,11 @@ Progress CalibrationRun::on_step_done(NodeTime now) {
 }
 
 Progress CalibrationRun::on_range(NodeTime now) {
-    if (device_.has_measurement()) {
-        last_result_ = now;
-        add(device_.measurement());
-    }
+    if (device_.has_measurement() && add(device_.measurement())) last_result_ = now;
     if (ranges_invalid_ > kRangesInvalidMax) return stop_and_fail(CalibrationError::no_target);
     if (elapsed(last_result_, now) > kRangeWithin) return stop_and_fail(CalibrationError::no_result);
     if (ranges_ == kRanges) {
-        if (!compute()) return stop_and_fail(CalibrationError::out_of_range);
-        start_step(Step::stopping);
+        start_step(Step::checking_again);
         return Progress::busy;
     }
     return pause(now);
@@ -143,17 +166,21 @@ Progress CalibrationRun::pause(NodeTime now) {
     return Progress::busy;
 }
 
-void CalibrationRun::add(const Measurement& measurement) noexcept {
-    if (measurement.stream_count == 0) return;  // no wrap check
+/// False if it tells nothing new.
+bool CalibrationRun::add(const Measurement& measurement) noexcept {
+    if (measurement.stream_count == 0) return true;              // no wrap check
+    if (measurement.stream_count == stream_last_) return false;  // the same once more: the sensor has stopped
+    stream_last_ = measurement.stream_count;
     if (measurement.device_status != kDeviceStatusComplete) {
         ++ranges_invalid_;
-        return;
+        return true;
     }
     ++ranges_;
     // Without an offset a near target may come out behind the sensor.
     range_sum_mm_ += static_cast<std::int16_t>(measurement.range_mm);
     signal_sum_ += measurement.corrected_signal;
     spads_sum_ += measurement.effective_spads;
+    return true;
 }
 
 bool CalibrationRun::compute() noexcept {
@@ -173,7 +200,8 @@ bool CalibrationRun::compute() noexcept {
     const std::int64_t signal_per_spad = 1'024'000 * signal_sum_ / spads_sum_;
     const std::int64_t raw =
         divided(signal_per_spad * std::max<std::int64_t>(shortfall_mm, 0), target_sum_mm);
-    crosstalk_raw_ = static_cast<std::uint16_t>(std::min<std::int64_t>(raw, 0xFFFF));
+    if (raw > kCrosstalkRawMax) return false;
+    crosstalk_raw_ = static_cast<std::uint16_t>(raw);
     return true;
 }
 

@@ -42,6 +42,9 @@ class CalibrationRun {
     /// ranges does not exist: such a result is 0.
     void begin_crosstalk(std::uint16_t target_mm);
 
+    /// The device was abandoned, or is going to be: nothing comes of this run.
+    void abandon() noexcept;
+
     /// As a device's. Poll the device through this only.
     [[nodiscard]] Progress poll(NodeTime now);
     [[nodiscard]] CalibrationError error() const noexcept { return error_; }
@@ -56,7 +59,15 @@ class CalibrationRun {
 
   private:
     enum class Quantity : std::uint8_t { offset, crosstalk };
-    enum class Step : std::uint8_t { zeroing, starting, ranging, stopping, applying };
+    enum class Step : std::uint8_t {
+        zeroing,
+        checking,
+        starting,
+        ranging,
+        checking_again,
+        stopping,
+        applying
+    };
 
     void begin(Quantity quantity, std::uint16_t target_mm);
     void start_step(Step step);
@@ -64,7 +75,7 @@ class CalibrationRun {
     [[nodiscard]] Progress on_range(NodeTime now);
     [[nodiscard]] Progress pause(NodeTime now);
     void write(std::int16_t offset_quarter_mm, std::uint16_t crosstalk_raw);
-    void add(const Measurement& measurement) noexcept;
+    [[nodiscard]] bool add(const Measurement& measurement) noexcept;
     [[nodiscard]] bool compute() noexcept;
     [[nodiscard]] Progress stop_and_fail(CalibrationError error);
     [[nodiscard]] Progress end(Progress progress) noexcept;
@@ -81,6 +92,7 @@ class CalibrationRun {
 
     std::uint8_t ranges_ = 0;
     std::uint8_t ranges_invalid_ = 0;
+    std::uint8_t stream_last_ = 0;
     std::int64_t range_sum_mm_ = 0;
     std::int64_t signal_sum_ = 0;  ///< 9.7 Mcps
     std::int64_t spads_sum_ = 0;   ///< 8.8

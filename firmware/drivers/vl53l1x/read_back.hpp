@@ -3,6 +3,7 @@
 // altered on its way, or later.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <cstddef>
@@ -56,9 +57,14 @@ inline constexpr std::size_t kRegistersReadBack = 103;
     }
 }
 
+/// What of the distance mode, the choice of SPADs and the range's scale lies outside the steering groups:
+/// the pulse width's offset, the least range that is told, where and how wide the pulse is, the phase
+/// calibration's time-out, how SPADs are chosen, the range's fraction, the crosstalk of each quadrant.
+inline constexpr std::array<reg::Index, 8> kOthersThatDecideRange{0x34, 0x3F, 0x47, 0x4A,
+                                                                  0x4B, 0x4F, 0x70, 0x76};
+
 /// Whether a register decides where or when the sensor looks, or what its range means: a reading under a
-/// wrong one is a wrong range. The steering groups; the crosstalk, which is taken from the range; and what of
-/// the distance mode and the choice of SPADs lies outside the groups.
+/// wrong one is a wrong range. The steering groups, the crosstalk, and the others above.
 [[nodiscard]] constexpr bool decides_range(reg::Index index) noexcept {
     for (std::size_t group = 0; group < kSteeringGroups; ++group) {
         const RegisterRun& run = kRegisterRuns[group];
@@ -66,8 +72,8 @@ inline constexpr std::size_t kRegistersReadBack = 103;
     }
     const bool is_crosstalk = index >= reg::ALGO_CROSSTALK_COMPENSATION_PLANE_OFFSET_KCPS &&
                               index <= reg::ALGO_CROSSTALK_COMPENSATION_Y_PLANE_GRADIENT_KCPS + 1;
-    return is_crosstalk || index == reg::PHASECAL_CONFIG_TIMEOUT_MACROP ||
-           index == reg::DSS_CONFIG_ROI_MODE_CONTROL;
+    return is_crosstalk || std::find(kOthersThatDecideRange.begin(), kOthersThatDecideRange.end(), index) !=
+                               kOthersThatDecideRange.end();
 }
 
 struct RegisterDifference {

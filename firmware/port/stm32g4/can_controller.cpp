@@ -1,6 +1,7 @@
 #include "firmware/port/stm32g4/can_controller.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "firmware/port/stm32g4/cpu.hpp"
 #include "firmware/port/stm32g4/pin.hpp"
@@ -92,12 +93,12 @@ void CanController::listen_to_all() const {
 }
 
 bool CanController::join() {
-    if (!is_listening_ || !set_init(true)) return false;
+    const bool was_listening = std::exchange(is_listening_, false);
+    if (!was_listening || !set_init(true)) return false;
     fdcan1.set("CCCR.CCE", 1);
     fdcan1.set("CCCR.MON", 0);
     fdcan1.set("RXGFC.ANFS", kReject);
     fdcan1.write("IE", kInterrupts);
-    is_listening_ = false;
     is_started_ = set_init(false);
     return is_started_;
 }
@@ -211,6 +212,7 @@ bool CanController::has_failed() const {
 
 void CanController::fall_silent(NodeTime now) {
     fdcan1.set("CCCR.INIT", 1);
+    give_up_all();
     is_started_ = false;
     failed_at_ = now;
     ++counts_.failed;

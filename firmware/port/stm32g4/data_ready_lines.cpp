@@ -21,7 +21,7 @@ void DataReadyLines::start(std::uint8_t buses) {
     rcc.set("APB2ENR.SYSCFGEN", 1);
     (void)rcc.read("APB2ENR");
     for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
-        if ((buses >> bus & 1U) == 0) continue;
+        if (((unsigned{buses} >> bus) & 1U) == 0) continue;
         const auto line = static_cast<std::uint8_t>(kFirstLine + bus);
         Pin(gpio_b, line).make_input(Pull::up);
         syscfg.set(Field<SyscfgMap>("EXTICR4.EXTI#")[bus], kPortB);

@@ -78,6 +78,7 @@ void CanLink::close() {
     if (!socket_) return;
     counts_.dropped += socket_->dropped();
     counts_.malformed += socket_->malformed();
+    if (on_close_) on_close_();
     socket_.reset();
 }
 

@@ -29,7 +29,9 @@ class CanLink {
     /// How often a closed link is tried.
     static constexpr Nanoseconds kRetry{200'000'000};
 
-    explicit CanLink(Opener opener) : opener_(std::move(opener)) {}
+    /// `on_close` before each close of a descriptor: whoever watches it must let go of it first.
+    explicit CanLink(Opener opener, std::function<void()> on_close = {})
+        : opener_(std::move(opener)), on_close_(std::move(on_close)) {}
 
     /// Opens the interface if it is closed and a try is due. True if the descriptor changed.
     bool attend(HostTime now);
@@ -68,6 +70,7 @@ class CanLink {
     void set(LinkState state, std::string why);
 
     Opener opener_;
+    std::function<void()> on_close_;
     std::optional<socketcan::CanSocket> socket_;
     std::optional<HostTime> tried_;
     bool was_open_ = false;

@@ -84,7 +84,7 @@ struct Daemon::Parts {
         : request(std::move(request_in)),
           settings(std::move(settings_in)),
           pipeline(std::move(pipeline_in)),
-          can(opener(request, settings.host.rig)),
+          can(opener(request, settings.host.rig), [this] { can_ready = EventSource(); }),
           local_joints(settings.host.rig.joints.node_id, settings.host.rig.joints.joints.size()),
           keeper(request.map_folder),
           started(monotonic_now()) {}
@@ -107,6 +107,7 @@ struct Daemon::Parts {
     DaemonRequest request;
     Settings settings;
     EventLoop loop;
+    EventSource can_ready;
     Pipeline pipeline;
     CanLink can;
     SyncMaster sync;
@@ -121,7 +122,6 @@ struct Daemon::Parts {
     std::optional<HostTime> foreign_sync;  ///< the newest of another host, while this one sends them
     std::vector<std::string> problems_told;
 
-    EventSource can_ready;
     std::vector<EventSource> sources;
 };
 
@@ -155,7 +155,14 @@ ExitCode Daemon::run() {
     (void)sd_notify(0, "READY=1");
     spdlog::info("running: rig '{}', {}{}", parts_->settings.host.rig.name, parts_->request.interface,
                  parts_->request.is_listen_only ? ", listening only" : "");
-    const int outcome = parts_->loop.run();
+    constexpr int kInternal = 70;
+    int outcome = kInternal;
+    try {
+        outcome = parts_->loop.run();
+    } catch (const std::exception& error) {
+        spdlog::critical("a defect of octoskin, please report it: {}; the map is saved, and it ends",
+                         error.what());
+    }
     (void)sd_notify(0, "STOPPING=1");
     parts_->save_map();
     const bool is_saved = parts_->keeper.finish(kSavePatience);
@@ -197,8 +204,9 @@ void Daemon::Parts::watch() {
 
 void Daemon::Parts::attend() {
     const HostTime now = monotonic_now();
-    if (can.attend(now)) can_ready = loop.on_readable(can.descriptor(), [this] { drain_can(); });
-    if (can.descriptor() < 0) can_ready = EventSource();
+    if (can.attend(now)) {
+        can_ready = loop.on_readable(can.descriptor(), [this] { drain_can(); });
+    }
     if (!request.is_listen_only) {
         if (const auto due = sync.poll(now)) (void)can.send(wire::encode(*due, wire::kHostId));
     }
@@ -228,7 +236,8 @@ void Daemon::Parts::answer_sync(const socketcan::Received& received, HostTime at
     const auto decoded = wire::decode(received.entry.frame);
     const auto* const message = decoded ? std::get_if<wire::Sync>(&decoded->message) : nullptr;
     if (message == nullptr) return;
-    if (joints && joints->samples() > 0) feed(local_joints.report(message->sequence, at), wall_now());
+    if (joints && joints->samples() > 0)
+        feed(local_joints.report(message->sequence, at), received.entry.stamp);
     if (!received.is_own) {
         foreign_sync = request.is_listen_only ? std::nullopt : std::optional(at);
         return;
@@ -248,11 +257,12 @@ void Daemon::Parts::feed(const wire::CanFrame& frame, WallTime stamp) {
 }
 
 void Daemon::Parts::drain_joints() {
-    for (int i = 0; i < kFramesPerTurn; ++i) {
-        const auto sample = joints->receive();
-        if (!sample) return;
+    drain_can();  // what came before them goes first: the bus's time is told by the order of stamps
+    std::optional<JointSample> sample;
+    for (int i = 0; i < kFramesPerTurn && joints->receive(sample); ++i) {
+        if (!sample) continue;  // counted by the socket
         const auto frames = local_joints.frames(sample->sampled, sample->position);
-        if (!frames) continue;  // the socket has refused and counted it already
+        if (!frames) continue;  // the socket refuses and counts such a sample already
         for (const wire::CanFrame& frame : *frames) feed(frame, wall_now());
     }
 }
@@ -319,7 +329,8 @@ DaemonView Daemon::Parts::view() const {
 }
 
 std::string Daemon::Parts::answer(const std::string& line) {
-    if (line == "status") return status_json(view()).dump();
+    if (line == "status")
+        return status_json(view()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     if (line == "save") {
         save_map();
         return R"({"ok": true})";

@@ -24,7 +24,12 @@ void check(int result, const char* doing) {
 /// What is called may end its own watch: so a copy is called.
 int call_copy(const void* watch) {
     const std::function<void()> call = static_cast<const EventSource::Watch*>(watch)->call;
-    call();
+    EventLoop& loop = *static_cast<const EventSource::Watch*>(watch)->loop;
+    try {
+        call();
+    } catch (...) {  // it must not cross the frames of a C library
+        loop.fail(std::current_exception());
+    }
     return 0;
 }
 
@@ -66,6 +71,7 @@ EventLoop::~EventLoop() {
 EventSource EventLoop::on_readable(int descriptor, std::function<void()> on_ready) {
     auto watch = std::make_unique<EventSource::Watch>();
     watch->call = std::move(on_ready);
+    watch->loop = this;
     check(sd_event_add_io(loop_, &watch->source, descriptor, EPOLLIN, call_ready, watch.get()),
           "cannot watch a descriptor");
     return EventSource(std::move(watch));
@@ -75,6 +81,7 @@ EventSource EventLoop::every(std::chrono::microseconds period, std::function<voi
     constexpr std::uint64_t kAccuracyUs = 1'000;
     auto watch = std::make_unique<EventSource::Watch>();
     watch->call = std::move(on_time);
+    watch->loop = this;
     watch->period_us = static_cast<std::uint64_t>(period.count());
     const auto first_us = static_cast<std::uint64_t>(now_ns(CLOCK_MONOTONIC) / 1000) + watch->period_us;
     check(sd_event_add_time(loop_, &watch->source, CLOCK_MONOTONIC, first_us, kAccuracyUs, call_timer,
@@ -91,6 +98,7 @@ EventSource EventLoop::on_signal(int signal, std::function<void()> on_signal) {
     check(-pthread_sigmask(SIG_BLOCK, &signals, nullptr), "cannot block a signal");
     auto watch = std::make_unique<EventSource::Watch>();
     watch->call = std::move(on_signal);
+    watch->loop = this;
     check(sd_event_add_signal(loop_, &watch->source, signal, call_signal, watch.get()),
           "cannot watch a signal");
     return EventSource(std::move(watch));
@@ -98,8 +106,14 @@ EventSource EventLoop::on_signal(int signal, std::function<void()> on_signal) {
 
 int EventLoop::run() {
     const int outcome = sd_event_loop(loop_);
+    if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
     check(outcome < 0 ? outcome : 0, "the event loop failed");
     return outcome;
+}
+
+void EventLoop::fail(std::exception_ptr thrown) {
+    thrown_ = std::move(thrown);
+    (void)sd_event_exit(loop_, 1);
 }
 
 void EventLoop::stop(int outcome) {

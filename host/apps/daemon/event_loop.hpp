@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -20,6 +21,7 @@ class EventSource {
     struct Watch {  ///< what sd-event calls back
         sd_event_source* source = nullptr;
         std::function<void()> call;
+        class EventLoop* loop = nullptr;
         std::uint64_t period_us = 0;  ///< of a timer
 
         Watch() = default;
@@ -51,12 +53,15 @@ class EventLoop {
     /// Blocks the signal for this thread and those it starts from now on.
     [[nodiscard]] EventSource on_signal(int signal, std::function<void()> on_signal);
 
-    /// Until `stop`; returns what it was given.
+    /// Until `stop`; returns what it was given. Throws what a call threw, if one did.
     int run();
+    /// Ends the loop: `run` will throw this.
+    void fail(std::exception_ptr thrown);
     void stop(int outcome);
 
   private:
     sd_event* loop_ = nullptr;
+    std::exception_ptr thrown_;
 };
 
 /// The host's monotonic clock, and what a receive stamp is on it, if the stamp is of the last few seconds.

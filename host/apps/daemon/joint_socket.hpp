@@ -49,8 +49,9 @@ class JointSocket {
     ~JointSocket();
 
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
-    /// The next sample, if one is here; what is none is counted.
-    [[nodiscard]] std::optional<JointSample> receive();
+    /// Takes one datagram, if one is here. False if none was. What is no sample is counted, and `sample` then
+    /// empty.
+    [[nodiscard]] bool receive(std::optional<JointSample>& sample);
 
     [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
     [[nodiscard]] const std::array<std::uint64_t, 5>& faults() const noexcept { return faults_; }

@@ -47,7 +47,10 @@ MapKeeper::~MapKeeper() {
 Result<std::optional<FusedMap>, AppError> MapKeeper::load(const MapConfig& config) const {
     const auto file = folder_ / kMapFile;
     std::error_code error;
-    if (!std::filesystem::exists(file, error)) return std::optional<FusedMap>{};
+    const bool is_there = std::filesystem::exists(file, error);
+    // What cannot be seen may be there: beginning anew would overwrite it.
+    if (error) return fail(ExitCode::no_input, file.string() + ": " + error.message());
+    if (!is_there) return std::optional<FusedMap>{};
     auto map = load_map(file, {.map = config});
     if (!map) return fail(ExitCode::bad_data, map.error().message);
     if (map->resolution_m() != config.resolution_m) {

@@ -35,8 +35,10 @@ bool is_answered(const sockaddr_un& address, int type) {
     if (probe < 0) return false;
     const bool is_connected =
         ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+    // Refused, or no such name: nobody. Whatever else goes wrong, somebody may be there.
+    const bool is_nobody = !is_connected && (errno == ECONNREFUSED || errno == ENOENT || errno == ENOTSOCK);
     ::close(probe);
-    return is_connected;
+    return !is_nobody;
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ void run_daemon(DaemonRequest& request) {
     auto daemon = Daemon::build(request);
     if (!daemon) throw CommandFailure(daemon.error());
     const ExitCode outcome = (*daemon)->run();
-    if (outcome != ExitCode::ok) throw CommandFailure({outcome, "ended with the map not saved"});
+    if (outcome != ExitCode::ok) throw CommandFailure({outcome, "ended by a failure: see above"});
 }
 
 }  // namespace

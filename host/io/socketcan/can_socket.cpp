@@ -126,6 +126,7 @@ Result<CanSocket, SocketFault> CanSocket::open(const std::string& interface, con
 CanSocket::CanSocket(std::string interface, int descriptor, bool hears_itself)
     : interface_(std::move(interface)), descriptor_(descriptor), has_echo_(hears_itself) {
     if (descriptor_ < 0) return;
+    (void)::fcntl(descriptor_, F_SETFD, FD_CLOEXEC);  // no helper program may keep the bus open
     (void)::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
     (void)set(descriptor_, SOL_SOCKET, SO_TIMESTAMPNS, 1);  // Unix sockets have stamps too, on most kernels
 }

@@ -15,11 +15,11 @@ namespace octoskin::test {
 using namespace std::chrono_literals;
 
 RunningDaemon::RunningDaemon(const testing_support::ScratchFolder& folder, int descriptor,
-                             const std::vector<std::string>& more_arguments)
+                             const std::vector<std::string>& more_arguments, const std::filesystem::path& rig)
     : folder_(folder) {
     constexpr int kItsDescriptor = 3;
     std::vector<std::string> arguments{OCTOSKIN_PROGRAM, "run",
-                                       "--rig",          OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml",
+                                       "--rig",          rig.string(),
                                        "--can",          "fd:3",
                                        "--maps",         maps().string(),
                                        "--socket",       (folder_ / "control").string(),

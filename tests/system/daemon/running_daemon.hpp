@@ -15,11 +15,14 @@
 
 namespace octoskin::test {
 
+inline constexpr const char* kExperiment = OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml";
+
 class RunningDaemon {
   public:
     /// `descriptor`: its end of the bus; closed here once the process has it.
     RunningDaemon(const testing_support::ScratchFolder& folder, int descriptor,
-                  const std::vector<std::string>& more_arguments = {});
+                  const std::vector<std::string>& more_arguments = {},
+                  const std::filesystem::path& rig = kExperiment);
     ~RunningDaemon();
     RunningDaemon(const RunningDaemon&) = delete;
     RunningDaemon& operator=(const RunningDaemon&) = delete;

@@ -169,6 +169,33 @@ TEST(NodeCalibration, gives_up_a_sensor_that_gives_no_ranges) {
     EXPECT_EQ(outcomes(rig), (std::vector{under_way, no_result}));
 }
 
+// Whoever holds the line, the calibration ends, the node lives, and later nothing begins by itself.
+TEST(NodeCalibration, ends_when_its_bus_is_held_and_is_possible_again_afterwards) {
+    NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.170, 8.0)));
+    rig.run_for(1 * kSecond);
+    command(rig, CommandCode::calibrate_offset, kBad, 140, 1);
+    rig.run_for(kSecond / 2);
+    ASSERT_EQ(outcomes(rig), (std::vector{under_way}));
+    // Each attempt to free it, one a second, takes nine of these clocks.
+    rig.bus(1).inject({.kind = sim::I2cFaultKind::sda_stuck_low,
+                       .first = rig.bus(1).transfer_count() + 1,
+                       .position = 150});
+    rig.run_for(2 * kSecond);
+    ASSERT_TRUE(rig.bus(1).is_held());
+    EXPECT_EQ(outcomes(rig), (std::vector{under_way, device_failed}));
+    command(rig, CommandCode::calibrate_offset, kBad, 140, 2);
+    rig.run_for(2 * kSecond);
+    EXPECT_EQ(outcomes(rig), (std::vector{under_way, device_failed, under_way, device_failed}));
+    for (int s = 0; s < 60 && rig.bus(1).is_held(); ++s) rig.run_for(1 * kSecond);
+    ASSERT_FALSE(rig.bus(1).is_held());
+    rig.run_for(15 * kSecond);
+    EXPECT_EQ(rig.said_of<Calibration>().size(), 4U) << "nobody holds the target any more";
+    EXPECT_EQ(rig.last_health(kBad)->state, SensorState::ranging);
+    command(rig, CommandCode::calibrate_offset, kBad, 140, 3);
+    rig.run_for(4 * kSecond);
+    EXPECT_EQ(outcomes(rig).back(), done);
+}
+
 // Orders in mid-calibration: a stopped sensor stays stopped, and nothing is begun twice.
 TEST(NodeCalibration, ends_before_other_orders_are_obeyed) {
     NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.170, 8.0)));

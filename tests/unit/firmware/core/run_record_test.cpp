@@ -234,6 +234,12 @@ TEST(RunRecord, counts_a_run_that_ends_before_there_is_a_node_and_tells_when_to_
         EXPECT_EQ(load(memory).mode, RunMode::retry);
         EXPECT_TRUE(load(memory).is_starting);
     }
+    KeptMemory of_bad_plug{};
+    for (int i = 0; i < 6; ++i) {
+        EXPECT_FALSE(begin_start_up(of_bad_plug, ResetCause::brown_out, kRules).is_start_up_failing)
+            << "a supply that bounces is no program that fails";
+    }
+    EXPECT_EQ(load(of_bad_plug).mode, RunMode::safe);
     EXPECT_FALSE(begin_start_up(memory, ResetCause::pin, kRules).is_start_up_failing)
         << "somebody ordered it";
 }

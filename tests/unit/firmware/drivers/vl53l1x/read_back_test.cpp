@@ -147,12 +147,12 @@ TEST_F(Registers, another_value_is_another_difference) {
 }
 
 // Offset; time-outs, VCSEL periods, limits, valid phase, period; windows, phases, region of interest,
-// sequence; crosstalk; the mode's phase calibration; how SPADs are chosen.
+// sequence; crosstalk; pulse, least range, phase calibration, how SPADs are chosen, fraction, quadrants.
 TEST_F(Registers, one_that_decides_the_range_is_never_exempt_but_makes_the_part_distrusted) {
     auto deciding = interval(0x1E, 0x23);
     for (const auto& more : {interval(0x5E, 0x6F), interval(0x78, 0x85), interval(0x16, 0x1B)})
         deciding.insert(more.begin(), more.end());
-    deciding.insert({0x4B, 0x4F});
+    deciding.insert({0x34, 0x3F, 0x47, 0x4A, 0x4B, 0x4F, 0x70, 0x76});
     for (reg::Index index = 0; index < 0x200; ++index)
         EXPECT_EQ(decides_range(index), deciding.contains(index)) << index;
     for (const reg::Index index : registers_of(0, kRegisterRuns.size() - 1)) {
@@ -197,10 +197,10 @@ TEST_F(Registers, a_distrusted_part_is_trusted_again_after_a_hundred_clean_check
 }
 
 TEST_F(Registers, a_part_that_needs_more_than_eight_exempted_is_broken) {
-    for (reg::Index index = 0x33; index < 0x33 + 9; ++index) registers_[index] ^= 0x40U;
+    for (reg::Index index = 0x35; index < 0x35 + 9; ++index) registers_[index] ^= 0x40U;
     for (int i = 0; i < 40; ++i) EXPECT_TRUE(record_all()) << i;
     EXPECT_EQ(read_back_.exempt_count(), 8);
-    registers_[0x33 + 8] ^= 0x40U;
+    registers_[0x35 + 8] ^= 0x40U;
     EXPECT_FALSE(record_all());
 }
 
