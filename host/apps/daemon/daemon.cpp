@@ -95,6 +95,7 @@ struct Daemon::Parts {
     void drain_can();
     void take_frame(const socketcan::Received& received);
     void answer_sync(const socketcan::Received& received, HostTime at);
+    void learn_shift(const socketcan::Received& received);
     void feed(const wire::CanFrame& frame, WallTime stamp);
     void drain_joints();
     void drain_camera();
@@ -119,7 +120,9 @@ struct Daemon::Parts {
     LatencyHistogram latency;
     HostTime started;
     std::string reload_error;
-    std::optional<HostTime> foreign_sync;  ///< the newest of another host, while this one sends them
+    std::optional<HostTime> foreign_sync;  ///< the newest of another host, on this machine's clock
+    std::uint8_t foreign_sequence = 0;
+    Nanoseconds shift{0};  ///< from this machine's clock to the one that SYNC tells
     std::vector<std::string> problems_told;
 
     std::vector<EventSource> sources;
@@ -228,6 +231,19 @@ void Daemon::Parts::take_frame(const socketcan::Received& received) {
     const Nanoseconds age{wall_now().ns - stamp.ns};
     const bool is_stamp_good = age >= Nanoseconds{0} && age < kStampAgeMax;
     if (is_stamp_good) answer_sync(received, monotonic_now() - age);
+    learn_shift(received);
+}
+
+/// Who only listens has the clock of the host that sends SYNC: what this machine measures is put on it.
+void Daemon::Parts::learn_shift(const socketcan::Received& received) {
+    if (!request.is_listen_only ||
+        received.entry.frame.can_id != wire::can_id(wire::FrameType::follow_up, wire::kHostId))
+        return;
+    const auto decoded = wire::decode(received.entry.frame);
+    const auto* const message = decoded ? std::get_if<wire::FollowUp>(&decoded->message) : nullptr;
+    if (message == nullptr || !foreign_sync || message->sequence != foreign_sequence) return;
+    shift =
+        Nanoseconds{static_cast<std::int64_t>(message->host_time_us) * 1000} - (*foreign_sync - HostTime{});
 }
 
 /// What a SYNC asks of this host: the answer of its local joints, and the FOLLOW_UP if it was its own.
@@ -239,7 +255,8 @@ void Daemon::Parts::answer_sync(const socketcan::Received& received, HostTime at
     if (joints && joints->samples() > 0)
         feed(local_joints.report(message->sequence, at), received.entry.stamp);
     if (!received.is_own) {
-        foreign_sync = request.is_listen_only ? std::nullopt : std::optional(at);
+        foreign_sync = at;
+        foreign_sequence = message->sequence;
         return;
     }
     if (const auto follow_up = sync.on_sent(message->sequence, at))
@@ -268,7 +285,10 @@ void Daemon::Parts::drain_joints() {
 }
 
 void Daemon::Parts::drain_camera() {
-    if (auto frame = camera->take()) pipeline.on_depth(std::move(*frame));
+    auto frame = camera->take();
+    if (!frame) return;
+    frame->captured = frame->captured + shift;
+    pipeline.on_depth(std::move(*frame));
 }
 
 void Daemon::Parts::save_map() {
@@ -313,14 +333,16 @@ void Daemon::Parts::tell_changes() {
 }
 
 DaemonView Daemon::Parts::view() const {
-    return {.now = monotonic_now(),
+    const HostTime now = monotonic_now();
+    return {.now = now,
+            .bus_now = now + shift,
             .started = started,
             .rig = &settings.host.rig,
             .pipeline = &pipeline,
             .can = &can,
             .interface = &request.interface,
             .is_listen_only = request.is_listen_only,
-            .foreign_sync = foreign_sync,
+            .foreign_sync = request.is_listen_only ? std::nullopt : foreign_sync,
             .joints = joints ? &*joints : nullptr,
             .camera = camera ? std::optional(camera->record()) : std::nullopt,
             .latency = &latency,

@@ -39,10 +39,10 @@ void add_nodes(const DaemonView& view, Problems& problems) {
     for (const HostNode& node : view.rig->nodes) {
         const auto& record = nodes.records().at(node.node_id);
         // A bus that fell silent has no "now" of its own: the daemon's clock tells how long.
-        const bool is_silent = record.heard && view.now - *record.heard > NodeRegistry::kLostAfter;
-        const NodeVerdict verdict = nodes.verdict(node.node_id, view.now);
+        const bool is_silent = record.heard && view.bus_now - *record.heard > NodeRegistry::kLostAfter;
+        const NodeVerdict verdict = nodes.verdict(node.node_id, view.bus_now);
         if (verdict != NodeVerdict::usable || is_silent) {
-            problems.push_back(nodes.describe(node.node_id, view.now));
+            problems.push_back(nodes.describe(node.node_id, view.bus_now));
             continue;
         }
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {

@@ -56,7 +56,7 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
                  {"fault", record.health ? Json(name(record.health->fault)) : Json(nullptr)},
                  {"received", record.received},
                  {"lost", record.lost},
-                 {"age_s", age_s(record.newest_at, view.now)}};
+                 {"age_s", age_s(record.newest_at, view.bus_now)}};
     if (record.newest) {
         json["range_m"] = record.newest->range_mm * 1e-3;
         json["sigma_m"] = record.newest->sigma_quarter_mm * 0.25e-3;
@@ -73,9 +73,9 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
 Json node_json(const DaemonView& view, const HostNode& node) {
     const CanIntake& intake = view.pipeline->intake();
     const NodeRecord& record = intake.nodes().records().at(node.node_id);
-    const NodeVerdict verdict = intake.nodes().verdict(node.node_id, view.now);
-    const auto reason = intake.nodes().reason(node.node_id, view.now);
-    const auto clock_fault = intake.clock(node.node_id).fault(view.now);
+    const NodeVerdict verdict = intake.nodes().verdict(node.node_id, view.bus_now);
+    const auto reason = intake.nodes().reason(node.node_id, view.bus_now);
+    const auto clock_fault = intake.clock(node.node_id).fault(view.bus_now);
     const auto drift = intake.clock(node.node_id).drift();
     Json json = {
         {"id", node.node_id},
@@ -83,7 +83,7 @@ Json node_json(const DaemonView& view, const HostNode& node) {
         {"verdict", names_of(NodeVerdict{})[static_cast<std::size_t>(verdict)]},
         {"reason", reason ? Json(reason->text()) : Json(nullptr)},
         {"state", record.heartbeat ? Json(name(record.heartbeat->state)) : Json(nullptr)},
-        {"age_s", age_s(record.heard, view.now)},
+        {"age_s", age_s(record.heard, view.bus_now)},
         {"degraded_sensors", record.heartbeat ? Json(record.heartbeat->degraded_sensors) : Json(nullptr)},
         {"clock_known", !clock_fault},
         {"clock_ppm", drift ? Json(*drift * 1e6) : Json(nullptr)}};

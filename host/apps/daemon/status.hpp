@@ -20,6 +20,8 @@ namespace octoskin {
 /// All that there is to tell. What it points to must be there.
 struct DaemonView {
     HostTime now;
+    /// The same instant on the clock that SYNC tells: another host's, if that one sends it.
+    HostTime bus_now;
     HostTime started;
     const HostRig* rig = nullptr;
     const Pipeline* pipeline = nullptr;

@@ -69,6 +69,7 @@ void LiveBus::play() {
     for (const StampedFrame& entry : frames_) {
         listen_until(entry.stamp.ns);
         if (is_ending_) return;
+        be_host();
         played_s_ = static_cast<double>(entry.stamp.ns - begin_ns_) * 1e-9;
         if (!is_silent(wire::node_of(entry.frame.can_id))) put(entry.frame);
     }
@@ -102,18 +103,44 @@ bool LiveBus::hear_one() {
 }
 
 void LiveBus::answer(const wire::CanFrame& frame, std::int64_t heard_ns) {
-    frames_heard_ += is_of_host(frame) ? 1U : 0U;
+    ++frames_heard_;
     const auto decoded = wire::decode(frame);
     const auto* const sync = decoded ? std::get_if<wire::Sync>(&decoded->message) : nullptr;
     if (sync == nullptr) return;
     ++syncs_heard_;
+    report(sync->sequence, heard_ns);
+}
+
+void LiveBus::report(std::uint8_t sequence, std::int64_t heard_ns) {
     for (const auto& [node, clock] : clocks_) {
         if (is_silent(node)) continue;
         const double passed_us = static_cast<double>(heard_ns - clock.stamp_ns) * 1e-3;
         const auto ran_us = static_cast<std::int64_t>(std::floor(passed_us * clock.us_per_us));
         const NodeTime heard{clock.heard_us + static_cast<std::uint32_t>(ran_us)};
-        put(wire::encode(wire::SyncReport{sync->sequence, heard}, node));
+        put(wire::encode(wire::SyncReport{sequence, heard}, node));
     }
+}
+
+void LiveBus::speak_as_host(Nanoseconds ahead) {
+    const std::lock_guard lock(mutex_);
+    host_ahead_ = ahead;
+}
+
+void LiveBus::be_host() {
+    std::optional<Nanoseconds> ahead;
+    {
+        const std::lock_guard lock(mutex_);
+        ahead = host_ahead_;
+    }
+    if (!ahead || log_now_ns() < host_due_ns_) return;
+    host_due_ns_ = log_now_ns() + 1'000'000'000;
+    host_sequence_ = static_cast<std::uint8_t>((host_sequence_ + 1U) % wire::kSyncSequenceCount);
+    put(wire::encode(wire::Sync{host_sequence_}, wire::kHostId));
+    const std::int64_t sent_ns = log_now_ns();
+    const std::int64_t host_ns = steady_ns() + ahead->count();
+    put(wire::encode(wire::FollowUp{host_sequence_, static_cast<std::uint64_t>(host_ns / 1000)},
+                     wire::kHostId));
+    report(host_sequence_, sent_ns);
 }
 
 void LiveBus::put(const wire::CanFrame& frame) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -27,10 +28,13 @@ class LiveBus {
     /// The log's time that has been played, seconds from its first frame.
     [[nodiscard]] double played_s() const noexcept { return played_s_; }
     [[nodiscard]] bool is_over() const noexcept { return is_over_; }
+    /// From now on another host sends SYNC and FOLLOW_UP once a second; its clock is so far ahead of this
+    /// machine's monotonic one.
+    void speak_as_host(Nanoseconds ahead);
     /// A node that is switched off: it sends and answers nothing.
     void silence(wire::NodeId node, bool is_silent);
     [[nodiscard]] std::uint64_t syncs_heard() const noexcept { return syncs_heard_; }
-    /// Frames of the other end that only a host may send: SYNC, FOLLOW_UP.
+    /// Frames of the other end.
     [[nodiscard]] std::uint64_t frames_heard() const noexcept { return frames_heard_; }
 
   private:
@@ -47,6 +51,8 @@ class LiveBus {
     /// False if the other end is gone.
     bool hear_one();
     void answer(const wire::CanFrame& frame, std::int64_t heard_ns);
+    void report(std::uint8_t sequence, std::int64_t heard_ns);
+    void be_host();
     void put(const wire::CanFrame& frame);
     [[nodiscard]] std::int64_t log_now_ns() const;
     [[nodiscard]] bool is_silent(wire::NodeId node) const;
@@ -63,6 +69,9 @@ class LiveBus {
     std::atomic<std::uint64_t> frames_heard_ = 0;
     mutable std::mutex mutex_;
     std::map<wire::NodeId, bool> silent_;
+    std::optional<Nanoseconds> host_ahead_;  ///< of another host; empty while there is none
+    std::int64_t host_due_ns_ = 0;           ///< its next SYNC, on the log's time scale
+    std::uint8_t host_sequence_ = 0;
     std::thread thread_;
 };
 

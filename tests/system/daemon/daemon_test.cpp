@@ -55,6 +55,20 @@ const std::vector<StampedFrame>& log_of_experiment() {
     return log;
 }
 
+/// Twenty frames of a wall 3 m away, at 10 Hz, through OpenNI2's own recorder.
+std::filesystem::path record_wall(const testing_support::ScratchFolder& folder) {
+    constexpr openni2::FrameSize kSize{512, 424};
+    const auto file = folder / "being-made.oni";
+    auto writer = openni2::OniWriter::create(file, folder / "wall.epoch.yaml", kSize);
+    EXPECT_TRUE(writer) << writer.error().what;
+    const std::vector<std::uint16_t> depth_mm(kSize.pixels(), 3'000);
+    for (int i = 0; i < 20; ++i)
+        EXPECT_TRUE(writer->write(HostTime{1'000'000'000LL + 100'000'000LL * i}, depth_mm));
+    EXPECT_TRUE(writer->close());
+    std::filesystem::rename(file, folder / "wall.oni");  // whole, for whoever looks for it
+    return folder / "wall.oni";
+}
+
 class DaemonTest : public testing::Test {
   protected:
     DaemonTest() {
@@ -134,7 +148,7 @@ TEST_F(DaemonTest, names_a_node_that_falls_silent_within_a_second_and_takes_it_b
                 static_cast<long>(lost->count()), static_cast<long>(back->count()));
 }
 
-TEST_F(DaemonTest, transmits_nothing_when_it_only_listens) {
+TEST_F(DaemonTest, transmits_nothing_when_it_only_listens_and_says_what_that_needs) {
     start({"--no-camera", "--listen-only"});
     std::this_thread::sleep_for(3s);
     const Json status = daemon_->status();
@@ -142,6 +156,23 @@ TEST_F(DaemonTest, transmits_nothing_when_it_only_listens) {
     EXPECT_EQ(bus_->frames_heard(), 0U);
     EXPECT_GT(status["can"]["received"].get<int>(), 100);
     EXPECT_TRUE(has_problem(status, "--listen-only")) << status["problems"].dump(1);
+}
+
+// The other host booted a quarter of an hour before this one.
+TEST_F(DaemonTest, listens_to_another_hosts_clock_and_puts_its_own_camera_on_it) {
+    const auto wall = record_wall(folder_);
+    start({"--camera", wall.string(), "--listen-only"});
+    bus_->speak_as_host(std::chrono::minutes(15));
+    const auto took = daemon_->wait_until(
+        [](const Json& status) {
+            return is_ranging(status) && status["account"]["depth frames"]["used"].get<int>() >= 5;
+        },
+        15s);
+    ASSERT_TRUE(took) << daemon_->status()["account"].dump(1) << daemon_->log();
+    const Json status = daemon_->status();
+    EXPECT_TRUE(status["problems"].empty()) << status["problems"].dump(1);
+    EXPECT_LT(status["nodes"][0]["age_s"].get<double>(), 1.0);
+    EXPECT_EQ(bus_->frames_heard(), 0U);
 }
 
 TEST_F(DaemonTest, takes_joint_states_from_a_program_of_this_machine) {
@@ -162,20 +193,6 @@ TEST_F(DaemonTest, takes_joint_states_from_a_program_of_this_machine) {
     EXPECT_TRUE(took) << daemon_->status().dump(1);
     EXPECT_GT(daemon_->status()["joints_socket"]["samples"].get<int>(), 50);
     forwarder.join();
-}
-
-/// Twenty frames of a wall 3 m away, at 10 Hz, through OpenNI2's own recorder.
-std::filesystem::path record_wall(const testing_support::ScratchFolder& folder) {
-    constexpr openni2::FrameSize kSize{512, 424};
-    const auto file = folder / "being-made.oni";
-    auto writer = openni2::OniWriter::create(file, folder / "wall.epoch.yaml", kSize);
-    EXPECT_TRUE(writer) << writer.error().what;
-    const std::vector<std::uint16_t> depth_mm(kSize.pixels(), 3'000);
-    for (int i = 0; i < 20; ++i)
-        EXPECT_TRUE(writer->write(HostTime{1'000'000'000LL + 100'000'000LL * i}, depth_mm));
-    EXPECT_TRUE(writer->close());
-    std::filesystem::rename(file, folder / "wall.oni");  // whole, for whoever looks for it
-    return folder / "wall.oni";
 }
 
 TEST_F(DaemonTest, takes_the_frames_of_a_camera_and_goes_on_without_it) {
