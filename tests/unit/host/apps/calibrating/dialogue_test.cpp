@@ -125,7 +125,7 @@ TEST(CalibrationDialogue, does_not_ask_a_node_of_another_configuration_or_versio
     const auto add = [&crc](std::uint8_t byte) {
         crc = static_cast<std::uint16_t>(crc ^ (byte << 8U));
         for (int bit = 0; bit < 8; ++bit)
-            crc = static_cast<std::uint16_t>((crc & 0x8000U) != 0 ? (crc << 1U) ^ 0x1021U : crc << 1U);
+            crc = static_cast<std::uint16_t>((unsigned{crc} << 1U) ^ ((crc & 0x8000U) != 0 ? 0x1021U : 0U));
     };
     add(static_cast<std::uint8_t>(frame.can_id & 0xFFU));
     add(static_cast<std::uint8_t>(frame.can_id >> 8U));
