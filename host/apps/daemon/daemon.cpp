@@ -4,6 +4,7 @@
 #include <systemd/sd-daemon.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -101,6 +102,7 @@ struct Daemon::Parts {
     void drain_camera();
     void save_map();
     void reload();
+    void note_used(HostTime now);
     void tell_changes();
     [[nodiscard]] DaemonView view() const;
     std::string answer(const std::string& request_line);
@@ -124,6 +126,8 @@ struct Daemon::Parts {
     std::uint8_t foreign_sequence = 0;
     Nanoseconds shift{0};  ///< from this machine's clock to the one that SYNC tells
     std::vector<std::string> problems_told;
+    LastUsed last_used;
+    std::array<std::uint64_t, 3> used_counts{};  ///< joint samples, readings, depth frames
 
     std::vector<EventSource> sources;
 };
@@ -214,7 +218,19 @@ void Daemon::Parts::attend() {
         if (const auto due = sync.poll(now)) (void)can.send(wire::encode(*due, wire::kHostId));
     }
     drain_can();  // what this host sent comes back without waking anybody, where there is no kernel
+    note_used(now);
     tell_changes();
+}
+
+void Daemon::Parts::note_used(HostTime now) {
+    const PipelineAccounts& accounts = pipeline.accounts();
+    const auto note = [now](std::uint64_t count, std::uint64_t& before, std::optional<HostTime>& last) {
+        if (count > before) last = now;
+        before = count;
+    };
+    note(accounts.joint_samples.used(), used_counts[0], last_used.joint_sample);
+    note(accounts.readings.used(), used_counts[1], last_used.reading);
+    note(accounts.depth_frames.used(), used_counts[2], last_used.depth_frame);
 }
 
 void Daemon::Parts::drain_can() {
@@ -346,6 +362,7 @@ DaemonView Daemon::Parts::view() const {
             .joints = joints ? &*joints : nullptr,
             .camera = camera ? std::optional(camera->record()) : std::nullopt,
             .latency = &latency,
+            .used = last_used,
             .saves = keeper.record(),
             .reload_error = reload_error};
 }

@@ -58,25 +58,42 @@ void add_nodes(const DaemonView& view, Problems& problems) {
     }
 }
 
+bool has_stopped(const std::optional<HostTime>& last, HostTime now) {
+    constexpr Nanoseconds kPatience{800'000'000};
+    return last && now - *last > kPatience;
+}
+
 void add_joints(const DaemonView& view, Problems& problems) {
     const auto& joints = view.pipeline->accounts().joint_samples;
     if (joints.in() == 0) {
         problems.push_back(fmt::format(
             "no joint states: neither from node {} on the bus{}", view.rig->joints.node_id,
             view.joints != nullptr ? " nor through the socket (`octoskin joints`)" : " (and no --joints)"));
-    } else if (joints.used() == 0 && joints.rejected() > 0) {
+    } else if (!view.used.joint_sample) {
         problems.emplace_back("no joint state could be used: see the counters of joint samples");
+    } else if (has_stopped(view.used.joint_sample, view.now)) {
+        problems.emplace_back("joint states have stopped: readings have no pose");
+    }
+}
+
+void add_readings(const DaemonView& view, Problems& problems) {
+    const auto& readings = view.pipeline->accounts().readings;
+    if (readings.in() > 0 && !view.used.reading) {
+        problems.emplace_back("no reading could be used yet: see the counters of readings");
+    } else if (has_stopped(view.used.reading, view.now)) {
+        problems.emplace_back("readings come onto the map no more: see the counters of readings");
     }
 }
 
 void add_camera(const DaemonView& view, Problems& problems) {
-    if (!view.camera) return;
+    if (!view.camera || !view.rig->camera) return;
+    const Nanoseconds patience{static_cast<std::int64_t>(3e9 / view.rig->camera->rate_hz)};
     if (!view.camera->is_open) {
         problems.push_back("camera: " + view.camera->why);
-    } else if (view.rig->camera && view.camera->newest) {
-        const Nanoseconds patience{static_cast<std::int64_t>(3e9 / view.rig->camera->rate_hz)};
-        if (view.now - *view.camera->newest > patience)
-            problems.emplace_back("camera: no frame for three periods");
+    } else if (view.camera->newest && view.now - *view.camera->newest > patience) {
+        problems.emplace_back("camera: no frame for three periods");
+    } else if (has_stopped(view.used.depth_frame, view.now)) {
+        problems.emplace_back("depth frames come onto the map no more: see the counters of depth frames");
     }
 }
 
@@ -100,6 +117,7 @@ std::vector<std::string> problems(const DaemonView& view) {
     add_clock(view, problems);
     add_nodes(view, problems);
     add_joints(view, problems);
+    add_readings(view, problems);
     add_camera(view, problems);
     add_map(view, problems);
     return problems;

@@ -17,6 +17,13 @@
 
 namespace octoskin {
 
+/// When something was last used for the map; empty if never.
+struct LastUsed {
+    std::optional<HostTime> joint_sample;
+    std::optional<HostTime> reading;
+    std::optional<HostTime> depth_frame;
+};
+
 /// All that there is to tell. What it points to must be there.
 struct DaemonView {
     HostTime now;
@@ -32,6 +39,7 @@ struct DaemonView {
     const JointSocket* joints = nullptr;   ///< null without a socket
     std::optional<CameraRecord> camera;    ///< empty without a camera
     const LatencyHistogram* latency = nullptr;
+    LastUsed used;
     SaveRecord saves;
     std::string reload_error;  ///< of the newest SIGHUP; empty if it went well
 };

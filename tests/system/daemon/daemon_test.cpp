@@ -148,6 +148,18 @@ TEST_F(DaemonTest, names_a_node_that_falls_silent_within_a_second_and_takes_it_b
                 static_cast<long>(lost->count()), static_cast<long>(back->count()));
 }
 
+TEST_F(DaemonTest, names_joint_states_that_stop) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    bus_->silence(3, true);
+    const auto told = daemon_->wait_until(
+        [](const Json& status) { return has_problem(status, "joint states have stopped"); }, 3s);
+    ASSERT_TRUE(told) << daemon_->status()["problems"].dump(1);
+    bus_->silence(3, false);
+    EXPECT_TRUE(daemon_->wait_until([](const Json& status) { return status["problems"].empty(); }, 5s))
+        << daemon_->status()["problems"].dump(1);
+}
+
 TEST_F(DaemonTest, transmits_nothing_when_it_only_listens_and_says_what_that_needs) {
     start({"--no-camera", "--listen-only"});
     std::this_thread::sleep_for(3s);
