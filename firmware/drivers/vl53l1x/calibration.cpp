@@ -18,7 +18,7 @@ constexpr std::size_t kCrosstalkRun = 4;
 static_assert(kRegisterRuns[kOffsetRun].first == 0x1E && kRegisterRuns[kCrosstalkRun].first == 0x16);
 
 /// 127 kcps in 512ths: what a rig file takes.
-constexpr std::int64_t kCrosstalkRawMax = 127 * 512;
+constexpr std::int64_t kCrosstalkRawMax = std::int64_t{127} * 512;
 
 /// To the nearest, halves away from zero.
 std::int64_t divided(std::int64_t dividend, std::int64_t divisor) noexcept {
