@@ -47,7 +47,7 @@ TEST(JointText, takes_any_bytes) {
     std::mt19937 random(11);
     for (int i = 0; i < 20'000; ++i) {
         std::string text(random() % 64, '\0');
-        for (char& letter : text) letter = "0123456789.-+e ,\n\tnaif\0\xff"[random() % 26];
+        for (char& letter : text) letter = "0123456789.-+e ,\n\tnaif\0\xff"[random() % 24];
         const auto sample = parse_joints(text, 1 + random() % 7, kNow);
         EXPECT_TRUE(!sample || !sample->position.empty());
     }
