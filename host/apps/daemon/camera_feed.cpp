@@ -3,13 +3,12 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include <pthread.h>
 #include <cerrno>
-#include <csignal>
 #include <system_error>
 #include <utility>
 
 #include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/daemon/quiet_thread.hpp"
 #include "host/io/openni2/frame_pipe.hpp"
 #include "host/io/openni2/helper_process.hpp"
 
@@ -27,12 +26,7 @@ CameraFeed::CameraFeed(std::string uri, std::chrono::milliseconds silence_max)
       event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC | EFD_SEMAPHORE)) {
     if (event_ < 0) throw std::system_error(errno, std::generic_category(), "cannot make an eventfd");
     record_.why = "not opened yet";
-    sigset_t all;
-    sigset_t before;
-    sigfillset(&all);  // signals are for the thread that runs the event loop
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    thread_ = std::thread([this] { work(); });
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    thread_ = start_without_signals([this] { work(); });
 }
 
 CameraFeed::~CameraFeed() {

@@ -34,8 +34,6 @@ constexpr Nanoseconds kSavePatience{4'500'000'000};
 constexpr std::chrono::milliseconds kCameraSilenceMax{2'000};
 /// Frames taken in one go before others have a turn.
 constexpr int kFramesPerTurn = 256;
-/// A stamp older than this is no stamp of a frame that came just now: the wall clock was set.
-constexpr Nanoseconds kStampAgeMax{1'000'000'000};
 
 /// What the files say.
 struct Settings {
@@ -154,10 +152,6 @@ Result<std::unique_ptr<Daemon>, AppError> Daemon::build(const DaemonRequest& req
 Daemon::Daemon(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Daemon::~Daemon() = default;
 
-std::string Daemon::answer(const std::string& request) {
-    return parts_->answer(request);
-}
-
 ExitCode Daemon::run() {
     (void)sd_notify(0, "READY=1");
     spdlog::info("running: rig '{}', {}{}", parts_->settings.host.rig.name, parts_->request.interface,
@@ -242,11 +236,8 @@ void Daemon::Parts::drain_can() {
 }
 
 void Daemon::Parts::take_frame(const socketcan::Received& received) {
-    const WallTime stamp = received.entry.stamp;
-    feed(received.entry.frame, stamp);
-    const Nanoseconds age{wall_now().ns - stamp.ns};
-    const bool is_stamp_good = age >= Nanoseconds{0} && age < kStampAgeMax;
-    if (is_stamp_good) answer_sync(received, monotonic_now() - age);
+    feed(received.entry.frame, received.entry.stamp);
+    if (const auto at = monotonic_of(received.entry.stamp)) answer_sync(received, *at);
     learn_shift(received);
 }
 

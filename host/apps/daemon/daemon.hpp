@@ -41,9 +41,6 @@ class Daemon {
     /// again: all of them, or none.
     [[nodiscard]] ExitCode run();
 
-    /// One line of JSON: what ControlSocket answers. For a test that has no socket.
-    [[nodiscard]] std::string answer(const std::string& request);
-
   private:
     struct Parts;
     explicit Daemon(std::unique_ptr<Parts> parts);

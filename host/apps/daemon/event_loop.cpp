@@ -128,4 +128,11 @@ WallTime wall_now() {
     return {now_ns(CLOCK_REALTIME)};
 }
 
+std::optional<HostTime> monotonic_of(WallTime stamp) {
+    constexpr Nanoseconds kAgeMax{1'000'000'000};
+    const Nanoseconds age{wall_now().ns - stamp.ns};
+    if (age < Nanoseconds{0} || age >= kAgeMax) return std::nullopt;
+    return monotonic_now() - age;
+}
+
 }  // namespace octoskin

@@ -6,6 +6,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "common/time.hpp"
@@ -64,8 +65,10 @@ class EventLoop {
     std::exception_ptr thrown_;
 };
 
-/// The host's monotonic clock, and what a receive stamp is on it, if the stamp is of the last few seconds.
+/// This machine's two clocks, and what a receive stamp is on the one that never steps.
 [[nodiscard]] HostTime monotonic_now();
 [[nodiscard]] WallTime wall_now();
+/// Empty for a stamp that is not of the last second: the wall clock was set meanwhile.
+[[nodiscard]] std::optional<HostTime> monotonic_of(WallTime stamp);
 
 }  // namespace octoskin

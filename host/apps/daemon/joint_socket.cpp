@@ -6,20 +6,19 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <ctime>
+#include <span>
 #include <utility>
 
 #include "host/apps/daemon/event_loop.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/core/ingest/local_joints.hpp"
+#include "host/io/socketcan/stamped_datagram.hpp"
 
 namespace octoskin {
 namespace {
 
 constexpr double kNsPerS = 1e9;
 constexpr double kTimeOffMaxS = 1.0;
-constexpr std::int64_t kAgeMaxNs = 1'000'000'000;
 
 /// The numbers in `text`, between blanks; empty if a word is none.
 std::optional<std::vector<double>> numbers_of(std::string_view text) {
@@ -37,21 +36,6 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
         numbers.push_back(number);
         text.remove_prefix(word.size());
     }
-}
-
-/// On the monotonic clock, by the kernel's stamp: the datagram may have waited.
-HostTime arrival_of(msghdr& message) {
-    const HostTime now = monotonic_now();
-    const WallTime wall = wall_now();
-    const cmsghdr* const beside = CMSG_FIRSTHDR(&message);
-    const bool is_stamped =
-        beside != nullptr && beside->cmsg_level == SOL_SOCKET && beside->cmsg_type == SO_TIMESTAMPNS;
-    if (!is_stamped) return now;
-    timespec stamp{};
-    std::memcpy(&stamp, CMSG_DATA(beside), sizeof(stamp));
-    const std::int64_t age_ns = wall.ns - (std::int64_t{stamp.tv_sec} * 1'000'000'000 + stamp.tv_nsec);
-    // A wall clock that was set meanwhile tells no age.
-    return age_ns >= 0 && age_ns < kAgeMaxNs ? HostTime{now.ns - age_ns} : now;
 }
 
 }  // namespace
@@ -79,8 +63,7 @@ Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::siz
 Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& file, std::size_t joint_count) {
     const auto descriptor = bind_unix_socket(file, SOCK_DGRAM);
     if (!descriptor) return unexpected(descriptor.error());
-    const int yes = 1;
-    (void)::setsockopt(*descriptor, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof(yes));
+    (void)socketcan::want_stamps(*descriptor);
     return JointSocket(file, *descriptor, joint_count);
 }
 
@@ -109,17 +92,12 @@ JointSocket::~JointSocket() {
 bool JointSocket::receive(std::optional<JointSample>& sample) {
     sample.reset();
     std::array<char, kJointTextMax + 1> text{};
-    alignas(cmsghdr) std::array<char, 64> control{};
-    iovec part{text.data(), text.size()};
-    msghdr message{};
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    message.msg_control = control.data();
-    message.msg_controllen = control.size();
-    const ssize_t count = ::recvmsg(descriptor_, &message, MSG_DONTWAIT);
-    if (count < 0) return false;
-    auto parsed =
-        parse_joints({text.data(), static_cast<std::size_t>(count)}, joint_count_, arrival_of(message));
+    const auto datagram = socketcan::receive_stamped(descriptor_, std::as_writable_bytes(std::span(text)));
+    if (datagram.count < 0) return false;
+    // It may have waited: it came when the kernel says.
+    const auto came = datagram.stamp ? monotonic_of(*datagram.stamp) : std::nullopt;
+    auto parsed = parse_joints({text.data(), static_cast<std::size_t>(datagram.count)}, joint_count_,
+                               came ? *came : monotonic_now());
     if (parsed) {
         ++samples_;
         sample = std::move(parsed).value();

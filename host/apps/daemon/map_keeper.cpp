@@ -1,11 +1,9 @@
 #include "host/apps/daemon/map_keeper.hpp"
 
-#include <pthread.h>
-
-#include <csignal>
 #include <utility>
 
 #include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/daemon/quiet_thread.hpp"
 #include "host/io/mapfile/atomic_file.hpp"
 #include "host/io/mapfile/map_file.hpp"
 
@@ -14,17 +12,6 @@ namespace {
 
 constexpr const char* kMapFile = "fused.ot";
 constexpr const char* kSmallMapFile = "fused.bt";
-
-/// Signals are for the thread that runs the event loop.
-std::thread start_without_signals(auto work) {
-    sigset_t all;
-    sigset_t before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    std::thread thread(work);
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    return thread;
-}
 
 }  // namespace
 

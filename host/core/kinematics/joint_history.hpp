@@ -57,6 +57,11 @@ class JointHistory {
     /// Equality with a limit of the configuration is within it. O(log capacity), no allocation.
     [[nodiscard]] Result<JointPosition, JointLookup> at(HostTime instant) const;
 
+    /// Whether `at` gives its last word on this instant: a sample of that time or later is here. O(1).
+    [[nodiscard]] bool is_settled(HostTime instant) const noexcept {
+        return size_ > 0 && instant <= sample(size_ - 1).sampled;
+    }
+
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
   private:

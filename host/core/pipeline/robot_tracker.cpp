@@ -29,11 +29,6 @@ Status<JointReason> RobotTracker::add(const JointMeasurement& joints) {
                                                                     : JointReason::out_of_limits);
 }
 
-bool RobotTracker::is_settled(HostTime instant) const {
-    const auto position = joints_.at(instant);
-    return position || position.error() != JointLookup::not_yet;
-}
-
 const RobotPose* RobotTracker::at(HostTime instant) {
     const auto position = joints_.at(instant);
     if (!position) {

@@ -24,7 +24,7 @@ class RobotTracker {
     [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
 
     /// Whether the samples about `instant` are here, or will never come: `at` answers the same for ever.
-    [[nodiscard]] bool is_settled(HostTime instant) const;
+    [[nodiscard]] bool is_settled(HostTime instant) const noexcept { return joints_.is_settled(instant); }
 
     /// The robot at `instant`, or null if no samples surround it closely enough. Valid until the next call.
     /// About 2 us.

@@ -14,20 +14,15 @@
 #include <vector>
 
 #include "common/wire/socketcan_layout.hpp"
+#include "host/io/socketcan/stamped_datagram.hpp"
 
 namespace octoskin::socketcan {
 namespace {
 
-constexpr std::int64_t kNsPerS = 1'000'000'000;
-
-WallTime wall_time(const timespec& time) {
-    return {static_cast<std::int64_t>(time.tv_sec) * kNsPerS + time.tv_nsec};
-}
-
 WallTime wall_now() {
     timespec now{};
     ::clock_gettime(CLOCK_REALTIME, &now);
-    return wall_time(now);
+    return {std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec};
 }
 
 std::string remedy(int error_number) {
@@ -71,7 +66,7 @@ bool set_options(int descriptor, const SocketOptions& options) {
     return is_filtered && set(descriptor, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1) &&
            set(descriptor, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) &&
            set(descriptor, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, options.hears_itself ? 1 : 0) &&
-           set(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, 1) && set(descriptor, SOL_SOCKET, SO_RXQ_OVFL, 1);
+           want_stamps(descriptor) && set(descriptor, SOL_SOCKET, SO_RXQ_OVFL, 1);
 }
 
 /// 0, or why not.
@@ -82,29 +77,6 @@ int bind_to(int descriptor, const std::string& interface) {
     if (address.can_ifindex == 0) return errno;
     const auto* generic = reinterpret_cast<const sockaddr*>(&address);
     return ::bind(descriptor, generic, sizeof(address)) == 0 ? 0 : errno;
-}
-
-/// What the kernel says beside a frame.
-struct Beside {
-    std::optional<WallTime> stamp;
-    std::optional<std::uint32_t> dropped;
-};
-
-Beside read_beside(msghdr& message) {
-    Beside beside;
-    for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part)) {
-        if (part->cmsg_level != SOL_SOCKET) continue;
-        if (part->cmsg_type == SO_TIMESTAMPNS) {
-            timespec time{};
-            std::memcpy(&time, CMSG_DATA(part), sizeof(time));
-            beside.stamp = wall_time(time);
-        } else if (part->cmsg_type == SO_RXQ_OVFL) {
-            std::uint32_t dropped = 0;
-            std::memcpy(&dropped, CMSG_DATA(part), sizeof(dropped));
-            beside.dropped = dropped;
-        }
-    }
-    return beside;
 }
 
 }  // namespace
@@ -128,7 +100,7 @@ CanSocket::CanSocket(std::string interface, int descriptor, bool hears_itself)
     if (descriptor_ < 0) return;
     (void)::fcntl(descriptor_, F_SETFD, FD_CLOEXEC);  // no helper program may keep the bus open
     (void)::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
-    (void)set(descriptor_, SOL_SOCKET, SO_TIMESTAMPNS, 1);  // Unix sockets have stamps too, on most kernels
+    (void)want_stamps(descriptor_);  // Unix sockets have stamps too, on most kernels
 }
 
 CanSocket::~CanSocket() {
@@ -170,28 +142,20 @@ Result<std::optional<Received>, SocketFault> CanSocket::receive() {
 
 Result<std::optional<Received>, SocketFault> CanSocket::read_one() {
     std::array<std::byte, CANFD_MTU + 1> bytes{};
-    alignas(cmsghdr) std::array<char, 128> control{};
-    iovec part{bytes.data(), bytes.size()};
-    msghdr message{};
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    message.msg_control = control.data();
-    message.msg_controllen = control.size();
-    const ssize_t count = ::recvmsg(descriptor_, &message, MSG_DONTWAIT);
-    if (count < 0) {
+    const StampedDatagram datagram = receive_stamped(descriptor_, bytes);
+    if (datagram.count < 0) {
         if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return std::optional<Received>{};
         return unexpected(fault(errno, "cannot receive"));
     }
-    if (count == 0) return unexpected(fault(ENODEV, "closed"));
-    const Beside beside = read_beside(message);
-    if (beside.dropped) dropped_ += *beside.dropped - std::exchange(dropped_raw_, *beside.dropped);
-    const auto frame = wire::from_socketcan(std::span(bytes).first(static_cast<std::size_t>(count)));
+    if (datagram.count == 0) return unexpected(fault(ENODEV, "closed"));
+    if (datagram.dropped) dropped_ += *datagram.dropped - std::exchange(dropped_raw_, *datagram.dropped);
+    const auto frame = wire::from_socketcan(std::span(bytes).first(static_cast<std::size_t>(datagram.count)));
     if (!frame) {
         ++malformed_;
         return std::optional<Received>{};
     }
-    return std::optional(Received{.entry = {beside.stamp ? *beside.stamp : wall_now(), *frame},
-                                  .is_own = (message.msg_flags & MSG_CONFIRM) != 0});
+    return std::optional(Received{.entry = {datagram.stamp ? *datagram.stamp : wall_now(), *frame},
+                                  .is_own = (datagram.flags & MSG_CONFIRM) != 0});
 }
 
 Result<bool, SocketFault> CanSocket::send(const wire::CanFrame& frame) {

@@ -1,0 +1,51 @@
+#include "host/io/socketcan/stamped_datagram.hpp"
+
+#include <sys/socket.h>
+
+#include <array>
+#include <cstring>
+#include <ctime>
+
+namespace octoskin::socketcan {
+namespace {
+
+template <class Value>
+Value value_of(const cmsghdr* part) {
+    Value value{};
+    std::memcpy(&value, CMSG_DATA(part), sizeof(value));
+    return value;
+}
+
+WallTime wall_time(const timespec& time) {
+    return {std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec};
+}
+
+}  // namespace
+
+bool want_stamps(int descriptor) {
+    const int yes = 1;
+    return ::setsockopt(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof(yes)) == 0;
+}
+
+StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes) {
+    alignas(cmsghdr) std::array<char, 128> control{};
+    iovec part{bytes.data(), bytes.size()};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = control.size();
+    StampedDatagram datagram;
+    datagram.count = ::recvmsg(descriptor, &message, MSG_DONTWAIT);
+    if (datagram.count < 0) return datagram;
+    datagram.flags = message.msg_flags;
+    for (cmsghdr* beside = CMSG_FIRSTHDR(&message); beside != nullptr;
+         beside = CMSG_NXTHDR(&message, beside)) {
+        if (beside->cmsg_level != SOL_SOCKET) continue;
+        if (beside->cmsg_type == SO_TIMESTAMPNS) datagram.stamp = wall_time(value_of<timespec>(beside));
+        if (beside->cmsg_type == SO_RXQ_OVFL) datagram.dropped = value_of<std::uint32_t>(beside);
+    }
+    return datagram;
+}
+
+}  // namespace octoskin::socketcan
