@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/wire/codec.hpp"
+#include "common/wire/joint_frames.hpp"
 
 namespace octoskin {
 namespace {
@@ -16,7 +17,7 @@ NodeTime node_time(HostTime time) {
 
 }  // namespace
 
-Result<std::array<wire::CanFrame, LocalJoints::kFrames>, LocalJointFault> LocalJoints::frames(
+Result<std::array<wire::CanFrame, wire::kFramesPerJointSample>, LocalJointFault> LocalJoints::frames(
     HostTime sampled, std::span<const double> position) {
     if (position.size() != joint_count_) return unexpected(LocalJointFault::wrong_count);
     std::array<std::int32_t, wire::kJointsPerSample> micro{};
@@ -26,15 +27,7 @@ Result<std::array<wire::CanFrame, LocalJoints::kFrames>, LocalJointFault> LocalJ
         micro[i] = static_cast<std::int32_t>(std::nearbyint(position[i] * kMicro));
     }
     sequence_ = static_cast<std::uint8_t>((sequence_ + 1U) % wire::kJointSequenceCount);
-    std::array<wire::CanFrame, kFrames> frames{};
-    for (std::uint8_t pair = 0; pair < 3; ++pair) {
-        const std::size_t first = std::size_t{2} * pair;
-        const wire::JointPair message{pair, sequence_, {micro[first], micro[first + 1]}};
-        frames[pair] = wire::encode(wire::JointState{message}, node_id_);
-    }
-    const wire::JointLast last{sequence_, micro.back(), wire::fd_residue(node_time(sampled))};
-    frames.back() = wire::encode(wire::JointState{last}, node_id_);
-    return frames;
+    return wire::joint_frames(node_id_, sequence_, micro, wire::fd_residue(node_time(sampled)));
 }
 
 wire::CanFrame LocalJoints::report(std::uint8_t sequence, HostTime ended) const {

@@ -10,6 +10,7 @@
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "common/wire/can_frame.hpp"
+#include "common/wire/joint_frames.hpp"
 #include "common/wire/messages.hpp"
 
 namespace octoskin {
@@ -30,11 +31,10 @@ class LocalJoints {
     LocalJoints(wire::NodeId node_id, std::size_t joint_count)
         : node_id_(node_id), joint_count_(joint_count) {}
 
-    static constexpr std::size_t kFrames = 4;
     static constexpr double kLargest = 8.388607;  ///< what a frame's 24 bits with sign hold
     /// The frames of one sample, taken at `sampled` on the host's clock. Radians (metres for a prismatic
     /// joint), in the rig's order.
-    [[nodiscard]] Result<std::array<wire::CanFrame, kFrames>, LocalJointFault> frames(
+    [[nodiscard]] Result<std::array<wire::CanFrame, wire::kFramesPerJointSample>, LocalJointFault> frames(
         HostTime sampled, std::span<const double> position);
 
     /// The answer to a SYNC that ended at `ended`.

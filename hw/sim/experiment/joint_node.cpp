@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/wire/codec.hpp"
+#include "common/wire/joint_frames.hpp"
 
 namespace octoskin::sim {
 namespace {
@@ -44,14 +45,9 @@ void JointNode::queue_sample(SimTime now) {
         position.at(joint) = micro_radians(radians[joint]);
     }
     sequence_ = static_cast<std::uint8_t>((sequence_ + 1U) % wire::kJointSequenceCount);
-    for (std::uint8_t pair = 0; pair < 3; ++pair) {
-        const std::size_t first = 2U * pair;
-        const wire::JointPair message{pair, sequence_, {position.at(first), position.at(first + 1)}};
-        queue_.push_back(wire::encode(wire::JointState{message}, node_id_));
-    }
     const wire::TimeResidue sampled = wire::fd_residue(clock_.to_node(now));
-    queue_.push_back(
-        wire::encode(wire::JointState{wire::JointLast{sequence_, position.back(), sampled}}, node_id_));
+    for (const wire::CanFrame& frame : wire::joint_frames(node_id_, sequence_, position, sampled))
+        queue_.push_back(frame);
 }
 
 void JointNode::on_frame(const wire::CanFrame& frame, SimTime end) {
