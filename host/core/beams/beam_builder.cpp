@@ -43,6 +43,11 @@ Result<BeamBuilder, RobotModelFault> BeamBuilder::build(const HostRig& rig, cons
     return builder;
 }
 
+bool BeamBuilder::has(const BeamSource& source) const {
+    const auto found = sensors_.find({source.node_id, source.sensor});
+    return found != sensors_.end() && source.zone < found->second.zones.size();
+}
+
 Result<Beam, BeamFault> BeamBuilder::place(const RangeMeasurement& measurement,
                                            const RobotPose& robot) const {
     const auto found = sensors_.find({measurement.source.node_id, measurement.source.sensor});

@@ -35,6 +35,9 @@ class BeamBuilder {
                                                                     const RobotModel& robot,
                                                                     const BeamRules& rules);
 
+    /// Whether the rig has this zone of this sensor.
+    [[nodiscard]] bool has(const BeamSource& source) const;
+
     /// `robot`: at the capture time. The source must be one of the rig's (asserted). About 50 ns per capsule.
     [[nodiscard]] Result<Beam, BeamFault> place(const RangeMeasurement& measurement,
                                                 const RobotPose& robot) const;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -63,6 +64,12 @@ class JointHistory {
     }
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    /// Every sample that is held, the oldest first.
+    void for_each(const std::function<void(HostTime, std::span<const double>)>& visit) const {
+        for (std::size_t i = 0; i < size_; ++i) {
+            visit(sample(i).sampled, std::span(sample(i).values).first(limits_.size()));
+        }
+    }
 
   private:
     struct Sample {

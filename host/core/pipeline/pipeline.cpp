@@ -17,15 +17,6 @@ constexpr HostTime kEndOfTime{std::numeric_limits<std::int64_t>::max()};
 /// The camera's place in the order of sources: node 0 is the host.
 constexpr BeamSource kCameraSource{};
 
-ReadingReason reason_of(BeamFault fault) {
-    return fault == BeamFault::self_hit ? ReadingReason::self_hit : ReadingReason::beam_not_valid;
-}
-
-ReadingReason reason_of(BeamRejection rejection) {
-    return rejection == BeamRejection::outside_map ? ReadingReason::outside_map
-                                                   : ReadingReason::beam_not_valid;
-}
-
 template <class Reason>
 bool settle(Account<Reason>& account, const Status<Reason>& outcome) {
     outcome ? account.use() : account.reject(outcome.error());
@@ -43,22 +34,15 @@ IntakeConfig intake_config(const PipelineConfig& config, const MappingConfig& ma
 Result<Pipeline, RobotModelFault> Pipeline::build(const HostRig& rig, RobotModel robot,
                                                   const MappingConfig& mapping,
                                                   const PipelineConfig& config) {
-    assert(robot.joint_count() == rig.joints.joints.size());
     assert(config.lag > config.joints.bracket_max);
-    auto beams = BeamBuilder::build(
-        rig, robot,
-        {.removes_robot = mapping.removes_robot_from_ranges, .no_return_clear_m = mapping.no_return_clear_m});
-    if (!beams) {
-        return unexpected(beams.error());
+    auto builder = MapBuilder::build(rig, std::move(robot), mapping, config.joints, config.maps);
+    if (!builder) {
+        return unexpected(builder.error());
     }
-    auto tracker = RobotTracker::build(rig, std::move(robot), config.joints);
-    if (!tracker) {
-        return unexpected(tracker.error());
-    }
-    return Pipeline(rig, std::move(tracker).value(), std::move(beams).value(), mapping, config);
+    return Pipeline(rig, std::move(builder).value(), mapping, config);
 }
 
-Pipeline::Pipeline(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
+Pipeline::Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& mapping,
                    const PipelineConfig& config)
     : config_(config),
       intake_(rig, intake_config(config, mapping)),
@@ -66,18 +50,10 @@ Pipeline::Pipeline(const HostRig& rig, RobotTracker robot, BeamBuilder beams, co
       joints_waiting_(config.joint_samples_waiting_max),
       readings_waiting_(config.readings_waiting_max),
       depth_waiting_(config.depth_frames_waiting_max),
-      robot_(std::move(robot)),
-      beams_(std::move(beams)),
-      beam_integrator_(mapping),
-      maps_(mapping.map, config.maps) {
+      builder_(std::move(builder)) {
     if (rig.camera) {
-        depth_stage_.emplace(rig, mapping);
         camera_patience_ = Nanoseconds{std::llround(3e9 / rig.camera->rate_hz)};
     }
-}
-
-void Pipeline::begin_with(FusedMap fused) {
-    maps_.begin_with(std::move(fused));
 }
 
 void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
@@ -143,7 +119,7 @@ void Pipeline::queue(const JointMeasurement& joints) {
 }
 
 std::optional<DepthReason> Pipeline::fault_on_arrival(const DepthFrame& frame) const {
-    if (!depth_stage_) {
+    if (!builder_.has_camera()) {
         return DepthReason::no_camera;
     }
     if (depth_newest_ && frame.captured <= *depth_newest_) {
@@ -194,13 +170,13 @@ bool Pipeline::is_placed(const ReleaseKey& key) const {
     if (config_.release == Release::by_capture_time) {
         return false;
     }
-    const bool needs_robot = key.source != kCameraSource || depth_stage_->needs_robot();
-    return !needs_robot || robot_.is_settled(key.captured);
+    const bool needs_robot = key.source != kCameraSource || builder_.depth_needs_robot();
+    return !needs_robot || builder_.is_settled(key.captured);
 }
 
 void Pipeline::release_joints(HostTime until) {
     while (joints_waiting_.size() > 0 && joints_waiting_.front()->captured <= until) {
-        settle(accounts_.joint_samples, robot_.add(joints_waiting_.pop()));
+        settle(accounts_.joint_samples, builder_.add(joints_waiting_.pop()));
     }
 }
 
@@ -223,19 +199,9 @@ Status<ReadingReason> Pipeline::integrate(const RangeMeasurement& measurement) {
     if (!marks_.contains(measurement.captured)) {
         return unexpected(ReadingReason::outside_marks);
     }
-    const RobotPose* const robot = robot_.at(measurement.captured);
-    if (robot == nullptr) {
-        return unexpected(ReadingReason::joints_missing);
+    if (const auto integrated = builder_.integrate(measurement); !integrated) {
+        return integrated;
     }
-    const auto beam = beams_.place(measurement, *robot);
-    if (!beam) {
-        return unexpected(reason_of(beam.error()));
-    }
-    const auto updates = beam_integrator_.integrate(*beam);
-    if (!updates) {
-        return unexpected(reason_of(updates.error()));
-    }
-    maps_.add_proximity(*updates);
     used_[measurement.source] = measurement.captured;
     return Done{};
 }
@@ -244,16 +210,7 @@ Status<DepthReason> Pipeline::integrate(const DepthFrame& frame) {
     if (!marks_.contains(frame.captured)) {
         return unexpected(DepthReason::outside_marks);
     }
-    const RobotPose* const robot = depth_stage_->needs_robot() ? robot_.at(frame.captured) : nullptr;
-    if (robot == nullptr && depth_stage_->needs_robot()) {
-        return unexpected(DepthReason::joints_missing);
-    }
-    const auto updates = depth_stage_->updates(frame, robot);
-    if (!updates) {
-        return unexpected(updates.error());
-    }
-    maps_.add_depth(updates->updates);
-    return Done{};
+    return builder_.integrate(frame);
 }
 
 void Pipeline::finish_can() {

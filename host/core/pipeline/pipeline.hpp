@@ -12,19 +12,17 @@
 #include "common/time.hpp"
 #include "common/wire/can_frame.hpp"
 #include "host/core/account/account.hpp"
-#include "host/core/beams/beam_builder.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/can_intake.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/core/kinematics/robot_model.hpp"
-#include "host/core/mapping/beam_integrator.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/pipeline/depth_stage.hpp"
+#include "host/core/pipeline/map_builder.hpp"
 #include "host/core/pipeline/map_set.hpp"
 #include "host/core/pipeline/mark_gate.hpp"
 #include "host/core/pipeline/mark_window.hpp"
 #include "host/core/pipeline/reorder_buffer.hpp"
-#include "host/core/pipeline/robot_tracker.hpp"
 #include "host/core/rig/host_rig.hpp"
 
 namespace octoskin {
@@ -71,7 +69,9 @@ class Pipeline {
                                                                  const PipelineConfig& config = {});
 
     /// The fused map goes on from this one, which has the mapping's resolution (asserted).
-    void begin_with(FusedMap fused);
+    void begin_with(FusedMap fused) { builder_.begin_with(std::move(fused)); }
+    /// `listener` is told of what goes into the maps from now on; null: nobody is.
+    void tell(CommitListener* listener) noexcept { builder_.tell(listener); }
 
     /// Frames in the order of arrival. `stamp`: when it was received; it places nothing.
     void on_can(const wire::CanFrame& frame, WallTime stamp);
@@ -82,7 +82,7 @@ class Pipeline {
     /// Nothing more will come: what still waits is integrated or counted. Nothing may be given in afterwards.
     void finish();
 
-    [[nodiscard]] const MapSet& maps() const noexcept { return maps_; }
+    [[nodiscard]] const MapSet& maps() const noexcept { return builder_.maps(); }
     [[nodiscard]] const PipelineAccounts& accounts() const noexcept { return accounts_; }
     /// In = used + rejected + what still waits, for each unit of account.
     [[nodiscard]] bool is_balanced() const;
@@ -97,12 +97,12 @@ class Pipeline {
     [[nodiscard]] bool is_camera_stale() const;
     [[nodiscard]] const CanIntake& intake() const noexcept { return intake_; }
     /// Null if the rig has no camera.
-    [[nodiscard]] const DepthStage* depth_stage() const noexcept {
-        return depth_stage_ ? &*depth_stage_ : nullptr;
-    }
+    [[nodiscard]] const DepthStage* depth_stage() const noexcept { return builder_.depth_stage(); }
+    /// What turns measurements into maps: whoever starts to record needs its joint samples.
+    [[nodiscard]] const MapBuilder& builder() const noexcept { return builder_; }
 
   private:
-    Pipeline(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
+    Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& mapping,
              const PipelineConfig& config);
 
     void settle_marks(HostTime now);
@@ -130,11 +130,7 @@ class Pipeline {
     ReorderBuffer<JointMeasurement> joints_waiting_;
     ReorderBuffer<RangeMeasurement> readings_waiting_;
     ReorderBuffer<DepthFrame> depth_waiting_;
-    RobotTracker robot_;
-    BeamBuilder beams_;
-    BeamIntegrator beam_integrator_;
-    std::optional<DepthStage> depth_stage_;
-    MapSet maps_;
+    MapBuilder builder_;
 
     PipelineAccounts accounts_;
     std::optional<ReleaseKey> integrated_;        ///< the newest measurement in the maps

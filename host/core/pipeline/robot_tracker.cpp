@@ -1,5 +1,6 @@
 #include "host/core/pipeline/robot_tracker.hpp"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -37,6 +38,14 @@ const RobotPose* RobotTracker::at(HostTime instant) {
     robot_.forward(position->span(), pose_.T_base_link);
     body_.pose(pose_.T_base_link, pose_.body_base);
     return &pose_;
+}
+
+void RobotTracker::for_each_sample(const std::function<void(const JointMeasurement&)>& visit) const {
+    joints_.for_each([&visit](HostTime sampled, std::span<const double> position) {
+        JointMeasurement joints{sampled, {}};
+        std::ranges::copy(position, joints.position_rad.begin());
+        visit(joints);
+    });
 }
 
 }  // namespace octoskin

@@ -1,6 +1,7 @@
 // Where the whole robot was at any instant: joint samples in, poses out.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "common/result.hpp"
@@ -29,6 +30,9 @@ class RobotTracker {
     /// The robot at `instant`, or null if no samples surround it closely enough. Valid until the next call.
     /// About 2 us.
     [[nodiscard]] const RobotPose* at(HostTime instant);
+
+    /// Every sample that is held, the oldest first.
+    void for_each_sample(const std::function<void(const JointMeasurement&)>& visit) const;
 
     [[nodiscard]] const RobotModel& robot() const noexcept { return robot_; }
 

@@ -1,0 +1,38 @@
+// What the maps are made of, in the order in which it goes in.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <variant>
+
+#include "common/time.hpp"
+#include "host/core/beams/beam.hpp"
+#include "host/core/beams/range_measurement.hpp"
+#include "host/core/depth/depth_frame.hpp"
+#include "host/core/ingest/can_intake.hpp"
+#include "host/core/mapping/fused_map.hpp"
+
+namespace octoskin {
+
+/// A depth frame, told apart from the pixels, which are in a recording of depth frames.
+struct DepthCommit {
+    std::optional<std::uint64_t> index;  ///< its place in that recording, from 0; empty: it is not there
+    HostTime captured;
+    friend bool operator==(const DepthCommit&, const DepthCommit&) = default;
+};
+
+/// A joint sample that was taken into the history, or a reading or frame that was integrated.
+using Commit = std::variant<JointMeasurement, RangeMeasurement, DepthCommit>;
+
+/// Is told of each, after it went in. What it is given is valid during the call only.
+class CommitListener {
+  public:
+    virtual ~CommitListener() = default;
+    virtual void on_joints(const JointMeasurement& joints) = 0;
+    virtual void on_reading(const RangeMeasurement& measurement, const Beam& beam,
+                            std::span<const VoxelUpdate> updates) = 0;
+    virtual void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) = 0;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,96 @@
+#include "host/core/pipeline/map_builder.hpp"
+
+#include <cassert>
+#include <utility>
+
+namespace octoskin {
+namespace {
+
+ReadingReason reason_of(BeamFault fault) {
+    return fault == BeamFault::self_hit ? ReadingReason::self_hit : ReadingReason::beam_not_valid;
+}
+
+ReadingReason reason_of(BeamRejection rejection) {
+    return rejection == BeamRejection::outside_map ? ReadingReason::outside_map
+                                                   : ReadingReason::beam_not_valid;
+}
+
+}  // namespace
+
+Result<MapBuilder, RobotModelFault> MapBuilder::build(const HostRig& rig, RobotModel robot,
+                                                      const MappingConfig& mapping,
+                                                      const JointHistoryConfig& joints,
+                                                      const MapChoice& maps) {
+    assert(robot.joint_count() == rig.joints.joints.size());
+    auto beams = BeamBuilder::build(
+        rig, robot,
+        {.removes_robot = mapping.removes_robot_from_ranges, .no_return_clear_m = mapping.no_return_clear_m});
+    if (!beams) {
+        return unexpected(beams.error());
+    }
+    auto tracker = RobotTracker::build(rig, std::move(robot), joints);
+    if (!tracker) {
+        return unexpected(tracker.error());
+    }
+    return MapBuilder(rig, std::move(tracker).value(), std::move(beams).value(), mapping, maps);
+}
+
+MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams,
+                       const MappingConfig& mapping, const MapChoice& maps)
+    : robot_(std::move(robot)),
+      beams_(std::move(beams)),
+      beam_integrator_(mapping),
+      maps_(mapping.map, maps) {
+    if (rig.camera) {
+        depth_stage_.emplace(rig, mapping);
+    }
+}
+
+Status<JointReason> MapBuilder::add(const JointMeasurement& joints) {
+    const auto added = robot_.add(joints);
+    if (added && listener_ != nullptr) {
+        listener_->on_joints(joints);
+    }
+    return added;
+}
+
+Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement) {
+    const RobotPose* const robot = robot_.at(measurement.captured);
+    if (robot == nullptr) {
+        return unexpected(ReadingReason::joints_missing);
+    }
+    const auto beam = beams_.place(measurement, *robot);
+    if (!beam) {
+        return unexpected(reason_of(beam.error()));
+    }
+    const auto updates = beam_integrator_.integrate(*beam);
+    if (!updates) {
+        return unexpected(reason_of(updates.error()));
+    }
+    maps_.add_proximity(*updates);
+    if (listener_ != nullptr) {
+        listener_->on_reading(measurement, *beam, *updates);
+    }
+    return Done{};
+}
+
+Status<DepthReason> MapBuilder::integrate(const DepthFrame& frame) {
+    if (!depth_stage_) {
+        return unexpected(DepthReason::no_camera);
+    }
+    const RobotPose* const robot = depth_stage_->needs_robot() ? robot_.at(frame.captured) : nullptr;
+    if (robot == nullptr && depth_stage_->needs_robot()) {
+        return unexpected(DepthReason::joints_missing);
+    }
+    const auto updates = depth_stage_->updates(frame, robot);
+    if (!updates) {
+        return unexpected(updates.error());
+    }
+    maps_.add_depth(updates->updates);
+    if (listener_ != nullptr) {
+        listener_->on_depth(frame, updates->updates);
+    }
+    return Done{};
+}
+
+}  // namespace octoskin

@@ -1,0 +1,74 @@
+// From measurements in host time to maps: where the robot was, the beam or image, its voxels' terms, the
+// maps. What it builds depends on nothing but the calls and their order: no clock, no queue, no gate.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "host/core/beams/beam_builder.hpp"
+#include "host/core/depth/depth_frame.hpp"
+#include "host/core/ingest/can_intake.hpp"
+#include "host/core/ingest/reasons.hpp"
+#include "host/core/kinematics/robot_model.hpp"
+#include "host/core/mapping/beam_integrator.hpp"
+#include "host/core/mapping/mapping_config.hpp"
+#include "host/core/pipeline/commit.hpp"
+#include "host/core/pipeline/depth_stage.hpp"
+#include "host/core/pipeline/map_set.hpp"
+#include "host/core/pipeline/robot_tracker.hpp"
+#include "host/core/rig/host_rig.hpp"
+
+namespace octoskin {
+
+class MapBuilder {
+  public:
+    /// Refuses, by name, a link of the rig that the robot does not have. `robot` moves the joints of
+    /// `rig.joints.joints`, in that order (asserted: as many).
+    [[nodiscard]] static Result<MapBuilder, RobotModelFault> build(const HostRig& rig, RobotModel robot,
+                                                                   const MappingConfig& mapping,
+                                                                   const JointHistoryConfig& joints,
+                                                                   const MapChoice& maps);
+
+    /// The fused map goes on from this one, which has the mapping's resolution (asserted).
+    void begin_with(FusedMap fused) { maps_.begin_with(std::move(fused)); }
+    /// `listener` is told of what goes in from now on; null: nobody is.
+    void tell(CommitListener* listener) noexcept { listener_ = listener; }
+
+    /// Joint samples in the order of their times.
+    [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
+    [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
+    [[nodiscard]] Status<DepthReason> integrate(const DepthFrame& frame);
+
+    /// Whether the rig has this sensor and zone: no other reading may be given in (asserted).
+    [[nodiscard]] bool has(const BeamSource& source) const { return beams_.has(source); }
+    [[nodiscard]] bool has_camera() const noexcept { return depth_stage_.has_value(); }
+    /// Whether a depth frame needs to know where the robot was. There must be a camera.
+    [[nodiscard]] bool depth_needs_robot() const noexcept { return depth_stage_->needs_robot(); }
+    /// Whether the joint samples about `instant` are here, or will never come.
+    [[nodiscard]] bool is_settled(HostTime instant) const noexcept { return robot_.is_settled(instant); }
+    /// Every joint sample that poses are still interpolated from, the oldest first.
+    void for_each_joint_sample(const std::function<void(const JointMeasurement&)>& visit) const {
+        robot_.for_each_sample(visit);
+    }
+
+    [[nodiscard]] const MapSet& maps() const noexcept { return maps_; }
+    /// Null if the rig has no camera.
+    [[nodiscard]] const DepthStage* depth_stage() const noexcept {
+        return depth_stage_ ? &*depth_stage_ : nullptr;
+    }
+
+  private:
+    MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
+               const MapChoice& maps);
+
+    RobotTracker robot_;
+    BeamBuilder beams_;
+    BeamIntegrator beam_integrator_;
+    std::optional<DepthStage> depth_stage_;
+    MapSet maps_;
+    CommitListener* listener_ = nullptr;
+};
+
+}  // namespace octoskin
