@@ -1,0 +1,90 @@
+#include "host/core/pipeline/ordered_replay.hpp"
+
+#include <utility>
+
+namespace octoskin {
+namespace {
+
+/// The frames that are asked for by their place, in ascending order.
+class DepthByIndex {
+  public:
+    DepthByIndex(DepthSource* source, OrderedOutcome& outcome) : source_(source), outcome_(outcome) {}
+
+    std::optional<DepthFrame> at(std::uint64_t index) {
+        std::optional<DepthFrame> frame;
+        while (source_ != nullptr && next_ <= index) {  // ends with the source
+            auto read = source_->next();
+            if (!read) outcome_.depth_error = read.error();
+            frame = read ? std::move(read).value() : std::nullopt;
+            if (!frame) source_ = nullptr;
+            ++next_;
+        }
+        return frame;
+    }
+
+  private:
+    DepthSource* source_;
+    OrderedOutcome& outcome_;
+    std::uint64_t next_ = 0;
+};
+
+template <class Reason>
+void settle(Account<Reason>& account, const Status<Reason>& outcome) {
+    account.take_in();
+    outcome ? account.use() : account.reject(outcome.error());
+}
+
+class Committer {
+  public:
+    Committer(MapBuilder& builder, DepthSource* depth, OrderedOutcome& outcome)
+        : builder_(builder), depth_(depth, outcome), outcome_(outcome) {}
+
+    HostTime operator()(const JointMeasurement& joints) {
+        settle(outcome_.joint_samples, builder_.add(joints));
+        return joints.sampled;
+    }
+    HostTime operator()(const RangeMeasurement& reading) {
+        const bool is_of_rig = builder_.has(reading.source);
+        settle(outcome_.readings,
+               is_of_rig ? builder_.integrate(reading) : unexpected(ReadingReason::unknown_sensor));
+        return reading.captured;
+    }
+    HostTime operator()(const DepthCommit& commit) {
+        auto frame = commit.index ? depth_.at(*commit.index) : std::nullopt;
+        if (frame) {
+            frame->captured = commit.captured;  // a recording of depth frames has whole microseconds
+            settle(outcome_.depth_frames, builder_.integrate(*frame));
+        } else {
+            ++outcome_.depth_missing;
+        }
+        return commit.captured;
+    }
+
+  private:
+    MapBuilder& builder_;
+    DepthByIndex depth_;
+    OrderedOutcome& outcome_;
+};
+
+}  // namespace
+
+OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order, DepthSource* depth,
+                               const ReplayReport& report) {
+    OrderedOutcome outcome;
+    Committer committer(builder, depth, outcome);
+    const auto tell = [&] {
+        if (report) report({outcome.commits, outcome.depth_frames.in(), outcome.begin, outcome.now});
+    };
+    while (true) {  // ends with the source
+        auto commit = order.next();
+        if (!commit) outcome.order_error = commit.error();
+        if (!commit || !commit->has_value()) break;
+        outcome.now = std::visit(committer, **commit);
+        outcome.begin = outcome.begin ? outcome.begin : outcome.now;
+        if (++outcome.commits % kReplayReportEvery == 0) tell();
+    }
+    tell();
+    return outcome;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,189 @@
+#include "host/io/orderlog/order_line.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+namespace octoskin::orderlog {
+namespace {
+
+constexpr std::string_view kSchema = "octoskin-order/1";
+constexpr std::string_view kNone = "-";
+
+/// Takes words off a line, one blank between two; is_sound stays false once one was not as asked for.
+class Words {
+  public:
+    explicit Words(std::string_view line) : rest_(line) {}
+
+    void expect(std::string_view word) { is_sound_ = next() == word && is_sound_; }
+    template <class Number>
+    Number number(Number max = std::numeric_limits<Number>::max()) {
+        return to_number(next(), max);
+    }
+    template <class Number>
+    std::optional<Number> optional_number() {
+        const std::string_view word = next();
+        if (word == kNone) return std::nullopt;
+        return to_number(word, std::numeric_limits<Number>::max());
+    }
+    std::optional<std::uint32_t> optional_crc() {
+        const std::string_view word = next();
+        if (word == kNone) return std::nullopt;
+        return to_crc(word);
+    }
+    std::uint32_t crc() { return to_crc(next()); }
+    /// All words were as asked for, and there is no other.
+    [[nodiscard]] bool is_sound() const { return is_sound_ && is_over_; }
+
+  private:
+    std::string_view next() {
+        if (is_over_) is_sound_ = false;
+        const std::size_t end = rest_.find(' ');
+        const std::string_view word = rest_.substr(0, end);
+        is_over_ = end == std::string_view::npos;
+        rest_ = is_over_ ? std::string_view{} : rest_.substr(end + 1);
+        return word;
+    }
+    template <class Number>
+    Number to_number(std::string_view word, Number max) {
+        Number value{};
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        is_sound_ = is_sound_ && error == std::errc{} && end == word.data() + word.size();
+        if constexpr (std::is_floating_point_v<Number>) {
+            is_sound_ = is_sound_ && std::isfinite(value);
+        } else {
+            is_sound_ = is_sound_ && value >= 0 && value <= max;
+        }
+        return value;
+    }
+    std::uint32_t to_crc(std::string_view word) {
+        constexpr int kHex = 16;
+        std::uint32_t value = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value, kHex);
+        is_sound_ = is_sound_ && error == std::errc{} && end == word.data() + word.size() && word.size() == 8;
+        return value;
+    }
+
+    std::string_view rest_;
+    bool is_over_ = false;
+    bool is_sound_ = true;
+};
+
+/// As late as a clock of nanoseconds may be without its sums overflowing: 146 years.
+constexpr std::int64_t kTimeMax = std::numeric_limits<std::int64_t>::max() / 2;
+
+std::string crc_or_none(const std::optional<std::uint32_t>& crc) {
+    return crc ? fmt::format("{:08x}", *crc) : std::string(kNone);
+}
+
+std::string format(const JointMeasurement& joints, std::size_t count) {
+    assert(count <= joints.position_rad.size());
+    std::string line = fmt::format("J {}", joints.sampled.ns);
+    for (std::size_t i = 0; i < count; ++i) {
+        fmt::format_to(std::back_inserter(line), " {}", joints.position_rad[i]);
+    }
+    return line + '\n';
+}
+
+std::string format(const RangeMeasurement& reading) {
+    const auto& [node, sensor, zone] = reading.source;
+    const std::string range = reading.range_m ? fmt::format("{}", *reading.range_m) : std::string(kNone);
+    return fmt::format("R {} {} {} {} {} {}\n", node, sensor, zone, reading.captured.ns, range,
+                       reading.sigma_m);
+}
+
+std::string format(const DepthCommit& frame) {
+    const std::string index = frame.index ? fmt::format("{}", *frame.index) : std::string(kNone);
+    return fmt::format("D {} {}\n", index, frame.captured.ns);
+}
+
+JointMeasurement parse_joints(Words& words, std::size_t count) {
+    JointMeasurement joints{{words.number(kTimeMax)}, {}};
+    for (std::size_t i = 0; i < count; ++i) joints.position_rad[i] = words.number<double>();
+    return joints;
+}
+
+RangeMeasurement parse_reading(Words& words) {
+    RangeMeasurement reading;
+    reading.source.node_id = words.number<std::uint8_t>();
+    reading.source.sensor = words.number<std::uint8_t>();
+    reading.source.zone = words.number<std::uint8_t>();
+    reading.captured.ns = words.number(kTimeMax);
+    reading.range_m = words.optional_number<double>();
+    reading.sigma_m = words.number<double>();
+    return reading;
+}
+
+DepthCommit parse_depth(Words& words) {
+    const auto index = words.optional_number<std::uint64_t>();
+    return {index, {words.number(kTimeMax)}};
+}
+
+}  // namespace
+
+std::string format_header(const Header& header) {
+    return fmt::format("{} rig {:08x} mapping {:08x} joints {} first {}\n", kSchema, header.rig_hash,
+                       header.mapping_crc32, header.joints, crc_or_none(header.first_map));
+}
+
+std::string format_commit(const Commit& commit, std::size_t joints) {
+    if (const auto* const sample = std::get_if<JointMeasurement>(&commit)) return format(*sample, joints);
+    if (const auto* const reading = std::get_if<RangeMeasurement>(&commit)) return format(*reading);
+    return format(std::get<DepthCommit>(commit));
+}
+
+std::string format_trailer(const Trailer& trailer) {
+    return fmt::format("end commits {} lost_can {} lost_commits {} lost_depth {} last {}\n", trailer.commits,
+                       trailer.lost_can, trailer.lost_commits, trailer.lost_depth,
+                       crc_or_none(trailer.last_map));
+}
+
+std::optional<Header> parse_header(std::string_view line) {
+    Words words(line);
+    Header header;
+    words.expect(kSchema);
+    words.expect("rig");
+    header.rig_hash = words.crc();
+    words.expect("mapping");
+    header.mapping_crc32 = words.crc();
+    words.expect("joints");
+    header.joints = words.number<std::size_t>(wire::kJointsPerSample);
+    words.expect("first");
+    header.first_map = words.optional_crc();
+    if (!words.is_sound() || header.joints == 0) return std::nullopt;
+    return header;
+}
+
+std::optional<Commit> parse_commit(std::string_view line, std::size_t joints) {
+    if (line.size() < 2 || line[1] != ' ') return std::nullopt;
+    Words words(line.substr(2));
+    std::optional<Commit> commit;
+    if (line[0] == 'J') commit = parse_joints(words, joints);
+    if (line[0] == 'R') commit = parse_reading(words);
+    if (line[0] == 'D') commit = parse_depth(words);
+    return words.is_sound() ? commit : std::nullopt;
+}
+
+std::optional<Trailer> parse_trailer(std::string_view line) {
+    Words words(line);
+    Trailer trailer;
+    words.expect("end");
+    words.expect("commits");
+    trailer.commits = words.number<std::uint64_t>();
+    words.expect("lost_can");
+    trailer.lost_can = words.number<std::uint64_t>();
+    words.expect("lost_commits");
+    trailer.lost_commits = words.number<std::uint64_t>();
+    words.expect("lost_depth");
+    trailer.lost_depth = words.number<std::uint64_t>();
+    words.expect("last");
+    trailer.last_map = words.optional_crc();
+    if (!words.is_sound()) return std::nullopt;
+    return trailer;
+}
+
+}  // namespace octoskin::orderlog

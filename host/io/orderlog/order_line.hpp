@@ -1,0 +1,60 @@
+// One line of order.log:
+//
+//     octoskin-order/1 rig 1a2b3c4d mapping 1a2b3c4d joints 7 first 1a2b3c4d      the first line
+//     J 71000000000 0.1 -0.2 0 0 0 0 0        joint sample: taken at (ns), radians, one for each of `joints`
+//     R 2 3 0 71003000000 0.734 0.021         reading: node, sensor, zone, captured at (ns), range and sigma
+//                                             in metres; range "-": no target
+//     D 12 71010000000                        depth frame: its place in depth.oni, from 0, captured at (ns);
+//                                             "-": it is not there
+//     # anything                              for people
+//     end commits 3 lost_can 0 lost_commits 0 lost_depth 0 last 1a2b3c4d          the last line
+//
+// Times are on the clock that SYNC tells. Numbers are the shortest decimals that give the same double again.
+// CRC-32 (zlib's) of: the mapping in full, first.ot and last.ot; `rig` is the rig's hash; "-": an empty map.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/result.hpp"
+#include "host/core/pipeline/commit.hpp"
+
+namespace octoskin::orderlog {
+
+struct Header {
+    std::uint32_t rig_hash = 0;
+    std::uint32_t mapping_crc32 = 0;
+    std::size_t joints = 0;                  ///< 1..7
+    std::optional<std::uint32_t> first_map;  ///< CRC-32 of first.ot; empty: the map was empty
+    friend bool operator==(const Header&, const Header&) = default;
+};
+
+/// How a recording ended.
+struct Trailer {
+    std::uint64_t commits = 0;  ///< all lines of J, R and D that there should be
+    std::uint64_t lost_can = 0;
+    std::uint64_t lost_commits = 0;
+    std::uint64_t lost_depth = 0;
+    std::optional<std::uint32_t> last_map;  ///< CRC-32 of last.ot; empty: the map was empty
+    /// Nothing that the map was made of is missing. Lost frames of the bus change no voxel.
+    [[nodiscard]] bool is_complete() const noexcept { return lost_commits + lost_depth == 0; }
+    friend bool operator==(const Trailer&, const Trailer&) = default;
+};
+
+/// Each with its line feed.
+[[nodiscard]] std::string format_header(const Header& header);
+[[nodiscard]] std::string format_commit(const Commit& commit, std::size_t joints);
+[[nodiscard]] std::string format_trailer(const Trailer& trailer);
+
+/// The longest that any of them is, and far more.
+inline constexpr std::size_t kLineBytesMax = 1024;
+
+/// A line without its line feed. Any bytes are safe; empty if it is none.
+[[nodiscard]] std::optional<Header> parse_header(std::string_view line);
+[[nodiscard]] std::optional<Commit> parse_commit(std::string_view line, std::size_t joints);
+[[nodiscard]] std::optional<Trailer> parse_trailer(std::string_view line);
+
+}  // namespace octoskin::orderlog

@@ -1,0 +1,58 @@
+#include "host/io/orderlog/order_reader.hpp"
+
+namespace octoskin::orderlog {
+
+Result<OrderReader, CommitSourceError> OrderReader::open(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return unexpected(CommitSourceError{file.string() + ": cannot be opened"});
+    OrderReader reader(file, std::move(stream));
+    const auto header = reader.read_line() ? parse_header(reader.line_) : std::nullopt;
+    if (!header) {
+        return reader.failure(
+            "does not begin as an order of this version, 'octoskin-order/1'; move the file away to replay in "
+            "the order of capture times");
+    }
+    reader.header_ = *header;
+    return reader;
+}
+
+Unexpected<CommitSourceError> OrderReader::failure(const std::string& what) const {
+    return unexpected(CommitSourceError{file_.string() + ":" + std::to_string(line_number_) + ": " + what});
+}
+
+bool OrderReader::read_line() {
+    line_.clear();
+    ++line_number_;
+    for (char next = 0; line_.size() <= kLineBytesMax && stream_.get(next); line_ += next) {
+        if (next == '\n') return true;
+    }
+    return line_.size() > kLineBytesMax;  // which no parser takes
+}
+
+Result<std::optional<Commit>, CommitSourceError> OrderReader::end(const Trailer& trailer) {
+    if (trailer.commits != commits_ + trailer.lost_commits) {
+        return failure("there were " + std::to_string(trailer.commits) + " commits, " +
+                       std::to_string(trailer.lost_commits) + " of them not recorded, and " +
+                       std::to_string(commits_) + " are in the file");
+    }
+    trailer_ = trailer;
+    if (read_line()) return failure("a line behind the end");
+    return std::optional<Commit>{};
+}
+
+Result<std::optional<Commit>, CommitSourceError> OrderReader::next() {
+    if (trailer_) return std::optional<Commit>{};
+    while (read_line()) {
+        if (line_.starts_with('#')) continue;
+        if (auto commit = parse_commit(line_, header_.joints)) {
+            ++commits_;
+            return commit;
+        }
+        if (const auto trailer = parse_trailer(line_)) return end(*trailer);
+        return failure("no line of an order: '" + line_.substr(0, 60) + "'");
+    }
+    if (stream_.bad()) return failure("cannot be read on");
+    return std::optional<Commit>{};
+}
+
+}  // namespace octoskin::orderlog

@@ -1,0 +1,49 @@
+// Reads order.log, line by line, as the source of an ordered replay.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "common/result.hpp"
+#include "host/core/pipeline/ordered_replay.hpp"
+#include "host/io/orderlog/order_line.hpp"
+
+namespace octoskin::orderlog {
+
+class OrderReader final : public CommitSource {
+  public:
+    /// Errors name the file: missing, or not begun as an order.log of this version.
+    [[nodiscard]] static Result<OrderReader, CommitSourceError> open(const std::filesystem::path& file);
+
+    /// An error names file and line: no commit, a line behind the end, or fewer commits than its end says. A
+    /// file without an end, as a daemon leaves it that was killed, ends with its last whole line.
+    [[nodiscard]] Result<std::optional<Commit>, CommitSourceError> next() override;
+
+    [[nodiscard]] const Header& header() const noexcept { return header_; }
+    /// After the end; empty if the recording was cut off.
+    [[nodiscard]] const std::optional<Trailer>& trailer() const noexcept { return trailer_; }
+    /// Of the newest commit, from 1.
+    [[nodiscard]] std::uint64_t line_number() const noexcept { return line_number_; }
+
+  private:
+    OrderReader(std::filesystem::path file, std::ifstream stream)
+        : file_(std::move(file)), stream_(std::move(stream)) {}
+    /// False at the end of the file, or in the middle of its last line.
+    [[nodiscard]] bool read_line();
+    [[nodiscard]] Unexpected<CommitSourceError> failure(const std::string& what) const;
+    [[nodiscard]] Result<std::optional<Commit>, CommitSourceError> end(const Trailer& trailer);
+
+    std::filesystem::path file_;
+    std::ifstream stream_;
+    std::string line_;
+    std::uint64_t line_number_ = 0;
+    std::uint64_t commits_ = 0;
+    Header header_;
+    std::optional<Trailer> trailer_;
+};
+
+}  // namespace octoskin::orderlog

@@ -1,0 +1,149 @@
+#include "host/io/orderlog/order_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "host/io/orderlog/order_reader.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin {
+
+// Only for these tests: in the product two samples are never compared.
+static bool operator==(const JointMeasurement& a, const JointMeasurement& b) {
+    return a.sampled == b.sampled && a.position_rad == b.position_rad;
+}
+static bool operator==(const RangeMeasurement& a, const RangeMeasurement& b) {
+    return a.source == b.source && a.captured == b.captured && a.range_m == b.range_m &&
+           a.sigma_m == b.sigma_m;
+}
+
+namespace orderlog {
+namespace {
+
+std::string without_feed(std::string line) {
+    EXPECT_TRUE(line.ends_with('\n'));
+    line.pop_back();
+    return line;
+}
+
+std::vector<std::string> sound_lines() {
+    return {"octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 2 first 1a2b3c4d",
+            "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 2 first -",
+            "J 71000000000 0.1 -0.25",
+            "R 2 3 0 71003000000 0.734 0.021",
+            "R 2 3 0 71003000000 - 0",
+            "D 12 71010000000",
+            "D - 71010000000",
+            "end commits 3 lost_can 0 lost_commits 0 lost_depth 1 last 1a2b3c4d"};
+}
+
+bool is_any(std::string_view line) {
+    return parse_header(line) || parse_commit(line, 2) || parse_trailer(line);
+}
+
+TEST(OrderLine, says_what_the_documentation_shows) {
+    JointMeasurement joints{{71'000'000'000}, {}};
+    joints.position_rad[0] = 0.1;
+    joints.position_rad[1] = -0.25;
+    EXPECT_EQ(format_commit(joints, 2), "J 71000000000 0.1 -0.25\n");
+    EXPECT_EQ(format_commit(RangeMeasurement{{2, 3, 0}, {71'003'000'000}, 0.734, 0.021}, 2),
+              "R 2 3 0 71003000000 0.734 0.021\n");
+    EXPECT_EQ(format_commit(RangeMeasurement{{2, 3, 0}, {71'003'000'000}, std::nullopt, 0.0}, 2),
+              "R 2 3 0 71003000000 - 0\n");
+    EXPECT_EQ(format_commit(DepthCommit{12, {71'010'000'000}}, 2), "D 12 71010000000\n");
+    EXPECT_EQ(format_header({0x1a2b3c4d, 1, 2, std::nullopt}),
+              "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 2 first -\n");
+    EXPECT_EQ(format_trailer({3, 0, 0, 1, 0x1a2b3c4dU}),
+              "end commits 3 lost_can 0 lost_commits 0 lost_depth 1 last 1a2b3c4d\n");
+    for (const std::string& line : sound_lines()) EXPECT_TRUE(is_any(line)) << line;
+}
+
+TEST(OrderLine, gives_every_double_back_bit_for_bit) {
+    std::mt19937_64 random(20);
+    for (int i = 0; i < 20'000; ++i) {
+        double value = 0.0;
+        const std::uint64_t bits = random();
+        std::memcpy(&value, &bits, sizeof(value));
+        if (!std::isfinite(value)) continue;
+        const RangeMeasurement reading{{1, 2, 3}, {static_cast<std::int64_t>(bits >> 2U)}, value, -value};
+        const auto again = parse_commit(without_feed(format_commit(reading, 1)), 1);
+        ASSERT_TRUE(again) << "seed 20, value " << value;
+        EXPECT_EQ(std::get<RangeMeasurement>(*again), reading) << "seed 20, value " << value;
+        JointMeasurement joints{reading.captured, {value, -value, 0.0, value, 1.0, 2.0, 3.0}};
+        const auto sample = parse_commit(without_feed(format_commit(joints, 7)), 7);
+        ASSERT_TRUE(sample);
+        EXPECT_EQ(std::get<JointMeasurement>(*sample), joints);
+    }
+}
+
+TEST(OrderLine, refuses_every_line_that_was_cut_or_lengthened) {
+    for (const std::string& line : sound_lines()) {
+        const std::size_t last_word = line.rfind(' ');
+        for (std::size_t length = 0; length <= last_word; ++length) {
+            EXPECT_FALSE(is_any(line.substr(0, length))) << line.substr(0, length);
+        }
+        for (const char* more : {" ", " 0", "x", "  "}) EXPECT_FALSE(is_any(line + more)) << line << more;
+        EXPECT_FALSE(is_any(" " + line));
+    }
+}
+
+TEST(OrderLine, refuses_what_is_no_number_of_the_field) {
+    for (const char* line :
+         {"J 71 nan 0", "J 71 inf 0", "J -1 0 0", "J 9223372036854775807 0 0", "J 71 0", "R 256 0 0 71 1 0",
+          "R 1 0 0 71 nan 0", "R 1 0 0 71 1 inf", "R -1 0 0 71 1 0", "R 1 0 0 71 1e400 0", "D -1 71",
+          "D 1.5 71", "D 0x1 71", "X 1 71", "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 first -",
+          "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 8 first -",
+          "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 0 first -",
+          "octoskin-order/1 rig 1a2b mapping 00000001 joints 2 first -"}) {
+        EXPECT_FALSE(is_any(line)) << line;
+    }
+}
+
+class OrderFile : public testing::Test {
+  protected:
+    static constexpr const char* kBegin = "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 1 first -\n";
+    static constexpr const char* kEnd = "end commits 2 lost_can 0 lost_commits 0 lost_depth 0 last -\n";
+    /// The number of commits, or what was wrong.
+    std::string read(const std::string& text) {
+        const auto file = folder_.write("order.log", text);
+        auto reader = OrderReader::open(file);
+        if (!reader) return reader.error().what;
+        for (int count = 0;; ++count) {
+            const auto commit = reader->next();
+            if (!commit) return commit.error().what;
+            if (!*commit) return std::to_string(count) + (reader->trailer() ? " whole" : " cut off");
+        }
+    }
+    testing_support::ScratchFolder folder_;
+};
+
+TEST_F(OrderFile, is_read_to_its_end) {
+    EXPECT_EQ(read(std::string(kBegin) + "J 1 0\n# a remark\nD 0 2\n" + kEnd), "2 whole");
+}
+
+TEST_F(OrderFile, of_a_daemon_that_was_killed_has_its_whole_lines) {
+    EXPECT_EQ(read(std::string(kBegin) + "J 1 0\nD 0 2\n"), "2 cut off");
+    EXPECT_EQ(read(std::string(kBegin) + "J 1 0\nD 0 2"), "1 cut off");
+    EXPECT_EQ(read(kBegin), "0 cut off");
+}
+
+TEST_F(OrderFile, with_a_mistake_is_named_with_its_line) {
+    const std::string file = (folder_ / "order.log").string();
+    EXPECT_EQ(read(std::string(kBegin) + "J 1 0\nhello\n" + kEnd), file + ":3: no line of an order: 'hello'");
+    EXPECT_EQ(read(std::string(kBegin) + "J 1 0\n" + kEnd),
+              file + ":3: there were 2 commits, 0 of them not recorded, and 1 are in the file");
+    EXPECT_EQ(read(std::string(kBegin) + "J 1 0\nD 0 2\n" + kEnd + "J 3 0\n"),
+              file + ":5: a line behind the end");
+    EXPECT_TRUE(read("octoskin-order/9\n").starts_with(file + ":1: does not begin as an order"));
+    EXPECT_TRUE(read("").starts_with(file + ":1: does not begin as an order"));
+    EXPECT_TRUE(read(std::string(100'000, 'x')).starts_with(file + ":1: does not begin as an order"));
+    std::filesystem::remove(file);
+    EXPECT_EQ(OrderReader::open(file).error().what, file + ": cannot be opened");
+}
+
+}  // namespace
+}  // namespace orderlog
+}  // namespace octoskin

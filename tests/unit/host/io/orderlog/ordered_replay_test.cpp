@@ -1,0 +1,162 @@
+// A live pipeline is recorded from any moment on; what was recorded, through its text, gives its map again.
+#include "host/core/pipeline/ordered_replay.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "host/io/mapfile/octomap_reader.hpp"
+#include "host/io/mapfile/octomap_writer.hpp"
+#include "host/io/orderlog/order_line.hpp"
+#include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
+
+namespace octoskin {
+namespace {
+
+using namespace test;
+
+constexpr std::size_t kJoints = 1;
+
+/// What a recorder keeps of a run.
+class Keeper final : public CommitListener {
+  public:
+    void on_joints(const JointMeasurement& joints) override { put(joints); }
+    void on_reading(const RangeMeasurement& reading, const Beam&, std::span<const VoxelUpdate>) override {
+        put(reading);
+    }
+    void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate>) override {
+        put(DepthCommit{frames.size(), frame.captured});
+        frames.push_back(frame);
+        frames.back().captured.ns += 999;  // the order's time counts, not that of the frame's recording
+    }
+    void put(const Commit& commit) { text += orderlog::format_commit(commit, kJoints); }
+
+    std::string text;
+    std::vector<DepthFrame> frames;
+};
+
+class TextSource final : public CommitSource {
+  public:
+    explicit TextSource(const std::string& text) : text_(text) {}
+    Result<std::optional<Commit>, CommitSourceError> next() override {
+        std::string line;
+        if (!std::getline(text_, line)) return std::optional<Commit>{};
+        auto commit = orderlog::parse_commit(line, kJoints);
+        EXPECT_TRUE(commit) << line;
+        return commit;
+    }
+
+  private:
+    std::istringstream text_;
+};
+
+Scene live_scene() {
+    Scene scene = good_scene();
+    scene.config.release = Release::once_placed;
+    scene.config.maps = {.depth = false, .proximity = false, .fused = true};
+    return scene;
+}
+
+struct Recorded {
+    std::string first_ot;
+    std::string last_ot;
+    Keeper keeper;
+};
+
+/// Plays the scene and records from frame `begin` of the bus on, to frame `end`.
+Recorded record(const Scene& scene, std::size_t begin, std::size_t end) {
+    Pipeline pipeline = make_pipeline(scene);
+    Recorded recorded;
+    auto depth = scene.depth.begin();
+    for (std::size_t i = 0; i < end; ++i) {
+        if (i == begin) {
+            recorded.first_ot = encode_ot(*pipeline.maps().fused());
+            pipeline.builder().for_each_joint_sample(
+                [&](const JointMeasurement& joints) { recorded.keeper.put(joints); });
+            pipeline.tell(&recorded.keeper);
+        }
+        pipeline.on_can(scene.bus.frames()[i].frame, scene.bus.frames()[i].stamp);
+        while (depth != scene.depth.end() && pipeline.now() && depth->captured <= *pipeline.now()) {
+            pipeline.on_depth(*depth++);
+        }
+    }
+    recorded.last_ot = encode_ot(*pipeline.maps().fused());
+    return recorded;
+}
+
+MapBuilder make_builder(const Scene& scene, const std::string& first_ot) {
+    MapBuilder builder =
+        MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, scene.config.joints, scene.config.maps)
+            .value();
+    auto first = decode_octomap(first_ot, {.map = scene.mapping.map});
+    EXPECT_TRUE(first);
+    builder.begin_with(std::move(first).value());
+    return builder;
+}
+
+/// The first frame of the bus that comes then or later.
+std::size_t frame_at(const Scene& scene, double time_s) {
+    const auto& frames = scene.bus.frames();
+    const std::int64_t from_ns = frames.front().stamp.ns + std::llround(time_s * 1e9);
+    return static_cast<std::size_t>(std::ranges::count_if(
+        frames, [from_ns](const StampedFrame& entry) { return entry.stamp.ns < from_ns; }));
+}
+
+TEST(OrderedReplay, gives_the_live_map_byte_for_byte_from_any_moment_on) {
+    Scene scene = live_scene();
+    scene.depth.resize(1);  // at 4.0 s; each takes a while
+    for (const double begin_s : {0.0, 3.5, 3.55, 3.7, 3.99}) {
+        const Recorded recorded = record(scene, frame_at(scene, begin_s), scene.bus.frames().size());
+        MapBuilder builder = make_builder(scene, recorded.first_ot);
+        TextSource order(recorded.keeper.text);
+        ScriptedDepth depth(recorded.keeper.frames);
+        const OrderedOutcome outcome = replay_in_order(builder, order, &depth);
+        EXPECT_TRUE(outcome.took_all()) << "begun at " << begin_s << " s";
+        EXPECT_TRUE(encode_ot(*builder.maps().fused()) == recorded.last_ot) << "begun at " << begin_s << " s";
+        EXPECT_GT(outcome.readings.used() + outcome.depth_frames.used(), 0U)
+            << "begun at " << begin_s << " s";
+        EXPECT_TRUE(recorded.first_ot != recorded.last_ot) << "begun at " << begin_s << " s";
+    }
+}
+
+TEST(OrderedReplay, needs_the_first_map_and_the_joint_samples_before_it) {
+    Scene scene = live_scene();
+    scene.depth.clear();
+    const std::size_t count = scene.bus.frames().size();
+    const Recorded recorded = record(scene, frame_at(scene, 3.6), count);  // among the readings
+    ASSERT_TRUE(recorded.first_ot != recorded.last_ot);
+    const Recorded unrecorded = record(scene, 0, 1);
+    MapBuilder without_map = make_builder(scene, unrecorded.first_ot);
+    TextSource order(recorded.keeper.text);
+    ScriptedDepth depth(recorded.keeper.frames);
+    EXPECT_TRUE(replay_in_order(without_map, order, &depth).took_all());
+    EXPECT_TRUE(encode_ot(*without_map.maps().fused()) != recorded.last_ot);
+    MapBuilder without_past = make_builder(scene, recorded.first_ot);
+    const std::size_t first_committed = recorded.keeper.text.find_first_of("RD");
+    TextSource later(recorded.keeper.text.substr(first_committed));
+    ScriptedDepth again(recorded.keeper.frames);
+    EXPECT_FALSE(replay_in_order(without_past, later, &again).took_all());
+}
+
+TEST(OrderedReplay, says_what_it_could_not_take) {
+    const Scene scene = live_scene();
+    MapBuilder builder = make_builder(scene, record(scene, 0, 1).first_ot);
+    TextSource order(
+        "J 1000000000 0\nJ 1000000000 0\nJ 1010000000 0\n"  // the second is not later
+        "R 77 0 0 1005000000 0.52 0.01\n"                   // no node of the rig
+        "R 1 0 0 3005000000 0.52 0.01\n"                    // no joints about it
+        "D 5 1005000000\nD - 1006000000\n");
+    ScriptedDepth depth({flat_frame(1.0)});
+    const OrderedOutcome outcome = replay_in_order(builder, order, &depth);
+    EXPECT_EQ(outcome.commits, 7U);
+    EXPECT_EQ(outcome.joint_samples.rejected(JointReason::out_of_order), 1U);
+    EXPECT_EQ(outcome.readings.rejected(ReadingReason::unknown_sensor), 1U);
+    EXPECT_EQ(outcome.readings.rejected(ReadingReason::joints_missing), 1U);
+    EXPECT_EQ(outcome.depth_missing, 2U);
+    EXPECT_FALSE(outcome.took_all());
+}
+
+}  // namespace
+}  // namespace octoskin
