@@ -191,9 +191,9 @@ TEST_P(I2cFaultTest, keeps_the_loop_short_and_the_others_ranging) {
 }
 
 std::string name_of_fault(const testing::TestParamInfo<I2cFault>& tested) {
-    constexpr const char* kNames[] = {"nack_address",     "nack_byte",    "nack_read", "flip_bit",
-                                      "flip_written_bit", "lose_write",   "read_ones", "lose_arbitration",
-                                      "stretch",          "sda_stuck_low"};
+    constexpr const char* kNames[] = {
+        "nack_address", "nack_byte",        "nack_read", "flip_bit",      "flip_written_bit", "lose_write",
+        "read_ones",    "lose_arbitration", "stretch",   "sda_stuck_low", "redirect_write"};
     return std::string(kNames[static_cast<std::size_t>(tested.param.kind)]) + "_at_" +
            std::to_string(tested.param.position);
 }

@@ -49,8 +49,9 @@ class Device {
     /// Writes the default configuration and starts the first range, without waiting for boot. <= 10 ms in
     /// bursts, 100 ms otherwise.
     void begin_load_configuration();
-    /// Both of these. Ends once the first range is started: about 100 ms later it is collected by
-    /// `begin_finish_initialise`, so that a fleet ranges at once.
+    /// Both of these, and the factory's offset read in between if so set. Ends once the first range is
+    /// started: about 100 ms later it is collected by `begin_finish_initialise`, so that a fleet ranges at
+    /// once.
     void begin_initialise();
     /// Waits for the first data ready (<= 1 s), clears, stops, sets the VHV loop bound and start.
     void begin_finish_initialise();
@@ -105,10 +106,9 @@ class Device {
 
     // --- supervision
     /// Reads one of `kRegisterRuns` back and compares it with what was written since the configuration was
-    /// loaded; what was not (a factory offset) it learns. A difference is read again; if it is still there,
-    /// the end is `config_mismatch`: initialise the sensor. Also while ranging. One transfer, two if it
-    /// differs:
-    /// <= 3 ms.
+    /// loaded, and with the factory's offset; what else was not written it learns. A difference is read
+    /// again; if it is still there, the end is `config_mismatch`: initialise the sensor. Also while ranging.
+    /// One transfer, two if it differs: <= 3 ms.
     void begin_verify(std::size_t run);
 
     // --- progress

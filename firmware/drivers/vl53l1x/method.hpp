@@ -76,8 +76,22 @@ struct Device::Method {
         if (d.options_.verifies_address) ask_identity(d);
     }
 
+    static void forget_registers(Device& d) { d.read_back_.forget(); }
+    /// The offset of a part is the factory's unless the rig has one. Known before the first write that could
+    /// go astray to it: what is read later may be what such a write left there.
+    static void learn_factory_offset(Device& d) {
+        if (!d.options_.reads_factory_offset) return;
+        d.read(kFactoryRun.first, kFactoryRun.count, [](Device& device, NodeTime) {
+            device.read_back_.learn(kFactoryRun, device.answer_);
+            device.read(kFactoryRun.first, kFactoryRun.count, compare_factory_offset);
+            return Verdict::proceed;
+        });
+    }
+    static Verdict compare_factory_offset(Device& d, NodeTime) {
+        return d.read_back_.agrees(kFactoryRun, d.answer_) ? Verdict::proceed : d.fail(Error::reads_disagree);
+    }
+
     static void write_default_configuration(Device& d) {
-        d.read_back_.forget();
         constexpr auto kCount = static_cast<std::uint8_t>(kDefaultConfiguration.size());
         const bool in_burst = d.options_.writes_config_in_burst;
         d.line_up({.kind = Step::Kind::write_defaults,
@@ -404,9 +418,14 @@ struct Device::Method {
                                         {ask_identity}};
     static constexpr Stage kAwaitBootOnly[]{kAwaitBoot};
     static constexpr Stage kLoadConfiguration[]{
-        {write_default_configuration}, {choose_timed}, {clear_before_start}, {start}};
-    static constexpr Stage kInitialise[]{
-        kAwaitBoot, {write_default_configuration}, {choose_timed}, {clear_before_start}, {start}};
+        {forget_registers}, {write_default_configuration}, {choose_timed}, {clear_before_start}, {start}};
+    static constexpr Stage kInitialise[]{kAwaitBoot,
+                                         {forget_registers},
+                                         {learn_factory_offset},
+                                         {write_default_configuration},
+                                         {choose_timed},
+                                         {clear_before_start},
+                                         {start}};
     static constexpr Stage kFinishInitialise[]{kAwaitReady, {clear}, {stop}, {bound_vhv_search}};
     static constexpr Stage kConfigure[]{
         // clang-format off

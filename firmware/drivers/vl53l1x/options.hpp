@@ -25,6 +25,7 @@ struct Options {
     bool is_interrupt_active_low = true;  ///< 0x30 bit 4
     bool writes_config_in_burst = true;   ///< 91 bytes in one transfer rather than 91 transfers
     bool reads_twice = true;              ///< the result block and the oscillator value
+    bool reads_factory_offset = true;     ///< twice, before anything is written to the part but its address
     bool caches_polarity = true;          ///< false: 0x30 is read before every 0x31, as ST's driver does
     bool clears_before_start = true;      ///< write 0x86 before 0x87 = 0x40
     bool verifies_address = true;         ///< the id is read at a new address once it is set
@@ -35,6 +36,7 @@ struct Options {
                 .is_interrupt_active_low = false,
                 .writes_config_in_burst = false,
                 .reads_twice = false,
+                .reads_factory_offset = false,
                 .caches_polarity = false,
                 .clears_before_start = false,
                 .verifies_address = false,

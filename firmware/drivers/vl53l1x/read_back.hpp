@@ -26,6 +26,8 @@ struct RegisterRun {
 inline constexpr std::size_t kSteeringGroups = 3;
 /// The one of them with the period in it.
 inline constexpr std::size_t kTimingGroup = 1;
+/// The one whose values are the factory's, unless the configuration has an offset.
+inline constexpr std::size_t kFactoryGroup = 0;
 inline constexpr std::size_t kRunBytesMax = 18;
 inline constexpr std::array<RegisterRun, 10> kRegisterRuns{{{0x1E, 6},
                                                             {0x5E, 18},
@@ -37,6 +39,7 @@ inline constexpr std::array<RegisterRun, 10> kRegisterRuns{{{0x1E, 6},
                                                             {0x43, 16},
                                                             {0x53, 11},
                                                             {0x70, 8}}};
+inline constexpr RegisterRun kFactoryRun = kRegisterRuns[kFactoryGroup];
 inline constexpr std::size_t kRegistersReadBack = 103;
 
 /// The bits of a register that are compared. Left out: the VHV start value, which is the sensor's own once it

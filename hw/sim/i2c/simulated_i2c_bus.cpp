@@ -127,7 +127,10 @@ bool SimulatedI2cBus::pass_to_targets(std::size_t position, std::uint8_t byte) {
         note_altered_write();
         return true;
     }
-    const std::uint8_t arriving = with_bit_flipped(byte, position, fault(I2cFaultKind::flip_written_bit));
+    std::uint8_t arriving = with_bit_flipped(byte, position, fault(I2cFaultKind::flip_written_bit));
+    const I2cFault* redirect = fault(I2cFaultKind::redirect_write);
+    if (redirect != nullptr && position < kIndexBytes)
+        arriving = static_cast<std::uint8_t>(redirect->position >> (position == 0 ? 8U : 0U));
     if (arriving != byte) note_altered_write();
     bool is_acknowledged = false;
     for (I2cTarget* target : selected_) {

@@ -23,6 +23,7 @@ enum class I2cFaultKind : std::uint8_t {
     lose_arbitration,  ///< somebody else drives SDA
     stretch,           ///< the clock is held low for ever: only the deadline ends it
     sda_stuck_low,     ///< SDA stays low from before the START on, until `position` clocks have been given
+    redirect_write,    ///< the index arrives as `position`, several of its bits altered, whatever was sent
 };
 
 /// What happens to transfers number `first` to `first + count - 1` (counted from 0 on this bus), or, with an

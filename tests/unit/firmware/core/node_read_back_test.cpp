@@ -128,6 +128,39 @@ TEST(NodeReadBack, a_configuration_write_lost_at_the_start_costs_one_more_attemp
     EXPECT_GT(restarts, 8U) << "the faults hardly did anything";
 }
 
+// The factory's offset, which the node writes nowhere: nothing but its first read tells what it should be.
+TEST(NodeReadBack, no_write_of_a_bring_up_that_arrives_at_the_factory_offset_stays_there) {
+    NodeRig clean(fleet_config(1, 1), std::vector<SensorSetup>(1));
+    // Started, and not for the one range of its bring-up, whose period is the default's.
+    const auto& registers = clean.sensor(0).registers();
+    while (registers.at(0x87) != 0x40 || registers.at(0x6E) == 0x0F) clean.run_for(Microseconds{100});
+    // Not of the bring-up: oscillator twice, period, its read-back, clear, start. What goes astray there is
+    // found as whatever changes while ranging.
+    const std::uint64_t transfers = clean.bus(0).transfer_count() - 6;
+    const auto offset_of = [](NodeRig& rig) {
+        const auto first = rig.sensor(0).registers().begin() + 0x1E;
+        return std::vector<std::uint8_t>(first, first + 6);
+    };
+    std::size_t hits = 0;
+    for (const std::uint32_t index : {0x1EU, 0x1FU, 0x20U, 0x23U}) {
+        for (std::uint64_t i = 0; i < transfers; ++i) {
+            NodeRig rig(fleet_config(1, 1), std::vector<SensorSetup>(1));
+            rig.bus(0).inject({.kind = sim::I2cFaultKind::redirect_write, .first = i, .position = index});
+            bool is_hit = false;
+            while (rig.readings_of(0).empty() && rig.now().us < 2'000'000) {
+                rig.run_for(Microseconds{1'000});
+                is_hit = is_hit || offset_of(rig) != offset_of(clean);
+            }
+            if (is_hit) ++hits;
+            EXPECT_EQ(offset_of(rig), offset_of(clean)) << index << " from transfer " << i;
+            EXPECT_FALSE(rig.readings_of(0).empty()) << index << " from transfer " << i;
+            EXPECT_LE(rig.node().counts().sensor_restarts, 1U) << index << " from transfer " << i;
+            EXPECT_EQ(rig.node().counts().suspect, 0U) << index << " from transfer " << i;
+        }
+    }
+    EXPECT_GT(hits, 4U * 20U) << "the faults hardly did anything";
+}
+
 TEST(NodeReadBack, a_register_that_never_takes_its_value_is_tried_three_times_then_named) {
     std::vector<SensorSetup> setups(1);
     setups[0].faults.stuck_register = sim::StuckRegister{.index = 0x4C, .value = 0x20};

@@ -71,10 +71,18 @@ TEST_F(DeviceOnScript, new_address_that_does_not_answer_is_told) {
 TEST_F(DeviceOnScript, initialises_in_one_burst_once_booted) {
     device_.begin_initialise();
     bus_.expect("R 00E5 1 -> 00 | R 00E5 1 -> 02 | R 00E5 1 -> 03");
+    bus_.expect("R 001E 6 -> 00 34 00 28 00 0D | R 001E 6 -> 00 34 00 28 00 0D");
     bus_.expect(kBurst);
     expect_done("W 0086 01 | W 0087 40");
     device_.begin_finish_initialise();
     expect_done("R 0031 1 -> 03 | R 0031 1 -> 02 | W 0086 01 | W 0087 00 | W 0008 09 | W 000B 00");
+}
+
+TEST_F(DeviceOnScript, writes_nothing_to_a_part_whose_factory_offset_does_not_read_twice_alike) {
+    device_.begin_initialise();
+    bus_.expect("R 00E5 1 -> 03 | R 001E 6 -> 00 34 00 28 00 0D | R 001E 6 -> 00 34 00 28 00 1D");
+    EXPECT_EQ(finish(device_, now_), Progress::failed);
+    EXPECT_EQ(device_.error(), Error::reads_disagree);
 }
 
 TEST_F(DeviceOnScript, polls_boot_every_millisecond_and_ready_every_five) {
