@@ -64,6 +64,7 @@ bool has_stopped(const std::optional<HostTime>& last, HostTime now) {
 }
 
 void add_joints(const DaemonView& view, Problems& problems) {
+    constexpr std::uint64_t kFirstSamples = 5;  // of a source: nothing is known of it yet
     const auto& joints = view.pipeline->accounts().joint_samples;
     if (joints.in() == 0) {
         problems.push_back(fmt::format(
@@ -73,6 +74,12 @@ void add_joints(const DaemonView& view, Problems& problems) {
         problems.emplace_back("no joint state could be used: see the counters of joint samples");
     } else if (has_stopped(view.used.joint_sample, view.now)) {
         problems.emplace_back("joint states have stopped: readings have no pose");
+    }
+    if (joints.rejected(JointReason::too_frequent) > kFirstSamples) {
+        problems.push_back(fmt::format(
+            "joint states come, or came, quicker than the {} Hz of the rig, and were refused (too_frequent, "
+            "{}): put the true rate into joints.rate_hz",
+            view.rig->joints.rate_hz, joints.rejected(JointReason::too_frequent)));
     }
 }
 

@@ -285,6 +285,9 @@ Result<JointMeasurement, JointReason> CanIntake::place(const JointReading& readi
     if (now - sampled->time > config_.joint_age_max) {
         return unexpected(JointReason::too_old);
     }
+    if (!reading.has_pace) {  // last: a source's first samples come before its clock is known
+        return unexpected(JointReason::too_frequent);
+    }
     return JointMeasurement{sampled->time, reading.position_rad};
 }
 

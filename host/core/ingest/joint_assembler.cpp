@@ -32,7 +32,7 @@ JointReading join(const std::array<std::optional<wire::JointState>, 4>& parts) {
 }  // namespace
 
 JointAssembler::JointAssembler(double rate_hz)
-    : patience_(std::llround(1e9 * wire::kJointSequenceCount / 2 / rate_hz)) {
+    : patience_(std::llround(1e9 * wire::kJointSequenceCount / 2 / rate_hz)), pace_(rate_hz) {
     assert(rate_hz > 0.0);
 }
 
@@ -73,6 +73,8 @@ JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, 
         sample->is_complete = true;
         outcome.complete = join(sample->parts);
         outcome.complete->begun = sample->opened;
+        pace_.observe(sequence_of(frame), outcome.complete->sampled);
+        outcome.complete->has_pace = pace_.is_kept();
     }
     return outcome;
 }

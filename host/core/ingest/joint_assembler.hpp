@@ -8,6 +8,7 @@
 
 #include "common/time.hpp"
 #include "common/wire/messages.hpp"
+#include "host/core/ingest/joint_pace.hpp"
 #include "host/core/ingest/reasons.hpp"
 
 namespace octoskin {
@@ -16,12 +17,14 @@ namespace octoskin {
 struct JointReading {
     std::array<double, wire::kJointsPerSample> position_rad{};
     wire::TimeResidue sampled;
-    HostTime begun;  ///< arrival of its first frame
+    HostTime begun;         ///< arrival of its first frame
+    bool has_pace = false;  ///< its source is not quicker than the rig says (JointPace)
 };
 
 /// The sequence has three bits only, and comes round within 80 ms at 100 Hz: a sample that is not complete
 /// within half a round is given up. A frame that is nearly a whole round late can still meet those of the
-/// next round; it then came before that sample was taken, which `JointReading::begun` shows.
+/// next round; it then came before that sample was taken, which `JointReading::begun` shows. Of a source that
+/// is quicker than the rig says, frames of several rounds may meet: `JointReading::has_pace`.
 class JointAssembler {
   public:
     explicit JointAssembler(double rate_hz);
@@ -48,6 +51,7 @@ class JointAssembler {
     void give_up_stale(HostTime now, Outcome& outcome);
 
     Nanoseconds patience_;
+    JointPace pace_;
     std::array<std::optional<Sample>, wire::kJointSequenceCount> samples_;
 };
 

@@ -135,10 +135,12 @@ enum class JointReason : std::uint8_t {
     out_of_limits,  ///< a joint beyond its limits
     out_of_order,   ///< not later than the sample before it
     queue_overflow,
+    too_frequent,  ///< the source is quicker than the rig says, so that samples cannot be told apart
+                   ///< said
 };
-[[nodiscard]] constexpr std::array<const char*, 9> names_of(JointReason) {
+[[nodiscard]] constexpr std::array<const char*, 10> names_of(JointReason) {
     return {"incomplete", "contradictory", "clock_not_ready", "clock_in_doubt", "clock_silent",
-            "too_old",    "out_of_limits", "out_of_order",    "queue_overflow"};
+            "too_old",    "out_of_limits", "out_of_order",    "queue_overflow", "too_frequent"};
 }
 
 enum class DepthReason : std::uint8_t {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "common/range_status.hpp"
@@ -171,8 +172,32 @@ TEST(CanIntake, takes_no_joints_from_a_node_that_two_boards_share) {
         samples += static_cast<int>(std::ranges::count_if(
             outcome.joint_samples, [](const auto& sample) { return sample.has_value(); }));
     });
-    EXPECT_NEAR(samples, 60, 1);
+    EXPECT_NEAR(samples, 60 - 5, 1);  // the first five only tell the pace
     EXPECT_NEAR(refused, 4 * 40, 4);
+}
+
+TEST(CanIntake, takes_no_joints_of_a_source_twice_as_quick_as_the_rig_says) {
+    for (const double rate_hz : {100.0, 150.0, 200.0, 1000.0}) {
+        ScriptedBus quick = bus();
+        const double position = 0.0;
+        for (int i = 0; i < 100; ++i) quick.joints(2.5 + i / rate_hz, kJointNode, {&position, 1});
+        std::map<JointReason, int> rejected;
+        int taken = 0;
+        (void)take(quick, [&](const FrameOutcome& outcome, HostTime) {
+            for (const auto& sample : outcome.joint_samples) {
+                taken += sample ? 1 : 0;
+                if (!sample) ++rejected[sample.error()];
+            }
+        });
+        const bool is_refused = rate_hz > 160.0;
+        const int too_frequent = rejected[JointReason::too_frequent];
+        if (is_refused) {
+            EXPECT_GE(too_frequent, 90) << rate_hz;
+        } else {
+            EXPECT_EQ(too_frequent, 5) << rate_hz;
+        }
+        EXPECT_EQ(taken, is_refused ? 0 : 95) << rate_hz;
+    }
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <random>
 
 namespace octoskin {
 namespace {
@@ -145,6 +147,104 @@ TEST(JointAssembler, begins_a_sequence_number_anew_in_the_next_round) {
             EXPECT_EQ(outcome.complete.has_value(), index == 3);
             EXPECT_TRUE(outcome.given_up.empty());
         }
+    }
+}
+
+struct Sent {
+    int completed = 0;
+    int refused = 0;
+};
+
+/// A source `times` as quick as the rig says. Each pair of joints moves in some samples only, so that frames
+/// of two rounds may be equal; each frame is lost with the probability `loss`. What comes together is checked
+/// against what was sent, which its time tells.
+Sent send(double times, double loss, std::uint64_t seed) {
+    Sent counts;
+    std::mt19937_64 random(seed);
+    std::bernoulli_distribution is_lost(loss);
+    std::bernoulli_distribution moves(0.2);
+    JointAssembler assembler(kRate);
+    std::array<std::int32_t, 7> position{};
+    std::vector<std::array<std::int32_t, 7>> sent;
+    for (std::uint32_t n = 0; n < 2000; ++n) {
+        for (std::size_t joint = 0; joint < 7; joint += 2) {
+            if (moves(random)) position[joint] = static_cast<std::int32_t>(n);
+        }
+        sent.push_back(position);
+        const auto sequence = static_cast<std::uint8_t>(n % 8);
+        const auto sampled_us = static_cast<std::uint32_t>(n * 1e6 / (times * kRate));
+        const HostTime now{sampled_us * 1000LL};
+        for (std::uint8_t index = 0; index < 4; ++index) {
+            if (is_lost(random)) continue;
+            const std::size_t first = 2UL * index;
+            const wire::JointState frame =
+                index == 3 ? wire::JointState(
+                                 wire::JointLast{sequence, position[6], {sampled_us, wire::kFdTimeSpanUs}})
+                           : wire::JointPair{index, sequence, {position[first], position[first + 1]}};
+            const auto outcome = assembler.on_frame(frame, now + Nanoseconds{index * 200'000});
+            if (!outcome.complete) continue;
+            if (!outcome.complete->has_pace) {
+                ++counts.refused;
+                continue;
+            }
+            ++counts.completed;
+            const auto taken = std::lround(outcome.complete->sampled.value_us * 1e-6 * times * kRate);
+            const auto& expected = sent.at(static_cast<std::size_t>(taken));
+            for (std::size_t joint = 0; joint < 7; ++joint) {
+                EXPECT_NEAR(outcome.complete->position_rad[joint], 1e-6 * expected[joint], 1e-12)
+                    << times << " times, loss " << loss << ", seed " << seed << ", sample " << n;
+            }
+        }
+    }
+    return counts;
+}
+
+TEST(JointAssembler, never_mixes_two_samples_however_quick_the_source_is) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        for (const double times : {1.0, 1.5, 2.0, 3.0, 4.0, 7.9, 8.0, 10.0, 25.0, 40.0}) {
+            for (const double loss : {0.0, 0.01, 0.1, 0.3}) {
+                const Sent counts = send(times, loss, seed);
+                if (times >= 2.0) {
+                    EXPECT_EQ(counts.completed, 0) << times << " times, loss " << loss;
+                    EXPECT_GT(counts.refused, 0) << times << " times, loss " << loss;
+                } else if (loss == 0.0) {
+                    EXPECT_EQ(counts.completed, 1995) << times;
+                }
+            }
+        }
+    }
+}
+
+TEST(JointPace, forgives_jitter_and_a_burst_and_not_twice_the_rate) {
+    JointPace pace(kRate);
+    std::mt19937 random(4);
+    std::uint32_t at_us = 16'000'000;  // its time field wraps on the way
+    std::uint8_t sequence = 0;
+    const auto sample = [&](std::uint32_t after_us) {
+        at_us = (at_us + after_us) % wire::kFdTimeSpanUs;
+        sequence = static_cast<std::uint8_t>((sequence + 1U) % 8U);
+        pace.observe(sequence, {at_us, wire::kFdTimeSpanUs});
+        return !pace.is_kept();
+    };
+    for (int i = 0; i < 5; ++i) EXPECT_TRUE(sample(10'000)) << "not known yet";
+    for (int i = 0; i < 1000; ++i) EXPECT_FALSE(sample(7'000 + static_cast<std::uint32_t>(random() % 6'000)));
+    EXPECT_FALSE(sample(100));
+    for (int i = 0; i < 10; ++i) EXPECT_FALSE(sample(10'000));
+    EXPECT_FALSE(sample(5'000));
+    for (int i = 0; i < 100; ++i) EXPECT_TRUE(sample(5'000));
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(sample(10'000)) << i;
+    EXPECT_FALSE(sample(10'000));
+    for (int i = 0; i < 100; ++i) EXPECT_FALSE(sample(20'000)) << "half the rate is no danger";
+}
+
+TEST(JointPace, takes_no_late_sample_for_a_quick_one) {
+    JointPace pace(kRate);
+    for (std::uint32_t n = 1; n < 4000; ++n) {  // two by two in the wrong order, and some lost
+        const std::uint32_t k = n ^ 1U;
+        if (n % 7 == 0) continue;
+        pace.observe(static_cast<std::uint8_t>(k % 8),
+                     {k * 10'000 % wire::kFdTimeSpanUs, wire::kFdTimeSpanUs});
+        ASSERT_TRUE(n < 10 || pace.is_kept()) << n;
     }
 }
 
