@@ -176,7 +176,7 @@ struct InfoCounters {  ///< since start, saturating
 };
 struct InfoTraffic {                 ///< since start, saturating
     std::uint16_t tx_dropped = 0;    ///< displaced by newer readings, or given up by the controller
-    std::uint16_t late_dropped = 0;  ///< readings that waited over 50 ms to be sent
+    std::uint16_t late_dropped = 0;  ///< readings, REFLEX and SYNC_REPORT that waited over 50 ms to be sent
     std::uint8_t bus_off_count = 0;
     std::uint8_t rx_rejected = 0;  ///< frames for us that failed length, CRC or version
     friend constexpr bool operator==(const InfoTraffic&, const InfoTraffic&) = default;

@@ -121,10 +121,11 @@ void Node::collect_calibration() {
 
 void Node::watch_reflex(std::uint8_t sensor, const Reading& reading, NodeTime now) {
     if (!reflexes_[sensor]->begins(reading, now)) return;
-    reflex_events_[sensor] = {.sensor = sensor,
-                              .zone = reading.zone,
-                              .range_mm = reading.range_mm,
-                              .capture = wire::classical_residue(reading.capture)};
+    reflex_events_[sensor] = {.message = {.sensor = sensor,
+                                          .zone = reading.zone,
+                                          .range_mm = reading.range_mm,
+                                          .capture = wire::classical_residue(reading.capture)},
+                              .since = now};
     reflex_due_ |= std::uint64_t{1} << sensor;
 }
 
@@ -209,6 +210,7 @@ std::uint8_t Node::ignored_data_ready() const noexcept {
 NodeCounts Node::counts() const noexcept {
     NodeCounts counts{.displaced = queue_.losses().displaced,
                       .late = queue_.losses().late,
+                      .others_late = others_late_,
                       .given_up = given_up_,
                       .others_given_up = others_given_up_,
                       .bus_off = bus_off_.count(),

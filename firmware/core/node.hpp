@@ -39,7 +39,8 @@ struct NodeCounts {
     std::uint32_t sensor_restarts = 0;
     std::uint32_t displaced = 0;  ///< readings displaced by a newer one of the same sensor before being sent
     std::uint32_t late = 0;       ///< readings that waited too long to be sent
-    std::uint32_t given_up = 0;   ///< readings in frames that the controller took and could not send
+    std::uint32_t others_late = 0;      ///< REFLEX and SYNC_REPORT that did
+    std::uint32_t given_up = 0;         ///< readings in frames that the controller took and could not send
     std::uint32_t others_given_up = 0;  ///< such frames without a reading
     std::uint32_t bus_off = 0;          ///< times that the controller went bus-off
     std::uint32_t accepted = 0;         ///< readings: sent, displaced, late, given up, or still waiting
@@ -146,6 +147,7 @@ class Node {
 
     // --- frames out (node_transmit.cpp)
     void count_given_up();
+    void drop_late(NodeTime now);
     void transmit(NodeTime now);
     [[nodiscard]] bool send_most_urgent(NodeTime now);
     [[nodiscard]] bool send(const wire::Message& message);
@@ -173,7 +175,11 @@ class Node {
     std::array<std::optional<Sensor>, kNodeSensorsMax> sensors_{};
     std::array<Told, kNodeSensorsMax> told_{};
     std::array<std::optional<Reflex>, kNodeSensorsMax> reflexes_{};
-    std::array<wire::Reflex, kNodeSensorsMax> reflex_events_{};
+    struct ReflexEvent {
+        wire::Reflex message;
+        NodeTime since;
+    };
+    std::array<ReflexEvent, kNodeSensorsMax> reflex_events_{};
     std::uint64_t reflex_due_ = 0;  ///< bit i: `reflex_events_[i]` is to be sent
     std::uint8_t reflex_sequence_ = 0;
     wire::InfoFault told_fault_;
@@ -191,6 +197,7 @@ class Node {
     std::uint32_t frames_sent_ = 0;
     std::uint32_t given_up_ = 0;
     std::uint32_t others_given_up_ = 0;
+    std::uint32_t others_late_ = 0;
     std::uint32_t accepted_ = 0;
     std::uint32_t rx_rejected_ = 0;
     std::optional<wire::SyncReport> sync_report_;

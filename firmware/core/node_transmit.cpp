@@ -1,5 +1,6 @@
 // What the node says, in which order. Everything is composed at the moment the controller takes it, so a full
-// mailbox delays what is said but never makes it old; only readings queue, and they have an age limit.
+// mailbox delays what is said but never makes it old. What is about one instant (readings, REFLEX,
+// SYNC_REPORT) has an age limit.
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -26,10 +27,17 @@ std::uint32_t reading_count(const wire::CanFrame& frame) {
     return std::holds_alternative<wire::Range>(decoded->message) ? 1 : 0;
 }
 
+std::optional<std::uint8_t> reflex_sensor(const wire::CanFrame& frame) {
+    const auto decoded = wire::decode(frame);
+    if (!decoded) return std::nullopt;
+    const auto* reflex = std::get_if<wire::Reflex>(&decoded->message);
+    return reflex != nullptr ? std::optional(reflex->sensor) : std::nullopt;
+}
+
 }  // namespace
 
 /// A frame counts as many as it holds readings, so that every reading accepted is accounted for; one without
-/// counts one.
+/// counts one. Nobody has heard of an event whose REFLEX was given up: the next reading may tell it anew.
 void Node::count_given_up() {
     for (int i = 0; i < kFramesPerPoll; ++i) {
         const auto frame = ports_.can.take_given_up();
@@ -37,12 +45,31 @@ void Node::count_given_up() {
         const std::uint32_t readings = reading_count(*frame);
         given_up_ += readings;
         if (readings == 0) ++others_given_up_;
+        if (const auto sensor = reflex_sensor(*frame); sensor && *sensor < sensor_count_)
+            reflexes_[*sensor]->rearm();
+    }
+}
+
+/// What is too old to be said is counted. An event that is not told by then is one that the next reading may
+/// begin anew, so that whatever is still too close when the bus is back is told at once.
+void Node::drop_late(NodeTime now) {
+    queue_.drop_late(now);
+    if (sync_report_ && elapsed(sync_report_->heard, now) > policy_.report_age_max) {
+        sync_report_.reset();
+        ++others_late_;
+    }
+    for (std::uint64_t due = reflex_due_; due != 0; due &= due - 1) {
+        const auto sensor = static_cast<std::size_t>(std::countr_zero(due));
+        if (elapsed(reflex_events_[sensor].since, now) <= policy_.report_age_max) continue;
+        reflex_due_ &= ~(std::uint64_t{1} << sensor);
+        reflexes_[sensor]->rearm();
+        ++others_late_;
     }
 }
 
 void Node::transmit(NodeTime now) {
     tokens_.refill(now);
-    queue_.drop_late(now);
+    drop_late(now);
     has_unsent_ = false;
     if (bus_off_.is_off()) return;  // all it has to say stays as new as it can
     // A node without a valid id of its own has no right to speak.
@@ -91,7 +118,7 @@ bool Node::send_most_urgent(NodeTime now) {
 /// Whatever else was sent of late: one frame an event, and few events, so that it cannot babble either.
 bool Node::send_reflex() {
     const auto sensor = static_cast<std::size_t>(std::countr_zero(reflex_due_));
-    wire::Reflex event = reflex_events_[sensor];
+    wire::Reflex event = reflex_events_[sensor].message;
     event.sequence = reflex_sequence_;
     if (!ports_.can.send(wire::encode(event, config_.node_id))) {
         has_unsent_ = true;
@@ -154,11 +181,12 @@ wire::NodeInfo Node::info(wire::InfoPage page) const noexcept {
                                       .reads_disagreed = saturated<std::uint16_t>(counted.reads_disagreed),
                                       .sensor_restarts = saturated<std::uint16_t>(counted.sensor_restarts)};
         case wire::InfoPage::traffic:
-            return wire::InfoTraffic{.tx_dropped = saturated<std::uint16_t>(
-                                         counted.displaced + counted.given_up + counted.others_given_up),
-                                     .late_dropped = saturated<std::uint16_t>(counted.late),
-                                     .bus_off_count = saturated<std::uint8_t>(counted.bus_off),
-                                     .rx_rejected = saturated<std::uint8_t>(counted.rx_rejected)};
+            return wire::InfoTraffic{
+                .tx_dropped =
+                    saturated<std::uint16_t>(counted.displaced + counted.given_up + counted.others_given_up),
+                .late_dropped = saturated<std::uint16_t>(counted.late + counted.others_late),
+                .bus_off_count = saturated<std::uint8_t>(counted.bus_off),
+                .rx_rejected = saturated<std::uint8_t>(counted.rx_rejected)};
         case wire::InfoPage::fault:
             return fault_to_tell();
     }

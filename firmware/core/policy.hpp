@@ -54,6 +54,7 @@ struct Policy {
     // --- frames out
     Microseconds company_wait{3'000};  ///< a reading waits this long for others to share its CAN FD frame
     Microseconds reading_age_max{50'000};
+    Microseconds report_age_max{50'000};  ///< of a REFLEX or SYNC_REPORT: neither goes out late
     Microseconds heartbeat_period{100'000};
     Microseconds status_period{1'000'000};  ///< NODE_INFO's pages and every sensor's health, once each
 

@@ -20,6 +20,9 @@ class Reflex {
     /// Every accepted reading, as it comes. True if an event begins with it. O(1).
     [[nodiscard]] bool begins(const Reading& reading, NodeTime now) noexcept;
 
+    /// The event was not told in time: the next reading below the limit begins one.
+    void rearm() noexcept { is_armed_ = true; }
+
     /// Call at least every 35 minutes, with or without readings.
     void update(NodeTime now) noexcept;
 

@@ -89,6 +89,26 @@ TEST_F(ReliabilityCanTest, C8_after_bus_off_traffic_is_back_within_a_second_newe
     EXPECT_EQ(rig_.said_of<wire::Heartbeat>().back().state, NodeState::ranging);
 }
 
+// Heard as the node goes bus-off: a SYNC answered seconds later could be taken for a later one's answer.
+TEST_F(ReliabilityCanTest, C8_a_sync_heard_before_bus_off_is_not_answered_after_it_but_counted) {
+    for (const std::uint32_t attempts : {32U, 32U * 4}) {
+        const node::NodeCounts before = rig_.node().counts();
+        const std::size_t answers = rig_.said_of<wire::SyncReport>().size();
+        disturb(attempts);
+        while (rig_.node().counts().bus_off == before.bus_off) rig_.run_for(kMillisecond);
+        rig_.node().on_frame(wire::encode(wire::Sync{.sequence = 7}, wire::kHostId), rig_.node_now());
+        rig_.run_for(4 * kSecond);
+        EXPECT_EQ(rig_.said_of<wire::SyncReport>().size(), answers) << attempts;
+        const node::NodeCounts after = rig_.node().counts();
+        EXPECT_EQ(after.others_late, before.others_late + 1) << attempts;
+        EXPECT_EQ(last_page<wire::InfoTraffic>(rig_)->late_dropped, after.late + after.others_late);
+        rig_.send_from_host(wire::Sync{.sequence = 8}, wire::kHostId);
+        rig_.run_for(50 * kMillisecond);
+        ASSERT_EQ(rig_.said_of<wire::SyncReport>().size(), answers + 1) << attempts;
+        EXPECT_EQ(rig_.said_of<wire::SyncReport>().back().sequence, 8);
+    }
+}
+
 TEST_F(ReliabilityCanTest, C8_error_passive_is_told_and_nothing_is_lost) {
     const std::size_t before = rig_.node().counts().late + rig_.node().counts().displaced;
     disturb(20);
@@ -206,6 +226,30 @@ TEST_F(ReliabilityReflexTest, one_frame_an_event_without_any_host_and_within_5_m
     }
     // The readings themselves come as always.
     EXPECT_GE(rig_.readings_of(1).size(), 2'980U);
+}
+
+// It begins in bus-off, and lasts: what is told once the bus is back is how it is then.
+TEST(ReliabilityReflex, C8_an_event_in_bus_off_is_told_afterwards_by_a_reading_of_that_time) {
+    NodeConfig config = fleet_config(1, 1);
+    config.sensors[0].reflex_below_mm = 3'000;
+    NodeRig rig(config, std::vector<SensorSetup>(1));
+    // Until the distances begin anew, below the limit.
+    const auto is_far = [&] { return !rig.truth(0).empty() && rig.truth(0).back().range_mm > 4'360; };
+    while (!is_far()) rig.run_for(kMillisecond);
+    const std::uint32_t before = rig.node().counts().bus_off;
+    const std::size_t told = rig.said_of<wire::Reflex>().size();
+    rig.can().add_fault({.kind = CanFaultKind::disturb, .count = 32 * 4});
+    while (is_far()) rig.run_for(kMillisecond);
+    ASSERT_GT(rig.node().counts().bus_off, before);
+    rig.run_for(3 * kSecond);
+    ASSERT_EQ(rig.said_of<wire::Reflex>().size(), told + 1) << "one frame an event all the same";
+    const auto& ranges = rig.truth(0);
+    const std::int64_t said_us = rig.times_of<wire::Reflex>().back().us;
+    const auto truth = std::find_if(ranges.rbegin(), ranges.rend(), [&](const TrueRange& range) {
+        return range.range_mm == rig.said_of<wire::Reflex>().back().range_mm;
+    });
+    EXPECT_LE(said_us - truth->window_middle.us, 10'000 + 50'000) << "of that time";
+    EXPECT_GT(rig.node().counts().others_late, 0U);
 }
 
 TEST_F(ReliabilityReflexTest, goes_out_before_everything_else_and_without_a_token) {
