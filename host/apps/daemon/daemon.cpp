@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -17,11 +19,13 @@
 #include "host/apps/daemon/joint_socket.hpp"
 #include "host/apps/daemon/latency.hpp"
 #include "host/apps/daemon/map_keeper.hpp"
+#include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/daemon/status.hpp"
 #include "host/apps/study/configuration.hpp"
 #include "host/core/ingest/local_joints.hpp"
 #include "host/core/pipeline/pipeline.hpp"
 #include "host/core/time/sync_master.hpp"
+#include "host/io/mapping/mapping_file.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "host/io/socketcan/our_filters.hpp"
 #include "hw/rigfile/rig.hpp"
@@ -39,7 +43,22 @@ constexpr int kFramesPerTurn = 256;
 struct Settings {
     HostSetup host;
     MappingConfig mapping;
+    RecordedSettings recorded;
 };
+
+/// The same as text, for recordings.
+Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const MappingConfig& mapping,
+                                                     const std::string& interface) {
+    std::ifstream robot(rig.urdf, std::ios::binary);
+    RecordedSettings recorded{.rig = rig::canonical_text(rig, "robot.urdf"),
+                              .robot = {std::istreambuf_iterator<char>(robot), {}},
+                              .mapping = mapping_text(mapping),
+                              .rig_hash = rig::rig_hash(rig),
+                              .joints = rig.joints.joints.size(),
+                              .interface = interface};
+    if (!robot) return fail(ExitCode::bad_config, rig.urdf.string() + ": cannot be read");
+    return recorded;
+}
 
 Result<Settings, AppError> read_settings(const DaemonRequest& request) {
     const auto configuration = study_configuration(request.configuration);
@@ -48,7 +67,9 @@ Result<Settings, AppError> read_settings(const DaemonRequest& request) {
     if (!rig) return fail(ExitCode::bad_config, rig.error().message());
     auto host = make_host_setup(*rig);
     if (!host) return fail(ExitCode::bad_config, host.error().message());
-    return Settings{std::move(host).value(), configuration->mapping};
+    auto recorded = recorded_settings(*rig, configuration->mapping, request.interface);
+    if (!recorded) return unexpected(recorded.error());
+    return Settings{std::move(host).value(), configuration->mapping, std::move(recorded).value()};
 }
 
 Result<Pipeline, AppError> make_pipeline(const DaemonRequest& request, const Settings& settings) {
@@ -117,6 +138,7 @@ struct Daemon::Parts {
     std::optional<JointSocket> joints;
     std::unique_ptr<CameraFeed> camera;
     std::unique_ptr<ControlSocket> control;
+    RecordRequests recordings;
     LatencyHistogram latency;
     HostTime started;
     std::string reload_error;
@@ -165,8 +187,10 @@ ExitCode Daemon::run() {
                          error.what());
     }
     (void)sd_notify(0, "STOPPING=1");
+    parts_->recordings.stop(monotonic_now());
     parts_->save_map();
     const bool is_saved = parts_->keeper.finish(kSavePatience);
+    parts_->recordings.finish(kSavePatience);
     const SaveRecord saves = parts_->keeper.record();
     if (!is_saved || !saves.error.empty()) {
         spdlog::error("the map is not saved: {}", is_saved ? saves.error : "the disk took too long");
@@ -212,6 +236,7 @@ void Daemon::Parts::attend() {
         if (const auto due = sync.poll(now)) (void)can.send(wire::encode(*due, wire::kHostId));
     }
     drain_can();  // what this host sent comes back without waking anybody, where there is no kernel
+    recordings.attend(now);
     note_used(now);
     tell_changes();
 }
@@ -273,6 +298,7 @@ void Daemon::Parts::answer_sync(const socketcan::Received& received, HostTime at
 /// Into the pipeline, and how long that took since the frame was here.
 void Daemon::Parts::feed(const wire::CanFrame& frame, WallTime stamp) {
     const std::uint64_t used_before = pipeline.accounts().readings.used();
+    recordings.on_can(frame, stamp);
     pipeline.on_can(frame, stamp);
     const std::uint64_t used = pipeline.accounts().readings.used() - used_before;
     if (used == 0) return;
@@ -310,6 +336,7 @@ void Daemon::Parts::reload() {
         reload_error = made.error().message;
         spdlog::error("not reloaded, the old settings hold: {}", reload_error);
     } else {
+        recordings.stop(monotonic_now());  // it has the old settings, and is whole with them
         const bool is_same_grid = read->mapping.map == settings.mapping.map;
         if (is_same_grid) made->begin_with(pipeline.maps().fused()->copy());
         settings = std::move(read).value();
@@ -355,6 +382,7 @@ DaemonView Daemon::Parts::view() const {
             .latency = &latency,
             .used = last_used,
             .saves = keeper.record(),
+            .recorder = recordings.recorder(),
             .reload_error = reload_error};
 }
 
@@ -365,7 +393,10 @@ std::string Daemon::Parts::answer(const std::string& line) {
         save_map();
         return R"({"ok": true})";
     }
-    return nlohmann::ordered_json{{"ok", false}, {"error", "unknown request; there are: status, save"}}
+    if (RecordRequests::is_one(line))
+        return recordings.answer(line, settings.recorded, pipeline, monotonic_now());
+    return nlohmann::ordered_json{{"ok", false},
+                                  {"error", "unknown request; there are: status, save, record"}}
         .dump();
 }
 

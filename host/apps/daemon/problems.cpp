@@ -112,6 +112,13 @@ void add_map(const DaemonView& view, Problems& problems) {
             map.config().memory_max_mib));
     }
     if (!view.saves.error.empty()) problems.push_back("the map is not saved: " + view.saves.error);
+    if (view.recorder != nullptr && !view.recorder->error().empty()) {
+        problems.push_back("the recording has failed: " + view.recorder->error());
+    } else if (view.recorder != nullptr && !view.recorder->is_complete()) {
+        problems.push_back(
+            "the recording lacks something that came too fast for the disk: its replay gives "
+            "another map");
+    }
     if (!view.reload_error.empty())
         problems.push_back("the newest reload was refused, and the old settings hold: " + view.reload_error);
 }

@@ -148,12 +148,19 @@ Json account_json(const Pipeline& pipeline) {
 Json status_json(const DaemonView& view) {
     Json nodes = Json::array();
     for (const HostNode& node : view.rig->nodes) nodes.push_back(node_json(view, node));
-    return {{"octoskin", program_version()}, {"uptime_s", seconds(view.now - view.started)},
-            {"rig", view.rig->name},         {"problems", problems(view)},
-            {"can", can_json(view)},         {"clock", clock_json(*view.pipeline)},
-            {"nodes", std::move(nodes)},     {"joints_socket", joints_json(view)},
-            {"camera", camera_json(view)},   {"latency", latency_json(*view.latency)},
-            {"map", map_json(view)},         {"account", account_json(*view.pipeline)}};
+    return {{"octoskin", program_version()},
+            {"uptime_s", seconds(view.now - view.started)},
+            {"rig", view.rig->name},
+            {"problems", problems(view)},
+            {"can", can_json(view)},
+            {"clock", clock_json(*view.pipeline)},
+            {"nodes", std::move(nodes)},
+            {"joints_socket", joints_json(view)},
+            {"recording", view.recorder != nullptr ? view.recorder->to_json(view.now) : Json(nullptr)},
+            {"camera", camera_json(view)},
+            {"latency", latency_json(*view.latency)},
+            {"map", map_json(view)},
+            {"account", account_json(*view.pipeline)}};
 }
 
 }  // namespace octoskin

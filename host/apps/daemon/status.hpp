@@ -12,6 +12,7 @@
 #include "host/apps/daemon/joint_socket.hpp"
 #include "host/apps/daemon/latency.hpp"
 #include "host/apps/daemon/map_keeper.hpp"
+#include "host/apps/daemon/recorder.hpp"
 #include "host/core/pipeline/pipeline.hpp"
 #include "host/core/rig/host_rig.hpp"
 
@@ -41,7 +42,8 @@ struct DaemonView {
     const LatencyHistogram* latency = nullptr;
     LastUsed used;
     SaveRecord saves;
-    std::string reload_error;  ///< of the newest SIGHUP; empty if it went well
+    const Recorder* recorder = nullptr;  ///< at work, or the last one; null if there was none
+    std::string reload_error;            ///< of the newest SIGHUP; empty if it went well
 };
 
 /// What is wrong, the most fundamental first, a sentence each: "nothing in my map" has its answer here.

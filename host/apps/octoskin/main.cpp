@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
     app::add_experiment_command(app);
     app::add_run_command(app);
     app::add_status_command(app);
+    app::add_record_command(app);
     app::add_joints_command(app);
     app::add_rig_command(app);
     app::add_mapping_command(app);

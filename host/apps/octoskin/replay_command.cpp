@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <charconv>
+#include <iostream>
 #include <memory>
 #include <span>
 
@@ -21,9 +23,40 @@ struct ReplayOptions {
     std::filesystem::path rig;
     std::filesystem::path robot;
     std::filesystem::path out;
-    std::string configuration = "robust";
+    std::string configuration;  ///< empty: the recording's own, or robust
+    std::string speed = "max";
     bool is_fused_only = false;
+    bool is_by_capture_time = false;
+    bool is_stepped = false;
 };
+
+/// The recording's mapping.yaml, if the daemon made it and nothing else is asked for.
+std::string configuration_of(const ReplayOptions& options) {
+    if (!options.configuration.empty()) return options.configuration;
+    std::error_code error;
+    const auto recorded = RecordingPaths(options.recording).mapping();
+    return std::filesystem::exists(recorded, error) ? recorded.string() : "robust";
+}
+
+/// Shows what comes next, and waits for the enter key; at the end of the input nothing waits any more.
+void wait_for_enter(const std::string& what) {
+    print("{}", what);
+    std::string line;
+    if (!std::getline(std::cin, line)) print("\n");
+}
+
+Pace pace_of(const ReplayOptions& options) {
+    if (options.is_stepped) return Pace::by_step(wait_for_enter);
+    if (options.speed == "max") return {};
+    double speed = 0.0;
+    const char* const last = options.speed.data() + options.speed.size();
+    const auto [end, error] = std::from_chars(options.speed.data(), last, speed);
+    const bool is_speed = error == std::errc{} && end == last && speed >= 1e-3 && speed <= 1e6;
+    if (!is_speed)
+        throw CommandFailure({ExitCode::usage, "--speed " + options.speed +
+                                                   ": expected 'max', or a number from 0.001 to 1000000"});
+    return Pace::times(speed);
+}
 
 void report_progress(const ReplayProgress& progress, int& last_second) {
     if (!progress.begin || !progress.now) return;
@@ -58,7 +91,7 @@ void save(const Playback& playback, MapFolder& folder, const std::filesystem::pa
 }
 
 void replay_recording(const ReplayOptions& options) {
-    const auto configuration = study_configuration(options.configuration);
+    const auto configuration = study_configuration(configuration_of(options));
     if (!configuration) throw CommandFailure(configuration.error());
     const bool wants_all = !options.is_fused_only;
     const PlaybackRequest request{.recording = RecordingPaths(options.recording),
@@ -66,7 +99,10 @@ void replay_recording(const ReplayOptions& options) {
                                   .configuration = configuration->name,
                                   .maps = {.depth = wants_all, .proximity = wants_all, .fused = true},
                                   .rig = options.rig,
-                                  .robot = options.robot};
+                                  .robot = options.robot,
+                                  .is_by_capture_time = options.is_by_capture_time,
+                                  .pace = pace_of(options),
+                                  .listener = nullptr};
     if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
     // Before the work: of two that write there, the second would else find out after it.
     auto folder = MapFolder::open(options.out);
@@ -92,16 +128,25 @@ void add_replay_command(CLI::App& app) {
         app.add_subcommand("replay", "Play a recording through the pipeline; write maps and the account");
     command->add_option("recording", options->recording, "Directory of the recording")->required();
     command->add_option("--out", options->out, "Where the maps go (default: RECORDING/maps)");
-    command
-        ->add_option("--configuration", options->configuration,
-                     configuration_help("How measurements become voxels"))
-        ->capture_default_str();
+    command->add_option("--configuration", options->configuration,
+                        configuration_help("How measurements become voxels (default: as the daemon "
+                                           "recorded it, else robust)"));
     command->add_option("--rig", options->rig, "Rig (YAML) in place of the recording's")
         ->check(existing_file());
     command->add_option("--robot", options->robot, "Robot (URDF) in place of the recording's")
         ->check(existing_file());
     command->add_flag("--fused-only", options->is_fused_only,
                       "Leave out the maps of the camera alone and the sensors alone");
+    command->add_flag("--by-capture-time", options->is_by_capture_time,
+                      "In the order of capture times, even if the recording has a daemon's own order");
+    auto* const speed =
+        command->add_option("--speed", options->speed, "max; or how many times real time: 1, 10, 0.5");
+    speed->capture_default_str();
+    command
+        ->add_flag("--step", options->is_stepped,
+                   "Show each frame of the log, or each reading and depth frame of a daemon's own order, and "
+                   "wait for the enter key")
+        ->excludes(speed);
     command->callback([options] {
         if (options->out.empty()) options->out = options->recording / "maps";
         replay_recording(*options);

@@ -60,7 +60,8 @@ std::vector<std::string> map_file_names() {
 std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording) {
     std::vector<fs::path> files = {recording.can_log()};
     std::error_code error;
-    for (const fs::path& file : {recording.depth(), recording.depth_epoch()}) {
+    for (const fs::path& file :
+         {recording.depth(), recording.depth_epoch(), recording.order(), recording.first_map()}) {
         if (fs::exists(file, error)) files.push_back(file);
     }
     return crc32_of(files);

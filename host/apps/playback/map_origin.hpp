@@ -30,7 +30,8 @@ struct MapOrigin {
 /// depth, proximity and fused, each as .ot, .bt and .ply: all names that a folder's maps may have.
 [[nodiscard]] std::vector<std::string> map_file_names();
 
-/// CRC-32 of what a recording measured: can.log, and depth.oni and its sidecar if they are there. Rig and
+/// CRC-32 of what a recording measured: can.log, and depth.oni with its sidecar, order.log
+/// and first.ot if they are there. Rig and
 /// robot have their own. Empty if one cannot be read.
 [[nodiscard]] std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording);
 

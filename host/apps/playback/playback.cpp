@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/apps/playback/log_survey.hpp"
+#include "host/apps/playback/ordered_playback.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/recording/recording_draft.hpp"
 #include "host/apps/version/version.hpp"
@@ -132,7 +133,7 @@ std::vector<std::string> take_notes(const Pipeline& pipeline) {
 void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInput& depth,
                    Playback& playback) {
     const auto frames = playback.outcome.progress.can_frames;
-    if (frames < meta.can_frames) {
+    if (!playback.nodes.empty() && frames < meta.can_frames) {
         playback.warnings.push_back("can.log: " + std::to_string(frames) + " frames, but meta.yaml says " +
                                     std::to_string(meta.can_frames) + ": part of the log is missing");
     }
@@ -154,6 +155,65 @@ void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInp
         playback.warnings.push_back(std::string(name) + ": " + std::to_string(map->counters().no_room) +
                                     " voxel terms had no room; raise map.memory_max_mib in the mapping file");
     }
+}
+
+Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, Setup& setup, MapBegin begin) {
+    PipelineConfig config;
+    config.maps = request.maps;
+    config.begin = begin;
+    auto pipeline = Pipeline::build(setup.host.rig, std::move(setup.host.robot), request.mapping, config);
+    if (!pipeline) {
+        return fail(ExitCode::bad_config, request.recording.rig().string() + ": the robot has no '" +
+                                              pipeline.error().element + "' that the rig speaks of");
+    }
+    pipeline->tell(request.listener);
+    return std::move(*pipeline);
+}
+
+/// The log of the bus, through the whole pipeline.
+Result<Playback, AppError> play_log(const PlaybackRequest& request, Setup& setup, DepthInput& depth,
+                                    MapOrigin origin, const ReplayReport& report) {
+    const auto survey = survey_log(request.recording, setup.host.rig);
+    if (!survey) return unexpected(survey.error());
+    auto log = open_log(request.recording, survey->interface());
+    if (!log) return unexpected(log.error());
+    auto pipeline = make_pipeline(request, setup, survey->begin());
+    if (!pipeline) return unexpected(pipeline.error());
+    PacedCan paced(*log, request.pace);
+    ReplayOutcome outcome = replay(*pipeline, paced, depth.reader ? &*depth.reader : nullptr, report);
+    Playback playback{std::move(setup.rig), std::move(*pipeline), std::move(outcome), {}, {}, {}, {}, false,
+                      std::move(origin)};
+    playback.accounts.push_back(line_table(*log));
+    for (AccountTable& table : playback.pipeline.account_tables())
+        playback.accounts.push_back(std::move(table));
+    playback.nodes = summarise(playback.pipeline.intake());
+    playback.notes = take_notes(playback.pipeline);
+    if (auto warning = survey->warning()) playback.warnings.push_back(std::move(*warning));
+    return playback;
+}
+
+/// The daemon's own order, without what decided it.
+Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& setup, DepthInput& depth,
+                                      MapOrigin origin, const ReplayReport& report) {
+    auto pipeline = make_pipeline(request, setup, MapBegin::first_usable);
+    if (!pipeline) return unexpected(pipeline.error());
+    auto played =
+        play_in_order(request, setup.rig, *pipeline, depth.reader ? &*depth.reader : nullptr, report);
+    if (!played) return unexpected(played.error());
+    const OrderedOutcome& order = played->outcome;
+    ReplayOutcome outcome{.progress = {order.commits, order.depth_frames.in(), order.begin, order.now},
+                          .can_error = std::nullopt,
+                          .depth_error = order.depth_error};
+    if (order.order_error) outcome.can_error = CanSourceError{order.order_error->what};
+    return Playback{std::move(setup.rig),
+                    std::move(*pipeline),
+                    std::move(outcome),
+                    std::move(played->accounts),
+                    {},
+                    std::move(played->notes),
+                    std::move(played->warnings),
+                    false,
+                    std::move(origin)};
 }
 
 }  // namespace
@@ -197,36 +257,17 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
     const HostRig& rig = setup->host.rig;
     auto origin = origin_of(request, setup->rig);
     if (!origin) return unexpected(origin.error());
-    const auto survey = survey_log(request.recording, rig);
-    if (!survey) return unexpected(survey.error());
-    auto log = open_log(request.recording, survey->interface());
-    if (!log) return unexpected(log.error());
     DepthInput depth = open_depth(request.recording);
-    PipelineConfig config;
-    config.maps = request.maps;
-    config.begin = survey->begin();
-    auto pipeline = Pipeline::build(rig, std::move(setup->host.robot), request.mapping, config);
-    if (!pipeline) {
-        return fail(ExitCode::bad_config, request.recording.rig().string() + ": the robot has no '" +
-                                              pipeline.error().element + "' that the rig speaks of");
-    }
-
-    ReplayOutcome outcome = replay(*pipeline, *log, depth.reader ? &*depth.reader : nullptr, report);
-    if (depth.error) outcome.depth_error = depth.error;
-    Playback playback{std::move(setup->rig), std::move(*pipeline), std::move(outcome), {}, {}, {}, {}, false,
-                      std::move(*origin)};
-    playback.accounts.push_back(line_table(*log));
-    for (AccountTable& table : playback.pipeline.account_tables())
-        playback.accounts.push_back(std::move(table));
-    if (const DepthStage* stage = playback.pipeline.depth_stage())
-        playback.accounts.push_back(pixel_table(*stage));
-    playback.nodes = summarise(playback.pipeline.intake());
-    playback.notes = take_notes(playback.pipeline);
-    if (auto warning = survey->warning()) playback.warnings.push_back(std::move(*warning));
+    const auto play = is_played_in_order(request) ? play_order : play_log;
+    auto playback = play(request, *setup, depth, std::move(*origin), report);
+    if (!playback) return playback;
+    if (depth.error) playback->outcome.depth_error = depth.error;
+    if (const DepthStage* stage = playback->pipeline.depth_stage())
+        playback->accounts.push_back(pixel_table(*stage));
     if (depth.reader) {
-        if (auto loss = depth.reader->loss()) playback.warnings.push_back(std::move(*loss));
+        if (auto loss = depth.reader->loss()) playback->warnings.push_back(std::move(*loss));
     }
-    find_warnings(*meta, rig, depth, playback);
+    find_warnings(*meta, rig, depth, *playback);
     return playback;
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/result.hpp"
 #include "host/apps/playback/map_origin.hpp"
+#include "host/apps/playback/pace.hpp"
 #include "host/apps/recording/app_error.hpp"
 #include "host/apps/recording/recording.hpp"
 #include "host/core/account/account.hpp"
@@ -25,6 +26,11 @@ struct PlaybackRequest {
     MapChoice maps;
     std::filesystem::path rig;    ///< in place of the recording's; empty: the recording's
     std::filesystem::path robot;  ///< in place of the recording's; empty: the recording's
+    /// In the order of capture times, even if the recording has a daemon's own order.
+    bool is_by_capture_time = false;
+    Pace pace = {};
+    /// Is told of what goes into the maps; null: nobody is.
+    CommitListener* listener = nullptr;
 };
 
 struct Playback {
@@ -48,9 +54,9 @@ struct Playback {
 /// before they play it.
 [[nodiscard]] Status<AppError> check_playable(const PlaybackRequest& request);
 
-/// Opens a recording and plays it to its end. A source that fails on the way (a truncated .oni) is told in
-/// `outcome`, and what came before it is on the maps. Several threads may play at once; while
-/// one does, no octoskin replaces the recording.
+/// Opens a recording and plays it to its end: in a daemon's own order, if it has one. A source that fails on
+/// the way (a truncated .oni) is told in `outcome`, and what came before it is on the maps. Several threads
+/// may play at once; while one does, no octoskin replaces the recording.
 [[nodiscard]] Result<Playback, AppError> play_recording(const PlaybackRequest& request,
                                                         const ReplayReport& report = {});
 

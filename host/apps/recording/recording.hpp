@@ -23,6 +23,12 @@ struct RecordingPaths {
     [[nodiscard]] std::filesystem::path depth_epoch() const { return directory / "depth.epoch.yaml"; }
     [[nodiscard]] std::filesystem::path rig() const { return directory / "rig.yaml"; }
     [[nodiscard]] std::filesystem::path robot() const { return directory / "robot.urdf"; }
+    /// Of a recording that the daemon made: the order in which its map was made, how measurements became
+    /// voxels, and its map before and after.
+    [[nodiscard]] std::filesystem::path order() const { return directory / "order.log"; }
+    [[nodiscard]] std::filesystem::path mapping() const { return directory / "mapping.yaml"; }
+    [[nodiscard]] std::filesystem::path first_map() const { return directory / "first.ot"; }
+    [[nodiscard]] std::filesystem::path last_map() const { return directory / "last.ot"; }
     [[nodiscard]] std::filesystem::path meta() const { return directory / "meta.yaml"; }
 
     std::filesystem::path directory;

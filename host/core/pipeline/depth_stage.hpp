@@ -24,6 +24,8 @@ class DepthStage {
     /// `robot`: at the frame's capture time; may be null unless `needs_robot()`.
     [[nodiscard]] Result<DepthUpdates, DepthReason> updates(const DepthFrame& frame, const RobotPose* robot);
 
+    [[nodiscard]] const HostCamera& camera() const noexcept { return camera_; }
+
     /// Pixels set to nothing because they show the robot, over all frames that came into the map.
     [[nodiscard]] std::uint64_t robot_pixels() const noexcept { return robot_pixels_; }
     /// What became of the others, over all frames used.

@@ -100,6 +100,8 @@ class Pipeline {
     [[nodiscard]] const DepthStage* depth_stage() const noexcept { return builder_.depth_stage(); }
     /// What turns measurements into maps: whoever starts to record needs its joint samples.
     [[nodiscard]] const MapBuilder& builder() const noexcept { return builder_; }
+    /// For a replay in a daemon's own order, which gives the pipeline itself nothing.
+    [[nodiscard]] MapBuilder& builder() noexcept { return builder_; }
 
   private:
     Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& mapping,

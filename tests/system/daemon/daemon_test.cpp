@@ -1,5 +1,7 @@
 // The daemon as it is started beside a robot, on a bus that is alive: the sensor boards of the experiment,
 // played in real time, which answer the daemon's own SYNC.
+#include "tests/system/daemon/daemon_fixture.hpp"
+
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -10,96 +12,12 @@
 #include <thread>
 
 #include "host/io/mapfile/map_file.hpp"
-#include "host/io/openni2/oni_writer.hpp"
-#include "hw/rigfile/rig.hpp"
-#include "hw/sim/experiment/experiment.hpp"
-#include "tests/support/live/live_bus.hpp"
-#include "tests/system/daemon/running_daemon.hpp"
 
 namespace octoskin::test {
 namespace {
 
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
-
-/// The frames of the experiment's rig: 2 s at rest, then the arm moves.
-std::vector<StampedFrame> make_log() {
-    rig::Rig rig = rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml").value();
-    sim::Scenario scenario =
-        sim::read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value();
-    const auto world = sim::World::read(scenario.world).value();
-    const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints).value();
-    const auto capsules = rig::read_capsules(rig.urdf, {}).value();
-    rig.camera.reset();
-    scenario.rest_s = 2.0;
-    std::vector<StampedFrame> log;
-    const sim::ExperimentInput input{.rig = rig,
-                                     .capsules = capsules,
-                                     .world = world,
-                                     .arm = arm,
-                                     .scenario = scenario,
-                                     .seed = 3,
-                                     .is_depth_noise_free = true};
-    const sim::ExperimentOutput output{.on_frame =
-                                           [&](const wire::CanFrame& frame, WallTime stamp) {
-                                               log.push_back({stamp, frame});
-                                           },
-                                       .on_depth = {},
-                                       .on_progress = {}};
-    EXPECT_TRUE(sim::run_experiment(input, output));
-    return log;
-}
-
-const std::vector<StampedFrame>& log_of_experiment() {
-    static const std::vector<StampedFrame> log = make_log();
-    return log;
-}
-
-/// Twenty frames of a wall 3 m away, at 10 Hz, through OpenNI2's own recorder.
-std::filesystem::path record_wall(const testing_support::ScratchFolder& folder) {
-    constexpr openni2::FrameSize kSize{512, 424};
-    const auto file = folder / "being-made.oni";
-    auto writer = openni2::OniWriter::create(file, folder / "wall.epoch.yaml", kSize);
-    EXPECT_TRUE(writer) << writer.error().what;
-    const std::vector<std::uint16_t> depth_mm(kSize.pixels(), 3'000);
-    for (int i = 0; i < 20; ++i)
-        EXPECT_TRUE(writer->write(HostTime{1'000'000'000LL + 100'000'000LL * i}, depth_mm));
-    EXPECT_TRUE(writer->close());
-    std::filesystem::rename(file, folder / "wall.oni");  // whole, for whoever looks for it
-    return folder / "wall.oni";
-}
-
-class DaemonTest : public testing::Test {
-  protected:
-    DaemonTest() {
-        std::array<int, 2> ends{};
-        EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
-        const int room = 1 << 20;
-        for (const int end : ends) ::setsockopt(end, SOL_SOCKET, SO_SNDBUF, &room, sizeof(room));
-        its_end_ = ends[0];
-        our_end_ = ends[1];
-    }
-    void start(const std::vector<std::string>& more_arguments = {"--no-camera"},
-               const std::filesystem::path& rig = kExperiment) {
-        (void)log_of_experiment();  // made before anything runs in real time
-        daemon_.emplace(folder_, its_end_, more_arguments, rig);
-        bus_.emplace(our_end_, log_of_experiment());
-    }
-    static bool is_ranging(const Json& status) {
-        return status["account"]["readings"]["used"].get<int>() > 100;
-    }
-    static bool has_problem(const Json& status, const std::string& text) {
-        for (const auto& problem : status["problems"])
-            if (problem.get<std::string>().find(text) != std::string::npos) return true;
-        return false;
-    }
-
-    testing_support::ScratchFolder folder_;
-    int its_end_ = -1;
-    int our_end_ = -1;
-    std::optional<RunningDaemon> daemon_;
-    std::optional<LiveBus> bus_;
-};
 
 TEST_F(DaemonTest, maps_a_live_bus_says_how_quick_it_is_and_saves_at_the_end) {
     start();

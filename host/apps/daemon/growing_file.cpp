@@ -1,0 +1,48 @@
+#include "host/apps/daemon/growing_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string_view>
+#include <system_error>
+
+namespace octoskin {
+
+GrowingFile::~GrowingFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Unexpected<std::string> GrowingFile::failure() const {
+    return unexpected(file_.string() + ": " + std::generic_category().message(errno));
+}
+
+Status<std::string> GrowingFile::create(const std::filesystem::path& file) {
+    constexpr int kMode = 0644;
+    file_ = file;
+    descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, kMode);
+    if (descriptor_ < 0) return failure();
+    return Done{};
+}
+
+Status<std::string> GrowingFile::append(const std::string& text) {
+    std::string_view rest = text;
+    while (!rest.empty()) {  // each round writes some of it
+        const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return failure();
+        rest.remove_prefix(static_cast<std::size_t>(count));
+    }
+    return Done{};
+}
+
+Status<std::string> GrowingFile::finish() {
+    const bool is_synced = ::fsync(descriptor_) == 0;
+    if (!is_synced) return failure();
+    const bool is_closed = ::close(descriptor_) == 0;
+    descriptor_ = -1;
+    if (!is_closed) return failure();
+    return Done{};
+}
+
+}  // namespace octoskin

@@ -1,0 +1,156 @@
+#include "host/apps/daemon/recorder.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "common/wire/crc.hpp"
+#include "host/apps/version/version.hpp"
+#include "host/io/openni2/oni_writer.hpp"
+
+namespace octoskin {
+namespace {
+
+std::uint32_t crc32_of_text(const std::string& text) {
+    return crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSettings& settings,
+                        const Pipeline& pipeline) {
+    return {.paths = RecordingPaths(folder),
+            .rig = settings.rig,
+            .robot = settings.robot,
+            .mapping = settings.mapping,
+            .order = {.rig_hash = settings.rig_hash,
+                      .mapping_crc32 = crc32_of_text(settings.mapping),
+                      .joints = settings.joints,
+                      .first_map = std::nullopt},
+            .first_map = pipeline.maps().fused()->copy()};
+}
+
+double seconds(Nanoseconds duration) {
+    return std::chrono::duration<double>(duration).count();
+}
+
+/// OpenNI2's recorder keeps depth up to 32.767 m. A larger one is no value to most rigs anyhow.
+bool is_storable(const DepthFrame& frame, double depth_max_m) {
+    constexpr double kMmPerM = 1000.0;
+    return depth_max_m * kMmPerM <= openni2::kDepthMaxMm ||
+           std::ranges::all_of(frame.depth_mm,
+                               [](std::uint16_t depth) { return depth <= openni2::kDepthMaxMm; });
+}
+
+}  // namespace
+
+Recorder::Recorder(const std::filesystem::path& folder, std::optional<Nanoseconds> limit,
+                   const RecordedSettings& settings, Pipeline& pipeline, HostTime now)
+    : folder_(folder),
+      limit_(limit),
+      joints_(settings.joints),
+      depth_max_m_(pipeline.depth_stage() != nullptr ? pipeline.depth_stage()->camera().depth_max_m : 0.0),
+      begun_(now),
+      pipeline_(&pipeline),
+      accounts_at_begin_(pipeline.account_tables()),
+      writer_(begin_of(folder, settings, pipeline)) {
+    entry_.interface = settings.interface;
+    // Poses go on being interpolated from samples that came before.
+    pipeline.builder().for_each_joint_sample([this](const JointMeasurement& joints) { put(joints); });
+    pipeline.tell(this);
+    spdlog::info("recording to {}", folder.string());
+}
+
+Recorder::~Recorder() {
+    if (pipeline_ != nullptr) pipeline_->tell(nullptr);
+}
+
+void Recorder::on_can(const wire::CanFrame& frame, WallTime stamp) {
+    if (stopped_) return;
+    entry_.stamp = stamp;
+    entry_.frame = frame;
+    ++(writer_.add_can(candump::format_line(entry_)) ? can_frames_ : counts_.lost_can);
+}
+
+void Recorder::put(const Commit& commit) {
+    ++counts_.commits;
+    counts_.lost_commits += writer_.add_order(orderlog::format_commit(commit, joints_)) ? 0U : 1U;
+}
+
+void Recorder::on_reading(const RangeMeasurement& measurement, const Beam&, std::span<const VoxelUpdate>) {
+    put(measurement);
+}
+
+void Recorder::on_depth(const DepthFrame& frame, std::span<const VoxelUpdate>) {
+    DepthCommit commit{std::nullopt, frame.captured};
+    if (is_storable(frame, depth_max_m_) && writer_.add_depth(frame)) {
+        commit.index = depth_frames_++;
+    } else {
+        ++counts_.lost_depth;
+    }
+    put(commit);
+}
+
+void Recorder::attend(HostTime now) {
+    if (stopped_) return;
+    const bool is_long_enough = limit_ && now - begun_ >= *limit_;
+    if (is_long_enough || !writer_.error().empty()) stop(now);
+}
+
+void Recorder::stop(HostTime now) {
+    if (stopped_) return;
+    stopped_ = now;
+    RecordingEnd end{.order = counts_,
+                     .remarks = remarks(),
+                     .meta = {.made_by = program_version(),
+                              .source = "robot",
+                              .world = {},
+                              .scenario = {},
+                              .rig = {},
+                              .seed = std::nullopt,
+                              .is_depth_noise_free = false,
+                              .can_frames = can_frames_,
+                              .depth_frames = depth_frames_,
+                              .duration_s = seconds(now - begun_)},
+                     .last_map = pipeline_->maps().fused()->copy()};
+    pipeline_->tell(nullptr);
+    pipeline_ = nullptr;
+    writer_.finish(std::move(end));
+    if (const std::string why = error(); !why.empty()) {
+        spdlog::error("the recording has failed: {}", why);
+    } else {
+        spdlog::info("recorded {:.1f} s to {}", seconds(now - begun_), folder_.string());
+    }
+}
+
+std::string Recorder::remarks() const {
+    std::string text = "# rejected while this was recorded:\n";
+    const auto now = pipeline_->account_tables();
+    for (std::size_t unit = 0; unit < now.size(); ++unit) {
+        for (std::size_t row = 0; row < now[unit].rejected.size(); ++row) {
+            const auto& rejected = now[unit].rejected[row];
+            const std::uint64_t count = rejected.count - accounts_at_begin_[unit].rejected[row].count;
+            if (count > 0) text += fmt::format("# {} {} {}\n", now[unit].unit, rejected.name, count);
+        }
+    }
+    return text;
+}
+
+nlohmann::ordered_json Recorder::to_json(HostTime now) const {
+    const char* state = has_ended() ? "ended" : (stopped_ ? "finishing" : "recording");
+    const std::string why = error();
+    return {{"state", why.empty() ? state : "failed"},
+            {"folder", folder_.string()},
+            {"error", why},
+            {"seconds", seconds(stopped_.value_or(now) - begun_)},
+            {"can_frames", can_frames_},
+            {"depth_frames", depth_frames_},
+            {"commits", counts_.commits},
+            {"lost_can", counts_.lost_can},
+            {"lost_commits", counts_.lost_commits},
+            {"lost_depth", counts_.lost_depth},
+            {"is_complete", is_complete()}};
+}
+
+}  // namespace octoskin

@@ -1,0 +1,81 @@
+// `octoskin record`: what the daemon takes in and what it puts into its map, kept from one moment to another.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "common/time.hpp"
+#include "host/apps/daemon/recording_writer.hpp"
+#include "host/core/pipeline/pipeline.hpp"
+#include "host/io/candump/log_line.hpp"
+
+namespace octoskin {
+
+/// What the daemon runs with, as text: so that a recording holds what was in force, not what the files say by
+/// then.
+struct RecordedSettings {
+    std::string rig;
+    std::string robot;
+    std::string mapping;
+    std::uint32_t rig_hash = 0;
+    std::size_t joints = 0;
+    std::string interface;
+};
+
+class Recorder final : public CommitListener {
+  public:
+    /// Begins with the pipeline as it stands, at any time. `pipeline` must outlive the recording: until
+    /// `stop`. Waits for nothing: what is wrong with the folder shows in `error`.
+    Recorder(const std::filesystem::path& folder, std::optional<Nanoseconds> limit,
+             const RecordedSettings& settings, Pipeline& pipeline, HostTime now);
+    ~Recorder() override;
+    Recorder(const Recorder&) = delete;
+    Recorder& operator=(const Recorder&) = delete;
+
+    /// A frame that goes to the pipeline next.
+    void on_can(const wire::CanFrame& frame, WallTime stamp);
+    /// Ends it if it is long enough, or has failed. To be called every now and then.
+    void attend(HostTime now);
+    /// What is recorded is complete now; the files become so soon after, see `wait`.
+    void stop(HostTime now);
+    /// Until the files are whole, after `stop`; false if `patience` was too short.
+    [[nodiscard]] bool wait(Nanoseconds patience) { return writer_.wait(patience); }
+
+    [[nodiscard]] bool has_ended() const { return writer_.has_ended(); }
+    /// For a person; empty: all is well so far.
+    [[nodiscard]] std::string error() const { return writer_.error(); }
+    /// Something that the map was made of could not be recorded.
+    [[nodiscard]] bool is_complete() const noexcept { return counts_.is_complete(); }
+    [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
+    [[nodiscard]] nlohmann::ordered_json to_json(HostTime now) const;
+
+    void on_joints(const JointMeasurement& joints) override { put(joints); }
+    void on_reading(const RangeMeasurement& measurement, const Beam& beam,
+                    std::span<const VoxelUpdate> updates) override;
+    void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) override;
+
+  private:
+    void put(const Commit& commit);
+    /// What was rejected since the begin, by name.
+    [[nodiscard]] std::string remarks() const;
+
+    std::filesystem::path folder_;
+    std::optional<Nanoseconds> limit_;
+    std::size_t joints_;
+    double depth_max_m_;
+    HostTime begun_;
+    std::optional<HostTime> stopped_;
+    Pipeline* pipeline_;
+    std::vector<AccountTable> accounts_at_begin_;
+    candump::LogEntry entry_;
+    orderlog::Trailer counts_;
+    std::uint64_t can_frames_ = 0;
+    std::uint64_t depth_frames_ = 0;
+    RecordingWriter writer_;
+};
+
+}  // namespace octoskin

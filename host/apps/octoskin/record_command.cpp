@@ -1,0 +1,117 @@
+// octoskin record: the daemon keeps what it takes in and what it puts into its map.
+#include <fmt/format.h>
+#include <signal.h>
+#include <spdlog/spdlog.h>
+#include <time.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/places.hpp"
+#include "host/apps/octoskin/commands.hpp"
+
+namespace octoskin::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct RecordOptions {
+    std::filesystem::path out;
+    std::filesystem::path socket = default_control_socket();
+    double seconds = 0.0;
+    bool stops = false;
+};
+
+/// "recording" of the daemon's answer; what the daemon refuses is a CommandFailure.
+Json ask(const RecordOptions& options, const std::string& line) {
+    const auto answer = ask_daemon(options.socket, line);
+    if (!answer) throw CommandFailure(answer.error());
+    const Json json = Json::parse(*answer, nullptr, false);
+    if (!json.is_object() || !json.contains("ok"))
+        throw CommandFailure({ExitCode::bad_data, options.socket.string() + ": not the answer of a daemon"});
+    if (!json["ok"].get<bool>())
+        throw CommandFailure({ExitCode::unavailable, json["error"].get<std::string>()});
+    return json["recording"];
+}
+
+/// SIGINT and SIGTERM, taken in order to end the recording rather than this program.
+class EndSignals {
+  public:
+    EndSignals() {
+        sigemptyset(&signals_);
+        sigaddset(&signals_, SIGINT);
+        sigaddset(&signals_, SIGTERM);
+        sigprocmask(SIG_BLOCK, &signals_, nullptr);
+    }
+    /// Waits 0.2 s at most; true if one came.
+    [[nodiscard]] bool came() const {
+        constexpr timespec kPatience{0, 200'000'000};
+        return sigtimedwait(&signals_, nullptr, &kPatience) > 0;
+    }
+
+  private:
+    sigset_t signals_{};
+};
+
+/// Until the files are whole.
+Json follow(const RecordOptions& options) {
+    const EndSignals signals;
+    Json recording = ask(options, "record status");
+    while (recording["state"] == "recording" || recording["state"] == "finishing") {
+        const bool is_to_end = signals.came();
+        recording = ask(options, is_to_end ? "record stop" : "record status");
+    }
+    return recording;
+}
+
+void tell(const Json& recording) {
+    const auto folder = recording["folder"].get<std::string>();
+    if (recording["state"] == "failed")
+        throw CommandFailure({ExitCode::cannot_create, recording["error"].get<std::string>()});
+    fmt::print("{}: {:.1f} s, {} CAN frames, {} depth frames, {} commits\n", folder,
+               recording["seconds"].get<double>(), recording["can_frames"].get<std::uint64_t>(),
+               recording["depth_frames"].get<std::uint64_t>(), recording["commits"].get<std::uint64_t>());
+    if (const auto lost = recording["lost_can"].get<std::uint64_t>(); lost > 0)
+        spdlog::warn("{} CAN frames are not in can.log: the disk was too slow", lost);
+    if (recording["is_complete"].get<bool>()) return;
+    throw CommandFailure({ExitCode::failed, folder + ": the disk was too slow for " +
+                                                recording["lost_depth"].dump() + " depth frames and " +
+                                                recording["lost_commits"].dump() +
+                                                " commits: a replay does not give the daemon's map"});
+}
+
+void record(const RecordOptions& options) {
+    if (options.stops) {
+        (void)ask(options, "record stop");
+    } else {
+        const auto folder = std::filesystem::absolute(options.out).lexically_normal();
+        (void)ask(options, fmt::format("record start {} {}", options.seconds, folder.string()));
+    }
+    tell(follow(options));
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& app) {
+    auto options = std::make_shared<RecordOptions>();
+    CLI::App* command =
+        app.add_subcommand("record", "The running daemon records, until --seconds are over or Ctrl-C");
+    auto* const out = command->add_option("out", options->out,
+                                          "Directory to make; it must be empty, and one that the daemon's "
+                                          "user may write");
+    command->add_option("--seconds", options->seconds, "For so long; 0: until Ctrl-C or --stop")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    auto* const stop = command->add_flag("--stop", options->stops, "End the recording that is going on");
+    stop->excludes(out);
+    command->add_option("--socket", options->socket, "Where the daemon listens")->capture_default_str();
+    command->callback([options] {
+        if (options->out.empty() && !options->stops)
+            throw CommandFailure({ExitCode::usage, "record: give a directory, or --stop"});
+        record(*options);
+    });
+}
+
+}  // namespace octoskin::app

@@ -1,0 +1,100 @@
+#include "host/apps/playback/ordered_playback.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+#include "common/wire/crc.hpp"
+#include "host/apps/playback/pace.hpp"
+#include "host/io/mapfile/map_file.hpp"
+#include "host/io/mapfile/octomap_writer.hpp"
+#include "host/io/mapping/mapping_file.hpp"
+#include "host/io/orderlog/order_reader.hpp"
+
+namespace octoskin {
+namespace {
+
+std::uint32_t crc32_of_text(std::string_view text) {
+    return crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+Result<FusedMap, AppError> read_first_map(const PlaybackRequest& request, std::uint32_t crc) {
+    const auto file = request.recording.first_map();
+    if (crc32_of(file) != crc)
+        return fail(ExitCode::bad_data, file.string() + ": is not the map that this recording began with");
+    auto map = load_map(file, {.map = request.mapping.map});
+    if (!map) return fail(ExitCode::bad_data, map.error().message);
+    if (map->resolution_m() != request.mapping.map.resolution_m) {
+        return fail(
+            ExitCode::bad_config,
+            fmt::format("{}: its voxels are {} m, the mapping's are {} m; replay with the recording's own "
+                        "mapping, or with --by-capture-time",
+                        file.string(), map->resolution_m(), request.mapping.map.resolution_m));
+    }
+    return std::move(map).value();
+}
+
+/// Why the map need not be the daemon's; empty if it must be.
+std::string why_another(const PlaybackRequest& request, const rig::Rig& rig,
+                        const orderlog::OrderReader& order, const OrderedOutcome& outcome) {
+    if (outcome.order_error || outcome.depth_error) return "the replay did not come to its end";
+    if (!order.trailer()) return "order.log was cut off: the daemon was killed; this is its last whole line";
+    if (!order.trailer()->is_complete())
+        return fmt::format("{} commits and {} depth frames could not be recorded",
+                           order.trailer()->lost_commits, order.trailer()->lost_depth);
+    if (order.header().rig_hash != rig::rig_hash(rig)) return "another rig was given";
+    if (order.header().mapping_crc32 != crc32_of_text(mapping_text(request.mapping)))
+        return "another configuration was given";
+    return outcome.took_all() ? "" : "not everything could be taken: see the account";
+}
+
+void judge(const PlaybackRequest& request, const rig::Rig& rig, const orderlog::OrderReader& order,
+           const FusedMap& map, OrderedPlayback& played) {
+    if (const std::string why = why_another(request, rig, order, played.outcome); !why.empty()) {
+        played.warnings.push_back("the map is not the daemon's own: " + why);
+        return;
+    }
+    const auto& last = order.trailer()->last_map;
+    const bool is_equal = last ? crc32_of_text(encode_ot(map)) == *last : map.known_voxels() == 0;
+    if (is_equal) {
+        played.notes.emplace_back("the fused map is the daemon's own, byte for byte");
+    } else {
+        played.warnings.emplace_back(
+            "the fused map is not the daemon's own, though all is as it was: another robot.urdf, another "
+            "kind of processor, or a defect of octoskin");
+    }
+}
+
+}  // namespace
+
+bool is_played_in_order(const PlaybackRequest& request) {
+    std::error_code error;
+    return !request.is_by_capture_time && std::filesystem::exists(request.recording.order(), error);
+}
+
+Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, const rig::Rig& rig,
+                                                Pipeline& pipeline, DepthSource* depth,
+                                                const ReplayReport& report) {
+    auto order = orderlog::OrderReader::open(request.recording.order());
+    if (!order) return fail(ExitCode::bad_data, order.error().what);
+    if (order->header().joints != rig.joints.joints.size()) {
+        return fail(ExitCode::bad_config,
+                    fmt::format("{}: has {} joints, the rig {}", request.recording.order().string(),
+                                order->header().joints, rig.joints.joints.size()));
+    }
+    if (order->header().first_map) {
+        auto first = read_first_map(request, *order->header().first_map);
+        if (!first) return unexpected(first.error());
+        pipeline.begin_with(std::move(first).value());
+    }
+    PacedCommits paced(*order, request.pace);
+    OrderedPlayback played{replay_in_order(pipeline.builder(), paced, depth, report), {}, {}, {}};
+    played.accounts = {tabulate("readings", played.outcome.readings),
+                       tabulate("joint samples", played.outcome.joint_samples),
+                       tabulate("depth frames", played.outcome.depth_frames)};
+    judge(request, rig, *order, *pipeline.maps().fused(), played);
+    return played;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,96 @@
+#include "host/apps/playback/pace.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "host/io/candump/log_line.hpp"
+
+namespace octoskin {
+namespace {
+
+/// No gap of a recording is worth waiting for so long.
+constexpr std::int64_t kLeapMax_ns = 60'000'000'000;
+
+std::int64_t steady_now_ns() {
+    return std::chrono::steady_clock::now().time_since_epoch().count();
+}
+
+std::string text_of(const StampedFrame& entry) {
+    std::string line = candump::format_line({entry.stamp, "can", entry.frame});
+    line.pop_back();
+    return line;
+}
+
+struct Describe {
+    std::string operator()(const JointMeasurement&) const { return "joint sample"; }
+    std::string operator()(const RangeMeasurement& reading) const {
+        const auto& [node, sensor, zone] = reading.source;
+        const std::string range = reading.range_m ? fmt::format("{:.3f} m", *reading.range_m) : "no target";
+        return fmt::format("reading of node {} sensor {} zone {}: {}", node, sensor, zone, range);
+    }
+    std::string operator()(const DepthCommit& frame) const {
+        return frame.index ? fmt::format("depth frame {}", *frame.index) : "depth frame that is not recorded";
+    }
+};
+
+struct TimeOf {
+    HostTime operator()(const JointMeasurement& joints) const { return joints.sampled; }
+    HostTime operator()(const RangeMeasurement& reading) const { return reading.captured; }
+    HostTime operator()(const DepthCommit& frame) const { return frame.captured; }
+};
+
+}  // namespace
+
+Pace Pace::times(double speed) {
+    assert(std::isfinite(speed) && speed > 0.0);
+    Pace pace;
+    pace.speed_ = speed;
+    return pace;
+}
+
+Pace Pace::by_step(Step step) {
+    Pace pace;
+    pace.step_ = std::move(step);
+    return pace;
+}
+
+void Pace::wait(std::int64_t time_ns, const std::string& what) {
+    if (step_) return step_(what);
+    if (!speed_) return;
+    // Measurements of several sources are a little out of order: only a real step back begins anew.
+    constexpr std::int64_t kBackMax_ns = 1'000'000'000;
+    const bool leaps = time_ns - newest_ns_ > kLeapMax_ns || newest_ns_ - time_ns > kBackMax_ns;
+    if (!has_begun_ || leaps) {
+        has_begun_ = true;
+        first_ns_ = time_ns;
+        began_steady_ns_ = steady_now_ns();
+    }
+    newest_ns_ = time_ns;
+    const auto after_ns = std::llround(static_cast<double>(time_ns - first_ns_) / *speed_);
+    const std::int64_t left_ns = began_steady_ns_ + after_ns - steady_now_ns();
+    if (left_ns > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(left_ns));
+}
+
+Result<std::optional<StampedFrame>, CanSourceError> PacedCan::next() {
+    auto entry = source_.next();
+    if (pace_.waits() && entry && entry->has_value())
+        pace_.wait((*entry)->stamp.ns, pace_.steps() ? text_of(**entry) : std::string());
+    return entry;
+}
+
+Result<std::optional<Commit>, CommitSourceError> PacedCommits::next() {
+    auto commit = source_.next();
+    if (!pace_.waits() || !commit || !commit->has_value()) return commit;
+    // A step is a reading or a frame: joint samples only say where the robot was.
+    const bool is_step = !std::holds_alternative<JointMeasurement>(**commit);
+    if (is_step || !pace_.steps())
+        pace_.wait(std::visit(TimeOf{}, **commit).ns, std::visit(Describe{}, **commit));
+    return commit;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,63 @@
+// How fast a recording is played: as fast as it goes, at so many times its own speed, or one thing at a time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "host/core/pipeline/can_source.hpp"
+#include "host/core/pipeline/ordered_replay.hpp"
+
+namespace octoskin {
+
+class Pace {
+  public:
+    /// Called before each thing with what it is; returns when it may happen.
+    using Step = std::function<void(const std::string& what)>;
+
+    /// As fast as it goes.
+    Pace() = default;
+    /// 1: real time; 10: ten times as fast. Positive and finite (asserted).
+    [[nodiscard]] static Pace times(double speed);
+    [[nodiscard]] static Pace by_step(Step step);
+
+    /// Whether `wait` ever waits: what it is need not be told else.
+    [[nodiscard]] bool waits() const noexcept { return speed_.has_value() || step_; }
+    [[nodiscard]] bool steps() const noexcept { return static_cast<bool>(step_); }
+    /// Until something of this time may happen: as long after the first one as it was then, divided by the
+    /// speed. A time that goes back, or leaps by more than a minute, begins anew.
+    void wait(std::int64_t time_ns, const std::string& what = {});
+
+  private:
+    std::optional<double> speed_;
+    Step step_;
+    std::int64_t first_ns_ = 0;         ///< of the recording
+    std::int64_t newest_ns_ = 0;        ///< of the recording
+    std::int64_t began_steady_ns_ = 0;  ///< when the first one happened
+    bool has_begun_ = false;
+};
+
+/// Frames of a log, each at its time.
+class PacedCan final : public CanSource {
+  public:
+    PacedCan(CanSource& source, Pace pace) : source_(source), pace_(std::move(pace)) {}
+    [[nodiscard]] Result<std::optional<StampedFrame>, CanSourceError> next() override;
+
+  private:
+    CanSource& source_;
+    Pace pace_;
+};
+
+/// Commits of a daemon, each at its time.
+class PacedCommits final : public CommitSource {
+  public:
+    PacedCommits(CommitSource& source, Pace pace) : source_(source), pace_(std::move(pace)) {}
+    [[nodiscard]] Result<std::optional<Commit>, CommitSourceError> next() override;
+
+  private:
+    CommitSource& source_;
+    Pace pace_;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,83 @@
+#include "tests/system/daemon/daemon_fixture.hpp"
+
+#include <sys/socket.h>
+
+#include <array>
+
+#include "host/io/openni2/oni_writer.hpp"
+#include "hw/rigfile/rig.hpp"
+#include "hw/sim/experiment/experiment.hpp"
+
+namespace octoskin::test {
+namespace {
+
+/// The frames of the experiment's rig: 2 s at rest, then the arm moves.
+std::vector<StampedFrame> make_log() {
+    rig::Rig rig = rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml").value();
+    sim::Scenario scenario =
+        sim::read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value();
+    const auto world = sim::World::read(scenario.world).value();
+    const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints).value();
+    const auto capsules = rig::read_capsules(rig.urdf, {}).value();
+    rig.camera.reset();
+    scenario.rest_s = 2.0;
+    std::vector<StampedFrame> log;
+    const sim::ExperimentInput input{.rig = rig,
+                                     .capsules = capsules,
+                                     .world = world,
+                                     .arm = arm,
+                                     .scenario = scenario,
+                                     .seed = 3,
+                                     .is_depth_noise_free = true};
+    const sim::ExperimentOutput output{.on_frame =
+                                           [&](const wire::CanFrame& frame, WallTime stamp) {
+                                               log.push_back({stamp, frame});
+                                           },
+                                       .on_depth = {},
+                                       .on_progress = {}};
+    EXPECT_TRUE(sim::run_experiment(input, output));
+    return log;
+}
+
+}  // namespace
+
+const std::vector<StampedFrame>& log_of_experiment() {
+    static const std::vector<StampedFrame> log = make_log();
+    return log;
+}
+
+std::filesystem::path record_wall(const testing_support::ScratchFolder& folder) {
+    constexpr openni2::FrameSize kSize{512, 424};
+    const auto file = folder / "being-made.oni";
+    auto writer = openni2::OniWriter::create(file, folder / "wall.epoch.yaml", kSize);
+    EXPECT_TRUE(writer) << writer.error().what;
+    const std::vector<std::uint16_t> depth_mm(kSize.pixels(), 3'000);
+    for (int i = 0; i < 20; ++i)
+        EXPECT_TRUE(writer->write(HostTime{1'000'000'000LL + 100'000'000LL * i}, depth_mm));
+    EXPECT_TRUE(writer->close());
+    std::filesystem::rename(file, folder / "wall.oni");  // whole, for whoever looks for it
+    return folder / "wall.oni";
+}
+
+DaemonTest::DaemonTest() {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+    const int room = 1 << 20;
+    for (const int end : ends) ::setsockopt(end, SOL_SOCKET, SO_SNDBUF, &room, sizeof(room));
+    its_end_ = ends[0];
+    our_end_ = ends[1];
+}
+
+void DaemonTest::start(const std::vector<std::string>& more_arguments, const std::filesystem::path& rig) {
+    (void)log_of_experiment();  // made before anything runs in real time
+    daemon_.emplace(folder_, its_end_, more_arguments, rig);
+    bus_.emplace(our_end_, log_of_experiment());
+}
+
+bool DaemonTest::has_problem(const nlohmann::json& status, const std::string& text) {
+    for (const auto& problem : status["problems"])
+        if (problem.get<std::string>().find(text) != std::string::npos) return true;
+    return false;
+}
+
+}  // namespace octoskin::test

@@ -1,0 +1,43 @@
+// A daemon on a bus that is alive: the sensor boards of the experiment, played in real time, which answer its
+// SYNC.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/core/pipeline/can_source.hpp"
+#include "tests/support/live/live_bus.hpp"
+#include "tests/support/scratch_folder.hpp"
+#include "tests/system/daemon/running_daemon.hpp"
+
+namespace octoskin::test {
+
+/// The frames of the experiment's rig: 2 s at rest, then the arm moves.
+[[nodiscard]] const std::vector<StampedFrame>& log_of_experiment();
+
+/// Twenty frames of a wall 3 m away, at 10 Hz, through OpenNI2's own recorder.
+[[nodiscard]] std::filesystem::path record_wall(const testing_support::ScratchFolder& folder);
+
+class DaemonTest : public testing::Test {
+  protected:
+    DaemonTest();
+    void start(const std::vector<std::string>& more_arguments = {"--no-camera"},
+               const std::filesystem::path& rig = kExperiment);
+    static bool is_ranging(const nlohmann::json& status) {
+        return status["account"]["readings"]["used"].get<int>() > 100;
+    }
+    static bool has_problem(const nlohmann::json& status, const std::string& text);
+
+    testing_support::ScratchFolder folder_;
+    int its_end_ = -1;
+    int our_end_ = -1;
+    std::optional<RunningDaemon> daemon_;
+    std::optional<LiveBus> bus_;
+};
+
+}  // namespace octoskin::test

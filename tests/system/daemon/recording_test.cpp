@@ -1,0 +1,150 @@
+// What the daemon records gives its own map again, byte for byte.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <thread>
+
+#include "host/apps/daemon/control_socket.hpp"
+#include "tests/system/daemon/daemon_fixture.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+using testing_support::ScratchFolder;
+
+struct Ran {
+    int exit_code = -1;
+    std::string output;  ///< both streams
+};
+
+Ran run(const std::string& arguments) {
+    Ran ran;
+    const std::string command = OCTOSKIN_PROGRAM " " + arguments + " 2>&1";
+    FILE* const pipe = ::popen(command.c_str(), "r");
+    std::array<char, 4096> bytes{};
+    while (const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), pipe))
+        ran.output.append(bytes.data(), count);
+    ran.exit_code = WEXITSTATUS(::pclose(pipe));
+    return ran;
+}
+
+class DaemonRecording : public DaemonTest {
+  protected:
+    std::string out() const { return (folder_ / "recording").string(); }
+    Ran record(const std::string& arguments) const {
+        return run("record " + arguments + " --socket " + (folder_ / "control").string());
+    }
+    Json ask(const std::string& line) const {
+        return Json::parse(ask_daemon(folder_ / "control", line).value());
+    }
+    /// That a replay gives the map that the daemon had at the end of it.
+    void expect_own_map(const std::string& configuration = "") const {
+        const Ran replay = run("replay " + out() + " --fused-only " + configuration);
+        EXPECT_EQ(replay.exit_code, 0) << replay.output;
+        EXPECT_NE(replay.output.find("the daemon's own, byte for byte"), std::string::npos) << replay.output;
+        EXPECT_TRUE(ScratchFolder::read(out() + "/maps/fused.ot") == ScratchFolder::read(out() + "/last.ot"));
+    }
+};
+
+TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte) {
+    const auto wall = record_wall(folder_);
+    start({"--camera", wall.string()});
+    ASSERT_TRUE(daemon_->wait_until(
+        [](const Json& status) {
+            return is_ranging(status) && status["account"]["depth frames"]["used"].get<int>() >= 3;
+        },
+        20s))
+        << daemon_->log();
+    const Ran recorded = record(out() + " --seconds 3");
+    ASSERT_EQ(recorded.exit_code, 0) << recorded.output << daemon_->log();
+    const Json recording = daemon_->status()["recording"];
+    EXPECT_EQ(recording["state"], "ended");
+    EXPECT_TRUE(recording["is_complete"].get<bool>()) << recording.dump();
+    EXPECT_GT(recording["depth_frames"].get<int>(), 5) << recording.dump();
+    EXPECT_GT(recording["can_frames"].get<int>(), 1'000) << recording.dump();
+    EXPECT_FALSE(ScratchFolder::read(out() + "/first.ot") == ScratchFolder::read(out() + "/last.ot"));
+    std::printf("%s", recorded.output.c_str());
+    expect_own_map();
+
+    // The same again in the order of capture times: another map, and the same one every time.
+    const auto in_order = ScratchFolder::read(out() + "/maps/fused.ot");
+    const std::string plain = "replay " + out() + " --fused-only --by-capture-time";
+    EXPECT_EQ(run(plain).exit_code, 0) << run(plain).output;
+    const auto first = ScratchFolder::read(out() + "/maps/fused.ot");
+    EXPECT_EQ(run(plain).exit_code, 0);
+    EXPECT_TRUE(ScratchFolder::read(out() + "/maps/fused.ot") == first);
+    EXPECT_FALSE(first == in_order);
+}
+
+TEST_F(DaemonRecording, is_whole_when_the_daemon_is_told_to_end_in_the_middle_of_it) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    ASSERT_TRUE(ask("record start 0 " + out())["ok"].get<bool>());
+    std::this_thread::sleep_for(1s);
+    daemon_->signal(SIGTERM);
+    const auto ended = daemon_->wait(5s);
+    ASSERT_TRUE(ended) << "did not end within 5 s";
+    EXPECT_EQ(*ended, 0) << daemon_->log();
+    expect_own_map();
+    EXPECT_TRUE(ScratchFolder::read(out() + "/last.ot") == ScratchFolder::read(daemon_->maps() / "fused.ot"))
+        << "the map of the recording is not the one that was saved";
+}
+
+TEST_F(DaemonRecording, ends_whole_when_the_rig_is_read_again) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    ASSERT_TRUE(ask("record start 0 " + out())["ok"].get<bool>());
+    std::this_thread::sleep_for(1s);
+    daemon_->signal(SIGHUP);
+    ASSERT_TRUE(
+        daemon_->wait_until([](const Json& status) { return status["recording"]["state"] == "ended"; }, 5s))
+        << daemon_->status()["recording"].dump();
+    expect_own_map();
+}
+
+TEST_F(DaemonRecording, of_a_killed_daemon_can_be_replayed_to_its_last_line) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    ASSERT_TRUE(ask("record start 0 " + out())["ok"].get<bool>());
+    std::this_thread::sleep_for(1500ms);
+    daemon_->signal(SIGKILL);
+    EXPECT_EQ(daemon_->wait(5s), -SIGKILL);
+    const Ran without = run("replay " + out());
+    EXPECT_EQ(without.exit_code, 66) << without.output;
+    EXPECT_NE(without.output.find("meta.yaml"), std::string::npos) << without.output;
+    std::ofstream(out() + "/meta.yaml") << "schema: octoskin-recording/1\nsource: robot\n";
+    const Ran replay = run("replay " + out());
+    EXPECT_EQ(replay.exit_code, 0) << replay.output;
+    EXPECT_NE(replay.output.find("order.log was cut off"), std::string::npos) << replay.output;
+}
+
+TEST_F(DaemonRecording, names_a_folder_that_it_cannot_record_to_and_goes_on) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    (void)folder_.write("file", "");
+    const Ran no_folder = record((folder_ / "file").string() + " --seconds 1");
+    EXPECT_EQ(no_folder.exit_code, 73) << no_folder.output;
+    EXPECT_NE(no_folder.output.find((folder_ / "file").string()), std::string::npos) << no_folder.output;
+    const Ran not_empty = record(folder_.path().string() + " --seconds 1");
+    EXPECT_EQ(not_empty.exit_code, 73) << not_empty.output;
+    EXPECT_NE(not_empty.output.find("is not empty"), std::string::npos) << not_empty.output;
+    EXPECT_TRUE(has_problem(daemon_->status(), "the recording has failed"));
+
+    ASSERT_TRUE(ask("record start 0 " + out())["ok"].get<bool>());
+    EXPECT_FALSE(ask("record start 0 " + out())["ok"].get<bool>()) << "a second one at once";
+    EXPECT_FALSE(ask("record start -1 /x")["ok"].get<bool>());
+    EXPECT_FALSE(ask("record start 0 relative")["ok"].get<bool>());
+    EXPECT_FALSE(ask("record tape")["ok"].get<bool>());
+    const Ran stopped = record("--stop");
+    EXPECT_EQ(stopped.exit_code, 0) << stopped.output;
+    expect_own_map();
+}
+
+}  // namespace
+}  // namespace octoskin::test

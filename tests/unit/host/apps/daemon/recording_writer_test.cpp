@@ -1,0 +1,116 @@
+#include "host/apps/daemon/recording_writer.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "host/io/mapfile/map_file.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr Nanoseconds kPatience{10'000'000'000};
+
+/// Files may grow no further than this while it lives: a full disk for this process.
+class SmallDisk {
+  public:
+    explicit SmallDisk(rlim_t bytes) {
+        before_ = std::signal(SIGXFSZ, SIG_IGN);
+        ::getrlimit(RLIMIT_FSIZE, &limit_);
+        const rlimit small{bytes, limit_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &small);
+    }
+    ~SmallDisk() {
+        ::setrlimit(RLIMIT_FSIZE, &limit_);
+        std::signal(SIGXFSZ, before_);
+    }
+    SmallDisk(const SmallDisk&) = delete;
+    SmallDisk& operator=(const SmallDisk&) = delete;
+
+  private:
+    rlimit limit_{};
+    void (*before_)(int) = nullptr;
+};
+
+class RecordingWriterTest : public testing::Test {
+  protected:
+    RecordingBegin begin() const {
+        return {.paths = RecordingPaths(folder_ / "recording"),
+                .rig = "rig text\n",
+                .robot = "robot text\n",
+                .mapping = "mapping text\n",
+                .order = {.rig_hash = 1, .mapping_crc32 = 2, .joints = 1, .first_map = std::nullopt},
+                .first_map = FusedMap(MapConfig{})};
+    }
+    static RecordingEnd end(std::uint64_t commits) {
+        RecordingMeta meta;
+        meta.source = "robot";
+        FusedMap map{MapConfig{}};
+        const VoxelUpdate update{*map.key_of({0.1, 0.2, 0.3}), 1.0F};
+        map.apply({&update, 1});
+        orderlog::Trailer trailer;
+        trailer.commits = commits;
+        return {.order = trailer, .remarks = "# none\n", .meta = meta, .last_map = std::move(map)};
+    }
+    std::string read(const std::string& name) const {
+        return testing_support::ScratchFolder::read(folder_ / ("recording/" + name));
+    }
+    testing_support::ScratchFolder folder_;
+};
+
+TEST_F(RecordingWriterTest, writes_what_came_before_the_end_and_vouches_for_it_last) {
+    RecordingWriter writer(begin());
+    ASSERT_TRUE(writer.add_can("(1.000000) can0 001#\n"));
+    ASSERT_TRUE(writer.add_order("J 1 0\n"));
+    EXPECT_FALSE(writer.has_ended());
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "recording/meta.yaml"));
+    writer.finish(end(1));
+    ASSERT_TRUE(writer.wait(kPatience));
+    EXPECT_EQ(writer.error(), "");
+    EXPECT_EQ(read("rig.yaml"), "rig text\n");
+    EXPECT_EQ(read("robot.urdf"), "robot text\n");
+    EXPECT_EQ(read("mapping.yaml"), "mapping text\n");
+    EXPECT_EQ(read("can.log"), "(1.000000) can0 001#\n");
+    const auto crc = crc32_of(folder_ / "recording/last.ot");
+    ASSERT_TRUE(crc);
+    EXPECT_EQ(read("order.log"), orderlog::format_header(begin().order) + "J 1 0\n# none\n" +
+                                     orderlog::format_trailer({1, 0, 0, 0, crc}));
+    EXPECT_TRUE(read_meta(RecordingPaths(folder_ / "recording")));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "recording/first.ot")) << "of an empty map";
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "recording/depth.oni")) << "without a frame";
+}
+
+TEST_F(RecordingWriterTest, names_the_file_that_a_full_disk_stops_and_vouches_for_nothing) {
+    const SmallDisk disk(64 << 10U);
+    RecordingWriter writer(begin());
+    ASSERT_TRUE(writer.add_order(std::string(100'000, '#') + "\n"));
+    ASSERT_TRUE(writer.wait(kPatience)) << "goes on in spite of it";
+    EXPECT_NE(writer.error().find("order.log: File too large"), std::string::npos) << writer.error();
+    writer.finish(end(0));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "recording/meta.yaml"));
+}
+
+TEST_F(RecordingWriterTest, takes_nothing_that_has_no_room_and_never_waits) {
+    (void)folder_.write("recording", "in the way");  // so that nothing is ever written
+    RecordingWriter writer(begin());
+    const std::string line(1U << 20U, 'x');
+    int taken = 0;
+    for (int i = 0; i < 20; ++i) taken += writer.add_can(line) ? 1 : 0;
+    EXPECT_EQ(taken, 8);
+    ASSERT_TRUE(writer.wait(kPatience));
+    EXPECT_NE(writer.error().find("recording"), std::string::npos) << writer.error();
+}
+
+TEST_F(RecordingWriterTest, leaves_the_files_of_others_alone) {
+    std::filesystem::create_directory(folder_ / "recording");
+    (void)folder_.write("recording/can.log", "precious");
+    RecordingWriter writer(begin());
+    ASSERT_TRUE(writer.wait(kPatience));
+    EXPECT_NE(writer.error().find("is not empty"), std::string::npos) << writer.error();
+    EXPECT_EQ(read("can.log"), "precious");
+}
+
+}  // namespace
+}  // namespace octoskin
