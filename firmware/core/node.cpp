@@ -22,11 +22,12 @@ bool is_usable(const NodeConfig& config, std::size_t bus_count, std::uint8_t boa
                        [=](const SensorConfig& sensor) { return sensor.bus < bus_count; });
 }
 
-vl53l1x::Options device_options(const NodeConfig& config) noexcept {
+vl53l1x::Options device_options(const NodeConfig& config, const Policy& policy) noexcept {
     vl53l1x::Options options;
     options.is_io_2v8 = config.is_io_2v8;
     options.reads_twice = config.reads_twice;
     options.i2c_hz = config.i2c_hz;
+    options.i2c_lateness_us = static_cast<std::uint32_t>(policy.i2c_lateness.count());
     return options;
 }
 
@@ -63,7 +64,7 @@ void Node::create_sensors(NodeTime now) {
     sensor_count_ = config_.sensor_count;
     for (std::size_t i = 0; i < sensor_count_; ++i) {
         const SensorConfig& sensor = config_.sensors[i];
-        const vl53l1x::Options options = device_options(config_);
+        const vl53l1x::Options options = device_options(config_, policy_);
         auto& recorder = recorders_[sensor.bus];
         if (!recorder) recorder.emplace(*ports_.buses[sensor.bus]);
         BusRecorder& bus = *recorder;

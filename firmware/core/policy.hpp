@@ -11,6 +11,10 @@
 namespace octoskin::node {
 
 struct Policy {
+    /// How late the port may come to know of the end of an I2C transfer: an interrupt that is kept waiting,
+    /// or a thread of an operating system.
+    Microseconds i2c_lateness{1'000};
+
     // --- bring-up. Datasheet DS12385: boots within 1.2 ms of XSHUT high; it states no minimum low time.
     Microseconds xshut_low{1'000};
     Microseconds xshut_boot{2'000};

@@ -23,10 +23,11 @@ namespace octoskin::i2c {
 }
 
 /// The time a transfer may take before it is given up: three times its nominal time, for parts and ports that
-/// stretch the clock, plus 1 ms for a late interrupt. `bus_hz` > 0.
-[[nodiscard]] constexpr Microseconds time_limit(const Transfer& transfer, std::uint32_t bus_hz) noexcept {
+/// stretch the clock, plus `lateness` for an interrupt or a thread that comes late. `bus_hz` > 0.
+[[nodiscard]] constexpr Microseconds time_limit(const Transfer& transfer, std::uint32_t bus_hz,
+                                                Microseconds lateness = Microseconds{1'000}) noexcept {
     const std::uint64_t nominal_us = (std::uint64_t{bit_count(transfer)} * 1'000'000 + bus_hz - 1) / bus_hz;
-    return Microseconds{static_cast<std::int64_t>(3 * nominal_us + 1'000)};
+    return Microseconds{static_cast<std::int64_t>(3 * nominal_us)} + lateness;
 }
 
 }  // namespace octoskin::i2c

@@ -94,7 +94,8 @@ void Device::submit(NodeTime now) {
     bus_awaited_since_.reset();
     const i2c::Transfer transfer = compose(steps_[step_]);
     submitted_ = now;
-    transfer_deadline_ = now + i2c::time_limit(transfer, options_.i2c_hz);
+    transfer_deadline_ =
+        now + i2c::time_limit(transfer, options_.i2c_hz, Microseconds{options_.i2c_lateness_us});
     is_in_flight_ = true;
     bus_.submit(transfer, now, transfer_deadline_);
 }

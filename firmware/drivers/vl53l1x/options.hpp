@@ -21,16 +21,17 @@ enum class Error : std::uint8_t {
 
 /// Board- and policy-dependent choices. `Options::as_st_uld()` gives the transfers of ST's own driver.
 struct Options {
-    bool is_io_2v8 = true;                ///< 0x2E, 0x2F
-    bool is_interrupt_active_low = true;  ///< 0x30 bit 4
-    bool writes_config_in_burst = true;   ///< 91 bytes in one transfer rather than 91 transfers
-    bool reads_twice = true;              ///< the result block and the oscillator value
-    bool reads_factory_offset = true;     ///< twice, before anything is written to the part but its address
-    bool caches_polarity = true;          ///< false: 0x30 is read before every 0x31, as ST's driver does
-    bool clears_before_start = true;      ///< write 0x86 before 0x87 = 0x40
-    bool verifies_address = true;         ///< the id is read at a new address once it is set
-    bool rereads_settings = false;        ///< mode and budget are read back before they are built on
-    std::uint32_t i2c_hz = 400'000;       ///< for the deadline of a transfer: 3 x nominal time + 1 ms
+    bool is_io_2v8 = true;                  ///< 0x2E, 0x2F
+    bool is_interrupt_active_low = true;    ///< 0x30 bit 4
+    bool writes_config_in_burst = true;     ///< 91 bytes in one transfer rather than 91 transfers
+    bool reads_twice = true;                ///< the result block and the oscillator value
+    bool reads_factory_offset = true;       ///< twice, before anything is written to the part but its address
+    bool caches_polarity = true;            ///< false: 0x30 is read before every 0x31, as ST's driver does
+    bool clears_before_start = true;        ///< write 0x86 before 0x87 = 0x40
+    bool verifies_address = true;           ///< the id is read at a new address once it is set
+    bool rereads_settings = false;          ///< mode and budget are read back before they are built on
+    std::uint32_t i2c_hz = 400'000;         ///< for the deadline of a transfer: 3 x nominal time + lateness
+    std::uint32_t i2c_lateness_us = 1'000;  ///< so late a port may come to know of a transfer's end
     [[nodiscard]] static constexpr Options as_st_uld() noexcept {
         return {.is_io_2v8 = false,
                 .is_interrupt_active_low = false,
@@ -41,7 +42,8 @@ struct Options {
                 .clears_before_start = false,
                 .verifies_address = false,
                 .rereads_settings = true,
-                .i2c_hz = 400'000};
+                .i2c_hz = 400'000,
+                .i2c_lateness_us = 1'000};
     }
 };
 

@@ -39,6 +39,14 @@ T value_or_fail(Result<T, AppError> result) {
 
 rig::BoardHardware read_board(const rig::Node& node) {
     const auto file = shipped_file("hw/boards/" + node.board.name + ".hardware.yaml");
+    if (!std::filesystem::exists(file)) {
+        throw CommandFailure(
+            {ExitCode::bad_config,
+             fmt::format(
+                 "node {} is a {}, which is not flashed (a Linux board takes `octoskin rig RIG --node {} "
+                 "--block FILE`)",
+                 node.name, node.board.name, node.name)});
+    }
     const auto board = rig::read_board_hardware(file);
     if (!board) throw CommandFailure({ExitCode::bad_config, board.error().message()});
     return *board;

@@ -1,9 +1,13 @@
 // octoskin rig: whether a rig is sound, and what it asks of its buses.
 #include <fmt/format.h>
 
+#include <array>
+#include <fstream>
 #include <memory>
 
+#include "common/config/node_config.hpp"
 #include "common/wire/bus_load.hpp"
+#include "host/apps/flashing/flashing.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
@@ -20,6 +24,8 @@ struct RigOptions {
     std::filesystem::path rig;
     std::filesystem::path robot;
     bool prints_canonical = false;
+    std::string node;
+    std::filesystem::path block;
 };
 
 /// Each bus's load, and what a person can mend by other values of phase_us.
@@ -56,6 +62,37 @@ void describe(const rig::Rig& rig) {
           100.0 * rig::can_load(rig), 100.0 * wire::kBusLoadLimit);
 }
 
+/// The same bytes that `octoskin flash` puts into a microcontroller's page.
+void write_block(const rig::Rig& rig, const RigOptions& options) {
+    const auto node = flashing::choose_node(rig, options.node);
+    if (!node) throw CommandFailure(node.error());
+    std::array<std::uint8_t, kNodeConfigBytesMax> memory{};
+    const auto block = encode(node->config, memory);
+    std::ofstream stream(options.block, std::ios::binary);
+    stream.write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(block.size()));
+    stream.close();
+    if (!stream)
+        throw CommandFailure(
+            {ExitCode::cannot_create, fmt::format("{}: cannot be written", options.block.string())});
+    print("node {} '{}': node_hash {:08x}, {} bytes in {}\n", node->config.node_id, node->name,
+          node_hash(node->config), block.size(), options.block.string());
+}
+
+void run(const RigOptions& options) {
+    const auto rig = rig::read_rig(options.rig, options.robot);
+    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    if (const auto host = make_host_setup(*rig); !host) {
+        throw CommandFailure({ExitCode::bad_config, host.error().message()});
+    }
+    if (!options.block.empty()) {
+        write_block(*rig, options);
+    } else if (options.prints_canonical) {
+        print("{}", rig::canonical_text(*rig, rig->urdf.string()));
+    } else {
+        describe(*rig);
+    }
+}
+
 }  // namespace
 
 void add_rig_command(CLI::App& app) {
@@ -67,18 +104,11 @@ void add_rig_command(CLI::App& app) {
         ->check(existing_file());
     command->add_flag("--canonical", options->prints_canonical,
                       "Print the rig in full, in its canonical form");
-    command->callback([options] {
-        const auto rig = rig::read_rig(options->rig, options->robot);
-        if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
-        if (const auto host = make_host_setup(*rig); !host) {
-            throw CommandFailure({ExitCode::bad_config, host.error().message()});
-        }
-        if (options->prints_canonical) {
-            print("{}", rig::canonical_text(*rig, rig->urdf.string()));
-        } else {
-            describe(*rig);
-        }
-    });
+    command->add_option("--node", options->node,
+                        "For --block: name or number of the node; needed if the rig has several");
+    command->add_option("--block", options->block,
+                        "Write a node's configuration block to this file, for octoskin-node --config");
+    command->callback([options] { run(*options); });
 }
 
 }  // namespace octoskin::app

@@ -1,0 +1,72 @@
+#include "firmware/app/linux_node/journal.hpp"
+
+#include <array>
+#include <cstdio>
+
+#include "common/wire/names.hpp"
+
+namespace octoskin::linux_node {
+namespace {
+
+std::string hex(std::uint32_t number) {
+    std::array<char, 9> digits{};
+    (void)std::snprintf(digits.data(), digits.size(), "%08x", number);
+    return digits.data();
+}
+
+const char* words(node::CanState state) {
+    switch (state) {
+        case node::CanState::active:
+            return "the controller takes part";
+        case node::CanState::passive:
+            return "error-passive: nobody acknowledges, or the lines are disturbed";
+        case node::CanState::bus_off:
+            return "bus-off; waiting for the kernel to restart it (`restart-ms`)";
+    }
+    return "?";
+}
+
+}  // namespace
+
+void say(const std::string& what) {
+    // One write a line, so that lines of several nodes do not mix.
+    (void)std::fputs(("octoskin-node: " + what + "\n").c_str(), stderr);
+}
+
+void Journal::started(const NodeConfig& config, const std::string& can, std::uint32_t build_id) {
+    say("node " + std::to_string(config.node_id) + ": " + std::to_string(config.sensor_count) +
+        " sensors, node_hash " + hex(node_hash(config)) + ", CAN" + (config.uses_can_fd ? " FD" : "") +
+        " on " + can + ", build " + hex(build_id));
+}
+
+void Journal::update(const node::Node& node, const linux_port::CanInterface& can,
+                     const linux_port::XshutOutputs& xshut) {
+    if (const wire::NodeState state = node.state(); state_ != state) {
+        say(std::string("state ") + wire::name(state));
+        state_ = state;
+    }
+    if (can.trouble() != trouble_) {
+        trouble_ = can.trouble();
+        say(trouble_.empty() ? "CAN: the interface is up" : trouble_ + "; waiting");
+    }
+    const node::CanState can_state = can.trouble().empty() ? can.state() : can_state_;
+    if (can_state != can_state_) {
+        can_state_ = can_state;
+        say(std::string("CAN: ") + words(can_state));
+    }
+    if (const std::uint8_t ignored = node.ignored_data_ready(); ignored != ignored_data_ready_) {
+        ignored_data_ready_ = ignored;
+        say("data-ready lines that are noise, ignored: buses " + hex(ignored) + " (one bit each)");
+    }
+    if (can.unconfirmed() != unconfirmed_) {
+        unconfirmed_ = can.unconfirmed();
+        say("CAN: " + std::to_string(unconfirmed_) + " frames never confirmed since start");
+    }
+    if (xshut.failures() != xshut_failures_) {
+        xshut_failures_ = xshut.failures();
+        say("XSHUT: the kernel refused to set a line, " + std::to_string(xshut_failures_) +
+            " times since start");
+    }
+}
+
+}  // namespace octoskin::linux_node

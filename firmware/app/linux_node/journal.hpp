@@ -1,0 +1,35 @@
+// What a Linux node tells a person, a line each on standard error: what it is, and whatever changes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/config/node_config.hpp"
+#include "common/time.hpp"
+#include "firmware/core/node.hpp"
+#include "firmware/port/linux/can_interface.hpp"
+#include "firmware/port/linux/gpio_lines.hpp"
+
+namespace octoskin::linux_node {
+
+/// One line, with the program's name.
+void say(const std::string& what);
+
+class Journal {
+  public:
+    void started(const NodeConfig& config, const std::string& can, std::uint32_t build_id);
+    /// Call at every turn: says what has changed since the last one.
+    void update(const node::Node& node, const linux_port::CanInterface& can,
+                const linux_port::XshutOutputs& xshut);
+
+  private:
+    std::optional<wire::NodeState> state_;
+    std::string trouble_;
+    node::CanState can_state_ = node::CanState::active;
+    std::uint8_t ignored_data_ready_ = 0;
+    std::uint64_t unconfirmed_ = 0;
+    std::uint64_t xshut_failures_ = 0;
+};
+
+}  // namespace octoskin::linux_node

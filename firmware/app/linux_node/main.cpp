@@ -1,0 +1,77 @@
+// octoskin-node: a sensor node on a Linux board.
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <exception>
+#include <variant>
+
+#include "firmware/app/linux_node/arguments.hpp"
+#include "firmware/app/linux_node/board.hpp"
+#include "firmware/app/linux_node/configuration.hpp"
+#include "firmware/app/linux_node/journal.hpp"
+#include "firmware/port/linux/unique_id.hpp"
+
+namespace octoskin::linux_node {
+namespace {
+
+using linux_port::ExitCode;
+using linux_port::refuse;
+using linux_port::StartFailure;
+
+/// Readable once this process is to end. Before any thread: they inherit that the signals are blocked.
+int take_signals() {
+    sigset_t signals{};
+    ::sigemptyset(&signals);
+    ::sigaddset(&signals, SIGTERM);
+    ::sigaddset(&signals, SIGINT);
+    ::sigprocmask(SIG_BLOCK, &signals, nullptr);
+    return ::signalfd(-1, &signals, SFD_CLOEXEC);
+}
+
+Result<node::Identity, StartFailure> identity_of(const Arguments& arguments) {
+    const auto uid = arguments.uid ? arguments.uid : linux_port::unique_id(arguments.i2c);
+    if (!uid)
+        return refuse(ExitCode::unavailable,
+                      "/etc/machine-id: no machine id (`systemd-machine-id-setup` makes one); or give --uid");
+    return node::Identity{.uid = *uid, .build_id = OCTOSKIN_BUILD_ID, .board_type = kBoardType};
+}
+
+/// Node after node: an ordered reset ends one and begins another, as on a microcontroller.
+Result<Done, StartFailure> run(const Arguments& arguments) {
+    const auto config = load_configuration(arguments);
+    if (!config) return unexpected(config.error());
+    auto identity = identity_of(arguments);
+    if (!identity) return unexpected(identity.error());
+    const int stop = take_signals();
+    node::KeptMemory kept{};
+    Journal journal;
+    while (true) {
+        auto board = Board::open(arguments, *config, *identity, kept);
+        if (!board) return unexpected(board.error());
+        journal.started(*config, arguments.can, OCTOSKIN_BUILD_ID);
+        if ((*board)->run(stop, journal) == Board::Ending::stopped) break;
+        say("reset, as the host has ordered");
+        identity->reset_cause = wire::ResetCause::software;
+    }
+    say("stopped: all sensors are in reset");
+    return Done{};
+}
+
+}  // namespace
+}  // namespace octoskin::linux_node
+
+int main(int argc, char** argv) {
+    using namespace octoskin::linux_node;
+    try {
+        const auto arguments = parse_arguments(argc, argv, OCTOSKIN_BUILD_ID);
+        if (const auto* code = std::get_if<ExitCode>(&arguments)) return static_cast<int>(*code);
+        const auto done = run(std::get<Arguments>(arguments));
+        if (done) return static_cast<int>(ExitCode::ok);
+        say(done.error().what);
+        return static_cast<int>(done.error().code);
+    } catch (const std::exception& error) {
+        say(std::string("a defect of octoskin-node, please report it: ") + error.what());
+        return static_cast<int>(ExitCode::defect);
+    }
+}

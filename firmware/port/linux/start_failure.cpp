@@ -1,0 +1,33 @@
+#include "firmware/port/linux/start_failure.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+namespace octoskin::linux_port {
+namespace {
+
+const char* remedy(int error_number) {
+    switch (error_number) {
+        case EACCES:
+        case EPERM:
+            return "; its group may use it: `ls -l` names the group, `sudo usermod -aG GROUP $USER` adds you";
+        case EBUSY:
+            return "; somebody else has it: `gpioinfo` names who has a line";
+        case ENOENT:
+        case ENXIO:
+        case ENODEV:
+            return "; is it enabled (dtoverlay, `modprobe i2c-dev`)?";
+        default:
+            return "";
+    }
+}
+
+}  // namespace
+
+StartFailure device_failure(const std::string& what, int error_number) {
+    const bool is_forbidden = error_number == EACCES || error_number == EPERM;
+    return {is_forbidden ? ExitCode::no_permission : ExitCode::unavailable,
+            what + ": " + std::strerror(error_number) + remedy(error_number)};
+}
+
+}  // namespace octoskin::linux_port
