@@ -1,5 +1,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 
+#include <fcntl.h>
+
 #include <charconv>
 #include <filesystem>
 #include <string_view>
@@ -72,6 +74,23 @@ void check_command_name(const CLI::App& app, int argc, const char* const* argv) 
                                                (near ? ": did you mean '" + *near + "'?" : "") +
                                                " There are " + rig::joined(names) +
                                                "; octoskin --help says what they do"});
+}
+
+std::optional<int> descriptor_of(const std::string& interface) {
+    constexpr std::string_view kPrefix = "fd:";
+    if (!interface.starts_with(kPrefix)) return std::nullopt;
+    int descriptor = -1;
+    const char* const last = interface.data() + interface.size();
+    const auto [end, error] = std::from_chars(interface.data() + kPrefix.size(), last, descriptor);
+    if (error != std::errc{} || end != last || descriptor < 0 || ::fcntl(descriptor, F_GETFD) < 0)
+        throw CommandFailure({ExitCode::usage, interface + ": no descriptor of that number is open"});
+    return descriptor;
+}
+
+std::string configuration_of(const std::string& asked_for, const RecordingPaths& recording) {
+    if (!asked_for.empty()) return asked_for;
+    std::error_code error;
+    return std::filesystem::exists(recording.mapping(), error) ? recording.mapping().string() : "robust";
 }
 
 }  // namespace octoskin::app

@@ -2,6 +2,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "host/apps/recording/recording.hpp"
 
 namespace octoskin::app {
 
@@ -16,5 +20,12 @@ namespace octoskin::app {
 
 /// Throws CommandFailure with ExitCode::usage if the first word is no command, and says which one is like it.
 void check_command_name(const CLI::App& app, int argc, const char* const* argv);
+
+/// "fd:N" in place of an interface names a descriptor that whoever started this program left open for it;
+/// empty for any other name. CommandFailure (usage) if none of that number is open.
+[[nodiscard]] std::optional<int> descriptor_of(const std::string& interface);
+
+/// What --configuration says; else the recording's own mapping.yaml, as the daemon wrote it; else robust.
+[[nodiscard]] std::string configuration_of(const std::string& asked_for, const RecordingPaths& recording);
 
 }  // namespace octoskin::app

@@ -21,6 +21,7 @@ class CommandFailure : public std::runtime_error {
 
 void add_simulate_command(CLI::App& app);
 void add_replay_command(CLI::App& app);
+void add_explain_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_experiment_command(CLI::App& app);
 void add_run_command(CLI::App& app);

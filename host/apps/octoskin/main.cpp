@@ -33,6 +33,7 @@ int run(int argc, char** argv) {
     app::add_run_command(app);
     app::add_status_command(app);
     app::add_record_command(app);
+    app::add_explain_command(app);
     app::add_joints_command(app);
     app::add_rig_command(app);
     app::add_mapping_command(app);

@@ -11,6 +11,7 @@
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/playback/map_folder.hpp"
+#include "host/apps/playback/onto_bus.hpp"
 #include "host/apps/playback/playback.hpp"
 #include "host/apps/study/configuration.hpp"
 #include "hw/rigfile/joined.hpp"
@@ -24,19 +25,12 @@ struct ReplayOptions {
     std::filesystem::path robot;
     std::filesystem::path out;
     std::string configuration;  ///< empty: the recording's own, or robust
-    std::string speed = "max";
+    std::string speed;          ///< empty: max into the maps, 1 onto a bus
+    std::string onto;
     bool is_fused_only = false;
     bool is_by_capture_time = false;
     bool is_stepped = false;
 };
-
-/// The recording's mapping.yaml, if the daemon made it and nothing else is asked for.
-std::string configuration_of(const ReplayOptions& options) {
-    if (!options.configuration.empty()) return options.configuration;
-    std::error_code error;
-    const auto recorded = RecordingPaths(options.recording).mapping();
-    return std::filesystem::exists(recorded, error) ? recorded.string() : "robust";
-}
 
 /// Shows what comes next, and waits for the enter key; at the end of the input nothing waits any more.
 void wait_for_enter(const std::string& what) {
@@ -47,7 +41,8 @@ void wait_for_enter(const std::string& what) {
 
 Pace pace_of(const ReplayOptions& options) {
     if (options.is_stepped) return Pace::by_step(wait_for_enter);
-    if (options.speed == "max") return {};
+    if (options.speed == "max" || (options.speed.empty() && options.onto.empty())) return {};
+    if (options.speed.empty()) return Pace::times(1.0);
     double speed = 0.0;
     const char* const last = options.speed.data() + options.speed.size();
     const auto [end, error] = std::from_chars(options.speed.data(), last, speed);
@@ -90,8 +85,29 @@ void save(const Playback& playback, MapFolder& folder, const std::filesystem::pa
     }
 }
 
+socketcan::CanSocket open_bus(const std::string& interface) {
+    if (const auto descriptor = descriptor_of(interface)) return {interface, *descriptor};
+    auto socket = socketcan::CanSocket::open(interface);
+    if (!socket) throw CommandFailure({ExitCode::unavailable, socket.error().message()});
+    return std::move(socket).value();
+}
+
+void replay_onto_bus(const ReplayOptions& options) {
+    socketcan::CanSocket socket = open_bus(options.onto);
+    const auto played = play_onto(RecordingPaths(options.recording).can_log(), socket, pace_of(options));
+    if (!played) throw CommandFailure(played.error());
+    print("{}: {} frames of '{}' sent, {} of them had to wait for room\n", options.onto, played->sent,
+          played->interface, played->waited);
+    const auto left_out = played->other_interface + played->error_frames + played->lines_refused;
+    if (left_out > 0) {
+        spdlog::warn("not sent: {} frames of other interfaces, {} error frames, {} lines that are no frames",
+                     played->other_interface, played->error_frames, played->lines_refused);
+    }
+}
+
 void replay_recording(const ReplayOptions& options) {
-    const auto configuration = study_configuration(configuration_of(options));
+    const auto configuration =
+        study_configuration(configuration_of(options.configuration, RecordingPaths(options.recording)));
     if (!configuration) throw CommandFailure(configuration.error());
     const bool wants_all = !options.is_fused_only;
     const PlaybackRequest request{.recording = RecordingPaths(options.recording),
@@ -140,8 +156,11 @@ void add_replay_command(CLI::App& app) {
     command->add_flag("--by-capture-time", options->is_by_capture_time,
                       "In the order of capture times, even if the recording has a daemon's own order");
     auto* const speed =
-        command->add_option("--speed", options->speed, "max; or how many times real time: 1, 10, 0.5");
-    speed->capture_default_str();
+        command->add_option("--speed", options->speed,
+                            "max; or how many times real time: 1, 10, 0.5 (default: max, with --onto 1)");
+    command->add_option("--onto", options->onto,
+                        "Send the frames of can.log onto this CAN interface (fd:N: an open socket) in place "
+                        "of making maps");
     command
         ->add_flag("--step", options->is_stepped,
                    "Show each frame of the log, or each reading and depth frame of a daemon's own order, and "
@@ -149,7 +168,7 @@ void add_replay_command(CLI::App& app) {
         ->excludes(speed);
     command->callback([options] {
         if (options->out.empty()) options->out = options->recording / "maps";
-        replay_recording(*options);
+        options->onto.empty() ? replay_recording(*options) : replay_onto_bus(*options);
     });
 }
 

@@ -1,9 +1,7 @@
 // octoskin run: the daemon beside a robot.
-#include <fcntl.h>
 #include <spdlog/formatter.h>
 #include <spdlog/spdlog.h>
 
-#include <charconv>
 #include <cstdlib>
 #include <memory>
 
@@ -32,22 +30,8 @@ class JournalFormatter final : public spdlog::formatter {
     }
 };
 
-/// "fd:N" names a descriptor that whoever started this program left open for it.
-void take_descriptor(DaemonRequest& request) {
-    constexpr std::string_view kPrefix = "fd:";
-    if (!request.interface.starts_with(kPrefix)) return;
-    int descriptor = -1;
-    const char* const first = request.interface.data() + kPrefix.size();
-    const char* const last = request.interface.data() + request.interface.size();
-    const auto [end, error] = std::from_chars(first, last, descriptor);
-    if (error != std::errc{} || end != last || descriptor < 0 || ::fcntl(descriptor, F_GETFD) < 0)
-        throw CommandFailure(
-            {ExitCode::usage, "--can " + request.interface + ": no descriptor of that number is open"});
-    request.can_descriptor = descriptor;
-}
-
 void run_daemon(DaemonRequest& request) {
-    take_descriptor(request);
+    request.can_descriptor = descriptor_of(request.interface);
     if (std::getenv("JOURNAL_STREAM") != nullptr) spdlog::set_formatter(std::make_unique<JournalFormatter>());
     auto daemon = Daemon::build(request);
     if (!daemon) throw CommandFailure(daemon.error());

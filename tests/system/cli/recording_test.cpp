@@ -3,7 +3,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <vector>
 
 #include "tests/system/cli/program.hpp"
 
@@ -44,6 +49,59 @@ TEST_F(Recording, the_same_seed_records_the_same_and_another_seed_something_else
     ASSERT_EQ(octoskin("replay " + path("a")).exit_code, 0);
     ASSERT_EQ(octoskin("replay " + path("b")).exit_code, 0);
     EXPECT_EQ(content(path("a/maps/fused.ot")), content(path("b/maps/fused.ot")));
+}
+
+/// Points of the map's surface: the corners of the faces that the .ply draws.
+std::vector<std::array<float, 3>> points_of(const std::string& ply) {
+    constexpr std::size_t kVertexBytes = 15;  // three floats, three bytes of colour
+    constexpr std::string_view kEnd = "end_header\n";
+    std::vector<std::array<float, 3>> points;
+    for (std::size_t i = 0; i < 16; ++i) {
+        const std::size_t at = ply.find(kEnd) + kEnd.size() + 97 * i * kVertexBytes;
+        if (at + kVertexBytes > ply.size()) break;
+        std::memcpy(points.emplace_back().data(), ply.data() + at, sizeof(points.back()));
+    }
+    return points;
+}
+
+TEST_F(Recording, explains_voxels_by_what_made_them) {
+    record_short("rec");
+    ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
+    int explained = 0;
+    for (const auto& [x, y, z] : points_of(content(path("rec/maps/proximity.ply")))) {
+        const std::string point = std::to_string(x) + ' ' + std::to_string(y) + ' ' + std::to_string(z);
+        const Said said = octoskin("explain " + point + " --lines 100000 --json --recording " + path("rec"));
+        ASSERT_EQ(said.exit_code, 0) << said.output;
+        const auto json = nlohmann::json::parse(said.output);
+        double sum = 0.0;
+        for (const auto& contribution : json["contributions"]) sum += contribution["change"].get<double>();
+        const double log_odds = json["log_odds"].is_null() ? 0.0 : json["log_odds"].get<double>();
+        EXPECT_NEAR(sum, log_odds, 1e-9) << said.output;
+        EXPECT_EQ(json["contributions"].size(), json["contributions_in_all"]);
+        EXPECT_THAT(json["conclusion"].get<std::string>(),
+                    testing::StartsWith(json["occupancy"].get<std::string>()));
+        explained += json["contributions"].empty() ? 0 : 1;
+    }
+    EXPECT_GT(explained, 4);
+    EXPECT_EQ(octoskin("explain 0 0 1e9 --recording " + path("rec")).exit_code, 64);
+    EXPECT_EQ(octoskin("explain 0 0 0 --recording " + path("nowhere")).exit_code, 66);
+}
+
+TEST_F(Recording, plays_at_the_speed_asked_for_and_step_by_step) {
+    record_short("rec");
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_EQ(octoskin("replay " + path("rec") + " --out " + path("slow") + " --speed 4").exit_code, 0);
+    // 4.5 s of log.
+    EXPECT_GT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(1'000));
+    ASSERT_EQ(octoskin("replay " + path("rec") + " --out " + path("fast")).exit_code, 0);
+    EXPECT_TRUE(content(path("slow/fused.ot")) == content(path("fast/fused.ot")));
+    const Said stepped = run("echo | " OCTOSKIN_PROGRAM " replay " + path("rec") + " --step");
+    EXPECT_EQ(stepped.exit_code, 0);
+    EXPECT_THAT(stepped.output, HasSubstr("(1750000000.000135) can 040#092E26"));
+    EXPECT_EQ(octoskin("replay " + path("rec") + " --speed fast").exit_code, 64);
+    EXPECT_EQ(octoskin("replay " + path("rec") + " --speed 0").exit_code, 64);
+    EXPECT_EQ(octoskin("replay " + path("rec") + " --onto fd:77").exit_code, 64);
+    EXPECT_EQ(octoskin("replay " + path("rec") + " --onto nobus9").exit_code, 69);
 }
 
 TEST_F(Recording, prints_an_account_that_balances_for_every_kind_of_input) {

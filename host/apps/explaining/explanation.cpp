@@ -1,0 +1,73 @@
+#include "host/apps/explaining/explanation.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "host/apps/playback/ordered_playback.hpp"
+#include "host/io/mapfile/map_file.hpp"
+#include "hw/rigfile/rig.hpp"
+
+namespace octoskin {
+namespace {
+
+std::map<BeamSource, std::string> names_of_sources(const rig::Rig& rig) {
+    std::map<BeamSource, std::string> names{{BeamSource{}, "camera"}};
+    for (const rig::Node& node : rig.nodes) {
+        for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+            const std::size_t zones = node.sensors[i].zone_offset_m.size();
+            for (std::size_t zone = 0; zone < zones; ++zone) {
+                const BeamSource source{node.config.node_id, static_cast<std::uint8_t>(i),
+                                        static_cast<std::uint8_t>(zone)};
+                names[source] =
+                    node.sensors[i].name + (zones > 1 ? fmt::format(" zone {}", zone) : std::string());
+            }
+        }
+    }
+    return names;
+}
+
+/// The voxel in the map that the recording begins with.
+Result<std::optional<float>, AppError> log_odds_at_begin(const PlaybackRequest& request, VoxelKey key) {
+    const auto file = request.recording.first_map();
+    std::error_code error;
+    if (!is_played_in_order(request) || !std::filesystem::exists(file, error)) return std::optional<float>{};
+    const auto map = load_map(file, {.map = request.mapping.map});
+    if (!map) return fail(ExitCode::bad_data, map.error().message);
+    return map->log_odds(key);
+}
+
+}  // namespace
+
+Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vector3d& p_map,
+                                      std::size_t contributions_max, const ReplayReport& report) {
+    const FusedMap grid(request.mapping.map);
+    const auto key = grid.key_of(p_map);
+    if (!key) {
+        return fail(ExitCode::usage,
+                    fmt::format("{} {} {}: not within the map, {:.0f} m about its origin", p_map.x(),
+                                p_map.y(), p_map.z(), 32768 * grid.resolution_m()));
+    }
+    if (const auto checked = check_playable(request); !checked) return unexpected(checked.error());
+    const auto begin = log_odds_at_begin(request, *key);
+    if (!begin) return unexpected(begin.error());
+    VoxelWitness witness(*key, request.mapping.map, *begin, contributions_max);
+    request.maps = {.depth = false, .proximity = false, .fused = true};
+    request.listener = &witness;
+    const auto played = play_recording(request, report);
+    if (!played) return unexpected(played.error());
+    if (auto failure = failure_of(*played)) return unexpected(std::move(*failure));
+    const FusedMap& map = *played->pipeline.maps().fused();
+    if (map.log_odds(*key) != witness.log_odds())
+        return fail(ExitCode::failed, "the terms do not add up to the voxel's log-odds in the map");
+    return Explanation{.p_map = p_map,
+                       .centre = map.centre_of(*key),
+                       .resolution_m = map.resolution_m(),
+                       .occupancy = map.occupancy(*key),
+                       .witness = std::move(witness),
+                       .begin = played->outcome.progress.begin,
+                       .names = names_of_sources(played->rig),
+                       .warnings = played->warnings};
+}
+
+}  // namespace octoskin

@@ -1,0 +1,45 @@
+// `octoskin explain`: which readings and depth frames made a voxel what it is.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+#include "host/apps/explaining/voxel_witness.hpp"
+#include "host/apps/playback/playback.hpp"
+#include "host/apps/recording/app_error.hpp"
+#include "host/core/mapping/fused_map.hpp"
+
+namespace octoskin {
+
+struct Explanation {
+    Eigen::Vector3d p_map = Eigen::Vector3d::Zero();   ///< that was asked about
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of its voxel, map frame, metres
+    double resolution_m = 0.0;
+    Occupancy occupancy = Occupancy::unknown;
+    VoxelWitness witness;
+    std::optional<HostTime> begin;            ///< of the recording: times are told from here
+    std::map<BeamSource, std::string> names;  ///< "camera", "forearm_3"; with its zone if there are several
+    std::vector<std::string> warnings;        ///< of the replay
+};
+
+/// Replays the recording, as `octoskin replay` would, and watches the voxel at `p_map` (metres, map frame) in
+/// the fused map. Errors: those of the replay; a point outside the octree (usage); terms that do not add up
+/// to the map's log-odds (failed): a map without room.
+[[nodiscard]] Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vector3d& p_map,
+                                                    std::size_t contributions_max,
+                                                    const ReplayReport& report = {});
+
+/// In one sentence: "occupied, mainly by sensor forearm_3 between 4.100 and 4.600 s, 12 hits; the camera
+/// never saw it free".
+[[nodiscard]] std::string conclusion_of(const Explanation& explanation);
+/// For a person: the voxel, each source's share, the newest contributions, the conclusion.
+[[nodiscard]] std::string to_text(const Explanation& explanation);
+[[nodiscard]] nlohmann::ordered_json to_json(const Explanation& explanation);
+
+}  // namespace octoskin

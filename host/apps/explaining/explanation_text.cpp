@@ -1,0 +1,200 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "host/apps/explaining/explanation.hpp"
+
+namespace octoskin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Share = std::pair<BeamSource, SourceShare>;
+
+constexpr BeamSource kCamera{};
+
+const char* name(Occupancy occupancy) {
+    if (occupancy == Occupancy::occupied) return "occupied";
+    return occupancy == Occupancy::free ? "free" : "unknown";
+}
+
+double seconds_of(const Explanation& explanation, HostTime time) {
+    return std::chrono::duration<double>(time - explanation.begin.value_or(HostTime{})).count();
+}
+
+std::string name_of(const Explanation& explanation, const BeamSource& source) {
+    const auto found = explanation.names.find(source);
+    if (found != explanation.names.end()) return found->second;
+    return fmt::format("node {} sensor {} zone {}", source.node_id, source.sensor, source.zone);
+}
+
+/// Those that moved it most come first.
+std::vector<Share> by_weight(const Explanation& explanation) {
+    const auto& all = explanation.witness.shares();
+    std::vector<Share> shares(all.begin(), all.end());
+    std::ranges::stable_sort(shares, [](const Share& a, const Share& b) {
+        return std::abs(a.second.change) > std::abs(b.second.change);
+    });
+    return shares;
+}
+
+std::string plural(std::uint64_t count, const char* one, const char* many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string about_camera(const Explanation& explanation) {
+    const auto found = explanation.witness.shares().find(kCamera);
+    if (found == explanation.witness.shares().end()) return "the camera never saw it";
+    const SourceShare& share = found->second;
+    if (share.misses == 0) return "the camera never saw it free";
+    if (share.hits == 0) return "the camera never saw it occupied";
+    return fmt::format("the camera saw it occupied in {} and free in {}",
+                       plural(share.hits, "frame", "frames"), plural(share.misses, "frame", "frames"));
+}
+
+/// The one that did most in the direction in which the voxel went.
+std::optional<Share> main_cause(const Explanation& explanation) {
+    const bool is_up = explanation.occupancy == Occupancy::occupied;
+    std::optional<Share> cause;
+    for (const Share& share : by_weight(explanation)) {
+        const bool is_of_kind = is_up ? share.second.change > 0.0 : share.second.change < 0.0;
+        if (is_of_kind && !cause) cause = share;
+    }
+    return cause;
+}
+
+std::string when(const Explanation& explanation, const SourceShare& share) {
+    const double first_s = seconds_of(explanation, share.first);
+    if (share.first == share.last) return fmt::format("at {:.3f} s", first_s);
+    return fmt::format("between {:.3f} and {:.3f} s", first_s, seconds_of(explanation, share.last));
+}
+
+std::string table_of_shares(const Explanation& explanation) {
+    std::string text = fmt::format("  {:<24} {:>6} {:>7} {:>9}  {:>9} {:>9}\n", "source", "hits", "misses",
+                                   "log-odds", "first s", "last s");
+    for (const auto& [source, share] : by_weight(explanation)) {
+        fmt::format_to(std::back_inserter(text), "  {:<24} {:>6} {:>7} {:>+9.4f}  {:>9.3f} {:>9.3f}\n",
+                       name_of(explanation, source), share.hits, share.misses, share.change,
+                       seconds_of(explanation, share.first), seconds_of(explanation, share.last));
+    }
+    return text;
+}
+
+std::string line_of(const Explanation& explanation, const Contribution& contribution) {
+    const bool is_camera = contribution.source == kCamera;
+    const std::string range = contribution.range_m ? fmt::format("{:.3f}", *contribution.range_m) : "-";
+    const Eigen::Vector3d& p = contribution.p_map_sensor;
+    const std::string from = is_camera ? fmt::format("frame {}", contribution.frame)
+                                       : fmt::format("{:.3f} {:.3f} {:.3f}", p.x(), p.y(), p.z());
+    return fmt::format("  {:>9.3f}  {:<24} {:>8} {:<24} {:>+9.4f} {:>+9.4f} {:>9.4f}\n",
+                       seconds_of(explanation, contribution.captured),
+                       name_of(explanation, contribution.source), range, from,
+                       static_cast<double>(contribution.term), contribution.change(),
+                       static_cast<double>(contribution.after));
+}
+
+Json to_json(const Eigen::Vector3d& vector) {
+    return {vector.x(), vector.y(), vector.z()};
+}
+
+Json json_of(const std::optional<float>& log_odds) {
+    return log_odds ? Json(static_cast<double>(*log_odds)) : Json(nullptr);
+}
+
+Json json_of(const Explanation& explanation, const BeamSource& source) {
+    if (source == kCamera) return {{"name", "camera"}};
+    return {{"name", name_of(explanation, source)},
+            {"node", source.node_id},
+            {"sensor", source.sensor},
+            {"zone", source.zone}};
+}
+
+Json json_of(const Explanation& explanation, const Contribution& contribution) {
+    Json json{{"source", json_of(explanation, contribution.source)},
+              {"time_s", seconds_of(explanation, contribution.captured)},
+              {"captured_ns", contribution.captured.ns},
+              {"term", static_cast<double>(contribution.term)},
+              {"change", contribution.change()},
+              {"log_odds", static_cast<double>(contribution.after)}};
+    if (contribution.source == kCamera) {
+        json["frame"] = contribution.frame;
+    } else {
+        json["range_m"] = contribution.range_m ? Json(*contribution.range_m) : Json(nullptr);
+        json["sensor_m"] = to_json(contribution.p_map_sensor);
+        json["direction"] = to_json(contribution.direction_map);
+    }
+    return json;
+}
+
+}  // namespace
+
+std::string conclusion_of(const Explanation& explanation) {
+    if (explanation.witness.count() == 0 && !explanation.witness.begin())
+        return "unknown: no reading and no depth frame ever touched it";
+    const auto cause = main_cause(explanation);
+    if (!cause) {
+        const char* why = explanation.witness.begin() ? "as the map had it at the begin of the recording"
+                                                      : "by contributions that cancel out";
+        return fmt::format("{}, {}; {}", name(explanation.occupancy), why, about_camera(explanation));
+    }
+    const auto& [source, share] = *cause;
+    const bool is_camera = source == kCamera;
+    const bool is_up = explanation.occupancy == Occupancy::occupied;
+    std::string text =
+        fmt::format("{}, mainly by {}{} {}, {}", name(explanation.occupancy), is_camera ? "the " : "sensor ",
+                    name_of(explanation, source), when(explanation, share),
+                    is_up ? plural(share.hits, "hit", "hits") : plural(share.misses, "miss", "misses"));
+    if (!is_camera) text += "; " + about_camera(explanation);
+    return text;
+}
+
+std::string to_text(const Explanation& explanation) {
+    const VoxelWitness& witness = explanation.witness;
+    const Eigen::Vector3d& centre = explanation.centre;
+    std::string text =
+        fmt::format("voxel about {:.3f} {:.3f} {:.3f} m, edge {} m: {}", centre.x(), centre.y(), centre.z(),
+                    explanation.resolution_m, name(explanation.occupancy));
+    if (witness.log_odds())
+        text += fmt::format(", log-odds {:.4f}", static_cast<double>(*witness.log_odds()));
+    if (witness.begin()) text += fmt::format(" ({:.4f} at the begin)", static_cast<double>(*witness.begin()));
+    text += '\n';
+    if (witness.count() > 0) {
+        text += table_of_shares(explanation);
+        if (!witness.newest().empty()) {
+            text += fmt::format("the newest {} of {}:\n", witness.newest().size(), witness.count());
+            text += fmt::format("  {:>9}  {:<24} {:>8} {:<24} {:>9} {:>9} {:>9}\n", "time s", "source",
+                                "range m", "sensor at, m", "term", "change", "log-odds");
+        }
+        for (const Contribution& contribution : witness.newest()) text += line_of(explanation, contribution);
+    }
+    return text + conclusion_of(explanation) + '\n';
+}
+
+Json to_json(const Explanation& explanation) {
+    Json shares = Json::array();
+    for (const auto& [source, share] : by_weight(explanation)) {
+        shares.push_back({{"source", json_of(explanation, source)},
+                          {"hits", share.hits},
+                          {"misses", share.misses},
+                          {"change", share.change},
+                          {"first_s", seconds_of(explanation, share.first)},
+                          {"last_s", seconds_of(explanation, share.last)}});
+    }
+    Json contributions = Json::array();
+    for (const Contribution& contribution : explanation.witness.newest())
+        contributions.push_back(json_of(explanation, contribution));
+    return {{"point_m", to_json(explanation.p_map)},
+            {"centre_m", to_json(explanation.centre)},
+            {"resolution_m", explanation.resolution_m},
+            {"occupancy", name(explanation.occupancy)},
+            {"log_odds_at_begin", json_of(explanation.witness.begin())},
+            {"log_odds", json_of(explanation.witness.log_odds())},
+            {"contributions_in_all", explanation.witness.count()},
+            {"sources", std::move(shares)},
+            {"contributions", std::move(contributions)},
+            {"conclusion", conclusion_of(explanation)}};
+}
+
+}  // namespace octoskin

@@ -1,0 +1,51 @@
+#include "host/apps/explaining/voxel_witness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace octoskin {
+
+VoxelWitness::VoxelWitness(VoxelKey key, const MapConfig& config, std::optional<float> begin,
+                           std::size_t kept_max)
+    : key_(key), config_(config), begin_(begin), now_(begin), kept_max_(kept_max) {}
+
+void VoxelWitness::on_reading(const RangeMeasurement& measurement, const Beam& beam,
+                              std::span<const VoxelUpdate> updates) {
+    Contribution contribution;
+    contribution.source = measurement.source;
+    contribution.captured = measurement.captured;
+    contribution.range_m = measurement.range_m;
+    contribution.p_map_sensor = beam.p_map_sensor;
+    contribution.direction_map = beam.direction_map;
+    take(std::move(contribution), updates);
+}
+
+void VoxelWitness::on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) {
+    Contribution contribution;
+    contribution.frame = depth_frames_++;
+    contribution.captured = frame.captured;
+    take(std::move(contribution), updates);
+}
+
+void VoxelWitness::take(Contribution contribution, std::span<const VoxelUpdate> updates) {
+    for (const VoxelUpdate& update : updates) {
+        // As FusedMap::apply: neither of these touches a voxel.
+        if (update.key != key_ || update.log_odds == 0.0F || !std::isfinite(update.log_odds)) continue;
+        contribution.term = update.log_odds;
+        contribution.before = now_.value_or(0.0F);
+        contribution.after =
+            std::clamp(contribution.before + update.log_odds, config_.log_odds_min, config_.log_odds_max);
+        now_ = contribution.after;
+        const auto [share, is_first] = shares_.try_emplace(contribution.source);
+        ++(contribution.term > 0.0F ? share->second.hits : share->second.misses);
+        share->second.change += contribution.change();
+        if (is_first) share->second.first = contribution.captured;
+        share->second.last = contribution.captured;
+        ++count_;
+        newest_.push_back(contribution);
+        if (newest_.size() > kept_max_) newest_.pop_front();
+    }
+}
+
+}  // namespace octoskin

@@ -1,0 +1,75 @@
+// Watches one voxel while a map is made, and keeps everything that changed it.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+
+#include "common/time.hpp"
+#include "host/core/beams/beam.hpp"
+#include "host/core/mapping/fused_map.hpp"
+#include "host/core/pipeline/commit.hpp"
+
+namespace octoskin {
+
+/// One reading or depth frame that had a term for the voxel.
+struct Contribution {
+    BeamSource source;        ///< node 0: the camera
+    std::uint64_t frame = 0;  ///< of the camera: how many frames were integrated before it
+    HostTime captured;
+    std::optional<double> range_m;                            ///< of a reading with a target
+    Eigen::Vector3d p_map_sensor = Eigen::Vector3d::Zero();   ///< of a reading: where its sensor was, metres
+    Eigen::Vector3d direction_map = Eigen::Vector3d::Zero();  ///< and where it looked
+    float term = 0.0F;                                        ///< log-odds that it asked for
+    float before = 0.0F;                                      ///< the voxel's log-odds; 0 if it was unknown
+    float after = 0.0F;                                       ///< clamped
+    /// What it did. Exact: their sum is the voxel's log-odds, less that of the begin.
+    [[nodiscard]] double change() const { return static_cast<double>(after) - static_cast<double>(before); }
+};
+
+/// All contributions of one source.
+struct SourceShare {
+    std::uint64_t hits = 0;    ///< terms above 0
+    std::uint64_t misses = 0;  ///< terms below 0
+    double change = 0.0;       ///< log-odds, clamping included
+    HostTime first;
+    HostTime last;
+};
+
+class VoxelWitness final : public CommitListener {
+  public:
+    /// `begin`: the voxel's log-odds in the map that this one goes on from; empty: unknown. Of the
+    /// contributions the newest `kept_max` are kept; the shares count all of them.
+    VoxelWitness(VoxelKey key, const MapConfig& config, std::optional<float> begin, std::size_t kept_max);
+
+    void on_joints(const JointMeasurement&) override {}
+    void on_reading(const RangeMeasurement& measurement, const Beam& beam,
+                    std::span<const VoxelUpdate> updates) override;
+    void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) override;
+
+    [[nodiscard]] VoxelKey key() const noexcept { return key_; }
+    [[nodiscard]] std::optional<float> begin() const noexcept { return begin_; }
+    /// By the same arithmetic as the map's; empty: unknown.
+    [[nodiscard]] std::optional<float> log_odds() const noexcept { return now_; }
+    [[nodiscard]] const std::deque<Contribution>& newest() const noexcept { return newest_; }
+    [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+    [[nodiscard]] const std::map<BeamSource, SourceShare>& shares() const noexcept { return shares_; }
+
+  private:
+    void take(Contribution contribution, std::span<const VoxelUpdate> updates);
+
+    VoxelKey key_;
+    MapConfig config_;
+    std::optional<float> begin_;
+    std::optional<float> now_;
+    std::size_t kept_max_;
+    std::uint64_t depth_frames_ = 0;
+    std::uint64_t count_ = 0;
+    std::deque<Contribution> newest_;
+    std::map<BeamSource, SourceShare> shares_;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,66 @@
+#include "host/apps/playback/onto_bus.hpp"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "host/io/candump/log_reader.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr std::chrono::seconds kRoomPatience{2};
+constexpr std::chrono::microseconds kRoomPeriod{200};
+
+/// Waits for room, within the patience.
+Status<AppError> send(socketcan::CanSocket& socket, const wire::CanFrame& frame, OntoBus& played) {
+    const auto end = std::chrono::steady_clock::now() + kRoomPatience;
+    for (bool is_first = true; std::chrono::steady_clock::now() < end; is_first = false) {
+        const auto sent = socket.send(frame);
+        if (!sent) return fail(ExitCode::io_failed, sent.error().message());
+        if (*sent) {
+            ++played.sent;
+            played.waited += is_first ? 0U : 1U;
+            return Done{};
+        }
+        std::this_thread::sleep_for(kRoomPeriod);
+    }
+    return fail(ExitCode::io_failed,
+                socket.interface() + ": no room for a frame in 2 s: does anybody acknowledge on this bus?");
+}
+
+std::string text_of(const candump::LogEntry& entry) {
+    std::string line = candump::format_line(entry);
+    line.pop_back();
+    return line;
+}
+
+}  // namespace
+
+Result<OntoBus, AppError> play_onto(const std::filesystem::path& can_log, socketcan::CanSocket& socket,
+                                    Pace pace) {
+    auto reader = candump::LogReader::open(can_log);
+    if (!reader) return fail(ExitCode::no_input, reader.error().message());
+    OntoBus played;
+    while (true) {  // ends with the log
+        const auto entry = reader->next();
+        if (!entry) return fail(ExitCode::bad_data, entry.error().message());
+        if (!*entry) break;
+        const candump::LogEntry& line = **entry;
+        if (played.interface.empty()) played.interface = line.interface;
+        if (line.interface != played.interface) {
+            ++played.other_interface;
+        } else if (line.frame.is_error) {
+            ++played.error_frames;
+        } else {
+            if (pace.waits()) pace.wait(line.stamp.ns, pace.steps() ? text_of(line) : std::string());
+            if (const auto sent = send(socket, line.frame, played); !sent) return unexpected(sent.error());
+        }
+    }
+    played.lines_refused = reader->account().rejected();
+    if (played.interface.empty())
+        return fail(ExitCode::bad_data, can_log.string() + ": no line of it is a frame");
+    return played;
+}
+
+}  // namespace octoskin

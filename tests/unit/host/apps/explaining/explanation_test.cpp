@@ -1,0 +1,159 @@
+#include "host/apps/explaining/explanation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "host/apps/explaining/voxel_witness.hpp"
+#include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
+
+namespace octoskin {
+namespace {
+
+using namespace test;
+
+constexpr std::size_t kKept = 100;
+
+/// Several voxels watched in one run.
+class Witnesses final : public CommitListener {
+  public:
+    void on_joints(const JointMeasurement& joints) override {
+        for (VoxelWitness& witness : all) witness.on_joints(joints);
+    }
+    void on_reading(const RangeMeasurement& reading, const Beam& beam,
+                    std::span<const VoxelUpdate> updates) override {
+        for (VoxelWitness& witness : all) witness.on_reading(reading, beam, updates);
+    }
+    void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) override {
+        for (VoxelWitness& witness : all) witness.on_depth(frame, updates);
+    }
+    std::vector<VoxelWitness> all;
+};
+
+void play(const Scene& scene, Pipeline& pipeline) {
+    auto depth = scene.depth.begin();
+    for (const StampedFrame& entry : scene.bus.frames()) {
+        pipeline.on_can(entry.frame, entry.stamp);
+        while (depth != scene.depth.end() && pipeline.now() && depth->captured <= *pipeline.now())
+            pipeline.on_depth(*depth++);
+    }
+    pipeline.finish();
+}
+
+Explanation explanation_of(VoxelWitness witness, Occupancy occupancy) {
+    return {.p_map = {0.0, 0.5, 0.0},
+            .centre = {0.02, 0.5, 0.02},
+            .resolution_m = 0.04,
+            .occupancy = occupancy,
+            .witness = std::move(witness),
+            .begin = HostTime{0},
+            .names = {{BeamSource{}, "camera"}, {BeamSource{1, 3, 0}, "forearm_3"}},
+            .warnings = {}};
+}
+
+RangeMeasurement reading_at(double time_s) {
+    return {{1, 3, 0}, {std::llround(time_s * 1e9)}, 0.52, 0.01};
+}
+
+// The oracle is the map itself: it applies the terms on its own.
+TEST(VoxelWitness, sums_up_to_the_maps_log_odds_bit_for_bit_clamping_included) {
+    Scene scene = good_scene();
+    scene.depth.resize(2);
+    scene.mapping.map.log_odds_max = 1.5F;  // so that ten readings reach it
+    Pipeline first = make_pipeline(scene);
+    play(scene, first);
+    Witnesses witnesses;
+    std::size_t seen = 0;
+    first.maps().fused()->for_each_known([&](VoxelKey key, float) {
+        if (seen++ % 997 == 0) witnesses.all.emplace_back(key, scene.mapping.map, std::nullopt, kKept);
+    });
+    first.maps().proximity()->for_each_known([&](VoxelKey key, float) {
+        witnesses.all.emplace_back(key, scene.mapping.map, std::nullopt, kKept);
+    });
+    Pipeline pipeline = make_pipeline(scene);
+    pipeline.tell(&witnesses);
+    play(scene, pipeline);
+    std::size_t clamped = 0;
+    for (const VoxelWitness& witness : witnesses.all) {
+        ASSERT_TRUE(witness.log_odds());
+        EXPECT_EQ(witness.log_odds(), pipeline.maps().fused()->log_odds(witness.key()));
+        double sum = 0.0;
+        std::uint64_t count = 0;
+        for (const Contribution& contribution : witness.newest()) sum += contribution.change();
+        EXPECT_NEAR(sum, static_cast<double>(*witness.log_odds()), 1e-12);
+        double by_source = 0.0;
+        for (const auto& [source, share] : witness.shares()) {
+            by_source += share.change;
+            count += share.hits + share.misses;
+        }
+        EXPECT_NEAR(by_source, sum, 1e-12);
+        EXPECT_EQ(count, witness.newest().size());
+        clamped += *witness.log_odds() == scene.mapping.map.log_odds_max ? 1U : 0U;
+    }
+    EXPECT_GT(witnesses.all.size(), 20U);
+    EXPECT_GT(clamped, 0U) << "no clamp was tried";
+    EXPECT_TRUE(std::ranges::any_of(witnesses.all, [](const VoxelWitness& witness) {
+        return witness.shares().contains(BeamSource{});
+    })) << "no depth frame took part";
+}
+
+TEST(VoxelWitness, goes_on_from_the_map_that_was_there_and_keeps_the_newest) {
+    const VoxelKey key{1, 2, 3};
+    VoxelWitness witness(key, MapConfig{}, 3.0F, 2);
+    const std::vector<VoxelUpdate> updates{{key, 0.3F}, {{1, 2, 4}, 5.0F}};
+    for (int i = 0; i < 5; ++i) witness.on_reading(reading_at(1.0 + i), Beam{}, updates);
+    EXPECT_EQ(witness.log_odds(), 3.5F) << "clamped";
+    EXPECT_EQ(witness.count(), 5U);
+    ASSERT_EQ(witness.newest().size(), 2U);
+    EXPECT_EQ(witness.newest().back().captured.ns, 5'000'000'000);
+    EXPECT_EQ(witness.newest().back().change(), 0.0);
+    EXPECT_NEAR(witness.shares().at({1, 3, 0}).change, 0.5, 1e-12);
+    EXPECT_EQ(witness.shares().at({1, 3, 0}).hits, 5U);
+}
+
+TEST(Explanation, concludes_in_one_sentence) {
+    const VoxelKey key{1, 2, 3};
+    const std::vector<VoxelUpdate> hit{{key, 0.9F}};
+    const std::vector<VoxelUpdate> miss{{key, -0.4F}};
+    VoxelWitness ghost(key, MapConfig{}, std::nullopt, kKept);
+    ghost.on_reading(reading_at(4.1), Beam{}, hit);
+    ghost.on_reading(reading_at(4.6), Beam{}, hit);
+    EXPECT_EQ(
+        conclusion_of(explanation_of(ghost, Occupancy::occupied)),
+        "occupied, mainly by sensor forearm_3 between 4.100 and 4.600 s, 2 hits; the camera never saw it");
+    ghost.on_depth({{4'700'000'000}, 0, 0, {}}, miss);
+    EXPECT_EQ(
+        conclusion_of(explanation_of(ghost, Occupancy::occupied)),
+        "occupied, mainly by sensor forearm_3 between 4.100 and 4.600 s, 2 hits; the camera never saw it "
+        "occupied");
+    VoxelWitness freed(key, MapConfig{}, std::nullopt, kKept);
+    freed.on_depth({{4'700'000'000}, 0, 0, {}}, miss);
+    EXPECT_EQ(conclusion_of(explanation_of(freed, Occupancy::free)),
+              "free, mainly by the camera at 4.700 s, 1 miss");
+    EXPECT_EQ(conclusion_of(explanation_of({key, MapConfig{}, std::nullopt, kKept}, Occupancy::unknown)),
+              "unknown: no reading and no depth frame ever touched it");
+    EXPECT_EQ(conclusion_of(explanation_of({key, MapConfig{}, 1.0F, kKept}, Occupancy::occupied)),
+              "occupied, as the map had it at the begin of the recording; the camera never saw it");
+}
+
+TEST(Explanation, says_the_same_as_json) {
+    const VoxelKey key{1, 2, 3};
+    VoxelWitness witness(key, MapConfig{}, 0.5F, kKept);
+    Beam beam;
+    beam.p_map_sensor = {1.0, 2.0, 3.0};
+    const std::vector<VoxelUpdate> hit{{key, 0.75F}};
+    witness.on_reading(reading_at(4.1), beam, hit);
+    const auto json = to_json(explanation_of(witness, Occupancy::occupied));
+    EXPECT_EQ(json["log_odds"], 1.25);
+    EXPECT_EQ(json["log_odds_at_begin"], 0.5);
+    EXPECT_EQ(json["contributions"][0]["change"], 0.75);
+    EXPECT_EQ(json["contributions"][0]["sensor_m"], (std::vector<double>{1.0, 2.0, 3.0}));
+    EXPECT_EQ(json["contributions"][0]["source"]["name"], "forearm_3");
+    EXPECT_EQ(json["contributions"][0]["time_s"], 4.1);
+}
+
+}  // namespace
+}  // namespace octoskin
