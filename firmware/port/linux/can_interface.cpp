@@ -108,12 +108,6 @@ void CanInterface::open() {
     if (socket_ < 0) return fail(errno, "cannot open a CAN socket");
     if (const int error_number = set_up(index); error_number != 0)
         return close(error_number, "cannot use this interface");
-    ifreq request = request_for(name_);
-    const bool is_known = ::ioctl(socket_, SIOCGIFMTU, &request) == 0;
-    if (uses_can_fd_ && (!is_known || request.ifr_mtu < static_cast<int>(CANFD_MTU)))
-        close(EPROTONOSUPPORT,
-              "the configuration asks for CAN FD, and the interface is not set to it "
-              "(`ip link set NAME type can ... dbitrate ... fd on`)");
 }
 
 /// 0, or the kernel's error number.
@@ -139,6 +133,12 @@ void CanInterface::close(int error_number, const char* doing) {
 
 void CanInterface::fail(int error_number, const char* doing) {
     trouble_ = name_ + ": " + doing + ": " + std::strerror(error_number) + remedy(error_number);
+}
+
+bool CanInterface::can_carry_frames() const {
+    ifreq request = request_for(name_);
+    return !uses_can_fd_ ||
+           (::ioctl(socket_, SIOCGIFMTU, &request) == 0 && request.ifr_mtu >= static_cast<int>(CANFD_MTU));
 }
 
 bool CanInterface::is_up() const {
@@ -215,6 +215,11 @@ void CanInterface::poll(NodeTime now) {
     }
     if (socket_ < 0) return;
     if (!is_up()) return fail(ENETDOWN, "link down");
+    if (!can_carry_frames()) {  // which only changes while it is down
+        return fail(EPROTONOSUPPORT,
+                    "the configuration asks for CAN FD, and the interface is not set to it "
+                    "(`ip link set NAME type can ... dbitrate ... fd on`)");
+    }
     if (!trouble_.empty() || has_carrier()) errors_ = node::CanState::active;
     trouble_.clear();
 }

@@ -60,6 +60,7 @@ class CanInterface final : public node::CanTransmitter {
     [[nodiscard]] int set_up(int index);
     void fail(int error_number, const char* doing);
     [[nodiscard]] bool is_up() const;
+    [[nodiscard]] bool can_carry_frames() const;
     [[nodiscard]] bool has_carrier() const;
 
     std::string name_;
