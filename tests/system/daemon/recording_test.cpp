@@ -72,6 +72,17 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
     std::printf("%s", recorded.output.c_str());
     expect_own_map();
 
+    // What explains a voxel starts from the map that was there: it refuses if the sum is not the map's.
+    const std::string explain = "explain --json --recording " + out() + " ";
+    int went_on = 0;
+    for (const char* point : {"1.5 0 0.5", "1 0 0.5", "0.8 0.3 0.3", "0.5 0.5 0.5", "0.3 0.2 0.8"}) {
+        const Ran explained = run(explain + point);
+        ASSERT_EQ(explained.exit_code, 0) << explained.output;
+        const Json json = Json::parse(explained.output);
+        went_on += !json["log_odds_at_begin"].is_null() && !json["contributions"].empty() ? 1 : 0;
+    }
+    EXPECT_GT(went_on, 0) << "no voxel was known at the begin and changed afterwards";
+
     // The same again in the order of capture times: another map, and the same one every time.
     const auto in_order = ScratchFolder::read(out() + "/maps/fused.ot");
     const std::string plain = "replay " + out() + " --fused-only --by-capture-time";
