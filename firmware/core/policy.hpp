@@ -18,6 +18,10 @@ struct Policy {
     // --- bring-up. Datasheet DS12385: boots within 1.2 ms of XSHUT high; it states no minimum low time.
     Microseconds xshut_low{1'000};
     Microseconds xshut_boot{2'000};
+    /// No sensor starts ranging sooner after the node's own start. By then all are up, 34 of them too, so
+    /// that in which period each one starts does not depend on what bring-up took, and no neighbour's
+    /// bring-up holds the bus when its phase comes.
+    Microseconds first_start{250'000};
 
     // --- reading
     /// How much one ready time may stray from the sensor's even grid.

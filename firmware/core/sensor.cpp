@@ -48,7 +48,7 @@ Sensor::Sensor(const SensorConfig& config, const SensorSurroundings& surrounding
       ranging_(device_, config_, rules, policy),
       recovery_(policy),
       calibration_(device_) {
-    begin_bring_up(now);
+    begin_bring_up(now, now + policy.first_start);
 }
 
 void Sensor::order_start(NodeTime now) {
@@ -130,10 +130,10 @@ BusUse Sensor::advance(NodeTime now) {
     return BusUse::releases;
 }
 
-void Sensor::begin_bring_up(NodeTime now) {
+void Sensor::begin_bring_up(NodeTime now, std::optional<NodeTime> first_start) {
     reinitialise_ordered_.reset();
     ranging_.abandon();
-    bring_up_.begin(now);
+    bring_up_.begin(now, first_start);
     mode_ = Mode::bringing_up;
 }
 

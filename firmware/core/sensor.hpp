@@ -108,7 +108,7 @@ class Sensor {
     [[nodiscard]] BusUse advance_ranging(NodeTime now);
     void begin_calibration(NodeTime now);
     void end_calibration(const CalibrationResult& result);
-    void begin_bring_up(NodeTime now);
+    void begin_bring_up(NodeTime now, std::optional<NodeTime> first_start = {});
     void range_or_rest(NodeTime now);
     void on_reading();
     void on_refused();

@@ -70,7 +70,8 @@ TEST(BlackBox, of_a_sensor_with_a_wrong_id_makes_a_script_on_which_the_driver_fa
 
 TEST(BlackBox, holds_what_led_to_a_sensor_that_stopped_answering_while_it_ranged) {
     NodeRig rig(fleet_config(1, 1), std::vector<SensorSetup>(1));
-    rig.run_for(1 * kSecond);
+    rig.run_for(1'033 * kMillisecond);  // the last reading is one after which no register is read back
+    const std::int64_t hurt_us = rig.now().us;
     rig.bus(0).inject(
         {.kind = sim::I2cFaultKind::nack_address, .first = rig.bus(0).transfer_count(), .count = 2});
     rig.run_for(30 * kSecond);
@@ -101,7 +102,7 @@ TEST(BlackBox, holds_what_led_to_a_sensor_that_stopped_answering_while_it_ranged
     ASSERT_TRUE(device.has_measurement());
     const auto readings = rig.readings_of(0);
     const auto after = std::ranges::find_if(
-        readings, [](const SaidReading& said) { return said.end.us > 1'000'000 + 5'000; });
+        readings, [hurt_us](const SaidReading& said) { return said.end.us > hurt_us + 5'000; });
     EXPECT_EQ(device.measurement().range_mm, std::prev(after)->reading.range_mm);
     device.begin_read();
     EXPECT_EQ(run(device), vl53l1x::Progress::failed);

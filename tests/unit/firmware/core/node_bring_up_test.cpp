@@ -44,6 +44,26 @@ TEST(NodeBringUp, has_17_sensors_on_4_buses_ranging_within_a_third_of_a_second) 
     EXPECT_EQ(rig.node().counts().i2c_errors, 0U);
 }
 
+TEST(NodeBringUp, starts_each_sensor_in_the_same_period_however_long_all_of_it_took) {
+    NodeConfig config = fleet_config(17, 4);
+    for (std::uint8_t i = 0; i < 17; ++i)
+        config.sensors.at(i).phase_us = static_cast<std::uint16_t>(1'500 * i);
+    // 250 ms on, the last phase of a period is over and the next one's first is 8 ms away: time for all to be
+    // given their period.
+    const sim::NodeClock clock(NodeTime{33'000 * 100 + 25'000 - 250'000}, 0.0);
+    NodeRig fast(config, fleet(17), clock);
+    config.i2c_hz = 300'000;
+    NodeRig slow(config, fleet(17), clock);
+    for (NodeRig* rig : {&fast, &slow}) rig->run_for(400 * kMillisecond);
+    for (std::size_t sensor = 0; sensor < 17; ++sensor) {
+        // The first one belongs to the bring-up.
+        const std::int64_t fast_us = fast.truth(sensor).at(1).window_middle.us;
+        const std::int64_t slow_us = slow.truth(sensor).at(1).window_middle.us;
+        EXPECT_GE(fast_us, 258'000) << sensor;
+        EXPECT_NEAR(static_cast<double>(fast_us), static_cast<double>(slow_us), 300.0) << sensor;
+    }
+}
+
 TEST(NodeBringUp, holds_every_sensor_in_reset_for_a_millisecond_before_the_first_rises) {
     NodeRig rig(fleet_config(17, 4), fleet(17));
     rig.run_for(333 * kMillisecond);
