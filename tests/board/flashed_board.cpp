@@ -21,7 +21,7 @@ NodeConfig fleet(std::uint8_t count, DistanceMode mode, std::uint16_t budget_ms,
 
 FlashedBoard::FlashedBoard(const NodeConfig& config, NucleoOptions options)
     : config_(config), rangings_(config.sensor_count) {
-    const BoardParts parts = draw_board_parts(3, config);
+    const BoardParts parts = draw_board_parts({.seed = 3}, config);
     options.bit_rates = {config.nominal_bitrate, config.data_bitrate};
     options.unique_id = parts.unique_id;
     std::array<std::uint8_t, kNodeConfigBytesMax> block{};

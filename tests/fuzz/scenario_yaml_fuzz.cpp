@@ -32,6 +32,7 @@ class ScenarioInput {
         assert((motion.R_base_link.transpose() * motion.R_base_link - Eigen::Matrix3d::Identity()).norm() <
                1e-6);
         assert(scenario->ranges.min_m <= scenario->ranges.max_m && scenario->rest_s >= 3.0);
+        assert(scenario->slow_clocks.factor_min <= scenario->slow_clocks.factor_max);
         assert((scenario->region.p_base_min.array() < scenario->region.p_base_max.array()).all());
         for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{7}, ~std::uint64_t{0}}) {
             assert(scenario->map_shift_m(seed).cwiseAbs().maxCoeff() <= 1.0);

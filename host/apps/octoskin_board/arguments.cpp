@@ -105,6 +105,11 @@ void describe(CLI::App& app, Arguments& arguments) {
         "lose_arbitration stretch sda_stuck_low");
     app.add_option("--seed", arguments.seed, "Of the sensors' constants, the unique id and what RAM holds")
         ->capture_default_str();
+    app.add_option("--slow-clock-min", arguments.slow_clocks.factor_min,
+                   "The sensors' slow oscillators are at least so many times as fast as they say")
+        ->capture_default_str();
+    app.add_option("--slow-clock-max", arguments.slow_clocks.factor_max, "And at most")
+        ->capture_default_str();
     app.add_flag("--allow-violations", arguments.allows_violations, "Exit code 0 in spite of violations");
     app.add_flag("--serial", arguments.shows_serial, "Print what the virtual COM port says");
     app.add_option("--socket-fd", arguments.socket,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hw/sim/i2c/simulated_i2c_bus.hpp"
+#include "hw/sim/vl53l1x/ranging_timing.hpp"
 
 namespace octoskin::board {
 
@@ -30,6 +31,7 @@ struct Arguments {
     bool sends_sync = false;
     std::vector<std::string> i2c_faults;
     std::uint64_t seed = 1;
+    sim::SlowClockSpread slow_clocks{};
     bool allows_violations = false;
     bool shows_serial = false;
     int socket = -1;  ///< open file descriptor of the parent's socket; negative: alone

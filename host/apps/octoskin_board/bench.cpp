@@ -70,7 +70,7 @@ Result<std::unique_ptr<Bench>, AppError> Bench::build(const Arguments& arguments
     if (!config) return unexpected(config.error());
     const auto image = ElfImage::load(arguments.elf);
     if (!image) return fail(ExitCode::bad_data, image.error().what);
-    const sim::BoardParts parts = sim::draw_board_parts(arguments.seed, *config);
+    const sim::BoardParts parts = sim::draw_board_parts({arguments.seed, arguments.slow_clocks}, *config);
     auto bench = std::make_unique<Bench>();
     bench->config_ = *config;
     std::array<std::uint8_t, kNodeConfigBytesMax> block{};

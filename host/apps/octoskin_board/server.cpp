@@ -19,6 +19,15 @@ void happen(NucleoBoard& board, const sim::BusEvent& event) {
     }
 }
 
+sim::SimTime first_address(NucleoBoard& board) {
+    std::optional<sim::SimTime> first;
+    for (std::size_t bus = 0; bus < NucleoBoard::kI2cBuses; ++bus) {
+        const auto time = board.wire(bus).first_address();
+        if (time && (!first || *time < *first)) first = time;
+    }
+    return first.value_or(sim::SimTime{});
+}
+
 sim::BoardSummary summary_of(NucleoBoard& board) {
     sim::BoardSummary summary;
     summary.instructions = board.core().instructions();
@@ -27,6 +36,7 @@ sim::BoardSummary summary_of(NucleoBoard& board) {
         summary.i2c_busy_s.at(bus) = static_cast<double>(board.i2c_busy_ps(bus)) * 1e-12;
     summary.longest_awake_us = static_cast<double>(board.core().longest_awake_ps()) * 1e-6;
     summary.counter_zero = board.true_time(board.timer2().counter_zero());
+    summary.first_address = first_address(board);
     summary.report = violation_report(board);
     return summary;
 }

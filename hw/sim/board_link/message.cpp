@@ -93,6 +93,7 @@ void write(Writer& writer, const BoardSummary& message) {
     writer.put(message.i2c_busy_s);
     writer.put(message.longest_awake_us);
     writer.put(message.counter_zero);
+    writer.put(message.first_address);
     writer.put(message.report);
 }
 
@@ -123,6 +124,7 @@ BoardSummary read_summary(Reader& reader) {
     message.i2c_busy_s = reader.get<std::array<double, 4>>();
     message.longest_awake_us = reader.get<double>();
     message.counter_zero = reader.get<SimTime>();
+    message.first_address = reader.get<SimTime>();
     message.report = reader.get_text();
     return message;
 }

@@ -58,8 +58,9 @@ struct BoardSummary {
     std::uint64_t violations = 0;
     std::array<double, 4> i2c_busy_s{};
     double longest_awake_us = 0.0;
-    SimTime counter_zero{};  ///< when the program last set its microsecond counter to 0
-    std::string report;      ///< violations, one a line
+    SimTime counter_zero{};   ///< when the program last set its microsecond counter to 0
+    SimTime first_address{};  ///< when the first address of all had passed on an I2C bus; 0: none has
+    std::string report;       ///< violations, one a line
 };
 
 using BoardMessage = std::variant<RunUntil, HasRun, WhatIsSeen, Seen, AskSummary, BoardSummary>;

@@ -15,6 +15,12 @@ struct BoardParts {
     std::vector<SensorPart> sensors;  ///< by local index
     std::array<std::uint8_t, 12> unique_id{};
 };
-[[nodiscard]] BoardParts draw_board_parts(std::uint64_t seed, const NodeConfig& config);
+
+/// Where they are drawn from.
+struct PartsReel {
+    std::uint64_t seed = 0;
+    SlowClockSpread slow_clocks{};
+};
+[[nodiscard]] BoardParts draw_board_parts(const PartsReel& reel, const NodeConfig& config);
 
 }  // namespace octoskin::sim

@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <array>
+#include <charconv>
 #include <cstdlib>
 
 namespace octoskin::sim {
@@ -19,15 +21,24 @@ std::filesystem::path write_block(const NodeConfig& config) {
     return name;
 }
 
+/// That reads back as the same number.
+std::string text_of(double value) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.begin(), digits.end(), value);
+    return {digits.begin(), end.ptr};
+}
+
 std::vector<std::string> arguments_of(const EmulatedBoards& emulated, const std::filesystem::path& block,
-                                      double drift_ppm, std::uint64_t seed) {
+                                      double drift_ppm, const PartsReel& reel) {
     return {"--elf",
             emulated.image.string(),
             "--config",
             block.string(),
             "--drift-ppm=" + std::to_string(drift_ppm),
             "--seed",
-            std::to_string(seed),
+            std::to_string(reel.seed),
+            "--slow-clock-min=" + text_of(reel.slow_clocks.factor_min),
+            "--slow-clock-max=" + text_of(reel.slow_clocks.factor_max),
             "--cycles-per-instruction",
             std::to_string(emulated.cycles_per_instruction)};
 }
@@ -35,11 +46,11 @@ std::vector<std::string> arguments_of(const EmulatedBoards& emulated, const std:
 }  // namespace
 
 EmulatedBoard::EmulatedBoard(const EmulatedBoards& emulated, const NodeConfig& config, double drift_ppm,
-                             std::uint64_t seed, SimulatedCanBus& can, const SceneOfSensor& scene)
+                             const PartsReel& reel, SimulatedCanBus& can, const SceneOfSensor& scene)
     : drift_ppm_(drift_ppm), block_(write_block(config)) {
     for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) scenes_.push_back(scene(sensor));
     process_ = std::make_unique<BoardProcess>(
-        emulated.program, arguments_of(emulated, block_, drift_ppm, seed),
+        emulated.program, arguments_of(emulated, block_, drift_ppm, reel),
         [this](const WhatIsSeen& question) {
             return scenes_.at(question.sensor)(question.ranging_index, question.window_middle, question.roi);
         });
@@ -94,10 +105,15 @@ double EmulatedBoard::i2c_busy_s(std::size_t bus) {
     return summary().i2c_busy_s.at(bus);
 }
 
-NodeClock EmulatedBoard::clock() {
+/// Nothing but the buses tells when the node core began: the first address passes when its sensors have been
+/// in reset for as long as the core wants, one turn of the loop later.
+BoardStart EmulatedBoard::start() {
+    constexpr std::int64_t kAddressUs = 28;
+    const std::int64_t before_us = (node::Policy{}.xshut_low + kLoopTurn).count() + kAddressUs;
     const SimTime zero = summary().counter_zero;
     const double drifted_us = static_cast<double>(zero.us) * (1.0 + drift_ppm_ * 1e-6);
-    return {NodeTime{} - Microseconds{static_cast<std::int64_t>(drifted_us)}, drift_ppm_};
+    const NodeTime at_start = NodeTime{} - Microseconds{static_cast<std::int64_t>(drifted_us)};
+    return {.clock = {at_start, drift_ppm_}, .first_turn = {summary().first_address.us - before_us}};
 }
 
 std::string EmulatedBoard::violations() {

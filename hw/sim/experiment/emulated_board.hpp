@@ -9,6 +9,7 @@
 #include "common/config/node_config.hpp"
 #include "hw/sim/board_link/board_process.hpp"
 #include "hw/sim/can/simulated_can_bus.hpp"
+#include "hw/sim/experiment/board_parts.hpp"
 #include "hw/sim/experiment/rig_board.hpp"
 #include "hw/sim/experiment/simulated_board.hpp"
 
@@ -23,16 +24,16 @@ struct EmulatedBoards {
 
 class EmulatedBoard final : public RigBoard {
   public:
-    /// `can` must outlive the board. Its parts are those that the same seed gives to a board in this process.
+    /// `can` must outlive the board. Its parts are those that the same reel gives to a board in this process.
     /// Throws BoardLinkError.
     EmulatedBoard(const EmulatedBoards& emulated, const NodeConfig& config, double drift_ppm,
-                  std::uint64_t seed, SimulatedCanBus& can, const SceneOfSensor& scene);
+                  const PartsReel& reel, SimulatedCanBus& can, const SceneOfSensor& scene);
     ~EmulatedBoard() override;
 
     void begin_turn(SimTime now) override;
     void finish_turn() override;
     [[nodiscard]] double i2c_busy_s(std::size_t bus) override;
-    [[nodiscard]] NodeClock clock() override;
+    [[nodiscard]] BoardStart start() override;
     [[nodiscard]] std::string violations() override;
 
   private:

@@ -103,7 +103,7 @@ class RigInOneProcess {
             for (std::size_t bus = 0; bus < kNodeBusesMax; ++bus) {
                 summary.i2c_busy_fraction.push_back(board->i2c_busy_s(bus) / summary.duration_s);
             }
-            summary.node_clocks.push_back(board->clock());
+            summary.board_starts.push_back(board->start());
             summary.violations += board->violations();
         }
         return summary;
@@ -123,17 +123,14 @@ class RigInOneProcess {
 
     std::unique_ptr<RigBoard> make_board(const ExperimentInput& input, const NodeConfig& config,
                                          NodeClock clock, const SceneOfSensor& scene) {
+        const PartsReel reel{input.seed, input.scenario.slow_clocks};
         if (input.emulated) {
-            return std::make_unique<EmulatedBoard>(*input.emulated, config, clock.drift_ppm(), input.seed,
-                                                   bus_, scene);
+            return std::make_unique<EmulatedBoard>(*input.emulated, config, clock.drift_ppm(), reel, bus_,
+                                                   scene);
         }
-        SimTime starts_at{};
-        if (!input.board_starts.empty()) {
-            const BoardStart& start = input.board_starts.at(boards_.size());
-            clock = start.clock;
-            starts_at = start.first_turn;
-        }
-        return std::make_unique<SimulatedBoard>(config, clock, input.seed, present_, bus_, scene, starts_at);
+        BoardStart start{.clock = clock, .first_turn = {}};
+        if (!input.board_starts.empty()) start = input.board_starts.at(boards_.size());
+        return std::make_unique<SimulatedBoard>(config, start, reel, bus_, scene);
     }
 
     struct ScheduledMark {

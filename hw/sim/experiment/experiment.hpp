@@ -16,16 +16,11 @@
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/sim/arm/arm.hpp"
 #include "hw/sim/experiment/emulated_board.hpp"
+#include "hw/sim/experiment/rig_board.hpp"
 #include "hw/sim/scenario/scenario.hpp"
 #include "hw/sim/world/world.hpp"
 
 namespace octoskin::sim {
-
-/// How boards in this process start. Without it they run from time 0, and their counters start anywhere.
-struct BoardStart {
-    NodeClock clock{};
-    SimTime first_turn{};  ///< when the node core begins to work
-};
 
 struct ExperimentInput {
     const rig::Rig& rig;
@@ -36,7 +31,9 @@ struct ExperimentInput {
     std::uint64_t seed = 0;
     bool is_depth_noise_free = false;
     std::optional<EmulatedBoards> emulated{};  ///< the flashed image in place of the node core here
-    std::vector<BoardStart> board_starts{};    ///< one for each node, or none
+    /// Of boards in this process: one for each node, or none. Then they run from time 0, and their counters
+    /// start anywhere.
+    std::vector<BoardStart> board_starts{};
 };
 
 /// What a sensor truly did: the oracle that no recorder has.
@@ -65,7 +62,7 @@ struct ExperimentSummary {
     double can_busy_fraction = 0.0;
     std::vector<double> i2c_busy_fraction;  ///< per node and bus
     double first_range_s = 0.0;             ///< when the first range was on the bus
-    std::vector<NodeClock> node_clocks;     ///< the true ones
+    std::vector<BoardStart> board_starts;   ///< of each node, as they truly were
     std::string violations;                 ///< of emulated boards, one a line
 };
 

@@ -11,6 +11,12 @@
 
 namespace octoskin::sim {
 
+/// How a board starts.
+struct BoardStart {
+    NodeClock clock{};     ///< its microsecond counter, as it truly runs
+    SimTime first_turn{};  ///< when the node core begins to work
+};
+
 class RigBoard {
   public:
     virtual ~RigBoard() = default;
@@ -18,8 +24,7 @@ class RigBoard {
     virtual void begin_turn(SimTime now) = 0;
     virtual void finish_turn() = 0;
     [[nodiscard]] virtual double i2c_busy_s(std::size_t bus) = 0;
-    /// Its microsecond counter, as it truly runs.
-    [[nodiscard]] virtual NodeClock clock() = 0;
+    [[nodiscard]] virtual BoardStart start() = 0;
     /// What its program did against the chip's manuals, one a line; empty if nothing.
     [[nodiscard]] virtual std::string violations() { return {}; }
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "hw/sim/can/simulated_can_bus.hpp"
 #include "hw/sim/clock.hpp"
 #include "hw/sim/data_ready/simulated_data_ready_lines.hpp"
+#include "hw/sim/experiment/board_parts.hpp"
 #include "hw/sim/experiment/rig_board.hpp"
 #include "hw/sim/i2c/simulated_i2c_bus.hpp"
 #include "hw/sim/vl53l1x/sensor_model.hpp"
@@ -20,31 +22,40 @@ namespace octoskin::sim {
 /// The scene that the sensor with this local index looks at.
 using SceneOfSensor = std::function<RangingScene(std::uint8_t sensor)>;
 
+/// A turn of the board's loop, and about what the flashed image takes on the emulated board
+/// (hw/sim/stm32g474) from the end of a transfer to the next one's START.
+inline constexpr Microseconds kLoopTurn{12};
+
 class SimulatedBoard final : public RigBoard, private node::XshutLines {
   public:
-    /// `present` and `can` must outlive the board. Every sensor's part differs: its constants are a function
-    /// of `seed`, node and sensor. Nothing happens before `starts_at`.
-    SimulatedBoard(const NodeConfig& config, NodeClock clock, std::uint64_t seed, const Present& present,
-                   SimulatedCanBus& can, const SceneOfSensor& scene, SimTime starts_at = {});
+    /// `can` must outlive the board. Every sensor's part differs: its constants are a function
+    /// of `reel`, node and sensor. Nothing happens before the start's first turn.
+    SimulatedBoard(const NodeConfig& config, const BoardStart& start, const PartsReel& reel,
+                   SimulatedCanBus& can, const SceneOfSensor& scene);
 
-    /// One turn of the board's loop at the present time.
-    void poll();
-    void begin_turn(SimTime) override { poll(); }
+    void begin_turn(SimTime now) override;
     void finish_turn() override {}
     [[nodiscard]] double i2c_busy_s(std::size_t bus) override;
-    [[nodiscard]] NodeClock clock() override { return clock_; }
+    [[nodiscard]] BoardStart start() override { return start_; }
     [[nodiscard]] SensorModel& sensor(std::size_t index) { return *sensors_.at(index); }
     [[nodiscard]] SimulatedI2cBus& bus(std::size_t index) { return *buses_.at(index); }
     [[nodiscard]] const node::Node& node() const noexcept { return *node_; }
 
   private:
-    void start();
+    struct Received {
+        wire::CanFrame frame;
+        SimTime end;
+    };
+
+    void turn(SimTime time);
+    [[nodiscard]] SimTime next_event() const;
     void set(std::uint8_t line, bool is_high) override;
 
     NodeConfig config_;
-    NodeClock clock_;
-    const Present& present_;
-    SimTime starts_at_;
+    BoardStart start_;
+    Present present_;  ///< the board's own, which runs from event to event
+    SimTime turn_began_;
+    std::deque<Received> received_;
     node::Identity identity_;
     node::CanTransmitter* transmitter_ = nullptr;
     std::vector<std::unique_ptr<SensorModel>> sensors_;

@@ -85,6 +85,20 @@ void read_sensing(const Table& top, Scenario& scenario) {
     scenario.ranges.max_m = ranges.number("max_m", {scenario.ranges.min_m, 10.0});
 }
 
+SlowClockSpread read_slow_clocks(const Table& top) {
+    SlowClockSpread spread;
+    const Value* value = top.find("slow_clocks");
+    if (value == nullptr) return spread;
+    // No part is known to be so far off; beyond it, somebody wrote percent.
+    constexpr rig::Range<double> kModelled{0.9, 1.2};
+    const Table table(*value, "slow_clocks", {"factor_min", "factor_max"});
+    spread.factor_min = table.number("factor_min", kModelled, spread.factor_min);
+    spread.factor_max = table.number("factor_max", kModelled, spread.factor_max);
+    if (spread.factor_max < spread.factor_min)
+        table.fail("factor_max", "expected at least factor_min, " + std::to_string(spread.factor_min));
+    return spread;
+}
+
 void read_seeds(const Table& top, Scenario& scenario) {
     const Table seeds(top.require("seeds"), "seeds", {"map_shift_m", "further_map_shift_max_m"});
     const auto& shifts = rig::read_list(seeds.require("map_shift_m"), seeds.path_of("map_shift_m"));
@@ -129,12 +143,14 @@ Scenario read_checked(const std::filesystem::path& file) {
     Scenario scenario;
     scenario.file = file;
     const Value document = rig::load_with_extends(file, &scenario.extended_files);
-    const Table top(document, "",
-                    {"name", "world", "motion", "depth", "ranges", "seeds", "hidden_models", "region"});
+    const Table top(
+        document, "",
+        {"name", "world", "motion", "depth", "ranges", "slow_clocks", "seeds", "hidden_models", "region"});
     scenario.name = top.name("name");
     scenario.world = read_world(top);
     read_motion(top, scenario);
     read_sensing(top, scenario);
+    scenario.slow_clocks = read_slow_clocks(top);
     read_seeds(top, scenario);
     read_judgement(top, scenario);
     return scenario;

@@ -15,6 +15,7 @@
 #include "common/result.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/sim/arm/trajectory.hpp"
+#include "hw/sim/vl53l1x/ranging_timing.hpp"
 
 namespace octoskin::sim {
 
@@ -47,6 +48,7 @@ struct Scenario {
     CircleMotion motion;
     double depth_sigma_m = 0.0;
     RangeOptics ranges;
+    SlowClockSpread slow_clocks;  ///< of the sensors
     /// Translation of T_map_base, one per seed: where world, camera and robot together stand in the map's
     /// grid.
     std::vector<Eigen::Vector3d> map_shifts_m;

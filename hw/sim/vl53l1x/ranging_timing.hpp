@@ -24,6 +24,12 @@ struct SensorPart {
     bool forgets_address_as_soft_reset_begins = false;
 };
 
+/// How fast the slow oscillators of a reel of parts are: of each somewhere between these.
+struct SlowClockSpread {
+    double factor_min = 1.04;
+    double factor_max = 1.09;
+};
+
 struct RangingTiming {
     Microseconds budget{0};  ///< length of one ranging
     Microseconds slot{0};    ///< the inter-measurement register, by the simulation's clock

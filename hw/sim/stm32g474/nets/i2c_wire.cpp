@@ -56,6 +56,7 @@ void I2cWire::end_transfer() {
 
 I2cWire::Answer I2cWire::start(std::uint8_t address, bool is_read, SimTime time) {
     if (!is_in_transfer_) begin_transfer(address);
+    if (!first_address_) first_address_ = time;
     byte_being_read_.reset();
     if (fault(I2cFaultKind::stretch) != nullptr) {
         is_stretched_ = true;

@@ -44,6 +44,8 @@ class I2cWire {
     [[nodiscard]] bool is_scl_low() const { return is_scl_driven_low_ || is_stretched_; }
     [[nodiscard]] bool is_sda_low(SimTime time);
     [[nodiscard]] bool is_in_transfer() const noexcept { return is_in_transfer_; }
+    /// When the first address of all had passed.
+    [[nodiscard]] std::optional<SimTime> first_address() const noexcept { return first_address_; }
     [[nodiscard]] std::uint64_t transfer_count() const noexcept { return transfer_count_; }
     [[nodiscard]] std::uint64_t bit_count() const noexcept { return bit_count_; }
     [[nodiscard]] std::uint64_t refused_count() const noexcept { return refused_count_; }
@@ -67,6 +69,7 @@ class I2cWire {
     std::uint32_t stuck_clocks_ = 0;  ///< still to be given before SDA is let go
     bool is_scl_driven_low_ = false;
     bool is_sda_driven_low_ = false;
+    std::optional<SimTime> first_address_;
     std::uint64_t transfer_count_ = 0;
     std::uint64_t bit_count_ = 0;
     std::uint64_t refused_count_ = 0;

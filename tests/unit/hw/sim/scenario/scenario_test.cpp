@@ -54,6 +54,8 @@ TEST_F(ScenarioFile, of_the_experiment_says_what_the_experiment_is) {
     EXPECT_EQ(scenario->ranges.sigma_m, 0.02);
     EXPECT_EQ(scenario->ranges.min_m, 0.04);
     EXPECT_EQ(scenario->ranges.max_m, 4.0);
+    EXPECT_EQ(scenario->slow_clocks.factor_min, 1.04);
+    EXPECT_EQ(scenario->slow_clocks.factor_max, 1.09);
     EXPECT_THAT(scenario->hidden_models, testing::ElementsAre("cone", "crate"));
     EXPECT_EQ(scenario->region.p_base_max, Eigen::Vector3d(1.4, 1.2, 1.4));
     EXPECT_EQ(scenario->region.floor_top_m, -0.02);
@@ -80,6 +82,10 @@ TEST_F(ScenarioFile, takes_other_values_laid_over_it) {
     EXPECT_EQ(scenario->depth_sigma_m, 0.0);
     EXPECT_FALSE(scenario->region.floor_top_m);
     EXPECT_EQ(scenario->motion.ticks(), 600u);
+    const auto even = read_with("slow_clocks: {factor_min: 1.075, factor_max: 1.075}");
+    ASSERT_TRUE(even) << even.error().message();
+    EXPECT_EQ(even->slow_clocks.factor_min, 1.075);
+    EXPECT_EQ(even->slow_clocks.factor_max, 1.075);
 }
 
 TEST_F(ScenarioFile, with_an_unknown_key_is_refused_with_file_line_and_key) {
@@ -100,6 +106,8 @@ TEST_F(ScenarioFile, with_a_wrong_value_is_refused_with_what_was_expected) {
     EXPECT_THAT(error_of("motion: {circle: {start_position_rad: [0, left]}}"),
                 HasSubstr("start_position_rad[1]"));
     EXPECT_THAT(error_of("ranges: {min_m: 5}"), HasSubstr("ranges.max_m"));
+    EXPECT_THAT(error_of("slow_clocks: {factor_min: 2}"), HasSubstr("slow_clocks.factor_min"));
+    EXPECT_THAT(error_of("slow_clocks: {factor_min: 1.095}"), HasSubstr("slow_clocks.factor_max"));
     EXPECT_THAT(error_of("region: {max_m: [-1, 1.2, 1.4]}"), HasSubstr("region.max_m"));
     EXPECT_THAT(error_of("seeds: {map_shift_m: [[0, 0]]}"), HasSubstr("seeds.map_shift_m[0]"));
     EXPECT_THAT(error_of("world: no-such.sdf"), AllOf(HasSubstr(":2"), HasSubstr("no-such.sdf")));
