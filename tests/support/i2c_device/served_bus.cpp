@@ -65,11 +65,9 @@ struct ServedBus::Wired {
     Wired(const ServedSensor& wiring)
         : name(wiring.name),
           model({.boot_time = kBootTime}, scene_of(wiring.range)),
-          xshut(open_line(wiring.xshut_path, O_RDONLY)),
-          gpio1(open_line(wiring.gpio1_path, O_WRONLY)) {}
+          xshut(open_line(wiring.xshut_path, O_RDONLY)) {}
     ~Wired() {
         if (xshut >= 0) ::close(xshut);
-        if (gpio1 >= 0) ::close(gpio1);
     }
     Wired(const Wired&) = delete;
     Wired& operator=(const Wired&) = delete;
@@ -82,15 +80,29 @@ struct ServedBus::Wired {
     std::string name;
     sim::SensorModel model;
     int xshut;
-    int gpio1;
-    std::optional<bool> driven{};     // the level that GPIO1's line was last pulled to
     sim::SimTime recorded_until{-1};  // when the newest ranging in the record was ready
+};
+
+// What GPIO1 of one sensor, or of several wired together, is wired to.
+struct ServedBus::Gpio1Line {
+    explicit Gpio1Line(const std::string& wired_to) : path(wired_to), file(open_line(path, O_WRONLY)) {}
+    ~Gpio1Line() {
+        if (file >= 0) ::close(file);
+    }
+    Gpio1Line(const Gpio1Line&) = delete;
+    Gpio1Line& operator=(const Gpio1Line&) = delete;
+
+    std::string path;
+    int file;
+    std::vector<sim::SensorModel*> sensors{};
+    std::optional<bool> driven{};  // the level that the line was last pulled to
 };
 
 ServedBus::ServedBus(const ServedBusOptions& options) : bus_(present_, options.hz) {
     for (const ServedSensor& sensor : options.sensors) {
         sensors_.push_back(std::make_unique<Wired>(sensor));
         bus_.attach(sensors_.back()->model);
+        if (sensor.gpio1_path != kNotWired) wire_gpio1(sensor.gpio1_path, sensors_.back()->model);
     }
     if (!options.faults_path.empty()) faults_.emplace(options.faults_path);
 }
@@ -157,13 +169,22 @@ bool ServedBus::apply(const SensorFaultCommand& command, sim::SimTime now) {
     return false;
 }
 
+void ServedBus::wire_gpio1(const std::string& path, sim::SensorModel& sensor) {
+    for (const auto& line : gpio1_lines_) {
+        if (line->path == path) return line->sensors.push_back(&sensor);
+    }
+    gpio1_lines_.push_back(std::make_unique<Gpio1Line>(path));
+    gpio1_lines_.back()->sensors.push_back(&sensor);
+}
+
 void ServedBus::drive_gpio1(sim::SimTime time) {
-    for (const auto& sensor : sensors_) {
-        const bool is_high = sensor->model.gpio1_level(time);
-        if (sensor->gpio1 < 0 || sensor->driven == is_high) continue;
+    for (const auto& line : gpio1_lines_) {
+        bool is_high = true;  // open drain: any of them pulls it low
+        for (sim::SensorModel* sensor : line->sensors) is_high &= sensor->gpio1_level(time);
+        if (line->driven == is_high) continue;
         const std::string_view pull = is_high ? "pull-up" : "pull-down";
-        if (::pwrite(sensor->gpio1, pull.data(), pull.size(), 0) == static_cast<ssize_t>(pull.size())) {
-            sensor->driven = is_high;
+        if (::pwrite(line->file, pull.data(), pull.size(), 0) == static_cast<ssize_t>(pull.size())) {
+            line->driven = is_high;
         }
     }
 }

@@ -25,7 +25,8 @@ inline constexpr Microseconds kLinePeriod{1'000};
 struct ServedSensor {
     std::string name;
     std::string xshut_path;  ///< reads `0` or `1`: gpio-sim's `value`; `-`: pulled up
-    std::string gpio1_path;  ///< takes `pull-up` or `pull-down`: gpio-sim's `pull`; `-`: not wired
+    std::string gpio1_path;  ///< takes `pull-up` or `pull-down`: gpio-sim's `pull`; `-`: not wired.
+                             ///< Of several with the same path any pulls the line low: wired together
     std::string range;       ///< see `true_range_mm`
 };
 
@@ -61,9 +62,11 @@ class ServedBus {
 
   private:
     struct Wired;
+    struct Gpio1Line;
     void take_faults(sim::SimTime now);
     bool apply(const SensorFaultCommand& command, sim::SimTime now);
     void follow_lines_at(sim::SimTime now);
+    void wire_gpio1(const std::string& path, sim::SensorModel& sensor);
     void drive_gpio1(sim::SimTime time);
     void record(Wired& wired);
 
@@ -71,6 +74,7 @@ class ServedBus {
     sim::Present present_;
     sim::SimulatedI2cBus bus_;
     std::vector<std::unique_ptr<Wired>> sensors_;
+    std::vector<std::unique_ptr<Gpio1Line>> gpio1_lines_;
     std::string record_;
     std::optional<LinePipe> faults_;
 };

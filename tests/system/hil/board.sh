@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The board inside the machine: one CAN interface, GPIO lines, two I2C buses with two modelled sensors each.
+# The boards inside the machine: one CAN interface, two banks of GPIO lines, four I2C buses with two modelled sensors each.
 #   board.sh up FOLDER BIN   make it, and write FOLDER/board.env, which every command gets
 #   board.sh down FOLDER     take it away (where the machine is not thrown away)
 # Runs as root, inside. Exit code 77: this kernel has not what it takes.
@@ -10,8 +10,10 @@ config=/sys/kernel/config/gpio-sim/octoskin
 # Not in FOLDER: a sensor must never wait for the host.
 faults=/run/octoskin_hil
 range0=/run/octoskin_hil.range0
-# Lines 0-3 are XSHUT and 4-7 GPIO1 of the four sensors; 8 and 9 are free.
-line_names=(xshut0 xshut1 xshut2 xshut3 gpio1_0 gpio1_1 gpio1_2 gpio1_3 free0 free1)
+# The first board: lines 0-3 are XSHUT and 4-7 GPIO1 of its four sensors; 8 and 9 are free.
+first_lines=(xshut0 xshut1 xshut2 xshut3 gpio1_0 gpio1_1 gpio1_2 gpio1_3 free0 free1)
+# The second: 0-3 are XSHUT, 4 and 5 the data-ready lines of its buses, each GPIO1 of two sensors wired together.
+second_lines=(xshut4 xshut5 xshut6 xshut7 data_ready0 data_ready1)
 
 skip() { echo "skipped: $*"; exit 77; }
 
@@ -21,29 +23,40 @@ make_can() {
     ip link set up $can
 }
 
-make_lines() {
-    mkdir $config 2>/dev/null || skip "no gpio-sim in this kernel, or no right to use it"
-    mkdir $config/bank0
-    echo 16 >$config/bank0/num_lines
-    echo octoskin >$config/bank0/label
-    for i in "${!line_names[@]}"; do
-        mkdir $config/bank0/line"$i"
-        echo "${line_names[i]}" >$config/bank0/line"$i"/name
+# make_bank NUMBER NAME...
+make_bank() {
+    local bank=$config/bank$1 names=("${@:2}") i
+    mkdir "$bank"
+    echo 16 >"$bank/num_lines"
+    echo "octoskin$1" >"$bank/label"
+    for i in "${!names[@]}"; do
+        mkdir "$bank/line$i"
+        echo "${names[i]}" >"$bank/line$i/name"
     done
-    echo 1 >$config/live
-    chip=$(<$config/bank0/chip_name)
-    lines=/sys/devices/platform/$(<$config/dev_name)/$chip
 }
 
-# serve BUS FIRST_SENSOR FUNCTION FUNCTION
+make_lines() {
+    mkdir $config 2>/dev/null || skip "no gpio-sim in this kernel, or no right to use it"
+    make_bank 0 "${first_lines[@]}"
+    make_bank 1 "${second_lines[@]}"
+    echo 1 >$config/live
+    local device
+    device=/sys/devices/platform/$(<$config/dev_name)
+    chip=$(<$config/bank0/chip_name)
+    lines=$device/$chip
+    chip2=$(<$config/bank1/chip_name)
+    lines2=$device/$chip2
+}
+
+# serve BUS LINES FIRST_SENSOR {XSHUT_LINE GPIO1_LINE FUNCTION} for each of two sensors
 serve() {
-    local device=i2c-$1 a=$2 b=$(($2 + 1))
+    local device=i2c-$1 lines=$2 a=$3 b=$(($3 + 1))
     [ ! -e "/dev/$device" ] || { echo "board: /dev/$device is there already"; exit 1; }
     rm -f "$faults.$device"
     mkfifo "$faults.$device"
     setsid "$bin/i2c_device" --device "$device" --record "$folder/ranged.$device" --faults "$faults.$device" \
-        --sensor "sensor$a" "$lines/sim_gpio$a/value" "$lines/sim_gpio$((a + 4))/pull" "$3" \
-        --sensor "sensor$b" "$lines/sim_gpio$b/value" "$lines/sim_gpio$((b + 4))/pull" "$4" \
+        --sensor "sensor$a" "$lines/sim_gpio$4/value" "$lines/sim_gpio$5/pull" "$6" \
+        --sensor "sensor$b" "$lines/sim_gpio$7/value" "$lines/sim_gpio$8/pull" "$9" \
         </dev/null >"$folder/$device.log" 2>&1 &
     echo $! >"$folder/$device.pid"
 }
@@ -64,13 +77,15 @@ up() {
     make_can
     make_lines
     echo constant:250 >$range0
-    serve 7 0 "file:$range0" constant:500
-    serve 8 2 triangle:200:1000:4000 none
+    serve 7 "$lines" 0 0 4 "file:$range0" 1 5 constant:500
+    serve 8 "$lines" 2 2 6 triangle:200:1000:4000 3 7 none
+    serve 9 "$lines2" 4 0 4 constant:300 1 4 triangle:300:900:3000
+    serve 10 "$lines2" 6 2 5 constant:700 3 5 constant:900
     cat >"$folder/board.env" <<TEXT
-export HIL_FOLDER='$folder' HIL_BIN='$bin' HIL_CAN=$can HIL_CHIP=$chip HIL_LINES=$lines HIL_FAULTS=$faults HIL_RANGE0=$range0
+export HIL_FOLDER='$folder' HIL_BIN='$bin' HIL_BLOCKS='$bin/hil_blocks' HIL_CAN=$can HIL_CHIP=$chip HIL_LINES=$lines HIL_CHIP2=$chip2 HIL_LINES2=$lines2 HIL_FAULTS=$faults HIL_RANGE0=$range0
 TEXT
-    await_device 7
-    await_device 8
+    local bus
+    for bus in 7 8 9 10; do await_device $bus; done
 }
 
 down() {
@@ -80,7 +95,7 @@ down() {
     done
     if [ -e $config ]; then
         echo 0 >$config/live
-        rmdir $config/bank0/line* $config/bank0 $config
+        rmdir $config/bank?/line* $config/bank? $config
     fi
     rm -f $faults.*
     ip link del $can 2>/dev/null || true
