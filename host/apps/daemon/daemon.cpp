@@ -187,10 +187,11 @@ ExitCode Daemon::run() {
                          error.what());
     }
     (void)sd_notify(0, "STOPPING=1");
+    const HostTime deadline = monotonic_now() + kSavePatience;  // for both
     parts_->recordings.stop(monotonic_now());
     parts_->save_map();
     const bool is_saved = parts_->keeper.finish(kSavePatience);
-    parts_->recordings.finish(kSavePatience);
+    parts_->recordings.finish(deadline - monotonic_now());
     const SaveRecord saves = parts_->keeper.record();
     if (!is_saved || !saves.error.empty()) {
         spdlog::error("the map is not saved: {}", is_saved ? saves.error : "the disk took too long");
