@@ -34,6 +34,7 @@ Result<std::vector<I2cDevice>, StartFailure> open_buses(const std::vector<std::s
 std::vector<std::unique_ptr<linux_port::I2cThreadBus>> start_threads(std::vector<I2cDevice>& devices,
                                                                      int event) {
     std::vector<std::unique_ptr<linux_port::I2cThreadBus>> threads;
+    threads.reserve(devices.size());
     for (I2cDevice& device : devices)
         threads.push_back(std::make_unique<linux_port::I2cThreadBus>(device, event));
     return threads;
