@@ -229,7 +229,8 @@ enum class SensorFault : std::uint8_t {
     implausible_block = 8,
     bus_error = 9,
     address_conflict = 10,
-    xshut_stuck = 11,  ///< its XSHUT line does not put it in reset
+    xshut_stuck = 11,    ///< its XSHUT line does not put it in reset
+    hardware_fail = 12,  ///< it says so itself, range after range: user status 5
 };
 /// On change and once a second.
 struct SensorHealth {

@@ -79,6 +79,7 @@ inline constexpr auto kSensorFault = std::to_array<Named<SensorFault>>({
     {SensorFault::bus_error, "bus_error"},
     {SensorFault::address_conflict, "address_conflict"},
     {SensorFault::xshut_stuck, "xshut_stuck"},
+    {SensorFault::hardware_fail, "hardware_fail"},
 });
 inline constexpr auto kMarkKind = std::to_array<Named<MarkKind>>({
     {MarkKind::stop, "stop"},

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "common/range_status.hpp"
 #include "firmware/core/time_bracket.hpp"
 
 namespace octoskin::node {
@@ -31,6 +32,7 @@ SensorState state_after(SensorFault fault, bool has_ever_answered) noexcept {
         case SensorFault::stale_stream:
         case SensorFault::reads_disagree:
         case SensorFault::implausible_block:
+        case SensorFault::hardware_fail:
             return SensorState::degraded;
     }
     return SensorState::degraded;
@@ -132,6 +134,7 @@ BusUse Sensor::advance(NodeTime now) {
 
 void Sensor::begin_bring_up(NodeTime now, std::optional<NodeTime> first_start) {
     reinitialise_ordered_.reset();
+    hardware_fails_in_row_ = 0;
     ranging_.abandon();
     bring_up_.begin(now, first_start);
     mode_ = Mode::bringing_up;
@@ -214,7 +217,7 @@ BusUse Sensor::advance_ranging(NodeTime now) {
             }
             reading_ = ranging_.reading();
             if (device_.read_back().exempt_count() > 0) ++counts_.suspect;
-            on_reading();
+            on_result(now);
             break;
         case Ranging::Event::undated:
             if (are_readings_withheld) {
@@ -223,7 +226,7 @@ BusUse Sensor::advance_ranging(NodeTime now) {
             }
             ++counts_.rejected;
             ++counts_.undated;
-            on_reading();
+            on_result(now);
             break;
         case Ranging::Event::refused:
             on_refused();
@@ -237,6 +240,22 @@ BusUse Sensor::advance_ranging(NodeTime now) {
             break;
     }
     return result.bus;
+}
+
+/// A range that failed in the part's own opinion is told, with its status, and proves nothing. One may be an
+/// accident; so many in a row are a part that needs a new start, or a new part.
+void Sensor::on_result(NodeTime now) {
+    if (range_status(ranging_.reading().device_status).status != RangeStatus::hardware_fail) {
+        hardware_fails_in_row_ = 0;
+        on_reading();
+        return;
+    }
+    is_settled_ = true;
+    refused_in_row_ = 0;
+    if (++hardware_fails_in_row_ < policy_.hardware_fails_until_failure) return;
+    device_.abandon();
+    ranging_.abandon();
+    on_failure(SensorFault::hardware_fail, false, now);
 }
 
 void Sensor::on_reading() {

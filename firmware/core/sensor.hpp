@@ -110,6 +110,7 @@ class Sensor {
     void end_calibration(const CalibrationResult& result);
     void begin_bring_up(NodeTime now, std::optional<NodeTime> first_start = {});
     void range_or_rest(NodeTime now);
+    void on_result(NodeTime now);
     void on_reading();
     void on_refused();
     void on_withheld();
@@ -143,6 +144,7 @@ class Sensor {
     bool is_bus_suspect_ = false;
     bool has_failed_ = false;
     std::uint8_t refused_in_row_ = 0;
+    std::uint8_t hardware_fails_in_row_ = 0;
     SensorCounts counts_;
     std::optional<Reading> reading_;
 };

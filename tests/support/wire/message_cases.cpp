@@ -317,7 +317,7 @@ MessageCase health_case() {
             1,
             {valid_below(63, plain("sensor", 3, 6, &SensorHealth::sensor)),
              valid_below(6, plain("state", 9, 3, &SensorHealth::state)),
-             valid_below(12, plain("fault", 12, 4, &SensorHealth::fault)),
+             valid_below(13, plain("fault", 12, 4, &SensorHealth::fault)),
              plain("sent", 16, 16, &SensorHealth::sent),
              plain("capture_bound", 32, 8, &SensorHealth::capture_bound_64us),
              plain("rejected", 40, 8, &SensorHealth::rejected),

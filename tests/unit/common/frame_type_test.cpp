@@ -150,7 +150,8 @@ TEST(Names, are_those_of_the_protocol) {
                                {8, "implausible_block"},
                                {9, "bus_error"},
                                {10, "address_conflict"},
-                               {11, "xshut_stuck"}});
+                               {11, "xshut_stuck"},
+                               {12, "hardware_fail"}});
     expect_names<MarkKind>({{0, "stop"}, {1, "start"}});
     expect_names<CommandCode>({{1, "start"},
                                {2, "stop"},

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/range_status.hpp"
 #include "tests/support/node_rig.hpp"
 
 namespace octoskin::node {
@@ -50,6 +51,60 @@ class NodeRecoveryTest : public testing::Test {
     }
     NodeRig rig_;
 };
+
+// Device codes 1, 2, 3 and 17: VCSEL continuity, VCSEL watchdog, no VHV value, multiple clips. High bits at
+// random.
+TEST_F(NodeRecoveryTest,
+       a_sensor_that_calls_range_after_range_a_hardware_failure_is_named_and_brought_up_anew) {
+    for (const std::uint8_t status : std::array<std::uint8_t, 4>{0x01, 0x42, 0xA3, 0x31}) {
+        const std::int64_t broken_us = rig_.now().us;
+        const std::uint32_t restarts = rig_.node().counts().sensor_restarts;
+        rig_.sensor(2).set_faults({.device_status = status});
+        rig_.run_for(1 * kSecond);
+        EXPECT_EQ(rig_.last_health(2)->state, SensorState::degraded) << int{status};
+        EXPECT_EQ(rig_.last_health(2)->fault, SensorFault::hardware_fail) << int{status};
+        EXPECT_EQ(rig_.said_of<wire::Heartbeat>().back().degraded_sensors, 1);
+        rig_.run_for(9 * kSecond);
+        EXPECT_EQ(rig_.last_health(2)->state, SensorState::degraded) << "through every attempt";
+        const std::uint32_t attempts = rig_.node().counts().sensor_restarts - restarts;
+        EXPECT_GE(attempts, 4U);
+        EXPECT_LE(attempts, 9U) << "never hurried";
+        for (const SaidReading& said : rig_.readings_of(2)) {
+            if (said.end.us < broken_us + 40'000) continue;
+            EXPECT_EQ(said.reading.device_status, status & 0x1F) << "told as it is";
+        }
+        expect_neighbours_undisturbed(broken_us);
+        rig_.sensor(2).set_faults({});
+        rig_.run_for(15 * kSecond);
+        EXPECT_EQ(rig_.last_health(2)->state, SensorState::ranging) << int{status};
+        EXPECT_EQ(rig_.said_of<wire::Heartbeat>().back().degraded_sensors, 0);
+    }
+}
+
+TEST_F(NodeRecoveryTest, a_hardware_failure_now_and_then_costs_nothing) {
+    const std::uint32_t restarts = rig_.node().counts().sensor_restarts;
+    for (int i = 0; i < 20; ++i) {
+        rig_.sensor(2).set_faults({.device_status = std::uint8_t{3}});
+        rig_.run_for(8 * Microseconds{33'000});
+        rig_.sensor(2).set_faults({});
+        rig_.run_for(3 * Microseconds{33'000});
+    }
+    EXPECT_EQ(rig_.node().counts().sensor_restarts, restarts);
+    EXPECT_EQ(rig_.last_health(2)->state, SensorState::ranging);
+}
+
+// What the scene does to a sensor is no failure of it: no target for hours, too bright, too noisy.
+TEST_F(NodeRecoveryTest, no_other_status_ends_a_sensors_ranging) {
+    const std::uint32_t restarts = rig_.node().counts().sensor_restarts;
+    // Those that do not exist are bus errors read as data.
+    for (std::uint8_t status = 0; status < kDeviceStatusesDefined; ++status) {
+        if (status == 1 || status == 2 || status == 3 || status == 17) continue;
+        rig_.sensor(2).set_faults({.device_status = status});
+        rig_.run_for(20 * Microseconds{33'000});
+        EXPECT_EQ(rig_.last_health(2)->state, SensorState::ranging) << int{status};
+    }
+    EXPECT_EQ(rig_.node().counts().sensor_restarts, restarts);
+}
 
 TEST_F(NodeRecoveryTest, names_a_frozen_sensor_within_a_second_and_never_repeats_its_last_value) {
     const std::int64_t frozen_us = rig_.now().us;
