@@ -43,7 +43,10 @@ void BusWorker::poll(NodeTime now) {
 
 void BusWorker::follow_hint(NodeTime now) {
     if (!hint_.take(now)) return;
-    for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) sensor->on_hint(now);
+    for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) {
+        sensor->on_hint(now);
+        if (sensor->ranges_unasked()) hint_.excuse();
+    }
 }
 
 Sensor* BusWorker::longest_due(NodeTime now) const {

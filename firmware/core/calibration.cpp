@@ -1,5 +1,7 @@
 #include "firmware/core/calibration.hpp"
 
+#include <algorithm>
+
 namespace octoskin::node {
 
 namespace {
@@ -46,20 +48,48 @@ CalibrationOrder order_of(const wire::Command& command) noexcept {
 
 void CalibrationDialogue::accept(const wire::Command& command) noexcept {
     under_way_ = answer_to(command, CalibrationOutcome::under_way);
-    answer_ = under_way_;
-    ended_.reset();
+    answer(*under_way_);
+    ends_left_ = 0;
+    is_end_due_ = false;
 }
 
 void CalibrationDialogue::refuse(const wire::Command& command) noexcept {
-    answer_ = answer_to(command, CalibrationOutcome::refused);
+    answer(answer_to(command, CalibrationOutcome::refused));
+}
+
+bool CalibrationDialogue::answers_again(const wire::Command& command) noexcept {
+    if (!under_way_ || *under_way_ != answer_to(command, CalibrationOutcome::under_way)) return false;
+    answer(*under_way_);
+    return true;
+}
+
+void CalibrationDialogue::answer(const wire::Calibration& answer) noexcept {
+    if (answer_count_ < answers_.size()) answers_[answer_count_++] = answer;
 }
 
 void CalibrationDialogue::end(const CalibrationResult& result) noexcept {
-    ended_ = under_way_;
-    ended_->outcome = result.outcome;
-    ended_->offset_quarter_mm = result.offset_quarter_mm;
-    ended_->crosstalk_raw = result.crosstalk_raw;
+    ended_ = *under_way_;
+    ended_.outcome = result.outcome;
+    ended_.offset_quarter_mm = result.offset_quarter_mm;
+    ended_.crosstalk_raw = result.crosstalk_raw;
+    ends_left_ = kEndsSent;
+    is_end_due_ = true;
     under_way_.reset();
+}
+
+std::optional<wire::Calibration> CalibrationDialogue::due() const noexcept {
+    if (answer_count_ > 0) return answers_.front();
+    return is_end_due_ ? std::optional(ended_) : std::nullopt;
+}
+
+void CalibrationDialogue::sent() noexcept {
+    if (answer_count_ > 0) {
+        std::move(answers_.begin() + 1, answers_.begin() + answer_count_, answers_.begin());
+        --answer_count_;
+        return;
+    }
+    --ends_left_;
+    is_end_due_ = false;
 }
 
 }  // namespace octoskin::node

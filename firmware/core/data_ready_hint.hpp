@@ -22,6 +22,9 @@ class DataReadyHint {
     /// A sensor that was asked because of the last hint had data.
     void confirm() noexcept;
 
+    /// The last hint may have been for a sensor that is not read by hints.
+    void excuse() noexcept { is_unconfirmed_ = false; }
+
     /// Too many falls were spurious: not asked again before the node's next start.
     [[nodiscard]] bool is_ignored() const noexcept { return doubt_ >= policy_.hint_doubt_max; }
     /// Falls that meant nothing, since start.

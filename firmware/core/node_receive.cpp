@@ -136,6 +136,7 @@ bool Node::perform(const wire::Command& command, NodeTime now) {
 /// One sensor, while no other is: a person holds the target.
 bool Node::calibrate(const wire::Command& command, NodeTime now) {
     if (command.sensor == wire::kAllSensors) return false;
+    if (calibration_.answers_again(command)) return true;
     const bool is_possible = !own_id_heard_ && command.sensor < sensor_count_ &&
                              !calibration_.is_under_way() &&
                              sensors_[command.sensor]->order_calibration(order_of(command), now);

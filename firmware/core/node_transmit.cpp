@@ -87,6 +87,7 @@ bool Node::send_most_urgent(NodeTime now) {
     } else if (announcer_.is_heartbeat_due()) {
         if (!send(heartbeat())) return false;
         announcer_.heartbeat_sent();
+        calibration_.on_heartbeat_sent();
     } else if (sync_report_) {
         if (!send(*sync_report_)) return false;
         sync_report_.reset();

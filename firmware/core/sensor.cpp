@@ -49,7 +49,7 @@ Sensor::Sensor(const SensorConfig& config, const SensorSurroundings& surrounding
       bring_up_(device_, surroundings.default_address, surroundings.xshut, config_, policy),
       ranging_(device_, config_, rules, policy),
       recovery_(policy),
-      calibration_(device_) {
+      calibration_(device_, Microseconds{std::int64_t{config.inter_measurement_ms} * 1'000}) {
     begin_bring_up(now, now + policy.first_start);
 }
 

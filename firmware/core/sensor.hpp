@@ -62,6 +62,11 @@ class Sensor {
     void on_hint(NodeTime now) noexcept {
         if (mode_ == Mode::ranging) ranging_.on_hint(now);
     }
+    /// Whether it ranges without being read by hints: while it is brought up or calibrated. The line falls
+    /// for it all the same.
+    [[nodiscard]] bool ranges_unasked() const noexcept {
+        return mode_ == Mode::bringing_up || mode_ == Mode::calibrating;
+    }
     /// Whether a hint was followed and data was there; told once.
     [[nodiscard]] bool take_confirmation() noexcept { return ranging_.take_confirmation(); }
     /// When the bus is wanted; empty while there is nothing to wait for.

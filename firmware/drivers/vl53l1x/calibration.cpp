@@ -10,7 +10,9 @@ namespace octoskin::vl53l1x {
 namespace {
 
 constexpr Microseconds kPollEvery{1'000};
-constexpr Microseconds kRangeWithin{2'000'000};
+constexpr Microseconds kReadAgainAfter{10'000};  // ten of these outlast a range that makes no sense
+constexpr Microseconds kRangeWithinMin{2'000'000};
+constexpr std::int64_t kRangeWithinPeriods = 3;
 
 // Read-back runs: kRegisterRuns.
 constexpr std::size_t kOffsetRun = 0;
@@ -27,6 +29,9 @@ std::int64_t divided(std::int64_t dividend, std::int64_t divisor) noexcept {
 }
 
 }  // namespace
+
+CalibrationRun::CalibrationRun(Device& device, Microseconds period) noexcept
+    : device_(device), range_within_(std::max(kRangeWithinMin, kRangeWithinPeriods * period)) {}
 
 void CalibrationRun::begin_offset(std::uint16_t target_mm) {
     begin(Quantity::offset, target_mm);
@@ -45,6 +50,7 @@ void CalibrationRun::begin(Quantity quantity, std::uint16_t target_mm) {
     resume_at_.reset();
     ranges_ = 0;
     ranges_invalid_ = 0;
+    reads_dropped_ = 0;
     range_sum_mm_ = 0;
     signal_sum_ = 0;
     spads_sum_ = 0;
@@ -80,6 +86,10 @@ Progress CalibrationRun::poll(NodeTime now) {
         case Progress::done:
             return on_step_done(now);
         case Progress::failed:
+            if (drops_read()) {
+                resume_at_ = now + kReadAgainAfter;
+                return Progress::busy;
+            }
             // One that was stopping for another reason keeps that reason.
             if (!has_failed_) error_ = CalibrationError::device;
             return end(Progress::failed);
@@ -153,12 +163,21 @@ Progress CalibrationRun::on_step_done(NodeTime now) {
 Progress CalibrationRun::on_range(NodeTime now) {
     if (device_.has_measurement() && add(device_.measurement())) last_result_ = now;
     if (ranges_invalid_ > kRangesInvalidMax) return stop_and_fail(CalibrationError::no_target);
-    if (elapsed(last_result_, now) > kRangeWithin) return stop_and_fail(CalibrationError::no_result);
+    if (elapsed(last_result_, now) > range_within_) return stop_and_fail(CalibrationError::no_result);
     if (ranges_ == kRanges) {
         start_step(Step::checking_again);
         return Progress::busy;
     }
     return pause(now);
+}
+
+/// Two reads of one result that differ, or bytes that make no sense: the result is still there, to be read
+/// again.
+bool CalibrationRun::drops_read() noexcept {
+    const Error error = device_.error();
+    if (step_ != Step::ranging) return false;
+    if (error != Error::reads_disagree && error != Error::implausible_block) return false;
+    return reads_dropped_++ < kReadsDroppedMax;
 }
 
 Progress CalibrationRun::pause(NodeTime now) {

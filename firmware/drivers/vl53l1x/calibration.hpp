@@ -15,13 +15,14 @@ namespace octoskin::vl53l1x {
 enum class CalibrationError : std::uint8_t {
     device,              ///< an operation of the device failed: see its `error()`
     unsupported_target,  ///< 0, or beyond `CalibrationRun::kTargetMax_mm`
-    no_result,           ///< no range for 2 s
+    no_result,           ///< no range for 2 s, or for 3 periods if that is longer
     no_target,           ///< too many ranges without a valid result
     out_of_range,        ///< the offset does not fit its 13 bits
 };
 
 /// One device, configured and stopped, offset before crosstalk. Not thread-safe; no call waits; ends within
-/// 60 ranges, each given up after 2 s. The part ranges with the new value from then on; after a failure with
+/// 60 ranges, each given up after 2 s, or 3 periods if that is longer. A read that makes no sense is dropped
+/// and its range read again. The part ranges with the new value from then on; after a failure with
 /// none.
 class CalibrationRun {
   public:
@@ -29,8 +30,10 @@ class CalibrationRun {
     static constexpr std::uint8_t kRanges = 50;
     static constexpr std::uint8_t kRangesInvalidMax =
         10;  ///< the first one, without wrap check, is none of them
+    static constexpr std::uint8_t kReadsDroppedMax = 10;
 
-    explicit CalibrationRun(Device& device) noexcept : device_(device) {}
+    /// `period`: between the device's ranges, as it was configured.
+    CalibrationRun(Device& device, Microseconds period) noexcept;
 
     [[nodiscard]] static constexpr bool is_target_supported(std::uint16_t target_mm) noexcept {
         return target_mm > 0 && target_mm <= kTargetMax_mm;
@@ -73,6 +76,7 @@ class CalibrationRun {
     void start_step(Step step);
     [[nodiscard]] Progress on_step_done(NodeTime now);
     [[nodiscard]] Progress on_range(NodeTime now);
+    [[nodiscard]] bool drops_read() noexcept;
     [[nodiscard]] Progress pause(NodeTime now);
     void write(std::int16_t offset_quarter_mm, std::uint16_t crosstalk_raw);
     [[nodiscard]] bool add(const Measurement& measurement) noexcept;
@@ -81,6 +85,7 @@ class CalibrationRun {
     [[nodiscard]] Progress end(Progress progress) noexcept;
 
     Device& device_;
+    Microseconds range_within_;
     Quantity quantity_ = Quantity::offset;
     std::uint16_t target_mm_ = 0;
     Step step_ = Step::zeroing;
@@ -92,6 +97,7 @@ class CalibrationRun {
 
     std::uint8_t ranges_ = 0;
     std::uint8_t ranges_invalid_ = 0;
+    std::uint8_t reads_dropped_ = 0;
     std::uint8_t stream_last_ = 0;
     std::int64_t range_sum_mm_ = 0;
     std::int64_t signal_sum_ = 0;  ///< 9.7 Mcps

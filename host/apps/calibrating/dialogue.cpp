@@ -15,7 +15,29 @@ using wire::CalibrationOutcome;
 constexpr Nanoseconds kHeartbeatWithin{2'000'000'000};
 constexpr Nanoseconds kAnswerWithin{1'000'000'000};
 constexpr Nanoseconds kEndWithin{10'000'000'000};
-constexpr std::int64_t kPeriodsMax = 100;  // 60 ranges, at worst at half the rate
+constexpr std::int64_t kPeriodsMax = 130;  // 60 ranges, at worst at half the rate, and 3 in vain
+constexpr int kAsksMax = 3;
+
+/// Why a node in this state calibrates nothing; null if it may.
+const char* obstacle(wire::NodeState state) {
+    switch (state) {
+        case wire::NodeState::safe:
+            return "it is in safe mode after repeated resets: its NODE_INFO names the fault; the command "
+                   "'start' or a minute's wait ends it";
+        case wire::NodeState::bad_config:
+            return "it has no valid configuration for its board: flash it";
+        case wire::NodeState::id_conflict:
+            return "another board sends under its node id: take one of the two off the bus";
+        case wire::NodeState::bus_fault:
+            return "none of its I2C buses can be used: look for a line that is held or shorted";
+        case wire::NodeState::starting:
+        case wire::NodeState::ranging:
+        case wire::NodeState::stopped:
+        case wire::NodeState::can_fault:
+            return nullptr;
+    }
+    return nullptr;
+}
 
 const char* explanation(CalibrationOutcome outcome) {
     switch (outcome) {
@@ -28,7 +50,7 @@ const char* explanation(CalibrationOutcome outcome) {
         case CalibrationOutcome::device_failed:
             return "the sensor failed meanwhile: its SENSOR_HEALTH says why";
         case CalibrationOutcome::no_result:
-            return "the sensor gave no range for 2 s";
+            return "the sensor gave no range for 2 s, nor for 3 of its periods";
         case CalibrationOutcome::no_target:
             return "it saw no valid target in more than 10 of 50 ranges: is the target before it, grey, and "
                    "the "
@@ -78,6 +100,7 @@ void Dialogue::on_frame(const wire::CanFrame& frame, HostTime now) {
 }
 
 void Dialogue::on_heartbeat(const wire::Heartbeat& heartbeat, HostTime now) {
+    if (const char* why = obstacle(heartbeat.state)) return give_up(ExitCode::failed, why);
     if (step_ != Step::awaiting_heartbeat) return;
     const std::uint32_t expected = question_.node_hash & 0xFFFFU;
     if (heartbeat.node_hash_low != expected) {
@@ -88,6 +111,12 @@ void Dialogue::on_heartbeat(const wire::Heartbeat& heartbeat, HostTime now) {
                         heartbeat.node_hash_low, expected));
         return;
     }
+    ask(now);
+}
+
+/// Always the same command: a node that has begun answers that it has, and does not begin again.
+void Dialogue::ask(HostTime now) {
+    ++asks_;
     const auto code = question_.quantity == wire::CalibrationQuantity::offset
                           ? wire::CommandCode::calibrate_offset
                           : wire::CommandCode::calibrate_crosstalk;
@@ -122,6 +151,7 @@ void Dialogue::on_time(HostTime now) {
             return give_up(ExitCode::unavailable,
                            "no heartbeat for 2 s: has it power, is it on this bus, at this bit rate?");
         case Step::awaiting_answer:
+            if (asks_ < kAsksMax) return ask(now);
             return give_up(ExitCode::unavailable,
                            "it does not answer: its firmware may be older than the command; flash it");
         case Step::awaiting_end:

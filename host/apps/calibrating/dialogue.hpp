@@ -27,8 +27,9 @@ struct Question {
 };
 
 /// Hears a heartbeat of the node, which must have the rig's configuration: else the index may mean another
-/// sensor. Then asks, and waits for the answer and the end. Every wait ends: 2 s for a heartbeat, 1 s for the
-/// answer, 10 s and 100 periods for the end.
+/// sensor. Then asks, and waits for the answer and the end; a heartbeat that says that the node calibrates
+/// nothing (safe mode, another board under its id, ...) ends it at once. Every wait ends: 2 s for a
+/// heartbeat, 1 s for the answer, asked three times, 10 s and 130 periods for the end.
 class Dialogue {
   public:
     using Outcome = Result<wire::Calibration, AppError>;
@@ -52,6 +53,7 @@ class Dialogue {
     enum class Step : std::uint8_t { awaiting_heartbeat, awaiting_answer, awaiting_end };
 
     void on_heartbeat(const wire::Heartbeat& heartbeat, HostTime now);
+    void ask(HostTime now);
     void on_calibration(const wire::Calibration& said, HostTime now);
     void give_up(ExitCode code, const std::string& why);
     [[nodiscard]] std::string whom() const;
@@ -59,6 +61,7 @@ class Dialogue {
     Question question_;
     Step step_ = Step::awaiting_heartbeat;
     HostTime deadline_;
+    int asks_ = 0;
     std::optional<wire::CanFrame> to_send_;
     std::optional<Outcome> outcome_;
 };

@@ -2,7 +2,10 @@
 // with what it found as configuration the sensor ranges right. The modelled optics are the oracle.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <memory>
 #include <vector>
 
 #include "tests/support/node_rig.hpp"
@@ -38,9 +41,15 @@ void command(NodeRig& rig, CommandCode code, std::uint8_t sensor, std::uint16_t 
     rig.send_from_host(Command{.code = code, .sensor = sensor, .argument = argument, .sequence = sequence},
                        kOwnId);
 }
+/// Each answer once, however often it was said.
+std::vector<Calibration> answers(const NodeRig& rig) {
+    std::vector<Calibration> all = rig.said_of<Calibration>();
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+}
 std::vector<CalibrationOutcome> outcomes(const NodeRig& rig) {
     std::vector<CalibrationOutcome> all;
-    for (const Calibration& said : rig.said_of<Calibration>()) all.push_back(said.outcome);
+    for (const Calibration& said : answers(rig)) all.push_back(said.outcome);
     return all;
 }
 int last_range_mm(const NodeRig& rig) {
@@ -189,7 +198,7 @@ TEST(NodeCalibration, ends_when_its_bus_is_held_and_is_possible_again_afterwards
     for (int s = 0; s < 60 && rig.bus(1).is_held(); ++s) rig.run_for(1 * kSecond);
     ASSERT_FALSE(rig.bus(1).is_held());
     rig.run_for(15 * kSecond);
-    EXPECT_EQ(rig.said_of<Calibration>().size(), 4U) << "nobody holds the target any more";
+    EXPECT_EQ(outcomes(rig).size(), 4U) << "nobody holds the target any more";
     EXPECT_EQ(rig.last_health(kBad)->state, SensorState::ranging);
     command(rig, CommandCode::calibrate_offset, kBad, 140, 3);
     rig.run_for(4 * kSecond);
@@ -215,6 +224,137 @@ TEST(NodeCalibration, ends_before_other_orders_are_obeyed) {
     EXPECT_EQ(outcomes(rig), (std::vector{under_way, done, under_way, done})) << "a stopped one too";
     EXPECT_EQ(rig.said_of<Calibration>().back().offset_quarter_mm, -68);
     EXPECT_EQ(rig.last_health(kBad)->state, SensorState::stopped);
+}
+
+TEST(NodeCalibration, tells_its_end_three_times_since_nobody_can_ask_for_it) {
+    NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.170, 8.0)));
+    rig.run_for(1 * kSecond);
+    command(rig, CommandCode::calibrate_offset, kBad, 140);
+    rig.run_for(6 * kSecond);
+    const auto said = rig.said_of<Calibration>();
+    ASSERT_EQ(said.size(), 1U + 3U);
+    EXPECT_EQ(said[1], said[2]);
+    EXPECT_EQ(said[1], said[3]);
+    const auto times = rig.times_of<Calibration>();
+    for (const std::size_t i : {2U, 3U}) EXPECT_LE(times[i].us - times[i - 1].us, 110'000);
+}
+
+TEST(NodeCalibration, answers_again_whoever_asks_again_and_begins_no_second_time) {
+    NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.170, 8.0)));
+    rig.run_for(1 * kSecond);
+    for (int i = 0; i < 2; ++i) {
+        command(rig, CommandCode::calibrate_offset, kBad, 140);
+        rig.run_for(kSecond * 7 / 10);
+    }
+    rig.run_for(4 * kSecond);
+    const auto said = rig.said_of<Calibration>();
+    ASSERT_EQ(said.size(), 2U + 3U);
+    EXPECT_EQ(said[1].outcome, under_way) << "not refused";
+    EXPECT_EQ(outcomes(rig), (std::vector{under_way, done}));
+    EXPECT_EQ(rig.node().counts().rx_rejected, 0U);
+}
+
+TEST(NodeCalibration, no_answer_takes_the_place_of_one_that_was_not_sent_yet) {
+    NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.170, 8.0)));
+    rig.run_for(1 * kSecond);
+    rig.block_transmission(true);
+    command(rig, CommandCode::calibrate_offset, kBad, 140, 1);
+    rig.run_for(kSecond / 100);
+    command(rig, CommandCode::calibrate_offset, 0, 140, 2);
+    rig.run_for(kSecond / 100);
+    command(rig, CommandCode::calibrate_crosstalk, 9, 140, 3);
+    rig.run_for(5 * kSecond);
+    rig.block_transmission(false);
+    rig.run_for(1 * kSecond);
+    EXPECT_EQ(outcomes(rig), (std::vector{under_way, refused, refused, done}));
+    std::vector<int> sequences;
+    for (const Calibration& said : answers(rig)) sequences.push_back(said.sequence);
+    EXPECT_EQ(sequences, (std::vector{1, 2, 3, 1}));
+}
+
+// 50 falls of the line a run, and nobody asks because of them.
+TEST(NodeCalibration, does_not_make_its_buss_data_ready_line_look_broken) {
+    NodeConfig config = fleet_config(4, 4);
+    config.data_ready_buses = 0xF;
+    NodeRig rig(config, setups_with(grey_target(0.170, 8.0)));
+    rig.run_for(1 * kSecond);
+    const std::uint32_t spurious = rig.node().counts().spurious_hints;
+    for (std::uint8_t i = 0; i < 4; ++i) {
+        command(rig, CommandCode::calibrate_offset, kBad, 140, i);
+        rig.run_for(4 * kSecond);
+        EXPECT_EQ(outcomes(rig).back(), done);
+    }
+    EXPECT_EQ(rig.node().ignored_data_ready(), 0);
+    EXPECT_LE(rig.node().counts().spurious_hints, spurious + 4 * 3) << "not 50 each";
+}
+
+// A slow part: longer between two ranges than the two seconds after which a quick one is given up.
+TEST(NodeCalibration, of_a_part_with_a_period_of_four_seconds_finds_its_offset) {
+    NodeConfig config = fleet_config(4, 2);
+    config.sensors[kBad].inter_measurement_ms = 4'000;
+    NodeRig rig(config, setups_with(grey_target(0.170, 8.0)));
+    rig.run_for(1 * kSecond);
+    command(rig, CommandCode::calibrate_offset, kBad, 140);
+    rig.run_for(240 * kSecond);
+    ASSERT_EQ(outcomes(rig), (std::vector{under_way, done}));
+    EXPECT_EQ(answers(rig)[1].offset_quarter_mm, -68);
+}
+
+// Every kind of fault, at every 53rd transfer of a calibration: it ends, what it calls done is right, and
+// the sensor ranges again.
+TEST(NodeCalibration, under_any_single_fault_of_its_bus_ends_and_never_with_a_wrong_value) {
+    using sim::I2cFaultKind;
+    const auto prepared = [] {
+        auto rig = std::make_unique<NodeRig>(fleet_config(2, 2),
+                                             std::vector<SensorSetup>(setups_with(grey_target(0.170, 8.0))));
+        rig->run_for(kSecond / 2);
+        command(*rig, CommandCode::calibrate_offset, kBad, 140);
+        return rig;
+    };
+    auto clean = prepared();
+    const std::uint64_t first = clean->bus(1).transfer_count();
+    while (outcomes(*clean).size() < 2) clean->run_for(kSecond / 100);
+    const std::uint64_t transfers = clean->bus(1).transfer_count() - first;
+    ASSERT_GT(transfers, 300U);
+    int failed = 0;
+    for (const I2cFaultKind kind :
+         {I2cFaultKind::nack_address, I2cFaultKind::nack_byte, I2cFaultKind::nack_read,
+          I2cFaultKind::flip_bit, I2cFaultKind::flip_written_bit, I2cFaultKind::lose_write,
+          I2cFaultKind::read_ones, I2cFaultKind::lose_arbitration, I2cFaultKind::stretch,
+          I2cFaultKind::sda_stuck_low}) {
+        for (std::uint64_t n = 0; n < transfers; n += 53) {
+            auto rig = prepared();
+            rig->bus(1).inject(
+                {.kind = kind, .first = first + n, .position = static_cast<std::uint32_t>(n % 19)});
+            rig->run_for(5 * kSecond);
+            ASSERT_EQ(outcomes(*rig).size(), 2U) << static_cast<int>(kind) << " at " << n;
+            const Calibration end = answers(*rig).back();
+            if (end.outcome == done) {
+                EXPECT_NEAR(end.offset_quarter_mm, -68, 1) << static_cast<int>(kind) << " at " << n;
+            } else {
+                ++failed;
+            }
+            EXPECT_EQ(rig->last_health(kBad)->state, SensorState::ranging)
+                << static_cast<int>(kind) << " at " << n;
+        }
+    }
+    EXPECT_GT(failed, 0) << "the faults did nothing";
+}
+
+TEST(NodeCalibration, of_a_sensor_that_is_reset_in_the_middle_ends_and_it_ranges_as_configured) {
+    for (int ms = 0; ms < 2'500; ms += 97) {
+        NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.170, 8.0)));
+        rig.run_for(kSecond / 2);
+        command(rig, CommandCode::calibrate_offset, kBad, 140);
+        rig.run_for(ms * Microseconds{1'000});
+        rig.sensor(kBad).brown_out(rig.now());
+        rig.run_for(6 * kSecond);
+        ASSERT_EQ(outcomes(rig).size(), 2U) << ms;
+        const Calibration end = answers(rig).back();
+        EXPECT_EQ(end.offset_quarter_mm, end.outcome == done ? -68 : 0) << ms;
+        EXPECT_EQ(rig.last_health(kBad)->state, SensorState::ranging) << ms;
+        EXPECT_EQ(last_range_mm(rig), 170) << "as configured";
+    }
 }
 
 }  // namespace

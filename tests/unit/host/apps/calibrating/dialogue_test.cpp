@@ -137,6 +137,45 @@ TEST(CalibrationDialogue, does_not_ask_a_node_of_another_configuration_or_versio
     EXPECT_NE(failure(other).find("protocol version 2, this program 1"), std::string::npos);
 }
 
+// One lost frame, either way.
+TEST(CalibrationDialogue, asks_the_same_again_if_no_answer_comes) {
+    Dialogue dialogue(question(), kStart);
+    dialogue.on_frame(heartbeat(), after_ms(10));
+    const auto first = dialogue.take_frame();
+    ASSERT_TRUE(first);
+    dialogue.on_time(after_ms(1'009));
+    EXPECT_EQ(dialogue.take_frame(), std::nullopt);
+    dialogue.on_time(after_ms(1'010));
+    EXPECT_EQ(dialogue.take_frame(), first) << "a node that has begun already must not begin again";
+    dialogue.on_frame(frame_of(said(CalibrationOutcome::under_way)), after_ms(1'020));
+    dialogue.on_time(after_ms(2'100));
+    EXPECT_EQ(dialogue.take_frame(), std::nullopt);
+    EXPECT_TRUE(dialogue.is_under_way());
+}
+
+TEST(CalibrationDialogue, gives_up_at_once_a_node_whose_heartbeat_says_that_it_calibrates_nothing) {
+    using wire::NodeState;
+    for (const auto& [state, name] : wire::values_of(NodeState{})) {
+        const bool is_hopeless = state == NodeState::safe || state == NodeState::bad_config ||
+                                 state == NodeState::id_conflict || state == NodeState::bus_fault;
+        const auto beat = [state = state](std::uint16_t hash_low) {
+            return wire::encode(wire::Heartbeat{.state = state, .node_hash_low = hash_low}, 7);
+        };
+        Dialogue first(question(), kStart);
+        first.on_frame(beat(state == NodeState::bad_config ? 0 : 0x1234), after_ms(10));
+        EXPECT_EQ(first.take_frame().has_value(), !is_hopeless) << name;
+        EXPECT_EQ(first.outcome().has_value(), is_hopeless) << name;
+        Dialogue midway = asked();
+        midway.on_frame(frame_of(said(CalibrationOutcome::under_way)), after_ms(100));
+        midway.on_frame(beat(0x1234), after_ms(200));
+        EXPECT_EQ(midway.outcome().has_value(), is_hopeless) << name;
+        if (!is_hopeless) continue;
+        EXPECT_GT(failure(first).size(), 50U) << "a sentence";
+        EXPECT_EQ(failure(first).find("configuration than the rig"), std::string::npos) << name;
+        EXPECT_EQ(first.outcome()->error().code, ExitCode::failed);
+    }
+}
+
 TEST(CalibrationDialogue, every_wait_ends) {
     Dialogue silent(question(), kStart);
     silent.on_time(after_ms(1'999));
@@ -145,16 +184,18 @@ TEST(CalibrationDialogue, every_wait_ends) {
     EXPECT_NE(failure(silent).find("no heartbeat"), std::string::npos);
 
     Dialogue deaf = asked();
-    deaf.on_time(after_ms(1'009));
-    EXPECT_EQ(deaf.outcome(), std::nullopt);
     deaf.on_time(after_ms(1'010));
+    deaf.on_time(after_ms(2'010));
+    deaf.on_time(after_ms(3'009));
+    EXPECT_EQ(deaf.outcome(), std::nullopt);
+    deaf.on_time(after_ms(3'010));
     EXPECT_NE(failure(deaf).find("does not answer"), std::string::npos);
 
     Dialogue endless = asked();
     endless.on_frame(frame_of(said(CalibrationOutcome::under_way)), after_ms(100));
-    endless.on_time(after_ms(100 + 13'300 - 1));
+    endless.on_time(after_ms(100 + 14'290 - 1));
     EXPECT_EQ(endless.outcome(), std::nullopt);
-    endless.on_time(after_ms(100 + 13'300));
+    endless.on_time(after_ms(100 + 14'290));
     EXPECT_NE(failure(endless).find("its end never came"), std::string::npos);
 }
 
