@@ -114,7 +114,7 @@ CanSocket::CanSocket(CanSocket&& other) noexcept
       dropped_raw_(other.dropped_raw_),
       malformed_(other.malformed_),
       has_echo_(other.has_echo_),
-      echo_(std::move(other.echo_)) {}
+      waiting_(std::move(other.waiting_)) {}
 
 CanSocket& CanSocket::operator=(CanSocket&& other) noexcept {
     std::swap(interface_, other.interface_);
@@ -123,20 +123,31 @@ CanSocket& CanSocket::operator=(CanSocket&& other) noexcept {
     dropped_raw_ = other.dropped_raw_;
     malformed_ = other.malformed_;
     has_echo_ = other.has_echo_;
-    echo_ = std::move(other.echo_);
+    waiting_ = std::move(other.waiting_);
     return *this;
 }
 
 Result<std::optional<Received>, SocketFault> CanSocket::receive() {
-    if (!echo_.empty()) {
-        Received oldest = std::move(echo_.front());
-        echo_.pop_front();
-        return std::optional(std::move(oldest));
-    }
+    if (waiting_.empty()) return read_frame();
+    Received oldest = std::move(waiting_.front());
+    waiting_.pop_front();
+    return std::optional(std::move(oldest));
+}
+
+Result<std::optional<Received>, SocketFault> CanSocket::read_frame() {
     while (true) {  // each round takes one datagram out of the socket
         const std::uint64_t malformed_before = malformed_;
         auto received = read_one();
         if (malformed_ == malformed_before) return received;
+    }
+}
+
+/// What came before a frame of ours goes before its echo. A fault shows again when it is this socket's turn.
+void CanSocket::take_what_came() {
+    while (waiting_.size() < kWaitingMax) {
+        auto received = read_frame();
+        if (!received || !received->has_value()) return;
+        waiting_.push_back(std::move(**received));
     }
 }
 
@@ -160,9 +171,10 @@ Result<std::optional<Received>, SocketFault> CanSocket::read_one() {
 
 Result<bool, SocketFault> CanSocket::send(const wire::CanFrame& frame) {
     const wire::SocketCanBytes raw = wire::to_socketcan(frame);
+    if (has_echo_) take_what_came();
     const ssize_t count = ::send(descriptor_, raw.bytes().data(), raw.size, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (count == static_cast<ssize_t>(raw.size)) {
-        if (has_echo_) echo_.push_back({.entry = {wall_now(), frame}, .is_own = true});
+        if (has_echo_) waiting_.push_back({.entry = {wall_now(), frame}, .is_own = true});
         return true;
     }
     // ENOBUFS: the interface's queue is full, as when nobody acknowledges.

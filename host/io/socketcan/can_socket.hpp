@@ -73,7 +73,9 @@ class CanSocket {
     [[nodiscard]] std::uint64_t malformed() const noexcept { return malformed_; }
 
   private:
-    /// One frame out of the descriptor; empty if none is there.
+    /// The next frame out of the descriptor; empty if none is there.
+    [[nodiscard]] Result<std::optional<Received>, SocketFault> read_frame();
+    /// The same for one datagram, which may be none.
     [[nodiscard]] Result<std::optional<Received>, SocketFault> read_one();
     [[nodiscard]] SocketFault fault(int error_number, const std::string& doing) const;
 
@@ -82,8 +84,10 @@ class CanSocket {
     std::uint64_t dropped_ = 0;
     std::uint32_t dropped_raw_ = 0;  ///< as the kernel counts, modulo 2^32
     std::uint64_t malformed_ = 0;
-    bool has_echo_ = false;      ///< nobody else gives back what was sent
-    std::deque<Received> echo_;  ///< what was sent and not yet received
+    static constexpr std::size_t kWaitingMax = 16'384;
+    void take_what_came();
+    bool has_echo_ = false;         ///< nobody else gives back what was sent
+    std::deque<Received> waiting_;  ///< what came before something was sent, and its echo
 };
 
 }  // namespace octoskin::socketcan
