@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/io/openni2/frame_pipe.hpp"
 #include "host/io/openni2/helper_process.hpp"
@@ -18,22 +18,37 @@ namespace {
 constexpr const char* kHelper = "octoskin-camera";
 constexpr std::chrono::milliseconds kOpenPatience{15'000};  // a real device takes seconds to start
 
+std::string with_complaint(const std::string& what, openni2::HelperProcess& helper) {
+    const std::string complaint = helper.complaint();
+    return complaint.empty() ? what : what + " (" + complaint + ")";
+}
+
 }  // namespace
 
-CameraFeed::CameraFeed(std::string uri, std::chrono::milliseconds silence_max)
+CameraFeed::CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
+                       std::optional<std::filesystem::path> helper)
     : uri_(std::move(uri)),
       silence_max_(silence_max),
-      event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC | EFD_SEMAPHORE)) {
-    if (event_ < 0) throw std::system_error(errno, std::generic_category(), "cannot make an eventfd");
+      helper_(std::move(helper)),
+      event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC | EFD_SEMAPHORE)),
+      end_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+    if (event_ < 0 || end_ < 0)
+        throw std::system_error(errno, std::generic_category(), "cannot make an eventfd");
     record_.why = "not opened yet";
     thread_ = start_without_signals([this] { work(); });
 }
 
 CameraFeed::~CameraFeed() {
-    is_ending_ = true;
+    const std::uint64_t one = 1;
+    {
+        const std::lock_guard lock(mutex_);
+        is_ending_ = true;
+    }
+    (void)!::write(end_, &one, sizeof(one));
     changed_.notify_all();
     thread_.join();
     ::close(event_);
+    ::close(end_);
 }
 
 std::optional<DepthFrame> CameraFeed::take() {
@@ -64,33 +79,48 @@ void CameraFeed::wait_before_retry() {
 }
 
 void CameraFeed::watch_camera() {
-    const auto helper = openni2::find_helper(kHelper);
+    const auto helper = helper_ ? helper_ : openni2::find_helper(kHelper);
     if (!helper) {
         return note_closed(std::string(kHelper) + " is neither beside this program nor in libexec");
     }
-    auto process = openni2::HelperProcess::start(*helper, uri_, openni2::HelperPipe::its_output);
+    auto process = openni2::HelperProcess::start(*helper, uri_, openni2::HelperPipe::its_output,
+                                                 openni2::HelperComplaints::kept);
     if (!process) return note_closed(process.error());
-    openni2::FramePipe pipe(process->descriptor(), kOpenPatience);
-    const auto header = pipe.read_header();
+    const auto header = openni2::FramePipe(process->descriptor(), kOpenPatience, end_).read_header();
     if (!header) {
-        return note_closed(uri_.empty() ? "no camera found: is one plugged in, with a driver of OpenNI2?"
-                                        : uri_ + ": no camera there that gives depth");
+        const std::string what = uri_.empty()
+                                     ? "no camera found: is one plugged in, with a driver of OpenNI2?"
+                                     : uri_ + ": no camera there that gives depth";
+        return note_closed(with_complaint(what, *process));
     }
-    {
-        const std::lock_guard lock(mutex_);
-        record_.is_open = true;
-        record_.why.clear();
-        ++record_.opened;
-    }
-    openni2::FramePipe frames(process->descriptor(), silence_max_);
+    note_opened();
+    openni2::FramePipe frames(process->descriptor(), silence_max_, end_);
     while (!is_ending_) {
         auto frame = frames.read_frame(header->size);
         if (!frame || !frame->has_value()) {
-            return note_closed(frame ? "the camera ended" : std::string("camera: ") + name(frame.error()));
+            const std::string what = frame ? "it ended" : name(frame.error());
+            return note_closed(with_complaint(what, *process));
+        }
+        if (!(*frame)->is_timed) {
+            note_untimed();
+            continue;
         }
         const HostTime captured{static_cast<std::int64_t>((*frame)->timestamp_us) * 1000};
         put(DepthFrame{captured, header->size.width, header->size.height, std::move((*frame)->depth_mm)});
     }
+}
+
+void CameraFeed::note_opened() {
+    const std::lock_guard lock(mutex_);
+    record_.is_open = true;
+    record_.why.clear();
+    ++record_.opened;
+}
+
+void CameraFeed::note_untimed() {
+    const std::lock_guard lock(mutex_);
+    ++record_.frames;
+    ++record_.untimed;
 }
 
 void CameraFeed::put(DepthFrame frame) {

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -19,6 +20,7 @@ struct CameraRecord {
     bool is_open = false;
     std::uint64_t frames = 0;     ///< that came
     std::uint64_t displaced = 0;  ///< newer ones came before these were taken
+    std::uint64_t untimed = 0;    ///< whose time of capture could not be told: late, or the first ones
     std::uint64_t opened = 0;     ///< times
     std::optional<HostTime> newest;
     std::string why;  ///< not open, for a person
@@ -34,7 +36,10 @@ class CameraFeed {
     /// `uri`: an OpenNI2 device, or the path of an .oni file that is played at its own speed, again and
     /// again; empty: the first device there is. `silence_max`: a camera that shows nothing for so long is
     /// opened anew.
-    CameraFeed(std::string uri, std::chrono::milliseconds silence_max);
+    /// `helper`: the program that reads the camera, in place of octoskin-camera.
+    CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
+               std::optional<std::filesystem::path> helper = {});
+    /// Within 2 s, whatever the camera does.
     ~CameraFeed();
     CameraFeed(const CameraFeed&) = delete;
     CameraFeed& operator=(const CameraFeed&) = delete;
@@ -49,12 +54,16 @@ class CameraFeed {
     /// Until the camera ends or falls silent.
     void watch_camera();
     void put(DepthFrame frame);
+    void note_opened();
+    void note_untimed();
     void note_closed(const std::string& why);
     void wait_before_retry();
 
     std::string uri_;
     std::chrono::milliseconds silence_max_;
+    std::optional<std::filesystem::path> helper_;
     int event_ = -1;
+    int end_ = -1;  ///< readable when the thread is to end
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<DepthFrame> waiting_;

@@ -31,11 +31,13 @@ std::optional<Received> CanLink::receive() {
             return std::nullopt;
         }
         if (!received->has_value()) return std::nullopt;
-        if (state_ == LinkState::down) set(LinkState::up, {});
         if ((*received)->entry.frame.is_error) {
+            if (state_ == LinkState::down) set(LinkState::up, {});
             on_error_frame((*received)->entry.frame);
             continue;
         }
+        // Who is down or off the bus hears nothing. Not every adapter says that it is back.
+        if (state_ == LinkState::down || state_ == LinkState::bus_off) set(LinkState::up, {});
         ++counts_.received;
         return std::move(received).value();
     }

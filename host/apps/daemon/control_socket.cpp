@@ -4,28 +4,36 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <utility>
+#include <vector>
 
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 
 namespace octoskin {
 
 Result<std::unique_ptr<ControlSocket>, AppError> ControlSocket::open(const std::filesystem::path& file,
-                                                                     EventLoop& loop, Answer answer) {
+                                                                     EventLoop& loop, Answer answer,
+                                                                     std::chrono::milliseconds idle_max) {
     const auto descriptor = bind_unix_socket(file, SOCK_STREAM);
     if (!descriptor) return unexpected(descriptor.error());
-    return std::unique_ptr<ControlSocket>(new ControlSocket(file, *descriptor, loop, std::move(answer)));
+    return std::unique_ptr<ControlSocket>(
+        new ControlSocket(file, *descriptor, loop, std::move(answer), idle_max));
 }
 
-ControlSocket::ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer)
+ControlSocket::ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer,
+                             std::chrono::milliseconds idle_max)
     : file_(std::move(file)),
       descriptor_(descriptor),
       loop_(loop),
       answer_(std::move(answer)),
-      acceptable_(loop.on_readable(descriptor, [this] { accept(); })) {}
+      idle_max_(idle_max),
+      acceptable_(loop.on_readable(descriptor, [this] { accept(); })),
+      idle_check_(loop.every(idle_max / 4, [this] { drop_idle(); })) {}
 
 ControlSocket::~ControlSocket() {
     for (const Client& client : clients_) ::close(client.descriptor);
@@ -38,13 +46,13 @@ void ControlSocket::accept() {
     if (descriptor < 0) return;
     if (clients_.size() >= kClientsMax) {
         ++dropped_;
-        ::close(descriptor);
-        return;
+        drop(std::ranges::min_element(clients_, {}, &Client::asked)->descriptor);
     }
     const int room = kUnreadMax;
     ::setsockopt(descriptor, SOL_SOCKET, SO_SNDBUF, &room, sizeof(room));
     Client& client = clients_.emplace_back();
     client.descriptor = descriptor;
+    client.asked = monotonic_now();
     client.readable = loop_.on_readable(descriptor, [this, &client] {
         if (!serve(client)) drop(client.descriptor);
     });
@@ -60,6 +68,7 @@ bool ControlSocket::serve(Client& client) {
         if (end == std::string::npos) break;
         const std::string line = client.request.substr(0, end);
         client.request.erase(0, end + 1);
+        client.asked = monotonic_now();
         if (!reply(client, answer_(line))) return false;
     }
     const bool is_endless = client.request.size() > kRequestMax;
@@ -79,8 +88,18 @@ void ControlSocket::drop(int descriptor) {
     ::close(descriptor);
 }
 
+void ControlSocket::drop_idle() {
+    const HostTime now = monotonic_now();
+    std::vector<int> idle;
+    for (const Client& client : clients_)
+        if (now - client.asked > idle_max_) idle.push_back(client.descriptor);
+    for (const int descriptor : idle) drop(descriptor);
+    dropped_ += idle.size();
+}
+
 Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, const std::string& request) {
-    constexpr timeval kPatience{5, 0};
+    constexpr timeval kPatience{5, 0};  // of each call
+    const HostTime end = monotonic_now() + Nanoseconds{5'000'000'000};
     const auto descriptor = connect_unix_socket(socket, SOCK_STREAM);
     if (!descriptor) return unexpected(descriptor.error());
     ::setsockopt(*descriptor, SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof(kPatience));
@@ -89,10 +108,10 @@ Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, co
     std::string answer;
     bool is_whole =
         ::send(*descriptor, line.data(), line.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(line.size());
-    while (is_whole && !answer.ends_with('\n')) {  // bounded by the patience of each call
+    while (is_whole && !answer.ends_with('\n')) {  // bounded by the end
         std::array<char, 4096> bytes{};
         const ssize_t count = ::recv(*descriptor, bytes.data(), bytes.size(), 0);
-        is_whole = count > 0;
+        is_whole = count > 0 && monotonic_now() < end;
         if (is_whole) answer.append(bytes.data(), static_cast<std::size_t>(count));
     }
     ::close(*descriptor);

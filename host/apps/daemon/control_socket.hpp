@@ -1,6 +1,7 @@
 // How programs of this machine ask the daemon: a Unix socket, one line of request, one line of JSON back.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "common/result.hpp"
+#include "common/time.hpp"
 #include "host/apps/daemon/event_loop.hpp"
 #include "host/apps/recording/app_error.hpp"
 
@@ -23,38 +25,48 @@ class ControlSocket {
     /// What a client has not read yet; beyond, it is dropped.
     static constexpr std::size_t kUnreadMax = 4 << 20;
 
+    /// Whoever has asked nothing for so long is dropped.
+    static constexpr std::chrono::milliseconds kIdleMax{10'000};
+
     [[nodiscard]] static Result<std::unique_ptr<ControlSocket>, AppError> open(
-        const std::filesystem::path& file, EventLoop& loop, Answer answer);
+        const std::filesystem::path& file, EventLoop& loop, Answer answer,
+        std::chrono::milliseconds idle_max = kIdleMax);
     ~ControlSocket();
     ControlSocket(const ControlSocket&) = delete;
     ControlSocket& operator=(const ControlSocket&) = delete;
 
-    /// Clients that were dropped: too many, too slow, or a request without end.
+    /// Clients that were dropped: idle for too long, or the longest of too many; too slow to read; a request
+    /// without end.
     [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
 
   private:
     struct Client {
         int descriptor = -1;
         std::string request;
+        HostTime asked;  ///< newest whole request
         EventSource readable;
     };
-    ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer);
+    ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer,
+                  std::chrono::milliseconds idle_max);
     void accept();
     /// False if the client is to be dropped.
     [[nodiscard]] bool serve(Client& client);
     [[nodiscard]] bool reply(const Client& client, std::string line) const;
     void drop(int descriptor);
+    void drop_idle();
 
     std::filesystem::path file_;
     int descriptor_;
     EventLoop& loop_;
     Answer answer_;
+    std::chrono::milliseconds idle_max_;
     EventSource acceptable_;
+    EventSource idle_check_;
     std::list<Client> clients_;
     std::uint64_t dropped_ = 0;
 };
 
-/// Asks a daemon one thing, and waits 5 s at most for its line.
+/// Asks a daemon one thing, and waits 5 s at most for its whole line.
 [[nodiscard]] Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket,
                                                        const std::string& request);
 

@@ -2,33 +2,13 @@
 // camera and the disk have threads of their own, which hand over values.
 #pragma once
 
-#include <chrono>
-#include <filesystem>
 #include <memory>
-#include <optional>
-#include <string>
 
 #include "common/result.hpp"
+#include "host/apps/daemon/settings.hpp"
 #include "host/apps/recording/app_error.hpp"
-#include "host/core/mapping/mapping_config.hpp"
 
 namespace octoskin {
-
-struct DaemonRequest {
-    std::filesystem::path rig;
-    std::filesystem::path robot;           ///< empty: the rig's
-    std::string configuration = "robust";  ///< how measurements become voxels: a built-in one, or a file
-    std::string interface = "can0";
-    /// In place of the interface: a descriptor that carries frames as a raw CAN socket does.
-    std::optional<int> can_descriptor;
-    bool is_listen_only = false;         ///< transmits nothing, SYNC included
-    bool has_camera = true;              ///< if the rig has one
-    std::string camera_uri;              ///< of OpenNI2, or an .oni file; empty: the first there is
-    std::filesystem::path joint_socket;  ///< empty: joint states come over CAN only
-    std::filesystem::path control_socket;
-    std::filesystem::path map_folder;
-    std::chrono::seconds save_period{20};
-};
 
 class Daemon {
   public:
@@ -37,8 +17,8 @@ class Daemon {
     [[nodiscard]] static Result<std::unique_ptr<Daemon>, AppError> build(const DaemonRequest& request);
     ~Daemon();
 
-    /// Until SIGTERM or SIGINT; then the map is saved, within 5 s. SIGHUP reads rig, robot and mapping
-    /// again: all of them, or none.
+    /// Until SIGTERM or SIGINT; then the map is saved, and it returns within 5 s, saved or not. SIGHUP reads
+    /// rig, robot and mapping again: all of them, or none.
     [[nodiscard]] ExitCode run();
 
   private:

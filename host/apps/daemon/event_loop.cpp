@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <csignal>
-#include <ctime>
 #include <system_error>
 #include <utility>
+
+#include "host/apps/daemon/clocks.hpp"
 
 namespace octoskin {
 
@@ -51,12 +52,6 @@ int call_signal(sd_event_source*, const signalfd_siginfo*, void* watch) {
     return call_copy(watch);
 }
 
-std::int64_t now_ns(clockid_t clock) {
-    timespec now{};
-    ::clock_gettime(clock, &now);
-    return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
-}
-
 }  // namespace
 
 EventLoop::EventLoop() {
@@ -83,7 +78,7 @@ EventSource EventLoop::every(std::chrono::microseconds period, std::function<voi
     watch->call = std::move(on_time);
     watch->loop = this;
     watch->period_us = static_cast<std::uint64_t>(period.count());
-    const auto first_us = static_cast<std::uint64_t>(now_ns(CLOCK_MONOTONIC) / 1000) + watch->period_us;
+    const auto first_us = static_cast<std::uint64_t>(monotonic_now().ns / 1000) + watch->period_us;
     check(sd_event_add_time(loop_, &watch->source, CLOCK_MONOTONIC, first_us, kAccuracyUs, call_timer,
                             watch.get()),
           "cannot set a timer");
@@ -118,21 +113,6 @@ void EventLoop::fail(std::exception_ptr thrown) {
 
 void EventLoop::stop(int outcome) {
     check(sd_event_exit(loop_, outcome), "cannot end the event loop");
-}
-
-HostTime monotonic_now() {
-    return {now_ns(CLOCK_MONOTONIC)};
-}
-
-WallTime wall_now() {
-    return {now_ns(CLOCK_REALTIME)};
-}
-
-std::optional<HostTime> monotonic_of(WallTime stamp) {
-    constexpr Nanoseconds kAgeMax{1'000'000'000};
-    const Nanoseconds age{wall_now().ns - stamp.ns};
-    if (age < Nanoseconds{0} || age >= kAgeMax) return std::nullopt;
-    return monotonic_now() - age;
 }
 
 }  // namespace octoskin

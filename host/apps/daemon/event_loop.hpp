@@ -6,10 +6,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <utility>
-
-#include "common/time.hpp"
 
 struct sd_event;
 struct sd_event_source;
@@ -64,11 +61,5 @@ class EventLoop {
     sd_event* loop_ = nullptr;
     std::exception_ptr thrown_;
 };
-
-/// This machine's two clocks, and what a receive stamp is on the one that never steps.
-[[nodiscard]] HostTime monotonic_now();
-[[nodiscard]] WallTime wall_now();
-/// Empty for a stamp that is not of the last second: the wall clock was set meanwhile.
-[[nodiscard]] std::optional<HostTime> monotonic_of(WallTime stamp);
 
 }  // namespace octoskin

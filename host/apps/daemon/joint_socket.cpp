@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/core/ingest/local_joints.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"

@@ -49,6 +49,8 @@ class JointSocket {
     ~JointSocket();
 
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
+    /// From now on a sample has so many joints.
+    void expect(std::size_t joint_count) noexcept { joint_count_ = joint_count; }
     /// Takes one datagram, if one is here. False if none was. What is no sample is counted, and `sample` then
     /// empty.
     [[nodiscard]] bool receive(std::optional<JointSample>& sample);

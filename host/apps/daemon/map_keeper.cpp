@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/io/mapfile/atomic_file.hpp"
 #include "host/io/mapfile/map_file.hpp"
@@ -15,24 +15,26 @@ constexpr const char* kSmallMapFile = "fused.bt";
 
 }  // namespace
 
-MapKeeper::MapKeeper(std::filesystem::path folder) : folder_(std::move(folder)) {
-    std::error_code ignored;  // what is wrong with the folder the first save tells
-    std::filesystem::create_directories(folder_, ignored);
-    remove_leftovers(folder_);
-    thread_ = start_without_signals([this] { work(); });
+MapKeeper::MapKeeper(std::filesystem::path folder, Writer writer) : work_(std::make_shared<Work>()) {
+    work_->folder = std::move(folder);
+    work_->writer = std::move(writer);
+    remove_leftovers(work_->folder);
+    thread_ = start_without_signals([shared = work_] { work(*shared); });
 }
 
 MapKeeper::~MapKeeper() {
+    bool is_busy = false;
     {
-        const std::lock_guard lock(mutex_);
-        is_ending_ = true;
+        const std::lock_guard lock(work_->mutex);
+        work_->is_ending = true;
+        is_busy = work_->is_busy;
     }
-    changed_.notify_all();
-    thread_.join();
+    work_->changed.notify_all();
+    is_busy ? thread_.detach() : thread_.join();
 }
 
 Result<std::optional<FusedMap>, AppError> MapKeeper::load(const MapConfig& config) const {
-    const auto file = folder_ / kMapFile;
+    const auto file = work_->folder / kMapFile;
     std::error_code error;
     const bool is_there = std::filesystem::exists(file, error);
     // What cannot be seen may be there: beginning anew would overwrite it.
@@ -48,46 +50,52 @@ Result<std::optional<FusedMap>, AppError> MapKeeper::load(const MapConfig& confi
     return std::optional(std::move(map).value());
 }
 
-void MapKeeper::save(FusedMap copy) {
+bool MapKeeper::save(const FusedMap& map) {
     {
-        const std::lock_guard lock(mutex_);
-        record_.displaced += waiting_ ? 1U : 0U;
-        waiting_ = std::move(copy);
+        const std::lock_guard lock(work_->mutex);
+        work_->record.skipped += work_->is_busy ? 1U : 0U;
+        if (std::exchange(work_->is_busy, true)) return false;
     }
-    changed_.notify_all();
+    FusedMap copy = map.copy();  // takes long, so nobody is kept waiting for the lock
+    {
+        const std::lock_guard lock(work_->mutex);
+        work_->waiting.emplace(std::move(copy));
+    }
+    work_->changed.notify_all();
+    return true;
 }
 
 bool MapKeeper::finish(Nanoseconds patience) {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, patience, [this] { return !waiting_ && !is_busy_; });
+    std::unique_lock lock(work_->mutex);
+    return work_->changed.wait_for(lock, patience, [this] { return !work_->is_busy; });
 }
 
 SaveRecord MapKeeper::record() const {
-    const std::lock_guard lock(mutex_);
-    return record_;
+    const std::lock_guard lock(work_->mutex);
+    return work_->record;
 }
 
-void MapKeeper::work() {
-    std::unique_lock lock(mutex_);
+void MapKeeper::work(Work& shared) {
+    std::unique_lock lock(shared.mutex);
     while (true) {  // until the destructor says so
-        changed_.wait(lock, [this] { return waiting_ || is_ending_; });
-        if (is_ending_) return;
-        const FusedMap map = std::move(*std::exchange(waiting_, std::nullopt));
-        is_busy_ = true;
+        shared.changed.wait(lock, [&shared] { return shared.waiting || shared.is_ending; });
+        if (shared.is_ending) return;
+        std::optional<FusedMap> map = std::exchange(shared.waiting, std::nullopt);
         lock.unlock();
-        std::string error = write(map);
+        std::string error = shared.writer(*map, shared.folder);
+        map.reset();
         lock.lock();
-        is_busy_ = false;
-        ++(error.empty() ? record_.saved : record_.failed);
-        if (error.empty()) record_.newest = monotonic_now();
-        record_.error = std::move(error);
-        changed_.notify_all();
+        shared.is_busy = false;
+        ++(error.empty() ? shared.record.saved : shared.record.failed);
+        if (error.empty()) shared.record.newest = monotonic_now();
+        shared.record.error = std::move(error);
+        shared.changed.notify_all();
     }
 }
 
-std::string MapKeeper::write(const FusedMap& map) const {
+std::string MapKeeper::write_map(const FusedMap& map, const std::filesystem::path& folder) {
     for (const char* file : {kMapFile, kSmallMapFile}) {
-        if (const auto saved = save_map(map, folder_ / file); !saved) return saved.error().message;
+        if (const auto saved = save_map(map, folder / file); !saved) return saved.error().message;
     }
     return {};
 }

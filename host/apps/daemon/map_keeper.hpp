@@ -1,9 +1,11 @@
-// Saves maps while others go on: a thread of its own, one save at a time, the newest asked for wins.
+// Saves maps while others go on: a thread of its own, one save at a time.
 #pragma once
 
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -19,16 +21,20 @@ namespace octoskin {
 struct SaveRecord {
     std::uint64_t saved = 0;
     std::uint64_t failed = 0;
-    std::uint64_t displaced = 0;  ///< asked for while one waited, and never written
+    std::uint64_t skipped = 0;  ///< asked for while one was being written
     std::optional<HostTime> newest;
     std::string error;  ///< of the newest save; empty if it went well
 };
 
 class MapKeeper {
   public:
-    /// `folder` gets fused.ot and fused.bt. What a dead process left of a save there is removed.
-    explicit MapKeeper(std::filesystem::path folder);
-    /// Ends the thread; a save that waits is dropped: `finish` first.
+    /// What writes a map into the folder; the answer is empty, or why it could not.
+    using Writer = std::function<std::string(const FusedMap& map, const std::filesystem::path& folder)>;
+
+    /// `folder` gets fused.ot and fused.bt; it must be this process's own (FolderLock). What a dead process
+    /// left of a save there is removed.
+    explicit MapKeeper(std::filesystem::path folder, Writer writer = write_map);
+    /// A save that the disk does not let go of is left behind: `finish` first.
     ~MapKeeper();
     MapKeeper(const MapKeeper&) = delete;
     MapKeeper& operator=(const MapKeeper&) = delete;
@@ -37,24 +43,31 @@ class MapKeeper {
     /// file and what is wrong with it.
     [[nodiscard]] Result<std::optional<FusedMap>, AppError> load(const MapConfig& config) const;
 
-    /// Hands over a copy. Never waits for the disk.
-    void save(FusedMap copy);
+    /// Copies the map and has the copy saved, never waiting for the disk. While one is being saved nothing is
+    /// copied, and false is the answer: there is one copy at a time.
+    bool save(const FusedMap& map);
     /// Waits until nothing is left to save, `patience` at most; false if that was too short.
     [[nodiscard]] bool finish(Nanoseconds patience);
 
     [[nodiscard]] SaveRecord record() const;
 
   private:
-    void work();
-    [[nodiscard]] std::string write(const FusedMap& map) const;
+    static std::string write_map(const FusedMap& map, const std::filesystem::path& folder);
 
-    std::filesystem::path folder_;
-    mutable std::mutex mutex_;
-    std::condition_variable changed_;
-    std::optional<FusedMap> waiting_;
-    bool is_busy_ = false;
-    bool is_ending_ = false;
-    SaveRecord record_;
+    /// What the thread needs, for as long as it needs it: it may outlive the keeper.
+    struct Work {
+        std::filesystem::path folder;
+        Writer writer;
+        std::mutex mutex;
+        std::condition_variable changed;
+        std::optional<FusedMap> waiting;
+        bool is_busy = false;  ///< from `save` on until it is written
+        bool is_ending = false;
+        SaveRecord record;
+    };
+    static void work(Work& shared);
+
+    std::shared_ptr<Work> work_;
     std::thread thread_;
 };
 

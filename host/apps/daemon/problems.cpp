@@ -9,12 +9,12 @@ namespace {
 using Problems = std::vector<std::string>;
 
 void add_link(const DaemonView& view, Problems& problems) {
-    if (view.can->state() != LinkState::up) {
-        problems.push_back(fmt::format("CAN {}: {}",
-                                       names_of(LinkState{})[static_cast<std::size_t>(view.can->state())],
-                                       view.can->why()));
+    if (view.inputs->can().state() != LinkState::up) {
+        problems.push_back(fmt::format(
+            "CAN {}: {}", names_of(LinkState{})[static_cast<std::size_t>(view.inputs->can().state())],
+            view.inputs->can().why()));
     }
-    const CanLink::Counts counts = view.can->counts();
+    const CanLink::Counts counts = view.inputs->can().counts();
     if (counts.dropped > 0) {
         problems.push_back(fmt::format(
             "{}: frames were lost in the kernel: this machine is, or was, too busy", *view.interface));
@@ -23,7 +23,8 @@ void add_link(const DaemonView& view, Problems& problems) {
 
 void add_clock(const DaemonView& view, Problems& problems) {
     constexpr Nanoseconds kForeignHold{3'000'000'000};
-    if (view.foreign_sync && view.now - *view.foreign_sync < kForeignHold) {
+    const auto foreign = view.inputs->foreign_sync();
+    if (!view.is_listen_only && foreign && view.now - *foreign < kForeignHold) {
         problems.emplace_back(
             "another host sends SYNC on this bus: only one may (start this one with --listen-only)");
     }
@@ -67,9 +68,11 @@ void add_joints(const DaemonView& view, Problems& problems) {
     constexpr std::uint64_t kFirstSamples = 5;  // of a source: nothing is known of it yet
     const auto& joints = view.pipeline->accounts().joint_samples;
     if (joints.in() == 0) {
-        problems.push_back(fmt::format(
-            "no joint states: neither from node {} on the bus{}", view.rig->joints.node_id,
-            view.joints != nullptr ? " nor through the socket (`octoskin joints`)" : " (and no --joints)"));
+        problems.push_back(
+            view.inputs->joints() != nullptr
+                ? std::string("no joint states: none comes through the socket (`octoskin joints`)")
+                : fmt::format("no joint states: none from node {} on the bus (and no --joints)",
+                              view.rig->joints.node_id));
     } else if (!view.used.joint_sample) {
         problems.emplace_back("no joint state could be used: see the counters of joint samples");
     } else if (has_stopped(view.used.joint_sample, view.now)) {
@@ -108,8 +111,9 @@ void add_map(const DaemonView& view, Problems& problems) {
     const FusedMap& map = *view.pipeline->maps().fused();
     if (map.counters().no_room > 0) {
         problems.push_back(fmt::format(
-            "the map is full ({} MiB): it takes no new space; raise map.memory_max_mib in the mapping file",
-            map.config().memory_max_mib));
+            "the map is full ({} MiB): it takes no new space, {} updates found no room (no_room); raise "
+            "map.memory_max_mib in the mapping file",
+            map.config().memory_max_mib, map.counters().no_room));
     }
     if (!view.saves.error.empty()) problems.push_back("the map is not saved: " + view.saves.error);
     if (view.recorder != nullptr && !view.recorder->error().empty()) {

@@ -22,10 +22,10 @@ Json age_s(const std::optional<HostTime>& since, HostTime now) {
 }
 
 Json can_json(const DaemonView& view) {
-    const CanLink::Counts counts = view.can->counts();
+    const CanLink::Counts counts = view.inputs->can().counts();
     return {{"interface", *view.interface},
-            {"state", names_of(LinkState{})[static_cast<std::size_t>(view.can->state())]},
-            {"why", view.can->why()},
+            {"state", names_of(LinkState{})[static_cast<std::size_t>(view.inputs->can().state())]},
+            {"why", view.inputs->can().why()},
             {"listen_only", view.is_listen_only},
             {"received", counts.received},
             {"sent", counts.sent},
@@ -95,16 +95,23 @@ Json node_json(const DaemonView& view, const HostNode& node) {
 
 Json camera_json(const DaemonView& view) {
     if (!view.camera) return nullptr;
-    return {{"open", view.camera->is_open},  {"why", view.camera->why},
-            {"frames", view.camera->frames}, {"displaced", view.camera->displaced},
-            {"opened", view.camera->opened}, {"age_s", age_s(view.camera->newest, view.now)}};
+    return {{"open", view.camera->is_open},
+            {"why", view.camera->why},
+            {"frames", view.camera->frames},
+            {"displaced", view.camera->displaced},
+            {"untimed", view.camera->untimed},
+            {"opened", view.camera->opened},
+            {"age_s", age_s(view.camera->newest, view.now)}};
 }
 
 Json joints_json(const DaemonView& view) {
-    if (view.joints == nullptr) return nullptr;
-    Json json = {{"samples", view.joints->samples()}};
-    for (std::size_t i = 0; i < view.joints->faults().size(); ++i)
-        json[names_of(JointTextFault{}).at(i)] = view.joints->faults().at(i);
+    const JointSocket* const joints = view.inputs->joints();
+    if (joints == nullptr) return nullptr;
+    Json json = {{"samples", joints->samples()},
+                 {"thinned", view.inputs->joints_thinned()},
+                 {"joint_node_ignored", view.inputs->joint_node_ignored()}};
+    for (std::size_t i = 0; i < joints->faults().size(); ++i)
+        json[names_of(JointTextFault{}).at(i)] = joints->faults().at(i);
     return json;
 }
 
@@ -124,7 +131,7 @@ Json map_json(const DaemonView& view) {
             {"no_room", map.counters().no_room},
             {"saved", view.saves.saved},
             {"saves_failed", view.saves.failed},
-            {"saves_displaced", view.saves.displaced},
+            {"saves_skipped", view.saves.skipped},
             {"saved_age_s", age_s(view.saves.newest, view.now)}};
 }
 
@@ -145,6 +152,16 @@ Json account_json(const Pipeline& pipeline) {
 
 }  // namespace
 
+void LastUsed::note(const PipelineAccounts& accounts, HostTime now) {
+    const auto note_one = [now](std::uint64_t count, std::uint64_t& before, std::optional<HostTime>& last) {
+        if (count > before) last = now;
+        before = count;
+    };
+    note_one(accounts.joint_samples.used(), counts_[0], joint_sample);
+    note_one(accounts.readings.used(), counts_[1], reading);
+    note_one(accounts.depth_frames.used(), counts_[2], depth_frame);
+}
+
 Json status_json(const DaemonView& view) {
     Json nodes = Json::array();
     for (const HostNode& node : view.rig->nodes) nodes.push_back(node_json(view, node));
@@ -158,7 +175,7 @@ Json status_json(const DaemonView& view) {
             {"joints_socket", joints_json(view)},
             {"recording", view.recorder != nullptr ? view.recorder->to_json(view.now) : Json(nullptr)},
             {"camera", camera_json(view)},
-            {"latency", latency_json(*view.latency)},
+            {"latency", latency_json(view.inputs->latency())},
             {"map", map_json(view)},
             {"account", account_json(*view.pipeline)}};
 }

@@ -1,6 +1,8 @@
 // What is going on, for a person and for a script: one JSON object (docs/daemon.md has every key).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -8,9 +10,7 @@
 
 #include "common/time.hpp"
 #include "host/apps/daemon/camera_feed.hpp"
-#include "host/apps/daemon/can_link.hpp"
-#include "host/apps/daemon/joint_socket.hpp"
-#include "host/apps/daemon/latency.hpp"
+#include "host/apps/daemon/inputs.hpp"
 #include "host/apps/daemon/map_keeper.hpp"
 #include "host/apps/daemon/recorder.hpp"
 #include "host/core/pipeline/pipeline.hpp"
@@ -19,10 +19,17 @@
 namespace octoskin {
 
 /// When something was last used for the map; empty if never.
-struct LastUsed {
+class LastUsed {
+  public:
+    /// To be asked often: what was used since the last time was used now.
+    void note(const PipelineAccounts& accounts, HostTime now);
+
     std::optional<HostTime> joint_sample;
     std::optional<HostTime> reading;
     std::optional<HostTime> depth_frame;
+
+  private:
+    std::array<std::uint64_t, 3> counts_{};
 };
 
 /// All that there is to tell. What it points to must be there.
@@ -33,13 +40,10 @@ struct DaemonView {
     HostTime started;
     const HostRig* rig = nullptr;
     const Pipeline* pipeline = nullptr;
-    const CanLink* can = nullptr;
+    const Inputs* inputs = nullptr;
     const std::string* interface = nullptr;
     bool is_listen_only = false;
-    std::optional<HostTime> foreign_sync;  ///< another host's newest SYNC, while this one sends its own
-    const JointSocket* joints = nullptr;   ///< null without a socket
-    std::optional<CameraRecord> camera;    ///< empty without a camera
-    const LatencyHistogram* latency = nullptr;
+    std::optional<CameraRecord> camera;  ///< empty without a camera
     LastUsed used;
     SaveRecord saves;
     const Recorder* recorder = nullptr;  ///< at work, or the last one; null if there was none

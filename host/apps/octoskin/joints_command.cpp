@@ -11,7 +11,7 @@
 #include <string>
 
 #include "common/wire/codec.hpp"
-#include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/joint_socket.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
@@ -64,7 +64,8 @@ class SocketOutput final : public JointOutput {
 class CanOutput final : public JointOutput {
   public:
     CanOutput(const JointsOptions& options, const rig::Rig& rig)
-        : joint_count_(rig.joints.joints.size()), joints_(rig.joints.node_id, joint_count_) {
+        : joint_count_(rig.joints.joints.size()),
+          joints_(rig.joints.node_id, joint_count_, rig.joints.rate_hz) {
         constexpr std::array<socketcan::IdFilter, 1> kSyncOnly{
             {{wire::can_id(wire::FrameType::sync, wire::kHostId), wire::kStandardIdMax}}};
         auto opened = socketcan::CanSocket::open(options.interface, {.filters = kSyncOnly});

@@ -17,6 +17,9 @@ NodeTime node_time(HostTime time) {
 
 }  // namespace
 
+LocalJoints::LocalJoints(wire::NodeId node_id, std::size_t joint_count, double rate_hz)
+    : node_id_(node_id), joint_count_(joint_count), distance_min_(std::llround(0.75e9 / rate_hz)) {}
+
 Result<std::array<wire::CanFrame, wire::kFramesPerJointSample>, LocalJointFault> LocalJoints::frames(
     HostTime sampled, std::span<const double> position) {
     if (position.size() != joint_count_) return unexpected(LocalJointFault::wrong_count);
@@ -26,6 +29,10 @@ Result<std::array<wire::CanFrame, wire::kFramesPerJointSample>, LocalJointFault>
         if (std::abs(position[i]) > kLargest) return unexpected(LocalJointFault::too_large);
         micro[i] = static_cast<std::int32_t>(std::nearbyint(position[i] * kMicro));
     }
+    // A sample from before the newest is for the gate to refuse.
+    if (newest_ && sampled >= *newest_ && sampled - *newest_ < distance_min_)
+        return unexpected(LocalJointFault::too_soon);
+    newest_ = sampled;
     sequence_ = static_cast<std::uint8_t>((sequence_ + 1U) % wire::kJointSequenceCount);
     return wire::joint_frames(node_id_, sequence_, micro, wire::fd_residue(node_time(sampled)));
 }

@@ -20,16 +20,18 @@ enum class LocalJointFault : std::uint8_t {
     wrong_count,  ///< not one value for each of the rig's joints
     not_a_number,
     too_large,  ///< beyond the +-8.38 rad of the wire
+    too_soon,   ///< after the sample before it
 };
-[[nodiscard]] constexpr std::array<const char*, 3> names_of(LocalJointFault) {
-    return {"wrong_count", "not_a_number", "too_large"};
+[[nodiscard]] constexpr std::array<const char*, 4> names_of(LocalJointFault) {
+    return {"wrong_count", "not_a_number", "too_large", "too_soon"};
 }
 
 class LocalJoints {
   public:
-    /// `node_id`: the rig's source of joint states; `joint_count`: as many as it sends, 1..7.
-    LocalJoints(wire::NodeId node_id, std::size_t joint_count)
-        : node_id_(node_id), joint_count_(joint_count) {}
+    /// `node_id`: the rig's source of joint states; `joint_count`: as many as it sends, 1..7. `rate_hz`: the
+    /// rig's. An arm's driver may tell a thousand samples a second: those less than three quarters of a
+    /// period after the one before are left out, since nobody on the bus can tell so many apart.
+    LocalJoints(wire::NodeId node_id, std::size_t joint_count, double rate_hz);
 
     static constexpr double kLargest = 8.388607;  ///< what a frame's 24 bits with sign hold
     /// The frames of one sample, taken at `sampled` on the host's clock. Radians (metres for a prismatic
@@ -43,6 +45,8 @@ class LocalJoints {
   private:
     wire::NodeId node_id_;
     std::size_t joint_count_;
+    Nanoseconds distance_min_;
+    std::optional<HostTime> newest_;  ///< when the newest sample was taken that became frames
     std::uint8_t sequence_ = 0;
 };
 

@@ -26,6 +26,10 @@ constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 using Brick = std::array<float, kBrickVoxels>;
 constexpr std::size_t kBytesPerBrick = sizeof(Brick) + 64;  // and its entry in the index
 
+std::size_t bricks_in(std::uint32_t memory_max_mib) {
+    return (std::size_t{memory_max_mib} << 20U) / kBytesPerBrick;
+}
+
 /// Place of a voxel in its brick, in Morton order.
 std::size_t cell_of(VoxelKey key) {
     constexpr std::array<std::uint8_t, 8> kSpread = {0, 1, 8, 9, 64, 65, 72, 73};
@@ -77,7 +81,7 @@ FusedMap::FusedMap(const MapConfig& config)
     : config_(config), lattice_(config.resolution_m), bricks_(std::make_unique<Bricks>()) {
     assert(std::isfinite(config.log_odds_min) && std::isfinite(config.log_odds_max));
     assert(config.log_odds_min <= 0.0F && config.log_odds_max >= 0.0F);
-    bricks_->bricks_max = (std::size_t{config.memory_max_mib} << 20U) / kBytesPerBrick;
+    bricks_->bricks_max = bricks_in(config.memory_max_mib);
 }
 FusedMap::FusedMap(FusedMap&&) noexcept = default;
 FusedMap& FusedMap::operator=(FusedMap&&) noexcept = default;
@@ -87,8 +91,24 @@ FusedMap FusedMap::copy() const {
     FusedMap other(config_);
     other.counters_ = counters_;
     other.bricks_->known_voxels = bricks_->known_voxels;
+    other.bricks_->bricks_max = std::max(bricks_->bricks_max, bricks_->storage.size());
     for (const auto& [id, brick] : bricks_->by_id) *other.bricks_->find_or_make(id) = *brick;
     return other;
+}
+
+void FusedMap::limit(const MapConfig& config) {
+    assert(config.resolution_m == config_.resolution_m);
+    const bool clamps_change =
+        config.log_odds_min != config_.log_odds_min || config.log_odds_max != config_.log_odds_max;
+    config_ = config;
+    counters_ = {};
+    bricks_->bricks_max = bricks_in(config.memory_max_mib);
+    if (!clamps_change) return;
+    for (Brick& brick : bricks_->storage) {
+        for (float& log_odds : brick) {  // a NaN, which is an unknown voxel, stays one
+            log_odds = std::clamp(log_odds, config.log_odds_min, config.log_odds_max);
+        }
+    }
 }
 
 void FusedMap::apply(std::span<const VoxelUpdate> updates) {

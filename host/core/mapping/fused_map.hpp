@@ -63,6 +63,10 @@ class FusedMap {
     /// each 5 MiB.
     [[nodiscard]] FusedMap copy() const;
 
+    /// From now on other limits hold, at the same resolution (asserted): what lies beyond new clamps is
+    /// clamped; bricks beyond a smaller memory stay. The counters begin anew. O(voxels) if the clamps change.
+    void limit(const MapConfig& config);
+
     /// Adds each term to its voxel (unknown counts as 0 before) and clamps, one by one, in order, in
     /// OctoMap's single precision. A term of 0 touches nothing: in OctoMap a node at log-odds 0 counts as
     /// occupied. A term that is not finite is refused and counted. About 5 ns an update if neighbours come

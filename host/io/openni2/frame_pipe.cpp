@@ -12,8 +12,9 @@ namespace octoskin::openni2 {
 namespace {
 
 constexpr std::array<char, 4> kMagic{'O', 'S', 'K', 'D'};
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::uint64_t kEnd = ~std::uint64_t{0};
+constexpr std::uint64_t kUntimed = kEnd - 1;
 
 struct Header {
     std::array<char, 4> magic = kMagic;
@@ -37,6 +38,8 @@ const char* name(PipeError error) noexcept {
             return "no data in time";
         case PipeError::closed:
             return "ended in the middle";
+        case PipeError::interrupted:
+            return "told to end";
         case PipeError::wrong_format:
             return "not a stream of depth frames";
         case PipeError::io:
@@ -57,6 +60,10 @@ Status<PipeError> FramePipe::write_frame(std::uint64_t timestamp_us,
     if (const auto written = write_bytes(std::as_bytes(std::span(&timestamp_us, 1))); !written)
         return written;
     return write_bytes(std::as_bytes(depth_mm));
+}
+
+Status<PipeError> FramePipe::write_untimed_frame() {
+    return write_bytes(std::as_bytes(std::span(&kUntimed, 1)));
 }
 
 Status<PipeError> FramePipe::write_end() {
@@ -82,6 +89,8 @@ Result<std::optional<PipedFrame>, PipeError> FramePipe::read_frame(FrameSize siz
         return unexpected(read.error());
     }
     if (frame.timestamp_us == kEnd) return std::optional<PipedFrame>{};
+    frame.is_timed = frame.timestamp_us != kUntimed;
+    if (!frame.is_timed) return std::optional(std::move(frame));
     frame.depth_mm.resize(size.pixels());
     if (const auto read = read_bytes(std::as_writable_bytes(std::span(frame.depth_mm))); !read) {
         return unexpected(read.error());
@@ -90,9 +99,10 @@ Result<std::optional<PipedFrame>, PipeError> FramePipe::read_frame(FrameSize siz
 }
 
 Status<PipeError> FramePipe::wait_for(short events) const {
-    pollfd waiting{.fd = descriptor_, .events = events, .revents = 0};
+    std::array<pollfd, 2> waiting{{{descriptor_, events, 0}, {interrupt_, POLLIN, 0}}};
     for (;;) {
-        const int ready = ::poll(&waiting, 1, static_cast<int>(patience_.count()));
+        const int ready = ::poll(waiting.data(), waiting.size(), static_cast<int>(patience_.count()));
+        if (ready > 0 && waiting[1].revents != 0) return unexpected(PipeError::interrupted);
         if (ready > 0) return Done{};
         if (ready == 0) return unexpected(PipeError::timeout);
         if (errno != EINTR) return unexpected(PipeError::io);

@@ -4,6 +4,7 @@
 //     stream  = "OSKD" version:u32 width:u32 height:u32 is_salvaged:u32  frame*  end
 //     frame   = timestamp_us:u64 pixels:u16[width * height]   timestamps of a recording relative to its first
 //                                                             frame; of a camera, the host's monotonic clock
+//             | 0xFFFFFFFFFFFFFFFE                     one of a camera, whose time is not known
 //     end     = 0xFFFFFFFFFFFFFFFF
 //
 // Native byte order: both ends are on one machine. A stream that stops without `end` was cut off.
@@ -35,6 +36,7 @@ struct StreamHeader {
 };
 
 struct PipedFrame {
+    bool is_timed = true;  ///< else nothing of the rest is there
     std::uint64_t timestamp_us = 0;
     std::vector<std::uint16_t> depth_mm;
 };
@@ -42,21 +44,24 @@ struct PipedFrame {
 enum class PipeError : std::uint8_t {
     timeout,       ///< nothing came (or nothing was taken) for as long as the deadline allows
     closed,        ///< the other end went away in mid-stream
+    interrupted,   ///< whoever waits was told to end
     wrong_format,  ///< not this format, or an impossible size
     io,            ///< read or write failed
 };
 [[nodiscard]] const char* name(PipeError error) noexcept;
 
 /// Every call waits at most `patience` for the next byte to move, if the descriptor is a socket or does not
-/// block. The descriptor stays the caller's.
+/// block. The descriptors stay the caller's.
 class FramePipe {
   public:
-    FramePipe(int descriptor, std::chrono::milliseconds patience)
-        : descriptor_(descriptor), patience_(patience) {}
+    /// `interrupt`: once this one is readable, no call waits any longer; -1: none.
+    FramePipe(int descriptor, std::chrono::milliseconds patience, int interrupt = -1)
+        : descriptor_(descriptor), patience_(patience), interrupt_(interrupt) {}
 
     [[nodiscard]] Status<PipeError> write_header(const StreamHeader& header);
     [[nodiscard]] Status<PipeError> write_frame(std::uint64_t timestamp_us,
                                                 std::span<const std::uint16_t> depth_mm);
+    [[nodiscard]] Status<PipeError> write_untimed_frame();
     [[nodiscard]] Status<PipeError> write_end();
 
     [[nodiscard]] Result<StreamHeader, PipeError> read_header();
@@ -70,6 +75,7 @@ class FramePipe {
 
     int descriptor_;
     std::chrono::milliseconds patience_;
+    int interrupt_;
 };
 
 }  // namespace octoskin::openni2

@@ -1,5 +1,6 @@
 #include "host/io/openni2/helper_process.hpp"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/socket.h>
@@ -7,6 +8,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <cctype>
+#include <cerrno>
 #include <cstring>
 #include <thread>
 #include <utility>
@@ -16,11 +19,46 @@ namespace {
 
 /// Room for a frame of 512 x 424, where Linux gives half.
 constexpr int kSendBuffer = 1 << 20;
+constexpr std::chrono::milliseconds kStep{5};
+
+/// What posix_spawn is told. A thread without signals, or a program that ignores some, has a child that would
+/// inherit both.
+class Spawning {
+  public:
+    Spawning() {
+        posix_spawn_file_actions_init(&actions_);
+        posix_spawnattr_init(&attributes_);
+        sigset_t signals;
+        sigemptyset(&signals);
+        posix_spawnattr_setsigmask(&attributes_, &signals);
+        sigfillset(&signals);
+        posix_spawnattr_setsigdefault(&attributes_, &signals);
+        posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+    }
+    ~Spawning() {
+        posix_spawn_file_actions_destroy(&actions_);
+        posix_spawnattr_destroy(&attributes_);
+    }
+    Spawning(const Spawning&) = delete;
+    Spawning& operator=(const Spawning&) = delete;
+
+    void connect(int descriptor, int as) { posix_spawn_file_actions_adddup2(&actions_, descriptor, as); }
+    /// 0, or why not.
+    int spawn(pid_t& process, std::string program, std::string argument) const {
+        std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
+        return posix_spawn(&process, program.c_str(), &actions_, &attributes_, arguments.data(), environ);
+    }
+
+  private:
+    posix_spawn_file_actions_t actions_{};
+    posix_spawnattr_t attributes_{};
+};
 
 }  // namespace
 
 Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::path& program,
-                                                        const std::string& argument, HelperPipe pipe) {
+                                                        const std::string& argument, HelperPipe pipe,
+                                                        HelperComplaints complaints) {
     std::array<int, 2> ends{-1, -1};
     // Sockets rather than a pipe: a write to a helper that is stuck must not block, and one to a helper that
     // is gone must not raise SIGPIPE.
@@ -28,38 +66,36 @@ Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::p
         return unexpected(std::string("no socket: ") + std::strerror(errno));
     const auto [ours, theirs] = ends;
     for (const int end : ends) ::setsockopt(end, SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof(kSendBuffer));
-    const bool is_input = pipe == HelperPipe::its_input;
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, theirs, is_input ? STDIN_FILENO : STDOUT_FILENO);
-    std::string name = program.string();
-    std::string value = argument;
-    std::array<char*, 3> arguments{name.data(), value.data(), nullptr};
+    std::array<int, 2> words{-1, -1};
+    // Without blocking: nobody reads before the helper has ended, and it must not wait for that.
+    if (complaints == HelperComplaints::kept) (void)!::pipe2(words.data(), O_CLOEXEC | O_NONBLOCK);
+    Spawning spawning;
+    spawning.connect(theirs, pipe == HelperPipe::its_input ? STDIN_FILENO : STDOUT_FILENO);
+    if (words[1] >= 0) spawning.connect(words[1], STDERR_FILENO);
     pid_t process = -1;
-    const int failed = posix_spawn(&process, name.c_str(), &actions, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
+    const int failed = spawning.spawn(process, program.string(), argument);
     ::close(theirs);
-    if (failed != 0) {
-        ::close(ours);
-        return unexpected("cannot start " + name + ": " + std::strerror(failed));
-    }
-    return HelperProcess(process, ours);
+    if (words[1] >= 0) ::close(words[1]);
+    HelperProcess helper(process, ours, words[0]);
+    if (failed != 0) return unexpected("cannot start " + program.string() + ": " + std::strerror(failed));
+    return helper;
 }
 
 HelperProcess::HelperProcess(HelperProcess&& other) noexcept
-    : process_(std::exchange(other.process_, -1)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+    : process_(std::exchange(other.process_, -1)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      complaints_(std::exchange(other.complaints_, -1)) {}
 
 HelperProcess& HelperProcess::operator=(HelperProcess&& other) noexcept {
-    if (this != &other) {
-        end();
-        process_ = std::exchange(other.process_, -1);
-        descriptor_ = std::exchange(other.descriptor_, -1);
-    }
+    std::swap(process_, other.process_);
+    std::swap(descriptor_, other.descriptor_);
+    std::swap(complaints_, other.complaints_);
     return *this;
 }
 
 HelperProcess::~HelperProcess() {
     end();
+    if (complaints_ >= 0) ::close(complaints_);
 }
 
 void HelperProcess::close_pipe() {
@@ -70,11 +106,23 @@ void HelperProcess::end() {
     close_pipe();
     if (process_ < 0) return;
     ::kill(process_, SIGKILL);
-    ::waitpid(std::exchange(process_, -1), nullptr, 0);
+    constexpr int kTries = 200;
+    const pid_t process = std::exchange(process_, -1);
+    for (int i = 0; i < kTries && ::waitpid(process, nullptr, WNOHANG) == 0; ++i)
+        std::this_thread::sleep_for(kStep);
+}
+
+std::string HelperProcess::complaint() {
+    constexpr std::size_t kPipe = 64 << 10;
+    std::string text(kPipe, '\0');
+    const ssize_t count = complaints_ < 0 ? 0 : ::read(complaints_, text.data(), text.size());
+    text.resize(count > 0 ? static_cast<std::size_t>(count) : 0U);
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
+    const std::size_t line = text.rfind('\n');
+    return line == std::string::npos ? text : text.substr(line + 1);
 }
 
 std::optional<std::string> HelperProcess::wait(std::chrono::milliseconds patience) {
-    constexpr std::chrono::milliseconds kStep{5};
     for (std::chrono::milliseconds waited{0};; waited += kStep) {
         int status = 0;
         const pid_t ended = ::waitpid(process_, &status, WNOHANG);

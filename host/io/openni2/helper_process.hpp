@@ -14,15 +14,21 @@ namespace octoskin::openni2 {
 /// Which of the helper's standard streams is our end of the pipe.
 enum class HelperPipe : std::uint8_t { its_input, its_output };
 
+/// Where its standard error goes.
+enum class HelperComplaints : std::uint8_t {
+    on_our_standard_error,
+    kept,  ///< for `complaint`; what is too much for a pipe is lost
+};
+
 class HelperProcess {
   public:
-    /// Starts `program argument`. Its standard error is ours. The message says what failed.
-    [[nodiscard]] static Result<HelperProcess, std::string> start(const std::filesystem::path& program,
-                                                                  const std::string& argument,
-                                                                  HelperPipe pipe);
+    /// Starts `program argument`, with no signal blocked or ignored. The message says what failed.
+    [[nodiscard]] static Result<HelperProcess, std::string> start(
+        const std::filesystem::path& program, const std::string& argument, HelperPipe pipe,
+        HelperComplaints complaints = HelperComplaints::on_our_standard_error);
     HelperProcess(HelperProcess&& other) noexcept;
     HelperProcess& operator=(HelperProcess&& other) noexcept;
-    /// Ends a helper that still runs.
+    /// Ends a helper that still runs. One that the kernel does not let go of within a second is left behind.
     ~HelperProcess();
 
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
@@ -32,12 +38,17 @@ class HelperProcess {
     /// "signal 11", "did not end in time": it is killed then).
     [[nodiscard]] std::optional<std::string> wait(std::chrono::milliseconds patience);
 
+    /// The last line of its complaints so far, if they are kept; empty if there is none. Takes what was read.
+    [[nodiscard]] std::string complaint();
+
   private:
-    HelperProcess(int process, int descriptor) : process_(process), descriptor_(descriptor) {}
+    HelperProcess(int process, int descriptor, int complaints)
+        : process_(process), descriptor_(descriptor), complaints_(complaints) {}
     void end();
 
     int process_ = -1;
     int descriptor_ = -1;
+    int complaints_ = -1;
 };
 
 /// A helper program: beside the running executable, in ../libexec/octoskin/, or where the build put it. Empty

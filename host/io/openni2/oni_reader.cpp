@@ -58,6 +58,7 @@ Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
         is_ended_ = true;
         return std::optional<DepthFrame>{};
     }
+    if (!(*piped)->is_timed) return fail("a frame without time");
     const auto since_first = static_cast<std::int64_t>((*piped)->timestamp_us);
     constexpr std::int64_t kMaxUs = std::int64_t{1} << 48U;
     if (since_first < 0 || since_first > kMaxUs) return fail("an impossible time stamp");

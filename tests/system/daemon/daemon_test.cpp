@@ -106,8 +106,7 @@ TEST_F(DaemonTest, listens_to_another_hosts_clock_and_puts_its_own_camera_on_it)
 }
 
 TEST_F(DaemonTest, takes_joint_states_from_a_program_of_this_machine) {
-    start();
-    bus_->silence(3, true);  // the node of the rig that would send them
+    start({"--no-camera", "--joints", (folder_ / "joints").string()});  // the rig's joint node goes on, too
     // 100 samples a second, each sampled when it is written.
     const std::string command =
         "for i in $(seq 600); do echo 0 0 0 -1.5 0 1.5 0; sleep 0.01; done | " OCTOSKIN_PROGRAM
@@ -121,7 +120,12 @@ TEST_F(DaemonTest, takes_joint_states_from_a_program_of_this_machine) {
         },
         15s);
     EXPECT_TRUE(took) << daemon_->status().dump(1);
-    EXPECT_GT(daemon_->status()["joints_socket"]["samples"].get<int>(), 50);
+    const Json status = daemon_->status();
+    EXPECT_GT(status["joints_socket"]["samples"].get<int>(), 50);
+    EXPECT_GT(status["joints_socket"]["joint_node_ignored"].get<int>(), 100);
+    EXPECT_EQ(status["account"]["joint samples"]["rejected"].count("contradictory"), 0U) << status.dump(1);
+    EXPECT_LE(status["account"]["joint samples"]["in"].get<int>(),
+              status["joints_socket"]["samples"].get<int>());
     forwarder.join();
 }
 
@@ -177,6 +181,33 @@ TEST_F(DaemonTest, reloads_all_or_nothing) {
         << daemon_->log();
     EXPECT_EQ(daemon_->status()["rig"], "second");
     EXPECT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+}
+
+TEST_F(DaemonTest, goes_on_with_its_map_when_a_reload_gives_it_more_memory) {
+    const auto file = folder_.write("mapping.yaml", "base: robust\n");
+    start({"--no-camera", "--configuration", file.string()});
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    const auto voxels = daemon_->status()["map"]["known_voxels"].get<int>();
+    ASSERT_GT(voxels, 0);
+    folder_.write("mapping.yaml", "base: robust\nmap:\n  memory_max_mib: 321\n");
+    daemon_->signal(SIGHUP);
+    ASSERT_TRUE(daemon_->wait_until([](const Json& now) { return now["map"]["memory_max_mib"] == 321; }, 5s))
+        << daemon_->log();
+    EXPECT_GE(daemon_->status()["map"]["known_voxels"].get<int>(), voxels) << "the map did not go on";
+}
+
+TEST_F(DaemonTest, refuses_a_second_one_on_the_same_maps_and_names_the_first) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+    RunningDaemon second(folder_, ends[0], {"--no-camera", "--socket", (folder_ / "other").string()});
+    EXPECT_EQ(second.wait(5s), 73) << second.log();
+    EXPECT_NE(second.log().find("another octoskin (process " + std::to_string(daemon_->process()) + ")"),
+              std::string::npos)
+        << second.log();
+    EXPECT_TRUE(daemon_->status().is_object());
+    ::close(ends[1]);
 }
 
 TEST_F(DaemonTest, goes_on_with_the_saved_map_after_it_was_killed) {

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "host/apps/daemon/control_socket.hpp"
@@ -18,12 +19,10 @@ RunningDaemon::RunningDaemon(const testing_support::ScratchFolder& folder, int d
                              const std::vector<std::string>& more_arguments, const std::filesystem::path& rig)
     : folder_(folder) {
     constexpr int kItsDescriptor = 3;
-    std::vector<std::string> arguments{OCTOSKIN_PROGRAM, "run",
-                                       "--rig",          rig.string(),
-                                       "--can",          "fd:3",
-                                       "--maps",         maps().string(),
-                                       "--socket",       (folder_ / "control").string(),
-                                       "--joints",       joints().string()};
+    std::vector<std::string> arguments{OCTOSKIN_PROGRAM, "run",  "--rig",  rig.string(),
+                                       "--can",          "fd:3", "--maps", maps().string()};
+    if (std::ranges::find(more_arguments, "--socket") == more_arguments.end())
+        arguments.insert(arguments.end(), {"--socket", (folder_ / "control").string()});
     arguments.insert(arguments.end(), more_arguments.begin(), more_arguments.end());
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());

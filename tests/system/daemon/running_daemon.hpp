@@ -27,6 +27,7 @@ class RunningDaemon {
     RunningDaemon(const RunningDaemon&) = delete;
     RunningDaemon& operator=(const RunningDaemon&) = delete;
 
+    [[nodiscard]] pid_t process() const { return process_; }
     void signal(int number) const;
     /// Its exit code, or -signal; empty if it still runs after `patience`.
     [[nodiscard]] std::optional<int> wait(std::chrono::milliseconds patience);

@@ -103,5 +103,18 @@ TEST_F(CanLinkTest, is_opened_in_another_way_when_told_so) {
     EXPECT_EQ(others, 1);
 }
 
+TEST_F(CanLinkTest, is_no_longer_bus_off_when_it_hears_a_frame) {
+    ASSERT_TRUE(link_.attend({}));
+    say(CAN_ERR_BUSOFF);
+    EXPECT_EQ(link_.state(), LinkState::bus_off);
+    ASSERT_TRUE(other_->send({.can_id = 5}).value());
+    EXPECT_TRUE(link_.receive());
+    EXPECT_EQ(link_.state(), LinkState::up);
+    say(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
+    ASSERT_TRUE(other_->send({.can_id = 5}).value());
+    EXPECT_TRUE(link_.receive());
+    EXPECT_EQ(link_.state(), LinkState::error_passive) << "who is error-passive still hears";
+}
+
 }  // namespace
 }  // namespace octoskin

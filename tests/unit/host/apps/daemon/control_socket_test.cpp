@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <thread>
 #include <vector>
 
@@ -95,6 +96,43 @@ TEST_F(ControlSocketTest, takes_so_many_clients_and_no_more) {
         EXPECT_TRUE(ask_daemon(file(), "room again"));
     });
     EXPECT_EQ(socket_->dropped(), 4U);
+}
+
+TEST_F(ControlSocketTest, drops_the_one_that_was_idle_longest_for_a_new_one) {
+    serve([&] {
+        std::vector<int> clients;
+        for (std::size_t i = 0; i < ControlSocket::kClientsMax; ++i) {
+            clients.push_back(connect());
+            std::this_thread::sleep_for(2ms);
+        }
+        EXPECT_TRUE(ask_daemon(file(), "status")) << "sixteen that say nothing keep everybody out";
+        std::array<char, 8> bytes{};
+        EXPECT_EQ(::recv(clients.front(), bytes.data(), bytes.size(), 0), 0);
+        EXPECT_LT(::recv(clients.back(), bytes.data(), bytes.size(), MSG_DONTWAIT), 0);
+        for (const int client : clients) ::close(client);
+    });
+    EXPECT_EQ(socket_->dropped(), 1U);
+}
+
+TEST_F(ControlSocketTest, drops_who_asks_nothing_and_keeps_who_does) {
+    auto opened = ControlSocket::open(
+        folder_ / "quick", loop_, [](const std::string&) { return std::string("yes"); }, 100ms);
+    ASSERT_TRUE(opened);
+    serve([&] {
+        const int idle = *connect_unix_socket(folder_ / "quick", SOCK_STREAM);
+        const int busy = *connect_unix_socket(folder_ / "quick", SOCK_STREAM);
+        std::array<char, 8> bytes{};
+        for (int i = 0; i < 8; ++i) {
+            EXPECT_EQ(::send(busy, "ask\n", 4, MSG_NOSIGNAL), 4);
+            EXPECT_EQ(::recv(busy, bytes.data(), bytes.size(), 0), 4);
+            (void)::send(idle, "a", 1, MSG_NOSIGNAL);  // a line that never ends is no question
+            std::this_thread::sleep_for(40ms);
+        }
+        EXPECT_LE(::recv(idle, bytes.data(), bytes.size(), 0), 0);
+        ::close(idle);
+        ::close(busy);
+    });
+    EXPECT_EQ((*opened)->dropped(), 1U);
 }
 
 TEST_F(ControlSocketTest, is_one_at_a_place_and_takes_over_from_the_dead) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -23,7 +24,7 @@ HostRig rig_of(std::size_t joints) {
 
 class LocalJointsTest : public testing::Test {
   protected:
-    LocalJointsTest() : intake_(rig_of(3)), joints_(kNode, 3) {}
+    LocalJointsTest() : intake_(rig_of(3)), joints_(kNode, 3, 100.0) {}
 
     FrameOutcome give(const wire::CanFrame& frame, std::int64_t at_ns) {
         return intake_.on_frame(frame, {test::kWallOffsetNs + at_ns});
@@ -65,8 +66,10 @@ TEST_F(LocalJointsTest, come_out_of_the_intake_as_they_went_in_at_their_own_time
 TEST_F(LocalJointsTest, refuse_what_does_not_go_on_the_wire) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
+    std::int64_t now_ns = 0;
     const auto fault = [&](std::vector<double> position) {
-        const auto frames = joints_.frames({0}, position);
+        now_ns += 10'000'000;
+        const auto frames = joints_.frames({now_ns}, position);
         return frames ? std::nullopt : std::optional(frames.error());
     };
     EXPECT_EQ(fault({0, 0}), LocalJointFault::wrong_count);
@@ -77,6 +80,23 @@ TEST_F(LocalJointsTest, refuse_what_does_not_go_on_the_wire) {
     EXPECT_EQ(fault({8.388608, 0, 0}), LocalJointFault::too_large);
     EXPECT_EQ(fault({0, -8.388608, 0}), LocalJointFault::too_large);
     EXPECT_EQ(fault({1e300, 0, 0}), LocalJointFault::too_large);
+}
+
+TEST_F(LocalJointsTest, are_thinned_to_about_the_rigs_rate_and_never_refused_for_it) {
+    const std::vector<double> position{0.0, 0.0, 0.0};
+    for (const double rate_hz : {50.0, 100.0, 125.0, 250.0, 1000.0}) {
+        LocalJoints joints(kNode, 3, 100.0);
+        int taken = 0;
+        for (int i = 0; i < static_cast<int>(rate_hz); ++i) {
+            const HostTime sampled{static_cast<std::int64_t>(i * 1e9 / rate_hz)};
+            const auto frames = joints.frames(sampled, position);
+            taken += frames ? 1 : 0;
+            if (frames) continue;
+            EXPECT_EQ(frames.error(), LocalJointFault::too_soon);
+        }
+        EXPECT_GE(taken, std::min(rate_hz, 100.0)) << rate_hz;
+        EXPECT_LE(taken, 134) << rate_hz;
+    }
 }
 
 }  // namespace

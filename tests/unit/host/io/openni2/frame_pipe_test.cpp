@@ -39,7 +39,7 @@ class FramePipeTest : public testing::Test {
 
 // 2 x 1 pixels, salvaged; one frame at 0x0102 us with depths 0x0304 and 0x0506; the end.
 constexpr std::string_view kStream =
-    "OSKD\x02\0\0\0\x02\0\0\0\x01\0\0\0\x01\0\0\0"
+    "OSKD\x03\0\0\0\x02\0\0\0\x01\0\0\0\x01\0\0\0"
     "\x02\x01\0\0\0\0\0\0\x04\x03\x06\x05"
     "\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF"sv;
 
@@ -69,6 +69,30 @@ TEST_F(FramePipeTest, reads_the_documented_bytes) {
     EXPECT_FALSE(end->has_value());
 }
 
+TEST_F(FramePipeTest, tells_a_frame_without_time_and_goes_on) {
+    const std::array<std::uint16_t, 2> depth{7, 8};
+    ASSERT_TRUE(far_end().write_untimed_frame());
+    ASSERT_TRUE(far_end().write_frame(5, depth));
+    const auto untimed = near_end().read_frame({2, 1});
+    ASSERT_TRUE(untimed && untimed->has_value());
+    EXPECT_FALSE((*untimed)->is_timed);
+    const auto timed = near_end().read_frame({2, 1});
+    ASSERT_TRUE(timed && timed->has_value());
+    EXPECT_TRUE((*timed)->is_timed);
+    EXPECT_EQ((*timed)->timestamp_us, 5U);
+}
+
+TEST_F(FramePipeTest, waits_no_longer_once_it_is_interrupted) {
+    std::array<int, 2> interrupt{};
+    ASSERT_EQ(::pipe(interrupt.data()), 0);
+    FramePipe pipe(ends_[0], 10min, interrupt[0]);
+    ASSERT_EQ(::write(interrupt[1], "x", 1), 1);
+    const auto header = pipe.read_header();
+    ASSERT_FALSE(header);
+    EXPECT_EQ(header.error(), PipeError::interrupted);
+    for (const int end : interrupt) ::close(end);
+}
+
 TEST_F(FramePipeTest, finds_every_cut_of_the_stream) {
     for (std::size_t length = 0; length < kStream.size(); ++length) {
         std::array<int, 2> ends{};
@@ -92,10 +116,10 @@ TEST_F(FramePipeTest, finds_every_cut_of_the_stream) {
 TEST_F(FramePipeTest, refuses_another_format_version_or_an_impossible_size) {
     const std::string tail("\0\0\0\0", 4);
     for (const auto header : {"OSKE\x02\0\0\0\x02\0\0\0\x01\0\0\0"sv, "OSKD\x01\0\0\0\x02\0\0\0\x01\0\0\0"sv,
-                              "OSKD\x02\0\0\0\0\0\0\0\x01\0\0\0"sv, "OSKD\x02\0\0\0\x02\0\0\0\0\0\0\0"sv,
-                              "OSKD\x02\0\0\0\x01\x10\0\0\x01\0\0\0"sv,    // 4097 wide
-                              "OSKD\x02\0\0\0\xD0\x07\0\0\xD0\x07\0\0"sv,  // 2000 x 2000
-                              "OSKD\x02\0\0\0\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF"sv}) {
+                              "OSKD\x03\0\0\0\0\0\0\0\x01\0\0\0"sv, "OSKD\x03\0\0\0\x02\0\0\0\0\0\0\0"sv,
+                              "OSKD\x03\0\0\0\x01\x10\0\0\x01\0\0\0"sv,    // 4097 wide
+                              "OSKD\x03\0\0\0\xD0\x07\0\0\xD0\x07\0\0"sv,  // 2000 x 2000
+                              "OSKD\x03\0\0\0\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF"sv}) {
         send(std::string(header) + tail);
         const auto size = near_end().read_header();
         ASSERT_FALSE(size);

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
+#include <csignal>
+
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::openni2 {
@@ -21,6 +24,53 @@ class HelperProcessTest : public testing::Test {
     }
     testing_support::ScratchFolder scratch_;
 };
+
+/// "SigBlk" or "SigIgn" of a helper that tells its own, as the kernel writes them.
+std::string signals_of_helper(const std::string& key) {
+    auto helper = HelperProcess::start("/bin/cat", "/proc/self/status", HelperPipe::its_output);
+    EXPECT_TRUE(helper) << helper.error();
+    std::string text;
+    std::array<char, 4096> bytes{};
+    for (ssize_t n = 0; (n = ::read(helper->descriptor(), bytes.data(), bytes.size())) > 0;)
+        text.append(bytes.data(), static_cast<std::size_t>(n));
+    const std::size_t at = text.find(key + ":\t");
+    EXPECT_NE(at, std::string::npos);
+    return text.substr(at + key.size() + 2, 16);
+}
+
+TEST_F(HelperProcessTest, inherits_no_blocked_and_no_ignored_signal) {
+    sigset_t all;
+    sigset_t before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    const auto ignored_before = std::signal(SIGPIPE, SIG_IGN);
+    // The first 31; two of the rest are the C library's own.
+    constexpr unsigned long long kStandard = 0x7FFF'FFFF;
+    EXPECT_EQ(std::stoull(signals_of_helper("SigBlk"), nullptr, 16) & kStandard, 0U);
+    EXPECT_EQ(std::stoull(signals_of_helper("SigIgn"), nullptr, 16) & kStandard, 0U);
+    std::signal(SIGPIPE, ignored_before);
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+TEST_F(HelperProcessTest, has_its_last_complaint_kept_however_much_it_complains) {
+    const auto program =
+        scratch_.write("helper",
+                       "#!/bin/sh\nif [ \"$1\" = much ]; then yes complaint | head -c 1000000 >&2; fi\n"
+                       "echo first >&2; echo 'the reason' >&2; echo end\n");
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    for (const char* how : {"little", "much"}) {
+        auto helper = HelperProcess::start(program, how, HelperPipe::its_output, HelperComplaints::kept);
+        ASSERT_TRUE(helper) << helper.error();
+        std::array<char, 8> bytes{};
+        EXPECT_EQ(::read(helper->descriptor(), bytes.data(), bytes.size()), 4) << "it waits for a reader";
+        if (std::string(how) == "little") {
+            EXPECT_EQ(helper->complaint(), "the reason");
+        } else {
+            EXPECT_EQ(helper->complaint().substr(0, 4), "comp");
+        }
+        EXPECT_EQ(helper->complaint(), "");
+    }
+}
 
 TEST_F(HelperProcessTest, gets_its_argument_and_gives_its_output) {
     auto helper = start("printf '%s' \"$1\"");

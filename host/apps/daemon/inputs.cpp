@@ -1,0 +1,179 @@
+#include "host/apps/daemon/inputs.hpp"
+
+#include <utility>
+
+#include "common/wire/codec.hpp"
+#include "host/apps/daemon/clocks.hpp"
+#include "host/io/socketcan/our_filters.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr std::chrono::milliseconds kCameraSilenceMax{2'000};
+/// Frames taken in one go before others have a turn.
+constexpr int kFramesPerTurn = 256;
+
+CanLink::Opener opener(const DaemonRequest& request, const HostRig& rig) {
+    if (request.can_descriptor) {
+        return [descriptor = *request.can_descriptor, name = request.interface,
+                is_open = false]() mutable -> Result<socketcan::CanSocket, socketcan::SocketFault> {
+            if (std::exchange(is_open, true))
+                return unexpected(socketcan::SocketFault{name, ENODEV, "closed by the other end"});
+            return socketcan::CanSocket(name, descriptor, true);
+        };
+    }
+    return [interface = request.interface, filters = socketcan::our_filters(rig)] {
+        return socketcan::CanSocket::open(interface, {.filters = filters, .hears_itself = true});
+    };
+}
+
+LocalJoints local_joints_of(const HostRig& rig) {
+    return {rig.joints.node_id, rig.joints.joints.size(), rig.joints.rate_hz};
+}
+
+}  // namespace
+
+Inputs::Inputs(const DaemonRequest& request, const HostRig& rig, EventLoop& loop, Pipeline& pipeline,
+               RecordRequests& recordings)
+    : request_(request),
+      loop_(loop),
+      pipeline_(pipeline),
+      recordings_(recordings),
+      can_(opener(request, rig), [this] { can_ready_ = EventSource(); }),
+      joint_node_(rig.joints.node_id),
+      local_joints_(local_joints_of(rig)) {}
+
+Status<AppError> Inputs::take_sockets(const HostRig& rig) {
+    if (request_.joint_socket.empty()) return Done{};
+    auto socket = JointSocket::open(request_.joint_socket, rig.joints.joints.size());
+    if (!socket) return unexpected(socket.error());
+    joints_ = std::move(socket).value();
+    return Done{};
+}
+
+void Inputs::watch(const HostRig& rig) {
+    if (joints_) joints_ready_ = loop_.on_readable(joints_->descriptor(), [this] { drain_joints(); });
+    watch_camera(rig.camera.has_value());
+    attend();
+}
+
+void Inputs::watch_camera(bool is_wanted) {
+    if (!is_wanted || !request_.has_camera) {
+        camera_ready_ = EventSource();
+        camera_.reset();
+    } else if (!camera_) {
+        camera_ = std::make_unique<CameraFeed>(request_.camera_uri, kCameraSilenceMax);
+        camera_ready_ = loop_.on_readable(camera_->descriptor(), [this] { drain_camera(); });
+    }
+}
+
+void Inputs::change_rig(const HostRig& rig) {
+    if (!request_.can_descriptor) can_.reopen(opener(request_, rig));
+    joint_node_ = rig.joints.node_id;
+    local_joints_ = local_joints_of(rig);
+    if (joints_) joints_->expect(rig.joints.joints.size());
+    watch_camera(rig.camera.has_value());
+}
+
+void Inputs::attend() {
+    const HostTime now = monotonic_now();
+    if (can_.attend(now)) can_ready_ = loop_.on_readable(can_.descriptor(), [this] { drain_can(); });
+    if (!request_.is_listen_only) {
+        if (const auto due = sync_.poll(now)) (void)can_.send(wire::encode(*due, wire::kHostId));
+    }
+    catch_up();  // what this host sent comes back without waking anybody, where there is no kernel
+}
+
+void Inputs::catch_up() {
+    constexpr int kTurnsMax = 64;  // as much as the receive buffer holds
+    for (int i = 0; i < kTurnsMax && !drain_can(); ++i) {
+    }
+}
+
+bool Inputs::drain_can() {
+    for (int i = 0; i < kFramesPerTurn; ++i) {
+        const auto received = can_.receive();
+        if (!received) return true;
+        take_frame(*received);
+    }
+    return false;
+}
+
+/// With a socket for joint states the rig's joint node has its place: frames of two arms, or of two clocks,
+/// under one name would make poses that never were.
+void Inputs::take_frame(const socketcan::Received& received) {
+    if (joints_ && wire::node_of(received.entry.frame.can_id) == joint_node_) {
+        ++joint_node_ignored_;
+        return;
+    }
+    feed(received.entry.frame, received.entry.stamp);
+    if (const auto at = monotonic_of(received.entry.stamp)) answer_sync(received, *at);
+    learn_shift(received);
+}
+
+/// Who only listens has the clock of the host that sends SYNC: what this machine measures is put on it.
+void Inputs::learn_shift(const socketcan::Received& received) {
+    if (!request_.is_listen_only ||
+        received.entry.frame.can_id != wire::can_id(wire::FrameType::follow_up, wire::kHostId))
+        return;
+    const auto decoded = wire::decode(received.entry.frame);
+    const auto* const message = decoded ? std::get_if<wire::FollowUp>(&decoded->message) : nullptr;
+    if (message == nullptr || !foreign_sync_ || message->sequence != foreign_sequence_) return;
+    shift_ =
+        Nanoseconds{static_cast<std::int64_t>(message->host_time_us) * 1000} - (*foreign_sync_ - HostTime{});
+}
+
+/// What a SYNC asks of this host: the answer of its local joints, and the FOLLOW_UP if it was its own.
+void Inputs::answer_sync(const socketcan::Received& received, HostTime at) {
+    if (received.entry.frame.can_id != wire::can_id(wire::FrameType::sync, wire::kHostId)) return;
+    const auto decoded = wire::decode(received.entry.frame);
+    const auto* const message = decoded ? std::get_if<wire::Sync>(&decoded->message) : nullptr;
+    if (message == nullptr) return;
+    if (joints_ && joints_->samples() > 0)
+        feed(local_joints_.report(message->sequence, at), received.entry.stamp);
+    if (!received.is_own) {
+        foreign_sync_ = at;
+        foreign_sequence_ = message->sequence;
+        return;
+    }
+    if (const auto follow_up = sync_.on_sent(message->sequence, at))
+        (void)can_.send(wire::encode(*follow_up, wire::kHostId));
+}
+
+/// Into the pipeline, and how long that took since the frame was here.
+void Inputs::feed(const wire::CanFrame& frame, WallTime stamp) {
+    const std::uint64_t used_before = pipeline_.accounts().readings.used();
+    recordings_.on_can(frame, stamp);
+    pipeline_.on_can(frame, stamp);
+    const std::uint64_t used = pipeline_.accounts().readings.used() - used_before;
+    if (used == 0) return;
+    const Nanoseconds took{wall_now().ns - stamp.ns};
+    for (std::uint64_t i = 0; i < used; ++i) latency_.add(took);
+}
+
+void Inputs::drain_joints() {
+    catch_up();  // what came before them goes first: the bus's time is told by the order of stamps
+    std::optional<JointSample> sample;
+    for (int i = 0; i < kFramesPerTurn && joints_->receive(sample); ++i) {
+        if (!sample) continue;  // counted by the socket
+        const auto frames = local_joints_.frames(sample->sampled, sample->position);
+        if (!frames) {  // what else may be wrong the socket refuses and counts already
+            ++joints_thinned_;
+            continue;
+        }
+        for (const wire::CanFrame& frame : *frames) feed(frame, wall_now());
+    }
+}
+
+void Inputs::drain_camera() {
+    auto frame = camera_->take();
+    if (!frame) return;
+    frame->captured = frame->captured + shift_;
+    pipeline_.on_depth(std::move(*frame));
+}
+
+std::optional<CameraRecord> Inputs::camera() const {
+    return camera_ ? std::optional(camera_->record()) : std::nullopt;
+}
+
+}  // namespace octoskin

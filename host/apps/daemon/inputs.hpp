@@ -1,0 +1,92 @@
+// What comes in beside a robot: CAN frames, joint states of this machine, depth frames. Each goes into the
+// pipeline as it comes; what the bus asks of its host is answered.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+#include "common/time.hpp"
+#include "host/apps/daemon/camera_feed.hpp"
+#include "host/apps/daemon/can_link.hpp"
+#include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/daemon/joint_socket.hpp"
+#include "host/apps/daemon/latency.hpp"
+#include "host/apps/daemon/record_requests.hpp"
+#include "host/apps/daemon/settings.hpp"
+#include "host/core/ingest/local_joints.hpp"
+#include "host/core/time/sync_master.hpp"
+
+namespace octoskin {
+
+class Inputs {
+  public:
+    /// All of these must outlive it; `pipeline` may be replaced by another in the same place.
+    Inputs(const DaemonRequest& request, const HostRig& rig, EventLoop& loop, Pipeline& pipeline,
+           RecordRequests& recordings);
+    Inputs(const Inputs&) = delete;
+    Inputs& operator=(const Inputs&) = delete;
+
+    /// Makes the joint socket, if one is asked for.
+    [[nodiscard]] Status<AppError> take_sockets(const HostRig& rig);
+    /// From now on the loop brings what comes.
+    void watch(const HostRig& rig);
+    /// Another rig: its filters, joints and camera. The pipeline must be that rig's already.
+    void change_rig(const HostRig& rig);
+
+    /// Twenty times a second: opens what is closed, sends SYNC when it is due.
+    void attend();
+    /// Takes every frame that is here, so that nobody seems silent who only was not listened to.
+    void catch_up();
+
+    [[nodiscard]] const CanLink& can() const noexcept { return can_; }
+    /// Null without a socket.
+    [[nodiscard]] const JointSocket* joints() const noexcept { return joints_ ? &*joints_ : nullptr; }
+    /// Samples of the socket that came too soon after the one before.
+    [[nodiscard]] std::uint64_t joints_thinned() const noexcept { return joints_thinned_; }
+    /// Frames of the rig's joint node on the bus, while the socket is the source.
+    [[nodiscard]] std::uint64_t joint_node_ignored() const noexcept { return joint_node_ignored_; }
+    /// Empty without a camera.
+    [[nodiscard]] std::optional<CameraRecord> camera() const;
+    [[nodiscard]] const LatencyHistogram& latency() const noexcept { return latency_; }
+    /// Another host's newest SYNC, on this machine's clock.
+    [[nodiscard]] std::optional<HostTime> foreign_sync() const noexcept { return foreign_sync_; }
+    /// From this machine's clock to the one that SYNC tells.
+    [[nodiscard]] Nanoseconds shift() const noexcept { return shift_; }
+
+  private:
+    void watch_camera(bool is_wanted);
+    /// False if there may be more.
+    bool drain_can();
+    void take_frame(const socketcan::Received& received);
+    void answer_sync(const socketcan::Received& received, HostTime at);
+    void learn_shift(const socketcan::Received& received);
+    void feed(const wire::CanFrame& frame, WallTime stamp);
+    void drain_joints();
+    void drain_camera();
+
+    const DaemonRequest& request_;
+    EventLoop& loop_;
+    Pipeline& pipeline_;
+    RecordRequests& recordings_;
+    EventSource can_ready_;  ///< before the link: it must let go of a descriptor before that is closed
+    CanLink can_;
+    SyncMaster sync_;
+    wire::NodeId joint_node_;
+    LocalJoints local_joints_;
+    std::optional<JointSocket> joints_;
+    EventSource joints_ready_;
+    std::unique_ptr<CameraFeed> camera_;
+    EventSource camera_ready_;
+    LatencyHistogram latency_;
+    std::uint64_t joints_thinned_ = 0;
+    std::uint64_t joint_node_ignored_ = 0;
+    std::optional<HostTime> foreign_sync_;
+    std::uint8_t foreign_sequence_ = 0;
+    Nanoseconds shift_{0};
+};
+
+}  // namespace octoskin

@@ -1,0 +1,53 @@
+#include "host/apps/daemon/settings.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "host/apps/study/configuration.hpp"
+#include "host/io/mapping/mapping_file.hpp"
+#include "hw/rigfile/rig.hpp"
+
+namespace octoskin {
+
+namespace {
+
+/// The same as text, for recordings.
+Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const MappingConfig& mapping,
+                                                     const std::string& interface) {
+    std::ifstream robot(rig.urdf, std::ios::binary);
+    RecordedSettings recorded{.rig = rig::canonical_text(rig, "robot.urdf"),
+                              .robot = {std::istreambuf_iterator<char>(robot), {}},
+                              .mapping = mapping_text(mapping),
+                              .rig_hash = rig::rig_hash(rig),
+                              .joints = rig.joints.joints.size(),
+                              .interface = interface};
+    if (!robot) return fail(ExitCode::bad_config, rig.urdf.string() + ": cannot be read");
+    return recorded;
+}
+
+}  // namespace
+
+Result<Settings, AppError> read_settings(const DaemonRequest& request) {
+    const auto configuration = study_configuration(request.configuration);
+    if (!configuration) return unexpected(configuration.error());
+    const auto rig = rig::read_rig(request.rig, request.robot);
+    if (!rig) return fail(ExitCode::bad_config, rig.error().message());
+    auto host = make_host_setup(*rig);
+    if (!host) return fail(ExitCode::bad_config, host.error().message());
+    auto recorded = recorded_settings(*rig, configuration->mapping, request.interface);
+    if (!recorded) return unexpected(recorded.error());
+    return Settings{std::move(host).value(), configuration->mapping, std::move(recorded).value()};
+}
+
+Result<Pipeline, AppError> make_pipeline(const DaemonRequest& request, const Settings& settings) {
+    PipelineConfig config;
+    config.maps = {.depth = false, .proximity = false, .fused = true};
+    config.release = Release::once_placed;
+    auto pipeline = Pipeline::build(settings.host.rig, settings.host.robot, settings.mapping, config);
+    if (pipeline) return std::move(pipeline).value();
+    return fail(ExitCode::bad_config, request.rig.string() + ": the robot has no '" +
+                                          pipeline.error().element + "' that the rig speaks of");
+}
+
+}  // namespace octoskin

@@ -1,0 +1,63 @@
+#include "host/io/openni2/helpers/depth_stream.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "host/io/openni2/helpers/frame_pixels.hpp"
+#include "host/io/openni2/helpers/helper_limits.hpp"
+
+namespace octoskin::openni2 {
+namespace {
+
+constexpr int kFrameTimeoutMs = 2'000;  // the end of a file shows only as silence
+constexpr unsigned kProcessorSecondsPerFrame = 5;
+
+}  // namespace
+
+std::optional<int> begin_helper(const char* program) {
+    limit_this_process();
+    allow_processor_seconds(kProcessorSecondsPerFrame);
+    const int output = take_standard_output();
+    if (openni::OpenNI::initialize() == openni::STATUS_OK) return output;
+    (void)DepthStream(program).complain("cannot start OpenNI2");
+    return std::nullopt;
+}
+
+void end_helper(int exit_code) {
+    std::fflush(nullptr);
+    _exit(exit_code);
+}
+
+int DepthStream::complain(const std::string& what) const {
+    std::fprintf(stderr, "%s: %s: %s\n", program_, what.c_str(), openni::OpenNI::getExtendedError());
+    return 1;
+}
+
+bool DepthStream::open(const char* uri) {
+    return device_.open(uri) == openni::STATUS_OK;
+}
+
+bool DepthStream::start() {
+    const auto refuse = [this](const char* what) { return complain(what) == 0; };
+    if (stream_.create(device_, openni::SENSOR_DEPTH) != openni::STATUS_OK)
+        return refuse("it has no depth stream");
+    const auto size = depth_size(stream_);
+    if (!size) return refuse("a video mode that octoskin does not read");
+    size_ = *size;
+    return stream_.start() == openni::STATUS_OK || refuse("cannot start the stream");
+}
+
+bool DepthStream::wait_for_frame() {
+    allow_processor_seconds(kProcessorSecondsPerFrame);
+    openni::VideoStream* streams[] = {&stream_};
+    int ready = -1;
+    return openni::OpenNI::waitForAnyStream(streams, 1, &ready, kFrameTimeoutMs) == openni::STATUS_OK &&
+           stream_.readFrame(&frame_) == openni::STATUS_OK;
+}
+
+std::vector<std::uint16_t> DepthStream::pixels() const {
+    return pixels_of(frame_, size_);
+}
+
+}  // namespace octoskin::openni2

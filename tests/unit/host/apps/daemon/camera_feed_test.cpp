@@ -1,0 +1,77 @@
+// Cameras that behave and that do not: shell scripts in the helper's place.
+#include "host/apps/daemon/camera_feed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+class CameraFeedTest : public testing::Test {
+  protected:
+    std::filesystem::path camera(const std::string& script) {
+        const auto program = scratch_.write("camera", "#!/bin/sh\n" + script + "\n");
+        std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+        return program;
+    }
+    template <class Holds>
+    static bool wait_until(const Holds& holds) {
+        const auto end = Clock::now() + 5s;
+        while (Clock::now() < end) {
+            if (holds()) return true;
+            std::this_thread::sleep_for(2ms);
+        }
+        return false;
+    }
+    testing_support::ScratchFolder scratch_;
+};
+
+// A header of 2 x 1 pixels, as frame_pipe.hpp has it.
+constexpr const char* kHeader = "printf 'OSKD\\003\\0\\0\\0\\002\\0\\0\\0\\001\\0\\0\\0\\0\\0\\0\\0'\n";
+constexpr const char* kUntimed = "printf '\\376\\377\\377\\377\\377\\377\\377\\377'\n";
+constexpr const char* kTimed = "printf '\\1\\0\\0\\0\\0\\0\\0\\0\\003\\004\\005\\006'\n";
+
+TEST_F(CameraFeedTest, ends_at_once_while_its_camera_is_being_opened) {
+    std::optional<CameraFeed> feed;
+    feed.emplace("", 2s, camera("touch " + (scratch_ / "begun").string() + "; exec sleep 100"));
+    ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(scratch_ / "begun"); }));
+    const auto begun = Clock::now();
+    feed.reset();
+    EXPECT_LT(Clock::now() - begun, 2s);
+}
+
+TEST_F(CameraFeedTest, ends_at_once_while_its_camera_shows_nothing) {
+    std::optional<CameraFeed> feed;
+    feed.emplace("", 100s, camera(std::string(kHeader) + "exec sleep 100"));
+    ASSERT_TRUE(wait_until([&] { return feed->record().is_open; }));
+    const auto begun = Clock::now();
+    feed.reset();
+    EXPECT_LT(Clock::now() - begun, 2s);
+}
+
+TEST_F(CameraFeedTest, says_what_the_helper_says) {
+    const CameraFeed feed("the-uri", 2s, camera("echo 'octoskin-camera: the reason' >&2; exit 1"));
+    ASSERT_TRUE(wait_until([&] { return feed.record().why.find("the-uri") == 0; }));
+    EXPECT_NE(feed.record().why.find("(octoskin-camera: the reason)"), std::string::npos)
+        << feed.record().why;
+    EXPECT_FALSE(feed.record().is_open);
+}
+
+TEST_F(CameraFeedTest, counts_frames_without_a_time_and_hands_over_the_others) {
+    CameraFeed feed("", 100s, camera(std::string(kHeader) + kUntimed + kUntimed + kTimed + "exec sleep 100"));
+    std::optional<DepthFrame> frame;
+    ASSERT_TRUE(wait_until([&] { return (frame = feed.take()).has_value(); }));
+    EXPECT_EQ(frame->captured, HostTime{1'000});
+    EXPECT_EQ(frame->depth_mm, (std::vector<std::uint16_t>{0x0403, 0x0605}));
+    EXPECT_EQ(feed.record().untimed, 2U);
+    EXPECT_EQ(feed.record().frames, 3U);
+}
+
+}  // namespace
+}  // namespace octoskin
