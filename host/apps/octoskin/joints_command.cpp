@@ -1,5 +1,5 @@
 // octoskin joints: joint states from standard input to the daemon, or onto a CAN interface as the rig's joint
-// node.
+// node. Whoever takes them may come and go: what cannot be sent is counted, and the next line tries again.
 #include <fmt/format.h>
 #include <poll.h>
 #include <spdlog/spdlog.h>
@@ -11,6 +11,7 @@
 #include <string>
 
 #include "common/wire/codec.hpp"
+#include "host/apps/daemon/can_link.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/joint_socket.hpp"
 #include "host/apps/daemon/places.hpp"
@@ -24,105 +25,151 @@
 namespace octoskin::app {
 namespace {
 
+constexpr Nanoseconds kRetry{200'000'000};
+
 struct JointsOptions {
     std::filesystem::path socket = default_joint_socket();
     std::string interface;
     std::filesystem::path rig;
 };
 
-/// Where a line's sample goes, and what else the way there asks for.
+/// Where a line's sample goes.
 class JointOutput {
   public:
     virtual ~JointOutput() = default;
-    /// Throws CommandFailure if nothing can be sent any more.
-    virtual void put(const std::string& line) = 0;
-    /// -1, or what to answer when it is readable.
-    [[nodiscard]] virtual int descriptor() const { return -1; }
-    virtual void answer() {}
+    /// False if it could not be sent now; it will not be sent later.
+    [[nodiscard]] virtual bool put(const std::string& line) = 0;
+    /// Whatever else the way there asks for; called often.
+    virtual void attend() = 0;
+    /// -1, or what is worth a call of `attend` when it is readable.
+    [[nodiscard]] virtual int descriptor() const = 0;
+    /// Why nothing can be sent, for a person; empty while it can.
+    [[nodiscard]] virtual std::string why() const = 0;
 };
 
 /// The text as it is: the daemon checks and counts it.
 class SocketOutput final : public JointOutput {
   public:
-    explicit SocketOutput(const std::filesystem::path& file) : file_(file) {
-        const auto connected = connect_unix_socket(file, SOCK_DGRAM);
-        if (!connected) throw CommandFailure(connected.error());
-        descriptor_ = *connected;
+    explicit SocketOutput(std::filesystem::path file) : file_(std::move(file)) {}
+    ~SocketOutput() override { close(); }
+    SocketOutput(const SocketOutput&) = delete;
+    SocketOutput& operator=(const SocketOutput&) = delete;
+    bool put(const std::string& line) override {
+        attend();
+        if (descriptor_ < 0) return false;
+        if (::send(descriptor_, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT) >= 0) return true;
+        if (errno != EAGAIN && errno != EWOULDBLOCK) {  // else the daemon is busy
+            close();
+            why_ = file_.string() + ": the daemon is gone";
+        }
+        return false;
     }
-    ~SocketOutput() override { ::close(descriptor_); }
-    void put(const std::string& line) override {
-        if (::send(descriptor_, line.data(), line.size(), MSG_NOSIGNAL) < 0)
-            throw CommandFailure({ExitCode::io_failed, file_.string() + ": the daemon is gone"});
+    void attend() override {
+        const HostTime now = monotonic_now();
+        if (descriptor_ >= 0 || (tried_ && now - *tried_ < kRetry)) return;
+        tried_ = now;
+        const auto connected = connect_unix_socket(file_, SOCK_DGRAM);
+        why_ = connected ? std::string() : connected.error().message;
+        if (connected) descriptor_ = *connected;
     }
+    [[nodiscard]] int descriptor() const override { return -1; }
+    [[nodiscard]] std::string why() const override { return why_; }
 
   private:
+    void close() {
+        if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+    }
     std::filesystem::path file_;
     int descriptor_ = -1;
+    std::optional<HostTime> tried_;
+    std::string why_;
 };
 
 /// As a node of the bus: frames, a heartbeat's silence allowed, and an answer to each SYNC.
 class CanOutput final : public JointOutput {
   public:
-    CanOutput(const JointsOptions& options, const rig::Rig& rig)
+    CanOutput(const std::string& interface, const rig::Rig& rig)
         : joint_count_(rig.joints.joints.size()),
-          joints_(rig.joints.node_id, joint_count_, rig.joints.rate_hz) {
-        constexpr std::array<socketcan::IdFilter, 1> kSyncOnly{
-            {{wire::can_id(wire::FrameType::sync, wire::kHostId), wire::kStandardIdMax}}};
-        auto opened = socketcan::CanSocket::open(options.interface, {.filters = kSyncOnly});
-        if (!opened) throw CommandFailure({ExitCode::unavailable, opened.error().message()});
-        socket_.emplace(std::move(opened).value());
-    }
-    void put(const std::string& line) override {
+          joints_(rig.joints.node_id, joint_count_, rig.joints.rate_hz),
+          link_([interface] { return socketcan::CanSocket::open(interface, {.filters = kSyncOnly}); }) {}
+    bool put(const std::string& line) override {
         const auto sample = parse_joints(line, joint_count_, monotonic_now());
         if (!sample) {
             spdlog::warn("line not sent, {}: {}",
                          names_of(JointTextFault{}).at(static_cast<std::size_t>(sample.error())), line);
-            return;
+            return true;  // told, and no fault of the way
         }
         const auto frames = joints_.frames(sample->sampled, sample->position);
-        if (!frames) return;  // parse_joints has refused it already
-        for (const wire::CanFrame& frame : *frames) send(frame);
+        if (!frames) return true;  // too soon after the one before; parse_joints has refused all else
+        bool is_sent = true;
+        for (const wire::CanFrame& frame : *frames) is_sent = link_.send(frame) && is_sent;
+        return is_sent;
     }
-    [[nodiscard]] int descriptor() const override { return socket_->descriptor(); }
-    void answer() override {
-        while (true) {  // each round takes one frame out of the socket
-            const auto received = socket_->receive();
-            if (!received) throw CommandFailure({ExitCode::io_failed, received.error().message()});
-            if (!received->has_value()) return;
-            const auto decoded = wire::decode((*received)->entry.frame);
+    void attend() override {
+        (void)link_.attend(monotonic_now());
+        while (const auto received = link_.receive()) {  // each round takes one frame out of the socket
+            const auto decoded = wire::decode(received->entry.frame);
             const auto* const sync = decoded ? std::get_if<wire::Sync>(&decoded->message) : nullptr;
-            const Nanoseconds age{wall_now().ns - (*received)->entry.stamp.ns};
-            if (sync != nullptr) send(joints_.report(sync->sequence, monotonic_now() - age));
+            const auto ended = monotonic_of(received->entry.stamp);
+            if (sync != nullptr && ended) (void)link_.send(joints_.report(sync->sequence, *ended));
         }
     }
+    [[nodiscard]] int descriptor() const override { return link_.descriptor(); }
+    [[nodiscard]] std::string why() const override { return link_.why(); }
 
   private:
-    void send(const wire::CanFrame& frame) {
-        const auto sent = socket_->send(frame);
-        if (!sent && !sent.error().is_down())
-            throw CommandFailure({ExitCode::io_failed, sent.error().message()});
-    }
-
+    static constexpr std::array<socketcan::IdFilter, 1> kSyncOnly{
+        {{wire::can_id(wire::FrameType::sync, wire::kHostId), wire::kStandardIdMax}}};
     std::size_t joint_count_;
     LocalJoints joints_;
-    std::optional<socketcan::CanSocket> socket_;
+    CanLink link_;
 };
 
-std::unique_ptr<JointOutput> open_output(const JointsOptions& options) {
+std::unique_ptr<JointOutput> make_output(const JointsOptions& options) {
     if (options.interface.empty()) return std::make_unique<SocketOutput>(options.socket);
     if (options.rig.empty())
         throw CommandFailure(
             {ExitCode::usage, "--can needs --rig: which node sends joint states, and how many"});
     const auto rig = rig::read_rig(options.rig);
     if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
-    return std::make_unique<CanOutput>(options, *rig);
+    return std::make_unique<CanOutput>(options.interface, *rig);
 }
 
-void put_lines(std::string& pending, JointOutput& output) {
+/// Lines on their way, and what is said of them: once when they are lost, once when they go through again.
+class Forwarder {
+  public:
+    explicit Forwarder(JointOutput& output) : output_(output) {}
+
+    void put(const std::string& line) {
+        const bool is_sent = output_.put(line);
+        ++(is_sent ? sent_ : lost_);
+        const std::string why = output_.why();
+        if (!is_sent && !why.empty() && !is_waiting_) {
+            spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why);
+            is_waiting_ = true;
+        } else if (is_sent && is_waiting_) {
+            spdlog::info("samples go through again; {} lines are lost so far", lost_);
+            is_waiting_ = false;
+        }
+    }
+    /// Throws CommandFailure if not a single line went through.
+    void finish() const {
+        if (sent_ == 0 && lost_ > 0) throw CommandFailure({ExitCode::unavailable, output_.why()});
+        if (lost_ > 0) spdlog::warn("{} of {} lines were lost", lost_, sent_ + lost_);
+    }
+
+  private:
+    JointOutput& output_;
+    std::uint64_t sent_ = 0;
+    std::uint64_t lost_ = 0;
+    bool is_waiting_ = false;
+};
+
+void put_lines(std::string& pending, Forwarder& forwarder) {
     while (true) {  // each round takes one line off
         const std::size_t end = pending.find('\n');
         if (end == std::string::npos) break;
-        if (end > 0) output.put(pending.substr(0, end));
+        if (end > 0) forwarder.put(pending.substr(0, end));
         pending.erase(0, end + 1);
     }
     if (pending.size() > kJointTextMax)
@@ -131,20 +178,23 @@ void put_lines(std::string& pending, JointOutput& output) {
 }
 
 void forward(const JointsOptions& options) {
-    const auto output = open_output(options);
+    constexpr int kAttendMs = 200;
+    const auto output = make_output(options);
+    Forwarder forwarder(*output);
     std::string pending;
     while (true) {  // until standard input ends
+        output->attend();
         std::array<pollfd, 2> ready{{{STDIN_FILENO, POLLIN, 0}, {output->descriptor(), POLLIN, 0}}};
-        ::poll(ready.data(), ready.size(), -1);
-        if ((ready[1].revents & POLLIN) != 0) output->answer();
+        ::poll(ready.data(), ready.size(), kAttendMs);
         if (ready[0].revents == 0) continue;
         std::array<char, 4096> bytes{};
         const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
         if (count <= 0) break;
         pending.append(bytes.data(), static_cast<std::size_t>(count));
-        put_lines(pending, *output);
+        put_lines(pending, forwarder);
     }
-    if (!pending.empty()) output->put(pending);
+    if (!pending.empty()) forwarder.put(pending);
+    forwarder.finish();
 }
 
 }  // namespace

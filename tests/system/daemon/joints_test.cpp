@@ -1,0 +1,84 @@
+// `octoskin joints` in front of a daemon that comes and goes.
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "host/apps/daemon/unix_socket.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// The daemon's end.
+class Taker {
+  public:
+    explicit Taker(const std::filesystem::path& file)
+        : file_(file), descriptor_(*bind_unix_socket(file, SOCK_DGRAM)) {}
+    ~Taker() {
+        ::close(descriptor_);
+        ::unlink(file_.c_str());
+    }
+    Taker(const Taker&) = delete;
+    Taker& operator=(const Taker&) = delete;
+    [[nodiscard]] bool gets_a_line(std::chrono::milliseconds patience) const {
+        pollfd readable{descriptor_, POLLIN, 0};
+        std::array<char, 64> text{};
+        return ::poll(&readable, 1, static_cast<int>(patience.count())) > 0 &&
+               ::recv(descriptor_, text.data(), text.size(), 0) == 5;
+    }
+
+  private:
+    std::filesystem::path file_;
+    int descriptor_;
+};
+
+TEST(JointsCommand, waits_for_the_daemon_and_takes_it_back) {
+    const testing_support::ScratchFolder folder;
+    const auto file = folder / "joints";
+    const std::string command = "(for i in $(seq 200); do echo 1 2 3; sleep 0.02; done) | " OCTOSKIN_PROGRAM
+                                " joints --socket " +
+                                file.string() + " 2> " + (folder / "log").string();
+    int outcome = -1;
+    std::thread forwarder([&] { outcome = std::system(command.c_str()); });
+    std::this_thread::sleep_for(300ms);
+    {
+        const Taker first(file);
+        EXPECT_TRUE(first.gets_a_line(1s));
+    }
+    std::this_thread::sleep_for(300ms);
+    const Taker second(file);
+    EXPECT_TRUE(second.gets_a_line(1s));
+    forwarder.join();
+    EXPECT_EQ(WEXITSTATUS(outcome), 0);
+    const std::string log = testing_support::ScratchFolder::read(folder / "log");
+    EXPECT_NE(log.find("waiting for it"), std::string::npos) << log;
+    EXPECT_NE(log.find("go through again"), std::string::npos) << log;
+}
+
+TEST(JointsCommand, says_at_the_end_that_nobody_was_there) {
+    const testing_support::ScratchFolder folder;
+    const std::string command =
+        "echo 1 2 3 | " OCTOSKIN_PROGRAM " joints --socket " + (folder / "nobody").string() + " 2> /dev/null";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69);
+}
+
+/// A descriptor that only shows an error must not keep the processor busy.
+TEST(JointsCommand, rests_while_no_line_comes) {
+    const testing_support::ScratchFolder folder;
+    const std::string command =
+        "sleep 2 | bash -c 'ulimit -t 1; exec " OCTOSKIN_PROGRAM
+        " joints --can nocan9 --rig " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml' 2> /dev/null";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
+}
+
+}  // namespace
+}  // namespace octoskin::test
