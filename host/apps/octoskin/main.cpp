@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
     app::add_experiment_command(app);
     app::add_run_command(app);
     app::add_status_command(app);
+    app::add_monitor_command(app);
     app::add_record_command(app);
     app::add_explain_command(app);
     app::add_joints_command(app);

@@ -1,0 +1,239 @@
+#include "host/apps/monitor/screen.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "host/apps/monitor/counter_meanings.hpp"
+
+namespace octoskin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Seconds = std::chrono::duration<double>;
+
+const Json& at(const Json& object, const std::string& key) {
+    static const Json kNothing;
+    const auto found = object.is_object() ? object.find(key) : object.end();
+    return object.is_object() && found != object.end() ? *found : kNothing;
+}
+/// Null if there is no such one.
+const Json& item(const Json& array, std::size_t index) {
+    static const Json kNothing;
+    return array.is_array() && index < array.size() ? array[index] : kNothing;
+}
+std::size_t length(const Json& array) {
+    return array.is_array() ? array.size() : 0;
+}
+std::string text(const Json& value) {
+    return value.is_string() ? value.get<std::string>() : value.is_null() ? "-" : value.dump();
+}
+double number(const Json& value) {
+    return value.is_number() ? value.get<double>() : 0.0;
+}
+std::string count(const Json& value) {
+    return fmt::format("{:.0f}", number(value));
+}
+std::string rate(const Json& before, const Json& now, Seconds passed) {
+    const double grown = std::max(0.0, number(now) - number(before));  // it began anew: a reload
+    return passed.count() > 0.0 ? fmt::format("{:.1f}/s", grown / passed.count()) : std::string("-");
+}
+std::string age(const Json& seconds) {
+    return seconds.is_number() ? fmt::format("{:.2f} s ago", seconds.get<double>()) : "never";
+}
+
+class Screen {
+  public:
+    Screen(const Json& before, const Json& now, Seconds passed)
+        : before_(before), now_(now), passed_(passed) {}
+
+    std::vector<ScreenLine> lines() && {
+        add_head();
+        add_problems();
+        add_bus();
+        for (std::size_t i = 0; i < length(at(now_, "nodes")); ++i) add_node(i);
+        add_joints();
+        add_camera();
+        add_map();
+        add_counters();
+        return std::move(lines_);
+    }
+
+  private:
+    void add(std::string line, Emphasis emphasis = Emphasis::none) {
+        lines_.push_back({std::move(line), emphasis});
+    }
+    void add_head() {
+        add(fmt::format("{}   rig '{}', {:.0f} s", text(at(now_, "octoskin")), text(at(now_, "rig")),
+                        number(at(now_, "uptime_s"))),
+            Emphasis::title);
+    }
+    void add_problems() {
+        const Json& problems = at(now_, "problems");
+        if (problems.empty()) add("no problems", Emphasis::good);
+        for (const Json& problem : problems) add("! " + text(problem), Emphasis::bad);
+        if (number(at(at(now_, "map"), "known_voxels")) > 0.0) return;
+        add(problems.empty() ? "nothing is in the map yet: no measurement was used so far"
+                             : "nothing is in the map: the first problem above is why",
+            Emphasis::bad);
+    }
+    void add_bus() {
+        const Json& can = at(now_, "can");
+        const Json& can_before = at(before_, "can");
+        const Json& clock = at(now_, "clock");
+        add(fmt::format("CAN {} {}: {} in, {} out{}; time {}", text(at(can, "interface")),
+                        text(at(can, "state")),
+                        rate(at(can_before, "received"), at(can, "received"), passed_),
+                        rate(at(can_before, "sent"), at(can, "sent"), passed_),
+                        at(can, "listen_only") == true ? ", listening only" : "",
+                        at(clock, "known") == true ? "known" : "NOT known"),
+            Emphasis::title);
+        add_nonzero("  ", can,
+                    {"not_sent", "error_frames", "dropped_by_kernel", "malformed", "bus_off", "went_down",
+                     "reopened"});
+        add_nonzero("  clock: ", clock, {"steps_back", "steps_ahead", "stamps_ignored", "relocks"});
+        const Json& latency = at(now_, "latency");
+        add(fmt::format("  from frame to map: {:.2f} ms median, {:.2f} ms 99 %, {:.2f} ms longest",
+                        number(at(latency, "median_ms")), number(at(latency, "p99_ms")),
+                        number(at(latency, "max_ms"))));
+    }
+    void add_node(std::size_t index) {
+        const Json& node = item(at(now_, "nodes"), index);
+        const bool is_usable = text(at(node, "verdict")) == "usable";
+        const std::string clock = at(node, "clock_ppm").is_number()
+                                      ? fmt::format("clock {:+.1f} ppm", number(at(node, "clock_ppm")))
+                                      : "clock not known";
+        add(fmt::format("node {} '{}' {}{}, {}, heard {}", text(at(node, "id")), text(at(node, "name")),
+                        text(at(node, "verdict")),
+                        at(node, "reason").is_null() ? "" : ": " + text(at(node, "reason")), clock,
+                        age(at(node, "age_s"))),
+            is_usable ? Emphasis::title : Emphasis::bad);
+        const Json& node_before = item(at(before_, "nodes"), index);
+        for (std::size_t i = 0; i < length(at(node, "sensors")); ++i) add_sensor(node, node_before, i);
+    }
+    void add_sensor(const Json& node, const Json& node_before, std::size_t index) {
+        const Json& sensor = item(at(node, "sensors"), index);
+        const Json& before = item(at(node_before, "sensors"), index);
+        const std::string range = at(sensor, "range_m").is_number()
+                                      ? fmt::format("{:6.3f} m", number(at(sensor, "range_m")))
+                                      : std::string("       -");
+        const bool is_ranging = text(at(sensor, "state")) == "ranging";
+        const bool has_fault = !at(sensor, "fault").is_null() && text(at(sensor, "fault")) != "none";
+        add(fmt::format(
+                "  {:>2} {:<14} {} {:>8} {:>12}  status {}{}{}{}", text(at(sensor, "index")),
+                text(at(sensor, "name")), range,
+                rate(at(before, "received"), at(sensor, "received"), passed_), age(at(sensor, "age_s")),
+                text(at(sensor, "device_status")), is_ranging ? "" : ", " + text(at(sensor, "state")),
+                has_fault ? ", " + text(at(sensor, "fault")) : "",
+                at(sensor, "rejected").is_null() ? "" : ", not used: " + text(at(sensor, "rejected"))),
+            is_ranging ? Emphasis::none : Emphasis::bad);
+    }
+    void add_joints() {
+        const auto used = [](const Json& status) -> const Json& {
+            return at(at(at(status, "account"), "joint samples"), "used");
+        };
+        add("joint samples " + rate(used(before_), used(now_), passed_) + " used", Emphasis::title);
+        const Json& socket = at(now_, "joints_socket");
+        add_nonzero("  socket: ", socket,
+                    {"samples", "thinned", "joint_node_ignored", "not_a_number", "wrong_count", "time_off",
+                     "too_large", "too_long"});
+    }
+    void add_camera() {
+        const Json& camera = at(now_, "camera");
+        if (camera.is_null()) return add("no camera");
+        const bool is_open = at(camera, "open") == true;
+        add(is_open ? fmt::format("camera {}, newest {}",
+                                  rate(at(at(before_, "camera"), "frames"), at(camera, "frames"), passed_),
+                                  age(at(camera, "age_s")))
+                    : "camera closed: " + text(at(camera, "why")),
+            is_open ? Emphasis::title : Emphasis::bad);
+        add_nonzero("  ", camera, {"displaced", "untimed", "opened"});
+    }
+    void add_map() {
+        const Json& map = at(now_, "map");
+        add(fmt::format("map {} voxels of {} m, {:.1f} of {} MiB, saved {}", count(at(map, "known_voxels")),
+                        text(at(map, "resolution_m")), number(at(map, "memory_mib")),
+                        count(at(map, "memory_max_mib")), age(at(map, "saved_age_s"))),
+            Emphasis::title);
+        add_nonzero("  ", map, {"no_room", "saves_failed", "saves_skipped"});
+    }
+    /// Each unit, and why what was not used was not.
+    void add_counters() {
+        for (const auto& [unit, account] : at(now_, "account").items()) {
+            add(fmt::format("{}: {} in, {} used", unit, count(at(account, "in")), count(at(account, "used"))),
+                Emphasis::title);
+            if (at(account, "balanced") == false)
+                add("  the counters do not add up: a defect of octoskin", Emphasis::bad);
+            for (const auto& [name, value] : at(account, "rejected").items()) {
+                const Json& was = at(at(at(at(before_, "account"), unit), "rejected"), name);
+                add(fmt::format("  {:>9} {:<21} {:>8}  {}", count(value), name, rate(was, value, passed_),
+                                meaning_of(unit, name)));
+            }
+        }
+    }
+    void add_nonzero(const std::string& begin, const Json& object, std::initializer_list<const char*> keys) {
+        std::string line;
+        for (const char* key : keys) {
+            if (number(at(object, key)) == 0.0) continue;
+            line += fmt::format("{}{} {}", line.empty() ? "" : ", ", key, count(at(object, key)));
+        }
+        if (!line.empty()) add(begin + line);
+    }
+
+    const Json& before_;
+    const Json& now_;
+    Seconds passed_;
+    std::vector<ScreenLine> lines_;
+};
+
+/// So many characters of UTF-8; a control character, which a name might hold, becomes a question mark.
+std::string cut(const std::string& line, std::size_t columns) {
+    std::string shown;
+    std::size_t characters = 0;
+    for (const char letter : line) {
+        const auto byte = static_cast<unsigned char>(letter);
+        const bool begins = (byte & 0xC0U) != 0x80U;
+        if (begins && ++characters > columns) break;
+        shown += byte < 0x20U || byte == 0x7FU ? '?' : letter;
+    }
+    return shown;
+}
+
+std::string coloured(const std::string& line, Emphasis emphasis) {
+    switch (emphasis) {
+        case Emphasis::none:
+            return line;
+        case Emphasis::title:
+            return "\x1b[1m" + line + "\x1b[0m";
+        case Emphasis::good:
+            return "\x1b[32m" + line + "\x1b[0m";
+        case Emphasis::bad:
+            return "\x1b[31m" + line + "\x1b[0m";
+    }
+    return line;
+}
+
+}  // namespace
+
+std::vector<ScreenLine> screen_of(const Json& before, const Json& now, Seconds passed) {
+    return Screen(before, now, passed).lines();
+}
+
+std::string to_terminal(const std::vector<ScreenLine>& lines, ScreenSize size, bool has_colours) {
+    const bool is_cut = lines.size() > size.rows;
+    const std::size_t shown = is_cut ? std::max<std::size_t>(size.rows, 1) - 1 : lines.size();
+    std::string screen;
+    for (std::size_t i = 0; i < shown; ++i) {
+        const std::string line = cut(lines[i].text, size.columns);
+        screen += (has_colours ? coloured(line, lines[i].emphasis) : line) + '\n';
+    }
+    if (is_cut)
+        screen += cut(fmt::format("... {} more lines: a taller window, or --once", lines.size() - shown),
+                      size.columns) +
+                  '\n';
+    return screen;
+}
+
+}  // namespace octoskin
