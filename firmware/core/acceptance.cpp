@@ -1,6 +1,7 @@
 #include "firmware/core/acceptance.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/range_status.hpp"
 #include "common/wire/messages.hpp"
@@ -19,6 +20,10 @@ std::uint8_t status_on_wire(const vl53l1x::Measurement& measurement) noexcept {
     return measurement.device_status;
 }
 
+bool is_after(NodeTime time, NodeTime other) noexcept {
+    return !is_reached(time, other);
+}
+
 }  // namespace
 
 Acceptance::Acceptance(StreamGate gate, Microseconds timing_budget, const Policy& policy) noexcept
@@ -29,40 +34,63 @@ void Acceptance::restart(NodeTime started, Microseconds period, std::int32_t unc
     last_stream_.reset();
     last_ready_.reset();
     last_accepted_ = started;
-    not_ready_at_ = started;
-    has_seen_not_ready_ = false;
+    forget_polls(started);
     results_refused_ = 0;
+    was_stale_ = false;
+    unproven_readings_ = policy_.unproven_readings_max;
     is_proven_ = false;
 }
 
 void Acceptance::on_not_ready(NodeTime asked) noexcept {
+    not_ready_before_ = not_ready_at_;
     not_ready_at_ = asked;
-    has_seen_not_ready_ = true;
+    ++not_ready_polls_;
+}
+
+/// No poll has been made for the next data, which was ready no sooner than `ready_since`.
+void Acceptance::forget_polls(NodeTime ready_since) noexcept {
+    not_ready_at_ = ready_since;
+    not_ready_before_ = ready_since;
+    not_ready_polls_ = 0;
 }
 
 void Acceptance::on_unreadable() noexcept {
     ++results_refused_;
-    has_seen_not_ready_ = false;
+    // It may be the same data that is read next: ready since then, altered polls allowed for.
+    forget_polls(not_ready_before_);
+}
+
+/// Once, it was more likely a poll that was altered than a range that was made: the next one is still to
+/// come.
+void Acceptance::on_stale() noexcept {
+    if (has_accepted() && !std::exchange(was_stale_, true)) return;
+    on_unreadable();
 }
 
 Verdict Acceptance::judge(const ResultSeen& seen, const ZoneCycle& zones) noexcept {
     const vl53l1x::Measurement& measurement = seen.measurement;
     if (!is_new(measurement)) {
-        on_unreadable();
+        on_stale();
         return Verdict::refused;
     }
-    // Who could not read the last results and saw no data become ready does not know which range this is.
-    if (results_refused_ > 0 && !has_seen_not_ready_) tracker_.forget();
-    const std::uint32_t ranges = ranges_since_last(steps_to(measurement.stream_count), seen.read_end);
-    const TimeBracket ready = tracker_.observe(ready_bracket(seen, ranges), ranges);
+    const auto steps = steps_to(measurement.stream_count);
+    if (is_count_in_doubt(steps)) tracker_.forget();
+    const std::uint32_t ranges = ranges_since_last(steps, seen.read_end);
+    const bool is_next = steps == 1 && results_refused_ == 0 && !was_stale_ && is_rhythm_proven();
+    const TimeBracket ready = ready_time(seen, ranges, is_next);
 
     is_proven_ = last_stream_.has_value();
+    if (has_seen_not_ready()) {
+        unproven_readings_ = 0;
+    } else if (is_rhythm_proven()) {
+        ++unproven_readings_;
+    }
     last_stream_ = measurement.stream_count;
     last_ready_ = ready.earliest;
     last_accepted_ = seen.read_end;
-    not_ready_at_ = seen.ready_seen;
-    has_seen_not_ready_ = false;
+    forget_polls(seen.ready_seen);
     results_refused_ = 0;
+    was_stale_ = false;
 
     reading_ = {.zone = zones.in_force(shifted(ready, -budget_)),
                 .device_status = status_on_wire(measurement),
@@ -77,9 +105,9 @@ Verdict Acceptance::judge(const ResultSeen& seen, const ZoneCycle& zones) noexce
 }
 
 /// After a start there is no stream count to compare with, and the result may still be one of the run before,
-/// unless its data was seen to become ready.
+/// unless its data was seen to become ready: by two polls, since one may have been altered.
 bool Acceptance::is_new(const vl53l1x::Measurement& measurement) const noexcept {
-    if (!last_stream_) return has_seen_not_ready_;
+    if (!last_stream_) return not_ready_polls_ >= 2;
     return passes(gate_, *last_stream_, measurement.stream_count);
 }
 
@@ -88,26 +116,70 @@ std::optional<std::uint8_t> Acceptance::steps_to(std::uint8_t stream_count) cons
     return stream_steps(*last_stream_, stream_count);
 }
 
+/// Who could not read the last results and saw no data become ready does not know which range this is; nor
+/// does who saw it once, while the stream count says that it is another.
+bool Acceptance::is_count_in_doubt(std::optional<std::uint8_t> steps) const noexcept {
+    if (results_refused_ == 0) return false;
+    if (!has_seen_not_ready()) return true;
+    return not_ready_polls_ == 1 && steps && *steps != results_refused_ + 1;
+}
+
 std::uint32_t Acceptance::ranges_since_last(std::optional<std::uint8_t> steps,
                                             NodeTime read_end) const noexcept {
     if (steps) return *steps;
     const std::uint32_t seen = results_refused_ + 1;
-    if (has_seen_not_ready_ || !last_ready_) return seen;
+    if (has_seen_not_ready() || !last_ready_) return seen;
     // Without a count that tells, time must: as many ranges as fit since the last ready time.
     const Microseconds period = tracker_.period();
     const std::int64_t fitting = (elapsed(*last_ready_, read_end) + period / 16) / period;
     return static_cast<std::uint32_t>(std::max<std::int64_t>(seen, fitting));
 }
 
-TimeBracket Acceptance::ready_bracket(const ResultSeen& seen, std::uint32_t ranges) const noexcept {
-    // Data stays ready until cleared, but a later range overwrites it: then the poll saw the edge of an
-    // earlier range than the one read.
-    // A poll that was never answered "not ready" proves nothing about when.
-    const TimeBracket polled{not_ready_at_, seen.ready_seen};
-    const TimeBracket until_read{not_ready_at_, seen.read_end};
-    if (!has_seen_not_ready_) return until_read;
+/// When the data was ready, by the polls and by the rhythm. `is_next`: it is the first since the last result
+/// was read.
+TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges, bool is_next) noexcept {
     const auto predicted = tracker_.predict(ranges);
-    return !predicted || intersection(polled, *predicted) ? polled : until_read;
+    const bool is_overdue = predicted && is_after(not_ready_at_, predicted->latest);
+    const bool is_believed = is_lone_poll_believed(predicted) && !is_overdue;
+    const NodeTime not_ready = is_believed ? not_ready_at_ : not_ready_before_;
+    // It was overdue for one poll only: either that was altered, or the sensor slipped. Both are possible.
+    if (is_overdue && !is_after(not_ready, predicted->latest))
+        return tracker_.relearn({later_of(not_ready, predicted->earliest), seen.read_end}, ranges);
+    // Data stays ready until cleared, but a later range overwrites it: then the poll saw the edge of an
+    // earlier range than the one read. And a poll that was never answered "not ready" proves nothing about
+    // when, unless there was no earlier range.
+    const TimeBracket polled{not_ready, seen.ready_seen};
+    const TimeBracket until_read{not_ready, seen.read_end};
+    const bool is_of_this = predicted ? intersection(polled, *predicted).has_value() : is_read_in_time(seen);
+    const bool is_edge_seen = (has_seen_not_ready() || is_next) && is_of_this;
+    return tracker_.observe(is_edge_seen ? polled : until_read, ranges);
+}
+
+/// Whether what was read is still the data that was seen to be ready, however short the period may be.
+bool Acceptance::is_read_in_time(const ResultSeen& seen) const noexcept {
+    return elapsed(seen.ready_seen, seen.read_end) < tracker_.period() / 2;
+}
+
+bool Acceptance::is_lone_poll_believed(const std::optional<TimeBracket>& predicted) const noexcept {
+    return predicted && predicted->width() <= policy_.lone_poll_believed;
+}
+
+bool Acceptance::must_poll_punctually() const noexcept {
+    const auto predicted = next_ready();
+    return !predicted || predicted->width() > policy_.punctual_above;
+}
+
+bool Acceptance::wants_poll_confirmed() const noexcept {
+    const auto predicted = next_ready();
+    // Where polls are far apart anyway, one more for each of them would cost more than it tells.
+    const bool is_near = predicted && predicted->width() <= 3 * policy_.lone_poll_believed;
+    return is_near && !is_lone_poll_believed(predicted) && is_after(not_ready_at_, predicted->earliest) &&
+           elapsed(not_ready_before_, not_ready_at_) > policy_.lone_poll_believed;
+}
+
+bool Acceptance::wants_ready_confirmed() const noexcept {
+    const auto predicted = next_ready();
+    return !has_accepted() || !predicted || is_after(not_ready_at_, predicted->latest);
 }
 
 std::optional<TimeBracket> Acceptance::next_ready() const noexcept {

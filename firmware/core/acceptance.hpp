@@ -36,7 +36,7 @@ class Acceptance {
     /// Ranging was started at `started`, with a period within `uncertainty_permille` of `period`.
     void restart(NodeTime started, Microseconds period, std::int32_t uncertainty_permille) noexcept;
 
-    /// A poll begun at `asked` found no data.
+    /// A poll that asked no sooner than at `asked` found no data.
     void on_not_ready(NodeTime asked) noexcept;
     /// A result was there, but could not be read twice alike, or made no sense.
     void on_unreadable() noexcept;
@@ -51,6 +51,19 @@ class Acceptance {
 
     /// When the next result should become ready; empty until the first one was seen.
     [[nodiscard]] std::optional<TimeBracket> next_ready() const noexcept;
+    /// Whether data was lately seen not to be ready before its time: the sensor is not ahead of its rhythm.
+    /// Never where the stream count does not tell how many ranges it made.
+    [[nodiscard]] bool is_rhythm_proven() const noexcept {
+        return gate_ == StreamGate::advanced && unproven_readings_ < policy_.unproven_readings_max;
+    }
+    /// Whether the last poll, which found nothing, is worth asking again at once: alone it would not be
+    /// believed, and the poll before it was long ago.
+    [[nodiscard]] bool wants_poll_confirmed() const noexcept;
+    /// Whether a poll that comes late would leave the next ready time known less well than it should be.
+    [[nodiscard]] bool must_poll_punctually() const noexcept;
+    /// Whether a poll that finds data needs a second one: for the first result of a run, and where polls
+    /// found none when it was due.
+    [[nodiscard]] bool wants_ready_confirmed() const noexcept;
     /// When the range after the last result begins: the earliest it can be.
     [[nodiscard]] std::optional<NodeTime> next_range_begin() const noexcept;
     /// Whether results came since the last accepted one, and none of them could be used.
@@ -66,7 +79,13 @@ class Acceptance {
   private:
     [[nodiscard]] std::uint32_t ranges_since_last(std::optional<std::uint8_t> steps,
                                                   NodeTime read_end) const noexcept;
-    [[nodiscard]] TimeBracket ready_bracket(const ResultSeen& seen, std::uint32_t ranges) const noexcept;
+    [[nodiscard]] TimeBracket ready_time(const ResultSeen& seen, std::uint32_t ranges, bool is_next) noexcept;
+    void on_stale() noexcept;
+    [[nodiscard]] bool is_read_in_time(const ResultSeen& seen) const noexcept;
+    [[nodiscard]] bool is_lone_poll_believed(const std::optional<TimeBracket>& predicted) const noexcept;
+    [[nodiscard]] bool is_count_in_doubt(std::optional<std::uint8_t> steps) const noexcept;
+    [[nodiscard]] bool has_seen_not_ready() const noexcept { return not_ready_polls_ > 0; }
+    void forget_polls(NodeTime ready_since) noexcept;
     [[nodiscard]] bool is_new(const vl53l1x::Measurement& measurement) const noexcept;
     [[nodiscard]] std::optional<std::uint8_t> steps_to(std::uint8_t stream_count) const noexcept;
 
@@ -77,10 +96,13 @@ class Acceptance {
 
     std::optional<std::uint8_t> last_stream_;
     std::optional<NodeTime> last_ready_;
-    NodeTime last_accepted_;             ///< or the start
-    NodeTime not_ready_at_;              ///< the next data was certainly not ready then
-    bool has_seen_not_ready_ = false;    ///< since the last result
-    std::uint32_t results_refused_ = 0;  ///< since the last accepted one
+    NodeTime last_accepted_;              ///< or the start
+    NodeTime not_ready_at_;               ///< the last poll without data, or the result before
+    NodeTime not_ready_before_;           ///< the poll before that one, or the result before
+    std::uint32_t not_ready_polls_ = 0;   ///< since the last result
+    bool was_stale_ = false;              ///< a result since the last accepted one
+    std::uint8_t unproven_readings_ = 0;  ///< in a row, whose data was ready at the first poll
+    std::uint32_t results_refused_ = 0;   ///< since the last accepted one
     Reading reading_;
     bool is_proven_ = false;
 };

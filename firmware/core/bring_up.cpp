@@ -17,13 +17,12 @@ BringUp::BringUp(vl53l1x::Device& device, DefaultAddress& default_address, Xshut
                  const SensorConfig& config, const Policy& policy) noexcept
     : device_(device), default_address_(default_address), xshut_(xshut), config_(config), policy_(policy) {}
 
-void BringUp::begin(NodeTime now, std::optional<NodeTime> first_start) {
+void BringUp::begin(NodeTime now) {
     hold_in_reset();
     outcome_ = Outcome::under_way;
     fault_ = wire::SensorFault::none;
     has_answered_ = false;
     parkings_ = 0;
-    first_start_ = first_start;
     step_ = Step::held_low;
     step_due_ = now + policy_.xshut_low;
 }
@@ -53,7 +52,6 @@ std::optional<NodeTime> BringUp::due() const noexcept {
         case Step::collecting:
         case Step::configuring:
         case Step::verifying:
-        case Step::waiting:
             return step_due_;
     }
     return std::nullopt;
@@ -69,10 +67,6 @@ vl53l1x::Device& BringUp::active_device() noexcept {
 }
 
 BusUse BringUp::advance(NodeTime now) {
-    if (step_ == Step::waiting) {
-        finish(now);
-        return BusUse::releases;
-    }
     if (step_ == Step::held_low) {
         default_address_.hold(this);
         start_step(Step::checking_silence, now);
@@ -144,7 +138,6 @@ void BringUp::start_step(Step step, NodeTime now) {
             break;
         case Step::idle:
         case Step::held_low:
-        case Step::waiting:
             break;
     }
 }
@@ -186,7 +179,6 @@ void BringUp::on_step_done(NodeTime now) {
         case Step::idle:
         case Step::held_low:
         case Step::booting:
-        case Step::waiting:
             break;
     }
 }
@@ -217,18 +209,9 @@ void BringUp::on_run_verified(NodeTime now) {
     } else if (is_mismatched_) {
         fail(wire::SensorFault::config_mismatch);
     } else {
-        finish(now);
+        outcome_ = Outcome::done;
+        step_ = Step::idle;
     }
-}
-
-void BringUp::finish(NodeTime now) {
-    if (first_start_ && !is_reached(*first_start_, now)) {
-        step_ = Step::waiting;
-        step_due_ = *first_start_;
-        return;
-    }
-    outcome_ = Outcome::done;
-    step_ = Step::idle;
 }
 
 void BringUp::on_somebody_answered(NodeTime now) {
@@ -276,7 +259,6 @@ void BringUp::on_silence(NodeTime now) {
         case Step::collecting:
         case Step::configuring:
         case Step::verifying:
-        case Step::waiting:
             break;
     }
 }

@@ -32,9 +32,8 @@ class BringUp {
     BringUp(vl53l1x::Device& device, DefaultAddress& default_address, XshutLines& xshut,
             const SensorConfig& config, const Policy& policy) noexcept;
 
-    /// Puts the sensor in reset and begins. Never while the device is busy. It is not done before
-    /// `first_start`.
-    void begin(NodeTime now, std::optional<NodeTime> first_start = {});
+    /// Puts the sensor in reset and begins. Never while the device is busy.
+    void begin(NodeTime now);
     /// Puts the sensor in reset and leaves it there.
     void hold_in_reset();
 
@@ -65,7 +64,6 @@ class BringUp {
         collecting,
         configuring,
         verifying,
-        waiting,  ///< all done, but too soon
     };
 
     [[nodiscard]] vl53l1x::Device& active_device() noexcept;
@@ -77,7 +75,6 @@ class BringUp {
     void on_step_done(NodeTime now);
     void on_step_failed(vl53l1x::Error error, NodeTime now);
     void on_run_verified(NodeTime now);
-    void finish(NodeTime now);
     void fail(wire::SensorFault fault);
 
     vl53l1x::Device& device_;
@@ -88,7 +85,6 @@ class BringUp {
 
     Step step_ = Step::idle;
     NodeTime step_due_;
-    std::optional<NodeTime> first_start_;  ///< still to come
     Outcome outcome_ = Outcome::under_way;
     wire::SensorFault fault_ = wire::SensorFault::none;
     bool has_answered_ = false;

@@ -1,8 +1,11 @@
 #include "firmware/core/bus_worker.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <span>
 #include <utility>
+
+#include "firmware/drivers/i2c/transfer_time.hpp"
 
 namespace octoskin::node {
 
@@ -11,11 +14,19 @@ namespace {
 // A step takes a few microseconds on the board; two transitions without a transfer may follow each other.
 constexpr int kStepsPerPoll = 4;
 
+// A block of results, which is what a ranging sensor has the bus for longest, and a part in ten for a bus
+// that runs slower than configured.
+constexpr std::int64_t kLongestReadBits = std::int64_t{i2c::bit_count(2, 17)} * 11 / 10;
+
 }  // namespace
 
-BusWorker::BusWorker(i2c::Bus& bus, const vl53l1x::Options& options, const Policy& policy,
-                     const DataReadyHint& hint)
-    : bus_(bus), default_address_(bus, options), hint_(hint), policy_(policy) {}
+BusWorker::BusWorker(i2c::Bus& bus, std::uint32_t i2c_hz, const vl53l1x::Options& options,
+                     const Policy& policy, const DataReadyHint& hint)
+    : bus_(bus),
+      default_address_(bus, options),
+      hint_(hint),
+      policy_(policy),
+      longest_read_(kLongestReadBits * 1'000'000 / i2c_hz) {}
 
 void BusWorker::add(Sensor& sensor) {
     assert(sensor_count_ < sensors_.size());
@@ -31,12 +42,9 @@ void BusWorker::poll(NodeTime now) {
 
     follow_hint(now);
     for (int step = 0; step < kStepsPerPoll && !is_faulty_; ++step) {
-        if (owner_ == nullptr) owner_ = longest_due(now);
+        if (owner_ == nullptr) take_turns(now);
         if (owner_ == nullptr) return;
-        Sensor& sensor = *owner_;
-        if (sensor.advance(now) == BusUse::releases) owner_ = nullptr;
-        if (sensor.take_confirmation()) hint_.confirm();
-        if (sensor.take_bus_suspicion()) free_bus(now);
+        advance_owner(now);
         if (bus_.is_busy()) return;
     }
 }
@@ -49,12 +57,85 @@ void BusWorker::follow_hint(NodeTime now) {
     }
 }
 
+/// The bus is free: whose is it next? Who must be punctual; then who was interrupted; then who has been due
+/// longest. Who had to wait for too long goes before all.
+void BusWorker::take_turns(NodeTime now) {
+    awaited_ = nullptr;
+    Sensor* const punctual = first_punctual(now + longest_read_);
+    const auto waits_long = [&](NodeTime since) { return is_reached(since + policy_.bus_wait_max, now); };
+    if (interrupted_count_ > 0 && (punctual == nullptr || waits_long(interrupted_at_))) {
+        begin_turn(longest_interrupted(), !waits_long(interrupted_at_));
+        interrupted_at_ = now;
+        return;
+    }
+    Sensor* const longest = longest_due(now);
+    if (longest != nullptr && (punctual == nullptr || waits_long(*longest->due()))) {
+        begin_turn(longest, true);
+    } else if (punctual != nullptr && is_reached(*punctual->punctual_due(), now)) {
+        begin_turn(punctual, true);
+    } else {
+        awaited_ = punctual;
+    }
+}
+
+void BusWorker::begin_turn(Sensor* sensor, bool may_be_interrupted) noexcept {
+    owner_ = sensor;
+    is_owner_under_way_ = false;
+    may_be_interrupted_ = may_be_interrupted;
+}
+
+bool BusWorker::is_interrupted(const Sensor* sensor) const noexcept {
+    const auto interrupted = std::span(interrupted_).first(interrupted_count_);
+    return std::ranges::find(interrupted, sensor) != interrupted.end();
+}
+
+Sensor* BusWorker::longest_interrupted() noexcept {
+    Sensor* const longest = interrupted_.front();
+    std::shift_left(interrupted_.begin(), interrupted_.begin() + interrupted_count_, 1);
+    --interrupted_count_;
+    return longest;
+}
+
+/// The owner ends its transfer and begins the next, unless somebody must be punctual.
+void BusWorker::advance_owner(NodeTime now) {
+    Sensor& sensor = *owner_;
+    const bool is_held = is_owner_under_way_ && may_be_interrupted_ && sensor.may_be_interrupted() &&
+                         first_punctual(now + longest_read_) != nullptr;
+    is_owner_under_way_ = true;
+    shared_bus_.hold(is_held);
+    const BusUse use = sensor.advance(now);
+    shared_bus_.hold(false);
+    if (use == BusUse::releases) {
+        owner_ = nullptr;
+    } else if (is_held && !bus_.is_busy()) {
+        // Each sensor at most once: who is interrupted is not due to be punctual.
+        assert(interrupted_count_ < interrupted_.size());
+        if (interrupted_count_ == 0) interrupted_at_ = now;
+        interrupted_[interrupted_count_++] = owner_;
+        owner_ = nullptr;
+    }
+    if (sensor.take_confirmation()) hint_.confirm();
+    if (sensor.take_bus_suspicion()) free_bus(now);
+}
+
+/// Of those, but the owner, that must be punctual at a time not after `by`: the one whose time comes first.
+Sensor* BusWorker::first_punctual(NodeTime by) const {
+    Sensor* first = nullptr;
+    for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) {
+        const auto due = sensor->punctual_due();
+        if (!due || !is_reached(*due, by) || sensor == owner_) continue;
+        first = sensor;
+        by = *due;
+    }
+    return first;
+}
+
 Sensor* BusWorker::longest_due(NodeTime now) const {
     Sensor* longest = nullptr;
     NodeTime longest_since = now;
     for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) {
         const auto due = sensor->due();
-        if (!due || !is_reached(*due, now)) continue;
+        if (!due || !is_reached(*due, now) || is_interrupted(sensor)) continue;
         if (longest != nullptr && is_reached(longest_since, *due)) continue;
         longest = sensor;
         longest_since = *due;
@@ -72,6 +153,8 @@ void BusWorker::free_bus(NodeTime now) {
     retry_at_ = now + (is_faulty_ ? policy_.bus_retry : policy_.bus_isolation);
     is_faulty_ = true;
     owner_ = nullptr;
+    awaited_ = nullptr;
+    interrupted_count_ = 0;
     default_address_.watcher().abandon();
     for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) sensor->isolate(now);
 }
@@ -79,6 +162,7 @@ void BusWorker::free_bus(NodeTime now) {
 std::optional<NodeTime> BusWorker::wake_time() const {
     if (is_faulty_) return retry_at_;
     if (bus_.is_busy()) return std::nullopt;
+    if (awaited_ != nullptr) return awaited_->due();
     std::optional<NodeTime> earliest;
     for (const Sensor* sensor : std::span(sensors_).first(sensor_count_)) {
         const auto due = sensor->due();

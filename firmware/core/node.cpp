@@ -69,9 +69,9 @@ void Node::create_sensors(NodeTime now) {
         if (!recorder) recorder.emplace(*ports_.buses[sensor.bus]);
         BusRecorder& bus = *recorder;
         auto& worker = buses_[sensor.bus];
-        if (!worker) worker.emplace(bus, options, policy_, data_ready_hint(sensor.bus));
+        if (!worker) worker.emplace(bus, config_.i2c_hz, options, policy_, data_ready_hint(sensor.bus));
         const SensorSurroundings surroundings{
-            .bus = bus, .default_address = worker->default_address(), .xshut = ports_.xshut};
+            .bus = worker->shared_bus(), .default_address = worker->default_address(), .xshut = ports_.xshut};
         sensors_[i].emplace(sensor, surroundings, options, rules, policy_, now);
         worker->add(*sensors_[i]);
         reflexes_[i].emplace(sensor.reflex_below_mm, policy_);
@@ -131,10 +131,7 @@ void Node::watch_reflex(std::uint8_t sensor, const Reading& reading, NodeTime no
 }
 
 void Node::note_health_changes(NodeTime now) {
-    if (const wire::InfoFault fault = fault_to_tell(); !(fault == told_fault_)) {
-        told_fault_ = fault;
-        announcer_.request_info(wire::InfoPage::fault);
-    }
+    note_fault_change(now);
     for (std::uint8_t i = 0; i < sensor_count_; ++i) {
         if (sensors_[i]->take_failure()) black_box_.on_fault(config_.sensors[i].bus, now);
         const Told& told = told_[i];
@@ -144,6 +141,17 @@ void Node::note_health_changes(NodeTime now) {
             told.bound_since > told.bound && bound_on_wire(told.bound_since) > bound_on_wire(told.bound);
         if (is_changed || is_bound_exceeded) announcer_.request_health(i);
     }
+}
+
+/// To find it takes a look at everything, so this is not done at every turn.
+void Node::note_fault_change(NodeTime now) {
+    const Microseconds since = elapsed(fault_looked_at_, now);
+    if (since.count() >= 0 && since < policy_.fault_look_interval) return;
+    fault_looked_at_ = now;
+    const wire::InfoFault fault = fault_to_tell();
+    if (fault == told_fault_) return;
+    told_fault_ = fault;
+    announcer_.request_info(wire::InfoPage::fault);
 }
 
 void Node::end_what_has_expired(NodeTime now) {

@@ -155,6 +155,7 @@ class Node {
     [[nodiscard]] wire::Heartbeat heartbeat() const noexcept;
     [[nodiscard]] wire::NodeInfo info(wire::InfoPage page) const noexcept;
     [[nodiscard]] wire::InfoFault fault_to_tell() const noexcept;
+    void note_fault_change(NodeTime now);
     [[nodiscard]] std::optional<wire::InfoFault> present_fault() const noexcept;
     [[nodiscard]] wire::SensorHealth health(std::uint8_t sensor) const noexcept;
     [[nodiscard]] Microseconds bound_to_tell(std::uint8_t sensor) const noexcept;
@@ -182,6 +183,7 @@ class Node {
     std::array<ReflexEvent, kNodeSensorsMax> reflex_events_{};
     std::uint64_t reflex_due_ = 0;  ///< bit i: `reflex_events_[i]` is to be sent
     std::uint8_t reflex_sequence_ = 0;
+    NodeTime fault_looked_at_;
     wire::InfoFault told_fault_;
     ReadingQueue queue_;
     Announcer announcer_;

@@ -10,6 +10,8 @@ constexpr std::int64_t kMillion = 1'000'000;
 // Oscillators are 6-7 % off. Asking for more than this means that something else is wrong.
 constexpr std::int64_t kScaleMinPpm = 850'000;
 constexpr std::int64_t kScaleMaxPpm = 1'150'000;
+// As long as a window of the ready times' tracker: the average is then known to a third of a register's step.
+constexpr std::uint32_t kRangesMax = 32;
 // One step of the register is 0.03-0.13 % at 15-50 ms; the rest is for drift since the last measurement.
 constexpr std::int32_t kTrimmedUncertaintyPermille = 10;
 
@@ -29,6 +31,11 @@ Microseconds PeriodTrim::commanded() const noexcept {
 
 std::int32_t PeriodTrim::uncertainty_permille() const noexcept {
     return is_oscillator_known_ ? kTrimmedUncertaintyPermille : policy_.period_unknown_permille;
+}
+
+bool PeriodTrim::is_judged_after(std::uint32_t ranges) const noexcept {
+    const auto wanted = static_cast<std::uint32_t>(policy_.trim_after / configured_);
+    return ranges % std::clamp(wanted, policy_.trim_edges_min + 1, kRangesMax) == 0;
 }
 
 std::int32_t PeriodTrim::error_permille(Microseconds measured) const noexcept {

@@ -25,6 +25,9 @@ class PeriodTrim {
     /// How far the real period may be from the configured one, before it is measured (again).
     [[nodiscard]] std::int32_t uncertainty_permille() const noexcept;
 
+    /// Whether the period is judged after so many ranges since the start. That depends on nothing that was
+    /// measured: two nodes with the same part decide the same.
+    [[nodiscard]] bool is_judged_after(std::uint32_t ranges) const noexcept;
     /// Takes a measured period; true if the sensor should now be stopped and given `commanded()`.
     [[nodiscard]] bool wants_trim(const MeasuredPeriod& measured, NodeTime now) noexcept;
 

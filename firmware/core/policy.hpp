@@ -18,14 +18,25 @@ struct Policy {
     // --- bring-up. Datasheet DS12385: boots within 1.2 ms of XSHUT high; it states no minimum low time.
     Microseconds xshut_low{1'000};
     Microseconds xshut_boot{2'000};
-    /// No sensor starts ranging sooner after the node's own start. By then all are up, 34 of them too, so
-    /// that in which period each one starts does not depend on what bring-up took, and no neighbour's
-    /// bring-up holds the bus when its phase comes.
-    Microseconds first_start{250'000};
+
+    /// Nobody ranges sooner after the node began: a whole fleet is up by then, and nobody's bring-up has the
+    /// bus when another one's data is ready.
+    Microseconds first_starts{250'000};
 
     // --- reading
     /// How much one ready time may stray from the sensor's even grid.
     Microseconds ready_jitter{30};
+    /// A poll is read once: one that was altered on its way says "not ready" of data that was. Alone it is
+    /// believed only where the rhythm tells the ready time to within this, which bounds what it can spoil.
+    Microseconds lone_poll_believed{1'000};
+    /// Known less well than within this, the next ready time is worth a poll that is punctual.
+    Microseconds punctual_above{300};
+    /// A sensor whose ready time is known this well is asked early, to see that it keeps its rhythm, only
+    /// after so many readings in a row whose data was ready when it was first asked for.
+    Microseconds known_width_max{1'000};
+    std::uint8_t unproven_readings_max = 3;
+    /// So long may a sensor wait for its turn, or for the rest of it, while others must be punctual.
+    Microseconds bus_wait_max{3'000};
     /// How uncertain the real period is before it was measured: the oscillator is 6-7 % off, part by part.
     std::int32_t period_unknown_permille = 120;
     Microseconds repoll_min{50};
@@ -44,12 +55,13 @@ struct Policy {
     /// Between two hints: one poll of the bus, and as much again for others.
     Microseconds hint_interval{250};
     std::uint16_t hint_doubt_max = 100;  ///< so many more spurious falls than confirmed ones make up for
-    /// A sensor whose data the line announced is not asked early again, as long as its ready time is known
-    /// this well.
+    /// A sensor whose data the line announced is left to the line, as long as its ready time is known this
+    /// well.
     Microseconds hinted_width_max{500};
 
     // --- trimming the inter-measurement register to the configured period
     std::int32_t trim_tolerance_permille = 5;
+    Microseconds trim_after{1'056'000};  ///< so long a run is measured before its period is judged
     std::uint8_t trims_at_start = 2;
     Microseconds trim_interval{60'000'000};  ///< between trims once those at the start are used up
     std::uint32_t trim_edges_min = 8;        ///< ready times observed before a period counts as measured
@@ -67,6 +79,8 @@ struct Policy {
     Microseconds report_age_max{50'000};  ///< of a REFLEX or SYNC_REPORT: neither goes out late
     Microseconds heartbeat_period{100'000};
     Microseconds status_period{1'000'000};  ///< NODE_INFO's pages and every sensor's health, once each
+
+    Microseconds fault_look_interval{1'000};  ///< between two looks at what fault is to be told
 
     Microseconds black_box_period{50'000};     ///< between two pieces of it
     Microseconds black_box_pause{60'000'000};  ///< between two dumps of a bus for faults

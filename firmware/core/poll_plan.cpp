@@ -13,8 +13,8 @@ constexpr Microseconds kLoopDelay{20};
 // START, address and two bytes of index, on a bus that is never faster than configured.
 constexpr std::int64_t kIndexBits = 28;
 
-// Slow sensors are polled in proportion: 64 polls a period are precise enough.
-constexpr std::int64_t kPollsPerPeriod = 64;
+// Slow sensors are polled in proportion: 128 polls a period are precise enough.
+constexpr std::int64_t kPollsPerPeriod = 128;
 
 }  // namespace
 
@@ -27,6 +27,10 @@ NodeTime PollPlan::first_poll(const TimeBracket& predicted) const noexcept {
     return predicted.earliest - poll_duration_ - kLoopDelay;
 }
 
+NodeTime PollPlan::poll_in_middle(const TimeBracket& predicted) const noexcept {
+    return predicted.middle() - index_duration_;
+}
+
 NodeTime PollPlan::poll_after_hint(const TimeBracket& predicted) const noexcept {
     return predicted.latest + policy_.repoll_min;
 }
@@ -35,16 +39,22 @@ NodeTime PollPlan::first_poll_after_start(NodeTime started, Microseconds timing_
     return started + timing_budget * 9 / 10;
 }
 
-NodeTime PollPlan::repoll(const std::optional<TimeBracket>& predicted, Microseconds period,
-                          NodeTime now) const noexcept {
-    const Microseconds gap_max = std::max(policy_.repoll_max, period / kPollsPerPeriod);
-    Microseconds gap = gap_max;
-    if (predicted) {
-        // Closer together around the time at which it must be, further apart the longer it is overdue.
-        const Microseconds distance = elapsed(now, predicted->latest);
-        gap = distance.count() >= 0 ? distance / 2 : -distance;
-    }
-    return now + std::clamp(gap, policy_.repoll_min, gap_max);
+NodeTime PollPlan::blind_poll(NodeTime from, Microseconds period, NodeTime now) const noexcept {
+    const Microseconds since = elapsed(from, now);
+    if (since.count() < 0) return from;
+    const Microseconds gap = longest_gap(period);
+    return from + gap * (since / gap + 1);
+}
+
+NodeTime PollPlan::repoll(const TimeBracket& predicted, Microseconds period, NodeTime now) const noexcept {
+    // Closer together around the time at which it must be, further apart the longer it is overdue.
+    const Microseconds distance = elapsed(now, predicted.latest);
+    const Microseconds gap = distance.count() >= 0 ? distance / 2 : -distance;
+    return now + std::clamp(gap, policy_.repoll_min, longest_gap(period));
+}
+
+Microseconds PollPlan::longest_gap(Microseconds period) const noexcept {
+    return std::max(policy_.repoll_max, period / kPollsPerPeriod);
 }
 
 NodeTime PollPlan::not_ready_until(NodeTime began) const noexcept {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "common/time.hpp"
 #include "firmware/core/policy.hpp"
@@ -18,21 +17,29 @@ class PollPlan {
 
     /// The first poll for data that should become ready within `predicted`.
     [[nodiscard]] NodeTime first_poll(const TimeBracket& predicted) const noexcept;
+    /// The first poll where it need not come too early: it looks in the middle of `predicted`.
+    [[nodiscard]] NodeTime poll_in_middle(const TimeBracket& predicted) const noexcept;
     /// The first poll, and likely the only one, where a line tells when data is ready: after the line, should
     /// it not.
     [[nodiscard]] NodeTime poll_after_hint(const TimeBracket& predicted) const noexcept;
-    /// The first poll after a start: nothing can be ready before the timing budget is used up.
+    /// The first poll after a start that can find data: nothing can be ready before the timing budget is used
+    /// up.
     [[nodiscard]] NodeTime first_poll_after_start(NodeTime started,
                                                   Microseconds timing_budget) const noexcept;
+    /// The next poll after `now` while nothing is known, for data that is there no sooner than `from`.
+    /// Reckoned from there, not from the last poll: how long a poll took decides nothing.
+    [[nodiscard]] NodeTime blind_poll(NodeTime from, Microseconds period, NodeTime now) const noexcept;
     /// The next poll when the one that ended at `now` found nothing. Bounded below and above, so neither
     /// floods the bus nor leaves the ready time unknown.
-    [[nodiscard]] NodeTime repoll(const std::optional<TimeBracket>& predicted, Microseconds period,
+    [[nodiscard]] NodeTime repoll(const TimeBracket& predicted, Microseconds period,
                                   NodeTime now) const noexcept;
     /// Until when, at least, data was not ready if the poll begun at `began` found none: the sensor cannot
     /// have looked before it was told at which register.
     [[nodiscard]] NodeTime not_ready_until(NodeTime began) const noexcept;
 
   private:
+    [[nodiscard]] Microseconds longest_gap(Microseconds period) const noexcept;
+
     const Policy& policy_;
     Microseconds poll_duration_;
     Microseconds index_duration_;

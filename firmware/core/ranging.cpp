@@ -20,7 +20,7 @@ constexpr Microseconds kDrainMargin{5'000};
 }  // namespace
 
 Ranging::Ranging(vl53l1x::Device& device, const SensorConfig& config, const RangingRules& rules,
-                 const Policy& policy) noexcept
+                 const Policy& policy, NodeTime node_began) noexcept
     : device_(device),
       config_(config),
       rules_(rules),
@@ -29,7 +29,8 @@ Ranging::Ranging(vl53l1x::Device& device, const SensorConfig& config, const Rang
       acceptance_(rules.stream_gate, Microseconds{std::int64_t{config.timing_budget_ms} * 1'000}, policy),
       trim_(Microseconds{std::int64_t{config.inter_measurement_ms} * 1'000}, policy),
       zones_(config.zone_count, rules.zone_guard),
-      checks_(policy) {}
+      checks_(policy),
+      first_start_(node_began + policy.first_starts) {}
 
 void Ranging::begin(NodeTime now) {
     is_stop_requested_ = false;
@@ -65,11 +66,6 @@ void Ranging::on_hint(NodeTime now) noexcept {
 
 bool Ranging::is_waiting() const noexcept {
     return step_ == Step::awaiting_phase || step_ == Step::awaiting_data;
-}
-
-std::optional<NodeTime> Ranging::due() const noexcept {
-    if (step_ == Step::idle) return std::nullopt;
-    return step_due_;
 }
 
 Ranging::Result Ranging::advance(NodeTime now) {
@@ -117,13 +113,13 @@ void Ranging::start_step(Step step, NodeTime now) {
             device_.begin_verify(vl53l1x::kTimingGroup);
             break;
         case Step::awaiting_phase:
-            step_due_ = next_phase(now);
+            step_due_ = phase_due_ = next_phase(now);
             break;
         case Step::starting:
             device_.begin_start();
             break;
         case Step::reading:
-            device_.begin_read(!acceptance_.has_accepted());
+            device_.begin_read(acceptance_.wants_ready_confirmed());
             break;
         case Step::writing_zone:
             device_.begin_set_zone(config_.zones[zones_.next()]);
@@ -210,8 +206,10 @@ Ranging::Event Ranging::on_drained(NodeTime now) {
 void Ranging::on_started(NodeTime now) {
     acceptance_.restart(step_began_, trim_.configured(), trim_.uncertainty_permille());
     zones_.settle();
-    step_ = Step::awaiting_data;
-    step_due_ = ready_from_ = polls_.first_poll_after_start(now, budget());
+    ready_from_ = polls_.first_poll_after_start(phase_due_, budget());
+    // Once before: what is there at once is not of this run.
+    await_data(now + policy_.repoll_max);
+    ranges_ = 0;
     has_hint_ = was_announced_ = false;
 }
 
@@ -221,8 +219,7 @@ Ranging::Event Ranging::on_read(NodeTime now) {
         // A sensor that gave results which had to be refused is not one that gives none.
         const SensorFault silence = acceptance_.has_refused() ? fault_ : SensorFault::no_data_ready;
         if (acceptance_.is_silent(now)) return fail(silence);
-        step_ = Step::awaiting_data;
-        step_due_ = has_hint_ ? now : polls_.repoll(acceptance_.next_ready(), acceptance_.period(), now);
+        await_data(has_hint_ ? now : repoll(now));
         return Event::none;
     }
     note_announcement();
@@ -239,6 +236,14 @@ Ranging::Event Ranging::on_read(NodeTime now) {
             break;
     }
     return refuse(SensorFault::stale_stream, now);
+}
+
+/// After one that found nothing.
+NodeTime Ranging::repoll(NodeTime now) const noexcept {
+    if (acceptance_.wants_poll_confirmed()) return now;
+    const auto predicted = acceptance_.next_ready();
+    return predicted ? polls_.repoll(*predicted, acceptance_.period(), now)
+                     : polls_.blind_poll(ready_from_, acceptance_.period(), now);
 }
 
 Ranging::Event Ranging::refuse(SensorFault fault, NodeTime now) {
@@ -259,7 +264,9 @@ void Ranging::after_result(NodeTime now) {
     checks_.on_reading();
     const Reading& judged = acceptance_.reading();
     zones_.note_range(judged.capture - judged.capture_bound - budget() / 2);
-    if (const auto measured = acceptance_.measured_period(); measured && trim_.wants_trim(*measured, now)) {
+    ++ranges_;
+    if (const auto measured = acceptance_.measured_period();
+        measured && trim_.is_judged_after(ranges_) && trim_.wants_trim(*measured, now)) {
         is_trim_due_ = true;
     }
     if (is_zone_write_due(now)) {
@@ -278,12 +285,17 @@ void Ranging::check_or_await(NodeTime now) {
 }
 
 void Ranging::await_next_result(NodeTime now) {
-    step_ = Step::awaiting_data;
     const auto predicted = acceptance_.next_ready();
     ready_from_ = predicted ? polls_.first_poll(*predicted) : now;
-    step_due_ = is_trim_due_ || is_stop_requested_ ? now
-                : predicted                        ? next_poll(*predicted)
-                                                   : polls_.repoll(predicted, acceptance_.period(), now);
+    await_data(is_trim_due_ || is_stop_requested_ ? now
+               : predicted                        ? next_poll(*predicted)
+                                                  : polls_.blind_poll(now, acceptance_.period(), now));
+}
+
+void Ranging::await_data(NodeTime due) noexcept {
+    step_ = Step::awaiting_data;
+    step_due_ = due;
+    is_poll_punctual_ = acceptance_.must_poll_punctually();
 }
 
 /// The line told of this data if it fell while data was awaited, or while the sensor was being asked.
@@ -293,12 +305,16 @@ void Ranging::note_announcement() noexcept {
     has_hint_ = false;
 }
 
-/// A poll that comes too early bounds the ready time from below. Where the line is at work, that is needed
-/// only now and then: each time the bracket, which grows from range to range, has become too wide.
+/// A poll in the middle of the bracket tells most, whatever it says. One just before the bracket tells no
+/// more than that the sensor keeps its rhythm: enough of that now and then. A line tells when data is ready,
+/// so there one poll is enough until the bracket, which grows from range to range, has become too wide.
 NodeTime Ranging::next_poll(const TimeBracket& predicted) const noexcept {
-    const bool awaits_line =
-        was_announced_ && !acceptance_.has_refused() && predicted.width() <= policy_.hinted_width_max;
-    return awaits_line ? polls_.poll_after_hint(predicted) : polls_.first_poll(predicted);
+    if (acceptance_.has_refused() || predicted.width() > policy_.known_width_max)
+        return polls_.first_poll(predicted);
+    if (was_announced_ && predicted.width() <= policy_.hinted_width_max)
+        return polls_.poll_after_hint(predicted);
+    const bool is_proven = was_announced_ || acceptance_.is_rhythm_proven();
+    return is_proven ? polls_.poll_in_middle(predicted) : polls_.first_poll(predicted);
 }
 
 bool Ranging::is_zone_write_due(NodeTime now) const noexcept {
@@ -323,14 +339,19 @@ std::int32_t Ranging::period_error_permille() const noexcept {
     return measured ? trim_.error_permille(measured->value) : 0;
 }
 
-/// Sensors start at whole periods of the node's clock plus their phase. The grid shifts once at the clock's
-/// wrap; whoever starts later is spread no worse, only differently from those already running.
+/// Sensors start at whole periods of the node's clock plus their phase, and the first time once all of them
+/// had the time to be brought up. The grid shifts once at the clock's wrap; whoever starts later is spread no
+/// worse, only differently from those already running.
 NodeTime Ranging::next_phase(NodeTime now) const noexcept {
+    // (A whole wrap later it looks as if it were still to come, for this short while.)
+    const Microseconds until_first = elapsed(now, first_start_);
+    const bool is_first = until_first.count() > 0 && until_first <= policy_.first_starts;
+    const NodeTime from = is_first ? first_start_ : now;
     const auto period = static_cast<std::uint64_t>(trim_.configured().count());
     const std::uint64_t phase = config_.phase_us % period;
-    const std::uint64_t into_period = (now.us + period - phase) % period;
+    const std::uint64_t into_period = (from.us + period - phase) % period;
     const std::uint64_t wait = (period - into_period) % period;
-    return now + Microseconds{static_cast<std::int64_t>(wait)};
+    return from + Microseconds{static_cast<std::int64_t>(wait)};
 }
 
 Microseconds Ranging::budget() const noexcept {

@@ -43,8 +43,9 @@ class Ranging {
         Event event = Event::none;
     };
 
+    /// `node_began`: when all the sensors' first bring-ups did.
     Ranging(vl53l1x::Device& device, const SensorConfig& config, const RangingRules& rules,
-            const Policy& policy) noexcept;
+            const Policy& policy, NodeTime node_began) noexcept;
 
     /// The sensor was just configured, which puts it in its first zone, and all of it read back.
     void on_configured() noexcept {
@@ -67,8 +68,18 @@ class Ranging {
     /// The sensor was taken away (reset, lost): nothing is under way any more.
     void abandon() noexcept { step_ = Step::idle; }
 
+    /// When it is due to start in its phase, or to ask for data whose time a late answer would blur.
+    [[nodiscard]] std::optional<NodeTime> punctual_due() const noexcept {
+        const bool is_punctual =
+            step_ == Step::awaiting_phase || (step_ == Step::awaiting_data && is_poll_punctual_);
+        return is_punctual ? std::optional(step_due_) : std::nullopt;
+    }
+    /// Whether a start is under way: its instant decides when all its ranges will be.
+    [[nodiscard]] bool is_starting() const noexcept { return step_ == Step::starting; }
     /// When the bus is wanted; empty when nothing is under way.
-    [[nodiscard]] std::optional<NodeTime> due() const noexcept;
+    [[nodiscard]] std::optional<NodeTime> due() const noexcept {
+        return step_ == Step::idle ? std::nullopt : std::optional(step_due_);
+    }
     /// One step, with the bus free or taken by this sensor's own transfer.
     [[nodiscard]] Result advance(NodeTime now);
 
@@ -112,7 +123,9 @@ class Ranging {
     void on_started(NodeTime now);
     void after_result(NodeTime now);
     void check_or_await(NodeTime now);
+    [[nodiscard]] NodeTime repoll(NodeTime now) const noexcept;
     void await_next_result(NodeTime now);
+    void await_data(NodeTime due) noexcept;
     void note_announcement() noexcept;
     [[nodiscard]] NodeTime next_poll(const TimeBracket& predicted) const noexcept;
     [[nodiscard]] bool is_zone_write_due(NodeTime now) const noexcept;
@@ -130,6 +143,10 @@ class Ranging {
     ZoneCycle zones_;
     SteeringChecks checks_;
 
+    NodeTime first_start_;
+    bool is_poll_punctual_ = false;  ///< asked of every sensor at every turn: worked out once a poll
+    NodeTime phase_due_;             ///< when the sensor was to start, whenever the bus was free for it
+    std::uint32_t ranges_ = 0;       ///< results since the start
     Step step_ = Step::idle;
     NodeTime step_due_;
     NodeTime step_began_;

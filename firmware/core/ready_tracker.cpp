@@ -30,21 +30,20 @@ ReadyTracker::ReadyTracker(const Policy& policy) noexcept : policy_(policy) {}
 void ReadyTracker::restart(Microseconds expected, std::int32_t uncertainty_permille) noexcept {
     expected_ = expected;
     grid_.reset();
-    assume_period(expected, uncertainty_permille);
+    assume_period(expected, expected, uncertainty_permille);
 }
 
 void ReadyTracker::forget() noexcept {
     grid_.reset();
-    assume_period(expected_, policy_.period_unknown_permille);
+    assume_period(expected_, expected_, policy_.period_unknown_permille);
 }
 
-void ReadyTracker::assume_period(Microseconds period, std::int32_t uncertainty_permille) noexcept {
+void ReadyTracker::assume_period(Microseconds shortest, Microseconds longest,
+                                 std::int32_t uncertainty_permille) noexcept {
     observed_ = 0;
     slots_missed_in_row_ = 0;
-    const PeriodQ8 middle = period.count() * kQ8;
-    const PeriodQ8 margin = middle * uncertainty_permille / 1000;
-    shortest_q8_ = middle - margin;
-    longest_q8_ = middle + margin;
+    shortest_q8_ = shortest.count() * kQ8 * (1000 - uncertainty_permille) / 1000;
+    longest_q8_ = longest.count() * kQ8 * (1000 + uncertainty_permille) / 1000;
 }
 
 TimeBracket ReadyTracker::grid_after(std::uint32_t slots) const noexcept {
@@ -71,13 +70,14 @@ TimeBracket ReadyTracker::observe(const TimeBracket& seen, std::uint32_t ranges)
     }
     // A sensor whose period is too close to its budget skips a start slot now and then: the grid holds, with
     // one place left empty. Twice in a row it is no exception any more, but a sensor at half its rate.
-    if (slots_missed_in_row_ == 0) {
+    // (Seen within more than half a period, it might be any of several places.)
+    if (slots_missed_in_row_ == 0 && seen.width() < expected_ / 2) {
         if (const auto ready = fit(seen, ranges + 1)) {
             ++slots_missed_in_row_;
             return *ready;
         }
     }
-    return reacquire(seen, ranges);
+    return relearn(seen, ranges);
 }
 
 /// Takes `seen` as the ready time `slots` places on; empty, and nothing changed, if it contradicts the grid.
@@ -92,9 +92,9 @@ std::optional<TimeBracket> ReadyTracker::fit(const TimeBracket& seen, std::uint3
     return ready;
 }
 
-/// The grid was wrong: begin a new one where the sensor was seen now. Its period is the expected one again,
-/// or twice that if a range was due in between and did not come.
-TimeBracket ReadyTracker::reacquire(const TimeBracket& seen, std::uint32_t ranges) noexcept {
+/// Begins a new grid where the sensor was seen now. Its period is the expected one again; or it may be twice
+/// that, if a range was due in between and did not come.
+TimeBracket ReadyTracker::relearn(const TimeBracket& seen, std::uint32_t ranges) noexcept {
     TimeBracket ready = seen;
     const TimeBracket predicted = *predict(ranges);
     if (is_reached(predicted.earliest - kEarlySlip, seen.latest) &&
@@ -104,7 +104,7 @@ TimeBracket ReadyTracker::reacquire(const TimeBracket& seen, std::uint32_t range
     const Microseconds since_last = elapsed(grid_->middle(), ready.middle());
     const bool is_doubled =
         since_last > expected_ * ranges * 17 / 10 && since_last < expected_ * ranges * 23 / 10;
-    assume_period(is_doubled ? expected_ * 2 : expected_, policy_.period_unknown_permille);
+    assume_period(expected_, is_doubled ? expected_ * 2 : expected_, policy_.period_unknown_permille);
     observed_ = 1;
     grid_ = widened(ready, policy_.ready_jitter);
     open_window();

@@ -40,6 +40,9 @@ class ReadyTracker {
     /// that is known: `seen` and the prediction together, or `seen` alone where they contradict each other;
     /// the rhythm is then learnt again.
     TimeBracket observe(const TimeBracket& seen, std::uint32_t ranges) noexcept;
+    /// The same range was ready within `seen`, which holds whether the sensor kept its rhythm or not; that it
+    /// did must not be relied on. The rhythm is learnt again.
+    TimeBracket relearn(const TimeBracket& seen, std::uint32_t ranges) noexcept;
 
     /// The period as far as it is known, measured or not.
     [[nodiscard]] Microseconds period() const noexcept;
@@ -52,8 +55,8 @@ class ReadyTracker {
 
     [[nodiscard]] TimeBracket grid_after(std::uint32_t slots) const noexcept;
     [[nodiscard]] std::optional<TimeBracket> fit(const TimeBracket& seen, std::uint32_t slots) noexcept;
-    [[nodiscard]] TimeBracket reacquire(const TimeBracket& seen, std::uint32_t ranges) noexcept;
-    void assume_period(Microseconds period, std::int32_t uncertainty_permille) noexcept;
+    void assume_period(Microseconds shortest, Microseconds longest,
+                       std::int32_t uncertainty_permille) noexcept;
     void refine_period() noexcept;
     void open_window() noexcept;
 

@@ -47,10 +47,10 @@ Sensor::Sensor(const SensorConfig& config, const SensorSurroundings& surrounding
       policy_(policy),
       device_(surroundings.bus, options),
       bring_up_(device_, surroundings.default_address, surroundings.xshut, config_, policy),
-      ranging_(device_, config_, rules, policy),
+      ranging_(device_, config_, rules, policy, now),
       recovery_(policy),
       calibration_(device_, Microseconds{std::int64_t{config.inter_measurement_ms} * 1'000}) {
-    begin_bring_up(now, now + policy.first_start);
+    begin_bring_up(now);
 }
 
 void Sensor::order_start(NodeTime now) {
@@ -87,7 +87,7 @@ bool Sensor::order_period(std::optional<Microseconds> period, NodeTime now) {
     return true;
 }
 
-std::optional<NodeTime> Sensor::due() const noexcept {
+std::optional<NodeTime> Sensor::due_otherwise() const noexcept {
     if (is_reinitialisation_due()) return reinitialise_ordered_;
     switch (mode_) {
         case Mode::bringing_up:
@@ -132,11 +132,11 @@ BusUse Sensor::advance(NodeTime now) {
     return BusUse::releases;
 }
 
-void Sensor::begin_bring_up(NodeTime now, std::optional<NodeTime> first_start) {
+void Sensor::begin_bring_up(NodeTime now) {
     reinitialise_ordered_.reset();
     hardware_fails_in_row_ = 0;
     ranging_.abandon();
-    bring_up_.begin(now, first_start);
+    bring_up_.begin(now);
     mode_ = Mode::bringing_up;
 }
 
@@ -335,16 +335,8 @@ bool Sensor::is_degraded() const noexcept {
     return state_ != SensorState::ranging && state_ != SensorState::stopped;
 }
 
-std::optional<Reading> Sensor::take_reading() noexcept {
-    return std::exchange(reading_, std::nullopt);
-}
-
 std::optional<CalibrationResult> Sensor::take_calibration() noexcept {
     return std::exchange(calibration_result_, std::nullopt);
-}
-
-bool Sensor::take_failure() noexcept {
-    return std::exchange(has_failed_, false);
 }
 
 bool Sensor::take_bus_suspicion() noexcept {

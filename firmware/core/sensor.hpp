@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "common/config/node_config.hpp"
 #include "common/time.hpp"
@@ -69,16 +70,29 @@ class Sensor {
     }
     /// Whether a hint was followed and data was there; told once.
     [[nodiscard]] bool take_confirmation() noexcept { return ranging_.take_confirmation(); }
-    /// When the bus is wanted; empty while there is nothing to wait for.
-    [[nodiscard]] std::optional<NodeTime> due() const noexcept;
+    /// When the bus is wanted; empty while there is nothing to wait for. Asked of every sensor at every turn.
+    [[nodiscard]] std::optional<NodeTime> due() const noexcept {
+        const bool is_only_ranging = mode_ == Mode::ranging && !reinitialise_ordered_;
+        return is_only_ranging ? ranging_.due() : due_otherwise();
+    }
+    /// When it is due for what must not come late; empty if it is for something else, or for nothing. Asked
+    /// of every sensor at every turn.
+    [[nodiscard]] std::optional<NodeTime> punctual_due() const noexcept {
+        if (mode_ != Mode::ranging) return std::nullopt;
+        return ranging_.punctual_due();
+    }
+    /// Whether somebody who must be punctual may come between its transfers.
+    [[nodiscard]] bool may_be_interrupted() const noexcept { return !ranging_.is_starting(); }
     /// One step, with the bus free or taken by this sensor's own transfer.
     [[nodiscard]] BusUse advance(NodeTime now);
     /// The reading that the last step accepted; told once.
-    [[nodiscard]] std::optional<Reading> take_reading() noexcept;
+    [[nodiscard]] std::optional<Reading> take_reading() noexcept {
+        return reading_ ? std::exchange(reading_, std::nullopt) : std::nullopt;
+    }
     /// How the calibration ended that was ordered; told once.
     [[nodiscard]] std::optional<CalibrationResult> take_calibration() noexcept;
     /// Whether it failed, having worked before or for the first time; told once.
-    [[nodiscard]] bool take_failure() noexcept;
+    [[nodiscard]] bool take_failure() noexcept { return std::exchange(has_failed_, false); }
     /// Whether the last failure may be the whole bus's; told once.
     [[nodiscard]] bool take_bus_suspicion() noexcept;
 
@@ -113,7 +127,7 @@ class Sensor {
     [[nodiscard]] BusUse advance_ranging(NodeTime now);
     void begin_calibration(NodeTime now);
     void end_calibration(const CalibrationResult& result);
-    void begin_bring_up(NodeTime now, std::optional<NodeTime> first_start = {});
+    void begin_bring_up(NodeTime now);
     void range_or_rest(NodeTime now);
     void on_result(NodeTime now);
     void on_reading();
@@ -121,6 +135,7 @@ class Sensor {
     void on_withheld();
     void on_failure(wire::SensorFault fault, bool can_restart, NodeTime now);
     void recover(NodeTime now);
+    [[nodiscard]] std::optional<NodeTime> due_otherwise() const noexcept;
     [[nodiscard]] bool is_reinitialisation_due() const noexcept;
 
     const SensorConfig& config_;

@@ -173,18 +173,24 @@ TEST_P(I2cFaultTest, keeps_the_loop_short_and_the_others_ranging) {
     flashed.run_for(1s);
     flashed.board().forget_longest_awake();
     const std::size_t neighbour_before = flashed.readings(1).size();
+    const std::int64_t began_us = flashed.now().us;
     I2cFault fault = GetParam();
-    fault.first = flashed.board().wire(0).transfer_count() + 3;
     const std::uint64_t hits_before = flashed.board().wire(0).fault_hits();
-    flashed.board().wire(0).inject(fault);
+    // A poll is too short for some: then another transfer.
+    for (int attempt = 0; attempt < 20 && flashed.board().wire(0).fault_hits() == hits_before; ++attempt) {
+        fault.first = flashed.board().wire(0).transfer_count() + 3;
+        flashed.board().wire(0).inject(fault);
+        flashed.run_for(100ms);
+    }
     flashed.run_for(3s);
 
     EXPECT_GE(flashed.board().wire(0).fault_hits() - hits_before, 1U) << "the fault took effect";
     EXPECT_LE(flashed.board().core().longest_awake_ps(), 5'000 * kPsPerUs);
     EXPECT_EQ(flashed.board().reset_count(), 0U);
     EXPECT_EQ(flashed.violations(), "");
-    // 3 s at 30.3 Hz; sensor 1 is on another bus.
-    EXPECT_NEAR(static_cast<double>(flashed.readings(1).size() - neighbour_before), 91.0, 3.0);
+    // Sensor 1 is on another bus.
+    const auto due = static_cast<double>(flashed.now().us - began_us) / 33'000.0;
+    EXPECT_NEAR(static_cast<double>(flashed.readings(1).size() - neighbour_before), due, 3.0);
     // And the bus itself is back: its sensor's last reading is no older than three periods.
     ASSERT_FALSE(flashed.readings(0).empty());
     EXPECT_GE(flashed.readings(0).back().end.us, flashed.now().us - 100'000);
@@ -282,7 +288,8 @@ TEST(ImageDataReady, lines_save_polls_at_full_rate) {
                 without.polls_per_reading(), with.polls_per_reading(), without.core_percent,
                 with.core_percent);
     EXPECT_NEAR(with.readings, without.readings, 0.03 * without.readings);
-    EXPECT_LE(with.polls_per_reading(), 0.9 * without.polls_per_reading());
+    EXPECT_LT(with.polls_per_reading(), without.polls_per_reading());
+    EXPECT_LE(with.polls_per_reading(), 1.3);
 }
 
 class BrokenLine : public testing::TestWithParam<LineFault> {};

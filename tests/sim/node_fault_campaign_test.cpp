@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 #include <random>
 #include <string>
 #include <utility>
@@ -170,10 +171,16 @@ std::uint32_t seed_count() {
     return text == nullptr ? 100U : static_cast<std::uint32_t>(std::stoul(text));
 }
 
+/// These once gave readings a false time: an altered poll that said "not ready" of data that was overdue, or
+/// "ready" of a sensor that never was, or a rhythm taken for doubled on the word of a frozen stream count.
+constexpr std::array<std::uint32_t, 6> kOnceFalse = {1208, 1286, 2043, 2087, 3376, 3678};
+
 TEST(NodeFaultCampaign, sends_nothing_but_the_truth_and_recovers_for_every_seed) {
     std::uint32_t restarts = 0;
-    const std::uint32_t seeds = seed_count();
-    for (std::uint32_t seed = 0; seed < seeds; ++seed) {
+    std::vector<std::uint32_t> seeds(seed_count());
+    std::iota(seeds.begin(), seeds.end(), 0U);
+    seeds.insert(seeds.end(), kOnceFalse.begin(), kOnceFalse.end());
+    for (const std::uint32_t seed : seeds) {
         Campaign campaign(seed);
         NodeRig& rig = campaign.rig();
         const Judge judge(rig);
@@ -189,7 +196,7 @@ TEST(NodeFaultCampaign, sends_nothing_but_the_truth_and_recovers_for_every_seed)
         EXPECT_EQ(rig.undecodable_count(), 0U);
         restarts += rig.node().counts().sensor_restarts;
     }
-    EXPECT_GT(restarts, 5 * seeds) << "the faults hardly did anything";
+    EXPECT_GT(restarts, 500U) << "the faults hardly did anything";
 }
 
 }  // namespace

@@ -198,6 +198,7 @@ void NodeRig::send_from_host(const wire::Message& message, wire::NodeId id) {
 }
 
 void NodeRig::send_from_host(const wire::CanFrame& frame) {
+    can_.advance(present_.time);
     if (!host_->send(frame)) throw std::runtime_error("the test's own mailboxes are full");
 }
 

@@ -67,6 +67,29 @@ TEST(ReliabilityI5, no_bit_flipped_in_any_read_ever_makes_a_distance_that_was_no
     }
 }
 
+// I5, found by the campaign: the loop or the bus stands for a while, and the poll that then comes too late is
+// answered "not ready" by a flipped bit.
+TEST(ReliabilityI5, a_bit_flipped_in_a_poll_after_a_stall_does_not_date_the_reading_to_the_stalls_end) {
+    NodeConfig config = fleet_config(1, 1);
+    config.sensors[0].inter_measurement_ms = 100;
+    for (int stall_ms = 0; stall_ms < 100; stall_ms += 5) {
+        for (std::uint64_t which = 0; which < 4; ++which) {
+            SCOPED_TRACE(testing::Message() << stall_ms << " ms, transfer " << which);
+            NodeRig rig(config, std::vector<SensorSetup>(1), wraps_after(4'100 * kMillisecond));
+            rig.run_for(4 * kSecond);
+            const std::size_t readings = rig.readings_of(0).size();
+            while (rig.readings_of(0).size() == readings) rig.run_for(kMillisecond);
+            rig.run_for(90 * kMillisecond);
+            rig.hang_for(stall_ms * kMillisecond);
+            rig.bus(0).inject({.kind = I2cFaultKind::flip_bit,
+                               .first = rig.bus(0).transfer_count() + which,
+                               .position = 7});
+            rig.run_for(5 * kSecond);
+            expect_only_the_truth(rig, 0);
+        }
+    }
+}
+
 // I11: the node hands every status and every distance on as it is; only "complete" of a first result, whose
 // wrap-around was not checked, gets the code that says so. (What becomes a ray is the host's, tested there.)
 TEST(ReliabilityI11, every_status_and_every_distance_goes_on_the_wire_as_it_is) {
@@ -80,6 +103,7 @@ TEST(ReliabilityI11, every_status_and_every_distance_goes_on_the_wire_as_it_is) 
         std::uint8_t stream = 0;
         for (std::uint32_t range_mm = 0; range_mm <= 65'535; ++range_mm) {
             now = now + Microseconds{33'000};
+            acceptance.on_not_ready(now - Microseconds{200});
             acceptance.on_not_ready(now - Microseconds{100});
             vl53l1x::Measurement measurement;
             measurement.device_status = status;

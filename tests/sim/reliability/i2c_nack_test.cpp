@@ -68,8 +68,8 @@ TEST(ReliabilityI1, a_transfer_refused_twice_loses_that_sensor_alone_and_for_a_m
     for (const Nack& nack : kNacks) {
         for (std::int32_t offset = 0; offset < 30; ++offset) {
             NodeRig rig(two_zones_config(2), std::vector<SensorSetup>(2),
-                        wraps_after((980 + 5 * offset) * kMillisecond));
-            rig.run_for(1 * kSecond);
+                        wraps_after((1'980 + 5 * offset) * kMillisecond));
+            rig.run_for(2 * kSecond);  // up and trimmed
             const std::int64_t hurt_us = rig.now().us;
             rig.bus(0).inject({.kind = nack.kind,
                                .first = rig.bus(0).transfer_count() + static_cast<std::uint64_t>(offset),

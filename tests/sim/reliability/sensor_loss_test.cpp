@@ -68,7 +68,7 @@ TEST(ReliabilityI8, xshut_stuck_high_from_the_start_is_named_by_raising_each_in_
 // It had its own address when its line broke; the next re-initialisation finds it there, all in reset.
 TEST(ReliabilityI8, xshut_stuck_high_later_is_named_by_its_own_address_and_is_used_again_once_mended) {
     NodeRig rig(fleet_config(3, 1), std::vector<SensorSetup>(3));
-    rig.run_for(1 * kSecond);
+    rig.run_for(2 * kSecond);  // up and trimmed
     const std::int64_t hurt_us = rig.now().us;
     rig.sensor(1).set_faults({.ignores_xshut = true, .never_ready = true});
     rig.run_for(1 * kSecond);

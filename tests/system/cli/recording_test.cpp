@@ -154,7 +154,7 @@ TEST_F(Recording, another_robot_rig_and_world_need_no_rebuild) {
     const Said replayed = octoskin("replay " + path("rec"));
     ASSERT_EQ(replayed.exit_code, 0) << replayed.output;
     // One sensor looks at the wall, one along the pillar's rounding; both for 2 s at 30 Hz.
-    EXPECT_THAT(replayed.output, HasSubstr("321 in = 122 used + 199 rejected"));
+    EXPECT_THAT(replayed.output, HasSubstr("313 in = 122 used + 191 rejected"));
 }
 
 TEST_F(Recording, the_experiment_leaves_maps_metrics_a_recording_and_a_report) {

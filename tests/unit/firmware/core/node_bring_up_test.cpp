@@ -159,7 +159,7 @@ TEST(NodeBringUp, leaves_a_failed_sensor_in_reset_so_that_it_is_not_taken_for_it
 TEST(NodeBringUp, moves_a_stray_sensor_out_of_the_way_and_says_on_which_bus_it_is) {
     NodeRig rig(fleet_config(4, 2), fleet(4));
     rig.attach_stray_sensor(1);
-    rig.run_for(2'000 * kMillisecond);
+    rig.run_for(2'250 * kMillisecond);
     for (std::uint8_t sensor = 0; sensor < 4; ++sensor) {
         EXPECT_EQ(rig.last_health(sensor)->state, SensorState::ranging) << int{sensor};
         EXPECT_EQ(rig.last_health(sensor)->fault, SensorFault::none) << int{sensor};

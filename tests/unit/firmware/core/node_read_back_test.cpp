@@ -111,7 +111,7 @@ TEST_F(NodeReadBackTest, a_bit_flipped_in_the_check_itself_costs_nothing) {
 
 TEST(NodeReadBack, a_configuration_write_lost_at_the_start_costs_one_more_attempt) {
     NodeRig clean(fleet_config(1, 1), std::vector<SensorSetup>(1));
-    clean.run_for(Microseconds{300'000});
+    clean.run_for(Microseconds{400'000});
     const std::uint64_t transfers = clean.bus(0).transfer_count();
     std::uint32_t restarts = 0;
     for (std::uint64_t i = 0; i < transfers; ++i) {

@@ -223,7 +223,7 @@ TEST_F(NodeRecoveryTest, never_sends_a_range_with_a_bit_flipped_in_one_of_its_tw
     // Every bit of a result twice over; some hit polls and read-backs instead.
     for (std::uint32_t i = 0; i < 2 * 136; ++i) {
         rig_.bus(0).inject({.kind = sim::I2cFaultKind::flip_bit,
-                            .first = rig_.bus(0).transfer_count() + 50 + 23 * i,
+                            .first = rig_.bus(0).transfer_count() + 50 + 29 * i,
                             .position = i % 136});
     }
     rig_.run_for(20 * kSecond);

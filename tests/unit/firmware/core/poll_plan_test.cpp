@@ -34,10 +34,19 @@ TEST(PollPlan, asks_ever_more_rarely_the_longer_the_data_is_overdue) {
     EXPECT_EQ(plan.repoll(predicted, kPeriod, {120'000}), NodeTime{121'000});  // never above 1 ms
 }
 
-TEST(PollPlan, asks_every_millisecond_while_nothing_is_known) {
+TEST(PollPlan, looks_in_the_middle_of_where_the_ready_time_must_be) {
     const PollPlan plan{400'000, kPolicy};
-    EXPECT_EQ(plan.repoll(std::nullopt, kPeriod, {5'000}), NodeTime{6'000});
-    EXPECT_EQ(plan.repoll(std::nullopt, Microseconds{640'000}, {5'000}), NodeTime{15'000});  // period / 64
+    const NodeTime due = plan.poll_in_middle({{100'000}, {100'300}});
+    EXPECT_EQ(plan.not_ready_until(due), NodeTime{100'150});
+}
+
+TEST(PollPlan, asks_every_millisecond_while_nothing_is_known_however_long_the_polls_take) {
+    const PollPlan plan{400'000, kPolicy};
+    for (const std::uint32_t now : {5'000U, 5'001U, 5'999U})
+        EXPECT_EQ(plan.blind_poll({2'000}, kPeriod, {now}), NodeTime{6'000}) << now;
+    EXPECT_EQ(plan.blind_poll({2'000}, kPeriod, {500}), NodeTime{2'000});
+    EXPECT_EQ(plan.blind_poll({5'000}, Microseconds{640'000}, {5'000}), NodeTime{10'000});  // period / 128
+    EXPECT_EQ(plan.blind_poll({0xFFFFFF00U}, kPeriod, {100}), NodeTime{0xFFFFFF00U} + Microseconds{1'000});
 }
 
 TEST(PollPlan, expects_nothing_after_a_start_before_most_of_the_budget_is_used) {
