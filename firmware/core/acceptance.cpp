@@ -145,13 +145,22 @@ TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges,
     // It was overdue for one poll only: either that was altered, or the sensor slipped. Both are possible.
     if (is_overdue && !is_after(not_ready, predicted->latest))
         return tracker_.relearn({later_of(not_ready, predicted->earliest), seen.read_end}, ranges);
+    // Ready before it could be: the sensor is ahead of its rhythm, or its pin lies. The rhythm says nothing
+    // then, or it would be followed for ever.
+    const bool is_single = results_refused_ == 0 && ranges == 1;
+    if (is_single && predicted && is_after(predicted->earliest, seen.ready_seen)) {
+        tracker_.forget();
+        return tracker_.observe({not_ready_before_, not_ready_polls_ >= 2 ? seen.ready_seen : seen.read_end},
+                                ranges);
+    }
     // Data stays ready until cleared, but a later range overwrites it: then the poll saw the edge of an
     // earlier range than the one read. And a poll that was never answered "not ready" proves nothing about
     // when, unless there was no earlier range.
     const TimeBracket polled{not_ready, seen.ready_seen};
     const TimeBracket until_read{not_ready, seen.read_end};
     const bool is_of_this = predicted ? intersection(polled, *predicted).has_value() : is_read_in_time(seen);
-    const bool is_edge_seen = (has_seen_not_ready() || is_next) && is_of_this;
+    const bool is_seen_low = not_ready_polls_ >= (is_believed ? 1U : 2U);
+    const bool is_edge_seen = (is_seen_low || is_next) && is_of_this;
     return tracker_.observe(is_edge_seen ? polled : until_read, ranges);
 }
 

@@ -23,7 +23,7 @@ constexpr std::int64_t kLongestReadBits = std::int64_t{i2c::bit_count(2, 17)} * 
 BusWorker::BusWorker(i2c::Bus& bus, std::uint32_t i2c_hz, const vl53l1x::Options& options,
                      const Policy& policy, const DataReadyHint& hint)
     : bus_(bus),
-      default_address_(bus, options),
+      default_address_(shared_bus_, options),
       hint_(hint),
       policy_(policy),
       longest_read_(kLongestReadBits * 1'000'000 / i2c_hz) {}
@@ -162,7 +162,7 @@ void BusWorker::free_bus(NodeTime now) {
 std::optional<NodeTime> BusWorker::wake_time() const {
     if (is_faulty_) return retry_at_;
     if (bus_.is_busy()) return std::nullopt;
-    if (awaited_ != nullptr) return awaited_->due();
+    if (awaited_ != nullptr) return awaited_->punctual_due();
     std::optional<NodeTime> earliest;
     for (const Sensor* sensor : std::span(sensors_).first(sensor_count_)) {
         const auto due = sensor->due();

@@ -45,6 +45,9 @@ struct Policy {
     Microseconds capture_bound_max{10'000};
     std::int32_t stale_after_periods = 3;
     std::uint8_t rejections_until_degraded = 10;
+    /// Results in a row of which nobody knows the time, until the sensor is brought up anew: a second at 30
+    /// Hz.
+    std::uint8_t undated_until_failure = 30;
     /// Ranges in a row that a sensor itself calls a failure of its hardware, until it is brought up anew.
     std::uint8_t hardware_fails_until_failure = 10;
     /// One of the three groups of steering registers is read back after so many readings: each group

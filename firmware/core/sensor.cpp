@@ -135,6 +135,7 @@ BusUse Sensor::advance(NodeTime now) {
 void Sensor::begin_bring_up(NodeTime now) {
     reinitialise_ordered_.reset();
     hardware_fails_in_row_ = 0;
+    undated_in_row_ = 0;
     ranging_.abandon();
     bring_up_.begin(now);
     mode_ = Mode::bringing_up;
@@ -224,9 +225,7 @@ BusUse Sensor::advance_ranging(NodeTime now) {
                 on_withheld();
                 break;
             }
-            ++counts_.rejected;
-            ++counts_.undated;
-            on_result(now);
+            on_undated(now);
             break;
         case Ranging::Event::refused:
             on_refused();
@@ -260,12 +259,25 @@ void Sensor::on_result(NodeTime now) {
 
 void Sensor::on_reading() {
     is_settled_ = true;
+    undated_in_row_ = 0;
     if (ranging_.is_proven()) {
         refused_in_row_ = 0;
         recovery_.on_proven_reading();
     }
     // A sensor that froze gives one first result after each restart: only the second proves anything.
     if (ranging_.is_proven() || state_ == SensorState::starting) state_ = SensorState::ranging;
+}
+
+/// It ranges, but nobody knows when. For a while after a slip that is so; for long it is a sensor whose ready
+/// pin, or rhythm, cannot be followed.
+void Sensor::on_undated(NodeTime now) {
+    is_settled_ = true;
+    ++counts_.rejected;
+    ++counts_.undated;
+    if (++undated_in_row_ < policy_.undated_until_failure) return;
+    device_.abandon();
+    ranging_.abandon();
+    on_failure(SensorFault::stale_stream, false, now);
 }
 
 void Sensor::on_refused() {

@@ -133,6 +133,7 @@ class Sensor {
     void on_reading();
     void on_refused();
     void on_withheld();
+    void on_undated(NodeTime now);
     void on_failure(wire::SensorFault fault, bool can_restart, NodeTime now);
     void recover(NodeTime now);
     [[nodiscard]] std::optional<NodeTime> due_otherwise() const noexcept;
@@ -165,6 +166,7 @@ class Sensor {
     bool has_failed_ = false;
     std::uint8_t refused_in_row_ = 0;
     std::uint8_t hardware_fails_in_row_ = 0;
+    std::uint8_t undated_in_row_ = 0;
     SensorCounts counts_;
     std::optional<Reading> reading_;
 };
