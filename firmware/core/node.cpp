@@ -131,7 +131,12 @@ void Node::watch_reflex(std::uint8_t sensor, const Reading& reading, NodeTime no
 }
 
 void Node::note_health_changes(NodeTime now) {
-    note_fault_change(now);
+    // A look at everybody at every turn would be a fifth of a busy node's work.
+    const Microseconds since = elapsed(health_looked_at_, now);
+    is_health_look_due_ = since.count() >= 0 && since < policy_.health_look_interval;
+    if (is_health_look_due_) return;
+    health_looked_at_ = now;
+    note_fault_change();
     for (std::uint8_t i = 0; i < sensor_count_; ++i) {
         if (sensors_[i]->take_failure()) black_box_.on_fault(config_.sensors[i].bus, now);
         const Told& told = told_[i];
@@ -143,11 +148,7 @@ void Node::note_health_changes(NodeTime now) {
     }
 }
 
-/// To find it takes a look at everything, so this is not done at every turn.
-void Node::note_fault_change(NodeTime now) {
-    const Microseconds since = elapsed(fault_looked_at_, now);
-    if (since.count() >= 0 && since < policy_.fault_look_interval) return;
-    fault_looked_at_ = now;
+void Node::note_fault_change() {
     const wire::InfoFault fault = fault_to_tell();
     if (fault == told_fault_) return;
     told_fault_ = fault;
@@ -180,6 +181,7 @@ NodeTime Node::wake_time(NodeTime now) const {
     for (const auto& bus : buses_) {
         if (bus) wake = earlier(wake, bus->wake_time());
     }
+    if (is_health_look_due_) wake = earlier_of(wake, health_looked_at_ + policy_.health_look_interval);
     if (identify_until_) wake = earlier_of(wake, blink_at_);
     if (ports_.watchdog != nullptr) wake = earlier_of(wake, feed_at_);
     wake = earlier(wake, bus_off_.wake_time());

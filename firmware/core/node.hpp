@@ -155,7 +155,7 @@ class Node {
     [[nodiscard]] wire::Heartbeat heartbeat() const noexcept;
     [[nodiscard]] wire::NodeInfo info(wire::InfoPage page) const noexcept;
     [[nodiscard]] wire::InfoFault fault_to_tell() const noexcept;
-    void note_fault_change(NodeTime now);
+    void note_fault_change();
     [[nodiscard]] std::optional<wire::InfoFault> present_fault() const noexcept;
     [[nodiscard]] wire::SensorHealth health(std::uint8_t sensor) const noexcept;
     [[nodiscard]] Microseconds bound_to_tell(std::uint8_t sensor) const noexcept;
@@ -183,7 +183,6 @@ class Node {
     std::array<ReflexEvent, kNodeSensorsMax> reflex_events_{};
     std::uint64_t reflex_due_ = 0;  ///< bit i: `reflex_events_[i]` is to be sent
     std::uint8_t reflex_sequence_ = 0;
-    NodeTime fault_looked_at_;
     wire::InfoFault told_fault_;
     ReadingQueue queue_;
     Announcer announcer_;
@@ -196,6 +195,10 @@ class Node {
     wire::ResetCause reset_cause_ = wire::ResetCause::unknown;
 
     bool has_unsent_ = false;
+    bool is_lit_ = false;
+    bool is_reset_requested_ = false;
+    bool is_health_look_due_ = false;
+    NodeTime health_looked_at_;
     std::uint32_t frames_sent_ = 0;
     std::uint32_t given_up_ = 0;
     std::uint32_t others_given_up_ = 0;
@@ -208,8 +211,6 @@ class Node {
     std::optional<NodeTime> own_id_heard_;
     std::optional<NodeTime> identify_until_;
     NodeTime blink_at_;
-    bool is_lit_ = false;
-    bool is_reset_requested_ = false;
     std::uint32_t uptime_ms_ = 0;
     NodeTime uptime_counted_;
     std::uint32_t mode_since_ms_ = 0;  ///< of `run_.mode`, in uptime

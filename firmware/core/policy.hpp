@@ -32,13 +32,14 @@ struct Policy {
     /// Known less well than within this, the next ready time is worth a poll that is punctual.
     Microseconds punctual_above{300};
     /// A sensor whose ready time is known this well is asked early, to see that it keeps its rhythm, only
-    /// after so many readings in a row whose data was ready when it was first asked for.
+    /// after `unproven_readings_max`.
     Microseconds known_width_max{1'000};
-    std::uint8_t unproven_readings_max = 3;
     /// So long may a sensor wait for its turn, or for the rest of it, while others must be punctual.
     Microseconds bus_wait_max{3'000};
     /// How uncertain the real period is before it was measured: the oscillator is 6-7 % off, part by part.
     std::int32_t period_unknown_permille = 120;
+    /// Readings in a row whose data was ready when it was first asked for.
+    std::uint8_t unproven_readings_max = 3;
     Microseconds repoll_min{50};
     Microseconds repoll_max{1'000};
     /// A reading whose capture time is less certain than this is not sent.
@@ -64,8 +65,8 @@ struct Policy {
 
     // --- trimming the inter-measurement register to the configured period
     std::int32_t trim_tolerance_permille = 5;
-    Microseconds trim_after{1'056'000};  ///< so long a run is measured before its period is judged
     std::uint8_t trims_at_start = 2;
+    Microseconds trim_after{1'056'000};      ///< so long a run is measured before its period is judged
     Microseconds trim_interval{60'000'000};  ///< between trims once those at the start are used up
     std::uint32_t trim_edges_min = 8;        ///< ready times observed before a period counts as measured
 
@@ -83,7 +84,7 @@ struct Policy {
     Microseconds heartbeat_period{100'000};
     Microseconds status_period{1'000'000};  ///< NODE_INFO's pages and every sensor's health, once each
 
-    Microseconds fault_look_interval{1'000};  ///< between two looks at what fault is to be told
+    Microseconds health_look_interval{1'000};  ///< between two looks at everybody's health
 
     Microseconds black_box_period{50'000};     ///< between two pieces of it
     Microseconds black_box_pause{60'000'000};  ///< between two dumps of a bus for faults
