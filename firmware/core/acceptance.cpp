@@ -76,8 +76,7 @@ Verdict Acceptance::judge(const ResultSeen& seen, const ZoneCycle& zones) noexce
     const auto steps = steps_to(measurement.stream_count);
     if (is_count_in_doubt(steps)) tracker_.forget();
     const std::uint32_t ranges = ranges_since_last(steps, seen.read_end);
-    const bool is_next = steps == 1 && results_refused_ == 0 && !was_stale_ && is_rhythm_proven();
-    const TimeBracket ready = ready_time(seen, ranges, is_next);
+    const TimeBracket ready = ready_time(seen, ranges);
 
     is_proven_ = last_stream_.has_value();
     if (has_seen_not_ready()) {
@@ -135,9 +134,8 @@ std::uint32_t Acceptance::ranges_since_last(std::optional<std::uint8_t> steps,
     return static_cast<std::uint32_t>(std::max<std::int64_t>(seen, fitting));
 }
 
-/// When the data was ready, by the polls and by the rhythm. `is_next`: it is the first since the last result
-/// was read.
-TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges, bool is_next) noexcept {
+/// When the data was ready, by the polls and by the rhythm.
+TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges) noexcept {
     const auto predicted = tracker_.predict(ranges);
     const bool is_overdue = predicted && is_after(not_ready_at_, predicted->latest);
     const bool is_believed = is_lone_poll_believed(predicted) && !is_overdue;
@@ -147,8 +145,8 @@ TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges,
         return tracker_.relearn({later_of(not_ready, predicted->earliest), seen.read_end}, ranges);
     // Ready before it could be: the sensor is ahead of its rhythm, or its pin lies. The rhythm says nothing
     // then, or it would be followed for ever.
-    const bool is_single = results_refused_ == 0 && ranges == 1;
-    if (is_single && predicted && is_after(predicted->earliest, seen.ready_seen)) {
+    const bool is_next = results_refused_ == 0 && ranges == 1;
+    if (is_next && predicted && is_after(predicted->earliest, seen.ready_seen)) {
         tracker_.forget();
         return tracker_.observe({not_ready_before_, not_ready_polls_ >= 2 ? seen.ready_seen : seen.read_end},
                                 ranges);
@@ -160,7 +158,8 @@ TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges,
     const TimeBracket until_read{not_ready, seen.read_end};
     const bool is_of_this = predicted ? intersection(polled, *predicted).has_value() : is_read_in_time(seen);
     const bool is_seen_low = not_ready_polls_ >= (is_believed ? 1U : 2U);
-    const bool is_edge_seen = (is_seen_low || is_next) && is_of_this;
+    const bool is_known_low = is_next && !was_stale_ && is_rhythm_proven();
+    const bool is_edge_seen = (is_seen_low || is_known_low) && is_of_this;
     return tracker_.observe(is_edge_seen ? polled : until_read, ranges);
 }
 

@@ -79,7 +79,7 @@ class Acceptance {
   private:
     [[nodiscard]] std::uint32_t ranges_since_last(std::optional<std::uint8_t> steps,
                                                   NodeTime read_end) const noexcept;
-    [[nodiscard]] TimeBracket ready_time(const ResultSeen& seen, std::uint32_t ranges, bool is_next) noexcept;
+    [[nodiscard]] TimeBracket ready_time(const ResultSeen& seen, std::uint32_t ranges) noexcept;
     void on_stale() noexcept;
     [[nodiscard]] bool is_read_in_time(const ResultSeen& seen) const noexcept;
     [[nodiscard]] bool is_lone_poll_believed(const std::optional<TimeBracket>& predicted) const noexcept;

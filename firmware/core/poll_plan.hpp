@@ -1,6 +1,6 @@
-// When to ask a sensor whether its data is ready. The first poll is meant to come just too early: "not ready"
-// is what bounds the ready time from below, and it is the proof that a sensor still keeps its rhythm. One
-// such poll is 48 bits on the bus.
+// When to ask a sensor whether its data is ready. A poll in the middle of where the ready time must lie tells
+// most, whatever it says. One that comes just too early bounds the ready time from below where little is
+// known, and is the proof that a sensor still keeps its rhythm. One poll is 48 bits on the bus.
 #pragma once
 
 #include <cstdint>

@@ -251,10 +251,8 @@ void Sensor::on_result(NodeTime now) {
     }
     is_settled_ = true;
     refused_in_row_ = 0;
-    if (++hardware_fails_in_row_ < policy_.hardware_fails_until_failure) return;
-    device_.abandon();
-    ranging_.abandon();
-    on_failure(SensorFault::hardware_fail, false, now);
+    if (++hardware_fails_in_row_ >= policy_.hardware_fails_until_failure)
+        give_up_ranging(SensorFault::hardware_fail, now);
 }
 
 void Sensor::on_reading() {
@@ -274,10 +272,14 @@ void Sensor::on_undated(NodeTime now) {
     is_settled_ = true;
     ++counts_.rejected;
     ++counts_.undated;
-    if (++undated_in_row_ < policy_.undated_until_failure) return;
+    if (++undated_in_row_ >= policy_.undated_until_failure) give_up_ranging(SensorFault::stale_stream, now);
+}
+
+/// It answers, but what it says is of no use: only a new bring-up may help.
+void Sensor::give_up_ranging(SensorFault fault, NodeTime now) {
     device_.abandon();
     ranging_.abandon();
-    on_failure(SensorFault::stale_stream, false, now);
+    on_failure(fault, false, now);
 }
 
 void Sensor::on_refused() {

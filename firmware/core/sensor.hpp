@@ -134,6 +134,7 @@ class Sensor {
     void on_refused();
     void on_withheld();
     void on_undated(NodeTime now);
+    void give_up_ranging(wire::SensorFault fault, NodeTime now);
     void on_failure(wire::SensorFault fault, bool can_restart, NodeTime now);
     void recover(NodeTime now);
     [[nodiscard]] std::optional<NodeTime> due_otherwise() const noexcept;
