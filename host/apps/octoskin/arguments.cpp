@@ -87,10 +87,4 @@ std::optional<int> descriptor_of(const std::string& interface) {
     return descriptor;
 }
 
-std::string configuration_of(const std::string& asked_for, const RecordingPaths& recording) {
-    if (!asked_for.empty()) return asked_for;
-    std::error_code error;
-    return std::filesystem::exists(recording.mapping(), error) ? recording.mapping().string() : "robust";
-}
-
 }  // namespace octoskin::app

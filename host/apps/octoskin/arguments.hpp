@@ -5,8 +5,6 @@
 #include <optional>
 #include <string>
 
-#include "host/apps/recording/recording.hpp"
-
 namespace octoskin::app {
 
 /// Throws CommandFailure with ExitCode::no_input unless the argument is a file that exists.
@@ -24,8 +22,5 @@ void check_command_name(const CLI::App& app, int argc, const char* const* argv);
 /// "fd:N" in place of an interface names a descriptor that whoever started this program left open for it;
 /// empty for any other name. CommandFailure (usage) if none of that number is open.
 [[nodiscard]] std::optional<int> descriptor_of(const std::string& interface);
-
-/// What --configuration says; else the recording's own mapping.yaml, as the daemon wrote it; else robust.
-[[nodiscard]] std::string configuration_of(const std::string& asked_for, const RecordingPaths& recording);
 
 }  // namespace octoskin::app

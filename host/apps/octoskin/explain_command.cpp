@@ -7,36 +7,22 @@
 #include <nlohmann/json.hpp>
 
 #include "host/apps/explaining/explanation.hpp"
-#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/playback_options.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
-#include "host/apps/study/configuration.hpp"
 
 namespace octoskin::app {
 namespace {
 
 struct ExplainOptions {
     std::array<double, 3> p_map{};
-    std::filesystem::path recording;
-    std::filesystem::path rig;
-    std::filesystem::path robot;
-    std::string configuration;
+    PlaybackOptions playback;
     std::size_t lines = 20;
-    bool is_by_capture_time = false;
     bool is_json = false;
 };
 
 void explain_voxel(const ExplainOptions& options) {
-    const RecordingPaths recording(options.recording);
-    const auto configuration = study_configuration(configuration_of(options.configuration, recording));
-    if (!configuration) throw CommandFailure(configuration.error());
-    const auto explanation = explain({.recording = recording,
-                                      .mapping = configuration->mapping,
-                                      .configuration = configuration->name,
-                                      .maps = {},
-                                      .rig = options.rig,
-                                      .robot = options.robot,
-                                      .is_by_capture_time = options.is_by_capture_time},
+    const auto explanation = explain(playback_request(options.playback),
                                      {options.p_map[0], options.p_map[1], options.p_map[2]}, options.lines);
     if (!explanation) throw CommandFailure(explanation.error());
     for (const std::string& warning : explanation->warnings) spdlog::warn("{}", warning);
@@ -56,16 +42,8 @@ void add_explain_command(CLI::App& app) {
     command->add_option("x", options->p_map[0], "The point, metres in the map frame")->required();
     command->add_option("y", options->p_map[1])->required();
     command->add_option("z", options->p_map[2])->required();
-    command->add_option("--recording", options->recording, "Directory of the recording")->required();
-    command->add_option("--configuration", options->configuration,
-                        configuration_help("How measurements become voxels (default: as the daemon "
-                                           "recorded it, else robust)"));
-    command->add_option("--rig", options->rig, "Rig (YAML) in place of the recording's")
-        ->check(existing_file());
-    command->add_option("--robot", options->robot, "Robot (URDF) in place of the recording's")
-        ->check(existing_file());
-    command->add_flag("--by-capture-time", options->is_by_capture_time,
-                      "In the order of capture times, even if the recording has a daemon's own order");
+    command->add_option("--recording", options->playback.recording, "Directory of the recording")->required();
+    add_playback_options(*command, options->playback);
     command->add_option("--lines", options->lines, "List at most so many contributions, the newest ones")
         ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();

@@ -9,26 +9,22 @@
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/playback_options.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/playback/map_folder.hpp"
 #include "host/apps/playback/onto_bus.hpp"
 #include "host/apps/playback/playback.hpp"
-#include "host/apps/study/configuration.hpp"
 #include "hw/rigfile/joined.hpp"
 
 namespace octoskin::app {
 namespace {
 
 struct ReplayOptions {
-    std::filesystem::path recording;
-    std::filesystem::path rig;
-    std::filesystem::path robot;
+    PlaybackOptions playback;
     std::filesystem::path out;
-    std::string configuration;  ///< empty: the recording's own, or robust
-    std::string speed;          ///< empty: max into the maps, 1 onto a bus
+    std::string speed;  ///< empty: max into the maps, 1 onto a bus
     std::string onto;
     bool is_fused_only = false;
-    bool is_by_capture_time = false;
     bool is_stepped = false;
 };
 
@@ -94,7 +90,8 @@ socketcan::CanSocket open_bus(const std::string& interface) {
 
 void replay_onto_bus(const ReplayOptions& options) {
     socketcan::CanSocket socket = open_bus(options.onto);
-    const auto played = play_onto(RecordingPaths(options.recording).can_log(), socket, pace_of(options));
+    const auto played =
+        play_onto(RecordingPaths(options.playback.recording).can_log(), socket, pace_of(options));
     if (!played) throw CommandFailure(played.error());
     print("{}: {} frames of '{}' sent, {} of them had to wait for room\n", options.onto, played->sent,
           played->interface, played->waited);
@@ -106,19 +103,10 @@ void replay_onto_bus(const ReplayOptions& options) {
 }
 
 void replay_recording(const ReplayOptions& options) {
-    const auto configuration =
-        study_configuration(configuration_of(options.configuration, RecordingPaths(options.recording)));
-    if (!configuration) throw CommandFailure(configuration.error());
     const bool wants_all = !options.is_fused_only;
-    const PlaybackRequest request{.recording = RecordingPaths(options.recording),
-                                  .mapping = configuration->mapping,
-                                  .configuration = configuration->name,
-                                  .maps = {.depth = wants_all, .proximity = wants_all, .fused = true},
-                                  .rig = options.rig,
-                                  .robot = options.robot,
-                                  .is_by_capture_time = options.is_by_capture_time,
-                                  .pace = pace_of(options),
-                                  .listener = nullptr};
+    PlaybackRequest request = playback_request(options.playback);
+    request.maps = {.depth = wants_all, .proximity = wants_all, .fused = true};
+    request.pace = pace_of(options);
     if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
     // Before the work: of two that write there, the second would else find out after it.
     auto folder = MapFolder::open(options.out);
@@ -142,19 +130,11 @@ void add_replay_command(CLI::App& app) {
     auto options = std::make_shared<ReplayOptions>();
     CLI::App* command =
         app.add_subcommand("replay", "Play a recording through the pipeline; write maps and the account");
-    command->add_option("recording", options->recording, "Directory of the recording")->required();
+    command->add_option("recording", options->playback.recording, "Directory of the recording")->required();
     command->add_option("--out", options->out, "Where the maps go (default: RECORDING/maps)");
-    command->add_option("--configuration", options->configuration,
-                        configuration_help("How measurements become voxels (default: as the daemon "
-                                           "recorded it, else robust)"));
-    command->add_option("--rig", options->rig, "Rig (YAML) in place of the recording's")
-        ->check(existing_file());
-    command->add_option("--robot", options->robot, "Robot (URDF) in place of the recording's")
-        ->check(existing_file());
+    add_playback_options(*command, options->playback);
     command->add_flag("--fused-only", options->is_fused_only,
                       "Leave out the maps of the camera alone and the sensors alone");
-    command->add_flag("--by-capture-time", options->is_by_capture_time,
-                      "In the order of capture times, even if the recording has a daemon's own order");
     auto* const speed =
         command->add_option("--speed", options->speed,
                             "max; or how many times real time: 1, 10, 0.5 (default: max, with --onto 1)");
@@ -167,7 +147,7 @@ void add_replay_command(CLI::App& app) {
                    "wait for the enter key")
         ->excludes(speed);
     command->callback([options] {
-        if (options->out.empty()) options->out = options->recording / "maps";
+        if (options->out.empty()) options->out = options->playback.recording / "maps";
         options->onto.empty() ? replay_recording(*options) : replay_onto_bus(*options);
     });
 }

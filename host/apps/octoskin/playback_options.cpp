@@ -1,0 +1,46 @@
+#include "host/apps/octoskin/playback_options.hpp"
+
+#include "host/apps/octoskin/arguments.hpp"
+#include "host/apps/octoskin/commands.hpp"
+#include "host/apps/study/configuration.hpp"
+
+namespace octoskin::app {
+namespace {
+
+/// What --configuration says; else the recording's own mapping.yaml, as the daemon wrote it; else robust.
+std::string configuration_of(const std::string& asked_for, const RecordingPaths& recording) {
+    if (!asked_for.empty()) return asked_for;
+    std::error_code error;
+    return std::filesystem::exists(recording.mapping(), error) ? recording.mapping().string() : "robust";
+}
+
+}  // namespace
+
+void add_playback_options(CLI::App& command, PlaybackOptions& options) {
+    command.add_option("--configuration", options.configuration,
+                       configuration_help("How measurements become voxels (default: as the daemon "
+                                          "recorded it, else robust)"));
+    command.add_option("--rig", options.rig, "Rig (YAML) in place of the recording's")
+        ->check(existing_file());
+    command.add_option("--robot", options.robot, "Robot (URDF) in place of the recording's")
+        ->check(existing_file());
+    command.add_flag("--by-capture-time", options.is_by_capture_time,
+                     "In the order of capture times, even if the recording has a daemon's own order");
+}
+
+PlaybackRequest playback_request(const PlaybackOptions& options) {
+    const RecordingPaths recording(options.recording);
+    auto configuration = study_configuration(configuration_of(options.configuration, recording));
+    if (!configuration) throw CommandFailure(configuration.error());
+    return {.recording = recording,
+            .mapping = configuration->mapping,
+            .configuration = configuration->name,
+            .maps = {},
+            .rig = options.rig,
+            .robot = options.robot,
+            .is_by_capture_time = options.is_by_capture_time,
+            .pace = {},
+            .listener = nullptr};
+}
+
+}  // namespace octoskin::app

@@ -1,0 +1,28 @@
+// What the commands that play a recording through the pipeline ask for alike.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+
+#include "host/apps/playback/playback.hpp"
+
+namespace octoskin::app {
+
+struct PlaybackOptions {
+    std::filesystem::path recording;
+    std::filesystem::path rig;    ///< empty: the recording's
+    std::filesystem::path robot;  ///< empty: the recording's
+    std::string configuration;    ///< empty: the recording's own, or robust
+    bool is_by_capture_time = false;
+};
+
+/// All of them but the recording, for which each command has its own place. `options` has to outlive
+/// `command`.
+void add_playback_options(CLI::App& command, PlaybackOptions& options);
+
+/// What they ask for; the maps, the pace and the listener are the command's own. CommandFailure if the
+/// configuration is none.
+[[nodiscard]] PlaybackRequest playback_request(const PlaybackOptions& options);
+
+}  // namespace octoskin::app
