@@ -182,7 +182,7 @@ void Daemon::Parts::reload() {
 DaemonView Daemon::Parts::view() const {
     const HostTime now = monotonic_now();
     return {.now = now,
-            .bus_now = now + inputs.shift(),
+            .bus_now = now + inputs.foreign_clock().ahead_last(),
             .started = started,
             .rig = &settings.host.rig,
             .pipeline = &pipeline,

@@ -107,20 +107,21 @@ void Inputs::take_frame(const socketcan::Received& received) {
         return;
     }
     feed(received.entry.frame, received.entry.stamp);
-    if (const auto at = monotonic_of(received.entry.stamp)) answer_sync(received, *at);
-    learn_shift(received);
+    if (const auto at = monotonic_of(received.entry.stamp)) {
+        answer_sync(received, *at);
+        hear_host(received, *at);
+    }
 }
 
 /// Who only listens has the clock of the host that sends SYNC: what this machine measures is put on it.
-void Inputs::learn_shift(const socketcan::Received& received) {
-    if (!request_.is_listen_only ||
-        received.entry.frame.can_id != wire::can_id(wire::FrameType::follow_up, wire::kHostId))
-        return;
+void Inputs::hear_host(const socketcan::Received& received, HostTime at) {
+    if (!request_.is_listen_only || wire::node_of(received.entry.frame.can_id) != wire::kHostId) return;
     const auto decoded = wire::decode(received.entry.frame);
-    const auto* const message = decoded ? std::get_if<wire::FollowUp>(&decoded->message) : nullptr;
-    if (message == nullptr || !foreign_sync_ || message->sequence != foreign_sequence_) return;
-    shift_ =
-        Nanoseconds{static_cast<std::int64_t>(message->host_time_us) * 1000} - (*foreign_sync_ - HostTime{});
+    if (!decoded) return;
+    if (const auto* sync = std::get_if<wire::Sync>(&decoded->message))
+        foreign_clock_.on_sync(sync->sequence, at);
+    if (const auto* follow_up = std::get_if<wire::FollowUp>(&decoded->message))
+        foreign_clock_.on_follow_up(*follow_up);
 }
 
 /// What a SYNC asks of this host: the answer of its local joints, and the FOLLOW_UP if it was its own.
@@ -133,7 +134,6 @@ void Inputs::answer_sync(const socketcan::Received& received, HostTime at) {
         feed(local_joints_.report(message->sequence, at), received.entry.stamp);
     if (!received.is_own) {
         foreign_sync_ = at;
-        foreign_sequence_ = message->sequence;
         return;
     }
     if (const auto follow_up = sync_.on_sent(message->sequence, at))
@@ -168,12 +168,20 @@ void Inputs::drain_joints() {
 void Inputs::drain_camera() {
     auto frame = camera_->take();
     if (!frame) return;
-    frame->captured = frame->captured + shift_;
+    if (request_.is_listen_only) {
+        const auto ahead = foreign_clock_.ahead(monotonic_now());
+        depth_untimed_ += ahead ? 0U : 1U;
+        if (!ahead) return;
+        frame->captured = frame->captured + *ahead;
+    }
     pipeline_.on_depth(std::move(*frame));
 }
 
 std::optional<CameraRecord> Inputs::camera() const {
-    return camera_ ? std::optional(camera_->record()) : std::nullopt;
+    if (!camera_) return std::nullopt;
+    CameraRecord record = camera_->record();
+    record.untimed += depth_untimed_;
+    return record;
 }
 
 }  // namespace octoskin

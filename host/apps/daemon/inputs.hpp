@@ -18,6 +18,7 @@
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/daemon/settings.hpp"
 #include "host/core/ingest/local_joints.hpp"
+#include "host/core/time/foreign_clock.hpp"
 #include "host/core/time/sync_master.hpp"
 
 namespace octoskin {
@@ -49,13 +50,13 @@ class Inputs {
     [[nodiscard]] std::uint64_t joints_thinned() const noexcept { return joints_thinned_; }
     /// Frames of the rig's joint node on the bus, while the socket is the source.
     [[nodiscard]] std::uint64_t joint_node_ignored() const noexcept { return joint_node_ignored_; }
-    /// Empty without a camera.
+    /// Empty without a camera. Its `untimed` has those that came while another host's clock was not known.
     [[nodiscard]] std::optional<CameraRecord> camera() const;
     [[nodiscard]] const LatencyHistogram& latency() const noexcept { return latency_; }
     /// Another host's newest SYNC, on this machine's clock.
     [[nodiscard]] std::optional<HostTime> foreign_sync() const noexcept { return foreign_sync_; }
-    /// From this machine's clock to the one that SYNC tells.
-    [[nodiscard]] Nanoseconds shift() const noexcept { return shift_; }
+    /// Of the host that sends SYNC, while this one only listens.
+    [[nodiscard]] const ForeignClock& foreign_clock() const noexcept { return foreign_clock_; }
 
   private:
     void watch_camera(bool is_wanted);
@@ -63,7 +64,7 @@ class Inputs {
     bool drain_can();
     void take_frame(const socketcan::Received& received);
     void answer_sync(const socketcan::Received& received, HostTime at);
-    void learn_shift(const socketcan::Received& received);
+    void hear_host(const socketcan::Received& received, HostTime at);
     void feed(const wire::CanFrame& frame, WallTime stamp);
     void drain_joints();
     void drain_camera();
@@ -85,8 +86,8 @@ class Inputs {
     std::uint64_t joints_thinned_ = 0;
     std::uint64_t joint_node_ignored_ = 0;
     std::optional<HostTime> foreign_sync_;
-    std::uint8_t foreign_sequence_ = 0;
-    Nanoseconds shift_{0};
+    ForeignClock foreign_clock_;
+    std::uint64_t depth_untimed_ = 0;  ///< frames that came while the other host's clock was not known
 };
 
 }  // namespace octoskin

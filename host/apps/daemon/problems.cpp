@@ -102,6 +102,11 @@ void add_camera(const DaemonView& view, Problems& problems) {
         problems.push_back("camera: " + view.camera->why);
     } else if (view.camera->newest && view.now - *view.camera->newest > patience) {
         problems.emplace_back("camera: no frame for three periods");
+    } else if (view.is_listen_only && !view.inputs->foreign_clock().ahead(view.now)) {
+        problems.emplace_back(
+            "camera: its frames have no time: the clock of the host that sends SYNC is not known, or in "
+            "doubt "
+            "(three FOLLOW_UPs must agree)");
     } else if (has_stopped(view.used.depth_frame, view.now)) {
         problems.emplace_back("depth frames come onto the map no more: see the counters of depth frames");
     }

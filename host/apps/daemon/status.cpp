@@ -38,13 +38,15 @@ Json can_json(const DaemonView& view) {
             {"reopened", counts.reopened}};
 }
 
-Json clock_json(const Pipeline& pipeline) {
+Json clock_json(const DaemonView& view) {
+    const Pipeline& pipeline = *view.pipeline;
     const HostClockEstimate& clock = pipeline.intake().host_clock();
     return {{"known", pipeline.now().has_value()},
             {"steps_back", clock.steps_back()},
             {"steps_ahead", clock.steps_ahead()},
             {"stamps_ignored", clock.stamps_ignored()},
-            {"relocks", clock.relocks()}};
+            {"relocks", clock.relocks()},
+            {"follow_up_outliers", view.inputs->foreign_clock().outliers()}};
 }
 
 Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index) {
@@ -170,7 +172,7 @@ Json status_json(const DaemonView& view) {
             {"rig", view.rig->name},
             {"problems", problems(view)},
             {"can", can_json(view)},
-            {"clock", clock_json(*view.pipeline)},
+            {"clock", clock_json(view)},
             {"nodes", std::move(nodes)},
             {"joints_socket", joints_json(view)},
             {"recording", view.recorder != nullptr ? view.recorder->to_json(view.now) : Json(nullptr)},

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <utility>
 
 #include "common/wire/codec.hpp"
 
@@ -126,13 +127,18 @@ void LiveBus::speak_as_host(Nanoseconds ahead) {
     host_ahead_ = ahead;
 }
 
+void LiveBus::lie_once(Nanoseconds by) {
+    const std::lock_guard lock(mutex_);
+    lie_ = by;
+}
+
 void LiveBus::be_host() {
     std::optional<Nanoseconds> ahead;
     {
         const std::lock_guard lock(mutex_);
-        ahead = host_ahead_;
+        if (!host_ahead_ || log_now_ns() < host_due_ns_) return;
+        ahead = *host_ahead_ + std::exchange(lie_, Nanoseconds{0});
     }
-    if (!ahead || log_now_ns() < host_due_ns_) return;
     host_due_ns_ = log_now_ns() + 1'000'000'000;
     host_sequence_ = static_cast<std::uint8_t>((host_sequence_ + 1U) % wire::kSyncSequenceCount);
     put(wire::encode(wire::Sync{host_sequence_}, wire::kHostId));

@@ -31,6 +31,8 @@ class LiveBus {
     /// From now on another host sends SYNC and FOLLOW_UP once a second; its clock is so far ahead of this
     /// machine's monotonic one.
     void speak_as_host(Nanoseconds ahead);
+    /// The other host's next FOLLOW_UP is wrong by so much, once.
+    void lie_once(Nanoseconds by);
     /// A node that is switched off: it sends and answers nothing.
     void silence(wire::NodeId node, bool is_silent);
     [[nodiscard]] std::uint64_t syncs_heard() const noexcept { return syncs_heard_; }
@@ -70,6 +72,7 @@ class LiveBus {
     mutable std::mutex mutex_;
     std::map<wire::NodeId, bool> silent_;
     std::optional<Nanoseconds> host_ahead_;  ///< of another host; empty while there is none
+    Nanoseconds lie_{0};                     ///< of its next FOLLOW_UP
     std::int64_t host_due_ns_ = 0;           ///< its next SYNC, on the log's time scale
     std::uint8_t host_sequence_ = 0;
     std::thread thread_;

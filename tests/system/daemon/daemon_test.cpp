@@ -103,6 +103,20 @@ TEST_F(DaemonTest, listens_to_another_hosts_clock_and_puts_its_own_camera_on_it)
     EXPECT_TRUE(status["problems"].empty()) << status["problems"].dump(1);
     EXPECT_LT(status["nodes"][0]["age_s"].get<double>(), 1.0);
     EXPECT_EQ(bus_->frames_heard(), 0U);
+
+    // One wrong word of that host must not displace a single image: half a second looks plausible to every
+    // gate.
+    bus_->lie_once(std::chrono::milliseconds(-500));
+    const auto noticed = daemon_->wait_until(
+        [](const Json& now) { return now["clock"]["follow_up_outliers"].get<int>() == 1; }, 5s);
+    ASSERT_TRUE(noticed) << daemon_->status()["clock"].dump();
+    const int used = daemon_->status()["account"]["depth frames"]["used"].get<int>();
+    const auto again = daemon_->wait_until(
+        [&](const Json& now) { return now["account"]["depth frames"]["used"].get<int>() > used + 10; }, 10s);
+    ASSERT_TRUE(again) << daemon_->status()["account"].dump(1);
+    const Json rejected = daemon_->status()["account"]["depth frames"]["rejected"];
+    EXPECT_EQ(rejected.count("out_of_order"), 0U) << rejected.dump();
+    EXPECT_EQ(daemon_->status()["clock"]["follow_up_outliers"], 1);
 }
 
 TEST_F(DaemonTest, takes_joint_states_from_a_program_of_this_machine) {
