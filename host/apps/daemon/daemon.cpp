@@ -140,7 +140,7 @@ void Daemon::Parts::watch() {
 void Daemon::Parts::attend() {
     inputs.attend();
     recordings.attend(monotonic_now());
-    last_used.note(pipeline.accounts(), monotonic_now());
+    last_used.note(pipeline, monotonic_now());
     problem_log.tell(problems(view()));
 }
 

@@ -28,6 +28,14 @@ void add_clock(const DaemonView& view, Problems& problems) {
         problems.emplace_back(
             "another host sends SYNC on this bus: only one may (start this one with --listen-only)");
     }
+    constexpr Nanoseconds kBackTold{60'000'000'000};
+    if (view.used.time_back && view.now - *view.used.time_back < kBackTold) {
+        problems.push_back(
+            fmt::format("the bus's time went back (times_back, {}) within the last minute: the host that "
+                        "sends SYNC began "
+                        "anew, or there are two; joint states and readings go on from there",
+                        view.pipeline->times_back()));
+    }
     if (view.pipeline->now()) return;
     problems.emplace_back(
         view.is_listen_only

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/wire/crc.hpp"
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/version/version.hpp"
 #include "host/io/openni2/oni_writer.hpp"
 
@@ -90,6 +91,11 @@ void Recorder::on_depth(const DepthFrame& frame, std::span<const VoxelUpdate>) {
         ++counts_.lost_depth;
     }
     put(commit);
+}
+
+void Recorder::on_time_back() {
+    spdlog::warn("the bus's time went back: the recording ends before that");
+    stop(monotonic_now());
 }
 
 void Recorder::attend(HostTime now) {

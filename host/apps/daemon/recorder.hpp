@@ -57,6 +57,8 @@ class Recorder final : public CommitListener {
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
     void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) override;
+    /// Ends it: its replay could not go on from there.
+    void on_time_back() override;
 
   private:
     void put(const Commit& commit);

@@ -46,6 +46,7 @@ Json clock_json(const DaemonView& view) {
             {"steps_ahead", clock.steps_ahead()},
             {"stamps_ignored", clock.stamps_ignored()},
             {"relocks", clock.relocks()},
+            {"times_back", pipeline.times_back()},
             {"follow_up_outliers", view.inputs->foreign_clock().outliers()}};
 }
 
@@ -154,7 +155,8 @@ Json account_json(const Pipeline& pipeline) {
 
 }  // namespace
 
-void LastUsed::note(const PipelineAccounts& accounts, HostTime now) {
+void LastUsed::note(const Pipeline& pipeline, HostTime now) {
+    const PipelineAccounts& accounts = pipeline.accounts();
     const auto note_one = [now](std::uint64_t count, std::uint64_t& before, std::optional<HostTime>& last) {
         if (count > before) last = now;
         before = count;
@@ -162,6 +164,7 @@ void LastUsed::note(const PipelineAccounts& accounts, HostTime now) {
     note_one(accounts.joint_samples.used(), counts_[0], joint_sample);
     note_one(accounts.readings.used(), counts_[1], reading);
     note_one(accounts.depth_frames.used(), counts_[2], depth_frame);
+    note_one(pipeline.times_back(), counts_[3], time_back);
 }
 
 Json status_json(const DaemonView& view) {

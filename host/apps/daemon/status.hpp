@@ -18,18 +18,19 @@
 
 namespace octoskin {
 
-/// When something was last used for the map; empty if never.
+/// When something last happened; empty if never.
 class LastUsed {
   public:
     /// To be asked often: what was used since the last time was used now.
-    void note(const PipelineAccounts& accounts, HostTime now);
+    void note(const Pipeline& pipeline, HostTime now);
 
     std::optional<HostTime> joint_sample;
     std::optional<HostTime> reading;
     std::optional<HostTime> depth_frame;
+    std::optional<HostTime> time_back;  ///< the bus's time went back
 
   private:
-    std::array<std::uint64_t, 3> counts_{};
+    std::array<std::uint64_t, 4> counts_{};
 };
 
 /// All that there is to tell. What it points to must be there.

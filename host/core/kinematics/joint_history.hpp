@@ -54,6 +54,9 @@ class JointHistory {
     /// Takes a sample or says why not. O(joints), no allocation.
     Status<JointRejection> add(HostTime sampled, std::span<const double> position);
 
+    /// As if there had been no sample: their clock began anew.
+    void forget() noexcept { size_ = 0; }
+
     /// The position at an instant: a sample's own, or interpolated linearly between the two about it.
     /// Equality with a limit of the configuration is within it. O(log capacity), no allocation.
     [[nodiscard]] Result<JointPosition, JointLookup> at(HostTime instant) const;

@@ -54,6 +54,13 @@ Status<JointReason> MapBuilder::add(const JointMeasurement& joints) {
     return added;
 }
 
+void MapBuilder::forget_motion() {
+    if (listener_ != nullptr) {
+        listener_->on_time_back();
+    }
+    robot_.forget();
+}
+
 Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement) {
     const RobotPose* const robot = robot_.at(measurement.captured);
     if (robot == nullptr) {

@@ -41,6 +41,9 @@ class MapBuilder {
     [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
     [[nodiscard]] Status<DepthReason> integrate(const DepthFrame& frame);
 
+    /// Time goes on from before the newest joint sample: where the robot was is forgotten, the maps stay.
+    void forget_motion();
+
     /// Whether the rig has this sensor and zone: no other reading may be given in (asserted).
     [[nodiscard]] bool has(const BeamSource& source) const { return beams_.has(source); }
     [[nodiscard]] bool has_camera() const noexcept { return depth_stage_.has_value(); }

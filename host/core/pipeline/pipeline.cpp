@@ -1,5 +1,6 @@
 #include "host/core/pipeline/pipeline.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,10 @@ constexpr Nanoseconds kDepthAheadMax{1'000'000'000};
 /// Far less than any timing budget: two readings of one source this close are one and the same, placed by two
 /// states of the clock map.
 constexpr Nanoseconds kSameReading{5'000'000};
+/// More than one stamp that ran ahead takes back (HostClockConfig::ahead_tolerance). Less than the 200 ms
+/// that a node's clock takes to settle anew (ClockMapConfig::settling): so that no reading finds a pose of
+/// the time before, which was another instant.
+constexpr Nanoseconds kTimeBackMax{150'000'000};
 constexpr HostTime kEndOfTime{std::numeric_limits<std::int64_t>::max()};
 /// The camera's place in the order of sources: node 0 is the host.
 constexpr BeamSource kCameraSource{};
@@ -60,6 +65,9 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     assert(!is_finished_);
     accounts_.frames.take_in();
     FrameOutcome outcome = intake_.on_frame(frame, stamp);
+    if (const auto now_known = now()) {
+        notice_time_back(*now_known);
+    }
     const auto fate = outcome.mark ? marks_.take(*outcome.mark, now()) : MarkGate::Fate::taken;
     if (fate == MarkGate::Fate::ignored) {
         outcome.rejected = FrameReason::mark_ignored;
@@ -73,6 +81,26 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
         settle_marks(*now_known);
         advance(*now_known);
     }
+}
+
+/// A smaller step back is over by itself: until then everything is older than what was used. After a larger
+/// one that would last as long as the step, an hour or for ever.
+void Pipeline::notice_time_back(HostTime now) {
+    if (now_newest_ && *now_newest_ - now > kTimeBackMax) {
+        ++times_back_;
+        settle_waiting();
+        builder_.forget_motion();
+        integrated_.reset();
+        used_.clear();
+        depth_newest_.reset();
+        now_newest_ = now;
+    }
+    now_newest_ = now_newest_ ? std::max(*now_newest_, now) : now;
+}
+
+void Pipeline::settle_waiting() {
+    release_joints(kEndOfTime);
+    release_measurements(kEndOfTime);
 }
 
 void Pipeline::settle_marks(HostTime now) {
@@ -222,8 +250,7 @@ void Pipeline::finish() {
     for (std::size_t i = marks_.give_up(); i > 0; --i) {
         accounts_.frames.reject(FrameReason::mark_ignored);
     }
-    release_joints(kEndOfTime);
-    release_measurements(kEndOfTime);
+    settle_waiting();
     for (std::uint64_t i = intake_.joint_samples_pending(); i > 0 && !is_finished_; --i) {
         accounts_.joint_samples.reject(JointReason::incomplete);
     }

@@ -93,6 +93,9 @@ class Pipeline {
 
     /// The host's clock; empty while unknown.
     [[nodiscard]] std::optional<HostTime> now() const { return intake_.now(); }
+    /// How often "now" went back by over 0.15 s: the host that sends SYNC began anew, or another one
+    /// does. What waited was settled, and what was remembered of the time before forgotten: the maps stay.
+    [[nodiscard]] std::uint64_t times_back() const noexcept { return times_back_; }
     /// True if "now" is known and three periods have passed without a depth frame that the rig promises.
     [[nodiscard]] bool is_camera_stale() const;
     [[nodiscard]] const CanIntake& intake() const noexcept { return intake_; }
@@ -108,6 +111,9 @@ class Pipeline {
              const PipelineConfig& config);
 
     void settle_marks(HostTime now);
+    void notice_time_back(HostTime now);
+    /// What waits is integrated or counted, by what is known.
+    void settle_waiting();
     void queue(const FrameOutcome& outcome);
     void queue(const RangeMeasurement& measurement);
     void queue(const JointMeasurement& joints);
@@ -139,7 +145,9 @@ class Pipeline {
     std::map<BeamSource, HostTime> used_;         ///< the newest reading of each source in the maps
     std::optional<Nanoseconds> camera_patience_;  ///< three periods; empty without a camera
     std::optional<HostTime> depth_newest_;        ///< capture time of the newest depth frame
-    bool has_can_time_ = false;                   ///< and more of it may come
+    std::optional<HostTime> now_newest_;          ///< since it last went back
+    std::uint64_t times_back_ = 0;
+    bool has_can_time_ = false;  ///< and more of it may come
     bool is_finished_ = false;
 };
 

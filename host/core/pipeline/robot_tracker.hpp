@@ -24,6 +24,9 @@ class RobotTracker {
     /// Joint samples in the order of their times.
     [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
 
+    /// Time goes on from before the newest sample: all of them are void.
+    void forget() noexcept { joints_.forget(); }
+
     /// Whether the samples about `instant` are here, or will never come: `at` answers the same for ever.
     [[nodiscard]] bool is_settled(HostTime instant) const noexcept { return joints_.is_settled(instant); }
 

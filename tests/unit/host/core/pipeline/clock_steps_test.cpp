@@ -124,6 +124,61 @@ TEST(ClockSteps, of_one_frame_of_ours_stamped_ahead_cost_what_comes_within_four_
     }
 }
 
+/// The host that sends SYNC began anew at the step: from then on it tells earlier times.
+std::vector<StampedFrame> frames_with_host_back(double back_s) {
+    std::vector<StampedFrame> frames = turning_scene().bus.frames();
+    for (StampedFrame& entry : frames) {
+        const auto decoded = wire::decode(entry.frame);
+        const auto* told = decoded ? std::get_if<wire::FollowUp>(&decoded->message) : nullptr;
+        if (told == nullptr || entry.stamp < wall_at(kStep_s)) {
+            continue;
+        }
+        const auto back_us = static_cast<std::uint64_t>(std::llround(1e6 * back_s));
+        entry.frame =
+            wire::encode(wire::FollowUp{told->sequence, told->host_time_us - back_us}, decoded->node_id);
+    }
+    return frames;
+}
+
+TEST(ClockSteps, back_of_the_host_that_sends_sync_are_counted_and_over_after_two_exchanges) {
+    for (const auto release : {Release::by_capture_time, Release::once_placed}) {
+        for (const double back_s : {0.15, 0.3, 1.0, 1.1, 1.2, 1.24, 1.4, 3.0, 4.9}) {
+            SCOPED_TRACE("back by " + std::to_string(back_s) + " s");
+            Scene scene = turning_scene();
+            scene.config.release = release;
+            const Pipeline pipeline = play(scene, frames_with_host_back(back_s));
+            expect_hits_where_shots_ended(pipeline, 60);
+            // A second passes in doubt; up to 0.15 s more are waited for.
+            EXPECT_EQ(pipeline.times_back(), back_s > 1.15 ? 1U : 0U);
+            // In doubt from 5.101 s, told anew at 6.101 s; the nodes' clocks have settled 0.2 s later.
+            EXPECT_GE(pipeline.accounts().readings.used(), 149U - 37U - 12U) << pipeline.account_text();
+        }
+    }
+}
+
+TEST(ClockSteps, back_leave_the_camera_its_place) {
+    Scene scene = turning_scene();
+    scene.config.release = Release::once_placed;
+    Pipeline pipeline = make_pipeline(scene);
+    double depth_s = 3.0;
+    for (const StampedFrame& entry : frames_with_host_back(3.0)) {
+        pipeline.on_can(entry.frame, entry.stamp);
+        const double at_s = 1e-9 * static_cast<double>(entry.stamp.ns - wall_at(0.0).ns);
+        // A camera on the clock of that host, once it is known: as ForeignClock tells it.
+        const bool is_in_doubt = at_s > 5.101 && at_s < 7.2;
+        if (at_s < depth_s || is_in_doubt || at_s > 8.4) {
+            continue;
+        }
+        pipeline.on_depth(flat_frame(at_s > 7.2 ? at_s - 3.0 : at_s));
+        depth_s = at_s + 0.1;
+    }
+    pipeline.finish();
+    EXPECT_EQ(pipeline.times_back(), 1U);
+    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::out_of_order), 0U)
+        << pipeline.account_text();
+    EXPECT_GE(pipeline.accounts().depth_frames.used(), 30U) << pipeline.account_text();
+}
+
 TEST(ClockSteps, of_any_number_of_foreign_stamps_do_not_change_the_map) {
     const Scene scene = turning_scene();
     const std::string expected = maps_of(play(scene, scene.bus.frames()));
