@@ -82,7 +82,7 @@ up() {
     serve 9 "$lines2" 4 0 4 constant:300 1 4 triangle:300:900:3000
     serve 10 "$lines2" 6 2 5 constant:700 3 5 constant:900
     cat >"$folder/board.env" <<TEXT
-export HIL_FOLDER='$folder' HIL_BIN='$bin' HIL_BLOCKS='$bin/hil_blocks' HIL_CAN=$can HIL_CHIP=$chip HIL_LINES=$lines HIL_CHIP2=$chip2 HIL_LINES2=$lines2 HIL_FAULTS=$faults HIL_RANGE0=$range0
+export HIL_FOLDER='$folder' HIL_BIN='$bin' HIL_BLOCKS='$bin/hil_blocks' HIL_RECORDING='$bin/hil_recording' HIL_CAN=$can HIL_CHIP=$chip HIL_LINES=$lines HIL_CHIP2=$chip2 HIL_LINES2=$lines2 HIL_FAULTS=$faults HIL_RANGE0=$range0
 TEXT
     local bus
     for bus in 7 8 9 10; do await_device $bus; done

@@ -1,0 +1,178 @@
+"""What the checks of the daemon share: daemons and what they say of themselves, frames played onto the bus, frames heard on it.
+The recording that is played is of replayed_board.yaml, made by the build. Nobody else is on the bus."""
+import contextlib
+import json
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+CAN = os.environ["HIL_CAN"]
+OCTOSKIN = os.environ["HIL_BIN"] + "/octoskin"
+RECORDING = pathlib.Path(os.environ["HIL_RECORDING"])
+PATIENCE_S = 60  # the emulated processor is slow, and its host may be busy: this long for what takes a second
+
+
+class CheckFailed(Exception):
+    pass
+
+
+def expect(what, wanted, got):
+    if wanted != got:
+        raise CheckFailed(f"{what}: wanted {wanted!r}, got {got!r}")
+
+
+def claim(is_true, what):
+    if not is_true:
+        raise CheckFailed(what)
+
+
+def wait_until(what, is_so, seconds=PATIENCE_S):
+    """Seconds that it took. Asks every 50 ms."""
+    began = time.monotonic()
+    while not is_so():
+        claim(time.monotonic() - began < seconds, f"{what}: not within {seconds} s")
+        time.sleep(0.05)
+    return time.monotonic() - began
+
+
+def frames_of(log):
+    """Frames of a candump log in their order, as `ID#DATA`."""
+    return [line.split()[2] for line in pathlib.Path(log).read_text().splitlines()]
+
+
+class Daemon:
+    """`octoskin run` with a folder of its own, which a later one may take over."""
+
+    def __init__(self, folder, *arguments):
+        self.folder = folder
+        self.socket, self.maps, self.said = folder / "control", folder / "maps", folder / "said"
+        folder.mkdir(exist_ok=True)
+        command = [OCTOSKIN, "run", "--rig", RECORDING / "rig.yaml", "--robot", RECORDING / "robot.urdf", "--can", CAN,
+                   "--no-camera", "--maps", self.maps, "--socket", self.socket, *arguments]
+        with open(self.said, "a", encoding="utf-8") as said:
+            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, stderr=said)
+
+    def await_start(self):
+        """Until it answers."""
+        def answers():
+            claim(self.process.poll() is None, f"the daemon ended:\n{self.said.read_text()}")
+            with contextlib.suppress(OSError):
+                return bool(self.status())
+            return False
+        wait_until("the daemon's start", answers)
+
+    def status(self):
+        """What `octoskin status --json` shows, without its start, which takes this processor a second."""
+        with socket.socket(socket.AF_UNIX) as control:
+            control.settimeout(PATIENCE_S)
+            control.connect(str(self.socket))
+            control.sendall(b"status\n")
+            return json.loads(control.makefile().readline())
+
+    def account(self, unit="readings"):
+        return self.status()["account"][unit]
+
+    def await_status(self, what, is_so, seconds=PATIENCE_S):
+        """Seconds that it took, one question's more at most."""
+        return wait_until(what, lambda: is_so(self.status()), seconds)
+
+    def await_frames(self, count):
+        """Until it has taken so many in."""
+        self.await_status(f"{count} frames", lambda status: status["can"]["received"] >= count)
+
+    def stop(self):
+        self.process.terminate()
+        expect("exit code of the daemon", 0, self.process.wait(PATIENCE_S))
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait(PATIENCE_S)
+
+
+class Listener:
+    """candump, from when it really listens."""
+
+    def __init__(self, log):
+        self.log = log
+        with open(log, "wb") as output:
+            self.process = subprocess.Popen(["candump", "-L", CAN], stdin=subprocess.DEVNULL, stdout=output)
+        listens = f" {CAN} "
+        wait_until("candump", lambda: listens in pathlib.Path("/proc/net/can/rcvlist_all").read_text())
+
+    def stop(self):
+        """What it heard."""
+        self.process.terminate()
+        self.process.wait(PATIENCE_S)
+        return frames_of(self.log)
+
+
+class Bench:
+    """Everything that a check starts, ended with it."""
+
+    def __init__(self):
+        self.ended_with_us = contextlib.ExitStack()
+        self.daemons = []
+        self.folder = pathlib.Path(self.ended_with_us.enter_context(tempfile.TemporaryDirectory()))
+
+    def __enter__(self):
+        """Nobody here needs the sensors' servers, which take half the processor's time."""
+        for file in pathlib.Path(os.environ["HIL_FOLDER"]).glob("i2c-*.pid"):
+            server = int(file.read_text())
+            os.kill(server, signal.SIGSTOP)
+            self.ended_with_us.callback(os.kill, server, signal.SIGCONT)
+        return self
+
+    def __exit__(self, kind, error, trace):
+        for daemon in self.daemons if kind else ():
+            print(f"-- {daemon.folder.name} said:\n{daemon.said.read_text()}", flush=True)
+        self.ended_with_us.close()
+
+    def end_with_us(self, process):
+        self.ended_with_us.callback(process.wait)
+        self.ended_with_us.callback(process.kill)
+        return process
+
+    def daemon(self, name, *arguments):
+        """Started; another one may start meanwhile."""
+        daemon = Daemon(self.folder / name, *arguments)
+        self.daemons.append(daemon)
+        self.end_with_us(daemon.process)
+        return daemon
+
+    def listener(self):
+        listener = Listener(self.folder / "heard.log")
+        self.end_with_us(listener.process)
+        return listener
+
+    def start(self, *command):
+        return self.end_with_us(subprocess.Popen(command, stdin=subprocess.DEVNULL))
+
+    def start_playing(self, log):
+        """As fast as it was recorded, by canplayer, which plays what a recorder wrote of `can0`."""
+        return self.start("canplayer", f"{CAN}=can0", "-I", str(log))
+
+    def play(self, log):
+        expect("exit code of canplayer", 0, self.start_playing(log).wait(PATIENCE_S))
+
+    def replay(self, recording, *arguments):
+        """What `octoskin replay` prints."""
+        done = subprocess.run([OCTOSKIN, "replay", recording, *arguments], capture_output=True, text=True, timeout=PATIENCE_S,
+                              check=False)
+        expect(f"exit code of octoskin replay ({done.stderr})", 0, done.returncode)
+        return done.stdout
+
+
+def run(check):
+    """The check as a program: exit code 0, or 1 and what was not as it must be."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(124))
+    try:
+        with Bench() as bench:
+            check(bench)
+    except CheckFailed as failure:
+        print(f"FAILED: {failure}")
+        sys.exit(1)
