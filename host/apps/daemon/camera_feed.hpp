@@ -35,7 +35,7 @@ class CameraFeed {
 
     /// `uri`: an OpenNI2 device, or the path of an .oni file that is played at its own speed, again and
     /// again; empty: the first device there is. `silence_max`: a camera that shows nothing for so long is
-    /// opened anew.
+    /// opened anew, and so is one whose frames all come late (openni2::CaptureClock::is_lost).
     /// `helper`: the program that reads the camera, in place of octoskin-camera.
     CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
                std::optional<std::filesystem::path> helper = {});

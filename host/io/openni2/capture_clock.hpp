@@ -19,6 +19,8 @@ class CaptureClock {
     static constexpr std::int64_t kWindowUs = 5'000'000;
     /// A stamp this far off what the offset says is late, or of another count.
     static constexpr std::int64_t kJumpUs = 500'000;
+    /// Late for so long without one that is not: it will not pass by itself.
+    static constexpr std::int64_t kLateMaxUs = 5'000'000;
     static constexpr int kAgreeing = 5;
     static constexpr std::int64_t kAgreementUs = 20'000;
 
@@ -32,7 +34,10 @@ class CaptureClock {
         const bool begins_anew = stamp_us <= stamp_newest_us_ || offset < least() - kJumpUs;
         stamp_newest_us_ = stamp_us;
         if (begins_anew) forget();
-        if (agreeing_ >= kAgreeing && offset > least() + kJumpUs) return std::nullopt;
+        const bool is_late = agreeing_ >= kAgreeing && offset > least() + kJumpUs;
+        late_us_ = is_late ? arrived_us - last_timely_us_ : 0;
+        if (is_late) return std::nullopt;
+        last_timely_us_ = arrived_us;
         if (arrived_us - window_start_us_ >= kWindowUs) {
             least_before_ = least_now_;
             least_now_ = kNone;
@@ -42,6 +47,11 @@ class CaptureClock {
         least_now_ = std::min(least_now_, offset);
         return agreeing_ < kAgreeing ? std::nullopt : std::optional(stamp_us + least());
     }
+
+    /// Nothing but late frames for kLateMaxUs: the camera set its clock back, or what is shown waits
+    /// somewhere on its way. Which of them cannot be told from here; a camera that is opened anew has
+    /// neither.
+    [[nodiscard]] bool is_lost() const noexcept { return late_us_ >= kLateMaxUs; }
 
   private:
     static constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
@@ -63,7 +73,9 @@ class CaptureClock {
     std::int64_t least_now_ = kNone;
     std::int64_t window_start_us_ = std::numeric_limits<std::int64_t>::min() / 2;
     std::int64_t stamp_newest_us_ = std::numeric_limits<std::int64_t>::min();
-    int agreeing_ = 0;  ///< frames that told the least offset, or nearly; at most kAgreeing
+    std::int64_t last_timely_us_ = 0;  ///< arrival of the newest frame that was not late
+    std::int64_t late_us_ = 0;         ///< since then, if the newest one was
+    int agreeing_ = 0;                 ///< frames that told the least offset, or nearly; at most kAgreeing
 };
 
 }  // namespace octoskin::openni2

@@ -29,6 +29,7 @@ int stream_frames(DepthStream& depth, int descriptor) {
             clock.captured_us(static_cast<std::int64_t>(depth.frame().getTimestamp()), monotonic_us());
         if (!captured_us) {
             if (!output.write_untimed_frame()) return 1;
+            if (clock.is_lost()) return depth.complain("its frames came over 0.5 s late for 5 s");
             continue;
         }
         const auto pixels = depth.pixels();

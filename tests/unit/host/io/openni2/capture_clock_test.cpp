@@ -15,6 +15,7 @@ class Camera {
         shown_us_ += 33'333;
         return error_us(clock_.captured_us(shown_us_ - begun_us_, shown_us_ + 5'000 + late_us));
     }
+    [[nodiscard]] bool is_lost() const { return clock_.is_lost(); }
     void start_anew() { begun_us_ = shown_us_; }
     void jump_ahead(std::int64_t by_us) { begun_us_ -= by_us; }
 
@@ -55,6 +56,26 @@ TEST(CaptureClock, gives_no_time_to_a_frame_that_is_very_late_and_the_true_one_t
     // A driver that hung for 2 s and then hands over what waited: each is late by less.
     for (std::int64_t late_us = 2'000'000; late_us > 0; late_us -= 33'333)
         EXPECT_EQ(camera.frame(late_us).value_or(0), 0) << late_us;
+}
+
+TEST(CaptureClock, is_lost_after_five_seconds_of_nothing_but_late_frames) {
+    Camera camera;
+    for (int i = 0; i < 30; ++i) (void)camera.frame();
+    EXPECT_FALSE(camera.is_lost());
+    int frames = 0;
+    for (; !camera.is_lost() && frames < 1'000; ++frames) EXPECT_EQ(camera.frame(600'000), std::nullopt);
+    EXPECT_GE(frames, 130);  // the first of them comes 0.63 s after the last timely one
+    EXPECT_LE(frames, 133);
+}
+
+TEST(CaptureClock, is_not_lost_while_a_timely_frame_comes_now_and_then) {
+    Camera camera;
+    for (int i = 0; i < 30; ++i) (void)camera.frame();
+    for (int i = 0; i < 600; ++i) {
+        const bool is_timely = i % 120 == 119;
+        EXPECT_EQ(camera.frame(is_timely ? 0 : 600'000).has_value(), is_timely) << i;
+        EXPECT_FALSE(camera.is_lost()) << i;
+    }
 }
 
 TEST(CaptureClock, settles_on_the_quickest_and_is_never_later_than_the_arrival) {
