@@ -22,8 +22,9 @@ namespace octoskin {
 namespace {
 
 constexpr std::chrono::milliseconds kAttendPeriod{50};
-/// For what is being saved when the end comes, the last save, and what is being recorded.
-constexpr Nanoseconds kEndPatience{4'000'000'000};
+/// For what is being saved when the end comes, the last save, and what is being recorded. The camera may take
+/// another second, what is left behind 0.2 s: 5 s in all.
+constexpr Nanoseconds kEndPatience{3'500'000'000};
 
 }  // namespace
 

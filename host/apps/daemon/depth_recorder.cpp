@@ -1,12 +1,19 @@
 #include "host/apps/daemon/depth_recorder.hpp"
 
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
 #include <utility>
 
-#include "host/apps/daemon/quiet_thread.hpp"
 #include "host/io/openni2/oni_writer.hpp"
 
 namespace octoskin {
 namespace {
+
+constexpr Nanoseconds kFinishPatience{60'000'000'000};
+constexpr Nanoseconds kDropPatience{100'000'000};
 
 std::size_t bytes_of(const DepthFrame& frame) {
     return frame.depth_mm.size() * sizeof(frame.depth_mm.front());
@@ -14,73 +21,102 @@ std::size_t bytes_of(const DepthFrame& frame) {
 
 }  // namespace
 
+/// What the thread needs, for as long as it needs it: it may outlive the recorder.
+class DepthRecorder::Work {
+  public:
+    Work(std::filesystem::path oni, std::filesystem::path epoch)
+        : oni_(std::move(oni)), epoch_(std::move(epoch)) {}
+
+    void run() {
+        std::string error;
+        try {
+            error = record();
+        } catch (const std::exception& thrown) {  // no memory, no thread
+            error = oni_.string() + ": " + thrown.what();
+        }
+        const std::lock_guard lock(mutex_);
+        error_ = std::move(error);
+    }
+    [[nodiscard]] bool add(const DepthFrame& frame) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (!error_.empty() || waiting_bytes_ + bytes_of(frame) > kWaitingMax) return false;
+            waiting_.push_back(frame);
+            waiting_bytes_ += bytes_of(frame);
+        }
+        changed_.notify_all();
+        return true;
+    }
+    /// After what waits, or at once.
+    void end(bool is_at_once) {
+        {
+            const std::lock_guard lock(mutex_);
+            is_finishing_ = true;
+            is_dropped_ = is_dropped_ || is_at_once;
+        }
+        changed_.notify_all();
+    }
+    [[nodiscard]] std::string error() const {
+        const std::lock_guard lock(mutex_);
+        return error_;
+    }
+
+  private:
+    /// Empty once no frame will come.
+    [[nodiscard]] std::optional<DepthFrame> next() {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [this] { return !waiting_.empty() || is_finishing_; });
+        if (waiting_.empty() || is_dropped_) return std::nullopt;
+        DepthFrame frame = std::move(waiting_.front());
+        waiting_.pop_front();
+        waiting_bytes_ -= bytes_of(frame);
+        return frame;
+    }
+    [[nodiscard]] std::string record() {
+        auto frame = next();
+        if (!frame) return {};
+        auto writer = openni2::OniWriter::create(oni_, epoch_, {frame->width, frame->height});
+        if (!writer) return writer.error().what;
+        for (; frame; frame = next()) {
+            if (const auto written = writer->write(frame->captured, frame->depth_mm); !written)
+                return written.error().what;
+        }
+        const auto closed = writer->close();
+        return closed ? std::string() : closed.error().what;
+    }
+
+    std::filesystem::path oni_;
+    std::filesystem::path epoch_;
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<DepthFrame> waiting_;
+    std::size_t waiting_bytes_ = 0;
+    bool is_finishing_ = false;
+    bool is_dropped_ = false;
+    std::string error_;
+};
+
 DepthRecorder::DepthRecorder(std::filesystem::path oni, std::filesystem::path epoch)
-    : oni_(std::move(oni)), epoch_(std::move(epoch)) {
-    thread_ = start_without_signals([this] { work(); });
-}
+    : work_(std::make_shared<Work>(std::move(oni), std::move(epoch))),
+      thread_([shared = work_] { shared->run(); }) {}
 
 DepthRecorder::~DepthRecorder() {
-    {
-        const std::lock_guard lock(mutex_);
-        is_dropped_ = true;
-    }
-    changed_.notify_all();
-    if (thread_.joinable()) thread_.join();
+    work_->end(true);
+    (void)thread_.end(kDropPatience);
 }
 
 bool DepthRecorder::add(const DepthFrame& frame) {
-    {
-        const std::lock_guard lock(mutex_);
-        if (!error_.empty() || waiting_bytes_ + bytes_of(frame) > kWaitingMax) return false;
-        waiting_.push_back(frame);
-        waiting_bytes_ += bytes_of(frame);
-    }
-    changed_.notify_all();
-    return true;
+    return work_->add(frame);
 }
 
 std::string DepthRecorder::finish() {
-    {
-        const std::lock_guard lock(mutex_);
-        is_finishing_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
-    return error();
+    work_->end(false);
+    if (!thread_.end(kFinishPatience)) return "depth frames were not written within a minute";
+    return work_->error();
 }
 
 std::string DepthRecorder::error() const {
-    const std::lock_guard lock(mutex_);
-    return error_;
-}
-
-std::optional<DepthFrame> DepthRecorder::next() {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return !waiting_.empty() || is_finishing_ || is_dropped_; });
-    if (waiting_.empty() || is_dropped_) return std::nullopt;
-    DepthFrame frame = std::move(waiting_.front());
-    waiting_.pop_front();
-    waiting_bytes_ -= bytes_of(frame);
-    return frame;
-}
-
-void DepthRecorder::work() {
-    std::string error = record();
-    const std::lock_guard lock(mutex_);
-    error_ = std::move(error);
-}
-
-std::string DepthRecorder::record() {
-    auto frame = next();
-    if (!frame) return {};
-    auto writer = openni2::OniWriter::create(oni_, epoch_, {frame->width, frame->height});
-    if (!writer) return writer.error().what;
-    for (; frame; frame = next()) {
-        if (const auto written = writer->write(frame->captured, frame->depth_mm); !written)
-            return written.error().what;
-    }
-    const auto closed = writer->close();
-    return closed ? std::string() : closed.error().what;
+    return work_->error();
 }
 
 }  // namespace octoskin

@@ -1,15 +1,12 @@
 // Depth frames into an .oni file, by a thread of its own: the recorder of OpenNI2 takes its time.
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
-#include <mutex>
-#include <optional>
+#include <memory>
 #include <string>
-#include <thread>
 
+#include "host/apps/daemon/quiet_thread.hpp"
 #include "host/core/depth/depth_frame.hpp"
 
 namespace octoskin {
@@ -21,7 +18,8 @@ class DepthRecorder {
 
     /// Makes the file with the first frame.
     DepthRecorder(std::filesystem::path oni, std::filesystem::path epoch);
-    /// Drops what waits, unless `finish` was called and has ended.
+    /// Drops what waits, unless `finish` was called and has ended. Within 0.1 s: a write that hangs is left
+    /// behind.
     ~DepthRecorder();
     DepthRecorder(const DepthRecorder&) = delete;
     DepthRecorder& operator=(const DepthRecorder&) = delete;
@@ -29,27 +27,16 @@ class DepthRecorder {
     /// Frames of one size, in the order of their times. False if there is no room, or recording failed. Never
     /// waits.
     [[nodiscard]] bool add(const DepthFrame& frame);
-    /// Waits until all are in the file and the file is whole. What went wrong, for a person; empty: nothing.
+    /// Waits until all are in the file and the file is whole, a minute at most. What went wrong, for a
+    /// person; empty: nothing.
     [[nodiscard]] std::string finish();
     /// What went wrong so far; empty: nothing.
     [[nodiscard]] std::string error() const;
 
   private:
-    void work();
-    /// Empty once no frame will come.
-    [[nodiscard]] std::optional<DepthFrame> next();
-    [[nodiscard]] std::string record();
-
-    std::filesystem::path oni_;
-    std::filesystem::path epoch_;
-    mutable std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<DepthFrame> waiting_;
-    std::size_t waiting_bytes_ = 0;
-    bool is_finishing_ = false;
-    bool is_dropped_ = false;
-    std::string error_;
-    std::thread thread_;
+    class Work;
+    std::shared_ptr<Work> work_;
+    LeavableThread thread_;
 };
 
 }  // namespace octoskin

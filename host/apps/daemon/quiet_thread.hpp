@@ -4,8 +4,11 @@
 #include <pthread.h>
 
 #include <csignal>
+#include <future>
 #include <thread>
 #include <utility>
+
+#include "common/time.hpp"
 
 namespace octoskin {
 
@@ -19,5 +22,35 @@ template <class Work>
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
     return thread;
 }
+
+/// A thread of that kind that a disk may hold in the middle of a write: whoever ends it waits so long and no
+/// longer. So the work must own what it uses.
+class LeavableThread {
+  public:
+    template <class Work>
+    explicit LeavableThread(Work work) {
+        std::promise<void> ended;
+        ended_ = ended.get_future();
+        thread_ = start_without_signals([work = std::move(work), ended = std::move(ended)]() mutable {
+            work();
+            ended.set_value();
+        });
+    }
+    ~LeavableThread() { (void)end(Nanoseconds{0}); }
+    LeavableThread(const LeavableThread&) = delete;
+    LeavableThread& operator=(const LeavableThread&) = delete;
+
+    /// Waits for its end, `patience` at most. False: it is left behind.
+    bool end(Nanoseconds patience) {
+        if (!thread_.joinable()) return true;
+        const bool has_ended = ended_.wait_for(patience) == std::future_status::ready;
+        has_ended ? thread_.join() : thread_.detach();
+        return has_ended;
+    }
+
+  private:
+    std::future<void> ended_;
+    std::thread thread_;
+};
 
 }  // namespace octoskin

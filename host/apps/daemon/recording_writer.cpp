@@ -1,10 +1,17 @@
 #include "host/apps/daemon/recording_writer.hpp"
 
+#include <spdlog/spdlog.h>
+
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <optional>
 #include <utility>
 
-#include "host/apps/daemon/quiet_thread.hpp"
+#include "host/apps/daemon/depth_recorder.hpp"
+#include "host/apps/daemon/growing_file.hpp"
+#include "host/apps/daemon/text_queue.hpp"
 #include "host/apps/recording/file_lock.hpp"
-#include "host/io/mapfile/map_file.hpp"
 
 namespace octoskin {
 namespace {
@@ -12,21 +19,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kWritePeriod{100};
+constexpr Nanoseconds kDropPatience{100'000'000};
 
 Status<std::string> write_file(const fs::path& file, const std::string& text) {
     GrowingFile stream;
     if (const auto created = stream.create(file); !created) return created;
     if (const auto written = stream.append(text); !written) return written;
     return stream.finish();
-}
-
-/// Saves the map and gives its checksum; an empty one has neither file nor checksum.
-Result<std::optional<std::uint32_t>, std::string> keep_map(const FusedMap& map, const fs::path& file) {
-    if (map.known_voxels() == 0) return std::optional<std::uint32_t>{};
-    if (const auto saved = save_map(map, file); !saved) return unexpected(saved.error().message);
-    const auto crc32 = crc32_of(file);
-    if (!crc32) return unexpected(file.string() + ": cannot be read again");
-    return crc32;
 }
 
 Status<std::string> make_folder(const fs::path& folder) {
@@ -41,21 +40,94 @@ Status<std::string> make_folder(const fs::path& folder) {
 
 }  // namespace
 
-RecordingWriter::RecordingWriter(RecordingBegin begin)
-    : begin_(std::move(begin)), depth_(begin_.paths.depth(), begin_.paths.depth_epoch()) {
-    thread_ = start_without_signals([this] { work(); });
-}
+/// What the thread needs, for as long as it needs it: it may outlive the writer.
+class RecordingWriter::Work {
+  public:
+    Work(RecordingBegin begin, MapWriter map_writer)
+        : begin_(std::move(begin)),
+          map_writer_(std::move(map_writer)),
+          depth_(begin_.paths.depth(), begin_.paths.depth_epoch()) {}
+
+    void run();
+    void drop();
+    void finish(RecordingEnd end);
+    [[nodiscard]] bool add_can(const std::string& line) { return can_.add(line); }
+    [[nodiscard]] bool add_order(const std::string& line) { return order_.add(line); }
+    [[nodiscard]] bool add_depth(const DepthFrame& frame) { return depth_.add(frame); }
+    [[nodiscard]] bool has_ended() const;
+    [[nodiscard]] std::string error() const;
+    [[nodiscard]] bool wait(Nanoseconds patience);
+    [[nodiscard]] const fs::path& folder() const { return begin_.paths.directory; }
+
+  private:
+    using Step = Status<std::string>;
+    [[nodiscard]] Step record();
+    [[nodiscard]] Step begin();
+    [[nodiscard]] Step write_waiting();
+    /// True once `finish` or `drop` asks for the end.
+    [[nodiscard]] bool rest();
+    [[nodiscard]] Step end(RecordingEnd end);
+    /// Saves the map and gives its checksum; an empty one has neither file nor checksum.
+    [[nodiscard]] Result<std::optional<std::uint32_t>, std::string> keep_map(const FusedMap& map,
+                                                                             const fs::path& file) const;
+
+    RecordingBegin begin_;
+    MapWriter map_writer_;
+    TextQueue can_{kTextMax};
+    TextQueue order_{kTextMax};
+    DepthRecorder depth_;
+    GrowingFile can_file_;
+    GrowingFile order_file_;
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::optional<RecordingEnd> end_;
+    bool is_dropped_ = false;
+    bool has_ended_ = false;
+    std::string error_;
+};
+
+RecordingWriter::RecordingWriter(RecordingBegin begin, MapWriter map_writer)
+    : work_(std::make_shared<Work>(std::move(begin), std::move(map_writer))),
+      thread_([shared = work_] { shared->run(); }) {}
 
 RecordingWriter::~RecordingWriter() {
+    work_->drop();
+    if (!thread_.end(kDropPatience))
+        spdlog::error("{}: the disk does not let go of the recording; it is left behind",
+                      work_->folder().string());
+}
+
+bool RecordingWriter::add_can(const std::string& line) {
+    return work_->add_can(line);
+}
+bool RecordingWriter::add_order(const std::string& line) {
+    return work_->add_order(line);
+}
+bool RecordingWriter::add_depth(const DepthFrame& frame) {
+    return work_->add_depth(frame);
+}
+void RecordingWriter::finish(RecordingEnd end) {
+    work_->finish(std::move(end));
+}
+bool RecordingWriter::has_ended() const {
+    return work_->has_ended();
+}
+std::string RecordingWriter::error() const {
+    return work_->error();
+}
+bool RecordingWriter::wait(Nanoseconds patience) {
+    return work_->wait(patience);
+}
+
+void RecordingWriter::Work::drop() {
     {
         const std::lock_guard lock(mutex_);
         is_dropped_ = true;
     }
     changed_.notify_all();
-    thread_.join();
 }
 
-void RecordingWriter::finish(RecordingEnd end) {
+void RecordingWriter::Work::finish(RecordingEnd end) {
     {
         const std::lock_guard lock(mutex_);
         end_ = std::move(end);
@@ -63,23 +135,28 @@ void RecordingWriter::finish(RecordingEnd end) {
     changed_.notify_all();
 }
 
-bool RecordingWriter::has_ended() const {
+bool RecordingWriter::Work::has_ended() const {
     const std::lock_guard lock(mutex_);
     return has_ended_;
 }
 
-std::string RecordingWriter::error() const {
+std::string RecordingWriter::Work::error() const {
     const std::lock_guard lock(mutex_);
     return error_.empty() ? depth_.error() : error_;
 }
 
-bool RecordingWriter::wait(Nanoseconds patience) {
+bool RecordingWriter::Work::wait(Nanoseconds patience) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, patience, [this] { return has_ended_; });
 }
 
-void RecordingWriter::work() {
-    const Step outcome = record();
+void RecordingWriter::Work::run() {
+    Step outcome = Done{};
+    try {
+        outcome = record();
+    } catch (const std::exception& thrown) {  // no memory for the text of a map
+        outcome = unexpected(folder().string() + ": " + thrown.what());
+    }
     {
         const std::lock_guard lock(mutex_);
         has_ended_ = true;
@@ -88,7 +165,7 @@ void RecordingWriter::work() {
     changed_.notify_all();
 }
 
-Status<std::string> RecordingWriter::record() {
+Status<std::string> RecordingWriter::Work::record() {
     if (const Step made = make_folder(begin_.paths.directory); !made) return made;
     // Whoever else writes recordings or maps there takes the same lock.
     const auto lock = FileLock::take(begin_.paths.directory, FileLock::Kind::exclusive);
@@ -105,7 +182,16 @@ Status<std::string> RecordingWriter::record() {
     return end(std::move(last));
 }
 
-Status<std::string> RecordingWriter::begin() {
+Result<std::optional<std::uint32_t>, std::string> RecordingWriter::Work::keep_map(
+    const FusedMap& map, const fs::path& file) const {
+    if (map.known_voxels() == 0) return std::optional<std::uint32_t>{};
+    if (const auto saved = map_writer_(map, file); !saved) return unexpected(saved.error().message);
+    const auto crc32 = crc32_of(file);
+    if (!crc32) return unexpected(file.string() + ": cannot be read again");
+    return crc32;
+}
+
+Status<std::string> RecordingWriter::Work::begin() {
     const RecordingPaths& paths = begin_.paths;
     const std::pair<fs::path, const std::string&> texts[] = {
         {paths.rig(), begin_.rig}, {paths.robot(), begin_.robot}, {paths.mapping(), begin_.mapping}};
@@ -121,17 +207,17 @@ Status<std::string> RecordingWriter::begin() {
     return order_file_.append(orderlog::format_header(begin_.order));
 }
 
-bool RecordingWriter::rest() {
+bool RecordingWriter::Work::rest() {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, kWritePeriod, [this] { return end_ || is_dropped_; });
 }
 
-Status<std::string> RecordingWriter::write_waiting() {
+Status<std::string> RecordingWriter::Work::write_waiting() {
     if (const Step written = can_file_.append(can_.take()); !written) return written;
     return order_file_.append(order_.take());
 }
 
-Status<std::string> RecordingWriter::end(RecordingEnd last) {
+Status<std::string> RecordingWriter::Work::end(RecordingEnd last) {
     if (const Step written = write_waiting(); !written) return written;
     if (const Step finished = can_file_.finish(); !finished) return finished;
     if (std::string error = depth_.finish(); !error.empty()) return unexpected(std::move(error));

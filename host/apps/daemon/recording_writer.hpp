@@ -1,20 +1,19 @@
 // A recording's files, written by a thread while the daemon goes on.
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
 #include <filesystem>
-#include <mutex>
-#include <optional>
+#include <functional>
+#include <memory>
 #include <string>
-#include <thread>
 
 #include "common/result.hpp"
-#include "host/apps/daemon/depth_recorder.hpp"
-#include "host/apps/daemon/growing_file.hpp"
-#include "host/apps/daemon/text_queue.hpp"
+#include "common/time.hpp"
+#include "host/apps/daemon/quiet_thread.hpp"
 #include "host/apps/recording/recording.hpp"
+#include "host/core/depth/depth_frame.hpp"
 #include "host/core/mapping/fused_map.hpp"
+#include "host/io/mapfile/map_file.hpp"
 #include "host/io/orderlog/order_line.hpp"
 
 namespace octoskin {
@@ -41,17 +40,21 @@ class RecordingWriter {
   public:
     /// What may wait of each text: seconds of a full bus.
     static constexpr std::size_t kTextMax = std::size_t{8} << 20U;
+    /// Saves a map under that name.
+    using MapWriter =
+        std::function<Status<MapFileError>(const FusedMap& map, const std::filesystem::path& file)>;
 
-    explicit RecordingWriter(RecordingBegin begin);
-    /// Stops writing, wherever it is, unless it has ended.
+    explicit RecordingWriter(RecordingBegin begin, MapWriter map_writer = save_map);
+    /// Stops writing, wherever it is, unless it has ended. Within 0.2 s: a write that hangs is left behind,
+    /// and the log says so.
     ~RecordingWriter();
     RecordingWriter(const RecordingWriter&) = delete;
     RecordingWriter& operator=(const RecordingWriter&) = delete;
 
     // None of these waits. False: there was no room, or recording failed, and it is not recorded.
-    [[nodiscard]] bool add_can(const std::string& line) { return can_.add(line); }
-    [[nodiscard]] bool add_order(const std::string& line) { return order_.add(line); }
-    [[nodiscard]] bool add_depth(const DepthFrame& frame) { return depth_.add(frame); }
+    [[nodiscard]] bool add_can(const std::string& line);
+    [[nodiscard]] bool add_order(const std::string& line);
+    [[nodiscard]] bool add_depth(const DepthFrame& frame);
     void finish(RecordingEnd end);
 
     [[nodiscard]] bool has_ended() const;
@@ -61,28 +64,9 @@ class RecordingWriter {
     [[nodiscard]] bool wait(Nanoseconds patience);
 
   private:
-    using Step = Status<std::string>;
-    void work();
-    [[nodiscard]] Step record();
-    [[nodiscard]] Step begin();
-    [[nodiscard]] Step write_waiting();
-    /// True once `finish` or the destructor asks for the end.
-    [[nodiscard]] bool rest();
-    [[nodiscard]] Step end(RecordingEnd end);
-
-    RecordingBegin begin_;
-    TextQueue can_{kTextMax};
-    TextQueue order_{kTextMax};
-    DepthRecorder depth_;
-    GrowingFile can_file_;
-    GrowingFile order_file_;
-    mutable std::mutex mutex_;
-    std::condition_variable changed_;
-    std::optional<RecordingEnd> end_;
-    bool is_dropped_ = false;
-    bool has_ended_ = false;
-    std::string error_;
-    std::thread thread_;
+    class Work;
+    std::shared_ptr<Work> work_;
+    LeavableThread thread_;
 };
 
 }  // namespace octoskin

@@ -3,7 +3,12 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <chrono>
+#include <condition_variable>
 #include <csignal>
+#include <mutex>
+#include <new>
+#include <thread>
 
 #include "host/io/mapfile/map_file.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -101,6 +106,63 @@ TEST_F(RecordingWriterTest, takes_nothing_that_has_no_room_and_never_waits) {
     EXPECT_EQ(taken, 8);
     ASSERT_TRUE(writer.wait(kPatience));
     EXPECT_NE(writer.error().find("recording"), std::string::npos) << writer.error();
+}
+
+/// A disk that takes no map until a test lets it, and then fails.
+class HungDisk {
+  public:
+    [[nodiscard]] RecordingWriter::MapWriter writer() {
+        return [this](const FusedMap&, const std::filesystem::path&) -> Status<MapFileError> {
+            std::unique_lock lock(mutex_);
+            is_writing_ = true;
+            changed_.notify_all();
+            changed_.wait(lock, [this] { return is_open_; });
+            is_writing_ = false;
+            changed_.notify_all();
+            return unexpected(MapFileError{"the disk was gone"});
+        };
+    }
+    void wait_for_write() {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [this] { return is_writing_; });
+    }
+    void open() {
+        std::unique_lock lock(mutex_);
+        is_open_ = true;
+        changed_.notify_all();
+        changed_.wait(lock, [this] { return !is_writing_; });
+    }
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool is_writing_ = false;
+    bool is_open_ = false;
+};
+
+TEST_F(RecordingWriterTest, is_left_behind_by_its_end_when_the_disk_hangs) {
+    static HungDisk& disk = *new HungDisk;  // what was left behind may outlive the test
+    std::optional<RecordingWriter> writer;
+    writer.emplace(begin(), disk.writer());
+    writer->finish(end(0));
+    disk.wait_for_write();
+    EXPECT_FALSE(writer->wait(Nanoseconds{10'000'000}));
+    const auto begun = std::chrono::steady_clock::now();
+    writer.reset();
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(1));
+    disk.open();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // it ends before its folder goes
+}
+
+TEST_F(RecordingWriterTest, names_what_was_thrown_while_it_wrote) {
+    RecordingWriter writer(begin(),
+                           [](const FusedMap&, const std::filesystem::path&) -> Status<MapFileError> {
+                               throw std::bad_alloc();
+                           });
+    writer.finish(end(0));
+    ASSERT_TRUE(writer.wait(kPatience));
+    EXPECT_NE(writer.error().find("bad_alloc"), std::string::npos) << writer.error();
+    EXPECT_NE(writer.error().find((folder_ / "recording").string()), std::string::npos) << writer.error();
 }
 
 TEST_F(RecordingWriterTest, leaves_the_files_of_others_alone) {
