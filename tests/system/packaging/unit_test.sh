@@ -4,11 +4,12 @@
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-sed "s|/usr/bin/octoskin|$3|" "$2" > "$folder/octoskin.service"
-said=$("$1" verify --man=no "$folder/octoskin.service" 2>&1 | grep "octoskin.service" || true)
+name=$(basename "$2")
+sed "s|^ExecStart=[^ ]*|ExecStart=$3|" "$2" > "$folder/$name"
+said=$("$1" verify --man=no "$folder/$name" 2>&1 | grep "$name" || true)
 if [ -n "$said" ]; then
     echo "$said"
     exit 1
 fi
-sed "s|^ProtectHome=|ProtectHomes=|" "$folder/octoskin.service" > "$folder/wrong.service"
+sed "s|^ProtectHome=|ProtectHomes=|" "$folder/$name" > "$folder/wrong.service"
 "$1" verify --man=no "$folder/wrong.service" 2>&1 | grep -q ProtectHomes

@@ -1,0 +1,15 @@
+# Part of `cmake --install`: links to the system's OpenNI2 and its driver for files, in the folder that what reads and writes
+# files loads it through. Debian wants them relative within /usr.
+get_filename_component(openni2_directory ${octoskin_openni2} DIRECTORY)
+foreach(file libOpenNI2.so.0 OpenNI2/Drivers/libOniFile.so.0)
+    set(link ${octoskin_openni2_folder}/${file})
+    set(target ${openni2_directory}/${file})
+    get_filename_component(link_directory ${link} DIRECTORY)
+    if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+        file(RELATIVE_PATH target ${link_directory} ${target})
+    endif()
+    message(STATUS "Installing: $ENV{DESTDIR}${link} -> ${target}")
+    file(MAKE_DIRECTORY "$ENV{DESTDIR}${link_directory}")
+    file(CREATE_LINK ${target} "$ENV{DESTDIR}${link}" SYMBOLIC)
+    list(APPEND CMAKE_INSTALL_MANIFEST_FILES ${link})
+endforeach()

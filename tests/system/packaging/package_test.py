@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""package_test.py BUILD CPACK: the Debian package has what it must and nothing else, and what is in it runs."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parents[3]
+HELPERS = "usr/libexec/octoskin"
+PROGRAMS = {"usr/bin/octoskin", "usr/bin/octoskin-node", f"{HELPERS}/octoskin-camera",
+            f"{HELPERS}/octoskin-oni-read", f"{HELPERS}/octoskin-oni-write"}
+LINKS = {f"{HELPERS}/openni2/libOpenNI2.so.0", f"{HELPERS}/openni2/OpenNI2/Drivers/libOniFile.so.0"}
+SETTINGS = {"etc/default/octoskin", "etc/default/octoskin-node"}
+OTHERS = {f"{HELPERS}/openni2/OpenNI2/Drivers/libOctoskinVirtual.so.0",
+          "usr/lib/systemd/system/octoskin.service", "usr/lib/systemd/system/octoskin-node.service",
+          "usr/lib/sysusers.d/octoskin.conf", "usr/lib/udev/rules.d/60-octoskin-node.rules",
+          "usr/share/man/man1/octoskin.1.gz", "usr/share/man/man1/octoskin-node.1.gz",
+          "usr/share/doc/octoskin/README.md", "usr/share/doc/octoskin/copyright",
+          "usr/share/doc/octoskin/changelog.gz", "usr/share/octoskin/hw/octoskin.dbc"}
+FOLDERS = {"docs": "usr/share/doc/octoskin/docs", "host/config": "usr/share/octoskin/config"} | {
+    f"hw/{name}": f"usr/share/octoskin/hw/{name}" for name in ("boards", "rigs", "robots", "worlds")}
+
+
+def run(*command, **options):
+    done = subprocess.run(command, capture_output=True, text=True, **options)
+    if done.returncode != 0:
+        raise AssertionError(f"{command}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def data_files():
+    for source, target in FOLDERS.items():
+        for file in (SOURCE / source).rglob("*"):
+            if file.is_file():
+                yield f"{target}/{file.relative_to(SOURCE / source)}"
+
+
+class Package(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.scratch.cleanup)
+        folder = pathlib.Path(cls.scratch.name)
+        run(CPACK, "--config", f"{BUILD}/CPackConfig.cmake", "-B", folder / "made")
+        (cls.package,) = (folder / "made").glob("octoskin_*.deb")
+        cls.root = folder / "root"
+        run("dpkg-deb", "-x", cls.package, cls.root)
+        # Its links lead to the library that it depends on.
+        (triplet,) = {path.name for path in pathlib.Path("/usr/lib").glob("*-linux-gnu*")
+                      if (path / "libOpenNI2.so.0").exists()}
+        (cls.root / "usr/lib" / triplet).symlink_to(f"/usr/lib/{triplet}")
+        cls.program = cls.root / "usr/bin/octoskin"
+        cls.listed = [line.split(None, 5) for line in run("dpkg-deb", "-c", cls.package).splitlines()]
+
+    def names(self, kind):
+        return {entry[5].split(" -> ")[0].removeprefix("./") for entry in self.listed if entry[0][0] == kind}
+
+    def field(self, name):
+        return run("dpkg-deb", "-f", self.package, name).strip()
+
+    def test_has_these_files_and_no_other(self):
+        data = set(data_files())
+        self.assertGreater(len(data), 20)
+        self.assertEqual(self.names("-"), PROGRAMS | SETTINGS | OTHERS | data)
+        self.assertEqual(self.names("l"), LINKS)
+
+    def test_belongs_to_root_who_alone_may_write(self):
+        for mode, owner, *_, name in self.listed:
+            self.assertEqual(owner, "root/root", name)
+            if mode[0] == "l":
+                continue
+            is_run = mode[0] == "d" or name.removeprefix("./") in PROGRAMS
+            self.assertEqual(mode[1:], "rwxr-xr-x" if is_run else "rw-r--r--", name)
+
+    def test_is_named_by_version_and_architecture(self):
+        architecture = run("dpkg", "--print-architecture").strip()
+        version = run(self.program, "--version").split()[1]
+        self.assertEqual(self.package.name, f"octoskin_{version}_{architecture}.deb")
+        changes = run("zcat", self.root / "usr/share/doc/octoskin/changelog.gz")
+        self.assertTrue(changes.startswith(f"octoskin ({version}) "), changes)
+
+    def test_depends_on_what_its_programs_load(self):
+        depends = {re.split(r"[ |]", word.strip())[0] for word in self.field("Depends").split(",")}
+        for file in PROGRAMS:
+            for line in run("ldd", self.root / file).splitlines():
+                self.assertNotIn("not found", line, file)
+        # By hand, the other way round: the library each program cannot do without.
+        for package in ("libopenni2-0", "libsystemd0", "libgpiod2", "libsdformat12-12", "libembree3-3", "procps"):
+            self.assertIn(package, depends)
+        self.assertFalse({name for name in depends if "unicorn" in name or name.endswith("-dev")})
+
+    def test_keeps_settings_that_somebody_changed(self):
+        conffiles = run("dpkg-deb", "--info", self.package, "conffiles").split()
+        self.assertEqual(set(conffiles), {f"/{name}" for name in SETTINGS})
+
+    def test_has_maintainer_scripts_that_parse(self):
+        for script in ("postinst", "prerm", "postrm"):
+            run("sh", "-n", input=run("dpkg-deb", "--info", self.package, script))
+
+    def test_names_every_command_in_the_manual(self):
+        said = run(self.program, "--help").split("Subcommands:")[1].split("Exit codes")[0]
+        commands = re.findall(r"^  ([a-z-]+) ", said, re.MULTILINE)
+        self.assertGreater(len(commands), 10)
+        manual = run("zcat", self.root / "usr/share/man/man1/octoskin.1.gz")
+        bold = set(re.findall(r"[a-z-]+", " ".join(re.findall(r"^\.BR? (.*)$", manual, re.MULTILINE))))
+        self.assertEqual([name for name in commands if name not in bold], [])
+
+    def test_simulates_records_and_maps_with_its_own_helpers_and_data(self):
+        shared = self.root / "usr/share/octoskin"
+        scenario = pathlib.Path(self.scratch.name) / "short.yaml"
+        scenario.write_text(f"extends: {shared}/hw/worlds/experiment.scenario.yaml\n"
+                            "motion: {rest_s: 3, circle: {radius_m: 0.02, ticks_per_revolution: 15}}\n")
+        recording = pathlib.Path(self.scratch.name) / "recording"
+        self.assertIn(f"{shared}/hw/rigs/experiment.yaml", run(self.program, "simulate", "--help"))
+        run(self.program, "simulate", recording, "--scenario", scenario)
+        run(self.program, "replay", recording)
+        self.assertGreater((recording / "maps/depth.ot").stat().st_size, 10_000)
+
+    def test_runs_as_its_units_say(self):
+        for unit in (self.root / "usr/lib/systemd/system").glob("*.service"):
+            (program,) = re.findall(r"^ExecStart=(\S+)", unit.read_text(), re.MULTILINE)
+            self.assertTrue(os.access(self.root / program.removeprefix("/"), os.X_OK), program)
+            (settings,) = re.findall(r"^EnvironmentFile=/(\S+)", unit.read_text(), re.MULTILINE)
+            given = set(re.findall(r"^([A-Z_]+)=", (self.root / settings).read_text(), re.MULTILINE))
+            self.assertEqual(set(re.findall(r"\$\{?(OCTOSKIN\w+)", unit.read_text())), given)
+
+
+if __name__ == "__main__":
+    BUILD, CPACK = sys.argv[1:3]
+    unittest.main(argv=sys.argv[:1])
