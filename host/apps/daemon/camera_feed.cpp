@@ -35,6 +35,7 @@ CameraFeed::CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
     if (event_ < 0 || end_ < 0)
         throw std::system_error(errno, std::generic_category(), "cannot make an eventfd");
     record_.why = "not opened yet";
+    record_.begun = monotonic_now();
     thread_ = start_without_signals([this] { work(); });
 }
 

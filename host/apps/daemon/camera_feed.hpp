@@ -22,6 +22,7 @@ struct CameraRecord {
     std::uint64_t displaced = 0;  ///< newer ones came before these were taken
     std::uint64_t untimed = 0;    ///< whose time of capture could not be told: late, or the first ones
     std::uint64_t opened = 0;     ///< times
+    HostTime begun;               ///< looked for since then
     std::optional<HostTime> newest;
     std::string why;  ///< not open, for a person
 };

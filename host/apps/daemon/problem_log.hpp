@@ -6,13 +6,20 @@
 
 namespace octoskin {
 
+struct Problem {
+    /// What is wrong with what: the same as long as the problem is, whatever figures its text has.
+    std::string about;
+    std::string text;  ///< a sentence for a person
+    friend bool operator==(const Problem&, const Problem&) = default;
+};
+
 class ProblemLog {
   public:
     /// All that there are now.
-    void tell(std::vector<std::string> problems);
+    void tell(std::vector<Problem> problems);
 
   private:
-    std::vector<std::string> told_;
+    std::vector<Problem> told_;
 };
 
 }  // namespace octoskin

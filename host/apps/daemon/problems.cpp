@@ -6,18 +6,20 @@
 namespace octoskin {
 namespace {
 
-using Problems = std::vector<std::string>;
+using Problems = std::vector<Problem>;
 
 void add_link(const DaemonView& view, Problems& problems) {
     if (view.inputs->can().state() != LinkState::up) {
-        problems.push_back(fmt::format(
+        const std::string text = fmt::format(
             "CAN {}: {}", names_of(LinkState{})[static_cast<std::size_t>(view.inputs->can().state())],
-            view.inputs->can().why()));
+            view.inputs->can().why());
+        problems.push_back({text, text});
     }
     const CanLink::Counts counts = view.inputs->can().counts();
     if (counts.dropped > 0) {
-        problems.push_back(fmt::format(
-            "{}: frames were lost in the kernel: this machine is, or was, too busy", *view.interface));
+        problems.push_back(
+            {"kernel", fmt::format("{}: frames were lost in the kernel: this machine is, or was, too busy",
+                                   *view.interface)});
     }
 }
 
@@ -25,22 +27,43 @@ void add_clock(const DaemonView& view, Problems& problems) {
     constexpr Nanoseconds kForeignHold{3'000'000'000};
     const auto foreign = view.inputs->foreign_sync();
     if (!view.is_listen_only && foreign && view.now - *foreign < kForeignHold) {
-        problems.emplace_back(
-            "another host sends SYNC on this bus: only one may (start this one with --listen-only)");
+        problems.push_back(
+            {"another host",
+             "another host sends SYNC on this bus: only one may (start this one with --listen-only)"});
     }
     constexpr Nanoseconds kBackTold{60'000'000'000};
     if (view.used.time_back && view.now - *view.used.time_back < kBackTold) {
         problems.push_back(
-            fmt::format("the bus's time went back (times_back, {}) within the last minute: the host that "
-                        "sends SYNC began "
-                        "anew, or there are two; joint states and readings go on from there",
-                        view.pipeline->times_back()));
+            {"time back",
+             fmt::format(
+                 "the bus's time went back (times_back, {}) within the last minute: the host that sends "
+                 "SYNC began anew, or there are two; joint states and readings go on from there",
+                 view.pipeline->times_back())});
     }
     if (view.pipeline->now()) return;
-    problems.emplace_back(
-        view.is_listen_only
-            ? "the time is not known: nobody on the bus sends SYNC and FOLLOW_UP (--listen-only sends none)"
-            : "the time is not known yet: no SYNC of ours came onto the bus, or no node is there");
+    problems.push_back(
+        {"no time",
+         view.is_listen_only
+             ? "the time is not known: nobody on the bus sends SYNC and FOLLOW_UP (--listen-only sends none)"
+             : "the time is not known yet: no SYNC of ours came onto the bus, or no node is there"});
+}
+
+void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {
+    const SensorRecord& sensor =
+        view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
+    const std::string who =
+        fmt::format("node {} '{}' sensor {} '{}'", node.node_id, node.name, index, node.sensors[index].name);
+    const bool is_ranging = sensor.health && sensor.health->state == wire::SensorState::ranging;
+    if (sensor.health && !is_ranging && sensor.health->state != wire::SensorState::starting) {
+        const std::string text = fmt::format("{}: {}, {}", who, wire::name(sensor.health->state),
+                                             wire::name(sensor.health->fault));
+        problems.push_back({text, text});
+    } else if (const auto streak = sensor.fates.streak()) {
+        problems.push_back(
+            {who + " streak",
+             fmt::format("{}: (nearly) all of its last {} readings were rejected, most as {}", who,
+                         FateHistory::kKept, names_of(ReadingReason{})[static_cast<std::size_t>(*streak)])});
+    }
 }
 
 void add_nodes(const DaemonView& view, Problems& problems) {
@@ -51,19 +74,11 @@ void add_nodes(const DaemonView& view, Problems& problems) {
         const bool is_silent = record.heard && view.bus_now - *record.heard > NodeRegistry::kLostAfter;
         const NodeVerdict verdict = nodes.verdict(node.node_id, view.bus_now);
         if (verdict != NodeVerdict::usable || is_silent) {
-            problems.push_back(nodes.describe(node.node_id, view.bus_now));
+            const std::string text = nodes.describe(node.node_id, view.bus_now);
+            problems.push_back({text, text});
             continue;
         }
-        for (std::size_t i = 0; i < node.sensors.size(); ++i) {
-            const SensorRecord& sensor =
-                view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(i));
-            const bool is_ranging = sensor.health && sensor.health->state == wire::SensorState::ranging;
-            if (sensor.health && !is_ranging && sensor.health->state != wire::SensorState::starting) {
-                problems.push_back(fmt::format("node {} '{}' sensor {} '{}': {}, {}", node.node_id, node.name,
-                                               i, node.sensors[i].name, wire::name(sensor.health->state),
-                                               wire::name(sensor.health->fault)));
-            }
-        }
+        for (std::size_t i = 0; i < node.sensors.size(); ++i) add_sensor(view, node, i, problems);
     }
 }
 
@@ -77,72 +92,99 @@ void add_joints(const DaemonView& view, Problems& problems) {
     const auto& joints = view.pipeline->accounts().joint_samples;
     if (joints.in() == 0) {
         problems.push_back(
-            view.inputs->joints() != nullptr
-                ? std::string("no joint states: none comes through the socket (`octoskin joints`)")
-                : fmt::format("no joint states: none from node {} on the bus (and no --joints)",
-                              view.rig->joints.node_id));
+            {"no joints",
+             view.inputs->joints() != nullptr
+                 ? std::string("no joint states: none comes through the socket (`octoskin joints`)")
+                 : fmt::format("no joint states: none from node {} on the bus (and no --joints)",
+                               view.rig->joints.node_id)});
     } else if (!view.used.joint_sample) {
-        problems.emplace_back("no joint state could be used: see the counters of joint samples");
+        problems.push_back(
+            {"joints unused", "no joint state could be used: see the counters of joint samples"});
     } else if (has_stopped(view.used.joint_sample, view.now)) {
-        problems.emplace_back("joint states have stopped: readings have no pose");
+        problems.push_back({"joints stopped", "joint states have stopped: readings have no pose"});
     }
     if (joints.rejected(JointReason::too_frequent) > kFirstSamples) {
-        problems.push_back(fmt::format(
-            "joint states come, or came, quicker than the {} Hz of the rig, and were refused (too_frequent, "
-            "{}): put the true rate into joints.rate_hz",
-            view.rig->joints.rate_hz, joints.rejected(JointReason::too_frequent)));
+        problems.push_back(
+            {"joints too frequent",
+             fmt::format("joint states come, or came, quicker than the {} Hz of the rig, and were refused "
+                         "(too_frequent, {}): put the true rate into joints.rate_hz",
+                         view.rig->joints.rate_hz, joints.rejected(JointReason::too_frequent))});
     }
 }
 
 void add_readings(const DaemonView& view, Problems& problems) {
     const auto& readings = view.pipeline->accounts().readings;
     if (readings.in() > 0 && !view.used.reading) {
-        problems.emplace_back("no reading could be used yet: see the counters of readings");
+        problems.push_back({"readings unused", "no reading could be used yet: see the counters of readings"});
     } else if (has_stopped(view.used.reading, view.now)) {
-        problems.emplace_back("readings come onto the map no more: see the counters of readings");
+        problems.push_back(
+            {"readings stopped", "readings come onto the map no more: see the counters of readings"});
     }
 }
 
 void add_camera(const DaemonView& view, Problems& problems) {
     if (!view.camera || !view.rig->camera) return;
-    const Nanoseconds patience{static_cast<std::int64_t>(3e9 / view.rig->camera->rate_hz)};
-    if (!view.camera->is_open) {
-        problems.push_back("camera: " + view.camera->why);
-    } else if (view.camera->newest && view.now - *view.camera->newest > patience) {
-        problems.emplace_back("camera: no frame for three periods");
+    const Nanoseconds period{static_cast<std::int64_t>(1e9 / view.rig->camera->rate_hz)};
+    const auto& frames = view.pipeline->accounts().depth_frames;
+    if (auto problem = camera_problem(*view.camera, period, view.now)) {
+        problems.push_back(std::move(*problem));
     } else if (view.is_listen_only && !view.inputs->foreign_clock().ahead(view.now)) {
-        problems.emplace_back(
-            "camera: its frames have no time: the clock of the host that sends SYNC is not known, or in "
-            "doubt "
-            "(three FOLLOW_UPs must agree)");
+        problems.push_back({"camera untimed",
+                            "camera: its frames have no time: the clock of the host that sends SYNC is not "
+                            "known, or in doubt "
+                            "(three FOLLOW_UPs must agree)"});
+    } else if (frames.in() > 0 && !view.used.depth_frame) {
+        problems.push_back(
+            {"depth unused", "no depth frame could be used yet: see the counters of depth frames"});
     } else if (has_stopped(view.used.depth_frame, view.now)) {
-        problems.emplace_back("depth frames come onto the map no more: see the counters of depth frames");
+        problems.push_back(
+            {"depth stopped", "depth frames come onto the map no more: see the counters of depth frames"});
     }
 }
 
 void add_map(const DaemonView& view, Problems& problems) {
     const FusedMap& map = *view.pipeline->maps().fused();
     if (map.counters().no_room > 0) {
-        problems.push_back(fmt::format(
-            "the map is full ({} MiB): it takes no new space, {} updates found no room (no_room); raise "
-            "map.memory_max_mib in the mapping file",
-            map.config().memory_max_mib, map.counters().no_room));
-    }
-    if (!view.saves.error.empty()) problems.push_back("the map is not saved: " + view.saves.error);
-    if (view.recorder != nullptr && !view.recorder->error().empty()) {
-        problems.push_back("the recording has failed: " + view.recorder->error());
-    } else if (view.recorder != nullptr && !view.recorder->is_complete()) {
         problems.push_back(
-            "the recording lacks something that came too fast for the disk: its replay gives "
-            "another map");
+            {"map full",
+             fmt::format("the map is full ({} MiB): it takes no new space, {} updates found no room "
+                         "(no_room); raise map.memory_max_mib in the mapping file",
+                         map.config().memory_max_mib, map.counters().no_room)});
+    }
+    if (!view.saves.error.empty())
+        problems.push_back({"map not saved", "the map is not saved: " + view.saves.error});
+    if (view.recorder != nullptr && !view.recorder->error().empty()) {
+        problems.push_back({"recording failed", "the recording has failed: " + view.recorder->error()});
+    } else if (view.recorder != nullptr && !view.recorder->is_complete()) {
+        problems.push_back({"recording incomplete",
+                            "the recording lacks something that came too fast for the disk: its replay gives "
+                            "another map"});
     }
     if (!view.reload_error.empty())
-        problems.push_back("the newest reload was refused, and the old settings hold: " + view.reload_error);
+        problems.push_back(
+            {"reload", "the newest reload was refused, and the old settings hold: " + view.reload_error});
 }
 
 }  // namespace
 
-std::vector<std::string> problems(const DaemonView& view) {
+std::optional<Problem> camera_problem(const CameraRecord& camera, Nanoseconds period, HostTime now) {
+    constexpr Nanoseconds kFirstFrame{5'000'000'000};
+    // Before "not open": one that is opened again and again for nothing is both, by turns.
+    if (!camera.newest && now - camera.begun > kFirstFrame) {
+        const std::string since =
+            camera.frames > 0
+                ? fmt::format("{} frames came, none with a time that could be told", camera.frames)
+                : "no frame has ever come";
+        return Problem{"camera never",
+                       "camera: " + since + (camera.is_open ? ", and it is open" : ": " + camera.why)};
+    }
+    if (!camera.is_open) return Problem{"camera: " + camera.why, "camera: " + camera.why};
+    if (camera.newest && now - *camera.newest > 3 * period)
+        return Problem{"camera silent", "camera: no frame for three periods"};
+    return std::nullopt;
+}
+
+std::vector<Problem> problems(const DaemonView& view) {
     Problems problems;
     add_link(view, problems);
     add_clock(view, problems);

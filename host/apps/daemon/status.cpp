@@ -170,10 +170,12 @@ void LastUsed::note(const Pipeline& pipeline, HostTime now) {
 Json status_json(const DaemonView& view) {
     Json nodes = Json::array();
     for (const HostNode& node : view.rig->nodes) nodes.push_back(node_json(view, node));
+    Json sentences = Json::array();
+    for (const Problem& problem : problems(view)) sentences.push_back(problem.text);
     return {{"octoskin", program_version()},
             {"uptime_s", seconds(view.now - view.started)},
             {"rig", view.rig->name},
-            {"problems", problems(view)},
+            {"problems", std::move(sentences)},
             {"can", can_json(view)},
             {"clock", clock_json(view)},
             {"nodes", std::move(nodes)},

@@ -12,6 +12,7 @@
 #include "host/apps/daemon/camera_feed.hpp"
 #include "host/apps/daemon/inputs.hpp"
 #include "host/apps/daemon/map_keeper.hpp"
+#include "host/apps/daemon/problem_log.hpp"
 #include "host/apps/daemon/recorder.hpp"
 #include "host/core/pipeline/pipeline.hpp"
 #include "host/core/rig/host_rig.hpp"
@@ -52,7 +53,10 @@ struct DaemonView {
 };
 
 /// What is wrong, the most fundamental first, a sentence each: "nothing in my map" has its answer here.
-[[nodiscard]] std::vector<std::string> problems(const DaemonView& view);
+[[nodiscard]] std::vector<Problem> problems(const DaemonView& view);
+/// What is wrong with a camera whose frames come every `period`; empty if it is well.
+[[nodiscard]] std::optional<Problem> camera_problem(const CameraRecord& camera, Nanoseconds period,
+                                                    HostTime now);
 
 [[nodiscard]] nlohmann::ordered_json status_json(const DaemonView& view);
 

@@ -52,6 +52,11 @@ class CanIntake {
     /// Frames in the order of arrival. `stamp`: when it was received. About 1 us.
     [[nodiscard]] FrameOutcome on_frame(const wire::CanFrame& frame, WallTime stamp);
 
+    /// What became in the map of a reading that was accepted here; empty: it was used.
+    void on_fate_in_map(const BeamSource& source, std::optional<ReadingReason> rejected) {
+        ranges_.on_fate_in_map(source.node_id, source.sensor, rejected);
+    }
+
     /// The host's clock at the newest stamp; empty while unknown.
     [[nodiscard]] std::optional<HostTime> now() const { return host_clock_.now(); }
     /// Joint samples begun and not ended.

@@ -60,6 +60,21 @@ void RangeGate::on_arrival(wire::NodeId node, const wire::RangeReading& reading,
     record.newest_at = now;
 }
 
+void RangeGate::on_fate(wire::NodeId node, std::uint8_t sensor, std::optional<ReadingReason> rejected) {
+    SensorRecord& record = sensors_.at({node, sensor}).record;
+    record.newest_rejected = rejected;
+    if (rejected) {  // of the others the map has the last word
+        record.fates.note(rejected);
+    }
+}
+
+void RangeGate::on_fate_in_map(wire::NodeId node, std::uint8_t sensor,
+                               std::optional<ReadingReason> rejected) {
+    SensorRecord& record = sensors_.at({node, sensor}).record;
+    record.newest_rejected = rejected ? rejected : record.newest_rejected;
+    record.fates.note(rejected);
+}
+
 bool RangeGate::is_certain(const Sensor& sensor, const MappedTime& captured) const {
     const auto& told = sensor.record.capture_bound;
     return told && captured.error_bound + *told <= limits_.time_uncertainty_max;

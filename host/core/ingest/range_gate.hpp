@@ -12,6 +12,7 @@
 #include "common/time.hpp"
 #include "common/wire/messages.hpp"
 #include "host/core/beams/range_measurement.hpp"
+#include "host/core/ingest/fate_history.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/core/ingest/sequence_tracker.hpp"
 #include "host/core/rig/host_rig.hpp"
@@ -24,7 +25,8 @@ struct SensorRecord {
     std::uint64_t received = 0;                     ///< readings that came, each counted once
     std::optional<wire::RangeReading> newest;       ///< of those, whatever became of it
     std::optional<HostTime> newest_at;              ///< its arrival, if "now" was known
-    std::optional<ReadingReason> newest_rejected;   ///< why it was not accepted
+    std::optional<ReadingReason> newest_rejected;   ///< why it was not accepted, or not put into the map
+    FateHistory fates;                              ///< of the newest readings
     std::array<std::uint64_t, 32> device_status{};  ///< how often each code came
     SequenceTracker sequence;
     std::optional<wire::SensorHealth> health;
@@ -53,9 +55,9 @@ class RangeGate {
     /// Any reading of a known sensor, whatever becomes of it.
     void on_arrival(wire::NodeId node, const wire::RangeReading& reading, std::optional<HostTime> now);
     /// What became of the newest reading, at this gate or before it.
-    void on_fate(wire::NodeId node, std::uint8_t sensor, std::optional<ReadingReason> rejected) {
-        sensors_.at({node, sensor}).record.newest_rejected = rejected;
-    }
+    void on_fate(wire::NodeId node, std::uint8_t sensor, std::optional<ReadingReason> rejected);
+    /// What became of a reading that was accepted here.
+    void on_fate_in_map(wire::NodeId node, std::uint8_t sensor, std::optional<ReadingReason> rejected);
     /// After `on_arrival`, for a reading whose node is usable and whose time is known.
     [[nodiscard]] Result<RangeMeasurement, ReadingReason> check(wire::NodeId node,
                                                                 const wire::RangeReading& reading,

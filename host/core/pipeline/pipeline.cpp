@@ -227,11 +227,12 @@ Status<ReadingReason> Pipeline::integrate(const RangeMeasurement& measurement) {
     if (!marks_.contains(measurement.captured)) {
         return unexpected(ReadingReason::outside_marks);
     }
-    if (const auto integrated = builder_.integrate(measurement); !integrated) {
-        return integrated;
+    const auto integrated = builder_.integrate(measurement);
+    intake_.on_fate_in_map(measurement.source, integrated ? std::nullopt : std::optional(integrated.error()));
+    if (integrated) {
+        used_[measurement.source] = measurement.captured;
     }
-    used_[measurement.source] = measurement.captured;
-    return Done{};
+    return integrated;
 }
 
 Status<DepthReason> Pipeline::integrate(const DepthFrame& frame) {

@@ -73,6 +73,25 @@ TEST(Pipeline, places_one_range_at_the_joint_position_of_its_own_capture_time) {
     EXPECT_EQ(pipeline.accounts().readings.used(), 1U);
 }
 
+TEST(Pipeline, tells_a_sensor_whose_readings_are_all_rejected_at_the_gate_or_in_the_map) {
+    Scene scene = quiet_scene();
+    for (int k = 0; k < 40; ++k) {
+        wire::RangeReading bad = good_reading(kSpare);
+        bad.device_status = 7;
+        for (const wire::RangeReading& reading : {good_reading(), good_reading(kFar), bad}) {
+            scene.bus.range(3.0 + 0.06 * k, kLeft, reading);
+        }
+    }
+    const Pipeline pipeline = play(scene);
+    const auto streak = [&](std::uint8_t sensor) {
+        return pipeline.intake().ranges().record(kLeft, sensor).fates.streak();
+    };
+    EXPECT_EQ(streak(kGood), std::nullopt);
+    EXPECT_EQ(streak(kFar), ReadingReason::outside_map);
+    EXPECT_EQ(streak(kSpare), ReadingReason::status_fault);
+    EXPECT_EQ(streak(kInward), std::nullopt) << "it has said nothing";
+}
+
 TEST(Pipeline, places_a_range_of_a_fd_frame_the_same_way) {
     Scene scene = quiet_scene();
     wire::RangeFd frame;

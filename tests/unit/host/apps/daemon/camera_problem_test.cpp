@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include "host/apps/daemon/status.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr Nanoseconds kPeriod{33'000'000};
+constexpr Nanoseconds kSecond{1'000'000'000};
+constexpr HostTime kBegun{7'000'000'000};
+
+std::string told(const CameraRecord& camera, Nanoseconds after) {
+    const auto problem = camera_problem(camera, kPeriod, kBegun + after);
+    return problem ? problem->text : "";
+}
+
+CameraRecord looked_for() {
+    CameraRecord camera;
+    camera.begun = kBegun;
+    camera.why = "not opened yet";
+    return camera;
+}
+
+TEST(CameraProblem, is_that_it_was_never_opened) {
+    const CameraRecord camera = looked_for();
+    EXPECT_EQ(told(camera, kSecond), "camera: not opened yet");
+    EXPECT_EQ(told(camera, 6 * kSecond), "camera: no frame has ever come: not opened yet");
+}
+
+TEST(CameraProblem, is_that_it_opens_and_never_shows_anything_however_often) {
+    CameraRecord camera = looked_for();
+    camera.is_open = true;
+    EXPECT_EQ(told(camera, 4 * kSecond), "") << "it may just need time";
+    EXPECT_EQ(told(camera, 6 * kSecond), "camera: no frame has ever come, and it is open");
+    const auto open = camera_problem(camera, kPeriod, kBegun + 6 * kSecond);
+    camera.is_open = false;
+    camera.why = "no data in time";
+    EXPECT_EQ(told(camera, 7 * kSecond), "camera: no frame has ever come: no data in time");
+    EXPECT_EQ(camera_problem(camera, kPeriod, kBegun + 7 * kSecond)->about, open->about)
+        << "the same problem";
+}
+
+TEST(CameraProblem, is_that_no_frame_has_a_time) {
+    CameraRecord camera = looked_for();
+    camera.is_open = true;
+    camera.frames = camera.untimed = 90;
+    EXPECT_EQ(told(camera, 6 * kSecond),
+              "camera: 90 frames came, none with a time that could be told, and it is open");
+}
+
+TEST(CameraProblem, is_that_it_fell_silent_and_nothing_while_it_is_well) {
+    CameraRecord camera = looked_for();
+    camera.is_open = true;
+    camera.newest = kBegun + 9 * kSecond;
+    EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod), "");
+    EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod + Nanoseconds{1}), "camera: no frame for three periods");
+    camera.is_open = false;
+    camera.why = "gone";
+    EXPECT_EQ(told(camera, 9 * kSecond), "camera: gone");
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,59 @@
+#include "host/apps/daemon/problem_log.hpp"
+
+#include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <memory>
+#include <sstream>
+
+namespace octoskin {
+namespace {
+
+class ProblemLogTest : public testing::Test {
+  protected:
+    ProblemLogTest() : before_(spdlog::default_logger()) {
+        auto logger =
+            std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_));
+        logger->set_pattern("%l %v");
+        spdlog::set_default_logger(logger);
+    }
+    ~ProblemLogTest() override { spdlog::set_default_logger(before_); }
+    std::string told(std::vector<Problem> problems) {
+        text_.str({});
+        log_.tell(std::move(problems));
+        return text_.str();
+    }
+
+    std::shared_ptr<spdlog::logger> before_;
+    std::ostringstream text_;
+    ProblemLog log_;
+};
+
+TEST_F(ProblemLogTest, tells_each_when_it_comes_and_when_it_goes) {
+    EXPECT_EQ(told({{"a", "it is so"}}), "warning it is so\n");
+    EXPECT_EQ(told({{"a", "it is so"}}), "");
+    EXPECT_EQ(told({}), "info over: it is so\n");
+    EXPECT_EQ(told({}), "");
+}
+
+TEST_F(ProblemLogTest, takes_a_number_that_grows_for_the_same) {
+    EXPECT_NE(told({{"lost", "3 frames lost"}}), "");
+    EXPECT_EQ(told({{"lost", "14 frames lost"}}), "");
+    EXPECT_EQ(told({}), "info over: 14 frames lost\n");
+}
+
+TEST_F(ProblemLogTest, tells_those_apart_whose_names_differ_in_a_digit) {
+    EXPECT_NE(told({{"node 1 sensor 3", "node 1 sensor 3: dead"}}), "");
+    EXPECT_EQ(
+        told({{"node 1 sensor 3", "node 1 sensor 3: dead"}, {"node 1 sensor 13", "node 1 sensor 13: dead"}}),
+        "warning node 1 sensor 13: dead\n");
+    EXPECT_EQ(told({{"node 2 sensor 3", "node 2 sensor 3: dead"}}),
+              "warning node 2 sensor 3: dead\ninfo over: node 1 sensor 3: dead\n"
+              "info over: node 1 sensor 13: dead\n");
+    EXPECT_EQ(told({{"can0", "can0: down"}}), "warning can0: down\ninfo over: node 2 sensor 3: dead\n");
+    EXPECT_EQ(told({{"can1", "can1: down"}}), "warning can1: down\ninfo over: can0: down\n");
+}
+
+}  // namespace
+}  // namespace octoskin
