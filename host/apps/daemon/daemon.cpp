@@ -43,6 +43,7 @@ struct Daemon::Parts {
     void attend();
     void save_map();
     bool save_last_map(HostTime end);
+    std::uint64_t settle_pipeline();
     void reload();
     [[nodiscard]] DaemonView view() const;
     std::string answer(const std::string& line);
@@ -58,6 +59,7 @@ struct Daemon::Parts {
     std::unique_ptr<ControlSocket> control;
     HostTime started;
     std::string reload_error;
+    ReloadCounts reloads;
     ProblemLog problem_log;
     LastUsed last_used;
 
@@ -155,6 +157,20 @@ bool Daemon::Parts::save_last_map(HostTime end) {
            keeper->finish(end - monotonic_now());
 }
 
+/// What waits in the pipeline that is about to go is used or counted; how much was not used.
+std::uint64_t Daemon::Parts::settle_pipeline() {
+    const auto rejected = [this] {
+        const PipelineAccounts& accounts = pipeline.accounts();
+        return accounts.readings.rejected() + accounts.joint_samples.rejected() +
+               accounts.depth_frames.rejected();
+    };
+    const std::uint64_t before = rejected();
+    pipeline.finish();
+    ++reloads.count;
+    reloads.dropped += rejected() - before;
+    return rejected() - before;
+}
+
 void Daemon::Parts::reload() {
     (void)sd_notify(0, "RELOADING=1");
     auto read = read_settings(request);
@@ -163,10 +179,11 @@ void Daemon::Parts::reload() {
         reload_error = made.error().message;
         spdlog::error("not reloaded, the old settings hold: {}", reload_error);
     } else {
+        const std::uint64_t dropped = settle_pipeline();
         recordings.stop(monotonic_now());  // it has the old settings, and is whole with them
         const bool is_same_grid = read->mapping.map.resolution_m == settings.mapping.map.resolution_m;
         if (is_same_grid) {
-            FusedMap map = pipeline.maps().fused()->copy();
+            FusedMap map = pipeline.take_fused();
             map.limit(read->mapping.map);
             made->begin_with(std::move(map));
         }
@@ -174,8 +191,9 @@ void Daemon::Parts::reload() {
         pipeline = std::move(made).value();
         inputs.change_rig(settings.host.rig);
         reload_error.clear();
-        spdlog::info("reloaded: rig '{}'; the map {}", settings.host.rig.name,
-                     is_same_grid ? "goes on" : "begins anew: the mapping has voxels of another size");
+        spdlog::info("reloaded: rig '{}'; the map {}; {} of what waited was not used", settings.host.rig.name,
+                     is_same_grid ? "goes on" : "begins anew: the mapping has voxels of another size",
+                     dropped);
     }
     (void)sd_notify(0, "READY=1");
 }
@@ -194,7 +212,8 @@ DaemonView Daemon::Parts::view() const {
             .used = last_used,
             .saves = keeper->record(),
             .recorder = recordings.recorder(),
-            .reload_error = reload_error};
+            .reload_error = reload_error,
+            .reloads = reloads};
 }
 
 std::string Daemon::Parts::answer(const std::string& line) {

@@ -1,5 +1,9 @@
 #include "host/apps/daemon/map_keeper.hpp"
 
+#include <fmt/format.h>
+
+#include <exception>
+#include <new>
 #include <utility>
 
 #include "host/apps/daemon/clocks.hpp"
@@ -12,10 +16,18 @@ namespace {
 
 constexpr const char* kMapFile = "fused.ot";
 constexpr const char* kSmallMapFile = "fused.bt";
+constexpr std::uint64_t kBytesPerNode = 5;  ///< of an .ot file: log-odds, and which children there are
+
+/// A brick of 512 known voxels takes 2112 bytes of memory, and 585 nodes of a file; one that is alone 13 more
+/// above it. Half as much again as the memory has room for both, the mebibyte for the header of a small one.
+std::uint64_t file_bytes_max(const MapConfig& config) {
+    return (std::uint64_t{config.memory_max_mib} << 20U) * 3 / 2 + (std::uint64_t{1} << 20U);
+}
 
 }  // namespace
 
-MapKeeper::MapKeeper(std::filesystem::path folder, Writer writer) : work_(std::make_shared<Work>()) {
+MapKeeper::MapKeeper(std::filesystem::path folder, Writer writer, Copier copier)
+    : copier_(std::move(copier)), work_(std::make_shared<Work>()) {
     work_->folder = std::move(folder);
     work_->writer = std::move(writer);
     remove_leftovers(work_->folder);
@@ -40,7 +52,15 @@ Result<std::optional<FusedMap>, AppError> MapKeeper::load(const MapConfig& confi
     // What cannot be seen may be there: beginning anew would overwrite it.
     if (error) return fail(ExitCode::no_input, file.string() + ": " + error.message());
     if (!is_there) return std::optional<FusedMap>{};
-    auto map = load_map(file, {.map = config});
+    const std::uint64_t bytes_max = file_bytes_max(config);
+    auto map = load_map(file, {.map = config, .nodes_max = bytes_max / kBytesPerNode}, bytes_max);
+    if (!map && map.error().is_too_large) {
+        return fail(
+            ExitCode::bad_data,
+            fmt::format("{}: it was saved with more memory than the {} MiB of map.memory_max_mib: raise "
+                        "that in the mapping file ({})",
+                        file.string(), config.memory_max_mib, map.error().message));
+    }
     if (!map) return fail(ExitCode::bad_data, map.error().message);
     if (map->resolution_m() != config.resolution_m) {
         return fail(ExitCode::bad_data, file.string() + ": its voxels are " +
@@ -56,10 +76,16 @@ bool MapKeeper::save(const FusedMap& map) {
         work_->record.skipped += work_->is_busy ? 1U : 0U;
         if (std::exchange(work_->is_busy, true)) return false;
     }
-    FusedMap copy = map.copy();  // takes long, so nobody is kept waiting for the lock
-    {
+    try {
+        FusedMap copy = copier_(map);  // takes long, so nobody is kept waiting for the lock
         const std::lock_guard lock(work_->mutex);
         work_->waiting.emplace(std::move(copy));
+    } catch (const std::bad_alloc&) {
+        constexpr unsigned kMib = 20;
+        end_save(*work_, fmt::format("no memory for a copy of its {} MiB: lower map.memory_max_mib, or give "
+                                     "the service more",
+                                     map.memory_bytes() >> kMib));
+        return false;
     }
     work_->changed.notify_all();
     return true;
@@ -82,15 +108,27 @@ void MapKeeper::work(Work& shared) {
         if (shared.is_ending) return;
         std::optional<FusedMap> map = std::exchange(shared.waiting, std::nullopt);
         lock.unlock();
-        std::string error = shared.writer(*map, shared.folder);
+        std::string error;
+        try {
+            error = shared.writer(*map, shared.folder);
+        } catch (const std::exception& thrown) {  // no memory for the file's text
+            error = fmt::format("{}: {}", shared.folder.string(), thrown.what());
+        }
         map.reset();
+        end_save(shared, std::move(error));
         lock.lock();
+    }
+}
+
+void MapKeeper::end_save(Work& shared, std::string error) {
+    {
+        const std::lock_guard lock(shared.mutex);
         shared.is_busy = false;
         ++(error.empty() ? shared.record.saved : shared.record.failed);
         if (error.empty()) shared.record.newest = monotonic_now();
         shared.record.error = std::move(error);
-        shared.changed.notify_all();
     }
+    shared.changed.notify_all();
 }
 
 std::string MapKeeper::write_map(const FusedMap& map, const std::filesystem::path& folder) {

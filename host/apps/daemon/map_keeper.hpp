@@ -31,20 +31,24 @@ class MapKeeper {
     /// What writes a map into the folder; the answer is empty, or why it could not.
     using Writer = std::function<std::string(const FusedMap& map, const std::filesystem::path& folder)>;
 
+    using Copier = std::function<FusedMap(const FusedMap& map)>;
+
     /// `folder` gets fused.ot and fused.bt; it must be this process's own (FolderLock). What a dead process
     /// left of a save there is removed.
-    explicit MapKeeper(std::filesystem::path folder, Writer writer = write_map);
+    explicit MapKeeper(std::filesystem::path folder, Writer writer = write_map, Copier copier = copy_map);
     /// A save that the disk does not let go of is left behind: `finish` first.
     ~MapKeeper();
     MapKeeper(const MapKeeper&) = delete;
     MapKeeper& operator=(const MapKeeper&) = delete;
 
     /// The map that was saved last, checked as every foreign map; empty if there is none. An error names the
-    /// file and what is wrong with it.
+    /// file, what is wrong with it and what to do. Any map that a keeper with this memory_max_mib saved has
+    /// room.
     [[nodiscard]] Result<std::optional<FusedMap>, AppError> load(const MapConfig& config) const;
 
     /// Copies the map and has the copy saved, never waiting for the disk. While one is being saved nothing is
-    /// copied, and false is the answer: there is one copy at a time.
+    /// copied, and false is the answer: there is one copy at a time. False, too, if there is no memory for
+    /// it: counted as failed, and the next save is tried as if nothing had been.
     bool save(const FusedMap& map);
     /// Waits until nothing is left to save, `patience` at most; false if that was too short.
     [[nodiscard]] bool finish(Nanoseconds patience);
@@ -53,6 +57,7 @@ class MapKeeper {
 
   private:
     static std::string write_map(const FusedMap& map, const std::filesystem::path& folder);
+    static FusedMap copy_map(const FusedMap& map) { return map.copy(); }
 
     /// What the thread needs, for as long as it needs it: it may outlive the keeper.
     struct Work {
@@ -66,7 +71,9 @@ class MapKeeper {
         SaveRecord record;
     };
     static void work(Work& shared);
+    static void end_save(Work& shared, std::string error);
 
+    Copier copier_;
     std::shared_ptr<Work> work_;
     std::thread thread_;
 };

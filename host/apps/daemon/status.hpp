@@ -34,6 +34,11 @@ class LastUsed {
     std::array<std::uint64_t, 4> counts_{};
 };
 
+struct ReloadCounts {
+    std::uint64_t count = 0;
+    std::uint64_t dropped = 0;  ///< readings, joint samples, depth frames that waited and could not be used
+};
+
 /// All that there is to tell. What it points to must be there.
 struct DaemonView {
     HostTime now;
@@ -50,6 +55,7 @@ struct DaemonView {
     SaveRecord saves;
     const Recorder* recorder = nullptr;  ///< at work, or the last one; null if there was none
     std::string reload_error;            ///< of the newest SIGHUP; empty if it went well
+    ReloadCounts reloads;
 };
 
 /// What is wrong, the most fundamental first, a sentence each: "nothing in my map" has its answer here.

@@ -22,6 +22,11 @@ void MapSet::begin_with(FusedMap fused) {
     fused_ = std::move(fused);
 }
 
+FusedMap MapSet::take_fused() {
+    assert(fused_);
+    return std::move(*fused_);
+}
+
 void MapSet::add_depth(std::span<const VoxelUpdate> updates) {
     for (auto* map : {&depth_, &fused_}) {
         if (*map) {

@@ -70,6 +70,8 @@ class Pipeline {
 
     /// The fused map goes on from this one, which has the mapping's resolution (asserted).
     void begin_with(FusedMap fused) { builder_.begin_with(std::move(fused)); }
+    /// After `finish`: the fused map, for another pipeline to begin with.
+    [[nodiscard]] FusedMap take_fused() { return builder_.take_fused(); }
     /// `listener` is told of what goes into the maps from now on; null: nobody is.
     void tell(CommitListener* listener) noexcept { builder_.tell(listener); }
 

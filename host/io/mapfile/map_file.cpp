@@ -16,7 +16,7 @@ namespace octoskin {
 namespace {
 
 Unexpected<MapFileError> fail(const std::filesystem::path& file, const std::string& what) {
-    return unexpected(MapFileError{fmt::format("{}: {}", file.string(), what)});
+    return unexpected(MapFileError{fmt::format("{}: {}", file.string(), what), false});
 }
 
 Unexpected<MapFileError> fail_with_errno(const std::filesystem::path& file, const char* step) {
@@ -46,7 +46,10 @@ Result<std::string, MapFileError> read_bytes(const std::filesystem::path& file, 
     if (::fstat(descriptor.get(), &status) != 0) return fail_with_errno(file, "looking at it");
     if (!S_ISREG(status.st_mode)) return fail(file, "not a regular file");
     const auto size = static_cast<std::uint64_t>(status.st_size);
-    if (size > bytes_max) return fail(file, fmt::format("{} bytes, the limit is {}", size, bytes_max));
+    if (size > bytes_max) {
+        return unexpected(
+            MapFileError{fmt::format("{}: {} bytes, the limit is {}", file.string(), size, bytes_max), true});
+    }
     std::string bytes(size, '\0');
     std::size_t position = 0;
     while (position < bytes.size()) {
@@ -74,7 +77,7 @@ Status<MapFileError> save_map(const FusedMap& map, const std::filesystem::path& 
         return fail(file, fmt::format("extension \"{}\" is not one of .ot, .bt, .ply", extension));
     }
     const auto saved = save_atomically(file, bytes);
-    if (!saved) return unexpected(MapFileError{saved.error().message()});
+    if (!saved) return unexpected(MapFileError{saved.error().message(), false});
     return Done{};
 }
 
@@ -83,7 +86,11 @@ Result<FusedMap, MapFileError> load_map(const std::filesystem::path& file, const
     const auto bytes = read_bytes(file, file_bytes_max);
     if (!bytes) return unexpected(bytes.error());
     auto map = decode_octomap(*bytes, limits);
-    if (!map) return fail(file, map.error().what);
+    if (!map) {
+        const MapFault fault = map.error().fault;
+        return unexpected(MapFileError{fmt::format("{}: {}", file.string(), map.error().what),
+                                       fault == MapFault::no_room || fault == MapFault::too_many_nodes});
+    }
     return std::move(map).value();
 }
 

@@ -14,6 +14,7 @@ namespace octoskin {
 /// "out/map.ot: byte 4711: the data end within the tree": file, place, value and, where there is one, remedy.
 struct MapFileError {
     std::string message;
+    bool is_too_large = false;  ///< for the limits given; it may be whole
 };
 
 /// Writes the map, in the format that the extension names (.ot, .bt or .ply). At every instant the file is

@@ -183,10 +183,13 @@ TEST_F(DaemonTest, reloads_all_or_nothing) {
     EXPECT_EQ(daemon_->status()["rig"], "first");
     const auto voxels = daemon_->status()["map"]["known_voxels"].get<int>();
     folder_.write("rig.yaml", "extends: " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml\nname: second\n");
+    EXPECT_EQ(daemon_->status()["reloads"]["count"], 0);
     daemon_->signal(SIGHUP);
     ASSERT_TRUE(daemon_->wait_until([](const Json& status) { return status["rig"] == "second"; }, 5s))
         << daemon_->log();
     EXPECT_GE(daemon_->status()["map"]["known_voxels"].get<int>(), voxels) << "the map did not go on";
+    EXPECT_EQ(daemon_->status()["reloads"]["count"], 1);
+    EXPECT_LT(daemon_->status()["reloads"]["dropped"].get<int>(), 20) << "more than what can wait";
 
     folder_.write("rig.yaml", "extends: nowhere.yaml\nname: third\n");
     daemon_->signal(SIGHUP);

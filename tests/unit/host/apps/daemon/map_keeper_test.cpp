@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <new>
 #include <thread>
 
 #include "host/io/mapfile/octomap_writer.hpp"
@@ -172,6 +173,92 @@ TEST(MapKeeper, does_not_wait_for_a_disk_that_hangs) {
     disk.open();  // what was left behind ends, before the disk does
     while (disk.written() != 5U) std::this_thread::yield();
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
+}
+
+TEST(MapKeeper, goes_on_after_what_there_was_no_memory_for) {
+    const testing_support::ScratchFolder folder;
+    bool has_memory = false;
+    const auto need_memory = [&has_memory] {
+        if (!has_memory) throw std::bad_alloc();
+    };
+    const MapKeeper::Writer write = [&](const FusedMap&, const std::filesystem::path&) {
+        need_memory();
+        return std::string();
+    };
+    MapKeeper to_copy(
+        folder.path(), [](const FusedMap&, const auto&) { return std::string(); },
+        [&](const FusedMap& map) {
+            need_memory();
+            return map.copy();
+        });
+    EXPECT_FALSE(to_copy.save(some_map(5)));
+    EXPECT_TRUE(to_copy.finish(kPatience)) << "busy for ever";
+    EXPECT_EQ(to_copy.record().failed, 1U);
+    EXPECT_NE(to_copy.record().error.find("memory_max_mib"), std::string::npos) << to_copy.record().error;
+    MapKeeper to_write(folder.path(), write);
+    EXPECT_TRUE(to_write.save(some_map(5)));
+    EXPECT_TRUE(to_write.finish(kPatience)) << "busy for ever";
+    EXPECT_NE(to_write.record().error.find("bad_alloc"), std::string::npos) << to_write.record().error;
+    has_memory = true;
+    for (MapKeeper* keeper : {&to_copy, &to_write}) {
+        EXPECT_TRUE(keeper->save(some_map(5)));
+        ASSERT_TRUE(keeper->finish(kPatience));
+        EXPECT_EQ(keeper->record().saved, 1U);
+        EXPECT_EQ(keeper->record().failed, 1U);
+        EXPECT_EQ(keeper->record().error, "");
+    }
+}
+
+/// As many voxels as there is memory for, side by side, or each as far from the next as can be.
+FusedMap full_map(std::uint32_t memory_mib, bool is_dense) {
+    FusedMap map{MapConfig{.memory_max_mib = memory_mib}};
+    std::uint32_t random = 1;
+    for (std::uint32_t i = 0; map.counters().no_room == 0; ++i) {
+        random = random * 1664525U + 1013904223U;
+        const std::uint32_t place = is_dense ? i : random;
+        const auto axis = [&](unsigned shift, unsigned bits) {
+            return static_cast<std::uint16_t>(32768U + (is_dense
+                                                            ? (place >> shift) & ((1U << bits) - 1U)
+                                                            : ((place * (shift + 7U)) >> 16U) & 0x7FFFU));
+        };
+        // Neighbours differ, so that no octree leaves any of them out.
+        const VoxelUpdate update{{axis(0, 8), axis(8, 8), axis(16, 8)},
+                                 0.5F + 0.001F * static_cast<float>(i % 997U)};
+        map.apply(std::span(&update, 1));
+    }
+    return map;
+}
+
+TEST(MapKeeper, loads_any_map_that_it_saved_with_the_same_memory) {
+    for (const bool is_dense : {true, false}) {
+        const testing_support::ScratchFolder folder;
+        MapKeeper keeper(folder.path());
+        const FusedMap map = full_map(8, is_dense);
+        EXPECT_TRUE(keeper.save(map));
+        ASSERT_TRUE(keeper.finish(kPatience));
+        const auto loaded = keeper.load(map.config());
+        ASSERT_TRUE(loaded) << loaded.error().message;
+        EXPECT_EQ((*loaded)->known_voxels(), map.known_voxels());
+        const auto bytes = std::filesystem::file_size(folder / "fused.ot");
+        EXPECT_LT(bytes, (8U << 20U) * 3 / 2) << "what the limit for files is derived from";
+        EXPECT_EQ(bytes > 8U << 20U, is_dense) << "the file of a dense map is larger than its memory";
+    }
+}
+
+TEST(MapKeeper, says_what_to_do_about_a_map_that_was_saved_with_more_memory) {
+    const testing_support::ScratchFolder folder;
+    MapKeeper keeper(folder.path());
+    EXPECT_TRUE(keeper.save(full_map(4, true)));
+    ASSERT_TRUE(keeper.finish(kPatience));
+    for (const std::uint32_t less_mib : {1U, 3U}) {
+        const auto loaded = keeper.load(MapConfig{.memory_max_mib = less_mib});
+        ASSERT_FALSE(loaded);
+        EXPECT_NE(loaded.error().message.find("fused.ot: it was saved with more memory than the " +
+                                              std::to_string(less_mib) + " MiB of map.memory_max_mib: raise"),
+                  std::string::npos)
+            << loaded.error().message;
+    }
+    EXPECT_TRUE(keeper.load(MapConfig{.memory_max_mib = 4}));
 }
 
 TEST(MapKeeper, says_why_it_cannot_save) {
