@@ -11,5 +11,9 @@ if [ -n "$said" ]; then
     echo "$said"
     exit 1
 fi
+if ! sed -n '/^\[Unit\]/,/^\[Service\]/p' "$2" | grep -q '^StartLimitIntervalSec=0$'; then
+    echo "$name: a service that fails five times in ten seconds would be given up for good"
+    exit 1
+fi
 sed "s|^ProtectHome=|ProtectHomes=|" "$folder/$name" > "$folder/wrong.service"
 "$1" verify --man=no "$folder/wrong.service" 2>&1 | grep -q ProtectHomes
