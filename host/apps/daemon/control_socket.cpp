@@ -1,5 +1,6 @@
 #include "host/apps/daemon/control_socket.hpp"
 
+#include <spdlog/spdlog.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -32,18 +33,31 @@ ControlSocket::ControlSocket(std::filesystem::path file, int descriptor, EventLo
       loop_(loop),
       answer_(std::move(answer)),
       idle_max_(idle_max),
-      acceptable_(loop.on_readable(descriptor, [this] { accept(); })),
-      idle_check_(loop.every(idle_max / 4, [this] { drop_idle(); })) {}
+      idle_check_(loop.every(idle_max / 4, [this] { drop_idle(); })) {
+    watch();
+}
 
 ControlSocket::~ControlSocket() {
     for (const Client& client : clients_) ::close(client.descriptor);
+    ::unlink(file_.c_str());  // while it still answers: nobody else has the name yet
     ::close(descriptor_);
-    ::unlink(file_.c_str());
+}
+
+void ControlSocket::watch() {
+    acceptable_ = loop_.on_readable(descriptor_, [this] { accept(); });
+    is_resting_ = false;
 }
 
 void ControlSocket::accept() {
     const int descriptor = ::accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-    if (descriptor < 0) return;
+    if (descriptor < 0) {
+        // Whoever cannot be let in stays at the door, which would keep the loop turning.
+        is_resting_ = errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM;
+        if (!is_resting_) return;
+        spdlog::warn("{}: {}: nobody new is let in for a while", file_.string(), std::strerror(errno));
+        acceptable_ = EventSource();
+        return;
+    }
     if (clients_.size() >= kClientsMax) {
         ++dropped_;
         drop(std::ranges::min_element(clients_, {}, &Client::asked)->descriptor);
@@ -95,6 +109,7 @@ void ControlSocket::drop_idle() {
         if (now - client.asked > idle_max_) idle.push_back(client.descriptor);
     for (const int descriptor : idle) drop(descriptor);
     dropped_ += idle.size();
+    if (is_resting_) watch();
 }
 
 Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, const std::string& request) {

@@ -25,7 +25,8 @@ class ControlSocket {
     /// What a client has not read yet; beyond, it is dropped.
     static constexpr std::size_t kUnreadMax = 4 << 20;
 
-    /// Whoever has asked nothing for so long is dropped.
+    /// Whoever has asked nothing for so long is dropped. Looked after four times meanwhile; so long nobody
+    /// new is let in while this process has no descriptor left.
     static constexpr std::chrono::milliseconds kIdleMax{10'000};
 
     [[nodiscard]] static Result<std::unique_ptr<ControlSocket>, AppError> open(
@@ -48,6 +49,7 @@ class ControlSocket {
     };
     ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer,
                   std::chrono::milliseconds idle_max);
+    void watch();
     void accept();
     /// False if the client is to be dropped.
     [[nodiscard]] bool serve(Client& client);
@@ -64,6 +66,7 @@ class ControlSocket {
     EventSource idle_check_;
     std::list<Client> clients_;
     std::uint64_t dropped_ = 0;
+    bool is_resting_ = false;  ///< no descriptor was left for a new client
 };
 
 /// Asks a daemon one thing, and waits 5 s at most for its whole line.

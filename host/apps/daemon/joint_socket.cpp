@@ -85,8 +85,8 @@ JointSocket& JointSocket::operator=(JointSocket&& other) noexcept {
 
 JointSocket::~JointSocket() {
     if (descriptor_ < 0) return;
+    ::unlink(file_.c_str());  // while it still answers: nobody else has the name yet
     ::close(descriptor_);
-    ::unlink(file_.c_str());
 }
 
 bool JointSocket::receive(std::optional<JointSample>& sample) {

@@ -6,8 +6,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <optional>
+#include <thread>
+
+#include "host/apps/recording/file_lock.hpp"
 
 namespace octoskin {
 namespace {
@@ -41,11 +45,32 @@ bool is_answered(const sockaddr_un& address, int type) {
     return !is_nobody;
 }
 
+/// From the question whether somebody is there until the answer is "we are": two that begin at once would
+/// each find nobody, and the later one would take the earlier one's name away.
+std::optional<FileLock> lock_folder_of(const std::filesystem::path& file) {
+    constexpr int kTries = 400;
+    constexpr std::chrono::milliseconds kPause{5};
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
+    for (int i = 0; i < kTries && !lock; ++i) {
+        std::this_thread::sleep_for(kPause);
+        auto again = FileLock::take(folder, FileLock::Kind::exclusive);
+        if (again) return again;
+    }
+    return lock;
+}
+
 }  // namespace
 
 Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int type) {
     const auto address = address_of(file);
     if (!address) return fail(ExitCode::usage, file.string() + ": a socket's path has 1 to 107 bytes");
+    const auto lock = lock_folder_of(file);
+    if (!lock) {
+        return fail(
+            ExitCode::cannot_create,
+            file.string() + ": another octoskin keeps its folder locked; is it stopped in mid-start?");
+    }
     if (is_answered(*address, type)) {
         return fail(ExitCode::cannot_create,
                     file.string() + ": another octoskin has this socket; stop it, or name another one");

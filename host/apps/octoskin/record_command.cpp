@@ -33,7 +33,11 @@ Json ask(const RecordOptions& options, const std::string& line) {
         throw CommandFailure({ExitCode::bad_data, options.socket.string() + ": not the answer of a daemon"});
     if (!json["ok"].get<bool>())
         throw CommandFailure({ExitCode::unavailable, json["error"].get<std::string>()});
-    return json["recording"];
+    const Json recording = json.value("recording", Json());
+    if (recording.is_object()) return recording;
+    throw CommandFailure({ExitCode::unavailable,
+                          options.socket.string() + ": the daemon knows of no recording: it was started anew "
+                                                    "meanwhile, or never began one"});
 }
 
 /// SIGINT and SIGTERM, taken in order to end the recording rather than this program.

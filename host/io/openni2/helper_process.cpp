@@ -11,8 +11,10 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace octoskin::openni2 {
 namespace {
@@ -54,11 +56,35 @@ class Spawning {
     posix_spawnattr_t attributes_{};
 };
 
+/// Helpers that were killed and that the kernel did not let go of in time, as in the middle of a USB
+/// transfer. Each is looked for again with the next one that begins or ends: so many dead ones stay at most
+/// as there are stuck.
+class LeftBehind {
+  public:
+    void add(pid_t process) {
+        const std::lock_guard lock(mutex_);
+        processes_.push_back(process);
+    }
+    void reap() {
+        const std::lock_guard lock(mutex_);
+        std::erase_if(processes_, [](pid_t process) { return ::waitpid(process, nullptr, WNOHANG) != 0; });
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<pid_t> processes_;
+};
+LeftBehind& left_behind() {
+    static LeftBehind processes;
+    return processes;
+}
+
 }  // namespace
 
 Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::path& program,
                                                         const std::string& argument, HelperPipe pipe,
                                                         HelperComplaints complaints) {
+    left_behind().reap();
     std::array<int, 2> ends{-1, -1};
     // Sockets rather than a pipe: a write to a helper that is stuck must not block, and one to a helper that
     // is gone must not raise SIGPIPE.
@@ -108,8 +134,11 @@ void HelperProcess::end() {
     ::kill(process_, SIGKILL);
     constexpr int kTries = 200;
     const pid_t process = std::exchange(process_, -1);
-    for (int i = 0; i < kTries && ::waitpid(process, nullptr, WNOHANG) == 0; ++i)
+    for (int i = 0; i < kTries; ++i) {
+        if (::waitpid(process, nullptr, WNOHANG) != 0) return left_behind().reap();
         std::this_thread::sleep_for(kStep);
+    }
+    left_behind().add(process);
 }
 
 std::string HelperProcess::complaint() {

@@ -28,7 +28,8 @@ class HelperProcess {
         HelperComplaints complaints = HelperComplaints::on_our_standard_error);
     HelperProcess(HelperProcess&& other) noexcept;
     HelperProcess& operator=(HelperProcess&& other) noexcept;
-    /// Ends a helper that still runs. One that the kernel does not let go of within a second is left behind.
+    /// Ends a helper that still runs. One that the kernel does not let go of within a second is left
+    /// behind, and reaped when another helper begins or ends.
     ~HelperProcess();
 
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }

@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 
 #include <array>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
@@ -133,6 +134,29 @@ TEST_F(DaemonRecording, of_a_killed_daemon_can_be_replayed_to_its_last_line) {
     const Ran replay = run("replay " + out());
     EXPECT_EQ(replay.exit_code, 0) << replay.output;
     EXPECT_NE(replay.output.find("order.log was cut off"), std::string::npos) << replay.output;
+}
+
+/// One that was started anew knows nothing of what the one before it recorded.
+TEST(RecordCommand, says_so_when_the_daemon_knows_of_no_recording) {
+    const ScratchFolder folder;
+    EventLoop loop;
+    const auto socket = ControlSocket::open(folder / "control", loop, [](const std::string&) {
+        return std::string(R"({"ok": true, "recording": null})");
+    });
+    ASSERT_TRUE(socket);
+    Ran ran;
+    std::atomic<bool> is_done = false;
+    std::thread command([&] {
+        ran = run("record " + (folder / "out").string() + " --socket " + (folder / "control").string());
+        is_done = true;
+    });
+    const auto watch = loop.every(20ms, [&] {
+        if (is_done) loop.stop(0);
+    });
+    loop.run();
+    command.join();
+    EXPECT_EQ(ran.exit_code, 69) << ran.output;
+    EXPECT_NE(ran.output.find("knows of no recording"), std::string::npos) << ran.output;
 }
 
 TEST_F(DaemonRecording, names_a_folder_that_it_cannot_record_to_and_goes_on) {

@@ -1,10 +1,14 @@
 #include "host/apps/daemon/control_socket.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
+#include <ctime>
 #include <thread>
 #include <vector>
 
@@ -133,6 +137,70 @@ TEST_F(ControlSocketTest, drops_who_asks_nothing_and_keeps_who_does) {
         ::close(busy);
     });
     EXPECT_EQ((*opened)->dropped(), 1U);
+}
+
+/// New descriptors are refused while it lives; those that are there go on.
+class NoDescriptors {
+  public:
+    NoDescriptors() {
+        ::getrlimit(RLIMIT_NOFILE, &before_);
+        const rlimit none{0, before_.rlim_max};
+        ::setrlimit(RLIMIT_NOFILE, &none);
+    }
+    ~NoDescriptors() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+    NoDescriptors(const NoDescriptors&) = delete;
+    NoDescriptors& operator=(const NoDescriptors&) = delete;
+
+  private:
+    rlimit before_{};
+};
+
+TEST_F(ControlSocketTest, rests_without_descriptors_and_lets_in_who_waited) {
+    auto opened = ControlSocket::open(
+        folder_ / "quick", loop_, [](const std::string&) { return std::string("yes"); }, 200ms);
+    ASSERT_TRUE(opened);
+    const int client = *connect_unix_socket(folder_ / "quick", SOCK_STREAM);
+    ASSERT_EQ(::send(client, "ask\n", 4, MSG_NOSIGNAL), 4);
+    std::optional<NoDescriptors> none(std::in_place);
+    serve([&] {
+        const std::clock_t before = std::clock();
+        std::this_thread::sleep_for(500ms);
+        const double busy_s = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+        EXPECT_LT(busy_s, 0.2) << "the loop turned all the time";
+        none.reset();
+        std::array<char, 8> bytes{};
+        EXPECT_EQ(::recv(client, bytes.data(), bytes.size(), 0), 4);
+        ::close(client);
+    });
+}
+
+TEST(UnixSocket, is_given_to_one_of_many_that_begin_at_once) {
+    const testing_support::ScratchFolder folder;
+    for (const int type : {SOCK_STREAM, SOCK_DGRAM}) {
+        for (int round = 0; round < 50; ++round) {
+            const auto file = folder / ("socket" + std::to_string(type));
+            const auto dead =
+                bind_unix_socket(file, type);  // a name, and nobody behind: each wants to replace it
+            ASSERT_TRUE(dead);
+            ::close(*dead);
+            std::atomic<int> waiting = 4;
+            std::array<int, 4> got{-1, -1, -1, -1};
+            std::vector<std::thread> threads;
+            for (int& mine : got) {
+                threads.emplace_back([&] {
+                    --waiting;
+                    while (waiting > 0) std::this_thread::yield();
+                    if (const auto bound = bind_unix_socket(file, type)) mine = *bound;
+                });
+            }
+            for (std::thread& thread : threads) thread.join();
+            EXPECT_EQ(std::ranges::count_if(got, [](int descriptor) { return descriptor >= 0; }), 1) << round;
+            EXPECT_TRUE(connect_unix_socket(file, type)) << "its name was taken away";
+            for (const int descriptor : got)
+                if (descriptor >= 0) ::close(descriptor);
+            ::unlink(file.c_str());
+        }
+    }
 }
 
 TEST_F(ControlSocketTest, is_one_at_a_place_and_takes_over_from_the_dead) {
