@@ -10,6 +10,7 @@ using socketcan::Received;
 using socketcan::SocketFault;
 
 bool CanLink::attend(HostTime now) {
+    if (socket_) ask_controller(now);
     if (socket_ || (tried_ && now - *tried_ < kRetry)) return false;
     tried_ = now;
     auto opened = opener_();
@@ -36,8 +37,7 @@ std::optional<Received> CanLink::receive() {
             on_error_frame((*received)->entry.frame);
             continue;
         }
-        // Who is down or off the bus hears nothing. Not every adapter says that it is back.
-        if (state_ == LinkState::down || state_ == LinkState::bus_off) set(LinkState::up, {});
+        on_traffic((*received)->is_own);
         ++counts_.received;
         return std::move(received).value();
     }
@@ -90,17 +90,51 @@ void CanLink::on_error_frame(const wire::CanFrame& frame) {
     ++counts_.error_frames;
     const std::uint8_t controller = frame.data[1];
     const bool is_controller = (frame.can_id & CAN_ERR_CRTL) != 0;
+    sent_since_error_ = 0;
     if ((frame.can_id & CAN_ERR_BUSOFF) != 0) {
-        ++counts_.bus_off;
-        set(LinkState::bus_off,
-            "the adapter is bus-off (`ip link set NAME type can restart-ms 100` lets it come back)");
+        set_bus_off();
     } else if (is_controller && (controller & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE)) != 0) {
-        set(LinkState::error_passive,
-            "the adapter is error-passive: nobody acknowledges, other bit rates, or a disturbed line");
+        set_error_passive((controller & CAN_ERR_CRTL_TX_PASSIVE) != 0);
     } else if ((frame.can_id & CAN_ERR_RESTARTED) != 0 ||
                (is_controller && (controller & CAN_ERR_CRTL_ACTIVE) != 0)) {
         set(LinkState::up, {});
     }
+}
+
+/// Who is down or off the bus hears nothing; whose receiver was error-passive is so no longer after one
+/// frame, whose transmitter, after kSentToRecover. Not every adapter says that it is back.
+void CanLink::on_traffic(bool is_own) {
+    const bool is_passive = state_ == LinkState::error_passive;
+    sent_since_error_ += is_own ? 1 : 0;
+    const bool has_recovered = is_transmitter_passive_ ? sent_since_error_ >= kSentToRecover : !is_own;
+    const bool is_back =
+        state_ == LinkState::down || state_ == LinkState::bus_off || (is_passive && has_recovered);
+    if (is_back) set(LinkState::up, {});
+}
+
+void CanLink::ask_controller(HostTime now) {
+    if (!state_reader_ || state_ == LinkState::down || (asked_ && now - *asked_ < kAsk)) return;
+    asked_ = now;
+    using socketcan::ControllerState;
+    const auto state = state_reader_();
+    if (state == ControllerState::bus_off && state_ != LinkState::bus_off) set_bus_off();
+    if (state == ControllerState::error_passive && state_ != LinkState::error_passive)
+        set_error_passive(true);
+    const bool is_active = state == ControllerState::error_active || state == ControllerState::error_warning;
+    if (is_active && state_ != LinkState::up) set(LinkState::up, {});
+}
+
+void CanLink::set_bus_off() {
+    ++counts_.bus_off;
+    set(LinkState::bus_off,
+        "the adapter is bus-off (`ip link set NAME type can restart-ms 100` lets it come back)");
+}
+
+void CanLink::set_error_passive(bool is_transmitter) {
+    is_transmitter_passive_ = is_transmitter;
+    sent_since_error_ = 0;
+    set(LinkState::error_passive,
+        "the adapter is error-passive: nobody acknowledges, other bit rates, or a disturbed line");
 }
 
 void CanLink::set(LinkState state, std::string why) {

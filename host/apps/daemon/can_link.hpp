@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/io/socketcan/can_socket.hpp"
+#include "host/io/socketcan/controller_state.hpp"
 
 namespace octoskin {
 
@@ -26,12 +27,22 @@ enum class LinkState : std::uint8_t {
 class CanLink {
   public:
     using Opener = std::function<Result<socketcan::CanSocket, socketcan::SocketFault>()>;
+    /// How the controller stands; empty if nobody can say.
+    using StateReader = std::function<std::optional<socketcan::ControllerState>()>;
     /// How often a closed link is tried.
     static constexpr Nanoseconds kRetry{200'000'000};
+    /// How often the controller of an open one is asked for its state.
+    static constexpr Nanoseconds kAsk{1'000'000'000};
+    /// An error-passive transmitter has an error count of 128 to 255, and each frame that is acknowledged
+    /// takes one off: after so many without an error it is active again (ISO 11898-1, fault confinement).
+    static constexpr int kSentToRecover = 128;
 
     /// `on_close` before each close of a descriptor: whoever watches it must let go of it first.
-    explicit CanLink(Opener opener, std::function<void()> on_close = {})
-        : opener_(std::move(opener)), on_close_(std::move(on_close)) {}
+    /// `state_reader`: asked once a second, for adapters whose controllers recover, or fail, without a word.
+    explicit CanLink(Opener opener, std::function<void()> on_close = {}, StateReader state_reader = {})
+        : opener_(std::move(opener)),
+          on_close_(std::move(on_close)),
+          state_reader_(std::move(state_reader)) {}
 
     /// Opens the interface if it is closed and a try is due. True if the descriptor changed.
     bool attend(HostTime now);
@@ -67,10 +78,18 @@ class CanLink {
     void close();
     void on_fault(const socketcan::SocketFault& fault);
     void on_error_frame(const wire::CanFrame& frame);
+    void on_traffic(bool is_own);
+    void ask_controller(HostTime now);
+    void set_bus_off();
+    void set_error_passive(bool is_transmitter);
     void set(LinkState state, std::string why);
 
     Opener opener_;
     std::function<void()> on_close_;
+    StateReader state_reader_;
+    std::optional<HostTime> asked_;
+    bool is_transmitter_passive_ = false;  ///< else the receiver alone, while error-passive
+    int sent_since_error_ = 0;
     std::optional<socketcan::CanSocket> socket_;
     std::optional<HostTime> tried_;
     bool was_open_ = false;

@@ -27,6 +27,11 @@ CanLink::Opener opener(const DaemonRequest& request, const HostRig& rig) {
     };
 }
 
+CanLink::StateReader state_reader(const DaemonRequest& request) {
+    if (request.can_descriptor) return {};
+    return [interface = request.interface] { return socketcan::read_controller_state(interface); };
+}
+
 LocalJoints local_joints_of(const HostRig& rig) {
     return {rig.joints.node_id, rig.joints.joints.size(), rig.joints.rate_hz};
 }
@@ -39,7 +44,8 @@ Inputs::Inputs(const DaemonRequest& request, const HostRig& rig, EventLoop& loop
       loop_(loop),
       pipeline_(pipeline),
       recordings_(recordings),
-      can_(opener(request, rig), [this] { can_ready_ = EventSource(); }),
+      can_(
+          opener(request, rig), [this] { can_ready_ = EventSource(); }, state_reader(request)),
       joint_node_(rig.joints.node_id),
       local_joints_(local_joints_of(rig)) {}
 

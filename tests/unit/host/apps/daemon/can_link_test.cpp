@@ -17,15 +17,18 @@ constexpr Nanoseconds kMs{1'000'000};
 class CanLinkTest : public testing::Test {
   protected:
     CanLinkTest()
-        : link_([this]() -> Result<socketcan::CanSocket, socketcan::SocketFault> {
-              ++tries_;
-              if (!is_there_) return unexpected(socketcan::SocketFault{"can0", ENODEV, "no such interface"});
-              std::array<int, 2> ends{};
-              EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data()), 0);
-              unplug();
-              other_.emplace("can0", ends[1]);
-              return socketcan::CanSocket("can0", ends[0]);
-          }) {}
+        : link_(
+              [this]() -> Result<socketcan::CanSocket, socketcan::SocketFault> {
+                  ++tries_;
+                  if (!is_there_)
+                      return unexpected(socketcan::SocketFault{"can0", ENODEV, "no such interface"});
+                  std::array<int, 2> ends{};
+                  EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data()), 0);
+                  unplug();
+                  other_.emplace("can0", ends[1]);
+                  return socketcan::CanSocket("can0", ends[0], true);
+              },
+              {}, [this] { return state_; }) {}
     void unplug() { other_.reset(); }
     void say(std::uint32_t error_class, std::uint8_t controller = 0) {
         wire::CanFrame frame{.can_id = error_class, .is_error = true, .payload_len = 8};
@@ -34,8 +37,19 @@ class CanLinkTest : public testing::Test {
         EXPECT_FALSE(link_.receive()) << "an error frame is no traffic";
     }
 
+    void hear_one() {
+        ASSERT_TRUE(other_->send({.can_id = 5}).value());
+        EXPECT_TRUE(link_.receive());
+    }
+    void send_one() {
+        ASSERT_TRUE(link_.send({.can_id = 6}));
+        EXPECT_TRUE(link_.receive()) << "its echo";
+    }
+
     bool is_there_ = true;
+    std::optional<socketcan::ControllerState> state_;  ///< what the kernel says of the controller
     int tries_ = 0;
+    HostTime now_;
     std::optional<socketcan::CanSocket> other_;
     CanLink link_;
 };
@@ -101,6 +115,55 @@ TEST_F(CanLinkTest, is_opened_in_another_way_when_told_so) {
     EXPECT_EQ(link_.descriptor(), -1);
     EXPECT_FALSE(link_.attend({}));
     EXPECT_EQ(others, 1);
+}
+
+TEST_F(CanLinkTest, believes_the_kernel_about_a_controller_that_recovers_without_a_word) {
+    using socketcan::ControllerState;
+    ASSERT_TRUE(link_.attend({}));
+    for (const auto recovered : {ControllerState::error_active, ControllerState::error_warning}) {
+        say(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
+        state_ = ControllerState::error_passive;
+        EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
+        EXPECT_EQ(link_.state(), LinkState::error_passive);
+        state_ = recovered;
+        EXPECT_FALSE(link_.attend(now_ + CanLink::kAsk - Nanoseconds{1}));
+        EXPECT_EQ(link_.state(), LinkState::error_passive) << "asked more than once a second";
+        EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
+        EXPECT_EQ(link_.state(), LinkState::up);
+    }
+    state_ = ControllerState::bus_off;
+    EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
+    EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
+    EXPECT_EQ(link_.state(), LinkState::bus_off);
+    EXPECT_EQ(link_.counts().bus_off, 1U);
+    state_ = ControllerState::stopped;  // that it is down the socket says, with what to do
+    EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
+    EXPECT_EQ(link_.state(), LinkState::bus_off);
+    state_.reset();
+    EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
+    EXPECT_EQ(link_.state(), LinkState::bus_off) << "nobody said anything";
+}
+
+TEST_F(CanLinkTest, is_no_longer_error_passive_after_128_frames_that_were_acknowledged) {
+    ASSERT_TRUE(link_.attend({}));
+    say(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
+    for (int i = 0; i < 127; ++i) send_one();
+    EXPECT_EQ(link_.state(), LinkState::error_passive);
+    say(CAN_ERR_PROT);  // an error: it counts up again
+    for (int i = 0; i < 127; ++i) send_one();
+    for (int i = 0; i < 300; ++i) hear_one();
+    EXPECT_EQ(link_.state(), LinkState::error_passive) << "hearing is no proof of being heard";
+    send_one();
+    EXPECT_EQ(link_.state(), LinkState::up);
+}
+
+TEST_F(CanLinkTest, is_no_longer_error_passive_as_a_receiver_when_it_hears_a_frame) {
+    ASSERT_TRUE(link_.attend({}));
+    say(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_PASSIVE);
+    send_one();
+    EXPECT_EQ(link_.state(), LinkState::error_passive);
+    hear_one();
+    EXPECT_EQ(link_.state(), LinkState::up);
 }
 
 TEST_F(CanLinkTest, is_no_longer_bus_off_when_it_hears_a_frame) {
