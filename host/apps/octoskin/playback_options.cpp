@@ -3,6 +3,8 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/study/configuration.hpp"
+#include "host/io/tum/data_set_camera.hpp"
+#include "hw/rigfile/joined.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -24,6 +26,9 @@ void add_playback_options(CLI::App& command, PlaybackOptions& options) {
         ->check(existing_file());
     command.add_option("--robot", options.robot, "Robot (URDF) in place of the recording's")
         ->check(existing_file());
+    command.add_option("--camera", options.camera,
+                       "Of a TUM RGB-D data set without --rig: " + rig::joined(tum::kDataSetCameras) +
+                           " (default: " + std::string(tum::kDataSetCameras.front()) + ")");
     command.add_flag("--by-capture-time", options.is_by_capture_time,
                      "In the order of capture times, even if the recording has a daemon's own order");
 }
@@ -38,6 +43,7 @@ PlaybackRequest playback_request(const PlaybackOptions& options) {
             .maps = {},
             .rig = options.rig,
             .robot = options.robot,
+            .camera = options.camera,
             .is_by_capture_time = options.is_by_capture_time,
             .pace = {},
             .listener = nullptr};

@@ -13,6 +13,7 @@ struct PlaybackOptions {
     std::filesystem::path recording;
     std::filesystem::path rig;    ///< empty: the recording's
     std::filesystem::path robot;  ///< empty: the recording's
+    std::string camera;           ///< of a data set without rig; empty: what most of them take
     std::string configuration;    ///< empty: the recording's own, or robust
     bool is_by_capture_time = false;
 };

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/log_survey.hpp"
 #include "host/apps/playback/ordered_playback.hpp"
 #include "host/apps/recording/reading.hpp"
@@ -145,6 +146,9 @@ void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInp
         playback.warnings.emplace_back(
             "the recording has a depth.oni, but the rig has no camera: its frames are not used");
     }
+}
+
+void find_full_maps(Playback& playback) {
     const std::pair<const char*, const FusedMap*> maps[] = {
         {"depth", playback.pipeline.maps().depth()},
         {"proximity", playback.pipeline.maps().proximity()},
@@ -220,11 +224,7 @@ Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& set
 
 std::optional<AppError> failure_of(const Playback& playback) {
     if (const auto& failed = playback.outcome.can_error) return AppError{ExitCode::bad_data, failed->what};
-    if (const auto& failed = playback.outcome.depth_error) {
-        return AppError{ExitCode::bad_data, failed->what +
-                                                " (to map the ranges alone, move depth.oni and "
-                                                "depth.epoch.yaml away)"};
-    }
+    if (const auto& failed = playback.outcome.depth_error) return AppError{ExitCode::bad_data, failed->what};
     const bool is_balanced =
         playback.pipeline.is_balanced() && std::all_of(playback.accounts.begin(), playback.accounts.end(),
                                                        [](const auto& table) { return table.is_balanced; });
@@ -238,6 +238,7 @@ std::optional<AppError> failure_of(const Playback& playback) {
 }
 
 Status<AppError> check_playable(const PlaybackRequest& request) {
+    if (is_data_set(request.recording)) return check_data_set(request);
     // First: a recording whose last file is still to be put in place has no meta.yaml.
     if (const auto settled = settle_file_set(request.recording.directory); !settled)
         return unexpected(settled.error());
@@ -246,10 +247,9 @@ Status<AppError> check_playable(const PlaybackRequest& request) {
     return Done{};
 }
 
-Result<Playback, AppError> play_recording(const PlaybackRequest& request, const ReplayReport& report) {
-    if (const auto checked = check_playable(request); !checked) return unexpected(checked.error());
-    const auto lock = lock_recording(request.recording);
-    if (!lock) return unexpected(lock.error());
+namespace {
+
+Result<Playback, AppError> play_robot(const PlaybackRequest& request, const ReplayReport& report) {
     const auto meta = read_meta(request.recording);
     if (!meta) return fail(ExitCode::bad_data, meta.error().message());
     auto setup = read_setup(request);
@@ -262,12 +262,27 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
     auto playback = play(request, *setup, depth, std::move(*origin), report);
     if (!playback) return playback;
     if (depth.error) playback->outcome.depth_error = depth.error;
-    if (const DepthStage* stage = playback->pipeline.depth_stage())
-        playback->accounts.push_back(pixel_table(*stage));
+    if (auto& failed = playback->outcome.depth_error)
+        failed->what += " (to map the ranges alone, move depth.oni and depth.epoch.yaml away)";
     if (depth.reader) {
         if (auto loss = depth.reader->loss()) playback->warnings.push_back(std::move(*loss));
     }
     find_warnings(*meta, rig, depth, *playback);
+    return playback;
+}
+
+}  // namespace
+
+Result<Playback, AppError> play_recording(const PlaybackRequest& request, const ReplayReport& report) {
+    if (const auto checked = check_playable(request); !checked) return unexpected(checked.error());
+    const auto lock = lock_recording(request.recording);
+    if (!lock) return unexpected(lock.error());
+    auto playback =
+        is_data_set(request.recording) ? play_data_set(request, report) : play_robot(request, report);
+    if (!playback) return playback;
+    if (const DepthStage* stage = playback->pipeline.depth_stage())
+        playback->accounts.push_back(pixel_table(*stage));
+    find_full_maps(*playback);
     return playback;
 }
 

@@ -26,6 +26,8 @@ struct PlaybackRequest {
     MapChoice maps;
     std::filesystem::path rig;    ///< in place of the recording's; empty: the recording's
     std::filesystem::path robot;  ///< in place of the recording's; empty: the recording's
+    /// Of a data set for which no rig is given, one of tum::kDataSetCameras; empty: the first.
+    std::string camera = {};
     /// In the order of capture times, even if the recording has a daemon's own order.
     bool is_by_capture_time = false;
     Pace pace = {};
@@ -54,9 +56,10 @@ struct Playback {
 /// before they play it.
 [[nodiscard]] Status<AppError> check_playable(const PlaybackRequest& request);
 
-/// Opens a recording and plays it to its end: in a daemon's own order, if it has one. A source that fails on
-/// the way (a truncated .oni) is told in `outcome`, and what came before it is on the maps. Several threads
-/// may play at once; while one does, no octoskin replaces the recording.
+/// Opens a recording and plays it to its end: in a daemon's own order, if it has one. A data set in the TUM
+/// RGB-D layout is played as well (data_set_playback.hpp). A source that fails on the way (a truncated .oni)
+/// is told in `outcome`, and what came before it is on the maps. Several threads may play at once; while one
+/// does, no octoskin replaces the recording.
 [[nodiscard]] Result<Playback, AppError> play_recording(const PlaybackRequest& request,
                                                         const ReplayReport& report = {});
 

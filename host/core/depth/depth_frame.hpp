@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/time.hpp"
@@ -25,6 +26,8 @@ struct DepthFrame {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::vector<std::uint16_t> depth_mm;
+    /// Of a camera that moved: where its optical frame was. Empty: where the rig says.
+    std::optional<Eigen::Isometry3d> T_map_camera = std::nullopt;
 };
 
 /// Depth along the optical axis in metres, height x width row-major; NaN = no value. What filters take and

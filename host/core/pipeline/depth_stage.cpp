@@ -28,11 +28,13 @@ DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config)
     : camera_(rig.camera.value()),
       config_(config),
       self_margin_m_(rig.depth_self_margin_m),
+      T_map_base_(rig.T_map_base),
       T_map_camera_(rig.T_map_base * camera_.T_base_camera),
       integrator_(config, camera_.intrinsics) {}
 
-std::uint64_t DepthStage::take_robot_out(DepthImage& image, const RobotPose& robot) {
-    const Eigen::Isometry3d T_camera_base = camera_.T_base_camera.inverse();
+std::uint64_t DepthStage::take_robot_out(DepthImage& image, const RobotPose& robot,
+                                         const Eigen::Isometry3d& T_base_camera) {
+    const Eigen::Isometry3d T_camera_base = T_base_camera.inverse();
     body_camera_ = robot.body_base;
     for (PosedCapsule& capsule : body_camera_) {
         capsule.p_a = T_camera_base * capsule.p_a;
@@ -53,8 +55,11 @@ Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, c
     if (config_.depth_filter.is_enabled) {
         image = filter_depth(image, config_.depth_filter);
     }
-    const std::uint64_t robot_pixels = needs_robot() ? take_robot_out(image, *robot) : 0;
-    Result<DepthUpdates, DepthRejection> updates = integrator_.integrate(image, T_map_camera_);
+    const Eigen::Isometry3d T_base_camera =
+        frame.T_map_camera ? T_map_base_.inverse() * *frame.T_map_camera : camera_.T_base_camera;
+    const std::uint64_t robot_pixels = needs_robot() ? take_robot_out(image, *robot, T_base_camera) : 0;
+    Result<DepthUpdates, DepthRejection> updates =
+        integrator_.integrate(image, frame.T_map_camera.value_or(T_map_camera_));
     if (!updates) {
         return unexpected(reason_of(updates.error()));
     }

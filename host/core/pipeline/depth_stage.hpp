@@ -33,12 +33,14 @@ class DepthStage {
 
   private:
     /// How many pixels showed it.
-    [[nodiscard]] std::uint64_t take_robot_out(DepthImage& image, const RobotPose& robot);
+    [[nodiscard]] std::uint64_t take_robot_out(DepthImage& image, const RobotPose& robot,
+                                               const Eigen::Isometry3d& T_base_camera);
 
     HostCamera camera_;
     MappingConfig config_;
     double self_margin_m_;
-    Eigen::Isometry3d T_map_camera_;
+    Eigen::Isometry3d T_map_base_;
+    Eigen::Isometry3d T_map_camera_;  ///< of a frame that does not say where the camera was
     DepthIntegrator integrator_;
     std::vector<PosedCapsule> body_camera_;
     std::uint64_t robot_pixels_ = 0;

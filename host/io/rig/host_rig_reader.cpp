@@ -36,16 +36,6 @@ HostNode to_host(const rig::Node& node) {
     return host;
 }
 
-HostCamera to_host(const rig::Camera& camera) {
-    HostCamera host;
-    host.intrinsics = {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy};
-    host.depth_min_m = camera.depth_min_m;
-    host.depth_max_m = camera.depth_max_m;
-    host.T_base_camera = camera.T_base_camera;
-    host.rate_hz = camera.rate_hz;
-    return host;
-}
-
 HostRangeLimits to_host(const rig::RangeLimits& limits) {
     return {.min_m = limits.min_m,
             .max_m = limits.max_m,
@@ -60,7 +50,7 @@ HostRig to_host(const rig::Rig& rig) {
     host.T_map_base = rig.T_map_base;
     for (const rig::Node& node : rig.nodes) host.nodes.push_back(to_host(node));
     host.joints = {rig.joints.node_id, rig.joints.joints, rig.joints.rate_hz};
-    if (rig.camera) host.camera = to_host(*rig.camera);
+    if (rig.camera) host.camera = host_camera(*rig.camera);
     host.links_ignored_by_sensors = rig.links_ignored_by_sensors;
     host.depth_self_margin_m = rig.depth_self_margin_m;
     host.range_self_margin_m = rig.range_self_margin_m;
@@ -69,6 +59,16 @@ HostRig to_host(const rig::Rig& rig) {
 }
 
 }  // namespace
+
+HostCamera host_camera(const rig::Camera& camera) {
+    HostCamera host;
+    host.intrinsics = {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy};
+    host.depth_min_m = camera.depth_min_m;
+    host.depth_max_m = camera.depth_max_m;
+    host.T_base_camera = camera.T_base_camera;
+    host.rate_hz = camera.rate_hz;
+    return host;
+}
 
 Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
     auto robot = read_robot_model(rig.urdf, rig.base_link, rig.joints.joints);

@@ -16,6 +16,8 @@ struct HostSetup {
     RobotModel robot;  ///< from rig.base_link; joint vectors in the order of rig.joints.joints
 };
 
+[[nodiscard]] HostCamera host_camera(const rig::Camera& camera);
+
 /// Takes over what the host core needs and reads the robot's body and kinematics from `rig.urdf`. Errors:
 /// those of the URDF, and a body capsule on a link that does not hang below the rig's base link.
 [[nodiscard]] Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig);

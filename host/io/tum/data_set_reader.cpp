@@ -1,0 +1,61 @@
+#include "host/io/tum/data_set_reader.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "host/io/tum/depth_png.hpp"
+#include "host/io/tum/line_file.hpp"
+
+namespace octoskin::tum {
+
+Result<DataSetReader, DepthSourceError> DataSetReader::open(const std::filesystem::path& folder) {
+    Paths paths{folder};
+    auto trajectory = Trajectory::read(paths.poses());
+    if (!trajectory) return unexpected(trajectory.error());
+    DataSetReader reader(std::move(paths), std::move(*trajectory));
+    std::vector<Image>& images = reader.images_;
+    const auto take = [&images](std::uint64_t number, std::string_view line) -> Status<std::string> {
+        auto image = parse_image_line(line);
+        if (!image) return unexpected(image.error());
+        if (!images.empty() && image->captured < images.back().named.captured)
+            return unexpected(std::string("its time is before that of the image above it"));
+        images.push_back({number, std::move(*image)});
+        return Done{};
+    };
+    if (const auto done = read_lines(reader.paths_.images(), take); !done) return unexpected(done.error());
+    return reader;
+}
+
+Result<std::optional<DepthFrame>, DepthSourceError> DataSetReader::next() {
+    for (; next_ < images_.size(); ++next_) {
+        const auto& [line, named] = images_[next_];
+        const auto T_map_camera = trajectory_.at(named.captured);
+        if (!T_map_camera) {
+            ++images_without_pose_;
+            continue;
+        }
+        const auto image = read_depth_png(paths_.folder / named.file);
+        if (!image) return unexpected(line_error(paths_.images(), line, named.file + ": " + image.error()));
+        ++next_;
+        ++images_read_;
+        DepthFrame frame{named.captured, image->width, image->height, {}, T_map_camera};
+        frame.depth_mm.reserve(image->values.size());
+        std::transform(image->values.begin(), image->values.end(), std::back_inserter(frame.depth_mm),
+                       depth_mm_of);
+        return std::optional(std::move(frame));
+    }
+    return std::optional<DepthFrame>{};
+}
+
+std::optional<HostTime> DataSetReader::begin() const {
+    if (images_.empty()) return std::nullopt;
+    return images_.front().named.captured;
+}
+
+std::vector<std::filesystem::path> DataSetReader::files() const {
+    std::vector<std::filesystem::path> files{paths_.images(), paths_.poses()};
+    for (const Image& image : images_) files.push_back(paths_.folder / image.named.file);
+    return files;
+}
+
+}  // namespace octoskin::tum

@@ -1,0 +1,62 @@
+// A data set of depth images and camera poses, as a source of depth frames.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "common/result.hpp"
+#include "host/core/depth/depth_source.hpp"
+#include "host/io/tum/trajectory.hpp"
+
+namespace octoskin::tum {
+
+/// What a file of depth.txt means, in millimetres to the nearest one; 0, no value, stays 0. A pixel of 5000
+/// is 1 m: https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats
+[[nodiscard]] constexpr std::uint16_t depth_mm_of(std::uint16_t value) noexcept {
+    constexpr unsigned kValuesPerMm = 5;
+    return static_cast<std::uint16_t>((value + kValuesPerMm / 2) / kValuesPerMm);
+}
+
+class DataSetReader final : public DepthSource {
+  public:
+    struct Paths {
+        std::filesystem::path folder;
+        [[nodiscard]] std::filesystem::path images() const { return folder / "depth.txt"; }
+        [[nodiscard]] std::filesystem::path poses() const { return folder / "groundtruth.txt"; }
+    };
+
+    /// Reads both lists. Errors name file and line: no list, or an image before its predecessor.
+    [[nodiscard]] static Result<DataSetReader, DepthSourceError> open(const std::filesystem::path& folder);
+
+    /// The next image that has a pose; the others are counted. Its frame says where the camera was. An error
+    /// names the image and its line in depth.txt, and is the same for ever.
+    [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override;
+
+    [[nodiscard]] std::uint64_t images_read() const noexcept { return images_read_; }
+    [[nodiscard]] std::uint64_t images_without_pose() const noexcept { return images_without_pose_; }
+    /// Of images that are neither read nor counted yet.
+    [[nodiscard]] std::uint64_t images_left() const noexcept { return images_.size() - next_; }
+    /// When the first image was made; empty if there is none.
+    [[nodiscard]] std::optional<HostTime> begin() const;
+    /// Both lists and every image of depth.txt: what the data set measured.
+    [[nodiscard]] std::vector<std::filesystem::path> files() const;
+
+  private:
+    struct Image {
+        std::uint64_t line = 0;
+        ImageLine named;
+    };
+    DataSetReader(Paths paths, Trajectory trajectory)
+        : paths_(std::move(paths)), trajectory_(std::move(trajectory)) {}
+
+    Paths paths_;
+    Trajectory trajectory_;
+    std::vector<Image> images_;
+    std::size_t next_ = 0;
+    std::uint64_t images_read_ = 0;
+    std::uint64_t images_without_pose_ = 0;
+};
+
+}  // namespace octoskin::tum

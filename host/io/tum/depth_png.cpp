@@ -1,0 +1,81 @@
+#include "host/io/tum/depth_png.hpp"
+
+#include <png.h>
+
+#include <bit>
+#include <csetjmp>
+#include <cstdio>
+#include <memory>
+
+namespace octoskin::tum {
+namespace {
+
+constexpr png_uint_32 kSideMax = 4096;
+
+/// What libpng works on. It reports errors by a jump out of itself, so nothing with a destructor may stand
+/// between setjmp() and its calls: all that has one lives here.
+struct Decoding {
+    Decoding() = default;
+    Decoding(const Decoding&) = delete;
+    Decoding& operator=(const Decoding&) = delete;
+    ~Decoding() { png_destroy_read_struct(&png, &info, nullptr); }
+
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file{nullptr, &std::fclose};
+    png_structp png = nullptr;
+    png_infop info = nullptr;
+    std::string complaint;
+    DepthPng image;
+    std::vector<png_bytep> rows;
+};
+
+[[noreturn]] void keep_error(png_structp png, png_const_charp message) {
+    static_cast<Decoding*>(png_get_error_ptr(png))->complaint = message;
+    png_longjmp(png, 1);
+}
+
+void ignore_warning(png_structp /*png*/, png_const_charp /*message*/) {}
+
+bool read_header(Decoding& decoding) {
+    if (setjmp(png_jmpbuf(decoding.png)) != 0) return false;
+    png_set_user_limits(decoding.png, kSideMax, kSideMax);
+    png_init_io(decoding.png, decoding.file.get());
+    png_read_info(decoding.png, decoding.info);
+    return true;
+}
+
+bool read_pixels(Decoding& decoding) {
+    if (setjmp(png_jmpbuf(decoding.png)) != 0) return false;
+    if constexpr (std::endian::native == std::endian::little) png_set_swap(decoding.png);
+    png_read_image(decoding.png, decoding.rows.data());
+    png_read_end(decoding.png, nullptr);
+    return true;
+}
+
+void make_room(Decoding& decoding) {
+    DepthPng& image = decoding.image;
+    image.width = png_get_image_width(decoding.png, decoding.info);
+    image.height = png_get_image_height(decoding.png, decoding.info);
+    image.values.resize(std::size_t{image.width} * image.height);
+    for (std::size_t row = 0; row < image.height; ++row)
+        decoding.rows.push_back(reinterpret_cast<png_bytep>(image.values.data() + row * image.width));
+}
+
+}  // namespace
+
+Result<DepthPng, std::string> read_depth_png(const std::filesystem::path& file) {
+    Decoding decoding;
+    decoding.file.reset(std::fopen(file.c_str(), "rb"));
+    if (!decoding.file) return unexpected(std::string("cannot be opened"));
+    decoding.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &decoding, keep_error, ignore_warning);
+    if (decoding.png != nullptr) decoding.info = png_create_info_struct(decoding.png);
+    if (decoding.info == nullptr) return unexpected(std::string("no memory to read it"));
+    if (!read_header(decoding)) return unexpected("cannot be read as PNG: " + decoding.complaint);
+    const int bits = png_get_bit_depth(decoding.png, decoding.info);
+    if (bits != 16 || png_get_color_type(decoding.png, decoding.info) != PNG_COLOR_TYPE_GRAY)
+        return unexpected(std::string("expected one grey channel of 16 bits, as depth images have"));
+    make_room(decoding);
+    if (!read_pixels(decoding)) return unexpected("cannot be read whole: " + decoding.complaint);
+    return std::move(decoding.image);
+}
+
+}  // namespace octoskin::tum

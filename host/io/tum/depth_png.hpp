@@ -1,0 +1,23 @@
+// Depth images as 16-bit PNG files.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/result.hpp"
+
+namespace octoskin::tum {
+
+struct DepthPng {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<std::uint16_t> values;  ///< row-major, as they are in the file: no gamma is applied
+};
+
+/// Errors say what is wrong, without the name: not to be opened, no PNG, cut off or damaged, not grey with 16
+/// bits, over 4096 x 4096. About 4 ms for 640 x 480.
+[[nodiscard]] Result<DepthPng, std::string> read_depth_png(const std::filesystem::path& file);
+
+}  // namespace octoskin::tum

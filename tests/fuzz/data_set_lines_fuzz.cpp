@@ -1,0 +1,22 @@
+// Lines of a data set: taken, or refused with a reason; a pose that is taken is a rigid motion.
+#include <cassert>
+
+#include "host/io/tum/data_set_lines.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace octoskin;
+    const std::string_view line = fuzz::text_of({data, size});
+    if (const auto image = tum::parse_image_line(line)) {
+        assert(image->captured.ns >= 0 && !image->file.empty());
+    } else {
+        assert(!image.error().empty());
+    }
+    if (const auto pose = tum::parse_pose_line(line)) {
+        assert(pose->at.ns >= 0 && pose->T_map_camera.matrix().allFinite());
+        assert((pose->T_map_camera.linear() * pose->T_map_camera.linear().transpose()).isIdentity(1e-9));
+    } else {
+        assert(!pose.error().empty());
+    }
+    return 0;
+}

@@ -1,0 +1,105 @@
+// A TUM RGB-D data set through the program, against an .oni recording of the same images.
+#include <gmock/gmock.h>
+
+#include <random>
+#include <sstream>
+
+#include "host/io/openni2/oni_writer.hpp"
+#include "tests/support/data_set/written_data_set.hpp"
+#include "tests/system/cli/program.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::Grey;
+using testing_support::WrittenDataSet;
+
+constexpr int kFrames = 6;
+constexpr unsigned kWidth = 128;  // as tests/data/short/rig.yaml
+constexpr unsigned kHeight = 106;
+
+Grey noisy_wall(unsigned seed) {
+    std::mt19937 random(seed);
+    Grey image{kWidth, kHeight, {}};
+    for (unsigned i = 0; i < kWidth * kHeight; ++i)
+        image.values.push_back(
+            static_cast<std::uint16_t>(random() % 9 == 0 ? 0 : 5 * (2'000 + random() % 90)));
+    return image;
+}
+
+/// An OpenNI2 camera at (0.1, 0.2, 0.8) that looks along x, as a recording with a silent bus.
+void record(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    write(folder / "can.log", "");
+    write(folder / "meta.yaml", "schema: octoskin-recording/1\nsource: robot\n");
+    write(folder / "rig.yaml", "extends: " + source("tests/data/short/rig.yaml") +
+                                   "\ncamera: {pose: {xyz_m: [0.1, 0.2, 0.8], looking_at_m: ~, "
+                                   "rotation_rows: [[0, 0, 1], [-1, 0, 0], [0, -1, 0]]}}\n");
+    auto writer =
+        openni2::OniWriter::create(folder / "depth.oni", folder / "depth.epoch.yaml", {kWidth, kHeight});
+    ASSERT_TRUE(writer) << writer.error().what;
+    for (unsigned i = 0; i < kFrames; ++i) {
+        std::vector<std::uint16_t> depth_mm;
+        for (const std::uint16_t value : noisy_wall(i).values)
+            depth_mm.push_back(static_cast<std::uint16_t>(value / 5));
+        ASSERT_TRUE(writer->write(HostTime{1'000'000'000LL + 100'000'000LL * i}, depth_mm));
+    }
+    ASSERT_TRUE(writer->close());
+}
+
+void write_data_set(const std::filesystem::path& folder) {
+    WrittenDataSet data_set(folder);
+    for (unsigned i = 0; i < kFrames; ++i) {
+        const std::string time = "1." + std::to_string(i) + "00000";
+        data_set.add_image(time, noisy_wall(i));
+        data_set.add_pose(time, "0.1 0.2 0.8 0.5 -0.5 0.5 -0.5");
+    }
+}
+
+class DataSet : public ProgramTest {};
+
+TEST_F(DataSet, gives_the_map_of_a_recording_with_the_same_images) {
+    write(path("mapping.yaml"), "base: robust\nremoves_robot_from_depth: false\n");
+    record(path("recording"));
+    write_data_set(path("set"));
+    const std::string mapping = " --configuration " + path("mapping.yaml");
+    const Said recording = octoskin("replay " + path("recording") + mapping);
+    ASSERT_EQ(recording.exit_code, 0) << recording.output;
+    const Said set = octoskin("replay " + path("set") + mapping + " --rig " + path("recording/rig.yaml"));
+    ASSERT_EQ(set.exit_code, 0) << set.output;
+    EXPECT_GT(content(path("set/maps/depth.ot")).size(), 1'000U);
+    for (const char* map : {"depth.ot", "fused.ot", "fused.bt", "fused.ply"})
+        EXPECT_EQ(content(path("set/maps/") + map), content(path("recording/maps/") + map)) << map;
+    const Said again = octoskin("replay " + path("set") + " --rig " + path("recording/rig.yaml"));
+    EXPECT_EQ(again.exit_code, 0) << again.output;  // over the maps of the replay before
+}
+
+TEST_F(DataSet, is_explained_voxel_by_voxel) {
+    WrittenDataSet data_set(path("set"));
+    for (int i = 0; i < 3; ++i) {
+        const std::string time = "1305031102.1" + std::to_string(i);
+        data_set.add_image(time, {640, 480, std::vector<std::uint16_t>(640 * 480, 10'000)});
+        data_set.add_pose(time, "0 0 0 0 0 0 1");
+    }
+    const Said said = octoskin("explain 0.02 0.02 2.02 --recording " + path("set"));
+    ASSERT_EQ(said.exit_code, 0) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("occupied, mainly by the camera between 0.000 and 0.020 s, 3 hits"));
+}
+
+TEST_F(DataSet, a_fault_is_named_with_file_and_line_and_leaves_no_map) {
+    write_data_set(path("set"));
+    write(path("set/groundtruth.txt"), "# no comment\n1.0 0 0 0 0 0 0\n");
+    const Said list = octoskin("replay " + path("set"));
+    EXPECT_EQ(list.exit_code, 65) << list.output;
+    EXPECT_THAT(list.output, HasSubstr("groundtruth.txt:2: expected tx ty tz qx qy qz qw"));
+    write_data_set(path("other"));
+    write(path("other/depth/1.300000.png"), "not a picture");
+    const Said image = octoskin("replay " + path("other"));
+    EXPECT_EQ(image.exit_code, 65) << image.output;
+    EXPECT_THAT(image.output, HasSubstr("depth.txt:7: depth/1.300000.png: cannot be read as PNG"));
+    EXPECT_FALSE(std::filesystem::exists(path("other/maps/fused.ot")));
+}
+
+}  // namespace
+}  // namespace octoskin

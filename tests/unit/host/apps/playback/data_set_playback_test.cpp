@@ -1,0 +1,181 @@
+// A camera that moves, against the depth stage of a rig whose camera stands where it was, frame by frame.
+#include "host/apps/playback/data_set_playback.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+#include "host/core/pipeline/depth_stage.hpp"
+#include "tests/support/data_set/written_data_set.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::Grey;
+using testing_support::ScratchFolder;
+using testing_support::WrittenDataSet;
+
+constexpr int kFrames = 4;
+
+/// A wall 1.5 to 2.5 m away with holes; of whole millimetres.
+Grey wall(unsigned seed) {
+    std::mt19937 random(seed);
+    Grey image{640, 480, {}};
+    for (unsigned i = 0; i < 640 * 480; ++i) {
+        const bool is_hole = random() % 16 == 0;
+        image.values.push_back(static_cast<std::uint16_t>(is_hole ? 0 : 5 * (1'500 + (i / 640) * 2)));
+    }
+    return image;
+}
+
+std::string time_of(int frame) {
+    return "1305031102." + std::to_string(100'000 + 33'333 * frame);
+}
+
+/// It turns about the vertical and goes sideways.
+Eigen::Isometry3d pose_of(int frame) {
+    Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+    T_map_camera.translation() = Eigen::Vector3d(0.05 * frame, -0.02 * frame, 1.0);
+    T_map_camera.linear() =
+        (Eigen::AngleAxisd(0.03 * frame, Eigen::Vector3d::UnitZ()) * Eigen::Quaterniond(-0.5, 0.5, -0.5, 0.5))
+            .toRotationMatrix();
+    return T_map_camera;
+}
+
+std::string text_of(const Eigen::Isometry3d& T_map_camera) {
+    const Eigen::Quaterniond q(T_map_camera.linear());
+    const Eigen::Vector3d p = T_map_camera.translation();
+    std::string text;
+    for (const double value : {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}) {
+        char digits[40];
+        std::snprintf(digits, sizeof(digits), "%.17g ", value);
+        text += digits;
+    }
+    return text;
+}
+
+std::map<VoxelKey, float> voxels_of(const FusedMap& map) {
+    std::map<VoxelKey, float> voxels;
+    map.for_each_known([&voxels](VoxelKey key, float log_odds) { voxels[key] = log_odds; });
+    return voxels;
+}
+
+class DataSetPlayback : public testing::Test {
+  protected:
+    PlaybackRequest request() const {
+        PlaybackRequest request{.recording = RecordingPaths(written_.folder()),
+                                .mapping = {},
+                                .configuration = "test",
+                                .maps = {},
+                                .rig = {},
+                                .robot = {}};
+        request.mapping.map.resolution_m = 0.05;
+        request.mapping.depth_filter.is_enabled = false;  // quicker, and no part of this
+        return request;
+    }
+    std::string refused(const PlaybackRequest& request) {
+        const auto played = play_recording(request);
+        return played ? "no error" : played.error().message;
+    }
+
+    ScratchFolder scratch_;
+    WrittenDataSet written_{scratch_ / "rgbd_dataset_freiburg1_xyz"};
+};
+
+TEST_F(DataSetPlayback, maps_each_image_from_where_the_camera_was) {
+    MapSet expected(request().mapping.map, {});
+    HostRig rig;
+    rig.camera = HostCamera{};
+    rig.camera->intrinsics = {640, 480, 525.0, 525.0, 320.0, 240.0};
+    for (int i = 0; i < kFrames; ++i) {
+        written_.add_pose(time_of(i), text_of(pose_of(i)));
+        written_.add_image(time_of(i), wall(static_cast<unsigned>(i)));
+        DepthFrame frame{HostTime{i}, 640, 480, {}};
+        for (const std::uint16_t value : wall(static_cast<unsigned>(i)).values)
+            frame.depth_mm.push_back(static_cast<std::uint16_t>(value / 5));
+        rig.camera->T_base_camera = pose_of(i);
+        MappingConfig mapping = request().mapping;
+        mapping.removes_robot_from_depth = false;
+        expected.add_depth(DepthStage(rig, mapping).updates(frame, nullptr)->updates);
+    }
+    const auto played = play_recording(request());
+    ASSERT_TRUE(played) << played.error().message;
+    EXPECT_FALSE(failure_of(*played)) << failure_of(*played)->message;
+    ASSERT_GT(expected.depth()->known_voxels(), 10'000U);
+    EXPECT_EQ(played->outcome.progress.depth_frames, std::uint64_t{kFrames});
+    EXPECT_EQ(voxels_of(*played->pipeline.maps().depth()), voxels_of(*expected.depth()));
+    EXPECT_EQ(voxels_of(*played->pipeline.maps().fused()), voxels_of(*expected.fused()));
+}
+
+TEST_F(DataSetPlayback, accounts_for_every_image) {
+    written_.add_image("99.9", {640, 480, wall(1).values});
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_image("100", wall(1));
+    written_.add_image("100.000000000", wall(1));  // the same time again
+    const auto played = play_recording(request());
+    ASSERT_TRUE(played) << played.error().message;
+    const AccountTable& images = played->accounts.front();
+    EXPECT_EQ(images.in, 3U);
+    EXPECT_EQ(images.used, 2U);
+    EXPECT_EQ(images.rejected.front().count, 1U);
+    EXPECT_EQ(played->pipeline.accounts().depth_frames.used(), 1U);
+    EXPECT_EQ(played->pipeline.accounts().depth_frames.rejected(DepthReason::out_of_order), 1U);
+    EXPECT_FALSE(failure_of(*played));
+}
+
+TEST_F(DataSetPlayback, an_image_that_cannot_be_read_makes_the_map_one_that_must_not_be_used) {
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_image("100", wall(1));
+    written_.add_pose("100.03", "0 0 0 0 0 0 1");
+    written_.add_image("100.03", wall(2));
+    std::filesystem::resize_file(written_.image("100.03"), 5'000);
+    const auto played = play_recording(request());
+    ASSERT_TRUE(played) << played.error().message;
+    ASSERT_TRUE(failure_of(*played));
+    EXPECT_EQ(failure_of(*played)->code, ExitCode::bad_data);
+    EXPECT_THAT(failure_of(*played)->message,
+                HasSubstr("depth.txt:5: depth/100.03.png: cannot be read whole"));
+    EXPECT_TRUE(played->accounts.front().is_balanced);
+}
+
+TEST_F(DataSetPlayback, an_image_of_another_size_than_the_cameras_is_counted_and_the_empty_map_refused) {
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_image("100", {2, 1, {5000, 5000}});
+    const auto played = play_recording(request());
+    ASSERT_TRUE(played) << played.error().message;
+    EXPECT_EQ(played->pipeline.accounts().depth_frames.rejected(DepthReason::wrong_size), 1U);
+    EXPECT_THAT(failure_of(*played)->message, HasSubstr("nothing came into the map"));
+}
+
+TEST_F(DataSetPlayback, what_a_data_set_does_not_have_is_refused) {
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_line("depth.txt", "100 depth/absent.png");
+    PlaybackRequest robot = request();
+    robot.robot = "panda.urdf";
+    EXPECT_THAT(refused(robot), HasSubstr("has no robot"));
+    PlaybackRequest slow = request();
+    slow.pace = Pace::times(1.0);
+    EXPECT_THAT(refused(slow), HasSubstr("without --speed"));
+    PlaybackRequest two = request();
+    two.rig = "rig.yaml";
+    two.camera = "freiburg1";
+    EXPECT_THAT(refused(two), HasSubstr("--rig or --camera"));
+    PlaybackRequest unknown = request();
+    unknown.camera = "freiburg4";
+    EXPECT_THAT(refused(unknown), HasSubstr("kinect, freiburg1, freiburg2, freiburg3"));
+    EXPECT_THAT(refused(request()), HasSubstr("an image that depth.txt names is not there"));
+}
+
+TEST_F(DataSetPlayback, a_folder_with_a_log_of_the_bus_is_a_recording) {
+    EXPECT_TRUE(is_data_set(RecordingPaths(written_.folder())));
+    std::ofstream(written_.folder() / "can.log") << "";
+    EXPECT_FALSE(is_data_set(RecordingPaths(written_.folder())));
+    EXPECT_FALSE(is_data_set(RecordingPaths(scratch_.path())));
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,196 @@
+// Data sets on disk, in exactly the benchmark's layout.
+#include "host/io/tum/data_set_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "host/io/tum/data_set_camera.hpp"
+#include "host/io/tum/depth_png.hpp"
+#include "tests/support/data_set/written_data_set.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin::tum {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+using testing_support::Grey;
+using testing_support::ScratchFolder;
+using testing_support::WrittenDataSet;
+
+Grey noise(unsigned width, unsigned height, unsigned seed) {
+    std::mt19937 random(seed);
+    Grey image{width, height, {}};
+    for (unsigned i = 0; i < width * height; ++i)
+        image.values.push_back(static_cast<std::uint16_t>(random() & 0xFFFFU));
+    return image;
+}
+
+class DataSetReaderTest : public testing::Test {
+  protected:
+    DataSetReader open() {
+        auto reader = DataSetReader::open(written_.folder());
+        EXPECT_TRUE(reader) << reader.error().what;
+        return std::move(*reader);
+    }
+    std::string error_of_next() {
+        auto reader = open();
+        const auto frame = reader.next();
+        return frame ? "no error" : frame.error().what;
+    }
+
+    ScratchFolder scratch_;
+    WrittenDataSet written_{scratch_ / "rgbd_dataset_freiburg1_xyz"};
+};
+
+TEST(DepthScale, is_the_nearest_millimetre_of_5000_a_metre_for_every_value) {
+    for (unsigned value = 0; value <= 0xFFFF; ++value) {
+        ASSERT_EQ(depth_mm_of(static_cast<std::uint16_t>(value)), std::lround(1000.0 * value / 5000.0))
+            << value;
+    }
+}
+
+TEST_F(DataSetReaderTest, gives_every_image_with_its_time_and_where_the_camera_was) {
+    written_.add_pose("100.00", "0 0 1 0 0 0 1");
+    written_.add_pose("100.02", "0 0 3 0 0 0 1");
+    written_.add_image("100.000000", {3, 2, {0, 5000, 10000, 2, 3, 65535}});
+    written_.add_image("100.010000", {3, 2, {5, 5, 5, 5, 5, 5}});
+    DataSetReader reader = open();
+    EXPECT_EQ(reader.begin()->ns, 100'000'000'000);
+    EXPECT_EQ(reader.images_left(), 2U);
+    const auto first = *reader.next();
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->captured.ns, 100'000'000'000);
+    EXPECT_EQ(first->width, 3U);
+    EXPECT_EQ(first->height, 2U);
+    EXPECT_THAT(first->depth_mm, ElementsAre(0, 1000, 2000, 0, 1, 13107));
+    EXPECT_EQ(first->T_map_camera->translation().z(), 1.0);
+    const auto second = *reader.next();
+    EXPECT_NEAR(second->T_map_camera->translation().z(), 2.0, 1e-12);
+    EXPECT_FALSE(*reader.next());
+    EXPECT_FALSE(*reader.next());
+    EXPECT_EQ(reader.images_read(), 2U);
+    EXPECT_EQ(reader.images_left(), 0U);
+}
+
+TEST_F(DataSetReaderTest, counts_images_of_which_no_pose_is_known_and_does_not_read_them) {
+    written_.add_line("depth.txt", "99.9 depth/absent.png");
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_image("100", {1, 1, {7000}});
+    written_.add_line("depth.txt", "100.1 depth/absent.png");
+    DataSetReader reader = open();
+    EXPECT_THAT((*reader.next())->depth_mm, ElementsAre(1400));
+    EXPECT_FALSE(*reader.next());
+    EXPECT_EQ(reader.images_read(), 1U);
+    EXPECT_EQ(reader.images_without_pose(), 2U);
+}
+
+TEST_F(DataSetReaderTest, a_fault_in_the_list_names_file_and_line) {
+    const std::string file = (written_.folder() / "depth.txt").string();
+    written_.add_image("100", {1, 1, {7000}});
+    written_.add_line("depth.txt", "99.999999999 depth/100.png");
+    const auto backwards = DataSetReader::open(written_.folder());
+    ASSERT_FALSE(backwards);
+    EXPECT_EQ(backwards.error().what, file + ":5: its time is before that of the image above it");
+}
+
+TEST_F(DataSetReaderTest, a_list_that_is_not_there_is_named) {
+    std::filesystem::remove(written_.folder() / "groundtruth.txt");
+    EXPECT_THAT(DataSetReader::open(written_.folder()).error().what,
+                HasSubstr("groundtruth.txt: cannot be opened"));
+}
+
+TEST_F(DataSetReaderTest, an_image_that_cannot_be_read_is_named_with_its_line_again_and_again) {
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_line("depth.txt", "100 depth/absent.png");
+    DataSetReader reader = open();
+    for (int i = 0; i < 3; ++i) {
+        const auto frame = reader.next();
+        ASSERT_FALSE(frame);
+        EXPECT_EQ(frame.error().what,
+                  (written_.folder() / "depth.txt").string() + ":4: depth/absent.png: cannot be opened");
+    }
+    EXPECT_EQ(reader.images_left(), 1U);
+}
+
+TEST_F(DataSetReaderTest, images_of_another_kind_are_refused) {
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_line("depth.txt", "100 depth/100.png");
+    testing_support::write_grey_png(written_.image("100"), {2, 2, {1, 2, 3, 4}}, 8);
+    EXPECT_THAT(error_of_next(), HasSubstr("expected one grey channel of 16 bits"));
+    std::ofstream(written_.image("100")) << "P5 2 2 65535";
+    EXPECT_THAT(error_of_next(),
+                AllOf(HasSubstr("depth.txt:4: depth/100.png"), HasSubstr("cannot be read as PNG")));
+}
+
+class DepthPngTest : public testing::Test {
+  protected:
+    ScratchFolder scratch_;
+};
+
+TEST_F(DepthPngTest, every_value_comes_back_as_it_was_written) {
+    Grey image{256, 256, {}};
+    for (unsigned value = 0; value <= 0xFFFF; ++value)
+        image.values.push_back(static_cast<std::uint16_t>(value));
+    testing_support::write_grey_png(scratch_ / "all.png", image);
+    const auto read = read_depth_png(scratch_ / "all.png");
+    ASSERT_TRUE(read) << read.error();
+    EXPECT_EQ(read->width, 256U);
+    EXPECT_EQ(read->height, 256U);
+    EXPECT_EQ(read->values, image.values);
+}
+
+TEST_F(DepthPngTest, cut_off_anywhere_it_is_refused) {
+    testing_support::write_grey_png(scratch_ / "whole.png", noise(9, 7, 1));
+    const std::string whole = ScratchFolder::read(scratch_ / "whole.png");
+    ASSERT_TRUE(read_depth_png(scratch_ / "whole.png"));
+    for (std::size_t bytes = 0; bytes < whole.size(); ++bytes) {
+        const auto read = read_depth_png(scratch_.write("cut.png", whole.substr(0, bytes)));
+        ASSERT_FALSE(read) << bytes << " of " << whole.size() << " bytes";
+        EXPECT_THAT(read.error(), StartsWith("cannot be read"));
+    }
+}
+
+TEST_F(DepthPngTest, with_any_byte_changed_it_is_refused_or_gives_the_same_image) {
+    const Grey image = noise(9, 7, 2);
+    testing_support::write_grey_png(scratch_ / "whole.png", image);
+    const std::string whole = ScratchFolder::read(scratch_ / "whole.png");
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+        std::string bytes = whole;
+        bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
+        const auto read = read_depth_png(scratch_.write("changed.png", bytes));
+        EXPECT_TRUE(!read || read->values == image.values) << at;
+    }
+}
+
+TEST_F(DepthPngTest, larger_than_4096_pixels_a_side_it_is_refused) {
+    testing_support::write_grey_png(scratch_ / "wide.png", noise(4096, 1, 3));
+    EXPECT_TRUE(read_depth_png(scratch_ / "wide.png"));
+    testing_support::write_grey_png(scratch_ / "wide.png", noise(4097, 1, 3));
+    EXPECT_FALSE(read_depth_png(scratch_ / "wide.png"));
+}
+
+TEST(DataSetCamera, puts_the_benchmarks_pixel_centres_half_a_pixel_further) {
+    for (const std::string_view name : kDataSetCameras) ASSERT_TRUE(data_set_camera(name)) << name;
+    EXPECT_FALSE(data_set_camera("freiburg4"));
+    EXPECT_FALSE(data_set_camera(""));
+    // The benchmark: X = (u - 319.5) Z / 525. Ours: X = (u + 0.5 - cx) Z / fx.
+    const CameraIntrinsics kinect = *data_set_camera("kinect");
+    for (const double u : {0.0, 319.0, 639.0})
+        EXPECT_DOUBLE_EQ((u + 0.5 - kinect.cx) / kinect.fx, (u - 319.5) / 525.0);
+    EXPECT_EQ(kinect.cy, 240.0);
+    const CameraIntrinsics third = *data_set_camera("freiburg3");
+    EXPECT_EQ(third.fx, 535.4);
+    EXPECT_EQ(third.fy, 539.2);
+    EXPECT_EQ(third.cx, 320.6);
+    EXPECT_EQ(third.cy, 248.1);
+    EXPECT_EQ(third.width * third.height, 640U * 480U);
+}
+
+}  // namespace
+}  // namespace octoskin::tum
