@@ -171,10 +171,13 @@ std::optional<NodeMismatch> NodeRegistry::reason(wire::NodeId node, std::optiona
 }
 
 std::string NodeRegistry::describe(wire::NodeId node, std::optional<HostTime> now) const {
+    const NodeVerdict judged = verdict(node, now);
     const auto differs = reason(node, now);
+    std::string why = differs ? differs->text() : std::string();
+    if (judged == NodeVerdict::quarantined) why = "two boards send under this node id: take one off the bus";
     return "node " + std::to_string(node) + " '" + records_.at(node).expected.name +
-           "': " + names_of(NodeVerdict{})[static_cast<std::size_t>(verdict(node, now))] +
-           (differs ? " (" + differs->text() + ")" : "");
+           "': " + names_of(NodeVerdict{})[static_cast<std::size_t>(judged)] +
+           (why.empty() ? "" : " (" + why + ")");
 }
 
 }  // namespace octoskin

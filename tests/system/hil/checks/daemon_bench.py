@@ -41,8 +41,8 @@ def wait_until(what, is_so, seconds=PATIENCE_S):
 
 
 def frames_of(log):
-    """Frames of a candump log in their order, as `ID#DATA`."""
-    return [line.split()[2] for line in pathlib.Path(log).read_text().splitlines()]
+    """Frames of a candump log in their order, as `ID#DATA`; it may be being written."""
+    return [line.split()[2] for line in pathlib.Path(log).read_text().splitlines(keepends=True) if line.endswith("\n")]
 
 
 class Daemon:

@@ -152,6 +152,9 @@ TEST(NodeRegistry, quarantines_two_boards_with_one_id_at_the_second_heartbeat) {
     for (std::int64_t t = 50; t <= 1050; t += 100) {
         EXPECT_EQ(registry.on_heartbeat(kNode, heartbeat(0x1111), ms(t)), NodeRegistry::Life::restarted);
         EXPECT_EQ(registry.verdict(kNode, ms(t)), NodeVerdict::quarantined);
+        EXPECT_EQ(
+            registry.describe(kNode, ms(t)),
+            "node 7 'upper ring': quarantined (two boards send under this node id: take one off the bus)");
         EXPECT_FALSE(registry.on_info(kNode, pages()[0], ms(t)));
         (void)registry.on_heartbeat(kNode, heartbeat(), ms(t + 50));
         EXPECT_EQ(registry.verdict(kNode, ms(t + 50)), NodeVerdict::quarantined);
