@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The boards inside the machine: one CAN interface, two banks of GPIO lines, four I2C buses with two modelled sensors each.
 #   board.sh up FOLDER BIN   make it, and write FOLDER/board.env, which every command gets
+#   board.sh can FOLDER BIN  only the CAN interface
 #   board.sh down FOLDER     take it away (where the machine is not thrown away)
 # Runs as root, inside. Exit code 77: this kernel has not what it takes.
 set -euo pipefail
@@ -71,6 +72,12 @@ await_device() {
     exit 1
 }
 
+write_environment() {
+    cat >"$folder/board.env" <<TEXT
+export HIL_FOLDER='$folder' HIL_BIN='$bin' HIL_BLOCKS='$bin/hil_blocks' HIL_RECORDING='$bin/hil_recording' HIL_CAN=$can HIL_CHIP=${chip:-} HIL_LINES=${lines:-} HIL_CHIP2=${chip2:-} HIL_LINES2=${lines2:-} HIL_FAULTS=$faults HIL_RANGE0=$range0
+TEXT
+}
+
 up() {
     [ -e /dev/cuse ] || skip "no CUSE in this kernel (modprobe cuse)"
     [ -x "$bin/i2c_device" ] || skip "i2c_device is not built (libfuse3-dev)"
@@ -81,9 +88,7 @@ up() {
     serve 8 "$lines" 2 2 6 triangle:200:1000:4000 3 7 none
     serve 9 "$lines2" 4 0 4 constant:300 1 4 triangle:300:900:3000
     serve 10 "$lines2" 6 2 5 constant:700 3 5 constant:900
-    cat >"$folder/board.env" <<TEXT
-export HIL_FOLDER='$folder' HIL_BIN='$bin' HIL_BLOCKS='$bin/hil_blocks' HIL_RECORDING='$bin/hil_recording' HIL_CAN=$can HIL_CHIP=$chip HIL_LINES=$lines HIL_CHIP2=$chip2 HIL_LINES2=$lines2 HIL_FAULTS=$faults HIL_RANGE0=$range0
-TEXT
+    write_environment
     local bus
     for bus in 7 8 9 10; do await_device $bus; done
 }
@@ -103,5 +108,6 @@ down() {
 
 case $verb in
     up) bin=$3; up ;;
+    can) bin=$3; make_can; write_environment ;;
     down) down ;;
 esac

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """A machine with a real kernel's CAN, GPIO and I2C, in which commands are run one by one.
 
-    machine.py boot [--bin FOLDER] FOLDER            start it, leave it running
+    machine.py boot [--bin FOLDER] [--disk FILE] [--bare] FOLDER
+                                                     start it, leave it running; bare: with CAN, without the boards
     machine.py run [--seconds N] FOLDER COMMAND...   run a command inside; its output and exit code become ours
     machine.py stop FOLDER
+    machine.py cut FOLDER                            its power is gone: what it had not flushed to its disk is lost
 
 FOLDER holds what is known of the machine: its console, and of each command the script, the output and the exit code.
 The machine is a virtual one, with this machine's own files, read-only; FOLDER is the only place it can write to. With
@@ -68,9 +70,11 @@ class Machine:
             yield
 
     def write_script(self, name, command):
-        """The environment is what board.sh left."""
+        """The environment is what board.sh left, and how much a check shall do: OCTOSKIN_HIL_*."""
         script = self.folder / f"{name}.sh"
-        script.write_text(f"[ ! -e {self.quoted('board.env')} ] || . {self.quoted('board.env')}\nexec {shlex.join(command)}\n")
+        asked = [f"export {key}={shlex.quote(value)}" for key, value in os.environ.items() if key.startswith("OCTOSKIN_HIL_")]
+        script.write_text("\n".join([*asked, f"[ ! -e {self.quoted('board.env')} ] || . {self.quoted('board.env')}",
+                                     f"exec {shlex.join(command)}\n"]))
         return script
 
     def quoted(self, name):
@@ -101,6 +105,10 @@ class NativeMachine(Machine):
 
 
 class VirtualMachine(Machine):
+    def __init__(self, folder, disk=None):
+        super().__init__(folder)
+        self.disk = disk  # a file, to the machine /dev/vda
+
     def boot(self):
         self.make_initramfs()
         for end in ("in", "out"):
@@ -124,7 +132,8 @@ class VirtualMachine(Machine):
             "-fsdev", "local,id=root,path=/,security_model=none,readonly=on,multidevs=remap",
             "-device", "virtio-9p-pci,fsdev=root,mount_tag=host_files",
             "-fsdev", f"local,id=folder,path={self.folder},security_model=none,multidevs=remap",
-            "-device", "virtio-9p-pci,fsdev=folder,mount_tag=host_folder"]
+            "-device", "virtio-9p-pci,fsdev=folder,mount_tag=host_folder",
+            *(["-drive", f"file={self.disk},if=virtio,format=raw"] if self.disk else [])]
 
     def make_initramfs(self):
         """busybox, the modules, and init.sh, which gives the machine this machine's own files."""
@@ -204,28 +213,28 @@ def missing():
     return None
 
 
-def boot(folder, binaries):
+def boot(folder, binaries, board, disk):
     VirtualMachine(folder).kill()  # left over from a run that was broken off
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     try:
-        boot_in(folder, binaries)
+        boot_in(folder, binaries, board, disk)
     except MachineError as error:
         if error.code == SKIPPED:
             (folder / "skipped").write_text(str(error))
         raise
 
 
-def boot_in(folder, binaries):
+def boot_in(folder, binaries, board, disk):
     began = time.monotonic()
     is_native = os.environ.get("OCTOSKIN_HIL") == "native"
     if not is_native and (why := missing()):
         raise MachineError(f"skipped: {why}", SKIPPED)
     (folder / "kind").write_text("native" if is_native else "virtual")
-    machine = machine_in(folder)
+    machine = NativeMachine(folder) if is_native else VirtualMachine(folder, disk)
     machine.boot()
     up = time.monotonic()
-    code, output = machine.run([str(HERE / "board.sh"), "up", str(folder), str(binaries)], PREPARE_S)
+    code, output = machine.run([str(HERE / "board.sh"), board, str(folder), str(binaries)], PREPARE_S)
     if code != 0:
         machine.stop()
         raise MachineError(output.decode(errors="replace").strip(), SKIPPED if code == SKIPPED else BROKEN)
@@ -252,9 +261,11 @@ def run(folder, command, seconds):
 def parsed_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     verbs = parser.add_subparsers(dest="verb", required=True)
-    for verb in ("boot", "run", "stop"):
+    for verb in ("boot", "run", "stop", "cut"):
         verbs.add_parser(verb).add_argument("folder", type=lambda text: pathlib.Path(text).resolve())
     verbs.choices["boot"].add_argument("--bin", type=pathlib.Path, default=PROJECT / "build/host-release/bin")
+    verbs.choices["boot"].add_argument("--disk", type=pathlib.Path)
+    verbs.choices["boot"].add_argument("--bare", dest="board", action="store_const", const="can", default="up")
     verbs.choices["run"].add_argument("--seconds", type=int, default=30)
     verbs.choices["run"].add_argument("command", nargs=argparse.REMAINDER)
     return parser.parse_args()
@@ -264,9 +275,11 @@ def main():
     arguments = parsed_arguments()
     try:
         if arguments.verb == "boot":
-            boot(arguments.folder, arguments.bin.resolve())
+            boot(arguments.folder, arguments.bin.resolve(), arguments.board, arguments.disk)
         elif arguments.verb == "run":
             return run(arguments.folder, arguments.command, arguments.seconds)
+        elif arguments.verb == "cut":
+            VirtualMachine(arguments.folder).kill()
         else:
             machine_in(arguments.folder).stop()
     except MachineError as error:

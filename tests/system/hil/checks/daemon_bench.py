@@ -48,12 +48,13 @@ def frames_of(log):
 class Daemon:
     """`octoskin run` with a folder of its own, which a later one may take over."""
 
-    def __init__(self, folder, *arguments):
+    def __init__(self, folder, *arguments, maps=None, rig=None):
         self.folder = folder
-        self.socket, self.maps, self.said = folder / "control", folder / "maps", folder / "said"
+        self.socket, self.maps, self.said = folder / "control", maps or folder / "maps", folder / "said"
         folder.mkdir(exist_ok=True)
-        command = [OCTOSKIN, "run", "--rig", RECORDING / "rig.yaml", "--robot", RECORDING / "robot.urdf", "--can", CAN,
-                   "--no-camera", "--maps", self.maps, "--socket", self.socket, *arguments]
+        robot = [] if rig else ["--robot", RECORDING / "robot.urdf"]
+        command = [OCTOSKIN, "run", "--rig", rig or RECORDING / "rig.yaml", *robot, "--can", CAN, "--no-camera", "--maps", self.maps,
+                   "--socket", self.socket, *arguments]
         with open(self.said, "a", encoding="utf-8") as said:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, stderr=said)
 
@@ -114,32 +115,38 @@ class Listener:
 class Bench:
     """Everything that a check starts, ended with it."""
 
-    def __init__(self):
+    def __init__(self, has_sensors):
+        self.has_sensors = has_sensors
         self.ended_with_us = contextlib.ExitStack()
         self.daemons = []
         self.folder = pathlib.Path(self.ended_with_us.enter_context(tempfile.TemporaryDirectory()))
 
     def __enter__(self):
-        """Nobody here needs the sensors' servers, which take half the processor's time."""
-        for file in pathlib.Path(os.environ["HIL_FOLDER"]).glob("i2c-*.pid"):
+        """Who needs no sensors does without their servers, which take half the processor's time."""
+        servers = () if self.has_sensors else pathlib.Path(os.environ["HIL_FOLDER"]).glob("i2c-*.pid")
+        for file in servers:
             server = int(file.read_text())
             os.kill(server, signal.SIGSTOP)
             self.ended_with_us.callback(os.kill, server, signal.SIGCONT)
         return self
 
     def __exit__(self, kind, error, trace):
-        for daemon in self.daemons if kind else ():
-            print(f"-- {daemon.folder.name} said:\n{daemon.said.read_text()}", flush=True)
+        for said in sorted({daemon.said for daemon in self.daemons}) if kind else ():
+            print(f"-- the end of {said}:", *said.read_text().splitlines()[-15:], sep="\n", flush=True)
         self.ended_with_us.close()
+
+    def folder_of_host(self):
+        """On the host's disk, not in the machine's memory as `folder` is."""
+        return pathlib.Path(self.ended_with_us.enter_context(tempfile.TemporaryDirectory(dir=os.environ["HIL_FOLDER"])))
 
     def end_with_us(self, process):
         self.ended_with_us.callback(process.wait)
         self.ended_with_us.callback(process.kill)
         return process
 
-    def daemon(self, name, *arguments):
-        """Started; another one may start meanwhile."""
-        daemon = Daemon(self.folder / name, *arguments)
+    def daemon(self, name, *arguments, **places):
+        """Started; another one may start meanwhile. `maps` and `rig` may be elsewhere."""
+        daemon = Daemon(self.folder / name, *arguments, **places)
         self.daemons.append(daemon)
         self.end_with_us(daemon.process)
         return daemon
@@ -167,11 +174,11 @@ class Bench:
         return done.stdout
 
 
-def run(check):
+def run(check, has_sensors=False):
     """The check as a program: exit code 0, or 1 and what was not as it must be."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(124))
     try:
-        with Bench() as bench:
+        with Bench(has_sensors) as bench:
             check(bench)
     except CheckFailed as failure:
         print(f"FAILED: {failure}")
