@@ -166,6 +166,13 @@ class Bench:
     def play(self, log):
         expect("exit code of canplayer", 0, self.start_playing(log).wait(PATIENCE_S))
 
+    @staticmethod
+    def lateness(played, heard):
+        """Seconds by which some frames of a log came later than others, measured by those that were in time."""
+        stamps = ([float(line.split()[0].strip("()")) for line in pathlib.Path(log).read_text().splitlines()] for log in (played, heard))
+        behind = [there - here for here, there in zip(*stamps)]
+        return max(behind) - min(behind)
+
     def replay(self, recording, *arguments):
         """What `octoskin replay` prints."""
         done = subprocess.run([OCTOSKIN, "replay", recording, *arguments], capture_output=True, text=True, timeout=PATIENCE_S,

@@ -49,7 +49,7 @@ def voxels_of(replayed):
 def check_another_version(bench):
     assert all(wire_frames.is_sealed(frame_in(line)) for line in lines_of_log())  # what is changed below was right before
     lines = [with_frame(line, wire_frames.of_version(frame_in(line), 2)) if id_in(line) & 63 == NODE else line
-             for line in lines_of_log()]
+             for line in lines_of_log()[:1500]]  # two seconds and a half are enough
     refused = sum(id_in(line) & 63 == NODE for line in lines)
     daemon = bench.daemon("another_version", "--listen-only")
     daemon.await_start()
