@@ -138,7 +138,9 @@ std::uint32_t Acceptance::ranges_since_last(std::optional<std::uint8_t> steps,
 TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges) noexcept {
     const auto predicted = tracker_.predict(ranges);
     const bool is_overdue = predicted && is_after(not_ready_at_, predicted->latest);
-    const bool is_believed = is_lone_poll_believed(predicted) && !is_overdue;
+    const bool is_close =
+        not_ready_polls_ >= 2 && elapsed(not_ready_before_, not_ready_at_) <= policy_.close_polls;
+    const bool is_believed = (is_close || is_lone_poll_believed(predicted)) && !is_overdue;
     const NodeTime not_ready = is_believed ? not_ready_at_ : not_ready_before_;
     // It was overdue for one poll only: either that was altered, or the sensor slipped. Both are possible.
     if (is_overdue && !is_after(not_ready, predicted->latest))

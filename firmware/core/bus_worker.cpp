@@ -17,6 +17,8 @@ constexpr int kStepsPerPoll = 4;
 // A block of results, which is what a ranging sensor has the bus for longest, and a part in ten for a bus
 // that runs slower than configured.
 constexpr std::int64_t kLongestReadBits = std::int64_t{i2c::bit_count(2, 17)} * 11 / 10;
+// A poll, with half as much again.
+constexpr std::int64_t kLongestPollBits = std::int64_t{i2c::bit_count(2, 1)} * 3 / 2;
 
 }  // namespace
 
@@ -26,7 +28,8 @@ BusWorker::BusWorker(i2c::Bus& bus, std::uint32_t i2c_hz, const vl53l1x::Options
       default_address_(shared_bus_, options),
       hint_(hint),
       policy_(policy),
-      longest_read_(kLongestReadBits * 1'000'000 / i2c_hz) {}
+      longest_read_(kLongestReadBits * 1'000'000 / i2c_hz),
+      longest_poll_(kLongestPollBits * 1'000'000 / i2c_hz) {}
 
 void BusWorker::add(Sensor& sensor) {
     assert(sensor_count_ < sensors_.size());
@@ -58,11 +61,15 @@ void BusWorker::follow_hint(NodeTime now) {
 }
 
 /// The bus is free: whose is it next? Who must be punctual; then who was interrupted; then who has been due
-/// longest. Who had to wait for too long goes before all.
+/// longest. Who had to wait for too long goes before
+/// all but a start.
 void BusWorker::take_turns(NodeTime now) {
     awaited_ = nullptr;
     Sensor* const punctual = first_punctual(now + longest_read_);
-    const auto waits_long = [&](NodeTime since) { return is_reached(since + policy_.bus_wait_max, now); };
+    const bool is_for_start = punctual != nullptr && punctual->awaits_start();
+    const auto waits_long = [&](NodeTime since) {
+        return !is_for_start && is_reached(since + policy_.bus_wait_max, now);
+    };
     if (interrupted_count_ > 0 && (punctual == nullptr || waits_long(interrupted_at_))) {
         begin_turn(longest_interrupted(), !waits_long(interrupted_at_));
         interrupted_at_ = now;
@@ -118,14 +125,17 @@ void BusWorker::advance_owner(NodeTime now) {
     if (sensor.take_bus_suspicion()) free_bus(now);
 }
 
-/// Of those, but the owner, that must be punctual at a time not after `by`: the one whose time comes first.
+/// Of those, but the owner, that need the bus for themselves at a time not after `by`: the one that needs it
+/// first. A start decides when all ranges of its run will be: no poll is begun that would delay it.
 Sensor* BusWorker::first_punctual(NodeTime by) const {
     Sensor* first = nullptr;
     for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) {
         const auto due = sensor->punctual_due();
-        if (!due || !is_reached(*due, by) || sensor == owner_) continue;
+        if (!due || sensor == owner_) continue;
+        const NodeTime needed = sensor->awaits_start() ? *due - longest_poll_ : *due;
+        if (!is_reached(needed, by)) continue;
         first = sensor;
-        by = *due;
+        by = needed;
     }
     return first;
 }

@@ -64,6 +64,7 @@ class BusWorker {
     std::array<Sensor*, kNodeSensorsMax> sensors_{};
     std::uint8_t sensor_count_ = 0;
     Microseconds longest_read_;
+    Microseconds longest_poll_;
     Sensor* owner_ = nullptr;
     bool is_owner_under_way_ = false;  ///< has begun a transfer since its turn began
     bool may_be_interrupted_ = true;

@@ -30,7 +30,7 @@ Microseconds PeriodTrim::commanded() const noexcept {
 }
 
 std::int32_t PeriodTrim::uncertainty_permille() const noexcept {
-    return is_oscillator_known_ ? kTrimmedUncertaintyPermille : policy_.period_unknown_permille;
+    return is_oscillator_known_ ? kTrimmedUncertaintyPermille : policy_.period_expected_permille;
 }
 
 bool PeriodTrim::is_judged_after(std::uint32_t ranges) const noexcept {

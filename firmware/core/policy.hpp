@@ -29,6 +29,8 @@ struct Policy {
     /// A poll is read once: one that was altered on its way says "not ready" of data that was. Alone it is
     /// believed only where the rhythm tells the ready time to within this, which bounds what it can spoil.
     Microseconds lone_poll_believed{1'000};
+    /// Nor can it spoil more than this if another one said the same so shortly before.
+    Microseconds close_polls{500};
     /// Known less well than within this, the next ready time is worth a poll that is punctual.
     Microseconds punctual_above{300};
     /// A sensor whose ready time is known this well is asked early, to see that it keeps its rhythm, only
@@ -36,11 +38,15 @@ struct Policy {
     Microseconds known_width_max{1'000};
     /// So long may a sensor wait for its turn, or for the rest of it, while others must be punctual.
     Microseconds bus_wait_max{3'000};
-    /// How uncertain the real period is before it was measured: the oscillator is 6-7 % off, part by part.
+    /// How uncertain the real period is before it was measured. The driver asks for 1.075 times the part's
+    /// own oscillator value (ST's ULD); drivers for other parts were right with factors from 1.0 on.
+    std::int32_t period_expected_permille = 80;
+    /// And once a sensor has contradicted what was expected of it.
     std::int32_t period_unknown_permille = 120;
     /// Readings in a row whose data was ready when it was first asked for.
     std::uint8_t unproven_readings_max = 3;
-    Microseconds repoll_min{50};
+    /// Between two polls: while a ready time is being learnt, and while nothing is known.
+    Microseconds repoll_min{20};
     Microseconds repoll_max{1'000};
     /// A reading whose capture time is less certain than this is not sent.
     Microseconds capture_bound_max{10'000};

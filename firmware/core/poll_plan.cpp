@@ -13,8 +13,17 @@ constexpr Microseconds kLoopDelay{20};
 // START, address and two bytes of index, on a bus that is never faster than configured.
 constexpr std::int64_t kIndexBits = 28;
 
-// Slow sensors are polled in proportion: 128 polls a period are precise enough.
-constexpr std::int64_t kPollsPerPeriod = 128;
+// Slow sensors are polled in proportion: 128 polls a period find it, and a bracket of a 2048th is precise
+// enough.
+constexpr std::int64_t kLongestGapsPerPeriod = 128;
+constexpr std::int64_t kShortestGapsPerPeriod = 2048;
+
+/// Reckoned from `from`, not from the last poll: how long a poll took decides nothing.
+NodeTime next_on_grid(NodeTime from, Microseconds gap, NodeTime now) noexcept {
+    const Microseconds since = elapsed(from, now);
+    if (since.count() < 0) return from;
+    return from + gap * (since / gap + 1);
+}
 
 }  // namespace
 
@@ -27,8 +36,12 @@ NodeTime PollPlan::first_poll(const TimeBracket& predicted) const noexcept {
     return predicted.earliest - poll_duration_ - kLoopDelay;
 }
 
-NodeTime PollPlan::poll_in_middle(const TimeBracket& predicted) const noexcept {
-    return predicted.middle() - index_duration_;
+NodeTime PollPlan::poll_within(const TimeBracket& predicted, Microseconds period) const noexcept {
+    const Microseconds width = predicted.width();
+    // There is no poll before it that might have taken longer than usual.
+    const Microseconds first = spacing(period) * 4 / 5;
+    const Microseconds into = std::max(width / 4, std::min(width / 2, first));
+    return predicted.earliest + into - index_duration_;
 }
 
 NodeTime PollPlan::poll_after_hint(const TimeBracket& predicted) const noexcept {
@@ -39,22 +52,38 @@ NodeTime PollPlan::first_poll_after_start(NodeTime started, Microseconds timing_
     return started + timing_budget * 9 / 10;
 }
 
+NodeTime PollPlan::poll_after_start(NodeTime from, const TimeBracket& expected, Microseconds period,
+                                    NodeTime now) const noexcept {
+    if (!is_reached(expected.earliest, now))
+        return earlier_of(blind_poll(from, period, now), expected.earliest);
+    if (is_reached(expected.latest, now)) return blind_poll(expected.latest, period, now);
+    return next_on_grid(expected.earliest, spacing(period), now);
+}
+
 NodeTime PollPlan::blind_poll(NodeTime from, Microseconds period, NodeTime now) const noexcept {
-    const Microseconds since = elapsed(from, now);
-    if (since.count() < 0) return from;
-    const Microseconds gap = longest_gap(period);
-    return from + gap * (since / gap + 1);
+    return next_on_grid(from, longest_gap(period), now);
 }
 
 NodeTime PollPlan::repoll(const TimeBracket& predicted, Microseconds period, NodeTime now) const noexcept {
     // Closer together around the time at which it must be, further apart the longer it is overdue.
     const Microseconds distance = elapsed(now, predicted.latest);
-    const Microseconds gap = distance.count() >= 0 ? distance / 2 : -distance;
-    return now + std::clamp(gap, policy_.repoll_min, longest_gap(period));
+    const bool is_overdue = distance.count() < 0;
+    return now + (is_overdue ? std::clamp(-distance, policy_.repoll_min, longest_gap(period))
+                             : std::clamp(distance / 2, policy_.repoll_min, shortest_gap(period)));
+}
+
+Microseconds PollPlan::shortest_gap(Microseconds period) const noexcept {
+    return std::max(policy_.repoll_min, period / kShortestGapsPerPeriod);
+}
+
+/// From poll to poll, at the closest.
+/// taken.
+Microseconds PollPlan::spacing(Microseconds period) const noexcept {
+    return poll_duration_ + shortest_gap(period);
 }
 
 Microseconds PollPlan::longest_gap(Microseconds period) const noexcept {
-    return std::max(policy_.repoll_max, period / kPollsPerPeriod);
+    return std::max(policy_.repoll_max, period / kLongestGapsPerPeriod);
 }
 
 NodeTime PollPlan::not_ready_until(NodeTime began) const noexcept {

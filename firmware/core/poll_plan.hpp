@@ -17,8 +17,9 @@ class PollPlan {
 
     /// The first poll for data that should become ready within `predicted`.
     [[nodiscard]] NodeTime first_poll(const TimeBracket& predicted) const noexcept;
-    /// The first poll where it need not come too early: it looks in the middle of `predicted`.
-    [[nodiscard]] NodeTime poll_in_middle(const TimeBracket& predicted) const noexcept;
+    /// The first poll where it need not come too early: it looks in the middle of `predicted`, or where that
+    /// is wide at the first of up to four places.
+    [[nodiscard]] NodeTime poll_within(const TimeBracket& predicted, Microseconds period) const noexcept;
     /// The first poll, and likely the only one, where a line tells when data is ready: after the line, should
     /// it not.
     [[nodiscard]] NodeTime poll_after_hint(const TimeBracket& predicted) const noexcept;
@@ -26,11 +27,14 @@ class PollPlan {
     /// up.
     [[nodiscard]] NodeTime first_poll_after_start(NodeTime started,
                                                   Microseconds timing_budget) const noexcept;
+    /// The next poll after `now` for the first data of a run, which is there no sooner than `from` and most
+    /// likely becomes ready within `expected`, where one poll follows the other.
+    [[nodiscard]] NodeTime poll_after_start(NodeTime from, const TimeBracket& expected, Microseconds period,
+                                            NodeTime now) const noexcept;
     /// The next poll after `now` while nothing is known, for data that is there no sooner than `from`.
-    /// Reckoned from there, not from the last poll: how long a poll took decides nothing.
     [[nodiscard]] NodeTime blind_poll(NodeTime from, Microseconds period, NodeTime now) const noexcept;
-    /// The next poll when the one that ended at `now` found nothing. Bounded below and above, so neither
-    /// floods the bus nor leaves the ready time unknown.
+    /// The next poll when the one that ended at `now` found nothing. Data that is overdue is asked for ever
+    /// more rarely, so that a sensor that has none does not take the bus from the others.
     [[nodiscard]] NodeTime repoll(const TimeBracket& predicted, Microseconds period,
                                   NodeTime now) const noexcept;
     /// Until when, at least, data was not ready if the poll begun at `began` found none: the sensor cannot
@@ -38,6 +42,8 @@ class PollPlan {
     [[nodiscard]] NodeTime not_ready_until(NodeTime began) const noexcept;
 
   private:
+    [[nodiscard]] Microseconds shortest_gap(Microseconds period) const noexcept;
+    [[nodiscard]] Microseconds spacing(Microseconds period) const noexcept;
     [[nodiscard]] Microseconds longest_gap(Microseconds period) const noexcept;
 
     const Policy& policy_;

@@ -207,6 +207,10 @@ void Ranging::on_started(NodeTime now) {
     acceptance_.restart(step_began_, trim_.configured(), trim_.uncertainty_permille());
     zones_.settle();
     ready_from_ = polls_.first_poll_after_start(phase_due_, budget());
+    // Parts were seen to give the first result one period after the start.
+    const NodeTime expected = phase_due_ + trim_.configured();
+    const Microseconds uncertainty = trim_.configured() * trim_.uncertainty_permille() / 1'000;
+    first_expected_ = widened({expected, expected}, uncertainty);
     // Once before: what is there at once is not of this run.
     await_data(now + policy_.repoll_max);
     ranges_ = 0;
@@ -243,7 +247,7 @@ NodeTime Ranging::repoll(NodeTime now) const noexcept {
     if (acceptance_.wants_poll_confirmed()) return now;
     const auto predicted = acceptance_.next_ready();
     return predicted ? polls_.repoll(*predicted, acceptance_.period(), now)
-                     : polls_.blind_poll(ready_from_, acceptance_.period(), now);
+                     : polls_.poll_after_start(ready_from_, first_expected_, acceptance_.period(), now);
 }
 
 Ranging::Event Ranging::refuse(SensorFault fault, NodeTime now) {
@@ -314,7 +318,7 @@ NodeTime Ranging::next_poll(const TimeBracket& predicted) const noexcept {
     if (was_announced_ && predicted.width() <= policy_.hinted_width_max)
         return polls_.poll_after_hint(predicted);
     const bool is_proven = was_announced_ || acceptance_.is_rhythm_proven();
-    return is_proven ? polls_.poll_in_middle(predicted) : polls_.first_poll(predicted);
+    return is_proven ? polls_.poll_within(predicted, acceptance_.period()) : polls_.first_poll(predicted);
 }
 
 bool Ranging::is_zone_write_due(NodeTime now) const noexcept {

@@ -74,6 +74,8 @@ class Ranging {
             step_ == Step::awaiting_phase || (step_ == Step::awaiting_data && is_poll_punctual_);
         return is_punctual ? std::optional(step_due_) : std::nullopt;
     }
+    /// Whether what it must be punctual for is its start.
+    [[nodiscard]] bool awaits_start() const noexcept { return step_ == Step::awaiting_phase; }
     /// Whether a start is under way: its instant decides when all its ranges will be.
     [[nodiscard]] bool is_starting() const noexcept { return step_ == Step::starting; }
     /// When the bus is wanted; empty when nothing is under way.
@@ -151,6 +153,7 @@ class Ranging {
     NodeTime step_due_;
     NodeTime step_began_;
     NodeTime ready_from_;         ///< while data is awaited: there is none before
+    TimeBracket first_expected_;  ///< where the first data after the start is most likely ready
     bool has_hint_ = false;       ///< since the poll under way began, or the last one
     bool is_hinted_ = false;      ///< the poll under way follows a hint
     bool has_confirmed_ = false;  ///< not taken yet

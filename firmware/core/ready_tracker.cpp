@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kQ8 = 256;
 // The period is measured over windows of this many ranges: long enough for 0.03 % at 33 ms, short enough to
-// follow a part that warms up.
+// follow a part that warms up. A window whose start was known half as well as the present is given up before.
 constexpr std::uint32_t kWindowSlots = 32;
 // How far the period may have moved within a window, and from one window to the next.
 constexpr std::int64_t kDriftPerWindowPpm = 300;
@@ -122,7 +122,8 @@ void ReadyTracker::refine_period() noexcept {
     // By induction over the window the grid never lies further from its start than `slots` of the longest
     // period, so what the window calls the shortest stays below it; rounding costs less than the drift adds.
     assert(shortest_q8_ <= longest_q8_);
-    if (window_slots_ < kWindowSlots) return;
+    const bool is_start_outdone = window_start_.width() > 2 * grid_->width();
+    if (window_slots_ < kWindowSlots && !is_start_outdone) return;
     shortest_q8_ -= drift;
     longest_q8_ += drift;
     open_window();

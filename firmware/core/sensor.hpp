@@ -81,6 +81,8 @@ class Sensor {
         if (mode_ != Mode::ranging) return std::nullopt;
         return ranging_.punctual_due();
     }
+    /// Whether what it must be punctual for is its start.
+    [[nodiscard]] bool awaits_start() const noexcept { return ranging_.awaits_start(); }
     /// Whether somebody who must be punctual may come between its transfers.
     [[nodiscard]] bool may_be_interrupted() const noexcept { return !ranging_.is_starting(); }
     /// One step, with the bus free or taken by this sensor's own transfer.

@@ -11,7 +11,8 @@ namespace octoskin::sim {
 namespace {
 
 constexpr std::int64_t kSameTimeUs = 200;
-constexpr std::size_t kReadingsAtRest = 45;  ///< 1.5 s of the 2
+constexpr std::int64_t kSameFirstTimeUs = 300;  ///< nothing but polls tells the first one's time
+constexpr std::size_t kReadingsAtRest = 45;     ///< 1.5 s of the 2
 
 /// How far two homes, or a home and the truth, are apart.
 class Spread {
@@ -51,7 +52,8 @@ struct Differences {
     Spread window;
 };
 
-void expect_same(const JudgedReading& flashed, const JudgedReading& core, Differences& differences) {
+void expect_same(const JudgedReading& flashed, const JudgedReading& core, bool is_first,
+                 Differences& differences) {
     EXPECT_EQ(flashed.reading.zone, core.reading.zone);
     EXPECT_EQ(flashed.reading.sequence, core.reading.sequence);
     EXPECT_EQ(flashed.reading.device_status, core.reading.device_status);
@@ -59,15 +61,18 @@ void expect_same(const JudgedReading& flashed, const JudgedReading& core, Differ
     const std::int64_t window_us = flashed.truth.window_middle.us - core.truth.window_middle.us;
     EXPECT_LE(std::abs(window_us), kSameTimeUs);
     // Both clocks are the same function of time, and run at a rate within 100 ppm.
+    const std::int64_t capture_us = window_us + flashed.error_us - core.error_us;
+    EXPECT_LE(std::abs(capture_us), is_first ? kSameFirstTimeUs : kSameTimeUs);
     differences.window.add(window_us);
-    differences.capture.add(window_us + flashed.error_us - core.error_us);
+    differences.capture.add(capture_us);
 }
 
-/// The readings up to the first trim of either home; all, if both trimmed at the same ranging to the same
-/// register.
+/// The readings up to the first trim of either home; all, if both trimmed to the same register.
 std::size_t comparable(const Heard& flashed, const Heard& core, Source source) {
     const auto& readings = core.readings.at(source);
-    if (flashed.runs.at(source) == core.runs.at(source)) return readings.size();
+    if (std::ranges::equal(flashed.runs.at(source), core.runs.at(source), {}, &EvenRun::period_us,
+                           &EvenRun::period_us))
+        return readings.size();
     std::uint32_t end = UINT32_MAX;
     for (const Heard* home : {&flashed, &core}) {
         const auto& runs = home->runs.at(source);
@@ -91,7 +96,7 @@ Differences compare(const Heard& flashed, const Heard& core) {
         for (std::size_t i = 0; i < std::min(count, others.size()); ++i) {
             SCOPED_TRACE(testing::Message() << "node " << int{source.first} << " sensor "
                                             << int{source.second} << " reading " << i);
-            expect_same(others[i], readings[i], differences);
+            expect_same(others[i], readings[i], i == 0, differences);
         }
     }
     std::printf("%zu of 34 sensors compared to the end\n", whole);
@@ -152,7 +157,6 @@ TEST(Experiment, without_trims_the_flashed_image_says_what_the_node_core_says) {
 
     const Differences differences = compare(flashed, core);
     EXPECT_GT(differences.capture.count(), 34U * 120U);
-    EXPECT_GT(differences.capture.share_within(kSameTimeUs), 0.9);
     expect_true(flashed);
     expect_true(core);
 }
@@ -166,7 +170,7 @@ TEST(Experiment, with_real_oscillators_it_says_the_same_until_the_homes_trim_apa
     ASSERT_EQ(core.readings.size(), 34U);
 
     const Differences differences = compare(flashed, core);
-    EXPECT_GT(differences.capture.count(), 34U * 20U);
+    EXPECT_GT(differences.capture.count(), 34U * 64U) << "most sensors are to be trimmed alike";
     expect_same_at_rest(flashed, core);
     const Spread of_flashed = expect_true(flashed);
     const Spread of_core = expect_true(core);

@@ -64,8 +64,9 @@ TEST_P(LongFaultTest, F4_a_bus_held_for_long_has_all_its_sensors_back_at_once) {
     // Each look at a faulty bus, one a second, gives it nine clocks.
     const auto clocks = static_cast<std::uint32_t>(9 * 60 * GetParam().minutes);
     const std::int64_t held_us = rig_.now().us;
+    // (Of a transfer that is under way it is too late.)
     rig_.bus(0).inject({.kind = sim::I2cFaultKind::sda_stuck_low,
-                        .first = rig_.bus(0).transfer_count(),
+                        .first = rig_.bus(0).transfer_count() + 1,
                         .position = clocks});
     rig_.run_for(duration() / 2);
     ASSERT_TRUE(rig_.bus(0).is_held());

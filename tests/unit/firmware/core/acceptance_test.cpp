@@ -55,14 +55,25 @@ TEST_F(AcceptanceTest, makes_a_reading_of_a_result_with_its_capture_in_the_middl
     Acceptance acceptance = started(StreamGate::advanced);
     ASSERT_EQ(offer(acceptance, 0, result(7)), Verdict::accepted);
     const Reading& reading = acceptance.reading();
-    // Of a first result nothing is known but the polls, of which one may have been altered: -200 to +100 us.
-    EXPECT_EQ(reading.capture, ready(0) - Microseconds{10'000 + 50});
-    EXPECT_EQ(reading.capture_bound, Microseconds{150});
+    // Of a first result nothing is known but the polls: -100 to +100 us.
+    EXPECT_EQ(reading.capture, ready(0) - Microseconds{10'000});
+    EXPECT_EQ(reading.capture_bound, Microseconds{100});
     EXPECT_EQ(reading.range_mm, 1'500);
     EXPECT_EQ(reading.sigma_quarter_mm, 20);
     EXPECT_EQ(reading.peak_signal, 640);
     EXPECT_EQ(reading.ambient, 12);
     EXPECT_EQ(reading.zone, 0);
+}
+
+TEST_F(AcceptanceTest, believes_the_last_poll_only_if_another_said_the_same_half_a_millisecond_before) {
+    for (const std::int64_t before_us : {500, 501}) {
+        Acceptance acceptance = started(StreamGate::advanced);
+        acceptance.on_not_ready(ready(0) - Microseconds{100 + before_us});
+        acceptance.on_not_ready(ready(0) - Microseconds{100});
+        ASSERT_EQ(offer_unpolled(acceptance, 0, result(0), Microseconds{100}), Verdict::accepted);
+        const std::int64_t bracket_us = before_us <= 500 ? 200 : 200 + before_us;
+        EXPECT_EQ(acceptance.reading().capture_bound, Microseconds{(bracket_us + 1) / 2});
+    }
 }
 
 TEST_F(AcceptanceTest, sends_only_code_9_of_stream_count_0_as_code_19) {

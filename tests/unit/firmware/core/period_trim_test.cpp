@@ -75,7 +75,7 @@ TEST(PeriodTrim, never_asks_for_more_than_fifteen_percent_off) {
 
 TEST(PeriodTrim, keeps_what_it_knows_of_the_part_when_another_period_is_wanted) {
     PeriodTrim trim{kConfigured, kPolicy};
-    EXPECT_EQ(trim.uncertainty_permille(), 120);
+    EXPECT_EQ(trim.uncertainty_permille(), 80);
     EXPECT_TRUE(trim.wants_trim(certain(35'310), kNow));
     EXPECT_EQ(trim.uncertainty_permille(), 10);
     trim.set_configured(Microseconds{50'000});

@@ -17,14 +17,22 @@ TEST(PollPlan, asks_first_just_before_the_data_can_be_ready) {
 
 TEST(PollPlan, lets_a_line_go_first_and_asks_just_after_the_data_must_be_ready) {
     const PollPlan plan{400'000, kPolicy};
-    EXPECT_EQ(plan.poll_after_hint({{100'000}, {100'300}}), NodeTime{100'350});
+    EXPECT_EQ(plan.poll_after_hint({{100'000}, {100'300}}), NodeTime{100'320});
 }
 
-TEST(PollPlan, asks_again_halfway_to_the_latest_time_it_can_be) {
+TEST(PollPlan, asks_again_at_once_while_the_data_may_become_ready) {
     const PollPlan plan{400'000, kPolicy};
     const TimeBracket predicted{{100'000}, {101'000}};
-    EXPECT_EQ(plan.repoll(predicted, kPeriod, {100'000}), NodeTime{100'500});
-    EXPECT_EQ(plan.repoll(predicted, kPeriod, {100'990}), NodeTime{101'040});  // never below 50 us
+    EXPECT_EQ(plan.repoll(predicted, kPeriod, {100'000}), NodeTime{100'020});
+    EXPECT_EQ(plan.repoll(predicted, kPeriod, {100'990}), NodeTime{101'010});
+}
+
+TEST(PollPlan, leaves_a_slow_sensor_more_time_between_two_polls) {
+    const PollPlan plan{400'000, kPolicy};
+    const Microseconds period{1'024'000};
+    const TimeBracket predicted{{100'000}, {110'000}};
+    EXPECT_EQ(plan.repoll(predicted, period, {100'000}), NodeTime{100'500});  // period / 2048
+    EXPECT_EQ(plan.repoll(predicted, period, {109'400}), NodeTime{109'700});  // halfway to the latest time
 }
 
 TEST(PollPlan, asks_ever_more_rarely_the_longer_the_data_is_overdue) {
@@ -36,8 +44,15 @@ TEST(PollPlan, asks_ever_more_rarely_the_longer_the_data_is_overdue) {
 
 TEST(PollPlan, looks_in_the_middle_of_where_the_ready_time_must_be) {
     const PollPlan plan{400'000, kPolicy};
-    const NodeTime due = plan.poll_in_middle({{100'000}, {100'300}});
+    const NodeTime due = plan.poll_within({{100'000}, {100'300}}, kPeriod);
     EXPECT_EQ(plan.not_ready_until(due), NodeTime{100'150});
+}
+
+TEST(PollPlan, looks_in_up_to_four_places_where_the_ready_time_is_known_less_well) {
+    const PollPlan plan{400'000, kPolicy};
+    // The time of a poll, or a quarter of what is not known.
+    EXPECT_EQ(plan.not_ready_until(plan.poll_within({{100'000}, {100'600}}, kPeriod)), NodeTime{100'160});
+    EXPECT_EQ(plan.not_ready_until(plan.poll_within({{100'000}, {101'000}}, kPeriod)), NodeTime{100'250});
 }
 
 TEST(PollPlan, asks_every_millisecond_while_nothing_is_known_however_long_the_polls_take) {
@@ -47,6 +62,20 @@ TEST(PollPlan, asks_every_millisecond_while_nothing_is_known_however_long_the_po
     EXPECT_EQ(plan.blind_poll({2'000}, kPeriod, {500}), NodeTime{2'000});
     EXPECT_EQ(plan.blind_poll({5'000}, Microseconds{640'000}, {5'000}), NodeTime{10'000});  // period / 128
     EXPECT_EQ(plan.blind_poll({0xFFFFFF00U}, kPeriod, {100}), NodeTime{0xFFFFFF00U} + Microseconds{1'000});
+}
+
+TEST(PollPlan, asks_again_and_again_where_the_first_data_of_a_run_is_expected) {
+    const PollPlan plan{400'000, kPolicy};
+    const TimeBracket expected{{30'360}, {35'640}};
+    const auto next = [&](std::uint32_t now) {
+        return plan.poll_after_start({18'000}, expected, kPeriod, {now});
+    };
+    EXPECT_EQ(next(5'000), NodeTime{18'000});
+    EXPECT_EQ(next(18'001), NodeTime{19'000});
+    EXPECT_EQ(next(30'100), NodeTime{30'360});
+    for (const std::uint32_t now : {30'360U, 30'400U, 30'559U}) EXPECT_EQ(next(now), NodeTime{30'560}) << now;
+    EXPECT_EQ(next(35'000), NodeTime{35'160});
+    EXPECT_EQ(next(35'640), NodeTime{36'640});
 }
 
 TEST(PollPlan, expects_nothing_after_a_start_before_most_of_the_budget_is_used) {

@@ -58,6 +58,16 @@ TEST(ReadyTracker, measures_a_period_seven_percent_off_to_two_tenths_of_a_percen
     EXPECT_GE(measured->uncertainty.count(), std::abs(measured->value.count() - 35'310));
 }
 
+TEST(ReadyTracker, does_not_measure_from_a_ready_time_that_was_known_badly) {
+    ReadyTracker tracker = fresh_tracker();
+    const EvenSensor sensor{.first_us = 1e6};
+    (void)tracker.observe(around(sensor.ready(0), 1'000, 1'000), 1);
+    for (int range = 1; range <= 4; ++range) (void)tracker.observe(around(sensor.ready(range), 100, 100), 1);
+    // 200 us and jitter twice over three ranges, and what the period may have drifted; not 2,200 us over
+    // four.
+    EXPECT_LE(tracker.predict(1)->width(), Microseconds{200 + 2 * 60 + (2 * (200 + 60) + 60) / 3 + 40});
+}
+
 TEST(ReadyTracker, carries_the_rhythm_over_polls_that_came_too_late) {
     ReadyTracker tracker = fresh_tracker();
     const EvenSensor sensor{.first_us = 1e6, .period_us = 33'330.0};
