@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""Sensors to map: a Linux node with four sensors, an arm at rest, and the daemon whose SYNC it follows. The ranges in the status are
+what the sensors truly see; a node that is stopped is named; nobody else sends anything. One node of the rig's two: with both, the
+emulated processor has no time left for the daemon."""
+import contextlib
+import os
+import pathlib
+import subprocess
+import threading
+import time
+
+import daemon_bench
+from daemon_bench import CAN, OCTOSKIN, claim, expect
+
+RIG = pathlib.Path(__file__).resolve().parent.parent / "two_linux_boards_fd.yaml"
+JOINT_NODE = 10
+NAMED_S = 1.5  # 0.35 s without a heartbeat, and the emulated processor
+PATIENCE_S = 120  # each node has hundreds of transfers to make, on an emulated processor
+TRUE_RANGE_M = {0: 0.250, 1: 0.500}  # as board.sh says; sensor 2's moves, 3 sees nothing
+
+
+def start_node(bench):
+    """The first board's."""
+    return bench.start(f"{os.environ['HIL_BIN']}/octoskin-node", "--config", f"{os.environ['HIL_BLOCKS']}/first.fd.block", "--can", CAN,
+                       "--i2c-lateness-ms", "500", "--i2c", "/dev/i2c-7", "/dev/i2c-8", "--xshut", f"{os.environ['HIL_CHIP']}:0,1,2,3",
+                       "--uid", "0102030405060708090a0b0c")
+
+
+def keep_arm_at_rest(bench):
+    """A joint sample each 20 ms from the rig's joint node, until the check ends. It keeps the bus from falling silent, too, which a
+    single node's heartbeats on a busy processor do not."""
+    joints = bench.end_with_us(subprocess.Popen([OCTOSKIN, "joints", "--can", CAN, "--rig", RIG], stdin=subprocess.PIPE, text=True))
+
+    def feed():
+        with contextlib.suppress(OSError):  # it has ended
+            while True:
+                joints.stdin.write("0 0 0 -1.5 0 1.5 0\n")
+                joints.stdin.flush()
+                time.sleep(0.02)
+    threading.Thread(target=feed, daemon=True).start()
+
+
+def check(bench):
+    daemon = bench.daemon("daemon", rig=RIG)
+    daemon.await_start()
+    keep_arm_at_rest(bench)
+    listener = bench.listener()
+    node = start_node(bench)
+
+    def has_all(status):
+        time.sleep(0.3)  # asking costs the node time
+        return (status["nodes"][0]["verdict"] == "usable" and status["account"]["readings"]["used"] >= 20 and
+                all(sensor["received"] >= 5 for sensor in status["nodes"][0]["sensors"]))
+    try:
+        daemon.await_status("readings of all sensors on the map", has_all, PATIENCE_S)
+    except daemon_bench.CheckFailed:
+        print(daemon.account(), daemon.status()["nodes"][0])
+        raise
+    status = daemon.status()
+    for sensor, range_m in TRUE_RANGE_M.items():
+        told = status["nodes"][0]["sensors"][sensor]
+        claim(abs(told["range_m"] - range_m) <= 0.001, f"sensor {sensor}: {told}, it sees {range_m} m")
+    claim(status["map"]["known_voxels"] > 0, f"a map: {status['map']}")
+    expect("frames not sent, lost", (0, 0), (status["can"]["not_sent"], status["can"]["dropped_by_kernel"]))
+    claim(any("'second': absent" in problem for problem in status["problems"]), f"the missing node: {status['problems']}")
+
+    node.terminate()
+    expect("exit code of the node", 0, node.wait(daemon_bench.PATIENCE_S))
+    named_s = daemon.await_status("the lost node's name", lambda now: any("'first': lost" in text for text in now["problems"]))
+    claim(named_s <= NAMED_S, f"the lost node was named after {named_s:.2f} s")
+    daemon.stop()
+    others = {frame.split("#")[0] for frame in listener.stop() if int(frame.split("#")[0], 16) & 63 not in (1, JOINT_NODE)}
+    expect("identifiers of frames that no node sent", {"040", "080"}, others)
+    print(f"{status['account']['readings']}, {status['map']['known_voxels']} voxels; a lost node named after {named_s:.2f} s")
+
+
+daemon_bench.run(check, has_sensors=True)
