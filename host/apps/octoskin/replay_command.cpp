@@ -117,7 +117,7 @@ void replay_recording(const ReplayOptions& options) {
     if (!playback) throw CommandFailure(playback.error());
 
     for (const AccountTable& table : playback->accounts) print("{}", to_text(table));
-    print("{}", to_text(std::span<const NodeSummary>(playback->nodes)));
+    if (!playback->nodes.empty()) print("{}", to_text(std::span<const NodeSummary>(playback->nodes)));
     for (const std::string& note : playback->notes) print("{}\n", note);
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     refuse_failed(*playback);
