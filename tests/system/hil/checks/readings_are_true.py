@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Holds decoded readings (standard input, decode_log's lines) against what the sensors truly ranged (FOLDER/ranged.i2c-N):
-range and status are a ranging's of that sensor, and its capture time is the middle of that ranging, within the bound that the
-node tells."""
+"""readings_are_true.py FOLDER NODES: holds decoded readings of so many nodes (standard input, decode_log's lines) against what the
+sensors truly ranged (FOLDER/ranged.i2c-N): range and status are a ranging's of that sensor, and its capture time is the middle of
+that ranging, within the bound that the node tells."""
 import collections
 import pathlib
 import sys
 
-SENSOR_OF = {(node, sensor): f"sensor{4 * (node - 1) + sensor}" for node in (1, 2) for sensor in range(4)}
+NODES = int(sys.argv[2])
+SENSOR_OF = {(node, sensor): f"sensor{4 * (node - 1) + sensor}" for node in range(1, NODES + 1) for sensor in range(4)}
 NO_TARGET = 4  # the device's code: signal too weak, no range
 
 
