@@ -1,5 +1,6 @@
 #include "host/apps/daemon/inputs.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "common/wire/codec.hpp"
@@ -32,6 +33,14 @@ CanLink::StateReader state_reader(const DaemonRequest& request) {
     return [interface = request.interface] { return socketcan::read_controller_state(interface); };
 }
 
+Nanoseconds time_on_bus(const wire::CanFrame& frame, const wire::BitRates& rates) {
+    const wire::FrameBits bits = frame.is_fd ? wire::worst_case_bits_fd(frame.payload_len)
+                                             : wire::worst_case_bits_classical(frame.payload_len);
+    const double seconds =
+        static_cast<double>(bits.nominal) / rates.nominal + static_cast<double>(bits.data) / rates.data;
+    return Nanoseconds{std::llround(1e9 * seconds)};
+}
+
 LocalJoints local_joints_of(const HostRig& rig) {
     return {rig.joints.node_id, rig.joints.joints.size(), rig.joints.rate_hz};
 }
@@ -47,7 +56,8 @@ Inputs::Inputs(const DaemonRequest& request, const HostRig& rig, EventLoop& loop
       can_(
           opener(request, rig), [this] { can_ready_ = EventSource(); }, state_reader(request)),
       joint_node_(rig.joints.node_id),
-      local_joints_(local_joints_of(rig)) {}
+      local_joints_(local_joints_of(rig)),
+      bit_rates_(rig.bit_rates) {}
 
 Status<AppError> Inputs::take_sockets(const HostRig& rig) {
     if (request_.joint_socket.empty()) return Done{};
@@ -76,6 +86,7 @@ void Inputs::watch_camera(bool is_wanted) {
 void Inputs::change_rig(const HostRig& rig) {
     if (!request_.can_descriptor) can_.reopen(opener(request_, rig));
     joint_node_ = rig.joints.node_id;
+    bit_rates_ = rig.bit_rates;
     local_joints_ = local_joints_of(rig);
     if (joints_) joints_->expect(rig.joints.joints.size());
     watch_camera(rig.camera.has_value());
@@ -108,6 +119,7 @@ bool Inputs::drain_can() {
 /// With a socket for joint states the rig's joint node has its place: frames of two arms, or of two clocks,
 /// under one name would make poses that never were.
 void Inputs::take_frame(const socketcan::Received& received) {
+    bus_busy_ += time_on_bus(received.entry.frame, bit_rates_);
     if (joints_ && wire::node_of(received.entry.frame.can_id) == joint_node_) {
         ++joint_node_ignored_;
         return;

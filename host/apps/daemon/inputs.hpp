@@ -10,6 +10,7 @@
 
 #include "common/result.hpp"
 #include "common/time.hpp"
+#include "common/wire/bus_load.hpp"
 #include "host/apps/daemon/camera_feed.hpp"
 #include "host/apps/daemon/can_link.hpp"
 #include "host/apps/daemon/event_loop.hpp"
@@ -44,6 +45,9 @@ class Inputs {
     void catch_up();
 
     [[nodiscard]] const CanLink& can() const noexcept { return can_; }
+    /// So long the frames of this rig that were heard or sent have kept the bus busy, with as many stuff bits
+    /// as can be. Those of others the kernel keeps back.
+    [[nodiscard]] Nanoseconds bus_busy() const noexcept { return bus_busy_; }
     /// Null without a socket.
     [[nodiscard]] const JointSocket* joints() const noexcept { return joints_ ? &*joints_ : nullptr; }
     /// Samples of the socket that came too soon after the one before.
@@ -83,6 +87,8 @@ class Inputs {
     std::unique_ptr<CameraFeed> camera_;
     EventSource camera_ready_;
     LatencyHistogram latency_;
+    wire::BitRates bit_rates_;
+    Nanoseconds bus_busy_{0};
     std::uint64_t joints_thinned_ = 0;
     std::uint64_t joint_node_ignored_ = 0;
     std::optional<HostTime> foreign_sync_;

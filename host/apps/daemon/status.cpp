@@ -30,6 +30,7 @@ Json can_json(const DaemonView& view) {
             {"received", counts.received},
             {"sent", counts.sent},
             {"not_sent", counts.not_sent},
+            {"busy_s", seconds(view.inputs->bus_busy())},
             {"error_frames", counts.error_frames},
             {"dropped_by_kernel", counts.dropped},
             {"malformed", counts.malformed},
@@ -80,6 +81,7 @@ Json node_json(const DaemonView& view, const HostNode& node) {
     const auto reason = intake.nodes().reason(node.node_id, view.bus_now);
     const auto clock_fault = intake.clock(node.node_id).fault(view.bus_now);
     const auto drift = intake.clock(node.node_id).drift();
+    const auto clock_error = intake.clock(node.node_id).error_bound(view.bus_now);
     Json json = {
         {"id", node.node_id},
         {"name", node.name},
@@ -89,7 +91,8 @@ Json node_json(const DaemonView& view, const HostNode& node) {
         {"age_s", age_s(record.heard, view.bus_now)},
         {"degraded_sensors", record.heartbeat ? Json(record.heartbeat->degraded_sensors) : Json(nullptr)},
         {"clock_known", !clock_fault},
-        {"clock_ppm", drift ? Json(*drift * 1e6) : Json(nullptr)}};
+        {"clock_ppm", drift ? Json(*drift * 1e6) : Json(nullptr)},
+        {"clock_error_ms", clock_error ? Json(milliseconds(*clock_error)) : Json(nullptr)}};
     Json sensors = Json::array();
     for (std::size_t i = 0; i < node.sensors.size(); ++i) sensors.push_back(sensor_json(view, node, i));
     json["sensors"] = std::move(sensors);

@@ -83,8 +83,12 @@ class Screen {
         const Json& can = at(now_, "can");
         const Json& can_before = at(before_, "can");
         const Json& clock = at(now_, "clock");
-        add(fmt::format("CAN {} {}: {} in, {} out{}; time {}", text(at(can, "interface")),
-                        text(at(can, "state")),
+        const double busy_s = number(at(can, "busy_s")) - number(at(can_before, "busy_s"));
+        const std::string load = passed_.count() > 0.0 && busy_s >= 0.0
+                                     ? fmt::format("{:.1f} %", 100.0 * busy_s / passed_.count())
+                                     : std::string("-");
+        add(fmt::format("CAN {} {}: load {}, {} in, {} out{}; time {}", text(at(can, "interface")),
+                        text(at(can, "state")), load,
                         rate(at(can_before, "received"), at(can, "received"), passed_),
                         rate(at(can_before, "sent"), at(can, "sent"), passed_),
                         at(can, "listen_only") == true ? ", listening only" : "",
@@ -93,7 +97,9 @@ class Screen {
         add_nonzero("  ", can,
                     {"not_sent", "error_frames", "dropped_by_kernel", "malformed", "bus_off", "went_down",
                      "reopened"});
-        add_nonzero("  clock: ", clock, {"steps_back", "steps_ahead", "stamps_ignored", "relocks"});
+        add_nonzero(
+            "  clock: ", clock,
+            {"times_back", "follow_up_outliers", "steps_back", "steps_ahead", "stamps_ignored", "relocks"});
         const Json& latency = at(now_, "latency");
         add(fmt::format("  from frame to map: {:.2f} ms median, {:.2f} ms 99 %, {:.2f} ms longest",
                         number(at(latency, "median_ms")), number(at(latency, "p99_ms")),
@@ -105,9 +111,12 @@ class Screen {
         const std::string clock = at(node, "clock_ppm").is_number()
                                       ? fmt::format("clock {:+.1f} ppm", number(at(node, "clock_ppm")))
                                       : "clock not known";
-        add(fmt::format("node {} '{}' {}{}, {}, heard {}", text(at(node, "id")), text(at(node, "name")),
+        const std::string error = at(node, "clock_error_ms").is_number()
+                                      ? fmt::format(" within {:.2f} ms", number(at(node, "clock_error_ms")))
+                                      : std::string(clock == "clock not known" ? "" : ", its time NOT known");
+        add(fmt::format("node {} '{}' {}{}, {}{}, heard {}", text(at(node, "id")), text(at(node, "name")),
                         text(at(node, "verdict")),
-                        at(node, "reason").is_null() ? "" : ": " + text(at(node, "reason")), clock,
+                        at(node, "reason").is_null() ? "" : ": " + text(at(node, "reason")), clock, error,
                         age(at(node, "age_s"))),
             is_usable ? Emphasis::title : Emphasis::bad);
         const Json& node_before = item(at(before_, "nodes"), index);

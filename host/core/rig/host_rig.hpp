@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/time.hpp"
+#include "common/wire/bus_load.hpp"
 #include "common/wire/messages.hpp"
 #include "host/core/depth/depth_frame.hpp"
 
@@ -86,6 +87,7 @@ struct HostRig {
     double depth_self_margin_m = 0.09;  ///< depth points this close to a capsule's surface are the robot
     double range_self_margin_m = 0.12;  ///< ranges beyond (predicted self-hit - this) are the robot
     HostRangeLimits range_limits;
+    wire::BitRates bit_rates;  ///< of the CAN bus
 };
 
 }  // namespace octoskin

@@ -178,6 +178,14 @@ Result<MappedTime, ClockFault> ClockMap::locate(const wire::TimeResidue& residue
     return MappedTime{known.at(node_us), known.error_bound(node_us, config_)};
 }
 
+std::optional<Nanoseconds> ClockMap::error_bound(HostTime now) const {
+    if (fault(now)) {
+        return std::nullopt;
+    }
+    const Line known = line(points_.size());
+    return known.error_bound(known.node_us_at(now), config_);
+}
+
 std::optional<double> ClockMap::drift() const {
     if (points_.size() < 2) {
         return std::nullopt;

@@ -70,6 +70,8 @@ class ClockMap {
 
     /// What "now" is good for at the moment; empty if `locate` may succeed.
     [[nodiscard]] std::optional<ClockFault> fault(HostTime now) const;
+    /// Bound on the error of an instant that is `now`, as `locate` would tell it; empty while it cannot.
+    [[nodiscard]] std::optional<Nanoseconds> error_bound(HostTime now) const;
     /// Relative rate of the node's clock, host seconds per node second - 1; empty before two exchanges.
     [[nodiscard]] std::optional<double> drift() const;
     /// How often two exchanges in a row agreed on another map than before.

@@ -50,6 +50,7 @@ HostRig to_host(const rig::Rig& rig) {
     host.T_map_base = rig.T_map_base;
     for (const rig::Node& node : rig.nodes) host.nodes.push_back(to_host(node));
     host.joints = {rig.joints.node_id, rig.joints.joints, rig.joints.rate_hz};
+    host.bit_rates = {.nominal = rig.bus.nominal_bitrate, .data = rig.bus.data_bitrate};
     if (rig.camera) host.camera = host_camera(*rig.camera);
     host.links_ignored_by_sensors = rig.links_ignored_by_sensors;
     host.depth_self_margin_m = rig.depth_self_margin_m;

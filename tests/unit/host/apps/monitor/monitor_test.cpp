@@ -15,11 +15,11 @@ using Json = nlohmann::ordered_json;
 
 Json status() {
     return Json::parse(R"({"octoskin": "octoskin 1", "uptime_s": 12.3, "rig": "arm", "problems": [],
-        "can": {"interface": "can0", "state": "up", "received": 1000, "sent": 4, "listen_only": false,
+        "can": {"interface": "can0", "state": "up", "received": 1000, "sent": 4, "busy_s": 7.5, "listen_only": false,
                 "bus_off": 0, "dropped_by_kernel": 0},
         "clock": {"known": true, "steps_back": 0},
         "nodes": [{"id": 1, "name": "left", "verdict": "usable", "reason": null, "age_s": 0.05,
-                   "clock_ppm": 12.34, "sensors": [
+                   "clock_ppm": 12.34, "clock_error_ms": 0.213, "sensors": [
             {"index": 0, "name": "wrist", "state": "ranging", "fault": "none", "received": 100,
              "age_s": 0.02, "range_m": 0.532, "device_status": 9, "rejected": null},
             {"index": 1, "name": "elbow", "state": "lost", "fault": "no_answer", "received": 7,
@@ -42,17 +42,29 @@ bool has(const std::string& screen, const std::string& words) {
 TEST(Monitor, shows_what_is_there_and_rates_of_what_grew) {
     Json now = status();
     now["can"]["received"] = 1900;
+    now["can"]["busy_s"] = 8.0;
     now["nodes"][0]["sensors"][0]["received"] = 140;
     now["account"]["joint samples"]["used"] = 400;
     now["account"]["readings"]["rejected"]["self_hit"] = 31;
     const std::string screen = shown(status(), now);
     for (const char* words :
-         {"rig 'arm'", "no problems", "450.0/s in", "node 1 'left' usable", "+12.3 ppm", "0.532 m", "20.0/s",
-          "elbow", "lost, no_answer", "not used: self_hit", "100.0/s used", "0.20 ms median",
-          "map 1234 voxels", "saved 4.00 s ago", "no camera", "0.5/s  the beam reaches the robot's own body"})
+         {"rig 'arm'", "no problems", "450.0/s in", "node 1 'left' usable", "+12.3 ppm within 0.21 ms",
+          "load 25.0 %", "0.532 m", "20.0/s", "elbow", "lost, no_answer", "not used: self_hit",
+          "100.0/s used", "0.20 ms median", "map 1234 voxels", "saved 4.00 s ago", "no camera",
+          "0.5/s  the beam reaches the robot's own body"})
         EXPECT_TRUE(has(screen, words)) << words << "\n" << screen;
     for (const char* words : {"bus_off", "no_room", "steps_back"})
         EXPECT_FALSE(has(screen, words)) << "a counter of zero is not shown: " << words;
+}
+
+TEST(Monitor, says_that_a_nodes_time_is_not_known) {
+    Json now = status();
+    now["nodes"][0]["clock_error_ms"] = nullptr;
+    EXPECT_TRUE(has(shown(now, now), "clock +12.3 ppm, its time NOT known"));
+    now["nodes"][0]["clock_ppm"] = nullptr;
+    EXPECT_TRUE(has(shown(now, now), "clock not known, heard"));
+    now["can"]["busy_s"] = 0.1;  // the daemon began anew
+    EXPECT_TRUE(has(shown(status(), now), "load -"));
 }
 
 TEST(Monitor, says_why_nothing_is_in_the_map_and_problems_first) {
@@ -71,7 +83,7 @@ TEST(Monitor, takes_counters_that_began_anew_and_a_first_picture) {
     now["can"]["received"] = 3;
     EXPECT_TRUE(has(shown(status(), now), "0.0/s in"));
     const auto first = to_terminal(screen_of(Json(), status(), 0s), {100, 100}, false);
-    EXPECT_TRUE(has(first, "up: - in"));
+    EXPECT_TRUE(has(first, "up: load -, - in"));
 }
 
 TEST(Monitor, fits_every_terminal) {

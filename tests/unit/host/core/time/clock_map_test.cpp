@@ -110,9 +110,15 @@ TEST(ClockMap, widens_its_bound_with_silence_and_gives_up_after_five_seconds) {
         const auto mapped = map.locate(clock.residue_at(truth), truth);
         ASSERT_TRUE(mapped.has_value()) << silence;
         EXPECT_GT(mapped->error_bound, last);
+        const auto told = map.error_bound(truth);
+        ASSERT_TRUE(told);
+        EXPECT_NEAR(static_cast<double>((*told - mapped->error_bound).count()), 0.0, 1'000.0);
         last = mapped->error_bound;
     }
     EXPECT_FALSE(map.fault(at_s(13.0)).has_value());
+    EXPECT_TRUE(map.error_bound(at_s(13.0)));
+    EXPECT_FALSE(map.error_bound(at_s(13.001)));
+    EXPECT_FALSE(locked_map(clock, 1).error_bound(at_s(1.5)));
     EXPECT_EQ(map.locate(clock.residue_at(at_s(13.001)), at_s(13.001)).error(), ClockFault::silent);
 }
 

@@ -49,6 +49,8 @@ TEST(HostRigReader, takes_over_everything_the_host_needs) {
     EXPECT_EQ(host.joints.node_id, 3);
     EXPECT_EQ(host.joints.joints.front(), "panda_joint1");
     EXPECT_EQ(host.joints.rate_hz, 100.0);
+    EXPECT_EQ(host.bit_rates.nominal, 1'000'000U);
+    EXPECT_EQ(host.bit_rates.data, 5'000'000U);
     EXPECT_EQ(host.links_ignored_by_sensors, (std::vector<std::string>{"panda_link7", "panda_link8"}));
     EXPECT_EQ(host.depth_self_margin_m, 0.09);
     EXPECT_EQ(host.range_self_margin_m, 0.12);
