@@ -139,7 +139,7 @@ TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges)
     const auto predicted = tracker_.predict(ranges);
     const bool is_overdue = predicted && is_after(not_ready_at_, predicted->latest);
     const bool is_close =
-        not_ready_polls_ >= 2 && elapsed(not_ready_before_, not_ready_at_) <= policy_.close_polls;
+        not_ready_polls_ >= 2 && elapsed(not_ready_before_, not_ready_at_) <= policy_.close_polls_believed;
     const bool is_believed = (is_close || is_lone_poll_believed(predicted)) && !is_overdue;
     const NodeTime not_ready = is_believed ? not_ready_at_ : not_ready_before_;
     // It was overdue for one poll only: either that was altered, or the sensor slipped. Both are possible.
@@ -189,7 +189,9 @@ bool Acceptance::wants_poll_confirmed() const noexcept {
 
 bool Acceptance::wants_ready_confirmed() const noexcept {
     const auto predicted = next_ready();
-    return !has_accepted() || !predicted || is_after(not_ready_at_, predicted->latest);
+    // The wider the bracket, the further off is what one altered poll says, and the period that it tells.
+    return !has_accepted() || !predicted || predicted->width() > policy_.lone_poll_believed ||
+           is_after(not_ready_at_, predicted->latest);
 }
 
 std::optional<TimeBracket> Acceptance::next_ready() const noexcept {

@@ -61,8 +61,7 @@ void BusWorker::follow_hint(NodeTime now) {
 }
 
 /// The bus is free: whose is it next? Who must be punctual; then who was interrupted; then who has been due
-/// longest. Who had to wait for too long goes before
-/// all but a start.
+/// longest. Who had to wait for too long goes before all but a start.
 void BusWorker::take_turns(NodeTime now) {
     awaited_ = nullptr;
     Sensor* const punctual = first_punctual(now + longest_read_);
@@ -126,7 +125,8 @@ void BusWorker::advance_owner(NodeTime now) {
 }
 
 /// Of those, but the owner, that need the bus for themselves at a time not after `by`: the one that needs it
-/// first. A start decides when all ranges of its run will be: no poll is begun that would delay it.
+/// first. A start decides when all ranges of its run will be: it goes before polls that become due so shortly
+/// before it that they would delay it.
 Sensor* BusWorker::first_punctual(NodeTime by) const {
     Sensor* first = nullptr;
     for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) {

@@ -88,6 +88,10 @@ class Node {
 
     [[nodiscard]] wire::NodeState state() const noexcept;
     [[nodiscard]] NodeCounts counts() const noexcept;
+    /// In the rig's order; none is empty.
+    [[nodiscard]] std::span<const std::optional<Sensor>> sensors() const noexcept {
+        return std::span(sensors_).first(sensor_count_);
+    }
 
   private:
     /// The sensors that a command names: [first, end).
@@ -118,9 +122,6 @@ class Node {
     void note_health_changes(NodeTime now);
     void end_what_has_expired(NodeTime now);
     void blink(NodeTime now);
-    [[nodiscard]] std::span<const std::optional<Sensor>> sensors() const noexcept {
-        return std::span(sensors_).first(sensor_count_);
-    }
 
     // --- the node as a whole (node_supervision.cpp)
     void start_run(NodeTime now);

@@ -29,8 +29,9 @@ struct Policy {
     /// A poll is read once: one that was altered on its way says "not ready" of data that was. Alone it is
     /// believed only where the rhythm tells the ready time to within this, which bounds what it can spoil.
     Microseconds lone_poll_believed{1'000};
-    /// Nor can it spoil more than this if another one said the same so shortly before.
-    Microseconds close_polls{500};
+    /// Nor can it spoil more than this, of the range it belongs to, if another one said the same so shortly
+    /// before.
+    Microseconds close_polls_believed{500};
     /// Known less well than within this, the next ready time is worth a poll that is punctual.
     Microseconds punctual_above{300};
     /// A sensor whose ready time is known this well is asked early, to see that it keeps its rhythm, only
@@ -45,7 +46,7 @@ struct Policy {
     std::int32_t period_unknown_permille = 120;
     /// Readings in a row whose data was ready when it was first asked for.
     std::uint8_t unproven_readings_max = 3;
-    /// Between two polls: while a ready time is being learnt, and while nothing is known.
+    /// Between two polls: where data may become ready or has just become overdue, and where nothing is known.
     Microseconds repoll_min{20};
     Microseconds repoll_max{1'000};
     /// A reading whose capture time is less certain than this is not sent.

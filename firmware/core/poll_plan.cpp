@@ -77,7 +77,6 @@ Microseconds PollPlan::shortest_gap(Microseconds period) const noexcept {
 }
 
 /// From poll to poll, at the closest.
-/// taken.
 Microseconds PollPlan::spacing(Microseconds period) const noexcept {
     return poll_duration_ + shortest_gap(period);
 }

@@ -76,8 +76,11 @@ class Ranging {
     }
     /// Whether what it must be punctual for is its start.
     [[nodiscard]] bool awaits_start() const noexcept { return step_ == Step::awaiting_phase; }
-    /// Whether a start is under way: its instant decides when all its ranges will be.
-    [[nodiscard]] bool is_starting() const noexcept { return step_ == Step::starting; }
+    /// Not while a start is under way, whose instant decides when all its ranges will be; nor between two
+    /// polls of which one confirms the other.
+    [[nodiscard]] bool may_be_interrupted() const noexcept {
+        return step_ != Step::starting && !(step_ == Step::reading && device_.is_confirming_ready());
+    }
     /// When the bus is wanted; empty when nothing is under way.
     [[nodiscard]] std::optional<NodeTime> due() const noexcept {
         return step_ == Step::idle ? std::nullopt : std::optional(step_due_);

@@ -50,7 +50,7 @@ class ReadyTracker {
     [[nodiscard]] std::optional<MeasuredPeriod> measured_period() const noexcept;
 
   private:
-    // Periods in 1/256 us: a rounding error of one unit is 0.25 us over the 64 ranges of a window.
+    // Periods in 1/256 us: a rounding error of one unit is 0.25 us over the 32 ranges of a window.
     using PeriodQ8 = std::int64_t;
 
     [[nodiscard]] TimeBracket grid_after(std::uint32_t slots) const noexcept;

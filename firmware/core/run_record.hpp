@@ -32,7 +32,7 @@ struct RunRecord {
     bool is_starting = false;  ///< there is no node yet: what fails now would fail in safe mode too
     RunMode mode = RunMode::normal;
     std::uint8_t retries = 0;           ///< after safe mode, which failed
-    std::uint32_t resets = 0;           ///< that nobody ordered, since power-on
+    std::uint32_t resets = 0;           ///< that nobody ordered, since the last one that was
     std::uint32_t where = 0;            ///< of the last fault: program counter, or by kind
     std::uint32_t fault_uptime_ms = 0;  ///< of the run that it ended
     std::uint32_t uptime_ms = 0;        ///< of this run, as last noted

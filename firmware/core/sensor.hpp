@@ -84,7 +84,7 @@ class Sensor {
     /// Whether what it must be punctual for is its start.
     [[nodiscard]] bool awaits_start() const noexcept { return ranging_.awaits_start(); }
     /// Whether somebody who must be punctual may come between its transfers.
-    [[nodiscard]] bool may_be_interrupted() const noexcept { return !ranging_.is_starting(); }
+    [[nodiscard]] bool may_be_interrupted() const noexcept { return ranging_.may_be_interrupted(); }
     /// One step, with the bus free or taken by this sensor's own transfer.
     [[nodiscard]] BusUse advance(NodeTime now);
     /// The reading that the last step accepted; told once.

@@ -11,8 +11,7 @@ namespace octoskin::sim {
 namespace {
 
 constexpr std::int64_t kSameTimeUs = 200;
-constexpr std::int64_t kSameFirstTimeUs = 300;  ///< nothing but polls tells the first one's time
-constexpr std::size_t kReadingsAtRest = 45;     ///< 1.5 s of the 2
+constexpr std::size_t kReadingsAtRest = 45;  ///< 1.5 s of the 2
 
 /// How far two homes, or a home and the truth, are apart.
 class Spread {
@@ -52,8 +51,7 @@ struct Differences {
     Spread window;
 };
 
-void expect_same(const JudgedReading& flashed, const JudgedReading& core, bool is_first,
-                 Differences& differences) {
+void expect_same(const JudgedReading& flashed, const JudgedReading& core, Differences& differences) {
     EXPECT_EQ(flashed.reading.zone, core.reading.zone);
     EXPECT_EQ(flashed.reading.sequence, core.reading.sequence);
     EXPECT_EQ(flashed.reading.device_status, core.reading.device_status);
@@ -62,7 +60,7 @@ void expect_same(const JudgedReading& flashed, const JudgedReading& core, bool i
     EXPECT_LE(std::abs(window_us), kSameTimeUs);
     // Both clocks are the same function of time, and run at a rate within 100 ppm.
     const std::int64_t capture_us = window_us + flashed.error_us - core.error_us;
-    EXPECT_LE(std::abs(capture_us), is_first ? kSameFirstTimeUs : kSameTimeUs);
+    EXPECT_LE(std::abs(capture_us), kSameTimeUs);
     differences.window.add(window_us);
     differences.capture.add(capture_us);
 }
@@ -96,7 +94,7 @@ Differences compare(const Heard& flashed, const Heard& core) {
         for (std::size_t i = 0; i < std::min(count, others.size()); ++i) {
             SCOPED_TRACE(testing::Message() << "node " << int{source.first} << " sensor "
                                             << int{source.second} << " reading " << i);
-            expect_same(others[i], readings[i], i == 0, differences);
+            expect_same(others[i], readings[i], differences);
         }
     }
     std::printf("%zu of 34 sensors compared to the end\n", whole);

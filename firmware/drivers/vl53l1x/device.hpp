@@ -95,9 +95,11 @@ class Device {
     void begin_abort();
     /// Polls data ready once, if it is ready reads the result block (twice if so set) and clears the
     /// interrupt; done with or without a measurement: see `has_measurement`. <= 5 ms. `confirms_ready`: if it
-    /// is ready, asks once more, for the first result of a run: no stream count tells it from the last one of
-    /// the run before, which is what a bit flipped in one poll would bring.
+    /// is ready, asks once more, where nothing else would tell a bit flipped in one poll: of the first result
+    /// of a run, and while little is known of when data becomes ready.
     void begin_read(bool confirms_ready = false);
+    /// From such a `begin_read` until data was ready twice: what comes in between is doubt about when.
+    [[nodiscard]] bool is_confirming_ready() const noexcept { return is_confirming_ready_; }
     /// Ranges once with a full search of the VHV voltage; for a part that was stopped while its temperature
     /// moved by more than 8 degrees. <= 1 s + one period; only while stopped.
     void begin_update_temperature();
@@ -261,7 +263,7 @@ class Device {
     ResultBlock block_{};
     NodeTime ready_seen_{};
     bool has_read_again_ = false;
-    bool confirms_ready_ = false;
+    bool is_confirming_ready_ = false;
     std::uint8_t run_ = 0;  ///< of `kRegisterRuns`
 
     // Results.

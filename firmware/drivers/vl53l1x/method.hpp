@@ -314,11 +314,16 @@ struct Device::Method {
         d.read(reg::GPIO_TIO_HV_STATUS, 1, [](Device& device, NodeTime now) {
             if (!is_ready(device)) return end_without_data(device);
             device.ready_seen_ = now;
-            if (device.confirms_ready_) device.read(reg::GPIO_TIO_HV_STATUS, 1, confirm_ready);
+            if (device.is_confirming_ready_) device.read(reg::GPIO_TIO_HV_STATUS, 1, confirm_ready);
             return Verdict::proceed;
         });
     }
-    static Verdict confirm_ready(Device& d, NodeTime) {
+    /// Had the first answer been altered, data that became ready since would seem to have been ready then:
+    /// where that may be long ago, only the second one counts.
+    static Verdict confirm_ready(Device& d, NodeTime now) {
+        constexpr Microseconds kAtOnce{300};
+        d.is_confirming_ready_ = false;
+        if (elapsed(d.ready_seen_, now) > kAtOnce) d.ready_seen_ = now;
         if (is_ready(d)) return Verdict::proceed;
         d.count_i2c_error();
         return end_without_data(d);

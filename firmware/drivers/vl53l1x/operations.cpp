@@ -137,7 +137,7 @@ void Device::begin_abort() {
 
 void Device::begin_read(bool confirms_ready) {
     begin(Method::kRead);
-    confirms_ready_ = confirms_ready;
+    is_confirming_ready_ = confirms_ready;
     has_measurement_ = false;
     has_read_again_ = false;
 }

@@ -220,8 +220,8 @@ TEST_F(NodeRecoveryTest, does_not_lose_a_reading_to_a_single_refused_address) {
 }
 
 TEST_F(NodeRecoveryTest, never_sends_a_range_with_a_bit_flipped_in_one_of_its_two_reads) {
-    // Every bit of a result twice over; some hit polls and read-backs instead.
-    for (std::uint32_t i = 0; i < 2 * 136; ++i) {
+    // Every bit of a result three times over; some hit polls and read-backs instead.
+    for (std::uint32_t i = 0; i < 3 * 136; ++i) {
         rig_.bus(0).inject({.kind = sim::I2cFaultKind::flip_bit,
                             .first = rig_.bus(0).transfer_count() + 50 + 29 * i,
                             .position = i % 136});
