@@ -201,7 +201,7 @@ enum class FaultKind : std::uint8_t {
 };
 struct InfoFault {  ///< what is wrong with the node now, else its last recorded fault; else all zero
     FaultKind kind = FaultKind::none;
-    std::uint8_t count = 0;     ///< resets that nobody ordered, since power-on; saturates at 15
+    std::uint8_t count = 0;     ///< resets that nobody ordered, since the last one that was; saturates at 15
     std::uint32_t where = 0;    ///< by kind
     std::uint8_t uptime_s = 0;  ///< how long the run that the fault ended had lasted; saturates at 255
     friend constexpr bool operator==(const InfoFault&, const InfoFault&) = default;

@@ -214,12 +214,33 @@ TEST(ImageFaults, does_not_reset_for_ever_for_a_crystal_that_is_never_in_time) {
 TEST(ImageFaults, runs_on_what_it_has_if_the_core_cannot_be_switched_to_the_pll_and_says_how_fast) {
     ImageBench bench(block_of(bare_config()));
     bench.board().refuse_pll();
-    bench.run(0.9);
+    // A second lasts a second, by its own light: 131 ms on, 131 off; from one second on it is tried again and
+    // again.
+    EXPECT_EQ(bench.flashes(900), 2);
     EXPECT_FALSE(bench.first_s()) << "CAN is silent";
     EXPECT_THAT(bench.board().serial_text(), HasSubstr("16 MHz, without the PLL: CAN is silent"));
-    // A second lasts a second, by its own light: 131 ms on, 131 off.
-    EXPECT_EQ(bench.flashes(), 2);
     EXPECT_EQ(bench.violations(), "") << "baud rate and I2C timing too are right for 16 MHz";
+}
+
+// --- the sensors
+
+TEST(ImageFaults, names_sensors_that_do_not_answer_on_the_serial_line_and_by_the_light) {
+    NodeConfig config = bare_config();
+    config.sensor_count = 3;
+    for (std::uint8_t i = 0; i < 3; ++i) {
+        config.sensors[i].bus = i;
+        config.sensors[i].address = static_cast<std::uint8_t>(0x30 + i);
+        config.sensors[i].xshut_line = i;
+    }
+    ImageBench bench(block_of(config));
+    bench.run(2.0);
+    EXPECT_EQ(bench.heartbeats().back().degraded_sensors, 3);
+    for (const char* line : {"sensor 0: absent, no_answer\r\n", "sensor 1: absent", "sensor 2: absent"})
+        EXPECT_THAT(bench.board().serial_text(), HasSubstr(line));
+    EXPECT_EQ(bench.flashes(), 5);
+    const std::string text = bench.board().serial_text();
+    EXPECT_EQ(text.find("sensor 0"), text.rfind("sensor 0")) << "said once, however often it is tried";
+    EXPECT_EQ(bench.violations(), "");
 }
 
 // --- the CAN controller

@@ -58,6 +58,7 @@ void Journal::update(const node::Node& node, const linux_port::CanInterface& can
         ignored_data_ready_ = ignored;
         say("data-ready lines that are noise, ignored: buses " + hex(ignored) + " (one bit each)");
     }
+    say_troubles(node);
     if (can.unconfirmed() != unconfirmed_) {
         unconfirmed_ = can.unconfirmed();
         say("CAN: " + std::to_string(unconfirmed_) + " frames never confirmed since start");
@@ -66,6 +67,18 @@ void Journal::update(const node::Node& node, const linux_port::CanInterface& can
         xshut_failures_ = xshut.failures();
         say("XSHUT: the kernel refused to set a line, " + std::to_string(xshut_failures_) +
             " times since start");
+    }
+}
+
+void Journal::say_troubles(const node::Node& node) {
+    const auto sensors = node.sensors();
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        const node::Sensor& sensor = *sensors[i];
+        const auto trouble = sensor.is_degraded() ? std::optional(sensor.fault()) : std::nullopt;
+        if (trouble == troubles_[i]) continue;
+        troubles_[i] = trouble;
+        say("sensor " + std::to_string(i) + ": " + wire::name(sensor.state()) +
+            (trouble ? std::string(", ") + wire::name(*trouble) : ""));
     }
 }
 

@@ -1,6 +1,7 @@
 // What a Linux node tells a person, a line each on standard error: what it is, and whatever changes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -24,7 +25,10 @@ class Journal {
                 const linux_port::XshutOutputs& xshut);
 
   private:
+    void say_troubles(const node::Node& node);
+
     std::optional<wire::NodeState> state_;
+    std::array<std::optional<wire::SensorFault>, kNodeSensorsMax> troubles_{};  ///< told, by sensor
     std::string trouble_;
     node::CanState can_state_ = node::CanState::active;
     std::uint8_t ignored_data_ready_ = 0;

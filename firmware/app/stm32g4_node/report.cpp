@@ -10,6 +10,8 @@ namespace octoskin::stm32g4 {
 namespace {
 
 constexpr Microseconds kLossesPause{10'000'000};
+// From one look at the sensors to the next.
+constexpr Microseconds kSensorsPause{50'000};
 
 std::string_view words(ClockSource source) {
     switch (source) {
@@ -118,7 +120,31 @@ void Report::update(const node::Node& node, const CanController& can, NodeTime n
     ignored_data_ready_ = ignored;
     bus_off_count_ = bus_off_count;
     tell_losses(can.counts(), now);
+    tell_sensors(node, now);
     show(state, can.is_started());
+}
+
+/// One that is in trouble, or has another or none any more: one a look, for the serial port is slow.
+void Report::tell_sensors(const node::Node& node, NodeTime now) {
+    sensors_pause_.update(now);
+    if (!sensors_pause_.is_over()) return;
+    sensors_pause_.begin(now, kSensorsPause);
+    const auto sensors = node.sensors();
+    bool has_told = false;
+    has_trouble_ = false;
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        const node::Sensor& sensor = *sensors[i];
+        const auto trouble = sensor.is_degraded() ? std::optional(sensor.fault()) : std::nullopt;
+        has_trouble_ = has_trouble_ || trouble;
+        if (has_told || trouble == troubles_[i]) continue;
+        troubles_[i] = trouble;
+        has_told = true;
+        TextLine line;
+        line.text("sensor ").number(static_cast<std::uint32_t>(i)).text(": ");
+        line.text(wire::name(sensor.state()));
+        if (trouble) line.text(", ").text(wire::name(*trouble));
+        serial_.say(line.view());
+    }
 }
 
 /// With nobody to acknowledge there are some every second: a line now and then is enough.
@@ -135,12 +161,15 @@ void Report::tell_losses(const CanCounts& counts, NodeTime now) {
 
 /// One thing at a time: what must be mended first.
 void Report::show(wire::NodeState state, bool is_can_started) {
+    const bool is_ranging = state == wire::NodeState::ranging || state == wire::NodeState::starting;
     if (!has_crystal_) {
         light_.show(Flashes::no_crystal);
     } else if (state == wire::NodeState::bad_config) {
         light_.show(Flashes::bad_config);
     } else if (state == wire::NodeState::can_fault || !is_can_started) {
         light_.show(Flashes::can_fault);
+    } else if (!is_ranging || has_trouble_) {
+        light_.show(Flashes::no_ranges);
     } else {
         light_.show(Flashes::all_is_well);
     }

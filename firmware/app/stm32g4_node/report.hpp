@@ -2,6 +2,7 @@
 // the light's flashes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -39,6 +40,7 @@ class Report {
 
   private:
     void tell_losses(const CanCounts& counts, NodeTime now);
+    void tell_sensors(const node::Node& node, NodeTime now);
     void show(wire::NodeState state, bool is_can_started);
 
     SerialPort& serial_;
@@ -50,6 +52,9 @@ class Report {
     std::uint32_t can_failed_ = 0;
     CanCounts told_;
     node::Pause losses_pause_;
+    std::array<std::optional<wire::SensorFault>, kNodeSensorsMax> troubles_{};  ///< told, by sensor
+    bool has_trouble_ = false;  ///< any of them, at the last look
+    node::Pause sensors_pause_;
 };
 
 }  // namespace octoskin::stm32g4

@@ -1,5 +1,5 @@
-// The board's light: short flashes, counted once a second, say how the board is; while somebody asks for it
-// by the `identify` command, it blinks evenly instead.
+// The board's light: short flashes, counted every two seconds, say how the board is; while somebody asks for
+// it by the `identify` command, it blinks evenly instead.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +17,7 @@ enum class Flashes : std::uint8_t {
     no_crystal = 2,  ///< silent on CAN
     bad_config = 3,  ///< no ranging
     can_fault = 4,   ///< CAN is out of order
+    no_ranges = 5,   ///< of a sensor, of a bus, or of the whole node
 };
 
 class StatusLight final : public node::Indicator {

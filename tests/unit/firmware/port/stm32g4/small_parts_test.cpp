@@ -165,10 +165,10 @@ class StatusLightTest : public ::testing::Test {
         });
         light_.start();
     }
-    /// For 2^20 us, from `now`: one period of the flashes.
+    /// For 2^21 us, from `now`: one period of the flashes, half of it dark however many there are.
     NodeTime watch_a_period(NodeTime now) {
         flashes_ = 0;
-        const NodeTime end = now + Microseconds{1 << 20};
+        const NodeTime end = now + Microseconds{1 << 21};
         while (!is_reached(end, now)) now = light_.poll(now);
         return now;
     }
@@ -180,12 +180,18 @@ class StatusLightTest : public ::testing::Test {
 };
 
 TEST_F(StatusLightTest, flashes_as_often_as_it_has_to_say) {
-    NodeTime now{0xFFF0'0000};  // over the clock's wrap
-    for (const Flashes flashes :
-         {Flashes::all_is_well, Flashes::no_crystal, Flashes::bad_config, Flashes::can_fault}) {
+    NodeTime now{0xFFE0'0000};  // over the clock's wrap
+    for (const Flashes flashes : {Flashes::all_is_well, Flashes::no_crystal, Flashes::bad_config,
+                                  Flashes::can_fault, Flashes::no_ranges}) {
         light_.show(flashes);
         now = watch_a_period(now);
         EXPECT_EQ(flashes_, static_cast<int>(flashes));
+        // The longest pause tells where to begin to count.
+        for (std::uint32_t slot = 9; slot < 16; ++slot) {
+            (void)light_.poll(now + Microseconds{slot << 17U});
+            EXPECT_FALSE(is_lit_) << slot;
+        }
+        now = now + Microseconds{1 << 21};
     }
 }
 
