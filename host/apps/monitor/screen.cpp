@@ -125,9 +125,12 @@ class Screen {
     void add_sensor(const Json& node, const Json& node_before, std::size_t index) {
         const Json& sensor = item(at(node, "sensors"), index);
         const Json& before = item(at(node_before, "sensors"), index);
-        const std::string range = at(sensor, "range_m").is_number()
-                                      ? fmt::format("{:6.3f} m", number(at(sensor, "range_m")))
-                                      : std::string("       -");
+        // What a sensor that saw nothing calls its range is noise.
+        const bool saw_nothing = text(at(sensor, "rejected")) == "no_return";
+        const std::string range = saw_nothing ? "no target"
+                                  : at(sensor, "range_m").is_number()
+                                      ? fmt::format("{:7.3f} m", number(at(sensor, "range_m")))
+                                      : std::string("        -");
         const bool is_ranging = text(at(sensor, "state")) == "ranging";
         const bool has_fault = !at(sensor, "fault").is_null() && text(at(sensor, "fault")) != "none";
         add(fmt::format(

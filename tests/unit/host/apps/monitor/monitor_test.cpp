@@ -57,6 +57,16 @@ TEST(Monitor, shows_what_is_there_and_rates_of_what_grew) {
         EXPECT_FALSE(has(screen, words)) << "a counter of zero is not shown: " << words;
 }
 
+TEST(Monitor, shows_no_range_of_a_sensor_that_saw_nothing) {
+    Json now = status();
+    Json& sensor = now["nodes"][0]["sensors"][0];
+    sensor["device_status"] = 4;
+    sensor["rejected"] = "no_return";
+    const std::string screen = shown(status(), now);
+    EXPECT_TRUE(has(screen, "no target")) << screen;
+    EXPECT_FALSE(has(screen, "0.532")) << screen;
+}
+
 TEST(Monitor, says_that_a_nodes_time_is_not_known) {
     Json now = status();
     now["nodes"][0]["clock_error_ms"] = nullptr;
