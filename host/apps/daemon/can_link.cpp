@@ -70,8 +70,9 @@ void CanLink::on_fault(const SocketFault& fault) {
     set(LinkState::absent, fault.message());
 }
 
-void CanLink::reopen(Opener opener) {
+void CanLink::change_filters(Opener opener, std::span<const socketcan::IdFilter> filters) {
     opener_ = std::move(opener);
+    if (socket_ && socket_->set_filters(filters)) return;
     tried_.reset();
     close();
 }

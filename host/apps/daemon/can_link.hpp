@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,8 +47,9 @@ class CanLink {
 
     /// Opens the interface if it is closed and a try is due. True if the descriptor changed.
     bool attend(HostTime now);
-    /// Closes what is open; `attend` opens it again, in this way.
-    void reopen(Opener opener);
+    /// Only frames that pass `filters` are wanted from now on: `opener` opens the interface for them. What is
+    /// open stays open where it can, so that no frame is missed; else `attend` opens it again.
+    void change_filters(Opener opener, std::span<const socketcan::IdFilter> filters);
     /// -1 while closed.
     [[nodiscard]] int descriptor() const noexcept { return socket_ ? socket_->descriptor() : -1; }
 

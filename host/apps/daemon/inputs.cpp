@@ -84,7 +84,7 @@ void Inputs::watch_camera(bool is_wanted) {
 }
 
 void Inputs::change_rig(const HostRig& rig) {
-    if (!request_.can_descriptor) can_.reopen(opener(request_, rig));
+    if (!request_.can_descriptor) can_.change_filters(opener(request_, rig), socketcan::our_filters(rig));
     joint_node_ = rig.joints.node_id;
     bit_rates_ = rig.bit_rates;
     local_joints_ = local_joints_of(rig);

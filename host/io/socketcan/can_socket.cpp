@@ -55,12 +55,17 @@ bool set(int descriptor, int level, int option, const Value& value) {
     return ::setsockopt(descriptor, level, option, &value, sizeof(value)) == 0;
 }
 
+bool filter(int descriptor, std::span<const IdFilter> filters) {
+    // A mask of nothing lets everything pass.
+    const std::vector<can_filter> kernel =
+        filters.empty() ? std::vector<can_filter>{{}} : kernel_filters(filters);
+    const auto bytes = static_cast<socklen_t>(kernel.size() * sizeof(can_filter));
+    return ::setsockopt(descriptor, SOL_CAN_RAW, CAN_RAW_FILTER, kernel.data(), bytes) == 0;
+}
+
 bool set_options(int descriptor, const SocketOptions& options) {
-    const std::vector<can_filter> filters = kernel_filters(options.filters);
     const can_err_mask_t errors = options.wants_error_frames ? CAN_ERR_MASK : 0;
-    const auto filter_bytes = static_cast<socklen_t>(filters.size() * sizeof(can_filter));
-    const bool is_filtered = filters.empty() || ::setsockopt(descriptor, SOL_CAN_RAW, CAN_RAW_FILTER,
-                                                             filters.data(), filter_bytes) == 0;
+    const bool is_filtered = filter(descriptor, options.filters);
     // As large as the system allows, which may be less than asked for.
     (void)set(descriptor, SOL_SOCKET, SO_RCVBUF, options.receive_buffer_bytes);
     return is_filtered && set(descriptor, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1) &&
@@ -93,6 +98,10 @@ Result<CanSocket, SocketFault> CanSocket::open(const std::string& interface, con
     if (const int error = bind_to(socket.descriptor_, interface); error != 0)
         return unexpected(socket.fault(error, "cannot use this CAN interface"));
     return socket;
+}
+
+bool CanSocket::set_filters(std::span<const IdFilter> filters) {
+    return filter(descriptor_, filters);
 }
 
 CanSocket::CanSocket(std::string interface, int descriptor, bool hears_itself)

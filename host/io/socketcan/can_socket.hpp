@@ -62,6 +62,10 @@ class CanSocket {
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
     [[nodiscard]] const std::string& interface() const noexcept { return interface_; }
 
+    /// From now on only frames that pass one of `filters` arrive, or all if there is none; what waits already
+    /// stays, and no frame is missed in between. False if the descriptor takes no filters.
+    [[nodiscard]] bool set_filters(std::span<const IdFilter> filters);
+
     /// The next frame, if one is here.
     [[nodiscard]] Result<std::optional<Received>, SocketFault> receive();
     /// False if there is no room now: the frame was not sent.

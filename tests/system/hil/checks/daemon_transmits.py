@@ -56,6 +56,7 @@ def check_listen_only(bench, log):
     daemon.stop()
     expect("frames on the bus", frames_of(log), [line.split()[2] for line in heard])
     expect("frames sent, and not sent", (0, 0), (counts["sent"], counts["not_sent"]))
+    expect("times the socket was opened again, for a rig read again", 0, counts["reopened"])
     print(f"--listen-only: {len(heard)} frames played and heard, none sent")
 
 

@@ -105,14 +105,16 @@ TEST_F(CanLinkTest, tells_bus_off_from_error_passive_and_from_well) {
     EXPECT_EQ(link_.counts().received, 0U);
 }
 
-TEST_F(CanLinkTest, is_opened_in_another_way_when_told_so) {
+TEST_F(CanLinkTest, is_opened_anew_for_other_filters_where_the_descriptor_takes_none) {
     ASSERT_TRUE(link_.attend({}));
     int others = 0;
-    link_.reopen([&]() -> Result<socketcan::CanSocket, socketcan::SocketFault> {
-        ++others;
-        return unexpected(socketcan::SocketFault{"can1", ENODEV, "no"});
-    });
-    EXPECT_EQ(link_.descriptor(), -1);
+    link_.change_filters(
+        [&]() -> Result<socketcan::CanSocket, socketcan::SocketFault> {
+            ++others;
+            return unexpected(socketcan::SocketFault{"can1", ENODEV, "no"});
+        },
+        {});
+    EXPECT_EQ(link_.descriptor(), -1) << "a Unix socket knows nothing of CAN";
     EXPECT_FALSE(link_.attend({}));
     EXPECT_EQ(others, 1);
 }
