@@ -219,7 +219,7 @@ void Ranging::on_started(NodeTime now) {
 
 Ranging::Event Ranging::on_read(NodeTime now) {
     if (!device_.has_measurement()) {
-        acceptance_.on_not_ready(polls_.not_ready_until(step_began_));
+        if (!device_.have_polls_disagreed()) acceptance_.on_not_ready(polls_.not_ready_until(step_began_));
         // A sensor that gave results which had to be refused is not one that gives none.
         const SensorFault silence = acceptance_.has_refused() ? fault_ : SensorFault::no_data_ready;
         if (acceptance_.is_silent(now)) return fail(silence);

@@ -32,9 +32,11 @@ constexpr Microseconds kQuiet{22'000'000};  // two of the longest waits between 
 constexpr std::uint8_t kSensors = 6;
 constexpr std::size_t kBuses = 2;
 
-// Only results are read twice. A bit flipped in the poll that says "not ready" moves the capture time by the
-// distance to the next poll, which is its longest here.
-constexpr std::int64_t kOnePollUs = 1'000;
+// Only results are read twice. A bit flipped in a poll that is believed alone moves the capture time by as
+// much as the rhythm left open, and the ready times of this range and of the next may stray from the rhythm
+// on top.
+constexpr node::Policy kPolicy;
+constexpr std::int64_t kOnePollUs = (kPolicy.lone_poll_believed + 2 * kPolicy.ready_jitter).count();
 
 // Faults that the double read, the stream count, the read-back and the error handling must catch.
 constexpr std::array<I2cFaultKind, 10> kBusFaults = {

@@ -98,6 +98,9 @@ class Device {
     /// is ready, asks once more, where nothing else would tell a bit flipped in one poll: of the first result
     /// of a run, and while little is known of when data becomes ready.
     void begin_read(bool confirms_ready = false);
+    /// The last `begin_read` found data ready, and asked again not ready: one answer was altered, and nobody
+    /// knows which.
+    [[nodiscard]] bool have_polls_disagreed() const noexcept { return have_polls_disagreed_; }
     /// From such a `begin_read` until data was ready twice: what comes in between is doubt about when.
     [[nodiscard]] bool is_confirming_ready() const noexcept { return is_confirming_ready_; }
     /// Ranges once with a full search of the VHV voltage; for a part that was stopped while its temperature
@@ -264,6 +267,7 @@ class Device {
     NodeTime ready_seen_{};
     bool has_read_again_ = false;
     bool is_confirming_ready_ = false;
+    bool have_polls_disagreed_ = false;
     std::uint8_t run_ = 0;  ///< of `kRegisterRuns`
 
     // Results.

@@ -325,6 +325,7 @@ struct Device::Method {
         d.is_confirming_ready_ = false;
         if (elapsed(d.ready_seen_, now) > kAtOnce) d.ready_seen_ = now;
         if (is_ready(d)) return Verdict::proceed;
+        d.have_polls_disagreed_ = true;
         d.count_i2c_error();
         return end_without_data(d);
     }

@@ -138,6 +138,7 @@ void Device::begin_abort() {
 void Device::begin_read(bool confirms_ready) {
     begin(Method::kRead);
     is_confirming_ready_ = confirms_ready;
+    have_polls_disagreed_ = false;
     has_measurement_ = false;
     has_read_again_ = false;
 }
