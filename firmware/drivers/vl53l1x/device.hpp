@@ -250,6 +250,8 @@ class Device {
     std::uint16_t budget_ms_ = 0;
     std::optional<Roi> written_roi_;
     bool is_active_low_ = true;
+    bool is_confirming_ready_ = false;
+    bool have_polls_disagreed_ = false;
     std::optional<NodeTime> not_ready_seen_;
 
     // What the operation is about to set or has read so far.
@@ -266,8 +268,6 @@ class Device {
     ResultBlock block_{};
     NodeTime ready_seen_{};
     bool has_read_again_ = false;
-    bool is_confirming_ready_ = false;
-    bool have_polls_disagreed_ = false;
     std::uint8_t run_ = 0;  ///< of `kRegisterRuns`
 
     // Results.
