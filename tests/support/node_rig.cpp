@@ -14,8 +14,11 @@ constexpr std::uint32_t kShortDistancesMm = 1'100;
 constexpr std::size_t kMailboxes = 3;
 constexpr std::int64_t kTakenBackAfterUs = 20'000;
 
-node::Identity identity(wire::ResetCause cause) {
-    return {.uid = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, .build_id = 0x1234ABCD, .reset_cause = cause};
+node::Identity identity(wire::ResetCause cause, std::uint8_t board_type) {
+    return {.uid = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12},
+            .build_id = 0x1234ABCD,
+            .board_type = board_type,
+            .reset_cause = cause};
 }
 
 }  // namespace
@@ -57,9 +60,10 @@ NodeRig::FittedSensor::FittedSensor(const SensorSetup& setup, const Distances& d
 }
 
 NodeRig::NodeRig(const NodeConfig& config, const std::vector<SensorSetup>& setups, sim::NodeClock clock,
-                 const node::Policy& policy)
+                 const node::Policy& policy, std::uint8_t board_type)
     : config_(config),
       policy_(policy),
+      board_type_(board_type),
       clock_(clock),
       can_({.nominal = config.nominal_bitrate, .data = config.data_bitrate}) {
     for (std::size_t bus = 0; bus < kNodeBusesMax; ++bus) {
@@ -88,7 +92,7 @@ void NodeRig::start_node(wire::ResetCause cause) {
                             .indicator = this,
                             .watchdog = this,
                             .kept = &kept_};
-    node_ = std::make_unique<node::Node>(config_, identity(cause), ports, node_now(), policy_);
+    node_ = std::make_unique<node::Node>(config_, identity(cause, board_type_), ports, node_now(), policy_);
 }
 
 void NodeRig::reset(const Reset& reset) {

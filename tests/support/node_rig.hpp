@@ -70,9 +70,10 @@ class NodeRig final : private node::XshutLines,
                       private node::CanTransmitter,
                       private node::Watchdog {
   public:
-    /// `setups`: one for each sensor of the configuration.
+    /// `setups`: one for each sensor of the configuration. `board_type`: what the board is, whatever the
+    /// configuration is for.
     NodeRig(const NodeConfig& config, const std::vector<SensorSetup>& setups, sim::NodeClock clock = {},
-            const node::Policy& policy = {});
+            const node::Policy& policy = {}, std::uint8_t board_type = 0);
 
     /// Runs from event to event.
     void run_for(Microseconds duration);
@@ -171,6 +172,7 @@ class NodeRig final : private node::XshutLines,
 
     NodeConfig config_;
     node::Policy policy_;
+    std::uint8_t board_type_ = 0;
     node::KeptMemory kept_{};
     sim::NodeClock clock_;
     sim::Present present_;

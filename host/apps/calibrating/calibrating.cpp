@@ -1,19 +1,8 @@
 #include "host/apps/calibrating/calibrating.hpp"
 
 #include <fmt/format.h>
-#include <poll.h>
-
-#include <algorithm>
-#include <chrono>
 
 namespace octoskin::calibrating {
-namespace {
-
-AppError app_error(const socketcan::SocketFault& fault) {
-    return {ExitCode::unavailable, fault.message()};
-}
-
-}  // namespace
 
 Result<Question, AppError> question_of(const rig::Rig& rig, const Wish& wish, std::uint8_t sequence) {
     std::string names;
@@ -43,36 +32,9 @@ Result<Question, AppError> question_of(const rig::Rig& rig, const Wish& wish, st
                 fmt::format("no node '{}' in rig {}: it has {}", wish.node, rig.name, names));
 }
 
-Outside this_machine() {
-    const auto now = [] {
-        const auto since_boot = std::chrono::steady_clock::now().time_since_epoch();
-        return HostTime{std::chrono::duration_cast<Nanoseconds>(since_boot).count()};
-    };
-    const auto wait = [now](int descriptor, HostTime until) {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - now()).count();
-        pollfd entry{.fd = descriptor, .events = POLLIN, .revents = 0};
-        (void)::poll(&entry, 1, static_cast<int>(std::clamp<std::int64_t>(left, 0, 1'000)));
-    };
-    return {now, wait};
-}
-
 Dialogue::Outcome converse(Dialogue& dialogue, socketcan::CanSocket& socket, const Outside& outside) {
-    std::optional<wire::CanFrame> unsent;
-    while (!dialogue.outcome()) {
-        auto received = socket.receive();
-        if (!received) return unexpected(app_error(received.error()));
-        if (*received) {
-            dialogue.on_frame((*received)->entry.frame, outside.now());
-        } else {
-            outside.wait(socket.descriptor(), dialogue.deadline());
-        }
-        dialogue.on_time(outside.now());
-        if (auto frame = dialogue.take_frame()) unsent = frame;
-        if (!unsent) continue;
-        const auto sent = socket.send(*unsent);
-        if (!sent) return unexpected(app_error(sent.error()));
-        if (*sent) unsent.reset();
-    }
+    const auto held = octoskin::converse(dialogue, socket, outside);
+    if (!held) return unexpected(held.error());
     return *dialogue.outcome();
 }
 

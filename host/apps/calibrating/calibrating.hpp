@@ -1,7 +1,6 @@
 // Calibrates one sensor over a CAN interface.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "host/apps/calibrating/dialogue.hpp"
@@ -22,14 +21,6 @@ struct Wish {
 /// Errors, all `usage`: no such node or sensor, naming those there are.
 [[nodiscard]] Result<Question, AppError> question_of(const rig::Rig& rig, const Wish& wish,
                                                      std::uint8_t sequence);
-
-/// The world outside, so that a test can be it.
-struct Outside {
-    std::function<HostTime()> now;
-    /// Returns once the descriptor can be read, or at that time; spurious returns are harmless.
-    std::function<void(int descriptor, HostTime until)> wait;
-};
-[[nodiscard]] Outside this_machine();
 
 /// Blocks until the dialogue has ended. Errors: its own, and a CAN interface that does not work.
 [[nodiscard]] Dialogue::Outcome converse(Dialogue& dialogue, socketcan::CanSocket& socket,

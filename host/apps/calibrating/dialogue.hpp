@@ -10,6 +10,7 @@
 #include "common/time.hpp"
 #include "common/wire/can_frame.hpp"
 #include "common/wire/messages.hpp"
+#include "host/apps/conversation/conversation.hpp"
 #include "host/apps/recording/app_error.hpp"
 
 namespace octoskin::calibrating {
@@ -30,22 +31,19 @@ struct Question {
 /// sensor. Then asks, and waits for the answer and the end; a heartbeat that says that the node calibrates
 /// nothing (safe mode, another board under its id, ...) ends it at once. Every wait ends: 2 s for a
 /// heartbeat, 1 s for the answer, asked three times, 10 s and 130 periods for the end.
-class Dialogue {
+class Dialogue final : public NodeDialogue {
   public:
     using Outcome = Result<wire::Calibration, AppError>;
 
     Dialogue(Question question, HostTime now);
 
-    void on_frame(const wire::CanFrame& frame, HostTime now);
-    /// The time is now, whatever came.
-    void on_time(HostTime now);
-
-    /// To be sent; told once.
-    [[nodiscard]] std::optional<wire::CanFrame> take_frame();
+    void on_frame(const wire::CanFrame& frame, HostTime now) override;
+    void on_time(HostTime now) override;
+    [[nodiscard]] std::optional<wire::CanFrame> take_frame() override;
     /// The node ranges for it.
     [[nodiscard]] bool is_under_way() const noexcept { return step_ == Step::awaiting_end; }
-    /// When `on_time` has something to do.
-    [[nodiscard]] HostTime deadline() const noexcept { return deadline_; }
+    [[nodiscard]] HostTime deadline() const noexcept override { return deadline_; }
+    [[nodiscard]] bool is_over() const noexcept override { return outcome_.has_value(); }
     /// Once it has ended: `done`, or why not.
     [[nodiscard]] const std::optional<Outcome>& outcome() const noexcept { return outcome_; }
 

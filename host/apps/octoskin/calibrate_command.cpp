@@ -45,7 +45,7 @@ wire::Calibration calibrate(const calibrating::Question& question, const std::st
          {wire::can_id(wire::FrameType::calibration, question.node_id), wire::kStandardIdMax}}};
     auto socket = socketcan::CanSocket::open(interface, {.filters = filters, .wants_error_frames = false});
     if (!socket) throw CommandFailure({ExitCode::unavailable, socket.error().message()});
-    const calibrating::Outside outside = calibrating::this_machine();
+    const Outside outside = this_machine();
     calibrating::Dialogue dialogue(question, outside.now());
     return value_or_fail(calibrating::converse(dialogue, *socket, outside));
 }

@@ -3,49 +3,15 @@
 #include "host/apps/calibrating/calibrating.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/socket.h>
 
-#include <array>
-
-#include "tests/support/node_rig.hpp"
+#include "tests/support/live/node_on_socket.hpp"
 
 namespace octoskin::calibrating {
 namespace {
 
 using test::fleet_config;
-using test::NodeRig;
+using test::NodeOnSocket;
 using test::SensorSetup;
-
-/// A simulated node at the other end of a pair of sockets; its time is the time.
-class SimulatedBus {
-  public:
-    explicit SimulatedBus(const std::vector<SensorSetup>& setups) : rig_(fleet_config(4, 2), setups) {
-        std::array<int, 2> ends{};
-        EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, ends.data()), 0);
-        host_.emplace("can0", ends[0]);
-        node_.emplace("node", ends[1]);
-        rig_.run_for(Microseconds{1'000'000});
-    }
-    [[nodiscard]] Outside outside() {
-        return {[this] { return HostTime{rig_.now().us * 1'000}; }, [this](int, HostTime) { step(); }};
-    }
-    [[nodiscard]] socketcan::CanSocket& host() { return *host_; }
-    [[nodiscard]] NodeRig& rig() { return rig_; }
-
-  private:
-    void step() {
-        while (const auto received = node_->receive().value()) rig_.send_from_host(received->entry.frame);
-        const std::size_t before = rig_.frames().size();
-        rig_.run_for(Microseconds{1'000});
-        for (std::size_t i = before; i < rig_.frames().size(); ++i) {
-            if (wire::node_of(rig_.frames()[i].can_id) == 5 && !rig_.frames()[i].is_fd)
-                (void)node_->send(rig_.frames()[i]);
-        }
-    }
-    NodeRig rig_;
-    std::optional<socketcan::CanSocket> host_;
-    std::optional<socketcan::CanSocket> node_;
-};
 
 Question question(std::uint16_t target_mm, std::uint8_t sensor = 1) {
     return {.node_id = 5,
@@ -63,7 +29,7 @@ TEST(Calibrating, finds_the_offset_of_a_modelled_sensor_over_a_socket) {
     std::vector<SensorSetup> setups(4);
     setups[1].target =
         sim::RangingReturn{.range_m = 0.170, .sigma_m = 0.003, .peak_signal_mcps = 8.0, .ambient_mcps = 0.1};
-    SimulatedBus bus(setups);
+    NodeOnSocket bus(fleet_config(4, 2), setups);
     Dialogue dialogue(question(140), bus.outside().now());
     const auto outcome = converse(dialogue, bus.host(), bus.outside());
     ASSERT_TRUE(outcome) << outcome.error().message;
@@ -74,7 +40,7 @@ TEST(Calibrating, finds_the_offset_of_a_modelled_sensor_over_a_socket) {
 }
 
 TEST(Calibrating, tells_a_persons_mistakes_and_a_dead_node_apart) {
-    SimulatedBus bus(std::vector<SensorSetup>(4));
+    NodeOnSocket bus(fleet_config(4, 2), std::vector<SensorSetup>(4));
     Dialogue no_such(question(140, 9), bus.outside().now());
     EXPECT_NE(converse(no_such, bus.host(), bus.outside()).error().message.find("refuses"),
               std::string::npos);

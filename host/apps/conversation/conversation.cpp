@@ -1,0 +1,67 @@
+#include "host/apps/conversation/conversation.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace octoskin {
+namespace {
+
+/// How long a frame for which there was no room waits for another try.
+constexpr Nanoseconds kRetry{10'000'000};
+
+AppError app_error(const socketcan::SocketFault& fault) {
+    return {ExitCode::unavailable, fault.message()};
+}
+
+/// What waits in the socket was said before anything was asked. A fault shows again at the next call.
+void forget_what_waits(socketcan::CanSocket& socket) {
+    constexpr int kFramesMax = 100'000;
+    for (int i = 0; i < kFramesMax; ++i) {
+        const auto received = socket.receive();
+        if (!received || !*received) return;
+    }
+}
+
+}  // namespace
+
+Outside this_machine() {
+    const auto now = [] {
+        const auto since_boot = std::chrono::steady_clock::now().time_since_epoch();
+        return HostTime{std::chrono::duration_cast<Nanoseconds>(since_boot).count()};
+    };
+    const auto wait = [now](int descriptor, HostTime until) {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - now()).count();
+        pollfd entry{.fd = descriptor, .events = POLLIN, .revents = 0};
+        (void)::poll(&entry, 1, static_cast<int>(std::clamp<std::int64_t>(left, 0, 1'000)));
+    };
+    return {now, wait};
+}
+
+Status<AppError> converse(NodeDialogue& dialogue, socketcan::CanSocket& socket, const Outside& outside) {
+    forget_what_waits(socket);
+    std::optional<wire::CanFrame> unsent;
+    while (!dialogue.is_over()) {
+        auto received = socket.receive();
+        if (!received) return unexpected(app_error(received.error()));
+        if (*received) {
+            dialogue.on_frame((*received)->entry.frame, outside.now());
+        } else {
+            const HostTime soon = outside.now() + kRetry;
+            outside.wait(socket.descriptor(),
+                         unsent ? std::min(soon, dialogue.deadline()) : dialogue.deadline());
+        }
+        dialogue.on_time(outside.now());
+        if (!unsent) unsent = dialogue.take_frame();
+        if (!unsent) continue;
+        const auto sent = socket.send(*unsent);
+        if (!sent) return unexpected(app_error(sent.error()));
+        if (!*sent) continue;
+        unsent.reset();
+        dialogue.on_sent(outside.now());
+    }
+    return Done{};
+}
+
+}  // namespace octoskin
