@@ -150,6 +150,39 @@ TEST(ShippedRigs, bench_rig_has_four_sensors_on_one_board) {
     EXPECT_EQ(rig.nodes[0].config.sensors[3].inter_measurement_ms, 20);
 }
 
+// What tests/board/image_test.cpp holds the image to.
+TEST(ShippedRigs, one_board_17_is_a_full_board_at_50_hz) {
+    const Rig rig = shipped("one_board_17.yaml");
+    ASSERT_EQ(rig.nodes.size(), 1U);
+    const NodeConfig& config = rig.nodes[0].config;
+    EXPECT_EQ(rig.nodes[0].board.name, "nucleo_g474re");
+    ASSERT_EQ(config.sensor_count, 17);
+    std::array<int, 4> on_bus{};
+    std::set<int> lines;
+    std::set<int> addresses;
+    for (std::size_t i = 0; i < config.sensor_count; ++i) {
+        const SensorConfig& sensor = config.sensors[i];
+        ++on_bus[sensor.bus];
+        lines.insert(sensor.xshut_line);
+        addresses.insert(sensor.address);
+        EXPECT_EQ(sensor.distance_mode, DistanceMode::short_range);
+        EXPECT_EQ(sensor.timing_budget_ms, 15);
+        EXPECT_EQ(sensor.inter_measurement_ms, 20);
+    }
+    EXPECT_EQ(on_bus, (std::array<int, 4>{5, 4, 4, 4}));
+    EXPECT_EQ(lines.size(), 17U);
+    EXPECT_EQ(addresses.size(), 17U);
+    EXPECT_NEAR(i2c_load(config, 0), 518.0 * 5 * 50.0 / 283'000.0, 1e-12);
+    EXPECT_NEAR(can_load(rig), 0.352, 0.001);
+    // The rings are those of the experiment's second board.
+    const Rig experiment = shipped("experiment.yaml");
+    for (std::size_t i = 0; i < 17; ++i) {
+        EXPECT_TRUE(rig.nodes[0].sensors[i].T_link_sensor.isApprox(
+            experiment.nodes[1].sensors[i].T_link_sensor, 1e-11))
+            << i;
+    }
+}
+
 TEST(ShippedRigs, i2c_load_equals_the_count_of_bits) {
     // 518 bits a reading, 5 sensors, 1000 / 33 readings a second, 283 kbit/s.
     const Rig rig = shipped("experiment.yaml");
@@ -159,7 +192,7 @@ TEST(ShippedRigs, i2c_load_equals_the_count_of_bits) {
 
 TEST(ShippedRigs, sensors_take_turns_on_every_bus_and_in_the_light) {
     for (const char* name : {"experiment.yaml", "experiment_classical.yaml", "experiment_low_camera.yaml",
-                             "bench_one_board.yaml"}) {
+                             "bench_one_board.yaml", "one_board_17.yaml"}) {
         const Rig rig = shipped(name);
         for (const Node& node : rig.nodes) {
             for (std::uint8_t bus = 0; bus < node.board.i2c_bus_count; ++bus) {
