@@ -129,4 +129,23 @@ std::vector<SensorPair> pairs_ranging_together(const Node& node) {
     return pairs;
 }
 
+std::vector<std::vector<std::size_t>> groups_ranging_together(const Node& node) {
+    std::vector<std::size_t> least(node.sensors.size());  // of each sensor's group
+    std::iota(least.begin(), least.end(), std::size_t{0});
+    for (const auto& [first, second] : pairs_ranging_together(node)) {
+        const std::size_t into = std::min(least[first], least[second]);
+        const std::size_t from = std::max(least[first], least[second]);
+        std::replace(least.begin(), least.end(), from, into);
+    }
+    std::vector<std::vector<std::size_t>> groups;
+    for (std::size_t group = 0; group < least.size(); ++group) {
+        std::vector<std::size_t> members;
+        for (std::size_t i = group; i < least.size(); ++i) {
+            if (least[i] == group) members.push_back(i);
+        }
+        if (members.size() > 1) groups.push_back(std::move(members));
+    }
+    return groups;
+}
+
 }  // namespace octoskin::rig

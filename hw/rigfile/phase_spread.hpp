@@ -30,5 +30,8 @@ struct SensorPair {
 /// datasheet DS12385) or each other, have one period, and range at the same time for over a millisecond more
 /// than their budgets make necessary.
 [[nodiscard]] std::vector<SensorPair> pairs_ranging_together(const Node& node);
+/// The same pairs as groups: who hangs together by a chain of them. Indices rise within a group, as do the
+/// groups' first ones.
+[[nodiscard]] std::vector<std::vector<std::size_t>> groups_ranging_together(const Node& node);
 
 }  // namespace octoskin::rig

@@ -14,6 +14,7 @@
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
 #include "hw/rigfile/i2c_load.hpp"
+#include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/phase_spread.hpp"
 #include "hw/rigfile/rig.hpp"
 
@@ -38,9 +39,12 @@ void describe_i2c(const rig::Node& node) {
               bus, node.config.i2c_hz / 1000, 100.0 * load, 100.0 * rig::kI2cLoadMax, 100.0 * spread.peak,
               spread.is_even() ? "" : ": phase_us could spread the readings better");
     }
-    for (const auto& [first, second] : rig::pairs_ranging_together(node)) {
-        print("    {} and {} see the same light and range at once: set phase_us apart\n",
-              node.sensors[first].name, node.sensors[second].name);
+    for (const auto& group : rig::groups_ranging_together(node)) {
+        std::vector<std::string> names;
+        for (const std::size_t sensor : group) names.push_back(node.sensors[sensor].name);
+        print(
+            "    {}: neighbours among these see the same light and range at once: set their phase_us apart\n",
+            rig::joined(names));
     }
 }
 

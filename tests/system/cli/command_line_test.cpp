@@ -2,6 +2,9 @@
 // out.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <regex>
+
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
@@ -102,6 +105,20 @@ TEST_F(CommandLine, tells_the_load_of_every_bus_of_a_rig) {
     EXPECT_EQ(said.exit_code, 0);
     EXPECT_THAT(said.output, testing::ContainsRegex("I2C bus 0 at [0-9]+ kHz: load [0-9.]+ %, at most 70 %"));
     EXPECT_THAT(said.output, testing::ContainsRegex("CAN FD .*load [0-9.]+ %"));
+}
+
+TEST_F(CommandLine, tells_of_sensors_in_one_light_by_groups_and_not_by_pairs) {
+    std::string text = content(source("hw/rigs/one_board_17.yaml"));
+    text = std::regex_replace(text, std::regex("phase_us: [0-9]+"), "phase_us: 0");
+    text = std::regex_replace(text, std::regex("rpy_deg: \\[[^\\]]*\\]"), "rpy_deg: [0, 90, 0]");
+    text = std::regex_replace(text, std::regex("bench_one_board"), source("hw/rigs/bench_one_board"));
+    text = std::regex_replace(text, std::regex("\\.\\./boards"), source("hw/boards"));
+    write(path("rig.yaml"), text);
+    const Said said = octoskin("rig " + path("rig.yaml"));
+    EXPECT_EQ(said.exit_code, 0) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("    side_0, side_1, side_2"));
+    EXPECT_THAT(said.output, HasSubstr("front_7: neighbours among these see the same light"));
+    EXPECT_LT(std::count(said.output.begin(), said.output.end(), '\n'), 12) << said.output;
 }
 
 /// With standard output as `redirection` says; only standard error is kept.

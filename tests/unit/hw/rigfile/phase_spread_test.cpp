@@ -93,5 +93,27 @@ TEST(PairsRangingTogether, are_not_told_of_links_that_move_against_each_other) {
     EXPECT_TRUE(pairs_ranging_together(node).empty());
 }
 
+/// Sensors of one phase, each this much further about one axis.
+Node fan_of(std::initializer_list<double> angles_deg) {
+    Node node = pair_of(0.0, 0);
+    node.sensors.clear();
+    node.config.sensor_count = 0;
+    for (const double angle_deg : angles_deg) {
+        node.sensors.push_back(pair_of(angle_deg, 0).sensors[1]);
+        node.config.sensors[node.config.sensor_count++].phase_us = 0;
+    }
+    return node;
+}
+
+TEST(GroupsRangingTogether, are_the_pairs_that_hang_together) {
+    using Groups = std::vector<std::vector<std::size_t>>;
+    EXPECT_EQ(groups_ranging_together(fan_of({})), Groups{});
+    EXPECT_EQ(groups_ranging_together(fan_of({0, 40, 80})), Groups{});
+    EXPECT_EQ(groups_ranging_together(fan_of({0, 20, 40, 60})), (Groups{{0, 1, 2, 3}})) << "a chain";
+    EXPECT_EQ(groups_ranging_together(fan_of({0, 100, 20, 200, 120, 300})), (Groups{{0, 2}, {1, 4}}));
+    EXPECT_EQ(groups_ranging_together(fan_of({0, 40, 90, 20})), (Groups{{0, 1, 3}})) << "joined by the last";
+    EXPECT_EQ(groups_ranging_together(fan_of({40, 80, 0, 60, 20})), (Groups{{0, 1, 2, 3, 4}}));
+}
+
 }  // namespace
 }  // namespace octoskin::rig
