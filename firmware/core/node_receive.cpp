@@ -44,9 +44,9 @@ bool Node::is_for_us(const wire::CanFrame& frame) const noexcept {
         case wire::Party::from_node:
             return id == config_.node_id;
         case wire::Party::to_node:
-            return id == config_.node_id || id == wire::kBroadcastId;
+            break;
     }
-    return false;
+    return id == config_.node_id || id == wire::kBroadcastId;
 }
 
 void Node::on_own_id_heard(NodeTime now) {
@@ -82,15 +82,14 @@ bool Node::perform_in_safe_mode(const wire::Command& command, NodeTime now) {
         case wire::CommandCode::identify:
         case wire::CommandCode::reset:
         case wire::CommandCode::send_info:
+        case wire::CommandCode::calibrate_offset:  // which refuses: no sensor is at work
+        case wire::CommandCode::calibrate_crosstalk:
             return perform(command, now);
         case wire::CommandCode::stop:
         case wire::CommandCode::set_rate:
         case wire::CommandCode::reinitialise_sensor:
         case wire::CommandCode::send_black_box:
-            return false;
-        case wire::CommandCode::calibrate_offset:
-        case wire::CommandCode::calibrate_crosstalk:
-            return perform(command, now);  // which refuses: no sensor is at work
+            break;
     }
     return false;
 }
@@ -128,9 +127,9 @@ bool Node::perform(const wire::Command& command, NodeTime now) {
             return request_black_box(selection, now);
         case wire::CommandCode::calibrate_offset:
         case wire::CommandCode::calibrate_crosstalk:
-            return calibrate(command, now);
+            break;
     }
-    return false;
+    return calibrate(command, now);
 }
 
 /// One sensor, while no other is: a person holds the target.
