@@ -235,8 +235,10 @@ TEST_F(ReliabilityFirmwareTest, F6_a_command_ends_safe_mode_at_once_and_others_a
     command(CommandCode::set_rate);
     command(CommandCode::reinitialise_sensor);
     command(CommandCode::send_black_box);
+    command(CommandCode::calibrate_offset);
+    command(CommandCode::calibrate_crosstalk);
     rig_.run_for(100 * kMillisecond);
-    EXPECT_EQ(rig_.node().counts().rx_rejected, rejected + 4);
+    EXPECT_EQ(rig_.node().counts().rx_rejected, rejected + 6);
     const std::size_t pages = rig_.said_of<wire::NodeInfo>().size();
     command(CommandCode::send_info);
     rig_.run_for(500 * kMillisecond);

@@ -212,8 +212,44 @@ TEST_F(NodeCommandsTest, does_not_care_for_foreign_frames) {
     extended.is_extended = true;
     rig_.send_from_host(extended);
     rig_.run_for(200 * kMillisecond);
+    wire::CanFrame error = wire::encode(Command{.code = CommandCode::stop}, kOwnId);
+    error.is_error = true;
+    rig_.node().on_frame(error, rig_.node_now());
+    rig_.run_for(200 * kMillisecond);
     EXPECT_EQ(rig_.node().counts().rx_rejected, 0U);
     EXPECT_EQ(heartbeat().state, NodeState::ranging);
+}
+
+TEST_F(NodeCommandsTest, of_the_hosts_frames_cares_for_its_sync_alone) {
+    wire::CanFrame follow_up = wire::encode(wire::FollowUp{.sequence = 1, .host_time_us = 2}, wire::kHostId);
+    follow_up.data[0] = static_cast<std::uint8_t>(follow_up.data[0] ^ 1U);  // damaged, had anybody looked
+    rig_.send_from_host(follow_up);
+    wire::CanFrame sync = wire::encode(wire::Sync{.sequence = 1}, wire::kHostId);
+    sync.can_id += 1;  // a SYNC of somebody who is not the host
+    rig_.send_from_host(sync);
+    rig_.run_for(50 * kMillisecond);
+    EXPECT_EQ(rig_.node().counts().rx_rejected, 0U);
+    EXPECT_TRUE(rig_.said_of<wire::SyncReport>().empty());
+}
+
+TEST_F(NodeCommandsTest, answers_a_sync_heard_with_full_mailboxes_once_there_is_room) {
+    rig_.block_transmission(true);
+    rig_.send_from_host(wire::Sync{.sequence = 17}, wire::kHostId);
+    rig_.run_for(20 * kMillisecond);
+    EXPECT_TRUE(rig_.said_of<wire::SyncReport>().empty());
+    rig_.block_transmission(false);
+    rig_.run_for(5 * kMillisecond);
+    const auto reports = rig_.said_of<wire::SyncReport>();
+    ASSERT_EQ(reports.size(), 1U);
+    EXPECT_EQ(reports[0].heard, rig_.clock().to_node(rig_.times_of<wire::Sync>()[0]));
+}
+
+TEST_F(NodeCommandsTest, refuses_to_calibrate_while_another_node_speaks_under_its_id) {
+    rig_.send_from_host(wire::SyncReport{}, kOwnId);
+    rig_.run_for(5 * kMillisecond);
+    command(CommandCode::calibrate_offset, 1, 140);
+    rig_.run_for(5 * kMillisecond);
+    EXPECT_EQ(rig_.node().counts().rx_rejected, 1U);
 }
 
 TEST_F(NodeCommandsTest, stops_ranging_while_another_node_speaks_under_its_id) {

@@ -159,6 +159,34 @@ TEST(NodeFrames, adds_signal_figures_to_every_fifth_classical_reading) {
     }
 }
 
+// Mailboxes that are given free one by one are full for every kind of frame now and then.
+TEST(NodeFrames, lose_no_frame_that_had_to_wait_for_a_mailbox) {
+    NodeConfig config = classical_config(8, 1);
+    for (std::size_t i = 0; i < 8; ++i) config.sensors.at(i).reflex_below_mm = 500;
+    NodeRig rig(config, fleet(8));
+    rig.run_for(400 * kMillisecond);
+    for (int i = 0; i < 400; ++i) {
+        rig.leave_unacknowledged(true);
+        rig.run_for(Microseconds{3'000 + 37 * i % 4'000});
+        rig.leave_unacknowledged(false);
+        rig.run_for(Microseconds{2'000});
+    }
+    rig.run_for(100 * kMillisecond);
+    const NodeCounts counts = rig.node().counts();
+    EXPECT_EQ(counts.given_up + counts.others_given_up + counts.late + counts.displaced + counts.others_late,
+              0U);
+    for (std::uint8_t sensor = 0; sensor < 8; ++sensor) {
+        const auto readings = rig.readings_of(sensor);
+        ASSERT_GT(readings.size(), 50U);
+        for (std::size_t i = 1; i < readings.size(); ++i) {
+            ASSERT_EQ(readings[i].reading.sequence,
+                      static_cast<std::uint8_t>((readings[i - 1].reading.sequence + 1) % 64));
+        }
+    }
+    EXPECT_EQ(rig.said_of<wire::Reflex>().size() % 64,
+              (rig.said_of<wire::Reflex>().back().sequence + 1U) % 64);
+}
+
 TEST(NodeFrames, keeps_the_newest_reading_while_nothing_can_be_sent_and_counts_the_others) {
     NodeRig rig(fleet_config(3, 1), fleet(3));
     rig.run_for(2 * kSecond);
