@@ -336,6 +336,21 @@ TEST(NodeConfig, more_sensors_or_zones_than_there_is_room_for_are_not_valid) {
     EXPECT_FALSE(is_valid(config));
 }
 
+TEST(NodeConfig, no_two_sensors_share_a_line_or_on_one_bus_an_address) {
+    const NodeConfig config = node_config(kNodeSensorsMax);
+    ASSERT_TRUE(is_valid(config));
+    for (std::size_t i = 0; i < kNodeSensorsMax; ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            NodeConfig shared_line = config;
+            shared_line.sensors[i].xshut_line = config.sensors[j].xshut_line;
+            EXPECT_FALSE(is_valid(shared_line)) << i << ' ' << j;
+            NodeConfig shared_address = config;
+            shared_address.sensors[i].address = config.sensors[j].address;
+            EXPECT_EQ(is_valid(shared_address), i % 4 != j % 4) << i << ' ' << j;
+        }
+    }
+}
+
 TEST(NodeConfig, what_lies_beyond_the_counts_is_not_in_the_hash) {
     NodeConfig config = node_config(2);
     const std::uint32_t hash = node_hash(config);

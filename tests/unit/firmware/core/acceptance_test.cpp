@@ -127,6 +127,48 @@ TEST_F(AcceptanceTest, dates_a_result_by_its_stream_count_when_earlier_ones_were
     EXPECT_LE(acceptance.reading().capture_bound, Microseconds{250});
 }
 
+TEST_F(AcceptanceTest, believes_a_lone_poll_once_it_knows_to_a_millisecond_when_to_expect_the_data) {
+    // After a first range it knows the next ready time to 12 % of a period.
+    for (const int last : {0, 20}) {
+        Acceptance acceptance = started(StreamGate::advanced);
+        for (int range = 0; range <= last; ++range) {
+            ASSERT_EQ(offer(acceptance, range, result(static_cast<std::uint8_t>(range))), Verdict::accepted);
+        }
+        const int next = last + 1;
+        acceptance.on_not_ready(ready(next) - Microseconds{100});
+        ASSERT_EQ(
+            offer_unpolled(acceptance, next, result(static_cast<std::uint8_t>(next)), Microseconds{100}),
+            Verdict::accepted);
+        const std::int64_t bound_us = acceptance.reading().capture_bound.count();
+        EXPECT_EQ(bound_us <= 100, last == 20) << bound_us;
+        EXPECT_EQ(bound_us >= 1'000, last == 0) << bound_us;
+    }
+}
+
+TEST_F(AcceptanceTest, knows_that_data_it_saw_ready_was_ready_by_then_even_if_no_poll_went_before) {
+    Acceptance acceptance = started(StreamGate::advanced);
+    for (int range = 0; range <= 20; ++range) {
+        ASSERT_EQ(offer(acceptance, range, result(static_cast<std::uint8_t>(range))), Verdict::accepted);
+    }
+    ASSERT_EQ(offer_unpolled(acceptance, 21, result(21), Microseconds{0}), Verdict::accepted);
+    const Reading& reading = acceptance.reading();
+    EXPECT_LE(elapsed(ready(21) - kBudget / 2, reading.capture + reading.capture_bound), Microseconds{1});
+}
+
+TEST_F(AcceptanceTest, forgets_the_rhythm_if_the_count_contradicts_the_results_seen_and_one_poll) {
+    for (const int stream : {22, 23}) {
+        Acceptance acceptance = started(StreamGate::advanced);
+        for (int range = 0; range <= 20; ++range) {
+            ASSERT_EQ(offer(acceptance, range, result(static_cast<std::uint8_t>(range))), Verdict::accepted);
+        }
+        acceptance.on_unreadable();  // 21
+        acceptance.on_not_ready(ready(22) - Microseconds{100});
+        const Verdict verdict =
+            offer_unpolled(acceptance, 22, result(static_cast<std::uint8_t>(stream)), Microseconds{100});
+        EXPECT_EQ(verdict, stream == 22 ? Verdict::accepted : Verdict::undated) << stream;
+    }
+}
+
 TEST_F(AcceptanceTest, dates_a_result_by_time_when_the_stream_count_is_not_looked_at) {
     Acceptance acceptance = started(StreamGate::off);
     for (int range = 0; range <= 20; ++range)

@@ -120,6 +120,18 @@ TEST_F(BringUpTest, a_part_parked_from_its_own_address_that_does_not_come_is_stu
               SensorFault::xshut_stuck);
 }
 
+TEST_F(BringUpTest, a_stray_is_taken_for_a_part_that_does_not_come_unless_that_part_came_since) {
+    const std::string stray_is_parked = kAnswer29 + kParked29 + kSilence29 + kSilence30;
+    const std::string stray_is_there = kSilence29 + kSilence30 + "ADDRESS 77 | R 010F 2 -> EA CC | ";
+    const std::string parked_answers = "ADDRESS 77 | R 010F 2 -> EA CC | ";
+    EXPECT_EQ(fault_on(stray_is_parked + parked_answers + kSilence29), SensorFault::xshut_stuck);
+    EXPECT_EQ(fault_on(stray_is_there + kAnswer29 + "ADDRESS 29 | W 0001 30 ! timeout | W 0001 30 ! timeout"),
+              SensorFault::bus_error);
+    EXPECT_TRUE(bring_up_.has_answered());
+    EXPECT_EQ(fault_on(stray_is_there + kSilence29), SensorFault::no_answer);
+    EXPECT_FALSE(bring_up_.has_answered());
+}
+
 TEST_F(BringUpTest, a_part_that_is_no_longer_where_it_was_parked_and_does_not_come_is_absent) {
     EXPECT_EQ(fault_on(kSilence29 + kAnswer30 + kParked30 + kSilence30 + kSilence77 + kSilence29),
               SensorFault::no_answer);

@@ -210,6 +210,19 @@ TEST(NodeBringUp, says_that_a_part_never_boots) {
     EXPECT_EQ(rig.last_health(1)->fault, SensorFault::boot_timeout);
 }
 
+// PAD_I2C_HV__EXTSUP_CONFIG and GPIO_HV_PAD__CTRL: ST's API, "2V8" mode.
+TEST(NodeBringUp, sets_the_sensors_pads_to_the_boards_voltage) {
+    for (const bool is_io_2v8 : {true, false}) {
+        NodeConfig config = fleet_config(1, 1);
+        config.is_io_2v8 = is_io_2v8;
+        NodeRig rig(config, fleet(1));
+        rig.run_for(333 * kMillisecond);
+        ASSERT_EQ(rig.last_health(0)->state, SensorState::ranging);
+        for (const std::uint16_t pad : std::array<std::uint16_t, 2>{0x002E, 0x002F})
+            EXPECT_EQ(rig.sensor(0).registers()[pad], is_io_2v8 ? 0x01 : 0x00) << pad;
+    }
+}
+
 TEST(NodeBringUp, takes_34_sensors_on_4_buses) {
     NodeRig rig(fleet_config(34, 4), fleet(34));
     rig.run_for(400 * kMillisecond);

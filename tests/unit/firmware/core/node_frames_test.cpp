@@ -183,8 +183,9 @@ TEST(NodeFrames, lose_no_frame_that_had_to_wait_for_a_mailbox) {
                       static_cast<std::uint8_t>((readings[i - 1].reading.sequence + 1) % 64));
         }
     }
-    EXPECT_EQ(rig.said_of<wire::Reflex>().size() % 64,
-              (rig.said_of<wire::Reflex>().back().sequence + 1U) % 64);
+    const auto reflexes = rig.said_of<wire::Reflex>();
+    ASSERT_GE(reflexes.size(), 8U) << "everything is near at first";
+    for (std::size_t i = 0; i < reflexes.size(); ++i) EXPECT_EQ(reflexes[i].sequence, i % 64);
 }
 
 TEST(NodeFrames, keeps_the_newest_reading_while_nothing_can_be_sent_and_counts_the_others) {
