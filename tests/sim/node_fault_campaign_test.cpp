@@ -7,24 +7,26 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
-#include <map>
 #include <numeric>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "tests/sim/capture_oracle.hpp"
 #include "tests/support/node_rig.hpp"
 
 namespace octoskin::node {
 namespace {
 
 using sim::I2cFaultKind;
+using test::capture_error_us;
 using test::fleet_config;
 using test::NodeRig;
 using test::SaidReading;
 using test::SensorSetup;
+using test::ToldBounds;
 using test::TrueRange;
+using test::truth_of;
 
 constexpr Microseconds kStep{50'000};
 constexpr int kFaultySteps = 120;
@@ -120,27 +122,18 @@ class Campaign {
 
 class Judge {
   public:
-    explicit Judge(NodeRig& rig) : rig_(rig) {
-        for (const auto& item : rig.said()) {
-            const auto* health = std::get_if<wire::SensorHealth>(&item.message);
-            if (health == nullptr) continue;
-            bounds_[health->sensor].push_back({item.end.us, health->capture_bound_64us * std::int64_t{64}});
-        }
-    }
+    explicit Judge(const NodeRig& rig) : rig_(rig), bounds_(rig) {}
     /// Empty if the reading is true; else what is wrong with it.
     [[nodiscard]] std::string complaint(std::uint8_t sensor, const SaidReading& said) const {
-        const TrueRange* truth = nullptr;
-        for (const TrueRange& range : rig_.truth(sensor)) {
-            if (range.range_mm == said.reading.range_mm && range.window_middle < said.end) truth = &range;
-        }
+        const TrueRange* truth = truth_of(rig_, sensor, said);
         if (truth == nullptr) return "no range had this distance";
         const NodeConfig config = zones_of(sensor);
         if (!(truth->roi == config.sensors[0].zones.at(said.reading.zone))) return "taken in another zone";
-        const std::uint32_t true_us = rig_.clock().to_node(truth->window_middle).us;
-        const auto residue = static_cast<std::int32_t>((said.reading.capture.value_us - true_us) << 8U) / 256;
-        if (std::abs(residue) > bound_us(sensor, said.end.us) + kOnePollUs) {
-            return "captured " + std::to_string(residue) + " us beside the truth, told " +
-                   std::to_string(bound_us(sensor, said.end.us));
+        const std::int64_t error_us = capture_error_us(rig_, said, *truth);
+        const std::int64_t bound_us = bounds_.at(sensor, said.end);
+        if (std::abs(error_us) > bound_us + kOnePollUs) {
+            return "captured " + std::to_string(error_us) + " us beside the truth, told " +
+                   std::to_string(bound_us);
         }
         return {};
     }
@@ -154,17 +147,8 @@ class Judge {
         }
         return config;
     }
-    [[nodiscard]] std::int64_t bound_us(std::uint8_t sensor, std::int64_t end_us) const {
-        std::int64_t largest = 0;
-        for (const auto& [told_us, bound_us] : bounds_.at(sensor)) {
-            if (end_us - told_us < 1'100'000 && end_us - told_us > -20'000)
-                largest = std::max(largest, bound_us);
-        }
-        return largest;
-    }
-
-    NodeRig& rig_;
-    std::map<std::uint8_t, std::vector<std::pair<std::int64_t, std::int64_t>>> bounds_;
+    const NodeRig& rig_;
+    ToldBounds bounds_;
 };
 
 /// OCTOSKIN_CAMPAIGN_SEEDS: more of them for a release.

@@ -3,11 +3,14 @@
 // altered, and no reading of the run may tell a time that is false.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
-#include "tests/sim/reliability/oracles.hpp"
+#include "tests/sim/capture_oracle.hpp"
+#include "tests/support/node_rig.hpp"
 
 namespace octoskin::test {
 namespace {
@@ -31,30 +34,14 @@ class AlteredPollTest : public testing::TestWithParam<Fleet> {
 };
 
 /// By how much a reading's time is false beyond the bound told for its sensor, at the worst.
-std::int64_t worst_excess_us(NodeRig& rig, std::uint8_t sensor) {
-    std::vector<std::pair<std::int64_t, std::int64_t>> bounds;  // when, how much
-    for (const auto& said : rig.said()) {
-        const auto* health = std::get_if<wire::SensorHealth>(&said.message);
-        if (health != nullptr && health->sensor == sensor)
-            bounds.emplace_back(said.end.us, health->capture_bound_64us * std::int64_t{64});
-    }
+std::int64_t worst_excess_us(const NodeRig& rig, std::uint8_t sensor) {
+    const ToldBounds bounds(rig);
     std::int64_t worst_us = INT64_MIN;
-    for (const auto& said : rig.readings_of(sensor)) {
-        const TrueRange* truth = nullptr;
-        for (const TrueRange& range : rig.truth(sensor)) {
-            if (range.range_mm == said.reading.range_mm && range.window_middle < said.end) truth = &range;
-        }
+    for (const SaidReading& said : rig.readings_of(sensor)) {
+        const TrueRange* truth = truth_of(rig, sensor, said);
         if (truth == nullptr) return INT64_MAX;
-        const std::int64_t span = said.reading.capture.span_us;
-        const std::int64_t off = (said.reading.capture.value_us -
-                                  std::int64_t{rig.clock().to_node(truth->window_middle).us} % span + span) %
-                                 span;
-        std::int64_t bound_us = 0;
-        for (const auto& [when_us, told_us] : bounds) {
-            const std::int64_t since_us = said.end.us - when_us;
-            if (since_us < 1'100'000 && since_us > -20'000) bound_us = std::max(bound_us, told_us);
-        }
-        worst_us = std::max(worst_us, std::min(off, span - off) - bound_us);
+        worst_us =
+            std::max(worst_us, std::abs(capture_error_us(rig, said, *truth)) - bounds.at(sensor, said.end));
     }
     return worst_us;
 }

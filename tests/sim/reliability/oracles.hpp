@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/sim/capture_oracle.hpp"
 #include "tests/support/node_rig.hpp"
 
 namespace octoskin::test {
@@ -48,16 +49,6 @@ inline std::int64_t longest_silence_us(const NodeRig& rig, std::int64_t us) {
         last = time.us;
     }
     return std::max(longest, rig.now().us - last);
-}
-
-/// How far `said` was captured from `truth`, in microseconds of the node's clock.
-inline std::int64_t capture_error_us(const NodeRig& rig, const SaidReading& said, const TrueRange& truth) {
-    const std::uint32_t true_us = rig.clock().to_node(truth.window_middle).us;
-    const std::int64_t span_us = said.reading.capture.span_us;
-    const std::int64_t ahead_us = (std::int64_t{said.reading.capture.value_us} - true_us) % span_us;
-    return ahead_us > span_us / 2    ? ahead_us - span_us
-           : ahead_us < -span_us / 2 ? ahead_us + span_us
-                                     : ahead_us;
 }
 
 /// What is wrong with the readings sent of `sensor`; empty if nothing is. Each must be one that this sensor
