@@ -192,6 +192,25 @@ TEST_F(NodeCommandsTest, repeats_all_it_knows_of_itself_on_request) {
     EXPECT_GE(rig_.said_of<wire::SensorHealth>().size(), healths + 4);
 }
 
+TEST_F(NodeCommandsTest, in_safe_mode_only_beats_even_after_bus_off_and_is_woken_by_a_start) {
+    for (int i = 0; i < 3; ++i) {
+        rig_.reset({.cause = wire::ResetCause::watchdog});
+        rig_.run_for(500 * kMillisecond);
+    }
+    ASSERT_EQ(rig_.node().state(), NodeState::safe);
+    const std::size_t said = rig_.said().size();
+    const std::size_t beats = rig_.said_of<wire::Heartbeat>().size();
+    rig_.can().add_fault({.kind = sim::CanFaultKind::disturb, .count = 32});
+    rig_.run_for(2'000 * kMillisecond);
+    EXPECT_EQ(rig_.node().counts().bus_off, 1U);
+    EXPECT_GE(rig_.said_of<wire::Heartbeat>().size(), beats + 15);
+    EXPECT_EQ(rig_.said().size() - said, rig_.said_of<wire::Heartbeat>().size() - beats);
+    command(CommandCode::start);
+    rig_.run_for(600 * kMillisecond);
+    EXPECT_EQ(heartbeat().state, NodeState::ranging);
+    EXPECT_GE(readings_in(3, 500 * kMillisecond), 14U);
+}
+
 TEST_F(NodeCommandsTest, counts_a_damaged_command_and_does_not_obey_it) {
     wire::CanFrame frame = wire::encode(Command{.code = CommandCode::stop}, kOwnId);
     frame.data[1] = static_cast<std::uint8_t>(frame.data[1] ^ 0x10U);

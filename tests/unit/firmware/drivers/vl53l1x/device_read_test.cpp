@@ -57,6 +57,23 @@ TEST_F(DeviceOnScript, ready_is_confirmed_if_so_asked) {
     EXPECT_FALSE(device_.has_measurement()) << "no is enough";
 }
 
+// Had the first answer been altered, the data would have become ready after it.
+TEST_F(DeviceOnScript, ready_counts_from_the_confirmation_if_that_came_late) {
+    for (const std::int64_t later_us : {300, 301}) {
+        device_.begin_read(true);
+        bus_.expect("R 0031 1 -> 02 | R 0031 1 -> 02");
+        bus_.expect(kBlock5);
+        bus_.expect(kBlock5);
+        EXPECT_EQ(device_.poll(now_), Progress::busy);
+        const NodeTime seen = now_ = now_ + Microseconds{100};
+        EXPECT_EQ(device_.poll(now_), Progress::busy);
+        now_ = now_ + Microseconds{later_us};
+        EXPECT_EQ(device_.poll(now_), Progress::busy);
+        expect_done(kClear);
+        EXPECT_EQ(elapsed(seen, device_.ready_seen()), Microseconds{later_us <= 300 ? 0 : later_us});
+    }
+}
+
 TEST_F(DeviceOnScript, reads_twice_then_clears) {
     device_.begin_read();
     bus_.expect(kReadyLow);
