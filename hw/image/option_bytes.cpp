@@ -47,6 +47,21 @@ MaskedWord wanted_option_bytes() {
     return wanted;
 }
 
+std::string wanted_text() {
+    std::string text;
+    for (const Field& field : kFields)
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", field.name, field.wanted);
+    return text;
+}
+
+std::string unwritten_text() {
+    std::string text;
+    for (const Field& field : kFields) {
+        if (!field.is_written) text += fmt::format("{}{}", text.empty() ? "" : ", ", field.name);
+    }
+    return text;
+}
+
 std::vector<std::string> option_byte_faults(std::uint32_t flash_optr) {
     std::vector<std::string> faults;
     for (const Field& field : kFields) {

@@ -20,6 +20,11 @@ struct MaskedWord {
 };
 [[nodiscard]] MaskedWord wanted_option_bytes();
 
+/// All fields that are checked, with their values: "BOR_LEV 4, BFB2 0, ..."; and those of them that
+/// `--write-option-bytes` does not write.
+[[nodiscard]] std::string wanted_text();
+[[nodiscard]] std::string unwritten_text();
+
 /// A sentence for each field that differs from what a board must have; empty if none does.
 [[nodiscard]] std::vector<std::string> option_byte_faults(std::uint32_t flash_optr);
 

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-
 #include "common/wire/crc.hpp"
 #include "host/apps/flashing/openocd_script.hpp"
+#include "host/apps/recording/text_file.hpp"
 #include "hw/image/image_check.hpp"
 
 namespace octoskin::flashing {
@@ -43,23 +42,16 @@ Result<std::size_t, AppError> check_block(const Order& order, const image::Flash
     return page.bytes.size();
 }
 
-Result<Done, AppError> write_file(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) return fail(ExitCode::cannot_create, fmt::format("{}: cannot be written", file.string()));
-    return Done{};
-}
-
 Result<Done, AppError> write_files(const Order& order, const image::FlashContents& contents) {
     std::error_code error;
     std::filesystem::create_directories(order.folder, error);
     if (error) {
         return fail(ExitCode::cannot_create,
-                    fmt::format("{}: cannot be made: {}", order.folder.string(), error.message()));
+                    fmt::format("{}: cannot be made ({}): choose another folder with --out",
+                                order.folder.string(), error.message()));
     }
-    if (auto done = write_file(order.folder / kHexFile, image::intel_hex(contents)); !done) return done;
-    return write_file(order.folder / kScriptFile,
+    if (auto done = write_text(order.folder / kHexFile, image::intel_hex(contents)); !done) return done;
+    return write_text(order.folder / kScriptFile,
                       openocd_script({.openocd_board = order.board.openocd_board,
                                       .device_id = order.board.device_id,
                                       .adapter_serial = order.adapter_serial,
@@ -69,7 +61,7 @@ Result<Done, AppError> write_files(const Order& order, const image::FlashContent
 Result<OpenocdRun, AppError> run(const Order& order, std::vector<std::string> arguments,
                                  std::chrono::seconds patience) {
     const OpenocdRun run = run_openocd(order.folder, std::move(arguments), patience);
-    if (auto done = write_file(order.folder / "openocd.log", run.output); !done)
+    if (auto done = write_text(order.folder / "openocd.log", run.output); !done)
         return unexpected(done.error());
     return run;
 }

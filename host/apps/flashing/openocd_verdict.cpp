@@ -61,6 +61,18 @@ std::optional<std::uint32_t> last_value(const OpenocdRun& run, std::string_view 
     return value;
 }
 
+/// The last line that says something, whatever it is.
+std::string last_line(const OpenocdRun& run) {
+    std::string_view rest = run.output;
+    while (!rest.empty()) {
+        const std::size_t begin = rest.find_last_of('\n') + 1;  // 0 if there is none
+        const std::string_view line = rest.substr(begin);
+        if (line.find_first_not_of(" \t\r") != std::string_view::npos) return std::string(line);
+        rest = rest.substr(0, begin == 0 ? 0 : begin - 1);
+    }
+    return "nothing";
+}
+
 /// The first line that OpenOCD itself calls an error and says something, for what is in no table.
 std::string first_error(const OpenocdRun& run) {
     constexpr std::string_view kMark = "Error: ";
@@ -69,7 +81,7 @@ std::string first_error(const OpenocdRun& run) {
         const std::size_t end = std::min(run.output.find('\n', at), run.output.size());
         if (end > at) return run.output.substr(at, end - at);
     }
-    return fmt::format("exit code {}", run.exit_code);
+    return fmt::format("exit code {}, and last it said: {}", run.exit_code, last_line(run));
 }
 
 AppError no_adapter(const std::string& serial) {
@@ -90,7 +102,9 @@ std::optional<AppError> run_fault(const OpenocdRun& run) {
                             "openocd is not installed: run `toolchains/install_packages flash`, or "
                             "`sudo apt install openocd`"};
         case OpenocdRun::End::no_process:
-            return AppError{ExitCode::unavailable, fmt::format("openocd cannot be started: {}", run.output)};
+            return AppError{
+                ExitCode::unavailable,
+                fmt::format("openocd cannot be started ({}): does `openocd --version` run?", run.output)};
         case OpenocdRun::End::timed_out:
             return AppError{ExitCode::io_failed,
                             "OpenOCD did not come to an end: plug the board out and in, and try again"};
@@ -122,15 +136,21 @@ AppError failed_run(const OpenocdRun& run, const Expected& expected) {
     if (says(run, "open failed")) return no_adapter(expected.adapter_serial);
     const std::string error = first_error(run);
     if (says(run, kSaysVerified))
-        return {ExitCode::io_failed, fmt::format("programmed and verified, but not started: {}", error)};
+        return {ExitCode::io_failed,
+                fmt::format("programmed and verified, but not started ({}): press the board's reset "
+                            "button",
+                            error)};
     if (says(run, kSaysProgrammed))
         return {
             ExitCode::io_failed,
             fmt::format("what is in flash is not what was written ({}): try again; if it stays, the chip's "
                         "flash is worn or its supply is poor",
                         error)};
-    if (options) return {ExitCode::io_failed, fmt::format("programming failed: {}; try again", error)};
-    return {ExitCode::io_failed, fmt::format("OpenOCD failed: {}", error)};
+    constexpr const char* kRemedy =
+        "try again, with another USB cable or port if it stays; openocd.log among the files has all it said";
+    if (options) return {ExitCode::io_failed, fmt::format("programming failed ({}): {}", error, kRemedy)};
+    return {ExitCode::io_failed,
+            fmt::format("OpenOCD failed before anything was written ({}): {}", error, kRemedy)};
 }
 
 }  // namespace
@@ -152,7 +172,9 @@ std::optional<AppError> judge_dry_run(const OpenocdRun& run) {
         if (says(run, symptom.words)) return AppError{symptom.code, std::string(symptom.meaning)};
     }
     return AppError{ExitCode::unavailable,
-                    fmt::format("OpenOCD cannot read the script: {}", first_error(run))};
+                    fmt::format("OpenOCD cannot read the script ({}): install Debian's openocd 0.12 or "
+                                "newer; openocd.log among the files has all it said",
+                                first_error(run))};
 }
 
 }  // namespace octoskin::flashing

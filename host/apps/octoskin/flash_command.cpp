@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <memory>
 
 #include "host/apps/flashing/flashing.hpp"
@@ -11,6 +10,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/text_file.hpp"
 #include "hw/image/option_bytes.hpp"
 
 namespace octoskin::app {
@@ -75,14 +75,8 @@ flashing::Order make_order(const FlashOptions& options) {
 
 void write_record(const flashing::Order& order, const flashing::Prepared& prepared,
                   const std::optional<flashing::Programmed>& programmed) {
-    std::ofstream stream(order.folder / flashing::kRecordFile, std::ios::binary);
-    stream << flashing::record(order, prepared, programmed);
-    stream.close();
-    if (!stream) {
-        throw CommandFailure(
-            {ExitCode::cannot_create,
-             fmt::format("{}: cannot be written", (order.folder / flashing::kRecordFile).string())});
-    }
+    (void)value_or_fail(
+        write_text(order.folder / flashing::kRecordFile, flashing::record(order, prepared, programmed)));
 }
 
 void describe(const flashing::Order& order, const flashing::Prepared& prepared) {
@@ -95,6 +89,21 @@ void describe(const flashing::Order& order, const flashing::Prepared& prepared) 
           order.node.name, order.node.sensors.size(), node_hash(order.node.config), prepared.block_bytes,
           board.configuration_page.address);
     print("files in {}\n", order.folder.string());
+}
+
+/// What a run that is not dry would do with them.
+void describe_option_bytes(const flashing::Order& order) {
+    const image::MaskedWord wanted = image::wanted_option_bytes();
+    print("option bytes (FLASH_OPTR, 0x{:08X}): would be read, and must hold {}\n", image::kOptionRegister,
+          image::wanted_text());
+    if (order.writes_option_bytes) {
+        print(
+            "  if they differ 0x{:08X} would be written under the mask 0x{:08X} (all of these but {}), and "
+            "the chip restarted\n",
+            wanted.value, wanted.mask, image::unwritten_text());
+    } else {
+        print("  they would not be written: --write-option-bytes does that\n");
+    }
 }
 
 /// Programmed all the same, but the board is not as it should be: exit code 1.
@@ -118,6 +127,7 @@ void flash(const FlashOptions& options) {
     write_record(order, prepared, std::nullopt);
     if (options.is_dry_run) {
         (void)value_or_fail(flashing::rehearse(order));
+        describe_option_bytes(order);
         print("dry run: OpenOCD has read the script; nothing was programmed\n");
         return;
     }

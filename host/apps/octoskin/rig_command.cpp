@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <fstream>
 #include <memory>
+#include <string_view>
 
 #include "common/config/node_config.hpp"
 #include "common/wire/bus_load.hpp"
@@ -11,6 +11,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/text_file.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
 #include "hw/rigfile/i2c_load.hpp"
@@ -72,12 +73,9 @@ void write_block(const rig::Rig& rig, const RigOptions& options) {
     if (!node) throw CommandFailure(node.error());
     std::array<std::uint8_t, kNodeConfigBytesMax> memory{};
     const auto block = encode(node->config, memory);
-    std::ofstream stream(options.block, std::ios::binary);
-    stream.write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(block.size()));
-    stream.close();
-    if (!stream)
-        throw CommandFailure(
-            {ExitCode::cannot_create, fmt::format("{}: cannot be written", options.block.string())});
+    const std::string_view bytes(reinterpret_cast<const char*>(block.data()), block.size());
+    if (const auto written = write_text(options.block, bytes); !written)
+        throw CommandFailure(written.error());
     print("node {} '{}': node_hash {:08x}, {} bytes in {}\n", node->config.node_id, node->name,
           node_hash(node->config), block.size(), options.block.string());
 }

@@ -70,6 +70,10 @@ TEST_F(FlashTest, a_dry_run_does_everything_but_the_adapter) {
     EXPECT_EQ(said.exit_code, 0) << said.output;
     EXPECT_THAT(said.output, AllOf(HasSubstr("fit for nucleo_g474re, 548 bytes"),
                                    HasSubstr("4 sensors, node_hash"), HasSubstr("nothing was programmed")));
+    EXPECT_THAT(said.output, AllOf(HasSubstr("must hold BOR_LEV 4, BFB2 0, DBANK 1, nSWBOOT0 0, nBOOT0 1\n"),
+                                   HasSubstr("they would not be written: --write-option-bytes does that")));
+    EXPECT_THAT(flash("--dry-run --write-option-bytes").output,
+                HasSubstr("0x08000400 would be written under the mask 0x0C100700 (all of these but DBANK)"));
     EXPECT_THAT(content(path("out/record.yaml")), HasSubstr("is_programmed: false"));
     EXPECT_THAT(content(path("out/flash.hex")), HasSubstr(":00000001FF"));
 }
@@ -156,6 +160,25 @@ TEST_F(FlashTest, without_openocd_it_names_the_package) {
             source("hw/rigs/bench_one_board.yaml") + " --elf " + path("image.elf") + " --out " + path("out"));
     EXPECT_EQ(said.exit_code, 69) << said.output;
     EXPECT_THAT(said.output, HasSubstr("apt install openocd"));
+}
+
+TEST_F(FlashTest, a_folder_that_takes_no_files_is_named_with_the_reason_and_a_remedy) {
+    write(path("out"), "a file where the folder should be");
+    const Said no_folder = flash("--dry-run");
+    EXPECT_EQ(no_folder.exit_code, 73) << no_folder.output;
+    EXPECT_THAT(no_folder.output,
+                AllOf(HasSubstr(path("out")), HasSubstr("(Not a directory)"), HasSubstr("--out")));
+    std::filesystem::remove(path("out"));
+    std::filesystem::create_directories(path("out/flash.hex"));
+    const Said no_file = flash("--dry-run");
+    EXPECT_EQ(no_file.exit_code, 73) << no_file.output;
+    EXPECT_THAT(no_file.output, HasSubstr("flash.hex: cannot be written (Is a directory): it is a folder"));
+    std::filesystem::remove_all(path("out"));
+    std::filesystem::create_directories(path("out"));
+    std::filesystem::create_symlink("/dev/full", path("out/flash.cfg"));
+    const Said full = flash("--dry-run");
+    EXPECT_EQ(full.exit_code, 73) << full.output;
+    EXPECT_THAT(full.output, HasSubstr("flash.cfg: cannot be written (No space left on device): make room"));
 }
 
 TEST_F(FlashTest, bad_input_has_its_code_and_is_never_programmed) {

@@ -103,17 +103,20 @@ INSTANTIATE_TEST_SUITE_P(
              ExitCode::io_failed, "did not recognise the chip's flash"},
         Case{"programming",
              kBanner + kProbe + kDevice + kOptions + "Error: flash write failed\nError: more\n",
-             ExitCode::io_failed, "programming failed: flash write failed; try again"},
+             ExitCode::io_failed, "programming failed (flash write failed): try again"},
         Case{"verification",
              kBanner + kProbe + kDevice + kOptions + kProgrammed +
                  "Error: checksum mismatch - attempting binary compare\n",
              ExitCode::io_failed, "not what was written (checksum mismatch"},
         Case{"start", kBanner + kProbe + kDevice + kOptions + kProgrammed + kVerified, ExitCode::io_failed,
-             "verified, but not started"},
+             "verified, but not started (exit code 1, and last it said: octoskin: verified): press"},
         Case{"no such board", kBanner + "Can't find board/st_nucleo_g4.cfg\n", ExitCode::unavailable,
              "no script for the board"},
         Case{"anything else", kBanner + "Error: \nError: the moon is full\nError: later\n",
-             ExitCode::io_failed, "OpenOCD failed: the moon is full"}));
+             ExitCode::io_failed, "OpenOCD failed before anything was written (the moon is full): try again"},
+        Case{"no error line", kBanner + "invalid command name \"frob\"\n\n \t\n", ExitCode::io_failed,
+             "(exit code 1, and last it said: invalid command name \"frob\"): try again"},
+        Case{"not a word", "", ExitCode::io_failed, "(exit code 1, and last it said: nothing): try again"}));
 
 TEST(OpenocdVerdict, a_serial_number_that_nobody_has_is_named) {
     const auto programmed =
@@ -133,13 +136,16 @@ TEST(OpenocdVerdict, what_kept_it_from_running_is_told) {
     EXPECT_EQ(judge(run, expected).error().code, ExitCode::io_failed);
     run.end = OpenocdRun::End::no_process;
     run.output = "Permission denied";
-    EXPECT_THAT(judge(run, expected).error().message, HasSubstr("cannot be started: Permission denied"));
+    EXPECT_THAT(judge(run, expected).error().message,
+                HasSubstr("cannot be started (Permission denied): does"));
 }
 
 TEST(OpenocdVerdict, a_dry_run_must_have_listed_the_flash) {
     EXPECT_FALSE(judge_dry_run(ended("{name stm32g4x.flash driver stm32l4x base 134217728}\n", 0)));
     EXPECT_TRUE(judge_dry_run(ended("", 0)));
     EXPECT_TRUE(judge_dry_run(ended("stm32l4x\n", 1)));
+    EXPECT_THAT(judge_dry_run(ended("flash.cfg:3: Error: invalid command name \"gdb_port\"\n", 1))->message,
+                HasSubstr("cannot read the script (invalid command name \"gdb_port\"): install Debian's"));
 }
 
 }  // namespace
