@@ -106,6 +106,7 @@ TEST(NodeFrames, numbers_readings_without_a_gap_and_counts_them_in_the_health) {
             const std::size_t told = rig.last_health(sensor)->sent;
             EXPECT_LE(told, readings.size());
             EXPECT_GE(told + 40, readings.size());
+            EXPECT_EQ(rig.last_health(sensor)->rejected, 0);
         }
     }
 }
