@@ -338,6 +338,8 @@ void Sensor::recover(NodeTime now) {
         return;
     }
     ranging_.begin_restart(now);
+    // An order to stop may have come while the read that failed was under way, or since.
+    if (!is_ordered_to_range_) ranging_.request_stop(now);
     mode_ = Mode::ranging;
 }
 

@@ -83,6 +83,24 @@ TEST_F(NodeCommandsTest, stops_a_single_sensor) {
     EXPECT_GE(readings_in(1, 300 * kMillisecond), 8U);
 }
 
+// A frozen sensor fails 80 ms later: whenever the order comes, before, during or after the restart.
+TEST(NodeCommands, stops_a_sensor_that_fails_and_would_be_restarted) {
+    for (int us = 60'000; us < 100'000; us += 100) {
+        NodeRig rig(fleet_config(2, 1), std::vector<SensorSetup>(2));
+        rig.run_for(1'000 * kMillisecond);
+        rig.sensor(1).set_faults({.freezes_stream = true});
+        rig.run_for(Microseconds{us});
+        rig.send_from_host(Command{.code = CommandCode::stop}, kOwnId);
+        rig.run_for(5 * kMillisecond);
+        rig.sensor(1).set_faults({});
+        rig.run_for(600 * kMillisecond);
+        const std::size_t ranges = rig.truth(1).size();
+        rig.run_for(300 * kMillisecond);
+        EXPECT_EQ(rig.truth(1).size(), ranges) << us;
+        EXPECT_EQ(rig.last_health(1)->state, SensorState::stopped) << us;
+    }
+}
+
 TEST_F(NodeCommandsTest, obeys_commands_to_all_nodes_and_ignores_those_to_others) {
     command(CommandCode::stop, wire::kAllSensors, 0, 6);
     rig_.run_for(200 * kMillisecond);
