@@ -51,6 +51,12 @@ FrameBits worst_case_bits_fd(std::uint8_t payload_len) noexcept {
             .data = body + worst_case_stuff_bits(1 + body) + crc_field + fixed_stuff_bits};
 }
 
+double worst_case_seconds(const CanFrame& frame, const BitRates& rates) noexcept {
+    if (!frame.is_fd) return seconds(worst_case_bits_classical(frame.payload_len), rates);
+    const std::uint32_t data_rate = frame.has_bit_rate_switch ? rates.data : rates.nominal;
+    return seconds(worst_case_bits_fd(frame.payload_len), {.nominal = rates.nominal, .data = data_rate});
+}
+
 double bus_load(std::span<const Traffic> traffic, const BitRates& rates) noexcept {
     double load = 0.0;
     for (const Traffic& item : traffic) {

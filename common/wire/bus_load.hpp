@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "common/wire/can_frame.hpp"
 #include "common/wire/frame_type.hpp"
 
 namespace octoskin::wire {
@@ -31,6 +32,10 @@ struct FrameBits {
 /// CAN FD frame with an 11-bit identifier, bit rate switch and `payload_len` a CAN FD length. Source: the
 /// frame format of ISO 11898-1:2015; the derivation is in the .cpp and in docs/protocol.md.
 [[nodiscard]] FrameBits worst_case_bits_fd(std::uint8_t payload_len) noexcept;
+
+/// How long this frame occupies a bus of these rates at most, in seconds. A CAN FD frame without bit rate
+/// switch has all its bits at the nominal rate.
+[[nodiscard]] double worst_case_seconds(const CanFrame& frame, const BitRates& rates) noexcept;
 
 /// Frames of one kind on one bus, all nodes together.
 struct Traffic {

@@ -34,11 +34,7 @@ CanLink::StateReader state_reader(const DaemonRequest& request) {
 }
 
 Nanoseconds time_on_bus(const wire::CanFrame& frame, const wire::BitRates& rates) {
-    const wire::FrameBits bits = frame.is_fd ? wire::worst_case_bits_fd(frame.payload_len)
-                                             : wire::worst_case_bits_classical(frame.payload_len);
-    const double seconds =
-        static_cast<double>(bits.nominal) / rates.nominal + static_cast<double>(bits.data) / rates.data;
-    return Nanoseconds{std::llround(1e9 * seconds)};
+    return Nanoseconds{std::llround(1e9 * wire::worst_case_seconds(frame, rates))};
 }
 
 LocalJoints local_joints_of(const HostRig& rig) {

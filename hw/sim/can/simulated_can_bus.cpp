@@ -26,12 +26,7 @@ SimTime later(SimTime time, std::int64_t by_us) {
 }  // namespace
 
 std::int64_t frame_duration_us(const wire::CanFrame& frame, const wire::BitRates& rates) {
-    const wire::FrameBits bits = frame.is_fd ? wire::worst_case_bits_fd(frame.payload_len)
-                                             : wire::worst_case_bits_classical(frame.payload_len);
-    const std::uint32_t data_rate = frame.has_bit_rate_switch ? rates.data : rates.nominal;
-    const double seconds =
-        static_cast<double>(bits.nominal) / rates.nominal + static_cast<double>(bits.data) / data_rate;
-    return static_cast<std::int64_t>(std::ceil(seconds * 1e6 - 1e-9));
+    return static_cast<std::int64_t>(std::ceil(wire::worst_case_seconds(frame, rates) * 1e6 - 1e-9));
 }
 
 SimulatedCanBus::SimulatedCanBus(const wire::BitRates& rates) : rates_(rates) {}

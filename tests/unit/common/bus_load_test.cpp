@@ -180,6 +180,16 @@ TEST(BusLoad, on_fd_counts_both_bit_rates) {
     EXPECT_NEAR(load_of(on_fd(two_boards_of_17(30.0), 4), kFd), 255 * 168.6e-6 + 0.06607, 1e-12);
 }
 
+TEST(WorstCaseSeconds, are_the_bits_at_the_rates_that_the_format_has) {
+    CanFrame frame{.can_id = 0x201, .payload_len = 8};
+    EXPECT_NEAR(worst_case_seconds(frame, k500k), 270e-6, 1e-12);
+    EXPECT_NEAR(worst_case_seconds(frame, kFd), 135e-6, 1e-12);
+    frame = {.can_id = 0x241, .is_fd = true, .has_bit_rate_switch = true, .payload_len = 64};
+    EXPECT_NEAR(worst_case_seconds(frame, kFd), 33e-6 + 678 / 5e6, 1e-12);
+    frame.has_bit_rate_switch = false;
+    EXPECT_NEAR(worst_case_seconds(frame, kFd), 711e-6, 1e-12);
+}
+
 TEST(BusLoad, of_nothing_is_nothing) {
     EXPECT_EQ(bus_load({}, k500k), 0.0);
 }
