@@ -15,8 +15,9 @@
 namespace octoskin {
 namespace {
 
-Unexpected<MapFileError> fail(const std::filesystem::path& file, const std::string& what) {
-    return unexpected(MapFileError{fmt::format("{}: {}", file.string(), what), false});
+Unexpected<MapFileError> fail(const std::filesystem::path& file, const std::string& what,
+                              bool is_too_large = false) {
+    return unexpected(MapFileError{fmt::format("{}: {}", file.string(), what), is_too_large});
 }
 
 Unexpected<MapFileError> fail_with_errno(const std::filesystem::path& file, const char* step) {
@@ -47,8 +48,7 @@ Result<std::string, MapFileError> read_bytes(const std::filesystem::path& file, 
     if (!S_ISREG(status.st_mode)) return fail(file, "not a regular file");
     const auto size = static_cast<std::uint64_t>(status.st_size);
     if (size > bytes_max) {
-        return unexpected(
-            MapFileError{fmt::format("{}: {} bytes, the limit is {}", file.string(), size, bytes_max), true});
+        return fail(file, fmt::format("{} bytes, the limit is {}", size, bytes_max), true);
     }
     std::string bytes(size, '\0');
     std::size_t position = 0;
@@ -88,8 +88,7 @@ Result<FusedMap, MapFileError> load_map(const std::filesystem::path& file, const
     auto map = decode_octomap(*bytes, limits);
     if (!map) {
         const MapFault fault = map.error().fault;
-        return unexpected(MapFileError{fmt::format("{}: {}", file.string(), map.error().what),
-                                       fault == MapFault::no_room || fault == MapFault::too_many_nodes});
+        return fail(file, map.error().what, fault == MapFault::no_room || fault == MapFault::too_many_nodes);
     }
     return std::move(map).value();
 }
