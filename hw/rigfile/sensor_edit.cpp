@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <vector>
@@ -73,11 +74,14 @@ std::string content_of(const std::filesystem::path& file) {
     return text.str();
 }
 
-bool write(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-    stream << text;
-    stream.close();
-    return stream.good();
+/// A file that is extended may have sensors that the rig has no more.
+bool has_sensor(const Rig& rig, const SensorEdit& edit) {
+    for (const Node& node : rig.nodes) {
+        if (node.name != edit.node) continue;
+        const auto is_it = [&edit](const Sensor& sensor) { return sensor.name == edit.sensor; };
+        return std::any_of(node.sensors.begin(), node.sensors.end(), is_it);
+    }
+    return false;
 }
 
 /// With the one sensor as it is in `other`.
@@ -103,22 +107,25 @@ std::optional<std::string> edited(const std::string& text, const SensorEdit& edi
     }
 }
 
-Result<std::filesystem::path, RigError> edit_sensor(const std::filesystem::path& file,
-                                                    const SensorEdit& edit) {
+Result<std::filesystem::path, RigError> edit_sensor(const std::filesystem::path& file, const SensorEdit& edit,
+                                                    const SaveText& save) {
     const auto before = read_rig(file);
     if (!before) return unexpected(before.error());
+    if (!has_sensor(*before, edit))
+        return failed(file, "has no sensor '" + edit.sensor + "' of a node '" + edit.node + "'");
     std::vector<std::filesystem::path> files{file};
     files.insert(files.end(), before->extended_files.begin(), before->extended_files.end());
     for (const auto& candidate : files) {
         const std::string text = content_of(candidate);
         const auto changed = edited(text, edit);
         if (!changed) continue;
-        if (!write(candidate, *changed)) return failed(candidate, "cannot be written");
+        if (const auto why = save(candidate, *changed)) return failed(candidate, *why);
         const auto after = read_rig(file);
         const bool is_as_meant =
             after && rig_hash(with_sensor_of(*after, *before, edit)) == rig_hash(*before);
         if (is_as_meant) return candidate;
-        if (!write(candidate, text)) return failed(candidate, "was changed and cannot be put back");
+        if (const auto why = save(candidate, text))
+            return failed(candidate, "was changed and cannot be put back: " + *why);
         return after ? failed(candidate, "its sensor cannot be changed by a program: set " + edit.key + ": " +
                                              edit.value + " by hand")
                      : unexpected(after.error());

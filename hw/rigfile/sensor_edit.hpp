@@ -1,6 +1,7 @@
 // Writes what was found of one sensor into the rig file that a person keeps: comments, order and layout stay.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -20,10 +21,15 @@ struct SensorEdit {
 /// have).
 [[nodiscard]] std::optional<std::string> edited(const std::string& text, const SensorEdit& edit);
 
+/// Puts `text` in the place of all that the file holds, whole or not at all; else says why not.
+using SaveText =
+    std::function<std::optional<std::string>(const std::filesystem::path& file, const std::string& text)>;
+
 /// Edits the rig's file, or the one it extends in which the sensor stands; returns which. The rig is read
 /// again afterwards and must be what it was but for that one value, else the file is put back as it was.
-/// Errors: no file has the sensor, one cannot be written, or the rig would not be a rig any more.
+/// Errors: no file has the sensor, `save` fails, or the rig would not be a rig any more.
 [[nodiscard]] Result<std::filesystem::path, RigError> edit_sensor(const std::filesystem::path& file,
-                                                                  const SensorEdit& edit);
+                                                                  const SensorEdit& edit,
+                                                                  const SaveText& save);
 
 }  // namespace octoskin::rig

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
+#include "host/io/mapfile/atomic_file.hpp"
+
 namespace octoskin::calibrating {
 
 Result<Question, AppError> question_of(const rig::Rig& rig, const Wish& wish, std::uint8_t sequence) {
@@ -45,6 +49,22 @@ rig::SensorEdit edit_of(const Question& question, const wire::Calibration& found
             .key = is_offset ? "device_offset_mm" : "crosstalk_kcps",
             .value = is_offset ? fmt::format("{:.2f}", found.offset_quarter_mm / 4.0)
                                : fmt::format("{:.6f}", found.crosstalk_raw / 512.0)};
+}
+
+Result<std::filesystem::path, AppError> write_into_rig(const std::filesystem::path& rig,
+                                                       const rig::SensorEdit& edit) {
+    const auto save = [](const std::filesystem::path& file,
+                         const std::string& text) -> std::optional<std::string> {
+        std::error_code error;
+        const auto itself = std::filesystem::canonical(file, error);
+        if (error) return error.message();
+        const auto saved =
+            save_atomically(itself, text, posix_file_operations(), Attributes::of_the_old_file);
+        return saved ? std::nullopt : std::optional(saved.error().message());
+    };
+    const auto file = rig::edit_sensor(rig, edit, save);
+    if (!file) return fail(ExitCode::cannot_create, file.error().message());
+    return *file;
 }
 
 }  // namespace octoskin::calibrating

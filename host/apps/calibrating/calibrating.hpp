@@ -1,6 +1,7 @@
 // Calibrates one sensor over a CAN interface.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "host/apps/calibrating/dialogue.hpp"
@@ -28,5 +29,11 @@ struct Wish {
 
 /// What to write into the rig.
 [[nodiscard]] rig::SensorEdit edit_of(const Question& question, const wire::Calibration& found);
+
+/// Writes it, atomically: at every instant the rig's file is the old one or the new one. Its mode stays, and
+/// its owner where that is permitted; what a symbolic link stands for is replaced, not the link. Returns the
+/// file that was changed, which may be one that the rig extends. Error: `cannot_create`.
+[[nodiscard]] Result<std::filesystem::path, AppError> write_into_rig(const std::filesystem::path& rig,
+                                                                     const rig::SensorEdit& edit);
 
 }  // namespace octoskin::calibrating

@@ -64,11 +64,10 @@ void run(CalibrateOptions options) {
         fmt::print(stderr, "not written; --write puts it into the sensor's entry of the rig\n");
         return;
     }
-    const auto file = rig::edit_sensor(options.rig, edit);
-    if (!file) throw CommandFailure({ExitCode::cannot_create, file.error().message()});
+    const auto file = value_or_fail(calibrating::write_into_rig(options.rig, edit));
     fmt::print(stderr,
                "written to {}; it counts once the node is flashed: firmware/flash --rig {} --node {}\n",
-               file->string(), options.rig.string(), question.node_name);
+               file.string(), options.rig.string(), question.node_name);
 }
 
 }  // namespace

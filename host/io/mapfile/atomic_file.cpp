@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -20,6 +21,13 @@ class PosixFileOperations final : public FileOperations {
         return ::open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
     }
     int open_directory(const char* path) override { return ::open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC); }
+    int copy_attributes(const char* path, int descriptor) override {
+        struct stat old {};
+        if (::stat(path, &old) != 0) return errno == ENOENT ? 0 : -1;
+        (void)::fchown(descriptor, old.st_uid, old.st_gid);  // only root may give files away
+        constexpr mode_t kPermissions = 0777;
+        return ::fchmod(descriptor, old.st_mode & kPermissions);
+    }
     ssize_t write(int descriptor, const void* bytes, std::size_t count) override {
         return ::write(descriptor, bytes, count);
     }
@@ -39,6 +47,8 @@ const char* name_of(SaveStep step) {
             return "choosing a file name";
         case SaveStep::create:
             return "creating a file beside it";
+        case SaveStep::attributes:
+            return "keeping its permissions";
         case SaveStep::write:
             return "writing";
         case SaveStep::sync:
@@ -56,8 +66,8 @@ const char* name_of(SaveStep step) {
 /// The steps of one save. Each returns what it failed at; errno says why.
 class Save {
   public:
-    Save(FileOperations& operations, const std::filesystem::path& file)
-        : operations_(operations), file_(file), partial_(partial_path_of(file)) {}
+    Save(FileOperations& operations, const std::filesystem::path& file, Attributes attributes)
+        : operations_(operations), file_(file), partial_(partial_path_of(file)), attributes_(attributes) {}
 
     std::optional<SaveError> run(std::string_view bytes) {
         if (auto error = write_partial(bytes)) {
@@ -78,7 +88,12 @@ class Save {
     std::optional<SaveError> write_partial(std::string_view bytes) {
         const int descriptor = operations_.create(partial_.c_str());
         if (descriptor < 0) return failed(SaveStep::create);
-        auto error = write_all(descriptor, bytes);
+        std::optional<SaveError> error;
+        // Before a byte of it: what only its owner may read, nobody else ever may.
+        if (attributes_ == Attributes::of_the_old_file &&
+            operations_.copy_attributes(file_.c_str(), descriptor) != 0)
+            error = failed(SaveStep::attributes);
+        if (!error) error = write_all(descriptor, bytes);
         if (!error && operations_.sync(descriptor) != 0) error = failed(SaveStep::sync);
         // A late write error may show only here (network file systems).
         if (operations_.close(descriptor) != 0 && !error) error = failed(SaveStep::close);
@@ -110,6 +125,7 @@ class Save {
     FileOperations& operations_;
     std::filesystem::path file_;
     std::filesystem::path partial_;
+    Attributes attributes_;
 };
 
 }  // namespace
@@ -129,11 +145,11 @@ std::string SaveError::message() const {
 }
 
 Status<SaveError> save_atomically(const std::filesystem::path& file, std::string_view bytes,
-                                  FileOperations& operations) {
+                                  FileOperations& operations, Attributes attributes) {
     if (!file.has_filename() || file.filename() == "." || file.filename() == "..") {
         return unexpected(SaveError{SaveStep::name, 0, file});
     }
-    if (auto error = Save(operations, file).run(bytes)) return unexpected(std::move(*error));
+    if (auto error = Save(operations, file, attributes).run(bytes)) return unexpected(std::move(*error));
     return Done{};
 }
 

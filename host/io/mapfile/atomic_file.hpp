@@ -22,6 +22,9 @@ class FileOperations {
     /// For writing, made or emptied; never through a symbolic link.
     virtual int create(const char* path) = 0;
     virtual int open_directory(const char* path) = 0;
+    /// Gives the open file the mode of the one at `path`, and its owner where that is permitted; 0 if there
+    /// is no such file.
+    virtual int copy_attributes(const char* path, int descriptor) = 0;
     virtual ssize_t write(int descriptor, const void* bytes, std::size_t count) = 0;
     virtual int sync(int descriptor) = 0;
     virtual int close(int descriptor) = 0;
@@ -32,7 +35,7 @@ class FileOperations {
 /// The real ones.
 [[nodiscard]] FileOperations& posix_file_operations();
 
-enum class SaveStep : std::uint8_t { name, create, write, sync, close, rename, sync_directory };
+enum class SaveStep : std::uint8_t { name, create, attributes, write, sync, close, rename, sync_directory };
 
 struct SaveError {
     SaveStep step{};
@@ -42,11 +45,15 @@ struct SaveError {
     [[nodiscard]] std::string message() const;
 };
 
+/// Whose a file is and who may read it.
+enum class Attributes : std::uint8_t { of_a_new_file, of_the_old_file };
+
 /// Saves `bytes` as `file`. On an error before `sync_directory` the old file is as it was and nothing is left
 /// behind; on that one the new file is in place, but may be lost if power fails now. Blocks for as long as
 /// the disk takes. Two writers of one file at once are not supported.
 [[nodiscard]] Status<SaveError> save_atomically(const std::filesystem::path& file, std::string_view bytes,
-                                                FileOperations& operations = posix_file_operations());
+                                                FileOperations& operations = posix_file_operations(),
+                                                Attributes attributes = Attributes::of_a_new_file);
 
 /// Removes what a process left in `directory` when it died while saving; returns how many. To be called at
 /// start, before any save.

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::rig {
@@ -62,6 +64,16 @@ TEST(SensorEdit, finds_nothing_where_nothing_is) {
 
 class ShippedRig : public testing::Test {
   protected:
+    /// As `edit_sensor` with a plain way to save.
+    Result<std::filesystem::path, RigError> change(const std::filesystem::path& file,
+                                                   const SensorEdit& edit) {
+        return edit_sensor(file, edit, [this](const std::filesystem::path& place, const std::string& text) {
+            if (saves_left_-- <= 0) return std::optional<std::string>("no ink");
+            std::ofstream(place, std::ios::binary) << text;
+            return std::optional<std::string>();
+        });
+    }
+    int saves_left_ = 100;
     ShippedRig() {
         for (const char* folder : {"rigs", "boards", "robots"})
             std::filesystem::copy(kRigs.parent_path() / folder, folder_.path() / folder,
@@ -74,8 +86,8 @@ TEST_F(ShippedRig, gets_the_value_and_keeps_all_else) {
     const auto file = folder_ / "rigs/bench_one_board.yaml";
     const auto before = read_rig(file);
     ASSERT_TRUE(before);
-    ASSERT_TRUE(edit_sensor(file, edit("back")));
-    ASSERT_TRUE(edit_sensor(file, edit("back", "crosstalk_kcps", "1.001953")));
+    ASSERT_TRUE(change(file, edit("back")));
+    ASSERT_TRUE(change(file, edit("back", "crosstalk_kcps", "1.001953")));
     auto after = read_rig(file);
     ASSERT_TRUE(after) << after.error().message();
     const SensorConfig& changed = after->nodes[0].config.sensors[2];
@@ -89,7 +101,7 @@ TEST_F(ShippedRig, gets_the_value_and_keeps_all_else) {
 TEST_F(ShippedRig, of_another_that_it_extends_is_changed_where_the_sensor_is_written) {
     const auto base = folder_ / "rigs/bench_one_board.yaml";
     const auto heir = folder_.write("rigs/heir.yaml", "extends: bench_one_board.yaml\nname: heir\n");
-    const auto changed = edit_sensor(heir, edit("left"));
+    const auto changed = change(heir, edit("left"));
     ASSERT_TRUE(changed) << changed.error().message();
     EXPECT_EQ(changed->filename(), base.filename());
     EXPECT_EQ(read_rig(heir)->nodes[0].config.sensors[1].offset_quarter_mm, -69);
@@ -98,10 +110,38 @@ TEST_F(ShippedRig, of_another_that_it_extends_is_changed_where_the_sensor_is_wri
 TEST_F(ShippedRig, is_put_back_if_it_would_not_be_a_rig) {
     const auto file = folder_ / "rigs/bench_one_board.yaml";
     const std::string before = testing_support::ScratchFolder::read(file);
-    EXPECT_FALSE(edit_sensor(file, edit("back", "device_offset_mm", "4000")));
-    EXPECT_FALSE(edit_sensor(file, edit("back", "link", "panda_link7"))) << "more than its device settings";
-    EXPECT_FALSE(edit_sensor(file, edit("top")));
+    EXPECT_FALSE(change(file, edit("back", "device_offset_mm", "4000")));
+    EXPECT_FALSE(change(file, edit("back", "link", "panda_link7"))) << "more than its device settings";
+    EXPECT_FALSE(change(file, edit("top")));
     EXPECT_EQ(testing_support::ScratchFolder::read(file), before);
+}
+
+TEST_F(ShippedRig, is_not_changed_for_a_sensor_that_only_a_file_beneath_it_still_has) {
+    const auto base = folder_ / "rigs/bench_one_board.yaml";
+    const std::string before = testing_support::ScratchFolder::read(base);
+    const auto heir = folder_.write("rigs/heir.yaml",
+                                    "extends: bench_one_board.yaml\nname: heir\nnodes:\n- name: bench\n"
+                                    "  node_id: 1\n  board: ../boards/nucleo_g474re.yaml\n  sensors:\n"
+                                    "  - {name: front, bus: 0, xshut_line: 0, address: 0x30, "
+                                    "pose: {xyz_m: [0, 0, 0], rpy_deg: [0, 0, 0]}}\n");
+    ASSERT_TRUE(read_rig(heir)) << read_rig(heir).error().message();
+    const auto refused = change(heir, edit("back"));
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().what, "has no sensor 'back' of a node 'bench'");
+    EXPECT_EQ(testing_support::ScratchFolder::read(base), before);
+    ASSERT_TRUE(change(heir, edit("front")));
+    EXPECT_EQ(testing_support::ScratchFolder::read(base), before);
+}
+
+TEST_F(ShippedRig, that_cannot_be_saved_or_put_back_is_told_with_the_reason) {
+    const auto file = folder_ / "rigs/bench_one_board.yaml";
+    const std::string before = testing_support::ScratchFolder::read(file);
+    saves_left_ = 0;
+    EXPECT_EQ(change(file, edit("back")).error().what, "no ink");
+    EXPECT_EQ(testing_support::ScratchFolder::read(file), before);
+    saves_left_ = 1;
+    EXPECT_EQ(change(file, edit("back", "device_offset_mm", "4000")).error().what,
+              "was changed and cannot be put back: no ink");
 }
 
 }  // namespace

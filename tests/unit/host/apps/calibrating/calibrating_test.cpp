@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/live/node_on_socket.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::calibrating {
 namespace {
@@ -70,6 +71,33 @@ TEST(Calibrating, finds_node_and_sensor_by_name) {
     const auto no_node =
         question_of(bench(), {.node = "x", .sensor = "back", .quantity = {}, .target_mm = 1}, 3);
     EXPECT_EQ(no_node.error().message, "no node 'x' in rig bench_one_board: it has bench");
+}
+
+TEST(Calibrating, writes_into_the_rig_and_leaves_mode_and_links_as_they_were) {
+    using std::filesystem::perms;
+    const testing_support::ScratchFolder folder;
+    const auto file = folder.write(
+        "rig.yaml", "extends: " OCTOSKIN_SOURCE_DIR
+                    "/hw/rigs/bench_one_board.yaml\nname: mine\nnodes:\n"
+                    "- name: bench\n  node_id: 1\n  board: " OCTOSKIN_SOURCE_DIR
+                    "/hw/boards/nucleo_g474re.yaml\n  sensors:\n"
+                    "  - {name: front, bus: 0, xshut_line: 0, address: 0x30, pose: {xyz_m: [0, 0, 0], "
+                    "rpy_deg: [0, 0, 0]}}  # mine\n");
+    std::filesystem::permissions(file, perms{0640});
+    const auto link = folder / "link.yaml";
+    std::filesystem::create_symlink("rig.yaml", link);
+    const rig::SensorEdit edit{
+        .node = "bench", .sensor = "front", .key = "device_offset_mm", .value = "-17.25"};
+    const auto written = write_into_rig(link, edit);
+    ASSERT_TRUE(written) << written.error().message;
+    EXPECT_TRUE(std::filesystem::is_symlink(link));
+    EXPECT_EQ(std::filesystem::status(file).permissions(), perms{0640});
+    EXPECT_NE(testing_support::ScratchFolder::read(file).find("device_offset_mm: -17.25"), std::string::npos);
+    EXPECT_NE(testing_support::ScratchFolder::read(file).find("# mine"), std::string::npos);
+    EXPECT_EQ(folder.entries(), 2) << "nothing left beside it";
+    const auto refused = write_into_rig(file, {.node = "bench", .sensor = "top", .key = "x", .value = "1"});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
 }
 
 }  // namespace

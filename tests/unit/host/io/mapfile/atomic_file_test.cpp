@@ -21,6 +21,9 @@ class FailingOperations final : public FileOperations {
 
     int create(const char* path) override { return fails(ENOSPC) ? -1 : real_.create(path); }
     int open_directory(const char* path) override { return fails(EACCES) ? -1 : real_.open_directory(path); }
+    int copy_attributes(const char* path, int descriptor) override {
+        return fails(EPERM) ? -1 : real_.copy_attributes(path, descriptor);
+    }
     ssize_t write(int descriptor, const void* bytes, std::size_t count) override {
         return fails(ENOSPC) ? -1 : real_.write(descriptor, bytes, std::min<std::size_t>(count, 5));
     }
@@ -52,6 +55,9 @@ class InterruptedOperations final : public FileOperations {
   public:
     int create(const char* path) override { return real_.create(path); }
     int open_directory(const char* path) override { return real_.open_directory(path); }
+    int copy_attributes(const char* path, int descriptor) override {
+        return real_.copy_attributes(path, descriptor);
+    }
     ssize_t write(int descriptor, const void* bytes, std::size_t count) override {
         is_interrupted_ = !is_interrupted_;
         if (is_interrupted_) {
@@ -103,6 +109,27 @@ TEST(AtomicFile, survives_a_failure_at_every_single_call) {
     FailingOperations operations(kCallsThatMatter);
     EXPECT_TRUE(save_atomically(folder / "map.ot", content, operations).has_value());
     EXPECT_TRUE(operations.has_failed());
+}
+
+TEST(AtomicFile, keeps_the_old_files_mode_where_it_is_asked_to) {
+    using std::filesystem::perms;
+    const ScratchFolder folder;
+    FileOperations& real = posix_file_operations();
+    for (const perms mode : {perms{0600}, perms{0640}, perms{0664}, perms{0755}}) {
+        const auto file = folder.write("rig.yaml", "old");
+        std::filesystem::permissions(file, mode);
+        ASSERT_TRUE(save_atomically(file, "new", real, Attributes::of_the_old_file));
+        EXPECT_EQ(ScratchFolder::read(file), "new");
+        EXPECT_EQ(std::filesystem::status(file).permissions(), mode);
+    }
+    EXPECT_TRUE(save_atomically(folder / "first", "new", real, Attributes::of_the_old_file));
+    const auto kept = folder.write("kept", "old");
+    FailingOperations operations(1);  // the call after the creation
+    const auto saved = save_atomically(kept, "new", operations, Attributes::of_the_old_file);
+    ASSERT_FALSE(saved);
+    EXPECT_EQ(saved.error().step, SaveStep::attributes);
+    EXPECT_EQ(ScratchFolder::read(kept), "old");
+    EXPECT_EQ(folder.entries(), 3);
 }
 
 TEST(AtomicFile, goes_on_after_interruptions_and_short_writes) {
