@@ -26,6 +26,13 @@ void forget_what_waits(socketcan::CanSocket& socket) {
 
 }  // namespace
 
+std::uint8_t new_sequence() {
+    constexpr std::int64_t kSequencesEach = 16;
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+    return static_cast<std::uint8_t>(ms / 100 * kSequencesEach);
+}
+
 Outside this_machine() {
     const auto now = [] {
         const auto since_boot = std::chrono::steady_clock::now().time_since_epoch();

@@ -1,6 +1,7 @@
 // A dialogue with one node, held over a CAN socket: what the commands that ask a node have in common.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 
@@ -36,6 +37,10 @@ struct Outside {
     std::function<void(int descriptor, HostTime until)> wait;
 };
 [[nodiscard]] Outside this_machine();
+
+/// The first of 16 sequences of commands that are this dialogue's: others than those of a dialogue begun 100
+/// ms or more before, or the node takes a command for a repeated frame.
+[[nodiscard]] std::uint8_t new_sequence();
 
 /// Blocks until the dialogue is over; what waits in the socket already is forgotten. Error: a CAN interface
 /// that does not work (`unavailable`).

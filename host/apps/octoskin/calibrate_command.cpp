@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 #include <memory>
 
 #include "common/wire/frame_type.hpp"
@@ -12,7 +11,7 @@
 namespace octoskin::app {
 namespace {
 
-constexpr const char* kAbout =
+constexpr const char* kCalibrateAbout =
     "Calibrate one sensor's offset, or the crosstalk of its cover glass, with a grey target (17 %) in the "
     "dark.\n"
     "Offset first (target at 140 mm), flash, then crosstalk (target where ranges begin to fall short: "
@@ -25,19 +24,6 @@ struct CalibrateOptions {
     calibrating::Wish wish;
     bool is_written = false;
 };
-
-template <class T>
-T value_or_fail(Result<T, AppError> result) {
-    if (!result) throw CommandFailure(result.error());
-    return std::move(result).value();
-}
-
-/// Another one each time, or the node takes the command for a repeated frame.
-std::uint8_t new_sequence() {
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    return static_cast<std::uint8_t>(std::chrono::duration_cast<std::chrono::milliseconds>(now).count() /
-                                     500);
-}
 
 wire::Calibration calibrate(const calibrating::Question& question, const std::string& interface) {
     const std::array<socketcan::IdFilter, 2> filters{
@@ -74,7 +60,7 @@ void run(CalibrateOptions options) {
 
 void add_calibrate_command(CLI::App& app) {
     auto options = std::make_shared<CalibrateOptions>();
-    CLI::App* command = app.add_subcommand("calibrate", kAbout);
+    CLI::App* command = app.add_subcommand("calibrate", kCalibrateAbout);
     command->add_option("quantity", options->quantity, "offset or crosstalk")
         ->required()
         ->check(CLI::IsMember({"offset", "crosstalk"}));

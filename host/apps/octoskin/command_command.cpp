@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <array>
-#include <chrono>
 #include <memory>
 
 #include "common/wire/frame_type.hpp"
@@ -15,7 +14,7 @@
 namespace octoskin::app {
 namespace {
 
-constexpr const char* kAbout =
+constexpr const char* kCommandAbout =
     "Send a command to a sensor board over CAN, and say whether the node follows or refuses.\n"
     "  start                 range again; also ends safe mode\n"
     "  stop                  stop ranging\n"
@@ -26,7 +25,7 @@ constexpr const char* kAbout =
     "  send_info             print what the node says of itself\n"
     "  send_black_box        have it send its last I2C transfers (candump, then octoskin black-box)";
 
-constexpr const char* kFooter =
+constexpr const char* kCommandFooter =
     "Exit codes, with `all` that of the first node that fails: 0 done; 1 the node refuses, or took it and\n"
     "nothing changed within 5 s; 64 no such node, sensor or command; 66, 78 the rig, or the node has "
     "another\n"
@@ -37,20 +36,6 @@ struct CommandOptions {
     std::filesystem::path rig;
     std::string interface;
 };
-
-template <class T>
-T value_or_fail(Result<T, AppError> result) {
-    if (!result) throw CommandFailure(result.error());
-    return std::move(result).value();
-}
-
-/// Others than those of the last time, or the node takes a command for a repeated frame.
-std::uint8_t new_sequence() {
-    constexpr std::int64_t kSequencesEach = 16;
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
-    return static_cast<std::uint8_t>(ms / 100 * kSequencesEach);
-}
 
 socketcan::CanSocket open_for(const std::vector<commanding::Order>& orders, const std::string& interface) {
     constexpr std::array kHeard{wire::FrameType::heartbeat, wire::FrameType::node_info,
@@ -105,7 +90,7 @@ void run(const CommandOptions& options) {
 
 void add_command_command(CLI::App& app) {
     auto options = std::make_shared<CommandOptions>();
-    CLI::App* command = app.add_subcommand("command", kAbout);
+    CLI::App* command = app.add_subcommand("command", kCommandAbout);
     command
         ->add_option("node", options->wish.node,
                      "Its number; with --rig also its name, or all: each of the rig's sensor boards")
@@ -124,7 +109,7 @@ void add_command_command(CLI::App& app) {
     command->add_option("--period-ms", options->wish.period_ms, "Of set_rate: from range to range, ms");
     command->add_option("--seconds", options->wish.seconds, "Of identify: how long (10)")
         ->check(CLI::Range(0, 1'800));
-    command->footer(kFooter);
+    command->footer(kCommandFooter);
     command->callback([options] { run(*options); });
 }
 

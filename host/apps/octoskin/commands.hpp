@@ -5,7 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
+#include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
 
 namespace octoskin::app {
@@ -18,6 +21,13 @@ class CommandFailure : public std::runtime_error {
   private:
     ExitCode code_;
 };
+
+/// What the result holds; throws its error as CommandFailure.
+template <class T>
+[[nodiscard]] T value_or_fail(Result<T, AppError> result) {
+    if (!result) throw CommandFailure(result.error());
+    return std::move(result).value();
+}
 
 void add_simulate_command(CLI::App& app);
 void add_replay_command(CLI::App& app);

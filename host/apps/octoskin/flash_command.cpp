@@ -16,7 +16,7 @@
 namespace octoskin::app {
 namespace {
 
-constexpr const char* kAbout =
+constexpr const char* kFlashAbout =
     "Check the image, merge the node's configuration block, program and verify through OpenOCD and the "
     "board's "
     "ST-LINK. The files, what OpenOCD said and a record go to --out. docs/bring-up.md has the whole way";
@@ -30,12 +30,6 @@ struct FlashOptions {
     bool writes_option_bytes = false;
     bool is_dry_run = false;
 };
-
-template <class T>
-T value_or_fail(Result<T, AppError> result) {
-    if (!result) throw CommandFailure(result.error());
-    return std::move(result).value();
-}
 
 rig::BoardHardware read_board(const rig::Node& node) {
     const auto file = shipped_file("hw/boards/" + node.board.name + ".hardware.yaml");
@@ -141,7 +135,7 @@ void flash(const FlashOptions& options) {
 
 void add_flash_command(CLI::App& app) {
     auto options = std::make_shared<FlashOptions>();
-    CLI::App* command = app.add_subcommand("flash", kAbout);
+    CLI::App* command = app.add_subcommand("flash", kFlashAbout);
     command->add_option("--rig", options->rig, "Rig (YAML)")->required()->check(existing_file());
     command->add_option("--node", options->node, "Name or number of the node; needed if the rig has several");
     command->add_option("--elf", options->elf, "Image; default: what the preset firmware-release built")
