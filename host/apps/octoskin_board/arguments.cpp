@@ -111,8 +111,9 @@ void describe(CLI::App& app, Arguments& arguments) {
     app.add_option("--slow-clock-max", arguments.slow_clocks.factor_max, "And at most")
         ->capture_default_str();
     app.add_flag("--allow-violations", arguments.allows_violations, "Exit code 0 in spite of violations");
-    app.add_flag("--serial", arguments.shows_serial,
-                 "Print what the board said on its serial line (the NUCLEO's virtual COM port), once it has run");
+    app.add_flag(
+        "--serial", arguments.shows_serial,
+        "Print what the board said on its serial line (the NUCLEO's virtual COM port), once it has run");
     app.add_option("--socket-fd", arguments.socket,
                    "Serve a simulator over this inherited Unix socket instead of running alone");
     app.footer(

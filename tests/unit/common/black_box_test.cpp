@@ -44,7 +44,8 @@ TEST(BlackBoxBytes, of_a_head_that_is_cut_short_or_claims_less_than_itself_are_r
         EXPECT_EQ(decode_dump_header(std::span(whole).first(size)).error(), DumpError::truncated) << size;
     }
     for (std::uint16_t length = 0; length < 4; ++length) {
-        EXPECT_EQ(decode_dump_header(encode(DumpHeader{.length = length, .frozen = {}})).error(), DumpError::invalid_field)
+        EXPECT_EQ(decode_dump_header(encode(DumpHeader{.length = length, .frozen = {}})).error(),
+                  DumpError::invalid_field)
             << length;
     }
 }
