@@ -98,16 +98,17 @@ down() {
     for pid in "$folder"/*.pid; do
         [ ! -e "$pid" ] || kill "$(<"$pid")" 2>/dev/null || true
     done
-    if [ -e $config ]; then
+    [ ! -e "$folder/board.env" ] || . "$folder/board.env"
+    if [ -n "${HIL_CHIP:-}" ]; then
         echo 0 >$config/live
         rmdir $config/bank?/line* $config/bank? $config
+        rm -f $faults.*
     fi
-    rm -f $faults.*
-    ip link del $can 2>/dev/null || true
+    ip link del "${HIL_CAN:-$can}" 2>/dev/null || true
 }
 
 case $verb in
     up) bin=$3; up ;;
-    can) bin=$3; make_can; write_environment ;;
+    can) bin=$3 can=hil1; make_can; write_environment ;;  # another name, where both are one machine's
     down) down ;;
 esac

@@ -2,7 +2,8 @@
 """A machine with a real kernel's CAN, GPIO and I2C, in which commands are run one by one.
 
     machine.py boot [--bin FOLDER] [--disk FILE] [--bare] FOLDER
-                                                     start it, leave it running; bare: with CAN, without the boards
+                                                     start it, leave it running; bare: with CAN, without the boards;
+                                                     with a disk, made if it is not there
     machine.py run [--seconds N] FOLDER COMMAND...   run a command inside; its output and exit code become ours
     machine.py stop FOLDER
     machine.py cut FOLDER                            its power is gone: what it had not flushed to its disk is lost
@@ -111,6 +112,8 @@ class VirtualMachine(Machine):
 
     def boot(self):
         self.make_initramfs()
+        if self.disk and not self.disk.exists():
+            self.make_disk()
         for end in ("in", "out"):
             os.mkfifo(self.folder / f"control.{end}")
         log = open(self.folder / "qemu.log", "wb")
@@ -122,18 +125,20 @@ class VirtualMachine(Machine):
             raise MachineError(self.with_tail("it does not boot" if is_up else f"it did not boot within {BOOT_S} s"))
 
     def qemu_command(self):
-        """One processor: two spend as much time again on waiting for each other. Never KVM: its device may be there and hang."""
+        """One processor: two spend as much time again on waiting for each other. Never KVM: its device may be there and hang. Time by
+        the HPET: the rate of the TSC is measured at the start, on a busy host several times too low. What the machine flushes to its disk
+        goes to the host's kernel, and nobody waits until it is on the host's disk (unsafe): it is QEMU whose power is cut, not the host's."""
         return [
             "timeout", "-k", "5", str(LIFE_S), QEMU, "-accel", "tcg,thread=multi", "-cpu", "max", "-m", "1G", "-smp", "1",
             "-nodefaults", "-display", "none", "-no-reboot", "-kernel", str(KERNEL / "vmlinux"),
-            "-initrd", str(self.folder / "initramfs"), "-append", "console=ttyS0 quiet panic=-1 mitigations=off",
+            "-initrd", str(self.folder / "initramfs"), "-append", "console=ttyS0 quiet panic=-1 mitigations=off tsc=unstable clocksource=hpet",
             "-chardev", f"file,id=console,path={self.folder}/console", "-serial", "chardev:console",
             "-chardev", f"pipe,id=control,path={self.folder}/control", "-serial", "chardev:control",
             "-fsdev", "local,id=root,path=/,security_model=none,readonly=on,multidevs=remap",
             "-device", "virtio-9p-pci,fsdev=root,mount_tag=host_files",
             "-fsdev", f"local,id=folder,path={self.folder},security_model=none,multidevs=remap",
             "-device", "virtio-9p-pci,fsdev=folder,mount_tag=host_folder",
-            *(["-drive", f"file={self.disk},if=virtio,format=raw"] if self.disk else [])]
+            *(["-drive", f"file={self.disk},if=virtio,format=raw,cache=unsafe"] if self.disk else [])]
 
     def make_initramfs(self):
         """busybox, the modules, and init.sh, which gives the machine this machine's own files."""
@@ -151,6 +156,12 @@ class VirtualMachine(Machine):
             with open(self.folder / "initramfs", "wb") as initramfs:
                 subprocess.run(["cpio", "--quiet", "-o", "-H", "newc"], cwd=tree, input=files.encode(), stdout=initramfs,
                                check=True)
+
+    def make_disk(self):
+        with open(self.disk, "wb") as disk:
+            disk.truncate(32 << 20)
+        path = os.environ["PATH"] + ":/usr/sbin:/sbin"
+        subprocess.run(["mkfs.ext4", "-q", self.disk], check=True, env={**os.environ, "PATH": path})
 
     def tell(self, line):
         """One line to init.sh; it is there only if the machine runs."""

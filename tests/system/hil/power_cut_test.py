@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """power_cut_test.py FOLDER BIN: a daemon saves its map on a virtual disk, the power is cut at a random moment, the machine boots again:
-the map is whole. OCTOSKIN_HIL_POWER_CUTS times, on a machine of its own; the seed is printed, OCTOSKIN_HIL_SEED is one."""
+the map is whole, and the next daemon goes on with it. Three times, or OCTOSKIN_HIL_POWER_CUTS, on a machine of its own; the seed is
+printed, OCTOSKIN_HIL_SEED is one."""
 import os
 import pathlib
 import random
@@ -23,20 +24,18 @@ def machine(*arguments, **options):
 class PowerCuts:
     def __init__(self, folder, binaries):
         self.folder, self.binaries, self.disk = folder, binaries, folder.with_suffix(".disk")
-        self.disk.parent.mkdir(parents=True, exist_ok=True)
-        with open(self.disk, "wb") as disk:
-            disk.truncate(32 << 20)
-        subprocess.run(["mkfs.ext4", "-q", self.disk], check=True, env={**os.environ, "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"})
+        self.disk.unlink(missing_ok=True)
 
     def boot(self):
         if code := machine("boot", "--bin", self.binaries, "--disk", self.disk, "--bare", self.folder).returncode:
             sys.exit(code)
 
     def cut_while_saving(self, seconds):
-        self.boot()
+        told = self.folder / "told"
+        told.unlink(missing_ok=True)
         saving = subprocess.Popen([sys.executable, MACHINE, "run", "--seconds", str(PATIENCE_S), self.folder,
                                    HERE / "checks/saves_on_disk.py", "until-cut"], stdout=subprocess.PIPE, text=True)
-        told, end = self.folder / "told", time.monotonic() + PATIENCE_S
+        end = time.monotonic() + PATIENCE_S
         while not (told.exists() and told.stat().st_size):
             if saving.poll() is not None or time.monotonic() > end:
                 machine("stop", self.folder)
@@ -50,16 +49,15 @@ class PowerCuts:
 
     def check_after(self, told):
         """On a machine that has just booted with that disk."""
-        self.boot()
         (self.folder / "told").write_text(told)
         code = machine("run", "--seconds", PATIENCE_S, self.folder, HERE / "checks/saves_on_disk.py", "after-cut").returncode
-        machine("stop", self.folder)
         if code:
+            machine("stop", self.folder)
             sys.exit(code)
 
 
 def main():
-    count = int(os.environ.get("OCTOSKIN_HIL_POWER_CUTS", "1"))
+    count = int(os.environ.get("OCTOSKIN_HIL_POWER_CUTS", "3"))
     seed = int(os.environ.get("OCTOSKIN_HIL_SEED", random.SystemRandom().randrange(10_000)))
     if os.environ.get("OCTOSKIN_HIL") == "native":
         print("skipped: this machine's own power is not cut")
@@ -67,8 +65,12 @@ def main():
     print(f"seed {seed}", flush=True)
     numbers = random.Random(seed)
     cuts = PowerCuts(pathlib.Path(sys.argv[1]).resolve(), sys.argv[2])
+    cuts.boot()
     for _ in range(count):
-        cuts.check_after(cuts.cut_while_saving(numbers.uniform(0, SAVING_S)))
+        told = cuts.cut_while_saving(numbers.uniform(0, SAVING_S))
+        cuts.boot()
+        cuts.check_after(told)
+    machine("stop", cuts.folder)
     cuts.disk.unlink()
     shutil.rmtree(cuts.folder)
     return 0

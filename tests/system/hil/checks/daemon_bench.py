@@ -11,8 +11,11 @@ import sys
 import tempfile
 import time
 
+import machine_disk
+
 CAN = os.environ["HIL_CAN"]
 OCTOSKIN = os.environ["HIL_BIN"] + "/octoskin"
+OPENNI2 = os.environ["HIL_BIN"] + "/hil_openni2"  # with the driver of tests/support/camera_driver
 RECORDING = pathlib.Path(os.environ["HIL_RECORDING"])
 PATIENCE_S = 60  # the emulated processor is slow, and its host may be busy: this long for what takes a second
 
@@ -46,17 +49,19 @@ def frames_of(log):
 
 
 class Daemon:
-    """`octoskin run` with a folder of its own, which a later one may take over."""
+    """`octoskin run` with a folder of its own, which a later one may take over. Its camera, if it shall have one, is plugged in
+    by the file `camera`."""
 
-    def __init__(self, folder, *arguments, maps=None, rig=None):
+    def __init__(self, folder, *arguments, maps=None, rig=None, camera=None):
         self.folder = folder
         self.socket, self.maps, self.said = folder / "control", maps or folder / "maps", folder / "said"
         folder.mkdir(exist_ok=True)
         robot = [] if rig else ["--robot", RECORDING / "robot.urdf"]
-        command = [OCTOSKIN, "run", "--rig", rig or RECORDING / "rig.yaml", *robot, "--can", CAN, "--no-camera", "--maps", self.maps,
-                   "--socket", self.socket, *arguments]
+        command = [OCTOSKIN, "run", "--rig", rig or RECORDING / "rig.yaml", *robot, "--can", CAN, "--maps", self.maps,
+                   "--socket", self.socket, *([] if camera else ["--no-camera"]), *arguments]
+        driver = {"LD_LIBRARY_PATH": f"{OPENNI2}", "OCTOSKIN_TEST_CAMERA": f"{camera}"} if camera else {}
         with open(self.said, "a", encoding="utf-8") as said:
-            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, stderr=said)
+            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, env={**os.environ, **driver})
 
     def await_start(self):
         """Until it answers."""
@@ -115,19 +120,12 @@ class Listener:
 class Bench:
     """Everything that a check starts, ended with it."""
 
-    def __init__(self, has_sensors):
-        self.has_sensors = has_sensors
+    def __init__(self):
         self.ended_with_us = contextlib.ExitStack()
         self.daemons = []
         self.folder = pathlib.Path(self.ended_with_us.enter_context(tempfile.TemporaryDirectory()))
 
     def __enter__(self):
-        """Who needs no sensors does without their servers, which take half the processor's time."""
-        servers = () if self.has_sensors else pathlib.Path(os.environ["HIL_FOLDER"]).glob("i2c-*.pid")
-        for file in servers:
-            server = int(file.read_text())
-            os.kill(server, signal.SIGSTOP)
-            self.ended_with_us.callback(os.kill, server, signal.SIGCONT)
         return self
 
     def __exit__(self, kind, error, trace):
@@ -135,9 +133,10 @@ class Bench:
             print(f"-- the end of {said}:", *said.read_text().splitlines()[-15:], sep="\n", flush=True)
         self.ended_with_us.close()
 
-    def folder_of_host(self):
-        """On the host's disk, not in the machine's memory as `folder` is."""
-        return pathlib.Path(self.ended_with_us.enter_context(tempfile.TemporaryDirectory(dir=os.environ["HIL_FOLDER"])))
+    def folder_on_disk(self):
+        """On the machine's disk, not in its memory as `folder` is; of a machine without one, on its host's."""
+        place = machine_disk.mounted() or os.environ["HIL_FOLDER"]
+        return pathlib.Path(self.ended_with_us.enter_context(tempfile.TemporaryDirectory(dir=place)))
 
     def end_with_us(self, process):
         self.ended_with_us.callback(process.wait)
@@ -145,7 +144,7 @@ class Bench:
         return process
 
     def daemon(self, name, *arguments, **places):
-        """Started; another one may start meanwhile. `maps` and `rig` may be elsewhere."""
+        """Started; another one may start meanwhile. `maps` and `rig` may be elsewhere; `camera`: Daemon."""
         daemon = Daemon(self.folder / name, *arguments, **places)
         self.daemons.append(daemon)
         self.end_with_us(daemon.process)
@@ -162,6 +161,11 @@ class Bench:
     def start_playing(self, log):
         """As fast as it was recorded, by canplayer, which plays what a recorder wrote of `can0`."""
         return self.start("canplayer", f"{CAN}=can0", "-I", str(log))
+
+    def first_lines(self, log, count):
+        begin = self.folder / f"first_{count}.log"
+        begin.write_text("".join(log.read_text().splitlines(keepends=True)[:count]))
+        return begin
 
     def play(self, log):
         expect("exit code of canplayer", 0, self.start_playing(log).wait(PATIENCE_S))
@@ -181,11 +185,11 @@ class Bench:
         return done.stdout
 
 
-def run(check, has_sensors=False):
+def run(check):
     """The check as a program: exit code 0, or 1 and what was not as it must be."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(124))
     try:
-        with Bench(has_sensors) as bench:
+        with Bench() as bench:
             check(bench)
     except CheckFailed as failure:
         print(f"FAILED: {failure}")

@@ -1,36 +1,37 @@
 #!/usr/bin/env python3
 """SIGKILL at random moments, every other time in the midst of a save. Each time the map's files are whole and at most one save
-old, and the next daemon goes on with that map. OCTOSKIN_HIL_KILLS times; the seed is printed, OCTOSKIN_HIL_SEED is one."""
+old, and the next daemon goes on with that map. 50 times, or OCTOSKIN_HIL_KILLS; the seed is printed, OCTOSKIN_HIL_SEED is one.
+Several daemons, each with a map of its own, hear one bus, so that one works while another waits for its save."""
+import collections
+import concurrent.futures
 import os
 import random
 import time
 
 import daemon_bench
+import directory_watch
 import map_file
 from daemon_bench import RECORDING, claim, expect
 
 SAVE_PERIOD_S = 1
 SAVE_S = 1.0  # what the emulated processor may need to save: the moment of a save is that of its begin
-UP_S = 5.0    # a daemon lives so long at most
+UP_S = 1.5    # a daemon lives so long, at most, before it is killed or its next save is awaited
+LANES = 3     # daemons at a time
 
 
 class Life:
     """One daemon, from its start to SIGKILL."""
 
-    def __init__(self, bench, maps, random_numbers, is_in_save):
-        self.random, self.is_in_save = random_numbers, is_in_save
-        self.daemon = bench.daemon("killed", "--listen-only", "--save-every", str(SAVE_PERIOD_S), maps=maps)
-        self.known = []  # (when it was asked, known voxels)
+    def __init__(self, daemon, random_numbers, is_in_save):
+        self.daemon, self.random, self.is_in_save = daemon, random_numbers, is_in_save
+        self.notes = []  # (when it was asked, what it said of its map)
 
     def note(self):
-        status = self.daemon.status()
-        self.known.append((time.time(), status["map"]["known_voxels"]))
+        self.notes.append((time.time(), self.daemon.status()["map"]))
 
     def await_begin_of_save(self):
-        partial = self.daemon.maps / ".fused.ot.octoskin-part"
-        end = time.monotonic() + daemon_bench.PATIENCE_S
-        while not partial.exists() and time.monotonic() < end:  # a busy wait: it lasts a few milliseconds
-            pass
+        with directory_watch.Watch(self.daemon.maps) as watch:
+            watch.await_file(".fused.ot.octoskin-part", daemon_bench.PATIENCE_S)
         time.sleep(self.random.choice((0, self.random.uniform(0, 0.003))))
 
     def live(self):
@@ -48,43 +49,75 @@ class Life:
         self.daemon.process.wait(daemon_bench.PATIENCE_S)
         return killed
 
+    def known_in_last_save(self):
+        """Voxels, at least: what was known when the save before the last one was not over yet, for then the last had not begun."""
+        saves = self.notes[-1][1]["saved"]
+        return max((told["known_voxels"] for _, told in self.notes if told["saved"] <= saves - 2), default=0)
 
-def check_files(life, killed, saved_before):
-    """Known voxels of the saved map, and how old it is."""
-    maps = life.daemon.maps
-    known = map_file.known_voxels(maps / "fused.ot")
-    if (maps / "fused.bt").exists():
-        map_file.known_voxels(maps / "fused.bt")
-    age_s = killed - (maps / "fused.ot").stat().st_mtime
-    lived_s = killed - life.known[0][0]
-    claim(age_s <= SAVE_PERIOD_S + SAVE_S or lived_s < SAVE_PERIOD_S + SAVE_S, f"the map was saved {age_s:.2f} s before the end")
-    before = [count for when, count in life.known if when <= killed - SAVE_PERIOD_S - SAVE_S]
-    claim(known >= max([saved_before, *before]), f"{known} voxels saved; there were {max([saved_before, *before])}")
-    return known, age_s if lived_s >= SAVE_PERIOD_S + SAVE_S else 0.0
+    def lived_s(self, killed):
+        return killed - self.notes[0][0]
+
+    def was_in_time(self):
+        """No save was still under way when the next was due, and no answer kept us waiting: else the age of a save is the machine's."""
+        asked = [when for when, _ in self.notes]
+        return self.notes[-1][1]["saves_skipped"] == 0 and all(after - before < 0.5 for before, after in zip(asked, asked[1:]))
+
+
+class Lane:
+    """One map, and the daemons that had it one after the other."""
+
+    def __init__(self, bench, name, random_numbers):
+        self.bench, self.name, self.random = bench, name, random_numbers
+        # On a disk, where a write takes its time, and of a map that has some bytes: so that a save is long enough to be hit.
+        self.maps = bench.folder_on_disk() / name
+        self.maps.mkdir()
+        map_file.write_cube(self.maps / "fused.ot", 4)
+        self.saved = map_file.known_voxels(self.maps / "fused.ot")
+        self.seen = collections.Counter()
+        self.oldest_s = 0.0
+
+    def kill(self, count):
+        for number in range(count):
+            daemon = self.bench.daemon(self.name, "--listen-only", "--save-every", str(SAVE_PERIOD_S), maps=self.maps)
+            life = Life(daemon, self.random, is_in_save=number % 2 == 0)
+            killed = life.live()
+            at_begin = life.notes[0][1]["known_voxels"]
+            claim(at_begin >= self.saved, f"{at_begin} voxels at the begin, {self.saved} were saved")
+            self.check_files(life, killed)
+            self.seen["killed"] += 1
+            self.seen["in a save"] += any(name.startswith(".fused") for name in os.listdir(self.maps))
+
+    def check_files(self, life, killed):
+        """They are whole, and at most one save old."""
+        known = map_file.known_voxels(self.maps / "fused.ot")
+        if (self.maps / "fused.bt").exists():
+            map_file.known_voxels(self.maps / "fused.bt")
+        claim(known >= max(self.saved, life.known_in_last_save()),
+              f"{known} voxels saved, after {self.saved} before and {life.known_in_last_save()} in a save that was over")
+        if life.lived_s(killed) >= SAVE_PERIOD_S + SAVE_S and life.was_in_time():
+            age_s = killed - (self.maps / "fused.ot").stat().st_mtime
+            claim(age_s <= SAVE_PERIOD_S + SAVE_S, f"the map was saved {age_s:.2f} s before the end")
+            self.oldest_s = max(self.oldest_s, age_s)
+            self.seen["lived through a save"] += 1
+        self.saved = known
 
 
 def check(bench):
-    count = int(os.environ.get("OCTOSKIN_HIL_KILLS", "4"))
+    count = int(os.environ.get("OCTOSKIN_HIL_KILLS", "50"))
     seed = int(os.environ.get("OCTOSKIN_HIL_SEED", random.SystemRandom().randrange(10_000)))
-    numbers = random.Random(seed)
     print(f"seed {seed}", flush=True)
-    oldest_s, partial = 0.0, 0
-    # On the host's disk, where a write takes its time, and of a map that has some bytes: so that a save is long enough to be hit.
-    maps = bench.folder_of_host()
-    map_file.write_cube(maps / "fused.ot", 5)
-    saved = map_file.known_voxels(maps / "fused.ot")
     playing = bench.start("canplayer", f"{daemon_bench.CAN}=can0", "-l", "i", "-I", str(RECORDING / "can.log"))
-    for number in range(count):
-        life = Life(bench, maps, numbers, is_in_save=number % 2 == 0)
-        killed = life.live()
-        expect(f"voxels that daemon {number} began with, at least", True, life.known[0][1] >= saved)
-        saved, age_s = check_files(life, killed, saved)
-        partial += len([name for name in os.listdir(life.daemon.maps) if name.startswith(".fused")])
-        oldest_s = max(oldest_s, age_s)
+    lanes = [Lane(bench, f"killed{number}", random.Random(f"{seed} {number}")) for number in range(LANES)]
+    with concurrent.futures.ThreadPoolExecutor(LANES) as pool:
+        ends = [pool.submit(lane.kill, len(range(number, count, LANES))) for number, lane in enumerate(lanes)]
+        for end in ends:
+            end.result()
     claim(playing.poll() is None, "canplayer ended")
-    claim(partial > 0 or count < 20, "none was killed in the midst of a save")
-    print(f"{count} times killed, {partial} in the midst of a save: the map always whole, {oldest_s:.2f} s old at most, "
-          f"saved every {SAVE_PERIOD_S} s; {saved} voxels")
+    seen = sum((lane.seen for lane in lanes), collections.Counter())
+    expect("daemons killed", count, seen["killed"])
+    claim(count < 20 or seen["in a save"] > 0, f"none was killed in the midst of a save: {seen}")
+    print(f"{count} times killed, {seen['in a save']} in the midst of a save: the map always whole; {seen['lived through a save']} had "
+          f"time to save, {max(lane.oldest_s for lane in lanes):.2f} s before their end at most, saving every {SAVE_PERIOD_S} s")
 
 
 daemon_bench.run(check)

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """readings_are_true.py FOLDER NODES: holds decoded readings of so many nodes (standard input, decode_log's lines) against what the
 sensors truly ranged (FOLDER/ranged.i2c-N): range and status are a ranging's of that sensor, and its capture time is the middle of
-that ranging, within the bound that the node tells."""
+that ranging, within the bound that the node tells, 12 ms at most."""
 import collections
 import pathlib
 import sys
 
 NODES = int(sys.argv[2])
 SENSOR_OF = {(node, sensor): f"sensor{4 * (node - 1) + sensor}" for node in range(1, NODES + 1) for sensor in range(4)}
+BOUND_MAX_US = 12_000  # on an emulated processor; a node that tells a longer one excuses nothing by it
 NO_TARGET = 4  # the device's code: signal too weak, no range
 
 
@@ -43,7 +44,7 @@ def main():
     for node, sensor, status, range_mm, capture_us, span_us, _ in readings:
         middles_us = truth[SENSOR_OF[node, sensor]][9 if status == 19 else status, range_mm]
         error = error_us(capture_us, span_us, middles_us)
-        if error is None or error > bounds_us[node, sensor] + 64:
+        if error is None or error > min(bounds_us[node, sensor], BOUND_MAX_US) + 64:
             faults.append(f"node {node} sensor {sensor}: status {status}, {range_mm} mm at {capture_us} us is no ranging of it: "
                           f"off by {error} us, bound {bounds_us[node, sensor]} us")
             continue

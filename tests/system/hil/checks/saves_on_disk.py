@@ -4,27 +4,22 @@ until-cut: a daemon saves there every second; what it knows is told in the machi
 after-cut: what is on the disk is a whole map, at most one save old, and a daemon goes on with it."""
 import os
 import pathlib
-import subprocess
 import sys
 import time
 
 import daemon_bench
+import machine_disk
 import map_file
 from daemon_bench import RECORDING, claim, expect
+from machine_disk import DISK
 
-DISK = pathlib.Path("/run/disk")
 MAPS = DISK / "maps"
 TOLD = pathlib.Path(os.environ["HIL_FOLDER"]) / "told"  # "seconds known-voxels" of each moment
 OLD_S = 1 + 1.0  # a save a second, and what the emulated processor may need for one
 
 
-def mount():
-    DISK.mkdir(exist_ok=True)
-    subprocess.run(["mount", "-t", "ext4", "/dev/vda", DISK], check=True)
-
-
 def until_cut(bench):
-    mount()
+    machine_disk.mounted()
     MAPS.mkdir(exist_ok=True)
     if not (MAPS / "fused.ot").exists():
         map_file.write_cube(MAPS / "fused.ot", 4)  # a save is more than one block
@@ -43,9 +38,10 @@ def until_cut(bench):
 
 
 def after_cut(bench):
-    mount()
+    machine_disk.mounted()
     lost = DISK / "not_flushed"
     claim(not lost.exists() or lost.read_text() != "by nobody", "the cut was none: what nobody flushed is there")
+    lost.unlink(missing_ok=True)  # ext4 flushes what is written in place of what there was
     moments = [line.split() for line in TOLD.read_text().splitlines(keepends=True) if line.endswith("\n")]
     expect("failed saves", {"0"}, {failed for _, _, failed in moments})
     end = float(moments[-1][0])

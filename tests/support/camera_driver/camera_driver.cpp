@@ -1,0 +1,182 @@
+// An OpenNI2 driver with one depth camera that a file plugs in: while the file $OCTOSKIN_TEST_CAMERA is
+// there, the camera is, and shows a wall as many millimetres away as the file says. Its frames come at the
+// mode's rate, stamped by its own clock.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <thread>
+
+#define XN_NEW(type, ...) new type(__VA_ARGS__)
+#define XN_DELETE(pointer) delete (pointer)
+#include <Driver/OniDriverAPI.h>
+
+namespace {
+
+constexpr OniVideoMode kMode{
+    .pixelFormat = ONI_PIXEL_FORMAT_DEPTH_1_MM, .resolutionX = 80, .resolutionY = 60, .fps = 2};
+constexpr int kStride = kMode.resolutionX * static_cast<int>(sizeof(OniDepthPixel));
+constexpr int kDepthMax = 10'000;
+constexpr std::chrono::milliseconds kPeriod{1000 / kMode.fps};
+
+/// What is in sight of the camera; empty if it is not plugged in.
+std::optional<OniDepthPixel> wall_mm() {
+    const char* const file = std::getenv("OCTOSKIN_TEST_CAMERA");
+    if (file == nullptr) return std::nullopt;
+    unsigned depth_mm = 0;
+    if (!(std::ifstream(file) >> depth_mm) || depth_mm >= kDepthMax) return std::nullopt;
+    return static_cast<OniDepthPixel>(depth_mm);
+}
+
+template <class T>
+OniStatus give(const T& value, void* data, int* size) {
+    if (*size < static_cast<int>(sizeof(T))) return ONI_STATUS_BAD_PARAMETER;
+    std::memcpy(data, &value, sizeof(T));
+    *size = sizeof(T);
+    return ONI_STATUS_OK;
+}
+
+class WallStream final : public oni::driver::StreamBase {
+  public:
+    WallStream() = default;
+    ~WallStream() override { stop(); }
+    WallStream(const WallStream&) = delete;
+    WallStream& operator=(const WallStream&) = delete;
+
+    OniStatus start() override {
+        is_running_ = true;
+        thread_ = std::thread([this] { show(); });
+        return ONI_STATUS_OK;
+    }
+    void stop() override {
+        is_running_ = false;
+        if (thread_.joinable()) thread_.join();
+    }
+
+    OniStatus getProperty(int property, void* data, int* size) override {
+        switch (property) {
+            case ONI_STREAM_PROPERTY_VIDEO_MODE:
+                return give(kMode, data, size);
+            case ONI_STREAM_PROPERTY_MAX_VALUE:
+                return give(kDepthMax, data, size);
+            case ONI_STREAM_PROPERTY_MIN_VALUE:
+                return give(0, data, size);
+            case ONI_STREAM_PROPERTY_HORIZONTAL_FOV:
+            case ONI_STREAM_PROPERTY_VERTICAL_FOV:
+                return give(1.0F, data, size);
+            default:
+                return ONI_STATUS_NOT_IMPLEMENTED;
+        }
+    }
+    OniStatus setProperty(int property, const void* /*data*/, int /*size*/) override {
+        return property == ONI_STREAM_PROPERTY_VIDEO_MODE ? ONI_STATUS_OK : ONI_STATUS_NOT_IMPLEMENTED;
+    }
+
+  private:
+    void show() {
+        auto next = std::chrono::steady_clock::now();
+        for (int index = 1; is_running_; ++index) {
+            if (const auto depth_mm = wall_mm()) raise(index, *depth_mm);
+            next += kPeriod;
+            std::this_thread::sleep_until(next);
+        }
+    }
+
+    void raise(int index, OniDepthPixel depth_mm) {
+        OniFrame* const frame = getServices().acquireFrame();
+        if (frame == nullptr) return;
+        const auto since_begin = std::chrono::steady_clock::now() - begin_;
+        frame->timestamp = static_cast<std::uint64_t>(
+            std::chrono::duration_cast<std::chrono::microseconds>(since_begin).count());
+        frame->sensorType = ONI_SENSOR_DEPTH;
+        frame->frameIndex = index;
+        frame->videoMode = kMode;
+        frame->width = kMode.resolutionX;
+        frame->height = kMode.resolutionY;
+        frame->croppingEnabled = FALSE;
+        frame->cropOriginX = frame->cropOriginY = 0;
+        frame->stride = kStride;
+        frame->dataSize = kStride * kMode.resolutionY;
+        auto* const pixels = static_cast<OniDepthPixel*>(frame->data);
+        std::fill_n(pixels, kMode.resolutionX * kMode.resolutionY, depth_mm);
+        raiseNewFrame(frame);
+        getServices().releaseFrame(frame);
+    }
+
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    std::atomic<bool> is_running_ = false;
+    std::thread thread_;
+};
+
+class WallCamera final : public oni::driver::DeviceBase {
+  public:
+    OniStatus getSensorInfoList(OniSensorInfo** sensors, int* count) override {
+        *sensors = &sensor_;
+        *count = 1;
+        return ONI_STATUS_OK;
+    }
+    oni::driver::StreamBase* createStream(OniSensorType type) override {
+        return type == ONI_SENSOR_DEPTH ? new WallStream : nullptr;
+    }
+    void destroyStream(oni::driver::StreamBase* stream) override { delete stream; }
+
+  private:
+    OniVideoMode mode_ = kMode;
+    OniSensorInfo sensor_{
+        .sensorType = ONI_SENSOR_DEPTH, .numSupportedVideoModes = 1, .pSupportedVideoModes = &mode_};
+};
+
+/// Tells OpenNI2 of the camera as a USB driver does: when it comes, and when it is gone.
+class PluggedDriver final : public oni::driver::DriverBase {
+  public:
+    explicit PluggedDriver(OniDriverServices* services) : DriverBase(services) {
+        std::snprintf(info_.uri, sizeof(info_.uri), "test-camera");
+        std::snprintf(info_.vendor, sizeof(info_.vendor), "octoskin");
+        std::snprintf(info_.name, sizeof(info_.name), "wall");
+    }
+
+    OniStatus initialize(oni::driver::DeviceConnectedCallback connected,
+                         oni::driver::DeviceDisconnectedCallback disconnected,
+                         oni::driver::DeviceStateChangedCallback state_changed, void* cookie) override {
+        const OniStatus status = DriverBase::initialize(connected, disconnected, state_changed, cookie);
+        look();
+        is_running_ = true;
+        thread_ = std::thread([this] {
+            while (is_running_) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(50));
+                look();
+            }
+        });
+        return status;
+    }
+    oni::driver::DeviceBase* deviceOpen(const char* /*uri*/, const char* /*mode*/) override {
+        return new WallCamera;
+    }
+    void deviceClose(oni::driver::DeviceBase* device) override { delete device; }
+    void shutdown() override {
+        is_running_ = false;
+        if (thread_.joinable()) thread_.join();
+    }
+
+  private:
+    void look() {
+        const bool is_plugged = wall_mm().has_value();
+        if (is_plugged == was_plugged_) return;
+        was_plugged_ = is_plugged;
+        is_plugged ? deviceConnected(&info_) : deviceDisconnected(&info_);
+    }
+
+    OniDeviceInfo info_{};
+    bool was_plugged_ = false;
+    std::atomic<bool> is_running_ = false;
+    std::thread thread_;
+};
+
+}  // namespace
+
+ONI_EXPORT_DRIVER(PluggedDriver)
