@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Sensors to map: a Linux node with four sensors, an arm at rest, and the daemon whose SYNC it follows. The ranges in the status are
-what the sensors truly see; a node that is stopped is named; nobody else sends anything. One node of the rig's two: with both, the
+"""Sensors and a camera to one map: a Linux node with four sensors, an arm at rest, a camera of OpenNI2, and the daemon whose SYNC
+the node follows. The ranges in the status are what the sensors truly see; a camera that is unplugged, and a node that is stopped, are
+named, while the others go on; nobody else sends anything. One node of the rig's two: with both, the
 emulated processor has no time left for the daemon."""
 import contextlib
 import os
@@ -14,6 +15,8 @@ from daemon_bench import CAN, OCTOSKIN, claim, expect
 
 RIG = pathlib.Path(__file__).resolve().parent.parent / "two_linux_boards_fd.yaml"
 JOINT_NODE = 10
+WALL_MM = 1500
+CAMERA_NAMED_S = 4.0  # 2 s of silence, and the emulated processor
 NAMED_S = 1.5  # 0.35 s without a heartbeat, and the emulated processor
 PATIENCE_S = 120  # each node has hundreds of transfers to make, on an emulated processor
 TRUE_RANGE_M = {0: 0.250, 1: 0.500}  # as board.sh says; sensor 2's moves, 3 sees nothing
@@ -40,11 +43,42 @@ def keep_arm_at_rest(bench):
     threading.Thread(target=feed, daemon=True).start()
 
 
+def used(status, unit):
+    return status["account"][unit]["used"]
+
+
+def unplug_and_plug_in(daemon, plug):
+    """The camera, while the node ranges: what that took, in seconds."""
+    opened, before = daemon.status()["camera"]["opened"], used(daemon.status(), "readings")
+    plug.unlink()
+    named_s = daemon.await_status("the camera's name", lambda now: any(text.startswith("camera: ") for text in now["problems"]))
+    claim(named_s <= CAMERA_NAMED_S, f"the camera that is gone was named after {named_s:.2f} s")
+    daemon.await_status("an end of it", lambda now: not now["camera"]["open"] and "no camera" in now["camera"]["why"])
+    daemon.await_status("readings without a camera", lambda now: used(now, "readings") > before, PATIENCE_S)
+    gone = used(daemon.status(), "depth frames")
+    plug.write_text(f"{WALL_MM}\n")
+    back_s = daemon.await_status("the camera's frames again", lambda now: used(now, "depth frames") > gone, PATIENCE_S)
+    status = daemon.status()
+    claim(status["camera"]["open"] and status["camera"]["opened"] > opened, f"the camera: {status['camera']}")
+    claim(not any(text.startswith("camera: ") for text in status["problems"]), f"problems: {status['problems']}")
+    return named_s, back_s
+
+
 def check(bench):
-    daemon = bench.daemon("daemon", rig=RIG)
+    plug = bench.folder / "camera"
+    plug.write_text(f"{WALL_MM}\n")
+    daemon = bench.daemon("daemon", rig=RIG, camera=plug)
     daemon.await_start()
+    expect("voxels before there is a pose", 0, daemon.status()["map"]["known_voxels"])
     keep_arm_at_rest(bench)
     listener = bench.listener()
+    try:
+        daemon.await_status("the camera's frames on the map", lambda now: used(now, "depth frames") >= 2, PATIENCE_S)
+    except daemon_bench.CheckFailed:
+        print(daemon.status()["account"], daemon.status()["camera"])
+        raise
+    of_camera = daemon.status()["map"]["known_voxels"]
+    expect("readings by then", 0, used(daemon.status(), "readings"))
     node = start_node(bench)
 
     def has_all(status):
@@ -60,9 +94,10 @@ def check(bench):
     for sensor, range_m in TRUE_RANGE_M.items():
         told = status["nodes"][0]["sensors"][sensor]
         claim(abs(told["range_m"] - range_m) <= 0.001, f"sensor {sensor}: {told}, it sees {range_m} m")
-    claim(status["map"]["known_voxels"] > 0, f"a map: {status['map']}")
+    claim(status["map"]["known_voxels"] > of_camera, f"voxels of the sensors, beside the camera's {of_camera}: {status['map']}")
     expect("frames not sent, lost", (0, 0), (status["can"]["not_sent"], status["can"]["dropped_by_kernel"]))
     claim(any("'second': absent" in problem for problem in status["problems"]), f"the missing node: {status['problems']}")
+    unplugged_s, plugged_s = unplug_and_plug_in(daemon, plug)
 
     node.terminate()
     expect("exit code of the node", 0, node.wait(daemon_bench.PATIENCE_S))
@@ -71,7 +106,9 @@ def check(bench):
     daemon.stop()
     others = {frame.split("#")[0] for frame in listener.stop() if int(frame.split("#")[0], 16) & 63 not in (1, JOINT_NODE)}
     expect("identifiers of frames that no node sent", {"040", "080"}, others)
-    print(f"{status['account']['readings']}, {status['map']['known_voxels']} voxels; a lost node named after {named_s:.2f} s")
+    print(f"{status['account']['readings']}, {of_camera} voxels of the camera, {status['map']['known_voxels']} with the sensors; "
+          f"unplugged camera named after {unplugged_s:.2f} s, its frames on the map {plugged_s:.2f} s after it was back, a lost node named "
+          f"after {named_s:.2f} s")
 
 
 daemon_bench.run(check)
