@@ -16,14 +16,16 @@ from daemon_bench import RECORDING, claim, expect
 SAVE_PERIOD_S = 1
 SAVE_S = 1.0  # what the emulated processor may need to save: the moment of a save is that of its begin
 UP_S = 1.5    # a daemon lives so long, at most, before it is killed or its next save is awaited
+LONGER_S = 3  # and some so much longer: they have saved before
 LANES = 3     # daemons at a time
 
 
 class Life:
     """One daemon, from its start to SIGKILL."""
 
-    def __init__(self, daemon, random_numbers, is_in_save):
+    def __init__(self, daemon, random_numbers, is_in_save, is_long):
         self.daemon, self.random, self.is_in_save = daemon, random_numbers, is_in_save
+        self.up_s = random_numbers.uniform(0, UP_S) + (LONGER_S if is_long else 0)
         self.notes = []  # (when it was asked, what it said of its map)
 
     def note(self):
@@ -37,7 +39,7 @@ class Life:
     def live(self):
         """Until it is killed; then when that was."""
         self.daemon.await_start()
-        end = time.monotonic() + self.random.uniform(0, UP_S)
+        end = time.monotonic() + self.up_s
         self.note()
         while time.monotonic() < end:
             time.sleep(0.1)
@@ -79,7 +81,7 @@ class Lane:
     def kill(self, count):
         for number in range(count):
             daemon = self.bench.daemon(self.name, "--listen-only", "--save-every", str(SAVE_PERIOD_S), maps=self.maps)
-            life = Life(daemon, self.random, is_in_save=number % 2 == 0)
+            life = Life(daemon, self.random, is_in_save=number % 2 == 0, is_long=number % 5 == 4)
             killed = life.live()
             at_begin = life.notes[0][1]["known_voxels"]
             claim(at_begin >= self.saved, f"{at_begin} voxels at the begin, {self.saved} were saved")
