@@ -141,7 +141,7 @@ function(octoskin_test name)
     else()
         list(APPEND ARG_SOURCES ${ARG_HOST_SOURCES})
     endif()
-    if(OCTOSKIN_SANITIZE)
+    if(OCTOSKIN_SANITIZE OR CMAKE_SYSTEM_NAME STREQUAL "Generic")  # or in an emulator
         math(EXPR ARG_TIMEOUT "5 * ${ARG_TIMEOUT}")
     endif()
     octoskin_check_room(${name} tests ${ARG_DEPENDS})

@@ -170,6 +170,9 @@ class Bench:
     def play(self, log):
         expect("exit code of canplayer", 0, self.start_playing(log).wait(PATIENCE_S))
 
+    def play_by_ourselves(self, recording):
+        expect("exit code of octoskin replay --onto", 0, self.start(OCTOSKIN, "replay", recording, "--onto", CAN).wait(PATIENCE_S))
+
     @staticmethod
     def lateness(played, heard):
         """Seconds by which some frames of a log came later than others, measured by those that were in time."""

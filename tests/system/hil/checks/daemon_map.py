@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Recorded traffic becomes the daemon's map, and a second daemon that records has the same frames and the same map. What they
-accept and refuse is what `octoskin replay` accepts and refuses of the recorded log, to the last reading: also if the emulated
-processor, or its host, was so busy that frames came late."""
+"""Recorded traffic, played by canplayer, becomes the daemon's map, and a second daemon that records has the same frames and the
+same map. What they accept and refuse is what `octoskin replay` accepts and refuses of the recorded log, to the last reading: also
+if the emulated processor, or its host, was so busy that frames came late."""
 import json
 import subprocess
 import time
@@ -39,12 +39,12 @@ def check(bench):
     recorder.await_status("the recording", lambda status: (status["recording"] or {}).get("state") == "recording")
     listener = bench.listener()
 
-    playing = bench.start(OCTOSKIN, "replay", RECORDING, "--onto", CAN)
+    playing = bench.start_playing(RECORDING / "can.log")
     during = []
     while playing.poll() is None:
         during.append(mapper.status())
         time.sleep(0.1)
-    expect("exit code of octoskin replay --onto", 0, playing.returncode)
+    expect("exit code of canplayer", 0, playing.returncode)
     for daemon in (mapper, recorder):
         daemon.await_frames(len(log))
     after = json.loads(subprocess.check_output([OCTOSKIN, "status", "--json", "--socket", mapper.socket]))

@@ -85,7 +85,7 @@ TEST_F(NodeCommandsTest, stops_a_single_sensor) {
 
 // A frozen sensor fails 80 ms later: whenever the order comes, before, during or after the restart.
 TEST(NodeCommands, stops_a_sensor_that_fails_and_would_be_restarted) {
-    for (int us = 60'000; us < 100'000; us += 100) {
+    for (int us = 78'000; us < 85'000; us += 100) {
         NodeRig rig(fleet_config(2, 1), std::vector<SensorSetup>(2));
         rig.run_for(1'000 * kMillisecond);
         rig.sensor(1).set_faults({.freezes_stream = true});
