@@ -190,7 +190,8 @@ bool Acceptance::wants_poll_confirmed() const noexcept {
 bool Acceptance::wants_ready_confirmed() const noexcept {
     const auto predicted = next_ready();
     // The wider the bracket, the further off is what one altered poll says, and the period that it tells.
-    return !has_accepted() || !is_lone_poll_believed(predicted) || is_after(not_ready_at_, predicted->latest);
+    return !has_accepted() || !predicted || predicted->width() > policy_.lone_poll_believed ||
+           is_after(not_ready_at_, predicted->latest);
 }
 
 std::optional<TimeBracket> Acceptance::next_ready() const noexcept {

@@ -1,7 +1,5 @@
 #include "firmware/core/announcer.hpp"
 
-#include <bit>
-
 #include "firmware/core/time_bracket.hpp"
 
 namespace octoskin::node {
@@ -72,9 +70,11 @@ std::optional<wire::InfoPage> Announcer::info_page_due() const noexcept {
 
 std::optional<std::uint8_t> Announcer::health_due() const noexcept {
     if (health_due_ == 0) return std::nullopt;  // nearly always, and asked in every poll
-    const std::uint64_t not_before_first = health_due_ >> health_first_ << health_first_;
-    return static_cast<std::uint8_t>(
-        std::countr_zero(not_before_first != 0 ? not_before_first : health_due_));
+    for (std::uint8_t i = 0; i < sensor_count_; ++i) {
+        const auto sensor = static_cast<std::uint8_t>((health_first_ + i) % sensor_count_);
+        if ((health_due_ >> sensor) & 1U) return sensor;
+    }
+    return std::nullopt;
 }
 
 void Announcer::info_sent(wire::InfoPage page) noexcept {

@@ -35,8 +35,26 @@ void BringUp::hold_in_reset() {
 }
 
 std::optional<NodeTime> BringUp::due() const noexcept {
-    const bool awaits_address = step_ == Step::held_low && !default_address_.is_free();
-    return step_ == Step::idle || awaits_address ? std::nullopt : std::optional(step_due_);
+    switch (step_) {
+        case Step::idle:
+            return std::nullopt;
+        case Step::held_low:
+            return default_address_.is_free() ? std::optional(step_due_) : std::nullopt;
+        case Step::checking_silence:
+        case Step::checking_own_address:
+        case Step::parking:
+        case Step::checking_parked:
+        case Step::booting:
+        case Step::identifying:
+        case Step::addressing:
+        case Step::confirming_silence:
+        case Step::initialising:
+        case Step::collecting:
+        case Step::configuring:
+        case Step::verifying:
+            return step_due_;
+    }
+    return std::nullopt;
 }
 
 bool BringUp::is_watching() const noexcept {
@@ -57,18 +75,22 @@ BusUse BringUp::advance(NodeTime now) {
     }
 
     vl53l1x::Device& device = active_device();
-    const vl53l1x::Progress progress = device.poll(now);
-    assert(progress != vl53l1x::Progress::idle && "an operation is begun before it is polled");
-    if (progress == vl53l1x::Progress::busy) {
-        const auto wake = device.wake_time();
-        if (!wake || is_reached(*wake, now)) return BusUse::keeps;
-        step_due_ = *wake;
-        return BusUse::releases;
-    }
-    if (progress == vl53l1x::Progress::done) {
-        on_step_done(now);
-    } else {
-        on_step_failed(device.error(), now);
+    switch (device.poll(now)) {
+        case vl53l1x::Progress::busy:
+            if (const auto wake = device.wake_time(); wake && !is_reached(*wake, now)) {
+                step_due_ = *wake;
+                return BusUse::releases;
+            }
+            return BusUse::keeps;
+        case vl53l1x::Progress::done:
+            on_step_done(now);
+            break;
+        case vl53l1x::Progress::failed:
+            on_step_failed(device.error(), now);
+            break;
+        case vl53l1x::Progress::idle:
+            assert(false && "an operation is begun before it is polled");
+            break;
     }
     // Between two steps everybody else on the bus gets a chance.
     return BusUse::releases;
@@ -211,18 +233,33 @@ void BringUp::on_somebody_answered(NodeTime now) {
 
 void BringUp::on_silence(NodeTime now) {
     const bool is_to_be_sought = is_known_stuck_ || default_address_.is_somebody_parked();
-    if (step_ == Step::checking_silence) {
-        start_step(Step::checking_own_address, now);
-    } else if (step_ == Step::checking_own_address) {
-        start_step(is_to_be_sought ? Step::checking_parked : Step::booting, now);
-    } else if (step_ == Step::checking_parked) {
-        // This sensor's reset, or another's, has brought it back to 0x29 and to silence.
-        is_known_stuck_ = false;
-        default_address_.forget_parked();
-        start_step(Step::booting, now);
-    } else {
-        assert(step_ == Step::confirming_silence);
-        start_step(Step::initialising, now);
+    switch (step_) {
+        case Step::checking_silence:
+            start_step(Step::checking_own_address, now);
+            break;
+        case Step::checking_own_address:
+            start_step(is_to_be_sought ? Step::checking_parked : Step::booting, now);
+            break;
+        case Step::checking_parked:
+            // This sensor's reset, or another's, has brought it back to 0x29 and to silence.
+            is_known_stuck_ = false;
+            default_address_.forget_parked();
+            start_step(Step::booting, now);
+            break;
+        case Step::confirming_silence:
+            start_step(Step::initialising, now);
+            break;
+        case Step::idle:
+        case Step::held_low:
+        case Step::parking:
+        case Step::booting:
+        case Step::identifying:
+        case Step::addressing:
+        case Step::initialising:
+        case Step::collecting:
+        case Step::configuring:
+        case Step::verifying:
+            break;
     }
 }
 

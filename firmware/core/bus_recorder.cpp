@@ -17,12 +17,12 @@ wire::TransferOutcome outcome_of(i2c::TransferError error) noexcept {
             return wire::TransferOutcome::nack_address;
         case i2c::TransferError::nack_data:
             return wire::TransferOutcome::nack_data;
+        case i2c::TransferError::timeout:
+            return wire::TransferOutcome::timeout;
         case i2c::TransferError::arbitration_lost:
             return wire::TransferOutcome::arbitration_lost;
         case i2c::TransferError::bus_stuck:
             return wire::TransferOutcome::bus_stuck;
-        case i2c::TransferError::timeout:
-            break;
     }
     return wire::TransferOutcome::timeout;
 }

@@ -5,7 +5,6 @@
 #include <span>
 #include <utility>
 
-#include "firmware/core/poll_plan.hpp"
 #include "firmware/drivers/i2c/transfer_time.hpp"
 
 namespace octoskin::node {
@@ -18,6 +17,8 @@ constexpr int kStepsPerPoll = 4;
 // A block of results, which is what a ranging sensor has the bus for longest, and a part in ten for a bus
 // that runs slower than configured.
 constexpr std::int64_t kLongestReadBits = std::int64_t{i2c::bit_count(2, 17)} * 11 / 10;
+// A poll, with half as much again.
+constexpr std::int64_t kLongestPollBits = std::int64_t{i2c::bit_count(2, 1)} * 3 / 2;
 
 }  // namespace
 
@@ -28,7 +29,7 @@ BusWorker::BusWorker(i2c::Bus& bus, std::uint32_t i2c_hz, const vl53l1x::Options
       hint_(hint),
       policy_(policy),
       longest_read_(kLongestReadBits * 1'000'000 / i2c_hz),
-      longest_poll_(PollPlan::longest_poll(i2c_hz)) {}
+      longest_poll_(kLongestPollBits * 1'000'000 / i2c_hz) {}
 
 void BusWorker::add(Sensor& sensor) {
     assert(sensor_count_ < sensors_.size());

@@ -10,6 +10,8 @@ using wire::CalibrationOutcome;
 
 CalibrationOutcome outcome_of(vl53l1x::CalibrationError error) noexcept {
     switch (error) {
+        case vl53l1x::CalibrationError::device:
+            return CalibrationOutcome::device_failed;
         case vl53l1x::CalibrationError::unsupported_target:
             return CalibrationOutcome::refused;
         case vl53l1x::CalibrationError::no_result:
@@ -18,8 +20,6 @@ CalibrationOutcome outcome_of(vl53l1x::CalibrationError error) noexcept {
             return CalibrationOutcome::no_target;
         case vl53l1x::CalibrationError::out_of_range:
             return CalibrationOutcome::out_of_range;
-        case vl53l1x::CalibrationError::device:
-            break;
     }
     return CalibrationOutcome::device_failed;
 }

@@ -44,9 +44,9 @@ bool Node::is_for_us(const wire::CanFrame& frame) const noexcept {
         case wire::Party::from_node:
             return id == config_.node_id;
         case wire::Party::to_node:
-            break;
+            return id == config_.node_id || id == wire::kBroadcastId;
     }
-    return id == config_.node_id || id == wire::kBroadcastId;
+    return false;
 }
 
 void Node::on_own_id_heard(NodeTime now) {
@@ -82,14 +82,15 @@ bool Node::perform_in_safe_mode(const wire::Command& command, NodeTime now) {
         case wire::CommandCode::identify:
         case wire::CommandCode::reset:
         case wire::CommandCode::send_info:
-        case wire::CommandCode::calibrate_offset:  // which refuses: no sensor is at work
-        case wire::CommandCode::calibrate_crosstalk:
             return perform(command, now);
         case wire::CommandCode::stop:
         case wire::CommandCode::set_rate:
         case wire::CommandCode::reinitialise_sensor:
         case wire::CommandCode::send_black_box:
-            break;
+            return false;
+        case wire::CommandCode::calibrate_offset:
+        case wire::CommandCode::calibrate_crosstalk:
+            return perform(command, now);  // which refuses: no sensor is at work
     }
     return false;
 }
@@ -127,9 +128,9 @@ bool Node::perform(const wire::Command& command, NodeTime now) {
             return request_black_box(selection, now);
         case wire::CommandCode::calibrate_offset:
         case wire::CommandCode::calibrate_crosstalk:
-            break;
+            return calibrate(command, now);
     }
-    return calibrate(command, now);
+    return false;
 }
 
 /// One sensor, while no other is: a person holds the target.

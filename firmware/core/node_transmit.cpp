@@ -189,7 +189,7 @@ wire::NodeInfo Node::info(wire::InfoPage page) const noexcept {
                 .bus_off_count = saturated<std::uint8_t>(counted.bus_off),
                 .rx_rejected = saturated<std::uint8_t>(counted.rx_rejected)};
         case wire::InfoPage::fault:
-            break;
+            return fault_to_tell();
     }
     return fault_to_tell();
 }

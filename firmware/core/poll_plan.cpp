@@ -29,12 +29,8 @@ NodeTime next_on_grid(NodeTime from, Microseconds gap, NodeTime now) noexcept {
 
 PollPlan::PollPlan(std::uint32_t i2c_hz, const Policy& policy) noexcept
     : policy_(policy),
-      poll_duration_(longest_poll(i2c_hz)),
+      poll_duration_(kPollBits * 1'500'000 / i2c_hz),
       index_duration_(kIndexBits * 1'000'000 / i2c_hz) {}
-
-Microseconds PollPlan::longest_poll(std::uint32_t i2c_hz) noexcept {
-    return Microseconds{kPollBits * 1'500'000 / i2c_hz};
-}
 
 NodeTime PollPlan::first_poll(const TimeBracket& predicted) const noexcept {
     return predicted.earliest - poll_duration_ - kLoopDelay;

@@ -14,8 +14,6 @@ namespace octoskin::node {
 class PollPlan {
   public:
     PollPlan(std::uint32_t i2c_hz, const Policy& policy) noexcept;
-    /// How long a poll takes at most, on a bus that runs at two thirds of `i2c_hz`.
-    [[nodiscard]] static Microseconds longest_poll(std::uint32_t i2c_hz) noexcept;
 
     /// The first poll for data that should become ready within `predicted`.
     [[nodiscard]] NodeTime first_poll(const TimeBracket& predicted) const noexcept;

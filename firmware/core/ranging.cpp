@@ -72,12 +72,22 @@ Ranging::Result Ranging::advance(NodeTime now) {
     if (step_ == Step::draining) return {.event = on_drained(now)};
     start_due_step(now);
 
-    const vl53l1x::Progress progress = device_.poll(now);
-    assert(progress != vl53l1x::Progress::idle && "an operation is begun before it is polled");
-    // No operation of this class waits between two transfers.
-    if (progress == vl53l1x::Progress::busy) return {.bus = BusUse::keeps};
-    return {.event = progress == vl53l1x::Progress::done ? on_step_done(now)
-                                                         : on_step_failed(device_.error(), now)};
+    switch (device_.poll(now)) {
+        case vl53l1x::Progress::busy:
+            if (const auto wake = device_.wake_time(); wake && !is_reached(*wake, now)) {
+                step_due_ = *wake;
+                return {};
+            }
+            return {.bus = BusUse::keeps};
+        case vl53l1x::Progress::done:
+            return {.event = on_step_done(now)};
+        case vl53l1x::Progress::failed:
+            return {.event = on_step_failed(device_.error(), now)};
+        case vl53l1x::Progress::idle:
+            assert(false && "an operation is begun before it is polled");
+            break;
+    }
+    return {};
 }
 
 /// Steps that wait for a time become the step that follows once they are due.

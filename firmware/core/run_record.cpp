@@ -52,7 +52,7 @@ bool is_ordered(ResetCause cause) noexcept {
         case ResetCause::watchdog:
         case ResetCause::fault:
         case ResetCause::unknown:
-            break;
+            return false;
     }
     return false;
 }

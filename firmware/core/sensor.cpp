@@ -33,7 +33,7 @@ SensorState state_after(SensorFault fault, bool has_ever_answered) noexcept {
         case SensorFault::reads_disagree:
         case SensorFault::implausible_block:
         case SensorFault::hardware_fail:
-            break;
+            return SensorState::degraded;
     }
     return SensorState::degraded;
 }
@@ -99,7 +99,7 @@ std::optional<NodeTime> Sensor::due_otherwise() const noexcept {
         case Mode::awaiting_recovery:
             return plan_.at;
         case Mode::stopped:
-            break;
+            return std::nullopt;
     }
     return std::nullopt;
 }
@@ -125,7 +125,7 @@ BusUse Sensor::advance(NodeTime now) {
             return advance_ranging(now);
         case Mode::awaiting_recovery:
             recover(now);
-            break;
+            return BusUse::releases;
         case Mode::stopped:
             break;
     }

@@ -109,10 +109,6 @@ class Sensor {
     /// Not ranging as configured, though it should, and not for being still in its first bring-up. Also while
     /// a register will not take its value.
     [[nodiscard]] bool is_degraded() const noexcept;
-    /// Why it does not range as ordered; empty if it does, or is on its way to.
-    [[nodiscard]] std::optional<wire::SensorFault> trouble() const noexcept {
-        return is_degraded() ? std::optional(fault_) : std::nullopt;
-    }
     /// Has ended its first bring-up, well or badly.
     [[nodiscard]] bool is_settled() const noexcept { return is_settled_; }
     [[nodiscard]] i2c::Address address() const noexcept { return config_.address; }

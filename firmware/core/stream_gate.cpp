@@ -28,9 +28,9 @@ bool passes(StreamGate gate, std::uint8_t previous, std::uint8_t current) noexce
         case StreamGate::differs:
             return current != previous;
         case StreamGate::advanced:
-            break;
+            return stream_steps(previous, current).has_value();
     }
-    return stream_steps(previous, current).has_value();
+    return false;
 }
 
 }  // namespace octoskin::node

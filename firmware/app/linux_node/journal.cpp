@@ -74,7 +74,7 @@ void Journal::say_troubles(const node::Node& node) {
     const auto sensors = node.sensors();
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const node::Sensor& sensor = *sensors[i];
-        const auto trouble = sensor.trouble();
+        const auto trouble = sensor.is_degraded() ? std::optional(sensor.fault()) : std::nullopt;
         if (trouble == troubles_[i]) continue;
         troubles_[i] = trouble;
         say("sensor " + std::to_string(i) + ": " + wire::name(sensor.state()) +

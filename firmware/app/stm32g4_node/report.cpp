@@ -134,7 +134,7 @@ void Report::tell_sensors(const node::Node& node, NodeTime now) {
     has_trouble_ = false;
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const node::Sensor& sensor = *sensors[i];
-        const auto trouble = sensor.trouble();
+        const auto trouble = sensor.is_degraded() ? std::optional(sensor.fault()) : std::nullopt;
         has_trouble_ = has_trouble_ || trouble;
         if (has_told || trouble == troubles_[i]) continue;
         troubles_[i] = trouble;

@@ -65,9 +65,9 @@ const ModeRegisters& mode_registers(DistanceMode mode) noexcept {
         case medium_range:
             return kMedium;
         case long_range:
-            break;
+            return kLong;
     }
-    assert(mode == long_range && "a distance mode is checked where it is read");
+    assert(false && "a distance mode is checked where it is read");
     return kLong;
 }
 
