@@ -66,6 +66,23 @@ function(octoskin_check_includes target room)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
 endfunction()
 
+# The headers that no source proves to compile alone: one of the same name does, for its first include is its header.
+function(octoskin_headers_to_verify result sources)
+    set(unproven "")
+    foreach(header IN LISTS ARGN)
+        string(REGEX REPLACE "[.]hpp$" ".cpp" source ${header})
+        set(first_line "")
+        if(source IN_LIST sources)
+            file(STRINGS ${source} first_line LIMIT_COUNT 1 REGEX "^[ \t]*#")
+        endif()
+        cmake_path(RELATIVE_PATH header BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE path)
+        if(NOT first_line STREQUAL "#include \"${path}\"")
+            list(APPEND unproven ${header})
+        endif()
+    endforeach()
+    set(${result} "${unproven}" PARENT_SCOPE)
+endfunction()
+
 # TRUE and a message if this is a build for a board and one of the dependencies is not built for it.
 function(octoskin_is_left_out result target)
     set(${result} FALSE PARENT_SCOPE)
@@ -106,10 +123,15 @@ function(octoskin_library name)
         add_library(${target} INTERFACE)
         set(scope INTERFACE)
     endif()
-    target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
+    octoskin_headers_to_verify(to_verify "${sources}" ${headers})
+    list(REMOVE_ITEM headers ${to_verify})
+    target_sources(${target} ${scope}
+        FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers}
+        FILE_SET to_verify TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${to_verify})
     target_compile_features(${target} ${scope} cxx_std_20)
     target_link_libraries(${target} ${scope} ${ARG_DEPENDS} ${ARG_EXTERNAL})
-    set_target_properties(${target} PROPERTIES OCTOSKIN_ROOM ${ARG_ROOM} VERIFY_INTERFACE_HEADER_SETS ON)
+    set_target_properties(${target} PROPERTIES OCTOSKIN_ROOM ${ARG_ROOM}
+        VERIFY_INTERFACE_HEADER_SETS ON INTERFACE_HEADER_SETS_TO_VERIFY to_verify)
     add_library(octoskin::${name} ALIAS ${target})
 endfunction()
 
