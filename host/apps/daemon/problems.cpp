@@ -82,6 +82,16 @@ void add_nodes(const DaemonView& view, Problems& problems) {
     }
 }
 
+/// Why the joint states of the bus are refused, where their node is none of those that have sensors.
+void add_joint_node(const DaemonView& view, Problems& problems) {
+    const wire::NodeId source = view.rig->joints.node_id;
+    const NodeRegistry& nodes = view.pipeline->intake().nodes();
+    if (!nodes.knows(source) || nodes.records().at(source).has_block) return;
+    if (!is_refused_for_joints(nodes.verdict(source, view.bus_now))) return;
+    const std::string text = nodes.describe(source, view.bus_now);
+    problems.push_back({text, text});
+}
+
 bool has_stopped(const std::optional<HostTime>& last, HostTime now) {
     constexpr Nanoseconds kPatience{800'000'000};
     return last && now - *last > kPatience;
@@ -189,6 +199,7 @@ std::vector<Problem> problems(const DaemonView& view) {
     add_link(view, problems);
     add_clock(view, problems);
     add_nodes(view, problems);
+    add_joint_node(view, problems);
     add_joints(view, problems);
     add_readings(view, problems);
     add_camera(view, problems);

@@ -28,7 +28,7 @@ constexpr std::array kMeanings = {
     Meaning{"CAN frames", "sync_unmatched", "FOLLOW_UP or SYNC_REPORT without their SYNC"},
     Meaning{"CAN frames", "sync_repeated", "a second SYNC, FOLLOW_UP or SYNC_REPORT where one belongs"},
     Meaning{"CAN frames", "node_refused",
-            "NODE_INFO or joints of a node that is quarantined or speaks another version"},
+            "NODE_INFO or joints of a node that is quarantined, babbles or speaks another version"},
     Meaning{"CAN frames", "not_joint_source", "joint states of a node that the rig does not name for them"},
     Meaning{"CAN frames", "joint_repeated", "a joint frame that its sample has already"},
     Meaning{"CAN frames", "joint_no_host_time", "a joint frame while the host does not know the time yet"},
@@ -40,6 +40,10 @@ constexpr std::array kMeanings = {
     Meaning{"readings", "node_lost", "no heartbeat of the node for 350 ms"},
     Meaning{"readings", "node_version", "the node speaks another version of the protocol"},
     Meaning{"readings", "node_quarantined", "two boards share the node id"},
+    Meaning{
+        "readings", "node_babbling",
+        "the node sent over twice as many frames within a second as the rig has it send, and has not kept "
+        "to that for a second"},
     Meaning{"readings", "node_time_suspect", "the node's clock source failed its own check"},
     Meaning{"readings", "node_info_incomplete",
             "not all pages of NODE_INFO are here yet: usual at the start"},

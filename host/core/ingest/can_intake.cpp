@@ -1,5 +1,6 @@
 #include "host/core/ingest/can_intake.hpp"
 
+#include <utility>
 #include <variant>
 
 #include "common/wire/codec.hpp"
@@ -13,6 +14,8 @@ std::optional<ReadingReason> reason_of(NodeVerdict verdict) {
             return ReadingReason::node_version;
         case NodeVerdict::quarantined:
             return ReadingReason::node_quarantined;
+        case NodeVerdict::babbling:
+            return ReadingReason::node_babbling;
         case NodeVerdict::absent:
             return ReadingReason::node_absent;
         case NodeVerdict::lost:
@@ -55,12 +58,6 @@ FrameReason reason_of(SyncFault fault) {
     return fault == SyncFault::repeated ? FrameReason::sync_repeated : FrameReason::sync_unmatched;
 }
 
-/// Joint states need no NODE_INFO, and their node need not send heartbeats; but what it says must count.
-bool is_refused_for_joints(NodeVerdict verdict) {
-    return verdict == NodeVerdict::other_version || verdict == NodeVerdict::quarantined ||
-           verdict == NodeVerdict::time_suspect;
-}
-
 }  // namespace
 
 CanIntake::CanIntake(const HostRig& rig, const IntakeConfig& config)
@@ -98,9 +95,25 @@ FrameOutcome CanIntake::on_frame(const wire::CanFrame& frame, WallTime stamp) {
     }
     // Only now: a stranger on another interface of the log must not move "now".
     host_clock_.observe(stamp);
+    note_time();
+    if (is_from_node) {
+        nodes_.on_frame(node, steady_now());
+    }
     outcome.rejected =
         std::visit([&](const auto& message) { return on(node, message, outcome); }, decoded->message);
     return outcome;
+}
+
+void CanIntake::note_time() {
+    const std::uint64_t jumps = host_clock_.steps_back() + host_clock_.steps_ahead() + host_clock_.relocks();
+    if (std::exchange(jumps_, jumps) != jumps) known_since_.reset();
+    if (!known_since_) known_since_ = now();
+}
+
+std::optional<HostTime> CanIntake::steady_now() const {
+    constexpr Nanoseconds kSteady{1'000'000'000};
+    const auto now_known = now();
+    return known_since_ && now_known && *now_known - *known_since_ >= kSteady ? now_known : std::nullopt;
 }
 
 Result<MappedTime, ReadingReason> CanIntake::capture_time(wire::NodeId node,
@@ -125,6 +138,7 @@ Result<RangeMeasurement, ReadingReason> CanIntake::accept(wire::NodeId node,
         return unexpected(ReadingReason::unknown_sensor);
     }
     ranges_.on_arrival(node, reading, now());
+    nodes_.on_reading(node, reading, steady_now());
     auto measurement = measure(node, reading);
     ranges_.on_fate(node, reading.sensor, measurement ? std::nullopt : std::optional(measurement.error()));
     return measurement;

@@ -97,6 +97,9 @@ class CanIntake {
     [[nodiscard]] Result<JointMeasurement, JointReason> place(const JointReading& reading,
                                                               HostTime now) const;
     void add_exchange(wire::NodeId node);
+    void note_time();
+    /// "Now", once the stamps have not jumped for a second: before, what was held back may still come.
+    [[nodiscard]] std::optional<HostTime> steady_now() const;
 
     IntakeConfig config_;
     wire::NodeId joint_source_;
@@ -106,7 +109,9 @@ class CanIntake {
     NodeRegistry nodes_;
     RangeGate ranges_;
     JointAssembler joints_;
-    WallTime stamp_;  ///< of the frame at hand
+    WallTime stamp_;                       ///< of the frame at hand
+    std::uint64_t jumps_ = 0;              ///< of the stamps, so far
+    std::optional<HostTime> known_since_;  ///< "now" after the last of them
 };
 
 }  // namespace octoskin

@@ -11,19 +11,31 @@ namespace {
 
 using wire::NodeState;
 
-/// A hold ends only when "now" is known and the last sign is old enough.
+/// A hold ends only when "now" is known and the last sign is old enough, or as far in the future: then the
+/// host's own clock began anew.
 bool is_held(bool is_set, std::optional<HostTime> since, std::optional<HostTime> now, Nanoseconds hold) {
-    return is_set && !(since && now && *now - *since >= hold);
+    return is_set && !(since && now && std::chrono::abs(*now - *since) >= hold);
+}
+
+bool is_babbling(const NodeRecord& record, std::optional<HostTime> now) {
+    return is_held(record.babbled.has_value(), record.babbled, now, NodeRegistry::kBabbleHold);
 }
 
 bool is_refused(const NodeRecord& record, std::optional<HostTime> now) {
     return is_held(record.is_other_version, record.other_version, now, NodeRegistry::kOtherVersionHold) ||
-           is_held(record.is_in_conflict, record.conflict, now, NodeRegistry::kConflictHold);
+           is_held(record.is_in_conflict, record.conflict, now, NodeRegistry::kConflictHold) ||
+           is_babbling(record, now);
 }
 
 bool is_lost(const NodeRecord& record, std::optional<HostTime> now) {
     // Heard in the future: the host's own clock began anew.
     return now && (!record.heard || std::chrono::abs(*now - *record.heard) > NodeRegistry::kLostAfter);
+}
+
+void note_second_board(NodeRecord& record, std::optional<HostTime> now) {
+    record.is_in_conflict = true;
+    record.conflict = now;
+    record.pages = {};  // of which of the two they are, nobody knows
 }
 
 }  // namespace
@@ -71,16 +83,38 @@ std::optional<NodeMismatch> NodeRecord::mismatch() const noexcept {
 
 NodeRegistry::NodeRegistry(const HostRig& rig) {
     for (const HostNode& node : rig.nodes) {
-        records_[node.node_id].expected = node;
+        add(node, rig.joints);
     }
     if (!rig.joints.joints.empty() && !knows(rig.joints.node_id)) {
-        NodeRecord& joints = records_[rig.joints.node_id];
-        joints.expected = {.node_id = rig.joints.node_id,
-                           .name = "joints",
-                           .node_hash = 0,
-                           .pinned_build_id = {},
-                           .sensors = {}};
-        joints.has_block = false;
+        add({.node_id = rig.joints.node_id,
+             .name = "joints",
+             .node_hash = 0,
+             .pinned_build_id = {},
+             .sensors = {}},
+            rig.joints);
+        records_.at(rig.joints.node_id).has_block = false;
+    }
+}
+
+void NodeRegistry::add(const HostNode& node, const HostJointSource& joints) {
+    const bool sends_joints = !joints.joints.empty() && node.node_id == joints.node_id;
+    records_[node.node_id].expected = node;
+    traffic_.emplace(node.node_id, NodeTraffic(node, sends_joints ? joints.rate_hz : 0.0));
+}
+
+void NodeRegistry::on_frame(wire::NodeId node, std::optional<HostTime> now) {
+    NodeRecord& record = records_.at(node);
+    if (!traffic_.at(node).keeps_with_frame(now)) {
+        record.babbled = now;
+    } else if (!is_babbling(record, now)) {
+        record.babbled.reset();
+    }
+}
+
+void NodeRegistry::on_reading(wire::NodeId node, const wire::RangeReading& reading,
+                              std::optional<HostTime> now) {
+    if (!traffic_.at(node).keeps_with_reading(reading, now)) {
+        note_second_board(records_.at(node), now);
     }
 }
 
@@ -91,8 +125,7 @@ NodeRegistry::Life NodeRegistry::on_heartbeat(wire::NodeId node, const wire::Hea
     const bool is_back_at_start = record.heartbeat && record.heartbeat->state != NodeState::starting &&
                                   heartbeat.state == NodeState::starting;
     if (is_other_board && !is_lost(record, now)) {
-        record.is_in_conflict = true;
-        record.conflict = now;
+        note_second_board(record, now);
     } else if (record.is_in_conflict && !record.conflict) {
         record.conflict = now;  // the hold starts when there is a time to count from
     }
@@ -133,6 +166,9 @@ NodeVerdict NodeRegistry::verdict(wire::NodeId node, std::optional<HostTime> now
     }
     if (is_held(record.is_in_conflict, record.conflict, now, kConflictHold)) {
         return NodeVerdict::quarantined;
+    }
+    if (is_babbling(record, now)) {
+        return NodeVerdict::babbling;
     }
     if (!record.heartbeat) {
         return NodeVerdict::absent;
@@ -175,6 +211,11 @@ std::string NodeRegistry::describe(wire::NodeId node, std::optional<HostTime> no
     const auto differs = reason(node, now);
     std::string why = differs ? differs->text() : std::string();
     if (judged == NodeVerdict::quarantined) why = "two boards send under this node id: take one off the bus";
+    if (judged == NodeVerdict::babbling) {
+        why = "over " + std::to_string(traffic_.at(node).frames_max()) +
+              " frames within a second, twice what the rig has it send: refused until a second after it "
+              "keeps to that";
+    }
     return "node " + std::to_string(node) + " '" + records_.at(node).expected.name +
            "': " + names_of(NodeVerdict{})[static_cast<std::size_t>(judged)] +
            (why.empty() ? "" : " (" + why + ")");

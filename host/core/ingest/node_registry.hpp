@@ -11,6 +11,7 @@
 
 #include "common/time.hpp"
 #include "common/wire/messages.hpp"
+#include "host/core/ingest/node_traffic.hpp"
 #include "host/core/rig/host_rig.hpp"
 
 namespace octoskin {
@@ -18,7 +19,8 @@ namespace octoskin {
 /// The worst that holds, in this order.
 enum class NodeVerdict : std::uint8_t {
     other_version,  ///< a heartbeat of another protocol version within the last second: nothing else is read
-    quarantined,    ///< two unique ids on one node id within the last two seconds
+    quarantined,    ///< two unique ids, or two senders' readings, on one node id within the last two seconds
+    babbling,       ///< more frames than NodeTraffic allows, within the last second
     absent,         ///< no heartbeat yet
     lost,           ///< no heartbeat for 350 ms
     time_suspect,   ///< says so itself
@@ -27,9 +29,15 @@ enum class NodeVerdict : std::uint8_t {
     build_refused,    ///< the rig pins another build
     usable,
 };
-[[nodiscard]] constexpr std::array<const char*, 9> names_of(NodeVerdict) {
-    return {"other_version",   "quarantined",   "absent",        "lost",  "time_suspect",
-            "info_incomplete", "info_mismatch", "build_refused", "usable"};
+[[nodiscard]] constexpr std::array<const char*, 10> names_of(NodeVerdict) {
+    return {"other_version", "quarantined",     "babbling",      "absent",        "lost",
+            "time_suspect",  "info_incomplete", "info_mismatch", "build_refused", "usable"};
+}
+
+/// Joint states need no NODE_INFO, and their node need not send heartbeats; but what it says must count.
+[[nodiscard]] constexpr bool is_refused_for_joints(NodeVerdict verdict) {
+    return verdict == NodeVerdict::other_version || verdict == NodeVerdict::quarantined ||
+           verdict == NodeVerdict::babbling || verdict == NodeVerdict::time_suspect;
 }
 
 /// A claim of a node that differs from the rig.
@@ -53,6 +61,7 @@ struct NodeRecord {
     std::array<std::optional<wire::NodeInfo>, wire::kInfoPages> pages;
     std::optional<HostTime> conflict;  ///< the newest sign of a second board
     bool is_in_conflict = false;
+    std::optional<HostTime> babbled;        ///< the newest frame that was one too many
     std::optional<HostTime> other_version;  ///< the newest heartbeat of another version
     bool is_other_version = false;
     std::uint8_t version_told = 0;  ///< in that heartbeat
@@ -76,6 +85,7 @@ class NodeRegistry {
     static constexpr Nanoseconds kLostAfter{350'000'000};
     static constexpr Nanoseconds kConflictHold{2'000'000'000};
     static constexpr Nanoseconds kOtherVersionHold{1'000'000'000};
+    static constexpr Nanoseconds kBabbleHold{1'000'000'000};
 
     explicit NodeRegistry(const HostRig& rig);
 
@@ -88,11 +98,15 @@ class NodeRegistry {
         restarted,  ///< its clock and its sequences began anew
     };
     /// Each takes a known node. `now`: empty while unknown.
+    /// Before anything else is done with a frame that the node sent.
+    void on_frame(wire::NodeId node, std::optional<HostTime> now);
+    /// Of a sensor that it has.
+    void on_reading(wire::NodeId node, const wire::RangeReading& reading, std::optional<HostTime> now);
     [[nodiscard]] Life on_heartbeat(wire::NodeId node, const wire::Heartbeat& heartbeat,
                                     std::optional<HostTime> now);
     /// A heartbeat with a valid checksum and another version.
     void on_other_version(wire::NodeId node, std::uint8_t version, std::optional<HostTime> now);
-    /// False if the page was not taken: the node is quarantined or speaks another version.
+    /// False if the page was not taken: the node is quarantined, babbles or speaks another version.
     [[nodiscard]] bool on_info(wire::NodeId node, const wire::NodeInfo& info, std::optional<HostTime> now);
 
     [[nodiscard]] NodeVerdict verdict(wire::NodeId node, std::optional<HostTime> now) const;
@@ -102,7 +116,10 @@ class NodeRegistry {
     [[nodiscard]] std::string describe(wire::NodeId node, std::optional<HostTime> now) const;
 
   private:
+    void add(const HostNode& node, const HostJointSource& joints);
+
     std::map<wire::NodeId, NodeRecord> records_;
+    std::map<wire::NodeId, NodeTraffic> traffic_;  ///< of the same nodes
 };
 
 }  // namespace octoskin

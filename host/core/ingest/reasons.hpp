@@ -27,7 +27,8 @@ enum class FrameReason : std::uint8_t {
     for_nodes,           ///< a command: nothing for the host in it
     sync_unmatched,      ///< FOLLOW_UP or SYNC_REPORT without their SYNC
     sync_repeated,       ///< a second SYNC, FOLLOW_UP or SYNC_REPORT where one belongs
-    node_refused,        ///< NODE_INFO or joints of a node that is quarantined or speaks another version
+    node_refused,        ///< NODE_INFO or joints of a node that is quarantined, babbles or speaks another
+                         ///< version
     not_joint_source,    ///< joint states of a node that the rig does not name for it
     joint_repeated,      ///< a joint frame that the sample has already
     joint_no_host_time,  ///< a joint frame while "now" is unknown
@@ -51,6 +52,7 @@ enum class ReadingReason : std::uint8_t {
     node_lost,             ///< no heartbeat for 350 ms
     node_version,          ///< speaks another version of the protocol
     node_quarantined,      ///< two boards share the node id
+    node_babbling,         ///< over twice as many frames as the rig has it send
     node_time_suspect,     ///< the node's clock source failed its own check
     node_info_incomplete,  ///< not all pages of NODE_INFO are here
     node_info_mismatch,    ///< configuration block, number of sensors or unique id is not what it should be
@@ -87,11 +89,12 @@ enum class ReadingReason : std::uint8_t {
     beam_not_valid,  ///< a pose or range that is no number
     outside_map,     ///< beyond the octree
 };
-[[nodiscard]] constexpr std::array<const char*, 35> names_of(ReadingReason) {
+[[nodiscard]] constexpr std::array<const char*, 36> names_of(ReadingReason) {
     return {"node_absent",
             "node_lost",
             "node_version",
             "node_quarantined",
+            "node_babbling",
             "node_time_suspect",
             "node_info_incomplete",
             "node_info_mismatch",
@@ -136,7 +139,6 @@ enum class JointReason : std::uint8_t {
     out_of_order,   ///< not later than the sample before it
     queue_overflow,
     too_frequent,  ///< the source is quicker than the rig says, so that samples cannot be told apart
-                   ///< said
 };
 [[nodiscard]] constexpr std::array<const char*, 10> names_of(JointReason) {
     return {"incomplete", "contradictory", "clock_not_ready", "clock_in_doubt", "clock_silent",

@@ -38,6 +38,7 @@ struct HostNode {
     std::uint32_t node_hash = 0;  ///< the node must report exactly this one before its ranges count
     std::optional<std::uint32_t> pinned_build_id;  ///< refused with any other, if given
     std::vector<HostSensor> sensors;               ///< in the order of the local index on the wire
+    std::uint8_t aux_every = 0;                    ///< RANGE_AUX with every n-th reading; 0: never
 };
 
 /// Who sends joint states. It answers SYNC as every node does; it need not be one of `HostRig::nodes`.

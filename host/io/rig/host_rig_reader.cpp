@@ -30,6 +30,7 @@ HostNode to_host(const rig::Node& node) {
     host.name = node.name;
     host.node_hash = node_hash(node.config);
     host.pinned_build_id = node.pinned_build_id;
+    host.aux_every = node.config.uses_can_fd ? std::uint8_t{0} : node.config.aux_every;  // classical only
     for (std::size_t i = 0; i < node.sensors.size(); ++i) {
         host.sensors.push_back(to_host(node.sensors[i], node.config.sensors[i]));
     }

@@ -72,7 +72,9 @@ void LiveBus::play() {
         if (is_ending_) return;
         be_host();
         played_s_ = static_cast<double>(entry.stamp.ns - begin_ns_) * 1e-9;
-        if (!is_silent(wire::node_of(entry.frame.can_id))) put(entry.frame);
+        if (is_silent(wire::node_of(entry.frame.can_id))) continue;
+        put(entry.frame);
+        babble_with(entry.frame);
     }
     is_over_ = true;
     while (!is_ending_) listen_until(log_now_ns() + 10'000'000);
@@ -151,6 +153,20 @@ void LiveBus::be_host() {
 
 void LiveBus::put(const wire::CanFrame& frame) {
     (void)socket_.send(frame);  // an end that takes nothing any more loses it, as on a bus
+}
+
+void LiveBus::let_babble(std::optional<wire::NodeId> node) {
+    const std::lock_guard lock(mutex_);
+    babbling_ = node;
+}
+
+void LiveBus::babble_with(const wire::CanFrame& frame) {
+    const wire::NodeId node = wire::node_of(frame.can_id);
+    if (wire::type_of(frame.can_id) == wire::FrameType::heartbeat) heartbeats_[node] = frame;
+    const std::lock_guard lock(mutex_);
+    const auto heartbeat = heartbeats_.find(node);
+    if (babbling_ != node || heartbeat == heartbeats_.end()) return;
+    for (int i = 0; i < 12; ++i) put(heartbeat->second);
 }
 
 void LiveBus::silence(wire::NodeId node, bool is_silent) {

@@ -35,6 +35,8 @@ class LiveBus {
     void lie_once(Nanoseconds by);
     /// A node that is switched off: it sends and answers nothing.
     void silence(wire::NodeId node, bool is_silent);
+    /// A node that with each of its frames says its newest heartbeat a dozen times more. Empty: none.
+    void let_babble(std::optional<wire::NodeId> node);
     [[nodiscard]] std::uint64_t syncs_heard() const noexcept { return syncs_heard_; }
     /// Frames of the other end.
     [[nodiscard]] std::uint64_t frames_heard() const noexcept { return frames_heard_; }
@@ -56,6 +58,7 @@ class LiveBus {
     void report(std::uint8_t sequence, std::int64_t heard_ns);
     void be_host();
     void put(const wire::CanFrame& frame);
+    void babble_with(const wire::CanFrame& frame);
     [[nodiscard]] std::int64_t log_now_ns() const;
     [[nodiscard]] bool is_silent(wire::NodeId node) const;
 
@@ -71,9 +74,11 @@ class LiveBus {
     std::atomic<std::uint64_t> frames_heard_ = 0;
     mutable std::mutex mutex_;
     std::map<wire::NodeId, bool> silent_;
-    std::optional<Nanoseconds> host_ahead_;  ///< of another host; empty while there is none
-    Nanoseconds lie_{0};                     ///< of its next FOLLOW_UP
-    std::int64_t host_due_ns_ = 0;           ///< its next SYNC, on the log's time scale
+    std::optional<wire::NodeId> babbling_;
+    std::map<wire::NodeId, wire::CanFrame> heartbeats_;  ///< the newest of each node; of the thread alone
+    std::optional<Nanoseconds> host_ahead_;              ///< of another host; empty while there is none
+    Nanoseconds lie_{0};                                 ///< of its next FOLLOW_UP
+    std::int64_t host_due_ns_ = 0;                       ///< its next SYNC, on the log's time scale
     std::uint8_t host_sequence_ = 0;
     std::thread thread_;
 };

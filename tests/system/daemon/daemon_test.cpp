@@ -74,6 +74,46 @@ TEST_F(DaemonTest, names_a_node_that_falls_silent_within_a_second_and_takes_it_b
                 static_cast<long>(lost->count()), static_cast<long>(back->count()));
 }
 
+TEST_F(DaemonTest, refuses_a_node_that_babbles_and_takes_it_back_while_the_other_goes_on) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    const auto received = [](const Json& status, std::size_t node) {
+        int readings = 0;
+        for (const auto& sensor : status["nodes"][node]["sensors"]) readings += sensor["received"].get<int>();
+        return readings;
+    };
+    bus_->let_babble(2);
+    const auto told = daemon_->wait_until(
+        [](const Json& status) {
+            return status["nodes"][1]["verdict"] == "babbling" &&
+                   has_problem(status, "node 2 'front_rings': babbling");
+        },
+        10s);
+    ASSERT_TRUE(told) << daemon_->status()["problems"].dump(1);
+    // Its readings are refused, and those of the other node go on the map.
+    const Json then = daemon_->status();
+    Json status;
+    const auto went_on = daemon_->wait_until(
+        [&](const Json& now) {
+            status = now;
+            const auto& readings = now["account"]["readings"];
+            return received(now, 0) > received(then, 0) + 1'000 &&
+                   readings["used"].get<int>() > then["account"]["readings"]["used"].get<int>() + 700 &&
+                   readings["rejected"].value("node_babbling", 0) > 500;
+        },
+        15s);
+    ASSERT_TRUE(went_on) << status["account"]["readings"].dump(1);
+    EXPECT_FALSE(has_problem(status, "node 1 'rear_rings': babbling"));
+    bus_->let_babble(std::nullopt);
+    const auto back =
+        daemon_->wait_until([](const Json& now) { return now["nodes"][1]["verdict"] == "usable"; }, 10s);
+    ASSERT_TRUE(back) << daemon_->status()["problems"].dump(1);
+    std::printf("refused %ld ms after it began, taken back %ld ms after it stopped\n",
+                static_cast<long>(told->count()), static_cast<long>(back->count()));
+    EXPECT_NE(daemon_->log().find("node 2 'front_rings': babbling (over "), std::string::npos)
+        << daemon_->log();
+}
+
 TEST_F(DaemonTest, names_joint_states_that_stop) {
     start();
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();

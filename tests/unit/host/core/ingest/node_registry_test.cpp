@@ -171,6 +171,82 @@ TEST(NodeRegistry, quarantines_two_boards_with_one_id_at_the_second_heartbeat) {
     EXPECT_EQ(registry.verdict(kNode, ms(3200)), NodeVerdict::usable);
 }
 
+/// Ranges at 30 Hz of three sensors, a frame every `every_ms` from `from_ms` on, up to and without `to_ms`.
+NodeVerdict speak(NodeRegistry& registry, std::int64_t from_ms, std::int64_t to_ms, std::int64_t every_ms) {
+    for (std::int64_t t = from_ms; t < to_ms; t += every_ms) registry.on_frame(kNode, ms(t));
+    (void)registry.on_heartbeat(kNode, heartbeat(), ms(to_ms - 1));
+    return registry.verdict(kNode, ms(to_ms - 1));
+}
+
+TEST(NodeRegistry, refuses_a_node_that_babbles_until_a_second_after_it_kept_to_its_frames) {
+    NodeRegistry registry(rig());
+    identify(registry, 0);
+    // 18 + 3 * 32 frames a second, twice, and 8: 236. One every 9 ms is well within that.
+    EXPECT_EQ(speak(registry, 0, 5'000, 9), NodeVerdict::usable);
+    for (int i = 0; i < 236; ++i) registry.on_frame(kNode, ms(7'000));
+    EXPECT_EQ(speak(registry, 7'999, 8'000, 1), NodeVerdict::babbling) << "the 237th";
+    EXPECT_EQ(registry.describe(kNode, ms(8'000)),
+              "node 7 'upper ring': babbling (over 236 frames within a second, twice what the rig has it "
+              "send: refused until a second after it keeps to that)");
+    EXPECT_FALSE(registry.on_info(kNode, pages()[0], ms(8'000)));
+    EXPECT_EQ(speak(registry, 8'001, 8'999, 9), NodeVerdict::babbling);
+    EXPECT_EQ(speak(registry, 8'999, 9'001, 9), NodeVerdict::usable) << "who it is was known before";
+    EXPECT_TRUE(registry.on_info(kNode, pages()[0], ms(9'000)));
+}
+
+TEST(NodeRegistry, refuses_a_babbling_node_as_long_as_it_babbles) {
+    NodeRegistry registry(rig());
+    identify(registry, 0);
+    EXPECT_EQ(speak(registry, 0, 1'000, 1), NodeVerdict::babbling);
+    for (std::int64_t t = 1'000; t < 60'000; t += 100) {
+        EXPECT_EQ(speak(registry, t, t + 100, 3), NodeVerdict::babbling) << t;
+    }
+}
+
+TEST(NodeRegistry, does_not_release_a_babbling_node_while_no_time_is_known) {
+    NodeRegistry registry(rig());
+    identify(registry, 0);
+    EXPECT_EQ(speak(registry, 0, 1'000, 1), NodeVerdict::babbling);
+    EXPECT_EQ(registry.verdict(kNode, std::nullopt), NodeVerdict::babbling);
+    registry.on_frame(kNode, ms(3'000));
+    EXPECT_NE(registry.verdict(kNode, std::nullopt), NodeVerdict::babbling) << "it was released before";
+}
+
+TEST(NodeRegistry, quarantines_an_id_under_which_two_send_readings) {
+    NodeRegistry registry(rig());
+    identify(registry, 0);
+    std::int64_t told_ms = 0;
+    for (std::int64_t t = 0; t < 1'000 && told_ms == 0; t += 33) {
+        const auto number = static_cast<std::uint8_t>(t / 33);
+        for (std::uint8_t sensor = 0; sensor < 3; ++sensor) {
+            for (const unsigned from : {0U, 21U}) {
+                wire::RangeReading reading{};
+                reading.sensor = sensor;
+                reading.sequence = static_cast<std::uint8_t>((number + from) % wire::kSequenceCount);
+                registry.on_reading(kNode, reading, ms(t));
+            }
+        }
+        (void)registry.on_heartbeat(kNode, heartbeat(), ms(t));
+        told_ms = registry.verdict(kNode, ms(t)) == NodeVerdict::quarantined ? t : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(told_ms), 33 * 17, 50) << "half of 93 readings, and three";
+    (void)registry.on_heartbeat(kNode, heartbeat(), ms(told_ms + 1'999));
+    EXPECT_EQ(registry.verdict(kNode, ms(told_ms + 1'999)), NodeVerdict::quarantined);
+    EXPECT_EQ(registry.verdict(kNode, ms(told_ms + 2'000)), NodeVerdict::info_incomplete)
+        << "who it is must be told anew";
+}
+
+TEST(NodeRegistry, ends_every_refusal_when_the_host_s_clock_begins_anew) {
+    constexpr std::int64_t kHourMs = 3'600'000;
+    NodeRegistry registry(rig());
+    for (int i = 0; i < 300; ++i) registry.on_frame(kNode, ms(kHourMs));
+    (void)registry.on_heartbeat(kNode, heartbeat(0x1111), ms(kHourMs));
+    (void)registry.on_heartbeat(kNode, heartbeat(), ms(kHourMs));
+    registry.on_other_version(kNode, 2, ms(kHourMs));
+    identify(registry, 100);
+    EXPECT_EQ(registry.verdict(kNode, ms(100)), NodeVerdict::usable);
+}
+
 TEST(NodeRegistry, takes_a_board_that_replaces_a_lost_one_but_asks_it_who_it_is) {
     NodeRegistry registry(rig());
     identify(registry, 0);

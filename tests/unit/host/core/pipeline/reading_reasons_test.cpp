@@ -92,6 +92,12 @@ const std::vector<ReadingCase>& cases() {
              s.bus.send(3.95, other_board, kRight);
              of_node(s, kRight, 4.0);
          }},
+        {R::node_babbling,
+         [](Scene& s) {
+             keep_alive(s, kRight, 3.0);  // 108 frames in a second are the most
+             for (int i = 0; i < 100; ++i) s.bus.heartbeat(3.95, node_of(s, kRight));
+             of_node(s, kRight, 4.0);
+         }},
         {R::node_time_suspect,
          [](Scene& s) {
              wire::Heartbeat suspect = heartbeat_of(s, kRight);

@@ -60,6 +60,15 @@ TEST(HostRigReader, takes_over_everything_the_host_needs) {
     EXPECT_EQ(host.range_limits.time_uncertainty_max, std::chrono::milliseconds(5));
 }
 
+TEST(HostRigReader, counts_signal_messages_on_a_classical_bus_alone) {
+    rig::Rig rig = experiment();
+    rig.nodes[0].config.aux_every = 5;
+    rig.nodes[0].config.uses_can_fd = false;
+    EXPECT_EQ(make_host_setup(rig)->rig.nodes[0].aux_every, 5);
+    rig.nodes[0].config.uses_can_fd = true;
+    EXPECT_EQ(make_host_setup(rig)->rig.nodes[0].aux_every, 0);
+}
+
 TEST(HostRigReader, takes_over_the_camera_or_its_absence) {
     rig::Rig rig = experiment();
     const auto with = make_host_setup(rig);

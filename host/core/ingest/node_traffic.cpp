@@ -1,0 +1,65 @@
+#include "host/core/ingest/node_traffic.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/wire/bus_load.hpp"
+
+namespace octoskin {
+namespace {
+
+std::uint32_t readings_per_s(const HostNode& node) {
+    constexpr std::int64_t kSecondUs = 1'000'000;
+    std::uint32_t readings = 0;
+    for (const HostSensor& sensor : node.sensors) {
+        const std::int64_t period_us = std::max<std::int64_t>(sensor.period.count(), 1);
+        readings += static_cast<std::uint32_t>((kSecondUs + period_us - 1) / period_us);
+    }
+    return readings;
+}
+
+/// Frames that the rig has a node send in a second. A reading counts as one, shared or not.
+std::size_t frames_per_s(const HostNode& node, double joint_rate_hz) {
+    const std::uint32_t readings = readings_per_s(node);
+    const auto sensors = static_cast<std::uint32_t>(node.sensors.size());
+    const wire::BusUse use = {
+        .nodes = 1,
+        .sensors = sensors,
+        .readings_per_s = static_cast<double>(readings),
+        .aux_per_s = node.aux_every > 0 ? static_cast<double>(readings / node.aux_every + sensors) : 0.0,
+        .joint_samples_per_s = joint_rate_hz};
+    double frames = 0.0;
+    for (const wire::Traffic& traffic : wire::traffic_of(use)) {
+        const bool is_of_node = wire::frame_spec(traffic.type)->party == wire::Party::from_node;
+        frames += is_of_node ? traffic.frames_per_s : 0.0;
+    }
+    return static_cast<std::size_t>(std::ceil(frames));
+}
+
+std::size_t repeated_max(const HostNode& node) {
+    return (readings_per_s(node) + 1) / 2 + node.sensors.size();
+}
+
+}  // namespace
+
+NodeTraffic::NodeTraffic(const HostNode& node, double joint_rate_hz)
+    : frames_max_(2 * frames_per_s(node, joint_rate_hz) + kHeldBack),
+      frames_(frames_max_),
+      repeated_(std::max<std::size_t>(repeated_max(node), 1)),
+      sequence_(node.sensors.size()) {}
+
+bool NodeTraffic::keeps_with_frame(std::optional<HostTime> now) {
+    return !now || frames_.keeps_with_event(*now);
+}
+
+bool NodeTraffic::keeps_with_reading(const wire::RangeReading& reading, std::optional<HostTime> now) {
+    constexpr unsigned kBehind = wire::kSequenceCount / 2;
+    auto& before = sequence_.at(reading.sensor);
+    const unsigned ahead =
+        before ? (reading.sequence + 0U + wire::kSequenceCount - *before) % wire::kSequenceCount : 1;
+    before = reading.sequence;
+    const bool is_new = ahead != 0 && ahead <= kBehind;
+    return is_new || !now || repeated_.keeps_with_event(*now);
+}
+
+}  // namespace octoskin
