@@ -102,9 +102,19 @@ void write_camera(Writer& out, const Camera& camera) {
     out.line("  fy_px: {}", number(camera.fy));
     out.line("  cx_px: {}", number(camera.cx));
     out.line("  cy_px: {}", number(camera.cy));
+    if (const LensDistortion& lens = camera.lens; !lens.is_none()) {
+        out.line("  distortion: {{k1: {}, k2: {}, p1: {}, p2: {}, k3: {}}}", number(lens.k1), number(lens.k2),
+                 number(lens.p1), number(lens.p2), number(lens.k3));
+    }
     out.line("  rate_hz: {}", number(camera.rate_hz));
     out.line("  depth_min_m: {}", number(camera.depth_min_m));
     out.line("  depth_max_m: {}", number(camera.depth_max_m));
+    // Left out where they are the default, as the lens is where it is none: rigs that say nothing of them
+    // keep the hash that they had before these keys were.
+    if (camera.data_set != DataSetDepth{}) {
+        out.line("  data_set: {{depth_units_per_m: {}, depth_no_value: {}}}",
+                 number(camera.data_set.units_per_m), camera.data_set.no_value);
+    }
     out.line("  pose: {}", pose(camera.T_base_camera));
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/wire/bus_load.hpp"
 #include "common/wire/messages.hpp"
+#include "hw/rigfile/camera_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
 #include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/node_reader.hpp"
@@ -17,8 +18,6 @@
 
 namespace octoskin::rig {
 namespace {
-
-constexpr double kRoomM = 100.0;  ///< nothing of a rig is further from its base than this
 
 UrdfDocument read_robot(const Table& robot, const std::filesystem::path& urdf_instead) {
     const Value& named = robot.require("urdf");
@@ -132,27 +131,6 @@ JointSource read_joints(const Value& value, const UrdfDocument& robot, const Rig
     return joints;
 }
 
-Camera read_camera(const Value& value) {
-    const Table table(value, "camera",
-                      {"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px", "rate_hz", "depth_min_m",
-                       "depth_max_m", "pose"});
-    Camera camera;
-    camera.width = table.integer<std::uint32_t>("width_px", {1, 4096});
-    camera.height = table.integer<std::uint32_t>("height_px", {1, 4096});
-    camera.fx = table.number("fx_px", {1.0, 100'000.0});
-    camera.fy = table.number("fy_px", {1.0, 100'000.0});
-    camera.cx = table.number("cx_px", {0.0, static_cast<double>(camera.width)});
-    camera.cy = table.number("cy_px", {0.0, static_cast<double>(camera.height)});
-    camera.rate_hz = table.number("rate_hz", {0.1, 1000.0});
-    camera.depth_min_m = table.number("depth_min_m", {0.0, 100.0}, camera.depth_min_m);
-    camera.depth_max_m = table.number("depth_max_m", {0.0, 100.0}, camera.depth_max_m);
-    if (!(camera.depth_min_m < camera.depth_max_m))
-        table.fail("depth_max_m", "expected more than depth_min_m");
-    camera.T_base_camera = read_pose(table.require("pose"), table.path_of("pose"),
-                                     {.reach_m = kRoomM, .may_look_at_point = true});
-    return camera;
-}
-
 RangeLimits read_range_limits(const Value& value) {
     // SENSOR_HEALTH tells a bound of up to 16.32 ms, and that one also for anything above it: no limit
     // reaches it.
@@ -192,7 +170,7 @@ Rig read_checked(const std::filesystem::path& file, const std::filesystem::path&
     rig.urdf = urdf.file();
     read_self_filter(robot, urdf, rig);
     if (const Value* pose = top.find("T_map_base")) {
-        rig.T_map_base = read_pose(*pose, "T_map_base", {.reach_m = kRoomM});
+        rig.T_map_base = read_pose(*pose, "T_map_base", {.reach_m = kRoomReachM});
     }
     rig.bus = read_bus(top.require("bus"));
     if (const Value* limits = top.find("range_limits")) rig.range_limits = read_range_limits(*limits);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/config/node_config.hpp"
+#include "common/lens/lens_distortion.hpp"
 #include "common/result.hpp"
 
 namespace octoskin::rig {
@@ -49,15 +50,24 @@ struct JointSource {
     double rate_hz = 100.0;
 };
 
+/// What a number in a depth image of a data set means. A camera that is plugged in says it itself.
+struct DataSetDepth {
+    double units_per_m = 5000.0;  ///< of the TUM RGB-D benchmark
+    std::uint16_t no_value = 0;
+    friend bool operator==(const DataSetDepth&, const DataSetDepth&) = default;
+};
+
 struct Camera {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;
+    LensDistortion lens = {};  ///< that every pixel has one ray is checked on load
     double rate_hz = 0.0;
     double depth_min_m = 0.5;
     double depth_max_m = 4.5;
     Eigen::Isometry3d T_base_camera =
         Eigen::Isometry3d::Identity();  ///< optical frame: z forward, x right, y down
+    DataSetDepth data_set = {};
 };
 
 struct Bus {

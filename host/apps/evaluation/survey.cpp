@@ -94,13 +94,15 @@ std::vector<Viewpoint> viewpoints_of(const SurveyPattern& pattern) {
 DepthView render_view(const sim::World& world, const rig::Camera& camera,
                       const Eigen::Isometry3d& T_base_camera, std::uint32_t pixel_stride) {
     assert(pixel_stride > 0);
+    const LensInverse inverse(camera.lens);
     // With z = 1 in the camera's frame, the length along a ray is the depth along the optical axis.
     std::vector<Eigen::Vector3d> directions_base;
     for (std::uint32_t v = 0; v < camera.height; v += pixel_stride) {
         for (std::uint32_t u = 0; u < camera.width; u += pixel_stride) {
-            directions_base.emplace_back(
-                T_base_camera.linear() *
-                Eigen::Vector3d((u + 0.5 - camera.cx) / camera.fx, (v + 0.5 - camera.cy) / camera.fy, 1.0));
+            const auto ray =
+                inverse.ray_of({(u + 0.5 - camera.cx) / camera.fx, (v + 0.5 - camera.cy) / camera.fy});
+            assert(ray.has_value());  // checked where the rig was read
+            directions_base.emplace_back(T_base_camera.linear() * Eigen::Vector3d(ray->x, ray->y, 1.0));
         }
     }
     std::vector<double> depth_m(directions_base.size());

@@ -6,11 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "common/lens/lens_distortion.hpp"
 #include "common/time.hpp"
 
 namespace octoskin {
 
-/// Pinhole model; a ray goes through a pixel's centre: ((u + 0.5 - cx) / fx, (v + 0.5 - cy) / fy, 1).
+/// A ray goes through a pixel's centre: ((u + 0.5 - cx) / fx, (v + 0.5 - cy) / fy, 1) of a pinhole; that is
+/// what the lens makes of the ray, otherwise (PixelRays).
 struct CameraIntrinsics {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
@@ -18,6 +20,7 @@ struct CameraIntrinsics {
     double fy = 0.0;
     double cx = 0.0;
     double cy = 0.0;
+    LensDistortion lens = {};
 };
 
 /// Row-major depth along the optical axis in millimetres, 0 = no value.

@@ -37,20 +37,19 @@ struct DepthIntegrator::Workspace {
     TallyGrid grid;
 
     /// Places each pixel's ray; those that cannot be are counted.
-    DepthPixelCounts place(const DepthImage& image, const CameraIntrinsics& camera, const HitModel& model,
+    DepthPixelCounts place(const DepthImage& image, const PixelRays& pixel_rays, const HitModel& model,
                            const VoxelLattice& lattice, const Eigen::Isometry3d& T_map_camera);
     [[nodiscard]] KeyBox box_around(VoxelKey camera_key) const;
     void tally(const VoxelLattice& lattice, const Eigen::Vector3f& origin);
 };
 
-DepthPixelCounts DepthIntegrator::Workspace::place(const DepthImage& image, const CameraIntrinsics& camera,
+DepthPixelCounts DepthIntegrator::Workspace::place(const DepthImage& image, const PixelRays& pixel_rays,
                                                    const HitModel& model, const VoxelLattice& lattice,
                                                    const Eigen::Isometry3d& T_map_camera) {
     DepthPixelCounts counts;
     rays.clear();
     std::size_t pixel = 0;
     for (std::uint32_t v = 0; v < image.height; ++v) {
-        const double y_per_z = (v + 0.5 - camera.cy) / camera.fy;
         for (std::uint32_t u = 0; u < image.width; ++u, ++pixel) {
             const auto depth_m = static_cast<double>(image.depth_m[pixel]);
             if (std::isnan(depth_m)) {
@@ -61,8 +60,8 @@ DepthPixelCounts DepthIntegrator::Workspace::place(const DepthImage& image, cons
                 ++counts.bad_value;
                 continue;
             }
-            const Eigen::Vector3d p_camera =
-                depth_m * Eigen::Vector3d((u + 0.5 - camera.cx) / camera.fx, y_per_z, 1.0);
+            const RaySlope ray = pixel_rays.at(u, v);
+            const Eigen::Vector3d p_camera = depth_m * Eigen::Vector3d(ray.x, ray.y, 1.0);
             const Eigen::Vector3f end = (T_map_camera * p_camera).cast<float>();
             const auto end_key = lattice.key_of(end.cast<double>());
             if (!end_key) {
@@ -93,7 +92,7 @@ void DepthIntegrator::Workspace::tally(const VoxelLattice& lattice, const Eigen:
 
 DepthIntegrator::DepthIntegrator(const MappingConfig& config, const CameraIntrinsics& camera)
     : config_(config),
-      camera_(camera),
+      pixel_rays_(camera),
       lattice_(config.map.resolution_m),
       workspace_(std::make_unique<Workspace>()) {}
 DepthIntegrator::DepthIntegrator(DepthIntegrator&&) noexcept = default;
@@ -102,8 +101,9 @@ DepthIntegrator::~DepthIntegrator() = default;
 
 Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage& image,
                                                                 const Eigen::Isometry3d& T_map_camera) {
-    const std::size_t pixels = std::size_t{camera_.width} * camera_.height;
-    if (image.width != camera_.width || image.height != camera_.height || image.depth_m.size() != pixels) {
+    const CameraIntrinsics& camera = pixel_rays_.camera();
+    const std::size_t pixels = std::size_t{camera.width} * camera.height;
+    if (image.width != camera.width || image.height != camera.height || image.depth_m.size() != pixels) {
         return unexpected(DepthRejection::size_differs);
     }
     if (!T_map_camera.matrix().allFinite()) return unexpected(DepthRejection::pose_not_finite);
@@ -112,7 +112,7 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage
     if (!camera_key) return unexpected(DepthRejection::camera_outside_map);
 
     DepthUpdates result;
-    result.pixels = workspace_->place(image, camera_, config_.model.depth, lattice_, T_map_camera);
+    result.pixels = workspace_->place(image, pixel_rays_, config_.model.depth, lattice_, T_map_camera);
     if (!workspace_->grid.span(workspace_->box_around(*camera_key), config_.depth_box_voxels_max)) {
         return unexpected(DepthRejection::box_too_large);
     }

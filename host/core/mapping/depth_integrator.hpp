@@ -9,6 +9,7 @@
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_frame.hpp"
+#include "host/core/depth/pixel_rays.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 
@@ -39,11 +40,15 @@ struct DepthUpdates {
 /// Keeps its working memory between frames; not for two threads at once.
 class DepthIntegrator {
   public:
-    /// Takes from `config` the map's resolution, the model, the strategy and the limit of memory.
+    /// Takes from `config` the map's resolution, the model, the strategy and the limit of memory. Every pixel
+    /// must have a ray (asserted by PixelRays).
     DepthIntegrator(const MappingConfig& config, const CameraIntrinsics& camera);
     DepthIntegrator(DepthIntegrator&&) noexcept;
     DepthIntegrator& operator=(DepthIntegrator&&) noexcept;
     ~DepthIntegrator();
+
+    /// Of the camera's pixels.
+    [[nodiscard]] const PixelRays& pixel_rays() const noexcept { return pixel_rays_; }
 
     /// The terms of one image (depth along the optical axis, metres, NaN = none), already filtered and
     /// without the robot, seen from `T_map_camera` (optical frame: z forward, x right, y down). Voxels hit
@@ -57,7 +62,7 @@ class DepthIntegrator {
   private:
     struct Workspace;
     MappingConfig config_;
-    CameraIntrinsics camera_;
+    PixelRays pixel_rays_;
     VoxelLattice lattice_;
     std::unique_ptr<Workspace> workspace_;
 };

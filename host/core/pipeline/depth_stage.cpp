@@ -40,7 +40,7 @@ std::uint64_t DepthStage::take_robot_out(DepthImage& image, const RobotPose& rob
         capsule.p_a = T_camera_base * capsule.p_a;
         capsule.p_b = T_camera_base * capsule.p_b;
     }
-    return remove_robot(image, camera_.intrinsics, body_camera_, self_margin_m_);
+    return remove_robot(image, integrator_.pixel_rays(), body_camera_, self_margin_m_);
 }
 
 Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, const RobotPose* robot) {

@@ -10,12 +10,9 @@
 namespace octoskin {
 namespace {
 
-/// Pixels [u_begin, u_end) x [v_begin, v_end).
 struct PixelRectangle {
-    std::uint32_t u_begin = 0;
-    std::uint32_t u_end = 0;
-    std::uint32_t v_begin = 0;
-    std::uint32_t v_end = 0;
+    PixelSpan columns;
+    PixelSpan rows;
 };
 
 struct Interval {
@@ -40,21 +37,14 @@ std::optional<Interval> slopes_of(const PosedCapsule& capsule, double radius_m, 
     return Interval{std::min(a->low, b->low), std::max(a->high, b->high)};
 }
 
-/// Index of the pixel whose square holds this image coordinate, moved to the nearest one in [0, size].
-std::uint32_t clamp_pixel(double coordinate, std::uint32_t size) {
-    return static_cast<std::uint32_t>(std::clamp(std::floor(coordinate), 0.0, static_cast<double>(size)));
-}
-
-PixelRectangle rectangle_of(const PosedCapsule& capsule, double radius_m, const CameraIntrinsics& camera) {
-    PixelRectangle rectangle{.u_begin = 0, .u_end = camera.width, .v_begin = 0, .v_end = camera.height};
+PixelRectangle rectangle_of(const PosedCapsule& capsule, double radius_m, const PixelRays& pixel_rays) {
+    // The tangents are exact: a pixel on one must not be lost to rounding.
+    constexpr double kSlack = 1e-9;
     const auto x = slopes_of(capsule, radius_m, 0);
     const auto y = slopes_of(capsule, radius_m, 1);
-    if (!x || !y) return rectangle;
-    rectangle.u_begin = clamp_pixel(x->low * camera.fx + camera.cx, camera.width);
-    rectangle.u_end = clamp_pixel(x->high * camera.fx + camera.cx + 1.0, camera.width);
-    rectangle.v_begin = clamp_pixel(y->low * camera.fy + camera.cy, camera.height);
-    rectangle.v_end = clamp_pixel(y->high * camera.fy + camera.cy + 1.0, camera.height);
-    return rectangle;
+    if (!x || !y) return {{0, pixel_rays.camera().width}, {0, pixel_rays.camera().height}};
+    return {pixel_rays.columns(x->low - kSlack, x->high + kSlack),
+            pixel_rays.rows(y->low - kSlack, y->high + kSlack)};
 }
 
 /// Depths that points of the capsule can have.
@@ -63,20 +53,20 @@ Interval depths_of(const PosedCapsule& capsule, double radius_m) {
     return {low - radius_m, high + radius_m};
 }
 
-std::size_t remove_capsule(DepthImage& image, const CameraIntrinsics& camera, const PosedCapsule& capsule,
+std::size_t remove_capsule(DepthImage& image, const PixelRays& pixel_rays, const PosedCapsule& capsule,
                            double margin_m) {
     const double radius_m = capsule.radius_m + margin_m;
-    const PixelRectangle rectangle = rectangle_of(capsule, radius_m, camera);
+    const PixelRectangle rectangle = rectangle_of(capsule, radius_m, pixel_rays);
     const Interval depths = depths_of(capsule, radius_m);
     std::size_t removed = 0;
-    for (std::uint32_t v = rectangle.v_begin; v < rectangle.v_end; ++v) {
-        for (std::uint32_t u = rectangle.u_begin; u < rectangle.u_end; ++u) {
+    for (std::uint32_t v = rectangle.rows.begin; v < rectangle.rows.end; ++v) {
+        for (std::uint32_t u = rectangle.columns.begin; u < rectangle.columns.end; ++u) {
             float& pixel = image.depth_m[std::size_t{v} * image.width + u];
             const auto z = static_cast<double>(pixel);
             if (!(z >= depths.low && z <= depths.high))
                 continue;  // no value, or before or behind the capsule
-            const Eigen::Vector3d p_camera((u + 0.5 - camera.cx) / camera.fx * z,
-                                           (v + 0.5 - camera.cy) / camera.fy * z, z);
+            const RaySlope ray = pixel_rays.at(u, v);
+            const Eigen::Vector3d p_camera(ray.x * z, ray.y * z, z);
             if (!(distance_to_surface(capsule, p_camera) <= margin_m)) continue;
             pixel = std::numeric_limits<float>::quiet_NaN();
             ++removed;
@@ -98,16 +88,16 @@ std::size_t remove_everything(DepthImage& image) {
 
 }  // namespace
 
-std::size_t remove_robot(DepthImage& image, const CameraIntrinsics& camera,
+std::size_t remove_robot(DepthImage& image, const PixelRays& pixel_rays,
                          std::span<const PosedCapsule> body_camera, double margin_m) {
-    assert(image.width == camera.width && image.height == camera.height);
+    assert(image.width == pixel_rays.camera().width && image.height == pixel_rays.camera().height);
     assert(image.depth_m.size() == std::size_t{image.width} * image.height);
     if (!std::isfinite(margin_m) || !std::all_of(body_camera.begin(), body_camera.end(), is_finite)) {
         return remove_everything(image);
     }
     std::size_t removed = 0;
     for (const PosedCapsule& capsule : body_camera) {
-        removed += remove_capsule(image, camera, capsule, margin_m);
+        removed += remove_capsule(image, pixel_rays, capsule, margin_m);
     }
     return removed;
 }

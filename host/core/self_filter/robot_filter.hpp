@@ -5,6 +5,7 @@
 #include <span>
 
 #include "host/core/depth/depth_frame.hpp"
+#include "host/core/depth/pixel_rays.hpp"
 #include "host/core/kinematics/capsule.hpp"
 
 namespace octoskin {
@@ -14,7 +15,7 @@ namespace octoskin {
 /// capture time. If any of them, or the margin, is not finite, every pixel goes: nobody knows where the robot
 /// is. The image must be of the camera's size (asserted). Only pixels inside a capsule's bounds are
 /// looked at: about 1 ms.
-std::size_t remove_robot(DepthImage& image, const CameraIntrinsics& camera,
+std::size_t remove_robot(DepthImage& image, const PixelRays& pixel_rays,
                          std::span<const PosedCapsule> body_camera, double margin_m);
 
 }  // namespace octoskin

@@ -64,7 +64,7 @@ HostRig to_host(const rig::Rig& rig) {
 
 HostCamera host_camera(const rig::Camera& camera) {
     HostCamera host;
-    host.intrinsics = {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy};
+    host.intrinsics = {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, camera.lens};
     host.depth_min_m = camera.depth_min_m;
     host.depth_max_m = camera.depth_max_m;
     host.T_base_camera = camera.T_base_camera;

@@ -1,18 +1,34 @@
 #include "host/io/tum/data_set_reader.hpp"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "host/io/tum/depth_png.hpp"
 #include "host/io/tum/line_file.hpp"
 
 namespace octoskin::tum {
 
-Result<DataSetReader, DepthSourceError> DataSetReader::open(const std::filesystem::path& folder) {
+std::vector<std::uint16_t> depth_mm_table(const DepthScale& scale) {
+    assert(scale.units_per_m > 0.0);
+    constexpr unsigned kValueMax = std::numeric_limits<std::uint16_t>::max();
+    std::vector<std::uint16_t> table(kValueMax + 1U, 0);
+    for (unsigned value = 0; value <= kValueMax; ++value) {
+        const double depth_mm = std::round(1000.0 * value / scale.units_per_m);
+        if (value != scale.no_value && depth_mm <= kValueMax)
+            table[value] = static_cast<std::uint16_t>(depth_mm);
+    }
+    return table;
+}
+
+Result<DataSetReader, DepthSourceError> DataSetReader::open(const std::filesystem::path& folder,
+                                                            const DepthScale& scale) {
     Paths paths{folder};
     auto trajectory = Trajectory::read(paths.poses());
     if (!trajectory) return unexpected(trajectory.error());
-    DataSetReader reader(std::move(paths), std::move(*trajectory));
+    DataSetReader reader(std::move(paths), std::move(*trajectory), scale);
     std::vector<Image>& images = reader.images_;
     const auto take = [&images](std::uint64_t number, std::string_view line) -> Status<std::string> {
         auto image = parse_image_line(line);
@@ -41,7 +57,7 @@ Result<std::optional<DepthFrame>, DepthSourceError> DataSetReader::next() {
         DepthFrame frame{named.captured, image->width, image->height, {}, T_map_camera};
         frame.depth_mm.reserve(image->values.size());
         std::transform(image->values.begin(), image->values.end(), std::back_inserter(frame.depth_mm),
-                       depth_mm_of);
+                       [this](std::uint16_t value) { return depth_mm_[value]; });
         return std::optional(std::move(frame));
     }
     return std::optional<DepthFrame>{};

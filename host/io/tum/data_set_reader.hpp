@@ -12,12 +12,16 @@
 
 namespace octoskin::tum {
 
-/// What a file of depth.txt means, in millimetres to the nearest one; 0, no value, stays 0. A pixel of 5000
-/// is 1 m: https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats
-[[nodiscard]] constexpr std::uint16_t depth_mm_of(std::uint16_t value) noexcept {
-    constexpr unsigned kValuesPerMm = 5;
-    return static_cast<std::uint16_t>((value + kValuesPerMm / 2) / kValuesPerMm);
-}
+/// What the pixels of an image mean. By default as in the benchmark: a pixel of 5000 is 1 m, 0 no value.
+/// https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats
+struct DepthScale {
+    double units_per_m = 5000.0;  ///< positive
+    std::uint16_t no_value = 0;
+};
+
+/// Every value that a pixel can have, in millimetres to the nearest one; 0 for no value, and for more than a
+/// depth frame holds, 65.535 m.
+[[nodiscard]] std::vector<std::uint16_t> depth_mm_table(const DepthScale& scale);
 
 class DataSetReader final : public DepthSource {
   public:
@@ -27,8 +31,10 @@ class DataSetReader final : public DepthSource {
         [[nodiscard]] std::filesystem::path poses() const { return folder / "groundtruth.txt"; }
     };
 
-    /// Reads both lists. Errors name file and line: no list, or an image before its predecessor.
-    [[nodiscard]] static Result<DataSetReader, DepthSourceError> open(const std::filesystem::path& folder);
+    /// Reads both lists; `scale`: of the images. Errors name file and line: no list, or an image before its
+    /// predecessor.
+    [[nodiscard]] static Result<DataSetReader, DepthSourceError> open(const std::filesystem::path& folder,
+                                                                      const DepthScale& scale = {});
 
     /// The next image that has a pose; the others are counted. Its frame says where the camera was. An error
     /// names the image and its line in depth.txt, and is the same for ever.
@@ -48,11 +54,12 @@ class DataSetReader final : public DepthSource {
         std::uint64_t line = 0;
         ImageLine named;
     };
-    DataSetReader(Paths paths, Trajectory trajectory)
-        : paths_(std::move(paths)), trajectory_(std::move(trajectory)) {}
+    DataSetReader(Paths paths, Trajectory trajectory, const DepthScale& scale)
+        : paths_(std::move(paths)), trajectory_(std::move(trajectory)), depth_mm_(depth_mm_table(scale)) {}
 
     Paths paths_;
     Trajectory trajectory_;
+    std::vector<std::uint16_t> depth_mm_;  ///< of each value of a pixel
     std::vector<Image> images_;
     std::size_t next_ = 0;
     std::uint64_t images_read_ = 0;

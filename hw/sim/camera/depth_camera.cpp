@@ -40,11 +40,29 @@ std::pair<std::uint32_t, std::uint32_t> pixels_of(Span span, double focal_px, do
             clamped(std::ceil(span.high * focal_px + centre_px - 0.5) + 1.0)};
 }
 
+std::vector<RaySlope> rays_of(const rig::Camera& camera) {
+    const LensInverse inverse(camera.lens);
+    std::vector<RaySlope> rays;
+    rays.reserve(std::size_t{camera.width} * camera.height);
+    for (std::uint32_t v = 0; v < camera.height; ++v) {
+        for (std::uint32_t u = 0; u < camera.width; ++u) {
+            const auto ray =
+                inverse.ray_of({(u + 0.5 - camera.cx) / camera.fx, (v + 0.5 - camera.cy) / camera.fy});
+            assert(ray.has_value());  // checked where the rig was read
+            rays.push_back(*ray);
+        }
+    }
+    return rays;
+}
+
 }  // namespace
 
 DepthCamera::DepthCamera(const World& world, const rig::Camera& camera, double sigma_m, std::uint64_t seed)
     : camera_(camera), sigma_m_(sigma_m), noise_(seed, NoiseSource::depth) {
     assert(camera.depth_max_m < 65.5);
+    if (!camera.lens.is_none()) {
+        rays_ = rays_of(camera);
+    }
     std::vector<Eigen::Vector3d> directions_base;
     directions_base.reserve(std::size_t{camera.width} * camera.height);
     for (std::uint32_t v = 0; v < camera.height; ++v) {
@@ -59,11 +77,18 @@ DepthCamera::DepthCamera(const World& world, const rig::Camera& camera, double s
 }
 
 Eigen::Vector3d DepthCamera::direction_camera(std::uint32_t u, std::uint32_t v) const {
+    if (!rays_.empty()) {
+        const RaySlope ray = rays_[std::size_t{v} * camera_.width + u];
+        return {ray.x, ray.y, 1.0};
+    }
     return {(u + 0.5 - camera_.cx) / camera_.fx, (v + 0.5 - camera_.cy) / camera_.fy, 1.0};
 }
 
 DepthCamera::Rectangle DepthCamera::bounds_of(const BodyCapsule& capsule) const {
     const Rectangle everything{0, camera_.width, 0, camera_.height};
+    if (!rays_.empty()) {
+        return everything;  // the lens bends the hull, too
+    }
     Rectangle bounds{camera_.width, 0, camera_.height, 0};
     // A capsule is the convex hull of its two end spheres, so the hull of their pictures holds its picture.
     for (const Eigen::Vector3d* end : {&capsule.p_base_a, &capsule.p_base_b}) {

@@ -11,8 +11,8 @@
 
 namespace octoskin::sim {
 
-/// A pinhole camera that stands still in a world that stands still: the world is cast once, the robot per
-/// frame.
+/// A camera that stands still in a world that stands still: the world is cast once, the robot per frame. Its
+/// lens bends the picture as the rig says.
 class DepthCamera {
   public:
     /// `camera`: depth_max_m below 65.5 m (asserted). `sigma_m`: deviation of each pixel's depth. One ray a
@@ -42,6 +42,7 @@ class DepthCamera {
     [[nodiscard]] std::uint16_t measured_mm(double depth_m, const Noise& noise, std::size_t pixel) const;
 
     rig::Camera camera_;
+    std::vector<RaySlope> rays_;  ///< row-major; empty for a pinhole
     double sigma_m_;
     Noise noise_;
     std::vector<double> background_m_;  ///< the world's depth; infinity where there is none

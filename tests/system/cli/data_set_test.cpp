@@ -75,6 +75,18 @@ TEST_F(DataSet, gives_the_map_of_a_recording_with_the_same_images) {
     EXPECT_EQ(again.exit_code, 0) << again.output;  // over the maps of the replay before
 }
 
+TEST_F(DataSet, a_lens_that_no_pixel_by_pixel_inverse_is_of_is_refused_before_anything_is_read) {
+    write_data_set(path("set"));
+    write(path("rig.yaml"), "extends: " + source("tests/data/short/rig.yaml") +
+                                "\ncamera:\n  distortion: {k1: -0.9, k2: 0.1}\n");
+    const Said said = octoskin("replay " + path("set") + " --rig " + path("rig.yaml"));
+    EXPECT_EQ(said.exit_code, 78) << said.output;
+    EXPECT_THAT(said.output,
+                HasSubstr("rig.yaml:3: camera.distortion: expected coefficients that give each pixel "
+                          "one ray, found k1 -0.9, k2 0.1"));
+    EXPECT_FALSE(std::filesystem::exists(path("set/maps/fused.ot")));
+}
+
 TEST_F(DataSet, is_explained_voxel_by_voxel) {
     WrittenDataSet data_set(path("set"));
     for (int i = 0; i < 3; ++i) {

@@ -41,9 +41,11 @@ camera:
   fy_px: 60.5
   cx_px: 32.5
   cy_px: 24.5
+  distortion: {k1: 0.125, k2: -0.25, p1: 0.001, p2: -0.002, k3: 0.0625}
   rate_hz: 15
   depth_min_m: 0.3
   depth_max_m: 4.25
+  data_set: {depth_units_per_m: 1000, depth_no_value: 65535}
   pose: {xyz_m: [2.7, 0, 1.8], looking_at_m: [0.4, 0, 0.45]}
 nodes:
   - name: board
@@ -117,6 +119,9 @@ TEST_F(RigText, every_value_of_a_full_rig_arrives) {
     EXPECT_EQ(rig.range_limits.sigma_max_m, 0.15);
     EXPECT_EQ(rig.range_limits.time_uncertainty_max_ms, 2.5);
     EXPECT_EQ(rig.camera->fy, 60.5);
+    EXPECT_EQ(rig.camera->lens,
+              (LensDistortion{.k1 = 0.125, .k2 = -0.25, .p1 = 0.001, .p2 = -0.002, .k3 = 0.0625}));
+    EXPECT_EQ(rig.camera->data_set, (DataSetDepth{.units_per_m = 1000.0, .no_value = 65'535}));
     EXPECT_EQ(rig.joints.rate_hz, 100.5);
     const Node& node = rig.nodes.at(0);
     EXPECT_EQ(node.pinned_build_id, 0x1A2B3C4DU);
@@ -153,6 +158,8 @@ TEST_F(RigText, canonical_text_reads_back_to_the_same_text_and_the_same_numbers)
     EXPECT_EQ(canonical_text(again, "two-links.urdf"), text);
     EXPECT_TRUE(again.T_map_base.matrix() == rig.T_map_base.matrix());
     EXPECT_TRUE(again.camera->T_base_camera.matrix() == rig.camera->T_base_camera.matrix());
+    EXPECT_EQ(again.camera->lens, rig.camera->lens);
+    EXPECT_EQ(again.camera->data_set, rig.camera->data_set);
     EXPECT_TRUE(again.nodes[0].sensors[0].T_link_sensor.matrix() ==
                 rig.nodes[0].sensors[0].T_link_sensor.matrix());
     EXPECT_EQ(again.nodes[0].config, rig.nodes[0].config);
@@ -267,6 +274,13 @@ const Change kChanges[] = {
     {"rate_hz: 100.5", "rate_hz: 100", false},
     {"node_id: 9", "node_id: 8", false},
     {"fx_px: 60.25", "fx_px: 60", false},
+    {"k1: 0.125", "k1: 0.126", false},
+    {"k2: -0.25", "k2: -0.251", false},
+    {"p1: 0.001", "p1: 0.0011", false},
+    {"p2: -0.002", "p2: -0.0021", false},
+    {"k3: 0.0625", "k3: 0", false},
+    {"depth_units_per_m: 1000", "depth_units_per_m: 5000", false},
+    {"depth_no_value: 65535", "depth_no_value: 65534", false},
     {"xyz_m: [2.7, 0, 1.8]", "xyz_m: [2.7, 0, 0.6]", false},
     {"name: board", "name: bord", false},
     {"pinned_build_id: 0x1a2b3c4d", "pinned_build_id: ~", false},
@@ -276,6 +290,21 @@ const Change kChanges[] = {
     {"rpy_deg: [0, 89, 1]", "rpy_deg: [0, 89, 2]", false},
     {"offset_m: 0.003", "offset_m: 0.004", false},
 };
+
+TEST_F(RigText, of_a_camera_without_lens_and_scale_is_what_it_was_before_there_were_such_keys) {
+    std::string plain =
+        replaced(kFullRig, "  distortion: {k1: 0.125, k2: -0.25, p1: 0.001, p2: -0.002, k3: 0.0625}\n", "");
+    plain = replaced(plain, "  data_set: {depth_units_per_m: 1000, depth_no_value: 65535}\n", "");
+    const Rig rig = read_good(plain);
+    EXPECT_TRUE(rig.camera->lens.is_none());
+    EXPECT_EQ(canonical_text(rig, "r").find("distortion"), std::string::npos);
+    EXPECT_EQ(canonical_text(rig, "r").find("data_set"), std::string::npos);
+    const Rig written_out =
+        read_good(replaced(plain, "  rate_hz: 15\n",
+                           "  distortion: {k1: 0}\n  data_set: {depth_units_per_m: 5000}\n"
+                           "  rate_hz: 15\n"));
+    EXPECT_EQ(rig_hash(written_out), rig_hash(rig));
+}
 
 TEST_F(RigText, data_ready_lines_arrive_and_survive_the_canonical_text) {
     const Rig rig =

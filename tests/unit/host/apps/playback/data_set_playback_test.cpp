@@ -4,11 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <random>
 
 #include "host/core/pipeline/depth_stage.hpp"
 #include "tests/support/data_set/written_data_set.hpp"
+#include "tests/support/lens/published_lens.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
@@ -109,6 +111,60 @@ TEST_F(DataSetPlayback, maps_each_image_from_where_the_camera_was) {
     EXPECT_EQ(played->outcome.progress.depth_frames, std::uint64_t{kFrames});
     EXPECT_EQ(voxels_of(*played->pipeline.maps().depth()), voxels_of(*expected.depth()));
     EXPECT_EQ(voxels_of(*played->pipeline.maps().fused()), voxels_of(*expected.fused()));
+}
+
+/// A plane that leans, 2 m from the camera, as this lens pictures it: in millimetres, every fourth pixel of
+/// every fourth row, 65535 elsewhere.
+Grey leaning_plane(const testing_support::PublishedCamera& camera, const Eigen::Vector3d& normal) {
+    Grey image{640, 480, std::vector<std::uint16_t>(640 * 480, 65'535)};
+    for (unsigned v = 0; v < 480; v += 4) {
+        for (unsigned u = 0; u < 640; u += 4) {
+            const auto [x, y] = testing_support::unproject(camera, u, v);
+            image.values[v * 640 + u] =
+                static_cast<std::uint16_t>(std::lround(2'000.0 / normal.dot(Eigen::Vector3d(x, y, 1.0))));
+        }
+    }
+    return image;
+}
+
+/// How far the furthest occupied voxel's centre is from that plane.
+double furthest_m(const FusedMap& map, const Eigen::Vector3d& normal) {
+    const VoxelLattice lattice(map.resolution_m());
+    double furthest_m = 0.0;
+    map.for_each_known([&](VoxelKey key, float log_odds) {
+        if (log_odds > 0.0F)
+            furthest_m = std::max(furthest_m, std::abs(normal.dot(lattice.centre_of(key)) - 2.0));
+    });
+    return furthest_m;
+}
+
+// Oracle: the plane, and OpenCV's published lens.
+TEST_F(DataSetPlayback, scale_missing_value_intrinsics_and_lens_are_the_rigs) {
+    const auto& camera = testing_support::kTumCameras.at(0);  // freiburg1's colour one, a bare lens
+    const Eigen::Vector3d normal = Eigen::Vector3d(0.6, 0.3, 1.0).normalized();
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_image("100", leaning_plane(camera, normal));
+    const std::string rig = "extends: " OCTOSKIN_SOURCE_DIR
+                            "/tests/data/rigs/one-sensor.yaml\ncamera:\n"
+                            "  {width_px: 640, height_px: 480, fx_px: 517.3, fy_px: 516.5, cx_px: 319.1, "
+                            "cy_px: 255.8, rate_hz: 30,\n   pose: {xyz_m: [0, 0, 0], rpy_deg: [0, 0, 0]},\n"
+                            "   data_set: {depth_units_per_m: 1000, depth_no_value: 65535}";
+    PlaybackRequest with_lens = request();
+    with_lens.mapping.map.resolution_m = 0.02;
+    PlaybackRequest without_lens = with_lens;
+    with_lens.rig = scratch_.write(
+        "lens.yaml",
+        rig + ",\n   distortion: {k1: 0.2624, k2: -0.9531, p1: -0.0054, p2: 0.0026, k3: 1.1633}}\n");
+    without_lens.rig = scratch_.write("pinhole.yaml", rig + "}\n");
+    const auto played = play_recording(with_lens);
+    ASSERT_TRUE(played) << played.error().message;
+    EXPECT_EQ(played->pipeline.depth_stage()->pixels().used, 160U * 120U);
+    constexpr double kHalfDiagonalM = 0.0174;  // of a voxel of 2 cm
+    EXPECT_LT(furthest_m(*played->pipeline.maps().depth(), normal), kHalfDiagonalM + 0.001);
+    const auto bent = play_recording(without_lens);
+    ASSERT_TRUE(bent) << bent.error().message;
+    EXPECT_GT(furthest_m(*bent->pipeline.maps().depth(), normal), 0.03);
+    EXPECT_NE(bent->origin.rig_hash, played->origin.rig_hash);
 }
 
 TEST_F(DataSetPlayback, accounts_for_every_image) {

@@ -93,6 +93,19 @@ TEST(DepthIntegrator, takes_the_range_along_the_ray_and_not_the_depth_for_the_hi
     EXPECT_EQ(result->updates.back(), (VoxelUpdate{{kZero + 2, kZero, kZero + 2}, 0.75F}));
 }
 
+TEST(DepthIntegrator, places_a_point_on_its_ray_and_not_where_the_lens_shows_it) {
+    // A lens with k1 = -0.25 shows the ray (1, 0, 1) at 1 - 0.25 = 0.75, where this pixel is: depth 4 m is 4
+    // m to the side, from 0.5 m to 4.5 m; without the lens it would be 3 m.
+    CameraIntrinsics camera{.width = 1, .height = 1, .fx = 4.0, .fy = 4.0, .cx = -2.5, .cy = 0.5};
+    const auto end_of = [&camera] {
+        DepthIntegrator integrator(coarse(paper_mapping()), camera);
+        return integrator.integrate(image_of({4.0F}), at_half_metres())->updates.back().key;
+    };
+    EXPECT_EQ(end_of(), (VoxelKey{kZero + 3, kZero, kZero + 4}));
+    camera.lens.k1 = -0.25;
+    EXPECT_EQ(end_of(), (VoxelKey{kZero + 4, kZero, kZero + 4}));
+}
+
 TEST(DepthIntegrator, counts_every_pixel_under_one_name_and_uses_only_the_good_ones) {
     DepthIntegrator integrator(coarse(paper_mapping()), narrow_camera(8));
     const auto result = integrator.integrate(

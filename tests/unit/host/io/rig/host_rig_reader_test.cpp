@@ -71,8 +71,10 @@ TEST(HostRigReader, counts_signal_messages_on_a_classical_bus_alone) {
 
 TEST(HostRigReader, takes_over_the_camera_or_its_absence) {
     rig::Rig rig = experiment();
+    rig.camera->lens = {.k1 = 0.1, .k2 = 0.2, .p1 = 0.003, .p2 = 0.004, .k3 = 0.5};
     const auto with = make_host_setup(rig);
     ASSERT_TRUE(with->rig.camera);
+    EXPECT_EQ(with->rig.camera->intrinsics.lens, rig.camera->lens);
     EXPECT_EQ(with->rig.camera->intrinsics.width, 512U);
     EXPECT_EQ(with->rig.camera->intrinsics.height, 424U);
     EXPECT_EQ(with->rig.camera->intrinsics.fx, 365.0);

@@ -49,10 +49,26 @@ class DataSetReaderTest : public testing::Test {
 };
 
 TEST(DepthScale, is_the_nearest_millimetre_of_5000_a_metre_for_every_value) {
-    for (unsigned value = 0; value <= 0xFFFF; ++value) {
-        ASSERT_EQ(depth_mm_of(static_cast<std::uint16_t>(value)), std::lround(1000.0 * value / 5000.0))
-            << value;
-    }
+    const std::vector<std::uint16_t> table = depth_mm_table({});
+    for (unsigned value = 0; value <= 0xFFFF; ++value)
+        ASSERT_EQ(table.at(value), std::lround(1000.0 * value / 5000.0)) << value;
+    EXPECT_EQ(table.size(), 0x10000U);
+}
+
+TEST(DepthScale, is_what_the_data_set_says_and_what_a_frame_does_not_hold_is_no_value) {
+    const std::vector<std::uint16_t> millimetres =
+        depth_mm_table({.units_per_m = 1000.0, .no_value = 65'535});
+    EXPECT_EQ(millimetres.at(1234), 1234);
+    EXPECT_EQ(millimetres.at(65'534), 65'534);
+    EXPECT_EQ(millimetres.at(65'535), 0);
+    EXPECT_EQ(millimetres.at(0), 0);
+    const std::vector<std::uint16_t> coarse = depth_mm_table({.units_per_m = 256.0, .no_value = 7});
+    EXPECT_EQ(coarse.at(256), 1000);
+    EXPECT_EQ(coarse.at(7), 0);
+    EXPECT_EQ(coarse.at(8), 31);  // 31.25 mm
+    EXPECT_EQ(coarse.at(16'776), 65'531);
+    EXPECT_EQ(coarse.at(16'777), 65'535);
+    EXPECT_EQ(coarse.at(16'778), 0);  // 65.539 m
 }
 
 TEST_F(DataSetReaderTest, gives_every_image_with_its_time_and_where_the_camera_was) {
@@ -76,6 +92,14 @@ TEST_F(DataSetReaderTest, gives_every_image_with_its_time_and_where_the_camera_w
     EXPECT_FALSE(*reader.next());
     EXPECT_EQ(reader.images_read(), 2U);
     EXPECT_EQ(reader.images_left(), 0U);
+}
+
+TEST_F(DataSetReaderTest, takes_scale_and_missing_value_as_they_are_given) {
+    written_.add_pose("100.00", "0 0 1 0 0 0 1");
+    written_.add_image("100.00", {3, 1, {0, 1500, 65'535}});
+    auto reader = DataSetReader::open(written_.folder(), {.units_per_m = 1000.0, .no_value = 65'535});
+    ASSERT_TRUE(reader) << reader.error().what;
+    EXPECT_THAT((*reader->next())->depth_mm, ElementsAre(0, 1500, 0));
 }
 
 TEST_F(DataSetReaderTest, counts_images_of_which_no_pose_is_known_and_does_not_read_them) {

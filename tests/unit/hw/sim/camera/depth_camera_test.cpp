@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "hw/sim/world/shapes.hpp"
+#include "tests/support/lens/published_lens.hpp"
 
 namespace octoskin::sim {
 namespace {
@@ -59,6 +60,40 @@ TEST(DepthCamera, sends_its_rays_through_the_middles_of_the_pixels) {
     EXPECT_EQ(at(image, 100, 174), 0);
     EXPECT_EQ(at(image, 100, 393), 1000);
     EXPECT_EQ(at(image, 100, 395), 0);
+}
+
+// Oracle: OpenCV's published formula and its inverse.
+TEST(DepthCamera, bends_its_picture_as_the_lens_does) {
+    rig::Camera model = camera_at({0, 0, 0});
+    model.lens = {.k1 = 0.2624, .k2 = -0.9531, .p1 = -0.0054, .p2 = 0.0026, .k3 = 1.1633};
+    const testing_support::PublishedCamera published{
+        "", 365, 365, 255.5, 211.5, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
+    // The box of the test above: its right edge is 0.2 to the right of the axis, 1 m ahead.
+    const World world(std::vector<Solid>{box_at({1.0, 1.0, 0.6}, {1.5, 0.3, -0.2})});
+    const DepthCamera camera(world, model, 0.0, 0);
+    const auto image = camera.render({}, 0);
+    for (double down = -0.08; down < 0.45; down += 0.01) {
+        const auto [column, row] = testing_support::project(published, 0.2, down);
+        const auto u = static_cast<std::size_t>(std::lround(column));
+        const auto v = static_cast<std::size_t>(std::lround(row));
+        EXPECT_EQ(at(image, u - 1, v), 1000) << down;
+        EXPECT_EQ(at(image, u + 1, v), 0) << down;
+    }
+    // A robot in front of the wall, pixel by pixel.
+    const World behind = wall();
+    const std::vector<BodyCapsule> body{{{1.0, 0.4, -0.3}, {1.4, 0.7, 0.5}, 0.08}};
+    const auto picture = DepthCamera(behind, model, 0.0, 0).render(body, 0);
+    int robot_pixels = 0;
+    for (std::uint32_t v = 0; v < 424; v += 3) {
+        for (std::uint32_t u = 0; u < 512; u += 3) {
+            const auto [x, y] = testing_support::unproject(published, u, v);
+            const auto t = cast_body(body, Eigen::Vector3d::Zero(), Eigen::Vector3d(1.0, -x, -y));
+            const double depth_m = std::min(2.0, t.value_or(2.0));
+            ASSERT_EQ(at(picture, u, v), std::lround(1e3 * depth_m)) << u << ", " << v;
+            robot_pixels += depth_m < 2.0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(robot_pixels, 500);
 }
 
 TEST(DepthCamera, sees_nothing_nearer_or_further_than_its_limits) {
