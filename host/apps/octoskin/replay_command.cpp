@@ -142,9 +142,10 @@ void add_replay_command(CLI::App& app) {
                         "Send the frames of can.log onto this CAN interface (fd:N: an open socket) in place "
                         "of making maps");
     command
-        ->add_flag("--step", options->is_stepped,
-                   "Show each frame of the log, or each reading and depth frame of a daemon's own order, and "
-                   "wait for the enter key")
+        ->add_flag(
+            "--step", options->is_stepped,
+            "Show each frame of the log, each reading and depth frame of a daemon's own order, or each "
+            "image of a data set, and wait for the enter key")
         ->excludes(speed);
     command->callback([options] {
         if (options->out.empty()) options->out = options->playback.recording / "maps";

@@ -124,8 +124,6 @@ bool is_data_set(const RecordingPaths& recording) {
 Status<AppError> check_data_set(const PlaybackRequest& request) {
     const std::string name = request.recording.directory.string() + ": a data set (depth.txt)";
     if (!request.robot.empty()) return fail(ExitCode::usage, name + " has no robot: without --robot");
-    if (request.pace.waits())
-        return fail(ExitCode::usage, name + " is played as fast as it goes: without --speed and --step");
     if (!request.rig.empty() && !request.camera.empty())
         return fail(ExitCode::usage, name + " takes --rig or --camera, not both");
     return Done{};
@@ -145,7 +143,8 @@ Result<Playback, AppError> play_data_set(const PlaybackRequest& request_given, c
     auto pipeline = make_pipeline(request, rig);
     if (!pipeline) return unexpected(pipeline.error());
     NoBus bus;
-    ReplayOutcome outcome = replay(*pipeline, bus, &*reader, report);
+    PacedDepth paced(*reader, request.pace);
+    ReplayOutcome outcome = replay(*pipeline, bus, &paced, report);
     outcome.progress.begin = reader->begin();
     AccountTable images = image_table(*reader, outcome);
     std::vector<AccountTable> accounts{std::move(images)};

@@ -26,6 +26,12 @@ std::string text_of(const StampedFrame& entry) {
     return line;
 }
 
+std::string text_of(const DepthFrame& frame, std::uint64_t index) {
+    constexpr std::int64_t kSecond_ns = 1'000'000'000;
+    return fmt::format("depth image {} of {}.{:09}: {} x {}", index, frame.captured.ns / kSecond_ns,
+                       frame.captured.ns % kSecond_ns, frame.width, frame.height);
+}
+
 struct Describe {
     std::string operator()(const JointMeasurement&) const { return "joint sample"; }
     std::string operator()(const RangeMeasurement& reading) const {
@@ -81,6 +87,14 @@ Result<std::optional<StampedFrame>, CanSourceError> PacedCan::next() {
     if (pace_.waits() && entry && entry->has_value())
         pace_.wait((*entry)->stamp.ns, pace_.steps() ? text_of(**entry) : std::string());
     return entry;
+}
+
+Result<std::optional<DepthFrame>, DepthSourceError> PacedDepth::next() {
+    auto frame = source_.next();
+    if (!pace_.waits() || !frame || !frame->has_value()) return frame;
+    pace_.wait((*frame)->captured.ns, pace_.steps() ? text_of(**frame, frames_) : std::string());
+    ++frames_;
+    return frame;
 }
 
 Result<std::optional<Commit>, CommitSourceError> PacedCommits::next() {

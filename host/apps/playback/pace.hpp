@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "host/core/depth/depth_source.hpp"
 #include "host/core/pipeline/can_source.hpp"
 #include "host/core/pipeline/ordered_replay.hpp"
 
@@ -47,6 +48,18 @@ class PacedCan final : public CanSource {
   private:
     CanSource& source_;
     Pace pace_;
+};
+
+/// Depth frames where nothing else tells the time, each at its own.
+class PacedDepth final : public DepthSource {
+  public:
+    PacedDepth(DepthSource& source, Pace pace) : source_(source), pace_(std::move(pace)) {}
+    [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override;
+
+  private:
+    DepthSource& source_;
+    Pace pace_;
+    std::uint64_t frames_ = 0;
 };
 
 /// Commits of a daemon, each at its time.

@@ -1,6 +1,7 @@
 // A TUM RGB-D data set through the program, against an .oni recording of the same images.
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <random>
 #include <sstream>
 
@@ -73,6 +74,27 @@ TEST_F(DataSet, gives_the_map_of_a_recording_with_the_same_images) {
         EXPECT_EQ(content(path("set/maps/") + map), content(path("recording/maps/") + map)) << map;
     const Said again = octoskin("replay " + path("set") + " --rig " + path("recording/rig.yaml"));
     EXPECT_EQ(again.exit_code, 0) << again.output;  // over the maps of the replay before
+}
+
+TEST_F(DataSet, plays_at_the_speed_asked_for_and_step_by_step_into_the_same_map) {
+    write_data_set(path("set"));
+    const std::string rig = " --rig " + source("tests/data/short/rig.yaml");
+    ASSERT_EQ(octoskin("replay " + path("set") + rig).exit_code, 0);
+    const std::string map = content(path("set/maps/fused.ot"));
+    // 0.5 s of images.
+    const auto began = std::chrono::steady_clock::now();
+    const Said slow = octoskin("replay " + path("set") + rig + " --out " + path("slow") + " --speed 1");
+    EXPECT_GE(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(499));
+    EXPECT_EQ(slow.exit_code, 0) << slow.output;
+    EXPECT_EQ(content(path("slow/fused.ot")), map);
+    EXPECT_EQ(octoskin("replay " + path("set") + rig + " --out " + path("fast") + " --speed 50").exit_code,
+              0);
+    EXPECT_EQ(content(path("fast/fused.ot")), map);
+    const Said stepped = run("yes '' | head -6 | " OCTOSKIN_PROGRAM " replay " + path("set") + rig +
+                             " --out " + path("stepped") + " --step");
+    EXPECT_EQ(stepped.exit_code, 0) << stepped.output;
+    EXPECT_THAT(stepped.output, HasSubstr("depth image 5 of 1.500000000: 128 x 106"));
+    EXPECT_EQ(content(path("stepped/fused.ot")), map);
 }
 
 TEST_F(DataSet, a_lens_that_no_pixel_by_pixel_inverse_is_of_is_refused_before_anything_is_read) {

@@ -60,5 +60,37 @@ TEST(Pace, by_step_asks_before_each) {
     EXPECT_EQ(asked, (std::vector<std::string>{"one", "two"}));
 }
 
+/// Two frames 80 ms apart, then an error, again and again.
+class TwoFrames final : public DepthSource {
+  public:
+    [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override {
+        if (given_ == 2) return unexpected(DepthSourceError{"cut off"});
+        return std::optional(DepthFrame{HostTime{7'000'000'000 + 80'000'000 * given_++}, 3, 2, {}});
+    }
+
+  private:
+    std::int64_t given_ = 0;
+};
+
+TEST(PacedDepth, gives_each_frame_at_its_time_and_errors_at_once) {
+    TwoFrames source;
+    PacedDepth paced(source, Pace::times(2.0));
+    EXPECT_EQ((*paced.next())->captured.ns, 7'000'000'000);
+    EXPECT_GE(time_of([&] { EXPECT_EQ((*paced.next())->captured.ns, 7'080'000'000); }), 39ms);
+    EXPECT_EQ(paced.next().error().what, "cut off");
+    EXPECT_EQ(paced.next().error().what, "cut off");
+}
+
+TEST(PacedDepth, shows_each_frame_step_by_step) {
+    TwoFrames source;
+    std::vector<std::string> shown;
+    PacedDepth paced(source, Pace::by_step([&](const std::string& what) { shown.push_back(what); }));
+    ASSERT_TRUE(paced.next());
+    ASSERT_TRUE(paced.next());
+    EXPECT_FALSE(paced.next());
+    EXPECT_EQ(shown, (std::vector<std::string>{"depth image 0 of 7.000000000: 3 x 2",
+                                               "depth image 1 of 7.080000000: 3 x 2"}));
+}
+
 }  // namespace
 }  // namespace octoskin
