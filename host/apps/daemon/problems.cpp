@@ -64,6 +64,11 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
              fmt::format("{}: (nearly) all of its last {} readings were rejected, most as {}", who,
                          FateHistory::kKept, names_of(ReadingReason{})[static_cast<std::size_t>(*streak)])});
     }
+    const SensorWitness* const witness = view.pipeline->builder().witness();
+    if (witness == nullptr) return;
+    const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(index));
+    if (evidence.contradicts)
+        problems.push_back({who + " camera", fmt::format("{}: {}", who, describe(evidence))});
 }
 
 void add_nodes(const DaemonView& view, Problems& problems) {

@@ -71,6 +71,14 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
         record.newest_rejected
             ? Json(names_of(ReadingReason{})[static_cast<std::size_t>(*record.newest_rejected)])
             : Json(nullptr);
+    json["camera"] = nullptr;
+    if (const SensorWitness* const witness = view.pipeline->builder().witness()) {
+        const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(index));
+        json["camera"] = {{"contradicts", evidence.contradicts},
+                          {"agreed", evidence.agreed},
+                          {"in_free_space", evidence.in_free_space},
+                          {"behind_surface", evidence.behind_surface}};
+    }
     return json;
 }
 

@@ -132,15 +132,17 @@ class Screen {
                                       ? fmt::format("{:7.3f} m", number(at(sensor, "range_m")))
                                       : std::string("        -");
         const bool is_ranging = text(at(sensor, "state")) == "ranging";
+        const bool contradicts = at(at(sensor, "camera"), "contradicts") == true;
         const bool has_fault = !at(sensor, "fault").is_null() && text(at(sensor, "fault")) != "none";
-        add(fmt::format(
-                "  {:>2} {:<14} {} {:>8} {:>12}  status {}{}{}{}", text(at(sensor, "index")),
-                text(at(sensor, "name")), range,
-                rate(at(before, "received"), at(sensor, "received"), passed_), age(at(sensor, "age_s")),
-                text(at(sensor, "device_status")), is_ranging ? "" : ", " + text(at(sensor, "state")),
-                has_fault ? ", " + text(at(sensor, "fault")) : "",
-                at(sensor, "rejected").is_null() ? "" : ", not used: " + text(at(sensor, "rejected"))),
-            is_ranging ? Emphasis::none : Emphasis::bad);
+        add(fmt::format("  {:>2} {:<14} {} {:>8} {:>12}  status {}{}{}{}{}", text(at(sensor, "index")),
+                        text(at(sensor, "name")), range,
+                        rate(at(before, "received"), at(sensor, "received"), passed_),
+                        age(at(sensor, "age_s")), text(at(sensor, "device_status")),
+                        is_ranging ? "" : ", " + text(at(sensor, "state")),
+                        has_fault ? ", " + text(at(sensor, "fault")) : "",
+                        at(sensor, "rejected").is_null() ? "" : ", not used: " + text(at(sensor, "rejected")),
+                        contradicts ? ", CONTRADICTS the camera" : ""),
+            is_ranging && !contradicts ? Emphasis::none : Emphasis::bad);
     }
     void add_joints() {
         const auto used = [](const Json& status) -> const Json& {

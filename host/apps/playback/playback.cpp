@@ -148,6 +148,21 @@ void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInp
     }
 }
 
+/// Sensors that the camera speaks against: swapped at the harness, stuck, or not where the rig has them.
+void find_contradictions(const HostRig& rig, Playback& playback) {
+    const SensorWitness* const witness = playback.pipeline.builder().witness();
+    if (witness == nullptr) return;
+    for (const HostNode& node : rig.nodes) {
+        for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+            const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(i));
+            if (!evidence.contradicts) continue;
+            playback.warnings.push_back("node " + std::to_string(node.node_id) + " '" + node.name +
+                                        "' sensor " + std::to_string(i) + " '" + node.sensors[i].name +
+                                        "': " + describe(evidence));
+        }
+    }
+}
+
 void find_full_maps(Playback& playback) {
     const std::pair<const char*, const FusedMap*> maps[] = {
         {"depth", playback.pipeline.maps().depth()},
@@ -268,6 +283,7 @@ Result<Playback, AppError> play_robot(const PlaybackRequest& request, const Repl
         if (auto loss = depth.reader->loss()) playback->warnings.push_back(std::move(*loss));
     }
     find_warnings(*meta, rig, depth, *playback);
+    find_contradictions(rig, *playback);
     return playback;
 }
 

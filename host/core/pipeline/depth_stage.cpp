@@ -57,12 +57,15 @@ Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, c
     }
     const Eigen::Isometry3d T_base_camera =
         frame.T_map_camera ? T_map_base_.inverse() * *frame.T_map_camera : camera_.T_base_camera;
+    if (needs_robot()) {
+        with_robot_ = image;
+    }
     const std::uint64_t robot_pixels = needs_robot() ? take_robot_out(image, *robot, T_base_camera) : 0;
-    Result<DepthUpdates, DepthRejection> updates =
-        integrator_.integrate(image, frame.T_map_camera.value_or(T_map_camera_));
+    Result<DepthUpdates, DepthRejection> updates = integrator_.integrate(image, T_map_camera_of(frame));
     if (!updates) {
         return unexpected(reason_of(updates.error()));
     }
+    without_robot_ = std::move(image);
     robot_pixels_ += robot_pixels;
     pixels_.used += updates->pixels.used;
     pixels_.no_value += updates->pixels.no_value;

@@ -10,6 +10,7 @@
 #include "host/core/mapping/depth_integrator.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/rig/host_rig.hpp"
+#include "host/core/witness/sensor_witness.hpp"
 
 namespace octoskin {
 
@@ -25,6 +26,13 @@ class DepthStage {
     [[nodiscard]] Result<DepthUpdates, DepthReason> updates(const DepthFrame& frame, const RobotPose* robot);
 
     [[nodiscard]] const HostCamera& camera() const noexcept { return camera_; }
+    /// Of the newest frame that gave updates, if the robot is taken out: filtered, as it came and without the
+    /// robot.
+    [[nodiscard]] WitnessImages witness_images() const noexcept { return {with_robot_, without_robot_}; }
+    /// Where a frame was seen from.
+    [[nodiscard]] Eigen::Isometry3d T_map_camera_of(const DepthFrame& frame) const {
+        return frame.T_map_camera.value_or(T_map_camera_);
+    }
 
     /// Pixels set to nothing because they show the robot, over all frames that came into the map.
     [[nodiscard]] std::uint64_t robot_pixels() const noexcept { return robot_pixels_; }
@@ -43,6 +51,8 @@ class DepthStage {
     Eigen::Isometry3d T_map_camera_;  ///< of a frame that does not say where the camera was
     DepthIntegrator integrator_;
     std::vector<PosedCapsule> body_camera_;
+    DepthImage with_robot_;
+    DepthImage without_robot_;
     std::uint64_t robot_pixels_ = 0;
     DepthPixelCounts pixels_;
 };

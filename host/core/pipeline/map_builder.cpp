@@ -44,6 +44,9 @@ MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams
     if (rig.camera) {
         depth_stage_.emplace(rig, mapping);
     }
+    if (rig.camera && mapping.removes_robot_from_depth) {
+        witness_.emplace(rig, WitnessConfig{.camera_sigma_m = mapping.depth_filter.sigma_m});
+    }
 }
 
 Status<JointReason> MapBuilder::add(const JointMeasurement& joints) {
@@ -57,6 +60,9 @@ Status<JointReason> MapBuilder::add(const JointMeasurement& joints) {
 void MapBuilder::forget_motion() {
     if (listener_ != nullptr) {
         listener_->on_time_back();
+    }
+    if (witness_) {
+        witness_->forget_beams();
     }
     robot_.forget();
 }
@@ -75,6 +81,9 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
         return unexpected(reason_of(updates.error()));
     }
     maps_.add_proximity(*updates);
+    if (witness_) {
+        witness_->on_beam(*beam);
+    }
     if (listener_ != nullptr) {
         listener_->on_reading(measurement, *beam, *updates);
     }
@@ -94,6 +103,10 @@ Status<DepthReason> MapBuilder::integrate(const DepthFrame& frame) {
         return unexpected(updates.error());
     }
     maps_.add_depth(updates->updates);
+    if (witness_) {
+        witness_->on_depth(depth_stage_->witness_images(), depth_stage_->T_map_camera_of(frame),
+                           frame.captured);
+    }
     if (listener_ != nullptr) {
         listener_->on_depth(frame, updates->updates);
     }

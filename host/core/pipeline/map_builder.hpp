@@ -19,6 +19,7 @@
 #include "host/core/pipeline/map_set.hpp"
 #include "host/core/pipeline/robot_tracker.hpp"
 #include "host/core/rig/host_rig.hpp"
+#include "host/core/witness/sensor_witness.hpp"
 
 namespace octoskin {
 
@@ -63,6 +64,9 @@ class MapBuilder {
     [[nodiscard]] const DepthStage* depth_stage() const noexcept {
         return depth_stage_ ? &*depth_stage_ : nullptr;
     }
+    /// What the camera says of the range sensors; null without a camera, and where the robot stays in its
+    /// image.
+    [[nodiscard]] const SensorWitness* witness() const noexcept { return witness_ ? &*witness_ : nullptr; }
 
   private:
     MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
@@ -72,6 +76,7 @@ class MapBuilder {
     BeamBuilder beams_;
     BeamIntegrator beam_integrator_;
     std::optional<DepthStage> depth_stage_;
+    std::optional<SensorWitness> witness_;
     MapSet maps_;
     CommitListener* listener_ = nullptr;
 };

@@ -225,6 +225,27 @@ TEST_F(DaemonTest, takes_the_frames_of_a_camera_and_goes_on_without_it) {
     EXPECT_GT(daemon_->status()["account"]["readings"]["used"].get<int>(), used) << "the ranges stood still";
 }
 
+// The camera is shown a wall 3 m away where the sensors see the experiment's shelves: it sees through them.
+TEST_F(DaemonTest, tells_of_each_sensor_what_the_camera_says_of_its_ranges) {
+    start({"--camera", record_wall(folder_).string()});
+    const auto contradicted = [](const Json& status) {
+        for (const Json& node : status["nodes"]) {
+            for (const Json& sensor : node["sensors"])
+                if (sensor["camera"]["in_free_space"].get<int>() > 0) return true;
+        }
+        return false;
+    };
+    ASSERT_TRUE(daemon_->wait_until(contradicted, 30s))
+        << daemon_->status()["nodes"].dump(1) << daemon_->log();
+    const Json status = daemon_->status();
+    for (const Json& node : status["nodes"]) {
+        for (const Json& sensor : node["sensors"]) {
+            const std::string words = sensor["name"].get<std::string>() + "': contradicts the camera";
+            EXPECT_EQ(has_problem(status, words), sensor["camera"]["contradicts"].get<bool>()) << words;
+        }
+    }
+}
+
 TEST_F(DaemonTest, reloads_all_or_nothing) {
     const auto rig_file =
         folder_.write("rig.yaml", "extends: " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml\nname: first\n");

@@ -57,6 +57,18 @@ TEST(Monitor, shows_what_is_there_and_rates_of_what_grew) {
         EXPECT_FALSE(has(screen, words)) << "a counter of zero is not shown: " << words;
 }
 
+TEST(Monitor, shows_a_sensor_that_contradicts_the_camera_as_bad) {
+    Json now = status();
+    now["nodes"][0]["sensors"][0]["camera"] = {{"contradicts", true}, {"agreed", 0}, {"in_free_space", 6}};
+    const auto lines = screen_of(status(), now, 2s);
+    const auto line = std::ranges::find_if(
+        lines, [](const ScreenLine& shown) { return has(shown.text, "CONTRADICTS the camera"); });
+    ASSERT_NE(line, lines.end());
+    EXPECT_TRUE(has(line->text, "wrist"));
+    EXPECT_EQ(line->emphasis, Emphasis::bad);
+    EXPECT_FALSE(has(shown(status(), status()), "CONTRADICTS"));
+}
+
 TEST(Monitor, shows_no_range_of_a_sensor_that_saw_nothing) {
     Json now = status();
     Json& sensor = now["nodes"][0]["sensors"][0];

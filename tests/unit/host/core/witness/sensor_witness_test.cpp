@@ -1,0 +1,211 @@
+// One sensor, one camera and a wall, small enough to know by heart.
+#include "host/core/witness/sensor_witness.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace octoskin {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr BeamSource kSource{.node_id = 4, .sensor = 1, .zone = 0};
+
+/// The camera is at the map's origin and looks along z, over x and y of as much as its depth; a second sensor
+/// is there that never says anything.
+HostRig rig() {
+    HostRig rig;
+    rig.nodes.emplace_back();
+    rig.nodes.back().node_id = 4;
+    rig.nodes.back().sensors.resize(2);
+    rig.camera = HostCamera{};
+    rig.camera->intrinsics = {.width = 100, .height = 100, .fx = 50, .fy = 50, .cx = 50, .cy = 50};
+    return rig;
+}
+
+DepthImage wall_at(float depth_m) {
+    return {.width = 100, .height = 100, .depth_m = std::vector<float>(100 * 100, depth_m)};
+}
+
+/// From (x, 0, 1) along `direction`: a new place with every beam.
+Beam beam(int number, std::optional<double> range_m, const Eigen::Vector3d& direction = {0, 0, 1}) {
+    return {.source = kSource,
+            .captured = HostTime{100'000'000LL * number},
+            .p_map_sensor = {-0.1 + 0.02 * (number % 10), 0.0, 1.0},
+            .direction_map = direction.normalized(),
+            .range_m = range_m,
+            .sigma_m = 0.02,
+            .clear_limit_m = range_m ? 0.0 : 1.5};
+}
+
+class SensorWitnessTest : public testing::Test {
+  protected:
+    /// `count` beams like this, each with an image of its time.
+    void compare(int count, std::optional<double> range_m, const DepthImage& image,
+                 const Eigen::Vector3d& direction = {0, 0, 1}) {
+        for (int i = 0; i < count; ++i) {
+            ++number_;
+            witness_.on_beam(beam(number_, range_m, direction));
+            witness_.on_depth({image, image}, Eigen::Isometry3d::Identity(),
+                              HostTime{100'000'000LL * number_});
+        }
+    }
+    const SensorEvidence& evidence() const { return witness_.evidence(4, 1); }
+    std::uint64_t findings() const {
+        return evidence().agreed + evidence().in_free_space + evidence().behind_surface;
+    }
+
+    SensorWitness witness_{rig(), {}};
+    int number_ = 0;
+};
+
+TEST_F(SensorWitnessTest, a_range_to_the_surface_that_the_camera_sees_agrees) {
+    compare(5, 1.0, wall_at(2.0F));
+    EXPECT_EQ(evidence().agreed, 5U);
+    EXPECT_EQ(findings(), 5U);
+    EXPECT_FALSE(evidence().contradicts);
+}
+
+// The bound is 3 (0.03 + 0.02) + 0.03 m = 0.18 m.
+TEST_F(SensorWitnessTest, a_range_that_ends_where_the_camera_sees_through_contradicts) {
+    compare(3, 0.80, wall_at(2.0F));
+    EXPECT_EQ(evidence().in_free_space, 3U);
+    compare(3, 0.83, wall_at(2.0F));
+    EXPECT_EQ(evidence().agreed, 3U);
+}
+
+TEST_F(SensorWitnessTest, a_range_through_a_surface_that_the_camera_sees_contradicts) {
+    compare(3, 1.30, wall_at(2.0F));
+    EXPECT_EQ(evidence().behind_surface, 3U);
+    compare(3, std::nullopt, wall_at(2.0F));  // free up to 1.5 m, it says
+    EXPECT_EQ(evidence().behind_surface, 6U);
+    EXPECT_TRUE(evidence().contradicts);
+}
+
+TEST_F(SensorWitnessTest, what_the_camera_does_not_see_says_nothing) {
+    compare(3, 1.0, wall_at(kNone));
+    compare(3, 0.5, wall_at(0.7F));                    // all of it behind what the camera sees
+    compare(3, 1.2, wall_at(2.0F), {1.0, 0.0, -0.9});  // beside the picture
+    compare(3, 1.2, wall_at(2.0F), {0.0, 0.0, -1.0});  // behind the camera
+    EXPECT_EQ(findings(), 0U);
+}
+
+TEST_F(SensorWitnessTest, in_front_of_the_robot_the_camera_sees_through_but_the_robot_is_no_surface) {
+    const DepthImage robot = wall_at(2.0F);
+    const DepthImage no_world = wall_at(kNone);
+    for (int i = 0; i < 6; ++i) {
+        witness_.on_beam(beam(++number_, i < 3 ? 0.5 : i < 5 ? 1.0 : 1.4));
+        witness_.on_depth({robot, no_world}, Eigen::Isometry3d::Identity(),
+                          HostTime{100'000'000LL * number_});
+    }
+    EXPECT_EQ(evidence().in_free_space, 3U);
+    EXPECT_EQ(findings(), 3U);
+}
+
+TEST_F(SensorWitnessTest, one_pixel_of_the_inner_cone_that_may_hold_the_surface_is_enough_for_doubt) {
+    // At 0.5 m the inner cone is 12 cm wide, 4 pixels of 3 cm: one of them sees something near.
+    DepthImage image = wall_at(3.0F);
+    for (int u = 0; u < 100; ++u) image.depth_m[static_cast<std::size_t>(51 * 100 + u)] = 1.5F;
+    compare(4, 0.5, image);
+    EXPECT_EQ(findings(), 0U);
+    compare(4, 0.5, wall_at(3.0F));
+    EXPECT_EQ(evidence().in_free_space, 4U);
+}
+
+TEST_F(SensorWitnessTest, a_ray_that_passes_behind_an_outline_is_not_stopped_by_it) {
+    // Across the picture at 1.5 m, in front of a wall at 3 m, to behind a post at 1 m, where it goes unseen.
+    DepthImage image = wall_at(3.0F);
+    for (int v = 0; v < 100; ++v)
+        for (int u = 60; u < 80; ++u) image.depth_m[static_cast<std::size_t>(v * 100 + u)] = 1.0F;
+    for (int i = 0; i < 5; ++i) {
+        Beam across = beam(++number_, 0.9, {1.0, 0.0, 0.0});
+        across.p_map_sensor.z() = 1.5;
+        across.p_map_sensor.x() -= 0.2;
+        witness_.on_beam(across);
+        witness_.on_depth({image, image}, Eigen::Isometry3d::Identity(), across.captured);
+    }
+    EXPECT_EQ(findings(), 0U);
+}
+
+// A contradiction is worth log(0.3 / 0.02) = 2.708, and log(0.999 / 1e-6) = 13.81 flags; an agreement is
+// worth log(0.7 / 0.98) = -0.336, and log(0.001) = -6.91 clears.
+TEST_F(SensorWitnessTest, six_contradictions_flag_a_sensor_and_twenty_one_agreements_clear_it) {
+    compare(5, 0.5, wall_at(2.0F));
+    EXPECT_FALSE(evidence().contradicts);
+    compare(1, 0.5, wall_at(2.0F));
+    EXPECT_TRUE(evidence().contradicts);
+    EXPECT_THAT(describe(evidence()), HasSubstr("6 ranges end where it sees through"));
+    compare(20, 1.0, wall_at(2.0F));
+    EXPECT_TRUE(evidence().contradicts);
+    compare(1, 1.0, wall_at(2.0F));
+    EXPECT_FALSE(evidence().contradicts);
+    EXPECT_EQ(witness_.evidence(4, 0).agreed, 0U);
+}
+
+TEST_F(SensorWitnessTest, one_contradiction_among_twenty_never_flags_a_sensor) {
+    for (int i = 0; i < 200; ++i) {
+        compare(1, 0.5, wall_at(2.0F));
+        compare(19, 1.0, wall_at(2.0F));
+        ASSERT_FALSE(evidence().contradicts) << i;
+    }
+}
+
+TEST_F(SensorWitnessTest, a_sensor_that_stands_still_says_a_thing_once) {
+    for (int i = 0; i < 50; ++i) {
+        Beam still = beam(0, 0.5);
+        still.captured = HostTime{100'000'000LL * i};
+        witness_.on_beam(still);
+        witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), still.captured);
+    }
+    EXPECT_EQ(findings(), 1U);
+    // It turns by three degrees, and again.
+    for (int i = 50; i < 52; ++i) {
+        Beam turned =
+            beam(0, 0.5,
+                 Eigen::AngleAxisd(0.0524 * (i - 49), Eigen::Vector3d::UnitX()) * Eigen::Vector3d::UnitZ());
+        turned.captured = HostTime{100'000'000LL * i};
+        witness_.on_beam(turned);
+        witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), turned.captured);
+    }
+    EXPECT_EQ(findings(), 3U);
+}
+
+TEST_F(SensorWitnessTest, only_beams_of_about_the_images_time_are_compared_and_each_but_once) {
+    witness_.on_beam(beam(10, 0.5));
+    witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), HostTime{1'150'000'001});
+    EXPECT_EQ(findings(), 0U);
+    witness_.on_beam(beam(11, 0.5));
+    witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), HostTime{1'250'000'000});
+    witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), HostTime{1'250'000'000});
+    EXPECT_EQ(findings(), 1U);
+    witness_.on_beam(beam(12, 0.5));
+    witness_.forget_beams();
+    witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), HostTime{1'200'000'000});
+    EXPECT_EQ(findings(), 1U);
+}
+
+TEST_F(SensorWitnessTest, looks_through_the_lens) {
+    // A lens that shows the ray (0.9, 0) at 0.9 - 0.2 * 0.729 = 0.754. What is there is seen at column 87,
+    // and not at 95, where a pinhole would look and see the wall.
+    HostRig bent = rig();
+    bent.camera->intrinsics.lens.k1 = -0.2;
+    SensorWitness witness(bent, {});
+    DepthImage image = wall_at(2.0F);
+    for (int v = 0; v < 100; ++v)
+        for (int u = 92; u < 100; ++u) image.depth_m[static_cast<std::size_t>(v * 100 + u)] = kNone;
+    Beam aside = beam(1, 0.3);
+    aside.p_map_sensor = {0.9 * 1.2, 0.0, 0.9};
+    witness.on_beam(aside);
+    witness.on_depth({image, image}, Eigen::Isometry3d::Identity(), aside.captured);
+    EXPECT_EQ(witness.evidence(4, 1).in_free_space, 1U);
+    witness_.on_beam(aside);
+    witness_.on_depth({image, image}, Eigen::Isometry3d::Identity(), aside.captured);
+    EXPECT_EQ(findings(), 0U);
+}
+
+}  // namespace
+}  // namespace octoskin
