@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "common/wire/codec.hpp"
+#include "host/apps/conversation/first_heartbeat.hpp"
 #include "host/apps/conversation/obstacle.hpp"
 
 namespace octoskin::calibrating {
@@ -13,7 +14,6 @@ namespace {
 
 using wire::CalibrationOutcome;
 
-constexpr Nanoseconds kHeartbeatWithin{2'000'000'000};
 constexpr Nanoseconds kAnswerWithin{1'000'000'000};
 constexpr Nanoseconds kEndWithin{10'000'000'000};
 constexpr std::int64_t kPeriodsMax = 130;  // 60 ranges, at worst at half the rate, and 3 in vain
@@ -62,13 +62,8 @@ void Dialogue::on_frame(const wire::CanFrame& frame, HostTime now) {
     if (outcome_) return;
     const auto decoded = wire::decode(frame);
     if (!decoded) {
-        const bool is_its_heartbeat =
-            frame.can_id == wire::can_id(wire::FrameType::heartbeat, question_.node_id);
-        if (is_its_heartbeat && decoded.error() == wire::DecodeError::wrong_version) {
-            give_up(ExitCode::bad_config,
-                    fmt::format("it speaks protocol version {}, this program {}: flash it",
-                                frame.data[0] & 7U, wire::kProtocolVersion));
-        }
+        if (const auto why = other_version(frame, decoded.error(), question_.node_id))
+            give_up(ExitCode::bad_config, *why);
         return;
     }
     if (decoded->node_id != question_.node_id) return;
@@ -128,8 +123,7 @@ void Dialogue::on_time(HostTime now) {
     if (outcome_ || now < deadline_) return;
     switch (step_) {
         case Step::awaiting_heartbeat:
-            return give_up(ExitCode::unavailable,
-                           "no heartbeat for 2 s: has it power, is it on this bus, at this bit rate?");
+            return give_up(ExitCode::unavailable, kNoHeartbeat);
         case Step::awaiting_answer:
             if (asks_ < kAsksMax) return ask(now);
             return give_up(ExitCode::unavailable,

@@ -8,6 +8,7 @@
 #include "common/wire/codec.hpp"
 #include "common/wire/names.hpp"
 #include "host/apps/commanding/effect.hpp"
+#include "host/apps/conversation/first_heartbeat.hpp"
 #include "host/apps/conversation/obstacle.hpp"
 
 namespace octoskin::commanding {
@@ -15,7 +16,6 @@ namespace {
 
 using wire::CommandCode;
 
-constexpr Nanoseconds kHeartbeatWithin{2'000'000'000};
 /// All seven pages: unasked, two at most would come in it.
 constexpr Nanoseconds kInfoWithin{300'000'000};
 constexpr Nanoseconds kSentWithin{1'000'000'000};
@@ -41,12 +41,8 @@ void Dialogue::on_frame(const wire::CanFrame& frame, HostTime now) {
     if (outcome_) return;
     const auto decoded = wire::decode(frame);
     if (!decoded) {
-        const bool is_its_heartbeat =
-            frame.can_id == wire::can_id(wire::FrameType::heartbeat, order_.node_id);
-        if (is_its_heartbeat && decoded.error() == wire::DecodeError::wrong_version)
-            give_up(ExitCode::bad_config,
-                    fmt::format("it speaks protocol version {}, this program {}: flash it",
-                                frame.data[0] & 7U, wire::kProtocolVersion));
+        if (const auto why = other_version(frame, decoded.error(), order_.node_id))
+            give_up(ExitCode::bad_config, *why);
         return;
     }
     const bool is_command = std::holds_alternative<wire::Command>(decoded->message);
@@ -193,8 +189,7 @@ void Dialogue::on_time(HostTime now) {
     if (outcome_ || now < deadline_) return;
     switch (step_) {
         case Step::awaiting_heartbeat:
-            return give_up(ExitCode::unavailable,
-                           "no heartbeat for 2 s: has it power, is it on this bus, at this bit rate?");
+            return give_up(ExitCode::unavailable, kNoHeartbeat);
         case Step::awaiting_uptime:
             return ask(Step::asking_before, now);
         case Step::commanding:
