@@ -48,6 +48,16 @@ def frames_of(log):
     return [line.split()[2] for line in pathlib.Path(log).read_text().splitlines(keepends=True) if line.endswith("\n")]
 
 
+def is_link_named(status, state, words, subject=""):
+    """The first of the problems, as a sentence, says so of the link."""
+    told = status["problems"][0] if status["problems"] else ""
+    return status["can"]["state"] == state and told.startswith(f"CAN {state}: {subject}") and words in told
+
+
+def is_link_up(status):
+    return status["can"]["state"] == "up" and not any(problem.startswith("CAN ") for problem in status["problems"])
+
+
 class Daemon:
     """`octoskin run` with a folder of its own, which a later one may take over. Its camera, if it shall have one, is plugged in
     by the file `camera`."""

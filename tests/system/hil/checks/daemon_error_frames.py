@@ -5,7 +5,7 @@ import socket
 import struct
 
 import daemon_bench
-from daemon_bench import CAN, RECORDING, claim, expect, frames_of
+from daemon_bench import CAN, RECORDING, claim, expect, frames_of, is_link_named, is_link_up
 
 CONTROLLER, BUS_OFF, RESTARTED = 0x004, 0x040, 0x100  # classes of error
 RX_PASSIVE, TX_PASSIVE, ACTIVE = 0x10, 0x20, 0x40     # of a controller's, in byte 1
@@ -18,19 +18,10 @@ def tell(classes, controller=0):
         adapter.send(struct.pack("=IB3x8s", socket.CAN_ERR_FLAG | classes, 8, bytes([0, controller])))
 
 
-def is_named(status, state, words):
-    told = status["problems"][0] if status["problems"] else ""
-    return status["can"]["state"] == state and told.startswith(f"CAN {state}: ") and words in told
-
-
-def is_up(status):
-    return status["can"]["state"] == "up" and not any(problem.startswith("CAN ") for problem in status["problems"])
-
-
 def check(bench):
     daemon = bench.daemon("daemon", "--listen-only")
     daemon.await_start()
-    daemon.await_status("a link that is up", is_up)
+    daemon.await_status("a link that is up", is_link_up)
     told = 0
 
     def say(what, is_so, *error):
@@ -41,26 +32,26 @@ def check(bench):
         expect("error frames", told, daemon.status()["can"]["error_frames"])
 
     def is_passive(status):
-        return is_named(status, "error_passive", "error-passive")
+        return is_link_named(status, "error_passive", "error-passive")
 
     def is_off(status):
-        return is_named(status, "bus_off", "bus-off")
+        return is_link_named(status, "bus_off", "bus-off")
 
     say("the news of a passive transmitter", is_passive, CONTROLLER, TX_PASSIVE)
-    say("an active controller", is_up, CONTROLLER, ACTIVE)
+    say("an active controller", is_link_up, CONTROLLER, ACTIVE)
     say("the news of bus-off", is_off, BUS_OFF)
-    say("a restarted controller", is_up, RESTARTED)
+    say("a restarted controller", is_link_up, RESTARTED)
     expect("times bus-off", 1, daemon.status()["can"]["bus_off"])
 
     # Not every adapter says that it is back.
     say("the news of a passive receiver", is_passive, CONTROLLER, RX_PASSIVE)
     bench.play(bench.first_lines(RECORDING / "can.log", 50))
-    daemon.await_status("an adapter that hears", is_up, NAMED_S)
+    daemon.await_status("an adapter that hears", is_link_up, NAMED_S)
     say("the news of bus-off again", is_off, BUS_OFF)
     bench.play_by_ourselves(RECORDING)
     daemon.await_frames(50 + len(frames_of(RECORDING / "can.log")))
     status = daemon.status()
-    claim(is_up(status), f"after traffic: {status['can']}, {status['problems']}")
+    claim(is_link_up(status), f"after traffic: {status['can']}, {status['problems']}")
     expect("bus-off, lost, malformed", (2, 0, 0), tuple(status["can"][key] for key in ("bus_off", "dropped_by_kernel", "malformed")))
     claim(status["account"]["readings"]["used"] > 0, f"readings used: {status['account']['readings']}")
     daemon.stop()

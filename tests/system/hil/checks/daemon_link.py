@@ -5,7 +5,7 @@ import subprocess
 import time
 
 import daemon_bench
-from daemon_bench import CAN, RECORDING, claim, expect, frames_of
+from daemon_bench import CAN, RECORDING, claim, expect, frames_of, is_link_named, is_link_up
 
 NAMED_S = RECOVERED_S = 2.0
 
@@ -21,13 +21,7 @@ def make_interface():
 
 
 def is_named(status, state, why):
-    """The first of the problems, as a sentence, says so."""
-    told = status["problems"][0] if status["problems"] else ""
-    return status["can"]["state"] == state and told.startswith(f"CAN {state}: {CAN}") and why in told
-
-
-def is_back(status):
-    return status["can"]["state"] == "up" and not any(problem.startswith("CAN ") for problem in status["problems"])
+    return is_link_named(status, state, why, subject=CAN)
 
 
 def check(bench):
@@ -45,19 +39,19 @@ def check(bench):
 
     for daemon in (listening, sending):
         daemon.await_start()
-    await_all("a link that is up", is_back, daemon_bench.PATIENCE_S)
+    await_all("a link that is up", is_link_up, daemon_bench.PATIENCE_S)
 
     ip("set", "down", CAN)
     await_all("news of the link", lambda status: is_named(status, "down", "down"), NAMED_S)
     time.sleep(1)  # it stays so
     await_all("the link is still down", lambda status: is_named(status, "down", "down"), NAMED_S)
     ip("set", "up", CAN)
-    await_all("the link again", is_back, RECOVERED_S)
+    await_all("the link again", is_link_up, RECOVERED_S)
 
     ip("del", CAN)
     await_all("news of the interface", lambda status: is_named(status, "absent", "No such device"), NAMED_S)
     make_interface()
-    await_all("the interface again", is_back, RECOVERED_S)
+    await_all("the interface again", is_link_up, RECOVERED_S)
 
     for daemon in (listening, sending):
         counts = daemon.status()["can"]
