@@ -46,12 +46,14 @@ const std::vector<StampedFrame>& log_of_experiment() {
     return log;
 }
 
-std::filesystem::path record_wall(const testing_support::ScratchFolder& folder) {
+std::filesystem::path record_wall(const testing_support::ScratchFolder& folder, std::size_t columns) {
     constexpr openni2::FrameSize kSize{512, 424};
     const auto file = folder / "being-made.oni";
     auto writer = openni2::OniWriter::create(file, folder / "wall.epoch.yaml", kSize);
     EXPECT_TRUE(writer) << writer.error().what;
-    const std::vector<std::uint16_t> depth_mm(kSize.pixels(), 3'000);
+    std::vector<std::uint16_t> depth_mm(kSize.pixels(), 0);
+    for (std::size_t i = 0; i < depth_mm.size(); ++i)
+        if (i % kSize.width < columns) depth_mm[i] = 3'000;
     for (int i = 0; i < 20; ++i)
         EXPECT_TRUE(writer->write(HostTime{1'000'000'000LL + 100'000'000LL * i}, depth_mm));
     EXPECT_TRUE(writer->close());

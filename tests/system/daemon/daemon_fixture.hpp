@@ -20,8 +20,10 @@ namespace octoskin::test {
 /// The frames of the experiment's rig: 2 s at rest, then the arm moves.
 [[nodiscard]] const std::vector<StampedFrame>& log_of_experiment();
 
-/// Twenty frames of a wall 3 m away, at 10 Hz, through OpenNI2's own recorder.
-[[nodiscard]] std::filesystem::path record_wall(const testing_support::ScratchFolder& folder);
+/// Twenty frames of a wall 3 m away, at 10 Hz, through OpenNI2's own recorder: in the first `columns` of 512,
+/// nothing in the others. A narrow one contradicts no range sensor.
+[[nodiscard]] std::filesystem::path record_wall(const testing_support::ScratchFolder& folder,
+                                                std::size_t columns = 512);
 
 class DaemonTest : public testing::Test {
   protected:

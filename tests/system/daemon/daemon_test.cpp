@@ -138,7 +138,7 @@ TEST_F(DaemonTest, transmits_nothing_when_it_only_listens_and_says_what_that_nee
 
 // The other host booted a quarter of an hour before this one.
 TEST_F(DaemonTest, listens_to_another_hosts_clock_and_puts_its_own_camera_on_it) {
-    const auto wall = record_wall(folder_);
+    const auto wall = record_wall(folder_, 24);
     start({"--camera", wall.string(), "--listen-only"});
     bus_->speak_as_host(std::chrono::minutes(15));
     // Whenever the .oni begins anew, five frames without a time are a problem for half a second.

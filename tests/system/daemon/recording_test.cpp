@@ -54,7 +54,7 @@ class DaemonRecording : public DaemonTest {
 };
 
 TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte) {
-    const auto wall = record_wall(folder_);
+    const auto wall = record_wall(folder_, 24);
     start({"--camera", wall.string()});
     ASSERT_TRUE(daemon_->wait_until(
         [](const Json& status) {
