@@ -2,6 +2,7 @@
 // ROS write, in their order k1 k2 p1 p2 k3.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,13 @@ struct LensDistortion {
     friend bool operator==(const LensDistortion&, const LensDistortion&) = default;
     [[nodiscard]] bool is_none() const noexcept { return *this == LensDistortion{}; }
 };
+
+/// Where a pinhole sees the centre of column `u`, row `v`. `camera`: focal lengths fx, fy and centre cx, cy
+/// in pixels, counted from the outer edge of the first.
+template <class Camera>
+[[nodiscard]] constexpr RaySlope picture_of(const Camera& camera, std::uint32_t u, std::uint32_t v) noexcept {
+    return {(u + 0.5 - camera.cx) / camera.fx, (v + 0.5 - camera.cy) / camera.fy};
+}
 
 /// "k1 0.2624, k2 -0.9531, p1 -0.0054, p2 0.0026, k3 1.1633": for a message.
 [[nodiscard]] std::string describe(const LensDistortion& lens);

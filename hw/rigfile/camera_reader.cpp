@@ -28,8 +28,7 @@ struct Pixel {
 std::optional<Pixel> pixel_without_ray(const Camera& camera) {
     const LensInverse inverse(camera.lens);
     const auto has_ray = [&](std::uint32_t u, std::uint32_t v) {
-        const RaySlope picture{(u + 0.5 - camera.cx) / camera.fx, (v + 0.5 - camera.cy) / camera.fy};
-        return inverse.ray_of(picture).has_value();
+        return inverse.ray_of(picture_of(camera, u, v)).has_value();
     };
     for (std::uint32_t u = 0; u < camera.width; ++u) {
         for (const std::uint32_t v : {0U, camera.height - 1}) {

@@ -99,8 +99,7 @@ DepthView render_view(const sim::World& world, const rig::Camera& camera,
     std::vector<Eigen::Vector3d> directions_base;
     for (std::uint32_t v = 0; v < camera.height; v += pixel_stride) {
         for (std::uint32_t u = 0; u < camera.width; u += pixel_stride) {
-            const auto ray =
-                inverse.ray_of({(u + 0.5 - camera.cx) / camera.fx, (v + 0.5 - camera.cy) / camera.fy});
+            const auto ray = inverse.ray_of(picture_of(camera, u, v));
             assert(ray.has_value());  // checked where the rig was read
             directions_base.emplace_back(T_base_camera.linear() * Eigen::Vector3d(ray->x, ray->y, 1.0));
         }

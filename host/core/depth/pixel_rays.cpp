@@ -6,14 +6,6 @@
 #include <optional>
 
 namespace octoskin {
-namespace {
-
-/// Where a pinhole sees what the camera sees in this pixel's centre.
-RaySlope picture_of(const CameraIntrinsics& camera, std::uint32_t u, std::uint32_t v) {
-    return {(u + 0.5 - camera.cx) / camera.fx, (v + 0.5 - camera.cy) / camera.fy};
-}
-
-}  // namespace
 
 PixelRays::PixelRays(const CameraIntrinsics& camera) : camera_(camera) {
     columns_.reserve(camera.width);

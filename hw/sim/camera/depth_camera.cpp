@@ -46,8 +46,7 @@ std::vector<RaySlope> rays_of(const rig::Camera& camera) {
     rays.reserve(std::size_t{camera.width} * camera.height);
     for (std::uint32_t v = 0; v < camera.height; ++v) {
         for (std::uint32_t u = 0; u < camera.width; ++u) {
-            const auto ray =
-                inverse.ray_of({(u + 0.5 - camera.cx) / camera.fx, (v + 0.5 - camera.cy) / camera.fy});
+            const auto ray = inverse.ray_of(picture_of(camera, u, v));
             assert(ray.has_value());  // checked where the rig was read
             rays.push_back(*ray);
         }
@@ -77,11 +76,9 @@ DepthCamera::DepthCamera(const World& world, const rig::Camera& camera, double s
 }
 
 Eigen::Vector3d DepthCamera::direction_camera(std::uint32_t u, std::uint32_t v) const {
-    if (!rays_.empty()) {
-        const RaySlope ray = rays_[std::size_t{v} * camera_.width + u];
-        return {ray.x, ray.y, 1.0};
-    }
-    return {(u + 0.5 - camera_.cx) / camera_.fx, (v + 0.5 - camera_.cy) / camera_.fy, 1.0};
+    const RaySlope ray =
+        rays_.empty() ? picture_of(camera_, u, v) : rays_[std::size_t{v} * camera_.width + u];
+    return {ray.x, ray.y, 1.0};
 }
 
 DepthCamera::Rectangle DepthCamera::bounds_of(const BodyCapsule& capsule) const {
