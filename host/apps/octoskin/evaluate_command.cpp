@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <fstream>
 #include <memory>
 
 #include "host/apps/evaluation/results.hpp"
@@ -14,6 +13,7 @@
 #include "host/apps/octoskin/recorded_scene.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/playback/playback.hpp"
+#include "host/apps/recording/text_file.hpp"
 #include "host/apps/study/configuration.hpp"
 #include "host/apps/study/study.hpp"
 #include "host/io/mapfile/map_file.hpp"
@@ -185,10 +185,8 @@ void evaluate_input(const EvaluateOptions& options) {
             {ExitCode::cannot_create,
              options.json.string() + ": is there, and is no .json file; it is not overwritten"});
     }
-    std::ofstream file(options.json);
-    file << evaluation::metrics_json(results);
-    file.close();
-    if (!file) throw CommandFailure({ExitCode::cannot_create, options.json.string() + ": cannot write"});
+    if (const auto written = write_text(options.json, evaluation::metrics_json(results)); !written)
+        throw CommandFailure(written.error());
 }
 
 }  // namespace

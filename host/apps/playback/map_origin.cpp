@@ -2,9 +2,9 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <fstream>
 #include <limits>
 
+#include "host/apps/recording/text_file.hpp"
 #include "hw/rigfile/table.hpp"
 
 namespace octoskin {
@@ -86,11 +86,7 @@ Status<AppError> write_map_origin(const fs::path& file, const MapOrigin& origin)
     out << YAML::Key << "maps" << YAML::Value << YAML::BeginMap;
     for (const auto& [name, crc] : origin.maps) put(name.c_str(), crc_text(crc));
     out << YAML::EndMap << YAML::EndMap;
-    std::ofstream stream(file, std::ios::binary);
-    stream << out.c_str() << '\n';
-    stream.close();
-    if (!stream) return fail(ExitCode::cannot_create, file.string() + ": cannot write; is the disk full?");
-    return Done{};
+    return write_text(file, std::string(out.c_str()) + '\n');
 }
 
 Result<std::optional<MapOrigin>, AppError> read_map_origin(const fs::path& folder) {

@@ -1,10 +1,10 @@
 #include "host/apps/simulation/simulation.hpp"
 
-#include <fstream>
 #include <optional>
 
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/recording/recording_draft.hpp"
+#include "host/apps/recording/text_file.hpp"
 #include "host/apps/simulation/scene.hpp"
 #include "host/apps/version/version.hpp"
 #include "host/io/candump/log_writer.hpp"
@@ -52,10 +52,9 @@ class Recorder {
         std::error_code error;
         fs::copy_file(rig.urdf, paths.robot(), fs::copy_options::overwrite_existing, error);
         if (error) return fail(ExitCode::cannot_create, paths.robot().string() + ": " + error.message());
-        std::ofstream rig_file(paths.rig());
-        rig_file << rig::canonical_text(rig, paths.robot().filename().string());
-        rig_file.close();
-        if (!rig_file) return fail(ExitCode::cannot_create, paths.rig().string() + ": cannot write");
+        const std::string rig_text = rig::canonical_text(rig, paths.robot().filename().string());
+        if (const auto written = write_text(paths.rig(), rig_text); !written)
+            return unexpected(written.error());
         auto log = candump::LogWriter::create(paths.can_log());
         if (!log) return fail(ExitCode::cannot_create, log.error().message());
         Recorder recorder(std::move(*log));

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <mutex>
 #include <set>
 
 #include "host/apps/evaluation/survey.hpp"
 #include "host/apps/playback/map_folder.hpp"
+#include "host/apps/recording/text_file.hpp"
 #include "host/apps/report/report.hpp"
 #include "host/apps/simulation/scene.hpp"
 #include "host/apps/study/captions.hpp"
@@ -136,14 +136,6 @@ class SeedWorkers {
     const Say& say_;
     std::mutex say_mutex_;
 };
-
-Status<AppError> write_text(const fs::path& file, const std::string& text) {
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) return fail(ExitCode::cannot_create, file.string() + ": cannot write; is the disk full?");
-    return Done{};
-}
 
 /// Adds up what the seeds took, part by part, in the order of their first appearance.
 std::vector<evaluation::PartTime> total_times(const std::vector<SeedOutcome>& outcomes) {
