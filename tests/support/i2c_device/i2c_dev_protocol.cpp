@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <stdexcept>
 #include <vector>
 
 namespace octoskin::test {
@@ -205,7 +206,11 @@ void control_file(fuse_req_t request, int command, void* argument, fuse_file_inf
 
 }  // namespace
 
-int serve_i2c_device(const std::string& name, ServedBus& bus) {
+void I2cDevice::EndSession::operator()(fuse_session* session) const noexcept {
+    cuse_lowlevel_teardown(session);
+}
+
+I2cDevice::I2cDevice(const std::string& name, ServedBus& bus) {
     const std::string device = "DEVNAME=" + name;
     std::array<const char*, 1> device_info{device.c_str()};
     cuse_info info{};
@@ -222,7 +227,14 @@ int serve_i2c_device(const std::string& name, ServedBus& bus) {
     std::string foreground = "-f";
     std::string single_thread = "-s";
     std::array<char*, 3> arguments{program.data(), foreground.data(), single_thread.data()};
-    return cuse_lowlevel_main(static_cast<int>(arguments.size()), arguments.data(), &info, &operations, &bus);
+    int is_multithreaded = 0;
+    session_.reset(cuse_lowlevel_setup(static_cast<int>(arguments.size()), arguments.data(), &info,
+                                       &operations, &is_multithreaded, &bus));
+    if (!session_) throw std::runtime_error("/dev/" + name + " cannot be served through /dev/cuse");
+}
+
+void I2cDevice::serve() {
+    fuse_session_loop(session_.get());
 }
 
 }  // namespace octoskin::test

@@ -2,15 +2,31 @@
 // space through CUSE.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "tests/support/i2c_device/served_bus.hpp"
 
+struct fuse_session;
+
 namespace octoskin::test {
 
-/// Serves `bus` as /dev/`name` until SIGINT or SIGTERM; needs /dev/cuse. Returns 0 after a signal, else not.
-/// I2C_RDWR, I2C_SLAVE with read and write, and I2C_FUNCS; no SMBus calls, no 10-bit addresses. Messages go
-/// out as a write with the read behind it, or one by one: longer combined transfers get a STOP between.
-[[nodiscard]] int serve_i2c_device(const std::string& name, ServedBus& bus);
+/// A bus as /dev/`name`; needs /dev/cuse. I2C_RDWR, I2C_SLAVE with read and write, and I2C_FUNCS; no SMBus
+/// calls, no 10-bit addresses. Messages go out as a write with the read behind it, or one by one: longer
+/// combined transfers get a STOP between.
+class I2cDevice {
+  public:
+    /// Throws std::runtime_error if the kernel does not take it. `bus` must outlive the device.
+    I2cDevice(const std::string& name, ServedBus& bus);
+
+    /// The device is there from now on; until the process ends.
+    void serve();
+
+  private:
+    struct EndSession {
+        void operator()(fuse_session* session) const noexcept;
+    };
+    std::unique_ptr<fuse_session, EndSession> session_;
+};
 
 }  // namespace octoskin::test

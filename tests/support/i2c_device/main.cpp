@@ -1,11 +1,15 @@
-// Serves modelled VL53L1X as a /dev/i2c-N of this machine, wired to GPIO lines of the kernel's simulator.
+// Serves modelled VL53L1X as /dev/i2c-N of this machine, wired to GPIO lines of the kernel's simulator.
 #include <sched.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -16,30 +20,58 @@
 
 namespace {
 
+using octoskin::test::I2cDevice;
 using octoskin::test::ServedBus;
+using octoskin::test::ServedBusOptions;
 
-struct Options {
-    std::string device;
-    std::string record;
-    octoskin::test::ServedBusOptions bus;
+struct DeviceOptions {
+    std::string name;
+    ServedBusOptions bus;
 };
 
-void declare(CLI::App& app, Options& options, std::vector<std::vector<std::string>>& sensors) {
-    app.add_option("--device", options.device, "name below /dev, such as i2c-7")->required();
-    app.add_option("--hz", options.bus.hz, "clock of the bus")->check(CLI::Range(100'000, 1'000'000));
+struct Options {
+    std::vector<std::vector<std::string>> sensors;
+    std::string record;
+    std::string faults;
+    std::uint32_t hz = 400'000;
+};
+
+void declare(CLI::App& app, Options& options) {
+    app.add_option("--hz", options.hz, "clock of the buses")->check(CLI::Range(100'000, 1'000'000));
     app.add_option(
         "--record", options.record,
-        "append each ranging: NAME INDEX MIDDLE_US READY_US STATUS STREAM RANGE_MM (CLOCK_MONOTONIC)");
+        "append each ranging of DEVICE to RECORD.DEVICE: NAME INDEX MIDDLE_US READY_US STATUS STREAM "
+        "RANGE_MM (CLOCK_MONOTONIC)");
     app.add_option(
-        "--faults", options.bus.faults_path,
-        "a named pipe for faults: SENSOR none|absent|never_boots|wrong_id|ignores_xshut|freezes_stream|"
-        "never_ready|always_ready|brown_out, SENSOR status BYTE, bus KIND COUNT POSITION [ADDRESS]");
+        "--faults", options.faults,
+        "FAULTS.DEVICE is a named pipe for its faults: SENSOR none|absent|never_boots|wrong_id|ignores_xshut|"
+        "freezes_stream|never_ready|always_ready|brown_out, SENSOR status BYTE, bus KIND COUNT POSITION "
+        "[ADDRESS]");
     app.add_option(
-           "--sensor", sensors,
-           "NAME XSHUT GPIO1 RANGE: files of gpio-sim (sim_gpioN/value, sim_gpioN/pull) or '-'; none, "
-           "constant:MM, triangle:NEAR:FAR:PERIOD_MS or file:PATH")
-        ->type_size(4)
+           "--sensor", options.sensors,
+           "DEVICE NAME XSHUT GPIO1 RANGE: name below /dev, such as i2c-7; its own name; files of gpio-sim "
+           "(sim_gpioN/value, sim_gpioN/pull) or '-'; none, constant:MM, triangle:NEAR:FAR:PERIOD_MS or "
+           "file:PATH")
+        ->type_size(5)
         ->required();
+}
+
+// Throws std::runtime_error for a range that is not understood.
+std::vector<DeviceOptions> devices_of(const Options& options) {
+    std::vector<DeviceOptions> devices;
+    for (const auto& sensor : options.sensors) {
+        if (!octoskin::test::true_range_mm(sensor[4], {})) {
+            throw std::runtime_error(sensor[1] + ": range '" + sensor[4] + "' is not understood");
+        }
+        auto device = std::ranges::find(devices, sensor[0], &DeviceOptions::name);
+        if (device == devices.end()) {
+            const std::string faults = options.faults.empty() ? "" : options.faults + "." + sensor[0];
+            device =
+                devices.insert(device, {sensor[0], {.sensors = {}, .hz = options.hz, .faults_path = faults}});
+        }
+        device->bus.sensors.push_back({sensor[1], sensor[2], sensor[3], sensor[4]});
+    }
+    return devices;
 }
 
 // The sensors go on whatever the programs of the machine do: else they would miss a short pulse of XSHUT
@@ -51,48 +83,62 @@ void run_before_others() {
     }
 }
 
-// Calls `step` every `period` until asked to stop, in a thread of its own.
+// One device with what is written of it. The file is not waited for by any pin.
+struct Served {
+    Served(const DeviceOptions& options, const std::string& record_path)
+        : bus(options.bus), device(options.name, bus) {
+        if (record_path.empty()) return;
+        record.open(record_path + "." + options.name, std::ios::app);
+        if (!record) throw std::runtime_error(record_path + "." + options.name + ": cannot be written");
+    }
+    void write_record() { record << bus.take_record() << std::flush; }
+
+    ServedBus bus;
+    I2cDevice device;
+    std::ofstream record;
+};
+
+// Calls `step` for each every `period`, in a thread of its own, as long as the process lives. One for all
+// devices: waking up costs an emulated processor more than what is done then.
 template <typename Step>
-std::jthread repeating(std::chrono::microseconds period, Step step) {
-    return std::jthread([period, step](const std::stop_token& stop) {
-        while (!stop.stop_requested()) {
-            step();
+void keep_doing(std::vector<std::unique_ptr<Served>>& all, std::chrono::microseconds period, Step step) {
+    std::thread([&all, period, step] {
+        while (true) {
+            for (const auto& served : all) step(*served);
             std::this_thread::sleep_for(period);
         }
-    });
+    }).detach();
 }
 
-// The pins move while nobody talks to the bus; and no pin waits for the record's file.
-int serve(const Options& options) {
-    ServedBus bus(options.bus);
-    std::ofstream record;
-    if (!options.record.empty()) record.open(options.record, std::ios::app);
-    if (!record) throw std::runtime_error(options.record + ": cannot be written");
-    const auto write_record = [&] { record << bus.take_record() << std::flush; };
-    const std::jthread recorder = repeating(std::chrono::milliseconds{10}, write_record);
+// Until SIGINT or SIGTERM; the devices are gone with the process, and no program has to close them for that.
+[[noreturn]] void serve(const std::vector<DeviceOptions>& devices, const std::string& record_path) {
+    sigset_t ends{};
+    sigemptyset(&ends);
+    sigaddset(&ends, SIGINT);
+    sigaddset(&ends, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &ends, nullptr);  // of the threads, too
+    std::vector<std::unique_ptr<Served>> all;
+    for (const DeviceOptions& options : devices)
+        all.push_back(std::make_unique<Served>(options, record_path));
+    keep_doing(all, std::chrono::milliseconds{10}, [](Served& served) { served.write_record(); });
     run_before_others();
-    const std::jthread follower = repeating(octoskin::test::kLinePeriod, [&bus] { bus.follow_lines(); });
-    return octoskin::test::serve_i2c_device(options.device, bus);
+    keep_doing(all, octoskin::test::kLinePeriod, [](Served& served) { served.bus.follow_lines(); });
+    for (const auto& served : all) std::thread([&served] { served->device.serve(); }).detach();
+    int signal = 0;
+    sigwait(&ends, &signal);
+    for (const auto& served : all) served->write_record();
+    std::_Exit(0);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     Options options;
-    std::vector<std::vector<std::string>> sensors;
     CLI::App app{"Serves modelled VL53L1X sensors as /dev/i2c-N through CUSE."};
-    declare(app, options, sensors);
+    declare(app, options);
     CLI11_PARSE(app, argc, argv);
-    for (const auto& sensor : sensors) {
-        options.bus.sensors.push_back({sensor[0], sensor[1], sensor[2], sensor[3]});
-        if (!octoskin::test::true_range_mm(sensor[3], {})) {
-            std::fprintf(stderr, "i2c_device: %s: range '%s' is not understood\n", sensor[0].c_str(),
-                         sensor[3].c_str());
-            return 2;
-        }
-    }
     try {
-        return serve(options);
+        serve(devices_of(options), options.record);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "i2c_device: %s\n", error.what());
         return 1;

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <ranges>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -190,8 +191,12 @@ void ServedBus::drive_gpio1(sim::SimTime time) {
 }
 
 void ServedBus::record(Wired& wired) {
-    for (const sim::RangingRecord& ranging : wired.model.history()) {
-        if (ranging.ready <= wired.recorded_until) continue;
+    const auto& history = wired.model.history();
+    const auto is_known = [&](const sim::RangingRecord& ranging) {
+        return ranging.ready <= wired.recorded_until;
+    };
+    const auto unknown = std::find_if(history.rbegin(), history.rend(), is_known).base();
+    for (const sim::RangingRecord& ranging : std::ranges::subrange(unknown, history.end())) {
         wired.recorded_until = ranging.ready;
         std::ostringstream line;
         line << wired.name << ' ' << ranging.index << ' ' << ranging.window_middle.us << ' '

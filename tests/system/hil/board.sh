@@ -49,26 +49,30 @@ make_lines() {
     lines2=$device/$chip2
 }
 
-# serve BUS LINES FIRST_SENSOR {XSHUT_LINE GPIO1_LINE FUNCTION} for each of two sensors
-serve() {
+# wire BUS LINES FIRST_SENSOR {XSHUT_LINE GPIO1_LINE FUNCTION} for each of two sensors
+wire() {
     local device=i2c-$1 lines=$2 a=$3 b=$(($3 + 1))
     [ ! -e "/dev/$device" ] || { echo "board: /dev/$device is there already"; exit 1; }
     rm -f "$faults.$device"
     mkfifo "$faults.$device"
-    setsid "$bin/i2c_device" --device "$device" --record "$folder/ranged.$device" --faults "$faults.$device" \
-        --sensor "sensor$a" "$lines/sim_gpio$4/value" "$lines/sim_gpio$5/pull" "$6" \
-        --sensor "sensor$b" "$lines/sim_gpio$7/value" "$lines/sim_gpio$8/pull" "$9" \
-        </dev/null >"$folder/$device.log" 2>&1 &
-    echo $! >"$folder/$device.pid"
+    sensors+=(--sensor "$device" "sensor$a" "$lines/sim_gpio$4/value" "$lines/sim_gpio$5/pull" "$6"
+        --sensor "$device" "sensor$b" "$lines/sim_gpio$7/value" "$lines/sim_gpio$8/pull" "$9")
+}
+
+# serve_sensors: what was wired
+serve_sensors() {
+    setsid "$bin/i2c_device" --record "$folder/ranged" --faults "$faults" "${sensors[@]}" \
+        </dev/null >"$folder/i2c_device.log" 2>&1 &
+    echo $! >"$folder/i2c_device.pid"
 }
 
 # await_device BUS: until it is there, or its server is not
 await_device() {
     local end=$((SECONDS + 60))
-    until [ -e "/dev/i2c-$1" ] || [ $SECONDS -ge $end ] || ! kill -0 "$(<"$folder/i2c-$1.pid")" 2>/dev/null; do sleep 0.1; done
+    until [ -e "/dev/i2c-$1" ] || [ $SECONDS -ge $end ] || ! kill -0 "$(<"$folder/i2c_device.pid")" 2>/dev/null; do sleep 0.1; done
     [ ! -e "/dev/i2c-$1" ] || return 0
     echo "board: /dev/i2c-$1 did not come"
-    cat "$folder/i2c-$1.log"
+    cat "$folder/i2c_device.log"
     exit 1
 }
 
@@ -84,10 +88,12 @@ up() {
     make_can
     make_lines
     echo constant:250 >$range0
-    serve 7 "$lines" 0 0 4 "file:$range0" 1 5 constant:500
-    serve 8 "$lines" 2 2 6 triangle:200:1000:4000 3 7 none
-    serve 9 "$lines2" 4 0 4 constant:300 1 4 triangle:300:900:3000
-    serve 10 "$lines2" 6 2 5 constant:700 3 5 constant:900
+    local sensors=()
+    wire 7 "$lines" 0 0 4 "file:$range0" 1 5 constant:500
+    wire 8 "$lines" 2 2 6 triangle:200:1000:4000 3 7 none
+    wire 9 "$lines2" 4 0 4 constant:300 1 4 triangle:300:900:3000
+    wire 10 "$lines2" 6 2 5 constant:700 3 5 constant:900
+    serve_sensors
     write_environment
     local bus
     for bus in 7 8 9 10; do await_device $bus; done
