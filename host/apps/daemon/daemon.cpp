@@ -201,7 +201,7 @@ void Daemon::Parts::reload() {
 DaemonView Daemon::Parts::view() const {
     const HostTime now = monotonic_now();
     return {.now = now,
-            .bus_now = now + inputs.foreign_clock().ahead_last(),
+            .bus_now = inputs.bus_now(now),
             .started = started,
             .rig = &settings.host.rig,
             .pipeline = &pipeline,

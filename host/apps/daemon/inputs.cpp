@@ -121,10 +121,17 @@ void Inputs::take_frame(const socketcan::Received& received) {
         return;
     }
     feed(received.entry.frame, received.entry.stamp);
+    if (is_of_node(received.entry.frame)) bus_time_.on_frame(monotonic_now(), pipeline_.now());
     if (const auto at = monotonic_of(received.entry.stamp)) {
         answer_sync(received, *at);
         hear_host(received, *at);
     }
+}
+
+bool Inputs::is_of_node(const wire::CanFrame& frame) const {
+    const wire::FrameSpec* const spec = wire::frame_spec(wire::type_of(frame.can_id));
+    return spec != nullptr && spec->party == wire::Party::from_node &&
+           pipeline_.intake().nodes().knows(wire::node_of(frame.can_id));
 }
 
 /// Who only listens has the clock of the host that sends SYNC: what this machine measures is put on it.
@@ -182,6 +189,8 @@ void Inputs::drain_joints() {
 void Inputs::drain_camera() {
     auto frame = camera_->take();
     if (!frame) return;
+    // Now, not before: by the time of what was read so far it would be a frame of the future.
+    catch_up();
     if (request_.is_listen_only) {
         const auto ahead = foreign_clock_.ahead(monotonic_now());
         depth_untimed_ += ahead ? 0U : 1U;

@@ -19,6 +19,7 @@
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/daemon/settings.hpp"
 #include "host/core/ingest/local_joints.hpp"
+#include "host/core/time/bus_time.hpp"
 #include "host/core/time/foreign_clock.hpp"
 #include "host/core/time/sync_master.hpp"
 
@@ -59,6 +60,8 @@ class Inputs {
     [[nodiscard]] const LatencyHistogram& latency() const noexcept { return latency_; }
     /// Another host's newest SYNC, on this machine's clock.
     [[nodiscard]] std::optional<HostTime> foreign_sync() const noexcept { return foreign_sync_; }
+    /// What time it is on the bus, on the clock that SYNC tells; empty while nobody knows.
+    [[nodiscard]] std::optional<HostTime> bus_now(HostTime now) const { return bus_time_.at(now); }
     /// Of the host that sends SYNC, while this one only listens.
     [[nodiscard]] const ForeignClock& foreign_clock() const noexcept { return foreign_clock_; }
 
@@ -66,6 +69,7 @@ class Inputs {
     void watch_camera(bool is_wanted);
     /// False if there may be more.
     bool drain_can();
+    [[nodiscard]] bool is_of_node(const wire::CanFrame& frame) const;
     void take_frame(const socketcan::Received& received);
     void answer_sync(const socketcan::Received& received, HostTime at);
     void hear_host(const socketcan::Received& received, HostTime at);
@@ -93,6 +97,7 @@ class Inputs {
     std::uint64_t joint_node_ignored_ = 0;
     std::optional<HostTime> foreign_sync_;
     ForeignClock foreign_clock_;
+    BusTime bus_time_;
     std::uint64_t depth_untimed_ = 0;  ///< frames that came while the other host's clock was not known
 };
 

@@ -74,11 +74,8 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
 void add_nodes(const DaemonView& view, Problems& problems) {
     const NodeRegistry& nodes = view.pipeline->intake().nodes();
     for (const HostNode& node : view.rig->nodes) {
-        const auto& record = nodes.records().at(node.node_id);
-        // A bus that fell silent has no "now" of its own: the daemon's clock tells how long.
-        const bool is_silent = record.heard && view.bus_now - *record.heard > NodeRegistry::kLostAfter;
         const NodeVerdict verdict = nodes.verdict(node.node_id, view.bus_now);
-        if (verdict != NodeVerdict::usable || is_silent) {
+        if (verdict != NodeVerdict::usable) {
             const std::string text = nodes.describe(node.node_id, view.bus_now);
             problems.push_back({text, text});
             continue;

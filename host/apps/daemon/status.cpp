@@ -17,8 +17,8 @@ double seconds(Nanoseconds duration) {
 double milliseconds(Nanoseconds duration) {
     return static_cast<double>(duration.count()) * 1e-6;
 }
-Json age_s(const std::optional<HostTime>& since, HostTime now) {
-    return since ? Json(seconds(now - *since)) : Json(nullptr);
+Json age_s(const std::optional<HostTime>& since, const std::optional<HostTime>& now) {
+    return since && now ? Json(seconds(*now - *since)) : Json(nullptr);
 }
 
 Json can_json(const DaemonView& view) {
@@ -87,9 +87,10 @@ Json node_json(const DaemonView& view, const HostNode& node) {
     const NodeRecord& record = intake.nodes().records().at(node.node_id);
     const NodeVerdict verdict = intake.nodes().verdict(node.node_id, view.bus_now);
     const auto reason = intake.nodes().reason(node.node_id, view.bus_now);
-    const auto clock_fault = intake.clock(node.node_id).fault(view.bus_now);
-    const auto drift = intake.clock(node.node_id).drift();
-    const auto clock_error = intake.clock(node.node_id).error_bound(view.bus_now);
+    const ClockMap& clock = intake.clock(node.node_id);
+    const bool is_clock_known = view.bus_now && !clock.fault(*view.bus_now);
+    const auto drift = clock.drift();
+    const auto clock_error = view.bus_now ? clock.error_bound(*view.bus_now) : std::nullopt;
     Json json = {
         {"id", node.node_id},
         {"name", node.name},
@@ -98,7 +99,7 @@ Json node_json(const DaemonView& view, const HostNode& node) {
         {"state", record.heartbeat ? Json(name(record.heartbeat->state)) : Json(nullptr)},
         {"age_s", age_s(record.heard, view.bus_now)},
         {"degraded_sensors", record.heartbeat ? Json(record.heartbeat->degraded_sensors) : Json(nullptr)},
-        {"clock_known", !clock_fault},
+        {"clock_known", is_clock_known},
         {"clock_ppm", drift ? Json(*drift * 1e6) : Json(nullptr)},
         {"clock_error_ms", clock_error ? Json(milliseconds(*clock_error)) : Json(nullptr)}};
     Json sensors = Json::array();

@@ -42,8 +42,9 @@ struct ReloadCounts {
 /// All that there is to tell. What it points to must be there.
 struct DaemonView {
     HostTime now;
-    /// The same instant on the clock that SYNC tells: another host's, if that one sends it.
-    HostTime bus_now;
+    /// The same instant on the bus (BusTime), on the clock that SYNC tells: another host's, if that one sends
+    /// it. Empty while nobody can tell.
+    std::optional<HostTime> bus_now;
     HostTime started;
     const HostRig* rig = nullptr;
     const Pipeline* pipeline = nullptr;

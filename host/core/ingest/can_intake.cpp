@@ -108,6 +108,8 @@ void CanIntake::note_time() {
     const std::uint64_t jumps = host_clock_.steps_back() + host_clock_.steps_ahead() + host_clock_.relocks();
     if (std::exchange(jumps_, jumps) != jumps) known_since_.reset();
     if (!known_since_) known_since_ = now();
+    const auto now_known = now();
+    if (!std::exchange(is_time_known_, now_known.has_value()) && now_known) nodes_.on_time_known(*now_known);
 }
 
 std::optional<HostTime> CanIntake::steady_now() const {

@@ -111,6 +111,7 @@ class CanIntake {
     JointAssembler joints_;
     WallTime stamp_;                       ///< of the frame at hand
     std::uint64_t jumps_ = 0;              ///< of the stamps, so far
+    bool is_time_known_ = false;           ///< "now", at the newest frame
     std::optional<HostTime> known_since_;  ///< "now" after the last of them
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdio>
+#include <utility>
 
 #include "common/wire/crc.hpp"
 
@@ -102,6 +103,14 @@ void NodeRegistry::add(const HostNode& node, const HostJointSource& joints) {
     traffic_.emplace(node.node_id, NodeTraffic(node, sends_joints ? joints.rate_hz : 0.0));
 }
 
+void NodeRegistry::on_time_known(HostTime now) {
+    for (auto& [node, record] : records_) {
+        if (std::exchange(record.is_heard_since, false)) {
+            record.heard = now;
+        }
+    }
+}
+
 void NodeRegistry::on_frame(wire::NodeId node, std::optional<HostTime> now) {
     NodeRecord& record = records_.at(node);
     if (!traffic_.at(node).keeps_with_frame(now)) {
@@ -137,6 +146,7 @@ NodeRegistry::Life NodeRegistry::on_heartbeat(wire::NodeId node, const wire::Hea
     }
     record.heartbeat = heartbeat;
     record.heard = now ? now : record.heard;
+    record.is_heard_since = !now;
     return is_other_board || is_back_at_start ? Life::restarted : Life::goes_on;
 }
 

@@ -58,6 +58,7 @@ struct NodeRecord {
     bool has_block = true;
     std::optional<wire::Heartbeat> heartbeat;
     std::optional<HostTime> heard;  ///< the newest heartbeat while "now" was known
+    bool is_heard_since = false;    ///< another one came, and "now" is unknown
     std::array<std::optional<wire::NodeInfo>, wire::kInfoPages> pages;
     std::optional<HostTime> conflict;  ///< the newest sign of a second board
     bool is_in_conflict = false;
@@ -98,6 +99,8 @@ class NodeRegistry {
         restarted,  ///< its clock and its sequences began anew
     };
     /// Each takes a known node. `now`: empty while unknown.
+    /// "Now" was unknown and is known again, maybe another host's: who was heard meanwhile was heard now.
+    void on_time_known(HostTime now);
     /// Before anything else is done with a frame that the node sent.
     void on_frame(wire::NodeId node, std::optional<HostTime> now);
     /// Of a sensor that it has.

@@ -33,8 +33,6 @@ class ForeignClock {
     /// 0.4 ms. Empty while unknown
     /// or in doubt.
     [[nodiscard]] std::optional<Nanoseconds> ahead(HostTime now) const;
-    /// The same as it was last known, for ages that a person reads; 0 if never.
-    [[nodiscard]] Nanoseconds ahead_last() const noexcept { return settled_.value_or(Nanoseconds{0}); }
     /// Exchanges that disagreed with what was settled. Those of a clock that was set are among them: the
     /// first ones, until enough agree.
     [[nodiscard]] std::uint64_t outliers() const noexcept { return outliers_; }

@@ -169,6 +169,26 @@ TEST_F(DaemonTest, listens_to_another_hosts_clock_and_puts_its_own_camera_on_it)
     EXPECT_EQ(daemon_->status()["clock"]["follow_up_outliers"], 1);
 }
 
+// It hears them all the time; that their time is in doubt says nothing about them.
+TEST_F(DaemonTest, calls_no_node_lost_while_another_hosts_clock_is_set) {
+    start({"--no-camera", "--listen-only"});
+    bus_->speak_as_host(std::chrono::minutes(15));
+    ASSERT_TRUE(
+        daemon_->wait_until([](const Json& now) { return is_ranging(now) && now["problems"].empty(); }, 15s))
+        << daemon_->status()["problems"].dump(1);
+    const int relocks = daemon_->status()["clock"]["relocks"].get<int>();
+    bus_->speak_as_host(std::chrono::minutes(16));
+    Json lost;
+    const auto over = daemon_->wait_until(
+        [&](const Json& now) {
+            if (has_problem(now, "lost")) lost = now;
+            return now["clock"]["relocks"].get<int>() > relocks && now["problems"].empty();
+        },
+        20s);
+    ASSERT_TRUE(over) << daemon_->status()["problems"].dump(1);
+    EXPECT_TRUE(lost.is_null()) << lost["problems"].dump(1) << lost["clock"].dump(1);
+}
+
 TEST_F(DaemonTest, takes_joint_states_from_a_program_of_this_machine) {
     start({"--no-camera", "--joints", (folder_ / "joints").string()});  // the rig's joint node goes on, too
     // 100 samples a second, each sampled when it is written.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <vector>
@@ -146,6 +147,18 @@ TEST(CanIntake, rejects_readings_while_the_heartbeat_is_missing_and_no_longer) {
     // Last heard at 3.9 s, so lost from 4.25 s on.
     EXPECT_NEAR(seen.count, (5.0 - 4.25) / 0.033, 2.0);
     EXPECT_LT(seen.last.ns, 5'020'000'000);
+}
+
+TEST(CanIntake, calls_no_node_lost_that_it_heard_while_the_time_was_in_doubt) {
+    for (const double step_s : {3600.0, -3600.0}) {
+        CanIntake intake(rig());
+        for (StampedFrame entry : bus().frames()) {
+            if (entry.stamp >= test::wall_at(4.55)) entry.stamp.ns += std::llround(1e9 * step_s);
+            for (const auto& reading : intake.on_frame(entry.frame, entry.stamp).readings)
+                EXPECT_NE(reading ? std::nullopt : std::optional(reading.error()), ReadingReason::node_lost);
+        }
+        EXPECT_EQ(intake.host_clock().relocks(), 1U);
+    }
 }
 
 TEST(CanIntake, counts_readings_it_could_not_use_as_received_and_not_as_gaps) {

@@ -287,6 +287,23 @@ TEST(NodeRegistry, holds_a_refusal_while_no_time_is_known) {
     EXPECT_EQ(registry.verdict(kNode, ms(101'000)), NodeVerdict::info_incomplete);
 }
 
+TEST(NodeRegistry, counts_who_was_heard_while_no_time_was_known_as_heard_when_it_is_known) {
+    NodeRegistry registry(rig());
+    identify(registry, 1000);
+    (void)registry.on_heartbeat(kNode, heartbeat(), std::nullopt);
+    EXPECT_EQ(registry.verdict(kNode, ms(61'000)), NodeVerdict::lost);
+    registry.on_time_known(ms(61'000));  // another host's, a minute ahead
+    EXPECT_EQ(registry.verdict(kNode, ms(61'350)), NodeVerdict::usable);
+    EXPECT_EQ(registry.verdict(kNode, ms(61'351)), NodeVerdict::lost);
+    // Not heard since then: it stays lost.
+    registry.on_time_known(ms(62'000));
+    EXPECT_EQ(registry.verdict(kNode, ms(62'000)), NodeVerdict::lost);
+    (void)registry.on_heartbeat(kNode, heartbeat(), std::nullopt);
+    (void)registry.on_heartbeat(kNode, heartbeat(), ms(63'000));
+    registry.on_time_known(ms(64'000));
+    EXPECT_EQ(registry.verdict(kNode, ms(64'000)), NodeVerdict::lost) << "heard at a time that is known";
+}
+
 TEST(NodeRegistry, quarantines_two_boards_even_while_no_time_is_known) {
     NodeRegistry registry(rig());
     (void)registry.on_heartbeat(kNode, heartbeat(), std::nullopt);

@@ -1,0 +1,46 @@
+#include "host/core/time/bus_time.hpp"
+
+#include <gtest/gtest.h>
+
+namespace octoskin {
+namespace {
+
+HostTime ms(std::int64_t value) {
+    return {value * 1'000'000};
+}
+
+TEST(BusTime, goes_on_from_the_newest_frame_however_late_that_was_read) {
+    BusTime time;
+    time.on_frame(ms(7'000), ms(100'000));
+    EXPECT_EQ(time.at(ms(7'000)), ms(100'000));
+    EXPECT_EQ(time.at(ms(7'010)), ms(100'010));
+    time.on_frame(ms(9'000), ms(100'100));
+    EXPECT_EQ(time.at(ms(9'000)), ms(100'100)) << "1.9 s late";
+}
+
+TEST(BusTime, goes_on_when_the_bus_falls_silent) {
+    BusTime time;
+    time.on_frame(ms(7'000), ms(100'000));
+    EXPECT_EQ(time.at(ms(67'000)), ms(160'000));
+}
+
+TEST(BusTime, is_unknown_while_nodes_speak_and_nobody_tells_the_time) {
+    BusTime time;
+    time.on_frame(ms(6'000), ms(100'000));
+    time.on_frame(ms(7'000), std::nullopt);
+    EXPECT_EQ(time.at(ms(7'000)), std::nullopt);
+    EXPECT_EQ(time.at(ms(7'350)), std::nullopt);
+    EXPECT_EQ(time.at(ms(7'351)), ms(101'351)) << "they fell silent: it is as it was last known";
+    time.on_frame(ms(8'000), ms(161'000));
+    EXPECT_EQ(time.at(ms(8'001)), ms(161'001)) << "of a host that was set a minute ahead";
+}
+
+TEST(BusTime, is_this_machines_where_nobody_ever_spoke) {
+    BusTime time;
+    EXPECT_EQ(time.at(ms(5'000)), ms(5'000));
+    time.on_frame(ms(7'000), std::nullopt);
+    EXPECT_EQ(time.at(ms(7'351)), ms(7'351));
+}
+
+}  // namespace
+}  // namespace octoskin
