@@ -18,23 +18,14 @@ std::int64_t steady_ns() {
     return std::chrono::steady_clock::now().time_since_epoch().count();
 }
 
-bool is_of_host(const wire::CanFrame& frame) {
-    const wire::FrameType type = wire::type_of(frame.can_id);
-    return type == wire::FrameType::sync || type == wire::FrameType::follow_up ||
-           type == wire::FrameType::mark || type == wire::FrameType::command;
-}
-
 }  // namespace
 
 LiveBus::LiveBus(int descriptor, const std::vector<StampedFrame>& log) : socket_("live", descriptor) {
     learn_clocks(log);
-    for (const StampedFrame& entry : log) {
-        const bool is_report = wire::type_of(entry.frame.can_id) == wire::FrameType::sync_report;
-        if (!is_of_host(entry.frame) && !is_report) frames_.push_back(entry);
-    }
-    begin_ns_ = frames_.front().stamp.ns;
+    EndlessLog endless(log, clock_rates());
+    begin_ns_ = log.front().stamp.ns;
     begin_steady_ns_ = steady_ns();
-    thread_ = std::thread([this] { play(); });
+    thread_ = std::thread([this, frames = std::move(endless)]() mutable { play(frames); });
 }
 
 LiveBus::~LiveBus() {
@@ -66,18 +57,22 @@ std::int64_t LiveBus::log_now_ns() const {
     return begin_ns_ + steady_ns() - begin_steady_ns_;
 }
 
-void LiveBus::play() {
-    for (const StampedFrame& entry : frames_) {
+std::map<wire::NodeId, double> LiveBus::clock_rates() const {
+    std::map<wire::NodeId, double> rates;
+    for (const auto& [node, clock] : clocks_) rates[node] = clock.us_per_us;
+    return rates;
+}
+
+void LiveBus::play(EndlessLog& log) {
+    while (true) {  // until it is told to end
+        const StampedFrame entry = log.next();
         listen_until(entry.stamp.ns);
         if (is_ending_) return;
         be_host();
-        played_s_ = static_cast<double>(entry.stamp.ns - begin_ns_) * 1e-9;
         if (is_silent(wire::node_of(entry.frame.can_id))) continue;
         put(entry.frame);
         babble_with(entry.frame);
     }
-    is_over_ = true;
-    while (!is_ending_) listen_until(log_now_ns() + 10'000'000);
 }
 
 void LiveBus::listen_until(std::int64_t due_ns) {

@@ -1,5 +1,5 @@
 // A bus that is alive: the frames of a log, played at their own times into one end of a socketpair, by nodes
-// that answer the SYNC of whoever is at the other end.
+// that answer the SYNC of whoever is at the other end. After the log's STOP its robot goes round again.
 #pragma once
 
 #include <atomic>
@@ -13,21 +13,20 @@
 #include "common/wire/messages.hpp"
 #include "host/core/pipeline/can_source.hpp"
 #include "host/io/socketcan/can_socket.hpp"
+#include "tests/support/live/endless_log.hpp"
 
 namespace octoskin::test {
 
 class LiveBus {
   public:
     /// `descriptor`: our end; becomes the bus's. What the log's host sent is left out: SYNC, FOLLOW_UP and
-    /// MARK are for the host at the other end to send. The log must hold SYNC and the nodes' reports.
+    /// MARK are for the host at the other end to send. The log must hold SYNC and the nodes' reports, START
+    /// and STOP.
     LiveBus(int descriptor, const std::vector<StampedFrame>& log);
     ~LiveBus();
     LiveBus(const LiveBus&) = delete;
     LiveBus& operator=(const LiveBus&) = delete;
 
-    /// The log's time that has been played, seconds from its first frame.
-    [[nodiscard]] double played_s() const noexcept { return played_s_; }
-    [[nodiscard]] bool is_over() const noexcept { return is_over_; }
     /// From now on another host sends SYNC and FOLLOW_UP once a second; its clock is so far ahead of this
     /// machine's monotonic one.
     void speak_as_host(Nanoseconds ahead);
@@ -49,7 +48,8 @@ class LiveBus {
         double us_per_us = 1.0;
     };
     void learn_clocks(const std::vector<StampedFrame>& log);
-    void play();
+    [[nodiscard]] std::map<wire::NodeId, double> clock_rates() const;
+    void play(EndlessLog& log);
     /// Until `due_ns` on the log's time scale, and answers what comes meanwhile.
     void listen_until(std::int64_t due_ns);
     /// False if the other end is gone.
@@ -63,12 +63,9 @@ class LiveBus {
     [[nodiscard]] bool is_silent(wire::NodeId node) const;
 
     socketcan::CanSocket socket_;
-    std::vector<StampedFrame> frames_;
     std::map<wire::NodeId, Clock> clocks_;
     std::int64_t begin_ns_ = 0;         ///< the log's first stamp
     std::int64_t begin_steady_ns_ = 0;  ///< when that was played
-    std::atomic<double> played_s_ = 0.0;
-    std::atomic<bool> is_over_ = false;
     std::atomic<bool> is_ending_ = false;
     std::atomic<std::uint64_t> syncs_heard_ = 0;
     std::atomic<std::uint64_t> frames_heard_ = 0;
