@@ -138,8 +138,14 @@ void add_camera(const DaemonView& view, Problems& problems) {
     if (!view.camera || !view.rig->camera) return;
     const Nanoseconds period{static_cast<std::int64_t>(1e9 / view.rig->camera->rate_hz)};
     const auto& frames = view.pipeline->accounts().depth_frames;
+    const bool is_used = view.used.depth_frame && !has_stopped(view.used.depth_frame, view.now);
     if (auto problem = camera_problem(*view.camera, period, view.now)) {
         problems.push_back(std::move(*problem));
+    } else if (frames.in() > 0 && !is_used && view.inputs->has_bus_fallen_silent(view.now)) {
+        problems.push_back({"depth beside silent bus",
+                            "camera: its frames are not used, because the bus is silent: no node tells the "
+                            "time or where the robot is, and they are newer than all that was told "
+                            "(queue_overflow, ahead_of_time)"});
     } else if (view.is_listen_only && !view.inputs->foreign_clock().ahead(view.now)) {
         problems.push_back({"camera untimed",
                             "camera: its frames have no time: the clock of the host that sends SYNC is not "

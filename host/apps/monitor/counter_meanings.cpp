@@ -108,7 +108,9 @@ constexpr std::array kMeanings = {
     Meaning{"depth frames", "no_camera", "the rig has no camera"},
     Meaning{"depth frames", "wrong_size", "not the camera's width and height in the rig"},
     Meaning{"depth frames", "out_of_order", "not later than the frame before it"},
-    Meaning{"depth frames", "ahead_of_time", "captured in the future"},
+    Meaning{
+        "depth frames", "ahead_of_time",
+        "captured over a second after all that the bus told: it is silent, or the camera's clock is wrong"},
     Meaning{"depth frames", "queue_overflow", "displaced by newer ones in a full queue"},
     Meaning{"depth frames", "outside_marks",
             "captured before START, after STOP, or before the first usable reading"},

@@ -26,8 +26,13 @@ class BusTime {
     /// On the clock that SYNC tells, which is taken for this machine's until it is known. Empty while nodes
     /// speak and their time is unknown or in doubt: how old anything is nobody can tell then.
     [[nodiscard]] std::optional<HostTime> at(HostTime now) const noexcept {
-        const bool is_in_doubt = read_ && !is_known_ && now - *read_ <= kSilent;
+        const bool is_in_doubt = read_ && !is_known_ && !has_fallen_silent(now);
         return is_in_doubt ? std::nullopt : std::optional(now + ahead_);
+    }
+
+    /// Nodes spoke, and do no more.
+    [[nodiscard]] bool has_fallen_silent(HostTime now) const noexcept {
+        return read_ && now - *read_ > kSilent;
     }
 
   private:

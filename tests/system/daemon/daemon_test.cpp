@@ -19,6 +19,8 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
 
+constexpr std::array<wire::NodeId, 3> kAllNodes = {1, 2, 3};
+
 TEST_F(DaemonTest, maps_a_live_bus_says_how_quick_it_is_and_saves_at_the_end) {
     start();
     const auto took = daemon_->wait_until(is_ranging, 15s);
@@ -243,6 +245,25 @@ TEST_F(DaemonTest, takes_the_frames_of_a_camera_and_goes_on_without_it) {
                 static_cast<long>(told->count()), static_cast<long>(back->count()));
     EXPECT_LE(*back, 5s);
     EXPECT_GT(daemon_->status()["account"]["readings"]["used"].get<int>(), used) << "the ranges stood still";
+}
+
+TEST_F(DaemonTest, says_that_the_bus_is_silent_when_it_cannot_use_the_camera_for_that) {
+    start({"--camera", record_wall(folder_, 24).string()});
+    const auto used = [](const Json& now) { return now["account"]["depth frames"]["used"].get<int>(); };
+    ASSERT_TRUE(
+        daemon_->wait_until([&](const Json& now) { return used(now) >= 5 && now["problems"].empty(); }, 20s))
+        << daemon_->status()["account"].dump(1) << daemon_->log();
+    for (const wire::NodeId node : kAllNodes) bus_->silence(node, true);
+    const auto told = daemon_->wait_until(
+        [](const Json& now) { return has_problem(now, "not used, because the bus is silent"); }, 5s);
+    ASSERT_TRUE(told) << daemon_->status()["problems"].dump(1);
+    EXPECT_FALSE(has_problem(daemon_->status(), "see the counters of depth frames"));
+    const int used_then = used(daemon_->status());
+    for (const wire::NodeId node : kAllNodes) bus_->silence(node, false);
+    const auto back = daemon_->wait_until(
+        [&](const Json& now) { return used(now) > used_then + 5 && !has_problem(now, "bus is silent"); },
+        10s);
+    EXPECT_TRUE(back) << daemon_->status()["problems"].dump(1) << daemon_->status()["account"].dump(1);
 }
 
 // The camera is shown a wall 3 m away where the sensors see the experiment's shelves: it sees through them.

@@ -35,6 +35,16 @@ TEST(BusTime, is_unknown_while_nodes_speak_and_nobody_tells_the_time) {
     EXPECT_EQ(time.at(ms(8'001)), ms(161'001)) << "of a host that was set a minute ahead";
 }
 
+TEST(BusTime, has_fallen_silent_350_ms_after_the_last_frame_and_not_before_the_first) {
+    BusTime time;
+    EXPECT_FALSE(time.has_fallen_silent(ms(60'000)));
+    time.on_frame(ms(60'000), std::nullopt);
+    EXPECT_FALSE(time.has_fallen_silent(ms(60'350)));
+    EXPECT_TRUE(time.has_fallen_silent(ms(60'351)));
+    time.on_frame(ms(70'000), ms(1'000));
+    EXPECT_FALSE(time.has_fallen_silent(ms(70'000)));
+}
+
 TEST(BusTime, is_this_machines_where_nobody_ever_spoke) {
     BusTime time;
     EXPECT_EQ(time.at(ms(5'000)), ms(5'000));
