@@ -8,6 +8,7 @@
 #include "common/wire/codec.hpp"
 #include "host/apps/conversation/first_heartbeat.hpp"
 #include "host/apps/conversation/obstacle.hpp"
+#include "host/core/rig/sensor_text.hpp"
 
 namespace octoskin::calibrating {
 namespace {
@@ -50,8 +51,7 @@ Dialogue::Dialogue(Question question, HostTime now)
     : question_(std::move(question)), deadline_(now + kHeartbeatWithin) {}
 
 std::string Dialogue::whom() const {
-    return fmt::format("node {} '{}', sensor {} '{}'", question_.node_id, question_.node_name,
-                       question_.sensor, question_.sensor_name);
+    return sensor_text(question_.node_id, question_.node_name, question_.sensor, question_.sensor_name);
 }
 
 void Dialogue::give_up(ExitCode code, const std::string& why) {

@@ -2,6 +2,7 @@
 
 #include "common/wire/names.hpp"
 #include "host/apps/daemon/status.hpp"
+#include "host/core/rig/sensor_text.hpp"
 
 namespace octoskin {
 namespace {
@@ -51,8 +52,7 @@ void add_clock(const DaemonView& view, Problems& problems) {
 void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {
     const SensorRecord& sensor =
         view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
-    const std::string who =
-        fmt::format("node {} '{}' sensor {} '{}'", node.node_id, node.name, index, node.sensors[index].name);
+    const std::string who = sensor_text(node, index);
     const bool is_ranging = sensor.health && sensor.health->state == wire::SensorState::ranging;
     if (sensor.health && !is_ranging && sensor.health->state != wire::SensorState::starting) {
         const std::string text = fmt::format("{}: {}, {}", who, wire::name(sensor.health->state),

@@ -11,6 +11,7 @@
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/recording/recording_draft.hpp"
 #include "host/apps/version/version.hpp"
+#include "host/core/rig/sensor_text.hpp"
 #include "host/io/candump/log_source.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "host/io/openni2/oni_reader.hpp"
@@ -156,9 +157,7 @@ void find_contradictions(const HostRig& rig, Playback& playback) {
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
             const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(i));
             if (!evidence.contradicts) continue;
-            playback.warnings.push_back("node " + std::to_string(node.node_id) + " '" + node.name +
-                                        "' sensor " + std::to_string(i) + " '" + node.sensors[i].name +
-                                        "': " + describe(evidence));
+            playback.warnings.push_back(sensor_text(node, i) + ": " + describe(evidence));
         }
     }
 }

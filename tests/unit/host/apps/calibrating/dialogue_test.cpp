@@ -105,7 +105,7 @@ TEST(CalibrationDialogue, names_each_way_to_fail) {
         if (outcome == CalibrationOutcome::done || outcome == CalibrationOutcome::under_way) continue;
         Dialogue dialogue = asked();
         dialogue.on_frame(frame_of(said(outcome)), after_ms(20));
-        EXPECT_NE(failure(dialogue).find("node 7 'ring', sensor 3 'left': "), std::string::npos) << name;
+        EXPECT_NE(failure(dialogue).find("node 7 'ring' sensor 3 'left': "), std::string::npos) << name;
         EXPECT_EQ(failure(dialogue).find("does not know"), std::string::npos) << name;
         EXPECT_EQ(dialogue.outcome()->error().code, ExitCode::failed);
     }
