@@ -173,6 +173,13 @@ function(octoskin_test name)
     target_compile_definitions(${name} PRIVATE OCTOSKIN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     target_link_libraries(${name} PRIVATE octoskin_compile_options ${ARG_DEPENDS} ${ARG_EXTERNAL}
         GTest::gmock GTest::gtest_main)
+    # Long simulations lose more time than their few files gain: of an inline function the test's copy is linked.
+    if(NOT "sim" IN_LIST ARG_LABELS)
+        target_link_libraries(${name} PRIVATE octoskin_test_options)
+        if(TARGET octoskin_test_headers)
+            target_precompile_headers(${name} REUSE_FROM octoskin_test_headers)
+        endif()
+    endif()
     set_target_properties(${name} PROPERTIES OCTOSKIN_ROOM tests)
     if("unit" IN_LIST ARG_LABELS)
         add_dependencies(octoskin_unit_tests ${name})
