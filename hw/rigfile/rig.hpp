@@ -13,6 +13,7 @@
 #include "common/config/node_config.hpp"
 #include "common/lens/lens_distortion.hpp"
 #include "common/result.hpp"
+#include "hw/rigfile/data_set_depth.hpp"
 
 namespace octoskin::rig {
 
@@ -48,13 +49,6 @@ struct JointSource {
     std::uint8_t node_id = 0;         ///< who sends joint states
     std::vector<std::string> joints;  ///< URDF joint names in the order on the wire, 1..7
     double rate_hz = 100.0;
-};
-
-/// What a number in a depth image of a data set means. A camera that is plugged in says it itself.
-struct DataSetDepth {
-    double units_per_m = 5000.0;  ///< of the TUM RGB-D benchmark
-    std::uint16_t no_value = 0;
-    friend bool operator==(const DataSetDepth&, const DataSetDepth&) = default;
 };
 
 struct Camera {

@@ -135,8 +135,7 @@ Result<Playback, AppError> play_data_set(const PlaybackRequest& request_given, c
     const auto camera = camera_of(request);
     if (!camera) return unexpected(camera.error());
     rig::Rig rig = make_rig(*camera);
-    auto reader = tum::DataSetReader::open(request.recording.directory,
-                                           {camera->data_set.units_per_m, camera->data_set.no_value});
+    auto reader = tum::DataSetReader::open(request.recording.directory, camera->data_set);
     if (!reader) return fail(ExitCode::bad_data, reader.error().what);
     auto origin = origin_of(request, rig, *reader);
     if (!origin) return unexpected(origin.error());

@@ -11,7 +11,7 @@
 
 namespace octoskin::tum {
 
-std::vector<std::uint16_t> depth_mm_table(const DepthScale& scale) {
+std::vector<std::uint16_t> depth_mm_table(const rig::DataSetDepth& scale) {
     assert(scale.units_per_m > 0.0);
     constexpr unsigned kValueMax = std::numeric_limits<std::uint16_t>::max();
     std::vector<std::uint16_t> table(kValueMax + 1U, 0);
@@ -24,7 +24,7 @@ std::vector<std::uint16_t> depth_mm_table(const DepthScale& scale) {
 }
 
 Result<DataSetReader, DepthSourceError> DataSetReader::open(const std::filesystem::path& folder,
-                                                            const DepthScale& scale) {
+                                                            const rig::DataSetDepth& scale) {
     Paths paths{folder};
     auto trajectory = Trajectory::read(paths.poses());
     if (!trajectory) return unexpected(trajectory.error());

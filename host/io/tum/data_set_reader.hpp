@@ -9,19 +9,13 @@
 #include "common/result.hpp"
 #include "host/core/depth/depth_source.hpp"
 #include "host/io/tum/trajectory.hpp"
+#include "hw/rigfile/data_set_depth.hpp"
 
 namespace octoskin::tum {
 
-/// What the pixels of an image mean. By default as in the benchmark: a pixel of 5000 is 1 m, 0 no value.
-/// https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats
-struct DepthScale {
-    double units_per_m = 5000.0;  ///< positive
-    std::uint16_t no_value = 0;
-};
-
 /// Every value that a pixel can have, in millimetres to the nearest one; 0 for no value, and for more than a
 /// depth frame holds, 65.535 m.
-[[nodiscard]] std::vector<std::uint16_t> depth_mm_table(const DepthScale& scale);
+[[nodiscard]] std::vector<std::uint16_t> depth_mm_table(const rig::DataSetDepth& scale);
 
 class DataSetReader final : public DepthSource {
   public:
@@ -34,7 +28,7 @@ class DataSetReader final : public DepthSource {
     /// Reads both lists; `scale`: of the images. Errors name file and line: no list, or an image before its
     /// predecessor.
     [[nodiscard]] static Result<DataSetReader, DepthSourceError> open(const std::filesystem::path& folder,
-                                                                      const DepthScale& scale = {});
+                                                                      const rig::DataSetDepth& scale = {});
 
     /// The next image that has a pose; the others are counted. Its frame says where the camera was. An error
     /// names the image and its line in depth.txt, and is the same for ever.
@@ -54,7 +48,7 @@ class DataSetReader final : public DepthSource {
         std::uint64_t line = 0;
         ImageLine named;
     };
-    DataSetReader(Paths paths, Trajectory trajectory, const DepthScale& scale)
+    DataSetReader(Paths paths, Trajectory trajectory, const rig::DataSetDepth& scale)
         : paths_(std::move(paths)), trajectory_(std::move(trajectory)), depth_mm_(depth_mm_table(scale)) {}
 
     Paths paths_;

@@ -48,14 +48,14 @@ class DataSetReaderTest : public testing::Test {
     WrittenDataSet written_{scratch_ / "rgbd_dataset_freiburg1_xyz"};
 };
 
-TEST(DepthScale, is_the_nearest_millimetre_of_5000_a_metre_for_every_value) {
+TEST(DepthTable, is_the_nearest_millimetre_of_5000_a_metre_for_every_value) {
     const std::vector<std::uint16_t> table = depth_mm_table({});
     for (unsigned value = 0; value <= 0xFFFF; ++value)
         ASSERT_EQ(table.at(value), std::lround(1000.0 * value / 5000.0)) << value;
     EXPECT_EQ(table.size(), 0x10000U);
 }
 
-TEST(DepthScale, is_what_the_data_set_says_and_what_a_frame_does_not_hold_is_no_value) {
+TEST(DepthTable, is_what_the_data_set_says_and_what_a_frame_does_not_hold_is_no_value) {
     const std::vector<std::uint16_t> millimetres =
         depth_mm_table({.units_per_m = 1000.0, .no_value = 65'535});
     EXPECT_EQ(millimetres.at(1234), 1234);
