@@ -25,7 +25,7 @@ endif()
 add_library(octoskin_test_options INTERFACE)
 if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT CMAKE_CROSSCOMPILING)
     # When it optimises little, GCC 12 warns in vain of optional values, and of `std::string(...) + "..."` as if the longer
-    # string lay in the short one's own bytes (its bugs 105329, 105651). The address sanitizer sees what does overflow.
+    # string lay in the short one's own bytes. The address sanitizer sees what does overflow.
     target_compile_options(octoskin_test_options INTERFACE -O1
         $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized$<SEMICOLON>-Wno-array-bounds$<SEMICOLON>-Wno-stringop-overflow>)
 endif()
