@@ -8,7 +8,7 @@
 namespace octoskin {
 
 /// The layout of the configuration block: node_config.hpp.
-inline constexpr std::uint16_t kNodeConfigLayout = 3;
+inline constexpr std::uint16_t kNodeConfigLayout = 4;
 
 /// "OSKI", the layout, and the layout's complement (16 bits each), little-endian.
 inline constexpr std::array<std::uint8_t, 4> kImageIdentityMagic{'O', 'S', 'K', 'I'};

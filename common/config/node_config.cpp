@@ -136,6 +136,7 @@ void walk(Walker& walker, Of<Walker, NodeConfig>& config) {
     walker.choice(config.stream_gate);
     walker.number(config.aux_every);
     walker.number(config.zone_guard_us);
+    walker.flag(config.holds_phases);
     walker.number(config.data_ready_buses);
     walker.count(config.sensor_count, kNodeSensorsMax);
     for (std::size_t i = 0; i < config.sensor_count; ++i) {

@@ -60,6 +60,7 @@ struct NodeConfig {
     StreamGate stream_gate = StreamGate::advanced;
     std::uint8_t aux_every = 0;          ///< classical: RANGE_AUX with every n-th reading; 0 = never
     std::uint16_t zone_guard_us = 1000;  ///< a zone write this close to a range start makes its zone unknown
+    bool holds_phases = false;           ///< sensors that walk out of their phase are started anew
     std::uint8_t data_ready_buses = 0;   ///< bit b: bus b has a data-ready line; below 2^kNodeBusesMax
     std::uint8_t sensor_count = 0;
     std::array<SensorConfig, kNodeSensorsMax> sensors{};

@@ -63,6 +63,9 @@ void Acceptance::on_unreadable() noexcept {
 /// Once, it was more likely a poll that was altered than a range that was made: the next one is still to
 /// come.
 void Acceptance::on_stale() noexcept {
+    // Nor can the newest edge be trusted then, if nobody saw the data not ready before it: a pin that lies
+    // leads the rhythm astray.
+    if (unproven_readings_ > 0) tracker_.forget();
     if (has_accepted() && !std::exchange(was_stale_, true)) return;
     on_unreadable();
 }
@@ -106,7 +109,7 @@ Verdict Acceptance::judge(const ResultSeen& seen, const ZoneCycle& zones) noexce
 /// After a start there is no stream count to compare with, and the result may still be one of the run before,
 /// unless its data was seen to become ready: by two polls, since one may have been altered.
 bool Acceptance::is_new(const vl53l1x::Measurement& measurement) const noexcept {
-    if (!last_stream_) return not_ready_polls_ >= 2;
+    if (!last_stream_) return is_next_new();
     return passes(gate_, *last_stream_, measurement.stream_count);
 }
 
@@ -160,7 +163,8 @@ TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges)
     const TimeBracket until_read{not_ready, seen.read_end};
     const bool is_of_this = predicted ? intersection(polled, *predicted).has_value() : is_read_in_time(seen);
     const bool is_seen_low = not_ready_polls_ >= (is_believed ? 1U : 2U);
-    const bool is_known_low = is_next && !was_stale_ && is_rhythm_proven();
+    const bool is_known_low =
+        is_next && !was_stale_ && is_rhythm_proven() && is_lone_poll_believed(predicted);
     const bool is_edge_seen = (is_seen_low || is_known_low) && is_of_this;
     return tracker_.observe(is_edge_seen ? polled : until_read, ranges);
 }

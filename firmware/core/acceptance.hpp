@@ -68,6 +68,8 @@ class Acceptance {
     [[nodiscard]] std::optional<NodeTime> next_range_begin() const noexcept;
     /// Whether results came since the last accepted one, and none of them could be used.
     [[nodiscard]] bool has_refused() const noexcept { return results_refused_ > 0; }
+    /// Whether data that becomes ready now could not be left over from before the start: two polls told.
+    [[nodiscard]] bool is_next_new() const noexcept { return not_ready_polls_ >= 2; }
     /// Nothing was accepted for longer than the policy allows.
     [[nodiscard]] bool is_silent(NodeTime now) const noexcept;
 

@@ -74,7 +74,7 @@ void BusWorker::take_turns(NodeTime now) {
         interrupted_at_ = now;
         return;
     }
-    Sensor* const longest = longest_due(now);
+    Sensor* const longest = longest_due(now, punctual != nullptr);
     if (longest != nullptr && (punctual == nullptr || waits_long(*longest->due()))) {
         begin_turn(longest, true);
     } else if (punctual != nullptr && is_reached(*punctual->punctual_due(), now)) {
@@ -140,13 +140,14 @@ Sensor* BusWorker::first_punctual(NodeTime by) const {
     return first;
 }
 
-Sensor* BusWorker::longest_due(NodeTime now) const {
+Sensor* BusWorker::longest_due(NodeTime now, bool is_somebody_punctual) const {
     Sensor* longest = nullptr;
     NodeTime longest_since = now;
     for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) {
         const auto due = sensor->due();
         if (!due || !is_reached(*due, now) || is_interrupted(sensor)) continue;
         if (longest != nullptr && is_reached(longest_since, *due)) continue;
+        if (is_somebody_punctual && sensor->can_wait(now)) continue;
         longest = sensor;
         longest_since = *due;
     }

@@ -53,7 +53,7 @@ class BusWorker {
     [[nodiscard]] Sensor* longest_interrupted() noexcept;
     void advance_owner(NodeTime now);
     [[nodiscard]] Sensor* first_punctual(NodeTime by) const;
-    [[nodiscard]] Sensor* longest_due(NodeTime now) const;
+    [[nodiscard]] Sensor* longest_due(NodeTime now, bool is_somebody_punctual) const;
     void free_bus(NodeTime now);
 
     i2c::Bus& bus_;

@@ -46,6 +46,7 @@ Node::Node(const NodeConfig& config, const Identity& identity, const Ports& port
       is_config_usable_(is_usable(config, ports.buses.size(), identity.board_type)),
       node_hash_(is_config_usable_ ? node_hash(config) : 0),
       uid_crc_(crc16(identity.uid)),
+      phase_clock_(now),
       queue_(config.uses_can_fd, config.aux_every, policy_),
       announcer_(is_config_usable_ ? config.sensor_count : std::uint8_t{0}, policy_, now),
       tokens_(frame_budget(config), now),
@@ -60,7 +61,8 @@ void Node::create_sensors(NodeTime now) {
     if (!is_config_usable_) return;
     const RangingRules rules{.stream_gate = config_.stream_gate,
                              .zone_guard = Microseconds{config_.zone_guard_us},
-                             .i2c_hz = config_.i2c_hz};
+                             .i2c_hz = config_.i2c_hz,
+                             .holds_phases = config_.holds_phases};
     sensor_count_ = config_.sensor_count;
     for (std::size_t i = 0; i < sensor_count_; ++i) {
         const SensorConfig& sensor = config_.sensors[i];
@@ -70,8 +72,10 @@ void Node::create_sensors(NodeTime now) {
         BusRecorder& bus = *recorder;
         auto& worker = buses_[sensor.bus];
         if (!worker) worker.emplace(bus, config_.i2c_hz, options, policy_, data_ready_hint(sensor.bus));
-        const SensorSurroundings surroundings{
-            .bus = worker->shared_bus(), .default_address = worker->default_address(), .xshut = ports_.xshut};
+        const SensorSurroundings surroundings{.bus = worker->shared_bus(),
+                                              .default_address = worker->default_address(),
+                                              .xshut = ports_.xshut,
+                                              .clock = phase_clock_};
         sensors_[i].emplace(sensor, surroundings, options, rules, policy_, now);
         worker->add(*sensors_[i]);
         reflexes_[i].emplace(sensor.reflex_below_mm, policy_);
@@ -85,6 +89,7 @@ DataReadyHint Node::data_ready_hint(std::uint8_t bus) const noexcept {
 }
 
 void Node::poll(NodeTime now) {
+    phase_clock_.advance(now);
     supervise_can(now);
     count_given_up();
     advance_buses(now);

@@ -18,6 +18,7 @@
 #include "firmware/core/bus_worker.hpp"
 #include "firmware/core/calibration.hpp"
 #include "firmware/core/data_ready_hint.hpp"
+#include "firmware/core/phase_clock.hpp"
 #include "firmware/core/policy.hpp"
 #include "firmware/core/ports.hpp"
 #include "firmware/core/reading_queue.hpp"
@@ -172,6 +173,7 @@ class Node {
     std::uint16_t uid_crc_;
     std::uint8_t sensor_count_ = 0;  ///< of those at work: none in safe mode, or with a bad configuration
 
+    PhaseClock phase_clock_;
     BusRecorders recorders_{};
     std::array<std::optional<BusWorker>, kNodeBusesMax> buses_{};
     std::array<std::optional<Sensor>, kNodeSensorsMax> sensors_{};

@@ -71,4 +71,20 @@ bool PeriodTrim::wants_trim(const MeasuredPeriod& measured, NodeTime now) noexce
     return true;
 }
 
+Nanoseconds PeriodTrim::refine(Nanoseconds walk, Nanoseconds step) noexcept {
+    // To the nearest whole step.
+    const std::int64_t half = walk.count() < 0 ? -step.count() / 2 : step.count() / 2;
+    const std::int64_t steps = (walk.count() + half) / step.count();
+    if (steps != 0) {
+        // The register rounds down: amid the values that come out the same, none is missed and none taken
+        // twice.
+        const std::int64_t value = Nanoseconds{commanded()} / step - steps;
+        const std::int64_t scale = (value * step + step / 2).count() * 1'000 / configured_.count();
+        scale_ppm_ = std::clamp(scale, kScaleMinPpm, kScaleMaxPpm);
+    }
+    is_oscillator_known_ = true;
+    refinements_ = static_cast<std::uint8_t>(std::min(refinements_ + 1, 2));
+    return walk - steps * step;
+}
+
 }  // namespace octoskin::node

@@ -31,6 +31,12 @@ class PeriodTrim {
     /// Takes a measured period; true if the sensor should now be stopped and given `commanded()`.
     [[nodiscard]] bool wants_trim(const MeasuredPeriod& measured, NodeTime now) noexcept;
 
+    /// Whether it was refined twice: its first measurement may be off by some steps.
+    [[nodiscard]] bool is_refined() const noexcept { return refinements_ > 1; }
+    /// The period is longer by `walk` than it should be, and the register has steps of `step`: takes the
+    /// value that comes closest. Returns by how much the period will then be longer.
+    [[nodiscard]] Nanoseconds refine(Nanoseconds walk, Nanoseconds step) noexcept;
+
     /// `measured` against the configured period.
     [[nodiscard]] std::int32_t error_permille(Microseconds measured) const noexcept;
 
@@ -40,6 +46,7 @@ class PeriodTrim {
     std::int64_t scale_ppm_ = 1'000'000;  ///< commanded / configured
     bool is_oscillator_known_ = false;
     std::uint8_t trims_left_;
+    std::uint8_t refinements_ = 0;  ///< saturates
     std::optional<NodeTime> last_trim_;
 };
 

@@ -68,7 +68,7 @@ struct Policy {
     std::uint16_t hint_doubt_max = 100;  ///< so many more spurious falls than confirmed ones make up for
     /// A sensor whose data the line announced is left to the line, as long as its ready time is known this
     /// well.
-    Microseconds hinted_width_max{500};
+    Microseconds hinted_width_max{560};
 
     // --- trimming the inter-measurement register to the configured period
     std::int32_t trim_tolerance_permille = 5;
@@ -76,6 +76,17 @@ struct Policy {
     Microseconds trim_after{1'056'000};      ///< so long a run is measured before its period is judged
     Microseconds trim_interval{60'000'000};  ///< between trims once those at the start are used up
     std::uint32_t trim_edges_min = 8;        ///< ready times observed before a period counts as measured
+
+    // --- holding sensors in their phases, where the rig asks for it
+    Microseconds phase_tolerance{170};
+    /// A ready time that is known less well says nothing about it.
+    Microseconds phase_known_within{500};
+    /// On which side of its phase a sensor is started, against the way that it walks: the rest is for how
+    /// badly ready times are known.
+    Microseconds phase_start_off{130};
+    /// A sensor that is stopped so long before its next range begins has none under way.
+    Microseconds phase_spare{1'000};
+    std::int64_t phase_periods_min = 16;  ///< between two starts for it: each costs a reading
 
     // --- recovery of one sensor: restart, XSHUT cycle, then XSHUT cycles at growing distance
     std::uint8_t proven_readings_until_healthy = 10;

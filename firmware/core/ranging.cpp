@@ -20,14 +20,16 @@ constexpr Microseconds kDrainMargin{5'000};
 }  // namespace
 
 Ranging::Ranging(vl53l1x::Device& device, const SensorConfig& config, const RangingRules& rules,
-                 const Policy& policy, NodeTime node_began) noexcept
+                 const Policy& policy, const PhaseClock& clock, NodeTime node_began) noexcept
     : device_(device),
       config_(config),
       rules_(rules),
       policy_(policy),
+      clock_(clock),
       polls_(rules.i2c_hz, policy),
       acceptance_(rules.stream_gate, Microseconds{std::int64_t{config.timing_budget_ms} * 1'000}, policy),
       trim_(Microseconds{std::int64_t{config.inter_measurement_ms} * 1'000}, policy),
+      phase_(policy),
       zones_(config.zone_count, rules.zone_guard),
       checks_(policy),
       first_start_(node_began + policy.first_starts) {}
@@ -35,11 +37,14 @@ Ranging::Ranging(vl53l1x::Device& device, const SensorConfig& config, const Rang
 void Ranging::begin(NodeTime now) {
     is_stop_requested_ = false;
     is_trim_due_ = false;
+    is_period_set_ = false;
+    start_off_ = Microseconds{0};
     fault_ = SensorFault::none;
     start_step(Step::setting_period, now);
 }
 
 void Ranging::begin_restart(NodeTime now) {
+    is_period_set_ = false;
     is_stop_requested_ = false;
     is_trim_due_ = true;
     start_step(Step::stopping, now);
@@ -52,6 +57,8 @@ void Ranging::request_stop(NodeTime now) noexcept {
 
 void Ranging::set_period(Microseconds period, NodeTime now) noexcept {
     trim_.set_configured(period);
+    is_period_set_ = false;
+    start_off_ = Microseconds{0};
     is_trim_due_ = true;
     if (is_waiting()) step_due_ = now;
 }
@@ -134,7 +141,7 @@ void Ranging::start_step(Step step, NodeTime now) {
             device_.begin_stop();
             break;
         case Step::draining:
-            step_due_ = now + budget() + kDrainMargin;
+            step_due_ = is_between_ranges(now) ? now : now + budget() + kDrainMargin;
             break;
         case Step::idle:
         case Step::awaiting_data:
@@ -199,18 +206,22 @@ Ranging::Event Ranging::on_drained(NodeTime now) {
         return Event::stopped;
     }
     is_trim_due_ = false;
-    start_step(Step::setting_period, now);
+    start_step(std::exchange(is_period_set_, false) ? Step::awaiting_phase : Step::setting_period, now);
     return Event::none;
 }
 
 void Ranging::on_started(NodeTime now) {
     acceptance_.restart(step_began_, trim_.configured(), trim_.uncertainty_permille());
+    phase_.restart(step_began_, start_off_ + elapsed(phase_due_, step_began_), trim_.configured(),
+                   trim_.is_refined());
     zones_.settle();
     ready_from_ = polls_.first_poll_after_start(phase_due_, budget());
     // Parts were seen to give the first result one period after the start.
     const NodeTime expected = phase_due_ + trim_.configured();
     const Microseconds uncertainty = trim_.configured() * trim_.uncertainty_permille() / 1'000;
     first_expected_ = widened({expected, expected}, uncertainty);
+    early_until_ = first_expected_.earliest - policy_.repoll_max;
+    if (rules_.holds_phases && comes_as_expected_) ready_from_ = early_until_;
     // Once before: what is there at once is not of this run.
     await_data(now + policy_.repoll_max);
     ranges_ = 0;
@@ -268,16 +279,33 @@ void Ranging::after_result(NodeTime now) {
     checks_.on_reading();
     const Reading& judged = acceptance_.reading();
     zones_.note_range(judged.capture - judged.capture_bound - budget() / 2);
+    if (ranges_ == 0) comes_as_expected_ = first_expected_.contains(judged.capture + budget() / 2);
     ++ranges_;
-    if (const auto measured = acceptance_.measured_period();
-        measured && trim_.is_judged_after(ranges_) && trim_.wants_trim(*measured, now)) {
-        is_trim_due_ = true;
-    }
+    is_trim_due_ = is_trim_due_ || is_restart_wanted(now);
     if (is_zone_write_due(now)) {
         start_step(Step::writing_zone, now);
     } else {
         check_or_await(now);
     }
+}
+
+/// For another period, or to be back in its phase.
+bool Ranging::is_restart_wanted(NodeTime now) noexcept {
+    const auto measured = acceptance_.measured_period();
+    if (measured && trim_.is_judged_after(ranges_) && trim_.wants_trim(*measured, now)) {
+        start_off_ = Microseconds{0};
+        return true;
+    }
+    if (!rules_.holds_phases) return false;
+    const Reading& judged = acceptance_.reading();
+    const NodeTime ready = judged.capture + budget() / 2;
+    phase_.observe(widened({ready, ready}, judged.capture_bound));
+    const auto step = device_.period_step();
+    if (!step || !phase_.is_lost()) return false;
+    const Microseconds commanded = trim_.commanded();
+    start_off_ = phase_.start_off(trim_.refine(phase_.walk(), *step));
+    is_period_set_ = trim_.commanded() == commanded;
+    return true;
 }
 
 void Ranging::check_or_await(NodeTime now) {
@@ -299,7 +327,8 @@ void Ranging::await_next_result(NodeTime now) {
 void Ranging::await_data(NodeTime due) noexcept {
     step_ = Step::awaiting_data;
     step_due_ = due;
-    is_poll_punctual_ = acceptance_.must_poll_punctually();
+    is_early_ = !acceptance_.next_ready() && acceptance_.is_next_new() && !is_reached(early_until_, due);
+    is_poll_punctual_ = !is_early_ && acceptance_.must_poll_punctually();
 }
 
 /// The line told of this data if it fell while data was awaited, or while the sensor was being asked.
@@ -326,6 +355,12 @@ bool Ranging::is_zone_write_due(NodeTime now) const noexcept {
     return zones_.is_cycling() && !is_trim_due_ && begin && zones_.fits_before(*begin, now);
 }
 
+/// Only where it was stopped for its phase: elsewhere nothing hurries.
+bool Ranging::is_between_ranges(NodeTime now) const noexcept {
+    const auto begin = acceptance_.next_range_begin();
+    return rules_.holds_phases && is_trim_due_ && begin && is_reached(now + policy_.phase_spare, *begin);
+}
+
 bool Ranging::is_zone_as_written() const {
     const Roi& roi = config_.zones[zones_.current()];
     const auto bytes = device_.register_bytes();
@@ -344,16 +379,16 @@ std::int32_t Ranging::period_error_permille() const noexcept {
 }
 
 /// Sensors start at whole periods of the node's clock plus their phase, and the first time once all of them
-/// had the time to be brought up. The grid shifts once at the clock's wrap; whoever starts later is spread no
-/// worse, only differently from those already running.
+/// had the time to be brought up.
 NodeTime Ranging::next_phase(NodeTime now) const noexcept {
     // (A whole wrap later it looks as if it were still to come, for this short while.)
     const Microseconds until_first = elapsed(now, first_start_);
     const bool is_first = until_first.count() > 0 && until_first <= policy_.first_starts;
     const NodeTime from = is_first ? first_start_ : now;
     const auto period = static_cast<std::uint64_t>(trim_.configured().count());
-    const std::uint64_t phase = config_.phase_us % period;
-    const std::uint64_t into_period = (from.us + period - phase) % period;
+    const auto off = static_cast<std::uint64_t>(trim_.configured().count() + start_off_.count());
+    const std::uint64_t phase = (config_.phase_us + off) % period;
+    const std::uint64_t into_period = (clock_.us_at(from) + period - phase) % period;
     const std::uint64_t wait = (period - into_period) % period;
     return from + Microseconds{static_cast<std::int64_t>(wait)};
 }

@@ -12,6 +12,8 @@
 #include "firmware/core/acceptance.hpp"
 #include "firmware/core/bus_use.hpp"
 #include "firmware/core/period_trim.hpp"
+#include "firmware/core/phase_clock.hpp"
+#include "firmware/core/phase_hold.hpp"
 #include "firmware/core/policy.hpp"
 #include "firmware/core/poll_plan.hpp"
 #include "firmware/core/reading.hpp"
@@ -26,6 +28,7 @@ struct RangingRules {
     StreamGate stream_gate = StreamGate::advanced;
     Microseconds zone_guard{1'000};
     std::uint32_t i2c_hz = 400'000;
+    bool holds_phases = false;
 };
 
 class Ranging {
@@ -45,7 +48,7 @@ class Ranging {
 
     /// `node_began`: when all the sensors' first bring-ups did.
     Ranging(vl53l1x::Device& device, const SensorConfig& config, const RangingRules& rules,
-            const Policy& policy, NodeTime node_began) noexcept;
+            const Policy& policy, const PhaseClock& clock, NodeTime node_began) noexcept;
 
     /// The sensor was just configured, which puts it in its first zone, and all of it read back.
     void on_configured() noexcept {
@@ -72,10 +75,17 @@ class Ranging {
     [[nodiscard]] std::optional<NodeTime> punctual_due() const noexcept {
         const bool is_punctual =
             step_ == Step::awaiting_phase || (step_ == Step::awaiting_data && is_poll_punctual_);
-        return is_punctual ? std::optional(step_due_) : std::nullopt;
+        if (is_punctual) return step_due_;
+        // Who was asked early, or had to wait with it, is asked in time.
+        if (step_ == Step::awaiting_data && is_early_) return early_until_;
+        return std::nullopt;
     }
     /// Whether what it must be punctual for is its start.
     [[nodiscard]] bool awaits_start() const noexcept { return step_ == Step::awaiting_phase; }
+    /// Whether it is asked before its first data is expected, most likely in vain: that can wait.
+    [[nodiscard]] bool is_early(NodeTime now) const noexcept {
+        return step_ == Step::awaiting_data && is_early_ && !is_reached(early_until_, now);
+    }
     /// Not while a start is under way, whose instant decides when all its ranges will be; nor between two
     /// polls of which one confirms the other.
     [[nodiscard]] bool may_be_interrupted() const noexcept {
@@ -127,6 +137,8 @@ class Ranging {
     [[nodiscard]] Event fail(wire::SensorFault fault);
     void on_started(NodeTime now);
     void after_result(NodeTime now);
+    [[nodiscard]] bool is_restart_wanted(NodeTime now) noexcept;
+    [[nodiscard]] bool is_between_ranges(NodeTime now) const noexcept;
     void check_or_await(NodeTime now);
     [[nodiscard]] NodeTime repoll(NodeTime now) const noexcept;
     void await_next_result(NodeTime now);
@@ -142,27 +154,34 @@ class Ranging {
     const SensorConfig& config_;
     RangingRules rules_;
     const Policy& policy_;
+    const PhaseClock& clock_;
     PollPlan polls_;
     Acceptance acceptance_;
     PeriodTrim trim_;
+    PhaseHold phase_;
     ZoneCycle zones_;
     SteeringChecks checks_;
 
     NodeTime first_start_;
     bool is_poll_punctual_ = false;  ///< asked of every sensor at every turn: worked out once a poll
+    bool is_early_ = false;          ///< likewise
     NodeTime phase_due_;             ///< when the sensor was to start, whenever the bus was free for it
+    Microseconds start_off_{0};      ///< of that time, from the sensor's phase
     std::uint32_t ranges_ = 0;       ///< results since the start
     Step step_ = Step::idle;
     NodeTime step_due_;
     NodeTime step_began_;
     NodeTime ready_from_;         ///< while data is awaited: there is none before
     TimeBracket first_expected_;  ///< where the first data after the start is most likely ready
+    NodeTime early_until_;        ///< before that it is asked for most likely in vain
     bool has_hint_ = false;       ///< since the poll under way began, or the last one
     bool is_hinted_ = false;      ///< the poll under way follows a hint
     bool has_confirmed_ = false;  ///< not taken yet
     bool was_announced_ = false;  ///< the line told of the last data
     bool is_stop_requested_ = false;
     bool is_trim_due_ = false;
+    bool is_period_set_ = false;      ///< as commanded
+    bool comes_as_expected_ = false;  ///< the first data of a run, when it came last
     wire::SensorFault fault_ = wire::SensorFault::none;
     std::uint32_t suspect_readings_ = 0;
 };

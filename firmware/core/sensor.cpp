@@ -47,7 +47,7 @@ Sensor::Sensor(const SensorConfig& config, const SensorSurroundings& surrounding
       policy_(policy),
       device_(surroundings.bus, options),
       bring_up_(device_, surroundings.default_address, surroundings.xshut, config_, policy),
-      ranging_(device_, config_, rules, policy, now),
+      ranging_(device_, config_, rules, policy, surroundings.clock, now),
       recovery_(policy),
       calibration_(device_, Microseconds{std::int64_t{config.inter_measurement_ms} * 1'000}) {
     begin_bring_up(now);

@@ -13,6 +13,7 @@
 #include "firmware/core/bus_use.hpp"
 #include "firmware/core/calibration.hpp"
 #include "firmware/core/default_address.hpp"
+#include "firmware/core/phase_clock.hpp"
 #include "firmware/core/policy.hpp"
 #include "firmware/core/ports.hpp"
 #include "firmware/core/ranging.hpp"
@@ -28,6 +29,7 @@ struct SensorSurroundings {
     i2c::Bus& bus;
     DefaultAddress& default_address;
     XshutLines& xshut;
+    const PhaseClock& clock;
 };
 
 /// Since start; the wire carries them modulo or saturated.
@@ -83,6 +85,10 @@ class Sensor {
     }
     /// Whether what it must be punctual for is its start.
     [[nodiscard]] bool awaits_start() const noexcept { return ranging_.awaits_start(); }
+    /// Whether what it is due for can wait for as long as others must be punctual.
+    [[nodiscard]] bool can_wait(NodeTime now) const noexcept {
+        return mode_ == Mode::ranging && ranging_.is_early(now);
+    }
     /// Whether somebody who must be punctual may come between its transfers.
     [[nodiscard]] bool may_be_interrupted() const noexcept { return ranging_.may_be_interrupted(); }
     /// One step, with the bus free or taken by this sensor's own transfer.

@@ -167,6 +167,7 @@ void write_node(Writer& out, const Node& node) {
     out.line("    stream_gate: {}", word(node.config.stream_gate));
     out.line("    aux_every: {}", node.config.aux_every);
     out.line("    zone_guard_us: {}", node.config.zone_guard_us);
+    out.line("    holds_phases: {}", node.config.holds_phases);
     if (node.config.data_ready_buses != 0) out.line("    data_ready_buses:");
     for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
         if ((node.config.data_ready_buses >> bus & 1U) != 0) out.line("      - {}", bus);

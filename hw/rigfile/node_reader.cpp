@@ -48,6 +48,7 @@ NodeConfig read_node_settings(const Table& table, const NodeContext& context, co
         config.stream_gate);
     config.aux_every = table.integer<std::uint8_t>("aux_every", {0, 255}, config.aux_every);
     config.zone_guard_us = table.integer<std::uint16_t>("zone_guard_us", {0, 20'000}, config.zone_guard_us);
+    config.holds_phases = table.flag("holds_phases", config.holds_phases);
     if (config.uses_can_fd && !board.supports_can_fd) {
         table.fail("board",
                    fmt::format("expected a board with CAN FD, as `bus` asks for; {} has classical CAN only",
@@ -172,9 +173,10 @@ std::vector<Node> read_nodes(const Value& value, const std::string& path, const 
     std::vector<Node> nodes;
     Taken taken;
     for (std::size_t i = 0; i < items.size(); ++i) {
-        const Table table(items[i], fmt::format("{}[{}]", path, i),
-                          {"name", "node_id", "board", "i2c_hz", "io_level", "reads_twice", "stream_gate",
-                           "aux_every", "zone_guard_us", "data_ready_buses", "pinned_build_id", "sensors"});
+        const Table table(
+            items[i], fmt::format("{}[{}]", path, i),
+            {"name", "node_id", "board", "i2c_hz", "io_level", "reads_twice", "stream_gate", "aux_every",
+             "zone_guard_us", "holds_phases", "data_ready_buses", "pinned_build_id", "sensors"});
         nodes.push_back(read_node(table, context));
         taken.take(table, "name", fmt::format("name '{}'", nodes.back().name));
         taken.take(table, "node_id", fmt::format("node_id {}", nodes.back().config.node_id));

@@ -20,7 +20,7 @@ NodeConfig fleet(std::uint8_t count, DistanceMode mode, std::uint16_t budget_ms,
 }
 
 FlashedBoard::FlashedBoard(const NodeConfig& config, NucleoOptions options)
-    : config_(config), rangings_(config.sensor_count) {
+    : config_(config), rangings_(config.sensor_count), windows_(config.sensor_count) {
     const BoardParts parts = draw_board_parts({.seed = 3}, config);
     options.bit_rates = {config.nominal_bitrate, config.data_bitrate};
     options.unique_id = parts.unique_id;
@@ -30,8 +30,9 @@ FlashedBoard::FlashedBoard(const NodeConfig& config, NucleoOptions options)
     // Each ranging sees another distance, so that no reading can pass for another.
     sensors_ = std::make_unique<SensorCarrier>(
         *board_, config, parts.sensors, [this](std::uint8_t sensor) -> RangingScene {
-            return [this, sensor](std::uint32_t index, SimTime, const Roi&) {
+            return [this, sensor](std::uint32_t index, SimTime middle, const Roi&) {
                 rangings_.at(sensor) = index + 1;
+                windows_.at(sensor).push_back(middle);
                 return RangingReturn{0.2 + 0.001 * (index % 900), 0.002, 20.0, 0.2};
             };
         });

@@ -38,6 +38,10 @@ class FlashedBoard {
     [[nodiscard]] const std::vector<SaidHeartbeat>& heartbeats() const noexcept { return heartbeats_; }
     /// Rangings that ended since power-up.
     [[nodiscard]] std::uint32_t rangings(std::size_t sensor) const { return rangings_.at(sensor); }
+    /// The middles of their windows.
+    [[nodiscard]] const std::vector<SimTime>& windows(std::size_t sensor) const {
+        return windows_.at(sensor);
+    }
     /// As last said.
     [[nodiscard]] const std::optional<wire::InfoTraffic>& traffic() const noexcept { return traffic_; }
     [[nodiscard]] SimTime first_range() const noexcept { return first_range_; }
@@ -49,6 +53,7 @@ class FlashedBoard {
 
     NodeConfig config_;
     std::vector<std::uint32_t> rangings_;
+    std::vector<std::vector<SimTime>> windows_;
     std::unique_ptr<NucleoBoard> board_;
     std::unique_ptr<SensorCarrier> sensors_;
     std::unique_ptr<SimulatedCanBus> bus_;

@@ -2,7 +2,13 @@
 // main loop's length whatever a bus does.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
 #include "tests/board/flashed_board.hpp"
+#include "tests/support/turns.hpp"
 
 namespace octoskin::sim::stm32 {
 namespace {
@@ -60,6 +66,14 @@ PollsAndReadings cost_of_a_second(const NodeConfig& config) {
             after.core_percent - before.core_percent};
 }
 
+void expect_unbroken(const std::vector<SaidReading>& readings) {
+    for (std::size_t i = 1; i < readings.size(); ++i) {
+        ASSERT_EQ(readings[i].reading.sequence,
+                  (readings[i - 1].reading.sequence + 1) % wire::kSequenceCount);
+        ASSERT_NE(readings[i].reading.range_mm, readings[i - 1].reading.range_mm) << "a value said twice";
+    }
+}
+
 class ImageTest : public testing::TestWithParam<Speed> {
   protected:
     /// After three seconds to come up and to trim: two more in which nothing may be missed.
@@ -113,14 +127,6 @@ class ImageTest : public testing::TestWithParam<Speed> {
     /// and a sensor's period may stay a few per cent off until its next trim. Its readings are all taken
     /// nevertheless.
     static double rate_tolerance() { return GetParam().cycles_per_instruction == 1 ? 0.02 : 0.05; }
-
-    static void expect_unbroken(const std::vector<SaidReading>& readings) {
-        for (std::size_t i = 1; i < readings.size(); ++i) {
-            ASSERT_EQ(readings[i].reading.sequence,
-                      (readings[i - 1].reading.sequence + 1) % wire::kSequenceCount);
-            ASSERT_NE(readings[i].reading.range_mm, readings[i - 1].reading.range_mm) << "a value said twice";
-        }
-    }
 };
 
 TEST_P(ImageTest, seventeen_sensors_at_50_hz_on_four_buses_lose_nothing) {
@@ -160,6 +166,68 @@ TEST_P(ImageTest, heartbeat_and_ranges_come_in_time_after_reset) {
 INSTANTIATE_TEST_SUITE_P(Speeds, ImageTest,
                          testing::Values(Speed{1, BusEdges::typical}, Speed{3, BusEdges::slowest}),
                          testing::PrintToStringParamName());
+
+// --- phases
+
+/// A quarter of a minute, the last ten seconds of it judged: tests/sim/phases_test has whole minutes.
+struct HeldFleet {
+    std::string name;
+    NodeConfig config;
+    Speed speed;
+    double peak_over_mean_max = 0.0;
+};
+class ImagePhases : public testing::TestWithParam<HeldFleet> {};
+
+TEST_P(ImagePhases, sensors_keep_taking_turns_where_the_rig_asks_for_it) {
+    constexpr SimTime kSettled{5'000'000};
+    NodeConfig config = GetParam().config;
+    config.holds_phases = true;
+    test::spread_phases(config);
+    const double budget_us = 1'000.0 * config.sensors[0].timing_budget_ms;
+    const double period_us = 1'000.0 * config.sensors[0].inter_measurement_ms;
+    FlashedBoard flashed(config, options_of(GetParam().speed));
+    flashed.run_for(15s);
+    std::vector<std::vector<double>> middles_us(config.sensor_count);
+    std::array<std::vector<double>, kNodeBusesMax> of_bus_us;
+    double ranges = 0.0;
+    for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) {
+        for (const SimTime middle : flashed.windows(sensor)) {
+            if (middle < kSettled) continue;
+            middles_us[sensor].push_back(static_cast<double>(middle.us));
+            of_bus_us.at(config.sensors[sensor].bus).push_back(static_cast<double>(middle.us));
+            ranges += 1.0;
+        }
+        expect_unbroken(flashed.readings(sensor));
+    }
+    double peak = 0.0;
+    for (const auto& ready_us : of_bus_us) peak = std::max(peak, test::peak_over_mean(ready_us));
+    EXPECT_LE(peak, GetParam().peak_over_mean_max);
+    double overlap_us = -budget_us;
+    for (std::uint8_t a = 0; a < config.sensor_count; ++a) {
+        for (std::uint8_t b = 0; b < config.sensor_count; ++b) {
+            if (test::are_opposite(config.sensors[a], config.sensors[b]))
+                overlap_us = std::max(overlap_us, test::needless_overlap_us(middles_us[a], middles_us[b],
+                                                                            budget_us, period_us));
+        }
+    }
+    EXPECT_LE(overlap_us, 1'000.0);
+    const double missing = 1.0 - ranges / (config.sensor_count * 10e6 / period_us);
+    EXPECT_LE(missing, 0.04);
+    std::printf(
+        "%d sensors: busiest 5 ms %.2f of the mean, %.2f ms at once beyond need, %.1f %% of the ranges "
+        "given for it\n",
+        config.sensor_count, peak, overlap_us * 1e-3, 100.0 * missing);
+    EXPECT_EQ(flashed.violations(), "");
+}
+
+// A core that takes three cycles an instruction knows ready times less well, and a start may come half a
+// millisecond late where edges are as slow as the specification allows.
+INSTANTIATE_TEST_SUITE_P(
+    Fleets, ImagePhases,
+    testing::Values(HeldFleet{"34_at_30_hz", thirty_four_at_30_hz(), {1, BusEdges::typical}, 1.5},
+                    HeldFleet{"17_at_50_hz", seventeen_at_50_hz(), {1, BusEdges::typical}, 1.5},
+                    HeldFleet{"17_at_50_hz_slow_edges", seventeen_at_50_hz(), {3, BusEdges::slowest}, 1.6}),
+    [](const auto& tested) { return tested.param.name; });
 
 // --- one fault on one bus
 

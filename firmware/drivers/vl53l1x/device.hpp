@@ -17,6 +17,7 @@
 #include "firmware/drivers/vl53l1x/registers.hpp"
 #include "firmware/drivers/vl53l1x/result_block.hpp"
 #include "firmware/drivers/vl53l1x/settings.hpp"
+#include "firmware/drivers/vl53l1x/timing.hpp"
 
 namespace octoskin::vl53l1x {
 
@@ -149,6 +150,10 @@ class Device {
     }
     /// Whether measurements carry the gain factor.
     [[nodiscard]] bool applies_gain_factor() const noexcept { return settings_.applies_gain_factor; }
+    /// What one step of the inter-measurement register makes of the period; empty before one was set.
+    [[nodiscard]] std::optional<Nanoseconds> period_step() const noexcept {
+        return vl53l1x::period_step(oscillator_);
+    }
     [[nodiscard]] i2c::Address live_address() const noexcept { return live_address_; }
     /// Transfers that failed, retried ones included, and read-backs that a second one contradicted;
     /// saturates.

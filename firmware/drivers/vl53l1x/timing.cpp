@@ -56,6 +56,9 @@ constexpr std::array<BudgetRow, 18> kBudgets{{
     {long_range, 500, {0x048F, 0x04A4}},
 }};
 
+// Of RESULT__OSC_CALIBRATE_VAL.
+constexpr std::uint16_t kOscillatorMask = 0x03FF;
+
 }  // namespace
 
 const ModeRegisters& mode_registers(DistanceMode mode) noexcept {
@@ -93,7 +96,6 @@ std::optional<std::uint16_t> budget_of_timeout_a(std::uint16_t timeout_a) noexce
 }
 
 std::optional<std::uint32_t> period_register(std::uint16_t oscillator, Microseconds nominal) noexcept {
-    constexpr std::uint16_t kOscillatorMask = 0x03FF;
     constexpr std::int64_t kPeriodUsMax =
         3'600'000'000;  // an hour: the register holds it at every oscillator value
     static_assert(std::uint64_t{kOscillatorMask} * kPeriodUsMax * 1075 / 1'000'000 <= UINT32_MAX);
@@ -103,6 +105,12 @@ std::optional<std::uint32_t> period_register(std::uint16_t oscillator, Microseco
         ticks * static_cast<std::uint64_t>(nominal.count()) * 1075 / (std::uint64_t{1000} * 1000);
     if (value == 0) return std::nullopt;
     return static_cast<std::uint32_t>(value);
+}
+
+std::optional<Nanoseconds> period_step(std::uint16_t oscillator) noexcept {
+    const std::int64_t ticks = oscillator & kOscillatorMask;
+    if (ticks == 0) return std::nullopt;
+    return Nanoseconds{1'000'000'000 / (ticks * 1075)};
 }
 
 }  // namespace octoskin::vl53l1x

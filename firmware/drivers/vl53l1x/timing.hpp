@@ -51,4 +51,8 @@ inline constexpr std::uint16_t kPeriodMarginMs = 5;
 [[nodiscard]] std::optional<std::uint32_t> period_register(std::uint16_t oscillator,
                                                            Microseconds nominal) noexcept;
 
+/// What one step of that register makes of the period: 25 us at the usual oscillator value of 37. Empty if
+/// the value is 0.
+[[nodiscard]] std::optional<Nanoseconds> period_step(std::uint16_t oscillator) noexcept;
+
 }  // namespace octoskin::vl53l1x

@@ -66,6 +66,7 @@ NodeConfig node_config(std::uint8_t sensors) {
                       .stream_gate = StreamGate::differs,
                       .aux_every = 9,
                       .zone_guard_us = 0x0BB8,
+                      .holds_phases = true,
                       .data_ready_buses = 0x0A,
                       .sensor_count = sensors};
     for (std::uint8_t i = 0; i < sensors; ++i) {
@@ -77,11 +78,11 @@ NodeConfig node_config(std::uint8_t sensors) {
 TEST(NodeConfig, canonical_form_is_these_bytes) {
     // Header, node, one sensor with two zones, and room for the CRC-32 (its own oracle is in crc_test.cpp).
     const Block expected = {
-        'O',  'S',  'K',  'C',  3,    0,    64,   0,     // magic, version, length
+        'O',  'S',  'K',  'C',  4,    0,    65,   0,     // magic, version, length
         0x3D, 0x77, 0,                                   // node id, board type, CAN FD
         0x20, 0xA1, 0x07, 0,    0x80, 0x84, 0x1E, 0,     // bit rates
         0xE0, 0x93, 0x04, 0,    0,    0,    1,    9,     // I2C, 2.8 V, double read, gate, aux
-        0xB8, 0x0B, 0x0A, 1,                             // zone guard, data-ready lines, sensors
+        0xB8, 0x0B, 1,    0x0A, 1,                       // zone guard, phases, data-ready lines, sensors
         0,    39,   0x30, 1,    0x23, 0x01, 0x56, 0x04,  // bus, line, address, mode, budget, period
         0x9A, 0x78, 0xCC, 0xFF, 1,    0xDE, 0xBC,        // phase, offset, has it, crosstalk
         0x12, 0x0F, 0x56, 0x34, 0x89, 0x07, 1,    2,     // sigma, signal, reflex, gain, zones
@@ -106,7 +107,7 @@ TEST(NodeConfig, the_largest_one_fits_its_block) {
     for (SensorConfig& sensor : config.sensors) {
         sensor.zone_count = kSensorZonesMax;
     }
-    EXPECT_EQ(block_of(config).size(), 1735U);  // of 2048
+    EXPECT_EQ(block_of(config).size(), 1736U);  // of 2048
     EXPECT_EQ(*decode_node_config(block_of(config)), config);
 }
 
@@ -189,7 +190,7 @@ TEST(NodeConfig, fields_that_end_before_or_after_the_length_are_refused) {
 
 TEST(NodeConfig, a_flag_is_0_or_1_and_a_count_at_most_its_maximum) {
     const Block good = block_of(node_config(1));
-    for (const std::size_t flag : {10U, 23U, 24U, 43U, 52U}) {
+    for (const std::size_t flag : {10U, 23U, 24U, 29U, 44U, 53U}) {
         for (const unsigned value : {2U, 255U}) {
             Block block = good;
             block[flag] = static_cast<std::uint8_t>(value);
@@ -197,7 +198,7 @@ TEST(NodeConfig, a_flag_is_0_or_1_and_a_count_at_most_its_maximum) {
         }
     }
     for (const auto& [at, value] :
-         std::vector<std::pair<std::size_t, int>>{{30, 35}, {30, 255}, {53, 10}, {53, 255}}) {
+         std::vector<std::pair<std::size_t, int>>{{31, 35}, {31, 255}, {54, 10}, {54, 255}}) {
         Block block = good;
         block[at] = static_cast<std::uint8_t>(value);
         EXPECT_EQ(error_of(signed_again(block)), NodeConfigError::invalid_field) << at;
@@ -311,6 +312,7 @@ TEST(NodeConfig, every_field_is_compared_and_hashed) {
     fields.push_back(flag("uses_can_fd", [](NodeConfig& c) -> bool& { return c.uses_can_fd; }));
     fields.push_back(flag("is_io_2v8", [](NodeConfig& c) -> bool& { return c.is_io_2v8; }));
     fields.push_back(flag("reads_twice", [](NodeConfig& c) -> bool& { return c.reads_twice; }));
+    fields.push_back(flag("holds_phases", [](NodeConfig& c) -> bool& { return c.holds_phases; }));
     fields.push_back(flag("has_offset", [](NodeConfig& c) -> bool& { return c.sensors[1].has_offset; }));
     fields.push_back(flag("gain", [](NodeConfig& c) -> bool& { return c.sensors[1].applies_gain_factor; }));
     for (const FieldRange& field : fields) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 namespace octoskin::node {
 namespace {
 
@@ -55,6 +57,45 @@ TEST(PeriodTrim, trims_at_once_after_forty_minutes_at_rest) {
     EXPECT_TRUE(trim.wants_trim(certain(34'000), kNow));
     EXPECT_FALSE(trim.wants_trim(certain(34'000), kNow));
     EXPECT_TRUE(trim.wants_trim(certain(34'000), kNow + Microseconds{2'400'000'000}));
+}
+
+TEST(PeriodTrim, refines_by_whole_steps_of_the_register_to_the_nearest) {
+    constexpr Nanoseconds kStep{25'000};
+    for (int walk_us = -500; walk_us <= 500; ++walk_us) {
+        PeriodTrim trim{kConfigured, kPolicy};
+        const Nanoseconds walk{walk_us * 1'000};
+        const Nanoseconds left = trim.refine(walk, kStep);
+        EXPECT_LE(std::abs(left.count()), kStep.count() / 2) << walk_us;
+        EXPECT_EQ((walk - left) % kStep, Nanoseconds{0}) << walk_us;
+        // As the register has it, which rounds down.
+        const std::int64_t value = Nanoseconds{trim.commanded()} / kStep;
+        EXPECT_EQ(value, Nanoseconds{kConfigured} / kStep - (walk - left) / kStep) << walk_us;
+        EXPECT_LT(trim.uncertainty_permille(), kPolicy.period_expected_permille);
+    }
+}
+
+TEST(PeriodTrim, refines_by_as_many_steps_wherever_between_two_values_it_stands) {
+    constexpr Nanoseconds kStep{25'141};
+    for (int trimmed_us = 32'500; trimmed_us <= 33'500; ++trimmed_us) {
+        PeriodTrim trim{kConfigured, kPolicy};
+        ASSERT_EQ(trim.wants_trim(certain(trimmed_us), kNow), std::abs(trimmed_us - 33'000) > 165)
+            << trimmed_us;
+        for (const int steps : {1, 1, -2, 3, -1}) {
+            const std::int64_t before = Nanoseconds{trim.commanded()} / kStep;
+            (void)trim.refine(steps * kStep, kStep);
+            EXPECT_EQ(Nanoseconds{trim.commanded()} / kStep, before - steps) << trimmed_us;
+        }
+    }
+}
+
+TEST(PeriodTrim, refines_no_farther_than_an_oscillator_can_be_off) {
+    PeriodTrim trim{kConfigured, kPolicy};
+    for (int i = 0; i < 10; ++i)
+        EXPECT_EQ(trim.refine(Microseconds{4'950}, Microseconds{25}), Nanoseconds{0});
+    EXPECT_EQ(trim.commanded(), Microseconds{33'000 * 85 / 100});
+    for (int i = 0; i < 20; ++i)
+        EXPECT_EQ(trim.refine(Microseconds{-4'950}, Microseconds{25}), Nanoseconds{0});
+    EXPECT_EQ(trim.commanded(), Microseconds{33'000 * 115 / 100});
 }
 
 TEST(PeriodTrim, takes_a_doubled_period_for_a_slot_too_short_and_lengthens_it) {

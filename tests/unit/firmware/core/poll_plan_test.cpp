@@ -11,8 +11,8 @@ constexpr Microseconds kPeriod{33'000};
 
 TEST(PollPlan, asks_first_just_before_the_data_can_be_ready) {
     const PollPlan plan{400'000, kPolicy};
-    // 48 bits at 400 kHz, half as much again, and 20 us for the loop
-    EXPECT_EQ(plan.first_poll({{100'000}, {100'300}}), NodeTime{100'000 - 180 - 20});
+    // 48 bits at 400 kHz, a quarter more, and 20 us for the loop
+    EXPECT_EQ(plan.first_poll({{100'000}, {100'300}}), NodeTime{100'000 - 150 - 20});
 }
 
 TEST(PollPlan, lets_a_line_go_first_and_asks_just_after_the_data_must_be_ready) {
@@ -44,14 +44,14 @@ TEST(PollPlan, asks_ever_more_rarely_the_longer_the_data_is_overdue) {
 
 TEST(PollPlan, looks_in_the_middle_of_where_the_ready_time_must_be) {
     const PollPlan plan{400'000, kPolicy};
-    const NodeTime due = plan.poll_within({{100'000}, {100'300}}, kPeriod);
-    EXPECT_EQ(plan.not_ready_until(due), NodeTime{100'150});
+    const NodeTime due = plan.poll_within({{100'000}, {100'260}}, kPeriod);
+    EXPECT_EQ(plan.not_ready_until(due), NodeTime{100'130});
 }
 
 TEST(PollPlan, looks_in_up_to_four_places_where_the_ready_time_is_known_less_well) {
     const PollPlan plan{400'000, kPolicy};
     // The time of a poll, or a quarter of what is not known.
-    EXPECT_EQ(plan.not_ready_until(plan.poll_within({{100'000}, {100'600}}, kPeriod)), NodeTime{100'160});
+    EXPECT_EQ(plan.not_ready_until(plan.poll_within({{100'000}, {100'500}}, kPeriod)), NodeTime{100'136});
     EXPECT_EQ(plan.not_ready_until(plan.poll_within({{100'000}, {101'000}}, kPeriod)), NodeTime{100'250});
 }
 
@@ -73,8 +73,8 @@ TEST(PollPlan, asks_again_and_again_where_the_first_data_of_a_run_is_expected) {
     EXPECT_EQ(next(5'000), NodeTime{18'000});
     EXPECT_EQ(next(18'001), NodeTime{19'000});
     EXPECT_EQ(next(30'100), NodeTime{30'360});
-    for (const std::uint32_t now : {30'360U, 30'400U, 30'559U}) EXPECT_EQ(next(now), NodeTime{30'560}) << now;
-    EXPECT_EQ(next(35'000), NodeTime{35'160});
+    for (const std::uint32_t now : {30'360U, 30'400U, 30'529U}) EXPECT_EQ(next(now), NodeTime{30'530}) << now;
+    EXPECT_EQ(next(35'000), NodeTime{35'120});
     EXPECT_EQ(next(35'640), NodeTime{36'640});
 }
 

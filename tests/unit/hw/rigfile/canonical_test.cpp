@@ -58,6 +58,7 @@ nodes:
     stream_gate: advanced
     aux_every: 4
     zone_guard_us: 900
+    holds_phases: false
     pinned_build_id: 0x1a2b3c4d
     sensors:
       - name: front
@@ -244,6 +245,7 @@ const Change kChanges[] = {
     {"stream_gate: advanced", "stream_gate: off", true},
     {"aux_every: 4", "aux_every: 0", true},
     {"zone_guard_us: 900", "zone_guard_us: 901", true},
+    {"holds_phases: false", "holds_phases: true", true},
     {"zone_guard_us: 900", "zone_guard_us: 900\n    data_ready_buses: [1]", true},
     {"bus: 1", "bus: 0", true},
     {"xshut_line: 3", "xshut_line: 2", true},

@@ -113,6 +113,8 @@ TEST(Period, equals_st_formula_for_every_oscillator_value) {
 }
 
 TEST(Period, literal_values) {
+    EXPECT_EQ(period_step(37), Nanoseconds{25'141}) << "1e9 / (37 * 1075)";
+    EXPECT_EQ(period_step(0xFC00), std::nullopt);
     EXPECT_EQ(period_register(37, Microseconds{50'000}), 0x07C4U);
     EXPECT_EQ(period_register(37, Microseconds{100'000}), 0x0F89U) << "ST's default configuration";
     EXPECT_EQ(period_register(37, Microseconds{50'500}), 2'008U) << "finer than milliseconds";

@@ -1,0 +1,50 @@
+// Keeps a sensor's ranges where the rig put them within the period, for as long as it ranges. The period is
+// known to a step of its register (0.03-0.13 % at 15-50 ms), and ST allows no change while the sensor ranges
+// (UM2356): so each sensor walks off, and is started anew once it has walked too far, on the far side of its
+// phase, so that it walks through all that is allowed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/time.hpp"
+#include "firmware/core/policy.hpp"
+#include "firmware/core/time_bracket.hpp"
+
+namespace octoskin::node {
+
+class PhaseHold {
+  public:
+    explicit PhaseHold(const Policy& policy) noexcept : policy_(policy) {}
+
+    /// The sensor was started, `off` after its phase, to range every `period`; `is_trimmed`: to a step of its
+    /// register.
+    void restart(NodeTime started, Microseconds off, Microseconds period, bool is_trimmed) noexcept;
+    /// A range was ready within `ready`; too vague a time tells nothing. How long after a start the first one
+    /// comes is the part's own, and not counted.
+    void observe(const TimeBracket& ready) noexcept;
+
+    /// Whether it has walked too far, at a rate that a trim can mend.
+    [[nodiscard]] bool is_lost() const noexcept;
+    /// By how much a period is longer than it should be
+    [[nodiscard]] Nanoseconds walk() const noexcept;
+    /// How long after its phase to start a sensor that will then walk by so much a period.
+    [[nodiscard]] Microseconds start_off(Nanoseconds walk) const noexcept;
+
+  private:
+    void begin(Microseconds first_after) noexcept;
+    [[nodiscard]] Microseconds nearest_to_zero(Microseconds off) const noexcept;
+
+    const Policy& policy_;
+    NodeTime started_;
+    Microseconds off_at_start_{0};
+    Microseconds period_{0};
+    bool is_trimmed_ = false;
+    Microseconds off_{0};           ///< how far after its phase the newest range was
+    std::int64_t periods_ = 0;      ///< from the first range of this run to the newest
+    std::optional<NodeTime> last_;  ///< when that was ready; of this run
+    Microseconds first_after_{0};   ///< a start, the first range is ready: the mean
+    std::int64_t firsts_ = 0;       ///< so many of them; no more than count
+};
+
+}  // namespace octoskin::node

@@ -1,0 +1,228 @@
+// A minute of whole fleets whose oscillators are up to 7 % off: do their sensors keep taking turns? Oracle:
+// the simulated sensors' own windows, and the time for which the simulated buses were truly taken.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/sim/capture_oracle.hpp"
+#include "tests/support/node_rig.hpp"
+#include "tests/support/turns.hpp"
+
+namespace octoskin::node {
+namespace {
+
+using test::NodeRig;
+using test::SensorSetup;
+using test::TrueRange;
+
+constexpr std::int64_t kDurationUs = 60'000'000;
+// By then the periods are known to a step of their registers.
+constexpr std::int64_t kSettledUs = 5'000'000;
+constexpr double kWindowUs = 5'000.0;
+constexpr double kPeakOverMeanMax = 1.5;
+constexpr std::int64_t kStepUs = 100;
+
+struct Fleet {
+    std::string name;
+    std::uint8_t count = 0;
+    DistanceMode mode = DistanceMode::long_range;
+    std::uint16_t budget_ms = 20;
+    std::uint16_t period_ms = 33;
+    std::size_t order = 1;  ///< in which sensors get their oscillators
+    [[nodiscard]] double period_us() const { return 1'000.0 * period_ms; }
+    [[nodiscard]] double budget_us() const { return 1'000.0 * budget_ms; }
+};
+
+NodeConfig config_of(const Fleet& fleet, bool holds_phases) {
+    NodeConfig config = test::fleet_config(fleet.count, kNodeBusesMax);
+    config.holds_phases = holds_phases;
+    for (std::uint8_t i = 0; i < fleet.count; ++i) {
+        SensorConfig& sensor = config.sensors.at(i);
+        sensor.distance_mode = fleet.mode;
+        sensor.timing_budget_ms = fleet.budget_ms;
+        sensor.inter_measurement_ms = fleet.period_ms;
+    }
+    test::spread_phases(config);
+    return config;
+}
+
+/// Real periods from 7 % below to 7 % above the nominal ones; oscillator values over all that are modelled.
+std::vector<SensorSetup> parts_of(const Fleet& fleet) {
+    std::vector<SensorSetup> setups(fleet.count);
+    for (std::size_t i = 0; i < fleet.count; ++i) {
+        const auto place = static_cast<double>(i * fleet.order % fleet.count);
+        setups[i].part.slow_clock_factor = 1.075 / (0.93 + 0.14 * place / (fleet.count - 1));
+        setups[i].part.osc_calibrate = static_cast<std::uint16_t>(30 + i % 16);
+    }
+    return setups;
+}
+
+class FleetMinute {
+  public:
+    FleetMinute(const Fleet& fleet, bool holds_phases)
+        : fleet_(fleet),
+          config_(config_of(fleet, holds_phases)),
+          // The node's crystal is 100 ppm off, and its clock wraps after half a minute.
+          rig_(config_, parts_of(fleet), sim::NodeClock{{0xFFFFFFFFU - 30'000'000U}, 100.0}) {
+        for (std::int64_t us = 0; us < kDurationUs; us += kStepUs) {
+            rig_.run_for(Microseconds{kStepUs});
+            for (std::size_t bus = 0; bus < kNodeBusesMax; ++bus)
+                taken_us_.at(bus).push_back(rig_.bus(bus).busy_time().count());
+        }
+    }
+    [[nodiscard]] NodeRig& rig() { return rig_; }
+    [[nodiscard]] const NodeConfig& config() const { return config_; }
+
+    /// How far each range of a sensor was from its phase.
+    [[nodiscard]] std::vector<double> offs_us(std::uint8_t sensor) const {
+        // Clearing and starting takes this long, before the sensor begins to count.
+        constexpr double kStartUs = 188.0;
+        std::vector<double> offs;
+        for (const TrueRange& range : rig_.truth(sensor)) {
+            if (range.window_middle.us < kSettledUs) continue;
+            const double phase_us = config_.sensors.at(sensor).phase_us + kStartUs;
+            offs.push_back(
+                std::remainder(node_us(range) + fleet_.budget_us() / 2 - phase_us, fleet_.period_us()));
+        }
+        return offs;
+    }
+    /// Of the ranges that the sensors would take without a pause: those that they did not.
+    [[nodiscard]] double missing() const {
+        double ranges = 0.0;
+        for (std::uint8_t sensor = 0; sensor < fleet_.count; ++sensor)
+            ranges += static_cast<double>(offs_us(sensor).size());
+        return 1.0 - ranges / (fleet_.count * (kDurationUs - kSettledUs) / fleet_.period_us());
+    }
+    /// Ranges taken of which no reading came.
+    [[nodiscard]] std::size_t unread() const {
+        std::size_t unread = 0;
+        for (std::uint8_t sensor = 0; sensor < fleet_.count; ++sensor) {
+            std::set<std::int64_t> read;
+            for (const auto& said : rig_.readings_of(sensor)) {
+                if (const TrueRange* truth = test::truth_of(rig_, sensor, said))
+                    read.insert(truth->window_middle.us);
+            }
+            for (const TrueRange& range : rig_.truth(sensor)) {
+                const std::int64_t at_us = range.window_middle.us;
+                const bool is_due = at_us > kSettledUs && at_us < kDurationUs - 100'000;
+                unread += is_due && !read.contains(at_us) ? 1U : 0U;
+            }
+        }
+        return unread;
+    }
+    /// When each range of a sensor was in its middle.
+    [[nodiscard]] std::vector<double> middles_us(std::uint8_t sensor) const {
+        std::vector<double> middles;
+        for (const TrueRange& range : rig_.truth(sensor)) {
+            if (range.window_middle.us > kSettledUs)
+                middles.push_back(static_cast<double>(range.window_middle.us));
+        }
+        return middles;
+    }
+    [[nodiscard]] double planned_peak_over_mean(std::uint8_t bus) const {
+        std::vector<double> all;
+        for (std::uint8_t sensor = bus; sensor < fleet_.count; sensor += kNodeBusesMax) {
+            const auto middles = middles_us(sensor);
+            all.insert(all.end(), middles.begin(), middles.end());
+        }
+        return test::peak_over_mean(std::move(all));
+    }
+    struct TrueLoad {
+        double peak_over_mean = 0.0;
+        double share_above = 0.0;  ///< of the windows of 5 ms: above one and a half times the mean
+    };
+    /// Of all that was transferred: polls, read-backs and starts too.
+    [[nodiscard]] TrueLoad true_load(std::uint8_t bus) const {
+        const auto& taken = taken_us_.at(bus);
+        constexpr auto kFirst = static_cast<std::size_t>(kSettledUs / kStepUs);
+        constexpr auto kWidth = static_cast<std::size_t>(kWindowUs) / kStepUs;
+        const double mean =
+            static_cast<double>(taken.back() - taken[kFirst]) / static_cast<double>(kDurationUs - kSettledUs);
+        TrueLoad load;
+        for (std::size_t at = kFirst; at + kWidth < taken.size(); ++at) {
+            const double over_mean = static_cast<double>(taken[at + kWidth] - taken[at]) / kWindowUs / mean;
+            load.peak_over_mean = std::max(load.peak_over_mean, over_mean);
+            load.share_above += over_mean > kPeakOverMeanMax ? 1.0 : 0.0;
+        }
+        load.share_above /= static_cast<double>(taken.size() - kWidth - kFirst);
+        return load;
+    }
+    [[nodiscard]] double needless_overlap_us(std::uint8_t a, std::uint8_t b) const {
+        return test::needless_overlap_us(middles_us(a), middles_us(b), fleet_.budget_us(),
+                                         fleet_.period_us());
+    }
+
+  private:
+    [[nodiscard]] double node_us(const TrueRange& range) const {
+        // Without the wrap: the grid goes on over it.
+        const std::uint32_t began = rig_.clock().to_node(sim::SimTime{0}).us;
+        return began + static_cast<double>(rig_.clock().to_node(range.window_middle).us - began);
+    }
+
+    Fleet fleet_;
+    NodeConfig config_;
+    NodeRig rig_;
+    std::array<std::vector<std::int64_t>, kNodeBusesMax> taken_us_;
+};
+
+class Phases : public testing::TestWithParam<Fleet> {};
+
+TEST_P(Phases, are_held_for_a_minute_where_the_rig_asks_for_it) {
+    const Fleet& fleet = GetParam();
+    FleetMinute run(fleet, true);
+    double worst_us = 0.0;
+    for (std::uint8_t sensor = 0; sensor < fleet.count; ++sensor) {
+        for (const double off_us : run.offs_us(sensor)) worst_us = std::max(worst_us, std::abs(off_us));
+    }
+    EXPECT_LE(worst_us, 400.0);
+    for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
+        EXPECT_LE(run.planned_peak_over_mean(bus), kPeakOverMeanMax) << int{bus};
+        const auto load = run.true_load(bus);
+        std::printf(
+            "%s, bus %d: busiest 5 ms %.2f of the mean as planned, %.2f with polls and read-backs; %.1f %% "
+            "of "
+            "all 5 ms above 1.5\n",
+            fleet.name.c_str(), bus, run.planned_peak_over_mean(bus), load.peak_over_mean,
+            100.0 * load.share_above);
+        EXPECT_LE(load.share_above, 0.07) << int{bus};
+    }
+    double overlap_us = -fleet.budget_us();
+    for (std::uint8_t a = 0; a < fleet.count; ++a) {
+        for (std::uint8_t b = 0; b < fleet.count; ++b) {
+            if (!test::are_opposite(run.config().sensors.at(a), run.config().sensors.at(b))) continue;
+            overlap_us = std::max(overlap_us, run.needless_overlap_us(a, b));
+        }
+    }
+    EXPECT_LE(overlap_us, 1'000.0);
+    EXPECT_EQ(run.unread(), 0U);
+    EXPECT_EQ(run.rig().node().counts().rejected, 0U);
+    EXPECT_LE(run.missing(), 0.03);
+    std::printf("%s: at most %.0f us off; starts cost %.2f %% of the ranges\n", fleet.name.c_str(), worst_us,
+                100.0 * run.missing());
+}
+
+TEST_P(Phases, are_lost_where_nobody_holds_them) {
+    const FleetMinute run(GetParam(), false);
+    for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus)
+        EXPECT_GT(run.planned_peak_over_mean(bus), 2.0) << int{bus};
+    EXPECT_LE(run.missing(), 0.001);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Fleets, Phases,
+    testing::Values(Fleet{"17_at_50_hz", 17, DistanceMode::short_range, 15, 20, 7},
+                    Fleet{"17_at_50_hz_otherwise", 17, DistanceMode::short_range, 15, 20, 5},
+                    Fleet{"34_at_30_hz", 34, DistanceMode::long_range, 20, 33, 7},
+                    Fleet{"34_at_30_hz_otherwise", 34, DistanceMode::long_range, 20, 33, 11}),
+    [](const auto& tested) { return tested.param.name; });
+
+}  // namespace
+}  // namespace octoskin::node

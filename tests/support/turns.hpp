@@ -1,0 +1,73 @@
+// Do the sensors of a bus take turns, and those that face each other? By when they truly ranged.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/config/node_config.hpp"
+
+namespace octoskin::test {
+
+/// Of sensors with one period on `kNodeBusesMax` buses in turn: those of a bus take turns within the period,
+/// and the buses within a turn.
+inline void spread_phases(NodeConfig& config) {
+    constexpr double kBuses = kNodeBusesMax;
+    for (std::uint8_t i = 0; i < config.sensor_count; ++i) {
+        SensorConfig& sensor = config.sensors.at(i);
+        const double of_bus = std::ceil((config.sensor_count - sensor.bus) / kBuses);
+        const double turn = std::floor(i / kBuses) + sensor.bus / kBuses;
+        sensor.phase_us = static_cast<std::uint16_t>(turn * 1'000.0 * sensor.inter_measurement_ms / of_bus);
+    }
+}
+
+/// The load of a bus in its busiest 5 ms over its mean, if each reading takes the bus equally long from when
+/// its data is ready: 518 bits at the slowest clock that filters may make of 400 kHz, as the rig's own check
+/// has it. `ready_us`: when, of all sensors of the bus, in any order. O(n log n).
+inline double peak_over_mean(std::vector<double> ready_us) {
+    constexpr double kWindowUs = 5'000.0;
+    constexpr double kReadingUs = 518.0 * 1e6 / 283'000.0;
+    constexpr std::size_t kReadingsOfWindow = 16;  // and of the reading before it, more than there can be
+    std::sort(ready_us.begin(), ready_us.end());
+    double busiest_us = 0.0;
+    for (std::size_t first = 0; first < ready_us.size(); ++first) {
+        // The busiest window begins with a reading or ends with one.
+        for (const double from : {ready_us[first], ready_us[first] + kReadingUs - kWindowUs}) {
+            double busy_us = 0.0;
+            for (std::size_t i = first - std::min(first, kReadingsOfWindow); i < ready_us.size(); ++i) {
+                if (ready_us[i] >= from + kWindowUs) break;
+                const double end = std::min(ready_us[i] + kReadingUs, from + kWindowUs);
+                busy_us += std::max(0.0, end - std::max(ready_us[i], from));
+            }
+            busiest_us = std::max(busiest_us, busy_us);
+        }
+    }
+    const double mean =
+        static_cast<double>(ready_us.size()) * kReadingUs / (ready_us.back() - ready_us.front());
+    return busiest_us / kWindowUs / mean;
+}
+
+/// How long two sensors range at once, beyond what two windows of that length make necessary in a period, at
+/// most. `a_us`, `b_us`: the middles of their windows, rising.
+inline double needless_overlap_us(const std::vector<double>& a_us, const std::vector<double>& b_us,
+                                  double window_us, double period_us) {
+    double longest_us = 0.0;
+    for (const double middle : a_us) {
+        const auto next = std::lower_bound(b_us.begin(), b_us.end(), middle);
+        double overlap_us = 0.0;
+        if (next != b_us.end()) overlap_us += std::max(0.0, window_us - (*next - middle));
+        if (next != b_us.begin()) overlap_us += std::max(0.0, window_us - (middle - *(next - 1)));
+        longest_us = std::max(longest_us, overlap_us);
+    }
+    return longest_us - std::max(0.0, 2.0 * window_us - period_us);
+}
+
+/// Whether two sensors are meant to range by turns: half a period apart, to 1.5 ms.
+inline bool are_opposite(const SensorConfig& a, const SensorConfig& b) {
+    const double apart_us = static_cast<double>(a.phase_us) - b.phase_us;
+    return std::abs(apart_us - 500.0 * a.inter_measurement_ms) <= 1'500.0;
+}
+
+}  // namespace octoskin::test

@@ -1,0 +1,128 @@
+// Oracle: a sensor that walks by a known time each period, in plain 64-bit arithmetic.
+#include "firmware/core/phase_hold.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <random>
+
+#include "firmware/core/phase_clock.hpp"
+
+namespace octoskin::node {
+namespace {
+
+constexpr Policy kPolicy;
+constexpr Microseconds kPeriod{33'000};
+
+/// A run of ranges, each known to lie within 100 us, somewhere.
+class Walker {
+  public:
+    Walker(PhaseHold& hold, std::int64_t off_us, std::int64_t walk_ns, std::uint32_t first_us)
+        : hold_(hold), off_ns_(off_us * 1'000), walk_ns_(walk_ns), first_us_(first_us) {
+        hold_.restart(NodeTime{first_us - 33'000U}, Microseconds{off_us}, kPeriod, true);
+    }
+    void range() {
+        const std::int64_t into_ns = off_ns_ + periods_ * walk_ns_;
+        const auto us = static_cast<std::uint32_t>(first_us_ + periods_ * kPeriod.count() + into_ns / 1'000);
+        const auto before = static_cast<std::uint32_t>(random_() % 100);
+        hold_.observe({NodeTime{us - before}, NodeTime{us + 100 - before}});
+        ++periods_;
+    }
+    [[nodiscard]] std::int64_t off_us() const { return (off_ns_ + (periods_ - 1) * walk_ns_) / 1'000; }
+    void miss(int ranges) { periods_ += ranges; }
+
+  private:
+    PhaseHold& hold_;
+    std::int64_t off_ns_;
+    std::int64_t walk_ns_;
+    std::int64_t first_us_;
+    std::int64_t periods_ = 0;
+    std::mt19937 random_{5};
+};
+
+TEST(PhaseHold, tells_a_sensor_that_walked_too_far_and_no_other) {
+    for (std::int64_t walk_ns = -12'500; walk_ns <= 12'500; walk_ns += 500) {
+        PhaseHold hold{kPolicy};
+        Walker walker{hold, 0, walk_ns, 0xFFFFFFFFU - 1'000'000U};  // over the clock's wrap
+        for (int i = 0; i < 600; ++i) {
+            walker.range();
+            const std::int64_t off_us = std::abs(walker.off_us());
+            // Two times are each known to 50 us.
+            if (std::abs(off_us - kPolicy.phase_tolerance.count()) <= 100) continue;
+            EXPECT_EQ(hold.is_lost(), off_us > kPolicy.phase_tolerance.count()) << walk_ns << ' ' << i;
+        }
+    }
+}
+
+TEST(PhaseHold, counts_from_where_the_sensor_was_started) {
+    PhaseHold hold{kPolicy};
+    const std::int64_t start_us = kPolicy.phase_start_off.count();
+    Walker walker{hold, start_us, -6'000, 0};
+    int ranges = 0;
+    for (; !hold.is_lost(); ++ranges) walker.range();
+    EXPECT_NEAR(ranges, static_cast<double>(start_us + kPolicy.phase_tolerance.count()) / 6.0, 100.0 / 6.0);
+    // The first time and the last are each known to 50 us.
+    EXPECT_NEAR(static_cast<double>(hold.walk().count()), -6'000.0, 100'000.0 / ranges);
+}
+
+TEST(PhaseHold, keeps_counting_over_ranges_that_were_missed) {
+    PhaseHold hold{kPolicy};
+    Walker walker{hold, 0, 4'000, 0};
+    for (int i = 0; i < 10; ++i) {
+        walker.range();
+        walker.miss(9);
+    }
+    walker.range();
+    EXPECT_TRUE(hold.is_lost());
+    EXPECT_NEAR(static_cast<double>(hold.walk().count()), 4'000.0, 1'000.0);
+}
+
+TEST(PhaseHold, does_not_start_a_sensor_anew_within_a_few_ranges) {
+    PhaseHold hold{kPolicy};
+    Walker walker{hold, 0, 1'000'000, 0};
+    for (std::int64_t i = 0; i <= kPolicy.phase_periods_min; ++i) {
+        EXPECT_FALSE(hold.is_lost()) << i;
+        walker.range();
+    }
+    EXPECT_TRUE(hold.is_lost());
+}
+
+TEST(PhaseHold, leaves_a_sensor_that_skips_its_slots_alone) {
+    PhaseHold hold{kPolicy};
+    Walker walker{hold, 0, 6'000'000, 0};
+    for (int i = 0; i < 100; ++i) walker.range();
+    EXPECT_FALSE(hold.is_lost());
+}
+
+TEST(PhaseHold, learns_nothing_from_a_time_that_is_hardly_known) {
+    PhaseHold hold{kPolicy};
+    Walker walker{hold, 0, 0, 0};
+    for (int i = 0; i < 30; ++i) walker.range();
+    hold.observe({NodeTime{30 * 33'000}, NodeTime{30 * 33'000 + 10'000}});
+    EXPECT_FALSE(hold.is_lost());
+}
+
+TEST(PhaseHold, starts_on_the_far_side_and_who_hardly_walks_near_its_phase) {
+    const PhaseHold hold{kPolicy};
+    EXPECT_EQ(hold.start_off(Nanoseconds{0}), Microseconds{0});
+    EXPECT_EQ(hold.start_off(Nanoseconds{1'000}), Microseconds{-32});
+    EXPECT_EQ(hold.start_off(Nanoseconds{-1'000}), Microseconds{32});
+    EXPECT_EQ(hold.start_off(Nanoseconds{12'500}), -kPolicy.phase_start_off);
+    EXPECT_EQ(hold.start_off(Nanoseconds{-12'500}), kPolicy.phase_start_off);
+}
+
+TEST(PhaseClock, goes_on_over_the_wrap_and_knows_times_before_and_after) {
+    PhaseClock clock{NodeTime{0xFFFFFF00U}};
+    std::uint64_t expected = 0xFFFFFF00U;
+    for (int i = 0; i < 10; ++i) {
+        EXPECT_EQ(clock.us_at(NodeTime{static_cast<std::uint32_t>(expected + 1'000)}), expected + 1'000);
+        EXPECT_EQ(clock.us_at(NodeTime{static_cast<std::uint32_t>(expected - 1'000)}), expected - 1'000);
+        expected += 2'000'000'000;
+        clock.advance(NodeTime{static_cast<std::uint32_t>(expected)});
+    }
+    EXPECT_GT(expected, std::uint64_t{4} << 32U);
+}
+
+}  // namespace
+}  // namespace octoskin::node
