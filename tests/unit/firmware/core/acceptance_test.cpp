@@ -155,6 +155,35 @@ TEST_F(AcceptanceTest, knows_that_data_it_saw_ready_was_ready_by_then_even_if_no
     EXPECT_LE(elapsed(ready(21) - kBudget / 2, reading.capture + reading.capture_bound), Microseconds{1});
 }
 
+TEST_F(AcceptanceTest, believes_no_pin_without_a_poll_that_found_nothing_while_it_hardly_knows_the_rhythm) {
+    Acceptance acceptance = started(StreamGate::advanced);
+    ASSERT_EQ(offer(acceptance, 0, result(0)), Verdict::accepted);
+    // It says ready 3 ms early; while others have the bus, the data truly comes.
+    (void)acceptance.judge({.measurement = result(1),
+                            .ready_seen = ready(1) - Microseconds{3'000},
+                            .read_end = ready(1) + Microseconds{1'100}},
+                           zones_);
+    const Microseconds error = elapsed(ready(1) - kBudget / 2, acceptance.reading().capture);
+    EXPECT_LE(std::abs(error.count()), acceptance.reading().capture_bound.count());
+}
+
+TEST_F(AcceptanceTest, forgets_the_rhythm_that_a_pin_told_which_says_ready_of_an_old_result) {
+    Acceptance acceptance = started(StreamGate::advanced);
+    for (int range = 0; range <= 20; ++range) {
+        ASSERT_EQ(offer(acceptance, range, result(static_cast<std::uint8_t>(range))), Verdict::accepted);
+    }
+    // The sensor slips by 0.9 ms, and its pin says ready all the time.
+    constexpr Microseconds kSlip{900};
+    (void)acceptance.judge({.measurement = result(21),
+                            .ready_seen = ready(21) + Microseconds{50},
+                            .read_end = ready(21) + kSlip + Microseconds{1'100}},
+                           zones_);
+    EXPECT_EQ(offer_unpolled(acceptance, 22, result(21), Microseconds{50}), Verdict::refused);
+    (void)offer_unpolled(acceptance, 22, result(22), kSlip + Microseconds{100});
+    const Microseconds error = elapsed(ready(22) + kSlip - kBudget / 2, acceptance.reading().capture);
+    EXPECT_LE(std::abs(error.count()), acceptance.reading().capture_bound.count());
+}
+
 TEST_F(AcceptanceTest, forgets_the_rhythm_if_the_count_contradicts_the_results_seen_and_one_poll) {
     for (const int stream : {22, 23}) {
         Acceptance acceptance = started(StreamGate::advanced);
