@@ -10,6 +10,7 @@
 #include <exception>
 #include <fstream>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -91,11 +92,22 @@ struct Served {
         record.open(record_path + "." + options.name, std::ios::app);
         if (!record) throw std::runtime_error(record_path + "." + options.name + ": cannot be written");
     }
-    void write_record() { record << bus.take_record() << std::flush; }
+    void write_record() {
+        const std::lock_guard lock(record_mutex);
+        record << bus.take_record() << std::flush;
+    }
+    // A device that ends by itself ends the program: else whoever waits for it would not learn why it is
+    // gone.
+    [[noreturn]] void serve() {
+        device.serve();
+        std::fprintf(stderr, "i2c_device: a device has ended\n");
+        std::_Exit(1);
+    }
 
     ServedBus bus;
     I2cDevice device;
     std::ofstream record;
+    std::mutex record_mutex;
 };
 
 // Calls `step` for each every `period`, in a thread of its own, as long as the process lives. One for all
@@ -123,7 +135,7 @@ void keep_doing(std::vector<std::unique_ptr<Served>>& all, std::chrono::microsec
     keep_doing(all, std::chrono::milliseconds{10}, [](Served& served) { served.write_record(); });
     run_before_others();
     keep_doing(all, octoskin::test::kLinePeriod, [](Served& served) { served.bus.follow_lines(); });
-    for (const auto& served : all) std::thread([&served] { served->device.serve(); }).detach();
+    for (const auto& served : all) std::thread([&served] { served->serve(); }).detach();
     int signal = 0;
     sigwait(&ends, &signal);
     for (const auto& served : all) served->write_record();
