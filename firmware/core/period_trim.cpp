@@ -12,7 +12,7 @@ constexpr std::int64_t kScaleMinPpm = 850'000;
 constexpr std::int64_t kScaleMaxPpm = 1'150'000;
 // As long as a window of the ready times' tracker: the average is then known to a third of a register's step.
 constexpr std::uint32_t kRangesMax = 32;
-// One step of the register is 0.03-0.13 % at 15-50 ms; the rest is for drift since the last measurement.
+// One step of the register is 0.05-0.17 % at 50-15 ms; the rest is for drift since the last measurement.
 constexpr std::int32_t kTrimmedUncertaintyPermille = 10;
 
 }  // namespace
@@ -75,16 +75,17 @@ Nanoseconds PeriodTrim::refine(Nanoseconds walk, Nanoseconds step) noexcept {
     // To the nearest whole step.
     const std::int64_t half = walk.count() < 0 ? -step.count() / 2 : step.count() / 2;
     const std::int64_t steps = (walk.count() + half) / step.count();
-    if (steps != 0) {
-        // The register rounds down: amid the values that come out the same, none is missed and none taken
-        // twice.
-        const std::int64_t value = Nanoseconds{commanded()} / step - steps;
-        const std::int64_t scale = (value * step + step / 2).count() * 1'000 / configured_.count();
-        scale_ppm_ = std::clamp(scale, kScaleMinPpm, kScaleMaxPpm);
-    }
-    is_oscillator_known_ = true;
     refinements_ = static_cast<std::uint8_t>(std::min(refinements_ + 1, 2));
-    return walk - steps * step;
+    if (steps == 0) {
+        is_oscillator_known_ = true;
+        return walk;
+    }
+    // The register rounds down: amid the values that come out the same, none is missed and none taken twice.
+    const std::int64_t before = Nanoseconds{commanded()} / step;
+    const std::int64_t scale = ((before - steps) * step + step / 2).count() * 1'000 / configured_.count();
+    scale_ppm_ = std::clamp(scale, kScaleMinPpm, kScaleMaxPpm);
+    is_oscillator_known_ = scale == scale_ppm_;
+    return walk - (before - Nanoseconds{commanded()} / step) * step;
 }
 
 }  // namespace octoskin::node

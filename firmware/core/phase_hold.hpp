@@ -1,5 +1,5 @@
 // Keeps a sensor's ranges where the rig put them within the period, for as long as it ranges. The period is
-// known to a step of its register (0.03-0.13 % at 15-50 ms), and ST allows no change while the sensor ranges
+// known to a step of its register (0.05-0.17 % at 50-15 ms), and ST allows no change while the sensor ranges
 // (UM2356): so each sensor walks off, and is started anew once it has walked too far, on the far side of its
 // phase, so that it walks through all that is allowed.
 #pragma once

@@ -327,7 +327,9 @@ void Ranging::await_next_result(NodeTime now) {
 void Ranging::await_data(NodeTime due) noexcept {
     step_ = Step::awaiting_data;
     step_due_ = due;
-    is_early_ = !acceptance_.next_ready() && acceptance_.is_next_new() && !is_reached(early_until_, due);
+    // Of the first data only: half the clock's range later, that time would seem to be still to come.
+    is_early_ = !acceptance_.has_accepted() && !acceptance_.next_ready() && acceptance_.is_next_new() &&
+                !is_reached(early_until_, due);
     is_poll_punctual_ = !is_early_ && acceptance_.must_poll_punctually();
 }
 

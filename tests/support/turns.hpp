@@ -64,6 +64,25 @@ inline double needless_overlap_us(const std::vector<double>& a_us, const std::ve
     return longest_us - std::max(0.0, 2.0 * window_us - period_us);
 }
 
+/// How far a sensor ranges off its phase, at most, with all phases counted from the same instant: that which
+/// suits most ranges best. `middles_us`: of each sensor's windows; `phases_us`: what it should keep.
+inline double worst_off_us(const std::vector<std::vector<double>>& middles_us,
+                           const std::vector<double>& phases_us, double period_us) {
+    std::vector<double> offs_us;
+    for (std::size_t sensor = 0; sensor < middles_us.size(); ++sensor) {
+        for (const double middle : middles_us[sensor])
+            offs_us.push_back(
+                std::remainder(middle - phases_us[sensor] - middles_us.front().front(), period_us));
+    }
+    const auto middle = offs_us.begin() + static_cast<std::ptrdiff_t>(offs_us.size() / 2);
+    std::nth_element(offs_us.begin(), middle, offs_us.end());
+    const double median_us = *middle;
+    double worst_us = 0.0;
+    for (const double off_us : offs_us)
+        worst_us = std::max(worst_us, std::abs(std::remainder(off_us - median_us, period_us)));
+    return worst_us;
+}
+
 /// Whether two sensors are meant to range by turns: half a period apart, to 1.5 ms.
 inline bool are_opposite(const SensorConfig& a, const SensorConfig& b) {
     const double apart_us = static_cast<double>(a.phase_us) - b.phase_us;

@@ -98,9 +98,10 @@ class NodeRegistry {
         goes_on,
         restarted,  ///< its clock and its sequences began anew
     };
-    /// Each takes a known node. `now`: empty while unknown.
     /// "Now" was unknown and is known again, maybe another host's: who was heard meanwhile was heard now.
     void on_time_known(HostTime now);
+
+    // Each of these takes a known node. `now`: empty while unknown.
     /// Before anything else is done with a frame that the node sent.
     void on_frame(wire::NodeId node, std::optional<HostTime> now);
     /// Of a sensor that it has.

@@ -88,13 +88,18 @@ TEST(PeriodTrim, refines_by_as_many_steps_wherever_between_two_values_it_stands)
     }
 }
 
-TEST(PeriodTrim, refines_no_farther_than_an_oscillator_can_be_off) {
+TEST(PeriodTrim, refines_no_farther_than_an_oscillator_can_be_off_and_tells_what_is_left) {
     PeriodTrim trim{kConfigured, kPolicy};
-    for (int i = 0; i < 10; ++i)
-        EXPECT_EQ(trim.refine(Microseconds{4'950}, Microseconds{25}), Nanoseconds{0});
+    constexpr Microseconds kStep{25};
+    const auto refine = [&](Microseconds walk) {
+        const Microseconds before = trim.commanded();
+        const Nanoseconds left = trim.refine(walk, kStep);
+        EXPECT_EQ(left, walk - (before / kStep - trim.commanded() / kStep) * kStep);
+    };
+    for (int i = 0; i < 10; ++i) refine(Microseconds{4'950});
     EXPECT_EQ(trim.commanded(), Microseconds{33'000 * 85 / 100});
-    for (int i = 0; i < 20; ++i)
-        EXPECT_EQ(trim.refine(Microseconds{-4'950}, Microseconds{25}), Nanoseconds{0});
+    EXPECT_EQ(trim.uncertainty_permille(), kPolicy.period_expected_permille) << "what part is that?";
+    for (int i = 0; i < 20; ++i) refine(Microseconds{-4'950});
     EXPECT_EQ(trim.commanded(), Microseconds{33'000 * 115 / 100});
 }
 
