@@ -357,7 +357,7 @@ bool Ranging::is_zone_write_due(NodeTime now) const noexcept {
     return zones_.is_cycling() && !is_trim_due_ && begin && zones_.fits_before(*begin, now);
 }
 
-/// Only where it was stopped for its phase: elsewhere nothing hurries.
+/// Only where phases are held: elsewhere nothing hurries.
 bool Ranging::is_between_ranges(NodeTime now) const noexcept {
     const auto begin = acceptance_.next_range_begin();
     return rules_.holds_phases && is_trim_due_ && begin && is_reached(now + policy_.phase_spare, *begin);

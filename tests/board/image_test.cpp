@@ -184,7 +184,6 @@ TEST_P(ImagePhases, sensors_keep_taking_turns_where_the_rig_asks_for_it) {
     NodeConfig config = GetParam().config;
     config.holds_phases = true;
     test::spread_phases(config);
-    const double budget_us = 1'000.0 * config.sensors[0].timing_budget_ms;
     const double period_us = 1'000.0 * config.sensors[0].inter_measurement_ms;
     FlashedBoard flashed(config, options_of(GetParam().speed));
     flashed.run_for(15s);
@@ -208,21 +207,13 @@ TEST_P(ImagePhases, sensors_keep_taking_turns_where_the_rig_asks_for_it) {
         phases_us.push_back(config.sensors[sensor].phase_us);
     const double off_us = test::worst_off_us(middles_us, phases_us, period_us);
     EXPECT_LE(off_us, GetParam().off_max_us);
-    double overlap_us = -budget_us;
-    for (std::uint8_t a = 0; a < config.sensor_count; ++a) {
-        for (std::uint8_t b = 0; b < config.sensor_count; ++b) {
-            if (test::are_opposite(config.sensors[a], config.sensors[b]))
-                overlap_us = std::max(overlap_us, test::needless_overlap_us(middles_us[a], middles_us[b],
-                                                                            budget_us, period_us));
-        }
-    }
+    const double overlap_us = test::worst_needless_overlap_us(config, middles_us);
     EXPECT_LE(overlap_us, 1'000.0);
     const double missing = 1.0 - ranges / (config.sensor_count * 10e6 / period_us);
     EXPECT_LE(missing, 0.04);
     std::printf(
         "%d sensors: busiest 5 ms %.2f of the mean, at most %.2f ms off its phase, %.2f ms at once beyond "
-        "need, %.1f %% of the ranges "
-        "given for it\n",
+        "need, %.1f %% of the ranges given for it\n",
         config.sensor_count, peak, off_us * 1e-3, overlap_us * 1e-3, 100.0 * missing);
     EXPECT_EQ(flashed.violations(), "");
 }

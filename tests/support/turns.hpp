@@ -89,4 +89,21 @@ inline bool are_opposite(const SensorConfig& a, const SensorConfig& b) {
     return std::abs(apart_us - 500.0 * a.inter_measurement_ms) <= 1'500.0;
 }
 
+/// `needless_overlap_us` of all that are meant to range by turns, at most. `middles_us`: of each sensor's
+/// windows.
+inline double worst_needless_overlap_us(const NodeConfig& config,
+                                        const std::vector<std::vector<double>>& middles_us) {
+    const double window_us = 1'000.0 * config.sensors[0].timing_budget_ms;
+    const double period_us = 1'000.0 * config.sensors[0].inter_measurement_ms;
+    double worst_us = -window_us;
+    for (std::size_t a = 0; a < config.sensor_count; ++a) {
+        for (std::size_t b = 0; b < config.sensor_count; ++b) {
+            if (!are_opposite(config.sensors.at(a), config.sensors.at(b))) continue;
+            worst_us = std::max(
+                worst_us, needless_overlap_us(middles_us.at(a), middles_us.at(b), window_us, period_us));
+        }
+    }
+    return worst_us;
+}
+
 }  // namespace octoskin::test

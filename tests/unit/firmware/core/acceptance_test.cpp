@@ -48,6 +48,12 @@ class AcceptanceTest : public testing::Test {
         return acceptance.judge(
             {.measurement = measurement, .ready_seen = seen, .read_end = seen + Microseconds{1'100}}, zones_);
     }
+    /// The reading's capture is as close as it tells to that of a range whose data truly was ready at
+    /// `truth`.
+    static void expect_within_bound(const Acceptance& acceptance, NodeTime truth) {
+        const Microseconds error = elapsed(truth - kBudget / 2, acceptance.reading().capture);
+        EXPECT_LE(std::abs(error.count()), acceptance.reading().capture_bound.count());
+    }
     ZoneCycle zones_{1, Microseconds{1'000}};
 };
 
@@ -122,8 +128,7 @@ TEST_F(AcceptanceTest, dates_a_result_by_its_stream_count_when_earlier_ones_were
     }
     // The bus was taken for three periods; ranges 21 and 22 were overwritten by 23.
     ASSERT_EQ(offer_unpolled(acceptance, 23, result(23), Microseconds{7'000}), Verdict::accepted);
-    const Microseconds error = elapsed(ready(23) - kBudget / 2, acceptance.reading().capture);
-    EXPECT_LE(std::abs(error.count()), acceptance.reading().capture_bound.count());
+    expect_within_bound(acceptance, ready(23));
     EXPECT_LE(acceptance.reading().capture_bound, Microseconds{250});
 }
 
@@ -163,8 +168,7 @@ TEST_F(AcceptanceTest, believes_no_pin_without_a_poll_that_found_nothing_while_i
                             .ready_seen = ready(1) - Microseconds{3'000},
                             .read_end = ready(1) + Microseconds{1'100}},
                            zones_);
-    const Microseconds error = elapsed(ready(1) - kBudget / 2, acceptance.reading().capture);
-    EXPECT_LE(std::abs(error.count()), acceptance.reading().capture_bound.count());
+    expect_within_bound(acceptance, ready(1));
 }
 
 TEST_F(AcceptanceTest, forgets_the_rhythm_that_a_pin_told_which_says_ready_of_an_old_result) {
@@ -180,8 +184,7 @@ TEST_F(AcceptanceTest, forgets_the_rhythm_that_a_pin_told_which_says_ready_of_an
                            zones_);
     EXPECT_EQ(offer_unpolled(acceptance, 22, result(21), Microseconds{50}), Verdict::refused);
     (void)offer_unpolled(acceptance, 22, result(22), kSlip + Microseconds{100});
-    const Microseconds error = elapsed(ready(22) + kSlip - kBudget / 2, acceptance.reading().capture);
-    EXPECT_LE(std::abs(error.count()), acceptance.reading().capture_bound.count());
+    expect_within_bound(acceptance, ready(22) + kSlip);
 }
 
 TEST_F(AcceptanceTest, forgets_the_rhythm_if_the_count_contradicts_the_results_seen_and_one_poll) {
@@ -203,8 +206,7 @@ TEST_F(AcceptanceTest, dates_a_result_by_time_when_the_stream_count_is_not_looke
     for (int range = 0; range <= 20; ++range)
         ASSERT_EQ(offer(acceptance, range, result(0)), Verdict::accepted);
     ASSERT_EQ(offer_unpolled(acceptance, 22, result(0), Microseconds{7'000}), Verdict::accepted);
-    const Microseconds error = elapsed(ready(22) - kBudget / 2, acceptance.reading().capture);
-    EXPECT_LE(std::abs(error.count()), acceptance.reading().capture_bound.count());
+    expect_within_bound(acceptance, ready(22));
     EXPECT_LE(acceptance.reading().capture_bound, Microseconds{250});
 }
 
@@ -219,8 +221,7 @@ TEST_F(AcceptanceTest, keeps_the_time_of_the_poll_when_the_result_was_overwritte
                           .ready_seen = ready(21) + Microseconds{100},
                           .read_end = ready(22) + Microseconds{900}};
     ASSERT_EQ(acceptance.judge(seen, zones_), Verdict::accepted);
-    const Microseconds error = elapsed(ready(22) - kBudget / 2, acceptance.reading().capture);
-    EXPECT_LE(std::abs(error.count()), acceptance.reading().capture_bound.count());
+    expect_within_bound(acceptance, ready(22));
     EXPECT_LE(acceptance.reading().capture_bound, Microseconds{500});
 }
 
@@ -249,8 +250,7 @@ TEST_F(AcceptanceTest,
                           .ready_seen = ready(24) - Microseconds{50},
                           .read_end = ready(24) + Microseconds{1'050}};
     ASSERT_EQ(acceptance.judge(seen, zones_), Verdict::accepted);
-    const Microseconds error = elapsed(ready(24) - kBudget / 2, acceptance.reading().capture);
-    EXPECT_LE(std::abs(error.count()), acceptance.reading().capture_bound.count());
+    expect_within_bound(acceptance, ready(24));
 }
 
 TEST_F(AcceptanceTest, drops_a_reading_whose_time_is_not_known_to_ten_milliseconds) {
@@ -263,8 +263,7 @@ TEST_F(AcceptanceTest, drops_a_reading_whose_time_is_not_known_to_ten_millisecon
     EXPECT_EQ(offer_unpolled(acceptance, 22, result(21), Microseconds{100}), Verdict::undated);
     // The rhythm is found again at once.
     ASSERT_EQ(offer(acceptance, 23, result(22)), Verdict::accepted);
-    const Microseconds error = elapsed(ready(23) - kBudget / 2, acceptance.reading().capture);
-    EXPECT_LE(std::abs(error.count()), acceptance.reading().capture_bound.count());
+    expect_within_bound(acceptance, ready(23));
 }
 
 TEST_F(AcceptanceTest, drops_a_reading_of_unknown_zone) {
