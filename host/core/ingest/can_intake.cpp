@@ -95,6 +95,7 @@ FrameOutcome CanIntake::on_frame(const wire::CanFrame& frame, WallTime stamp) {
     }
     // Only now: a stranger on another interface of the log must not move "now".
     host_clock_.observe(stamp);
+    nodes_.on_running(host_clock_.running());
     note_time();
     if (is_from_node) {
         nodes_.on_frame(node, steady_now());

@@ -28,11 +28,6 @@ bool is_refused(const NodeRecord& record, std::optional<HostTime> now) {
            is_babbling(record, now);
 }
 
-bool is_lost(const NodeRecord& record, std::optional<HostTime> now) {
-    // Heard in the future: the host's own clock began anew.
-    return now && (!record.heard || std::chrono::abs(*now - *record.heard) > NodeRegistry::kLostAfter);
-}
-
 void note_second_board(NodeRecord& record, std::optional<HostTime> now) {
     record.is_in_conflict = true;
     record.conflict = now;
@@ -103,10 +98,16 @@ void NodeRegistry::add(const HostNode& node, const HostJointSource& joints) {
     traffic_.emplace(node.node_id, NodeTraffic(node, sends_joints ? joints.rate_hz : 0.0));
 }
 
+bool NodeRegistry::is_lost(const NodeRecord& record, std::optional<HostTime> now) const {
+    if (!now) return running_ - record.heard_running > kLostAfter;
+    // Heard in the future: the host's own clock began anew.
+    return !record.heard || std::chrono::abs(*now - *record.heard) > kLostAfter;
+}
+
 void NodeRegistry::on_time_known(HostTime now) {
     for (auto& [node, record] : records_) {
         if (std::exchange(record.is_heard_since, false)) {
-            record.heard = now;
+            record.heard = now - (running_ - record.heard_running);
         }
     }
 }
@@ -147,6 +148,7 @@ NodeRegistry::Life NodeRegistry::on_heartbeat(wire::NodeId node, const wire::Hea
     record.heartbeat = heartbeat;
     record.heard = now ? now : record.heard;
     record.is_heard_since = !now;
+    record.heard_running = running_;
     return is_other_board || is_back_at_start ? Life::restarted : Life::goes_on;
 }
 

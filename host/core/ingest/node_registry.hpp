@@ -59,6 +59,7 @@ struct NodeRecord {
     std::optional<wire::Heartbeat> heartbeat;
     std::optional<HostTime> heard;  ///< the newest heartbeat while "now" was known
     bool is_heard_since = false;    ///< another one came, and "now" is unknown
+    Nanoseconds heard_running{0};   ///< the newest heartbeat, as HostClockEstimate::running counts
     std::array<std::optional<wire::NodeInfo>, wire::kInfoPages> pages;
     std::optional<HostTime> conflict;  ///< the newest sign of a second board
     bool is_in_conflict = false;
@@ -98,10 +99,13 @@ class NodeRegistry {
         goes_on,
         restarted,  ///< its clock and its sequences began anew
     };
-    /// "Now" was unknown and is known again, maybe another host's: who was heard meanwhile was heard now.
+    /// HostClockEstimate::running at the newest frame. Before anything else is told of that.
+    void on_running(Nanoseconds running) noexcept { running_ = running; }
+    /// "Now" was unknown and is known again, maybe another host's: of who was heard meanwhile, it tells when.
     void on_time_known(HostTime now);
 
-    // Each of these takes a known node. `now`: empty while unknown.
+    // Each of these takes a known node. `now`: empty while unknown; then a node is lost that was not heard
+    // while others were.
     /// Before anything else is done with a frame that the node sent.
     void on_frame(wire::NodeId node, std::optional<HostTime> now);
     /// Of a sensor that it has.
@@ -121,9 +125,11 @@ class NodeRegistry {
 
   private:
     void add(const HostNode& node, const HostJointSource& joints);
+    [[nodiscard]] bool is_lost(const NodeRecord& record, std::optional<HostTime> now) const;
 
     std::map<wire::NodeId, NodeRecord> records_;
     std::map<wire::NodeId, NodeTraffic> traffic_;  ///< of the same nodes
+    Nanoseconds running_{0};
 };
 
 }  // namespace octoskin

@@ -44,6 +44,7 @@ void HostClockEstimate::accept(WallTime stamp) {
     if (stamp_max_ && stamp <= *stamp_max_) {
         return;
     }
+    if (stamp_max_) running_ += Nanoseconds{stamp.ns - stamp_max_->ns};
     stamp_before_ = stamp_max_;
     stamp_max_ = stamp;
 }
@@ -59,6 +60,7 @@ void HostClockEstimate::settle_jump() {
         ++(is_back ? steps_back_ : steps_ahead_);
         is_in_doubt_ = true;
     }
+    running_ += Nanoseconds{jump_->newest.ns - (had_run_ahead ? *stamp_max_ : jump_->first).ns};
     stamp_before_.reset();
     stamp_max_ = jump_->newest;
     jump_.reset();

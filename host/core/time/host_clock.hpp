@@ -43,6 +43,10 @@ class HostClockEstimate {
     /// At the newest stamp. Never decreases while no stamp jumps or runs ahead; empty before the first
     /// exchange, after a stamp that jumped, and while in doubt.
     [[nodiscard]] std::optional<HostTime> now() const;
+    /// For how long frames were received by now, whether or not anybody tells the time: goes on from stamp to
+    /// stamp, and stands still over a jump, and over a silence that looks like one. What a stamp that ran
+    /// ahead added is taken back.
+    [[nodiscard]] Nanoseconds running() const noexcept { return running_; }
 
     /// How often stamps jumped back, and agreed on it.
     [[nodiscard]] std::uint64_t steps_back() const noexcept { return steps_back_; }
@@ -68,8 +72,9 @@ class HostClockEstimate {
     [[nodiscard]] bool agree(Nanoseconds a, Nanoseconds b) const;
 
     HostClockConfig config_;
-    std::optional<WallTime> stamp_max_;       ///< newest since the last step
-    std::optional<WallTime> stamp_before_;    ///< the newest before stamp_max_; empty after a jump
+    std::optional<WallTime> stamp_max_;     ///< newest since the last step
+    std::optional<WallTime> stamp_before_;  ///< the newest before stamp_max_; empty after a jump
+    Nanoseconds running_{0};
     std::optional<Jump> jump_;                ///< the following stamps decide
     std::optional<Nanoseconds> offset_;       ///< host time - stamp
     std::optional<Nanoseconds> offset_next_;  ///< disagrees with offset_; the next exchange decides

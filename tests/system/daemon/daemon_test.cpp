@@ -138,6 +138,29 @@ TEST_F(DaemonTest, transmits_nothing_when_it_only_listens_and_says_what_that_nee
     EXPECT_TRUE(has_problem(status, "--listen-only")) << status["problems"].dump(1);
 }
 
+// Nobody tells the time; that the others are heard does.
+TEST_F(DaemonTest, names_a_node_that_falls_silent_where_nobody_sends_sync) {
+    start({"--no-camera", "--listen-only"});
+    ASSERT_TRUE(daemon_->wait_until(
+        [](const Json& now) {
+            return now["nodes"][0]["verdict"] == "usable" && now["nodes"][1]["verdict"] == "usable";
+        },
+        15s))
+        << daemon_->status()["nodes"].dump(1) << daemon_->log();
+    bus_->silence(2, true);
+    const auto told = daemon_->wait_until(
+        [](const Json& now) { return has_problem(now, "node 2 'front_rings': lost"); }, 3s);
+    ASSERT_TRUE(told) << daemon_->status()["problems"].dump(1);
+    EXPECT_LE(*told, 1s);
+    const Json status = daemon_->status();
+    EXPECT_EQ(status["nodes"][0]["verdict"], "usable");
+    EXPECT_FALSE(status["clock"]["known"].get<bool>());
+    bus_->silence(2, false);
+    EXPECT_TRUE(
+        daemon_->wait_until([](const Json& now) { return now["nodes"][1]["verdict"] == "usable"; }, 3s))
+        << daemon_->status()["problems"].dump(1);
+}
+
 // The other host booted a quarter of an hour before this one.
 TEST_F(DaemonTest, listens_to_another_hosts_clock_and_puts_its_own_camera_on_it) {
     const auto wall = record_wall(folder_, 24);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "common/range_status.hpp"
@@ -159,6 +160,23 @@ TEST(CanIntake, calls_no_node_lost_that_it_heard_while_the_time_was_in_doubt) {
         }
         EXPECT_EQ(intake.host_clock().relocks(), 1U);
     }
+}
+
+TEST(CanIntake, tells_who_is_lost_where_nobody_ever_sends_sync) {
+    CanIntake intake(rig());
+    std::optional<WallTime> lost_from;
+    std::optional<WallTime> lost_to;
+    for (const StampedFrame& entry : bus(4.0, 5.0).frames()) {
+        if (wire::node_of(entry.frame.can_id) == wire::kHostId) continue;
+        (void)intake.on_frame(entry.frame, entry.stamp);
+        ASSERT_EQ(intake.now(), std::nullopt);
+        if (intake.nodes().verdict(kNode, std::nullopt) != NodeVerdict::lost) continue;
+        lost_from = lost_from.value_or(entry.stamp);
+        lost_to = entry.stamp;
+    }
+    ASSERT_TRUE(lost_from);
+    EXPECT_NEAR(static_cast<double>(lost_from->ns - test::wall_at(4.25).ns), 0.0, 0.034e9);
+    EXPECT_NEAR(static_cast<double>(lost_to->ns - test::wall_at(5.0).ns), 0.0, 0.034e9);
 }
 
 TEST(CanIntake, counts_readings_it_could_not_use_as_received_and_not_as_gaps) {

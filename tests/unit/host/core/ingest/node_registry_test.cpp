@@ -304,6 +304,26 @@ TEST(NodeRegistry, counts_who_was_heard_while_no_time_was_known_as_heard_when_it
     EXPECT_EQ(registry.verdict(kNode, ms(64'000)), NodeVerdict::lost) << "heard at a time that is known";
 }
 
+TEST(NodeRegistry, calls_a_node_lost_that_is_silent_while_others_speak_and_nobody_tells_the_time) {
+    using std::chrono::milliseconds;
+    NodeRegistry registry(rig());
+    EXPECT_EQ(registry.verdict(kNode, std::nullopt), NodeVerdict::absent);
+    registry.on_running(milliseconds(5'000));
+    (void)registry.on_heartbeat(kNode, heartbeat(), std::nullopt);
+    registry.on_running(milliseconds(5'350));
+    EXPECT_EQ(registry.verdict(kNode, std::nullopt), NodeVerdict::info_incomplete);
+    registry.on_running(milliseconds(5'351));
+    EXPECT_EQ(registry.verdict(kNode, std::nullopt), NodeVerdict::lost);
+    // Who takes its place is none that shares its id.
+    EXPECT_EQ(registry.on_heartbeat(kNode, heartbeat(0x1111), std::nullopt), NodeRegistry::Life::restarted);
+    EXPECT_EQ(registry.verdict(kNode, std::nullopt), NodeVerdict::info_incomplete);
+    // The time is known 300 ms later: it was heard 300 ms ago, not now.
+    registry.on_running(milliseconds(5'651));
+    registry.on_time_known(ms(61'000));
+    EXPECT_EQ(registry.verdict(kNode, ms(61'050)), NodeVerdict::info_incomplete);
+    EXPECT_EQ(registry.verdict(kNode, ms(61'051)), NodeVerdict::lost);
+}
+
 TEST(NodeRegistry, quarantines_two_boards_even_while_no_time_is_known) {
     NodeRegistry registry(rig());
     (void)registry.on_heartbeat(kNode, heartbeat(), std::nullopt);

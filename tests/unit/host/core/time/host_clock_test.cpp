@@ -217,6 +217,34 @@ TEST(HostClockEstimate, computes_no_absurd_time_from_absurd_stamps) {
     }
 }
 
+TEST(HostClockEstimate, counts_how_long_frames_came_whoever_tells_the_time) {
+    const auto running_ms = [](const HostClockEstimate& clock) { return clock.running().count() / kMsNs; };
+    HostClockEstimate clock;  // nobody does
+    clock.observe(stamp_ms(1000));
+    EXPECT_EQ(running_ms(clock), 0);
+    observe_from_to(clock, 1000, 2000);
+    EXPECT_EQ(running_ms(clock), 1000);
+    clock.observe(stamp_ms(1996));
+    EXPECT_EQ(running_ms(clock), 1000) << "slightly out of order";
+    for (const std::int64_t step : {3'600'000, -3'600'000}) {
+        const std::int64_t before_ms = running_ms(clock);
+        observe_four(clock, 2001, step);
+        EXPECT_EQ(running_ms(clock), before_ms + 3) << step;
+        observe_from_to(clock, 2004, 2100, step);
+        EXPECT_EQ(running_ms(clock), before_ms + 99) << step;
+    }
+}
+
+TEST(HostClockEstimate, takes_back_what_a_stamp_that_ran_ahead_added_to_how_long_frames_came) {
+    HostClockEstimate clock;
+    observe_from_to(clock, 1000, 2000);
+    clock.observe(stamp_ms(2001, 130));
+    EXPECT_EQ(clock.running().count(), 1031 * kMsNs);
+    observe_four(clock, 2002, 0);
+    EXPECT_EQ(clock.running().count(), 905 * kMsNs);
+    EXPECT_EQ(clock.stamps_ignored(), 1U);
+}
+
 TEST(HostClockEstimate, is_not_moved_by_one_wrong_follow_up) {
     HostClockEstimate clock = locked_at_ms(1000);
     observe_from_to(clock, 1000, 2000);
