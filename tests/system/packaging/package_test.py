@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""package_test.py BUILD CPACK: the Debian package has what it must and nothing else, and what is in it runs."""
+"""package_test.py BUILD CPACK MAINTAINER: the Debian package has what it must and nothing else, and what is in it runs."""
 import os
 import pathlib
 import re
@@ -82,6 +82,10 @@ class Package(unittest.TestCase):
         changes = run("zcat", self.root / "usr/share/doc/octoskin/changelog.gz")
         self.assertTrue(changes.startswith(f"octoskin ({version}) "), changes)
 
+    def test_names_the_maintainer_that_the_build_was_given(self):
+        self.assertEqual(self.field("Maintainer"), MAINTAINER)
+        self.assertRegex(MAINTAINER, "^[^<>]+ <[^<>@]+@[^<>@]+>$")
+
     def test_depends_on_what_its_programs_load(self):
         depends = {re.split(r"[ |]", word.strip())[0] for word in self.field("Depends").split(",")}
         for file in PROGRAMS:
@@ -129,5 +133,5 @@ class Package(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    BUILD, CPACK = sys.argv[1:3]
+    BUILD, CPACK, MAINTAINER = sys.argv[1:4]
     unittest.main(argv=sys.argv[:1])
