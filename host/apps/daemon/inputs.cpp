@@ -95,6 +95,23 @@ void Inputs::attend() {
         if (const auto due = sync_.poll(now)) (void)can_.send(wire::encode(*due, wire::kHostId));
     }
     catch_up();  // what this host sent comes back without waking anybody, where there is no kernel
+    exchange_alone();
+    const auto bus_now = bus_time_.at(now);
+    if (bus_now && now - told_ > BusTime::kSilent) pipeline_.on_silence(*bus_now);
+}
+
+/// Joint states of this machine are dated by its own clock: they need no bus that works. To the pipeline, and
+/// in a recording, it is as if SYNC and FOLLOW_UP had been on one.
+void Inputs::exchange_alone() {
+    if (request_.is_listen_only || !joints_ || joints_->samples() == 0) return;
+    const WallTime stamp = wall_now();
+    const auto at = monotonic_of(stamp);
+    const auto sync = at ? sync_.poll_alone(*at) : std::nullopt;
+    if (!sync) return;
+    feed(wire::encode(*sync, wire::kHostId), stamp);
+    feed(local_joints_.report(sync->sequence, *at), stamp);
+    const wire::FollowUp follow_up{sync->sequence, static_cast<std::uint64_t>(at->ns / 1000)};
+    feed(wire::encode(follow_up, wire::kHostId), stamp);
 }
 
 void Inputs::catch_up() {
@@ -163,6 +180,7 @@ void Inputs::answer_sync(const socketcan::Received& received, HostTime at) {
 
 /// Into the pipeline, and how long that took since the frame was here.
 void Inputs::feed(const wire::CanFrame& frame, WallTime stamp) {
+    if (is_of_node(frame)) told_ = monotonic_now();
     const std::uint64_t used_before = pipeline_.accounts().readings.used();
     recordings_.on_can(frame, stamp);
     pipeline_.on_can(frame, stamp);

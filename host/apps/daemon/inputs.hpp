@@ -73,6 +73,7 @@ class Inputs {
     bool drain_can();
     [[nodiscard]] bool is_of_node(const wire::CanFrame& frame) const;
     void take_frame(const socketcan::Received& received);
+    void exchange_alone();
     void answer_sync(const socketcan::Received& received, HostTime at);
     void hear_host(const socketcan::Received& received, HostTime at);
     void feed(const wire::CanFrame& frame, WallTime stamp);
@@ -97,6 +98,7 @@ class Inputs {
     Nanoseconds bus_busy_{0};
     std::uint64_t joints_thinned_ = 0;
     std::uint64_t joint_node_ignored_ = 0;
+    HostTime told_;  ///< when the newest frame that tells the pipeline the time was here
     std::optional<HostTime> foreign_sync_;
     ForeignClock foreign_clock_;
     BusTime bus_time_;

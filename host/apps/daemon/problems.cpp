@@ -143,9 +143,8 @@ void add_camera(const DaemonView& view, Problems& problems) {
         problems.push_back(std::move(*problem));
     } else if (frames.in() > 0 && !is_used && view.inputs->has_bus_fallen_silent(view.now)) {
         problems.push_back({"depth beside silent bus",
-                            "camera: its frames are not used, because the bus is silent: no node tells the "
-                            "time or where the robot is, and they are newer than all that was told "
-                            "(queue_overflow, ahead_of_time)"});
+                            "camera: its frames are not used, because the bus is silent: no node tells "
+                            "where the robot is (joints_missing)"});
     } else if (view.is_listen_only && !view.inputs->foreign_clock().ahead(view.now)) {
         problems.push_back({"camera untimed",
                             "camera: its frames have no time: the clock of the host that sends SYNC is not "

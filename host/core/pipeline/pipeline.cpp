@@ -64,6 +64,7 @@ Pipeline::Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& 
 void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     assert(!is_finished_);
     accounts_.frames.take_in();
+    told_beside_.reset();
     FrameOutcome outcome = intake_.on_frame(frame, stamp);
     if (const auto now_known = now()) {
         notice_time_back(*now_known);
@@ -153,7 +154,7 @@ std::optional<DepthReason> Pipeline::fault_on_arrival(const DepthFrame& frame) c
     if (depth_newest_ && frame.captured <= *depth_newest_) {
         return DepthReason::out_of_order;
     }
-    const auto now_known = now();
+    const auto now_known = told_beside_ ? told_beside_ : now();
     if (now_known && frame.captured - *now_known > kDepthAheadMax) {
         return DepthReason::ahead_of_time;
     }
@@ -240,6 +241,12 @@ Status<DepthReason> Pipeline::integrate(const DepthFrame& frame) {
         return unexpected(DepthReason::outside_marks);
     }
     return builder_.integrate(frame);
+}
+
+void Pipeline::on_silence(HostTime now) {
+    has_can_time_ = false;
+    told_beside_ = now;
+    advance(now);
 }
 
 void Pipeline::finish_can() {

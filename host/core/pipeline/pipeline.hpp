@@ -79,6 +79,10 @@ class Pipeline {
     void on_can(const wire::CanFrame& frame, WallTime stamp);
     /// Depth frames in the order of their capture, at about the time when they arrive among the CAN frames.
     void on_depth(DepthFrame frame);
+    /// No CAN frame comes for now, and it is `now` on the host's clock, by who knows beside the bus: what
+    /// need not wait any longer is integrated. Until a frame tells the time again the camera does, up to
+    /// `now`.
+    void on_silence(HostTime now);
     /// No further CAN frame will come: from now on the camera tells the time.
     void finish_can();
     /// Nothing more will come: what still waits is integrated or counted. Nothing may be given in afterwards.
@@ -149,7 +153,8 @@ class Pipeline {
     std::optional<HostTime> depth_newest_;        ///< capture time of the newest depth frame
     std::optional<HostTime> now_newest_;          ///< since it last went back
     std::uint64_t times_back_ = 0;
-    bool has_can_time_ = false;  ///< and more of it may come
+    bool has_can_time_ = false;            ///< and more of it may come
+    std::optional<HostTime> told_beside_;  ///< of `on_silence`, since the newest frame
     bool is_finished_ = false;
 };
 

@@ -4,11 +4,22 @@
 
 namespace octoskin {
 
+void SyncMaster::go_on() {
+    sequence_ = static_cast<std::uint8_t>((sequence_ + 1U) % wire::kSyncSequenceCount);
+}
+
 std::optional<wire::Sync> SyncMaster::poll(HostTime now) {
     if (now < due_) return std::nullopt;
     due_ = now + period_;
-    sequence_ = static_cast<std::uint8_t>((sequence_ + 1U) % wire::kSyncSequenceCount);
+    go_on();
     is_awaited_ = true;
+    return wire::Sync{sequence_};
+}
+
+std::optional<wire::Sync> SyncMaster::poll_alone(HostTime now) {
+    if (!is_awaited_ || now < due_ - period_ / 2) return std::nullopt;
+    is_awaited_ = false;
+    go_on();
     return wire::Sync{sequence_};
 }
 

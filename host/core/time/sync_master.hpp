@@ -20,10 +20,16 @@ class SyncMaster {
     /// the newest, and for the second time: which of two was meant cannot be told.
     [[nodiscard]] std::optional<wire::FollowUp> on_sent(std::uint8_t sequence, HostTime ended);
 
+    /// The SYNC of an exchange that the host has with itself alone, once for each `poll`: that one's did not
+    /// come onto the bus within half a period, for nobody is there to acknowledge it, or no bus. It has a
+    /// number of its own, so that no answer to the other is taken for one to it.
+    [[nodiscard]] std::optional<wire::Sync> poll_alone(HostTime now);
+
     /// When `poll` is next worth a call.
     [[nodiscard]] HostTime due() const noexcept { return due_; }
 
   private:
+    void go_on();
     Nanoseconds period_;
     HostTime due_{};
     std::uint8_t sequence_ = wire::kSyncSequenceCount - 1;

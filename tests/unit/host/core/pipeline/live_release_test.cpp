@@ -35,6 +35,14 @@ Pipeline play(const Scene& scene, const std::vector<StampedFrame>& frames, const
     return pipeline;
 }
 
+/// The frames that come before `end_s`; the pipeline may go on.
+Pipeline play_on(const Scene& scene, double end_s) {
+    Pipeline pipeline = make_pipeline(scene);
+    for (const StampedFrame& entry : scene.bus.frames())
+        if (entry.stamp < wall_at(end_s)) pipeline.on_can(entry.frame, entry.stamp);
+    return pipeline;
+}
+
 template <class Look>
 Pipeline play(const Scene& scene, const Look& look) {
     return play(scene, scene.bus.frames(), look);
@@ -125,6 +133,61 @@ TEST(LiveRelease, takes_a_depth_frame_at_once_if_the_robot_is_not_removed_from_i
     Pipeline pipeline = make_pipeline(scene);
     pipeline.on_depth(flat_frame(4.0));
     EXPECT_EQ(pipeline.accounts().depth_frames.used(), 1U);
+}
+
+/// The bus up to 9 s, and then silence that somebody looks at every 50 ms, with an image every 100 ms.
+Pipeline play_into_silence(const Scene& scene, double until_s) {
+    Pipeline pipeline = play_on(scene, 9.0);
+    for (int k = 1; 9.0 + 0.05 * k < until_s; ++k) {
+        pipeline.on_silence(host_at(9.0 + 0.05 * k));
+        if (k % 2 == 0) pipeline.on_depth(flat_frame(9.0 + 0.05 * k));
+    }
+    return pipeline;
+}
+
+TEST(LiveRelease, uses_images_beside_a_silent_bus_where_the_robot_is_not_removed_from_them) {
+    Scene scene = live_scene();
+    scene.mapping.removes_robot_from_depth = false;
+    Pipeline pipeline = play_into_silence(scene, 12.04);
+    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 30U) << pipeline.account_text();
+    pipeline.on_depth(flat_frame(12.99));
+    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 31U) << "less than a second ahead";
+    pipeline.on_depth(flat_frame(13.02));
+    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::ahead_of_time), 1U);
+}
+
+TEST(LiveRelease, gives_up_images_beside_a_silent_bus_that_alone_tells_where_the_robot_is) {
+    const Pipeline pipeline = play_into_silence(live_scene(), 12.04);
+    const auto& frames = pipeline.accounts().depth_frames;
+    EXPECT_EQ(frames.in(), 30U);
+    EXPECT_EQ(frames.used(), 0U);
+    // 27 of them 250 ms old and more.
+    EXPECT_EQ(frames.rejected(DepthReason::joints_missing), 27U) << pipeline.account_text();
+    EXPECT_TRUE(pipeline.is_balanced());
+}
+
+TEST(LiveRelease, gives_up_a_reading_that_waits_when_the_bus_falls_silent) {
+    Scene scene = live_scene();
+    scene.bus.range(9.005, kLeft, good_reading(kSpare));  // no joint state after it
+    Pipeline pipeline = play_on(scene, 9.1);
+    const auto& readings = pipeline.accounts().readings;
+    EXPECT_EQ(readings.rejected(ReadingReason::joints_missing), 0U) << pipeline.account_text();
+    pipeline.on_silence(host_at(9.24));
+    EXPECT_EQ(readings.rejected(ReadingReason::joints_missing), 0U);
+    pipeline.on_silence(host_at(9.26));
+    EXPECT_EQ(readings.rejected(ReadingReason::joints_missing), 1U) << pipeline.account_text();
+}
+
+TEST(LiveRelease, takes_the_bus_s_time_again_when_it_speaks_after_a_silence) {
+    Scene scene = live_scene();
+    Pipeline pipeline = play_on(scene, 4.0);
+    pipeline.on_silence(host_at(60.0));
+    for (const StampedFrame& entry : scene.bus.frames()) {
+        if (entry.stamp >= wall_at(4.0) && entry.stamp < wall_at(5.0))
+            pipeline.on_can(entry.frame, entry.stamp);
+    }
+    pipeline.on_depth(flat_frame(7.0));
+    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::ahead_of_time), 1U);
 }
 
 TEST(LiveRelease, holds_a_depth_frame_until_its_joints_are_here) {

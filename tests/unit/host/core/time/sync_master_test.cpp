@@ -50,6 +50,25 @@ TEST(SyncMaster, does_not_follow_up_one_that_came_on_the_bus_after_the_next_was_
     EXPECT_TRUE(master.on_sent(second->sequence, at_ms(1002)));
 }
 
+TEST(SyncMaster, exchanges_with_itself_once_a_period_while_its_sync_does_not_come_onto_the_bus) {
+    SyncMaster master;
+    EXPECT_FALSE(master.poll_alone(at_ms(400))) << "nothing was asked for yet";
+    for (int i = 1; i < 40; ++i) {
+        const auto sync = master.poll(at_ms(1000 * i));
+        ASSERT_TRUE(sync);
+        EXPECT_FALSE(master.poll_alone(at_ms(1000 * i + 499))) << "it may still come";
+        const auto alone = master.poll_alone(at_ms(1000 * i + 500));
+        ASSERT_TRUE(alone);
+        EXPECT_EQ(alone->sequence, (sync->sequence + 1) % wire::kSyncSequenceCount);
+        EXPECT_FALSE(master.poll_alone(at_ms(1000 * i + 550)));
+        EXPECT_FALSE(master.on_sent(sync->sequence, at_ms(1000 * i + 600))) << "too late";
+    }
+    const auto sync = master.poll(at_ms(50'000));
+    ASSERT_TRUE(sync);
+    EXPECT_TRUE(master.on_sent(sync->sequence, at_ms(50'001)));
+    EXPECT_FALSE(master.poll_alone(at_ms(50'500))) << "somebody is there";
+}
+
 TEST(SyncMaster, agrees_with_the_exchange_that_everybody_sees) {
     SyncMaster master;
     SyncExchange exchange;
