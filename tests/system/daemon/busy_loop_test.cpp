@@ -1,0 +1,121 @@
+// A daemon whose loop was held up, as by a large image: what came over CAN meanwhile is taken before what
+// this machine measured since, whose time it tells. More of it waits than is taken in one turn, so that the
+// order of turns decides nothing.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <string_view>
+#include <thread>
+
+#include "common/wire/codec.hpp"
+#include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/inputs.hpp"
+#include "host/apps/daemon/unix_socket.hpp"
+#include "tests/system/daemon/daemon_fixture.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+class BusyLoopTest : public testing::Test {
+  protected:
+    BusyLoopTest() : pipeline_(make_pipeline(request_, settings_).value()) {}
+
+    /// A node of the rig that says nothing but that it lives.
+    void heartbeats(int count) {
+        const auto heartbeat = wire::encode(wire::Heartbeat{.state = wire::NodeState::ranging}, 1);
+        for (int i = 0; i < count; ++i) EXPECT_TRUE(node_.send(heartbeat).value()) << "no room";
+    }
+    /// More than one turn takes, and then as a healthy bus goes on.
+    void hold_up(std::chrono::milliseconds duration) {
+        heartbeats(300);
+        const auto end = std::chrono::steady_clock::now() + duration;
+        while (std::chrono::steady_clock::now() < end) {
+            std::this_thread::sleep_for(40ms);
+            heartbeats(1);
+        }
+    }
+    /// The loop turns until `is_ready`, is held up by `busy`, and turns on until `is_over`. False if either
+    /// takes too long.
+    template <class IsReady, class Busy, class IsOver>
+    bool run(const IsReady& is_ready, const Busy& busy, const IsOver& is_over) {
+        Inputs inputs(request_, settings_.host.rig, loop_, pipeline_, recordings_);
+        EXPECT_TRUE(inputs.take_sockets(settings_.host.rig));
+        inputs.watch(settings_.host.rig);
+        bool was_busy = false;
+        const HostTime end = monotonic_now() + Nanoseconds(20s);
+        const EventSource timer = loop_.every(10ms, [&] {
+            if (was_busy && is_over(inputs)) loop_.stop(0);
+            if (monotonic_now() > end) loop_.stop(1);
+            if (was_busy) return;  // nobody attends: only turns of the loop take what came
+            heartbeats(1);
+            inputs.attend();
+            if (!is_ready(inputs)) return;
+            busy();
+            was_busy = true;
+        });
+        return loop_.run() == 0;
+    }
+
+    void tell_joints(std::string_view text) const {
+        const auto socket = connect_unix_socket(request_.joint_socket, SOCK_DGRAM);
+        ASSERT_TRUE(socket) << socket.error().message;
+        EXPECT_EQ(::send(*socket, text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
+        ::close(*socket);
+    }
+
+    static std::array<int, 2> make_bus() {
+        std::array<int, 2> ends{};
+        EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+        const int room = 1 << 20;
+        EXPECT_EQ(::setsockopt(ends[1], SOL_SOCKET, SO_SNDBUF, &room, sizeof(room)), 0);
+        return ends;
+    }
+
+    testing_support::ScratchFolder folder_;
+    std::array<int, 2> bus_ = make_bus();
+    socketcan::CanSocket node_{"node", bus_[1]};
+    DaemonRequest request_{.rig = kExperiment,
+                           .robot = {},
+                           .can_descriptor = bus_[0],
+                           .camera_uri = record_wall(folder_).string(),
+                           .joint_socket = folder_ / "joints",
+                           .control_socket = {},
+                           .map_folder = {}};
+    Settings settings_ = read_settings(request_).value();
+    EventLoop loop_;
+    Pipeline pipeline_;
+    RecordRequests recordings_;
+};
+
+TEST_F(BusyLoopTest, takes_no_image_for_one_of_the_future) {
+    const auto& frames = pipeline_.accounts().depth_frames;
+    std::uint64_t before = 0;
+    ASSERT_TRUE(run([&](const Inputs&) { return pipeline_.now() && frames.in() > 0; },
+                    [&] {
+                        before = frames.in();
+                        hold_up(2s);
+                    },
+                    [&](const Inputs&) { return frames.in() > before + 2; }));
+    EXPECT_EQ(frames.rejected(DepthReason::ahead_of_time), 0U);
+}
+
+TEST_F(BusyLoopTest, takes_no_joint_state_for_a_step_of_the_clock) {
+    std::uint64_t before = 0;
+    ASSERT_TRUE(run([&](const Inputs&) { return pipeline_.now().has_value(); },
+                    [&] {
+                        before = pipeline_.accounts().joint_samples.in();
+                        hold_up(300ms);
+                        tell_joints("0 0 0 -1.5 0 1.5 0");
+                    },
+                    [&](const Inputs&) { return pipeline_.accounts().joint_samples.in() > before; }));
+    const HostClockEstimate& clock = pipeline_.intake().host_clock();
+    EXPECT_EQ(clock.steps_back() + clock.stamps_ignored(), 0U);
+}
+
+}  // namespace
+}  // namespace octoskin::test
