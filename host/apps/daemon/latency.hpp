@@ -11,9 +11,9 @@ namespace octoskin {
 
 class LatencyHistogram {
   public:
-    /// Durations are told to this; those of 50 ms and more together.
+    /// Durations are told to this; those of 0.5 s and more together.
     static constexpr Nanoseconds kStep{20'000};
-    static constexpr std::size_t kSteps = 2'500;
+    static constexpr std::size_t kSteps = 25'000;
 
     void add(Nanoseconds duration) noexcept {
         const auto step = static_cast<std::size_t>(std::max<std::int64_t>(duration / kStep, 0));

@@ -5,15 +5,11 @@
 #include <array>
 
 #include "host/io/openni2/oni_writer.hpp"
-#include "hw/rigfile/rig.hpp"
 #include "hw/sim/experiment/experiment.hpp"
 
 namespace octoskin::test {
-namespace {
 
-/// The frames of the experiment's rig: 2 s at rest, then the arm moves.
-std::vector<StampedFrame> make_log() {
-    rig::Rig rig = rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml").value();
+std::vector<StampedFrame> make_log(rig::Rig rig) {
     sim::Scenario scenario =
         sim::read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value();
     const auto world = sim::World::read(scenario.world).value();
@@ -39,10 +35,8 @@ std::vector<StampedFrame> make_log() {
     return log;
 }
 
-}  // namespace
-
 const std::vector<StampedFrame>& log_of_experiment() {
-    static const std::vector<StampedFrame> log = make_log();
+    static const std::vector<StampedFrame> log = make_log(rig::read_rig(kExperiment).value());
     return log;
 }
 
@@ -70,10 +64,10 @@ DaemonTest::DaemonTest() {
     our_end_ = ends[1];
 }
 
-void DaemonTest::start(const std::vector<std::string>& more_arguments, const std::filesystem::path& rig) {
-    (void)log_of_experiment();  // made before anything runs in real time
+void DaemonTest::start(const std::vector<std::string>& more_arguments, const std::filesystem::path& rig,
+                       const std::vector<StampedFrame>& log) {
     daemon_.emplace(folder_, its_end_, more_arguments, rig);
-    bus_.emplace(our_end_, log_of_experiment());
+    bus_.emplace(our_end_, log);
 }
 
 bool DaemonTest::has_problem(const nlohmann::json& status, const std::string& text) {

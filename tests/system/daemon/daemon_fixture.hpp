@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/core/pipeline/can_source.hpp"
+#include "hw/rigfile/rig.hpp"
 #include "tests/support/live/live_bus.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/system/daemon/running_daemon.hpp"
@@ -19,6 +20,8 @@ namespace octoskin::test {
 
 /// The frames of the experiment's rig: 2 s at rest, then the arm moves.
 [[nodiscard]] const std::vector<StampedFrame>& log_of_experiment();
+/// The same of another rig.
+[[nodiscard]] std::vector<StampedFrame> make_log(rig::Rig rig);
 
 /// Twenty frames of a wall 3 m away, at 10 Hz, through OpenNI2's own recorder: in the first `columns` of 512,
 /// nothing in the others. A narrow one contradicts no range sensor.
@@ -29,7 +32,8 @@ class DaemonTest : public testing::Test {
   protected:
     DaemonTest();
     void start(const std::vector<std::string>& more_arguments = {"--no-camera"},
-               const std::filesystem::path& rig = kExperiment);
+               const std::filesystem::path& rig = kExperiment,
+               const std::vector<StampedFrame>& log = log_of_experiment());
     static bool is_ranging(const nlohmann::json& status) {
         return status["account"]["readings"]["used"].get<int>() > 100;
     }

@@ -36,8 +36,10 @@ TEST(LatencyHistogram, keeps_what_is_beyond_its_steps_as_the_longest) {
     LatencyHistogram histogram;
     histogram.add(Nanoseconds{7'000'000'000});
     histogram.add(Nanoseconds{-5});
+    histogram.add(Nanoseconds{300'000'000});  // a reading that waited for an image
     EXPECT_EQ(histogram.within(1.0), Nanoseconds{7'000'000'000});
-    EXPECT_EQ(histogram.within(0.5), LatencyHistogram::kStep);
+    EXPECT_EQ(histogram.within(0.6), Nanoseconds{300'000'000} + LatencyHistogram::kStep);
+    EXPECT_EQ(histogram.within(0.3), LatencyHistogram::kStep);
 }
 
 }  // namespace

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
+#include <vector>
 
 namespace octoskin {
 namespace {
@@ -74,6 +77,7 @@ TEST(ClockMap, follows_a_clock_100_ppm_off_to_a_microsecond_without_jitter) {
 }
 
 TEST(ClockMap, stays_within_half_a_millisecond_and_within_its_bound_under_jitter_drift_and_wander) {
+    std::vector<std::int64_t> errors_ns;
     for (std::uint32_t seed = 0; seed < 100; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         std::mt19937 random(seed);
@@ -96,9 +100,18 @@ TEST(ClockMap, stays_within_half_a_millisecond_and_within_its_bound_under_jitter
                 const std::int64_t error = std::abs((mapped->time - truth).count());
                 ASSERT_LE(error, 500'000);
                 ASSERT_LE(error, mapped->error_bound.count() + 1'000) << "plus the counter's own step";
+                errors_ns.push_back(error);
             }
         }
     }
+    std::ranges::sort(errors_ns);
+    const auto share_us = [&](std::size_t percent) {
+        return 1e-3 * static_cast<double>(errors_ns[(errors_ns.size() - 1) * percent / 100]);
+    };
+    std::printf(
+        "node time to host time, both clocks up to 100 ppm off: %zu times, median %.0f us, 99 %% %.0f us, "
+        "at most %.0f us off\n",
+        errors_ns.size(), share_us(50), share_us(99), share_us(100));
 }
 
 TEST(ClockMap, widens_its_bound_with_silence_and_gives_up_after_five_seconds) {
