@@ -92,7 +92,7 @@ class BusyLoopTest : public testing::Test {
     RecordRequests recordings_;
 };
 
-TEST_F(BusyLoopTest, takes_no_image_for_one_of_the_future) {
+TEST_F(BusyLoopTest, takes_no_image_of_the_camera_for_one_of_the_future) {
     const auto& frames = pipeline_.accounts().depth_frames;
     std::uint64_t before = 0;
     ASSERT_TRUE(run([&](const Inputs&) { return pipeline_.now() && frames.in() > 0; },
