@@ -141,6 +141,43 @@ TEST_F(DaemonTest, refuses_a_node_that_babbles_and_takes_it_back_while_the_other
         << daemon_->log();
 }
 
+// As long as the kernel keeps what comes: it is dated by its stamps, however late it is read.
+TEST_F(DaemonTest, loses_nothing_of_the_bus_when_it_has_no_processor_for_half_a_second) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    const Json before = daemon_->status();
+    daemon_->signal(SIGSTOP);
+    std::this_thread::sleep_for(500ms);
+    daemon_->signal(SIGCONT);
+    const Json after = daemon_->status();
+    const auto used = [](const Json& now) { return now["account"]["readings"]["used"].get<int>(); };
+    EXPECT_GT(used(after), used(before) + 300) << "at once: half of those of 34 sensors at 30 Hz are used";
+    EXPECT_EQ(after["clock"], before["clock"]) << "no step of the clock";
+    const auto rejected = [](const Json& now, const char* reason) {
+        return now["account"]["readings"]["rejected"].value(reason, 0);
+    };
+    for (const char* reason : {"no_host_time", "too_old", "node_lost"})
+        EXPECT_EQ(rejected(after, reason), rejected(before, reason)) << reason;
+}
+
+// Longer than the kernel keeps it.
+TEST_F(DaemonTest, catches_up_with_the_bus_after_it_had_no_processor_for_two_seconds) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    const Json before = daemon_->status();
+    daemon_->signal(SIGSTOP);
+    std::this_thread::sleep_for(2s);
+    daemon_->signal(SIGCONT);
+    const auto used = [](const Json& now) { return now["account"]["readings"]["used"].get<int>(); };
+    const auto caught_up = daemon_->wait_until(
+        [&](const Json& now) { return used(now) > used(before) + 1'000 && now["problems"].empty(); }, 15s);
+    const Json status = daemon_->status();
+    ASSERT_TRUE(caught_up) << status["problems"].dump(1) << status["account"].dump(1);
+    std::printf("on the map as before %ld ms after it went on\n", static_cast<long>(caught_up->count()));
+    for (const auto& unit : status["account"]) EXPECT_TRUE(unit["balanced"].get<bool>()) << unit.dump();
+    EXPECT_EQ(status["clock"]["times_back"], 0);
+}
+
 TEST_F(DaemonTest, names_joint_states_that_stop) {
     start();
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
