@@ -64,7 +64,7 @@ Status<AppError> Inputs::take_sockets(const HostRig& rig) {
 }
 
 void Inputs::watch(const HostRig& rig) {
-    if (joints_) joints_ready_ = loop_.on_readable(joints_->descriptor(), [this] { drain_joints(); });
+    if (joints_) joints_ready_ = loop_.on_readable(joints_->descriptor(), [this] { catch_up(); });
     watch_camera(rig.camera.has_value());
     attend();
 }
@@ -120,9 +120,12 @@ void Inputs::catch_up() {
     }
 }
 
+/// The bus's time is told by the order of stamps: what comes through the socket takes its place in it.
 bool Inputs::drain_can() {
     for (int i = 0; i < kFramesPerTurn; ++i) {
+        collect_joints();  // first: what it does not find comes later than the frame
         const auto received = can_.receive();
+        feed_joints(received ? std::optional(received->entry.stamp) : std::nullopt);
         if (!received) return true;
         take_frame(*received);
     }
@@ -190,17 +193,24 @@ void Inputs::feed(const wire::CanFrame& frame, WallTime stamp) {
     for (std::uint64_t i = 0; i < used; ++i) latency_.add(took);
 }
 
-void Inputs::drain_joints() {
-    catch_up();  // what came before them goes first: the bus's time is told by the order of stamps
+void Inputs::collect_joints() {
+    constexpr std::size_t kWaitingMax = 256;
     std::optional<JointSample> sample;
-    for (int i = 0; i < kFramesPerTurn && joints_->receive(sample); ++i) {
-        if (!sample) continue;  // counted by the socket
-        const auto frames = local_joints_.frames(sample->sampled, sample->position);
+    while (joints_ && joints_waiting_.size() < kWaitingMax && joints_->receive(sample))
+        if (sample) joints_waiting_.push_back(std::move(*sample));  // else counted by the socket
+}
+
+/// Those that came by then; empty: all.
+void Inputs::feed_joints(std::optional<WallTime> until) {
+    while (!joints_waiting_.empty() && (!until || joints_waiting_.front().came <= *until)) {
+        const JointSample sample = std::move(joints_waiting_.front());
+        joints_waiting_.pop_front();
+        const auto frames = local_joints_.frames(sample.sampled, sample.position);
         if (!frames) {  // what else may be wrong the socket refuses and counts already
             ++joints_thinned_;
             continue;
         }
-        for (const wire::CanFrame& frame : *frames) feed(frame, wall_now());
+        for (const wire::CanFrame& frame : *frames) feed(frame, sample.came);
     }
 }
 

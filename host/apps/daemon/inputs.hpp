@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -77,7 +78,8 @@ class Inputs {
     void answer_sync(const socketcan::Received& received, HostTime at);
     void hear_host(const socketcan::Received& received, HostTime at);
     void feed(const wire::CanFrame& frame, WallTime stamp);
-    void drain_joints();
+    void collect_joints();
+    void feed_joints(std::optional<WallTime> until);
     void drain_camera();
 
     const DaemonRequest& request_;
@@ -91,6 +93,7 @@ class Inputs {
     LocalJoints local_joints_;
     std::optional<JointSocket> joints_;
     EventSource joints_ready_;
+    std::deque<JointSample> joints_waiting_;  ///< for frames of the bus that came before them
     std::unique_ptr<CameraFeed> camera_;
     EventSource camera_ready_;
     LatencyHistogram latency_;

@@ -40,12 +40,13 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
 
 }  // namespace
 
-Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::size_t joint_count,
-                                                 HostTime now) {
+Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::size_t joint_count, HostTime now,
+                                                 std::optional<HostTime> came) {
     if (text.size() > kJointTextMax) return unexpected(JointTextFault::too_long);
     auto numbers = numbers_of(text);
     if (!numbers) return unexpected(JointTextFault::not_a_number);
-    JointSample sample{now, std::move(*numbers)};
+    JointSample sample{came.value_or(HostTime{}), std::move(*numbers), {}};
+    const bool is_dated = came || sample.position.size() == joint_count + 1;
     if (sample.position.size() == joint_count + 1) {
         const double time_s = sample.position.front();
         if (std::abs(time_s - static_cast<double>(now.ns) / kNsPerS) > kTimeOffMaxS)
@@ -54,6 +55,7 @@ Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::siz
         sample.position.erase(sample.position.begin());
     }
     if (sample.position.size() != joint_count) return unexpected(JointTextFault::wrong_count);
+    if (!is_dated) return unexpected(JointTextFault::time_off);
     const bool is_too_large = std::ranges::any_of(
         sample.position, [](double position) { return std::abs(position) > LocalJoints::kLargest; });
     if (is_too_large) return unexpected(JointTextFault::too_large);
@@ -95,12 +97,13 @@ bool JointSocket::receive(std::optional<JointSample>& sample) {
     const auto datagram = socketcan::receive_stamped(descriptor_, std::as_writable_bytes(std::span(text)));
     if (datagram.count < 0) return false;
     // It may have waited: it came when the kernel says.
-    const auto came = datagram.stamp ? monotonic_of(*datagram.stamp) : std::nullopt;
+    const WallTime came = datagram.stamp.value_or(wall_now());
     auto parsed = parse_joints({text.data(), static_cast<std::size_t>(datagram.count)}, joint_count_,
-                               came ? *came : monotonic_now());
+                               monotonic_now(), monotonic_of(came));
     if (parsed) {
         ++samples_;
         sample = std::move(parsed).value();
+        sample->came = came;
     } else {
         ++faults_.at(static_cast<std::size_t>(parsed.error()));
     }

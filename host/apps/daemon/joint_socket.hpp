@@ -21,12 +21,13 @@ namespace octoskin {
 struct JointSample {
     HostTime sampled;
     std::vector<double> position;
+    WallTime came;  ///< through a socket
 };
 
 enum class JointTextFault : std::uint8_t {
     not_a_number,  ///< a word that is no finite number
     wrong_count,   ///< neither as many numbers as joints, nor one more
-    time_off,      ///< more than 1 s from now
+    time_off,      ///< more than 1 s from now, or not told, and it waited for as long to be read
     too_large,     ///< a position beyond the +-8.38 rad of the wire
     too_long,      ///< over kJointTextMax bytes
 };
@@ -35,9 +36,9 @@ enum class JointTextFault : std::uint8_t {
 }
 inline constexpr std::size_t kJointTextMax = 1024;
 
-/// One line or datagram. Any bytes are safe.
+/// One line or datagram, which came at `came`; empty: nobody knows when. Any bytes are safe.
 [[nodiscard]] Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::size_t joint_count,
-                                                               HostTime now);
+                                                               HostTime now, std::optional<HostTime> came);
 
 class JointSocket {
   public:

@@ -93,7 +93,8 @@ class CanOutput final : public JointOutput {
           joints_(rig.joints.node_id, joint_count_, rig.joints.rate_hz),
           link_([interface] { return socketcan::CanSocket::open(interface, {.filters = kSyncOnly}); }) {}
     bool put(const std::string& line) override {
-        const auto sample = parse_joints(line, joint_count_, monotonic_now());
+        const HostTime now = monotonic_now();
+        const auto sample = parse_joints(line, joint_count_, now, now);
         if (!sample) {
             spdlog::warn("line not sent, {}: {}",
                          names_of(JointTextFault{}).at(static_cast<std::size_t>(sample.error())), line);

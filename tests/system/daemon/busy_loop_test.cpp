@@ -7,6 +7,7 @@
 
 #include <array>
 #include <chrono>
+#include <functional>
 #include <string_view>
 #include <thread>
 
@@ -31,12 +32,14 @@ class BusyLoopTest : public testing::Test {
         for (int i = 0; i < count; ++i) EXPECT_TRUE(node_.send(heartbeat).value()) << "no room";
     }
     /// More than one turn takes, and then as a healthy bus goes on.
-    void hold_up(std::chrono::milliseconds duration) {
+    void hold_up(
+        std::chrono::milliseconds duration, const std::function<void()>& beside = [] {}) {
         heartbeats(300);
         const auto end = std::chrono::steady_clock::now() + duration;
         while (std::chrono::steady_clock::now() < end) {
             std::this_thread::sleep_for(40ms);
             heartbeats(1);
+            beside();
         }
     }
     /// The loop turns until `is_ready`, is held up by `busy`, and turns on until `is_over`. False if either
@@ -61,10 +64,12 @@ class BusyLoopTest : public testing::Test {
         return loop_.run() == 0;
     }
 
-    void tell_joints(std::string_view text) const {
+    /// An arm at rest.
+    void tell_joints() const {
+        constexpr std::string_view kAtRest = "0 0 0 -1.5 0 1.5 0";
         const auto socket = connect_unix_socket(request_.joint_socket, SOCK_DGRAM);
         ASSERT_TRUE(socket) << socket.error().message;
-        EXPECT_EQ(::send(*socket, text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
+        EXPECT_EQ(::send(*socket, kAtRest.data(), kAtRest.size(), 0), static_cast<ssize_t>(kAtRest.size()));
         ::close(*socket);
     }
 
@@ -104,15 +109,26 @@ TEST_F(BusyLoopTest, takes_no_image_of_the_camera_for_one_of_the_future) {
     EXPECT_EQ(frames.rejected(DepthReason::ahead_of_time), 0U);
 }
 
-TEST_F(BusyLoopTest, takes_no_joint_state_for_a_step_of_the_clock) {
-    std::uint64_t before = 0;
-    ASSERT_TRUE(run([&](const Inputs&) { return pipeline_.now().has_value(); },
-                    [&] {
-                        before = pipeline_.accounts().joint_samples.in();
-                        hold_up(300ms);
-                        tell_joints("0 0 0 -1.5 0 1.5 0");
-                    },
-                    [&](const Inputs&) { return pipeline_.accounts().joint_samples.in() > before; }));
+// Each takes its place among the frames by when it came, and is dated by that.
+TEST_F(BusyLoopTest, takes_joint_states_as_if_it_had_read_them_when_they_came) {
+    const auto& samples = pipeline_.accounts().joint_samples;
+    std::uint64_t used_before = 0;
+    std::uint64_t rejected_before = 0;
+    ASSERT_TRUE(run(
+        [&](const Inputs&) {
+            tell_joints();
+            return samples.used() > 20;
+        },
+        [&] {
+            used_before = samples.used();
+            rejected_before = samples.rejected();
+            hold_up(300ms, [this] { tell_joints(); });
+        },
+        [&](const Inputs&) {
+            return samples.used() + samples.rejected() >= used_before + rejected_before + 6;
+        }));
+    EXPECT_GE(samples.used(), used_before + 6);
+    EXPECT_EQ(samples.rejected(), rejected_before);
     const HostClockEstimate& clock = pipeline_.intake().host_clock();
     EXPECT_EQ(clock.steps_back() + clock.stamps_ignored(), 0U);
 }

@@ -11,16 +11,17 @@ namespace {
 constexpr HostTime kNow{100'000'000'000};
 
 std::optional<JointTextFault> fault_of(std::string_view text, std::size_t joints = 3) {
-    const auto sample = parse_joints(text, joints, kNow);
+    const auto sample = parse_joints(text, joints, kNow, kNow);
     return sample ? std::nullopt : std::optional(sample.error());
 }
 
-TEST(JointText, is_positions_of_now_or_of_the_time_before_them) {
-    const auto now = parse_joints("0.5 -1e-3 8\n", 3, kNow);
+TEST(JointText, is_positions_of_when_it_came_or_of_the_time_before_them) {
+    const HostTime came = kNow - std::chrono::milliseconds(20);
+    const auto now = parse_joints("0.5 -1e-3 8\n", 3, kNow, came);
     ASSERT_TRUE(now);
-    EXPECT_EQ(now->sampled, kNow);
+    EXPECT_EQ(now->sampled, came);
     EXPECT_EQ(now->position, (std::vector<double>{0.5, -1e-3, 8.0}));
-    const auto timed = parse_joints("99.75, 1, 2,\t3", 3, kNow);
+    const auto timed = parse_joints("99.75, 1, 2,\t3", 3, kNow, came);
     ASSERT_TRUE(timed);
     EXPECT_EQ(timed->sampled, HostTime{99'750'000'000});
     EXPECT_EQ(timed->position, (std::vector<double>{1, 2, 3}));
@@ -43,12 +44,21 @@ TEST(JointText, says_what_is_wrong) {
     EXPECT_EQ(fault_of(std::string(kJointTextMax + 1, ' ')), JointTextFault::too_long);
 }
 
+TEST(JointText, must_tell_its_time_where_nobody_knows_when_it_came) {
+    const auto untimed = parse_joints("1 2 3", 3, kNow, std::nullopt);
+    ASSERT_FALSE(untimed);
+    EXPECT_EQ(untimed.error(), JointTextFault::time_off);
+    const auto timed = parse_joints("99.75 1 2 3", 3, kNow, std::nullopt);
+    ASSERT_TRUE(timed);
+    EXPECT_EQ(timed->sampled, HostTime{99'750'000'000});
+}
+
 TEST(JointText, takes_any_bytes) {
     std::mt19937 random(11);
     for (int i = 0; i < 20'000; ++i) {
         std::string text(random() % 64, '\0');
         for (char& letter : text) letter = "0123456789.-+e ,\n\tnaif\0\xff"[random() % 24];
-        const auto sample = parse_joints(text, 1 + random() % 7, kNow);
+        const auto sample = parse_joints(text, 1 + random() % 7, kNow, kNow);
         EXPECT_TRUE(!sample || !sample->position.empty());
     }
 }
