@@ -84,12 +84,13 @@ Microseconds budget_of(const Registers& registers) {
 }  // namespace
 
 RangingTiming ranging_timing(const Registers& registers, const SensorPart& part) {
-    RangingTiming timing{.budget = budget_of(registers)};
+    RangingTiming timing{.overhead = part.range_overhead, .budget = budget_of(registers)};
     const double ticks = read32(registers, reg::kInterMeasurement);
     const double slot_us = ticks / std::max<int>(part.osc_calibrate, 1) * 1000.0 / part.slow_clock_factor;
     timing.slot = Microseconds{static_cast<std::int64_t>(std::llround(std::clamp(slot_us, 1000.0, 3.6e9)))};
     timing.period = timing.slot;
-    while (timing.period < timing.budget + part.slot_guard) timing.period += timing.slot;
+    const Microseconds needed = timing.budget + std::max(part.slot_guard, part.range_overhead);
+    while (timing.period < needed) timing.period += timing.slot;
     return timing;
 }
 

@@ -16,9 +16,13 @@ struct SensorPart {
     /// The slow oscillator is faster than its calibration says: a period comes out shorter by this factor.
     /// Public drivers compensate 1.055 to 1.075.
     double slow_clock_factor = 1.064;
+    /// The slow oscillator does not keep its rate: every eighth range it is another one, by up to this share.
+    double slow_clock_wander = 0.0;
     std::uint8_t optical_centre_spad = 199;
     Microseconds boot_time{1000};  ///< at most 1.2 ms (DS12385, 2.6.1)
     Microseconds slot_guard = kSlotGuard;
+    /// A range begins so long before its window: what a range takes beyond its budget is not public.
+    Microseconds range_overhead{0};
     double crosstalk_kcps = 0.0;  ///< what the cover glass sends back, per SPAD
     /// Whether a soft reset takes the address back when it begins or when it ends; nothing public says.
     bool forgets_address_as_soft_reset_begins = false;
@@ -31,10 +35,11 @@ struct SlowClockSpread {
 };
 
 struct RangingTiming {
-    Microseconds budget{0};  ///< length of one ranging
-    Microseconds slot{0};    ///< the inter-measurement register, by the simulation's clock
-    /// From one start to the next in timed mode: the slot, or as many slots as budget + guard need, since a
-    /// slot that comes too early is missed.
+    Microseconds overhead{0};  ///< from the start of a ranging to its window
+    Microseconds budget{0};    ///< length of its window
+    Microseconds slot{0};      ///< the inter-measurement register, by the simulation's clock
+    /// From one start to the next in timed mode: the slot, or as many slots as budget + guard or overhead
+    /// need, since a slot that comes too early is missed.
     Microseconds period{0};
 };
 

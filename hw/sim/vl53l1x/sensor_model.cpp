@@ -1,6 +1,7 @@
 #include "hw/sim/vl53l1x/sensor_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace octoskin::sim {
@@ -13,6 +14,12 @@ bool is_read_only(std::uint16_t index) {
     const bool is_identification = index >= reg::kModelId && index <= reg::kModelId + 2U;
     const bool is_result = index >= reg::kResultInterruptStatus && index <= reg::kResultLast;
     return is_identification || is_result || index == reg::kSystemStatus;
+}
+
+/// From -1 to 1, another one every eighth range.
+double wander(std::uint32_t ranging_index) {
+    const std::uint32_t mixed = (ranging_index / 8 + 1) * 2'654'435'769U;  // Knuth's multiplicative hash
+    return static_cast<double>(mixed >> 16U) / 32'768.0 - 1.0;
 }
 
 }  // namespace
@@ -59,7 +66,7 @@ void SensorModel::advance(SimTime time) {
     registers_.at(reg::kSystemStatus) = shows_two ? 0x02 : 0x03;
     while (ranging_ && time >= ranging_->start) {
         if (!ranging_->is_latched) latch_ranging();
-        if (time.us < ranging_->start.us + ranging_->timing.budget.count()) break;
+        if (time < ranging_->end()) break;
         finish_ranging();
     }
 }
@@ -67,10 +74,8 @@ void SensorModel::advance(SimTime time) {
 std::optional<SimTime> SensorModel::next_event(SimTime now) const {
     std::optional<SimTime> event;
     if (power_ == Power::booting) event = booted_at_;
-    if (power_ == Power::running && ranging_) {
-        const Microseconds budget = ranging_->is_latched ? ranging_->timing.budget : Microseconds{0};
-        event = SimTime{ranging_->start.us + budget.count()};
-    }
+    if (power_ == Power::running && ranging_)
+        event = ranging_->is_latched ? ranging_->end() : ranging_->start;
     return event && *event > now ? event : std::nullopt;
 }
 
@@ -153,6 +158,10 @@ void SensorModel::write_register(std::uint16_t index, std::uint8_t value, SimTim
             registers_.at(index) = value;
             start_mode(value, time);
             return;
+        case reg::kInterMeasurement:
+            if (ranging_) ++disturbance_count_;
+            registers_.at(index) = value;
+            return;
         default:
             registers_.at(index) = value;
             return;
@@ -186,12 +195,14 @@ void SensorModel::start_mode(std::uint8_t value, SimTime time) {
     constexpr unsigned kTimed = 0x40;
     constexpr unsigned kAbort = 0x80;
     const unsigned bits = value;
+    const bool is_stop = (bits & (kSingle | kBackToBack | kTimed | kAbort)) == 0;
+    if (!is_stop && ranging_ && ranging_->is_latched) ++disturbance_count_;
     if ((bits & kAbort) != 0) {
         mode_ = Mode::idle;
         ranging_.reset();
         return;
     }
-    if ((bits & (kSingle | kBackToBack | kTimed)) == 0) {
+    if (is_stop) {
         stops_after_this_ = true;  // UM2510 3.5.7: the running range is finished
         if (!ranging_ || ranging_->start > time) {
             ranging_.reset();
@@ -207,7 +218,8 @@ void SensorModel::start_mode(std::uint8_t value, SimTime time) {
     const RangingTiming timing = ranging_timing(registers_, part_);
     // The first timed result was observed one period after the start: about 103 ms at the defaults, where
     // period and budget are nearly equal, so that no slot is missed yet.
-    const Microseconds wait = mode_ == Mode::timed ? timing.slot - timing.budget : Microseconds{0};
+    const Microseconds wait =
+        mode_ == Mode::timed ? timing.slot - timing.budget - timing.overhead : Microseconds{0};
     ranging_ = Ranging{.start = {time.us + std::max<std::int64_t>(wait.count(), 0)}};
 }
 
@@ -224,8 +236,8 @@ void SensorModel::finish_ranging() {
         schedule_next(ranging);
         return;
     }
-    const SimTime middle{ranging.start.us + ranging.timing.budget.count() / 2};
-    const SimTime ready{ranging.start.us + ranging.timing.budget.count()};
+    const SimTime middle{ranging.window().us + ranging.timing.budget.count() / 2};
+    const SimTime ready = ranging.end();
     const RangingReturn seen = scene_(ranging_index_, middle, ranging.config.roi);
     step_stream_count();
     const RangingResult result{
@@ -246,7 +258,9 @@ void SensorModel::schedule_next(const Ranging& finished) {
     if (stops_after_this_ || mode_ == Mode::single) {
         mode_ = Mode::idle;
     } else if (mode_ == Mode::timed) {
-        ranging_ = Ranging{.start = {finished.start.us + finished.timing.period.count()}};
+        const double rate = 1.0 + part_.slow_clock_wander * wander(ranging_index_);
+        const auto period = static_cast<double>(finished.timing.period.count()) / rate;
+        ranging_ = Ranging{.start = {finished.start.us + std::llround(period)}};
     } else {
         mode_ = Mode::waiting_for_clear;
     }

@@ -66,6 +66,9 @@ class SensorModel final : public I2cTarget {
     [[nodiscard]] std::optional<SimTime> next_event(SimTime now) const;
     /// How often it was asked whether data is ready (0x31).
     [[nodiscard]] std::uint64_t poll_count() const noexcept { return poll_count_; }
+    /// How often it was given what it must not get: while a ranging is under way a start or an abort, and
+    /// from start to stop another period (UM2356 2.5.2).
+    [[nodiscard]] std::uint32_t disturbance_count() const noexcept { return disturbance_count_; }
     /// Finishes the rangings that end by `time`.
     void advance(SimTime time);
     /// The newest finished rangings, oldest first, at most 64.
@@ -87,6 +90,8 @@ class SensorModel final : public I2cTarget {
         bool is_latched = false;  ///< has begun: what follows is what the registers said then
         RangingTiming timing{};
         RangingConfig config{};
+        [[nodiscard]] SimTime window() const { return {start.us + timing.overhead.count()}; }
+        [[nodiscard]] SimTime end() const { return {window().us + timing.budget.count()}; }
     };
 
     void boot(SimTime time);
@@ -118,6 +123,7 @@ class SensorModel final : public I2cTarget {
     std::uint16_t index_ = 0;
     std::uint8_t index_bytes_ = 0;
     std::uint64_t poll_count_ = 0;
+    std::uint32_t disturbance_count_ = 0;
     std::deque<RangingRecord> history_;
 };
 

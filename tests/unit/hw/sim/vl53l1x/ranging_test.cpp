@@ -100,6 +100,54 @@ TEST_F(RangingPart, the_guard_between_ranging_and_slot_is_the_parts) {
     EXPECT_EQ(ready[2] - ready[1], 20'000);
 }
 
+// Ready one period after the start as ever; under way from 5 ms before its window of 20 ms.
+TEST_F(RangingPart, a_range_may_begin_before_its_window) {
+    use({.osc_calibrate = 40, .slow_clock_factor = 1.0, .range_overhead = Microseconds{5'000}});
+    configure(25 * 40);
+    const SimTime start = bench_.time();
+    bench_.write(0x0087, {0x40});
+    auto ready = ready_times(2);
+    EXPECT_NEAR(static_cast<double>(ready[0] - start.us), 25'000.0, 150.0);
+    EXPECT_EQ(ready[1] - ready[0], 25'000) << "no slot is missed for 20 + 5 ms";
+    EXPECT_EQ(part_->history()[1].ready.us - part_->history()[1].window_middle.us, 10'000);
+
+    bench_.write(0x0087, {0x80});
+    configure(25 * 40 - 1);
+    bench_.write(0x0087, {0x40});
+    ready = ready_times(2);
+    EXPECT_EQ(ready[1] - ready[0], 2 * 24'975);
+
+    bench_.wait(Microseconds{2 * 24'975 - 24'000});
+    bench_.write(0x0087, {0x00});  // a millisecond after it began, in its overhead
+    EXPECT_EQ(ready_times(1).size(), 1U) << "the range under way still ends";
+    EXPECT_EQ(ready_times(1).size(), 0U);
+}
+
+TEST_F(RangingPart, counts_what_it_must_not_get_while_it_ranges) {
+    use({.range_overhead = Microseconds{3'000}});
+    configure(1312);
+    bench_.write(0x0087, {0x40});
+    EXPECT_EQ(part_->disturbance_count(), 0U) << "started";
+    bench_.wait(Microseconds{2'000});
+    configure(1312);
+    EXPECT_EQ(part_->disturbance_count(), 1U) << "another period from start to stop";
+    bench_.write(0x0087, {0x40});
+    EXPECT_EQ(part_->disturbance_count(), 1U) << "no range had begun yet";
+    ASSERT_EQ(ready_times(1).size(), 1U);
+    bench_.wait(Microseconds{13'400 - 3'000 + 500});
+    bench_.write(0x0087, {0x00});
+    EXPECT_EQ(part_->disturbance_count(), 1U) << "a stop is always in order";
+    bench_.write(0x0087, {0x40});
+    EXPECT_EQ(part_->disturbance_count(), 2U) << "started anew in the overhead of a range";
+    ASSERT_EQ(ready_times(1).size(), 1U);
+    bench_.wait(Microseconds{20'000});
+    bench_.write(0x0087, {0x80});
+    EXPECT_EQ(part_->disturbance_count(), 3U) << "cut";
+    configure(1312);
+    bench_.write(0x0087, {0x40});
+    EXPECT_EQ(part_->disturbance_count(), 3U);
+}
+
 TEST_F(RangingPart, stop_lets_the_running_range_end_and_abort_does_not) {
     use({});
     configure(1312);
