@@ -84,9 +84,10 @@ struct Policy {
     /// On which side of its phase a sensor is started, against the way that it walks: the rest is for how
     /// badly ready times are known.
     Microseconds phase_start_off{130};
-    /// A sensor that is stopped so long before its next range begins has none under way.
-    Microseconds phase_spare{1'000};
-    std::int64_t phase_periods_min = 16;  ///< between two starts for it: each costs a reading
+    /// A sensor of which nobody knows whether its next range has begun is stopped so much later than it could
+    /// be: what that tells then holds for those stops, too, that come as soon as they can.
+    Microseconds phase_stop_delay{1'000};
+    std::int64_t phase_periods_min = 16;  ///< between two starts for it, at least: each costs a reading
 
     // --- recovery of one sensor: restart, XSHUT cycle, then XSHUT cycles at growing distance
     std::uint8_t proven_readings_until_healthy = 10;

@@ -14,8 +14,8 @@ using wire::SensorFault;
 constexpr std::uint16_t kRoiRegister = 0x007F;
 constexpr std::uint8_t kRoiBytes = 2;
 
-// After a stop the range under way still runs to its end; its overhead beyond the budget stays below this.
-constexpr Microseconds kDrainMargin{5'000};
+// One poll that finds no result of a range that was under way at the stop may have been altered.
+constexpr std::uint8_t kLooksForLastResult = 2;
 
 }  // namespace
 
@@ -30,6 +30,7 @@ Ranging::Ranging(vl53l1x::Device& device, const SensorConfig& config, const Rang
       acceptance_(rules.stream_gate, Microseconds{std::int64_t{config.timing_budget_ms} * 1'000}, policy),
       trim_(Microseconds{std::int64_t{config.inter_measurement_ms} * 1'000}, policy),
       phase_(policy),
+      range_length_(budget()),
       zones_(config.zone_count, rules.zone_guard),
       checks_(policy),
       first_start_(node_began + policy.first_starts) {}
@@ -128,6 +129,9 @@ void Ranging::start_step(Step step, NodeTime now) {
         case Step::reading:
             device_.begin_read(acceptance_.wants_ready_confirmed());
             break;
+        case Step::reading_last:
+            device_.begin_read();
+            break;
         case Step::writing_zone:
             device_.begin_set_zone(config_.zones[zones_.next()]);
             break;
@@ -138,10 +142,11 @@ void Ranging::start_step(Step step, NodeTime now) {
             device_.begin_verify(checks_.group());
             break;
         case Step::stopping:
+            stop_began_ = now;
             device_.begin_stop();
             break;
         case Step::draining:
-            step_due_ = is_between_ranges(now) ? now : now + budget() + kDrainMargin;
+            drain(now);
             break;
         case Step::idle:
         case Step::awaiting_data:
@@ -162,6 +167,8 @@ Ranging::Event Ranging::on_step_done(NodeTime now) {
             break;
         case Step::reading:
             return on_read(now);
+        case Step::reading_last:
+            return on_last_read(now);
         case Step::writing_zone:
             zones_.written({step_began_, now});
             start_step(Step::checking_zone, now);
@@ -194,10 +201,32 @@ Ranging::Event Ranging::on_step_failed(vl53l1x::Error error, NodeTime now) {
         acceptance_.on_unreadable();
         return refuse(sensor_fault(error), now);
     }
+    if (step == Step::reading_last && is_bad_result) {
+        fault_ = sensor_fault(error);
+        start_anew(now);
+        return Event::refused;
+    }
     const Event failed = fail(sensor_fault(error));
     if (step == Step::checking_steering && error == vl53l1x::Error::config_mismatch)
         suspect_readings_ = checks_.suspects();
     return failed;
+}
+
+/// Where phases are held, starts are frequent: there a range that was under way at the stop is read, too, and
+/// a sensor of which it is known that none was is not waited for.
+void Ranging::drain(NodeTime now) {
+    looks_left_ = 0;
+    if (is_between_ranges(now)) {
+        step_due_ = now;
+        return;
+    }
+    step_due_ = now + budget() + kRangeOverheadMax;
+    const auto next = acceptance_.next_ready();
+    const bool is_rhythm_known =
+        next && !acceptance_.has_refused() && next->width() <= policy_.phase_known_within;
+    if (!rules_.holds_phases || !is_rhythm_known || is_reached(next->earliest, now)) return;
+    last_expected_ = *next;
+    looks_left_ = kLooksForLastResult;
 }
 
 Ranging::Event Ranging::on_drained(NodeTime now) {
@@ -205,9 +234,41 @@ Ranging::Event Ranging::on_drained(NodeTime now) {
         step_ = Step::idle;
         return Event::stopped;
     }
+    if (looks_left_ > 0) {
+        --looks_left_;
+        start_step(Step::reading_last, now);
+    } else {
+        start_anew(now);
+    }
+    return Event::none;
+}
+
+/// What is found is a reading like any other; what is not was not under way.
+Ranging::Event Ranging::on_last_read(NodeTime now) {
+    if (!device_.has_measurement()) {
+        acceptance_.on_not_ready(polls_.not_ready_until(step_began_));
+        if (looks_left_ == 0) range_length_.on_none_begun(stop_began_, last_expected_);
+        return on_drained(now);
+    }
+    start_anew(now);
+    const ResultSeen seen{
+        .measurement = device_.measurement(), .ready_seen = device_.ready_seen(), .read_end = now};
+    switch (acceptance_.judge(seen, zones_)) {
+        case Verdict::accepted:
+            checks_.on_reading();
+            return Event::reading;
+        case Verdict::undated:
+            return Event::undated;
+        case Verdict::refused:
+            break;
+    }
+    fault_ = SensorFault::stale_stream;
+    return Event::refused;
+}
+
+void Ranging::start_anew(NodeTime now) {
     is_trim_due_ = false;
     start_step(std::exchange(is_period_set_, false) ? Step::awaiting_phase : Step::setting_period, now);
-    return Event::none;
 }
 
 void Ranging::on_started(NodeTime now) {
@@ -319,7 +380,7 @@ void Ranging::check_or_await(NodeTime now) {
 void Ranging::await_next_result(NodeTime now) {
     const auto predicted = acceptance_.next_ready();
     ready_from_ = predicted ? polls_.first_poll(*predicted) : now;
-    await_data(is_trim_due_ || is_stop_requested_ ? now
+    await_data(is_trim_due_ || is_stop_requested_ ? stop_time(now)
                : predicted                        ? next_poll(*predicted)
                                                   : polls_.blind_poll(now, acceptance_.period(), now));
 }
@@ -359,8 +420,13 @@ bool Ranging::is_zone_write_due(NodeTime now) const noexcept {
 
 /// Only where phases are held: elsewhere nothing hurries.
 bool Ranging::is_between_ranges(NodeTime now) const noexcept {
-    const auto begin = acceptance_.next_range_begin();
-    return rules_.holds_phases && is_trim_due_ && begin && is_reached(now + policy_.phase_spare, *begin);
+    const auto next = acceptance_.next_ready();
+    return rules_.holds_phases && is_trim_due_ && next && range_length_.is_before(now, next->earliest);
+}
+
+NodeTime Ranging::stop_time(NodeTime now) const noexcept {
+    const bool is_delayed = rules_.holds_phases && is_trim_due_ && !is_between_ranges(now);
+    return is_delayed ? now + policy_.phase_stop_delay : now;
 }
 
 bool Ranging::is_zone_as_written() const {

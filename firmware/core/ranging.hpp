@@ -16,6 +16,7 @@
 #include "firmware/core/phase_hold.hpp"
 #include "firmware/core/policy.hpp"
 #include "firmware/core/poll_plan.hpp"
+#include "firmware/core/range_length.hpp"
 #include "firmware/core/reading.hpp"
 #include "firmware/core/steering_checks.hpp"
 #include "firmware/core/zone_cycle.hpp"
@@ -123,7 +124,8 @@ class Ranging {
         checking_zone,
         checking_steering,
         stopping,
-        draining,  ///< the range under way at the stop may still end with a result
+        draining,      ///< the range under way at the stop may still end with a result
+        reading_last,  ///< that result, if there is one
     };
 
     void start_step(Step step, NodeTime now);
@@ -131,14 +133,18 @@ class Ranging {
     [[nodiscard]] bool is_waiting() const noexcept;
     [[nodiscard]] Event on_step_done(NodeTime now);
     [[nodiscard]] Event on_step_failed(vl53l1x::Error error, NodeTime now);
+    void drain(NodeTime now);
     [[nodiscard]] Event on_drained(NodeTime now);
+    void start_anew(NodeTime now);
     [[nodiscard]] Event on_read(NodeTime now);
+    [[nodiscard]] Event on_last_read(NodeTime now);
     [[nodiscard]] Event refuse(wire::SensorFault fault, NodeTime now);
     [[nodiscard]] Event fail(wire::SensorFault fault);
     void on_started(NodeTime now);
     void after_result(NodeTime now);
     [[nodiscard]] bool is_restart_wanted(NodeTime now) noexcept;
     [[nodiscard]] bool is_between_ranges(NodeTime now) const noexcept;
+    [[nodiscard]] NodeTime stop_time(NodeTime now) const noexcept;
     void check_or_await(NodeTime now);
     [[nodiscard]] NodeTime repoll(NodeTime now) const noexcept;
     void await_next_result(NodeTime now);
@@ -159,6 +165,7 @@ class Ranging {
     Acceptance acceptance_;
     PeriodTrim trim_;
     PhaseHold phase_;
+    RangeLength range_length_;
     ZoneCycle zones_;
     SteeringChecks checks_;
 
@@ -182,6 +189,10 @@ class Ranging {
     bool is_trim_due_ = false;
     bool is_period_set_ = false;      ///< as commanded
     bool comes_as_expected_ = false;  ///< the first data of a run, when it came last
+    NodeTime stop_began_;
+    /// While it is looked for: when the result would be ready of the range that may have been under way.
+    TimeBracket last_expected_;
+    std::uint8_t looks_left_ = 0;
     wire::SensorFault fault_ = wire::SensorFault::none;
     std::uint32_t suspect_readings_ = 0;
 };

@@ -26,8 +26,10 @@ using test::TrueRange;
 constexpr std::int64_t kDurationUs = 60'000'000;
 // By then the periods are known to a step of their registers.
 constexpr std::int64_t kSettledUs = 5'000'000;
+constexpr std::int64_t kFirstStartsUs = 250'000;
 constexpr double kWindowUs = 5'000.0;
 constexpr double kPeakOverMeanMax = 1.5;
+constexpr double kOffMaxUs = 400.0;
 constexpr std::int64_t kStepUs = 100;
 
 struct Fleet {
@@ -37,6 +39,8 @@ struct Fleet {
     std::uint16_t budget_ms = 20;
     std::uint16_t period_ms = 33;
     std::size_t order = 1;  ///< in which sensors get their oscillators
+    /// Of a range, beyond its budget: from none to this, in another order.
+    std::int64_t overhead_max_us = 0;
     [[nodiscard]] double period_us() const { return 1'000.0 * period_ms; }
     [[nodiscard]] double budget_us() const { return 1'000.0 * budget_ms; }
 };
@@ -61,6 +65,8 @@ std::vector<SensorSetup> parts_of(const Fleet& fleet) {
         const auto place = static_cast<double>(i * fleet.order % fleet.count);
         setups[i].part.slow_clock_factor = 1.075 / (0.93 + 0.14 * place / (fleet.count - 1));
         setups[i].part.osc_calibrate = static_cast<std::uint16_t>(30 + i % 16);
+        const auto turn = static_cast<std::int64_t>(i * (fleet.order + 2) % fleet.count);
+        setups[i].part.range_overhead = Microseconds{fleet.overhead_max_us * turn / (fleet.count - 1)};
     }
     return setups;
 }
@@ -73,6 +79,8 @@ class FleetMinute {
           // The node's crystal is 100 ppm off, and its clock wraps after half a minute.
           rig_(config_, parts_of(fleet), sim::NodeClock{{0xFFFFFFFFU - 30'000'000U}, 100.0}) {
         for (std::int64_t us = 0; us < kDurationUs; us += kStepUs) {
+            // What bring-up does in the first range, at its 100 ms, is ST's own sequence.
+            if (us == kFirstStartsUs) disturbances_in_bring_up_ = disturbances();
             rig_.run_for(Microseconds{kStepUs});
             for (std::size_t bus = 0; bus < kNodeBusesMax; ++bus)
                 taken_us_.at(bus).push_back(rig_.bus(bus).busy_time().count());
@@ -155,6 +163,13 @@ class FleetMinute {
         load.share_above /= static_cast<double>(taken.size() - kWidth - kFirst);
         return load;
     }
+    /// What parts were given that they must not get while they range.
+    [[nodiscard]] std::uint32_t disturbances() {
+        std::uint32_t disturbances = 0;
+        for (std::size_t sensor = 0; sensor < fleet_.count; ++sensor)
+            disturbances += rig_.sensor(sensor).disturbance_count();
+        return disturbances - disturbances_in_bring_up_;
+    }
     [[nodiscard]] double needless_overlap_us() const {
         std::vector<std::vector<double>> middles;
         for (std::uint8_t sensor = 0; sensor < fleet_.count; ++sensor) middles.push_back(middles_us(sensor));
@@ -172,18 +187,20 @@ class FleetMinute {
     NodeConfig config_;
     NodeRig rig_;
     std::array<std::vector<std::int64_t>, kNodeBusesMax> taken_us_;
+    std::uint32_t disturbances_in_bring_up_ = 0;
 };
 
 class Phases : public testing::TestWithParam<Fleet> {};
+class HeldPhases : public testing::TestWithParam<Fleet> {};
 
-TEST_P(Phases, are_held_for_a_minute_where_the_rig_asks_for_it) {
+TEST_P(HeldPhases, are_held_for_a_minute) {
     const Fleet& fleet = GetParam();
     FleetMinute run(fleet, true);
     double worst_us = 0.0;
     for (std::uint8_t sensor = 0; sensor < fleet.count; ++sensor) {
         for (const double off_us : run.offs_us(sensor)) worst_us = std::max(worst_us, std::abs(off_us));
     }
-    EXPECT_LE(worst_us, 400.0);
+    EXPECT_LE(worst_us, kOffMaxUs);
     for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
         EXPECT_LE(run.planned_peak_over_mean(bus), kPeakOverMeanMax) << int{bus};
         const auto load = run.true_load(bus);
@@ -194,12 +211,14 @@ TEST_P(Phases, are_held_for_a_minute_where_the_rig_asks_for_it) {
             100.0 * load.share_above);
         EXPECT_LE(load.share_above, 0.07) << int{bus};
     }
-    EXPECT_LE(run.needless_overlap_us(), 1'000.0);
+    // Each of two may be this much off its phase.
+    EXPECT_LE(run.needless_overlap_us(), 2 * kOffMaxUs);
     EXPECT_EQ(run.unread(), 0U);
+    EXPECT_EQ(run.disturbances(), 0U);
     EXPECT_EQ(run.rig().node().counts().rejected, 0U);
     EXPECT_LE(run.missing(), 0.03);
-    std::printf("%s: at most %.0f us off; starts cost %.2f %% of the ranges\n", fleet.name.c_str(), worst_us,
-                100.0 * run.missing());
+    std::printf("%s: at most %.0f us off, %.0f us at once beyond need; starts cost %.2f %% of the ranges\n",
+                fleet.name.c_str(), worst_us, run.needless_overlap_us(), 100.0 * run.missing());
 }
 
 TEST_P(Phases, are_lost_where_nobody_holds_them) {
@@ -209,16 +228,24 @@ TEST_P(Phases, are_lost_where_nobody_holds_them) {
         std::printf("%s, bus %d, not held: busiest 5 ms %.2f of the mean as planned\n",
                     GetParam().name.c_str(), bus, run.planned_peak_over_mean(bus));
     }
+    EXPECT_GT(run.needless_overlap_us(), 3'000.0);
     EXPECT_LE(run.missing(), 0.001);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Fleets, Phases,
-    testing::Values(Fleet{"17_at_50_hz", 17, DistanceMode::short_range, 15, 20, 7},
-                    Fleet{"17_at_50_hz_otherwise", 17, DistanceMode::short_range, 15, 20, 5},
-                    Fleet{"34_at_30_hz", 34, DistanceMode::long_range, 20, 33, 7},
-                    Fleet{"34_at_30_hz_otherwise", 34, DistanceMode::long_range, 20, 33, 11}),
-    [](const auto& tested) { return tested.param.name; });
+const std::vector<Fleet> kFleets{{"17_at_50_hz", 17, DistanceMode::short_range, 15, 20, 7},
+                                 {"17_at_50_hz_otherwise", 17, DistanceMode::short_range, 15, 20, 5},
+                                 {"34_at_30_hz", 34, DistanceMode::long_range, 20, 33, 7},
+                                 {"34_at_30_hz_otherwise", 34, DistanceMode::long_range, 20, 33, 11}};
+// As much as the driver leaves room for.
+const std::vector<Fleet> kSlowFleets{
+    {"17_at_50_hz_with_overhead", 17, DistanceMode::short_range, 15, 20, 7, 4'900},
+    {"34_at_30_hz_with_overhead", 34, DistanceMode::long_range, 20, 33, 7, 4'900}};
+std::string name_of(const testing::TestParamInfo<Fleet>& tested) {
+    return tested.param.name;
+}
+INSTANTIATE_TEST_SUITE_P(Fleets, Phases, testing::ValuesIn(kFleets), name_of);
+INSTANTIATE_TEST_SUITE_P(Fleets, HeldPhases, testing::ValuesIn(kFleets), name_of);
+INSTANTIATE_TEST_SUITE_P(SlowFleets, HeldPhases, testing::ValuesIn(kSlowFleets), name_of);
 
 }  // namespace
 }  // namespace octoskin::node

@@ -49,19 +49,17 @@ inline double peak_over_mean(std::vector<double> ready_us) {
     return busiest_us / kWindowUs / mean;
 }
 
-/// How long two sensors range at once, beyond what two windows of that length make necessary in a period, at
-/// most. `a_us`, `b_us`: the middles of their windows, rising.
-inline double needless_overlap_us(const std::vector<double>& a_us, const std::vector<double>& b_us,
-                                  double window_us, double period_us) {
+/// How long two sensors range at once, at most, from one window of each. `a_us`, `b_us`: the middles of their
+/// windows, rising.
+inline double longest_overlap_us(const std::vector<double>& a_us, const std::vector<double>& b_us,
+                                 double window_us) {
     double longest_us = 0.0;
     for (const double middle : a_us) {
         const auto next = std::lower_bound(b_us.begin(), b_us.end(), middle);
-        double overlap_us = 0.0;
-        if (next != b_us.end()) overlap_us += std::max(0.0, window_us - (*next - middle));
-        if (next != b_us.begin()) overlap_us += std::max(0.0, window_us - (middle - *(next - 1)));
-        longest_us = std::max(longest_us, overlap_us);
+        if (next != b_us.end()) longest_us = std::max(longest_us, window_us - (*next - middle));
+        if (next != b_us.begin()) longest_us = std::max(longest_us, window_us - (middle - *(next - 1)));
     }
-    return longest_us - std::max(0.0, 2.0 * window_us - period_us);
+    return longest_us;
 }
 
 /// How far a sensor ranges off its phase, at most, with all phases counted from the same instant: that which
@@ -89,8 +87,8 @@ inline bool are_opposite(const SensorConfig& a, const SensorConfig& b) {
     return std::abs(apart_us - 500.0 * a.inter_measurement_ms) <= 1'500.0;
 }
 
-/// `needless_overlap_us` of all that are meant to range by turns, at most. `middles_us`: of each sensor's
-/// windows.
+/// How much longer two sensors that are meant to range by turns do so at once than their phases make them, at
+/// most. `middles_us`: of each sensor's windows.
 inline double worst_needless_overlap_us(const NodeConfig& config,
                                         const std::vector<std::vector<double>>& middles_us) {
     const double window_us = 1'000.0 * config.sensors[0].timing_budget_ms;
@@ -98,9 +96,13 @@ inline double worst_needless_overlap_us(const NodeConfig& config,
     double worst_us = -window_us;
     for (std::size_t a = 0; a < config.sensor_count; ++a) {
         for (std::size_t b = 0; b < config.sensor_count; ++b) {
-            if (!are_opposite(config.sensors.at(a), config.sensors.at(b))) continue;
-            worst_us = std::max(
-                worst_us, needless_overlap_us(middles_us.at(a), middles_us.at(b), window_us, period_us));
+            const SensorConfig& one = config.sensors.at(a);
+            const SensorConfig& other = config.sensors.at(b);
+            if (!are_opposite(one, other)) continue;
+            const double apart_us = static_cast<double>(one.phase_us) - other.phase_us;
+            const double planned_us = std::max(0.0, window_us - std::min(apart_us, period_us - apart_us));
+            const double longest_us = longest_overlap_us(middles_us.at(a), middles_us.at(b), window_us);
+            worst_us = std::max(worst_us, longest_us - planned_us);
         }
     }
     return worst_us;

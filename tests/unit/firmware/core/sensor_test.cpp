@@ -1,0 +1,98 @@
+// One sensor by itself, on a modelled part: what it tells those who hand out the bus, and when. Sensors that
+// share a bus: node_*_test.cpp.
+#include "firmware/core/sensor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <optional>
+
+#include "firmware/core/phase_clock.hpp"
+#include "tests/support/vl53l1x/sensor_bench.hpp"
+
+namespace octoskin::node {
+namespace {
+
+constexpr Microseconds kStep{20};
+
+class SensorTest : public testing::Test, private XshutLines {
+  protected:
+    void set(std::uint8_t, bool is_high) override { bench_.set_xshut(part_, is_high); }
+
+    /// 20 us, in which it has the bus if it wants it.
+    void step() {
+        clock_.advance(bench_.now());
+        const auto due = sensor_.due();
+        if (has_bus_ || (due && is_reached(*due, bench_.now())))
+            has_bus_ = sensor_.advance(bench_.now()) == BusUse::keeps;
+        bench_.wait(kStep);
+        readings_ += sensor_.take_reading() ? 1U : 0U;
+    }
+    void run_until(std::uint32_t us) {
+        while (bench_.now().us < us) step();
+    }
+
+    const SensorConfig config_ = [] {
+        SensorConfig config;
+        config.address = 0x30;
+        config.timing_budget_ms = 20;
+        config.inter_measurement_ms = 33;
+        return config;
+    }();
+    test::SensorBench bench_;
+    sim::SensorModel& part_ = bench_.add(test::wall_at(1.0));
+    const vl53l1x::Options options_;
+    const Policy policy_;
+    PhaseClock clock_{bench_.now()};
+    DefaultAddress default_address_{bench_.bus(), options_};
+    Sensor sensor_{config_,     {bench_.bus(), default_address_, *this, clock_}, options_, {}, policy_,
+                   bench_.now()};
+    bool has_bus_ = false;
+    std::uint32_t readings_ = 0;
+};
+
+// It is started 264 ms after the node: the first whole period after 250 ms. Data is expected a period later,
+// give or take 8 %, and looked for from 18 ms after the start on: what is asked a millisecond or more before
+// it is expected can wait, and is asked in time then.
+TEST_F(SensorTest, what_it_is_asked_before_its_first_data_is_expected_can_wait_until_then_and_nothing_else) {
+    constexpr std::uint32_t kCanWaitUntilUs = 264'000 + 30'360 - 1'000;
+    std::optional<std::uint32_t> first_us;
+    std::uint32_t last_us = 0;
+    while (bench_.now().us < 900'000) {
+        step();
+        if (!sensor_.can_wait(bench_.now())) continue;
+        first_us = first_us.value_or(bench_.now().us);
+        last_us = bench_.now().us;
+        ASSERT_TRUE(sensor_.punctual_due().has_value());
+        EXPECT_EQ(sensor_.punctual_due()->us, kCanWaitUntilUs);
+        EXPECT_TRUE(sensor_.can_wait(NodeTime{kCanWaitUntilUs - 1}));
+        EXPECT_FALSE(sensor_.can_wait(NodeTime{kCanWaitUntilUs})) << "if it had to wait until now";
+        EXPECT_EQ(readings_, 0U);
+    }
+    ASSERT_TRUE(first_us.has_value());
+    EXPECT_NEAR(*first_us, 264'000 + 18'000, 500.0)
+        << "two polls found none: it is not the data of the run before";
+    EXPECT_NEAR(last_us, kCanWaitUntilUs - 500, 500.0) << "it is asked every millisecond";
+    EXPECT_GE(readings_, 15U);
+}
+
+TEST_F(SensorTest, wants_nothing_of_the_bus_while_it_is_stopped) {
+    run_until(700'000);
+    sensor_.order_stop(bench_.now());
+    run_until(760'000);
+    ASSERT_EQ(sensor_.state(), wire::SensorState::stopped);
+    EXPECT_EQ(sensor_.due(), std::nullopt);
+    EXPECT_EQ(sensor_.punctual_due(), std::nullopt);
+    const std::uint64_t transfers = bench_.bus().transfer_count();
+    EXPECT_EQ(sensor_.advance(bench_.now()), BusUse::releases) << "its turn, all the same";
+    EXPECT_EQ(bench_.bus().transfer_count(), transfers);
+    EXPECT_EQ(sensor_.state(), wire::SensorState::stopped);
+
+    const std::uint32_t before = readings_;
+    sensor_.order_start(bench_.now());
+    run_until(1'200'000);
+    EXPECT_GE(readings_, before + 10);
+}
+
+}  // namespace
+}  // namespace octoskin::node
