@@ -15,10 +15,19 @@ constexpr std::int64_t kPeriodsAhead = 32;
 // A first range's time is known to a tenth of a millisecond or two: the mean of many is known better.
 constexpr std::int64_t kFirstsAveraged = 16;
 
+// A part's first run, before it is trimmed, and those after its first trims tell nothing about its
+// oscillator.
+constexpr int kStartsForFree = 4;
+// 1,024 periods: a tenth of a percent of the readings.
+constexpr int kDoublingsMax = 6;
+
 }  // namespace
 
 void PhaseHold::restart(NodeTime started, Microseconds off, Microseconds period, bool is_trimmed) noexcept {
-    if (period != period_) firsts_ = 0;
+    if (period != period_) {
+        firsts_ = 0;
+        starts_in_vain_ = 0;
+    }
     started_ = started;
     off_at_start_ = off;
     off_ = off;
@@ -26,6 +35,7 @@ void PhaseHold::restart(NodeTime started, Microseconds off, Microseconds period,
     is_trimmed_ = is_trimmed;
     periods_ = 0;
     last_.reset();
+    is_judged_ = false;
 }
 
 void PhaseHold::observe(const TimeBracket& ready) noexcept {
@@ -40,6 +50,7 @@ void PhaseHold::observe(const TimeBracket& ready) noexcept {
         begin(elapsed(started_, at));
     }
     last_ = at;
+    if (!is_judged_ && periods_ >= policy_.phase_periods_min) judge_start();
 }
 
 /// How long after its start a run's first range was ready says where the others should be. That is the part's
@@ -60,10 +71,31 @@ Microseconds PhaseHold::nearest_to_zero(Microseconds off) const noexcept {
     return off - (off + half) / period_ * period_;
 }
 
+/// Who walks by half a step of its register has not walked through all that is allowed after so few periods.
+/// (It may be out of its phase all the same, if it was started late.)
+void PhaseHold::judge_start() noexcept {
+    is_judged_ = true;
+    const Microseconds walked = off_ - off_at_start_;
+    const bool is_in_vain =
+        std::abs(walked.count()) > (policy_.phase_tolerance + policy_.phase_start_off).count();
+    // One that wanders has not come far now and then by chance.
+    starts_in_vain_ = is_in_vain ? std::min(starts_in_vain_ + 1, kStartsForFree + kDoublingsMax)
+                                 : std::max(starts_in_vain_ - 1, 0);
+}
+
+bool PhaseHold::is_out() const noexcept {
+    return std::abs(off_.count()) > policy_.phase_tolerance.count();
+}
+
+/// So many periods are between two starts.
+std::int64_t PhaseHold::patience() const noexcept {
+    return policy_.phase_periods_min << std::max(starts_in_vain_ - kStartsForFree, 0);
+}
+
 bool PhaseHold::is_lost() const noexcept {
-    if (periods_ < policy_.phase_periods_min) return false;
+    if (periods_ < patience()) return false;
     const bool is_mendable = std::abs(walk().count()) <= period_.count() * kWalkMaxPermille;
-    return is_mendable && std::abs(off_.count()) > policy_.phase_tolerance.count();
+    return is_mendable && is_out();
 }
 
 Nanoseconds PhaseHold::walk() const noexcept {

@@ -1,7 +1,8 @@
 // Keeps a sensor's ranges where the rig put them within the period, for as long as it ranges. The period is
 // known to a step of its register (0.05-0.17 % at 50-15 ms), and ST allows no change while the sensor ranges
 // (UM2356): so each sensor walks off, and is started anew once it has walked too far, on the far side of its
-// phase, so that it walks through all that is allowed.
+// phase, so that it walks through all that is allowed. One whose oscillator does not keep its rate is not
+// held by any start: it is started anew ever more rarely, until one helps again.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +18,14 @@ class PhaseHold {
   public:
     explicit PhaseHold(const Policy& policy) noexcept : policy_(policy) {}
 
-    /// The sensor was started, `off` after its phase, to range every `period`; `is_trimmed`: to a step of its
-    /// register.
+    /// The sensor was started, `off` after its phase, to range every `period`; `is_trimmed`: to a step of
+    /// its register.
     void restart(NodeTime started, Microseconds off, Microseconds period, bool is_trimmed) noexcept;
-    /// A range was ready within `ready`; too vague a time tells nothing. How long after a start the first one
-    /// comes is the part's own, and not counted.
+    /// A range was ready within `ready`; too vague a time tells nothing. How long after a start the first
+    /// one comes is the part's own, and not counted.
     void observe(const TimeBracket& ready) noexcept;
 
-    /// Whether it has walked too far, at a rate that a trim can mend.
+    /// Whether it has walked too far, at a rate that a trim can mend, and is to be started anew.
     [[nodiscard]] bool is_lost() const noexcept;
     /// By how much a period is longer than it should be
     [[nodiscard]] Nanoseconds walk() const noexcept;
@@ -33,6 +34,9 @@ class PhaseHold {
 
   private:
     void begin(Microseconds first_after) noexcept;
+    void judge_start() noexcept;
+    [[nodiscard]] bool is_out() const noexcept;
+    [[nodiscard]] std::int64_t patience() const noexcept;
     [[nodiscard]] Microseconds nearest_to_zero(Microseconds off) const noexcept;
 
     const Policy& policy_;
@@ -45,6 +49,8 @@ class PhaseHold {
     std::optional<NodeTime> last_;  ///< when that was ready; of this run
     Microseconds first_after_{0};   ///< a start, the first range is ready: the mean
     std::int64_t firsts_ = 0;       ///< so many of them; no more than count
+    bool is_judged_ = false;        ///< this run: whether its start helped
+    int starts_in_vain_ = 0;        ///< more than helped
 };
 
 }  // namespace octoskin::node

@@ -88,6 +88,25 @@ TEST(PhaseHold, does_not_start_a_sensor_anew_within_a_few_ranges) {
     EXPECT_TRUE(hold.is_lost());
 }
 
+TEST(PhaseHold, starts_a_sensor_that_no_start_helps_ever_more_rarely_and_one_that_it_helps_more_often) {
+    PhaseHold hold{kPolicy};
+    const auto periods_until_lost = [&hold](std::int64_t walk_ns, int at_most) {
+        Walker walker{hold, 0, walk_ns, 0};
+        int periods = -1;
+        while (!hold.is_lost() && periods < at_most) {
+            walker.range();
+            ++periods;
+        }
+        return periods;
+    };
+    std::int64_t walk_ns = 40'000;
+    for (const int expected : {16, 16, 16, 16, 32, 64, 128, 256, 512, 1'024, 1'024, 1'024})
+        EXPECT_EQ(periods_until_lost(walk_ns = -walk_ns, 2'000), expected);
+    // By 9 us a period it is where it may be after 16 of them, and not after 32.
+    for (const int expected : {512, 256, 128, 64, 32}) EXPECT_EQ(periods_until_lost(9'000, 2'000), expected);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(periods_until_lost(9'000, 2'000), 19, 7) << "170 us, known to 50";
+}
+
 TEST(PhaseHold, leaves_a_sensor_that_skips_its_slots_alone) {
     PhaseHold hold{kPolicy};
     Walker walker{hold, 0, 6'000'000, 0};
