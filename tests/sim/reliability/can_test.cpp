@@ -286,5 +286,30 @@ TEST_F(ReliabilityReflexTest, goes_out_before_everything_else_and_without_a_toke
     EXPECT_LE(times[0].us, 400'000);  // by the first reading
 }
 
+// Two of them, while every mailbox is full: once one falls free both go out, once each and before all that
+// waited with them.
+TEST(ReliabilityReflex, that_no_mailbox_took_goes_out_first_as_soon_as_one_is_free) {
+    NodeConfig config = fleet_config(2, 1);
+    for (std::size_t sensor : {0U, 1U}) config.sensors.at(sensor).reflex_below_mm = 3'000;
+    NodeRig rig(config, std::vector<SensorSetup>(2));
+    rig.run_for(200 * kMillisecond);
+    rig.block_transmission(true);
+    // The first one of each sensor, without wrap check, is no hit.
+    while (rig.node().counts().accepted < 4) rig.run_for(kMillisecond);
+    rig.run_for(10 * kMillisecond);
+    ASSERT_EQ(rig.said_of<wire::Reflex>().size(), 0U);
+    const std::size_t before = rig.said().size();
+    rig.block_transmission(false);
+    rig.run_for(10 * kMillisecond);
+    ASSERT_GE(rig.said().size(), before + 3);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto* event = std::get_if<wire::Reflex>(&rig.said()[before + i].message);
+        ASSERT_NE(event, nullptr) << i;
+        EXPECT_EQ(event->sensor, i);
+        EXPECT_EQ(event->sequence, i);
+    }
+    EXPECT_EQ(rig.said_of<wire::Reflex>().size(), 2U);
+}
+
 }  // namespace
 }  // namespace octoskin::test

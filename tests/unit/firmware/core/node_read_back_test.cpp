@@ -74,6 +74,7 @@ TEST_F(NodeReadBackTest, every_steering_register_that_changes_is_put_right_and_i
     add(0x6E, 0x6F);  // higher bytes of the period make the sensor silent
     add(0x78, 0x7B);
     add(0x7F, 0x80);
+    std::uint32_t suspects = 0;
     for (const std::uint16_t index : steering) {
         const NodeCounts before = rig_.node().counts();
         const std::uint8_t good = rig_.sensor(0).registers().at(index);
@@ -86,12 +87,14 @@ TEST_F(NodeReadBackTest, every_steering_register_that_changes_is_put_right_and_i
         const std::uint32_t suspect = rig_.node().counts().suspect - before.suspect;
         EXPECT_GE(suspect, sent) << index;
         EXPECT_LE(suspect, 10U) << index;
+        suspects += suspect;
         rig_.run_for(1 * kSecond);
         EXPECT_EQ(rig_.sensor(0).registers().at(index), good) << index;
         EXPECT_EQ(rig_.last_health(0)->state, SensorState::ranging) << index;
         EXPECT_EQ(rig_.last_health(0)->fault, SensorFault::config_mismatch) << index;
         EXPECT_EQ(rig_.node().counts().sensor_restarts, before.sensor_restarts + 1) << index;
     }
+    EXPECT_GT(suspects, 3 * steering.size()) << "readings were sent before it was found";
     EXPECT_EQ(rig_.said_of<wire::Heartbeat>().back().degraded_sensors, 0);
     EXPECT_EQ(rig_.last_health(1)->fault, SensorFault::none) << "its neighbour";
     EXPECT_GT(rig_.readings_of(1).size(), 30 * steering.size());
@@ -104,6 +107,7 @@ TEST_F(NodeReadBackTest, a_bit_flipped_in_the_check_itself_costs_nothing) {
                             .position = static_cast<std::uint32_t>(i % 40)});
     }
     rig_.run_for(20 * kSecond);
+    EXPECT_GT(rig_.node().counts().i2c_errors, 10U) << "checks that a second one contradicted";
     EXPECT_EQ(rig_.node().counts().suspect, 0U);
     for (const wire::SensorHealth& health : rig_.said_of<wire::SensorHealth>())
         EXPECT_NE(health.fault, SensorFault::config_mismatch);
@@ -233,6 +237,7 @@ TEST(NodeReadBack, a_part_that_alters_its_quantifier_while_ranging_is_seen_throu
             sent_at_third = rig.readings_of(0).size();
     }
     EXPECT_LE(rig.readings_of(0).size(), 3U * 10U);
+    EXPECT_GE(sent_at_third, 3U) << "found while it ranged, three times";
     EXPECT_EQ(rig.readings_of(0).size(), sent_at_third) << "none after the third time";
     EXPECT_EQ(rig.node().counts().suspect, rig.readings_of(0).size());
     EXPECT_GT(rig.node().counts().withheld, 10U);
