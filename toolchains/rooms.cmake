@@ -1,9 +1,11 @@
 # The rooms of the house and who may depend on whom. A target that breaks the rule fails to configure.
 #
 #   octoskin_library(<name> ROOM <room> SOURCES a.cpp ... HEADERS a.hpp ... [DEPENDS octoskin::x ...]
-#                    [PRIVATE_DEPENDS octoskin::y ...] [EXTERNAL lib ...] [PRIVATE_EXTERNAL lib ...])
+#                    [PRIVATE_DEPENDS octoskin::y ...] [EXTERNAL lib ...] [PRIVATE_EXTERNAL lib ...] [APART])
 #   octoskin_program(<name> ROOM <room> SOURCES ... [DEPENDS ...] [EXTERNAL ...])
 #   octoskin_test(<name> LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...])
+#
+# With OCTOSKIN_UNITY a library's sources are compiled several at once, but for one that is told to keep them APART.
 #
 # DEPENDS names our own targets only; EXTERNAL names third-party ones. Includes are written from the
 # repository's root ("common/wire/codec.hpp"), so every include line says which room it reaches into.
@@ -98,7 +100,7 @@ function(octoskin_is_left_out result target)
 endfunction()
 
 function(octoskin_library name)
-    cmake_parse_arguments(ARG "" "ROOM" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS;EXTERNAL;PRIVATE_EXTERNAL" ${ARGN})
+    cmake_parse_arguments(ARG "APART" "ROOM" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS;EXTERNAL;PRIVATE_EXTERNAL" ${ARGN})
     if(ARG_UNPARSED_ARGUMENTS)
         message(FATAL_ERROR "octoskin_library(${name}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
     endif()
@@ -117,6 +119,11 @@ function(octoskin_library name)
     if(ARG_SOURCES)
         add_library(${target} STATIC)
         target_sources(${target} PRIVATE ${sources})
+        if(OCTOSKIN_UNITY AND NOT ARG_APART)
+            set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+            # A class whose parts are in an unnamed namespace is then no longer in the compiler's main file.
+            target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+        endif()
         set(scope PUBLIC)
         target_link_libraries(${target} PRIVATE octoskin_compile_options ${ARG_PRIVATE_DEPENDS} ${ARG_PRIVATE_EXTERNAL})
     else()
@@ -143,7 +150,7 @@ function(octoskin_program name)
     add_executable(${name} ${sources})
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
     target_compile_features(${name} PRIVATE cxx_std_20)
-    target_link_libraries(${name} PRIVATE octoskin_compile_options ${ARG_DEPENDS} ${ARG_EXTERNAL})
+    target_link_libraries(${name} PRIVATE octoskin_compile_options octoskin_program_options ${ARG_DEPENDS} ${ARG_EXTERNAL})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
 endfunction()
 

@@ -33,10 +33,10 @@ std::string element_of(const tinyxml2::XMLDocument& document) {
 /// What gives away that an `<origin rpy>` is written in degrees; empty if nothing does. urdfdom keeps no
 /// angles.
 std::string turn_fault(const tinyxml2::XMLElement* origin) {
-    constexpr double kTurnMax_rad = 6.29;  // once round, and what rounding adds
+    constexpr double kOriginTurnMax_rad = 6.29;  // once round, and what rounding adds
     std::istringstream turns(attribute(origin, "rpy"));
     for (double turn = 0.0; turns >> turn;) {
-        if (std::abs(turn) > kTurnMax_rad) {
+        if (std::abs(turn) > kOriginTurnMax_rad) {
             return fmt::format("rpy=\"{}\", expected radians, at most once round: is it written in degrees?",
                                attribute(origin, "rpy"));
         }

@@ -77,7 +77,7 @@ ifreq request_for(const std::string& name) {
     return request;
 }
 
-std::string remedy(int error_number) {
+std::string can_remedy(int error_number) {
     switch (error_number) {
         case ENODEV:
             return " (`ip link show type can` names the interfaces there are)";
@@ -132,7 +132,7 @@ void CanInterface::close(int error_number, const char* doing) {
 }
 
 void CanInterface::fail(int error_number, const char* doing) {
-    trouble_ = name_ + ": " + doing + ": " + std::strerror(error_number) + remedy(error_number);
+    trouble_ = name_ + ": " + doing + ": " + std::strerror(error_number) + can_remedy(error_number);
 }
 
 bool CanInterface::can_carry_frames() const {

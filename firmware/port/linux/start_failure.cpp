@@ -6,7 +6,7 @@
 namespace octoskin::linux_port {
 namespace {
 
-const char* remedy(int error_number) {
+const char* device_remedy(int error_number) {
     switch (error_number) {
         case EACCES:
         case EPERM:
@@ -27,7 +27,7 @@ const char* remedy(int error_number) {
 StartFailure device_failure(const std::string& what, int error_number) {
     const bool is_forbidden = error_number == EACCES || error_number == EPERM;
     return {is_forbidden ? ExitCode::no_permission : ExitCode::unavailable,
-            what + ": " + std::strerror(error_number) + remedy(error_number)};
+            what + ": " + std::strerror(error_number) + device_remedy(error_number)};
 }
 
 }  // namespace octoskin::linux_port

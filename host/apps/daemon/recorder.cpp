@@ -32,7 +32,7 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
             .first_map = pipeline.maps().fused()->copy()};
 }
 
-double seconds(Nanoseconds duration) {
+double seconds_of(Nanoseconds duration) {
     return std::chrono::duration<double>(duration).count();
 }
 
@@ -118,7 +118,7 @@ void Recorder::stop(HostTime now) {
                               .is_depth_noise_free = false,
                               .can_frames = can_frames_,
                               .depth_frames = depth_frames_,
-                              .duration_s = seconds(now - begun_)},
+                              .duration_s = seconds_of(now - begun_)},
                      .last_map = pipeline_->maps().fused()->copy()};
     pipeline_->tell(nullptr);
     pipeline_ = nullptr;
@@ -126,7 +126,7 @@ void Recorder::stop(HostTime now) {
     if (const std::string why = error(); !why.empty()) {
         spdlog::error("the recording has failed: {}", why);
     } else {
-        spdlog::info("recorded {:.1f} s to {}", seconds(now - begun_), folder_.string());
+        spdlog::info("recorded {:.1f} s to {}", seconds_of(now - begun_), folder_.string());
     }
 }
 
@@ -149,7 +149,7 @@ nlohmann::ordered_json Recorder::to_json(HostTime now) const {
     return {{"state", why.empty() ? state : "failed"},
             {"folder", folder_.string()},
             {"error", why},
-            {"seconds", seconds(stopped_.value_or(now) - begun_)},
+            {"seconds", seconds_of(stopped_.value_or(now) - begun_)},
             {"can_frames", can_frames_},
             {"depth_frames", depth_frames_},
             {"commits", counts_.commits},

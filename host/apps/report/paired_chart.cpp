@@ -15,7 +15,7 @@ constexpr double kWidth = 560.0;
 constexpr double kRowHeight = 34.0;
 constexpr double kLabelWidth = 135.0;
 constexpr double kValueWidth = 116.0;
-constexpr double kBottom = 46.0;
+constexpr double kFoot = 46.0;
 
 struct Row {
     std::string_view metric;
@@ -120,7 +120,7 @@ std::string paired_svg(const evaluation::PairedDifference& difference,
     const Scale scale = scale_of(rows);
     const double bottom = kRowHeight * static_cast<double>(rows.size()) + 8.0;
     std::string svg = fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n",
-                                  kWidth, bottom + kBottom, escaped(difference.name));
+                                  kWidth, bottom + kFoot, escaped(difference.name));
     svg += scale_svg(scale, bottom, unit);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         svg += row_svg(rows[i], 6.0 + kRowHeight * (static_cast<double>(i) + 0.5), scale);

@@ -29,7 +29,7 @@ class DepthByIndex {
 };
 
 template <class Reason>
-void settle(Account<Reason>& account, const Status<Reason>& outcome) {
+void book(Account<Reason>& account, const Status<Reason>& outcome) {
     account.take_in();
     outcome ? account.use() : account.reject(outcome.error());
 }
@@ -40,20 +40,20 @@ class Committer {
         : builder_(builder), depth_(depth, outcome), outcome_(outcome) {}
 
     HostTime operator()(const JointMeasurement& joints) {
-        settle(outcome_.joint_samples, builder_.add(joints));
+        book(outcome_.joint_samples, builder_.add(joints));
         return joints.sampled;
     }
     HostTime operator()(const RangeMeasurement& reading) {
         const bool is_of_rig = builder_.has(reading.source);
-        settle(outcome_.readings,
-               is_of_rig ? builder_.integrate(reading) : unexpected(ReadingReason::unknown_sensor));
+        book(outcome_.readings,
+             is_of_rig ? builder_.integrate(reading) : unexpected(ReadingReason::unknown_sensor));
         return reading.captured;
     }
     HostTime operator()(const DepthCommit& commit) {
         auto frame = commit.index ? depth_.at(*commit.index) : std::nullopt;
         if (frame) {
             frame->captured = commit.captured;  // a recording of depth frames has whole microseconds
-            settle(outcome_.depth_frames, builder_.integrate(*frame));
+            book(outcome_.depth_frames, builder_.integrate(*frame));
         } else {
             ++outcome_.depth_missing;
         }

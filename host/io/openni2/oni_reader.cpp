@@ -6,12 +6,12 @@
 namespace octoskin::openni2 {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{15'000};
+constexpr std::chrono::milliseconds kReadPatience{15'000};
 constexpr std::chrono::milliseconds kEndPatience{2'000};
-constexpr const char* kHelper = "octoskin-oni-read";
+constexpr const char* kReadHelper = "octoskin-oni-read";
 
 std::string with_end(std::string what, const std::optional<std::string>& how_it_ended) {
-    if (how_it_ended) what += " (" + std::string(kHelper) + ": " + *how_it_ended + ")";
+    if (how_it_ended) what += " (" + std::string(kReadHelper) + ": " + *how_it_ended + ")";
     return what;
 }
 
@@ -27,13 +27,13 @@ Result<OniReader, DepthSourceError> OniReader::open(const std::filesystem::path&
     if (!std::filesystem::is_regular_file(oni, error)) return failure("no such file, or not an ordinary one");
     const auto epoch = read_epoch(epoch_file);
     if (!epoch) return unexpected(epoch.error());
-    if (!helper) helper = find_helper(kHelper);
+    if (!helper) helper = find_helper(kReadHelper);
     if (!helper)
-        return failure(std::string(kHelper) +
+        return failure(std::string(kReadHelper) +
                        " is neither beside this program nor in libexec; build or install it");
     auto process = HelperProcess::start(*helper, oni.string(), HelperPipe::its_output);
     if (!process) return failure(process.error());
-    const auto header = FramePipe(process->descriptor(), kPatience).read_header();
+    const auto header = FramePipe(process->descriptor(), kReadPatience).read_header();
     if (!header) {
         return failure(
             with_end("not a recording with depth that OpenNI2 can read", process->wait(kEndPatience)));
@@ -50,7 +50,7 @@ Unexpected<DepthSourceError> OniReader::fail(const std::string& what) {
 Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
     if (failure_) return unexpected(*failure_);
     if (is_ended_) return std::optional<DepthFrame>{};
-    auto piped = FramePipe(helper_.descriptor(), kPatience).read_frame(header_.size);
+    auto piped = FramePipe(helper_.descriptor(), kReadPatience).read_frame(header_.size);
     if (!piped) return fail(with_end(name(piped.error()), helper_.wait(kEndPatience)));
     if (!piped->has_value()) {
         const bool is_short = frames_read_ < epoch_.frames && !header_.is_salvaged;

@@ -7,10 +7,10 @@
 namespace octoskin::openni2 {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{30'000};
+constexpr std::chrono::milliseconds kWritePatience{30'000};
 /// 3 ms on a quiet machine.
 constexpr std::chrono::milliseconds kPatiencePerFrame{100};
-constexpr const char* kHelper = "octoskin-oni-write";
+constexpr const char* kWriteHelper = "octoskin-oni-write";
 
 }  // namespace
 
@@ -28,16 +28,17 @@ Result<OniWriter, DepthSourceError> OniWriter::create(const std::filesystem::pat
         return failure("OpenNI2 cannot record pictures of " + std::to_string(size.width) + " x " +
                        std::to_string(size.height) + " pixels, only up to 1600 x 1200");
     }
-    if (!helper) helper = find_helper(kHelper);
+    if (!helper) helper = find_helper(kWriteHelper);
     if (!helper)
-        return failure(std::string(kHelper) +
+        return failure(std::string(kWriteHelper) +
                        " is neither beside this program nor in libexec; build or install it");
     // An old sidecar must not vouch for a recording that is not finished.
     std::error_code ignored;
     for (const auto& stale : {oni, epoch}) std::filesystem::remove(stale, ignored);
     auto process = HelperProcess::start(*helper, oni.string(), HelperPipe::its_input);
     if (!process) return failure(process.error());
-    if (const auto written = FramePipe(process->descriptor(), kPatience).write_header({size}); !written) {
+    if (const auto written = FramePipe(process->descriptor(), kWritePatience).write_header({size});
+        !written) {
         return failure(name(written.error()));
     }
     return OniWriter(oni, epoch, size, std::move(*process));
@@ -53,18 +54,18 @@ Status<DepthSourceError> OniWriter::write(HostTime captured, std::span<const std
         if (depth > kDepthMaxMm) depth = 0;
     }
     const auto since_first = static_cast<std::uint64_t>((whole_us - epoch_.first_frame).count() / 1000);
-    const auto written = FramePipe(helper_.descriptor(), kPatience).write_frame(since_first, storable);
+    const auto written = FramePipe(helper_.descriptor(), kWritePatience).write_frame(since_first, storable);
     if (!written) return failure(name(written.error()));
     ++epoch_.frames;
     return Done{};
 }
 
 Status<DepthSourceError> OniWriter::close() {
-    if (const auto written = FramePipe(helper_.descriptor(), kPatience).write_end(); !written) {
+    if (const auto written = FramePipe(helper_.descriptor(), kWritePatience).write_end(); !written) {
         return failure(name(written.error()));
     }
     helper_.close_pipe();
-    const auto patience = kPatience + kPatiencePerFrame * static_cast<std::int64_t>(epoch_.frames);
+    const auto patience = kWritePatience + kPatiencePerFrame * static_cast<std::int64_t>(epoch_.frames);
     if (const auto how = helper_.wait(patience)) return failure("the recorder failed: " + *how);
     return write_epoch(epoch_file_, epoch_);
 }
