@@ -101,6 +101,21 @@ TEST(LensInverse, never_gives_one_picture_two_rays) {
     EXPECT_GT(found, 2'900);
 }
 
+TEST(LensDistortion, is_told_by_its_coefficients) {
+    EXPECT_EQ(describe({.k1 = -0.25, .k2 = 0.125, .p1 = 0.001, .p2 = -0.002, .k3 = 1e-9}),
+              "k1 -0.25, k2 0.125, p1 0.001, p2 -0.002, k3 1e-09");
+}
+
+TEST(LensDistortion, a_pixel_is_where_its_centre_is) {
+    struct {
+        double fx = 500.0, fy = 400.0, cx = 320.0, cy = 240.0;
+    } const camera;
+    EXPECT_DOUBLE_EQ(picture_of(camera, 0, 0).x, -0.639);
+    EXPECT_DOUBLE_EQ(picture_of(camera, 0, 0).y, -0.59875);
+    EXPECT_DOUBLE_EQ(picture_of(camera, 419, 279).x, 0.199);
+    EXPECT_DOUBLE_EQ(picture_of(camera, 419, 279).y, 0.09875);
+}
+
 TEST(LensInverse, of_no_lens_is_the_picture_to_the_last_bit) {
     const LensInverse none(LensDistortion{});
     EXPECT_EQ(none.radius(), 4.0);

@@ -76,6 +76,23 @@ TEST_F(SensorTest, what_it_is_asked_before_its_first_data_is_expected_can_wait_u
     EXPECT_GE(readings_, 15U);
 }
 
+// It is on the bus: what the transfer says is heard first, and no later than without the order.
+TEST_F(SensorTest, an_order_to_initialise_it_anew_waits_for_the_transfer_in_flight) {
+    run_until(700'000);
+    while (!has_bus_) step();
+    const auto due = sensor_.due();
+    ASSERT_TRUE(due.has_value());
+    sensor_.order_reinitialise(bench_.now());
+    EXPECT_EQ(sensor_.due(), due);
+    EXPECT_EQ(sensor_.state(), wire::SensorState::ranging);
+    const std::uint32_t ordered_us = bench_.now().us;
+    while (sensor_.state() == wire::SensorState::ranging) step();
+    EXPECT_LE(bench_.now().us - ordered_us, 5'000U) << "a poll, or a reading";
+    const std::uint32_t before = readings_;
+    run_until(1'500'000);
+    EXPECT_GE(readings_, before + 10);
+}
+
 TEST_F(SensorTest, wants_nothing_of_the_bus_while_it_is_stopped) {
     run_until(700'000);
     sensor_.order_stop(bench_.now());
