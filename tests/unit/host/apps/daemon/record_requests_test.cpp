@@ -1,0 +1,68 @@
+// What anybody who may ask the daemon can ask of its recorder.
+#include "host/apps/daemon/record_requests.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/scratch_folder.hpp"
+#include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
+
+namespace octoskin {
+namespace {
+
+using Json = nlohmann::json;
+
+class RecordRequestsTest : public testing::Test {
+  protected:
+    Json ask(const std::string& line) {
+        EXPECT_TRUE(RecordRequests::is_one(line)) << line;
+        return Json::parse(requests_.answer(line, settings_, pipeline_, HostTime{1'000'000'000}));
+    }
+    void expect_refused(const std::string& line, const std::string& why) {
+        const Json answer = ask(line);
+        EXPECT_FALSE(answer["ok"].get<bool>()) << line;
+        EXPECT_NE(answer["error"].get<std::string>().find(why), std::string::npos) << line << answer;
+        EXPECT_TRUE(answer["recording"].is_null()) << line;
+    }
+
+    testing_support::ScratchFolder folder_;
+    Pipeline pipeline_ = test::make_pipeline(test::good_scene());
+    RecordedSettings settings_{.rig = "name: a\n",
+                               .robot = "<robot/>",
+                               .mapping = "base: robust\n",
+                               .rig_hash = 1,
+                               .joints = 1,
+                               .interface = "can0"};
+    RecordRequests requests_;  ///< lets go of the pipeline before that goes
+};
+
+TEST_F(RecordRequestsTest, refuses_what_is_no_request_and_begins_nothing) {
+    for (const char* const arguments : {"", " ", "x /tmp/a", "nan /tmp/a", "-1 /tmp/a", "1e7 /tmp/a",
+                                        "inf /tmp/a", "1", "1/tmp/a", "1\t/tmp/a"})
+        expect_refused(std::string("record start ") + arguments, "expected: record start SECONDS FOLDER");
+    for (const char* const folder : {"", "a", "./a", "../a", "~/a", "\xff"})
+        expect_refused(std::string("record start 0 ") + folder, "is no absolute path");
+    for (const char* const line :
+         {"record ", "record start", "record stop now", "record  status", "record STOP"})
+        expect_refused(line, "unknown request");
+    expect_refused("record stop", "nothing is being recorded");
+    EXPECT_EQ(ask("record status")["ok"], true);
+}
+
+TEST_F(RecordRequestsTest, records_to_one_folder_at_a_time) {
+    const std::string first = (folder_ / "first one").string();
+    EXPECT_EQ(ask("record start 0 " + first)["recording"]["folder"], first) << "a folder may have blanks";
+    const Json second = ask("record start 0 " + (folder_ / "second").string());
+    EXPECT_FALSE(second["ok"].get<bool>());
+    EXPECT_NE(second["error"].get<std::string>().find("already recording to " + first), std::string::npos)
+        << second;
+    EXPECT_TRUE(ask("record stop")["ok"].get<bool>());
+    requests_.finish(std::chrono::seconds(20));
+    EXPECT_EQ(ask("record status")["recording"]["state"], "ended");
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "first one" / "meta.yaml"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "second"));
+}
+
+}  // namespace
+}  // namespace octoskin
