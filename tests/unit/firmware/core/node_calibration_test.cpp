@@ -2,13 +2,9 @@
 // with what it found as configuration the sensor ranges right. The modelled optics are the oracle.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cstdlib>
-#include <memory>
 #include <vector>
 
-#include "tests/support/node_rig.hpp"
+#include "tests/unit/firmware/core/calibration_rig.hpp"
 
 namespace octoskin::node {
 namespace {
@@ -22,41 +18,6 @@ using wire::CalibrationQuantity;
 using wire::Command;
 using wire::CommandCode;
 using wire::SensorState;
-
-constexpr Microseconds kSecond{1'000'000};
-constexpr wire::NodeId kOwnId = 5;
-constexpr std::uint8_t kBad = 1;  ///< the sensor to be calibrated, one of four on two buses
-
-sim::RangingReturn grey_target(double range_m, double signal_mcps) {
-    return {.range_m = range_m, .sigma_m = 0.003, .peak_signal_mcps = signal_mcps, .ambient_mcps = 0.1};
-}
-std::vector<SensorSetup> setups_with(const sim::RangingReturn& target, double crosstalk_kcps = 0.0) {
-    std::vector<SensorSetup> setups(4);
-    setups[kBad].part.crosstalk_kcps = crosstalk_kcps;
-    setups[kBad].target = target;
-    return setups;
-}
-void command(NodeRig& rig, CommandCode code, std::uint8_t sensor, std::uint16_t argument,
-             std::uint8_t sequence = 77) {
-    rig.send_from_host(Command{.code = code, .sensor = sensor, .argument = argument, .sequence = sequence},
-                       kOwnId);
-}
-/// Each answer once, however often it was said.
-std::vector<Calibration> answers(const NodeRig& rig) {
-    std::vector<Calibration> all = rig.said_of<Calibration>();
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    return all;
-}
-std::vector<CalibrationOutcome> outcomes(const NodeRig& rig) {
-    std::vector<CalibrationOutcome> all;
-    for (const Calibration& said : answers(rig)) all.push_back(said.outcome);
-    return all;
-}
-int last_range_mm(const NodeRig& rig) {
-    const auto readings = rig.readings_of(kBad);
-    return readings.empty() ? -1 : readings.back().reading.range_mm;
-}
-
 using enum CalibrationOutcome;
 
 // Reads 30 mm too far: found to a quarter of a millimetre.
@@ -302,60 +263,5 @@ TEST(NodeCalibration, of_a_part_with_a_period_of_four_seconds_finds_its_offset) 
 
 // Every kind of fault, at every 53rd transfer of a calibration: it ends, what it calls done is right, and
 // the sensor ranges again.
-TEST(NodeCalibration, under_any_single_fault_of_its_bus_ends_and_never_with_a_wrong_value) {
-    using sim::I2cFaultKind;
-    const auto prepared = [] {
-        auto rig = std::make_unique<NodeRig>(fleet_config(2, 2),
-                                             std::vector<SensorSetup>(setups_with(grey_target(0.170, 8.0))));
-        rig->run_for(kSecond / 2);
-        command(*rig, CommandCode::calibrate_offset, kBad, 140);
-        return rig;
-    };
-    auto clean = prepared();
-    const std::uint64_t first = clean->bus(1).transfer_count();
-    while (outcomes(*clean).size() < 2) clean->run_for(kSecond / 100);
-    const std::uint64_t transfers = clean->bus(1).transfer_count() - first;
-    ASSERT_GT(transfers, 300U);
-    int failed = 0;
-    for (const I2cFaultKind kind :
-         {I2cFaultKind::nack_address, I2cFaultKind::nack_byte, I2cFaultKind::nack_read,
-          I2cFaultKind::flip_bit, I2cFaultKind::flip_written_bit, I2cFaultKind::lose_write,
-          I2cFaultKind::read_ones, I2cFaultKind::lose_arbitration, I2cFaultKind::stretch,
-          I2cFaultKind::sda_stuck_low}) {
-        for (std::uint64_t n = 0; n < transfers; n += 53) {
-            auto rig = prepared();
-            rig->bus(1).inject(
-                {.kind = kind, .first = first + n, .position = static_cast<std::uint32_t>(n % 19)});
-            rig->run_for(5 * kSecond);
-            ASSERT_EQ(outcomes(*rig).size(), 2U) << static_cast<int>(kind) << " at " << n;
-            const Calibration end = answers(*rig).back();
-            if (end.outcome == done) {
-                EXPECT_NEAR(end.offset_quarter_mm, -68, 1) << static_cast<int>(kind) << " at " << n;
-            } else {
-                ++failed;
-            }
-            EXPECT_EQ(rig->last_health(kBad)->state, SensorState::ranging)
-                << static_cast<int>(kind) << " at " << n;
-        }
-    }
-    EXPECT_GT(failed, 0) << "the faults did nothing";
-}
-
-TEST(NodeCalibration, of_a_sensor_that_is_reset_in_the_middle_ends_and_it_ranges_as_configured) {
-    for (int ms = 0; ms < 2'500; ms += 97) {
-        NodeRig rig(fleet_config(4, 2), setups_with(grey_target(0.170, 8.0)));
-        rig.run_for(kSecond / 2);
-        command(rig, CommandCode::calibrate_offset, kBad, 140);
-        rig.run_for(ms * Microseconds{1'000});
-        rig.sensor(kBad).brown_out(rig.now());
-        rig.run_for(6 * kSecond);
-        ASSERT_EQ(outcomes(rig).size(), 2U) << ms;
-        const Calibration end = answers(rig).back();
-        EXPECT_EQ(end.offset_quarter_mm, end.outcome == done ? -68 : 0) << ms;
-        EXPECT_EQ(rig.last_health(kBad)->state, SensorState::ranging) << ms;
-        EXPECT_EQ(last_range_mm(rig), 170) << "as configured";
-    }
-}
-
 }  // namespace
 }  // namespace octoskin::node
