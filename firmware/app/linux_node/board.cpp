@@ -36,7 +36,7 @@ std::vector<std::unique_ptr<linux_port::I2cThreadBus>> start_threads(std::vector
     std::vector<std::unique_ptr<linux_port::I2cThreadBus>> threads;
     threads.reserve(devices.size());
     for (I2cDevice& device : devices)
-        threads.push_back(std::make_unique<linux_port::I2cThreadBus>(device, event));
+        threads.push_back(std::make_unique<linux_port::I2cThreadBus>(device, event, linux_port::node_now));
     return threads;
 }
 

@@ -8,7 +8,8 @@
 
 namespace octoskin::linux_port {
 
-I2cThreadBus::I2cThreadBus(I2cAdapter& adapter, int event) : adapter_(adapter), event_(event) {
+I2cThreadBus::I2cThreadBus(I2cAdapter& adapter, int event, Clock clock)
+    : adapter_(adapter), event_(event), clock_(clock) {
     thread_ = std::thread([this] { work(); });
 }
 
@@ -40,7 +41,7 @@ void I2cThreadBus::submit(const i2c::Transfer& transfer, NodeTime, NodeTime dead
 i2c::TransferState I2cThreadBus::poll(NodeTime now) {
     if (!in_flight_) return i2c::TransferState::idle;
     std::unique_lock lock(mutex_);
-    if (outcome_.number == number_) {
+    if (outcome_.number == number_ && is_reached(outcome_.ended, now)) {
         const std::span<std::uint8_t> read = std::exchange(in_flight_, std::nullopt)->read;
         if (outcome_.error_number == 0) {
             std::copy_n(outcome_.read.begin(), read.size(), read.begin());
@@ -86,6 +87,7 @@ void I2cThreadBus::work() {
         outcome.error_number = adapter_.transfer({.address = order.address,
                                                   .write = std::span(order.write).first(order.write_size),
                                                   .read = std::span(outcome.read).first(order.read_size)});
+        outcome.ended = clock_();
         lock.lock();
         is_in_kernel_ = false;
         outcome_ = outcome;

@@ -18,14 +18,20 @@ namespace octoskin::linux_port {
 /// kernel reads late goes nowhere, since the thread has buffers of its own.
 class I2cThreadBus final : public i2c::Bus {
   public:
-    /// `adapter` must outlive the bus; `event` is an eventfd(2) that counts ended transfers up.
-    I2cThreadBus(I2cAdapter& adapter, int event);
+    using Clock = NodeTime (*)() noexcept;
+
+    /// `adapter` must outlive the bus; `event` is an eventfd(2) that counts ended transfers up; `clock` is
+    /// what the times given to `poll` are read from, asked by the thread.
+    I2cThreadBus(I2cAdapter& adapter, int event, Clock clock);
     /// Waits for a transfer that is in the kernel.
     ~I2cThreadBus();
 
     [[nodiscard]] bool is_busy() const override { return in_flight_.has_value(); }
     /// At most 256 bytes each way.
     void submit(const i2c::Transfer& transfer, NodeTime now, NodeTime deadline) override;
+    /// A transfer that ended after `now` was read is pending: its answer may be of something that happened
+    /// after `now`, by as long as Linux kept the node's loop off the processor. The event is counted up then,
+    /// too.
     [[nodiscard]] i2c::TransferState poll(NodeTime now) override;
     [[nodiscard]] i2c::TransferError error() const override { return error_; }
     /// The kernel's driver gives the clocks, with each transfer that needs them, and tells no levels. So:
@@ -53,6 +59,7 @@ class I2cThreadBus final : public i2c::Bus {
     struct Outcome {
         std::uint64_t number = 0;
         int error_number = 0;
+        NodeTime ended{};
         Bytes read{};
     };
 
@@ -61,6 +68,7 @@ class I2cThreadBus final : public i2c::Bus {
 
     I2cAdapter& adapter_;
     int event_;
+    Clock clock_;
     // --- the node's side
     std::optional<InFlight> in_flight_;
     std::uint64_t number_ = 0;  ///< of the newest transfer

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <condition_variable>
 #include <memory>
@@ -61,8 +62,15 @@ class GatedAdapter final : public I2cAdapter {
     std::vector<std::vector<std::uint8_t>> written_;
 };
 
+/// What the thread's clock reads.
+std::atomic<std::uint32_t> thread_clock_us = 0;
+NodeTime thread_now() noexcept {
+    return {thread_clock_us};
+}
+
 class I2cThreadBusTest : public testing::Test {
   protected:
+    I2cThreadBusTest() { thread_clock_us = 0; }
     ~I2cThreadBusTest() override {
         adapter_.set_open(true);
         bus_.reset();
@@ -86,7 +94,7 @@ class I2cThreadBusTest : public testing::Test {
 
     GatedAdapter adapter_;
     int event_ = ::eventfd(0, EFD_CLOEXEC);
-    std::unique_ptr<I2cThreadBus> bus_ = std::make_unique<I2cThreadBus>(adapter_, event_);
+    std::unique_ptr<I2cThreadBus> bus_ = std::make_unique<I2cThreadBus>(adapter_, event_, thread_now);
     std::array<std::uint8_t, 2> write_{0x01, 0x0F};
     std::array<std::uint8_t, 3> read_{};
 };
@@ -115,6 +123,27 @@ TEST_F(I2cThreadBusTest, is_pending_while_the_kernel_has_it) {
     EXPECT_EQ(bus_->poll({999}), TransferState::pending);
     adapter_.set_open(true);
     EXPECT_EQ(outcome(), TransferState::done);
+}
+
+// The loop reads its clock, loses the processor for 5 ms, and asks only then: data that became ready
+// meanwhile would seem to have been ready at the time it read.
+TEST_F(I2cThreadBusTest, tells_no_end_before_its_time) {
+    thread_clock_us = 505;
+    submit(0x10);
+    await_end();
+    EXPECT_EQ(bus_->poll({500}), TransferState::pending);
+    EXPECT_EQ(bus_->poll({504}), TransferState::pending);
+    EXPECT_TRUE(bus_->is_busy());
+    EXPECT_EQ(bus_->poll({505}), TransferState::done);
+    EXPECT_EQ(read_, (std::array<std::uint8_t, 3>{0x11, 0x12, 0x13}));
+}
+
+TEST_F(I2cThreadBusTest, tells_the_end_across_the_wrap_of_the_clock) {
+    thread_clock_us = 10;
+    submit(0x10);
+    await_end();
+    EXPECT_EQ(bus_->poll({0xFFFFFFF0U}), TransferState::pending);
+    EXPECT_EQ(bus_->poll({10}), TransferState::done);
 }
 
 TEST_F(I2cThreadBusTest, gives_up_at_the_deadline_and_keeps_late_bytes_away) {
