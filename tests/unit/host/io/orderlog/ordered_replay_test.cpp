@@ -69,6 +69,7 @@ struct Recorded {
 Recorded record(const Scene& scene, std::size_t begin, std::size_t end) {
     Pipeline pipeline = make_pipeline(scene);
     Recorded recorded;
+    const std::vector<StampedFrame> frames = scene.bus.frames();
     auto depth = scene.depth.begin();
     for (std::size_t i = 0; i < end; ++i) {
         if (i == begin) {
@@ -77,7 +78,7 @@ Recorded record(const Scene& scene, std::size_t begin, std::size_t end) {
                 [&](const JointMeasurement& joints) { recorded.keeper.put(joints); });
             pipeline.tell(&recorded.keeper);
         }
-        pipeline.on_can(scene.bus.frames()[i].frame, scene.bus.frames()[i].stamp);
+        pipeline.on_can(frames[i].frame, frames[i].stamp);
         while (depth != scene.depth.end() && pipeline.now() && depth->captured <= *pipeline.now()) {
             pipeline.on_depth(*depth++);
         }
@@ -98,7 +99,7 @@ MapBuilder make_builder(const Scene& scene, const std::string& first_ot) {
 
 /// The first frame of the bus that comes then or later.
 std::size_t frame_at(const Scene& scene, double time_s) {
-    const auto& frames = scene.bus.frames();
+    const std::vector<StampedFrame> frames = scene.bus.frames();
     const std::int64_t from_ns = frames.front().stamp.ns + std::llround(time_s * 1e9);
     return static_cast<std::size_t>(std::ranges::count_if(
         frames, [from_ns](const StampedFrame& entry) { return entry.stamp.ns < from_ns; }));
