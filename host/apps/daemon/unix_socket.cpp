@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstring>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "host/apps/recording/file_lock.hpp"
@@ -34,15 +35,26 @@ Unexpected<AppError> failure(const std::filesystem::path& file, const std::strin
     return fail(code, file.string() + ": " + what + ": " + std::strerror(error));
 }
 
-bool is_answered(const sockaddr_un& address, int type) {
+/// Which process listens where `probe` is connected, as " (process 123)"; empty if the kernel does not tell:
+/// it keeps none for datagrams, and has no number for one of another container.
+std::string listener_of(int probe) {
+    ucred listener{};
+    socklen_t size = sizeof(listener);
+    const bool is_told = ::getsockopt(probe, SOL_SOCKET, SO_PEERCRED, &listener, &size) == 0;
+    return is_told && listener.pid > 0 ? " (process " + std::to_string(listener.pid) + ")" : std::string();
+}
+
+/// Nothing if nobody is there, else what can be told of who is.
+std::optional<std::string> find_listener(const sockaddr_un& address, int type) {
     const int probe = ::socket(AF_UNIX, type | SOCK_CLOEXEC, 0);
-    if (probe < 0) return false;
+    if (probe < 0) return std::nullopt;
     const bool is_connected =
         ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
     // Refused, or no such name: nobody. Whatever else goes wrong, somebody may be there.
     const bool is_nobody = !is_connected && (errno == ECONNREFUSED || errno == ENOENT || errno == ENOTSOCK);
+    const std::string listener = is_connected ? listener_of(probe) : std::string();
     ::close(probe);
-    return !is_nobody;
+    return is_nobody ? std::nullopt : std::optional(listener);
 }
 
 /// From the question whether somebody is there until the answer is "we are": two that begin at once would
@@ -71,9 +83,9 @@ Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int ty
             ExitCode::cannot_create,
             file.string() + ": another octoskin keeps its folder locked; is it stopped in mid-start?");
     }
-    if (is_answered(*address, type)) {
-        return fail(ExitCode::cannot_create,
-                    file.string() + ": another octoskin has this socket; stop it, or name another one");
+    if (const auto listener = find_listener(*address, type)) {
+        return fail(ExitCode::cannot_create, file.string() + ": another octoskin" + *listener +
+                                                 " has this socket; stop it, or name another one");
     }
     struct stat found {};
     if (::lstat(file.c_str(), &found) == 0) {

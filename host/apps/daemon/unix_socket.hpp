@@ -9,8 +9,9 @@
 namespace octoskin {
 
 /// A socket bound to `file`; non-blocking. `type`: SOCK_DGRAM or SOCK_STREAM (then it listens). A file that a
-/// dead process left is replaced; one that somebody listens on is refused, also if both begin at once. Waits
-/// 2 s at most for another that makes a socket in that folder. Who may connect: owner and group.
+/// dead process left is replaced; one that somebody listens on is refused, also if both begin at once; the
+/// error names the process of a SOCK_STREAM. Waits 2 s at most for another that makes a socket in that
+/// folder. Who may connect: owner and group.
 [[nodiscard]] Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int type);
 
 /// A socket connected to `file`.

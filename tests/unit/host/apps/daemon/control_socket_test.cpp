@@ -209,7 +209,9 @@ TEST(UnixSocket, is_given_to_one_of_many_that_begin_at_once) {
 TEST_F(ControlSocketTest, is_one_at_a_place_and_takes_over_from_the_dead) {
     auto second = ControlSocket::open(file(), loop_, [](const std::string&) { return std::string(); });
     ASSERT_FALSE(second);
-    EXPECT_NE(second.error().message.find("another octoskin"), std::string::npos) << second.error().message;
+    EXPECT_EQ(second.error().message, file().string() + ": another octoskin (process " +
+                                          std::to_string(::getpid()) +
+                                          ") has this socket; stop it, or name another one");
     socket_.reset();
     EXPECT_FALSE(std::filesystem::exists(file()));
     // As a killed one leaves it: a name, and nobody behind.
@@ -217,6 +219,17 @@ TEST_F(ControlSocketTest, is_one_at_a_place_and_takes_over_from_the_dead) {
     ASSERT_TRUE(dead);
     ::close(*dead);
     EXPECT_TRUE(ControlSocket::open(file(), loop_, [](const std::string&) { return std::string(); }));
+}
+
+TEST(UnixSocket, for_datagrams_is_refused_without_the_others_process) {
+    const testing_support::ScratchFolder folder;
+    const auto first = bind_unix_socket(folder / "joints", SOCK_DGRAM);
+    ASSERT_TRUE(first);
+    const auto second = bind_unix_socket(folder / "joints", SOCK_DGRAM);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().message, (folder / "joints").string() +
+                                          ": another octoskin has this socket; stop it, or name another one");
+    ::close(*first);
 }
 
 TEST(UnixSocket, is_never_made_over_something_else) {
