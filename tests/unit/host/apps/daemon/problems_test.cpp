@@ -1,0 +1,359 @@
+// What the daemon names as wrong: each problem's words, when it begins and when it is over.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <linux/can/error.h>
+
+#include "common/range_status.hpp"
+#include "common/wire/codec.hpp"
+#include "common/wire/names.hpp"
+#include "host/apps/daemon/clocks.hpp"
+#include "tests/unit/host/apps/daemon/daemon_view_fixture.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr Nanoseconds kNs{1};
+constexpr std::uint8_t kWrappedTarget = 7;  ///< a device status: no range
+constexpr Nanoseconds kSecond{1'000'000'000};
+
+class ProblemsTest : public DaemonViewTest {
+  protected:
+    /// A scene like the good one, but for what `change` does to it.
+    template <class Change>
+    void play_changed(const Change& change, double until_s = kAllWell) {
+        Scene scene = daemon_scene();
+        change(scene);
+        play(scene, until_s);
+    }
+    void set_health(Scene& scene, double at_s, wire::SensorState state, wire::SensorFault fault) {
+        scene.bus.send(at_s, wire::SensorHealth{.sensor = kGood, .state = state, .fault = fault}, kLeft);
+    }
+    void say_error(std::uint32_t error_class, std::uint8_t controller = 0) {
+        wire::CanFrame frame{.can_id = error_class, .is_error = true, .payload_len = 8};
+        frame.data[1] = controller;
+        say(frame);
+    }
+};
+
+TEST_F(ProblemsTest, are_none_where_all_is_well) {
+    EXPECT_THAT(all_told(), IsEmpty());
+}
+
+TEST_F(ProblemsTest, come_the_most_fundamental_first) {
+    play_changed([](Scene& scene) { scene.bus = ScriptedBus{}, scene.depth.clear(); });
+    other_end_.reset();
+    inputs_->catch_up();
+    view_.camera->is_open = false;
+    view_.camera->why = "no such device";
+    view_.saves.error = "the disk is full";
+    EXPECT_THAT(
+        all_told(),
+        ElementsAre(HasSubstr("CAN absent: can7: closed: No such device"),
+                    "the time is not known yet: no SYNC of ours came onto the bus, or no node is there",
+                    "node 1 'node 1': absent",
+                    "no joint states: none from node 10 on the bus (and no --joints)",
+                    "camera: no such device", "the map is not saved: the disk is full"));
+}
+
+TEST_F(ProblemsTest, have_the_adapters_word_until_traffic_proves_it_wrong) {
+    say_error(CAN_ERR_BUSOFF);
+    const std::string bus_off =
+        "CAN bus_off: the adapter is bus-off (`ip link set NAME type can restart-ms 100` lets it come back)";
+    EXPECT_THAT(problems(view_), ElementsAre(Problem{bus_off, bus_off}));
+    say({.can_id = 5});
+    EXPECT_THAT(all_told(), IsEmpty());
+    say_error(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_PASSIVE);
+    EXPECT_THAT(all_told(), ElementsAre("CAN error_passive: the adapter is error-passive: nobody "
+                                        "acknowledges, other bit rates, or a disturbed line"));
+    say({.can_id = 5});
+    EXPECT_THAT(all_told(), IsEmpty());
+}
+
+TEST_F(ProblemsTest, have_another_host_for_three_seconds_after_its_sync_unless_this_one_only_listens) {
+    view_.now = say_sync(1) + 3 * kSecond - kNs;
+    EXPECT_EQ(told("another host"),
+              "another host sends SYNC on this bus: only one may (start this one with --listen-only)");
+    view_.is_listen_only = true;
+    EXPECT_EQ(told("another host"), "");
+    view_.is_listen_only = false;
+    view_.now = *inputs_->foreign_sync() + 3 * kSecond;
+    EXPECT_EQ(told("another host"), "");
+}
+
+TEST_F(ProblemsTest, have_a_bus_whose_time_went_back_for_a_minute) {
+    view_.used.time_back = view_.now - 60 * kSecond + kNs;
+    EXPECT_EQ(
+        told("time back"),
+        "the bus's time went back (times_back, 0) within the last minute: the host that sends SYNC began "
+        "anew, or there are two; joint states and readings go on from there");
+    view_.used.time_back = view_.now - 60 * kSecond;
+    EXPECT_EQ(told("time back"), "");
+}
+
+TEST_F(ProblemsTest, have_a_time_that_nobody_tells_until_somebody_does) {
+    play(daemon_scene(), 0.09);
+    EXPECT_EQ(told("no time"),
+              "the time is not known yet: no SYNC of ours came onto the bus, or no node is there");
+    view_.is_listen_only = true;
+    EXPECT_EQ(told("no time"),
+              "the time is not known: nobody on the bus sends SYNC and FOLLOW_UP (--listen-only sends none)");
+    play(daemon_scene(), 0.2);
+    EXPECT_EQ(told("no time"), "");
+}
+
+TEST_F(ProblemsTest, have_each_node_that_is_not_usable_and_nothing_of_its_sensors) {
+    play_changed([&](Scene& scene) {
+        scene.rig = one_joint_rig();
+        set_health(scene, 4.5, wire::SensorState::lost, wire::SensorFault::no_answer);
+    });
+    EXPECT_THAT(all_told(), ElementsAre("node 1 'node 1' sensor 0 'good': lost, no_answer",
+                                        "node 2 'node 2': absent", "node 3 'node 3': absent"));
+    play(scene_, 9.4);  // its newest heartbeat came at 9.0 s
+    EXPECT_EQ(told("node 1 'node 1': lost"), "node 1 'node 1': lost");
+    EXPECT_EQ(told("node 1 'node 1' sensor 0 'good': lost, no_answer"), "");
+}
+
+TEST_F(ProblemsTest, have_a_sensor_that_does_not_range_but_for_its_start_until_it_ranges) {
+    using enum wire::SensorState;
+    for (const auto state : {absent, starting, ranging, stopped, degraded, lost}) {
+        play_changed([&](Scene& scene) { set_health(scene, 4.5, state, wire::SensorFault::bus_error); });
+        const bool is_well = state == ranging || state == starting;
+        EXPECT_EQ(all_told(), is_well ? std::vector<std::string>{}
+                                      : std::vector{"node 1 'node 1' sensor 0 'good': " +
+                                                    std::string(wire::name(state)) + ", bus_error"});
+    }
+    play_changed([&](Scene& scene) {
+        set_health(scene, 4.4, lost, wire::SensorFault::bus_error);
+        set_health(scene, 4.5, ranging, wire::SensorFault::bus_error);
+    });
+    EXPECT_THAT(all_told(), IsEmpty());
+}
+
+TEST_F(ProblemsTest, have_a_sensor_whose_readings_are_nearly_all_rejected_until_two_are_used) {
+    const auto with_readings = [&](int bad, int good) {
+        play_changed(
+            [&](Scene& scene) {
+                wire::RangeReading reading = good_reading(kSpare);
+                for (int k = 0; k < bad + good; ++k) {
+                    reading.device_status = k < bad ? kWrappedTarget : kDeviceStatusComplete;
+                    scene.bus.range(4.0 + 0.035 * k, kLeft, reading);
+                }
+            },
+            4.05 + 0.035 * (bad + good));
+        return told("node 1 'node 1' sensor 5 'good' streak");
+    };
+    const std::string expected =
+        "node 1 'node 1' sensor 5 'good': (nearly) all of its last 32 readings were rejected, most as "
+        "status_fault";
+    EXPECT_EQ(with_readings(31, 0), "");
+    EXPECT_EQ(with_readings(32, 0), expected);
+    EXPECT_EQ(with_readings(32, 1), expected);
+    EXPECT_EQ(with_readings(32, 2), "");
+}
+
+TEST_F(ProblemsTest, have_a_sensor_that_contradicts_the_camera_from_when_that_is_decided) {
+    int told_after = 0;
+    let_camera_contradict([&] {
+        const bool is_decided = pipeline_->builder().witness()->evidence(kLeft, kGood).contradicts;
+        EXPECT_EQ(told("node 1 'node 1' sensor 0 'good' camera").empty(), !is_decided);
+        told_after += is_decided ? 0 : 1;
+    });
+    EXPECT_THAT(told_after, testing::AllOf(testing::Gt(1), testing::Lt(6)));
+    EXPECT_THAT(all_told(),
+                ElementsAre(HasSubstr("node 1 'node 1' sensor 0 'good': contradicts the camera")));
+    // Without the robot taken out of its images the camera says nothing of any sensor.
+    Scene scene = daemon_scene();
+    scene.mapping.removes_robot_from_depth = false;
+    play(scene, kAllWell);
+    ASSERT_EQ(pipeline_->builder().witness(), nullptr);
+    EXPECT_THAT(all_told(), IsEmpty());
+}
+
+TEST_F(ProblemsTest, have_a_joint_node_whose_word_does_not_count) {
+    const auto with_heartbeat = [&](bool is_suspect) {
+        play_changed([&](Scene& scene) {
+            scene.bus.send(4.5,
+                           wire::Heartbeat{.state = wire::NodeState::ranging, .is_time_suspect = is_suspect},
+                           kJoints);
+        });
+        return all_told();
+    };
+    EXPECT_THAT(with_heartbeat(false), IsEmpty());
+    EXPECT_THAT(with_heartbeat(true), ElementsAre("node 10 'joints': time_suspect"));
+    // Where it has sensors, too, it is one of the rig's nodes, and told as such.
+    play_changed([&](Scene& scene) {
+        scene.rig.nodes.push_back(scene.rig.nodes.front());
+        scene.rig.nodes.back().node_id = kJoints;
+        scene.bus.send(4.5, wire::Heartbeat{.state = wire::NodeState::ranging, .is_time_suspect = true},
+                       kJoints);
+    });
+    EXPECT_THAT(all_told(), ElementsAre("node 10 'node 1': time_suspect"));
+}
+
+TEST_F(ProblemsTest, have_joint_states_that_are_not_there_or_of_no_use) {
+    play(daemon_scene(), 0.4);
+    EXPECT_EQ(told("no joints"), "no joint states: none from node 10 on the bus (and no --joints)");
+    const auto with_socket = inputs_with_joint_socket();
+    view_.inputs = with_socket.get();
+    EXPECT_EQ(told("no joints"), "no joint states: none comes through the socket (`octoskin joints`)");
+    Scene scene = daemon_scene();
+    scene.bus = ScriptedBus{};
+    for (int k = 0; k <= 8; ++k) scene.bus.exchange(0.1 + k, {kLeft});
+    const double position = 0.0;
+    for (int k = 0; k < 100; ++k) scene.bus.joints(3.0 + 0.01 * k, kJoints, {&position, 1});
+    play(scene, 4.05);
+    EXPECT_EQ(told("no joints"), "");
+    EXPECT_EQ(told("joints unused"), "no joint state could be used: see the counters of joint samples");
+    EXPECT_EQ(told("joints stopped"), "");
+}
+
+TEST_F(ProblemsTest, have_joint_states_that_stopped_eight_tenths_of_a_second_ago) {
+    EXPECT_EQ(told("joints unused"), "");
+    view_.now = *view_.used.joint_sample + Nanoseconds{800'000'000};
+    EXPECT_EQ(told("joints stopped"), "");
+    view_.now = view_.now + kNs;
+    EXPECT_EQ(told("joints stopped"), "joint states have stopped: readings have no pose");
+    EXPECT_EQ(told("no joints") + told("joints unused"), "");
+}
+
+TEST_F(ProblemsTest, have_joint_states_that_come_quicker_than_the_rig_says) {
+    const auto at_rate_of_rig = [&](double rate_hz) {
+        play_changed([&](Scene& scene) { scene.rig.joints.rate_hz = rate_hz; });
+        return told("joints too frequent");
+    };
+    EXPECT_EQ(at_rate_of_rig(100.0), "");
+    EXPECT_THAT(
+        at_rate_of_rig(55.0),
+        testing::MatchesRegex("joint states come, or came, quicker than the 55 Hz of the rig, and were "
+                              "refused \\(too_frequent, [0-9]+\\): put the true rate into joints.rate_hz"));
+}
+
+TEST_F(ProblemsTest, have_readings_that_are_of_no_use_or_stopped) {
+    EXPECT_EQ(told("readings unused"), "");
+    view_.now = *view_.used.reading + Nanoseconds{800'000'000};
+    EXPECT_EQ(told("readings stopped"), "");
+    view_.now = view_.now + kNs;
+    EXPECT_EQ(told("readings stopped"), "readings come onto the map no more: see the counters of readings");
+    play(daemon_scene(), 3.5);
+    EXPECT_EQ(told("readings unused") + told("readings stopped"), "") << "none has come";
+    view_.used = {};
+    play_changed([](Scene& scene) { scene.rig.range_limits.max_m = 0.1; });
+    EXPECT_EQ(told("readings unused"), "no reading could be used yet: see the counters of readings");
+}
+
+TEST_F(ProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) {
+    EXPECT_EQ(told("depth unused"), "");
+    const auto look_after = [&](Nanoseconds duration) {
+        view_.now = *view_.used.depth_frame + duration;
+        view_.camera->newest = view_.now;
+        return told("depth stopped");
+    };
+    EXPECT_EQ(look_after(Nanoseconds{800'000'000}), "");
+    EXPECT_EQ(look_after(Nanoseconds{800'000'001}),
+              "depth frames come onto the map no more: see the counters of depth frames");
+    view_.camera->newest = view_.now - kSecond;
+    EXPECT_EQ(told("depth stopped"), "") << "its own fault is told first";
+    EXPECT_EQ(told("camera silent"), "camera: no frame for three periods");
+    play(daemon_scene(), 3.95);
+    view_.camera->newest = view_.now;
+    EXPECT_EQ(told("depth unused"), "") << "none has come";
+    play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
+    view_.camera->newest = view_.now;
+    EXPECT_EQ(told("depth unused"), "no depth frame could be used yet: see the counters of depth frames");
+}
+
+TEST_F(ProblemsTest, have_nothing_of_a_camera_that_nobody_wants) {
+    view_.now = *view_.used.depth_frame + kSecond;
+    EXPECT_EQ(told("camera silent"), "camera: no frame for three periods");
+    view_.camera.reset();
+    EXPECT_EQ(told("camera silent") + told("depth stopped"), "");
+}
+
+TEST_F(ProblemsTest, have_a_camera_beside_a_bus_that_fell_silent) {
+    play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
+    ScriptedBus bus;
+    bus.heartbeat(0.0, node_of(scene_, kLeft));
+    say(bus.frames().front().frame);
+    view_.now = monotonic_now() + kSecond;
+    view_.camera->newest = view_.now;
+    EXPECT_EQ(told("depth beside silent bus"),
+              "camera: its frames are not used, because the bus is silent: no node tells where the robot is "
+              "(joints_missing)");
+    EXPECT_EQ(told("depth unused"), "");
+    view_.now = monotonic_now();
+    view_.camera->newest = view_.now;
+    EXPECT_EQ(told("depth beside silent bus"), "");
+    EXPECT_NE(told("depth unused"), "");
+}
+
+TEST_F(ProblemsTest, have_a_camera_without_a_time_until_three_exchanges_of_the_other_host_agree) {
+    view_.is_listen_only = true;
+    const std::string expected =
+        "camera: its frames have no time: the clock of the host that sends SYNC is not known, or in doubt "
+        "(three "
+        "FOLLOW_UPs must agree)";
+    for (std::uint8_t sequence = 1; sequence <= 3; ++sequence) {
+        EXPECT_EQ(told("camera untimed"), expected);
+        const HostTime heard = say_sync(sequence);
+        say(wire::encode(wire::FollowUp{sequence, static_cast<std::uint64_t>(heard.ns / 1'000) + 900'000'000},
+                         wire::kHostId));
+        view_.now = heard;
+        view_.camera->newest = view_.used.depth_frame = heard;
+    }
+    EXPECT_EQ(told("camera untimed"), "");
+    view_.now = view_.now + 6 * kSecond;
+    view_.camera->newest = view_.now;
+    EXPECT_EQ(told("camera untimed"), expected) << "it is silent again";
+}
+
+TEST_F(ProblemsTest, have_a_map_without_room) {
+    play_changed([](Scene& scene) {
+        scene.mapping.map.memory_max_mib = 1;
+        scene.mapping.map.resolution_m = 0.01;
+    });
+    const auto& counters = pipeline_->maps().fused()->counters();
+    ASSERT_GT(counters.no_room, 0U);
+    EXPECT_EQ(told("map full"),
+              "the map is full (1 MiB): it takes no new space, " + std::to_string(counters.no_room) +
+                  " updates found no room (no_room); raise map.memory_max_mib in the mapping file");
+}
+
+TEST_F(ProblemsTest, have_a_save_and_a_reload_that_failed_until_the_next_goes_well) {
+    view_.saves.error = "maps/fused.ot: no space";
+    view_.reload_error = "rig.yaml:3: what is that";
+    EXPECT_THAT(
+        all_told(),
+        ElementsAre("the map is not saved: maps/fused.ot: no space",
+                    "the newest reload was refused, and the old settings hold: rig.yaml:3: what is that"));
+    view_.saves.error.clear();
+    view_.reload_error.clear();
+    EXPECT_THAT(all_told(), IsEmpty());
+}
+
+TEST_F(ProblemsTest, have_a_recording_that_failed) {
+    folder_.write("taken", "no folder");
+    Recorder recorder(folder_ / "taken", {}, settings_, *pipeline_, view_.now);
+    view_.recorder = &recorder;
+    recorder.stop(view_.now);
+    ASSERT_TRUE(recorder.wait(10 * kSecond));
+    EXPECT_THAT(all_told(), ElementsAre("the recording has failed: " + recorder.error()));
+    EXPECT_THAT(recorder.error(), HasSubstr((folder_ / "taken").string()));
+}
+
+TEST_F(ProblemsTest, have_a_recording_that_is_not_complete) {
+    play_changed([](Scene& scene) { scene.rig.camera->depth_max_m = 40.0; });
+    Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, view_.now);
+    view_.recorder = &recorder;
+    EXPECT_THAT(all_told(), IsEmpty());
+    recorder.on_depth(flat_frame(4.5, 39'000), {});  // more than a recording can hold
+    EXPECT_THAT(all_told(),
+                ElementsAre("the recording lacks something that came too fast for the disk: its replay "
+                            "gives another map"));
+}
+
+}  // namespace
+}  // namespace octoskin::test

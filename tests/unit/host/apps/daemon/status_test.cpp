@@ -1,0 +1,286 @@
+// The figures that the daemon tells of itself, each in its unit: of a scene that is known by heart.
+#include "host/apps/daemon/status.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/wire/codec.hpp"
+#include "common/wire/crc.hpp"
+#include "host/apps/version/version.hpp"
+#include "tests/unit/host/apps/daemon/daemon_view_fixture.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kTiny = 1e-9;
+constexpr std::uint8_t kWrappedTarget = 7;  ///< a device status: no range
+
+class StatusTest : public DaemonViewTest {
+  protected:
+    [[nodiscard]] Json status() const { return status_json(view_); }
+    [[nodiscard]] Json sensor(std::size_t index) const { return status()["nodes"][0]["sensors"][index]; }
+};
+
+TEST_F(StatusTest, has_who_it_is_how_long_it_runs_and_what_is_wrong) {
+    view_.started = host_at(1.05);
+    const Json well = status();
+    EXPECT_EQ(well["octoskin"], program_version());
+    EXPECT_EQ(well["uptime_s"], 3.5);
+    EXPECT_EQ(well["rig"], "one joint");
+    EXPECT_EQ(well["problems"], Json::array());
+    view_.saves.error = "no room";
+    view_.reload_error = "no rig";
+    EXPECT_EQ(status()["problems"],
+              Json({"the map is not saved: no room",
+                    "the newest reload was refused, and the old settings hold: no rig"}));
+}
+
+TEST_F(StatusTest, has_what_came_over_the_bus_and_how_long_that_kept_it_busy) {
+    // Eight bytes in classical format: 135 bits, at 1 Mbit/s.
+    for (int i = 0; i < 2; ++i) say({.can_id = 5, .payload_len = 8});
+    view_.is_listen_only = true;
+    EXPECT_EQ(status()["can"],
+              Json::parse(R"({"interface": "can7", "state": "up", "why": "", "listen_only": true,
+        "received": 2, "sent": 0, "not_sent": 0, "busy_s": 0.00027, "error_frames": 0, "dropped_by_kernel": 0,
+        "malformed": 0, "bus_off": 0, "went_down": 0, "reopened": 0})"));
+    other_end_.reset();
+    inputs_->catch_up();
+    view_.is_listen_only = false;
+    const Json gone = status()["can"];
+    EXPECT_EQ(gone["state"], "absent");
+    EXPECT_EQ(gone["why"], inputs_->can().why());
+    EXPECT_EQ(gone["listen_only"], false);
+}
+
+TEST_F(StatusTest, has_the_state_of_the_clock) {
+    EXPECT_EQ(
+        status()["clock"],
+        Json::parse(R"({"known": true, "steps_back": 0, "steps_ahead": 0, "stamps_ignored": 0, "relocks": 0,
+                  "times_back": 0, "follow_up_outliers": 0})"));
+    for (std::uint8_t sequence = 1; sequence <= 4; ++sequence) {
+        const std::uint64_t wrong_us = sequence == 4 ? 500'000 : 0;
+        const auto us = static_cast<std::uint64_t>(say_sync(sequence).ns / 1'000);
+        say(wire::encode(wire::FollowUp{sequence, us + wrong_us}, wire::kHostId));
+    }
+    EXPECT_EQ(status()["clock"]["follow_up_outliers"], 1);
+    play(daemon_scene(), 0.09);
+    EXPECT_EQ(status()["clock"]["known"], false);
+}
+
+TEST_F(StatusTest, has_each_node_with_its_clock_in_ppm_and_ms) {
+    const Json node = status()["nodes"][0];
+    EXPECT_EQ(status()["nodes"].size(), 1U);
+    EXPECT_EQ(node["id"], 1);
+    EXPECT_EQ(node["name"], "node 1");
+    EXPECT_EQ(node["verdict"], "usable");
+    EXPECT_EQ(node["reason"], nullptr);
+    EXPECT_EQ(node["state"], "ranging");
+    EXPECT_NEAR(node["age_s"], 0.05, kTiny) << "its newest heartbeat came at 4.5 s";
+    EXPECT_EQ(node["degraded_sensors"], 0);
+    EXPECT_EQ(node["clock_known"], true);
+    EXPECT_NEAR(node["clock_ppm"], -80.0, 1.0) << "host seconds per second of its clock, which is fast";
+    EXPECT_GT(node["clock_error_ms"], 0.001);
+    EXPECT_LT(node["clock_error_ms"], 2.0);
+    EXPECT_EQ(node["sensors"].size(), 6U);
+}
+
+TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
+    Scene scene = daemon_scene();
+    scene.rig.nodes[0].node_id = 44;
+    scene.rig.nodes[0].name = "far";
+    play(scene, kAllWell);
+    Json node = status()["nodes"][0];
+    node.erase("sensors");
+    EXPECT_EQ(node,
+              Json::parse(R"({"id": 44, "name": "far", "verdict": "absent", "reason": null, "state": null,
+        "age_s": null, "degraded_sensors": null, "clock_known": false, "clock_ppm": null, "clock_error_ms": null})"));
+    EXPECT_EQ(
+        sensor(0),
+        Json::parse(R"({"index": 0, "name": "good", "state": null, "fault": null, "received": 0, "lost": 0,
+        "age_s": null, "rejected": null,
+        "camera": {"contradicts": false, "agreed": 0, "in_free_space": 0, "behind_surface": 0}})"));
+}
+
+TEST_F(StatusTest, has_why_a_node_is_refused_and_what_it_says_of_its_sensors) {
+    Scene scene = daemon_scene();
+    scene.rig.nodes[0].node_hash = 0x12345678;
+    scene.bus.send(4.52,
+                   wire::Heartbeat{.state = wire::NodeState::stopped,
+                                   .degraded_sensors = 3,
+                                   .uid_crc = crc16(ScriptedBus::uid_of(kLeft)),
+                                   .node_hash_low = 0xEE01},
+                   kLeft);
+    play(scene, kAllWell);
+    const Json node = status()["nodes"][0];
+    EXPECT_EQ(node["verdict"], "info_mismatch");
+    EXPECT_EQ(node["reason"], "low half of node_hash 0000ee01, the rig has 00005678");
+    EXPECT_EQ(node["state"], "stopped");
+    EXPECT_EQ(node["degraded_sensors"], 3);
+}
+
+TEST_F(StatusTest, has_each_sensors_newest_range_in_metres) {
+    const Json good = sensor(kGood);
+    EXPECT_EQ(good["index"], 0);
+    EXPECT_EQ(good["name"], "good");
+    EXPECT_EQ(good["state"], "ranging");
+    EXPECT_EQ(good["fault"], "none");
+    EXPECT_EQ(good["received"], 10);
+    EXPECT_EQ(good["lost"], 0);
+    EXPECT_NEAR(good["age_s"], 4.55 - 3.817, 1e-6) << "since it came, not since it was taken";
+    EXPECT_DOUBLE_EQ(good["range_m"], 1.42);
+    EXPECT_DOUBLE_EQ(good["sigma_m"], 0.01);
+    EXPECT_EQ(good["device_status"], 9);
+    EXPECT_EQ(good["zone"], 0);
+    EXPECT_EQ(good["rejected"], nullptr);
+    EXPECT_EQ(sensor(kSpare).contains("range_m"), false) << "it said nothing";
+}
+
+TEST_F(StatusTest, has_why_a_sensors_newest_reading_was_rejected_and_what_was_lost_before_it) {
+    Scene scene = daemon_scene();
+    wire::RangeReading reading = good_reading();
+    reading.device_status = kWrappedTarget;
+    scene.bus.range(4.4, kLeft, reading);
+    // 13 were sent since its first SENSOR_HEALTH, and 11 came.
+    scene.bus.send(4.52,
+                   wire::SensorHealth{.sensor = kGood,
+                                      .state = wire::SensorState::degraded,
+                                      .fault = wire::SensorFault::reads_disagree,
+                                      .sent = 13},
+                   kLeft);
+    play(scene, kAllWell);
+    const Json good = sensor(kGood);
+    EXPECT_EQ(good["rejected"], "status_fault");
+    EXPECT_EQ(good["device_status"], 7);
+    EXPECT_EQ(good["received"], 11);
+    EXPECT_EQ(good["lost"], 2);
+    EXPECT_EQ(good["state"], "degraded");
+    EXPECT_EQ(good["fault"], "reads_disagree");
+}
+
+TEST_F(StatusTest, has_what_the_camera_says_of_a_sensor_or_null_without_one) {
+    let_camera_contradict();
+    const SensorEvidence& evidence = pipeline_->builder().witness()->evidence(kLeft, kGood);
+    const Json camera = sensor(kGood)["camera"];
+    EXPECT_EQ(camera["contradicts"], true);
+    EXPECT_EQ(camera["in_free_space"], 6);
+    EXPECT_EQ(camera["agreed"], evidence.agreed);
+    EXPECT_EQ(camera["behind_surface"], evidence.behind_surface);
+    EXPECT_EQ(sensor(kSpare)["camera"]["in_free_space"], 0);
+    Scene scene = daemon_scene();
+    scene.rig.camera.reset();
+    play(scene, kAllWell);
+    EXPECT_EQ(sensor(kGood)["camera"], nullptr);
+}
+
+TEST_F(StatusTest, has_the_cameras_record_or_null) {
+    view_.camera->frames = 60;
+    view_.camera->displaced = 3;
+    view_.camera->untimed = 2;
+    view_.camera->opened = 4;
+    view_.camera->why = "was gone";
+    Json camera = status()["camera"];
+    EXPECT_NEAR(camera["age_s"], 0.05, kTiny);
+    camera.erase("age_s");
+    EXPECT_EQ(camera,
+              Json::parse(R"({"open": true, "why": "was gone", "frames": 60, "displaced": 3, "untimed": 2,
+        "opened": 4})"));
+    view_.camera->newest.reset();
+    EXPECT_EQ(status()["camera"]["age_s"], nullptr);
+    view_.camera.reset();
+    EXPECT_EQ(status()["camera"], nullptr);
+}
+
+TEST_F(StatusTest, has_what_came_through_the_joint_socket_or_null_without_one) {
+    EXPECT_EQ(status()["joints_socket"], nullptr);
+    const auto with_socket = inputs_with_joint_socket();
+    send_joints("0.5");
+    send_joints("0.5");  // sooner than the rig's 100 Hz has it
+    send_joints("half a turn");
+    send_joints("1 2 3");
+    with_socket->catch_up();
+    view_.inputs = with_socket.get();
+    EXPECT_EQ(
+        status()["joints_socket"],
+        Json::parse(
+            R"({"samples": 2, "thinned": 1, "joint_node_ignored": 0, "not_a_number": 1, "wrong_count": 1,
+                  "time_off": 0, "too_large": 0, "too_long": 0})"));
+}
+
+TEST_F(StatusTest, has_the_map_with_its_memory_and_saves) {
+    view_.saves = {.saved = 5, .failed = 1, .skipped = 2, .newest = host_at(4.3), .error = {}};
+    Json map = status()["map"];
+    EXPECT_EQ(map["known_voxels"], pipeline_->maps().fused()->known_voxels());
+    EXPECT_GT(map["known_voxels"], 100);
+    EXPECT_EQ(map["resolution_m"], 0.04);
+    EXPECT_DOUBLE_EQ(map["memory_mib"],
+                     static_cast<double>(pipeline_->maps().fused()->memory_bytes()) / 1'048'576);
+    EXPECT_EQ(map["memory_max_mib"], 800);
+    EXPECT_EQ(map["no_room"], 0);
+    EXPECT_EQ(map["saved"], 5);
+    EXPECT_EQ(map["saves_failed"], 1);
+    EXPECT_EQ(map["saves_skipped"], 2);
+    EXPECT_NEAR(map["saved_age_s"], 0.25, kTiny);
+    view_.saves.newest.reset();
+    EXPECT_EQ(status()["map"]["saved_age_s"], nullptr);
+}
+
+TEST_F(StatusTest, has_the_recording_or_null_and_the_reloads) {
+    EXPECT_EQ(status()["recording"], nullptr);
+    view_.reloads = {.count = 2, .dropped = 7};
+    EXPECT_EQ(status()["reloads"], Json::parse(R"({"count": 2, "dropped": 7})"));
+    Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, host_at(4.3));
+    view_.recorder = &recorder;
+    const Json recording = status()["recording"];
+    EXPECT_EQ(recording["state"], "recording");
+    EXPECT_NEAR(recording["seconds"], 0.25, kTiny);
+    EXPECT_EQ(recording["folder"], (folder_ / "recording").string());
+}
+
+TEST_F(StatusTest, has_a_balanced_account_of_every_unit_with_the_reasons_that_occurred) {
+    Scene scene = daemon_scene();
+    wire::RangeReading reading = good_reading();
+    reading.device_status = kWrappedTarget;
+    scene.bus.range(4.4, kLeft, reading);
+    play(scene, kAllWell);
+    const Json account = status()["account"];
+    EXPECT_EQ(
+        account["readings"],
+        Json::parse(
+            R"({"in": 11, "used": 10, "pending": 0, "rejected": {"status_fault": 1}, "balanced": true})"));
+    EXPECT_EQ(account["depth frames"],
+              Json::parse(R"({"in": 6, "used": 6, "pending": 0, "rejected": {}, "balanced": true})"));
+    EXPECT_EQ(account["joint samples"]["balanced"], true);
+    EXPECT_EQ(account["CAN frames"]["balanced"], true);
+    EXPECT_EQ(account.size(), 4U);
+}
+
+TEST_F(StatusTest, has_no_latency_where_no_reading_came_over_the_bus) {
+    EXPECT_EQ(status()["latency"],
+              Json::parse(R"({"readings": 0, "median_ms": 0.0, "p99_ms": 0.0, "max_ms": 0.0})"));
+}
+
+TEST_F(StatusTest, knows_when_each_kind_of_measurement_was_used_last) {
+    play(daemon_scene(), 0.4);
+    EXPECT_FALSE(view_.used.joint_sample || view_.used.reading || view_.used.depth_frame ||
+                 view_.used.time_back);
+    play(daemon_scene(), 6.0);
+    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.joint_sample->ns), 5.99, 0.012);
+    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.reading->ns), 3.817, 0.012);
+    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.depth_frame->ns), 4.5, 0.012);
+    EXPECT_FALSE(view_.used.time_back);
+    // The host begins anew: what it says and how the frames are stamped no longer fit.
+    Scene anew = good_scene();
+    std::vector<StampedFrame> frames = anew.bus.frames();
+    for (StampedFrame& entry : frames) entry.stamp.ns += 6'000'000'000;
+    play_on(frames, 10.0);
+    ASSERT_TRUE(view_.used.time_back);
+    EXPECT_EQ(status()["clock"]["times_back"], 1);
+    EXPECT_NE(told("time back"), "");
+}
+
+}  // namespace
+}  // namespace octoskin::test
