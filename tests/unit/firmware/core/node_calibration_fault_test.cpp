@@ -7,25 +7,15 @@
 
 #include "tests/unit/firmware/core/calibration_rig.hpp"
 
-namespace octoskin::node {
+namespace octoskin::node::calibrations {
 namespace {
 
-using test::fleet_config;
-using test::NodeRig;
-using test::SensorSetup;
-using wire::Calibration;
-using wire::CalibrationOutcome;
-using wire::CalibrationQuantity;
-using wire::Command;
-using wire::CommandCode;
-using wire::SensorState;
-using enum CalibrationOutcome;
-
+// Every kind of fault, at every 53rd transfer of a calibration: it ends, what it calls done is right, and
+// the sensor ranges again.
 TEST(NodeCalibration, under_any_single_fault_of_its_bus_ends_and_never_with_a_wrong_value) {
     using sim::I2cFaultKind;
     const auto prepared = [] {
-        auto rig = std::make_unique<NodeRig>(fleet_config(2, 2),
-                                             std::vector<SensorSetup>(setups_with(grey_target(0.170, 8.0))));
+        auto rig = std::make_unique<NodeRig>(fleet_config(2, 2), setups_with(grey_target(0.170, 8.0)));
         rig->run_for(kSecond / 2);
         command(*rig, CommandCode::calibrate_offset, kBad, 140);
         return rig;
@@ -77,4 +67,4 @@ TEST(NodeCalibration, of_a_sensor_that_is_reset_in_the_middle_ends_and_it_ranges
 }
 
 }  // namespace
-}  // namespace octoskin::node
+}  // namespace octoskin::node::calibrations
