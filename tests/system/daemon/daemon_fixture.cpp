@@ -1,8 +1,11 @@
 #include "tests/system/daemon/daemon_fixture.hpp"
 
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
+#include <csignal>
+#include <thread>
 
 #include "host/io/openni2/oni_writer.hpp"
 #include "hw/sim/experiment/experiment.hpp"
@@ -55,6 +58,13 @@ std::filesystem::path record_wall(const testing_support::ScratchFolder& folder, 
     return folder / "wall.oni";
 }
 
+SilentBus::SilentBus() {
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends_.data()), 0);
+}
+SilentBus::~SilentBus() {
+    ::close(ends_[1]);
+}
+
 DaemonTest::DaemonTest() {
     std::array<int, 2> ends{};
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
@@ -68,6 +78,16 @@ void DaemonTest::start(const std::vector<std::string>& more_arguments, const std
                        const std::vector<StampedFrame>& log) {
     daemon_.emplace(folder_, its_end_, more_arguments, rig);
     bus_.emplace(our_end_, log);
+}
+
+DaemonTest::Pause DaemonTest::hold_up(std::chrono::milliseconds duration) const {
+    Pause pause;
+    pause.before = daemon_->status();
+    daemon_->signal(SIGSTOP);
+    std::this_thread::sleep_for(duration);
+    daemon_->signal(SIGCONT);
+    pause.after = daemon_->status();
+    return pause;
 }
 
 bool DaemonTest::has_problem(const nlohmann::json& status, const std::string& text) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -28,15 +30,35 @@ namespace octoskin::test {
 [[nodiscard]] std::filesystem::path record_wall(const testing_support::ScratchFolder& folder,
                                                 std::size_t columns = 512);
 
+/// A bus on which nobody is.
+class SilentBus {
+  public:
+    SilentBus();
+    ~SilentBus();
+    SilentBus(const SilentBus&) = delete;
+    SilentBus& operator=(const SilentBus&) = delete;
+    /// For one daemon, which closes it.
+    [[nodiscard]] int end_of_daemon() const { return ends_[0]; }
+
+  private:
+    std::array<int, 2> ends_{};
+};
+
 class DaemonTest : public testing::Test {
   protected:
     DaemonTest();
     void start(const std::vector<std::string>& more_arguments = {"--no-camera"},
                const std::filesystem::path& rig = kExperiment,
                const std::vector<StampedFrame>& log = log_of_experiment());
-    static bool is_ranging(const nlohmann::json& status) {
-        return status["account"]["readings"]["used"].get<int>() > 100;
+    /// Takes the processor from it for so long. What it tells of itself before and after.
+    struct Pause {
+        nlohmann::json before, after;
+    };
+    [[nodiscard]] Pause hold_up(std::chrono::milliseconds duration) const;
+    static int readings_used(const nlohmann::json& status) {
+        return status["account"]["readings"]["used"].get<int>();
     }
+    static bool is_ranging(const nlohmann::json& status) { return readings_used(status) > 100; }
     static bool has_problem(const nlohmann::json& status, const std::string& text);
 
     testing_support::ScratchFolder folder_;

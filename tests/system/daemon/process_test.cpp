@@ -1,0 +1,112 @@
+// The daemon as a process: how it begins, takes new settings and goes on after it was killed; and a second
+// one.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "host/io/mapfile/map_file.hpp"
+#include "tests/system/daemon/daemon_fixture.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+TEST_F(DaemonTest, refuses_a_rig_with_a_mistake_with_exit_code_78) {
+    ::close(our_end_);
+    folder_.write("rig.yaml", "name: 5\nbogus: 1\n");
+    RunningDaemon daemon(folder_, its_end_, {}, folder_ / "rig.yaml");
+    const auto ended = daemon.wait(5s);
+    ASSERT_TRUE(ended);
+    EXPECT_EQ(*ended, 78) << daemon.log();
+    EXPECT_NE(daemon.log().find("rig.yaml:"), std::string::npos) << daemon.log();
+}
+
+TEST_F(DaemonTest, reloads_all_or_nothing) {
+    const auto rig_file =
+        folder_.write("rig.yaml", "extends: " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml\nname: first\n");
+    start({"--no-camera"}, rig_file);
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    EXPECT_EQ(daemon_->status()["rig"], "first");
+    const auto voxels = daemon_->status()["map"]["known_voxels"].get<int>();
+    folder_.write("rig.yaml", "extends: " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml\nname: second\n");
+    EXPECT_EQ(daemon_->status()["reloads"]["count"], 0);
+    daemon_->signal(SIGHUP);
+    ASSERT_TRUE(daemon_->wait_until([](const Json& status) { return status["rig"] == "second"; }, 5s))
+        << daemon_->log();
+    EXPECT_GE(daemon_->status()["map"]["known_voxels"].get<int>(), voxels) << "the map did not go on";
+    EXPECT_EQ(daemon_->status()["reloads"]["count"], 1);
+    EXPECT_LT(daemon_->status()["reloads"]["dropped"].get<int>(), 20) << "more than what can wait";
+
+    folder_.write("rig.yaml", "extends: nowhere.yaml\nname: third\n");
+    daemon_->signal(SIGHUP);
+    ASSERT_TRUE(daemon_->wait_until(
+        [](const Json& status) { return has_problem(status, "the old settings hold"); }, 5s))
+        << daemon_->log();
+    EXPECT_EQ(daemon_->status()["rig"], "second");
+    EXPECT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+}
+
+TEST_F(DaemonTest, goes_on_with_its_map_when_a_reload_gives_it_more_memory) {
+    const auto file = folder_.write("mapping.yaml", "base: robust\n");
+    start({"--no-camera", "--configuration", file.string()});
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    const auto voxels = daemon_->status()["map"]["known_voxels"].get<int>();
+    ASSERT_GT(voxels, 0);
+    folder_.write("mapping.yaml", "base: robust\nmap:\n  memory_max_mib: 321\n");
+    daemon_->signal(SIGHUP);
+    ASSERT_TRUE(daemon_->wait_until([](const Json& now) { return now["map"]["memory_max_mib"] == 321; }, 5s))
+        << daemon_->log();
+    EXPECT_GE(daemon_->status()["map"]["known_voxels"].get<int>(), voxels) << "the map did not go on";
+}
+
+TEST_F(DaemonTest, refuses_a_second_one_on_the_same_maps_and_names_the_first) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
+    const SilentBus other_bus;
+    RunningDaemon second(folder_, other_bus.end_of_daemon(),
+                         {"--no-camera", "--socket", (folder_ / "other").string()});
+    EXPECT_EQ(second.wait(5s), 73) << second.log();
+    EXPECT_NE(second.log().find("another octoskin (process " + std::to_string(daemon_->process()) + ")"),
+              std::string::npos)
+        << second.log();
+    EXPECT_TRUE(daemon_->status().is_object());
+}
+
+TEST_F(DaemonTest, refuses_a_second_one_on_the_same_socket_and_names_the_first) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
+    const SilentBus other_bus;
+    RunningDaemon second(folder_, other_bus.end_of_daemon());
+    EXPECT_EQ(second.wait(5s), 73) << second.log();
+    EXPECT_NE(second.log().find("another octoskin (process " + std::to_string(daemon_->process()) +
+                                ") has this socket"),
+              std::string::npos)
+        << second.log();
+    EXPECT_TRUE(daemon_->status().is_object()) << "the first one lost its socket";
+}
+
+TEST_F(DaemonTest, goes_on_with_the_saved_map_after_it_was_killed) {
+    start({"--no-camera", "--save-every", "1"});
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    ASSERT_TRUE(
+        daemon_->wait_until([](const Json& status) { return status["map"]["saved"].get<int>() >= 2; }, 10s));
+    daemon_->signal(SIGKILL);
+    EXPECT_EQ(daemon_->wait(5s), -SIGKILL);
+    const auto map = load_map(daemon_->maps() / "fused.ot");
+    ASSERT_TRUE(map) << map.error().message;
+    const SilentBus other_bus;
+    daemon_.emplace(folder_, other_bus.end_of_daemon(), std::vector<std::string>{"--no-camera"});
+    const auto up = daemon_->wait_until(
+        [&](const Json& status) {
+            return status["map"]["known_voxels"].get<std::size_t>() >= map->known_voxels();
+        },
+        5s);
+    ASSERT_TRUE(up) << daemon_->log();
+    EXPECT_LE(*up, 3s);
+}
+
+}  // namespace
+}  // namespace octoskin::test
