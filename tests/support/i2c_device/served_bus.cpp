@@ -136,6 +136,8 @@ void ServedBus::follow_lines() {
 
 void ServedBus::follow_lines_at(sim::SimTime now) {
     take_faults(now);
+    // The models remember 64 rangings: after a long pause, those of before it would be forgotten unrecorded.
+    for (const auto& sensor : sensors_) record(*sensor);
     for (const auto& sensor : sensors_) sensor->model.set_xshut(sensor->is_xshut_high(), now);
     drive_gpio1(now);
 }

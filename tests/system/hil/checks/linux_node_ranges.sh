@@ -18,15 +18,21 @@ expect_xshut() {
 listen
 for board in "${boards[@]}"; do start_node "$board" "$board.$1"; done
 for board in "${boards[@]}"; do await "the $board node" has_said "$board" "state ranging"; done
-expect_xshut 1 "while it ranges"
+# A sensor that is found silent is in reset for a moment, as happens where the processor is wanted elsewhere.
+for board in "${boards[@]}"; do
+    for line in 0 1 2 3; do
+        await "XSHUT $line of the $board board, while it ranges" grep -q 1 "${lines_of[$board]}/sim_gpio$line/value"
+    done
+done
 # Another program may use the bus meanwhile; the sensor is at its own address.
 expect "identification beside the node" "0xea 0xcc" "$(transfer 7 w2@0x30 0x01 0x0f r2)"
 refused "Device or resource busy" gpioset "$HIL_CHIP" 0=0
 
 interrupts() { awk '/octoskin-node/ { for (i = 2; i <= NF && $i ~ /^[0-9]+$/; ++i) sum += $i } END { print sum + 0 }' /proc/interrupts; }
 before=$(interrupts)
-listen_anew
-await "five readings of each sensor" have_ranged 5 ${#boards[@]}
+# What was heard before stays: a reading's bound may have been told before the reading.
+heard_before=$(wc -l <"$log")
+await "five readings of each sensor" have_ranged 5 ${#boards[@]} "$heard_before"
 after=$(interrupts)
 [ "$1" = classical ] || [ "$after" -gt $((before + 5)) ] || fail "the data-ready lines' interrupts: $before, then $after"
 
@@ -36,5 +42,5 @@ drive 0=1  # the line is free
 let_go
 stop_listening
 expect "frames that the host would reject" 0 "$(decoded | grep -c rejected || true)"
-sleep 0.1  # the record is written every 10 ms
-decoded | python3 "$(dirname "$0")/readings_are_true.py" "$HIL_FOLDER" ${#boards[@]}
+cp "$log" "$HIL_FOLDER/frames.log"
+decoded | tee "$HIL_FOLDER/frames.decoded" | python3 "$(dirname "$0")/readings_are_true.py" "$HIL_FOLDER" ${#boards[@]}

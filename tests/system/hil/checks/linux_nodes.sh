@@ -48,9 +48,10 @@ heard_times() {
     [ "$(decoded | grep -c "^$1")" -ge "$2" ]
 }
 heard() { heard_times "$1" 1; }
-# have_ranged COUNT NODES: so many readings of each sensor of so many nodes
+# have_ranged COUNT NODES [LINES]: so many readings of each sensor of so many nodes, after so many lines of the log
 have_ranged() {
     read -r -t 0.5 -u "$silence" || true
-    decoded | awk -v count="$1" -v sensors=$(($2 * 4)) '
+    tail -n +$((${3:-0} + 1)) "$log" >"$log.after"
+    "$HIL_BIN/decode_log" "$log.after" | awk -v count="$1" -v sensors=$(($2 * 4)) '
         $2 == "range" && ++seen[$1, $3] == count { ++enough } END { exit enough < sensors }'
 }
