@@ -32,12 +32,12 @@ Result<FolderLock, AppError> FolderLock::take(const std::filesystem::path& folde
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640);
     if (descriptor < 0) {
         const std::string why = made ? made.message() : std::strerror(errno);
-        return fail(ExitCode::cannot_create, folder.string() + ": no maps can be saved there: " + why);
+        return cannot_create(folder, "no maps can be saved there: " + why);
     }
     FolderLock lock(descriptor);
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-        return fail(ExitCode::cannot_create, folder.string() + ": another octoskin" + holder_of(descriptor) +
-                                                 " keeps its map there; stop it, or name another folder");
+        return cannot_create(folder, "another octoskin" + holder_of(descriptor) +
+                                         " keeps its map there; stop it, or name another folder");
     }
     const std::string own = std::to_string(::getpid());
     // On a full disk it goes without: who holds the lock counts, not what is in it.

@@ -79,18 +79,15 @@ Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int ty
     if (!address) return fail(ExitCode::usage, file.string() + ": a socket's path has 1 to 107 bytes");
     const auto lock = lock_folder_of(file);
     if (!lock) {
-        return fail(
-            ExitCode::cannot_create,
-            file.string() + ": another octoskin keeps its folder locked; is it stopped in mid-start?");
+        return cannot_create(file, "another octoskin keeps its folder locked; is it stopped in mid-start?");
     }
     if (const auto listener = find_listener(*address, type)) {
-        return fail(ExitCode::cannot_create, file.string() + ": another octoskin" + *listener +
-                                                 " has this socket; stop it, or name another one");
+        return cannot_create(
+            file, "another octoskin" + *listener + " has this socket; stop it, or name another one");
     }
     struct stat found {};
     if (::lstat(file.c_str(), &found) == 0) {
-        if (!S_ISSOCK(found.st_mode))
-            return fail(ExitCode::cannot_create, file.string() + ": is there and is no socket");
+        if (!S_ISSOCK(found.st_mode)) return cannot_create(file, "is there and is no socket");
         ::unlink(file.c_str());
     }
     const int descriptor = ::socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);

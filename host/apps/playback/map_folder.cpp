@@ -54,7 +54,7 @@ Result<SavedMaps, AppError> MapFolder::save(const NamedMaps& maps, MapOrigin ori
             if (const auto saved = save_map(*map, files_.draft() / file); !saved)
                 return unexpected(AppError{ExitCode::cannot_create, saved.error().message});
             const auto crc = crc32_of(files_.draft() / file);
-            if (!crc) return fail(ExitCode::cannot_create, file.string() + ": cannot be read back");
+            if (!crc) return cannot_create(file, "cannot be read back");
             origin.maps[file.string()] = *crc;
         }
     }

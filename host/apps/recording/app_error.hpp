@@ -1,6 +1,7 @@
 // What `octoskin` tells the shell and the person when something cannot be done.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 
@@ -29,6 +30,11 @@ struct AppError {
 
 [[nodiscard]] inline Unexpected<AppError> fail(ExitCode code, std::string message) {
     return unexpected(AppError{code, std::move(message)});
+}
+/// An output file or folder, and what is wrong with it.
+[[nodiscard]] inline Unexpected<AppError> cannot_create(const std::filesystem::path& output,
+                                                        const std::string& what) {
+    return fail(ExitCode::cannot_create, output.string() + ": " + what);
 }
 
 }  // namespace octoskin

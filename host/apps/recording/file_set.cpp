@@ -21,13 +21,9 @@ constexpr const char* kBeforeFolder = ".before";  ///< in the ready folder: what
 constexpr const char* kJournal = ".journal";      ///< in the ready folder: what is to be done
 constexpr const char* kJournalHead = "octoskin-file-set/1";
 
-Unexpected<AppError> fail(const fs::path& place, const std::string& what) {
-    return unexpected(AppError{ExitCode::cannot_create, place.string() + ": " + what});
-}
-
 Unexpected<AppError> busy(const fs::path& folder) {
-    return fail(folder,
-                "another octoskin is writing here; wait until it has ended, or give another directory");
+    return cannot_create(
+        folder, "another octoskin is writing here; wait until it has ended, or give another directory");
 }
 
 bool is_there(const fs::path& path) {
@@ -53,7 +49,7 @@ Status<AppError> write_journal(const fs::path& file, const Journal& journal) {
     for (const fs::path& name : journal.drop) out << "drop " << name.string() << '\n';
     for (const fs::path& name : journal.put) out << "put " << name.string() << '\n';
     out.close();
-    if (!out) return fail(file, "cannot write; is the disk full?");
+    if (!out) return cannot_create(file, "cannot write; is the disk full?");
     return Done{};
 }
 
@@ -70,8 +66,8 @@ Result<Journal, AppError> read_journal(const fs::path& file) {
         (verb == "put" ? journal.put : journal.drop).push_back(name);
     }
     if (!is_sound || journal.put.empty()) {
-        return fail(file, "is not what octoskin writes; remove " + file.parent_path().string() +
-                              " and make the files beside it again");
+        return cannot_create(file, "is not what octoskin writes; remove " + file.parent_path().string() +
+                                       " and make the files beside it again");
     }
     return journal;
 }
@@ -82,14 +78,14 @@ Status<AppError> flush(const fs::path& path) {
     const bool is_flushed = descriptor >= 0 && ::fsync(descriptor) == 0;
     const std::string reason = std::generic_category().message(errno);
     if (descriptor >= 0) ::close(descriptor);
-    if (!is_flushed) return fail(path, "cannot be flushed to the disk (" + reason + ")");
+    if (!is_flushed) return cannot_create(path, "cannot be flushed to the disk (" + reason + ")");
     return Done{};
 }
 
 Status<AppError> move(const fs::path& from, const fs::path& to) {
     std::error_code error;
     fs::rename(from, to, error);
-    if (error) return fail(to, error.message());
+    if (error) return cannot_create(to, error.message());
     return Done{};
 }
 
@@ -98,7 +94,8 @@ Status<AppError> check_place(const fs::path& place) {
     std::error_code error;
     const auto status = fs::status(place, error);
     if (!fs::exists(status) || fs::is_regular_file(status)) return Done{};
-    return fail(place, "is no file, and one of this name is to be put there or removed; move it away");
+    return cannot_create(place,
+                         "is no file, and one of this name is to be put there or removed; move it away");
 }
 
 /// The steps between the ready folder and the folder. Each looks at what is there, so that it can be begun
@@ -172,7 +169,7 @@ class Move {
         if (const auto checked = check_place(folder_ / name); !checked) return checked;
         std::error_code error;
         fs::create_directories(former.parent_path(), error);
-        if (error) return fail(former.parent_path(), error.message());
+        if (error) return cannot_create(former.parent_path(), error.message());
         if (how == Keep::linked && ::link((folder_ / name).c_str(), former.c_str()) == 0) return Done{};
         return move(folder_ / name, former);
     }
@@ -195,8 +192,9 @@ Status<AppError> carry_out(Move& moving) {
         return Done{};
     }
     if (const auto undone = moving.back(); !undone)
-        return fail(undone.error().message,
-                    "taking back what was moved failed, after " + moved.error().message);
+        return fail(
+            ExitCode::cannot_create,
+            undone.error().message + ": taking back what was moved failed, after " + moved.error().message);
     return moved;
 }
 
@@ -207,9 +205,9 @@ Status<AppError> finish_interrupted(const fs::path& folder) {
     if (!journal) return unexpected(journal.error());
     Move moving(folder, *journal);
     if (const auto moved = carry_out(moving); !moved) {
-        return unexpected(AppError{ExitCode::cannot_create,
-                                   moved.error().message + "; the files of a run that was killed wait in " +
-                                       ready.string() + ": try again after that, or remove them"});
+        return fail(ExitCode::cannot_create, moved.error().message +
+                                                 "; the files of a run that was killed wait in " +
+                                                 ready.string() + ": try again after that, or remove them");
     }
     return Done{};
 }
@@ -236,14 +234,14 @@ FileSet::~FileSet() {
 Result<FileSet, AppError> FileSet::begin(const fs::path& folder) {
     std::error_code error;
     const bool is_new = fs::create_directories(folder, error);
-    if (error) return fail(folder, error.message());
+    if (error) return cannot_create(folder, error.message());
     auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     if (!lock) return busy(folder);
     if (const auto finished = finish_interrupted(folder); !finished) return unexpected(finished.error());
     FileSet set(folder, is_new, std::move(*lock));
     fs::remove_all(set.draft_, error);  // of a process that was killed
     fs::create_directory(set.draft_, error);
-    if (error) return fail(folder, error.message());
+    if (error) return cannot_create(folder, error.message());
     return set;
 }
 

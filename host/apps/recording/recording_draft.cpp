@@ -10,10 +10,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Unexpected<AppError> refusal(const fs::path& place, const std::string& what) {
-    return unexpected(AppError{ExitCode::cannot_create, place.string() + ": " + what});
-}
-
 /// meta.yaml last.
 std::vector<fs::path> files_of(const RecordingPaths& paths) {
     return {paths.can_log(), paths.depth(), paths.depth_epoch(), paths.rig(), paths.robot(), paths.meta()};
@@ -37,9 +33,9 @@ Status<AppError> check_replaceable(const RecordingPaths& paths) {
     if (first == files.end()) return Done{};
     const auto meta = read_meta(paths);
     if (meta && meta->is_simulated()) return Done{};
-    return refusal(paths.directory, "has a " + first->filename().string() +
-                                        ", and no meta.yaml that says 'source: simulation': it is not "
-                                        "overwritten; give another directory, or remove it yourself");
+    return cannot_create(paths.directory, "has a " + first->filename().string() +
+                                              ", and no meta.yaml that says 'source: simulation': it is not "
+                                              "overwritten; give another directory, or remove it yourself");
 }
 
 /// What replay made of a former recording, in the recording's directory.
@@ -65,16 +61,17 @@ Result<RecordingDraft, AppError> RecordingDraft::create(const fs::path& director
     std::optional<FileLock> former;
     if (is_occupied(directory)) {
         if (!may_replace) {
-            return refusal(
+            return cannot_create(
                 directory,
                 "is not empty; give another directory, or --force to replace a simulated recording");
         }
         if (const auto checked = check_replaceable(paths); !checked) return unexpected(checked.error());
         auto lock = FileLock::take(paths.meta(), FileLock::Kind::exclusive);
         if (!lock) {
-            return refusal(directory,
-                           "another octoskin reads this recording; wait until it has ended, or give another "
-                           "directory");
+            return cannot_create(
+                directory,
+                "another octoskin reads this recording; wait until it has ended, or give another "
+                "directory");
         }
         former.emplace(std::move(*lock));
     }

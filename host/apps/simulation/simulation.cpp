@@ -51,7 +51,7 @@ class Recorder {
     static Result<Recorder, AppError> create(const RecordingPaths& paths, const rig::Rig& rig) {
         std::error_code error;
         fs::copy_file(rig.urdf, paths.robot(), fs::copy_options::overwrite_existing, error);
-        if (error) return fail(ExitCode::cannot_create, paths.robot().string() + ": " + error.message());
+        if (error) return cannot_create(paths.robot(), error.message());
         const std::string rig_text = rig::canonical_text(rig, paths.robot().filename().string());
         if (const auto written = write_text(paths.rig(), rig_text); !written)
             return unexpected(written.error());

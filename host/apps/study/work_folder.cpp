@@ -10,8 +10,7 @@ namespace octoskin {
 
 Result<WorkFolder, AppError> WorkFolder::create(const std::filesystem::path& parent) {
     std::string name = (parent / ".octoskin-work-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-        return fail(ExitCode::cannot_create, name + ": " + std::strerror(errno));
+    if (mkdtemp(name.data()) == nullptr) return cannot_create(name, std::strerror(errno));
     return WorkFolder(name);
 }
 
