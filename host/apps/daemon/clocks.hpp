@@ -1,6 +1,7 @@
 // This machine's two clocks, and what a receive stamp is on the one that never steps.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <optional>
 
@@ -10,6 +11,11 @@ namespace octoskin {
 
 [[nodiscard]] HostTime monotonic_now();
 [[nodiscard]] WallTime wall_now();
+
+/// As a figure, for what a person or a script is told.
+[[nodiscard]] constexpr double seconds_of(Nanoseconds duration) noexcept {
+    return std::chrono::duration<double>(duration).count();
+}
 
 /// Both clocks at one instant, as closely as can be told.
 struct ClockPair {

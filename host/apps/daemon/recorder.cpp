@@ -32,10 +32,6 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
             .first_map = pipeline.maps().fused()->copy()};
 }
 
-double seconds_of(Nanoseconds duration) {
-    return std::chrono::duration<double>(duration).count();
-}
-
 /// OpenNI2's recorder keeps depth up to 32.767 m. A larger one is no value to most rigs anyhow.
 bool is_storable(const DepthFrame& frame, double depth_max_m) {
     constexpr double kMmPerM = 1000.0;

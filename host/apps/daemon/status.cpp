@@ -4,6 +4,7 @@
 
 #include "common/range_status.hpp"
 #include "common/wire/names.hpp"
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/version/version.hpp"
 
 namespace octoskin {
@@ -11,14 +12,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double seconds(Nanoseconds duration) {
-    return static_cast<double>(duration.count()) * 1e-9;
-}
 double milliseconds(Nanoseconds duration) {
     return static_cast<double>(duration.count()) * 1e-6;
 }
 Json age_s(const std::optional<HostTime>& since, const std::optional<HostTime>& now) {
-    return since && now ? Json(seconds(*now - *since)) : Json(nullptr);
+    return since && now ? Json(seconds_of(*now - *since)) : Json(nullptr);
 }
 
 Json can_json(const DaemonView& view) {
@@ -30,7 +28,7 @@ Json can_json(const DaemonView& view) {
             {"received", counts.received},
             {"sent", counts.sent},
             {"not_sent", counts.not_sent},
-            {"busy_s", seconds(view.inputs->bus_busy())},
+            {"busy_s", seconds_of(view.inputs->bus_busy())},
             {"error_frames", counts.error_frames},
             {"dropped_by_kernel", counts.dropped},
             {"malformed", counts.malformed},
@@ -185,7 +183,7 @@ Json status_json(const DaemonView& view) {
     Json sentences = Json::array();
     for (const Problem& problem : problems(view)) sentences.push_back(problem.text);
     return {{"octoskin", program_version()},
-            {"uptime_s", seconds(view.now - view.started)},
+            {"uptime_s", seconds_of(view.now - view.started)},
             {"rig", view.rig->name},
             {"problems", std::move(sentences)},
             {"can", can_json(view)},
