@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/result.hpp"
+
 namespace octoskin {
 
 /// Names one reason for a rejection. A `Reject` enumeration counts from 0 and comes with an overload
@@ -24,6 +26,11 @@ class Account {
     void reject(Reject reason) noexcept {
         assert(static_cast<std::size_t>(reason) < kReasons);
         ++rejected_[static_cast<std::size_t>(reason)];
+    }
+    /// Uses or rejects one, as it turned out. True if it was used.
+    bool settle(const Status<Reject>& outcome) noexcept {
+        outcome ? use() : reject(outcome.error());
+        return outcome.has_value();
     }
 
     [[nodiscard]] std::uint64_t in() const noexcept { return in_; }

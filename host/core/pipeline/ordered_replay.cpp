@@ -28,32 +28,29 @@ class DepthByIndex {
     std::uint64_t next_ = 0;
 };
 
-template <class Reason>
-void book(Account<Reason>& account, const Status<Reason>& outcome) {
-    account.take_in();
-    outcome ? account.use() : account.reject(outcome.error());
-}
-
 class Committer {
   public:
     Committer(MapBuilder& builder, DepthSource* depth, OrderedOutcome& outcome)
         : builder_(builder), depth_(depth, outcome), outcome_(outcome) {}
 
     HostTime operator()(const JointMeasurement& joints) {
-        book(outcome_.joint_samples, builder_.add(joints));
+        outcome_.joint_samples.take_in();
+        outcome_.joint_samples.settle(builder_.add(joints));
         return joints.sampled;
     }
     HostTime operator()(const RangeMeasurement& reading) {
         const bool is_of_rig = builder_.has(reading.source);
-        book(outcome_.readings,
-             is_of_rig ? builder_.integrate(reading) : unexpected(ReadingReason::unknown_sensor));
+        outcome_.readings.take_in();
+        outcome_.readings.settle(is_of_rig ? builder_.integrate(reading)
+                                           : unexpected(ReadingReason::unknown_sensor));
         return reading.captured;
     }
     HostTime operator()(const DepthCommit& commit) {
         auto frame = commit.index ? depth_.at(*commit.index) : std::nullopt;
         if (frame) {
             frame->captured = commit.captured;  // a recording of depth frames has whole microseconds
-            book(outcome_.depth_frames, builder_.integrate(*frame));
+            outcome_.depth_frames.take_in();
+            outcome_.depth_frames.settle(builder_.integrate(*frame));
         } else {
             ++outcome_.depth_missing;
         }

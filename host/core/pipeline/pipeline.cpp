@@ -22,12 +22,6 @@ constexpr HostTime kEndOfTime{std::numeric_limits<std::int64_t>::max()};
 /// The camera's place in the order of sources: node 0 is the host.
 constexpr BeamSource kCameraSource{};
 
-template <class Reason>
-bool settle(Account<Reason>& account, const Status<Reason>& outcome) {
-    outcome ? account.use() : account.reject(outcome.error());
-    return outcome.has_value();
-}
-
 IntakeConfig intake_config(const PipelineConfig& config, const MappingConfig& mapping) {
     IntakeConfig intake = config.intake;
     intake.uses_no_return = mapping.no_return_clear_m > 0.0;
@@ -205,7 +199,7 @@ bool Pipeline::is_placed(const ReleaseKey& key) const {
 
 void Pipeline::release_joints(HostTime until) {
     while (joints_waiting_.size() > 0 && joints_waiting_.front()->captured <= until) {
-        settle(accounts_.joint_samples, builder_.add(joints_waiting_.pop()));
+        accounts_.joint_samples.settle(builder_.add(joints_waiting_.pop()));
     }
 }
 
@@ -218,8 +212,8 @@ void Pipeline::release_measurements(HostTime until) {
         if (!next || (next->captured > until && !is_placed(*next))) {
             return;
         }
-        const bool is_used = is_depth_next ? settle(accounts_.depth_frames, integrate(depth_waiting_.pop()))
-                                           : settle(accounts_.readings, integrate(readings_waiting_.pop()));
+        const bool is_used = is_depth_next ? accounts_.depth_frames.settle(integrate(depth_waiting_.pop()))
+                                           : accounts_.readings.settle(integrate(readings_waiting_.pop()));
         integrated_ = is_used ? next : integrated_;
     }
 }

@@ -24,6 +24,16 @@ TEST(Account, balances_only_if_every_input_has_one_fate) {
     EXPECT_FALSE(account.is_balanced()) << "one fate too many is a defect, too";
 }
 
+TEST(Account, settles_an_input_as_it_turned_out) {
+    Account<Fruit> account;
+    account.take_in(2);
+    EXPECT_TRUE(account.settle(Done{}));
+    EXPECT_FALSE(account.settle(unexpected(Fruit::stolen)));
+    EXPECT_EQ(account.used(), 1U);
+    EXPECT_EQ(account.rejected(Fruit::stolen), 1U);
+    EXPECT_TRUE(account.is_balanced());
+}
+
 TEST(Account, prints_what_happened_by_name_and_says_if_the_sum_is_wrong) {
     Account<Fruit> account;
     account.take_in(5);
