@@ -83,7 +83,10 @@ TEST_F(StatusTest, has_each_node_with_its_clock_in_ppm_and_ms) {
     EXPECT_EQ(node["degraded_sensors"], 0);
     EXPECT_EQ(node["clock_known"], true);
     EXPECT_NEAR(node["clock_ppm"], -80.0, 1.0) << "host seconds per second of its clock, which is fast";
-    EXPECT_GT(node["clock_error_ms"], 0.001);
+    const auto bound = pipeline_->intake().clock(kLeft).error_bound(*view_.bus_now);
+    ASSERT_TRUE(bound);
+    EXPECT_NEAR(node["clock_error_ms"], static_cast<double>(bound->count()) / 1'000'000, kTiny);
+    EXPECT_GT(node["clock_error_ms"], 0.01);
     EXPECT_LT(node["clock_error_ms"], 2.0);
     EXPECT_EQ(node["sensors"].size(), 6U);
 }
