@@ -12,7 +12,8 @@ string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_MINSIZEREL "${CMAKE_CXX_FLAGS_MINSI
 
 set(OCTOSKIN_SANITIZE "" CACHE STRING "Sanitizers, as -fsanitize= takes them")
 option(OCTOSKIN_LIBFUZZER "Link the fuzz targets with clang's libFuzzer; needs fuzzer-no-link among the sanitizers" OFF)
-option(OCTOSKIN_UNITY "Compile several sources of a library at once: a whole build takes less, a small change more" OFF)
+set(OCTOSKIN_UNITY "" CACHE STRING
+    "Rooms (a regular expression) whose libraries' sources are compiled several at once: a whole build takes less, a small change more")
 option(OCTOSKIN_COVERAGE "Instrument for gcov" OFF)
 if(OCTOSKIN_SANITIZE)
     target_compile_options(octoskin_compile_options INTERFACE

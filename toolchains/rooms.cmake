@@ -5,7 +5,8 @@
 #   octoskin_program(<name> ROOM <room> SOURCES ... [DEPENDS ...] [EXTERNAL ...])
 #   octoskin_test(<name> LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...])
 #
-# With OCTOSKIN_UNITY a library's sources are compiled several at once, but for one that is told to keep them APART.
+# In the rooms that OCTOSKIN_UNITY names a library's sources are compiled several at once, but for one that is told to keep
+# them APART.
 #
 # DEPENDS names our own targets only; EXTERNAL names third-party ones. Includes are written from the
 # repository's root ("common/wire/codec.hpp"), so every include line says which room it reaches into.
@@ -119,7 +120,7 @@ function(octoskin_library name)
     if(ARG_SOURCES)
         add_library(${target} STATIC)
         target_sources(${target} PRIVATE ${sources})
-        if(OCTOSKIN_UNITY AND NOT ARG_APART)
+        if(OCTOSKIN_UNITY AND ARG_ROOM MATCHES "^(${OCTOSKIN_UNITY})$" AND NOT ARG_APART)
             set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
             # A class whose parts are in an unnamed namespace is then no longer in the compiler's main file.
             target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
