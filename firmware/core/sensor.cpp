@@ -43,7 +43,6 @@ SensorState state_after(SensorFault fault, bool has_ever_answered) noexcept {
 Sensor::Sensor(const SensorConfig& config, const SensorSurroundings& surroundings,
                const vl53l1x::Options& options, const RangingRules& rules, const Policy& policy, NodeTime now)
     : config_(config),
-      xshut_(surroundings.xshut),
       policy_(policy),
       device_(surroundings.bus, options),
       bring_up_(device_, surroundings.default_address, surroundings.xshut, config_, policy),

@@ -149,7 +149,6 @@ class Sensor {
     [[nodiscard]] bool is_reinitialisation_due() const noexcept;
 
     const SensorConfig& config_;
-    XshutLines& xshut_;
     const Policy& policy_;
     vl53l1x::Device device_;
     BringUp bring_up_;

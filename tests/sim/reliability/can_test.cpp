@@ -140,7 +140,6 @@ TEST_F(ReliabilityCanTest, C11_hearing_its_own_id_stops_its_ranges_is_told_and_e
 }
 
 TEST(ReliabilityCan, C11_two_nodes_under_one_id_both_fall_silent_within_two_heartbeats) {
-    sim::Present present;
     // Two whole rigs whose buses are tied together frame by frame.
     NodeRig a(fleet_config(2, 1), std::vector<SensorSetup>(2));
     NodeRig b(fleet_config(2, 1), std::vector<SensorSetup>(2), kWrapsAfter5s);

@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <ranges>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -198,7 +197,8 @@ void ServedBus::record(Wired& wired) {
         return ranging.ready <= wired.recorded_until;
     };
     const auto unknown = std::find_if(history.rbegin(), history.rend(), is_known).base();
-    for (const sim::RangingRecord& ranging : std::ranges::subrange(unknown, history.end())) {
+    for (auto made = unknown; made != history.end(); ++made) {
+        const sim::RangingRecord& ranging = *made;
         wired.recorded_until = ranging.ready;
         std::ostringstream line;
         line << wired.name << ' ' << ranging.index << ' ' << ranging.window_middle.us << ' '

@@ -19,7 +19,6 @@ using test::SensorSetup;
 using wire::SensorFault;
 using wire::SensorState;
 
-constexpr Microseconds kMillisecond{1'000};
 constexpr Microseconds kSecond{1'000'000};
 
 class NodeRecoveryTest : public testing::Test {

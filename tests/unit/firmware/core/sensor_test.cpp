@@ -41,8 +41,8 @@ class SensorTest : public testing::Test, private XshutLines {
     }();
     test::SensorBench bench_;
     sim::SensorModel& part_ = bench_.add(test::wall_at(1.0));
-    const vl53l1x::Options options_;
-    const Policy policy_;
+    const vl53l1x::Options options_{};
+    const Policy policy_{};
     PhaseClock clock_{bench_.now()};
     DefaultAddress default_address_{bench_.bus(), options_};
     Sensor sensor_{config_,     {bench_.bus(), default_address_, *this, clock_}, options_, {}, policy_,

@@ -40,8 +40,7 @@ class CanControllerTest : public ::testing::Test {
             put_ = (put_ + 1) % 3;
             update_queue();
         });
-        space_.on_write(kTxbcr,
-                        [this](std::uint32_t& cancelled, std::uint32_t value) { cancelled |= value; });
+        space_.on_write(kTxbcr, [](std::uint32_t& cancelled, std::uint32_t value) { cancelled |= value; });
         space_.on_write(kIr, [](std::uint32_t& flags, std::uint32_t value) { flags &= ~value; });
         space_.on_write(kRxf0a, [this](std::uint32_t&, std::uint32_t index) {
             EXPECT_EQ(index, received_get_);
