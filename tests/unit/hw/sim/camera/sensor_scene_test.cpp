@@ -39,8 +39,11 @@ class ExperimentSensor : public testing::Test {
 
     /// The flange points down, so its z is -z of base, its y is -y, and its x is x.
     static Eigen::Isometry3d looking(const Eigen::Vector3d& direction_flange) {
+        const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+        const Eigen::Vector3d axis = z.cross(direction_flange);
         return Eigen::Isometry3d(
-            Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction_flange));
+            Eigen::AngleAxisd(std::acos(z.dot(direction_flange)),
+                              axis.isZero() ? Eigen::Vector3d::UnitX() : axis.normalized()));
     }
 
     static Solid box_at(const Eigen::Vector3d& size_m, const Eigen::Vector3d& centre) {
