@@ -48,7 +48,7 @@ MeshOrError ellipsoid_of(const sdf::Ellipsoid& ellipsoid) {
     return checked(is_size(radii.x()) && is_size(radii.y()) && is_size(radii.z()), ellipsoid_mesh(radii));
 }
 
-MeshOrError read_mesh(const sdf::Mesh& mesh) {
+MeshOrError mesh_file_of(const sdf::Mesh& mesh) {
     if (!mesh.Submesh().empty()) {
         return unexpected("submesh '" + mesh.Submesh() +
                           "' is not supported; give it a mesh file of its own");
@@ -100,7 +100,7 @@ Result<TriangleMesh, std::string> mesh_of(const sdf::Geometry& geometry) {
         case sdf::GeometryType::PLANE:
             return plane_of(*geometry.PlaneShape());
         case sdf::GeometryType::MESH:
-            return read_mesh(*geometry.MeshShape());
+            return mesh_file_of(*geometry.MeshShape());
         case sdf::GeometryType::HEIGHTMAP:
         case sdf::GeometryType::EMPTY:
             break;

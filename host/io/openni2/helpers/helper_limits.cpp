@@ -11,7 +11,7 @@ namespace octoskin::openni2 {
 namespace {
 
 // The sanitizers reserve terabytes of addresses, which no limit would let them.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef OCTOSKIN_SANITIZED
 constexpr bool kLimitsMemory = false;
 #else
 constexpr bool kLimitsMemory = true;
