@@ -86,7 +86,7 @@ void prepare_memory() {
 extern "C" void reset_handler() {
     using namespace octoskin::stm32g4;
     enable_fpu();
-    scb.write("VTOR", reinterpret_cast<std::uintptr_t>(&vector_table));
+    scb.write("VTOR", static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(&vector_table)));
     scb.set("CCR.DIV_0_TRP", 1);
     prepare_memory();
     application();
