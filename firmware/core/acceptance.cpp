@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/range_overhead.hpp"
 #include "common/range_status.hpp"
 #include "common/wire/messages.hpp"
 #include "firmware/core/stream_gate.hpp"
@@ -22,6 +23,12 @@ std::uint8_t status_on_wire(const vl53l1x::Measurement& measurement) noexcept {
 
 bool is_after(NodeTime time, NodeTime other) noexcept {
     return !is_reached(time, other);
+}
+
+/// A range begins up to `kRangeOverheadMax` before its window, and how long before is not known.
+TimeBracket begin_of(const TimeBracket& ready, Microseconds budget) noexcept {
+    const TimeBracket window = shifted(ready, -budget);
+    return {window.earliest - kRangeOverheadMax, window.latest};
 }
 
 }  // namespace
@@ -94,7 +101,7 @@ Verdict Acceptance::judge(const ResultSeen& seen, const ZoneCycle& zones) noexce
     results_refused_ = 0;
     was_stale_ = false;
 
-    reading_ = {.zone = zones.in_force(shifted(ready, -budget_)),
+    reading_ = {.zone = zones.in_force(begin_of(ready, budget_)),
                 .device_status = status_on_wire(measurement),
                 .range_mm = measurement.range_mm,
                 .sigma_quarter_mm = measurement.sigma_quarter_mm,
@@ -205,7 +212,7 @@ std::optional<TimeBracket> Acceptance::next_ready() const noexcept {
 std::optional<NodeTime> Acceptance::next_range_begin() const noexcept {
     const auto next = next_ready();
     if (!next) return std::nullopt;
-    return next->earliest - budget_;
+    return begin_of(*next, budget_).earliest;
 }
 
 bool Acceptance::is_silent(NodeTime now) const noexcept {

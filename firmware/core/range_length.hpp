@@ -5,13 +5,11 @@
 
 #include <algorithm>
 
+#include "common/range_overhead.hpp"
 #include "common/time.hpp"
 #include "firmware/core/time_bracket.hpp"
 
 namespace octoskin::node {
-
-/// From the start of a range to its result, this much beyond its budget at most.
-inline constexpr Microseconds kRangeOverheadMax{5'000};
 
 class RangeLength {
   public:

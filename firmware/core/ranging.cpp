@@ -2,6 +2,7 @@
 
 #include <cassert>
 
+#include "common/range_overhead.hpp"
 #include "firmware/core/sensor_fault.hpp"
 
 namespace octoskin::node {
@@ -87,8 +88,11 @@ Ranging::Result Ranging::advance(NodeTime now) {
                 return {};
             }
             return {.bus = BusUse::keeps};
-        case vl53l1x::Progress::done:
-            return {.event = on_step_done(now)};
+        case vl53l1x::Progress::done: {
+            const Event event = on_step_done(now);
+            // Others would have the bus for longer than the pause between two ranges.
+            return {.bus = step_ == Step::writing_zone ? BusUse::keeps : BusUse::releases, .event = event};
+        }
         case vl53l1x::Progress::failed:
             return {.event = on_step_failed(device_.error(), now)};
         case vl53l1x::Progress::idle:
@@ -339,7 +343,7 @@ Ranging::Event Ranging::fail(SensorFault fault) {
 void Ranging::after_result(NodeTime now) {
     checks_.on_reading();
     const Reading& judged = acceptance_.reading();
-    zones_.note_range(judged.capture - judged.capture_bound - budget() / 2);
+    zones_.note_range(judged.capture - judged.capture_bound - budget() / 2 - kRangeOverheadMax);
     if (ranges_ == 0) comes_as_expected_ = first_expected_.contains(judged.capture + budget() / 2);
     ++ranges_;
     is_trim_due_ = is_trim_due_ || is_restart_wanted(now);

@@ -88,9 +88,11 @@ class Ranging {
         return step_ == Step::awaiting_data && is_early_ && !is_reached(early_until_, now);
     }
     /// Not while a start is under way, whose instant decides when all its ranges will be; nor between two
-    /// polls of which one confirms the other.
+    /// polls of which one confirms the other; nor before a zone's write, which is soon over and soon too
+    /// late.
     [[nodiscard]] bool may_be_interrupted() const noexcept {
-        return step_ != Step::starting && !(step_ == Step::reading && device_.is_confirming_ready());
+        return step_ != Step::starting && step_ != Step::writing_zone &&
+               !(step_ == Step::reading && device_.is_confirming_ready());
     }
     /// When the bus is wanted; empty when nothing is under way.
     [[nodiscard]] std::optional<NodeTime> due() const noexcept {

@@ -237,7 +237,7 @@ BusUse Sensor::advance_ranging(NodeTime now) {
             on_failure(ranging_.fault(), ranging_.can_restart(), now);
             break;
     }
-    return result.bus;
+    return mode_ == Mode::ranging ? result.bus : BusUse::releases;
 }
 
 /// A range that failed in the part's own opinion is told, with its status, and proves nothing. One may be an

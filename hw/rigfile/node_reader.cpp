@@ -62,6 +62,20 @@ void refuse_shared_wiring(const Table& sensor, const SensorConfig& config, Taken
     taken.take(sensor, "xshut_line", fmt::format("xshut_line {}", config.xshut_line));
 }
 
+/// A zone is written only where no range can begin meanwhile: elsewhere the sensor would stay in its first.
+void refuse_zones_without_a_pause(const Table& sensor, const NodeConfig& node, const SensorConfig& config) {
+    if (config.zone_count < 2) return;
+    const std::int64_t pause_ms = (zone_pause(node, config).count() + 999) / 1'000;
+    if (config.inter_measurement_ms >= config.timing_budget_ms + pause_ms) return;
+    sensor.fail(
+        "inter_measurement_ms",
+        fmt::format(
+            "expected at least timing_budget_ms + {} = {} with {} zones, found {}: a zone must be written "
+            "before the next range can begin; use a longer inter_measurement_ms, a shorter "
+            "timing_budget_ms, or one zone",
+            pause_ms, config.timing_budget_ms + pause_ms, config.zone_count, config.inter_measurement_ms));
+}
+
 void read_sensors(const Table& node_table, const NodeContext& context, Node& node) {
     const Value& list = node_table.require("sensors");
     const std::string path = node_table.path_of("sensors");
@@ -83,6 +97,7 @@ void read_sensors(const Table& node_table, const NodeContext& context, Node& nod
         SensorEntry entry = read_sensor(table, context.robot, context.base_link, node.board);
         taken.take(table, "name", fmt::format("name '{}'", entry.sensor.name));
         refuse_shared_wiring(table, entry.config, taken);
+        refuse_zones_without_a_pause(table, node.config, entry.config);
         if (++sensors_on_bus[entry.config.bus] > node.board.sensors_per_bus_max) {
             table.fail("bus",
                        fmt::format("expected at most {} sensors on a bus of a {}, found more on bus {}",

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "firmware/core/range_length.hpp"
 #include "tests/support/node_rig.hpp"
 
 namespace octoskin::node {
@@ -37,6 +38,16 @@ const TrueRange* truth_of(const NodeRig& rig, std::uint8_t sensor, const SaidRea
     return found;
 }
 
+/// Of which the part measured another zone than they say.
+int wrong_zones(const NodeRig& rig, std::uint8_t sensor, const std::vector<SaidReading>& readings) {
+    int wrong = 0;
+    for (const SaidReading& said : readings) {
+        const TrueRange* truth = truth_of(rig, sensor, said);
+        wrong += truth == nullptr || truth->roi != kZones.at(said.reading.zone) ? 1 : 0;
+    }
+    return wrong;
+}
+
 TEST(NodeZones, tells_the_zone_in_which_each_range_was_truly_taken) {
     for (const double slow_clock_factor : {1.00, 1.075, 1.15}) {
         std::vector<SensorSetup> setups(6);
@@ -53,6 +64,77 @@ TEST(NodeZones, tells_the_zone_in_which_each_range_was_truly_taken) {
                 ++count.at(said.reading.zone);
             }
             for (const int readings : count) EXPECT_GE(readings, 80) << int{sensor};
+        }
+    }
+}
+
+struct ZonedRate {
+    DistanceMode mode;
+    std::uint16_t budget_ms;
+    std::uint16_t period_ms;
+};
+
+/// What a range takes before its window is not public: each of the six parts takes another time, from nothing
+/// to all that the firmware allows for.
+NodeRig rig_of(const ZonedRate& rate) {
+    NodeConfig config = zoned_config(6, 3);
+    std::vector<SensorSetup> setups(6);
+    for (std::uint8_t i = 0; i < 6; ++i) {
+        SensorConfig& sensor = config.sensors[i];
+        sensor.distance_mode = rate.mode;
+        sensor.timing_budget_ms = rate.budget_ms;
+        sensor.inter_measurement_ms = rate.period_ms;
+        sensor.phase_us = static_cast<std::uint16_t>(1'000U * rate.period_ms * i / 6);
+        setups[i].part.range_overhead = kRangeOverheadMax * i / 5;
+        setups[i].part.slow_clock_factor = 1.04 + 0.01 * i;
+    }
+    return {config, setups};
+}
+
+// A slow loop writes zones anywhere in the pause between two ranges, and beyond it.
+TEST(NodeZones, never_tells_a_wrong_zone_however_long_before_its_window_a_range_begins) {
+    constexpr std::array<ZonedRate, 8> kRates{{{DistanceMode::short_range, 15, 20},
+                                               {DistanceMode::short_range, 15, 24},
+                                               {DistanceMode::long_range, 20, 25},
+                                               {DistanceMode::long_range, 20, 29},
+                                               {DistanceMode::long_range, 20, 33},
+                                               {DistanceMode::long_range, 33, 40},
+                                               {DistanceMode::long_range, 33, 50},
+                                               {DistanceMode::long_range, 100, 111}}};
+    for (const ZonedRate& rate : kRates) {
+        for (const std::int64_t step_us : {0, 300, 1'000, 1'700}) {
+            NodeRig rig = rig_of(rate);
+            if (step_us == 0) {
+                rig.run_for(5 * kSecond);
+            } else {
+                rig.run_in_steps_for(5 * kSecond, Microseconds{step_us});
+            }
+            for (std::uint8_t sensor = 0; sensor < 6; ++sensor) {
+                const auto readings = rig.readings_of(sensor);
+                EXPECT_GE(readings.size(), 20U);
+                EXPECT_EQ(wrong_zones(rig, sensor, readings), 0)
+                    << "of " << readings.size() << ": overhead " << int{sensor} << " ms, period "
+                    << rate.period_ms << " ms, step " << step_us << " us";
+            }
+        }
+    }
+}
+
+// Those periods that a rig file may have at the least, with three zones.
+TEST(NodeZones, cycles_where_the_pause_between_two_ranges_is_just_long_enough) {
+    constexpr std::array<ZonedRate, 4> kRates{{{DistanceMode::short_range, 15, 24},
+                                               {DistanceMode::long_range, 20, 29},
+                                               {DistanceMode::long_range, 33, 42},
+                                               {DistanceMode::long_range, 100, 109}}};
+    for (const ZonedRate& rate : kRates) {
+        NodeRig rig = rig_of(rate);
+        rig.run_for(20 * kSecond);
+        for (std::uint8_t sensor = 0; sensor < 6; ++sensor) {
+            const auto readings = rig.readings_of(sensor);
+            std::array<std::size_t, 3> count{};
+            for (const SaidReading& said : readings) ++count.at(said.reading.zone);
+            for (const std::size_t of_zone : count)
+                EXPECT_GE(of_zone, readings.size() / 4) << rate.period_ms << " ms, " << int{sensor};
         }
     }
 }

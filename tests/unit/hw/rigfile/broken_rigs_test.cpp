@@ -157,6 +157,8 @@ const Broken kBroken[] = {
     {"zone-too-narrow.yaml", 4, "nodes[0].sensors[0].zones[0].width_spads", "from 4 to 16, found '3'"},
     {"no-zones.yaml", 3, "nodes[0].sensors[0].zones", "expected 1 to 9 zones, found 0"},
     {"ten-zones.yaml", 3, "nodes[0].sensors[0].zones", "expected 1 to 9 zones, found 10"},
+    {"zones-without-a-pause.yaml", 3, "nodes[0].sensors[0].inter_measurement_ms",
+     "expected at least timing_budget_ms + 9 = 42 with 2 zones, found 41"},
     // Buses.
     {"odd-bitrate.yaml", 3, "bus.nominal_bitrate_bps",
      "expected one of 125000, 250000, 500000, 1000000, found 300000"},

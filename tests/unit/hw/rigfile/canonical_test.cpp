@@ -112,6 +112,21 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+// The range before is read and the zone written in 3 ms, the guard is 0.9 ms, and the next range may begin
+// 5 ms before its window of 33.
+TEST_F(RigText, zones_need_a_pause_between_ranges_and_a_sensor_with_one_zone_does_not) {
+    const auto with_period = [](const std::string& text, int period_ms) {
+        return replaced(text, "inter_measurement_ms: 50",
+                        "inter_measurement_ms: " + std::to_string(period_ms));
+    };
+    const std::string one_zone = replaced(
+        kFullRig, "          - {centre_spad: 151, width_spads: 4, height_spads: 6, offset_m: -0.002}\n", "");
+    EXPECT_EQ(read_good(with_period(kFullRig, 42)).nodes.at(0).config.sensors[0].inter_measurement_ms, 42);
+    EXPECT_FALSE(read(with_period(kFullRig, 41)));
+    EXPECT_FALSE(read(replaced(with_period(kFullRig, 42), "zone_guard_us: 900", "zone_guard_us: 1900")));
+    EXPECT_EQ(read_good(with_period(one_zone, 41)).nodes.at(0).config.sensors[0].inter_measurement_ms, 41);
+}
+
 TEST_F(RigText, every_value_of_a_full_rig_arrives) {
     const Rig rig = read_good(kFullRig);
     EXPECT_EQ(rig.name, "full");
