@@ -25,6 +25,13 @@ bool is_after(NodeTime time, NodeTime other) noexcept {
     return !is_reached(time, other);
 }
 
+/// The wire's classical time field repeats after 262 ms. A reading is half a budget old when it is ready, 100
+/// ms at most, and waits to be sent for up to 50.
+constexpr Microseconds kReadLateMax{100'000};
+
+/// The stream count comes round after so many ranges.
+constexpr std::int64_t kStreamCycle = 128;
+
 /// A range begins up to `kRangeOverheadMax` before its window, and how long before is not known.
 TimeBracket begin_of(const TimeBracket& ready, Microseconds budget) noexcept {
     const TimeBracket window = shifted(ready, -budget);
@@ -84,7 +91,7 @@ Verdict Acceptance::judge(const ResultSeen& seen, const ZoneCycle& zones) noexce
         return Verdict::refused;
     }
     const auto steps = steps_to(measurement.stream_count);
-    if (is_count_in_doubt(steps)) tracker_.forget();
+    if (is_count_in_doubt(steps) || has_count_come_round(steps, seen.read_end)) tracker_.forget();
     const std::uint32_t ranges = ranges_since_last(steps, seen.read_end);
     const TimeBracket ready = ready_time(seen, ranges);
 
@@ -109,7 +116,8 @@ Verdict Acceptance::judge(const ResultSeen& seen, const ZoneCycle& zones) noexce
                 .ambient = measurement.ambient,
                 .capture = ready.middle() - budget_ / 2,
                 .capture_bound = ready.half_width()};
-    const bool is_dated = reading_.capture_bound <= policy_.capture_bound_max;
+    const bool is_dated = reading_.capture_bound <= policy_.capture_bound_max &&
+                          elapsed(ready.latest, seen.read_end) <= kReadLateMax;
     return is_dated && reading_.zone != wire::kZoneUnknown ? Verdict::accepted : Verdict::undated;
 }
 
@@ -131,6 +139,12 @@ bool Acceptance::is_count_in_doubt(std::optional<std::uint8_t> steps) const noex
     if (results_refused_ == 0) return false;
     if (!has_seen_not_ready()) return true;
     return not_ready_polls_ == 1 && steps && *steps != results_refused_ + 1;
+}
+
+/// Whoever was kept from asking for that long (4 s at 30 Hz) does not know how many ranges were made.
+bool Acceptance::has_count_come_round(std::optional<std::uint8_t> steps, NodeTime read_end) const noexcept {
+    if (!steps || !last_ready_) return false;
+    return elapsed(*last_ready_, read_end) > (*steps + kStreamCycle / 2) * tracker_.period();
 }
 
 std::uint32_t Acceptance::ranges_since_last(std::optional<std::uint8_t> steps,
@@ -168,7 +182,10 @@ TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges)
     // when, unless there was no earlier range.
     const TimeBracket polled{not_ready, seen.ready_seen};
     const TimeBracket until_read{not_ready, seen.read_end};
-    const bool is_of_this = predicted ? intersection(polled, *predicted).has_value() : is_read_in_time(seen);
+    // The count begins at 0 after a start, and never comes back to it.
+    const bool is_counted_next = gate_ == StreamGate::advanced &&
+                                 (has_accepted() ? predicted && is_next : seen.measurement.stream_count == 0);
+    const bool is_of_this = is_read_of(polled, predicted, seen.read_end, is_counted_next);
     const bool is_seen_low = not_ready_polls_ >= (is_believed ? 1U : 2U);
     const bool is_known_low =
         is_next && !was_stale_ && is_rhythm_proven() && is_lone_poll_believed(predicted);
@@ -176,9 +193,16 @@ TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges)
     return tracker_.observe(is_edge_seen ? polled : until_read, ranges);
 }
 
-/// Whether what was read is still the data that was seen to be ready, however short the period may be.
-bool Acceptance::is_read_in_time(const ResultSeen& seen) const noexcept {
-    return elapsed(seen.ready_seen, seen.read_end) < tracker_.period() / 2;
+/// Whether what was read is the data that became ready within `polled`. Who was kept waiting before the read
+/// may have read the next range's: then only the stream count tells, or a prediction that leaves no room for
+/// that one.
+bool Acceptance::is_read_of(const TimeBracket& polled, const std::optional<TimeBracket>& predicted,
+                            NodeTime read_end, bool is_counted_next) const noexcept {
+    if (predicted && !intersection(polled, *predicted)) return false;
+    if (is_counted_next) return true;
+    const NodeTime next_earliest = polled.earliest + tracker_.period() * 3 / 4;
+    if (!is_reached(next_earliest, read_end)) return true;
+    return predicted && !intersection({next_earliest, read_end}, *predicted);
 }
 
 bool Acceptance::is_lone_poll_believed(const std::optional<TimeBracket>& predicted) const noexcept {

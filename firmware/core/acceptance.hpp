@@ -83,10 +83,13 @@ class Acceptance {
                                                   NodeTime read_end) const noexcept;
     [[nodiscard]] TimeBracket ready_time(const ResultSeen& seen, std::uint32_t ranges) noexcept;
     void on_stale() noexcept;
-    [[nodiscard]] bool is_read_in_time(const ResultSeen& seen) const noexcept;
+    [[nodiscard]] bool is_read_of(const TimeBracket& polled, const std::optional<TimeBracket>& predicted,
+                                  NodeTime read_end, bool is_counted_next) const noexcept;
     [[nodiscard]] bool is_lone_poll_believed(const std::optional<TimeBracket>& predicted) const noexcept;
     [[nodiscard]] bool is_count_in_doubt(std::optional<std::uint8_t> steps) const noexcept;
     [[nodiscard]] bool has_seen_not_ready() const noexcept { return not_ready_polls_ > 0; }
+    [[nodiscard]] bool has_count_come_round(std::optional<std::uint8_t> steps,
+                                            NodeTime read_end) const noexcept;
     void forget_polls(NodeTime ready_since) noexcept;
     [[nodiscard]] bool is_new(const vl53l1x::Measurement& measurement) const noexcept;
     [[nodiscard]] std::optional<std::uint8_t> steps_to(std::uint8_t stream_count) const noexcept;

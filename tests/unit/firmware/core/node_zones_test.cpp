@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "firmware/core/range_length.hpp"
+#include "common/range_overhead.hpp"
 #include "tests/support/node_rig.hpp"
 
 namespace octoskin::node {
