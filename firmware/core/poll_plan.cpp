@@ -19,9 +19,10 @@ constexpr std::int64_t kIndexBits = 28;
 constexpr std::int64_t kLongestGapsPerPeriod = 128;
 constexpr std::int64_t kShortestGapsPerPeriod = 2048;
 
-/// Reckoned from `from`, not from the last poll: how long a poll took decides nothing.
-NodeTime next_on_grid(NodeTime from, Microseconds gap, NodeTime now) noexcept {
-    const Microseconds since = elapsed(from, now);
+/// Reckoned from `from`, not from the last poll: how long a poll took decides nothing. A place that was
+/// missed by less than `late_max` is taken at once: without it the next one would come twice as late.
+NodeTime next_on_grid(NodeTime from, Microseconds gap, NodeTime now, Microseconds late_max = {}) noexcept {
+    const Microseconds since = elapsed(from, now) - late_max;
     if (since.count() < 0) return from;
     return from + gap * (since / gap + 1);
 }
@@ -58,7 +59,7 @@ NodeTime PollPlan::poll_after_start(NodeTime from, const TimeBracket& expected, 
     if (!is_reached(expected.earliest, now))
         return earlier_of(blind_poll(from, period, now), expected.earliest);
     if (is_reached(expected.latest, now)) return blind_poll(expected.latest, period, now);
-    return next_on_grid(expected.earliest, spacing(period), now);
+    return next_on_grid(expected.earliest, spacing(period), now, poll_duration_ / 4);
 }
 
 NodeTime PollPlan::blind_poll(NodeTime from, Microseconds period, NodeTime now) const noexcept {
