@@ -28,7 +28,7 @@ if(OCTOSKIN_SANITIZE MATCHES "address")
         $<$<NOT:${runs_on_a_board}>:-fno-sanitize=null,alignment,object-size>)
 endif()
 # What the sources of programs alone are compiled with, after the above. Theirs, and those of tests, are code that runs once: under
-# sanitizers it is not optimised, which takes half the time. Libraries are, and have every check.
+# sanitizers it is not optimised, which takes half the time. Libraries are.
 add_library(octoskin_program_options INTERFACE)
 if(OCTOSKIN_SANITIZE)
     target_compile_options(octoskin_program_options INTERFACE -O0)
