@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/range_overhead.hpp"
+#include "common/range_pause.hpp"
 #include "common/range_status.hpp"
 #include "common/wire/messages.hpp"
 #include "firmware/core/stream_gate.hpp"

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "common/range_overhead.hpp"
+#include "common/range_pause.hpp"
 #include "common/time.hpp"
 #include "firmware/core/time_bracket.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "common/range_overhead.hpp"
+#include "common/range_pause.hpp"
 #include "firmware/core/sensor_fault.hpp"
 
 namespace octoskin::node {

@@ -1,15 +1,9 @@
 #include "firmware/core/zone_cycle.hpp"
 
+#include "common/range_pause.hpp"
 #include "common/wire/messages.hpp"
 
 namespace octoskin::node {
-
-namespace {
-
-// One register write at 283 kHz, the slowest a 400 kHz bus may really be, and what the loop adds.
-constexpr Microseconds kWriteDuration{400};
-
-}  // namespace
 
 ZoneCycle::ZoneCycle(std::uint8_t zone_count, Microseconds guard) noexcept
     : zone_count_(zone_count), guard_(guard) {}
@@ -29,7 +23,7 @@ std::uint8_t ZoneCycle::next() const noexcept {
 }
 
 bool ZoneCycle::fits_before(NodeTime next_range_begin, NodeTime now) const noexcept {
-    return elapsed(now, next_range_begin) > guard_ + kWriteDuration;
+    return elapsed(now, next_range_begin) > guard_ + kZoneWriteMax;
 }
 
 void ZoneCycle::written(const TimeBracket& when) noexcept {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/range_overhead.hpp"
+#include "common/range_pause.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -25,9 +25,6 @@ constexpr unsigned kReadBackBits = read_bits(1);  ///< one register of the confi
 constexpr unsigned kZoneBits = write_bits(1);
 static_assert(kPollBits + 2 * kResultBits + kClearBits + kReadBackBits == 518);
 
-/// What the node allows for a zone's write.
-constexpr Microseconds kZoneWrite{400};
-
 unsigned bits_of_reading(const NodeConfig& node, const SensorConfig& sensor) {
     return kPollBits + (node.reads_twice ? 2 : 1) * kResultBits + kClearBits + kReadBackBits +
            (sensor.zone_count > 1 ? kZoneBits : 0);
@@ -43,7 +40,7 @@ Microseconds zone_pause(const NodeConfig& node, const SensorConfig& sensor) {
     constexpr std::int64_t kPeriodOffPermille = 5;  // the node trims periods that are further off
     const auto reading = Microseconds{static_cast<std::int64_t>(1e6 * reading_s(node, sensor))};
     const Microseconds period_off{sensor.inter_measurement_ms * kPeriodOffPermille};
-    return kRangeOverheadMax + Microseconds{node.zone_guard_us} + kZoneWrite + reading + period_off;
+    return kRangeOverheadMax + Microseconds{node.zone_guard_us} + kZoneWriteMax + reading + period_off;
 }
 
 double i2c_load(const NodeConfig& node, std::uint8_t bus) {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "common/range_overhead.hpp"
+#include "common/range_pause.hpp"
 #include "tests/support/node_rig.hpp"
 
 namespace octoskin::node {
