@@ -26,6 +26,7 @@ constexpr Offence kOffences[] = {
     {"narrow_write", Rule::access_width, "TIM2"},
     {"narrow_message_ram", Rule::access_width, "SRAMCAN"},
     {"too_few_wait_states", Rule::flash_latency, "wait states"},
+    {"debugger_shut_out", Rule::debug_access, "DBG_SWEN"},
     {"no_boost", Rule::flash_latency, "boost"},
     {"no_half_speed_step", Rule::clock_tree, "without HPRE"},
     {"half_speed_too_short", Rule::clock_tree, "less than 1 us"},

@@ -54,10 +54,12 @@ bool lock_pll(const MicrosecondTimer& timer, const ClockPlan& plan) {
 }
 
 bool prepare_flash(const MicrosecondTimer& timer, std::uint32_t core_hz) {
-    using F = Field<FlashMap>;
     const std::uint32_t wait_states = flash_wait_states(core_hz);
-    flash.write("ACR",
-                F("ACR.LATENCY")(wait_states) | F("ACR.PRFTEN")(1) | F("ACR.ICEN")(1) | F("ACR.DCEN")(1));
+    // Field by field: the register also holds DBG_SWEN, and a 0 there shuts the debugger out.
+    flash.set("ACR.LATENCY", wait_states);
+    flash.set("ACR.PRFTEN", 1);
+    flash.set("ACR.ICEN", 1);
+    flash.set("ACR.DCEN", 1);
     const NodeTime begun = timer.now();
     while (flash.get("ACR.LATENCY") != wait_states) {
         if (elapsed(begun, timer.now()) > kSwitchLimit) return false;

@@ -35,6 +35,10 @@ std::string openocd_script(const ScriptPlan& plan) {
         "tcl_port disabled\n"
         "telnet_port disabled\n",
         kScriptFile, plan.openocd_board);
+    // The node sleeps (WFI) nearly all the time, and does not keep its debug port clocked meanwhile
+    // (DBGMCU_CR.DBG_SLEEP would cost the power that sleeping saves): it is met under reset instead, which
+    // also meets one whose image is broken. OpenOCD sets the bit itself once it is in.
+    text += "reset_config srst_only srst_nogate connect_assert_srst\n";
     if (!plan.adapter_serial.empty()) text += fmt::format("adapter serial {}\n", plan.adapter_serial);
     text += fmt::format(
         "\n"

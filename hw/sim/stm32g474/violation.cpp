@@ -28,6 +28,8 @@ const char* name_of(Rule rule) noexcept {
             return "clock-tree";
         case Rule::flash_latency:
             return "flash-latency";
+        case Rule::debug_access:
+            return "debug-access";
         case Rule::fpu_disabled:
             return "fpu-disabled";
         case Rule::pin_function:

@@ -20,6 +20,7 @@ enum class Rule : std::uint8_t {
     wrong_state,       ///< a register was written in a state that forbids it
     clock_tree,        ///< a clock out of its limits, or switched on the way that the manual forbids
     flash_latency,     ///< too few wait states, or no boost mode, for HCLK
+    debug_access,      ///< the debugger was shut out
     fpu_disabled,      ///< floating point while CPACR does not enable it
     pin_function,      ///< a peripheral was started whose pins are not given to it
     bus_timing,        ///< I2C or CAN timing that the bus does not stand

@@ -11,6 +11,7 @@
 #define RCC_CCIPR REG(RCC + 0x88)
 #define PWR_CR5 REG(0x40007080)
 #define FLASH_ACR REG(0x40022000)
+#define DBG_SWEN (1u << 18)
 #define GPIOA 0x48000000
 #define GPIOB 0x48000400
 #define I2C1 0x40005400
@@ -54,7 +55,7 @@ static void crystal_and_pll(void) {
 }
 static void fast_clock(void) {
     crystal_and_pll();
-    FLASH_ACR = 4 | 7u << 8;
+    FLASH_ACR = DBG_SWEN | 4 | 7u << 8;
     RCC_CFGR = 8u << 4 | 1;
     RCC_CFGR = 8u << 4 | 3;
     while ((RCC_CFGR >> 2 & 3) != 3) {}
@@ -250,17 +251,21 @@ void narrow_message_ram(void) { can_clock(); REG8(SRAMCAN + 0x278) = 5; finish()
 // --- clocks
 void too_few_wait_states(void) {
     crystal_and_pll();
-    FLASH_ACR = 2;
+    FLASH_ACR = DBG_SWEN | 2;
     RCC_CFGR = 8u << 4 | 1;
     RCC_CFGR = 8u << 4 | 3;
     wait(100);
     RCC_CFGR = 3;
     finish();
 }
+void debugger_shut_out(void) {
+    FLASH_ACR = 6u << 8;
+    finish();
+}
 void no_boost(void) {
     crystal_and_pll();
     PWR_CR5 = 1u << 8;
-    FLASH_ACR = 4;
+    FLASH_ACR = DBG_SWEN | 4;
     RCC_CFGR = 8u << 4 | 1;
     RCC_CFGR = 8u << 4 | 3;
     wait(100);
@@ -269,13 +274,13 @@ void no_boost(void) {
 }
 void no_half_speed_step(void) {
     crystal_and_pll();
-    FLASH_ACR = 4;
+    FLASH_ACR = DBG_SWEN | 4;
     RCC_CFGR = 3;
     finish();
 }
 void half_speed_too_short(void) {
     crystal_and_pll();
-    FLASH_ACR = 4;
+    FLASH_ACR = DBG_SWEN | 4;
     RCC_CFGR = 8u << 4 | 1;
     RCC_CFGR = 8u << 4 | 3;
     RCC_CFGR = 3;

@@ -6,6 +6,7 @@ namespace octoskin::sim::stm32 {
 namespace {
 
 constexpr std::uint32_t kAcr = 0x00;
+constexpr std::uint32_t kDebuggerAllowed = 1U << 18;  // ACR.DBG_SWEN
 constexpr std::uint32_t kImpossible = 16;
 
 // OPTR as delivered: RDP off, BOR level 0, software watchdog, dual bank, nSWBOOT0 and nBOOT0 set.
@@ -42,6 +43,8 @@ void FlashInterface::write(std::uint32_t offset, std::uint32_t value) {
                         fmt::format("FLASH: write of 0x{:X} to 0x{:X}: programming", value, offset));
         return;
     }
+    if ((value & kDebuggerAllowed) == 0)
+        env_.log.report(Rule::debug_access, "FLASH.ACR: DBG_SWEN cleared");
     bank_.write(offset, value);
     check_latency(hclk_hz_);
 }

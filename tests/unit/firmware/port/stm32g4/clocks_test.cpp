@@ -63,6 +63,7 @@ class ClocksTest : public ::testing::Test {
         space_[kCfgr] = 0x5;          // and used
         space_[0x4000'7080] = 0x100;  // PWR_CR5: range 1 normal
         space_[0x4000'7000] = 0x200;  // PWR_CR1
+        space_[kAcr] = 0x0004'0600;   // both caches, DBG_SWEN
         space_.before_read(kCr, [this](std::uint32_t& cr) {
             follow(cr, 16, has_crystal_);
             follow(cr, 24, locks_);
@@ -103,7 +104,7 @@ TEST_F(ClocksTest, come_from_the_crystal) {
     EXPECT_EQ(clocks.core_hz, 160'000'000U);
     EXPECT_EQ(clocks.can_hz, 80'000'000U);
     EXPECT_EQ(space_[kPllcfgr], 0x0130'5053U);
-    EXPECT_EQ(space_[kAcr], 0x704U);  // 4 wait states, prefetch, both caches
+    EXPECT_EQ(space_[kAcr], 0x0004'0704U) << "4 wait states, prefetch, both caches; the debugger may come in";
     EXPECT_EQ(space_[kCfgr] & 0xF0U, 0U);
     EXPECT_EQ(space_[kCfgr] & 3U, 3U);
     EXPECT_EQ((space_[kCr] >> 19U) & 1U, 1U) << "clock security";

@@ -11,6 +11,7 @@
 namespace octoskin::flashing {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -92,6 +93,9 @@ TEST(OpenocdScript, touches_option_bytes_and_chooses_an_adapter_only_when_told) 
                           .writes_option_bytes = false};
     EXPECT_THAT(openocd_script(plan), Not(HasSubstr("option_write")));
     EXPECT_THAT(openocd_script(plan), Not(HasSubstr("adapter serial")));
+    EXPECT_THAT(openocd_script(plan),
+                ContainsRegex("\nreset_config srst_only srst_nogate connect_assert_srst\n(.*\n)*    init\n"))
+        << "a sleeping core is met under reset";
     ScriptPlan all = plan;
     all.adapter_serial = "0042";
     all.writes_option_bytes = true;
