@@ -21,13 +21,9 @@ void BlackBox::on_fault(std::uint8_t bus, NodeTime now) noexcept {
 
 void BlackBox::on_request(std::uint8_t bus, NodeTime now) noexcept {
     if (is_pending(bus) || !recorders_[bus]) return;
-    if (pending_ == 0) index_ = 0;
+    if (pending_ == 0) current_ = bus;
     recorders_[bus]->freeze(now);
     pending_ = static_cast<std::uint8_t>(pending_ | (1U << bus));
-}
-
-std::uint8_t BlackBox::current() const noexcept {
-    return static_cast<std::uint8_t>(std::countr_zero(pending_));
 }
 
 void BlackBox::update(NodeTime now) noexcept {
@@ -37,8 +33,8 @@ void BlackBox::update(NodeTime now) noexcept {
 
 std::optional<wire::BlackBox> BlackBox::due() const noexcept {
     if (pending_ == 0 || !piece_pause_.is_over()) return std::nullopt;
-    const BusRecorder& recorder = *recorders_[current()];
-    wire::BlackBox piece{.bus = current(), .dump = dump_, .index = index_};
+    const BusRecorder& recorder = *recorders_[current_];
+    wire::BlackBox piece{.bus = current_, .dump = dump_, .index = index_};
     const std::size_t first = std::size_t{index_} * wire::kBlackBoxBytes;
     for (std::size_t i = 0; i < piece.bytes.size() && first + i < recorder.dump_size(); ++i) {
         piece.bytes[i] = recorder.dump_byte(first + i);
@@ -49,10 +45,11 @@ std::optional<wire::BlackBox> BlackBox::due() const noexcept {
 void BlackBox::sent(NodeTime now) noexcept {
     piece_pause_.begin(now, policy_.black_box_period);
     ++index_;
-    BusRecorder& recorder = *recorders_[current()];
+    BusRecorder& recorder = *recorders_[current_];
     if (std::size_t{index_} * wire::kBlackBoxBytes < recorder.dump_size()) return;
     recorder.thaw();
-    pending_ = static_cast<std::uint8_t>(pending_ & (pending_ - 1U));  // its lowest bit was the current one
+    pending_ = static_cast<std::uint8_t>(pending_ & ~(1U << current_));
+    if (pending_ != 0) current_ = static_cast<std::uint8_t>(std::countr_zero(pending_));
     index_ = 0;
     dump_ = static_cast<std::uint8_t>((dump_ + 1U) % 4U);
 }

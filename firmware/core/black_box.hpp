@@ -40,12 +40,12 @@ class BlackBox {
 
   private:
     [[nodiscard]] bool is_pending(std::uint8_t bus) const noexcept { return ((pending_ >> bus) & 1U) != 0; }
-    [[nodiscard]] std::uint8_t current() const noexcept;
 
     BusRecorders& recorders_;
     const Policy& policy_;
     std::uint8_t pending_ = 0;  ///< bit i: bus i is frozen, and to be sent or being sent
-    std::uint16_t index_ = 0;
+    std::uint8_t current_ = 0;  ///< the bus of the dump under way, if any: others wait until it has ended
+    std::uint16_t index_ = 0;   ///< of its next piece
     std::uint8_t dump_ = 0;
     Pause piece_pause_;
     std::array<Pause, kNodeBusesMax> fault_pauses_{};

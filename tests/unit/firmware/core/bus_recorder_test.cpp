@@ -227,6 +227,25 @@ TEST_F(BlackBoxTest, sends_one_dump_after_the_other_and_each_as_it_was_when_it_w
     for (std::size_t i = 0; i < pieces.size(); ++i) EXPECT_EQ(pieces[i].index, i % 46);
 }
 
+TEST_F(BlackBoxTest, ends_the_dump_under_way_before_it_begins_one_of_any_other_bus) {
+    for (const std::uint8_t first : {std::uint8_t{1}, std::uint8_t{0}}) {
+        const auto second = static_cast<std::uint8_t>(1U - first);
+        black_box_.on_request(first, now_);
+        auto pieces = pieces_within(1'000);
+        ASSERT_EQ(pieces.size(), 20U);
+        black_box_.on_request(second, now_);
+        const auto rest = pieces_within(10'000);
+        pieces.insert(pieces.end(), rest.begin(), rest.end());
+        ASSERT_EQ(pieces.size(), 92U);
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            ASSERT_EQ(pieces[i].bus, i < 46 ? first : second) << i;
+            ASSERT_EQ(pieces[i].index, i % 46);
+            ASSERT_EQ(pieces[i].dump, (pieces[0].dump + i / 46) % 4);
+        }
+        EXPECT_FALSE(recorders_[0]->is_frozen() || recorders_[1]->is_frozen());
+    }
+}
+
 TEST_F(BlackBoxTest, sends_at_most_one_dump_a_minute_for_faults_and_always_one_for_an_order) {
     black_box_.on_fault(1, now_);
     EXPECT_EQ(pieces_within(10'000).size(), 46U);
