@@ -129,7 +129,7 @@ void Node::watch_reflex(std::uint8_t sensor, const Reading& reading, NodeTime no
     if (!reflexes_[sensor]->begins(reading, now)) return;
     reflex_events_[sensor] = {.message = {.sensor = sensor,
                                           .zone = reading.zone,
-                                          .range_mm = reading.range_mm,
+                                          .range_mm = range_on_wire(reading),
                                           .capture = wire::classical_residue(reading.capture)},
                               .since = now};
     reflex_due_ |= std::uint64_t{1} << sensor;

@@ -85,7 +85,7 @@ wire::RangeReading ReadingQueue::on_wire(const Waiting& waiting) const noexcept 
             .zone = reading.zone,
             .device_status = reading.device_status,
             .sequence = static_cast<std::uint8_t>(sent_[waiting.sensor] % wire::kSequenceCount),
-            .range_mm = reading.range_mm,
+            .range_mm = range_on_wire(reading),
             .sigma_quarter_mm = reading.sigma_quarter_mm,
             .capture =
                 uses_can_fd_ ? wire::fd_residue(reading.capture) : wire::classical_residue(reading.capture)};

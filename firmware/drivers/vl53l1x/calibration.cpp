@@ -195,8 +195,7 @@ bool CalibrationRun::add(const Measurement& measurement) noexcept {
         return true;
     }
     ++ranges_;
-    // Without an offset a near target may come out behind the sensor.
-    range_sum_mm_ += static_cast<std::int16_t>(measurement.range_mm);
+    range_sum_mm_ += measurement.range_mm;
     signal_sum_ += measurement.corrected_signal;
     spads_sum_ += measurement.effective_spads;
     return true;

@@ -14,7 +14,9 @@ struct Measurement {
     std::uint16_t peak_signal = 0;       ///< 9.7 Mcps
     std::uint16_t ambient = 0;           ///< 9.7 Mcps
     std::uint16_t sigma_quarter_mm = 0;  ///< 14.2 mm
-    std::uint16_t range_mm = 0;          ///< crosstalk-corrected; gain factor applied if configured
+    /// Crosstalk-corrected; gain factor applied if configured. Negative for a target nearer than the
+    /// device's offset error makes it seem.
+    std::int16_t range_mm = 0;
     std::uint16_t corrected_signal = 0;  ///< 9.7 Mcps
     friend constexpr bool operator==(const Measurement&, const Measurement&) = default;
 };

@@ -18,15 +18,15 @@ std::uint8_t device_status(const ResultBlock& block) noexcept {
     return block[0] & kDeviceStatusMask;
 }
 
-std::uint16_t scaled_by_gain(std::uint16_t range_mm) noexcept {
-    constexpr std::uint32_t kGain = 2011;  // of 2048
-    return static_cast<std::uint16_t>((range_mm * kGain + 1024U) >> 11U);
+std::int16_t scaled_by_gain(std::int16_t range_mm) noexcept {
+    constexpr std::int32_t kGain = 2011;  // of 2048
+    return static_cast<std::int16_t>((range_mm * kGain + 1024) >> 11U);
 }
 
 }  // namespace
 
 Measurement unpack(const ResultBlock& block, bool applies_gain_factor) noexcept {
-    const std::uint16_t range_mm = word(block, 13);
+    const auto range_mm = static_cast<std::int16_t>(word(block, 13));
     return {.device_status = device_status(block),
             .stream_count = block[kStreamCountOffset],
             .effective_spads = word(block, 3),

@@ -160,6 +160,29 @@ TEST(NodeFrames, adds_signal_figures_to_every_fifth_classical_reading) {
     }
 }
 
+// The device's range register is signed: uncalibrated, a target that all but touches the sensor comes out
+// behind it.
+TEST(NodeFrames, say_of_a_target_nearer_than_the_offset_error_that_it_is_at_0_mm_and_begin_the_reflex) {
+    for (const bool uses_can_fd : {true, false}) {
+        NodeConfig config = classical_config(1);
+        config.uses_can_fd = uses_can_fd;
+        config.sensors[0].reflex_below_mm = 100;
+        config.sensors[0].has_offset = true;  // of 0, where the part needs 13 mm: 5 mm seem -8 mm
+        std::vector<SensorSetup> setups = fleet(1);
+        setups[0].target = sim::RangingReturn{
+            .range_m = 0.005, .sigma_m = 0.005, .peak_signal_mcps = 10.0, .ambient_mcps = 0.5};
+        NodeRig rig(config, setups);
+        rig.run_for(1 * kSecond);
+        const auto readings = rig.readings_of(0);
+        ASSERT_GT(readings.size(), 15U);
+        for (const SaidReading& said : readings) ASSERT_EQ(said.reading.range_mm, 0);
+        EXPECT_EQ(readings.back().reading.device_status, 9);
+        const auto reflexes = rig.said_of<wire::Reflex>();
+        ASSERT_EQ(reflexes.size(), 1U);
+        EXPECT_EQ(reflexes[0].range_mm, 0);
+    }
+}
+
 // Mailboxes that are given free one by one are full for every kind of frame now and then.
 TEST(NodeFrames, lose_no_frame_that_had_to_wait_for_a_mailbox) {
     NodeConfig config = classical_config(8, 1);

@@ -16,7 +16,7 @@ NodeTime after_ms(std::int64_t ms) {
     return kNow + Microseconds{ms * 1'000};
 }
 
-Reading reading_of(std::uint16_t range_mm, NodeTime capture = kNow) {
+Reading reading_of(std::int16_t range_mm, NodeTime capture = kNow) {
     Reading reading;
     reading.device_status = 9;
     reading.range_mm = range_mm;

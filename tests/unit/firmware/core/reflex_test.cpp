@@ -11,16 +11,16 @@ namespace {
 constexpr std::uint8_t kHit = 9;
 constexpr std::uint8_t kNothingThere = 4;
 
-Reading reading(std::uint8_t status, std::uint32_t range_mm) {
+Reading reading(std::uint8_t status, std::int32_t range_mm) {
     Reading reading;
     reading.device_status = status;
-    reading.range_mm = static_cast<std::uint16_t>(range_mm);
+    reading.range_mm = static_cast<std::int16_t>(range_mm);
     return reading;
 }
 
 class ReflexTest : public testing::Test {
   protected:
-    bool sees(std::uint16_t range_mm, std::uint8_t status = kHit, std::int64_t after_ms = 33) {
+    bool sees(std::int32_t range_mm, std::uint8_t status = kHit, std::int64_t after_ms = 33) {
         now_ = now_ + Microseconds{after_ms * 1'000};
         return reflex_.begins(reading(status, range_mm), now_);
     }
@@ -33,6 +33,12 @@ TEST_F(ReflexTest, begins_with_the_first_hit_below_the_limit_and_not_at_it) {
     EXPECT_FALSE(sees(301));
     EXPECT_FALSE(sees(300));
     EXPECT_TRUE(sees(299));
+}
+
+TEST_F(ReflexTest, takes_a_negative_range_for_nearer_than_any_limit) {
+    EXPECT_TRUE(sees(-8));
+    EXPECT_FALSE(sees(-8, kHit, 300)) << "and not for a look at something far";
+    EXPECT_FALSE(sees(-32'768, kHit, 300));
 }
 
 TEST_F(ReflexTest, is_told_once_however_long_it_lasts) {
@@ -70,7 +76,7 @@ TEST_F(ReflexTest, no_status_but_hit_begins_it_and_none_but_hit_and_no_target_en
     }
     for (std::uint8_t status = 0; status < 32; ++status) {
         Reflex reflex{300, policy_};
-        const auto at = [&](std::uint8_t code, std::uint16_t range_mm, int ms) {
+        const auto at = [&](std::uint8_t code, std::int32_t range_mm, int ms) {
             return reflex.begins(reading(code, range_mm), NodeTime{static_cast<std::uint32_t>(ms * 1'000)});
         };
         EXPECT_TRUE(at(kHit, 100, 0));
@@ -83,8 +89,8 @@ TEST_F(ReflexTest, no_status_but_hit_begins_it_and_none_but_hit_and_no_target_en
 TEST(Reflex, of_a_limit_of_zero_never_happens) {
     const Policy policy{};
     Reflex reflex{0, policy};
-    for (std::uint32_t range_mm = 0; range_mm <= 65'535; ++range_mm) {
-        EXPECT_FALSE(reflex.begins(reading(kHit, range_mm), {range_mm}));
+    for (std::int32_t range_mm = 0; range_mm <= 32'767; ++range_mm) {
+        EXPECT_FALSE(reflex.begins(reading(kHit, range_mm), {static_cast<std::uint32_t>(range_mm)}));
     }
 }
 
@@ -109,7 +115,7 @@ TEST(Reflex, is_armed_by_the_next_look_at_something_far_however_long_the_last_on
 TEST(Reflex, keeps_at_least_20_mm_of_margin_for_small_limits) {
     const Policy policy{};
     Reflex reflex{50, policy};
-    const auto at = [&](std::uint16_t range_mm, std::uint32_t ms) {
+    const auto at = [&](std::int32_t range_mm, std::uint32_t ms) {
         return reflex.begins(reading(kHit, range_mm), {ms * 1'000});
     };
     EXPECT_TRUE(at(49, 0));

@@ -28,10 +28,11 @@ TEST(ResultBlock, every_field_is_where_the_full_api_has_it) {
 TEST(ResultBlock, gain_factor_is_2011_of_2048_rounded) {
     EXPECT_EQ(unpack(kExample, false).range_mm, 1234);
     EXPECT_EQ(unpack(kExample, true).range_mm, 1212) << "as Pololu's library has it";
-    for (unsigned range = 0; range <= 0xFFFF; ++range) {
+    for (int range = -32'768; range <= 32'767; ++range) {
         ResultBlock block = kExample;
-        block[13] = static_cast<std::uint8_t>(range >> 8U);
-        block[14] = static_cast<std::uint8_t>(range & 0xFFU);
+        const auto raw = static_cast<std::uint16_t>(range);  // the register is signed
+        block[13] = static_cast<std::uint8_t>(raw >> 8U);
+        block[14] = static_cast<std::uint8_t>(raw & 0xFFU);
         ASSERT_EQ(unpack(block, false).range_mm, range);
         const double scaled = range * 2011.0 / 2048.0;
         ASSERT_NEAR(unpack(block, true).range_mm, scaled, 0.5) << range;
