@@ -149,6 +149,11 @@ bool is_orientation(const Value& item) {
     return std::find(kOrientationKeys.begin(), kOrientationKeys.end(), item.key) != kOrientationKeys.end();
 }
 
+void mark_replacing(Value& value) {  // no deeper than kDepthMax: so much a file may be nested
+    value.replaces_inherited = true;
+    for (Value& item : value.items) mark_replacing(item);
+}
+
 void merge_item(Value& base, const Value& item) {
     std::erase_if(base.items, [&](const Value& old) {
         return old.key != item.key && is_orientation(old) && is_orientation(item);
@@ -162,7 +167,9 @@ void merge_item(Value& base, const Value& item) {
     } else if (old->kind == Value::Kind::table && item.kind == Value::Kind::table) {
         *old = merge(std::move(*old), item);
     } else {
+        const bool is_list_for_list = old->kind == Value::Kind::list && item.kind == Value::Kind::list;
         *old = item;
+        if (is_list_for_list) mark_replacing(*old);
     }
 }
 
@@ -222,6 +229,7 @@ Value merge(Value base, const Value& overlay) {
     // What is missing or wrong as a whole is reported where the overlay was written.
     base.file = overlay.file;
     base.line = overlay.line;
+    base.replaces_inherited = overlay.replaces_inherited;
     return base;
 }
 

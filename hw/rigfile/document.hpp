@@ -27,7 +27,8 @@ struct Value {
     bool is_quoted = false;  ///< a quoted scalar is a string, whatever it looks like
     std::vector<Value> items;
     std::shared_ptr<const std::filesystem::path> file;
-    int line = 0;  ///< 1-based
+    int line = 0;                     ///< 1-based
+    bool replaces_inherited = false;  ///< it is, or lies in, a list that took the place of an inherited one
 
     /// The item of a table with this key; nullptr if there is none.
     [[nodiscard]] const Value* find(std::string_view wanted) const noexcept;

@@ -16,6 +16,7 @@ namespace octoskin::rig {
 namespace {
 
 constexpr std::size_t kNodesMax = 61;
+constexpr std::uint32_t kI2cHzMax = 400'000;
 
 /// Remembers who took a thing first.
 class Taken {
@@ -39,7 +40,7 @@ NodeConfig read_node_settings(const Table& table, const NodeContext& context, co
     config.uses_can_fd = context.bus.uses_can_fd;
     config.nominal_bitrate = context.bus.nominal_bitrate;
     config.data_bitrate = context.bus.data_bitrate;
-    config.i2c_hz = table.integer<std::uint32_t>("i2c_hz", {10'000, 400'000}, config.i2c_hz);
+    config.i2c_hz = table.integer<std::uint32_t>("i2c_hz", {10'000, kI2cHzMax}, config.i2c_hz);
     config.is_io_2v8 = table.choice<bool>("io_level", {{"2v8", true}, {"1v8", false}}, true);
     config.reads_twice = table.flag("reads_twice", config.reads_twice);
     config.stream_gate = table.choice<StreamGate>(
@@ -140,14 +141,15 @@ void refuse_overloaded_i2c(const Table& table, const Node& node) {
         table.fail(
             "sensors",
             fmt::format("expected an I2C load of at most {:.0f} %, found {:.0f} % on bus {}: use a longer "
-                        "inter_measurement_ms, fewer sensors on this bus, or a faster i2c_hz",
-                        100.0 * kI2cLoadMax, 100.0 * load, bus));
+                        "inter_measurement_ms{} fewer sensors on this bus{}",
+                        100.0 * kI2cLoadMax, 100.0 * load, bus, node.config.i2c_hz < kI2cHzMax ? "," : " or",
+                        node.config.i2c_hz < kI2cHzMax ? ", or a faster i2c_hz" : ""));
     }
 }
 
 Node read_node(const Table& table, const NodeContext& context) {
     Node node;
-    node.name = table.name("name");
+    node.name = table.folder_name("name");
     node.board = read_board(table.require("board"), table.path_of("board"));
     node.config = read_node_settings(table, context, node.board);
     if (table.find("pinned_build_id")) {

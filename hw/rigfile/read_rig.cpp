@@ -159,10 +159,11 @@ void refuse_overloaded_bus(const Table& top, const Rig& rig) {
 Rig read_checked(const std::filesystem::path& file, const std::filesystem::path& urdf_instead) {
     Rig rig;
     const Value document = load_with_extends(file, &rig.extended_files);
+    // `extends` is gone by now; it is named for the hint beside an unknown key.
     const Table top(document, "",
                     {"name", "robot", "T_map_base", "bus", "range_limits", "joints", "camera",
-                     "sensor_defaults", "nodes"});
-    rig.name = top.name("name");
+                     "sensor_defaults", "nodes", "extends"});
+    rig.name = top.folder_name("name");
     const Table robot(top.require("robot"), "robot",
                       {"urdf", "base_link", "link_padding_m", "links_ignored_by_sensors",
                        "depth_self_margin_m", "range_self_margin_m"});

@@ -85,6 +85,18 @@ T fixed_point(const Table& table, std::string_view key, Range<double> range, dou
     return static_cast<T>(std::lround(number * steps_per_unit));
 }
 
+/// Exactly, and not the nearest step: a limit of 0.4 mm would become none at all.
+std::uint16_t read_reflex_limit_mm(const Table& table) {
+    constexpr double kRoundingMm = 1e-6;  // of a decimal fraction times 1000
+    const double limit_m = table.number("reflex_below_m", {0.0, kReflexLimitMaxMm / 1000.0}, 0.0);
+    const double limit_mm = std::round(1000.0 * limit_m);
+    if (std::abs(1000.0 * limit_m - limit_mm) > kRoundingMm) {
+        table.fail("reflex_below_m",
+                   fmt::format("expected whole millimetres, found {} mm", 1000.0 * limit_m));
+    }
+    return static_cast<std::uint16_t>(limit_mm);
+}
+
 void read_device_settings(const Table& table, SensorConfig& config) {
     config.has_offset = table.find("device_offset_mm") != nullptr;
     config.offset_quarter_mm =
@@ -95,8 +107,7 @@ void read_device_settings(const Table& table, SensorConfig& config) {
                                                                config.sigma_limit_quarter_mm);
     config.signal_limit_raw =
         fixed_point<std::uint16_t>(table, "signal_limit_mcps", {0.0, 511.0}, 128.0, config.signal_limit_raw);
-    config.reflex_below_mm = fixed_point<std::uint16_t>(
-        table, "reflex_below_m", {0.0, kReflexLimitMaxMm / 1000.0}, 1000.0, config.reflex_below_mm);
+    config.reflex_below_mm = read_reflex_limit_mm(table);
     config.applies_gain_factor = table.flag("applies_gain_factor", config.applies_gain_factor);
 }
 

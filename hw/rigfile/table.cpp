@@ -170,7 +170,9 @@ const Value* Table::find(std::string_view key) const noexcept {
 
 const Value& Table::require(std::string_view key) const {
     if (const Value* found = find(key)) return *found;
-    rig::fail(value_, path_of(key), "expected this key, found none: add it");
+    rig::fail(value_, path_of(key),
+              std::string("expected this key, found none: add it") +
+                  (value_.replaces_inherited ? " (a list replaces the inherited one as a whole)" : ""));
 }
 
 double Table::number(std::string_view key, Range<double> range, std::optional<double> fallback) const {
@@ -194,6 +196,16 @@ std::uint64_t Table::unsigned_integer(std::string_view key, std::uint64_t fallba
 
 std::string Table::name(std::string_view key) const {
     return read_name(require(key), path_of(key));
+}
+
+std::string Table::folder_name(std::string_view key) const {
+    std::string name = this->name(key);
+    if (name.find('/') == std::string::npos && name.find("..") == std::string::npos && name != ".")
+        return name;
+    fail(key,
+         fmt::format("expected a name that a folder can have, found '{}': leave out / and .., and do not "
+                     "use . alone; recordings and flashed boards are filed under it",
+                     name));
 }
 
 std::string Table::text(std::string_view key) const {

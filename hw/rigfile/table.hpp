@@ -60,6 +60,8 @@ class Table {
     [[nodiscard]] bool flag(std::string_view key, std::optional<bool> fallback = std::nullopt) const;
     [[nodiscard]] std::uint64_t unsigned_integer(std::string_view key, std::uint64_t fallback) const;
     [[nodiscard]] std::string name(std::string_view key) const;
+    /// A name() that stays in its place as part of a path: without `/` and `..`, and not `.`.
+    [[nodiscard]] std::string folder_name(std::string_view key) const;
     /// read_text(); empty if the key is absent.
     [[nodiscard]] std::string text(std::string_view key) const;
     /// One of a few words.
