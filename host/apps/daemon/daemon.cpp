@@ -26,6 +26,10 @@ constexpr std::chrono::milliseconds kAttendPeriod{50};
 /// another second, what is left behind 0.2 s: 5 s in all.
 constexpr Nanoseconds kEndPatience{3'500'000'000};
 
+void tell_warnings(const Settings& settings) {
+    for (const std::string& warning : settings.host.warnings) spdlog::warn("{}", warning);
+}
+
 }  // namespace
 
 /// What lives while the daemon does. The loop comes first: whatever watches through it goes before it.
@@ -69,6 +73,7 @@ struct Daemon::Parts {
 Result<std::unique_ptr<Daemon>, AppError> Daemon::build(const DaemonRequest& request) {
     auto settings = read_settings(request);
     if (!settings) return unexpected(settings.error());
+    tell_warnings(*settings);
     auto pipeline = make_pipeline(request, *settings);
     if (!pipeline) return unexpected(pipeline.error());
     auto parts = std::make_unique<Parts>(request, std::move(settings).value(), std::move(pipeline).value());
@@ -194,6 +199,7 @@ void Daemon::Parts::reload() {
         spdlog::info("reloaded: rig '{}'; the map {}; {} of what waited was not used", settings.host.rig.name,
                      is_same_grid ? "goes on" : "begins anew: the mapping has voxels of another size",
                      dropped);
+        tell_warnings(settings);
     }
     (void)sd_notify(0, "READY=1");
 }

@@ -69,6 +69,9 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
         record.newest_rejected
             ? Json(names_of(ReadingReason{})[static_cast<std::size_t>(*record.newest_rejected)])
             : Json(nullptr);
+    json["reflexes"] = record.reflexes;
+    json["reflex_below_m"] = node.sensors[index].reflex_below_m;
+    json["reflex_m"] = record.reflex ? Json(record.reflex->range_mm * 1e-3) : Json(nullptr);
     json["camera"] = nullptr;
     if (const SensorWitness* const witness = view.pipeline->builder().witness()) {
         const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(index));

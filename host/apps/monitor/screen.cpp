@@ -143,6 +143,16 @@ class Screen {
                         at(sensor, "rejected").is_null() ? "" : ", not used: " + text(at(sensor, "rejected")),
                         contradicts ? ", CONTRADICTS the camera" : ""),
             is_ranging && !contradicts ? Emphasis::none : Emphasis::bad);
+        add_reflex(sensor, before);
+    }
+    void add_reflex(const Json& sensor, const Json& before) {
+        if (number(at(sensor, "reflexes")) == 0.0) return;
+        const bool is_new = number(at(sensor, "reflexes")) > number(at(before, "reflexes"));
+        add(fmt::format("     REFLEX {} times: something came closer than its reflex_below_m, {} m; "
+                        "the newest at {:.3f} m",
+                        count(at(sensor, "reflexes")), text(at(sensor, "reflex_below_m")),
+                        number(at(sensor, "reflex_m"))),
+            is_new && !before.is_null() ? Emphasis::bad : Emphasis::none);
     }
     void add_joints() {
         const auto used = [](const Json& status) -> const Json& {

@@ -1,5 +1,6 @@
 // octoskin rig: whether a rig is sound, and what it asks of its buses.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <array>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "hw/rigfile/i2c_load.hpp"
 #include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/phase_spread.hpp"
+#include "hw/rigfile/reflex.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin::app {
@@ -49,12 +51,15 @@ void describe_i2c(const rig::Node& node) {
     }
 }
 
-void describe(const rig::Rig& rig) {
-    print("rig {}: hash {:08x}, robot {}\n", rig.name, rig::rig_hash(rig), rig.urdf.filename().string());
+void describe(const rig::Rig& rig, const HostSetup& host) {
+    print("rig {}: hash {:08x}, robot {}: {} links at or below {}, {} capsules\n", rig.name,
+          rig::rig_hash(rig), rig.urdf.filename().string(), host.robot.link_count(), rig.base_link,
+          host.rig.body.size());
     for (const rig::Node& node : rig.nodes) {
         print("  node {} '{}': {} sensors, node_hash {:08x}\n", node.config.node_id, node.name,
               node.sensors.size(), node_hash(node.config));
         describe_i2c(node);
+        for (const std::string& line : rig::reflex_lines(node)) print("    {}\n", line);
     }
     print("  node {} sends {} joints at {:g} Hz\n", rig.joints.node_id, rig.joints.joints.size(),
           rig.joints.rate_hz);
@@ -83,15 +88,15 @@ void write_block(const rig::Rig& rig, const RigOptions& options) {
 void run(const RigOptions& options) {
     const auto rig = rig::read_rig(options.rig, options.robot);
     if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
-    if (const auto host = make_host_setup(*rig); !host) {
-        throw CommandFailure({ExitCode::bad_config, host.error().message()});
-    }
+    const auto host = make_host_setup(*rig);
+    if (!host) throw CommandFailure({ExitCode::bad_config, host.error().message()});
+    for (const std::string& warning : host->warnings) spdlog::warn("{}", warning);
     if (!options.block.empty()) {
         write_block(*rig, options);
     } else if (options.prints_canonical) {
         print("{}", rig::canonical_text(*rig, rig->urdf.string()));
     } else {
-        describe(*rig);
+        describe(*rig, *host);
     }
 }
 

@@ -271,6 +271,7 @@ Result<Playback, AppError> play_robot(const PlaybackRequest& request, const Repl
     const HostRig& rig = setup->host.rig;
     auto origin = origin_of(request, setup->rig);
     if (!origin) return unexpected(origin.error());
+    const std::vector<std::string> rig_warnings = std::move(setup->host.warnings);
     DepthInput depth = open_depth(request.recording);
     const auto play = is_played_in_order(request) ? play_order : play_log;
     auto playback = play(request, *setup, depth, std::move(*origin), report);
@@ -281,6 +282,7 @@ Result<Playback, AppError> play_robot(const PlaybackRequest& request, const Repl
     if (depth.reader) {
         if (auto loss = depth.reader->loss()) playback->warnings.push_back(std::move(*loss));
     }
+    playback->warnings.insert(playback->warnings.begin(), rig_warnings.begin(), rig_warnings.end());
     find_warnings(*meta, rig, depth, *playback);
     find_contradictions(rig, *playback);
     return playback;

@@ -30,6 +30,7 @@ struct HostSensor {
     Microseconds timing_budget{20'000};
     Microseconds period{33'000};  ///< inter-measurement period as configured
     std::vector<HostZone> zones = {HostZone{}};
+    double reflex_below_m = 0.0;  ///< a hit closer than this makes its node send REFLEX; 0: never
 };
 
 struct HostNode {

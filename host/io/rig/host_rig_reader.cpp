@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "host/io/urdf/urdf_robot.hpp"
+#include "hw/rigfile/reflex.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/rigfile/zone.hpp"
 
@@ -21,6 +22,7 @@ HostSensor to_host(const rig::Sensor& sensor, const SensorConfig& config) {
     for (std::size_t i = 0; i < config.zone_count; ++i) {
         host.zones.push_back({sensor.zone_offset_m[i], rig::zone_direction(config.zones[i])});
     }
+    host.reflex_below_m = 1e-3 * config.reflex_below_mm;
     return host;
 }
 
@@ -87,7 +89,12 @@ Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
         }
         host.body.push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
     }
-    return HostSetup{std::move(host), std::move(robot).value()};
+    std::vector<std::string> warnings = rig::reflex_warnings(rig);
+    if (host.body.empty()) {
+        warnings.push_back("no link at or below " + rig.base_link +
+                           " has a <collision>: nothing of the robot is taken out of images and ranges");
+    }
+    return HostSetup{std::move(host), std::move(robot).value(), std::move(warnings)};
 }
 
 }  // namespace octoskin

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/result.hpp"
 #include "host/core/kinematics/robot_model.hpp"
@@ -14,6 +15,8 @@ namespace octoskin {
 struct HostSetup {
     HostRig rig;
     RobotModel robot;  ///< from rig.base_link; joint vectors in the order of rig.joints.joints
+    /// What is allowed and hardly meant, a sentence each, for whoever started the program.
+    std::vector<std::string> warnings;
 };
 
 [[nodiscard]] HostCamera host_camera(const rig::Camera& camera);

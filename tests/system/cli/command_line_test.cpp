@@ -67,6 +67,21 @@ TEST_F(CommandLine, answers_66_wherever_a_file_is_not_there) {
     EXPECT_FALSE(std::filesystem::exists(path("o")));
 }
 
+TEST_F(CommandLine, tells_how_much_of_a_robot_the_self_filter_sees) {
+    const Said whole = octoskin("rig " + source("hw/rigs/bench_one_board.yaml"));
+    EXPECT_EQ(whole.exit_code, 0);
+    EXPECT_THAT(whole.output,
+                AllOf(HasSubstr("robot panda.urdf: 9 links at or below panda_link0, 8 capsules\n"),
+                      Not(HasSubstr("<collision>"))));
+    write(path("bare.urdf"), std::regex_replace(content(source("hw/robots/panda.urdf")),
+                                                std::regex("(</?)collision"), "$1visual"));
+    const Said bare =
+        octoskin("rig " + source("hw/rigs/bench_one_board.yaml") + " --robot " + path("bare.urdf"));
+    EXPECT_EQ(bare.exit_code, 0);
+    EXPECT_THAT(bare.output, AllOf(HasSubstr("9 links at or below panda_link0, 0 capsules\n"),
+                                   HasSubstr("no link at or below panda_link0 has a <collision>")));
+}
+
 TEST_F(CommandLine, knows_the_same_configurations_in_every_command) {
     const Said near = octoskin("mapping robsut");
     EXPECT_EQ(near.exit_code, 66);

@@ -104,7 +104,7 @@ TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
     EXPECT_EQ(
         sensor(0),
         Json::parse(R"({"index": 0, "name": "good", "state": null, "fault": null, "received": 0, "lost": 0,
-        "age_s": null, "rejected": null,
+        "age_s": null, "rejected": null, "reflexes": 0, "reflex_below_m": 0.0, "reflex_m": null,
         "camera": {"contradicts": false, "agreed": 0, "in_free_space": 0, "behind_surface": 0}})"));
 }
 
@@ -162,6 +162,24 @@ TEST_F(StatusTest, has_why_a_sensors_newest_reading_was_rejected_and_what_was_lo
     EXPECT_EQ(good["lost"], 2);
     EXPECT_EQ(good["state"], "degraded");
     EXPECT_EQ(good["fault"], "reads_disagree");
+}
+
+TEST_F(StatusTest, has_how_often_something_came_too_close_to_a_sensor_and_how_close) {
+    Scene scene = daemon_scene();
+    scene.rig.nodes[0].sensors[kGood].reflex_below_m = 0.15;
+    wire::Reflex reflex;
+    reflex.sensor = kGood;
+    reflex.capture = wire::classical_residue({0});
+    for (const std::uint16_t range_mm : std::array<std::uint16_t, 2>{90, 81}) {
+        reflex.range_mm = range_mm;
+        scene.bus.send(4.4, reflex, kLeft);
+    }
+    play(scene, kAllWell);
+    const Json good = sensor(kGood);
+    EXPECT_EQ(good["reflexes"], 2);
+    EXPECT_DOUBLE_EQ(good["reflex_below_m"], 0.15);
+    EXPECT_DOUBLE_EQ(good["reflex_m"], 0.081);
+    EXPECT_EQ(sensor(kSpare)["reflexes"], 0);
 }
 
 TEST_F(StatusTest, has_what_the_camera_says_of_a_sensor_or_null_without_one) {

@@ -69,6 +69,29 @@ TEST(Monitor, shows_a_sensor_that_contradicts_the_camera_as_bad) {
     EXPECT_FALSE(has(shown(status(), status()), "CONTRADICTS"));
 }
 
+TEST(Monitor, shows_that_something_came_too_close_and_that_it_did_so_just_now) {
+    Json before = status();
+    Json& sensor = before["nodes"][0]["sensors"][0];
+    sensor["reflexes"] = 0;
+    EXPECT_FALSE(has(shown(before, before), "REFLEX"));
+    sensor["reflex_below_m"] = 0.15;
+    sensor["reflex_m"] = 0.081;
+    Json now = before;
+    now["nodes"][0]["sensors"][0]["reflexes"] = 3;
+    const auto reflex_line = [](const Json& earlier, const Json& later) {
+        const auto lines = screen_of(earlier, later, 2s);
+        const auto line =
+            std::ranges::find_if(lines, [](const ScreenLine& one) { return has(one.text, "REFLEX"); });
+        return line == lines.end() ? ScreenLine{} : *line;
+    };
+    EXPECT_EQ(
+        reflex_line(before, now).text,
+        "     REFLEX 3 times: something came closer than its reflex_below_m, 0.15 m; the newest at 0.081 m");
+    EXPECT_EQ(reflex_line(before, now).emphasis, Emphasis::bad);
+    EXPECT_EQ(reflex_line(now, now).emphasis, Emphasis::none);
+    EXPECT_EQ(reflex_line(Json(), now).emphasis, Emphasis::none) << "the first picture: nobody knows when";
+}
+
 TEST(Monitor, shows_no_range_of_a_sensor_that_saw_nothing) {
     Json now = status();
     Json& sensor = now["nodes"][0]["sensors"][0];

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "common/config/node_config.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
 namespace {
@@ -106,6 +108,26 @@ TEST(HostRigReader, refuses_a_body_outside_the_kinematic_tree) {
     const auto setup = make_host_setup(rig);
     ASSERT_FALSE(setup);
     EXPECT_EQ(setup.error().key, "link panda_link0");
+}
+
+TEST(HostRigReader, warns_of_a_robot_without_a_body) {
+    rig::Rig rig = experiment();
+    const auto whole = make_host_setup(rig);
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(whole->warnings, std::vector<std::string>());
+    EXPECT_FALSE(whole->rig.body.empty());
+    std::string text = testing_support::ScratchFolder::read(rig.urdf);
+    for (std::size_t at = 0; (at = text.find("<collision", at)) != std::string::npos;) {
+        constexpr std::string_view kEnd = "</collision>";
+        text.erase(at, text.find(kEnd, at) + kEnd.size() - at);
+    }
+    const testing_support::ScratchFolder folder;
+    rig.urdf = folder.write("no_body.urdf", text);
+    const auto bare = make_host_setup(rig);
+    ASSERT_TRUE(bare) << bare.error().message();
+    EXPECT_EQ(bare->warnings,
+              std::vector<std::string>{"no link at or below panda_link0 has a <collision>: nothing of the "
+                                       "robot is taken out of images and ranges"});
 }
 
 }  // namespace
