@@ -60,7 +60,7 @@ void report_progress(const ReplayProgress& progress, int& last_second) {
 
 /// A replay that failed leaves the maps of the one before as they are.
 void refuse_failed(const Playback& playback) {
-    if (auto failure = failure_of(playback)) {
+    if (auto failure = failure_of(playback, "the account above says why")) {
         failure->message += "; no map is written";
         throw CommandFailure(std::move(*failure));
     }

@@ -53,7 +53,11 @@ Result<LogSurvey, AppError> survey_log(const RecordingPaths& recording, const Ho
     while (!survey.is_complete()) {
         const auto entry = reader->next();
         if (!entry) return fail(ExitCode::bad_data, entry.error().message());
-        if (!*entry) break;
+        if (!*entry) {
+            if (const auto foreign = reader->foreign_file())
+                return fail(ExitCode::bad_data, foreign->message());
+            break;
+        }
         survey.take(**entry);
     }
     return survey;
@@ -236,7 +240,7 @@ Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& set
 
 }  // namespace
 
-std::optional<AppError> failure_of(const Playback& playback) {
+std::optional<AppError> failure_of(const Playback& playback, std::string_view where_the_account_is) {
     if (const auto& failed = playback.outcome.can_error) return AppError{ExitCode::bad_data, failed->what};
     if (const auto& failed = playback.outcome.depth_error) return AppError{ExitCode::bad_data, failed->what};
     const bool is_balanced =
@@ -245,8 +249,7 @@ std::optional<AppError> failure_of(const Playback& playback) {
     if (!is_balanced) return AppError{ExitCode::failed, "the account does not balance"};
     if (playback.is_map_incomplete) return AppError{ExitCode::failed, "the map is not complete"};
     if (playback.pipeline.maps().fused()->known_voxels() == 0) {
-        return AppError{ExitCode::failed,
-                        "nothing came into the map; `octoskin replay` shows the account that says why"};
+        return AppError{ExitCode::failed, "nothing came into the map; " + std::string(where_the_account_is)};
     }
     return std::nullopt;
 }

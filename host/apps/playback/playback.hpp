@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "common/result.hpp"
 #include "host/apps/playback/map_origin.hpp"
@@ -50,7 +51,10 @@ struct Playback {
 
 /// Why what came of a recording must not be used as a map; empty if nothing speaks against it: a source that
 /// failed on the way, an account that does not balance, a map without room, or nothing in any map.
-[[nodiscard]] std::optional<AppError> failure_of(const Playback& playback);
+/// `where_the_account_is`: half a sentence for whoever wonders why nothing came into a map.
+[[nodiscard]] std::optional<AppError> failure_of(
+    const Playback& playback,
+    std::string_view where_the_account_is = "`octoskin replay` shows the account that says why");
 
 /// That the recording has its files, after settle_file_set(): cheap, for those who have something to prepare
 /// before they play it.

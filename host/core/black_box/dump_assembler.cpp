@@ -17,7 +17,22 @@ std::optional<std::size_t> size_of(const Dump& dump) {
     return sizeof(header->length) + header->length;
 }
 
+std::size_t pieces_of(std::size_t bytes) {
+    constexpr std::size_t kBytes = decltype(wire::BlackBox::bytes){}.size();
+    return (bytes + kBytes - 1) / kBytes;
+}
+
 }  // namespace
+
+std::size_t Dump::pieces_came() const {
+    return pieces_of(bytes.size());
+}
+
+std::optional<std::size_t> Dump::pieces() const {
+    const auto size = size_of(*this);
+    if (!size) return std::nullopt;
+    return pieces_of(*size);
+}
 
 std::optional<Dump> DumpAssembler::take(wire::NodeId node, const wire::BlackBox& piece) {
     const auto known = open_.find(node);

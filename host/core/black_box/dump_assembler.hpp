@@ -1,6 +1,7 @@
 // Puts the pieces of BLACK_BOX dumps together, of any number of nodes and buses at once.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -17,6 +18,10 @@ struct Dump {
     std::uint8_t number = 0;  ///< the node's count of its dumps, modulo 4
     std::vector<std::uint8_t> bytes;
     bool is_complete = false;  ///< false: what follows `bytes` never came
+
+    [[nodiscard]] std::size_t pieces_came() const;
+    /// Of the whole dump; empty before its length came.
+    [[nodiscard]] std::optional<std::size_t> pieces() const;
 };
 
 class DumpAssembler {

@@ -14,6 +14,13 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kIndexBytes = 2;
 
+/// Of a dump that is not complete.
+std::string rest_of(const Dump& dump) {
+    const auto pieces = dump.pieces();
+    return fmt::format("the rest never came: {} of {} pieces did, of 20 a second; keep candump running",
+                       dump.pieces_came(), pieces ? std::to_string(*pieces) : "an unknown number of");
+}
+
 std::string hex(Bytes bytes) {
     std::string text;
     for (const std::uint8_t byte : bytes) {
@@ -68,7 +75,7 @@ std::string transfer_script(const Dump& dump) {
     Writer writer;
     const auto header = wire::decode_dump_header(dump.bytes);
     if (!header) {
-        writer.comment(fmt::format("node {}, I2C bus {}: too little of this dump came", dump.node, dump.bus));
+        writer.comment(fmt::format("node {}, I2C bus {}: {}", dump.node, dump.bus, rest_of(dump)));
         return writer.take();
     }
     writer.comment(fmt::format("node {}, I2C bus {}, dump {}: recorded until {} us", dump.node, dump.bus,
@@ -78,13 +85,13 @@ std::string transfer_script(const Dump& dump) {
         const auto transfer = wire::take_transfer(rest);
         if (!transfer) {
             const bool is_cut = transfer.error() == wire::DumpError::truncated && !dump.is_complete;
-            writer.comment(is_cut ? "the rest never came" : "the rest is damaged");
+            writer.comment(is_cut ? rest_of(dump) : "the rest is damaged");
             return writer.take();
         }
         writer.add(*transfer);
     }
     if (!dump.is_complete) {
-        writer.comment("the rest never came");
+        writer.comment(rest_of(dump));
     }
     return writer.take();
 }

@@ -81,4 +81,10 @@ Result<std::optional<LogEntry>, LogError> LogReader::next() {
     }
 }
 
+std::optional<LogError> LogReader::foreign_file() const {
+    const bool has_lines = account_.in() > account_.rejected(LineFault::blank);
+    if (account_.used() > 0 || !has_lines) return std::nullopt;
+    return LogError{file_, "no line is in candump's log format; record with `candump -L can0 > can.log`"};
+}
+
 }  // namespace octoskin::candump

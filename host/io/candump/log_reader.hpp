@@ -37,6 +37,9 @@ class LogReader {
         return first_line_[static_cast<std::size_t>(fault)];
     }
 
+    /// Of a file that was read to its end: that it has lines and none of them is a frame, with the way out.
+    [[nodiscard]] std::optional<LogError> foreign_file() const;
+
   private:
     enum class LineEnd : std::uint8_t { line_feed, end_of_file, nothing_left, too_long };
 

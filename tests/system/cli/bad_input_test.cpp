@@ -276,5 +276,22 @@ TEST_F(BadInput, an_output_that_cannot_be_written_is_named) {
     EXPECT_THAT(said.output, HasSubstr("file/rec"));
 }
 
+TEST_F(BadInput, of_candump_without_L_names_the_way_to_record) {
+    record_short("rec");
+    write(path("rec/can.log"), "  can0  141   [8]  01 02 03 04 05 06 07 08\n");
+    for (const std::string& command : {"replay " + path("rec"), "black-box " + path("rec/can.log")}) {
+        const Said said = octoskin(command);
+        EXPECT_EQ(said.exit_code, 65) << said.output;
+        EXPECT_THAT(said.output,
+                    HasSubstr("can.log: no line is in candump's log format; record with `candump "
+                              "-L can0 > can.log`"));
+    }
+    write(path("rec/can.log"), "");
+    const Said empty = octoskin("black-box " + path("rec/can.log"));
+    EXPECT_EQ(empty.exit_code, 65);
+    EXPECT_THAT(empty.output, HasSubstr("can.log: no frames: the log is empty"));
+    EXPECT_THAT(octoskin("replay " + path("rec")).output, HasSubstr("the account above says why"));
+}
+
 }  // namespace
 }  // namespace octoskin

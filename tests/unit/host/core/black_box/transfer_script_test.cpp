@@ -41,14 +41,26 @@ TEST(TransferScript, says_where_a_dump_was_cut_off_and_keeps_what_is_whole) {
     for (std::size_t kept = 0; kept < kTransfers.size(); ++kept) {
         const std::string text = transfer_script(
             dump_of({kTransfers.begin(), kTransfers.begin() + static_cast<int>(kept)}, false));
-        EXPECT_TRUE(text.ends_with("# the rest never came\n")) << kept;
-        const std::string transfers =
-            text.substr(0, text.size() - std::string("# the rest never came\n").size());
+        const std::size_t last = text.rfind("# the rest never came: ");
+        ASSERT_NE(last, std::string::npos) << kept;
+        EXPECT_TRUE(text.ends_with(" pieces did, of 20 a second; keep candump running\n")) << kept;
+        const std::string transfers = text.substr(0, last);
         EXPECT_EQ(whole.substr(0, transfers.size()), transfers) << kept;
     }
     Dump tiny = dump_of({});
     tiny.bytes.resize(5);
-    EXPECT_EQ(transfer_script(tiny), "# node 5, I2C bus 1: too little of this dump came\n");
+    EXPECT_EQ(transfer_script(tiny),
+              "# node 5, I2C bus 1: the rest never came: 1 of an unknown number of pieces did, of 20 a "
+              "second; keep "
+              "candump running\n");
+}
+
+TEST(TransferScript, says_how_much_of_a_dump_came) {
+    Dump cut = dump_of(kTransfers, false);
+    ASSERT_EQ(cut.bytes.size(), 39U);
+    cut.bytes.resize(15);
+    const std::string text = transfer_script(cut);
+    EXPECT_NE(text.find("the rest never came: 3 of 8 pieces did"), std::string::npos) << text;
 }
 
 TEST(TransferScript, calls_an_impossible_transfer_damaged) {

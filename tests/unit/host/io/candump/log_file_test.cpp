@@ -9,6 +9,7 @@
 #include "host/io/candump/log_reader.hpp"
 #include "host/io/candump/log_source.hpp"
 #include "host/io/candump/log_writer.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::candump {
 namespace {
@@ -169,6 +170,26 @@ TEST(LogWriter, says_why_a_file_cannot_be_created) {
     const auto writer = LogWriter::create("/nowhere/can.log");
     ASSERT_FALSE(writer.has_value());
     EXPECT_EQ(writer.error().message(), "/nowhere/can.log: cannot create: No such file or directory");
+}
+
+/// What the reader says of a file with this text, once it was read to its end; empty if nothing.
+std::string foreign(const std::string& text) {
+    const testing_support::ScratchFolder folder;
+    auto reader = LogReader::open(folder.write("can.log", text));
+    EXPECT_TRUE(reader.has_value());
+    while (reader->next()->has_value()) {
+    }
+    const auto error = reader->foreign_file();
+    return error ? error->what : "";
+}
+
+TEST(LogFile, of_which_no_line_is_a_frame_says_how_to_record_one) {
+    const std::string seen = "  can0  141   [8]  01 02 03 04 05 06 07 08\n";  // what candump shows without -L
+    EXPECT_EQ(foreign(seen + "\n" + seen),
+              "no line is in candump's log format; record with `candump -L can0 > can.log`");
+    EXPECT_EQ(foreign(seen + "(1436509053.850870) vcan0 044#2A\n"), "");
+    EXPECT_EQ(foreign(""), "") << "an empty log is a log";
+    EXPECT_EQ(foreign("\n\n"), "");
 }
 
 }  // namespace
