@@ -1,5 +1,6 @@
 #include "host/apps/daemon/joint_socket.hpp"
 
+#include <fmt/format.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -60,6 +61,13 @@ Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::siz
         sample.position, [](double position) { return std::abs(position) > LocalJoints::kLargest; });
     if (is_too_large) return unexpected(JointTextFault::too_large);
     return sample;
+}
+
+std::string describe(JointTextFault fault, std::string_view text, std::size_t joint_count) {
+    const std::string name = names_of(fault).at(static_cast<std::size_t>(fault));
+    const auto numbers = numbers_of(text);
+    if (fault != JointTextFault::wrong_count || !numbers) return name;
+    return fmt::format("{}: {} numbers, the rig has {} joints", name, numbers->size(), joint_count);
 }
 
 Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& file, std::size_t joint_count) {

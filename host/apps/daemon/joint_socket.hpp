@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -39,6 +40,9 @@ inline constexpr std::size_t kJointTextMax = 1024;
 /// One line or datagram, which came at `came`; empty: nobody knows when. Any bytes are safe.
 [[nodiscard]] Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::size_t joint_count,
                                                                HostTime now, std::optional<HostTime> came);
+
+/// The same for a person: "wrong_count: 3 numbers, the rig has 7 joints", of the others their name.
+[[nodiscard]] std::string describe(JointTextFault fault, std::string_view text, std::size_t joint_count);
 
 class JointSocket {
   public:

@@ -33,36 +33,60 @@ struct JointsOptions {
     std::filesystem::path rig;
 };
 
+enum class LineFate : std::uint8_t {
+    sent,
+    lost,     ///< it could not be sent now; it will not be sent later
+    refused,  ///< it is no sample of this rig
+};
+
 /// Where a line's sample goes.
 class JointOutput {
   public:
     virtual ~JointOutput() = default;
-    /// False if it could not be sent now; it will not be sent later.
-    [[nodiscard]] virtual bool put(const std::string& line) = 0;
+    [[nodiscard]] virtual LineFate put(const std::string& line) = 0;
     /// Whatever else the way there asks for; called often.
     virtual void attend() = 0;
     /// -1, or what is worth a call of `attend` when it is readable.
     [[nodiscard]] virtual int descriptor() const = 0;
-    /// Why nothing can be sent, for a person; empty while it can.
+    /// Why the newest line was refused, or why nothing can be sent, for a person; empty while it can.
     [[nodiscard]] virtual std::string why() const = 0;
 };
 
-/// The text as it is: the daemon checks and counts it.
+/// The line's sample, which counts as taken now unless it says otherwise; or what is wrong with it.
+Result<JointSample, std::string> sample_of(const std::string& line, std::size_t joint_count) {
+    const HostTime now = monotonic_now();
+    auto sample = parse_joints(line, joint_count, now, now);
+    if (!sample)
+        return unexpected("line not sent, " + describe(sample.error(), line, joint_count) + ": " + line);
+    return std::move(sample).value();
+}
+
+/// The text as it is: the daemon checks and counts it, and answers nothing. With a rig it is checked here,
+/// too.
 class SocketOutput final : public JointOutput {
   public:
-    explicit SocketOutput(std::filesystem::path file) : file_(std::move(file)) {}
+    SocketOutput(std::filesystem::path file, std::optional<std::size_t> joint_count)
+        : file_(std::move(file)), joint_count_(joint_count) {}
     ~SocketOutput() override { close(); }
     SocketOutput(const SocketOutput&) = delete;
     SocketOutput& operator=(const SocketOutput&) = delete;
-    bool put(const std::string& line) override {
+    LineFate put(const std::string& line) override {
+        refusal_.clear();
+        if (joint_count_) {
+            if (auto sample = sample_of(line, *joint_count_); !sample) {
+                refusal_ = std::move(sample).error();
+                return LineFate::refused;
+            }
+        }
         attend();
-        if (descriptor_ < 0) return false;
-        if (::send(descriptor_, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT) >= 0) return true;
+        if (descriptor_ < 0) return LineFate::lost;
+        if (::send(descriptor_, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT) >= 0)
+            return LineFate::sent;
         if (errno != EAGAIN && errno != EWOULDBLOCK) {  // else the daemon is busy
             close();
             why_ = file_.string() + ": the daemon is gone";
         }
-        return false;
+        return LineFate::lost;
     }
     void attend() override {
         const HostTime now = monotonic_now();
@@ -73,16 +97,18 @@ class SocketOutput final : public JointOutput {
         if (connected) descriptor_ = *connected;
     }
     [[nodiscard]] int descriptor() const override { return -1; }
-    [[nodiscard]] std::string why() const override { return why_; }
+    [[nodiscard]] std::string why() const override { return refusal_.empty() ? why_ : refusal_; }
 
   private:
     void close() {
         if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
     }
     std::filesystem::path file_;
+    std::optional<std::size_t> joint_count_;
     int descriptor_ = -1;
     std::optional<HostTime> tried_;
     std::string why_;
+    std::string refusal_;
 };
 
 /// As a node of the bus: frames, a heartbeat's silence allowed, and an answer to each SYNC.
@@ -92,19 +118,18 @@ class CanOutput final : public JointOutput {
         : joint_count_(rig.joints.joints.size()),
           joints_(rig.joints.node_id, joint_count_, rig.joints.rate_hz),
           link_([interface] { return socketcan::CanSocket::open(interface, {.filters = kSyncOnly}); }) {}
-    bool put(const std::string& line) override {
-        const HostTime now = monotonic_now();
-        const auto sample = parse_joints(line, joint_count_, now, now);
+    LineFate put(const std::string& line) override {
+        refusal_.clear();
+        auto sample = sample_of(line, joint_count_);
         if (!sample) {
-            spdlog::warn("line not sent, {}: {}",
-                         names_of(JointTextFault{}).at(static_cast<std::size_t>(sample.error())), line);
-            return true;  // told, and no fault of the way
+            refusal_ = std::move(sample).error();
+            return LineFate::refused;
         }
         const auto frames = joints_.frames(sample->sampled, sample->position);
-        if (!frames) return true;  // too soon after the one before; parse_joints has refused all else
+        if (!frames) return LineFate::sent;  // too soon after the one before: nobody misses it
         bool is_sent = true;
         for (const wire::CanFrame& frame : *frames) is_sent = link_.send(frame) && is_sent;
-        return is_sent;
+        return is_sent ? LineFate::sent : LineFate::lost;
     }
     void attend() override {
         (void)link_.attend(monotonic_now());
@@ -116,7 +141,7 @@ class CanOutput final : public JointOutput {
         }
     }
     [[nodiscard]] int descriptor() const override { return link_.descriptor(); }
-    [[nodiscard]] std::string why() const override { return link_.why(); }
+    [[nodiscard]] std::string why() const override { return refusal_.empty() ? link_.why() : refusal_; }
 
   private:
     static constexpr std::array<socketcan::IdFilter, 1> kSyncOnly{
@@ -124,46 +149,61 @@ class CanOutput final : public JointOutput {
     std::size_t joint_count_;
     LocalJoints joints_;
     CanLink link_;
+    std::string refusal_;
 };
 
 std::unique_ptr<JointOutput> make_output(const JointsOptions& options) {
-    if (options.interface.empty()) return std::make_unique<SocketOutput>(options.socket);
-    if (options.rig.empty())
+    const bool is_onto_bus = !options.interface.empty();
+    if (options.rig.empty()) {
+        if (!is_onto_bus) return std::make_unique<SocketOutput>(options.socket, std::nullopt);
         throw CommandFailure(
             {ExitCode::usage, "--can needs --rig: which node sends joint states, and how many"});
+    }
     const auto rig = rig::read_rig(options.rig);
     if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    if (!is_onto_bus) return std::make_unique<SocketOutput>(options.socket, rig->joints.joints.size());
     return std::make_unique<CanOutput>(options.interface, *rig);
 }
 
-/// Lines on their way, and what is said of them: once when they are lost, once when they go through again.
+/// Lines on their way, and what is said of them: once when they are lost or refused, once when they go
+/// through again.
 class Forwarder {
   public:
     explicit Forwarder(JointOutput& output) : output_(output) {}
 
     void put(const std::string& line) {
-        const bool is_sent = output_.put(line);
-        ++(is_sent ? sent_ : lost_);
-        const std::string why = output_.why();
-        if (!is_sent && !why.empty() && !is_waiting_) {
-            spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why);
-            is_waiting_ = true;
-        } else if (is_sent && is_waiting_) {
-            spdlog::info("samples go through again; {} lines are lost so far", lost_);
-            is_waiting_ = false;
+        const LineFate fate = output_.put(line);
+        if (fate == LineFate::sent) {
+            if (told_ == LineFate::lost)
+                spdlog::info("samples go through again; {} lines are lost so far", lost_);
+            ++sent_;
+            told_ = fate;
+            return;
+        }
+        ++(fate == LineFate::lost ? lost_ : refused_);
+        why_ = output_.why();
+        if (why_.empty() || told_ == fate) return;
+        told_ = fate;
+        if (fate == LineFate::lost) {
+            spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why_);
+        } else {
+            spdlog::warn("{}", why_);
         }
     }
     /// Throws CommandFailure if not a single line went through.
     void finish() const {
-        if (sent_ == 0 && lost_ > 0) throw CommandFailure({ExitCode::unavailable, output_.why()});
-        if (lost_ > 0) spdlog::warn("{} of {} lines were lost", lost_, sent_ + lost_);
+        if (sent_ == 0 && lost_ + refused_ > 0) throw CommandFailure({ExitCode::unavailable, why_});
+        if (lost_ > 0) spdlog::warn("{} of {} lines were lost", lost_, sent_ + lost_ + refused_);
+        if (refused_ > 0) spdlog::warn("{} of {} lines were refused", refused_, sent_ + lost_ + refused_);
     }
 
   private:
     JointOutput& output_;
     std::uint64_t sent_ = 0;
     std::uint64_t lost_ = 0;
-    bool is_waiting_ = false;
+    std::uint64_t refused_ = 0;
+    LineFate told_ = LineFate::sent;  ///< what was said last
+    std::string why_;                 ///< of the newest line that did not go through
 };
 
 void put_lines(std::string& pending, Forwarder& forwarder) {
@@ -208,11 +248,16 @@ void add_joints_command(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--can", options->interface,
                         "Send them on this CAN interface instead, as the rig's joint node");
-    command->add_option("--rig", options->rig, "Rig (YAML), for --can")->check(existing_file());
+    command
+        ->add_option("--rig", options->rig,
+                     "Rig (YAML): needed for --can; for the socket, lines are checked against it")
+        ->check(existing_file());
     command->footer(
         "One sample a line: [TIME] Q1 ... QN, in the rig's order; radians, metres for a prismatic joint. "
         "TIME is\n"
-        "CLOCK_MONOTONIC in seconds; without it a line counts as sampled when it came.");
+        "CLOCK_MONOTONIC in seconds; without it a line counts as sampled when it came.\n"
+        "Exit codes: 0 lines went through; 64 command line; 65 a line without end; 66 no such rig file;\n"
+        "69 not one line went through; 78 the rig is not valid.");
     command->callback([options] { forward(*options); });
 }
 

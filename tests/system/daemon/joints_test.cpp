@@ -71,6 +71,20 @@ TEST(JointsCommand, says_at_the_end_that_nobody_was_there) {
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69);
 }
 
+TEST(JointsCommand, refuses_lines_of_another_number_of_joints_wherever_they_go) {
+    const testing_support::ScratchFolder folder;
+    const Taker taker(folder / "joints");
+    const std::string rig = " --rig " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml";
+    for (const std::string& way : {"--can nocan9" + rig, "--socket " + (folder / "joints").string() + rig}) {
+        const std::string command = "printf '1 2 3\\n1 2 3\\n' | " OCTOSKIN_PROGRAM " joints " + way +
+                                    " 2> " + (folder / "log").string();
+        EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69) << way;
+        const std::string log = testing_support::ScratchFolder::read(folder / "log");
+        EXPECT_NE(log.find("wrong_count: 3 numbers, the rig has 7 joints: 1 2 3"), std::string::npos) << log;
+    }
+    EXPECT_FALSE(taker.gets_a_line(0ms));
+}
+
 /// A descriptor that only shows an error must not keep the processor busy.
 TEST(JointsCommand, rests_while_no_line_comes) {
     const testing_support::ScratchFolder folder;

@@ -27,6 +27,13 @@ TEST(JointText, is_positions_of_when_it_came_or_of_the_time_before_them) {
     EXPECT_EQ(timed->position, (std::vector<double>{1, 2, 3}));
 }
 
+TEST(JointText, fault_is_told_with_the_two_counts_that_differ) {
+    EXPECT_EQ(describe(JointTextFault::wrong_count, "1 2 3\n", 7),
+              "wrong_count: 3 numbers, the rig has 7 joints");
+    EXPECT_EQ(describe(JointTextFault::not_a_number, "1 2 x", 7), "not_a_number");
+    EXPECT_EQ(describe(JointTextFault::time_off, "0 1 2 3", 3), "time_off");
+}
+
 TEST(JointText, says_what_is_wrong) {
     EXPECT_EQ(fault_of(""), JointTextFault::wrong_count);
     EXPECT_EQ(fault_of("1 2"), JointTextFault::wrong_count);
