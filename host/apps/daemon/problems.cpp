@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/wire/names.hpp"
 #include "host/apps/daemon/status.hpp"
 #include "host/core/rig/sensor_text.hpp"
@@ -24,6 +26,16 @@ void add_link(const DaemonView& view, Problems& problems) {
     }
 }
 
+/// Where no node is, our own SYNC tells a time from each to the next, and then looks like a jump: that is no
+/// time that anybody shares, and coming and going it would fill the log.
+bool is_time_known(const DaemonView& view) {
+    const auto& nodes = view.pipeline->intake().nodes().records();
+    const bool has_node =
+        std::ranges::any_of(nodes, [](const auto& node) { return node.second.heartbeat.has_value(); });
+    const bool has_joints = view.inputs->joints() != nullptr && view.inputs->joints()->samples() > 0;
+    return view.pipeline->now() && (has_node || has_joints || view.is_listen_only);
+}
+
 void add_clock(const DaemonView& view, Problems& problems) {
     constexpr Nanoseconds kForeignHold{3'000'000'000};
     const auto foreign = view.inputs->foreign_sync();
@@ -41,7 +53,7 @@ void add_clock(const DaemonView& view, Problems& problems) {
                  "SYNC began anew, or there are two; joint states and readings go on from there",
                  view.pipeline->times_back())});
     }
-    if (view.pipeline->now()) return;
+    if (is_time_known(view)) return;
     problems.push_back(
         {"no time",
          view.is_listen_only

@@ -17,7 +17,7 @@ constexpr std::array kMeanings = {
             "extended, remote or error frame, or CAN FD where classical belongs and the reverse"},
     Meaning{"CAN frames", "unknown_type", "an identifier that the protocol does not assign"},
     Meaning{"CAN frames", "wrong_length", "not the length that its type has"},
-    Meaning{"CAN frames", "wrong_crc", "the CRC-16 in the frame does not fit its content"},
+    Meaning{"CAN frames", "wrong_crc", "the checksum in the frame does not fit its content"},
     Meaning{"CAN frames", "wrong_version", "a sound frame of another version of the protocol"},
     Meaning{"CAN frames", "nonzero_padding", "bytes that must be 0 are not"},
     Meaning{"CAN frames", "invalid_field", "a value outside its enumeration or range"},

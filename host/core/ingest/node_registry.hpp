@@ -120,7 +120,8 @@ class NodeRegistry {
     [[nodiscard]] NodeVerdict verdict(wire::NodeId node, std::optional<HostTime> now) const;
     /// What the node told and what it should have told, where that is what the verdict rests on.
     [[nodiscard]] std::optional<NodeMismatch> reason(wire::NodeId node, std::optional<HostTime> now) const;
-    /// For a person: "node 7 'upper ring': info_mismatch (node_hash 1a2b3c4d, the rig has 5e6f7a8b)".
+    /// For a person: "node 7 'upper ring': info_mismatch (node_hash 1a2b3c4d, the rig has 5e6f7a8b: flash it
+    /// with this rig, ...)".
     [[nodiscard]] std::string describe(wire::NodeId node, std::optional<HostTime> now) const;
 
   private:

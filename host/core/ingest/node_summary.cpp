@@ -30,6 +30,7 @@ std::vector<NodeSummary> summarise(const CanIntake& intake) {
                          .readings = readings_of(intake.ranges(), record.expected),
                          .clock_relocks = intake.clock(id).relocks(),
                          .verdict = intake.nodes().verdict(id, intake.now()),
+                         .has_time = intake.now().has_value(),
                          .reason = intake.nodes().reason(id, intake.now())});
     }
     return nodes;
@@ -51,7 +52,10 @@ std::string to_text(std::span<const NodeSummary> nodes) {
         } else {
             row(name, "-", "-", "-", node.clock_relocks);
         }
-        text << "  " << names_of(NodeVerdict{})[static_cast<std::size_t>(node.verdict)];
+        const bool lacks_time = node.verdict == NodeVerdict::usable && !node.has_time;
+        text << "  "
+             << (lacks_time ? "no SYNC in the log"
+                            : names_of(NodeVerdict{})[static_cast<std::size_t>(node.verdict)]);
         text << (node.reason ? ": " + node.reason->text() : "") << "\n";
     }
     return text.str();

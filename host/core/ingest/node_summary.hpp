@@ -23,6 +23,7 @@ struct NodeSummary {
     std::optional<Readings> readings;
     std::uint64_t clock_relocks = 0;
     NodeVerdict verdict = NodeVerdict::absent;
+    bool has_time = true;  ///< false: no SYNC told the host any; then nothing of the node is usable
     std::optional<NodeMismatch> reason;  ///< what it told and what it should have told
 };
 

@@ -105,6 +105,18 @@ TEST_F(ProblemsTest, have_a_time_that_nobody_tells_until_somebody_does) {
     EXPECT_EQ(told("no time"), "");
 }
 
+TEST_F(ProblemsTest, have_no_time_from_our_own_sync_alone) {
+    Scene scene = daemon_scene();
+    scene.rig.nodes[0].node_id = 44;  // of those that speak none is the rig's
+    scene.rig.joints.node_id = 45;
+    play(scene, 0.2);
+    ASSERT_TRUE(pipeline_->now());
+    EXPECT_EQ(told("no time"),
+              "the time is not known yet: no SYNC of ours came onto the bus, or no node is there");
+    view_.is_listen_only = true;
+    EXPECT_EQ(told("no time"), "");
+}
+
 TEST_F(ProblemsTest, have_each_node_that_is_not_usable_and_nothing_of_its_sensors) {
     play_changed([&](Scene& scene) {
         scene.rig = one_joint_rig();

@@ -98,8 +98,12 @@ TEST(NodeRegistry, describes_a_node_by_name) {
     NodeRegistry registry(rig());
     EXPECT_EQ(registry.describe(kNode, ms(0)), "node 7 'upper ring': absent");
     identify(registry, 0, pages(0xAABBCCDE));
-    EXPECT_EQ(registry.describe(kNode, ms(0)),
-              "node 7 'upper ring': info_mismatch (node_hash aabbccde, the rig has aabbccdd)");
+    EXPECT_EQ(
+        registry.describe(kNode, ms(0)),
+        "node 7 'upper ring': info_mismatch (node_hash aabbccde, the rig has aabbccdd: flash it with this "
+        "rig, "
+        "`firmware/flash --rig RIG --node 7`, or start octoskin-node with its new block, `octoskin rig RIG "
+        "--node 7 --block FILE`)");
     EXPECT_EQ(registry.describe(kNode, ms(999)), "node 7 'upper ring': lost");
 }
 

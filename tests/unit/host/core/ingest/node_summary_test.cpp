@@ -98,6 +98,16 @@ TEST(NodeSummary, keeps_gaps_over_a_restart_of_the_node) {
     EXPECT_EQ(summary_of(restarted, true).readings->gaps, 5U);
 }
 
+TEST(NodeSummary, of_a_log_without_sync_says_so) {
+    EXPECT_TRUE(summary_of(bus()).has_time);
+    test::ScriptedBus silent;
+    silent.info(0.01, rig().nodes[0]);
+    silent.heartbeat(0.1, rig().nodes[0]);
+    const NodeSummary untimed = summary_of(silent);
+    EXPECT_EQ(untimed.verdict, NodeVerdict::usable);
+    EXPECT_FALSE(untimed.has_time);
+}
+
 TEST(NodeSummary, is_a_table_of_one_line_a_node) {
     const NodeSummary nodes[] = {{.node_id = 1,
                                   .name = "rear_rings",
@@ -110,12 +120,20 @@ TEST(NodeSummary, is_a_table_of_one_line_a_node) {
                                   .readings = {},
                                   .clock_relocks = 0,
                                   .verdict = NodeVerdict::other_version,
-                                  .reason = NodeMismatch{"version", 2, 1, "this host speaks"}}};
+                                  .reason = NodeMismatch{"version", 2, 1, "this host speaks"}},
+                                 {.node_id = 63,
+                                  .name = "untimed",
+                                  .readings = {},
+                                  .clock_relocks = 0,
+                                  .verdict = NodeVerdict::usable,
+                                  .has_time = false,
+                                  .reason = {}}};
     EXPECT_EQ(to_text(nodes),
               "node                  readings      lost      gaps  re-locks  verdict\n"
               "  1 rear_rings            2218        12         7         1  usable\n"
               " 62 joints                   -         -         -         0  other_version: version 2, this "
-              "host speaks 1\n");
+              "host speaks 1\n"
+              " 63 untimed                  -         -         -         0  no SYNC in the log\n");
 }
 
 }  // namespace
