@@ -71,7 +71,7 @@ void check_command_name(const CLI::App& app, int argc, const char* const* argv) 
     if (std::find(names.begin(), names.end(), word) != names.end()) return;
     const auto near = rig::nearest_word(word, names);
     throw CommandFailure({ExitCode::usage, "there is no command '" + word + "'" +
-                                               (near ? ": did you mean '" + *near + "'?" : "") +
+                                               (near ? ": did you mean '" + *near + "'?" : ".") +
                                                " There are " + rig::joined(names) +
                                                "; octoskin --help says what they do"});
 }

@@ -20,6 +20,10 @@ void run_experiment(const StudyRequest& request) {
     if (!results) throw CommandFailure(results.error());
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     print("{}\n", evaluation::metrics_table(*results));
+    print(
+        "Two yardsticks: occupied to lost count voxels against what a careful camera would have mapped, "
+        "precision to\n"
+        "brier judge by where the world's surfaces are. docs/evaluation.md has both.\n");
     print("{:.0f} s in all. Look at {}\n", seconds,
           std::filesystem::absolute(request.out / "report.html").string());
 }

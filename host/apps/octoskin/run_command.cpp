@@ -62,7 +62,8 @@ void add_run_command(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--camera", request->camera_uri,
                         "OpenNI2 device, or an .oni file to play (default: the first camera there is)");
-    command->add_flag("!--no-camera", request->has_camera, "Do without the rig's camera");
+    command->add_flag_callback(
+        "--no-camera", [request] { request->has_camera = false; }, "Do without the rig's camera");
     command->add_option("--joints", request->joint_socket,
                         "Make this socket and take joint states from it (`octoskin joints`)");
     command->add_option("--maps", request->map_folder, "Where the map is kept: fused.ot, fused.bt")
@@ -73,7 +74,11 @@ void add_run_command(CLI::App& app) {
     command->add_option("--socket", request->control_socket, "Where `octoskin status` asks")
         ->capture_default_str();
     command->footer(
-        "SIGTERM, SIGINT: save the map and end. SIGHUP: read rig, robot and mapping again, all or none.");
+        "SIGTERM, SIGINT: save the map and end. SIGHUP: read rig, robot and mapping again, all or none.\n"
+        "Exit codes: 0 ended by a signal, the map saved; 64 command line; 65 the saved map is damaged;\n"
+        "66 no such file; 69 a socket's folder is not there; 73 another daemon has the socket or the maps, "
+        "or\n"
+        "the map cannot be saved; 77 no permission; 78 rig, robot or mapping file.");
     command->callback([request] { run_daemon(*request); });
 }
 

@@ -29,8 +29,12 @@ std::filesystem::path board_program() {
 sim::EmulatedBoards emulated_boards(const SimulateOptions& options) {
     const sim::EmulatedBoards boards{board_program(), options.image, options.cycles_per_instruction};
     if (!std::filesystem::exists(boards.program)) {
-        throw CommandFailure({ExitCode::no_input, boards.program.string() +
-                                                      ": not there; install libunicorn-dev and build again"});
+        throw CommandFailure(
+            {ExitCode::no_input,
+             boards.program.string() +
+                 ": not there; install libunicorn-dev (toolchains/install_packages demo check), then "
+                 "cmake --preset host-release && cmake --build --preset "
+                 "host-release --target octoskin_board"});
     }
     if (!std::filesystem::exists(boards.image)) {
         throw CommandFailure(

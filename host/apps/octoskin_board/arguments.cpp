@@ -81,7 +81,7 @@ void describe(CLI::App& app, Arguments& arguments) {
     config->excludes(rig);
     app.add_option("--seconds", arguments.seconds, "How long to run, simulated")
         ->capture_default_str()
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(0.001, 1e6));
     app.add_option("--wall", arguments.wall_m,
                    "Distance of the wall that each sensor looks at, metres; the list is repeated")
         ->capture_default_str();
@@ -95,7 +95,8 @@ void describe(CLI::App& app, Arguments& arguments) {
     app.add_option("--cycles-per-instruction", arguments.cycles_per_instruction, "What an instruction costs")
         ->capture_default_str()
         ->check(CLI::Range(1, 20));
-    app.add_flag("!--no-crystal", arguments.has_crystal, "The crystal does not start");
+    app.add_flag_callback(
+        "--no-crystal", [&arguments] { arguments.has_crystal = false; }, "The crystal does not start");
     app.add_option("--crystal-fails-at", arguments.crystal_fails_s, "Seconds after power-up");
     app.add_flag("--slow-edges", arguments.has_slow_edges, "I2C edges as slow as the specification allows");
     app.add_option(
