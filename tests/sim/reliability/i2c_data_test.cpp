@@ -90,7 +90,7 @@ TEST(ReliabilityI5, a_bit_flipped_in_a_poll_after_a_stall_does_not_date_the_read
     }
 }
 
-// I11: the node hands every status and every distance on as it is; only "complete" of a first result, whose
+// I11: the node hands every status and every distance on as it is, a negative one as 0; only "complete" of a first result, whose
 // wrap-around was not checked, gets the code that says so. (What becomes a ray is the host's, tested there.)
 TEST(ReliabilityI11, every_status_and_every_distance_goes_on_the_wire_as_it_is) {
     node::Policy policy;
@@ -101,13 +101,13 @@ TEST(ReliabilityI11, every_status_and_every_distance_goes_on_the_wire_as_it_is) 
         NodeTime now{0xFFFF'FFFFU - 5'000'000U};
         acceptance.restart(now, Microseconds{33'000}, 10);
         std::uint8_t stream = 0;
-        for (std::uint32_t range_mm = 0; range_mm <= 65'535; ++range_mm) {
+        for (std::int32_t range_mm = -32'768; range_mm <= 32'767; ++range_mm) {
             now = now + Microseconds{33'000};
             acceptance.on_not_ready(now - Microseconds{200});
             acceptance.on_not_ready(now - Microseconds{100});
             vl53l1x::Measurement measurement;
             measurement.device_status = status;
-            measurement.range_mm = static_cast<std::uint16_t>(range_mm);
+            measurement.range_mm = static_cast<std::int16_t>(range_mm);
             measurement.stream_count = stream;
             const auto verdict =
                 acceptance.judge({.measurement = measurement, .ready_seen = now, .read_end = now}, zones);
@@ -115,6 +115,7 @@ TEST(ReliabilityI11, every_status_and_every_distance_goes_on_the_wire_as_it_is) 
             const bool is_unchecked = stream == 0 && status == 9;
             ASSERT_EQ(acceptance.reading().device_status, is_unchecked ? 19 : status);
             ASSERT_EQ(acceptance.reading().range_mm, range_mm);
+            ASSERT_EQ(node::range_on_wire(acceptance.reading()), std::max(range_mm, 0));
             ++accepted;
             stream = stream == 255 ? 128 : static_cast<std::uint8_t>(stream + 1);
         }

@@ -43,8 +43,7 @@ void FlashInterface::write(std::uint32_t offset, std::uint32_t value) {
                         fmt::format("FLASH: write of 0x{:X} to 0x{:X}: programming", value, offset));
         return;
     }
-    if ((value & kDebuggerAllowed) == 0)
-        env_.log.report(Rule::debug_access, "FLASH.ACR: DBG_SWEN cleared");
+    if ((value & kDebuggerAllowed) == 0) env_.log.report(Rule::debug_access, "FLASH.ACR: DBG_SWEN cleared");
     bank_.write(offset, value);
     check_latency(hclk_hz_);
 }
