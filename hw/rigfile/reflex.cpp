@@ -40,6 +40,7 @@ std::vector<std::string> reflex_lines(const Node& node) {
     if (groups.size() == 1 && groups.front().first == 0) return {"no REFLEX: no sensor has a reflex_below_m"};
     std::stable_partition(groups.begin(), groups.end(), [](const auto& group) { return group.first > 0; });
     std::vector<std::string> lines;
+    lines.reserve(groups.size());
     for (const auto& [limit_mm, sensors] : groups) lines.push_back(line_of(limit_mm, sensors));
     return lines;
 }

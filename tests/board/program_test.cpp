@@ -112,7 +112,12 @@ TEST(OctoskinBoard, refuses_what_it_cannot_use) {
     const Outcome no_interface = run(kImage + kRig + "--seconds 0.01 --can nocan7");
     EXPECT_EQ(no_interface.exit_code, 69) << no_interface.text;
     EXPECT_THAT(no_interface.text, testing::HasSubstr("nocan7"));
-    EXPECT_EQ(run("--help").exit_code, 0);
+    const Outcome backwards = run(kImage + kRig + "--seconds -1");
+    EXPECT_EQ(backwards.exit_code, 64);
+    EXPECT_THAT(backwards.text, testing::HasSubstr("not in range 0.001000 to 1000000.000000"));
+    const Outcome help = run("--help");
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.text, testing::Not(testing::HasSubstr("{false}")));
 }
 
 }  // namespace

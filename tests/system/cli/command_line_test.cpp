@@ -22,8 +22,26 @@ TEST_F(CommandLine, names_the_command_that_is_none_and_the_one_that_is_like_it) 
     EXPECT_THAT(near.output, AllOf(HasSubstr("'reply'"), HasSubstr("did you mean 'replay'?")));
     const Said far = octoskin("frobnicate");
     EXPECT_EQ(far.exit_code, 64);
+    EXPECT_THAT(far.output, HasSubstr("'frobnicate'. There are simulate"));
     EXPECT_THAT(far.output,
                 AllOf(HasSubstr("'frobnicate'"), Not(HasSubstr("did you mean")), HasSubstr("evaluate")));
+}
+
+TEST_F(CommandLine, helps_with_options_as_they_are_typed_and_with_exit_codes) {
+    for (const std::string command : {"run", "joints"}) {
+        const Said said = octoskin(command + " --help");
+        EXPECT_EQ(said.exit_code, 0);
+        EXPECT_THAT(said.output, AllOf(HasSubstr("Exit codes: 0 "), Not(HasSubstr("{false}")))) << command;
+    }
+}
+
+TEST_F(CommandLine, names_the_target_that_builds_emulated_boards) {
+    std::filesystem::copy_file(OCTOSKIN_PROGRAM, path("octoskin"));  // nothing lies beside it
+    const Said said = run(path("octoskin") + " simulate " + path("out") + " --board emulated --image " +
+                          source("README.md") + " --rig " + source("hw/rigs/experiment.yaml") +
+                          " --scenario " + source("hw/worlds/experiment.scenario.yaml"));
+    EXPECT_EQ(said.exit_code, 66) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("cmake --build --preset host-release --target octoskin_board"));
 }
 
 TEST_F(CommandLine, says_what_a_seed_is) {
@@ -80,6 +98,9 @@ TEST_F(CommandLine, tells_how_much_of_a_robot_the_self_filter_sees) {
     EXPECT_EQ(bare.exit_code, 0);
     EXPECT_THAT(bare.output, AllOf(HasSubstr("9 links at or below panda_link0, 0 capsules\n"),
                                    HasSubstr("no link at or below panda_link0 has a <collision>")));
+    record_short("rec");
+    const Said replayed = octoskin("replay " + path("rec") + " --robot " + path("bare.urdf"));
+    EXPECT_THAT(replayed.output, HasSubstr("no link at or below panda_link0 has a <collision>"));
 }
 
 TEST_F(CommandLine, knows_the_same_configurations_in_every_command) {

@@ -24,6 +24,16 @@ TEST_F(DaemonTest, refuses_a_rig_with_a_mistake_with_exit_code_78) {
     EXPECT_NE(daemon.log().find("rig.yaml:"), std::string::npos) << daemon.log();
 }
 
+TEST_F(DaemonTest, warns_of_a_robot_without_a_body) {
+    std::string robot = testing_support::ScratchFolder::read(OCTOSKIN_SOURCE_DIR "/hw/robots/panda.urdf");
+    for (std::size_t at = 0; (at = robot.find("collision", at)) != std::string::npos;)
+        robot.replace(at, std::string("collision").size(), "visual");
+    start({"--no-camera", "--robot", folder_.write("bare.urdf", robot).string()});
+    ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
+    EXPECT_NE(daemon_->log().find("no link at or below panda_link0 has a <collision>"), std::string::npos)
+        << daemon_->log();
+}
+
 TEST_F(DaemonTest, reloads_all_or_nothing) {
     const auto rig_file =
         folder_.write("rig.yaml", "extends: " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml\nname: first\n");
