@@ -127,6 +127,22 @@ TEST(ImageFaults, does_not_use_a_block_with_a_flipped_bit) {
     EXPECT_EQ(bench.speaker(), kUnconfiguredNodeId);
 }
 
+// A write of the page that was cut short. What is read may even be right: it is not to be trusted.
+TEST(ImageFaults, does_not_use_a_block_that_the_flash_itself_calls_damaged_and_lives) {
+    for (const std::uint32_t offset : {0U, 16U}) {
+        NucleoOptions options;
+        options.damaged_flash = kConfigurationPage + offset;
+        ImageBench bench(block_of(bare_config()), options);
+        bench.run(4.0);
+        EXPECT_EQ(bench.board().reset_count(), 0U);
+        EXPECT_THAT(bench.board().serial_text(), HasSubstr("is damaged"));
+        EXPECT_EQ(bench.speaker(), kUnconfiguredNodeId);
+        ASSERT_FALSE(bench.heartbeats().empty());
+        EXPECT_EQ(bench.heartbeats().back().state, wire::NodeState::bad_config);
+        EXPECT_EQ(bench.violations(), "");
+    }
+}
+
 TEST(ImageFaults, refuses_another_boards_block_under_its_own_id) {
     NodeConfig config = bare_config();
     config.board_type = 2;

@@ -82,7 +82,10 @@ void start_buses(const Clocks& clocks) {
 
 void load_configuration(const Clocks& clocks) {
     const auto decoded = decode_node_config(configuration_page());
-    if (decoded) {
+    if (is_configuration_damaged()) {
+        report.config_refused(NodeConfigError::wrong_crc);
+        enter_can(std::nullopt, clocks);
+    } else if (decoded) {
         config = *decoded;
         start_buses(clocks);
     } else {

@@ -1,7 +1,9 @@
 #include "firmware/port/stm32g4/fault_handlers.hpp"
 
+#include <atomic>
 #include <cstdint>
 
+#include "firmware/port/stm32g4/configuration_page.hpp"
 #include "firmware/port/stm32g4/cpu.hpp"
 #include "firmware/port/stm32g4/interrupt_handlers.hpp"
 #include "firmware/port/stm32g4/registers/clocks_and_power.hpp"
@@ -20,6 +22,7 @@ namespace {
 
 [[gnu::section(".noinit")]] FaultRecord the_record;
 [[gnu::section(".noinit")]] node::KeptMemory the_kept_memory;
+constinit std::atomic<bool> the_configuration_is_damaged = false;
 
 /// What the core pushes when an exception begins (ARMv7-M).
 struct StackedFrame {
@@ -39,6 +42,18 @@ void silence_can() {
     if (rcc.is_set("APB1ENR1.FDCANEN")) fdcan1.set("CCCR.INIT", 1);
 }
 
+/// The flash found two wrong bits in a word of the configuration, and was told that this is known.
+bool takes_damaged_configuration() {
+    using F = Field<FlashMap>;
+    const std::uint32_t error = flash.read("ECCR");
+    if (F("ECCR.ECCD").of(error) == 0) return false;
+    if (!is_in_configuration_page(F("ECCR.ADDR_ECC").of(error), F("ECCR.BK_ECC").of(error) != 0))
+        return false;
+    flash.write("ECCR", F("ECCR.ECCD")(1));  // cleared by a 1
+    the_configuration_is_damaged = true;
+    return true;
+}
+
 NodeTime uptime() {
     return {rcc.is_set("APB1ENR1.TIM2EN") ? tim2.read("CNT") : 0};
 }
@@ -51,6 +66,10 @@ FaultRecord& fault_record() {
 
 node::KeptMemory& kept_memory() {
     return the_kept_memory;
+}
+
+bool is_configuration_damaged() {
+    return the_configuration_is_damaged;
 }
 
 void record_and_reset(const Fault& fault) {
@@ -97,12 +116,15 @@ extern "C" {
     record_and_reset({.kind = FaultKind::unknown, .where = scb.get("ICSR.VECTACTIVE")});
 }
 
-/// The only enabled source of the NMI is the clock security system: the crystal failed.
-[[noreturn, gnu::used]] void record_clock_loss(std::uintptr_t stack) {
+/// The NMI has two sources: the clock security system (the crystal failed), and a word of flash that cannot
+/// be read. One of the configuration is no reason to stop: without it the node can still say so. One of the
+/// program is.
+[[gnu::used]] void take_nmi(std::uintptr_t stack) {
     using namespace octoskin::stm32g4;
+    const bool is_clock = rcc.is_set("CIFR.CSSF");
+    if (!is_clock && takes_damaged_configuration()) return;
     silence_can();
     const StackedFrame* frame = frame_at(stack);
-    const bool is_clock = rcc.is_set("CIFR.CSSF");
     record_and_reset({.kind = is_clock ? FaultKind::clock_fault : FaultKind::unknown,
                       .where = frame != nullptr ? frame->pc : 0,
                       .called_from = frame != nullptr ? frame->lr : 0});
@@ -124,7 +146,11 @@ extern "C" {
         "mrs r0, msp\n\t"
         "ldr r2, =fault_stack_top\n\t"
         "msr msp, r2\n\t"
-        "b record_clock_loss\n\t"
+        "push {r0, lr}\n\t"
+        "bl take_nmi\n\t"
+        "pop {r0, lr}\n\t"
+        "msr msp, r0\n\t"
+        "bx lr\n\t"
         ".ltorg");
 }
 

@@ -12,4 +12,8 @@ namespace octoskin::stm32g4 {
 
 [[noreturn]] void record_and_reset(const Fault& fault);
 
+/// Whether reading the configuration page found a word that the flash itself calls damaged (a double error of
+/// its check bits): a write or an erasure of the page was cut short. Whatever was read is not to be used.
+[[nodiscard]] bool is_configuration_damaged();
+
 }  // namespace octoskin::stm32g4

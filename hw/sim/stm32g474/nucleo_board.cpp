@@ -70,6 +70,11 @@ NucleoBoard::NucleoBoard(const NucleoOptions& options, const ElfImage& image,
                                MemoryRegion{kSystemMemoryBase, system_memory_, false}};
     core_ = std::make_unique<CortexM4>(now_, log_, memory, *bus_, options.cycles_per_instruction);
     core_->attach(*control_);
+    if (options.damaged_flash) {
+        core_->watch_reads(*options.damaged_flash, 8, [this, offset = *options.damaged_flash - kFlashBase] {
+            flash_interface_->on_double_error(offset);
+        });
+    }
     bus_->attach(*core_);
     connect_pins();
     reset(ResetFlag::brown_out);

@@ -43,6 +43,9 @@ struct NucleoOptions {
     BusEdges edges = BusEdges::typical;
     wire::BitRates bit_rates{};
     std::array<std::uint8_t, 12> unique_id{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    /// Address of 8 bytes of flash whose check bits do not fit (a write of them was cut short): each read of
+    /// them is a double error.
+    std::optional<std::uint32_t> damaged_flash{};
     std::uint64_t seed = 1;  ///< of what RAM holds at power-up
 };
 

@@ -58,12 +58,15 @@ inline constexpr Peripheral<PwrMap> pwr{"PWR"};
 
 struct FlashMap {
     static constexpr auto kInstances = std::to_array<Instance>({{"FLASH", 0x4002'2000}});
-    static constexpr auto kRegisters = std::to_array<RegisterEntry>({{"ACR", 0x00}});
+    static constexpr auto kRegisters = std::to_array<RegisterEntry>({{"ACR", 0x00}, {"ECCR", 0x18}});
     static constexpr auto kFields = std::to_array<FieldEntry>({
         {"ACR.LATENCY", 0, 4},
         {"ACR.PRFTEN", 8},
         {"ACR.ICEN", 9},
         {"ACR.DCEN", 10},
+        {"ECCR.ADDR_ECC", 0, 19},
+        {"ECCR.BK_ECC", 21},
+        {"ECCR.ECCD", 31},
     });
 };
 inline constexpr Peripheral<FlashMap> flash{"FLASH"};

@@ -117,6 +117,18 @@ void CortexM4::add_hooks() {
     add(UC_HOOK_INSN_INVALID, reinterpret_cast<void*>(on_invalid_instruction));
 }
 
+void CortexM4::watch_reads(std::uint32_t address, std::uint32_t size, std::function<void()> on_read) {
+    on_watched_read_ = std::move(on_read);
+    using ReadHook = void (*)(uc_engine*, uc_mem_type, std::uint64_t, int, std::int64_t, void*);
+    const ReadHook hook = [](uc_engine*, uc_mem_type, std::uint64_t, int, std::int64_t, void* self) {
+        static_cast<CortexM4*>(self)->on_watched_read_();
+    };
+    uc_hook handle = 0;
+    require(uc_hook_add(engine_, &handle, UC_HOOK_MEM_READ, reinterpret_cast<void*>(hook), this, address,
+                        address + size - 1),
+            "hook");
+}
+
 std::uint32_t CortexM4::get(int engine_register) const {
     std::uint32_t value = 0;
     uc_reg_read(engine_, engine_register, &value);

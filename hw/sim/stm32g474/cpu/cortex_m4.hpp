@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -49,6 +50,8 @@ class CortexM4 {
 
     /// The system control space must be reset before: SP and PC come from its vector table.
     void attach(SystemControl& control) { control_ = &control; }
+    /// `on_read` hears of each load from these bytes of memory, one range a core. It must not stop the core.
+    void watch_reads(std::uint32_t address, std::uint32_t size, std::function<void()> on_read);
     void reset();
     void set_hclk(std::uint32_t hz) { ps_per_cycle_ = period_ps(hz); }
 
@@ -130,6 +133,7 @@ class CortexM4 {
     bool has_stopped_itself_ = false;  ///< the engine was told to stop
     std::optional<std::uint32_t> engine_interrupt_;
     std::optional<std::uint32_t> fault_address_;
+    std::function<void()> on_watched_read_;
     std::uint64_t instructions_ = 0;
     std::uint64_t cycles_ = 0;
     std::uint32_t lowest_stack_ = 0xFFFF'FFFF;

@@ -6,6 +6,10 @@ namespace octoskin::sim::stm32 {
 namespace {
 
 constexpr std::uint32_t kAcr = 0x00;
+constexpr std::uint32_t kEccr = 0x18;
+constexpr std::uint32_t kDoubleError = 1U << 31;      // ECCR.ECCD
+constexpr std::uint32_t kErrorFlags = 3U << 30;       // and ECCC: cleared by writing 1
+constexpr std::uint32_t kBankBytes = 256 * 1024;      // as delivered: two banks
 constexpr std::uint32_t kDebuggerAllowed = 1U << 18;  // ACR.DBG_SWEN
 constexpr std::uint32_t kImpossible = 16;
 
@@ -38,6 +42,7 @@ std::uint32_t FlashInterface::read(std::uint32_t offset) {
 }
 
 void FlashInterface::write(std::uint32_t offset, std::uint32_t value) {
+    if (offset == kEccr) return bank_.clear_bits(kEccr, value & kErrorFlags);
     if (offset != kAcr) {
         env_.log.report(Rule::not_modelled,
                         fmt::format("FLASH: write of 0x{:X} to 0x{:X}: programming", value, offset));
@@ -46,6 +51,12 @@ void FlashInterface::write(std::uint32_t offset, std::uint32_t value) {
     if ((value & kDebuggerAllowed) == 0) env_.log.report(Rule::debug_access, "FLASH.ACR: DBG_SWEN cleared");
     bank_.write(offset, value);
     check_latency(hclk_hz_);
+}
+
+void FlashInterface::on_double_error(std::uint32_t offset) {
+    if ((bank_.get(kEccr) & kDoubleError) != 0) return;
+    bank_.set(kEccr, kDoubleError | (offset / kBankBytes) << 21U | (offset % kBankBytes & ~7U));
+    env_.lines.pend_nmi();
 }
 
 void FlashInterface::check_latency(std::uint32_t hclk_hz) {

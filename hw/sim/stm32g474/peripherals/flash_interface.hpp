@@ -19,6 +19,9 @@ class FlashInterface final : public Peripheral {
 
     /// Called after every change of HCLK, voltage range or latency.
     void check_latency(std::uint32_t hclk_hz);
+    /// A word `offset` bytes into the flash was read that has two wrong bits: kept in ECCR until the program
+    /// has cleared it, and an NMI.
+    void on_double_error(std::uint32_t offset);
 
   private:
     Surroundings env_;
