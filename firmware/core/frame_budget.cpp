@@ -12,11 +12,15 @@ namespace {
 constexpr std::uint32_t kHeartbeatsPerSecond = 10;
 constexpr std::uint32_t kSyncReportsPerSecond = 1;
 constexpr std::uint32_t kBurstMin = 8;
+/// Two looks at something far off, then one at something near: `Reflex`.
+constexpr std::uint32_t kReadingsPerEvent = 3;
 
 }  // namespace
 
-FrameBudget frame_budget(const NodeConfig& config) noexcept {
+FrameBudgets frame_budgets(const NodeConfig& config) noexcept {
     std::uint32_t nominal = kHeartbeatsPerSecond + kSyncReportsPerSecond + wire::kInfoPages;
+    std::uint32_t watching = 0;
+    std::uint32_t readings_watched = 0;
     const auto count = std::min<std::size_t>(config.sensor_count, config.sensors.size());
     for (const SensorConfig& sensor : std::span(config.sensors).first(count)) {
         const std::uint32_t period_ms = std::max<std::uint32_t>(sensor.inter_measurement_ms, 1);
@@ -24,9 +28,15 @@ FrameBudget frame_budget(const NodeConfig& config) noexcept {
         const bool has_aux = !config.uses_can_fd && config.aux_every > 0;
         const std::uint32_t aux = has_aux ? readings / config.aux_every + 1 : 0;
         nominal += readings + aux + 1;  // and its health
+        if (sensor.reflex_below_mm == 0) continue;
+        ++watching;
+        readings_watched += readings;
     }
+    const FrameBudget reflex{.per_second = (readings_watched + kReadingsPerEvent - 1) / kReadingsPerEvent,
+                             .burst = watching};
     const std::uint32_t burst = std::max(nominal / 4, kBurstMin);
-    return {.per_second = 2 * nominal - burst, .burst = burst};
+    return {.reflex = reflex,
+            .others = {.per_second = 2 * nominal - burst - reflex.per_second - reflex.burst, .burst = burst}};
 }
 
 }  // namespace octoskin::node

@@ -5,6 +5,7 @@
 #include "common/wire/crc.hpp"
 #include "firmware/core/frame_budget.hpp"
 #include "firmware/core/time_bracket.hpp"
+#include "firmware/drivers/vl53l1x/timing.hpp"
 
 namespace octoskin::node {
 
@@ -15,11 +16,18 @@ constexpr Microseconds kBlinkHalfPeriod{250'000};
 // A full transmit mailbox has no event of its own here: look again soon.
 constexpr Microseconds kTransmitRetry{1'000};
 
+/// What the sensor would refuse at every attempt is no fault of the sensor.
+bool is_usable(const SensorConfig& sensor, std::size_t bus_count) noexcept {
+    return sensor.bus < bus_count &&
+           vl53l1x::range_timeouts(sensor.distance_mode, sensor.timing_budget_ms).has_value() &&
+           vl53l1x::is_period_long_enough(sensor.timing_budget_ms, sensor.inter_measurement_ms);
+}
+
 bool is_usable(const NodeConfig& config, std::size_t bus_count, std::uint8_t board_type) noexcept {
     if (!is_valid(config) || config.board_type != board_type) return false;
     const auto sensors = std::span(config.sensors).first(config.sensor_count);
     return std::all_of(sensors.begin(), sensors.end(),
-                       [=](const SensorConfig& sensor) { return sensor.bus < bus_count; });
+                       [=](const SensorConfig& sensor) { return is_usable(sensor, bus_count); });
 }
 
 vl53l1x::Options device_options(const NodeConfig& config, const Policy& policy) noexcept {
@@ -49,7 +57,8 @@ Node::Node(const NodeConfig& config, const Identity& identity, const Ports& port
       phase_clock_(now),
       queue_(config.uses_can_fd, config.aux_every, policy_),
       announcer_(is_config_usable_ ? config.sensor_count : std::uint8_t{0}, policy_, now),
-      tokens_(frame_budget(config), now),
+      tokens_(frame_budgets(config).others, now),
+      reflex_tokens_(frame_budgets(config).reflex, now),
       black_box_(recorders_, policy_),
       bus_off_(policy_),
       uptime_counted_(now),

@@ -190,6 +190,7 @@ class Node {
     ReadingQueue queue_;
     Announcer announcer_;
     TokenBucket tokens_;
+    TokenBucket reflex_tokens_;
     BlackBox black_box_;
     CalibrationDialogue calibration_;
     BusOffRecovery bus_off_;

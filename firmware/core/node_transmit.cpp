@@ -69,6 +69,7 @@ void Node::drop_late(NodeTime now) {
 
 void Node::transmit(NodeTime now) {
     tokens_.refill(now);
+    reflex_tokens_.refill(now);
     drop_late(now);
     has_unsent_ = false;
     if (bus_off_.is_off()) return;  // all it has to say stays as new as it can
@@ -116,16 +117,17 @@ bool Node::send_most_urgent(NodeTime now) {
     return true;
 }
 
-/// Whatever else was sent of late: one frame an event, and few events, so that it cannot babble either.
+/// Whatever else was sent of late. The tokens of its own are as many as events are possible, so that it waits
+/// for one only if something is wrong, and cannot babble either.
 bool Node::send_reflex() {
     const auto sensor = static_cast<std::size_t>(std::countr_zero(reflex_due_));
     wire::Reflex event = reflex_events_[sensor].message;
     event.sequence = reflex_sequence_;
-    if (!ports_.can.send(wire::encode(event, config_.node_id))) {
+    if (!reflex_tokens_.has_token() || !ports_.can.send(wire::encode(event, config_.node_id))) {
         has_unsent_ = true;
         return false;
     }
-    tokens_.overdraw();
+    reflex_tokens_.take();
     ++frames_sent_;
     reflex_due_ &= reflex_due_ - 1;  // its lowest bit was this sensor's
     reflex_sequence_ = static_cast<std::uint8_t>((reflex_sequence_ + 1U) % wire::kSequenceCount);

@@ -28,8 +28,6 @@ class TokenBucket {
     [[nodiscard]] bool has_spare_token() const noexcept { return level_ >= 2 * kToken; }
     /// Only while `has_token()`.
     void take() noexcept { level_ -= kToken; }
-    /// For what cannot wait, with or without a token: everybody else waits the longer for it.
-    void overdraw() noexcept { level_ -= kToken; }
     /// How long until a spare token is there.
     [[nodiscard]] Microseconds wait() const noexcept {
         if (has_spare_token()) return Microseconds{0};

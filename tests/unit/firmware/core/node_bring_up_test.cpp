@@ -258,5 +258,33 @@ TEST(NodeBringUp, is_in_order_without_any_sensor) {
     EXPECT_EQ(rig.said_of<wire::Heartbeat>().size(), 10U);
 }
 
+TEST(NodeBringUp, does_not_try_what_the_sensor_refuses_for_ever_but_says_bad_config) {
+    struct Timing {
+        DistanceMode mode;
+        std::uint16_t budget_ms;
+        std::uint16_t period_ms;
+    };
+    using enum DistanceMode;
+    const auto state_with = [](const Timing& timing) {
+        NodeConfig config = fleet_config(2, 1);
+        config.sensors[1].distance_mode = timing.mode;
+        config.sensors[1].timing_budget_ms = timing.budget_ms;
+        config.sensors[1].inter_measurement_ms = timing.period_ms;
+        EXPECT_TRUE(is_valid(config)) << "as far as a block can tell";
+        NodeRig rig(config, fleet(2));
+        rig.run_for(10 * kMillisecond);
+        return rig.said_of<wire::Heartbeat>().back().state;
+    };
+    for (const Timing& refused :
+         {Timing{long_range, 16, 33}, Timing{short_range, 1'000, 1'100}, Timing{long_range, 15, 33},
+          Timing{medium_range, 20, 33}, Timing{long_range, 33, 33}, Timing{long_range, 33, 37}}) {
+        EXPECT_EQ(state_with(refused), wire::NodeState::bad_config) << refused.budget_ms;
+    }
+    for (const Timing& taken : {Timing{short_range, 15, 33}, Timing{medium_range, 33, 38},
+                                Timing{long_range, 20, 25}, Timing{long_range, 500, 505}}) {
+        EXPECT_EQ(state_with(taken), wire::NodeState::starting) << taken.budget_ms;
+    }
+}
+
 }  // namespace
 }  // namespace octoskin::node

@@ -56,12 +56,35 @@ TEST(FrameBudget, is_twice_the_nominal_rate_in_any_second) {
     config.sensor_count = 17;
     for (auto& sensor : config.sensors) sensor.inter_measurement_ms = 33;
     // 17 * 31 readings, 17 healths, 10 heartbeats, 7 pages, 1 sync report
-    const FrameBudget budget = frame_budget(config);
+    const FrameBudget budget = frame_budgets(config).others;
+    EXPECT_EQ(frame_budgets(config).reflex, FrameBudget{}) << "nobody watches";
     EXPECT_EQ(budget.per_second + budget.burst, 2U * (17 * 31 + 17 + 10 + 7 + 1));
 
     config.aux_every = 4;  // 31 / 4 + 1 more for each sensor
-    const FrameBudget with_aux = frame_budget(config);
+    const FrameBudget with_aux = frame_budgets(config).others;
     EXPECT_EQ(with_aux.per_second + with_aux.burst, 2U * (17 * 31 + 17 * 8 + 17 + 10 + 7 + 1));
+}
+
+TEST(FrameBudget, has_a_part_for_reflexes_and_at_least_the_nominal_rate_for_the_rest) {
+    for (const std::uint16_t period_ms : {std::uint16_t{24}, std::uint16_t{33}, std::uint16_t{1'000}}) {
+        for (const std::uint8_t count : {std::uint8_t{1}, std::uint8_t{34}}) {
+            NodeConfig config;
+            config.sensor_count = count;
+            for (auto& sensor : config.sensors) {
+                sensor.inter_measurement_ms = period_ms;
+                sensor.reflex_below_mm = 100;
+            }
+            const FrameBudgets budgets = frame_budgets(config);
+            const std::uint32_t readings = (1'000U + period_ms - 1) / period_ms * count;
+            const std::uint32_t nominal = readings + count + 10 + 7 + 1;
+            EXPECT_EQ(budgets.reflex.burst, count) << "each of them at once";
+            EXPECT_EQ(budgets.reflex.per_second, (readings + 2) / 3);
+            EXPECT_GE(budgets.others.per_second, nominal);
+            EXPECT_EQ(budgets.others.per_second + budgets.others.burst + budgets.reflex.per_second +
+                          budgets.reflex.burst,
+                      2 * nominal);
+        }
+    }
 }
 
 }  // namespace
