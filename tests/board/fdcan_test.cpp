@@ -51,6 +51,16 @@ TEST_F(FdcanTest, sends_classical_and_fd_frames_in_the_order_given) {
     EXPECT_EQ(tiny_.violations(), "");
 }
 
+TEST_F(FdcanTest, as_a_queue_sends_the_lowest_identifier_first) {
+    tiny_.jump("transmit_by_identifier");
+    ASSERT_TRUE(run());
+    EXPECT_THAT(heard_, ElementsAre(frame_of(0x321, 8, 0), frame_of(0x123, 8, 0), frame_of(0x045, 8, 0),
+                                    frame_of(0x222, 8, 0)));
+    EXPECT_EQ(tiny_.result(0) >> 21U & 1U, 1U) << "three requests fill the queue";
+    EXPECT_EQ(tiny_.result(1) >> 16U & 3U, 0U) << "the lowest free place";
+    EXPECT_EQ(tiny_.violations(), "");
+}
+
 TEST_F(FdcanTest, filters_decide_and_a_full_fifo_loses_the_newest) {
     node::CanTransmitter& host = bus_.attach({}, 16);
     tiny_.jump("receive");

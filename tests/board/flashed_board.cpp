@@ -51,6 +51,8 @@ void FlashedBoard::note(const wire::CanFrame& frame, SimTime end) {
     if (!decoded) return;
     if (const auto* heartbeat = std::get_if<wire::Heartbeat>(&decoded->message))
         heartbeats_.push_back({*heartbeat, end});
+    if (const auto* reflex = std::get_if<wire::Reflex>(&decoded->message))
+        reflexes_.push_back({*reflex, end});
     if (const auto* info = std::get_if<wire::NodeInfo>(&decoded->message)) {
         if (const auto* traffic = std::get_if<wire::InfoTraffic>(info)) traffic_ = *traffic;
     }

@@ -26,6 +26,11 @@ struct SaidHeartbeat {
     SimTime end{};
 };
 
+struct SaidReflex {
+    wire::Reflex reflex;
+    SimTime end{};
+};
+
 class FlashedBoard {
   public:
     explicit FlashedBoard(const NodeConfig& config, NucleoOptions options = {});
@@ -33,9 +38,11 @@ class FlashedBoard {
     void run_for(Microseconds duration);
     [[nodiscard]] SimTime now() const noexcept { return now_; }
     [[nodiscard]] NucleoBoard& board() { return *board_; }
+    [[nodiscard]] SimulatedCanBus& bus() { return *bus_; }
     [[nodiscard]] SensorModel& sensor(std::size_t index) { return sensors_->sensor(index); }
     [[nodiscard]] const std::vector<SaidReading>& readings(std::uint8_t sensor) { return readings_[sensor]; }
     [[nodiscard]] const std::vector<SaidHeartbeat>& heartbeats() const noexcept { return heartbeats_; }
+    [[nodiscard]] const std::vector<SaidReflex>& reflexes() const noexcept { return reflexes_; }
     /// Rangings that ended since power-up.
     [[nodiscard]] std::uint32_t rangings(std::size_t sensor) const { return rangings_.at(sensor); }
     /// The middles of their windows.
@@ -60,6 +67,7 @@ class FlashedBoard {
     std::unique_ptr<BoardOnBus> on_bus_;
     std::map<std::uint8_t, std::vector<SaidReading>> readings_;
     std::vector<SaidHeartbeat> heartbeats_;
+    std::vector<SaidReflex> reflexes_;
     std::optional<wire::InfoTraffic> traffic_;
     SimTime first_range_{};
     SimTime now_{};

@@ -57,6 +57,7 @@ constexpr Offence kOffences[] = {
     {"can_on_internal_clock", Rule::clock_tree, "internal oscillator"},
     {"request_during_init", Rule::wrong_state, "INIT=1"},
     {"request_not_at_put_index", Rule::wrong_state, "put index"},
+    {"request_of_same_identifier", Rule::wrong_state, "which goes first"},
     {"request_twice", Rule::data_lost, "requested while pending"},
     {"acknowledge_empty_fifo", Rule::wrong_state, "RXF0A"},
     {"fd_frame_without_fdoe", Rule::wrong_state, "FDOE"},

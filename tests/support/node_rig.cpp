@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "firmware/core/transmit_places.hpp"
+
 namespace octoskin::test {
 
 namespace {
@@ -11,7 +13,6 @@ constexpr std::uint32_t kFirstDistanceMm = 200;
 // What each mode ranges without wrapping round, with some to spare.
 constexpr std::uint32_t kLongDistancesMm = 4'200;
 constexpr std::uint32_t kShortDistancesMm = 1'100;
-constexpr std::size_t kMailboxes = 3;
 constexpr std::int64_t kTakenBackAfterUs = 20'000;
 
 node::Identity identity(wire::ResetCause cause, std::uint8_t board_type) {
@@ -77,7 +78,7 @@ NodeRig::NodeRig(const NodeConfig& config, const std::vector<SensorSetup>& setup
         data_ready_.line(config.sensors[i].bus).attach(sensors_.back()->model);
     }
     can_.tap([this](const wire::CanFrame& frame, sim::SimTime end) { record(frame, end); });
-    controller_ = &can_.attach([this](const wire::CanFrame& frame, sim::SimTime end) {
+    controller_ = &can_.attach_node([this](const wire::CanFrame& frame, sim::SimTime end) {
         if (node_) node_->on_frame(frame, clock_.to_node(end));
     });
     host_ = &can_.attach({}, 64);
@@ -133,7 +134,9 @@ void NodeRig::attach_stray_sensor(std::size_t bus, const sim::SensorFaults& faul
 
 bool NodeRig::send(const wire::CanFrame& frame) {
     if (!is_alone_) return !is_transmission_blocked_ && controller_->send(frame);
-    if (unacknowledged_.size() == kMailboxes) return false;
+    std::vector<std::uint32_t> waiting;
+    for (const Unacknowledged& other : unacknowledged_) waiting.push_back(other.frame.can_id);
+    if (!node::may_join(waiting, frame.can_id)) return false;
     unacknowledged_.push_back({.frame = frame, .given = present_.time});
     return true;
 }

@@ -1,8 +1,10 @@
 #include "firmware/port/stm32g4/can_controller.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
+#include "firmware/core/transmit_places.hpp"
 #include "firmware/port/stm32g4/cpu.hpp"
 #include "firmware/port/stm32g4/pin.hpp"
 #include "firmware/port/stm32g4/registers/clocks_and_power.hpp"
@@ -22,6 +24,7 @@ constexpr std::uint32_t kInterrupts =
     F("IE.RF0NE")(1) | F("IE.RF0LE")(1) | F("IE.TCE")(1) | F("IE.MRAFE")(1) | F("IE.EPE")(1) | F("IE.BOE")(1);
 constexpr std::uint32_t kAccept = 0;  // RXGFC.ANFS: into FIFO 0
 constexpr std::uint32_t kReject = 2;  // RXGFC.ANFS, ANFE
+static_assert(kFifoElements == node::kTransmitPlaces);
 constexpr std::uint32_t kAllPlaces = (1U << kFifoElements) - 1;
 constexpr Microseconds kModeLimit{1'000};  // the controller follows within a few of its clocks
 
@@ -114,7 +117,7 @@ void CanController::prepare(wire::NodeId node_id) const {
     // Remote frames under an identifier of ours pass, so that the node can count them.
     fdcan1.write("RXGFC", F("RXGFC.RRFE")(1) | F("RXGFC.ANFE")(kReject) | F("RXGFC.ANFS")(kReject) |
                               F("RXGFC.LSS")(kFilterCount));
-    fdcan1.write("TXBC", 0);  // first in, first out
+    fdcan1.write("TXBC", F("TXBC.TFQM")(1));  // the lowest identifier first
     fdcan1.write("TXBTIE", F("TXBTIE.TIE")(kAllPlaces));
     fdcan1.write("IE", kInterrupts);
     fdcan1.write("ILS", 0);
@@ -131,12 +134,21 @@ bool CanController::set_init(bool is_set) const {
     return true;
 }
 
+bool CanController::has_room_for(const wire::CanFrame& frame) const {
+    std::array<std::uint32_t, kFifoElements> waiting{};
+    std::size_t count = 0;
+    for (const Place& place : places_) {
+        if (place.is_pending) waiting[count++] = place.frame.can_id;
+    }
+    return node::may_join(std::span(waiting).first(count), frame.can_id);
+}
+
 bool CanController::send(const wire::CanFrame& frame) {
     if (!is_started_ || fdcan1.is_set("PSR.BO") || fdcan1.is_set("TXFQS.TFQF")) return false;
     const std::uint32_t index = fdcan1.get("TXFQS.TFQPI");
     if (index >= kFifoElements) return false;
     note_ended();
-    if (places_[index].is_given_up) return false;
+    if (places_[index].is_given_up || !has_room_for(frame)) return false;
     const CanElement element = encode_element(frame);
     const Address address = element_address(kTransmitFifo, index);
     const std::uint32_t words = words_in_use(frame.payload_len);

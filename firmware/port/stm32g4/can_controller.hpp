@@ -55,8 +55,8 @@ class CanController final : public node::CanTransmitter {
     /// What was heard since `listen`.
     [[nodiscard]] Heard heard() const;
 
-    /// Takes the frame if one of the three places is free. Frames leave in the order in which they came: of
-    /// two of the same identifier the older one first, which a queue by identifier would not promise.
+    /// Takes the frame if one of the three places is free and `node::may_join` lets it in. The lowest
+    /// identifier leaves first.
     [[nodiscard]] bool send(const wire::CanFrame& frame) override;
     /// The oldest frame received and not yet taken.
     [[nodiscard]] std::optional<ReceivedFrame> receive();
@@ -101,6 +101,7 @@ class CanController final : public node::CanTransmitter {
     void prepare(wire::NodeId node_id) const;
     void listen_to_all() const;
     [[nodiscard]] bool set_init(bool is_set) const;
+    [[nodiscard]] bool has_room_for(const wire::CanFrame& frame) const;
     void note_ended();
     void take_back(std::uint32_t index);
     void receive_all(NodeTime now);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "firmware/core/transmit_places.hpp"
+
 namespace octoskin::sim {
 
 namespace {
@@ -35,6 +37,12 @@ node::CanTransmitter& SimulatedCanBus::attach(FrameHandler on_frame, std::size_t
     return controllers_.emplace_back(*this, std::move(on_frame), mailboxes);
 }
 
+node::CanTransmitter& SimulatedCanBus::attach_node(FrameHandler on_frame) {
+    Controller& controller = controllers_.emplace_back(*this, std::move(on_frame), node::kTransmitPlaces);
+    controller.is_node = true;
+    return controller;
+}
+
 CanSeat& SimulatedCanBus::attach_seat(CanSeatHandlers handlers) {
     Controller& controller = controllers_.emplace_back(*this, handlers.on_frame, 1);
     controller.seat = std::move(handlers);
@@ -59,9 +67,18 @@ void SimulatedCanBus::add_fault(const CanFault& fault) {
 }
 
 bool SimulatedCanBus::Controller::send(const wire::CanFrame& frame) {
-    if (pending.size() >= mailbox_count_ || !is_on_bus(bus_.now_)) return false;
+    if (!has_room_for(frame) || !is_on_bus(bus_.now_)) return false;
     pending.push_back({.frame = frame, .given = bus_.now_});
     return true;
+}
+
+/// In a node's controller a frame keeps its place until it has ended.
+bool SimulatedCanBus::Controller::has_room_for(const wire::CanFrame& frame) const {
+    if (!is_node) return pending.size() < mailbox_count_;
+    std::vector<std::uint32_t> waiting;
+    for (const Pending& other : pending) waiting.push_back(other.frame.can_id);
+    if (is_sending()) waiting.push_back(bus_.under_way_->frame.can_id);
+    return node::may_join(waiting, frame.can_id);
 }
 
 bool SimulatedCanBus::Controller::is_on_bus(SimTime time) const {

@@ -62,6 +62,8 @@ class SimulatedCanBus {
     /// in the order given. A frame counts as given at the bus's present time: call `advance(now)` before
     /// whoever sends at `now`.
     node::CanTransmitter& attach(FrameHandler on_frame, std::size_t mailboxes = 3);
+    /// A node's controller, as its ports have it: what may wait in it is `node::may_join`'s to say.
+    node::CanTransmitter& attach_node(FrameHandler on_frame);
     /// For one that governs itself. Lives as long as the bus.
     CanSeat& attach_seat(CanSeatHandlers handlers);
 
@@ -107,10 +109,12 @@ class SimulatedCanBus {
 
         FrameHandler on_frame;
         std::optional<CanSeatHandlers> seat;  ///< governs itself
+        bool is_node = false;                 ///< else its mailboxes take whatever comes
         std::vector<Pending> pending;         ///< in the order given; the one under way has left
 
       private:
         void settle();
+        [[nodiscard]] bool has_room_for(const wire::CanFrame& frame) const;
 
         const SimulatedCanBus& bus_;
         std::size_t mailbox_count_;

@@ -31,7 +31,7 @@ SimulatedBoard::SimulatedBoard(const NodeConfig& config, const BoardStart& start
         buses_.at(config.sensors.at(sensor).bus)->attach(*sensors_.back());
         data_ready_.line(config.sensors.at(sensor).bus).attach(*sensors_.back());
     }
-    transmitter_ = &can.attach([this](const wire::CanFrame& frame, SimTime end) {
+    transmitter_ = &can.attach_node([this](const wire::CanFrame& frame, SimTime end) {
         if (end >= start_.first_turn) received_.push_back({frame, end});
     });
     const node::Ports ports{

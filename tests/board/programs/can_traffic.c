@@ -61,6 +61,26 @@ void transmit(void) {
     result[3] = REG(CAN + 0xC4);
     finish();
 }
+void transmit_by_identifier(void) {
+    start();
+    CCCR |= 1;
+    while (!(CCCR & 1)) {}
+    CCCR |= 2;
+    REG(CAN + 0xC0) = 1u << 24;
+    CCCR &= ~1u;
+    while (CCCR & 1) {}
+    wait(500);
+    put(0x321, 8u << 16, 2);
+    wait(100);           // it is on the wire
+    put(0x222, 8u << 16, 2);
+    put(0x123, 8u << 16, 2);
+    result[0] = REG(CAN + 0xC4);  // full
+    while (REG(CAN + 0xC8) & 1) {}
+    result[1] = REG(CAN + 0xC4);  // the lowest free place is the first
+    put(0x045, 8u << 16, 2);      // overtakes what is not on the wire yet
+    while (REG(CAN + 0xC8)) {}
+    finish();
+}
 void receive(void) {
     start();
     is_finished = 2;

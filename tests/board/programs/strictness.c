@@ -391,6 +391,15 @@ void can_on_internal_clock(void) {
 void request_during_init(void) { can_configured(); TXBAR = 1; finish(); }
 void request_not_at_put_index(void) { can_running(); TXBAR = 4; finish(); }
 void request_twice(void) { can_running(); TXBAR = 1; TXBAR = 1; finish(); }
+void request_of_same_identifier(void) {
+    can_configured();
+    REG(CAN + 0xC0) = 1u << 24;
+    CCCR &= ~1u;
+    wait(3000);
+    TXBAR = 1;
+    TXBAR = 2;
+    finish();
+}
 void acknowledge_empty_fifo(void) { can_running(); RXF0A = 0; finish(); }
 void fd_frame_without_fdoe(void) {
     can_configured();

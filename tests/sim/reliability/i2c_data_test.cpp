@@ -90,8 +90,9 @@ TEST(ReliabilityI5, a_bit_flipped_in_a_poll_after_a_stall_does_not_date_the_read
     }
 }
 
-// I11: the node hands every status and every distance on as it is, a negative one as 0; only "complete" of a first result, whose
-// wrap-around was not checked, gets the code that says so. (What becomes a ray is the host's, tested there.)
+// I11: the node hands every status and every distance on as it is, a negative one as 0; only "complete" of a
+// first result, whose wrap-around was not checked, gets the code that says so. (What becomes a ray is the
+// host's, tested there.)
 TEST(ReliabilityI11, every_status_and_every_distance_goes_on_the_wire_as_it_is) {
     node::Policy policy;
     const node::ZoneCycle zones(1, Microseconds{1'000});

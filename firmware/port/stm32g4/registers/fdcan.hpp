@@ -17,18 +17,18 @@ struct FdcanMap {
         {"TXBAR", 0x0CC}, {"TXBCR", 0x0D0}, {"TXBTO", 0x0D4}, {"TXBTIE", 0x0DC}, {"CKDIV", 0x100},
     });
     static constexpr auto kFields = std::to_array<FieldEntry>({
-        {"DBTP.DSJW", 0, 4},   {"DBTP.DTSEG2", 4, 4}, {"DBTP.DTSEG1", 8, 5},  {"DBTP.DBRP", 16, 5},
-        {"DBTP.TDC", 23},      {"CCCR.INIT", 0},      {"CCCR.CCE", 1},        {"CCCR.ASM", 2},
-        {"CCCR.MON", 5},       {"CCCR.FDOE", 8},      {"CCCR.BRSE", 9},       {"NBTP.NTSEG2", 0, 7},
-        {"NBTP.NTSEG1", 8, 8}, {"NBTP.NBRP", 16, 9},  {"NBTP.NSJW", 25, 7},   {"PSR.EP", 5},
-        {"PSR.BO", 7},         {"TDCR.TDCO", 8, 7},   {"IR.RF0L", 2},         {"IR.MRAF", 14},
-        {"IR.PEA", 21},        {"IR.PED", 22},        {"IE.RF0NE", 0},        {"IE.RF0LE", 2},
-        {"IE.TCE", 7},         {"IE.MRAFE", 14},      {"IE.EPE", 17},         {"IE.BOE", 19},
-        {"IE.PEAE", 21},       {"IE.PEDE", 22},       {"ILE.EINT0", 0},       {"RXGFC.RRFE", 0},
-        {"RXGFC.ANFE", 2, 2},  {"RXGFC.ANFS", 4, 2},  {"RXGFC.LSS", 16, 5},   {"RXF0S.F0FL", 0, 4},
-        {"RXF0S.F0GI", 8, 2},  {"RXF0A.F0AI", 0, 3},  {"TXFQS.TFQPI", 16, 2}, {"TXFQS.TFQF", 21},
-        {"TXBRP.TRP", 0, 3},   {"TXBAR.AR", 0, 3},    {"TXBCR.CR", 0, 3},     {"TXBTO.TO", 0, 3},
-        {"TXBTIE.TIE", 0, 3},  {"CKDIV.PDIV", 0, 4},
+        {"DBTP.DSJW", 0, 4},   {"DBTP.DTSEG2", 4, 4}, {"DBTP.DTSEG1", 8, 5}, {"DBTP.DBRP", 16, 5},
+        {"DBTP.TDC", 23},      {"CCCR.INIT", 0},      {"CCCR.CCE", 1},       {"CCCR.ASM", 2},
+        {"CCCR.MON", 5},       {"CCCR.FDOE", 8},      {"CCCR.BRSE", 9},      {"NBTP.NTSEG2", 0, 7},
+        {"NBTP.NTSEG1", 8, 8}, {"NBTP.NBRP", 16, 9},  {"NBTP.NSJW", 25, 7},  {"PSR.EP", 5},
+        {"PSR.BO", 7},         {"TDCR.TDCO", 8, 7},   {"IR.RF0L", 2},        {"IR.MRAF", 14},
+        {"IR.PEA", 21},        {"IR.PED", 22},        {"IE.RF0NE", 0},       {"IE.RF0LE", 2},
+        {"IE.TCE", 7},         {"IE.MRAFE", 14},      {"IE.EPE", 17},        {"IE.BOE", 19},
+        {"IE.PEAE", 21},       {"IE.PEDE", 22},       {"ILE.EINT0", 0},      {"RXGFC.RRFE", 0},
+        {"RXGFC.ANFE", 2, 2},  {"RXGFC.ANFS", 4, 2},  {"RXGFC.LSS", 16, 5},  {"RXF0S.F0FL", 0, 4},
+        {"RXF0S.F0GI", 8, 2},  {"RXF0A.F0AI", 0, 3},  {"TXBC.TFQM", 24},     {"TXFQS.TFQPI", 16, 2},
+        {"TXFQS.TFQF", 21},    {"TXBRP.TRP", 0, 3},   {"TXBAR.AR", 0, 3},    {"TXBCR.CR", 0, 3},
+        {"TXBTO.TO", 0, 3},    {"TXBTIE.TIE", 0, 3},  {"CKDIV.PDIV", 0, 4},
     });
 };
 inline constexpr Peripheral<FdcanMap> fdcan1{"FDCAN1"};

@@ -77,6 +77,7 @@ class Fdcan final : public Peripheral {
     void check_delay_compensation();
     void clear_for_configuration();
     void request(std::uint32_t places);
+    void check_order(const wire::CanFrame& requested);
     void cancel(std::uint32_t places);
     void acknowledge_rx(RxFifo& fifo, std::uint32_t index, const char* what);
     [[nodiscard]] std::uint32_t tx_status() const;

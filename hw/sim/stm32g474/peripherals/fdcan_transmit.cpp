@@ -37,6 +37,7 @@ void Fdcan::request(std::uint32_t places) {
             env_.log.report(Rule::wrong_state,
                             fmt::format("FDCAN1: buffer {} requested, the put index is {}", place, put_));
         const wire::CanFrame frame = ram_.tx_element(place).frame;
+        if (!is_fifo) check_order(frame);
         if ((frame.is_fd && !is_set(kCccr, kFdEnable)) ||
             (frame.has_bit_rate_switch && !is_set(kCccr, kRateSwitchEnable)))
             env_.log.report(Rule::wrong_state, "FDCAN1: an FD frame without FDOE, or BRS without BRSE");
@@ -47,6 +48,20 @@ void Fdcan::request(std::uint32_t places) {
         put_ = (place + 1) % kPlaces;
     }
     update_offer();
+}
+
+/// Of two of one identifier the one in the lower buffer goes first, whichever was requested first.
+void Fdcan::check_order(const wire::CanFrame& requested) {
+    const auto has_its_identifier = [&](std::uint32_t place) {
+        const wire::CanFrame frame = ram_.tx_element(place).frame;
+        return frame.can_id == requested.can_id && frame.is_extended == requested.is_extended;
+    };
+    if (std::ranges::any_of(order_, has_its_identifier))
+        env_.log.report(
+            Rule::wrong_state,
+            fmt::format("FDCAN1: two frames of identifier 0x{:X} in the queue: which goes first is "
+                        "not the program's choice",
+                        requested.can_id));
 }
 
 void Fdcan::cancel(std::uint32_t places) {
@@ -66,7 +81,7 @@ std::optional<std::uint32_t> Fdcan::next_place() const {
     if ((bank_.get(kTxbc) >> 24U & 1U) == 0) return order_.front();
     const auto rank = [this](std::uint32_t place) {
         const wire::CanFrame frame = ram_.tx_element(place).frame;
-        return frame.is_extended ? frame.can_id : frame.can_id << 18U;
+        return std::pair(frame.is_extended ? frame.can_id : frame.can_id << 18U, place);
     };
     return *std::ranges::min_element(order_, {}, rank);
 }

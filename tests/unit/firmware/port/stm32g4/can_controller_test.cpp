@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <set>
 #include <vector>
 
@@ -29,6 +30,9 @@ constexpr Address kTxbto = kBase + 0xD4;
 constexpr std::uint32_t kBusOff = 1U << 7U;
 constexpr std::uint32_t kPassive = 1U << 5U;
 
+// Three that may wait together: the last place is for REFLEX.
+constexpr std::array<std::uint32_t, 3> kIds = {0x145, 0x205, 0x005};
+
 /// The hardware's FIFOs and its request bits, as RM0440 has them.
 class CanControllerTest : public ::testing::Test {
   protected:
@@ -37,7 +41,6 @@ class CanControllerTest : public ::testing::Test {
         space_.on_write(kTxbar, [this](std::uint32_t&, std::uint32_t request) {
             space_[kTxbrp] |= request;
             space_[kTxbto] &= ~request;
-            put_ = (put_ + 1) % 3;
             update_queue();
         });
         space_.on_write(kTxbcr, [](std::uint32_t& cancelled, std::uint32_t value) { cancelled |= value; });
@@ -50,9 +53,10 @@ class CanControllerTest : public ::testing::Test {
         });
         space_.time_us() = 0;
     }
+    /// As a queue: the put index is the lowest free place.
     void update_queue() {
-        const bool is_full = (space_[kTxbrp] & (1U << put_)) != 0;
-        space_[kTxfqs] = (put_ << 16U) | (is_full ? 1U << 21U : 0);
+        const auto put = static_cast<std::uint32_t>(std::countr_one(space_[kTxbrp]));
+        space_[kTxfqs] = put < 3 ? put << 16U : 1U << 21U;
     }
     void update_fifo() { space_[kRxf0s] = received_ | (received_get_ << 8U); }
     /// The bus took the frame at this place.
@@ -85,7 +89,6 @@ class CanControllerTest : public ::testing::Test {
     MicrosecondTimer timer_;
     CanController can_{timer_};
     CanRates rates_{.nominal = 1'000'000, .data = 5'000'000, .has_fd = true};
-    std::uint32_t put_ = 0;
     std::uint32_t received_ = 0;
     std::uint32_t received_get_ = 0;
 };
@@ -140,19 +143,42 @@ TEST_F(CanControllerTest, gives_up_if_the_controller_does_not_follow) {
     EXPECT_FALSE(can_.is_started());
 }
 
-TEST_F(CanControllerTest, sends_three_frames_in_order_and_refuses_the_fourth) {
+TEST_F(CanControllerTest, gives_three_frames_of_three_identifiers_to_a_queue_and_refuses_the_fourth) {
     ASSERT_TRUE(can_.start(rates_, kNode, kClock));
+    EXPECT_EQ(space_[kBase + 0xC0], 1U << 24U) << "the lowest identifier first";
     space_.forget_writes();
-    for (std::uint8_t i = 0; i < 3; ++i) EXPECT_TRUE(can_.send(frame(0x145, i)));
-    EXPECT_FALSE(can_.send(frame(0x145, 9)));
+    for (std::uint8_t i = 0; i < 3; ++i) EXPECT_TRUE(can_.send(frame(kIds[i], i)));
+    EXPECT_FALSE(can_.send(frame(0x006, 9)));
     EXPECT_EQ(space_.written_to(kTxbar), (std::vector<std::uint32_t>{1, 2, 4}));
     for (std::uint32_t i = 0; i < 3; ++i) {
-        EXPECT_EQ(space_[0x4000'A678 + 72 * i], 0x145U << 18U);
+        EXPECT_EQ(space_[0x4000'A678 + 72 * i], kIds[i] << 18U);
         EXPECT_EQ(space_[0x4000'A678 + 72 * i + 8], i);
     }
     end_sent(0);
+    EXPECT_FALSE(can_.send(frame(0x145, 3))) << "a place is for REFLEX";
+    end_sent(2);
     EXPECT_TRUE(can_.send(frame(0x145, 3)));
     EXPECT_EQ(space_[0x4000'A678 + 8], 3U);
+}
+
+// The hardware does not promise an order among equal identifiers.
+TEST_F(CanControllerTest, has_never_two_frames_of_one_identifier_waiting) {
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
+    ASSERT_TRUE(can_.send(frame(0x145, 1)));
+    EXPECT_FALSE(can_.send(frame(0x145, 2)));
+    can_.poll(NodeTime{100'000});
+    EXPECT_FALSE(can_.send(frame(0x145, 2))) << "taken back, but it may be on the wire";
+    end_sent(0);
+    EXPECT_TRUE(can_.send(frame(0x145, 2)));
+}
+
+TEST_F(CanControllerTest, has_room_for_a_reflex_whatever_else_waits) {
+    ASSERT_TRUE(can_.start(rates_, kNode, kClock));
+    ASSERT_TRUE(can_.send(frame(0x705, 1)));
+    ASSERT_TRUE(can_.send(frame(0x205, 1)));
+    EXPECT_FALSE(can_.send(frame(0x145, 1)));
+    EXPECT_TRUE(can_.send(frame(0x005, 1)));
+    EXPECT_FALSE(can_.send(frame(0x005, 2)));
 }
 
 TEST_F(CanControllerTest, fills_the_place_before_it_asks_for_it) {
@@ -167,7 +193,7 @@ TEST_F(CanControllerTest, takes_back_what_nobody_acknowledged) {
     space_.time_us() = 1'000;
     ASSERT_TRUE(can_.send(frame(0x145, 1)));
     space_.time_us() = 2'000;
-    ASSERT_TRUE(can_.send(frame(0x145, 2)));
+    ASSERT_TRUE(can_.send(frame(0x205, 2)));
     const NodeTime first_expires = *can_.wake_time();
     EXPECT_NEAR(first_expires.us, 21'000, 10);
     can_.poll(NodeTime{20'999});
@@ -208,11 +234,11 @@ TEST_F(CanControllerTest, believes_the_hardware_that_a_frame_taken_back_was_sent
 
 TEST_F(CanControllerTest, keeps_a_place_until_its_frames_end_was_told) {
     ASSERT_TRUE(can_.start(rates_, kNode, kClock));
-    for (std::uint8_t i = 0; i < 3; ++i) ASSERT_TRUE(can_.send(frame(0x145, i)));
+    for (std::uint8_t i = 0; i < 3; ++i) ASSERT_TRUE(can_.send(frame(kIds[i], i)));
     can_.poll(NodeTime{100'000});
     for (std::uint32_t place = 0; place < 3; ++place) end_cancelled(place);
     EXPECT_FALSE(can_.send(frame(0x145, 3))) << "nobody knows yet that frame 0 is lost";
-    for (std::uint8_t i = 0; i < 3; ++i) EXPECT_EQ(can_.take_given_up(), frame(0x145, i));
+    for (std::uint8_t i = 0; i < 3; ++i) EXPECT_EQ(can_.take_given_up(), frame(kIds[i], i));
     EXPECT_TRUE(can_.send(frame(0x145, 3)));
     EXPECT_FALSE(can_.take_given_up());
 }
@@ -224,7 +250,9 @@ TEST_F(CanControllerTest, tells_of_each_frame_given_up_exactly_once) {
     std::uint32_t lost = 0;
     std::uint32_t told = 0;
     for (std::uint32_t pattern = 0; pattern < 512; ++pattern) {
-        while (can_.send(frame(0x145, static_cast<std::uint8_t>(pattern)))) ++given;
+        for (const std::uint32_t id : kIds) {
+            given += can_.send(frame(id, static_cast<std::uint8_t>(pattern))) ? 1U : 0U;
+        }
         if ((pattern & 64U) != 0) can_.poll(NodeTime{space_.time_us() + 100'000});
         if ((pattern & 128U) != 0) can_.discard();
         for (std::uint32_t place = 0; place < 3; ++place) {
@@ -305,7 +333,7 @@ TEST_F(CanControllerTest, tells_its_error_states_apart) {
 TEST_F(CanControllerTest, comes_back_from_bus_off_when_told_and_sends_nothing_old) {
     ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     ASSERT_TRUE(can_.send(frame(0x145, 1)));
-    ASSERT_TRUE(can_.send(frame(0x145, 2)));
+    ASSERT_TRUE(can_.send(frame(0x205, 2)));
     space_[kPsr] = kBusOff;
     space_[kCccr] |= 1;  // the hardware does both
     can_.discard();
@@ -313,7 +341,7 @@ TEST_F(CanControllerTest, comes_back_from_bus_off_when_told_and_sends_nothing_ol
     end_cancelled(0);
     end_cancelled(1);
     EXPECT_EQ(can_.take_given_up(), frame(0x145, 1));
-    EXPECT_EQ(can_.take_given_up(), frame(0x145, 2));
+    EXPECT_EQ(can_.take_given_up(), frame(0x205, 2));
     can_.discard();
     EXPECT_FALSE(can_.take_given_up()) << "each frame is given up once";
     space_.forget_writes();
