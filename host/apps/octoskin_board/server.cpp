@@ -11,9 +11,9 @@ void happen(NucleoBoard& board, const sim::BusEvent& event) {
         case sim::BusEventKind::received:
             return board.can().on_received(event.frame);
         case sim::BusEventKind::started:
-            return board.can().on_started();
+            return board.can().on_started(event.frame);
         case sim::BusEventKind::sent:
-            return board.can().on_sent();
+            return board.can().on_sent(event.frame);
         case sim::BusEventKind::disturbed:
             return board.can().on_disturbed();
     }

@@ -22,14 +22,14 @@ struct BoardLinkError : std::runtime_error {
 
 enum class BusEventKind : std::uint8_t {
     received,   ///< a frame of another controller ended
-    started,    ///< the frame on offer is under way
+    started,    ///< this frame, on offer or so a moment ago, is under way
     sent,       ///< and ended
     disturbed,  ///< and was destroyed
 };
 struct BusEvent {
     BusEventKind kind = BusEventKind::received;
     SimTime time{};
-    wire::CanFrame frame{};  ///< of `received`
+    wire::CanFrame frame{};
 };
 
 /// To the board: run until then; this happens on its bus meanwhile, in the order of time.

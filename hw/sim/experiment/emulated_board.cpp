@@ -71,7 +71,7 @@ EmulatedBoard::~EmulatedBoard() {
 void EmulatedBoard::note(BusEventKind kind, SimTime time, const wire::CanFrame& frame) {
     // A frame may begin and end within one turn: the board must know that it began.
     if (kind != BusEventKind::received) {
-        if (!has_told_start_) turn_.events.push_back({BusEventKind::started, turn_.time, {}});
+        if (!has_told_start_) turn_.events.push_back({BusEventKind::started, turn_.time, frame});
         has_told_start_ = false;
         offered_.reset();
     }
@@ -80,7 +80,7 @@ void EmulatedBoard::note(BusEventKind kind, SimTime time, const wire::CanFrame& 
 
 void EmulatedBoard::begin_turn(SimTime now) {
     if (seat_->is_sending() && !has_told_start_) {
-        turn_.events.push_back({BusEventKind::started, now, {}});
+        turn_.events.push_back({BusEventKind::started, now, *offered_});
         has_told_start_ = true;
     }
     turn_.time = now;

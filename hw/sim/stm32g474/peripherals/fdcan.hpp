@@ -34,10 +34,10 @@ class Fdcan final : public Peripheral {
 
     // --- the bus's side
     void set_link(CanLink link);
-    /// The frame on offer has begun: it can no longer be taken back.
-    void on_started();
+    /// The frame, which is on offer or was a moment ago, has begun: it can no longer be taken back.
+    void on_started(const wire::CanFrame& frame);
     /// The frame that began has ended well.
-    void on_sent();
+    void on_sent(const wire::CanFrame& frame);
     /// The frame that began was destroyed by an error on the bus.
     void on_disturbed();
     void on_received(const wire::CanFrame& frame);
@@ -78,6 +78,7 @@ class Fdcan final : public Peripheral {
     void clear_for_configuration();
     void request(std::uint32_t places);
     void check_order(const wire::CanFrame& requested);
+    [[nodiscard]] std::optional<std::uint32_t> place_of(const wire::CanFrame& frame) const;
     void cancel(std::uint32_t places);
     void acknowledge_rx(RxFifo& fifo, std::uint32_t index, const char* what);
     [[nodiscard]] std::uint32_t tx_status() const;

@@ -110,16 +110,25 @@ void Fdcan::set_link(CanLink link) {
     update_offer();
 }
 
-void Fdcan::on_started() {
-    if (offered_) has_started_ = true;
+std::optional<std::uint32_t> Fdcan::place_of(const wire::CanFrame& frame) const {
+    const auto found = std::ranges::find_if(
+        order_, [&](std::uint32_t place) { return ram_.tx_element(place).frame == frame; });
+    return found == order_.end() ? std::nullopt : std::optional(*found);
 }
 
-void Fdcan::on_sent() {
+void Fdcan::on_started(const wire::CanFrame& frame) {
+    const auto place = place_of(frame);
+    if (!place) return;
+    offered_ = place;
+    has_started_ = true;
+}
+
+void Fdcan::on_sent(const wire::CanFrame& frame) {
     has_started_ = false;
-    if (offered_ && (pending_ >> *offered_ & 1U) != 0) {
+    if (const auto place = place_of(frame)) {
         count_errors(-1, 0);
         last_error_ = 0;
-        finish(*offered_, true);
+        finish(*place, true);
     }
     update_offer();
     update_lines();
