@@ -91,8 +91,9 @@ Verdict Acceptance::judge(const ResultSeen& seen, const ZoneCycle& zones) noexce
         return Verdict::refused;
     }
     const auto steps = steps_to(measurement.stream_count);
-    if (is_count_in_doubt(steps) || has_count_come_round(steps, seen.read_end)) tracker_.forget();
-    const std::uint32_t ranges = ranges_since_last(steps, seen.read_end);
+    if (is_count_in_doubt(steps, seen.read_end) || has_count_come_round(steps, seen.read_end))
+        tracker_.forget();
+    const std::uint32_t ranges = steps.value_or(results_refused_ + 1);
     const TimeBracket ready = ready_time(seen, ranges);
 
     is_proven_ = last_stream_.has_value();
@@ -134,28 +135,21 @@ std::optional<std::uint8_t> Acceptance::steps_to(std::uint8_t stream_count) cons
 }
 
 /// Who could not read the last results and saw no data become ready does not know which range this is; nor
-/// does who saw it once, while the stream count says that it is another.
-bool Acceptance::is_count_in_doubt(std::optional<std::uint8_t> steps) const noexcept {
+/// does who saw it once, while the stream count says that it is another; nor who has no count, and
+/// reads when the one after may be there.
+bool Acceptance::is_count_in_doubt(std::optional<std::uint8_t> steps, NodeTime read_end) const noexcept {
+    const std::uint32_t seen = results_refused_ + 1;
+    if (!steps && last_ready_ && elapsed(*last_ready_, read_end) > (4 * seen + 3) * tracker_.period() / 4)
+        return true;
     if (results_refused_ == 0) return false;
     if (!has_seen_not_ready()) return true;
-    return not_ready_polls_ == 1 && steps && *steps != results_refused_ + 1;
+    return not_ready_polls_ == 1 && steps && *steps != seen;
 }
 
 /// Whoever was kept from asking for that long (4 s at 30 Hz) does not know how many ranges were made.
 bool Acceptance::has_count_come_round(std::optional<std::uint8_t> steps, NodeTime read_end) const noexcept {
     if (!steps || !last_ready_) return false;
     return elapsed(*last_ready_, read_end) > (*steps + kStreamCycle / 2) * tracker_.period();
-}
-
-std::uint32_t Acceptance::ranges_since_last(std::optional<std::uint8_t> steps,
-                                            NodeTime read_end) const noexcept {
-    if (steps) return *steps;
-    const std::uint32_t seen = results_refused_ + 1;
-    if (has_seen_not_ready() || !last_ready_) return seen;
-    // Without a count that tells, time must: as many ranges as fit since the last ready time.
-    const Microseconds period = tracker_.period();
-    const std::int64_t fitting = (elapsed(*last_ready_, read_end) + period / 16) / period;
-    return static_cast<std::uint32_t>(std::max<std::int64_t>(seen, fitting));
 }
 
 /// When the data was ready, by the polls and by the rhythm.

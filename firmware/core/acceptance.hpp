@@ -19,7 +19,7 @@ namespace octoskin::node {
 /// A result as it was read, and when.
 struct ResultSeen {
     vl53l1x::Measurement measurement;
-    NodeTime ready_seen;  ///< end of the poll that saw data ready
+    NodeTime ready_seen;  ///< when the sensor answered that data is ready, at the latest
     NodeTime read_end;    ///< end of the read, interrupt cleared
 };
 
@@ -79,14 +79,12 @@ class Acceptance {
     }
 
   private:
-    [[nodiscard]] std::uint32_t ranges_since_last(std::optional<std::uint8_t> steps,
-                                                  NodeTime read_end) const noexcept;
     [[nodiscard]] TimeBracket ready_time(const ResultSeen& seen, std::uint32_t ranges) noexcept;
     void on_stale() noexcept;
     [[nodiscard]] bool is_read_of(const TimeBracket& polled, const std::optional<TimeBracket>& predicted,
                                   NodeTime read_end, bool is_counted_next) const noexcept;
     [[nodiscard]] bool is_lone_poll_believed(const std::optional<TimeBracket>& predicted) const noexcept;
-    [[nodiscard]] bool is_count_in_doubt(std::optional<std::uint8_t> steps) const noexcept;
+    [[nodiscard]] bool is_count_in_doubt(std::optional<std::uint8_t> steps, NodeTime read_end) const noexcept;
     [[nodiscard]] bool has_seen_not_ready() const noexcept { return not_ready_polls_ > 0; }
     [[nodiscard]] bool has_count_come_round(std::optional<std::uint8_t> steps,
                                             NodeTime read_end) const noexcept;

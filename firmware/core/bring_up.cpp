@@ -164,6 +164,7 @@ void BringUp::on_step_done(NodeTime now) {
             break;
         case Step::initialising:
             start_step(Step::collecting, now);
+            step_due_ = now + policy_.first_range;
             break;
         case Step::collecting:
             start_step(Step::configuring, now);

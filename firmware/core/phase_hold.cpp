@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <utility>
 
 namespace octoskin::node {
 
@@ -15,76 +16,138 @@ constexpr std::int64_t kPeriodsAhead = 32;
 // A first range's time is known to a tenth of a millisecond or two: the mean of many is known better.
 constexpr std::int64_t kFirstsAveraged = 16;
 
+// A run tells the walk the better the longer it is: it counts by the square of its periods. Those before
+// count no more than 64 periods would, so that a part that warms up is followed.
+constexpr std::int64_t kWalkWeightMax = 64 * 64;
+
 // A part's first run, before it is trimmed, and those after its first trims tell nothing about its
 // oscillator.
 constexpr int kStartsForFree = 4;
 // 1,024 periods: a tenth of a percent of the readings.
 constexpr int kDoublingsMax = 6;
 
+// Without a range for so many periods: a period is known to 12 % before it is trimmed, and to 1 % then.
+constexpr std::int64_t kGapMax = 3;
+constexpr std::int64_t kGapMaxTrimmed = 24;
+
+Microseconds whole_us(Nanoseconds time) {
+    return std::chrono::duration_cast<Microseconds>(time);
+}
+
 }  // namespace
 
-void PhaseHold::restart(NodeTime started, Microseconds off, Microseconds period, bool is_trimmed) noexcept {
-    if (period != period_) {
+void PhaseHold::restart(const Start& start) noexcept {
+    if (start.period != start_.period) {
         firsts_ = 0;
+        forget_walk();
         starts_in_vain_ = 0;
     }
-    started_ = started;
-    off_at_start_ = off;
-    off_ = off;
-    period_ = period;
-    is_trimmed_ = is_trimmed;
-    periods_ = 0;
+    start_ = start;
+    count_from(start.off);
     last_.reset();
-    is_judged_ = false;
+    is_judged_ = is_in_vain_ = false;
 }
 
 void PhaseHold::observe(const TimeBracket& ready) noexcept {
     if (ready.width() > policy_.phase_known_within) return;
     const NodeTime at = ready.middle();
-    if (last_) {
-        const Microseconds since = elapsed(*last_, at);
-        const Microseconds strayed = nearest_to_zero(since);
-        periods_ += (since - strayed) / period_;
-        off_ += strayed;
+    if (!last_) {
+        begin(elapsed(start_.at.earliest, at));
+    } else if (const Microseconds since = elapsed(*last_, at); is_told_from_others(since)) {
+        go_on(since);
     } else {
-        begin(elapsed(started_, at));
+        count_from(off_ + nearest_to_zero(since));
     }
     last_ = at;
     if (!is_judged_ && periods_ >= policy_.phase_periods_min) judge_start();
 }
 
+/// Whether so long after the last one it is known which range this is: by then the sensor may not have walked
+/// as far as to where another one would be.
+bool PhaseHold::is_told_from_others(Microseconds since_last) const noexcept {
+    const std::int64_t periods_max = start_.is_trimmed ? kGapMaxTrimmed : kGapMax;
+    return since_last.count() >= 0 && since_last <= periods_max * start_.period;
+}
+
+/// One range's time may be a tenth of a millisecond off: what the walk foresees counts three times as much.
+/// What it cannot have foreseen is another walk: that of a sensor which does not keep its rate.
+void PhaseHold::go_on(Microseconds since_last) noexcept {
+    const Microseconds strayed = nearest_to_zero(since_last);
+    const std::int64_t periods = (since_last - strayed) / start_.period;
+    periods_ += periods;
+    off_ += strayed;
+    const auto foreseen = smoothed_off_ + whole_us(walk() * periods);
+    const bool is_foreseen = is_near(off_, foreseen);
+    const Microseconds expected = off_at_first_ + whole_us(expected_walk_ * periods_);
+    if (walk_weight_ > 0 && !(is_foreseen && is_near(off_, expected))) {
+        forget_walk();
+        count_in_vain();
+    }
+    smoothed_off_ = is_foreseen ? foreseen + (off_ - foreseen) / 4 : off_;
+}
+
+/// As near as their times are known.
+bool PhaseHold::is_near(Microseconds off, Microseconds other) const noexcept {
+    return std::abs((off - other).count()) <= policy_.phase_known_within.count();
+}
+
+/// How it walks is counted from here on.
+void PhaseHold::count_from(Microseconds off) noexcept {
+    off_ = off_at_first_ = smoothed_off_ = off;
+    periods_ = 0;
+}
+
 /// How long after its start a run's first range was ready says where the others should be. That is the part's
 /// own, and the same each time, once its period is.
 void PhaseHold::begin(Microseconds first_after) noexcept {
-    if (!is_trimmed_) return;
+    if (!start_.is_trimmed) return;
+    // One that was kept waiting in the middle of its start began nobody knows when.
+    const bool is_start_known = start_.at.width() <= 2 * policy_.phase_known_within;
+    if (!is_start_known || !is_told_from_others(first_after)) {
+        if (firsts_ > 0) count_from(off_ + nearest_to_zero(first_after - first_after_));
+        return;
+    }
+    // Parts give the first range one period after the start. This may be a later one, if those before were
+    // too vague: by then the sensor has walked.
+    periods_ = std::max((first_after + start_.period / 2) / start_.period - 1, std::int64_t{0});
+    const Microseconds walked = whole_us(expected_walk_ * periods_);
+    const Microseconds first = first_after - periods_ * start_.period - walked;
     firsts_ = std::min(firsts_ + 1, kFirstsAveraged);
-    if (firsts_ == 1) first_after_ = first_after;
-    // It may be a later range, if the first could not be read.
-    const Microseconds more = nearest_to_zero(first_after - first_after_);
+    if (firsts_ == 1) first_after_ = first;
+    const Microseconds more = nearest_to_zero(first - first_after_);
     first_after_ += more / firsts_;
-    off_ += more - more / firsts_;
+    off_ += more - more / firsts_ + walked;
+    smoothed_off_ = off_;
 }
 
 /// The same place within a period.
 Microseconds PhaseHold::nearest_to_zero(Microseconds off) const noexcept {
-    const Microseconds half = off.count() < 0 ? -period_ / 2 : period_ / 2;
-    return off - (off + half) / period_ * period_;
+    const Microseconds half = off.count() < 0 ? -start_.period / 2 : start_.period / 2;
+    return off - (off + half) / start_.period * start_.period;
 }
 
 /// Who walks by half a step of its register has not walked through all that is allowed after so few periods.
 /// (It may be out of its phase all the same, if it was started late.)
 void PhaseHold::judge_start() noexcept {
     is_judged_ = true;
-    const Microseconds walked = off_ - off_at_start_;
-    const bool is_in_vain =
-        std::abs(walked.count()) > (policy_.phase_tolerance + policy_.phase_start_off).count();
-    // One that wanders has not come far now and then by chance.
-    starts_in_vain_ = is_in_vain ? std::min(starts_in_vain_ + 1, kStartsForFree + kDoublingsMax)
-                                 : std::max(starts_in_vain_ - 1, 0);
+    const std::int64_t walked_us = std::abs((off_ - off_at_first_).count());
+    const std::int64_t allowed_us = (policy_.phase_tolerance + policy_.phase_start_off).count();
+    if (walked_us > allowed_us) {
+        count_in_vain();
+    } else if (!is_in_vain_ && walked_us * 3 <= allowed_us * 2) {
+        // One that wanders has not come far now and then by chance.
+        starts_in_vain_ = std::max(starts_in_vain_ - 1, 0);
+    }
+}
+
+/// Once a run.
+void PhaseHold::count_in_vain() noexcept {
+    if (std::exchange(is_in_vain_, true)) return;
+    starts_in_vain_ = std::min(starts_in_vain_ + 1, kStartsForFree + kDoublingsMax);
 }
 
 bool PhaseHold::is_out() const noexcept {
-    return std::abs(off_.count()) > policy_.phase_tolerance.count();
+    return std::abs(smoothed_off_.count()) > policy_.phase_tolerance.count();
 }
 
 /// So many periods are between two starts.
@@ -94,16 +157,24 @@ std::int64_t PhaseHold::patience() const noexcept {
 
 bool PhaseHold::is_lost() const noexcept {
     if (periods_ < patience()) return false;
-    const bool is_mendable = std::abs(walk().count()) <= period_.count() * kWalkMaxPermille;
+    const bool is_mendable = std::abs(walk().count()) <= start_.period.count() * kWalkMaxPermille;
     return is_mendable && is_out();
 }
 
 Nanoseconds PhaseHold::walk() const noexcept {
-    return periods_ > 0 ? Nanoseconds{off_ - off_at_start_} / periods_ : Nanoseconds{0};
+    const std::int64_t weight = walk_weight_ + periods_ * periods_;
+    if (weight == 0) return Nanoseconds{0};
+    const Nanoseconds walked_weighted = Nanoseconds{off_ - off_at_first_} * periods_;
+    return (expected_walk_ * walk_weight_ + walked_weighted) / weight;
+}
+
+void PhaseHold::expect_walk(Nanoseconds walk) noexcept {
+    expected_walk_ = walk;
+    walk_weight_ = std::min(walk_weight_ + periods_ * periods_, kWalkWeightMax);
 }
 
 Microseconds PhaseHold::start_off(Nanoseconds walk) const noexcept {
-    const auto ahead = std::chrono::duration_cast<Microseconds>(-walk * kPeriodsAhead);
+    const Microseconds ahead = whole_us(-walk * kPeriodsAhead);
     return std::clamp(ahead, -policy_.phase_start_off, policy_.phase_start_off);
 }
 

@@ -18,6 +18,9 @@ struct Policy {
     // --- bring-up. Datasheet DS12385: boots within 1.2 ms of XSHUT high; it states no minimum low time.
     Microseconds xshut_low{1'000};
     Microseconds xshut_boot{2'000};
+    /// The first range takes one period, 103 ms at the defaults by the part's own oscillator: before this it
+    /// is not asked for.
+    Microseconds first_range{85'000};
 
     /// Nobody ranges sooner after the node began: a whole fleet is up by then, and nobody's bring-up has the
     /// bus when another one's data is ready.
@@ -84,6 +87,8 @@ struct Policy {
     /// On which side of its phase a sensor is started, against the way that it walks: the rest is for how
     /// badly ready times are known.
     Microseconds phase_start_off{130};
+    /// A sensor that the bus keeps waiting for longer starts a period later.
+    Microseconds phase_late_max{150};
     /// A sensor of which nobody knows whether its next range has begun is stopped so much later than it could
     /// be: what that tells then holds for those stops, too, that come as soon as they can.
     Microseconds phase_stop_delay{1'000};

@@ -14,6 +14,9 @@ constexpr Microseconds kLoopDelay{20};
 // START, address and two bytes of index, on a bus that is never faster than configured.
 constexpr std::int64_t kIndexBits = 28;
 
+// The byte, its acknowledge and STOP, likewise.
+constexpr std::int64_t kAnswerBits = 10;
+
 // Slow sensors are polled in proportion: 128 polls a period find it, and a bracket of a 2048th is precise
 // enough.
 constexpr std::int64_t kLongestGapsPerPeriod = 128;
@@ -32,7 +35,8 @@ NodeTime next_on_grid(NodeTime from, Microseconds gap, NodeTime now, Microsecond
 PollPlan::PollPlan(std::uint32_t i2c_hz, const Policy& policy) noexcept
     : policy_(policy),
       poll_duration_(kPollBits * 1'250'000 / i2c_hz),
-      index_duration_(kIndexBits * 1'000'000 / i2c_hz) {}
+      index_duration_(kIndexBits * 1'000'000 / i2c_hz),
+      answer_duration_(kAnswerBits * 1'000'000 / i2c_hz) {}
 
 NodeTime PollPlan::first_poll(const TimeBracket& predicted) const noexcept {
     return predicted.earliest - poll_duration_ - kLoopDelay;
@@ -89,6 +93,10 @@ Microseconds PollPlan::longest_gap(Microseconds period) const noexcept {
 
 NodeTime PollPlan::not_ready_until(NodeTime began) const noexcept {
     return began + index_duration_;
+}
+
+NodeTime PollPlan::ready_by(NodeTime ended) const noexcept {
+    return ended - answer_duration_;
 }
 
 }  // namespace octoskin::node

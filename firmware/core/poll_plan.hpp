@@ -40,6 +40,9 @@ class PollPlan {
     /// Until when, at least, data was not ready if the poll begun at `began` found none: the sensor cannot
     /// have looked before it was told at which register.
     [[nodiscard]] NodeTime not_ready_until(NodeTime began) const noexcept;
+    /// When, at the latest, data was ready if the poll that ended at `ended` found it: the sensor cannot have
+    /// looked after it began to answer.
+    [[nodiscard]] NodeTime ready_by(NodeTime ended) const noexcept;
 
   private:
     [[nodiscard]] Microseconds shortest_gap(Microseconds period) const noexcept;
@@ -49,6 +52,7 @@ class PollPlan {
     const Policy& policy_;
     Microseconds poll_duration_;
     Microseconds index_duration_;
+    Microseconds answer_duration_;
 };
 
 }  // namespace octoskin::node

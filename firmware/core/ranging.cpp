@@ -18,6 +18,8 @@ constexpr std::uint8_t kRoiBytes = 2;
 // One poll that finds no result of a range that was under way at the stop may have been altered.
 constexpr std::uint8_t kLooksForLastResult = 2;
 
+constexpr std::uint8_t kStartsPutOffMax = 3;
+
 }  // namespace
 
 Ranging::Ranging(vl53l1x::Device& device, const SensorConfig& config, const RangingRules& rules,
@@ -80,6 +82,7 @@ bool Ranging::is_waiting() const noexcept {
 Ranging::Result Ranging::advance(NodeTime now) {
     if (step_ == Step::draining) return {.event = on_drained(now)};
     start_due_step(now);
+    if (is_waiting()) return {};
 
     switch (device_.poll(now)) {
         case vl53l1x::Progress::busy:
@@ -107,10 +110,19 @@ void Ranging::start_due_step(NodeTime now) {
     if (!is_waiting()) return;
     if (is_stop_requested_ || is_trim_due_) {
         start_step(Step::stopping, now);
+    } else if (is_too_late_to_start(now)) {
+        ++starts_put_off_;
+        start_step(Step::awaiting_phase, now);
     } else {
         is_hinted_ = std::exchange(has_hint_, false);
         start_step(step_ == Step::awaiting_phase ? Step::starting : Step::reading, now);
     }
+}
+
+/// Who was kept waiting for the bus starts a period later rather than out of its phase. Not for ever.
+bool Ranging::is_too_late_to_start(NodeTime now) const noexcept {
+    return step_ == Step::awaiting_phase && rules_.holds_phases && starts_put_off_ < kStartsPutOffMax &&
+           elapsed(phase_due_, now) > policy_.phase_late_max;
 }
 
 void Ranging::start_step(Step step, NodeTime now) {
@@ -254,10 +266,9 @@ Ranging::Event Ranging::on_last_read(NodeTime now) {
         if (looks_left_ == 0) range_length_.on_none_begun(stop_began_, last_expected_);
         return on_drained(now);
     }
+    const Verdict verdict = judge_result(now);
     start_anew(now);
-    const ResultSeen seen{
-        .measurement = device_.measurement(), .ready_seen = device_.ready_seen(), .read_end = now};
-    switch (acceptance_.judge(seen, zones_)) {
+    switch (verdict) {
         case Verdict::accepted:
             checks_.on_reading();
             return Event::reading;
@@ -277,8 +288,11 @@ void Ranging::start_anew(NodeTime now) {
 
 void Ranging::on_started(NodeTime now) {
     acceptance_.restart(step_began_, trim_.configured(), trim_.uncertainty_permille());
-    phase_.restart(step_began_, start_off_ + elapsed(phase_due_, step_began_), trim_.configured(),
-                   trim_.is_refined());
+    phase_.restart({.at = {step_began_, now},
+                    .off = start_off_ + elapsed(phase_due_, step_began_),
+                    .period = trim_.configured(),
+                    .is_trimmed = trim_.is_refined()});
+    starts_put_off_ = 0;
     zones_.settle();
     ready_from_ = polls_.first_poll_after_start(phase_due_, budget());
     // Parts were seen to give the first result one period after the start.
@@ -303,9 +317,7 @@ Ranging::Event Ranging::on_read(NodeTime now) {
         return Event::none;
     }
     note_announcement();
-    const ResultSeen seen{
-        .measurement = device_.measurement(), .ready_seen = device_.ready_seen(), .read_end = now};
-    switch (acceptance_.judge(seen, zones_)) {
+    switch (judge_result(now)) {
         case Verdict::accepted:
             after_result(now);
             return Event::reading;
@@ -316,6 +328,13 @@ Ranging::Event Ranging::on_read(NodeTime now) {
             break;
     }
     return refuse(SensorFault::stale_stream, now);
+}
+
+Verdict Ranging::judge_result(NodeTime now) {
+    const ResultSeen seen{.measurement = device_.measurement(),
+                          .ready_seen = polls_.ready_by(device_.ready_seen()),
+                          .read_end = now};
+    return acceptance_.judge(seen, zones_);
 }
 
 /// After one that found nothing.
@@ -359,6 +378,7 @@ bool Ranging::is_restart_wanted(NodeTime now) noexcept {
     const auto measured = acceptance_.measured_period();
     if (measured && trim_.is_judged_after(ranges_) && trim_.wants_trim(*measured, now)) {
         start_off_ = Microseconds{0};
+        phase_.forget_walk();
         return true;
     }
     if (!rules_.holds_phases) return false;
@@ -368,7 +388,9 @@ bool Ranging::is_restart_wanted(NodeTime now) noexcept {
     const auto step = device_.period_step();
     if (!step || !phase_.is_lost()) return false;
     const Microseconds commanded = trim_.commanded();
-    start_off_ = phase_.start_off(trim_.refine(phase_.walk(), *step));
+    const Nanoseconds walk = trim_.refine(phase_.walk(), *step);
+    phase_.expect_walk(walk);
+    start_off_ = phase_.start_off(walk);
     is_period_set_ = trim_.commanded() == commanded;
     return true;
 }

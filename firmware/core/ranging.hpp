@@ -133,6 +133,7 @@ class Ranging {
     void start_step(Step step, NodeTime now);
     void start_due_step(NodeTime now);
     [[nodiscard]] bool is_waiting() const noexcept;
+    [[nodiscard]] bool is_too_late_to_start(NodeTime now) const noexcept;
     [[nodiscard]] Event on_step_done(NodeTime now);
     [[nodiscard]] Event on_step_failed(vl53l1x::Error error, NodeTime now);
     void drain(NodeTime now);
@@ -140,6 +141,7 @@ class Ranging {
     void start_anew(NodeTime now);
     [[nodiscard]] Event on_read(NodeTime now);
     [[nodiscard]] Event on_last_read(NodeTime now);
+    [[nodiscard]] Verdict judge_result(NodeTime now);
     [[nodiscard]] Event refuse(wire::SensorFault fault, NodeTime now);
     [[nodiscard]] Event fail(wire::SensorFault fault);
     void on_started(NodeTime now);
@@ -172,11 +174,12 @@ class Ranging {
     SteeringChecks checks_;
 
     NodeTime first_start_;
-    bool is_poll_punctual_ = false;  ///< asked of every sensor at every turn: worked out once a poll
-    bool is_early_ = false;          ///< likewise
-    NodeTime phase_due_;             ///< when the sensor was to start, whenever the bus was free for it
-    Microseconds start_off_{0};      ///< of that time, from the sensor's phase
-    std::uint32_t ranges_ = 0;       ///< results since the start
+    bool is_poll_punctual_ = false;    ///< asked of every sensor at every turn: worked out once a poll
+    bool is_early_ = false;            ///< likewise
+    NodeTime phase_due_;               ///< when the sensor was to start, whenever the bus was free for it
+    std::uint8_t starts_put_off_ = 0;  ///< in a row, for being late
+    Microseconds start_off_{0};        ///< of that time, from the sensor's phase
+    std::uint32_t ranges_ = 0;         ///< results since the start
     Step step_ = Step::idle;
     NodeTime step_due_;
     NodeTime step_began_;

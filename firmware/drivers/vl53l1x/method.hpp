@@ -412,6 +412,9 @@ struct Device::Method {
     static constexpr Stage kAwaitBoot{ask_boot_state, 1'000, 500'000, Error::boot_timeout};
     // A first range takes one period, 100 ms at the defaults; a fleet polling every 5 ms leaves the bus free.
     static constexpr Stage kAwaitReady{await_ready, 5'000, 1'000'000, Error::not_ready};
+    // Stopped within the pause after the first range, 5 ms at the defaults, a sensor does not range while it
+    // is configured.
+    static constexpr Stage kAwaitFirst{await_ready, 1'000, 1'000'000, Error::not_ready};
     static constexpr Stage kReadResult{read_result, 0, 50'000, Error::reads_disagree};
 
     // --- the operations
@@ -432,7 +435,7 @@ struct Device::Method {
                                          {choose_timed},
                                          {clear_before_start},
                                          {start}};
-    static constexpr Stage kFinishInitialise[]{kAwaitReady, {clear}, {stop}, {bound_vhv_search}};
+    static constexpr Stage kFinishInitialise[]{kAwaitFirst, {clear}, {stop}, {bound_vhv_search}};
     static constexpr Stage kConfigure[]{
         // clang-format off
         {reread_budget}, {write_mode}, {reread_mode}, {write_same_budget_as_st},

@@ -201,13 +201,35 @@ TEST_F(AcceptanceTest, forgets_the_rhythm_if_the_count_contradicts_the_results_s
     }
 }
 
-TEST_F(AcceptanceTest, dates_a_result_by_time_when_the_stream_count_is_not_looked_at) {
+TEST_F(AcceptanceTest, does_not_date_a_result_without_a_count_once_another_may_have_been_overwritten) {
     Acceptance acceptance = started(StreamGate::off);
     for (int range = 0; range <= 20; ++range)
         ASSERT_EQ(offer(acceptance, range, result(0)), Verdict::accepted);
-    ASSERT_EQ(offer_unpolled(acceptance, 22, result(0), Microseconds{7'000}), Verdict::accepted);
-    expect_within_bound(acceptance, ready(22));
-    EXPECT_LE(acceptance.reading().capture_bound, Microseconds{250});
+    EXPECT_EQ(offer_unpolled(acceptance, 22, result(0), Microseconds{7'000}), Verdict::undated);
+    EXPECT_EQ(offer(acceptance, 23, result(0)), Verdict::accepted);
+    expect_within_bound(acceptance, ready(23));
+}
+
+// Kept waiting before the read: without a count it may be the next range's result, or the one after.
+TEST_F(AcceptanceTest, knows_without_a_count_what_it_read_late_or_says_that_it_does_not) {
+    for (const StreamGate gate : {StreamGate::differs, StreamGate::off}) {
+        for (std::int64_t late_us = 0; late_us < 200'000; late_us += 500) {
+            SCOPED_TRACE(testing::Message() << static_cast<int>(gate) << ' ' << late_us << " us late");
+            Acceptance acceptance = started(gate);
+            for (int range = 0; range <= 20; ++range) {
+                const auto stream = static_cast<std::uint8_t>(range);
+                ASSERT_EQ(offer(acceptance, range, result(stream)), Verdict::accepted);
+            }
+            acceptance.on_not_ready(ready(21) - Microseconds{100});
+            const auto overwritten = static_cast<int>(late_us / kPeriod.count());
+            const NodeTime polled = ready(21) + Microseconds{100};
+            const ResultSeen seen{.measurement = result(static_cast<std::uint8_t>(21 + overwritten)),
+                                  .ready_seen = polled,
+                                  .read_end = ready(21) + Microseconds{late_us + 100}};
+            if (acceptance.judge(seen, zones_) == Verdict::accepted)
+                expect_within_bound(acceptance, ready(21 + overwritten));
+        }
+    }
 }
 
 TEST_F(AcceptanceTest, keeps_the_time_of_the_poll_when_the_result_was_overwritten_before_it_was_read) {

@@ -18,9 +18,14 @@ constexpr Microseconds kPeriod{33'000};
 /// A run of ranges, each known to lie within 100 us, somewhere.
 class Walker {
   public:
-    Walker(PhaseHold& hold, std::int64_t off_us, std::int64_t walk_ns, std::uint32_t first_us)
+    Walker(PhaseHold& hold, std::int64_t off_us, std::int64_t walk_ns, std::uint32_t first_us,
+           Microseconds start_took = Microseconds{300})
         : hold_(hold), off_ns_(off_us * 1'000), walk_ns_(walk_ns), first_us_(first_us) {
-        hold_.restart(NodeTime{first_us - 33'000U}, Microseconds{off_us}, kPeriod, true);
+        const NodeTime started{first_us - 33'000U};
+        hold_.restart({.at = {started, started + start_took},
+                       .off = Microseconds{off_us},
+                       .period = kPeriod,
+                       .is_trimmed = true});
     }
     void range() {
         const std::int64_t into_ns = off_ns_ + periods_ * walk_ns_;
@@ -112,6 +117,76 @@ TEST(PhaseHold, leaves_a_sensor_that_skips_its_slots_alone) {
     Walker walker{hold, 0, 6'000'000, 0};
     for (int i = 0; i < 100; ++i) walker.range();
     EXPECT_FALSE(hold.is_lost());
+}
+
+TEST(PhaseHold, counts_the_walk_before_the_first_range_that_is_well_known) {
+    PhaseHold hold{kPolicy};
+    std::uint32_t first_us = 0;
+    for (int run = 0; run < 16; ++run) {
+        Walker walker{hold, -130, 9'000, first_us};
+        for (int i = 0; i < 70; ++i) walker.range();
+        hold.expect_walk(hold.walk());
+        first_us += 10'000'000;
+    }
+    Walker walker{hold, -130, 9'000, first_us};
+    int ranges = 20;
+    walker.miss(ranges);
+    for (; !hold.is_lost() && ranges < 200; ++ranges) walker.range();
+    EXPECT_NEAR(ranges, (130.0 + 170.0) / 9.0, 80.0 / 9.0);
+}
+
+TEST(PhaseHold, knows_the_walk_of_many_runs_better_than_that_of_one) {
+    PhaseHold hold{kPolicy};
+    for (std::uint32_t run = 0; run < 20; ++run) {
+        Walker walker{hold, -130, 3'000, 10'000'000 * run};
+        for (int i = 0; i < 17; ++i) walker.range();
+        hold.expect_walk(hold.walk());
+    }
+    EXPECT_NEAR(static_cast<double>(hold.walk().count()), 3'000.0, 1'500.0) << "one tells it to 6 us";
+}
+
+TEST(PhaseHold, believes_the_sensor_where_it_does_not_walk_as_the_runs_before_it) {
+    PhaseHold hold{kPolicy};
+    {
+        Walker walker{hold, 0, 0, 0};
+        for (int i = 0; i < 70; ++i) walker.range();
+        hold.expect_walk(hold.walk());
+    }
+    Walker walker{hold, 0, 500'000, 10'000'000};
+    for (int i = 0; i < 17; ++i) walker.range();
+    EXPECT_TRUE(hold.is_lost());
+    EXPECT_NEAR(static_cast<double>(hold.walk().count()), 500'000.0, 10'000.0);
+}
+
+TEST(PhaseHold, counts_from_the_first_range_where_nobody_knows_when_the_sensor_started) {
+    for (const std::int64_t held_up_us : {700, 7'000, 16'000, 20'000}) {
+        PhaseHold hold{kPolicy};
+        {
+            Walker walker{hold, 0, 0, 0};
+            for (int i = 0; i < 30; ++i) walker.range();
+        }
+        // Begun in its phase, kept waiting in the middle.
+        hold.restart({.at = {NodeTime{10'000'000}, NodeTime{10'030'000}},
+                      .off = Microseconds{0},
+                      .period = kPeriod,
+                      .is_trimmed = true});
+        for (int i = 1; i <= 20; ++i) {
+            const auto us = static_cast<std::uint32_t>(10'000'000 + i * kPeriod.count() + held_up_us);
+            hold.observe({NodeTime{us - 50}, NodeTime{us + 50}});
+        }
+        EXPECT_TRUE(hold.is_lost()) << held_up_us;
+        EXPECT_NEAR(static_cast<double>(hold.walk().count()), 0.0, 5'000.0) << held_up_us;
+    }
+}
+
+// Too long after the last one, a range may be any of several.
+TEST(PhaseHold, counts_anew_after_ranges_nobody_counted) {
+    PhaseHold hold{kPolicy};
+    Walker walker{hold, 0, 300'000, 0};
+    for (int i = 0; i < 5; ++i) walker.range();
+    walker.miss(70);  // and walked by more than half a period
+    for (int i = 0; i < 20; ++i) walker.range();
+    EXPECT_NEAR(static_cast<double>(hold.walk().count()), 300'000.0, 10'000.0);
 }
 
 TEST(PhaseHold, learns_nothing_from_a_time_that_is_hardly_known) {

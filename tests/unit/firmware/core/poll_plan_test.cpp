@@ -87,6 +87,7 @@ TEST(PollPlan, expects_nothing_after_a_start_before_most_of_the_budget_is_used) 
 TEST(PollPlan, counts_not_ready_only_from_when_the_sensor_knew_what_was_asked) {
     const PollPlan plan{400'000, kPolicy};
     EXPECT_EQ(plan.not_ready_until({1'000}), NodeTime{1'070});  // 28 bits at 400 kHz
+    EXPECT_EQ(plan.ready_by({1'000}), NodeTime{975});           // 10 bits
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST_F(DeviceOnScript, writes_nothing_to_a_part_whose_factory_offset_does_not_re
     EXPECT_EQ(device_.error(), Error::reads_disagree);
 }
 
-TEST_F(DeviceOnScript, polls_boot_every_millisecond_and_ready_every_five) {
+TEST_F(DeviceOnScript, polls_boot_and_the_first_range_every_millisecond) {
     bus_.expect("R 00E5 1 -> 00");
     device_.begin_await_boot();
     EXPECT_EQ(device_.poll({0}), Progress::busy);
@@ -104,9 +104,9 @@ TEST_F(DeviceOnScript, polls_boot_every_millisecond_and_ready_every_five) {
     device_.begin_finish_initialise();
     EXPECT_EQ(device_.poll({2'000}), Progress::busy);
     EXPECT_EQ(device_.poll({2'120}), Progress::busy);
-    EXPECT_EQ(device_.wake_time(), NodeTime{7'120});
-    EXPECT_EQ(device_.poll({7'120}), Progress::busy);
-    EXPECT_EQ(device_.poll({7'240}), Progress::busy);
+    EXPECT_EQ(device_.wake_time(), NodeTime{3'120});
+    EXPECT_EQ(device_.poll({3'120}), Progress::busy);
+    EXPECT_EQ(device_.poll({3'240}), Progress::busy);
 }
 
 // --- settings
