@@ -18,7 +18,7 @@ constexpr std::int64_t kFirstsAveraged = 16;
 
 // A run tells the walk the better the longer it is: it counts by the square of its periods. Those before
 // count no more than 64 periods would, so that a part that warms up is followed.
-constexpr std::int64_t kWalkWeightMax = 64 * 64;
+constexpr std::int64_t kWalkWeightMax = std::int64_t{64} * 64;
 
 // A part's first run, before it is trimmed, and those after its first trims tell nothing about its
 // oscillator.
