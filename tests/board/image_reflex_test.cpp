@@ -1,6 +1,8 @@
 // REFLEX of the flashed image on a bus that is busy with what is less urgent.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/board/flashed_board.hpp"
 
 namespace octoskin::sim::stm32 {
