@@ -54,8 +54,9 @@ void SimulatedCanBus::Controller::offer(const std::optional<wire::CanFrame>& fra
     if (frame) pending.push_back({.frame = *frame, .given = bus_.now_});
 }
 
-bool SimulatedCanBus::Controller::is_sending() const {
-    return bus_.under_way_ && bus_.under_way_->sender == this;
+const wire::CanFrame* SimulatedCanBus::Controller::under_way() const {
+    const bool is_sending = bus_.under_way_ && bus_.under_way_->sender == this;
+    return is_sending ? &bus_.under_way_->frame : nullptr;
 }
 
 void SimulatedCanBus::tap(FrameHandler on_frame) {
@@ -77,7 +78,7 @@ bool SimulatedCanBus::Controller::has_room_for(const wire::CanFrame& frame) cons
     if (!is_node) return pending.size() < mailbox_count_;
     std::vector<std::uint32_t> waiting;
     for (const Pending& other : pending) waiting.push_back(other.frame.can_id);
-    if (is_sending()) waiting.push_back(bus_.under_way_->frame.can_id);
+    if (const wire::CanFrame* sending = under_way()) waiting.push_back(sending->can_id);
     return node::may_join(waiting, frame.can_id);
 }
 

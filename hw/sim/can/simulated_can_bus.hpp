@@ -37,8 +37,8 @@ class CanSeat {
     /// What it wants to send next, in place of what it wanted before; empty: nothing. A frame under way ends
     /// in any case.
     virtual void offer(const std::optional<wire::CanFrame>& frame) = 0;
-    /// A frame of its own is under way.
-    [[nodiscard]] virtual bool is_sending() const = 0;
+    /// The frame of its own that is under way; null: none is.
+    [[nodiscard]] virtual const wire::CanFrame* under_way() const = 0;
 
   protected:
     ~CanSeat() = default;
@@ -98,7 +98,7 @@ class SimulatedCanBus {
         void discard() override;
         [[nodiscard]] std::optional<wire::CanFrame> take_given_up() override;
         void offer(const std::optional<wire::CanFrame>& frame) override;
-        [[nodiscard]] bool is_sending() const override;
+        [[nodiscard]] const wire::CanFrame* under_way() const override;
         void restart() override;
 
         void on_sent(const wire::CanFrame& frame, SimTime end);

@@ -79,8 +79,8 @@ void EmulatedBoard::note(BusEventKind kind, SimTime time, const wire::CanFrame& 
 }
 
 void EmulatedBoard::begin_turn(SimTime now) {
-    if (seat_->is_sending() && !has_told_start_) {
-        turn_.events.push_back({BusEventKind::started, now, *offered_});
+    if (const wire::CanFrame* sending = seat_->under_way(); sending != nullptr && !has_told_start_) {
+        turn_.events.push_back({BusEventKind::started, now, *sending});
         has_told_start_ = true;
     }
     turn_.time = now;
@@ -91,7 +91,7 @@ void EmulatedBoard::begin_turn(SimTime now) {
 void EmulatedBoard::finish_turn() {
     const HasRun done = process_->finish();
     // A frame that the bus has begun stays on offer until it has ended.
-    if (seat_->is_sending() || done.offer == offered_) return;
+    if (seat_->under_way() != nullptr || done.offer == offered_) return;
     offered_ = done.offer;
     seat_->offer(offered_);
 }

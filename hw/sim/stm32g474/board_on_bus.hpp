@@ -1,8 +1,6 @@
 // The board on a simulated CAN bus of its own process: for running it alone.
 #pragma once
 
-#include <optional>
-
 #include "hw/sim/can/simulated_can_bus.hpp"
 #include "hw/sim/stm32g474/nucleo_board.hpp"
 
@@ -25,7 +23,6 @@ class BoardOnBus {
     NucleoBoard& board_;
     SimulatedCanBus& bus_;
     CanSeat* seat_ = nullptr;
-    std::optional<wire::CanFrame> offered_;  ///< or under way
     SimTime now_{};
 };
 
