@@ -33,60 +33,37 @@ struct JointsOptions {
     std::filesystem::path rig;
 };
 
-enum class LineFate : std::uint8_t {
-    sent,
-    lost,     ///< it could not be sent now; it will not be sent later
-    refused,  ///< it is no sample of this rig
-};
-
 /// Where a line's sample goes.
 class JointOutput {
   public:
     virtual ~JointOutput() = default;
-    [[nodiscard]] virtual LineFate put(const std::string& line) = 0;
+    /// `sample`: the line's; empty where no rig tells of how many joints it must be. False if it could not be
+    /// sent now; it will not be sent later.
+    [[nodiscard]] virtual bool put(const std::string& line, const std::optional<JointSample>& sample) = 0;
     /// Whatever else the way there asks for; called often.
     virtual void attend() = 0;
     /// -1, or what is worth a call of `attend` when it is readable.
     [[nodiscard]] virtual int descriptor() const = 0;
-    /// Why the newest line was refused, or why nothing can be sent, for a person; empty while it can.
+    /// Why nothing can be sent, for a person; empty while it can.
     [[nodiscard]] virtual std::string why() const = 0;
 };
 
-/// The line's sample, which counts as taken now unless it says otherwise; or what is wrong with it.
-Result<JointSample, std::string> sample_of(const std::string& line, std::size_t joint_count) {
-    const HostTime now = monotonic_now();
-    auto sample = parse_joints(line, joint_count, now, now);
-    if (!sample)
-        return unexpected("line not sent, " + describe(sample.error(), line, joint_count) + ": " + line);
-    return std::move(sample).value();
-}
-
-/// The text as it is: the daemon checks and counts it, and answers nothing. With a rig it is checked here,
-/// too.
+/// The text as it is: the daemon checks and counts it, and answers nothing.
 class SocketOutput final : public JointOutput {
   public:
-    SocketOutput(std::filesystem::path file, std::optional<std::size_t> joint_count)
-        : file_(std::move(file)), joint_count_(joint_count) {}
+    explicit SocketOutput(std::filesystem::path file) : file_(std::move(file)) {}
     ~SocketOutput() override { close(); }
     SocketOutput(const SocketOutput&) = delete;
     SocketOutput& operator=(const SocketOutput&) = delete;
-    LineFate put(const std::string& line) override {
-        refusal_.clear();
-        if (joint_count_) {
-            if (auto sample = sample_of(line, *joint_count_); !sample) {
-                refusal_ = std::move(sample).error();
-                return LineFate::refused;
-            }
-        }
+    bool put(const std::string& line, const std::optional<JointSample>& /*sample*/) override {
         attend();
-        if (descriptor_ < 0) return LineFate::lost;
-        if (::send(descriptor_, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT) >= 0)
-            return LineFate::sent;
+        if (descriptor_ < 0) return false;
+        if (::send(descriptor_, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT) >= 0) return true;
         if (errno != EAGAIN && errno != EWOULDBLOCK) {  // else the daemon is busy
             close();
             why_ = file_.string() + ": the daemon is gone";
         }
-        return LineFate::lost;
+        return false;
     }
     void attend() override {
         const HostTime now = monotonic_now();
@@ -97,39 +74,31 @@ class SocketOutput final : public JointOutput {
         if (connected) descriptor_ = *connected;
     }
     [[nodiscard]] int descriptor() const override { return -1; }
-    [[nodiscard]] std::string why() const override { return refusal_.empty() ? why_ : refusal_; }
+    [[nodiscard]] std::string why() const override { return why_; }
 
   private:
     void close() {
         if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
     }
     std::filesystem::path file_;
-    std::optional<std::size_t> joint_count_;
     int descriptor_ = -1;
     std::optional<HostTime> tried_;
     std::string why_;
-    std::string refusal_;
 };
 
 /// As a node of the bus: frames, a heartbeat's silence allowed, and an answer to each SYNC.
 class CanOutput final : public JointOutput {
   public:
     CanOutput(const std::string& interface, const rig::Rig& rig)
-        : joint_count_(rig.joints.joints.size()),
-          joints_(rig.joints.node_id, joint_count_, rig.joints.rate_hz),
+        : joints_(rig.joints.node_id, rig.joints.joints.size(), rig.joints.rate_hz),
           link_([interface] { return socketcan::CanSocket::open(interface, {.filters = kSyncOnly}); }) {}
-    LineFate put(const std::string& line) override {
-        refusal_.clear();
-        auto sample = sample_of(line, joint_count_);
-        if (!sample) {
-            refusal_ = std::move(sample).error();
-            return LineFate::refused;
-        }
+    /// There is a rig: `sample` is not empty.
+    bool put(const std::string& /*line*/, const std::optional<JointSample>& sample) override {
         const auto frames = joints_.frames(sample->sampled, sample->position);
-        if (!frames) return LineFate::sent;  // too soon after the one before: nobody misses it
+        if (!frames) return true;  // too soon after the one before: nobody misses it
         bool is_sent = true;
         for (const wire::CanFrame& frame : *frames) is_sent = link_.send(frame) && is_sent;
-        return is_sent ? LineFate::sent : LineFate::lost;
+        return is_sent;
     }
     void attend() override {
         (void)link_.attend(monotonic_now());
@@ -141,27 +110,27 @@ class CanOutput final : public JointOutput {
         }
     }
     [[nodiscard]] int descriptor() const override { return link_.descriptor(); }
-    [[nodiscard]] std::string why() const override { return refusal_.empty() ? link_.why() : refusal_; }
+    [[nodiscard]] std::string why() const override { return link_.why(); }
 
   private:
     static constexpr std::array<socketcan::IdFilter, 1> kSyncOnly{
         {{wire::can_id(wire::FrameType::sync, wire::kHostId), wire::kStandardIdMax}}};
-    std::size_t joint_count_;
     LocalJoints joints_;
     CanLink link_;
-    std::string refusal_;
 };
 
-std::unique_ptr<JointOutput> make_output(const JointsOptions& options) {
-    const bool is_onto_bus = !options.interface.empty();
-    if (options.rig.empty()) {
-        if (!is_onto_bus) return std::make_unique<SocketOutput>(options.socket, std::nullopt);
+std::optional<rig::Rig> rig_of(const JointsOptions& options) {
+    if (options.rig.empty()) return std::nullopt;
+    auto rig = rig::read_rig(options.rig);
+    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    return std::move(rig).value();
+}
+
+std::unique_ptr<JointOutput> make_output(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
+    if (options.interface.empty()) return std::make_unique<SocketOutput>(options.socket);
+    if (!rig)
         throw CommandFailure(
             {ExitCode::usage, "--can needs --rig: which node sends joint states, and how many"});
-    }
-    const auto rig = rig::read_rig(options.rig);
-    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
-    if (!is_onto_bus) return std::make_unique<SocketOutput>(options.socket, rig->joints.joints.size());
     return std::make_unique<CanOutput>(options.interface, *rig);
 }
 
@@ -169,26 +138,22 @@ std::unique_ptr<JointOutput> make_output(const JointsOptions& options) {
 /// through again.
 class Forwarder {
   public:
-    explicit Forwarder(JointOutput& output) : output_(output) {}
+    /// `joint_count`: of the rig, if there is one to check lines against.
+    Forwarder(JointOutput& output, std::optional<std::size_t> joint_count)
+        : output_(output), joint_count_(joint_count) {}
 
     void put(const std::string& line) {
-        const LineFate fate = output_.put(line);
-        if (fate == LineFate::sent) {
-            if (told_ == LineFate::lost)
-                spdlog::info("samples go through again; {} lines are lost so far", lost_);
-            ++sent_;
-            told_ = fate;
-            return;
+        std::optional<JointSample> sample;
+        if (joint_count_) {
+            const HostTime now = monotonic_now();  // it counts as taken now unless it says otherwise
+            auto parsed = parse_joints(line, *joint_count_, now, now);
+            if (!parsed) return refuse(line, parsed.error());
+            sample = std::move(parsed).value();
         }
-        ++(fate == LineFate::lost ? lost_ : refused_);
-        why_ = output_.why();
-        if (why_.empty() || told_ == fate) return;
-        told_ = fate;
-        if (fate == LineFate::lost) {
-            spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why_);
-        } else {
-            spdlog::warn("{}", why_);
-        }
+        if (!output_.put(line, sample)) return lose();
+        if (told_ == Told::lost) spdlog::info("samples go through again; {} lines are lost so far", lost_);
+        ++sent_;
+        told_ = Told::nothing;
     }
     /// Throws CommandFailure if not a single line went through.
     void finish() const {
@@ -198,12 +163,27 @@ class Forwarder {
     }
 
   private:
+    enum class Told : std::uint8_t { nothing, lost, refused };
+
+    void lose() {
+        ++lost_;
+        why_ = output_.why();
+        if (!why_.empty() && std::exchange(told_, Told::lost) != Told::lost)
+            spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why_);
+    }
+    void refuse(const std::string& line, JointTextFault fault) {
+        ++refused_;
+        why_ = "line not sent, " + describe(fault, line, *joint_count_) + ": " + line;
+        if (std::exchange(told_, Told::refused) != Told::refused) spdlog::warn("{}", why_);
+    }
+
     JointOutput& output_;
+    std::optional<std::size_t> joint_count_;
     std::uint64_t sent_ = 0;
     std::uint64_t lost_ = 0;
     std::uint64_t refused_ = 0;
-    LineFate told_ = LineFate::sent;  ///< what was said last
-    std::string why_;                 ///< of the newest line that did not go through
+    Told told_ = Told::nothing;  ///< since the last line that went through
+    std::string why_;            ///< of the newest line that did not go through
 };
 
 void put_lines(std::string& pending, Forwarder& forwarder) {
@@ -220,8 +200,9 @@ void put_lines(std::string& pending, Forwarder& forwarder) {
 
 void forward(const JointsOptions& options) {
     constexpr int kAttendMs = 200;
-    const auto output = make_output(options);
-    Forwarder forwarder(*output);
+    const auto rig = rig_of(options);
+    const auto output = make_output(options, rig);
+    Forwarder forwarder(*output, rig ? std::optional(rig->joints.joints.size()) : std::nullopt);
     std::string pending;
     while (true) {  // until standard input ends
         output->attend();
