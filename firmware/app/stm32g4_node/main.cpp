@@ -82,14 +82,12 @@ void start_buses(const Clocks& clocks) {
 
 void load_configuration(const Clocks& clocks) {
     const auto decoded = decode_node_config(configuration_page());
-    if (is_configuration_damaged()) {
-        report.config_refused(NodeConfigError::wrong_crc);
-        enter_can(std::nullopt, clocks);
-    } else if (decoded) {
+    const bool is_damaged = is_configuration_damaged();
+    if (decoded && !is_damaged) {
         config = *decoded;
         start_buses(clocks);
     } else {
-        report.config_refused(decoded.error());
+        report.config_refused(is_damaged ? NodeConfigError::wrong_crc : decoded.error());
         enter_can(std::nullopt, clocks);
     }
 }

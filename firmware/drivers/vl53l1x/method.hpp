@@ -410,7 +410,7 @@ struct Device::Method {
     // --- the stages that wait
 
     static constexpr Stage kAwaitBoot{ask_boot_state, 1'000, 500'000, Error::boot_timeout};
-    // A first range takes one period, 100 ms at the defaults; a fleet polling every 5 ms leaves the bus free.
+    // For ranges of tens of milliseconds: polling every 5 ms leaves the bus free.
     static constexpr Stage kAwaitReady{await_ready, 5'000, 1'000'000, Error::not_ready};
     // Stopped within the pause after the first range, 5 ms at the defaults, a sensor does not range while it
     // is configured.
