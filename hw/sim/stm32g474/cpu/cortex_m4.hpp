@@ -3,6 +3,7 @@
 // reported.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -94,6 +95,8 @@ class CortexM4 {
     void add_hooks();
     void before_block(std::uint32_t address, std::uint32_t size);
     [[nodiscard]] bool must_stop() const;
+    /// The next exception to be taken, if the masks let it through.
+    [[nodiscard]] std::optional<std::uint32_t> deliverable() const;
     void execute();
     void on_engine_interrupt(std::uint32_t number);
     void after_engine_error(int error);
@@ -103,8 +106,9 @@ class CortexM4 {
     [[nodiscard]] std::uint32_t get(int engine_register) const;
     void set(int engine_register, std::uint32_t value);
     void spend(std::uint32_t cycles);
-    void check_fpu_use();
-    void check_stack_use();
+    void check_registers();
+    void check_fpu_use(std::uint32_t control);
+    void note_stack(std::uint32_t sp) noexcept { lowest_stack_ = std::min(lowest_stack_, sp); }
 
     // --- exceptions (exceptions.cpp)
     [[nodiscard]] ExceptionMasks masks() const;
@@ -140,9 +144,9 @@ class CortexM4 {
     BoardTime woken_at_{};
     std::int64_t longest_awake_ps_ = 0;
 
-    struct CountedBlock {
-        std::uint32_t size = 0;
-        std::uint32_t instructions = 0;
+    struct CountedBlock {  ///< small: the table is looked into at each block
+        std::uint16_t size = 0;
+        std::uint16_t instructions = 0;
     };
     std::vector<CountedBlock> counted_;  ///< of flash, by half-word
 };

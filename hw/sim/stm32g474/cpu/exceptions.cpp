@@ -6,14 +6,15 @@
 #include <array>
 
 #include "hw/sim/stm32g474/cpu/cortex_m4.hpp"
+#include "hw/sim/stm32g474/cpu/engine_registers.hpp"
 
 namespace octoskin::sim::stm32 {
 namespace {
 
 constexpr std::uint32_t kEntryCycles = 12;
 constexpr std::uint32_t kThumb = 1U << 24;
-constexpr std::uint32_t kFpContext = 1U << 2;      // CONTROL.FPCA
 constexpr std::uint32_t kAlignmentNote = 1U << 9;  // stacked xPSR: SP was moved to a multiple of 8
+constexpr std::uint32_t kFlags = 0xF000'0000;      // APSR: N, Z, C, V
 constexpr std::uint32_t kBasicFrameBytes = 0x20;
 constexpr std::uint32_t kFpFrameBytes = 0x68;
 constexpr std::uint32_t kExceptionNumber = 0x1FF;
@@ -22,8 +23,9 @@ constexpr std::uint32_t kReturnToHandler = 0xFFFF'FFF1;
 constexpr std::uint32_t kReturnToThread = 0xFFFF'FFF9;
 constexpr std::uint32_t kNoFpFrame = 1U << 4;
 
-constexpr std::array kStacked = {UC_ARM_REG_R0, UC_ARM_REG_R1,  UC_ARM_REG_R2,
-                                 UC_ARM_REG_R3, UC_ARM_REG_R12, UC_ARM_REG_LR};
+constexpr std::size_t kStackedCount = 6;  // of the general registers
+constexpr EngineRegisters<kStackedCount> kStacked = {UC_ARM_REG_R0, UC_ARM_REG_R1,  UC_ARM_REG_R2,
+                                                     UC_ARM_REG_R3, UC_ARM_REG_R12, UC_ARM_REG_LR};
 
 }  // namespace
 
@@ -34,8 +36,9 @@ struct CortexM4::Frame {
 };
 
 ExceptionMasks CortexM4::masks() const {
-    return {(get(UC_ARM_REG_PRIMASK) & 1U) != 0, (get(UC_ARM_REG_FAULTMASK) & 1U) != 0,
-            static_cast<std::uint8_t>(get(UC_ARM_REG_BASEPRI))};
+    const auto [primask, faultmask, basepri] =
+        read_registers<3>(engine_, {UC_ARM_REG_PRIMASK, UC_ARM_REG_FAULTMASK, UC_ARM_REG_BASEPRI});
+    return {(primask & 1U) != 0, (faultmask & 1U) != 0, static_cast<std::uint8_t>(basepri)};
 }
 
 void CortexM4::sleep() {
@@ -48,6 +51,7 @@ void CortexM4::sleep() {
 bool CortexM4::is_idle() const {
     if (state_ == CoreState::locked_up) return true;
     if (state_ != CoreState::sleeping) return false;
+    if (!control_->nvic().candidate()) return true;
     ExceptionMasks without_primask = masks();
     without_primask.is_primask = false;
     return !control_->nvic().deliverable(without_primask);
@@ -56,27 +60,25 @@ bool CortexM4::is_idle() const {
 // Writing XPSR alone leaves the engine's cached mode flags as they were; writing the flags back rebuilds
 // them.
 void CortexM4::set_program_state(std::uint32_t xpsr, std::uint32_t pc) {
-    set(UC_ARM_REG_XPSR_NZCVQG, xpsr);
-    set(UC_ARM_REG_XPSR, xpsr);
-    set(UC_ARM_REG_APSR_NZCV, get(UC_ARM_REG_APSR_NZCV));
-    set(UC_ARM_REG_PC, pc | 1U);
+    write_registers<4>(engine_,
+                       {UC_ARM_REG_XPSR_NZCVQG, UC_ARM_REG_XPSR, UC_ARM_REG_APSR_NZCV, UC_ARM_REG_PC},
+                       {xpsr, xpsr, xpsr & kFlags, pc | 1U});
 }
 
 void CortexM4::enter(std::uint32_t number) {
-    const std::uint32_t control = get(UC_ARM_REG_CONTROL);
-    const std::uint32_t xpsr = get(UC_ARM_REG_XPSR);
+    const auto [sp, control, xpsr, pc] =
+        read_registers<4>(engine_, {UC_ARM_REG_SP, UC_ARM_REG_CONTROL, UC_ARM_REG_XPSR, UC_ARM_REG_PC});
     const bool has_fp = (control & kFpContext) != 0;
-    check_fpu_use();
+    check_fpu_use(control);
 
     Frame frame;
-    for (std::size_t i = 0; i < kStacked.size(); ++i) frame.words.at(i) = get(kStacked.at(i));
-    frame.words[6] = pc();
+    std::ranges::copy(read_registers(engine_, kStacked), frame.words.begin());
+    frame.words[6] = pc;
     frame.bytes = has_fp ? kFpFrameBytes : kBasicFrameBytes;
     if (has_fp) {
         for (int i = 0; i < 16; ++i) frame.words.at(8 + static_cast<std::size_t>(i)) = get(UC_ARM_REG_S0 + i);
         frame.words[24] = get(UC_ARM_REG_FPSCR);
     }
-    const std::uint32_t sp = get(UC_ARM_REG_SP);
     const bool is_moved = (sp & 4U) != 0;
     frame.address = (sp - frame.bytes) & ~7U;
     frame.words[7] = (xpsr & ~kAlignmentNote) | (is_moved ? kAlignmentNote : 0);
@@ -97,8 +99,7 @@ void CortexM4::enter(std::uint32_t number) {
     const bool was_thread = (xpsr & kExceptionNumber) == 0;
     std::uint32_t exc_return = was_thread ? kReturnToThread : kReturnToHandler;
     if (has_fp) exc_return &= ~kNoFpFrame;
-    set(UC_ARM_REG_SP, frame.address);
-    set(UC_ARM_REG_LR, exc_return);
+    write_registers<2>(engine_, {UC_ARM_REG_SP, UC_ARM_REG_LR}, {frame.address, exc_return});
     std::uint32_t handler = 0;
     uc_mem_read(engine_, control_->vector_table() + 4 * number, &handler, sizeof handler);
     control_->nvic().activate(number);
@@ -109,7 +110,7 @@ void CortexM4::enter(std::uint32_t number) {
     }
     set_program_state(kThumb | number, handler & ~1U);
     spend(kEntryCycles);
-    check_stack_use();
+    note_stack(frame.address);
 }
 
 bool CortexM4::push(const Frame& frame) {
@@ -118,7 +119,8 @@ bool CortexM4::push(const Frame& frame) {
 
 void CortexM4::leave(std::uint32_t exc_return) {
     Nvic& nvic = control_->nvic();
-    const std::uint32_t number = get(UC_ARM_REG_XPSR) & kExceptionNumber;
+    const auto [xpsr, control] = read_registers<2>(engine_, {UC_ARM_REG_XPSR, UC_ARM_REG_CONTROL});
+    const std::uint32_t number = xpsr & kExceptionNumber;
     const std::uint32_t kind = exc_return | kNoFpFrame;
     const bool is_to_thread = kind == kReturnToThread;
     if ((!is_to_thread && kind != kReturnToHandler) || number == 0 || !nvic.is_active(number) ||
@@ -128,7 +130,7 @@ void CortexM4::leave(std::uint32_t exc_return) {
         raise({cfsr::kInvalidReturn, std::nullopt});
         return;
     }
-    check_fpu_use();
+    check_fpu_use(control);
     if (number != exception::kNmi) set(UC_ARM_REG_FAULTMASK, 0);
     nvic.deactivate(number);
     if (!pop(exc_return)) return;
@@ -146,7 +148,9 @@ bool CortexM4::pop(std::uint32_t exc_return) {
         raise({cfsr::kUnstackingBusError, std::nullopt});
         return false;
     }
-    for (std::size_t i = 0; i < kStacked.size(); ++i) set(kStacked.at(i), frame.words.at(i));
+    RegisterValues<kStackedCount> stacked{};
+    std::ranges::copy_n(frame.words.begin(), kStackedCount, stacked.begin());
+    write_registers(engine_, kStacked, stacked);
     const std::uint32_t xpsr = frame.words[7];
     if (has_fp) {
         for (int i = 0; i < 16; ++i) set(UC_ARM_REG_S0 + i, frame.words.at(8 + static_cast<std::size_t>(i)));
