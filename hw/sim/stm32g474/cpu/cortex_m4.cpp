@@ -7,18 +7,23 @@
 
 #include "hw/sim/stm32g474/cpu/engine_registers.hpp"
 
-// For each store of the program Unicorn 2.0.1 allocates a tree of the pages to lock against QEMU's other
-// threads, and frees it: half of the whole time, for locks that it compiles out, as it has no other threads.
-// The library calls both by name, so that these two take their place. A test looks that they do.
+// Unicorn 2.0.1 takes each store of the program for one that may change instructions: it allocates a tree of
+// the pages to lock against QEMU's other threads, of which it has none, looks for what was translated from
+// there, and frees the tree. That is more than half of the whole time. Here nothing is executed from memory
+// that can be written (see map_memory), and `patch` forgets by itself. The library calls these three by name,
+// so that ours take their place; a test looks that they do.
 #if UC_API_MAJOR == 2 && UC_API_MINOR == 0
 extern "C" {
 void* page_collection_lock_arm(void* engine, std::uint64_t begin, std::uint64_t end);
 void page_collection_unlock_arm(void* pages);
+void tb_invalidate_phys_page_fast_arm(void* engine, void* pages, std::uint64_t begin, int bytes,
+                                      std::uintptr_t from);
 
-void* page_collection_lock_arm(void* /*engine*/, std::uint64_t /*begin*/, std::uint64_t /*end*/) {
+void* page_collection_lock_arm(void*, std::uint64_t, std::uint64_t) {
     return nullptr;
 }
-void page_collection_unlock_arm(void* /*pages*/) {}
+void page_collection_unlock_arm(void*) {}
+void tb_invalidate_phys_page_fast_arm(void*, void*, std::uint64_t, int, std::uintptr_t) {}
 }
 #endif
 
@@ -80,7 +85,7 @@ CortexM4::~CortexM4() {
 
 void CortexM4::map_memory(std::span<const MemoryRegion> memory) {
     for (const MemoryRegion& region : memory) {
-        const std::uint32_t rights = region.is_writable ? UC_PROT_ALL : UC_PROT_READ | UC_PROT_EXEC;
+        const std::uint32_t rights = UC_PROT_READ | (region.is_writable ? UC_PROT_WRITE : UC_PROT_EXEC);
         require(uc_mem_map_ptr(engine_, region.address, region.bytes.size(), rights, region.bytes.data()),
                 "memory");
     }

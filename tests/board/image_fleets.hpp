@@ -1,0 +1,45 @@
+// What the image's tests have in common: the fleets that its promises name, and how slow a core and a bus may
+// be.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <vector>
+
+#include "tests/board/flashed_board.hpp"
+
+namespace octoskin::sim::stm32 {
+
+inline NodeConfig seventeen_at_50_hz() {
+    return fleet(17, DistanceMode::short_range, 15, 20);
+}
+inline NodeConfig thirty_four_at_30_hz() {
+    return fleet(34, DistanceMode::long_range, 20, 33);
+}
+
+/// An instruction costs one cycle or three; I2C edges are typical or as slow as the specification allows.
+struct Speed {
+    std::uint32_t cycles_per_instruction;
+    BusEdges edges;
+};
+inline void PrintTo(const Speed& speed, std::ostream* out) {
+    *out << speed.cycles_per_instruction
+         << (speed.edges == BusEdges::slowest ? "_slow_edges" : "_typical_edges");
+}
+inline NucleoOptions options_of(const Speed& speed) {
+    NucleoOptions options;
+    options.cycles_per_instruction = speed.cycles_per_instruction;
+    options.edges = speed.edges;
+    return options;
+}
+
+inline void expect_unbroken(const std::vector<SaidReading>& readings) {
+    for (std::size_t i = 1; i < readings.size(); ++i) {
+        ASSERT_EQ(readings[i].reading.sequence,
+                  (readings[i - 1].reading.sequence + 1) % wire::kSequenceCount);
+        ASSERT_NE(readings[i].reading.range_mm, readings[i - 1].reading.range_mm) << "a value said twice";
+    }
+}
+
+}  // namespace octoskin::sim::stm32

@@ -1,0 +1,124 @@
+// The flashed image, whatever an I2C bus does: the main loop stays short, the other buses go on, and the bus
+// comes back.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/board/image_fleets.hpp"
+
+namespace octoskin::sim::stm32 {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct FaultCase {
+    I2cFault fault;
+};
+void PrintTo(const FaultCase& tested, std::ostream* out) {
+    constexpr const char* kNames[] = {
+        "nack_address", "nack_byte",        "nack_read", "flip_bit",      "flip_written_bit", "lose_write",
+        "read_ones",    "lose_arbitration", "stretch",   "sda_stuck_low", "redirect_write"};
+    *out << kNames[static_cast<std::size_t>(tested.fault.kind)] << "_at_" << tested.fault.position;
+}
+class I2cFaultTest : public testing::TestWithParam<FaultCase> {};
+
+TEST_P(I2cFaultTest, keeps_the_loop_short_and_the_others_ranging) {
+    FlashedBoard flashed(thirty_four_at_30_hz(), options_of({3, BusEdges::slowest}));
+    flashed.run_for(2s);
+    flashed.board().forget_longest_awake();
+    const std::size_t neighbour_before = flashed.readings(1).size();
+    const std::int64_t began_us = flashed.now().us;
+    I2cFault fault = GetParam().fault;
+    const std::uint64_t hits_before = flashed.board().wire(0).fault_hits();
+    // A poll is too short for some: then another transfer.
+    for (int attempt = 0; attempt < 20 && flashed.board().wire(0).fault_hits() == hits_before; ++attempt) {
+        fault.first = flashed.board().wire(0).transfer_count() + 3;
+        flashed.board().wire(0).inject(fault);
+        flashed.run_for(100ms);
+    }
+    flashed.run_for(2s);
+
+    EXPECT_GE(flashed.board().wire(0).fault_hits() - hits_before, 1U) << "the fault took effect";
+    EXPECT_LE(flashed.board().core().longest_awake_ps(), 5'000 * kPsPerUs);
+    std::printf("longest turn %.0f us\n",
+                static_cast<double>(flashed.board().core().longest_awake_ps()) * 1e-6);
+    EXPECT_EQ(flashed.board().reset_count(), 0U);
+    EXPECT_EQ(flashed.violations(), "");
+    // Sensor 1 is on another bus.
+    const auto due = static_cast<double>(flashed.now().us - began_us) / 33'000.0;
+    EXPECT_NEAR(static_cast<double>(flashed.readings(1).size() - neighbour_before), due, 3.0);
+    // And the bus itself is back: its sensor's last reading is no older than three periods.
+    ASSERT_FALSE(flashed.readings(0).empty());
+    EXPECT_GE(flashed.readings(0).back().end.us, flashed.now().us - 100'000);
+}
+
+constexpr FaultCase kFaults[] = {
+    {{.kind = I2cFaultKind::nack_address}},
+    {{.kind = I2cFaultKind::nack_byte}},
+    {{.kind = I2cFaultKind::nack_byte, .position = 1}},
+    {{.kind = I2cFaultKind::nack_read}},
+    {{.kind = I2cFaultKind::flip_bit, .position = 9}},
+    {{.kind = I2cFaultKind::flip_written_bit, .position = 5}},
+    {{.kind = I2cFaultKind::lose_write, .count = 20}},  // not every transfer writes something
+    {{.kind = I2cFaultKind::read_ones}},
+    {{.kind = I2cFaultKind::lose_arbitration}},
+    {{.kind = I2cFaultKind::stretch}},
+    {{.kind = I2cFaultKind::sda_stuck_low, .position = 5}},
+};
+INSTANTIATE_TEST_SUITE_P(Kinds, I2cFaultTest, testing::ValuesIn(kFaults), testing::PrintToStringParamName());
+
+// --- a line held, a controller reset in the middle
+
+// Nine clocks do not help: somebody holds SDA for ten seconds.
+TEST(ImageI2c, sda_held_long_costs_that_bus_alone_and_it_comes_back) {
+    NucleoOptions options;
+    options.cycles_per_instruction = 3;
+    FlashedBoard flashed(fleet(8, DistanceMode::long_range, 20, 33), options);
+    flashed.run_for(1s);
+    flashed.board().forget_longest_awake();
+    I2cWire& wire = flashed.board().wire(0);
+    const std::size_t neighbour_before = flashed.readings(1).size();
+    wire.inject(
+        {.kind = I2cFaultKind::sda_stuck_low, .first = wire.transfer_count() + 3, .position = 1'000'000});
+    flashed.run_for(500ms);
+    const std::size_t held = flashed.readings(0).size();
+    flashed.run_for(9'500ms);
+    EXPECT_TRUE(wire.is_sda_low(flashed.now())) << "nobody let go";
+    EXPECT_EQ(flashed.readings(0).size(), held);
+    EXPECT_NEAR(static_cast<double>(flashed.readings(1).size() - neighbour_before), 303.0, 5.0);
+    EXPECT_LE(flashed.board().core().longest_awake_ps(), 5'000 * kPsPerUs);
+    wire.clear_faults();
+    wire.let_go_of_sda();
+    flashed.run_for(2s);
+    // Tried again every second; then both sensors of the bus start as after power-up.
+    for (const std::uint8_t sensor : {std::uint8_t{0}, std::uint8_t{4}}) {
+        EXPECT_GE(flashed.readings(sensor).back().end.us, flashed.now().us - 100'000) << int{sensor};
+    }
+    EXPECT_EQ(flashed.board().reset_count(), 0U);
+    EXPECT_EQ(flashed.violations(), "");
+}
+
+// I12: the 74HC595 keep their levels, so that sensors stay at their addresses, in the middle of a byte. Each
+// time the controller is stopped within 50 us of some transfer's beginning or middle: of the bring-up, and
+// while ranging.
+TEST(ImageI2c, a_reset_in_the_middle_of_a_transfer_is_followed_by_a_clean_start) {
+    FlashedBoard flashed(fleet(4, DistanceMode::long_range, 20, 33));
+    for (int i = 0; i < 60; ++i) {
+        const I2cWire& wire = flashed.board().wire(static_cast<std::size_t>(i % 4));
+        flashed.run_for(i % 2 == 0 ? Microseconds{5'000 + 503 * i} : Microseconds{250'000 + 503 * i});
+        for (int turn = 0; turn < 2'000 && !wire.is_in_transfer(); ++turn) flashed.run_for(Microseconds{50});
+        ASSERT_TRUE(wire.is_in_transfer()) << i;
+        flashed.board().press_reset();
+    }
+    const std::int64_t reset_us = flashed.now().us;
+    flashed.run_for(600ms);
+    for (std::uint8_t sensor = 0; sensor < 4; ++sensor) {
+        ASSERT_FALSE(flashed.readings(sensor).empty());
+        EXPECT_GE(flashed.readings(sensor).back().end.us, reset_us + 500'000) << int{sensor};
+    }
+    EXPECT_EQ(flashed.heartbeats().back().heartbeat.state, wire::NodeState::ranging);
+    EXPECT_EQ(flashed.violations(), "");
+}
+
+}  // namespace
+}  // namespace octoskin::sim::stm32
