@@ -6,7 +6,8 @@
 
 namespace octoskin::sim {
 
-/// The guard between a ranging and the next slot (UM2510 3.3; the 4 ms are reported for UM2356 rev 2).
+/// The guard between a ranging and the next slot (UM2510 3.3; ST's full API 2.3.3 refuses to start with less
+/// than 4 ms).
 inline constexpr Microseconds kSlotGuard{4000};
 
 /// What differs from one part to the next.
@@ -26,6 +27,9 @@ struct SensorPart {
     double crosstalk_kcps = 0.0;  ///< what the cover glass sends back, per SPAD
     /// Whether a soft reset takes the address back when it begins or when it ends; nothing public says.
     bool forgets_address_as_soft_reset_begins = false;
+    /// Whether a start in the mode that it is in begins its period anew; nothing public says. ST's full API
+    /// writes one with every clear.
+    bool is_restarted_by_start = true;
 };
 
 /// How fast the slow oscillators of a reel of parts are: of each somewhere between these.

@@ -159,7 +159,10 @@ void SensorModel::write_register(std::uint16_t index, std::uint8_t value, SimTim
             start_mode(value, time);
             return;
         case reg::kInterMeasurement:
-            if (ranging_) ++disturbance_count_;
+        case reg::kInterMeasurement + 1:
+        case reg::kInterMeasurement + 2:
+        case reg::kInterMeasurement + 3:
+            if (ranging_ && value != registers_.at(index)) ++disturbance_count_;
             registers_.at(index) = value;
             return;
         default:
@@ -196,8 +199,9 @@ void SensorModel::start_mode(std::uint8_t value, SimTime time) {
     constexpr unsigned kAbort = 0x80;
     const unsigned bits = value;
     const bool is_stop = (bits & (kSingle | kBackToBack | kTimed | kAbort)) == 0;
-    if (!is_stop && ranging_ && ranging_->is_latched) ++disturbance_count_;
+    const bool is_under_way = ranging_ && ranging_->is_latched;
     if ((bits & kAbort) != 0) {
+        if (is_under_way) ++disturbance_count_;
         mode_ = Mode::idle;
         ranging_.reset();
         return;
@@ -211,10 +215,17 @@ void SensorModel::start_mode(std::uint8_t value, SimTime time) {
         return;
     }
     if ((registers_.at(reg::kFirmwareEnable) & 1U) == 0) return;
-    stream_count_ = 0;
-    is_first_of_run_ = true;
+    const Mode mode = (bits & kTimed) != 0    ? Mode::timed
+                      : (bits & kSingle) != 0 ? Mode::single
+                                              : Mode::back_to_back;
+    // ST's full API (STSW-IMG007 2.3.3) writes the mode anew with every clear, and to it a stream count of 0
+    // is the first range of a run: the stream goes on.
+    const bool goes_on = mode == mode_ && !stops_after_this_;
+    if (goes_on && !part_.is_restarted_by_start) return;
+    if (is_under_way) ++disturbance_count_;
+    if (!goes_on) is_first_of_run_ = true;
     stops_after_this_ = false;
-    mode_ = (bits & kTimed) != 0 ? Mode::timed : (bits & kSingle) != 0 ? Mode::single : Mode::back_to_back;
+    mode_ = mode;
     const RangingTiming timing = ranging_timing(registers_, part_);
     // The first timed result was observed one period after the start: about 103 ms at the defaults, where
     // period and budget are nearly equal, so that no slot is missed yet.

@@ -67,7 +67,7 @@ class SensorModel final : public I2cTarget {
     /// How often it was asked whether data is ready (0x31).
     [[nodiscard]] std::uint64_t poll_count() const noexcept { return poll_count_; }
     /// How often it was given what it must not get: while a ranging is under way a start or an abort, and
-    /// from start to stop another period (UM2356 2.5.2).
+    /// from start to stop another period, by the byte (UM2356 2.5.2). A start that it does not mind is none.
     [[nodiscard]] std::uint32_t disturbance_count() const noexcept { return disturbance_count_; }
     /// Finishes the rangings that end by `time`.
     void advance(SimTime time);
