@@ -22,6 +22,10 @@ struct Policy {
     /// is not asked for.
     Microseconds first_range{85'000};
 
+    /// A sensor that was stopped for longer than this is brought up anew before it ranges. Its temperature
+    /// may have moved by 8 degrees, which it follows only while it ranges (ST UM2510 7.41).
+    Microseconds rest_max{60'000'000};
+
     /// Nobody ranges sooner after the node began: a whole fleet is up by then, and nobody's bring-up has the
     /// bus when another one's data is ready.
     Microseconds first_starts{250'000};

@@ -54,7 +54,10 @@ Sensor::Sensor(const SensorConfig& config, const SensorSurroundings& surrounding
 
 void Sensor::order_start(NodeTime now) {
     if (std::exchange(is_ordered_to_range_, true)) return;
-    if (mode_ == Mode::stopped) range_or_rest(now);
+    if (mode_ != Mode::stopped) return;
+    if (!has_rested_long_) return range_or_rest(now);
+    state_ = SensorState::starting;
+    begin_bring_up(now);
 }
 
 void Sensor::order_stop(NodeTime now) {
@@ -98,7 +101,7 @@ std::optional<NodeTime> Sensor::due_otherwise() const noexcept {
         case Mode::awaiting_recovery:
             return plan_.at;
         case Mode::stopped:
-            return std::nullopt;
+            return has_rested_long_ ? std::nullopt : std::optional(rested_since_ + policy_.rest_max);
     }
     return std::nullopt;
 }
@@ -126,6 +129,7 @@ BusUse Sensor::advance(NodeTime now) {
             recover(now);
             return BusUse::releases;
         case Mode::stopped:
+            has_rested_long_ = true;
             break;
     }
     return BusUse::releases;
@@ -170,6 +174,8 @@ void Sensor::range_or_rest(NodeTime now) {
     } else {
         state_ = SensorState::stopped;
         is_settled_ = true;
+        rested_since_ = now;
+        has_rested_long_ = false;
         mode_ = Mode::stopped;
     }
 }

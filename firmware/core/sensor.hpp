@@ -50,6 +50,7 @@ class Sensor {
     Sensor& operator=(const Sensor&) = delete;
 
     // --- orders; they take effect as soon as the transfers under way are over
+    /// After a long rest it is brought up anew: a part follows its temperature only while it ranges.
     void order_start(NodeTime now);
     void order_stop(NodeTime now);
     void order_reinitialise(NodeTime now);
@@ -164,6 +165,8 @@ class Sensor {
     RecoveryPlan plan_;
     bool is_ordered_to_range_ = true;
     std::optional<NodeTime> reinitialise_ordered_;
+    NodeTime rested_since_;         ///< stopped by order
+    bool has_rested_long_ = false;  ///< so that its temperature may have changed: noted before time wraps
     bool is_period_overridden_ = false;
 
     wire::SensorState state_ = wire::SensorState::starting;

@@ -74,6 +74,25 @@ TEST_F(NodeCommandsTest, stops_and_starts_all_sensors) {
     EXPECT_GE(readings_in(0, 500 * kMillisecond), 14U);
 }
 
+// A part follows its temperature only while it ranges. 72 minutes: the node's clock has wrapped meanwhile.
+TEST_F(NodeCommandsTest, brings_sensors_up_anew_that_have_rested_for_more_than_a_minute) {
+    constexpr Microseconds kMinute = 60'000 * kMillisecond;
+    for (const auto& [rest, is_long] : {std::pair{kMinute - 2'000 * kMillisecond, false},
+                                        {kMinute + 2'000 * kMillisecond, true},
+                                        {72 * kMinute, true}}) {
+        command(CommandCode::stop);
+        rig_.run_for(rest);
+        ASSERT_EQ(rig_.last_health(2)->state, SensorState::stopped);
+        const std::size_t events = rig_.xshut_events().size();
+        command(CommandCode::start);
+        rig_.run_for(500 * kMillisecond);
+        EXPECT_EQ(rig_.xshut_events().size(), events + (is_long ? 2U * 4U : 0U)) << rest.count();
+        EXPECT_EQ(heartbeat().state, NodeState::ranging);
+        EXPECT_GE(readings_in(2, 300 * kMillisecond), 8U);
+    }
+    EXPECT_EQ(rig_.node().counts().sensor_restarts, 0U) << "nothing failed";
+}
+
 TEST_F(NodeCommandsTest, stops_a_single_sensor) {
     command(CommandCode::stop, 2);
     rig_.run_for(200 * kMillisecond);
