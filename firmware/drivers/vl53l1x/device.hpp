@@ -59,8 +59,8 @@ class Device {
 
     // --- settings, while stopped; each fails with `unsupported_config` before anything is written if it
     // breaks a limit
-    /// Applies all settings, in ST's order: mode, budget, period, ROI, limits, offset, crosstalk; readings
-    /// carry the gain factor from then on if it is set. <= 20 ms.
+    /// Stops, and applies all settings, in ST's order: mode, budget, period, ROI, limits, offset, crosstalk;
+    /// readings carry the gain factor from then on if it is set. <= 20 ms.
     void begin_configure(const Settings& settings);
     /// The budget stays, and must be one that the new mode supports.
     void begin_set_distance_mode(DistanceMode mode);

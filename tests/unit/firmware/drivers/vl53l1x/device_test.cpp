@@ -119,6 +119,7 @@ TEST_F(DeviceOnScript, configures_without_reading_back) {
     settings.zones[0] = {.centre_spad = 167, .width = 8, .height = 8};
     device_.begin_configure(settings);
     expect_done(R"(
+        W 0087 00
         W 004B 0E | W 0060 0B | W 0063 09 | W 0069 78 | W 0078 0B 09 | W 007A 0A 0A
         W 005E 00 80 | W 0061 00 9A
         R 00DE 2 -> 00 25 | R 00DE 2 -> 00 25 | W 006C 00 00 07 C4
@@ -134,6 +135,7 @@ TEST_F(DeviceOnScript, writes_the_offset_only_if_there_is_one) {
     settings.offset_quarter_mm = 37;
     device_.begin_configure(settings);
     expect_done(R"(
+        W 0087 00
         W 004B 0A | W 0060 0F | W 0063 0D | W 0069 B8 | W 0078 0F 0D | W 007A 0E 0E
         W 005E 00 1E | W 0061 00 22
         R 00DE 2 -> 00 25 | R 00DE 2 -> 00 25 | W 006C 00 00 05 20

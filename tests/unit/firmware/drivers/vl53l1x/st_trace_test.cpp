@@ -144,9 +144,9 @@ TEST_F(StTrace, configuring_is_the_sequence_of_its_calls) {
     settings.signal_limit_raw = 128;
     settings.zones[0] = {.centre_spad = 167, .width = 8, .height = 8};
     device_.begin_configure(settings);
-    for (const char* call : {st::kSetDistanceModeLong, st::kSetTimingBudget33Long, st::kSetInterMeasurement50,
-                             st::kSetRoi8x8, st::kSetRoiCentre167, st::kSetSigmaThreshold15,
-                             st::kSetSignalThreshold1024, st::kSetOffsetMinus13}) {
+    for (const char* call : {st::kStopRanging, st::kSetDistanceModeLong, st::kSetTimingBudget33Long,
+                             st::kSetInterMeasurement50, st::kSetRoi8x8, st::kSetRoiCentre167,
+                             st::kSetSigmaThreshold15, st::kSetSignalThreshold1024, st::kSetOffsetMinus13}) {
         bus_.expect(call);
     }
     expect_done(st::kSetXtalk2000);
