@@ -57,12 +57,13 @@ void Sensor::order_start(NodeTime now) {
     if (mode_ != Mode::stopped) return;
     if (!has_rested_long_) return range_or_rest(now);
     state_ = SensorState::starting;
-    begin_bring_up(now);
+    rest_due_ = now;
 }
 
 void Sensor::order_stop(NodeTime now) {
     is_ordered_to_range_ = false;
     if (mode_ == Mode::ranging) ranging_.request_stop(now);
+    if (mode_ == Mode::stopped) state_ = SensorState::stopped;
 }
 
 void Sensor::order_reinitialise(NodeTime now) {
@@ -101,7 +102,7 @@ std::optional<NodeTime> Sensor::due_otherwise() const noexcept {
         case Mode::awaiting_recovery:
             return plan_.at;
         case Mode::stopped:
-            return has_rested_long_ ? std::nullopt : std::optional(rested_since_ + policy_.rest_max);
+            return has_rested_long_ && !is_ordered_to_range_ ? std::nullopt : std::optional(rest_due_);
     }
     return std::nullopt;
 }
@@ -129,7 +130,11 @@ BusUse Sensor::advance(NodeTime now) {
             recover(now);
             return BusUse::releases;
         case Mode::stopped:
-            has_rested_long_ = true;
+            if (is_ordered_to_range_) {
+                begin_bring_up(now);
+            } else {
+                has_rested_long_ = true;
+            }
             break;
     }
     return BusUse::releases;
@@ -174,7 +179,7 @@ void Sensor::range_or_rest(NodeTime now) {
     } else {
         state_ = SensorState::stopped;
         is_settled_ = true;
-        rested_since_ = now;
+        rest_due_ = now + policy_.rest_max;
         has_rested_long_ = false;
         mode_ = Mode::stopped;
     }
@@ -353,7 +358,8 @@ bool Sensor::is_degraded() const noexcept {
     if (calibration_ordered_) return false;
     const vl53l1x::ReadBack& read_back = device_.read_back();
     if (read_back.exempt_count() > 0 || read_back.is_distrusted()) return true;
-    return state_ != SensorState::ranging && state_ != SensorState::stopped;
+    return state_ != SensorState::ranging && state_ != SensorState::stopped &&
+           state_ != SensorState::starting;
 }
 
 std::optional<CalibrationResult> Sensor::take_calibration() noexcept {

@@ -113,8 +113,8 @@ class Sensor {
     // --- health
     [[nodiscard]] wire::SensorState state() const noexcept { return state_; }
     [[nodiscard]] wire::SensorFault fault() const noexcept { return fault_; }
-    /// Not ranging as configured, though it should, and not for being still in its first bring-up. Also while
-    /// a register will not take its value.
+    /// Not ranging as configured, though it should, and not for being brought up by order or for the first
+    /// time. Also while a register will not take its value.
     [[nodiscard]] bool is_degraded() const noexcept;
     /// Has ended its first bring-up, well or badly.
     [[nodiscard]] bool is_settled() const noexcept { return is_settled_; }
@@ -165,7 +165,7 @@ class Sensor {
     RecoveryPlan plan_;
     bool is_ordered_to_range_ = true;
     std::optional<NodeTime> reinitialise_ordered_;
-    NodeTime rested_since_;         ///< stopped by order
+    NodeTime rest_due_;             ///< when a rest becomes long, or was ended by an order after it had
     bool has_rested_long_ = false;  ///< so that its temperature may have changed: noted before time wraps
     bool is_period_overridden_ = false;
 

@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         HeldFleet{"34_at_30_hz", thirty_four_at_30_hz(), {1, BusEdges::typical}, 1.5, 400.0},
         HeldFleet{"34_at_30_hz_slow_core", thirty_four_at_30_hz(), {3, BusEdges::typical}, 1.55, 550.0},
         HeldFleet{"17_at_50_hz", seventeen_at_50_hz(), {1, BusEdges::typical}, 1.5, 400.0},
-        HeldFleet{"17_at_50_hz_slow_core", seventeen_at_50_hz(), {3, BusEdges::typical}, 1.5, 550.0},
+        HeldFleet{"17_at_50_hz_slow_core", seventeen_at_50_hz(), {3, BusEdges::typical}, 1.55, 550.0},
         HeldFleet{"17_at_50_hz_slow_edges", seventeen_at_50_hz(), {3, BusEdges::slowest}, 1.6, 550.0}),
     [](const auto& tested) { return tested.param.name; });
 

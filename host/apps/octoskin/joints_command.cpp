@@ -151,9 +151,10 @@ class Forwarder {
             sample = std::move(parsed).value();
         }
         if (!output_.put(line, sample)) return lose();
-        if (told_ == Told::lost) spdlog::info("samples go through again; {} lines are lost so far", lost_);
+        if (std::exchange(was_loss_told_, false))
+            spdlog::info("samples go through again; {} lines are lost so far", lost_);
+        was_refusal_told_ = false;
         ++sent_;
-        told_ = Told::nothing;
     }
     /// Throws CommandFailure if not a single line went through.
     void finish() const {
@@ -163,18 +164,16 @@ class Forwarder {
     }
 
   private:
-    enum class Told : std::uint8_t { nothing, lost, refused };
-
     void lose() {
         ++lost_;
         why_ = output_.why();
-        if (!why_.empty() && std::exchange(told_, Told::lost) != Told::lost)
+        if (!why_.empty() && !std::exchange(was_loss_told_, true))
             spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why_);
     }
     void refuse(const std::string& line, JointTextFault fault) {
         ++refused_;
         why_ = "line not sent, " + describe(fault, line, *joint_count_) + ": " + line;
-        if (std::exchange(told_, Told::refused) != Told::refused) spdlog::warn("{}", why_);
+        if (!std::exchange(was_refusal_told_, true)) spdlog::warn("{}", why_);
     }
 
     JointOutput& output_;
@@ -182,8 +181,9 @@ class Forwarder {
     std::uint64_t sent_ = 0;
     std::uint64_t lost_ = 0;
     std::uint64_t refused_ = 0;
-    Told told_ = Told::nothing;  ///< since the last line that went through
-    std::string why_;            ///< of the newest line that did not go through
+    bool was_loss_told_ = false;     ///< since the last line that went through
+    bool was_refusal_told_ = false;  ///< likewise
+    std::string why_;                ///< of the newest line that did not go through
 };
 
 void put_lines(std::string& pending, Forwarder& forwarder) {

@@ -47,7 +47,7 @@ class BusyLoopTest : public testing::Test {
         }
         return !was_silent_;
     }
-    /// The loop turns until `is_ready`, is held up by `busy`, once more if that fails, and turns on until
+    /// The loop turns until `is_ready`, is held up by `busy`, again while that fails, and turns on until
     /// `is_over`. False if either takes too long.
     template <class IsReady, class Busy, class IsOver>
     bool run(const IsReady& is_ready, const Busy& busy, const IsOver& is_over) {

@@ -17,6 +17,7 @@ using RegisterValues = std::array<std::uint32_t, kCount>;
 /// CONTROL: floating point was used since it was cleared last.
 inline constexpr std::uint32_t kFpContext = 1U << 2;
 
+/// In the order of `registers`, each of which there must be.
 template <std::size_t kCount>
 [[nodiscard]] RegisterValues<kCount> read_registers(uc_engine* engine, EngineRegisters<kCount> registers) {
     RegisterValues<kCount> values{};
@@ -26,11 +27,11 @@ template <std::size_t kCount>
     return values;
 }
 
+/// One after the other, in the order of `registers`.
 template <std::size_t kCount>
-void write_registers(uc_engine* engine, EngineRegisters<kCount> registers,
-                     const RegisterValues<kCount>& values) {
+void write_registers(uc_engine* engine, EngineRegisters<kCount> registers, RegisterValues<kCount> values) {
     std::array<void*, kCount> places{};
-    for (std::size_t i = 0; i < kCount; ++i) places[i] = const_cast<std::uint32_t*>(&values[i]);
+    for (std::size_t i = 0; i < kCount; ++i) places[i] = &values[i];
     uc_reg_write_batch(engine, registers.data(), places.data(), static_cast<int>(kCount));
 }
 

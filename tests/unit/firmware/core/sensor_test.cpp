@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "firmware/core/phase_clock.hpp"
 #include "tests/support/vl53l1x/sensor_bench.hpp"
@@ -17,7 +18,10 @@ constexpr Microseconds kStep{20};
 
 class SensorTest : public testing::Test, private XshutLines {
   protected:
-    void set(std::uint8_t, bool is_high) override { bench_.set_xshut(part_, is_high); }
+    void set(std::uint8_t, bool is_high) override {
+        bench_.set_xshut(part_, is_high);
+        resets_ += is_high ? 0U : 1U;
+    }
 
     /// 20 us, in which it has the bus if it wants it.
     void step() {
@@ -30,6 +34,21 @@ class SensorTest : public testing::Test, private XshutLines {
     }
     void run_until(std::uint32_t us) {
         while (bench_.now().us < us) step();
+    }
+    void run_for(std::uint32_t us) {
+        for (std::uint32_t passed = 0; passed < us; passed += static_cast<std::uint32_t>(kStep.count()))
+            step();
+    }
+    /// The range under way ends; then the sensor is asked ten times a second at the most.
+    void rest_for(std::uint64_t us) {
+        constexpr std::uint32_t kAtRestUs = 200'000;
+        constexpr Microseconds kSlowly{100'000};
+        run_for(kAtRestUs);
+        for (std::uint64_t passed = kAtRestUs; passed < us;
+             passed += static_cast<std::uint64_t>(kSlowly.count())) {
+            bench_.wait(kSlowly);
+            step();
+        }
     }
 
     const SensorConfig config_ = [] {
@@ -49,6 +68,7 @@ class SensorTest : public testing::Test, private XshutLines {
                    bench_.now()};
     bool has_bus_ = false;
     std::uint32_t readings_ = 0;
+    std::uint32_t resets_ = 0;
 };
 
 // It is started 264 ms after the node: the first whole period after 250 ms. Data is expected a period later,
@@ -109,6 +129,44 @@ TEST_F(SensorTest, wants_nothing_of_the_bus_while_it_is_stopped) {
     sensor_.order_start(bench_.now());
     run_until(1'700'000);
     EXPECT_GE(readings_, before + 10);
+}
+
+// Three minutes after it began, and over more than the 71 minutes after which the node's time wraps.
+TEST_F(SensorTest, is_brought_up_anew_after_a_rest_of_more_than_a_minute_and_only_then) {
+    run_for(700'000);
+    sensor_.order_stop(bench_.now());
+    rest_for(180'000'000);
+    sensor_.order_start(bench_.now());
+    run_for(700'000);
+    for (const auto& [rest_us, is_long] : {std::pair{62'000'000ULL, true},
+                                           {58'000'000ULL, false},
+                                           {4'320'000'000ULL, true},
+                                           {58'000'000ULL, false}}) {
+        sensor_.order_stop(bench_.now());
+        rest_for(rest_us);
+        ASSERT_EQ(sensor_.state(), wire::SensorState::stopped);
+        const std::uint32_t resets = resets_;
+        sensor_.order_start(bench_.now());
+        EXPECT_EQ(resets_, resets) << "not while others may have the bus";
+        run_for(10'000);
+        EXPECT_EQ(sensor_.state(), wire::SensorState::starting);
+        run_for(500'000);
+        EXPECT_EQ(resets_, resets + (is_long ? 1U : 0U)) << rest_us;
+        EXPECT_EQ(sensor_.state(), wire::SensorState::ranging);
+    }
+}
+
+TEST_F(SensorTest, stays_stopped_if_that_is_ordered_before_its_new_bring_up_has_begun) {
+    run_for(700'000);
+    sensor_.order_stop(bench_.now());
+    rest_for(62'000'000);
+    const std::uint32_t resets = resets_;
+    sensor_.order_start(bench_.now());
+    sensor_.order_stop(bench_.now());
+    EXPECT_EQ(sensor_.state(), wire::SensorState::stopped);
+    run_for(100'000);
+    EXPECT_EQ(resets_, resets);
+    EXPECT_EQ(sensor_.due(), std::nullopt);
 }
 
 }  // namespace
