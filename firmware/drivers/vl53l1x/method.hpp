@@ -436,8 +436,8 @@ struct Device::Method {
                                          {clear_before_start},
                                          {start}};
     static constexpr Stage kFinishInitialise[]{kAwaitFirst, {clear}, {stop}, {bound_vhv_search}};
-    // Stopped once more: a stop that was lost would leave it ranging by the defaults, and whether a start then
-    // begins anything anew is not documented.
+    // Stopped once more: a stop that was lost would leave it ranging by the defaults, and whether a start
+    // then begins anything anew is not documented.
     static constexpr Stage kConfigure[]{
         // clang-format off
         {stop},

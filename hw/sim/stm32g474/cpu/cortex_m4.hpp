@@ -29,8 +29,8 @@ class MemoryMappedDevices {
     ~MemoryMappedDevices() = default;
 };
 
-/// Memory that the core executes from, if it cannot write it, or works in; owned by the board, and kept over a
-/// reset.
+/// Memory that the core executes from, if it cannot write it, or works in; owned by the board, and kept over
+/// a reset.
 struct MemoryRegion {
     std::uint32_t address;
     std::span<std::uint8_t> bytes;
