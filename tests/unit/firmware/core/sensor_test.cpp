@@ -161,12 +161,16 @@ TEST_F(SensorTest, stays_stopped_if_that_is_ordered_before_its_new_bring_up_has_
     sensor_.order_stop(bench_.now());
     rest_for(62'000'000);
     const std::uint32_t resets = resets_;
+    const std::uint64_t transfers = bench_.bus().transfer_count();
     sensor_.order_start(bench_.now());
     sensor_.order_stop(bench_.now());
     EXPECT_EQ(sensor_.state(), wire::SensorState::stopped);
     run_for(100'000);
     EXPECT_EQ(resets_, resets);
     EXPECT_EQ(sensor_.due(), std::nullopt);
+    EXPECT_EQ(sensor_.advance(bench_.now()), BusUse::releases) << "its turn, all the same";
+    EXPECT_EQ(bench_.bus().transfer_count(), transfers);
+    EXPECT_EQ(sensor_.state(), wire::SensorState::stopped);
 }
 
 }  // namespace
