@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <ostream>
 #include <vector>
 
@@ -32,6 +33,20 @@ inline NucleoOptions options_of(const Speed& speed) {
     options.cycles_per_instruction = speed.cycles_per_instruction;
     options.edges = speed.edges;
     return options;
+}
+
+/// Of a sensor, since power-up: readings that were said, rangings that ended.
+struct Counts {
+    double taken = 0.0;
+    double made = 0.0;
+};
+inline std::vector<Counts> counts_of(FlashedBoard& flashed, std::uint8_t sensors) {
+    std::vector<Counts> all;
+    for (std::uint8_t sensor = 0; sensor < sensors; ++sensor) {
+        all.push_back({static_cast<double>(flashed.readings(sensor).size()),
+                       static_cast<double>(flashed.rangings(sensor))});
+    }
+    return all;
 }
 
 inline void expect_unbroken(const std::vector<SaidReading>& readings) {

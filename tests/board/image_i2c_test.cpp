@@ -22,16 +22,6 @@ void PrintTo(const FaultCase& tested, std::ostream* out) {
                                       "stretch",          "sda_stuck_low"};
     *out << kNames[static_cast<std::size_t>(tested.fault.kind)] << "_at_" << tested.fault.position;
 }
-/// Of a sensor, since power-up.
-struct Counts {
-    double taken = 0.0;
-    double made = 0.0;
-};
-Counts counts_of(FlashedBoard& flashed, std::uint8_t sensor) {
-    return {static_cast<double>(flashed.readings(sensor).size()),
-            static_cast<double>(flashed.rangings(sensor))};
-}
-
 /// Between two of its readings, and to now.
 std::int64_t longest_gap_us(FlashedBoard& flashed, std::uint8_t sensor, SimTime from) {
     std::int64_t longest_us = 0;
@@ -50,9 +40,7 @@ TEST_P(I2cFaultTest, keeps_the_loop_short_and_the_others_ranging) {
     const NodeConfig config = thirty_four_at_30_hz();
     FlashedBoard flashed(config, options_of({3, BusEdges::slowest}));
     flashed.run_for(2s);
-    std::vector<Counts> before;
-    for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor)
-        before.push_back(counts_of(flashed, sensor));
+    const std::vector<Counts> before = counts_of(flashed, config.sensor_count);
     flashed.board().forget_longest_awake();
     const SimTime began = flashed.now();
     I2cFault fault = GetParam().fault;
@@ -69,6 +57,7 @@ TEST_P(I2cFaultTest, keeps_the_loop_short_and_the_others_ranging) {
     EXPECT_LE(flashed.board().core().longest_awake_ps(), 5'000 * kPsPerUs);
     EXPECT_EQ(flashed.board().reset_count(), 0U);
     EXPECT_EQ(flashed.violations(), "");
+    const std::vector<Counts> after = counts_of(flashed, config.sensor_count);
     std::int64_t gap_of_bus_us = 0;
     for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) {
         SCOPED_TRACE(testing::Message() << "sensor " << int{sensor});
@@ -76,8 +65,8 @@ TEST_P(I2cFaultTest, keeps_the_loop_short_and_the_others_ranging) {
             gap_of_bus_us = std::max(gap_of_bus_us, longest_gap_us(flashed, sensor, began));
             continue;
         }
-        const Counts counts = counts_of(flashed, sensor);
-        EXPECT_NEAR(counts.taken - before.at(sensor).taken, counts.made - before.at(sensor).made, 1.0);
+        EXPECT_NEAR(after[sensor].taken - before[sensor].taken, after[sensor].made - before[sensor].made,
+                    1.0);
         expect_unbroken(flashed.readings(sensor));
     }
     EXPECT_LE(gap_of_bus_us, 150'000);

@@ -47,37 +47,31 @@ class ImageTest : public testing::TestWithParam<Speed> {
     void expect_every_reading_taken(const NodeConfig& config, double bus_share_max) {
         FlashedBoard flashed(config, options_of(GetParam()));
         flashed.run_for(3s);
-        const auto counts = [&] {
-            std::vector<std::pair<std::size_t, std::uint32_t>> all;
-            for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor)
-                all.emplace_back(flashed.readings(sensor).size(), flashed.rangings(sensor));
-            return all;
-        };
-        const auto before = counts();
+        const std::vector<Counts> before = counts_of(flashed, config.sensor_count);
         std::array<std::int64_t, 4> busy{};
         for (std::size_t bus = 0; bus < 4; ++bus) busy.at(bus) = flashed.board().i2c_busy_ps(bus);
         const std::uint64_t instructions = flashed.board().core().instructions();
         const std::uint64_t cycles = flashed.board().core().cycles();
         flashed.board().forget_longest_awake();
         flashed.run_for(2s);
-        const auto after = counts();
+        const std::vector<Counts> after = counts_of(flashed, config.sensor_count);
 
-        std::size_t readings = 0;
+        double readings = 0.0;
         const double periods = 2000.0 / config.sensors[0].inter_measurement_ms;
         for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) {
             SCOPED_TRACE(testing::Message() << "sensor " << int{sensor});
-            const auto taken = static_cast<double>(after[sensor].first - before[sensor].first);
-            const auto made = static_cast<double>(after[sensor].second - before[sensor].second);
+            const double taken = after[sensor].taken - before[sensor].taken;
+            const double made = after[sensor].made - before[sensor].made;
             EXPECT_NEAR(made, periods, rate_tolerance() * periods + 1) << "the sensor keeps its rate";
             EXPECT_NEAR(taken, made, 1.0) << "one may be under way at either end";
             expect_unbroken(flashed.readings(sensor));
-            readings += after[sensor].first - before[sensor].first;
+            readings += taken;
         }
         EXPECT_EQ(flashed.violations(), "");
-        const double per_reading = static_cast<double>(flashed.board().core().instructions() - instructions) /
-                                   static_cast<double>(readings);
+        const double per_reading =
+            static_cast<double>(flashed.board().core().instructions() - instructions) / readings;
         std::printf(
-            "%zu readings in 2 s, %.0f instructions each, core %.1f %% busy, longest turn %.0f us; buses",
+            "%.0f readings in 2 s, %.0f instructions each, core %.1f %% busy, longest turn %.0f us; buses",
             readings, per_reading, static_cast<double>(flashed.board().core().cycles() - cycles) / 3.2e6,
             static_cast<double>(flashed.board().core().longest_awake_ps()) * 1e-6);
         for (std::size_t bus = 0; bus < 4; ++bus) {
