@@ -15,7 +15,7 @@ inline constexpr std::size_t kNodeSensorsMax = 34;
 inline constexpr std::size_t kNodeBusesMax = 4;
 inline constexpr std::size_t kSensorZonesMax = 9;
 inline constexpr std::uint16_t kReflexLimitMaxMm = 4'000;  ///< the sensor sees no farther
-inline constexpr std::uint8_t kNodeXshutLinesMax = 40;     ///< five 74HC595
+inline constexpr std::uint8_t kNodeXshutLinesMax = 48;     ///< five 74HC595 and eight pins
 
 enum class DistanceMode : std::uint8_t { short_range = 1, medium_range = 2, long_range = 3 };
 enum class StreamGate : std::uint8_t { off = 0, differs = 1, advanced = 2 };

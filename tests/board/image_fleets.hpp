@@ -1,5 +1,5 @@
-// What the image's tests have in common: the fleets that its promises name, and how slow a core and a bus may
-// be.
+// What the image's tests have in common: the fleets that its promises name, how they are wired, and how slow
+// a core and a bus may be.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,6 +17,20 @@ inline NodeConfig seventeen_at_50_hz() {
 }
 inline NodeConfig thirty_four_at_30_hz() {
     return fleet(34, DistanceMode::long_range, 20, 33);
+}
+
+/// Where a fleet's XSHUT lines are; of `pins` there are eight.
+enum class XshutWiring { chain, pins, both };
+inline void PrintTo(XshutWiring wiring, std::ostream* out) {
+    constexpr const char* kNames[] = {"chain", "pins", "both"};
+    *out << kNames[static_cast<std::size_t>(wiring)];
+}
+inline NodeConfig wired(NodeConfig config, XshutWiring wiring) {
+    for (std::uint8_t i = 0; i < config.sensor_count; ++i) {
+        const bool is_pin = wiring == XshutWiring::pins || (wiring == XshutWiring::both && i % 2 == 1);
+        config.sensors.at(i).xshut_line = static_cast<std::uint8_t>(is_pin ? 40 + i : i);
+    }
+    return config;
 }
 
 /// An instruction costs one cycle or three; I2C edges are typical or as slow as the specification allows.

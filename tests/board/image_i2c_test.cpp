@@ -121,11 +121,14 @@ TEST(ImageI2c, sda_held_long_costs_that_bus_alone_and_it_comes_back) {
     EXPECT_EQ(flashed.violations(), "");
 }
 
-// I12: the 74HC595 keep their levels, so that sensors stay at their addresses, in the middle of a byte. Each
-// time the controller is stopped within 50 us of some transfer's beginning or middle: of the bring-up, and
-// while ranging.
-TEST(ImageI2c, a_reset_in_the_middle_of_a_transfer_is_followed_by_a_clean_start) {
-    FlashedBoard flashed(fleet(4, DistanceMode::long_range, 20, 33));
+// I12. Each time the controller is stopped within 50 us of some transfer's beginning or middle: of the
+// bring-up, and while ranging. Behind the 74HC595, whose outputs go off, all sensors are in reset at once.
+// Pins let go of their lines: who was brought up stays at its address, in the middle of a byte; who was in
+// reset comes to 0x29, all at once.
+class ImageI2cReset : public testing::TestWithParam<XshutWiring> {};
+
+TEST_P(ImageI2cReset, in_the_middle_of_a_transfer_is_followed_by_a_clean_start) {
+    FlashedBoard flashed(wired(fleet(4, DistanceMode::long_range, 20, 33), GetParam()));
     for (int i = 0; i < 60; ++i) {
         const I2cWire& wire = flashed.board().wire(static_cast<std::size_t>(i % 4));
         flashed.run_for(i % 2 == 0 ? Microseconds{5'000 + 503 * i} : Microseconds{250'000 + 503 * i});
@@ -142,6 +145,10 @@ TEST(ImageI2c, a_reset_in_the_middle_of_a_transfer_is_followed_by_a_clean_start)
     EXPECT_EQ(flashed.heartbeats().back().heartbeat.state, wire::NodeState::ranging);
     EXPECT_EQ(flashed.violations(), "");
 }
+
+INSTANTIATE_TEST_SUITE_P(Wirings, ImageI2cReset,
+                         testing::Values(XshutWiring::chain, XshutWiring::pins, XshutWiring::both),
+                         testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace octoskin::sim::stm32

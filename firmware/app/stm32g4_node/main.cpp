@@ -27,7 +27,7 @@
 #include "firmware/port/stm32g4/status_light.hpp"
 #include "firmware/port/stm32g4/unique_id.hpp"
 #include "firmware/port/stm32g4/watchdog.hpp"
-#include "firmware/port/stm32g4/xshut_chain.hpp"
+#include "firmware/port/stm32g4/xshut_lines.hpp"
 
 namespace octoskin::stm32g4 {
 namespace {
@@ -46,7 +46,7 @@ constinit MicrosecondTimer timer;
 constinit SerialPort serial;
 constinit StatusLight light;
 constinit Report report{serial, light};
-constinit XshutChain xshut;
+constinit XshutLines xshut;
 constinit CanController can{timer};
 constinit CanEntry can_entry{can};
 constinit std::array<I2cController, kI2cWirings.size()> i2c_controllers{

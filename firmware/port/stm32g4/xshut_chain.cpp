@@ -43,7 +43,7 @@ void XshutChain::start() {
 }
 
 void XshutChain::set(std::uint8_t line, bool is_high) {
-    assert(line < kNodeXshutLinesMax);
+    assert(line < kLines);
     const std::uint64_t bit = std::uint64_t{1} << line;
     const std::uint64_t levels = is_high ? levels_ | bit : levels_ & ~bit;
     if (levels == levels_) return;  // at bring-up every sensor asks for the reset that it is in
@@ -53,7 +53,7 @@ void XshutChain::set(std::uint8_t line, bool is_high) {
 
 /// What is shifted first ends up farthest away: line 39 leads, line 0 is output A of the first register.
 void XshutChain::shift_out() const {
-    for (std::uint32_t line = kNodeXshutLinesMax; line > 0; --line) {
+    for (std::uint32_t line = kLines; line > 0; --line) {
         drive(kData, ((levels_ >> (line - 1)) & 1U) != 0);
         pulse(kShift);
     }

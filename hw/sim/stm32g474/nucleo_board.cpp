@@ -7,6 +7,7 @@
 #include <cstring>
 #include <random>
 #include <stdexcept>
+#include <utility>
 
 namespace octoskin::sim::stm32 {
 namespace {
@@ -50,6 +51,9 @@ const std::array<NucleoBoard::I2cPins, NucleoBoard::kI2cBuses> NucleoBoard::kI2c
     {{2, 8}, {2, 9}, 8},   // PC8, PC9
     {{2, 6}, {2, 7}, 8},   // PC6, PC7
 }};
+// PA0, PA1, PA4, PB0, PA6, PA7, PB10, PB5
+const std::array<NucleoBoard::Pin, 8> NucleoBoard::kXshutPins = {
+    {{0, 0}, {0, 1}, {0, 4}, {1, 0}, {0, 6}, {0, 7}, {1, 10}, {1, 5}}};
 
 NucleoBoard::NucleoBoard(const NucleoOptions& options, const ElfImage& image,
                          std::span<const std::uint8_t> configuration)
@@ -153,7 +157,7 @@ void NucleoBoard::make_peripherals(const NucleoOptions& options) {
             }});
     make_external_interrupts(env);
     debug_ = std::make_unique<PlainRegisters>(env, "DBGMCU", kDebugRegisters);
-    xshut_ = std::make_unique<ShiftRegisterChain>([this](std::uint32_t output, bool is_high) {
+    chain_ = std::make_unique<ShiftRegisterChain>([this](std::uint32_t output, bool is_high) {
         if (on_xshut_) on_xshut_(output, is_high);
         exti_->sample();
     });
@@ -205,7 +209,8 @@ void NucleoBoard::place_peripherals() {
 }
 
 void NucleoBoard::connect_pins() {
-    ports_[kPortC]->on_change([this] { drive_xshut(); });
+    ports_[kPortC]->on_change([this] { drive_chain(); });
+    for (const std::uint32_t port : {kPortA, kPortB}) ports_[port]->on_change([this] { drive_xshut_pins(); });
     for (std::size_t bus = 0; bus < kI2cBuses; ++bus) {
         const I2cPins& pins = kI2cPins.at(bus);
         ports_.at(pins.scl.port)->on_change([this, bus] { drive_i2c(bus); });
@@ -230,9 +235,26 @@ bool NucleoBoard::has_function(const Pin& pin, std::uint32_t function) const {
 }
 
 // PC0 SER, PC1 SRCLK, PC2 RCLK, PC3 OE with a pull-up.
-void NucleoBoard::drive_xshut() {
+void NucleoBoard::drive_chain() {
     const GpioPort& port = *ports_[kPortC];
-    xshut_->drive({port.drives_high(0), port.drives_high(1), port.drives_high(2), !port.drives_low(3)});
+    chain_->drive({port.drives_high(0), port.drives_high(1), port.drives_high(2), !port.drives_low(3)});
+}
+
+void NucleoBoard::drive_xshut_pins() {
+    for (std::uint32_t i = 0; i < kXshutPins.size(); ++i) {
+        const GpioPort& port = *ports_.at(kXshutPins.at(i).port);
+        const std::uint32_t line = ShiftRegisterChain::kOutputs + i;
+        if (port.drives_high(kXshutPins.at(i).number))
+            log_.report(Rule::pin_function, fmt::format("XSHUT line {} is driven high", line));
+        const bool is_high = !port.drives_low(kXshutPins.at(i).number);
+        const bool was_high = std::exchange(xshut_pin_levels_.at(i), is_high);
+        if (is_high != was_high && on_xshut_) on_xshut_(line, is_high);
+    }
+}
+
+bool NucleoBoard::is_xshut_high(std::uint32_t line) const {
+    constexpr std::uint32_t kFirstPin = ShiftRegisterChain::kOutputs;
+    return line < kFirstPin ? chain_->output(line) : xshut_pin_levels_.at(line - kFirstPin);
 }
 
 void NucleoBoard::drive_i2c(std::size_t bus) {

@@ -1,5 +1,5 @@
-// The NUCLEO-G474RE with the sensor carrier: chip, crystal, four I2C buses, the XSHUT chain, CAN, the virtual
-// COM port and the light. Pins: docs/bring-up, hw/boards.
+// The NUCLEO-G474RE with the sensor carrier: chip, crystal, four I2C buses, XSHUT lines, CAN, the virtual COM
+// port and the light. Pins: docs/bring-up, hw/boards.
 #pragma once
 
 #include <array>
@@ -74,8 +74,10 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
     /// The line at the bus's data-ready input; a fault of it holds from the next look at it on.
     [[nodiscard]] DataReadyLine& data_ready(std::size_t bus) { return data_ready_.at(bus); }
     [[nodiscard]] std::int64_t i2c_busy_ps(std::size_t bus) const { return i2c_.at(bus)->busy_ps(); }
-    /// Each XSHUT output that changes.
+    /// Each XSHUT line that changes: 0 to 39 are the chain's outputs, 40 to 47 pins, with a pull-up behind
+    /// each.
     void on_xshut(ShiftRegisterChain::Listener listener) { on_xshut_ = std::move(listener); }
+    [[nodiscard]] bool is_xshut_high(std::uint32_t line) const;
     /// What the CAN controller wants to send next, at every change.
     void on_offer(std::function<void(const std::optional<wire::CanFrame>&)> listener) {
         on_offer_ = std::move(listener);
@@ -111,6 +113,7 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
         std::uint32_t function;
     };
     static const std::array<I2cPins, kI2cBuses> kI2cPins;
+    static const std::array<Pin, 8> kXshutPins;
 
     void load(const ElfImage& image, std::span<const std::uint8_t> configuration);
     void fill_ram(std::uint64_t seed);
@@ -119,7 +122,8 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
     void place_peripherals();
     void connect_pins();
     void reset(ResetFlag flag);
-    void drive_xshut();
+    void drive_chain();
+    void drive_xshut_pins();
     void drive_i2c(std::size_t bus);
     [[nodiscard]] bool has_function(const Pin& pin, std::uint32_t function) const;
     [[nodiscard]] BoardTime next_pin_change(std::uint32_t lines) const;
@@ -155,7 +159,8 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
     std::unique_ptr<PlainRegisters> debug_;
     std::unique_ptr<SystemBus> bus_;
     std::unique_ptr<CortexM4> core_;
-    std::unique_ptr<ShiftRegisterChain> xshut_;
+    std::unique_ptr<ShiftRegisterChain> chain_;
+    std::array<bool, 8> xshut_pin_levels_{};
 
     ShiftRegisterChain::Listener on_xshut_;
     std::function<void(const std::optional<wire::CanFrame>&)> on_offer_;

@@ -10,6 +10,7 @@ SensorCarrier::SensorCarrier(NucleoBoard& board, const NodeConfig& config,
         sensors_.push_back(std::make_unique<SensorModel>(parts.at(index), scene(index)));
         board.wire(config.sensors.at(index).bus).attach(*sensors_.back());
         board.data_ready(config.sensors.at(index).bus).attach(*sensors_.back());
+        sensors_.back()->set_xshut(board.is_xshut_high(config.sensors.at(index).xshut_line), board.now());
     }
     board.on_xshut([this, &board](std::uint32_t output, bool is_high) {
         for (std::size_t index = 0; index < sensors_.size(); ++index) {

@@ -1,5 +1,5 @@
-// The board's sensors: register-level models on its four buses, their XSHUT pins on the chain's outputs,
-// their GPIO1 pins on the bus's data-ready line.
+// The board's sensors: register-level models on its four buses, their XSHUT pins on the board's lines, their
+// GPIO1 pins on the bus's data-ready line.
 #pragma once
 
 #include <functional>

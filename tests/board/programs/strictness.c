@@ -350,6 +350,13 @@ void line_driven_high(void) {
     REG(GPIOA + 0x00) = (REG(GPIOA + 0x00) & ~(3u << 30)) | 1u << 30;
     finish();
 }
+void xshut_driven_high(void) {
+    RCC_AHB2ENR |= 1;
+    (void)RCC_AHB2ENR;
+    REG(GPIOA + 0x18) = 1u << 4;
+    REG(GPIOA + 0x00) = (REG(GPIOA + 0x00) & ~(3u << 8)) | 1u << 8;
+    finish();
+}
 
 // --- CAN
 void bit_timing_without_cce(void) { can_clock(); NBTP = 15u << 25 | 62u << 8 | 15; finish(); }

@@ -234,7 +234,7 @@ std::vector<FieldRange> field_ranges() {
         {"zone_guard_us", [=](N& c, int v) { c.zone_guard_us = u16(v); }, {0, 65'535}, {}},
         {"data_ready_buses", [=](N& c, int v) { c.data_ready_buses = u8(v); }, {0, 15}, {16, 255}},
         {"bus", [=](N& c, int v) { c.sensors[1].bus = u8(v); }, {0, 3}, {4, 255}},
-        {"xshut_line", [=](N& c, int v) { c.sensors[1].xshut_line = u8(v); }, {0, 38}, {40, 255}},
+        {"xshut_line", [=](N& c, int v) { c.sensors[1].xshut_line = u8(v); }, {0, 38, 40, 47}, {48, 255}},
         {"shared xshut_line", [=](N& c, int v) { c.sensors[1].xshut_line = u8(v); }, {}, {39}},
         {"address",
          [=](N& c, int v) { c.sensors[1].address = u8(v); },

@@ -21,6 +21,7 @@
 #include "firmware/port/stm32g4/serial_port.hpp"
 #include "firmware/port/stm32g4/status_light.hpp"
 #include "firmware/port/stm32g4/xshut_chain.hpp"
+#include "firmware/port/stm32g4/xshut_lines.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "tests/support/stm32g4/address_space.hpp"
 #include "tests/unit/hw/boards/shipped_board.hpp"
@@ -117,7 +118,7 @@ class FirmwareOnBoard : public testing::Test {
 TEST_F(FirmwareOnBoard, sets_up_exactly_the_pins_of_the_file) {
     std::map<BoardPin, PinState> used = set_up_by([&] {
         stm32g4::StatusLight().start();
-        stm32g4::XshutChain().start();
+        stm32g4::XshutLines().start();
         stm32g4::DataReadyLines().start(0b1111);
         stm32g4::SerialPort().start(stm32g4::kCrystalPlan.core_hz());
         stm32g4::CanController can{timer_};
@@ -131,6 +132,8 @@ TEST_F(FirmwareOnBoard, sets_up_exactly_the_pins_of_the_file) {
 TEST_F(FirmwareOnBoard, each_part_sets_up_its_own_pins) {
     EXPECT_EQ(set_up_by([] { stm32g4::StatusLight().start(); }), described("light"));
     EXPECT_EQ(set_up_by([] { stm32g4::XshutChain().start(); }), described("xshut_"));
+    EXPECT_EQ(set_up_by([] { stm32g4::XshutLines().start(); }), described("xshut4"))
+        << "beside the chain's, which are set up by now";
     EXPECT_EQ(set_up_by([] { stm32g4::SerialPort().start(160'000'000); }), described("serial_"));
     for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
         const auto buses = static_cast<std::uint8_t>(1U << bus);
@@ -177,6 +180,18 @@ TEST_F(FirmwareOnBoard, moves_the_chain_by_the_pins_of_the_file) {
     EXPECT_EQ(rises_of("xshut_show"), 1);
     EXPECT_EQ(rises_of("xshut_data"), 1);
     EXPECT_EQ(rises_of("xshut_outputs_off"), 0);
+}
+
+TEST_F(FirmwareOnBoard, moves_lines_40_to_47_by_the_pins_of_the_file) {
+    stm32g4::XshutLines lines;
+    lines.start();
+    for (std::uint8_t line = 40; line < 48; ++line) {
+        space_.forget_writes();
+        lines.set(line, true);
+        const BoardPin pin = pin_of("xshut" + std::to_string(line));
+        const std::vector<test::AddressSpace::Write> rise = {{port_base(pin.port) + 0x18, 1U << pin.number}};
+        EXPECT_EQ(space_.writes(), rise) << int{line};
+    }
 }
 
 // --- the chip's own facts, from its documents
@@ -230,7 +245,9 @@ TEST(NucleoBoard, the_connectors_are_the_boards) {
         {"PC2", "CN7-35"},   {"PC3", "CN7-37"},   {"PC9", "CN10-1"},   {"PC8", "CN10-2"},
         {"PC6", "CN10-4"},   {"PA5", "CN10-11"},  {"PA12", "CN10-12"}, {"PA11", "CN10-14"},
         {"PC7", "CN10-19"},  {"PA9", "CN10-21"},  {"PA8", "CN10-23"},  {"PA2", "CN10-35"},
-        {"PB12", "CN10-16"}, {"PB13", "CN10-30"}, {"PB14", "CN10-28"}, {"PB15", "CN10-26"}};
+        {"PB12", "CN10-16"}, {"PB13", "CN10-30"}, {"PB14", "CN10-28"}, {"PB15", "CN10-26"},
+        {"PA0", "CN7-28"},   {"PA1", "CN7-30"},   {"PA4", "CN7-32"},   {"PB0", "CN7-34"},
+        {"PA6", "CN10-13"},  {"PA7", "CN10-15"},  {"PB10", "CN10-25"}, {"PB5", "CN10-29"}};
     for (const BoardSignal& signal : nucleo().signals)
         EXPECT_EQ(morpho.at(text(signal.pin)), signal.connector);
 }
@@ -279,7 +296,12 @@ TEST(NucleoBoard, its_two_files_agree) {
     std::size_t buses = 0;
     for (const BoardSignal& signal : board.signals) buses += signal.function.ends_with("_SCL") ? 1U : 0U;
     EXPECT_EQ(rig->nodes.at(0).board.i2c_bus_count, buses);
-    EXPECT_EQ(rig->nodes.at(0).board.xshut_line_count, kNodeXshutLinesMax);
+    std::uint8_t xshut_lines = stm32g4::XshutChain::kLines;
+    for (const BoardSignal& signal : board.signals) {
+        // Numbered from the end of the chain on, without a gap.
+        if (signal.signal == "xshut" + std::to_string(xshut_lines)) ++xshut_lines;
+    }
+    EXPECT_EQ(rig->nodes.at(0).board.xshut_line_count, xshut_lines);
     std::set<std::uint8_t> lines;  // EXTI has one for all the pins of a number
     for (const BoardSignal& signal : board.signals) {
         if (signal.signal.starts_with("data_ready")) lines.insert(signal.pin.number);

@@ -1,4 +1,4 @@
-// The port's small parts: XSHUT chain, serial port, light, watchdog, reset cause, fault record, pins.
+// The port's small parts: XSHUT lines, serial port, light, watchdog, reset cause, fault record, pins.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,6 +16,7 @@
 #include "firmware/port/stm32g4/unique_id.hpp"
 #include "firmware/port/stm32g4/watchdog.hpp"
 #include "firmware/port/stm32g4/xshut_chain.hpp"
+#include "firmware/port/stm32g4/xshut_lines.hpp"
 #include "tests/support/stm32g4/address_space.hpp"
 
 namespace octoskin::stm32g4 {
@@ -87,6 +88,95 @@ TEST_F(XshutChainTest, costs_nothing_where_nothing_changes) {
     chain_.set(3, false);
     chain_.set(4, true);
     EXPECT_TRUE(space_.writes().empty());
+}
+
+// --- eight XSHUT lines that are pins, each with a pull-up outside
+
+struct XshutPin {
+    Address port;
+    std::uint32_t number;
+};
+constexpr Address kPortA = 0x4800'0000;
+constexpr Address kPortB = 0x4800'0400;
+constexpr std::array<XshutPin, 8> kXshutPins = {{{kPortA, 0},
+                                                 {kPortA, 1},
+                                                 {kPortA, 4},
+                                                 {kPortB, 0},
+                                                 {kPortA, 6},
+                                                 {kPortA, 7},
+                                                 {kPortB, 10},
+                                                 {kPortB, 5}}};
+
+class XshutLinesTest : public ::testing::Test {
+  protected:
+    XshutLinesTest() {
+        for (const Address port : {kPortA, kPortB}) {
+            space_[port + kModer] = 0xFFFF'FFFF;
+            space_[port + kOdr] = 0xFFFF;  // what a run before left
+            space_.on_write(port + kSetReset, [this, port](std::uint32_t&, std::uint32_t value) {
+                space_[port + kOdr] = (space_[port + kOdr] & ~(value >> 16U)) | (value & 0xFFFFU);
+                look_for_driven_high();
+            });
+            for (const Address offset : {kModer, kOtyper}) {
+                space_.on_write(port + offset, [this](std::uint32_t& word, std::uint32_t value) {
+                    word = value;
+                    look_for_driven_high();
+                });
+            }
+        }
+    }
+    [[nodiscard]] bool is_output(const XshutPin& pin) {
+        return (space_[pin.port + kModer] >> (2 * pin.number) & 3U) == 1;
+    }
+    [[nodiscard]] bool is_low(const XshutPin& pin) {
+        return is_output(pin) && (space_[pin.port + kOdr] >> pin.number & 1U) == 0;
+    }
+    void look_for_driven_high() {
+        for (const XshutPin& pin : kXshutPins) {
+            const bool is_open_drain = (space_[pin.port + kOtyper] >> pin.number & 1U) != 0;
+            was_driven_high_ |= is_output(pin) && !is_low(pin) && !is_open_drain;
+        }
+    }
+    void expect_low_but(std::size_t released) {
+        for (std::size_t i = 0; i < kXshutPins.size(); ++i)
+            EXPECT_EQ(is_low(kXshutPins.at(i)), i != released) << i;
+    }
+
+    static constexpr Address kModer = 0x00;
+    static constexpr Address kOtyper = 0x04;
+    static constexpr Address kOdr = 0x14;
+    static constexpr Address kSetReset = 0x18;
+    static constexpr std::size_t kNone = 8;
+    test::AddressSpace space_;
+    XshutLines lines_;
+    bool was_driven_high_ = false;
+};
+
+TEST_F(XshutLinesTest, pins_are_low_from_the_start_on) {
+    lines_.start();
+    expect_low_but(kNone);
+    EXPECT_FALSE(was_driven_high_);
+}
+
+TEST_F(XshutLinesTest, releases_each_pin_and_only_that_one) {
+    lines_.start();
+    space_.forget_writes();
+    for (std::uint8_t i = 0; i < 8; ++i) {
+        lines_.set(static_cast<std::uint8_t>(40 + i), true);
+        expect_low_but(i);
+        lines_.set(static_cast<std::uint8_t>(40 + i), false);
+        expect_low_but(kNone);
+    }
+    EXPECT_FALSE(was_driven_high_);
+    EXPECT_TRUE(space_.written_to(kSetResetC).empty()) << "nothing is shifted";
+}
+
+TEST_F(XshutLinesTest, the_first_forty_are_the_chain) {
+    lines_.start();
+    space_.forget_writes();
+    lines_.set(39, true);
+    EXPECT_FALSE(space_.written_to(kSetResetC).empty());
+    expect_low_but(kNone);
 }
 
 // --- serial port
