@@ -16,6 +16,9 @@ constexpr std::int64_t kPeriodsAhead = 32;
 // A first range's time is known to a tenth of a millisecond or two: the mean of many is known better.
 constexpr std::int64_t kFirstsAveraged = 16;
 
+// A sensor's ready times are known better from range to range: for so many periods.
+constexpr std::int64_t kFirstWithin = 6;
+
 // A run tells the walk the better the longer it is: it counts by the square of its periods. Those before
 // count no more than 64 periods would, so that a part that warms up is followed.
 constexpr std::int64_t kWalkWeightMax = std::int64_t{64} * 64;
@@ -52,6 +55,7 @@ void PhaseHold::observe(const TimeBracket& ready) noexcept {
     if (ready.width() > policy_.phase_known_within) return;
     const NodeTime at = ready.middle();
     if (!last_) {
+        if (is_worth_waiting(ready)) return;
         begin(elapsed(start_.at.earliest, at));
     } else if (const Microseconds since = elapsed(*last_, at); is_told_from_others(since)) {
         go_on(since);
@@ -60,6 +64,12 @@ void PhaseHold::observe(const TimeBracket& ready) noexcept {
     }
     last_ = at;
     if (!is_judged_ && periods_ >= policy_.phase_periods_min) judge_start();
+}
+
+/// For a range whose time is known better than this first one's.
+bool PhaseHold::is_worth_waiting(const TimeBracket& ready) const noexcept {
+    return ready.width() > policy_.phase_first_known_within &&
+           elapsed(start_.at.earliest, ready.middle()) <= kFirstWithin * start_.period;
 }
 
 /// Whether so long after the last one it is known which range this is: by then the sensor may not have walked
@@ -131,11 +141,12 @@ Microseconds PhaseHold::nearest_to_zero(Microseconds off) const noexcept {
 void PhaseHold::judge_start() noexcept {
     is_judged_ = true;
     const std::int64_t walked_us = std::abs((off_ - off_at_first_).count());
-    const std::int64_t allowed_us = (policy_.phase_tolerance + policy_.phase_start_off).count();
+    const std::int64_t allowed_us = for_period(policy_.phase_tolerance + policy_.phase_start_off).count();
     if (walked_us > allowed_us) {
         count_in_vain();
-    } else if (!is_in_vain_ && walked_us * 3 <= allowed_us * 2) {
-        // One that wanders has not come far now and then by chance.
+    } else if (!is_in_vain_ && walked_us * 6 <= allowed_us * 5) {
+        // One that wanders has not come far now and then by chance. (Who walks by half a step of its register
+        // has come two thirds of what is allowed.)
         starts_in_vain_ = std::max(starts_in_vain_ - 1, 0);
     }
 }
@@ -147,7 +158,11 @@ void PhaseHold::count_in_vain() noexcept {
 }
 
 bool PhaseHold::is_out() const noexcept {
-    return std::abs(smoothed_off_.count()) > policy_.phase_tolerance.count();
+    return std::abs(smoothed_off_.count()) > for_period(policy_.phase_tolerance).count();
+}
+
+Microseconds PhaseHold::for_period(Microseconds of_policy) const noexcept {
+    return of_policy * std::max(start_.period, policy_.phase_period).count() / policy_.phase_period.count();
 }
 
 /// So many periods are between two starts.
@@ -175,7 +190,8 @@ void PhaseHold::expect_walk(Nanoseconds walk) noexcept {
 
 Microseconds PhaseHold::start_off(Nanoseconds walk) const noexcept {
     const Microseconds ahead = whole_us(-walk * kPeriodsAhead);
-    return std::clamp(ahead, -policy_.phase_start_off, policy_.phase_start_off);
+    const Microseconds off_max = for_period(policy_.phase_start_off);
+    return std::clamp(ahead, -off_max, off_max);
 }
 
 }  // namespace octoskin::node

@@ -44,6 +44,7 @@ class PhaseHold {
     [[nodiscard]] Microseconds start_off(Nanoseconds walk) const noexcept;
 
   private:
+    [[nodiscard]] bool is_worth_waiting(const TimeBracket& ready) const noexcept;
     void begin(Microseconds first_after) noexcept;
     [[nodiscard]] bool is_told_from_others(Microseconds since_last) const noexcept;
     void go_on(Microseconds since_last) noexcept;
@@ -53,6 +54,7 @@ class PhaseHold {
     void count_in_vain() noexcept;
     [[nodiscard]] bool is_out() const noexcept;
     [[nodiscard]] std::int64_t patience() const noexcept;
+    [[nodiscard]] Microseconds for_period(Microseconds of_policy) const noexcept;
     [[nodiscard]] Microseconds nearest_to_zero(Microseconds off) const noexcept;
 
     const Policy& policy_;

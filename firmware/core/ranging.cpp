@@ -122,7 +122,7 @@ void Ranging::start_due_step(NodeTime now) {
 /// Who was kept waiting for the bus starts a period later rather than out of its phase. Not for ever.
 bool Ranging::is_too_late_to_start(NodeTime now) const noexcept {
     return step_ == Step::awaiting_phase && rules_.holds_phases && starts_put_off_ < kStartsPutOffMax &&
-           elapsed(phase_due_, now) > policy_.phase_late_max;
+           elapsed(phase_due_, now) > policy_.phase_late_max / 2;
 }
 
 void Ranging::start_step(Step step, NodeTime now) {
@@ -137,7 +137,9 @@ void Ranging::start_step(Step step, NodeTime now) {
             device_.begin_verify(vl53l1x::kTimingGroup);
             break;
         case Step::awaiting_phase:
-            step_due_ = phase_due_ = next_phase(now);
+            phase_due_ = next_phase(now);
+            // The bus makes it late: by as much as it was early, in the mean.
+            step_due_ = rules_.holds_phases ? phase_due_ - policy_.phase_late_max / 2 : phase_due_;
             break;
         case Step::starting:
             device_.begin_start();

@@ -14,12 +14,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A quarter of a minute, the last ten seconds of it judged: tests/sim/phases_test has whole minutes.
+/// Twenty seconds, the last ten of them judged: tests/sim/phases_test has whole minutes.
 struct HeldFleet {
     std::string name;
     NodeConfig config;
     Speed speed;
-    double peak_over_mean_max = 0.0;
     double off_max_us = 0.0;  ///< of its phase
 };
 void PrintTo(const HeldFleet& fleet, std::ostream* out) {
@@ -29,13 +28,14 @@ void PrintTo(const HeldFleet& fleet, std::ostream* out) {
 class ImagePhases : public testing::TestWithParam<HeldFleet> {};
 
 TEST_P(ImagePhases, sensors_keep_taking_turns_where_the_rig_asks_for_it) {
-    constexpr SimTime kSettled{5'000'000};
+    constexpr double kPeakOverMeanMax = 1.5;
+    constexpr SimTime kSettled{10'000'000};
     NodeConfig config = GetParam().config;
     config.holds_phases = true;
     test::spread_phases(config);
     const double period_us = 1'000.0 * config.sensors[0].inter_measurement_ms;
     FlashedBoard flashed(config, options_of(GetParam().speed));
-    flashed.run_for(15s);
+    flashed.run_for(20s);
     std::vector<std::vector<double>> middles_us(config.sensor_count);
     std::array<std::vector<double>, kNodeBusesMax> of_bus_us;
     double ranges = 0.0;
@@ -49,8 +49,13 @@ TEST_P(ImagePhases, sensors_keep_taking_turns_where_the_rig_asks_for_it) {
         expect_unbroken(flashed.readings(sensor));
     }
     double peak = 0.0;
-    for (const auto& ready_us : of_bus_us) peak = std::max(peak, test::peak_over_mean(ready_us));
-    EXPECT_LE(peak, GetParam().peak_over_mean_max);
+    for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
+        const auto sensors = static_cast<double>(
+            std::count_if(config.sensors.begin(), config.sensors.begin() + config.sensor_count,
+                          [bus](const SensorConfig& sensor) { return sensor.bus == bus; }));
+        peak = std::max(peak, test::peak_over_mean(of_bus_us.at(bus), sensors, period_us));
+    }
+    EXPECT_LE(peak, kPeakOverMeanMax);
     std::vector<double> phases_us;
     for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor)
         phases_us.push_back(config.sensors[sensor].phase_us);
@@ -68,16 +73,14 @@ TEST_P(ImagePhases, sensors_keep_taking_turns_where_the_rig_asks_for_it) {
 }
 
 // A core that takes three cycles an instruction knows ready times less well, the more so where edges are as
-// slow as the specification allows. Nine sensors of a bus are at 1.47 even if each is in its place: 5 ms hold
-// two readings. What is given up lowers the mean.
+// slow as the specification allows.
 INSTANTIATE_TEST_SUITE_P(
     Fleets, ImagePhases,
-    testing::Values(
-        HeldFleet{"34_at_30_hz", thirty_four_at_30_hz(), {1, BusEdges::typical}, 1.5, 400.0},
-        HeldFleet{"34_at_30_hz_slow_core", thirty_four_at_30_hz(), {3, BusEdges::typical}, 1.55, 550.0},
-        HeldFleet{"17_at_50_hz", seventeen_at_50_hz(), {1, BusEdges::typical}, 1.5, 400.0},
-        HeldFleet{"17_at_50_hz_slow_core", seventeen_at_50_hz(), {3, BusEdges::typical}, 1.55, 550.0},
-        HeldFleet{"17_at_50_hz_slow_edges", seventeen_at_50_hz(), {3, BusEdges::slowest}, 1.6, 550.0}),
+    testing::Values(HeldFleet{"34_at_30_hz", thirty_four_at_30_hz(), {1, BusEdges::typical}, 450.0},
+                    HeldFleet{"34_at_30_hz_slow_core", thirty_four_at_30_hz(), {3, BusEdges::typical}, 600.0},
+                    HeldFleet{"17_at_50_hz", seventeen_at_50_hz(), {1, BusEdges::typical}, 450.0},
+                    HeldFleet{"17_at_50_hz_slow_core", seventeen_at_50_hz(), {3, BusEdges::typical}, 600.0},
+                    HeldFleet{"17_at_50_hz_slow_edges", seventeen_at_50_hz(), {3, BusEdges::slowest}, 600.0}),
     [](const auto& tested) { return tested.param.name; });
 
 }  // namespace

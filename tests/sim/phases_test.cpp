@@ -137,11 +137,13 @@ class FleetMinute {
     }
     [[nodiscard]] double planned_peak_over_mean(std::uint8_t bus) const {
         std::vector<double> all;
+        double sensors = 0.0;
         for (std::uint8_t sensor = bus; sensor < fleet_.count; sensor += kNodeBusesMax) {
             const auto middles = middles_us(sensor);
             all.insert(all.end(), middles.begin(), middles.end());
+            sensors += 1.0;
         }
-        return test::peak_over_mean(std::move(all));
+        return test::peak_over_mean(std::move(all), sensors, fleet_.period_us());
     }
     struct TrueLoad {
         double peak_over_mean = 0.0;

@@ -23,10 +23,11 @@ inline void spread_phases(NodeConfig& config) {
     }
 }
 
-/// The load of a bus in its busiest 5 ms over its mean, if each reading takes the bus equally long from when
-/// its data is ready: 518 bits at the slowest clock that filters may make of 400 kHz, as the rig's own check
-/// has it. `ready_us`: when, of all sensors of the bus, in any order. O(n log n).
-inline double peak_over_mean(std::vector<double> ready_us) {
+/// The load of a bus in its busiest 5 ms over the mean that it was planned for (a range that is given up is
+/// no load), if each reading takes the bus equally long from when its data is ready: 518 bits at the slowest
+/// clock that filters may make of 400 kHz, as the rig's own check has it. `ready_us`: when, of all `sensors`
+/// of the bus, in any order. O(n log n).
+inline double peak_over_mean(std::vector<double> ready_us, double sensors, double period_us) {
     constexpr double kWindowUs = 5'000.0;
     constexpr double kReadingUs = 518.0 * 1e6 / 283'000.0;
     constexpr std::size_t kReadingsOfWindow = 16;  // and of the reading before it, more than there can be
@@ -44,9 +45,7 @@ inline double peak_over_mean(std::vector<double> ready_us) {
             busiest_us = std::max(busiest_us, busy_us);
         }
     }
-    const double mean =
-        static_cast<double>(ready_us.size()) * kReadingUs / (ready_us.back() - ready_us.front());
-    return busiest_us / kWindowUs / mean;
+    return busiest_us / kWindowUs / (sensors * kReadingUs / period_us);
 }
 
 /// How long two sensors range at once, at most, from one window of each. `a_us`, `b_us`: the middles of their
