@@ -194,10 +194,14 @@ void Inputs::feed(const wire::CanFrame& frame, WallTime stamp) {
 }
 
 void Inputs::collect_joints() {
+    constexpr int kDatagramsPerTurn = 256;  // a flood does not keep the frames of the bus waiting
     constexpr std::size_t kWaitingMax = 256;
+    if (!joints_) return;
     std::optional<JointSample> sample;
-    while (joints_ && joints_waiting_.size() < kWaitingMax && joints_->receive(sample))
+    for (int i = 0; i < kDatagramsPerTurn && joints_waiting_.size() < kWaitingMax; ++i) {
+        if (!joints_->receive(sample)) return;
         if (sample) joints_waiting_.push_back(std::move(*sample));  // else counted by the socket
+    }
 }
 
 /// Those that came by then; empty: all.

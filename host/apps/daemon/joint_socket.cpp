@@ -7,10 +7,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <span>
 #include <utility>
 
-#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/core/ingest/local_joints.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
@@ -74,19 +72,12 @@ Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& fil
     const auto descriptor = bind_unix_socket(file, SOCK_DGRAM);
     if (!descriptor) return unexpected(descriptor.error());
     (void)socketcan::want_stamps(*descriptor);
-    return JointSocket(file, *descriptor, joint_count);
+    return JointSocket(file, std::make_unique<DatagramFeed>(*descriptor, kJointTextMax + 1), joint_count);
 }
-
-JointSocket::JointSocket(JointSocket&& other) noexcept
-    : file_(std::move(other.file_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      joint_count_(other.joint_count_),
-      samples_(other.samples_),
-      faults_(other.faults_) {}
 
 JointSocket& JointSocket::operator=(JointSocket&& other) noexcept {
     std::swap(file_, other.file_);
-    std::swap(descriptor_, other.descriptor_);
+    std::swap(feed_, other.feed_);
     joint_count_ = other.joint_count_;
     samples_ = other.samples_;
     faults_ = other.faults_;
@@ -94,24 +85,19 @@ JointSocket& JointSocket::operator=(JointSocket&& other) noexcept {
 }
 
 JointSocket::~JointSocket() {
-    if (descriptor_ < 0) return;
+    if (!feed_) return;
     ::unlink(file_.c_str());  // while it still answers: nobody else has the name yet
-    ::close(descriptor_);
 }
 
 bool JointSocket::receive(std::optional<JointSample>& sample) {
     sample.reset();
-    std::array<char, kJointTextMax + 1> text{};
-    const auto datagram = socketcan::receive_stamped(descriptor_, std::as_writable_bytes(std::span(text)));
-    if (datagram.count < 0) return false;
-    // It may have waited: it came when the kernel says.
-    const WallTime came = datagram.stamp.value_or(wall_now());
-    auto parsed = parse_joints({text.data(), static_cast<std::size_t>(datagram.count)}, joint_count_,
-                               monotonic_now(), monotonic_of(came));
+    const auto datagram = feed_->take();
+    if (!datagram) return false;
+    auto parsed = parse_joints(datagram->bytes, joint_count_, datagram->read, datagram->came_at);
     if (parsed) {
         ++samples_;
         sample = std::move(parsed).value();
-        sample->came = came;
+        sample->came = datagram->came;
     } else {
         ++faults_.at(static_cast<std::size_t>(parsed.error()));
     }

@@ -8,13 +8,16 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/result.hpp"
 #include "common/time.hpp"
+#include "host/apps/daemon/datagram_feed.hpp"
 #include "host/apps/recording/app_error.hpp"
 
 namespace octoskin {
@@ -28,7 +31,7 @@ struct JointSample {
 enum class JointTextFault : std::uint8_t {
     not_a_number,  ///< a word that is no finite number
     wrong_count,   ///< neither as many numbers as joints, nor one more
-    time_off,      ///< more than 1 s from now, or not told, and it waited for as long to be read
+    time_off,      ///< more than 1 s from when it was read, or not told, and it waited for as long to be read
     too_large,     ///< a position beyond the +-8.38 rad of the wire
     too_long,      ///< over kJointTextMax bytes
 };
@@ -37,23 +40,26 @@ enum class JointTextFault : std::uint8_t {
 }
 inline constexpr std::size_t kJointTextMax = 1024;
 
-/// One line or datagram, which came at `came`; empty: nobody knows when. Any bytes are safe.
+/// One line or datagram, read at `now`, which came at `came`; empty: nobody knows when. Any bytes are safe.
 [[nodiscard]] Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::size_t joint_count,
                                                                HostTime now, std::optional<HostTime> came);
 
 /// The same for a person: "wrong_count: 3 numbers, the rig has 7 joints", of the others their name.
 [[nodiscard]] std::string describe(JointTextFault fault, std::string_view text, std::size_t joint_count);
 
+/// What comes is read and dated by a thread of its own, and waits for `receive`: DatagramFeed::kWaitingMax at
+/// most.
 class JointSocket {
   public:
     /// Makes the socket file, over one that a dead process left; refuses one that somebody listens on.
     [[nodiscard]] static Result<JointSocket, AppError> open(const std::filesystem::path& file,
                                                             std::size_t joint_count);
-    JointSocket(JointSocket&& other) noexcept;
+    JointSocket(JointSocket&& other) noexcept = default;
     JointSocket& operator=(JointSocket&& other) noexcept;
     ~JointSocket();
 
-    [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
+    /// Readable when a datagram waits.
+    [[nodiscard]] int descriptor() const noexcept { return feed_->descriptor(); }
     /// From now on a sample has so many joints.
     void expect(std::size_t joint_count) noexcept { joint_count_ = joint_count; }
     /// Takes one datagram, if one is here. False if none was. What is no sample is counted, and `sample` then
@@ -62,13 +68,15 @@ class JointSocket {
 
     [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
     [[nodiscard]] const std::array<std::uint64_t, 5>& faults() const noexcept { return faults_; }
+    /// Datagrams that gave way to newer ones, as nobody received for too long.
+    [[nodiscard]] std::uint64_t displaced() const { return feed_->displaced(); }
 
   private:
-    JointSocket(std::filesystem::path file, int descriptor, std::size_t joint_count)
-        : file_(std::move(file)), descriptor_(descriptor), joint_count_(joint_count) {}
+    JointSocket(std::filesystem::path file, std::unique_ptr<DatagramFeed> feed, std::size_t joint_count)
+        : file_(std::move(file)), feed_(std::move(feed)), joint_count_(joint_count) {}
 
     std::filesystem::path file_;
-    int descriptor_ = -1;
+    std::unique_ptr<DatagramFeed> feed_;
     std::size_t joint_count_ = 0;
     std::uint64_t samples_ = 0;
     std::array<std::uint64_t, 5> faults_{};

@@ -161,8 +161,8 @@ class Screen {
         add("joint samples " + rate(used(before_), used(now_), passed_) + " used", Emphasis::title);
         const Json& socket = at(now_, "joints_socket");
         add_nonzero("  socket: ", socket,
-                    {"samples", "thinned", "joint_node_ignored", "not_a_number", "wrong_count", "time_off",
-                     "too_large", "too_long"});
+                    {"samples", "displaced", "thinned", "joint_node_ignored", "not_a_number", "wrong_count",
+                     "time_off", "too_large", "too_long"});
     }
     void add_camera() {
         const Json& camera = at(now_, "camera");

@@ -1,20 +1,62 @@
 // What programs of this machine may send, and what nobody should.
 #include "host/apps/daemon/joint_socket.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
+#include <cmath>
+#include <numeric>
 #include <string>
+#include <string_view>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/event_loop.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
 namespace {
+
+using namespace std::chrono_literals;
+
+/// A program that tells joint states, and waits while there is no room for one: 20 s at most. The kernel
+/// keeps few of its datagrams, whatever net.unix.max_dgram_qlen is here.
+class Teller {
+  public:
+    explicit Teller(const std::filesystem::path& file)
+        : socket_(connect_unix_socket(file, SOCK_DGRAM).value()) {
+        const int room = 1;  // raised by the kernel to the least there is
+        const timeval patience{20, 0};
+        EXPECT_EQ(::setsockopt(socket_, SOL_SOCKET, SO_SNDBUF, &room, sizeof(room)), 0);
+        EXPECT_EQ(::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof(patience)), 0);
+    }
+    ~Teller() { ::close(socket_); }
+    Teller(const Teller&) = delete;
+    Teller& operator=(const Teller&) = delete;
+
+    /// False if nobody made room.
+    [[nodiscard]] bool tell(std::string_view text) const {
+        return ::send(socket_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+    }
+    /// The number of a sample is its first joint's position, in mrad.
+    [[nodiscard]] bool tell(int number) const { return tell(fmt::format("{} 0 0", number * 1e-3)); }
+
+  private:
+    int socket_;
+};
+
+int number_of(const JointSample& sample) {
+    return static_cast<int>(std::lround(sample.position.front() * 1e3));
+}
 
 class JointSocketTest : public testing::Test {
   protected:
@@ -86,6 +128,129 @@ TEST_F(JointSocketTest, takes_as_many_joints_as_the_rig_that_is_loaded_anew) {
     EXPECT_EQ(faults(socket_, JointTextFault::time_off), 1U);
     EXPECT_TRUE(socket_.receive(sample));
     EXPECT_TRUE(sample);
+}
+
+// 250 a second for 300 ms, and the loop is held up for as long as they take: not one waits for it.
+TEST_F(JointSocketTest, loses_none_and_dates_each_while_the_loop_is_held_up) {
+    constexpr std::size_t kCount = 75;
+    constexpr auto kPeriod = 4ms;
+    struct Told {
+        HostTime before;
+        HostTime after;
+    };
+    std::vector<Told> told;
+    std::vector<JointSample> samples;
+    EventLoop loop;
+    const HostTime end = monotonic_now() + Nanoseconds(30s);
+    const EventSource joints = loop.on_readable(socket_.descriptor(), [&] {
+        std::optional<JointSample> sample;
+        while (socket_.receive(sample)) samples.push_back(sample.value());
+        if (samples.size() == kCount) loop.stop(0);
+    });
+    const EventSource late = loop.every(1s, [&] {
+        if (monotonic_now() > end) loop.stop(1);
+    });
+    bool was_held_up = false;
+    const EventSource image = loop.every(1ms, [&] {
+        if (std::exchange(was_held_up, true)) return;
+        std::thread arm([&] {
+            const Teller teller(file_);
+            for (std::size_t i = 0; i < kCount; ++i) {
+                const HostTime before = monotonic_now();
+                if (!teller.tell(static_cast<int>(i))) return;
+                told.push_back({before, monotonic_now()});
+                std::this_thread::sleep_for(kPeriod);
+            }
+        });
+        arm.join();
+        EXPECT_TRUE(samples.empty());
+    });
+    EXPECT_EQ(loop.run(), 0);
+    ASSERT_EQ(told.size(), kCount) << "it waited for the loop";
+    ASSERT_EQ(samples.size(), kCount);
+    constexpr Nanoseconds kClocksApart{2'000'000};
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const JointSample& sample = samples.at(i);
+        EXPECT_EQ(number_of(sample), static_cast<int>(i));
+        EXPECT_GT(sample.sampled, told.at(i).before - kClocksApart) << i;
+        EXPECT_LT(sample.sampled, told.at(i).after + kClocksApart) << i;
+    }
+    EXPECT_EQ(socket_.displaced(), 0U);
+    EXPECT_EQ(socket_.samples(), kCount);
+}
+
+TEST_F(JointSocketTest, keeps_the_newest_of_a_flood_that_nobody_takes_and_counts_the_others) {
+    constexpr int kBeyond = 500;
+    constexpr int kCount = static_cast<int>(DatagramFeed::kWaitingMax) + kBeyond;
+    const Teller teller(file_);
+    for (int i = 0; i < kCount; ++i) ASSERT_TRUE(teller.tell(i)) << i;
+    const auto end = std::chrono::steady_clock::now() + 20s;
+    while (socket_.displaced() < kBeyond && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(1ms);
+    EXPECT_EQ(socket_.displaced(), kBeyond);
+    std::optional<JointSample> sample;
+    for (int i = kBeyond; i < kCount; ++i) {
+        ASSERT_TRUE(socket_.receive(sample)) << i;
+        EXPECT_EQ(number_of(sample.value()), i);
+    }
+    EXPECT_FALSE(socket_.receive(sample));
+    EXPECT_EQ(socket_.samples(), DatagramFeed::kWaitingMax);
+    EXPECT_EQ(socket_.displaced(), kBeyond);
+}
+
+// Takes part of what the thread has read, part of what it has not: none is lost, twice here, or out of turn.
+TEST_F(JointSocketTest, hands_over_each_once_and_in_turn_while_they_come) {
+    constexpr int kCount = DatagramFeed::kWaitingMax;  // whoever has no time meanwhile has room for all
+    std::atomic<bool> is_told = false;
+    std::thread arm([&] {
+        const Teller teller(file_);
+        for (int i = 0; i < kCount; ++i) EXPECT_TRUE(teller.tell(i)) << i;
+        is_told = true;
+    });
+    std::vector<int> numbers;
+    std::optional<JointSample> sample;
+    for (bool is_last = false; !is_last;) {
+        is_last = is_told;  // read before the socket: what is not there after that does not come any more
+        while (socket_.receive(sample)) numbers.push_back(number_of(sample.value()));
+    }
+    arm.join();
+    std::vector<int> all(kCount);
+    std::iota(all.begin(), all.end(), 0);
+    EXPECT_EQ(numbers, all);
+    EXPECT_EQ(socket_.displaced(), 0U);
+}
+
+TEST_F(JointSocketTest, is_readable_while_something_waits_and_only_then) {
+    const auto is_readable = [this](int patience_ms) {
+        pollfd watched{socket_.descriptor(), POLLIN, 0};
+        return ::poll(&watched, 1, patience_ms) == 1;
+    };
+    constexpr int kPatienceMs = 20'000;
+    EXPECT_FALSE(is_readable(0));
+    const Teller teller(file_);
+    for (int round = 0; round < 2; ++round) {
+        ASSERT_TRUE(teller.tell("1 2 3"));
+        ASSERT_TRUE(teller.tell("no numbers"));
+        std::optional<JointSample> sample;
+        ASSERT_TRUE(is_readable(kPatienceMs));
+        EXPECT_TRUE(socket_.receive(sample));
+        EXPECT_TRUE(is_readable(kPatienceMs)) << "what is no sample is counted in time, too";
+        EXPECT_TRUE(socket_.receive(sample));
+        EXPECT_FALSE(is_readable(0));
+    }
+}
+
+TEST_F(JointSocketTest, ends_at_once_in_the_middle_of_a_flood) {
+    std::atomic<bool> is_told = false;
+    std::thread arm([&] {
+        const Teller teller(file_);
+        while (teller.tell("1 2 3")) is_told = true;
+    });
+    while (!is_told) std::this_thread::sleep_for(1ms);
+    const auto begun = std::chrono::steady_clock::now();
+    { const JointSocket ending = std::move(socket_); }
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, 2s);
+    arm.join();  // nobody has its name any more
 }
 
 TEST_F(JointSocketTest, is_one_to_a_file_and_takes_its_file_away) {

@@ -1,0 +1,61 @@
+// Datagrams of a socket, read by a thread of its own: whoever takes them may be busy with other things while
+// they come. A Unix socket alone keeps but a few (net.unix.max_dgram_qlen).
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/time.hpp"
+
+namespace octoskin {
+
+struct Datagram {
+    std::string bytes;
+    WallTime came;                    ///< when the kernel had it
+    std::optional<HostTime> came_at;  ///< the same on the clock that never steps, if that can be told
+    HostTime read;
+};
+
+class DatagramFeed {
+  public:
+    /// Datagrams that wait; beyond, the oldest gives way. A second of an arm that tells 1000 samples.
+    static constexpr std::size_t kWaitingMax = 1024;
+
+    /// `socket` is one that does not block and stamps what it receives (socketcan::want_stamps); it is closed
+    /// here. Of each datagram the first `bytes_max` bytes are kept. Throws std::system_error if the system
+    /// has no room for it; the socket is then still the caller's.
+    DatagramFeed(int socket, std::size_t bytes_max);
+    /// At once.
+    ~DatagramFeed();
+    DatagramFeed(const DatagramFeed&) = delete;
+    DatagramFeed& operator=(const DatagramFeed&) = delete;
+
+    /// Readable while a datagram waits.
+    [[nodiscard]] int descriptor() const noexcept { return event_; }
+    /// The oldest, in the order in which they came; empty: none came before this call that is not taken yet,
+    /// whether or not the thread had its turn.
+    [[nodiscard]] std::optional<Datagram> take();
+    /// So many gave way untaken.
+    [[nodiscard]] std::uint64_t displaced() const;
+
+  private:
+    void work();
+    void put_next();
+    [[nodiscard]] std::optional<Datagram> receive();
+
+    int socket_;
+    std::vector<char> room_;  ///< for one
+    int event_ = -1;
+    int end_ = -1;  ///< readable when the thread is to end
+    mutable std::mutex mutex_;
+    std::deque<Datagram> waiting_;
+    std::uint64_t displaced_ = 0;
+    std::thread thread_;
+};
+
+}  // namespace octoskin
