@@ -2,12 +2,13 @@
 # The boards inside the machine: one CAN interface, two banks of GPIO lines, four I2C buses with two modelled sensors each.
 #   board.sh up FOLDER BIN   make it, and write FOLDER/board.env, which every command gets
 #   board.sh can FOLDER BIN  only the CAN interface
-#   board.sh down FOLDER     take it away (where the machine is not thrown away)
+#   board.sh down FOLDER     take away what does not end with its processes, where the kernel goes on
 # Runs as root, inside. Exit code 77: this kernel has not what it takes.
 set -euo pipefail
 verb=$1 folder=$2
 can=hil0
-config=/sys/kernel/config/gpio-sim/octoskin
+# By the folder's name: of a kernel that is not the machine's own, others may have lines there.
+config=/sys/kernel/config/gpio-sim/octoskin_$(cksum <<<"$folder" | cut -d ' ' -f 1)
 # Not in FOLDER: a sensor must never wait for the host.
 faults=/run/octoskin_hil
 range0=/run/octoskin_hil.range0
@@ -37,15 +38,15 @@ make_bank() {
 }
 
 make_lines() {
-    mkdir $config 2>/dev/null || skip "no gpio-sim in this kernel, or no right to use it"
+    mkdir "$config" 2>/dev/null || skip "no gpio-sim in this kernel, or no right to use it"
     make_bank 0 "${first_lines[@]}"
     make_bank 1 "${second_lines[@]}"
-    echo 1 >$config/live
+    echo 1 >"$config/live"
     local device
-    device=/sys/devices/platform/$(<$config/dev_name)
-    chip=$(<$config/bank0/chip_name)
+    device=/sys/devices/platform/$(<"$config/dev_name")
+    chip=$(<"$config/bank0/chip_name")
     lines=$device/$chip
-    chip2=$(<$config/bank1/chip_name)
+    chip2=$(<"$config/bank1/chip_name")
     lines2=$device/$chip2
 }
 
@@ -100,21 +101,14 @@ up() {
 }
 
 down() {
-    local pid
-    for pid in "$folder"/*.pid; do
-        [ ! -e "$pid" ] || kill "$(<"$pid")" 2>/dev/null || true
-    done
-    [ ! -e "$folder/board.env" ] || . "$folder/board.env"
-    if [ -n "${HIL_CHIP:-}" ]; then
-        echo 0 >$config/live
-        rmdir $config/bank?/line* $config/bank? $config
-        rm -f $faults.*
-    fi
-    ip link del "${HIL_CAN:-$can}" 2>/dev/null || true
+    [ -d "$config" ] || return 0
+    echo 0 >"$config/live" 2>/dev/null || true  # refused, if they were not made to the end
+    shopt -s nullglob
+    rmdir "$config"/bank?/line* "$config"/bank? "$config"
 }
 
 case $verb in
     up) bin=$3; up ;;
-    can) bin=$3 can=hil1; make_can; write_environment ;;  # another name, where both are one machine's
+    can) bin=$3; make_can; write_environment ;;
     down) down ;;
 esac

@@ -9,8 +9,9 @@
     machine.py cut FOLDER                            its power is gone: what it had not flushed to its disk is lost
 
 FOLDER holds what is known of the machine: its console, and of each command the script, the output and the exit code.
-The machine is a virtual one, with this machine's own files, read-only; FOLDER is the only place it can write to. With
-OCTOSKIN_HIL=native it is this machine itself (needs root, vcan, gpio-sim and CUSE).
+Where this kernel has what it takes, the machine is this one, with interfaces, processes and /run of its own; else a virtual one,
+with this machine's own files, read-only, whose only place to write to is FOLDER. boot says which, and why; OCTOSKIN_HIL=native or
+OCTOSKIN_HIL=virtual decides.
 Exit codes of its own: 77 nothing to boot with, 124 a time limit is over, 125 the machine is not as it should be.
 """
 import argparse
@@ -22,6 +23,7 @@ import pathlib
 import shlex
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -33,12 +35,18 @@ KERNEL = pathlib.Path(os.environ.get("OCTOSKIN_HIL_KERNEL", PROJECT / "build/hil
 SKIPPED, TIME_OVER, BROKEN = 77, 124, 125
 BOOT_S = 240      # 5 s on an idle machine
 PREPARE_S = 120
+UNDO_S = 20
 ANSWER_S = 60     # longer than the command may take: then the machine hangs
 LIFE_S = 1800     # a machine that nobody stops ends by itself
 KERNEL_OPTIONS = ("console=ttyS0 quiet panic=-1 mitigations=off nosmap nosmep tsc=unstable clocksource=hpet "
                   "idle=halt")
 QEMU = "qemu-system-x86_64"
 BUSYBOX = pathlib.Path("/bin/busybox")
+# Of a native machine's commands, as init.sh's.
+ENVIRONMENT = {"PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/run", "TMPDIR": "/run",
+               "LC_ALL": "C.UTF-8", "PYTHONDONTWRITEBYTECODE": "1"}  # nothing of root's in the source tree
+# As board.sh wires them.
+BOARD_DEVICES = [pathlib.Path(f"/dev/i2c-{bus}") for bus in (7, 8, 9, 10)]
 
 
 class MachineError(Exception):
@@ -60,10 +68,45 @@ def wait_for(is_done, seconds):
 
 
 class Machine:
-    """What the two kinds share: the folder, and a command as a script in it."""
+    """What the two kinds share: the folder, the process that is the machine, and a command as a script in the folder."""
+    kind: str
 
     def __init__(self, folder):
         self.folder = folder
+
+    def start(self, command, log):
+        """Until it is up. The name of its folder is in the command."""
+        with open(self.folder / log, "wb") as output:
+            process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, start_new_session=True)
+        (self.folder / "pid").write_text(str(process.pid))
+        is_up = wait_for(lambda: (self.folder / "up").exists() or process.poll() is not None, BOOT_S)
+        if not is_up or process.poll() is not None:
+            self.kill()
+            raise MachineError(self.with_tail("it does not boot" if is_up else f"it did not boot within {BOOT_S} s"))
+
+    def pid(self):
+        """Of what `start` started; None if it is gone."""
+        try:
+            pid = int((self.folder / "pid").read_text())
+            is_ours = str(self.folder).encode() in pathlib.Path(f"/proc/{pid}/cmdline").read_bytes()
+        except (OSError, ValueError):
+            return None
+        return pid if is_ours else None
+
+    def is_running(self):
+        return self.pid() is not None
+
+    def kill(self):
+        if pid := self.pid():
+            os.killpg(pid, signal.SIGKILL)
+
+    def with_tail(self, message):
+        lines = [message]
+        for name in ("qemu.log", "console"):
+            with contextlib.suppress(OSError):
+                text = (self.folder / name).read_text(errors="replace").splitlines()[-25:]
+                lines += [f"-- the end of {self.folder / name}:", *text]
+        return "\n".join(lines)
 
     @contextlib.contextmanager
     def alone(self):
@@ -76,7 +119,8 @@ class Machine:
         """The environment is what board.sh left, and how much a check shall do: OCTOSKIN_HIL_*."""
         script = self.folder / f"{name}.sh"
         asked = [f"export {key}={shlex.quote(value)}" for key, value in os.environ.items() if key.startswith("OCTOSKIN_HIL_")]
-        script.write_text("\n".join([*asked, f"[ ! -e {self.quoted('board.env')} ] || . {self.quoted('board.env')}",
+        script.write_text("\n".join([*asked, f"export HIL_KIND={self.kind}",
+                                     f"[ ! -e {self.quoted('board.env')} ] || . {self.quoted('board.env')}",
                                      f"exec {shlex.join(command)}\n"]))
         return script
 
@@ -91,23 +135,64 @@ class Machine:
             return self.run_script(self.next_name(), command, seconds)
 
 
+def own_namespaces(*command):
+    """The command, as the first process of network, mounts and processes of its own, which end with it. Who is not root is root in
+    there, over these alone."""
+    user = [] if is_root() else ["--map-root-user"]
+    return ["unshare", "--net", "--mount", "--pid", "--fork", "--kill-child", *user, *map(str, command)]
+
+
+def is_root():
+    return os.geteuid() == 0
+
+
 class NativeMachine(Machine):
+    """This kernel, with interfaces, mounts and processes of its own."""
+    kind = "native"
+
     def boot(self):
-        pass
+        self.start(["timeout", "-k", str(UNDO_S), str(LIFE_S), *own_namespaces(HERE / "native_init.sh", self.folder)], "console")
+
+    def first_process(self):
+        """As this machine numbers it; None if it is gone, or not yet there."""
+        with contextlib.suppress(OSError, ValueError):
+            if self.is_running():
+                return int((self.folder / "first").read_text())
+        return None
+
+    def entered(self, *command):
+        """The command, so that it is run inside."""
+        first = self.first_process()
+        if first is None:
+            raise MachineError(self.with_tail("it is not running"))
+        user = [] if is_root() else ["--user", "--preserve-credentials"]
+        return ["nsenter", "--target", str(first), "--net", "--mount", "--pid", "--root", "--wd", *user, *map(str, command)]
 
     def run_script(self, name, command, seconds):
         script = self.write_script(name, command)
-        done = subprocess.run(["timeout", "-k", "2", str(seconds), "bash", script], stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
-        return done.returncode, done.stdout
+        with open(self.folder / f"{name}.out", "wb") as output:
+            done = subprocess.run(self.entered("timeout", "-k", "2", seconds, "bash", script), stdin=subprocess.DEVNULL,
+                                  stdout=output, stderr=output, env=ENVIRONMENT, check=False)
+        code = 128 - done.returncode if done.returncode < 0 else done.returncode  # as a shell gives that of what a signal ended
+        (self.folder / f"{name}.code").write_text(f"{code}\n")
+        return code, (self.folder / f"{name}.out").read_bytes()
+
+    def kill(self):
+        """Its first process undoes what it made, if it still can."""
+        if first := self.first_process():
+            os.kill(first, signal.SIGTERM)
+        if not wait_for(lambda: not self.is_running(), UNDO_S):
+            super().kill()
 
     def stop(self):
-        code, output = self.run([str(HERE / "board.sh"), "down", str(self.folder)], PREPARE_S)
-        if code != 0:
-            raise MachineError(f"board.sh down: {output.decode(errors='replace')}")
+        self.kill()
+        if not (self.folder / "undone").exists():
+            raise MachineError(self.with_tail("it did not undo all that it made"))
 
 
 class VirtualMachine(Machine):
+    kind = "virtual"
+
     def __init__(self, folder, disk=None):
         super().__init__(folder)
         self.disk = disk  # a file, to the machine /dev/vda
@@ -118,13 +203,7 @@ class VirtualMachine(Machine):
             self.make_disk()
         for end in ("in", "out"):
             os.mkfifo(self.folder / f"control.{end}")
-        log = open(self.folder / "qemu.log", "wb")
-        qemu = subprocess.Popen(self.qemu_command(), stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)
-        (self.folder / "pid").write_text(str(qemu.pid))
-        is_up = wait_for(lambda: (self.folder / "up").exists() or qemu.poll() is not None, BOOT_S)
-        if not is_up or qemu.poll() is not None:
-            self.kill()
-            raise MachineError(self.with_tail("it does not boot" if is_up else f"it did not boot within {BOOT_S} s"))
+        self.start(self.qemu_command(), "qemu.log")
 
     def qemu_command(self):
         """One processor: two spend as much time again on waiting for each other. Never KVM: its device may be there and hang. Time by
@@ -191,33 +270,36 @@ class VirtualMachine(Machine):
         if not wait_for(lambda: not self.is_running(), 10):
             self.kill()
 
-    def pid(self):
-        """Of our QEMU; None if it is gone."""
-        try:
-            pid = int((self.folder / "pid").read_text())
-            is_ours = str(self.folder).encode() in pathlib.Path(f"/proc/{pid}/cmdline").read_bytes()
-        except (OSError, ValueError):
-            return None
-        return pid if is_ours else None
 
-    def is_running(self):
-        return self.pid() is not None
-
-    def kill(self):
-        if pid := self.pid():
-            os.killpg(pid, signal.SIGKILL)
-
-    def with_tail(self, message):
-        lines = [message]
-        for name in ("qemu.log", "console"):
-            with contextlib.suppress(OSError):
-                text = (self.folder / name).read_text(errors="replace").splitlines()[-25:]
-                lines += [f"-- the end of {self.folder / name}:", *text]
-        return "\n".join(lines)
+def native_lacks(board):
+    """Why a native machine cannot be; None if it can. Changes nothing, but that the kernel may load its module vcan."""
+    try:
+        socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW).close()
+    except OSError as error:
+        return f"this kernel has no CAN sockets ({error.strerror})"
+    try:
+        probe = subprocess.run(own_namespaces(HERE / "native_init.sh", "probe"), capture_output=True, text=True, check=False,
+                               env=ENVIRONMENT)
+    except OSError as error:
+        return f"{error.filename}: {error.strerror}"
+    if probe.returncode != 0:
+        return f"this kernel has no vcan, or we have no right to make one ({' '.join(probe.stderr.split())})"
+    return boards_lack() if board == "up" else None
 
 
-def missing():
-    """What there is not, to boot a virtual machine."""
+def boards_lack():
+    if not is_root():
+        return "only root can make GPIO lines and I2C buses"
+    if not pathlib.Path("/sys/kernel/config/gpio-sim").is_dir():
+        return "there is no gpio-sim (modprobe gpio-sim)"
+    if not pathlib.Path("/dev/cuse").exists():
+        return "there is no CUSE (modprobe cuse)"
+    there = [str(device) for device in BOARD_DEVICES if device.exists()]
+    return f"{there[0]} is there already" if there else None
+
+
+def virtual_lacks():
+    """Why a virtual machine cannot be booted; None if it can."""
     if shutil.which(QEMU) is None:
         return f"{QEMU} is not installed (toolchains/install_packages hil)"
     if not BUSYBOX.exists() or shutil.which("cpio") is None:
@@ -227,8 +309,26 @@ def missing():
     return None
 
 
+def choose(asked, why_not_native, why_not_virtual):
+    """(kind, why it is this one). `asked` is OCTOSKIN_HIL; the others tell what a kind lacks, None if nothing, and are only called if
+    that decides."""
+    if asked not in ("", "native", "virtual"):
+        raise MachineError(f"OCTOSKIN_HIL={asked}: native, virtual, or nothing to have boot decide")
+    if asked != "virtual":
+        lacks = why_not_native()
+        if lacks is None:
+            has_all = "this kernel has what it takes (OCTOSKIN_HIL=virtual boots a virtual machine)"
+            return "native", "OCTOSKIN_HIL=native" if asked else has_all
+        if asked:
+            raise MachineError(f"skipped: OCTOSKIN_HIL=native, but {lacks}", SKIPPED)
+    if why := why_not_virtual():
+        raise MachineError(f"skipped: {why}" + ("" if asked else f"; and without a virtual machine: {lacks}"), SKIPPED)
+    return "virtual", "OCTOSKIN_HIL=virtual" if asked else lacks
+
+
 def boot(folder, binaries, board, disk):
-    VirtualMachine(folder).kill()  # left over from a run that was broken off
+    with contextlib.suppress(MachineError):
+        machine_in(folder).kill()  # left over from a run that was broken off
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     try:
@@ -241,16 +341,15 @@ def boot(folder, binaries, board, disk):
 
 def boot_in(folder, binaries, board, disk):
     began = time.monotonic()
-    is_native = os.environ.get("OCTOSKIN_HIL") == "native"
-    if not is_native and (why := missing()):
-        raise MachineError(f"skipped: {why}", SKIPPED)
-    (folder / "kind").write_text("native" if is_native else "virtual")
-    machine = NativeMachine(folder) if is_native else VirtualMachine(folder, disk)
+    kind, why = choose(os.environ.get("OCTOSKIN_HIL", ""), lambda: native_lacks(board), virtual_lacks)
+    print(f"{kind} machine: {why}", flush=True)
+    (folder / "kind").write_text(kind)
+    machine = NativeMachine(folder) if kind == "native" else VirtualMachine(folder, disk)
     machine.boot()
     up = time.monotonic()
     code, output = machine.run([str(HERE / "board.sh"), board, str(folder), str(binaries)], PREPARE_S)
     if code != 0:
-        machine.stop()
+        machine.kill()
         raise MachineError(output.decode(errors="replace").strip(), SKIPPED if code == SKIPPED else BROKEN)
     print(f"up after {up - began:.1f} s, its board after {time.monotonic() - up:.1f} s more")
 
@@ -261,6 +360,13 @@ def machine_in(folder):
     if not (folder / "kind").exists():
         raise MachineError(f"no machine in {folder}; boot it first")
     return NativeMachine(folder) if (folder / "kind").read_text() == "native" else VirtualMachine(folder)
+
+
+def cut(folder):
+    machine = machine_in(folder)
+    if machine.kind == "native":
+        raise MachineError("this machine's own power is not cut")
+    machine.kill()
 
 
 def run(folder, command, seconds):
@@ -293,7 +399,7 @@ def main():
         elif arguments.verb == "run":
             return run(arguments.folder, arguments.command, arguments.seconds)
         elif arguments.verb == "cut":
-            VirtualMachine(arguments.folder).kill()
+            cut(arguments.folder)
         else:
             machine_in(arguments.folder).stop()
     except MachineError as error:

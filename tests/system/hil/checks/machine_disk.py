@@ -9,7 +9,7 @@ DISK = pathlib.Path("/run/disk")
 
 def mounted():
     """Where it is; None on a machine without, or where the checks run without a virtual machine."""
-    if os.environ.get("OCTOSKIN_HIL") == "native" or not DEVICE.is_block_device():
+    if os.environ["HIL_KIND"] == "native" or not DEVICE.is_block_device():
         return None
     DISK.mkdir(exist_ok=True)
     if not DISK.is_mount():
