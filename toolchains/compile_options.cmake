@@ -37,7 +37,7 @@ endif()
 add_library(octoskin_test_options INTERFACE)
 if(OCTOSKIN_SANITIZE)
     target_link_libraries(octoskin_test_options INTERFACE octoskin_program_options)
-elseif(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT CMAKE_CROSSCOMPILING)
+elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
     # When it optimises little, GCC 12 warns in vain of optional values, and of `std::string(...) + "..."` as if the longer
     # string lay in the short one's own bytes. The address sanitizer sees what does overflow.
     target_compile_options(octoskin_test_options INTERFACE -O1
