@@ -34,12 +34,12 @@ def claim(is_true, what):
         raise CheckFailed(what)
 
 
-def wait_until(what, is_so, seconds=PATIENCE_S):
-    """Seconds that it took. Asks every 50 ms."""
+def wait_until(what, is_so, seconds=PATIENCE_S, period_s=0.05):
+    """Seconds that it took. Asks every `period_s`."""
     began = time.monotonic()
     while not is_so():
         claim(time.monotonic() - began < seconds, f"{what}: not within {seconds} s")
-        time.sleep(0.05)
+        time.sleep(period_s)
     return time.monotonic() - began
 
 
@@ -80,7 +80,7 @@ class Daemon:
             with contextlib.suppress(OSError):
                 return bool(self.status())
             return False
-        wait_until("the daemon's start", answers)
+        wait_until("the daemon's start", answers, period_s=0.2)  # more often, the asking takes the start's time away
 
     def status(self):
         """What `octoskin status --json` shows, without its start, which takes this processor a second."""

@@ -42,7 +42,7 @@ class Life:
         end = time.monotonic() + self.up_s
         self.note()
         while time.monotonic() < end:
-            time.sleep(0.1)
+            time.sleep(0.2)
             self.note()
         if self.is_in_save:
             self.await_begin_of_save()
@@ -108,7 +108,8 @@ def check(bench):
     count = int(os.environ.get("OCTOSKIN_HIL_KILLS", "50"))
     seed = int(os.environ.get("OCTOSKIN_HIL_SEED", random.SystemRandom().randrange(10_000)))
     print(f"seed {seed}", flush=True)
-    playing = bench.start("canplayer", f"{daemon_bench.CAN}=can0", "-l", "i", "-I", str(RECORDING / "can.log"))
+    # Looks for what is due each 20 ms: each millisecond, that takes a seventh of the emulated processor.
+    playing = bench.start("canplayer", f"{daemon_bench.CAN}=can0", "-l", "i", "-g", "20", "-I", str(RECORDING / "can.log"))
     lanes = [Lane(bench, f"killed{number}", random.Random(f"{seed} {number}")) for number in range(LANES)]
     with concurrent.futures.ThreadPoolExecutor(LANES) as pool:
         ends = [pool.submit(lane.kill, len(range(number, count, LANES))) for number, lane in enumerate(lanes)]
