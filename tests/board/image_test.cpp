@@ -84,7 +84,7 @@ class ImageTest : public testing::TestWithParam<Speed> {
         EXPECT_LE(flashed.board().core().longest_awake_ps(), 5'000 * kPsPerUs);
     }
 
-    /// At three cycles an instruction the core of 34 sensors is 84 % busy: ready times are seen late,
+    /// At three cycles an instruction the core of 34 sensors is 85 % busy: ready times are seen late,
     /// and a sensor's period may stay a few per cent off until its next trim. Its readings are all taken
     /// nevertheless.
     static double rate_tolerance() { return GetParam().cycles_per_instruction == 1 ? 0.02 : 0.05; }
@@ -135,7 +135,7 @@ NodeConfig with_lines(NodeConfig config) {
     return config;
 }
 
-// A core that is 84 % busy (34 sensors, three cycles an instruction) follows hints too late to save
+// A core that is 85 % busy (34 sensors, three cycles an instruction) follows hints too late to save
 // anything: 1.9 polls a reading either way.
 TEST(ImageDataReady, lines_save_polls_at_full_rate) {
     const PollsAndReadings without = cost_of_a_second(seventeen_at_50_hz());

@@ -104,6 +104,7 @@ TEST(OctoskinBoard, refuses_what_it_cannot_use) {
     EXPECT_EQ(run("").exit_code, 64);
     EXPECT_EQ(run(kImage + kRig + "--i2c-fault bus=9,kind=stretch").exit_code, 64);
     EXPECT_EQ(run(kImage + kRig + "--i2c-fault kind=gremlin").exit_code, 64);
+    EXPECT_EQ(run(kImage + kRig + "--i2c-fault kind=sda_stuck_low,first=400,count=200").exit_code, 64);
     EXPECT_EQ(run(kImage).exit_code, 64) << "no configuration";
     EXPECT_EQ(run("--elf " OCTOSKIN_SOURCE_DIR "/README.md" + kRig).exit_code, 65);
     EXPECT_EQ(run(kImage + " --config " OCTOSKIN_SOURCE_DIR "/README.md").exit_code, 65);

@@ -67,6 +67,9 @@ BusFault parse_i2c_fault(const std::string& text) {
             throw CLI::ValidationError("--i2c-fault", fmt::format("'{}' is not key=value", part));
         set(parsed, part.substr(0, equals), part.substr(equals + 1));
     }
+    if (parsed.fault.kind == sim::I2cFaultKind::sda_stuck_low && parsed.fault.position == 0)
+        throw CLI::ValidationError(
+            "--i2c-fault", "sda_stuck_low wants position=CLOCKS: so many let SDA go again, 100000 hold it");
     return parsed;
 }
 
@@ -101,7 +104,10 @@ void describe(CLI::App& app, Arguments& arguments) {
     app.add_flag("--slow-edges", arguments.has_slow_edges, "I2C edges as slow as the specification allows");
     app.add_option(
         "--i2c-fault", arguments.i2c_faults,
-        "bus=0,kind=stretch,first=100[,count=1][,position=0][,address=0x30]; may be repeated. Kinds: "
+        "bus=0,kind=stretch,first=100[,count=1][,position=0][,address=0x30]; may be repeated. Transfers are "
+        "counted from power-up, position is the byte (of flip_* the bit; of sda_stuck_low, which has no "
+        "count, the "
+        "clocks that let SDA go). Kinds: "
         "nack_address nack_byte nack_read flip_bit flip_written_bit lose_write read_ones "
         "lose_arbitration stretch sda_stuck_low");
     app.add_option("--seed", arguments.seed, "Of the sensors' constants, the unique id and what RAM holds")

@@ -74,6 +74,15 @@ TEST(PeriodTrim, refines_by_whole_steps_of_the_register_to_the_nearest) {
     }
 }
 
+TEST(PeriodTrim, is_refined_from_the_second_time_on) {
+    const Policy policy;
+    PeriodTrim trim{Microseconds{33'000}, policy};
+    for (const bool is_refined : {false, false, true, true}) {
+        EXPECT_EQ(trim.is_refined(), is_refined);
+        (void)trim.refine(Nanoseconds{0}, Nanoseconds{25'000});
+    }
+}
+
 TEST(PeriodTrim, refines_by_as_many_steps_wherever_between_two_values_it_stands) {
     constexpr Nanoseconds kStep{25'141};
     for (int trimmed_us = 32'500; trimmed_us <= 33'500; ++trimmed_us) {
