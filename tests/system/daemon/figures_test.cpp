@@ -74,8 +74,12 @@ class DaemonFigures : public DaemonTest {
             return after["account"][unit][count].get<double>() - before["account"][unit][count].get<double>();
         };
         double clock_error_ms = 0;
-        for (const Json& node : after["nodes"])
-            clock_error_ms = std::max(clock_error_ms, node["clock_error_ms"].get<double>());
+        // It may be in doubt just now: this bus has no kernel's stamps, and its nodes are a thread of a
+        // machine that is busy.
+        for (const Json& node : after["nodes"]) {
+            if (node["clock_known"].get<bool>())
+                clock_error_ms = std::max(clock_error_ms, node["clock_error_ms"].get<double>());
+        }
         std::printf(
             "34 sensors at 50 Hz, %s, %.1f s: %.0f readings/s came, %.0f/s onto the map, %.1f images/s; from "
             "frame to map %.2f ms median, %.2f ms 99 %%, %.2f ms at most; the daemon's processor time %.1f "
