@@ -1,9 +1,11 @@
 // An OpenNI2 driver with one depth camera that a file plugs in: while the file $OCTOSKIN_TEST_CAMERA is
-// there, the camera is, and shows a wall as many millimetres away as the file says. Its frames come at the
-// mode's rate, stamped by its own clock.
+// there, the camera is, and shows a wall as many millimetres away as the file says; of two numbers the second
+// is the left half's. It mirrors unless told not to, as OpenNI2's own drivers do, or whatever it is told
+// ($OCTOSKIN_TEST_CAMERA_MIRRORS). Its frames come at the mode's rate, stamped by its own clock.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -24,13 +26,20 @@ constexpr int kStride = kMode.resolutionX * static_cast<int>(sizeof(OniDepthPixe
 constexpr int kDepthMax = 10'000;
 constexpr std::chrono::milliseconds kPeriod{1000 / kMode.fps};
 
+struct Wall {
+    OniDepthPixel right_mm;
+    OniDepthPixel left_mm;
+};
 /// What is in sight of the camera; empty if it is not plugged in.
-std::optional<OniDepthPixel> wall_mm() {
-    const char* const file = std::getenv("OCTOSKIN_TEST_CAMERA");
-    if (file == nullptr) return std::nullopt;
-    unsigned depth_mm = 0;
-    if (!(std::ifstream(file) >> depth_mm) || depth_mm >= kDepthMax) return std::nullopt;
-    return static_cast<OniDepthPixel>(depth_mm);
+std::optional<Wall> wall() {
+    const char* const name = std::getenv("OCTOSKIN_TEST_CAMERA");
+    if (name == nullptr) return std::nullopt;
+    std::ifstream file(name);
+    unsigned right_mm = 0;
+    if (!(file >> right_mm) || right_mm >= kDepthMax) return std::nullopt;
+    unsigned left_mm = 0;
+    if (!(file >> left_mm) || left_mm >= kDepthMax) left_mm = right_mm;
+    return Wall{static_cast<OniDepthPixel>(right_mm), static_cast<OniDepthPixel>(left_mm)};
 }
 
 template <class T>
@@ -66,6 +75,8 @@ class WallStream final : public oni::driver::StreamBase {
                 return give(kDepthMax, data, size);
             case ONI_STREAM_PROPERTY_MIN_VALUE:
                 return give(0, data, size);
+            case ONI_STREAM_PROPERTY_MIRRORING:
+                return give(OniBool{is_mirrored_ ? TRUE : FALSE}, data, size);
             case ONI_STREAM_PROPERTY_HORIZONTAL_FOV:
             case ONI_STREAM_PROPERTY_VERTICAL_FOV:
                 return give(1.0F, data, size);
@@ -73,7 +84,12 @@ class WallStream final : public oni::driver::StreamBase {
                 return ONI_STATUS_NOT_IMPLEMENTED;
         }
     }
-    OniStatus setProperty(int property, const void* /*data*/, int /*size*/) override {
+    OniStatus setProperty(int property, const void* data, int size) override {
+        if (property == ONI_STREAM_PROPERTY_MIRRORING && size == static_cast<int>(sizeof(OniBool))) {
+            if (std::getenv("OCTOSKIN_TEST_CAMERA_MIRRORS") != nullptr) return ONI_STATUS_NOT_SUPPORTED;
+            is_mirrored_ = *static_cast<const OniBool*>(data) != FALSE;
+            return ONI_STATUS_OK;
+        }
         return property == ONI_STREAM_PROPERTY_VIDEO_MODE ? ONI_STATUS_OK : ONI_STATUS_NOT_IMPLEMENTED;
     }
 
@@ -81,13 +97,13 @@ class WallStream final : public oni::driver::StreamBase {
     void show() {
         auto next = std::chrono::steady_clock::now();
         for (int index = 1; is_running_; ++index) {
-            if (const auto depth_mm = wall_mm()) raise(index, *depth_mm);
+            if (const auto seen = wall()) raise(index, *seen);
             next += kPeriod;
             std::this_thread::sleep_until(next);
         }
     }
 
-    void raise(int index, OniDepthPixel depth_mm) {
+    void raise(int index, const Wall& seen) {
         OniFrame* const frame = getServices().acquireFrame();
         if (frame == nullptr) return;
         const auto since_begin = std::chrono::steady_clock::now() - begin_;
@@ -103,13 +119,19 @@ class WallStream final : public oni::driver::StreamBase {
         frame->stride = kStride;
         frame->dataSize = kStride * kMode.resolutionY;
         auto* const pixels = static_cast<OniDepthPixel*>(frame->data);
-        std::fill_n(pixels, kMode.resolutionX * kMode.resolutionY, depth_mm);
+        const int half = kMode.resolutionX / 2;
+        for (int row = 0; row < kMode.resolutionY; ++row) {
+            auto* const first = pixels + static_cast<std::ptrdiff_t>(row) * kMode.resolutionX;
+            std::fill_n(first, half, is_mirrored_ ? seen.right_mm : seen.left_mm);
+            std::fill_n(first + half, half, is_mirrored_ ? seen.left_mm : seen.right_mm);
+        }
         raiseNewFrame(frame);
         getServices().releaseFrame(frame);
     }
 
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     std::atomic<bool> is_running_ = false;
+    std::atomic<bool> is_mirrored_ = true;
     std::thread thread_;
 };
 
@@ -165,7 +187,7 @@ class PluggedDriver final : public oni::driver::DriverBase {
 
   private:
     void look() {
-        const bool is_plugged = wall_mm().has_value();
+        const bool is_plugged = wall().has_value();
         if (is_plugged == was_plugged_) return;
         was_plugged_ = is_plugged;
         is_plugged ? deviceConnected(&info_) : deviceDisconnected(&info_);

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "host/io/openni2/helpers/frame_pixels.hpp"
@@ -45,6 +46,10 @@ bool DepthStream::start() {
     const auto size = depth_size(stream_);
     if (!size) return refuse("a video mode that octoskin does not read");
     size_ = *size;
+    // OpenNI2's drivers of real cameras mirror unless told not to. A file holds what was recorded, whatever
+    // it is told.
+    if (!device_.isFile()) (void)stream_.setMirroringEnabled(false);
+    is_mirrored_ = stream_.getMirroringEnabled();
     return stream_.start() == openni::STATUS_OK || refuse("cannot start the stream");
 }
 
@@ -57,7 +62,11 @@ bool DepthStream::wait_for_frame() {
 }
 
 std::vector<std::uint16_t> DepthStream::pixels() const {
-    return pixels_of(frame_, size_);
+    auto pixels = pixels_of(frame_, size_);
+    if (!is_mirrored_) return pixels;
+    for (auto row = pixels.begin(); row != pixels.end(); row += size_.width)
+        std::reverse(row, row + size_.width);
+    return pixels;
 }
 
 }  // namespace octoskin::openni2

@@ -41,7 +41,8 @@ class DepthStream {
     [[nodiscard]] int frame_count() { return playback()->getNumberOfFrames(stream_); }
     /// After `start`.
     [[nodiscard]] FrameSize size() const { return size_; }
-    /// The newest frame, and its pixels; empty if it is of another size.
+    /// The newest frame, and its pixels, as seen from the camera (never mirrored); empty if it is of another
+    /// size.
     [[nodiscard]] const openni::VideoFrameRef& frame() const { return frame_; }
     [[nodiscard]] std::vector<std::uint16_t> pixels() const;
 
@@ -51,6 +52,7 @@ class DepthStream {
     openni::VideoStream stream_;
     openni::VideoFrameRef frame_;
     FrameSize size_;
+    bool is_mirrored_ = false;
 };
 
 }  // namespace octoskin::openni2

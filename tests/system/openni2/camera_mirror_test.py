@@ -1,0 +1,34 @@
+#!/usr/bin/env python3
+"""camera_mirror_test.py CAMERA-PROGRAM OPENNI2-FOLDER: left is left, of a camera that mirrors until it is told not to, and of one that
+cannot be told. The folder has the driver of tests/support/camera_driver."""
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+
+HEADER = struct.Struct("4s4I")  # host/io/openni2/frame_pipe.cpp
+LEFT_MM, RIGHT_MM = 1000, 2000
+
+
+def first_row(program, openni2, mirrors):
+    with tempfile.TemporaryDirectory() as scratch:
+        camera = pathlib.Path(scratch, "camera")
+        camera.write_text(f"{RIGHT_MM} {LEFT_MM}")
+        environment = {**os.environ, "LD_LIBRARY_PATH": openni2, "OCTOSKIN_TEST_CAMERA": str(camera), **mirrors}
+        with subprocess.Popen([program, ""], stdout=subprocess.PIPE, env=environment) as process:
+            magic, _, width, _, _ = HEADER.unpack(process.stdout.read(HEADER.size))
+            assert magic == b"OSKD", magic
+            time_us = struct.unpack("Q", process.stdout.read(8))[0]
+            while time_us == 2**64 - 2:  # a frame without a time
+                time_us = struct.unpack("Q", process.stdout.read(8))[0]
+            row = struct.unpack(f"{width}H", process.stdout.read(2 * width))
+            process.kill()
+            return row
+
+
+for environment in ({}, {"OCTOSKIN_TEST_CAMERA_MIRRORS": "1"}):
+    row = first_row(sys.argv[1], sys.argv[2], environment)
+    half = len(row) // 2
+    assert set(row[:half]) == {LEFT_MM} and set(row[half:]) == {RIGHT_MM}, (environment, row)
