@@ -68,8 +68,9 @@ void PhaseHold::observe(const TimeBracket& ready) noexcept {
 
 /// For a range whose time is known better than this first one's.
 bool PhaseHold::is_worth_waiting(const TimeBracket& ready) const noexcept {
-    return ready.width() > policy_.phase_first_known_within &&
-           elapsed(start_.at.earliest, ready.middle()) <= kFirstWithin * start_.period;
+    const Microseconds after = elapsed(start_.at.earliest, ready.middle());
+    const bool is_soon = after.count() >= 0 && after <= kFirstWithin * start_.period;
+    return is_soon && ready.width() > policy_.phase_first_known_within;
 }
 
 /// Whether so long after the last one it is known which range this is: by then the sensor may not have walked

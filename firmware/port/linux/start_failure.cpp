@@ -16,7 +16,8 @@ const char* device_remedy(int error_number) {
         case ENOENT:
         case ENXIO:
         case ENODEV:
-            return "; is it enabled (dtoverlay, `modprobe i2c-dev`)?";
+            return "; is it enabled (an I2C bus by dtoverlay and `modprobe i2c-dev`), or named otherwise "
+                   "(`gpiodetect`)?";
         default:
             return "";
     }

@@ -1,5 +1,5 @@
 // `octoskin run`: what is there for as long as the robot is. One thread owns the pipeline and the map; the
-// camera and the disk have threads of their own, which hand over values.
+// camera, the disk and the socket for joint states have threads of their own, which hand over values.
 #pragma once
 
 #include <memory>

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cerrno>
+#include <new>
 #include <span>
 #include <system_error>
 #include <utility>
@@ -21,9 +22,16 @@ DatagramFeed::DatagramFeed(int socket, std::size_t bytes_max)
       room_(bytes_max),
       event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
       end_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
-    if (event_ < 0 || end_ < 0)
-        throw std::system_error(errno, std::generic_category(), "cannot make an eventfd");
-    thread_ = start_without_signals([this] { work(); });
+    try {
+        if (event_ < 0 || end_ < 0)
+            throw std::system_error(errno, std::generic_category(), "cannot make an eventfd");
+        thread_ = start_without_signals([this] { work(); });
+    } catch (...) {
+        for (const int descriptor : {event_, end_}) {
+            if (descriptor >= 0) ::close(descriptor);
+        }
+        throw;
+    }
 }
 
 DatagramFeed::~DatagramFeed() {
@@ -54,7 +62,12 @@ void DatagramFeed::work() {
         (void)::poll(watched.data(), watched.size(), -1);
         if (watched[1].revents != 0) return;
         // Not all that is there under one lock: whoever takes has a turn between two of a flood.
-        put_next();
+        try {
+            put_next();
+        } catch (const std::bad_alloc&) {
+            const std::lock_guard lock(mutex_);
+            ++displaced_;
+        }
     }
 }
 

@@ -13,6 +13,9 @@ namespace {
 constexpr std::chrono::milliseconds kCameraSilenceMax{2'000};
 /// Frames taken in one go before others have a turn.
 constexpr int kFramesPerTurn = 256;
+// More than any arm tells beside so many frames: a flood does not keep the bus waiting. What is left over
+// then comes a turn too late for its place.
+constexpr int kDatagramsPerTurn = 256;
 
 CanLink::Opener opener(const DaemonRequest& request, const HostRig& rig) {
     if (request.can_descriptor) {
@@ -122,11 +125,12 @@ void Inputs::catch_up() {
 
 /// The bus's time is told by the order of stamps: what comes through the socket takes its place in it.
 bool Inputs::drain_can() {
+    int datagrams_left = kDatagramsPerTurn;
     for (int i = 0; i < kFramesPerTurn; ++i) {
-        collect_joints();  // first: what it does not find comes later than the frame
+        collect_joints(datagrams_left);  // first: what it does not find comes later than the frame
         const auto received = can_.receive();
         feed_joints(received ? std::optional(received->entry.stamp) : std::nullopt);
-        if (!received) return true;
+        if (!received) return datagrams_left > 0;
         take_frame(*received);
     }
     return false;
@@ -193,12 +197,11 @@ void Inputs::feed(const wire::CanFrame& frame, WallTime stamp) {
     for (std::uint64_t i = 0; i < used; ++i) latency_.add(took);
 }
 
-void Inputs::collect_joints() {
-    constexpr int kDatagramsPerTurn = 256;  // a flood does not keep the frames of the bus waiting
+void Inputs::collect_joints(int& datagrams_left) {
     constexpr std::size_t kWaitingMax = 256;
     if (!joints_) return;
     std::optional<JointSample> sample;
-    for (int i = 0; i < kDatagramsPerTurn && joints_waiting_.size() < kWaitingMax; ++i) {
+    for (; datagrams_left > 0 && joints_waiting_.size() < kWaitingMax; --datagrams_left) {
         if (!joints_->receive(sample)) return;
         if (sample) joints_waiting_.push_back(std::move(*sample));  // else counted by the socket
     }

@@ -78,7 +78,7 @@ class Inputs {
     void answer_sync(const socketcan::Received& received, HostTime at);
     void hear_host(const socketcan::Received& received, HostTime at);
     void feed(const wire::CanFrame& frame, WallTime stamp);
-    void collect_joints();
+    void collect_joints(int& datagrams_left);
     void feed_joints(std::optional<WallTime> until);
     void drain_camera();
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <system_error>
 #include <utility>
 
 #include "host/apps/daemon/unix_socket.hpp"
@@ -72,7 +73,13 @@ Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& fil
     const auto descriptor = bind_unix_socket(file, SOCK_DGRAM);
     if (!descriptor) return unexpected(descriptor.error());
     (void)socketcan::want_stamps(*descriptor);
-    return JointSocket(file, std::make_unique<DatagramFeed>(*descriptor, kJointTextMax + 1), joint_count);
+    try {
+        return JointSocket(file, std::make_unique<DatagramFeed>(*descriptor, kJointTextMax + 1), joint_count);
+    } catch (const std::system_error& error) {
+        ::close(*descriptor);
+        ::unlink(file.c_str());
+        return fail(ExitCode::unavailable, fmt::format("{}: {}", file.string(), error.what()));
+    }
 }
 
 JointSocket& JointSocket::operator=(JointSocket&& other) noexcept {

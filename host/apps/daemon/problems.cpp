@@ -111,16 +111,33 @@ bool has_stopped(const std::optional<HostTime>& last, HostTime now) {
     return last && now - *last > kPatience;
 }
 
+/// "wrong_count 5, time_off 1"; empty if nothing was refused.
+std::string refused_lines(const JointSocket& socket) {
+    constexpr auto kNames = names_of(JointTextFault{});
+    std::string text;
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+        const std::uint64_t count = socket.faults().at(i);
+        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kNames.at(i), count);
+    }
+    return text;
+}
+
+std::string why_no_joints(const DaemonView& view) {
+    const JointSocket* const socket = view.inputs->joints();
+    if (socket == nullptr) {
+        return fmt::format("no joint states: none from node {} on the bus (and no --joints)",
+                           view.rig->joints.node_id);
+    }
+    if (const std::string refused = refused_lines(*socket); !refused.empty())
+        return "no joint states: what comes through the socket is refused (" + refused + ")";
+    return "no joint states: none comes through the socket (`octoskin joints`)";
+}
+
 void add_joints(const DaemonView& view, Problems& problems) {
     constexpr std::uint64_t kFirstSamples = 5;  // of a source: nothing is known of it yet
     const auto& joints = view.pipeline->accounts().joint_samples;
     if (joints.in() == 0) {
-        problems.push_back(
-            {"no joints",
-             view.inputs->joints() != nullptr
-                 ? std::string("no joint states: none comes through the socket (`octoskin joints`)")
-                 : fmt::format("no joint states: none from node {} on the bus (and no --joints)",
-                               view.rig->joints.node_id)});
+        problems.push_back({"no joints", why_no_joints(view)});
     } else if (!view.used.joint_sample) {
         problems.push_back(
             {"joints unused", "no joint state could be used: see the counters of joint samples"});

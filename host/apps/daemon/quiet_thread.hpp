@@ -18,9 +18,11 @@ template <class Work>
     sigset_t before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    std::thread thread(std::move(work));
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    return thread;
+    struct Restored {
+        const sigset_t& mask;
+        ~Restored() { pthread_sigmask(SIG_SETMASK, &mask, nullptr); }
+    } const restored{before};
+    return std::thread(std::move(work));
 }
 
 /// A thread of that kind that a disk may hold in the middle of a write: whoever ends it waits so long and no

@@ -58,8 +58,16 @@ class SocketOutput final : public JointOutput {
     bool put(const std::string& line, const std::optional<JointSample>& /*sample*/) override {
         attend();
         if (descriptor_ < 0) return false;
-        if (::send(descriptor_, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT) >= 0) return true;
-        if (errno != EAGAIN && errno != EWOULDBLOCK) {  // else the daemon is busy
+        // The kernel keeps ten: if more come at once there is room again soon, unless the daemon is stuck.
+        // For that one no line waits: it would hold up whoever writes them.
+        pollfd room{descriptor_, POLLOUT, 0};
+        const bool is_through = is_sent(line) || (errno == EAGAIN && !is_stuck_ &&
+                                                  ::poll(&room, 1, kPatienceMs) == 1 && is_sent(line));
+        is_stuck_ = !is_through && errno == EAGAIN;
+        if (is_through) return true;
+        if (is_stuck_) {
+            why_ = file_.string() + ": the daemon takes nothing";
+        } else {
             close();
             why_ = file_.string() + ": the daemon is gone";
         }
@@ -77,11 +85,16 @@ class SocketOutput final : public JointOutput {
     [[nodiscard]] std::string why() const override { return why_; }
 
   private:
+    static constexpr int kPatienceMs = 100;
+    [[nodiscard]] bool is_sent(const std::string& line) const {
+        return ::send(descriptor_, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT) >= 0;
+    }
     void close() {
         if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
     }
     std::filesystem::path file_;
     int descriptor_ = -1;
+    bool is_stuck_ = false;  ///< the daemon, when the newest line came
     std::optional<HostTime> tried_;
     std::string why_;
 };

@@ -1,6 +1,7 @@
 #include "host/io/socketcan/stamped_datagram.hpp"
 
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstring>
@@ -14,6 +15,16 @@ Value value_of(const cmsghdr* part) {
     Value value{};
     std::memcpy(&value, CMSG_DATA(part), sizeof(value));
     return value;
+}
+
+/// Nobody asked for them: kept, they would be all that the process may have, some day.
+void close_descriptors(const cmsghdr* part) {
+    const std::size_t count = (part->cmsg_len - CMSG_LEN(0)) / sizeof(int);
+    for (std::size_t i = 0; i < count; ++i) {
+        int descriptor = -1;
+        std::memcpy(&descriptor, CMSG_DATA(part) + i * sizeof(int), sizeof(descriptor));
+        ::close(descriptor);
+    }
 }
 
 WallTime wall_time(const timespec& time) {
@@ -36,13 +47,14 @@ StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes) {
     message.msg_control = control.data();
     message.msg_controllen = control.size();
     StampedDatagram datagram;
-    datagram.count = ::recvmsg(descriptor, &message, MSG_DONTWAIT);
+    datagram.count = ::recvmsg(descriptor, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
     if (datagram.count < 0) return datagram;
     datagram.flags = message.msg_flags;
     for (cmsghdr* beside = CMSG_FIRSTHDR(&message); beside != nullptr;
          beside = CMSG_NXTHDR(&message, beside)) {
         if (beside->cmsg_level != SOL_SOCKET) continue;
         if (beside->cmsg_type == SO_TIMESTAMPNS) datagram.stamp = wall_time(value_of<timespec>(beside));
+        if (beside->cmsg_type == SCM_RIGHTS) close_descriptors(beside);
         if (beside->cmsg_type == SO_RXQ_OVFL) datagram.dropped = value_of<std::uint32_t>(beside);
     }
     return datagram;

@@ -64,6 +64,35 @@ TEST(JointsCommand, waits_for_the_daemon_and_takes_it_back) {
     EXPECT_NE(log.find("go through again"), std::string::npos) << log;
 }
 
+// The kernel keeps ten of them.
+TEST(JointsCommand, loses_nothing_of_a_burst_while_the_daemon_is_slow) {
+    constexpr int kLines = 60;
+    const testing_support::ScratchFolder folder;
+    const Taker taker(folder / "joints");
+    const std::string command = "yes 1 2 3 | head -n " + std::to_string(kLines) +
+                                " | " OCTOSKIN_PROGRAM " joints --socket " + (folder / "joints").string() +
+                                " 2> " + (folder / "log").string();
+    int outcome = -1;
+    std::thread forwarder([&] { outcome = std::system(command.c_str()); });
+    int taken = 0;
+    for (; taken < kLines && taker.gets_a_line(2s); ++taken) std::this_thread::sleep_for(5ms);
+    forwarder.join();
+    EXPECT_EQ(WEXITSTATUS(outcome), 0);
+    EXPECT_EQ(taken, kLines) << testing_support::ScratchFolder::read(folder / "log");
+}
+
+TEST(JointsCommand, holds_nobody_up_for_a_daemon_that_is_stuck) {
+    const testing_support::ScratchFolder folder;
+    const Taker stuck(folder / "joints");
+    const std::string command = "yes 1 2 3 | head -n 300 | " OCTOSKIN_PROGRAM " joints --socket " +
+                                (folder / "joints").string() + " 2> " + (folder / "log").string();
+    const auto begun = std::chrono::steady_clock::now();
+    (void)std::system(command.c_str());
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, 5s) << "300 lines of 100 ms would be 30 s";
+    const std::string log = testing_support::ScratchFolder::read(folder / "log");
+    EXPECT_NE(log.find("takes nothing"), std::string::npos) << log;
+}
+
 TEST(JointsCommand, says_at_the_end_that_nobody_was_there) {
     const testing_support::ScratchFolder folder;
     const std::string command =

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """Which kind of machine is booted, of what this kernel and the tools are said to lack."""
+import pathlib
+import tempfile
 import unittest
 
 import machine
@@ -52,6 +54,39 @@ class Choice(unittest.TestCase):
         code, said = self.refused("qemu", not_asked, not_asked)
         self.assertEqual(code, machine.BROKEN)
         self.assertIn("OCTOSKIN_HIL=qemu", said)
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.folder = pathlib.Path(self.scratch.name) / "boards"
+
+    def test_is_made_or_made_anew_where_a_machine_was(self):
+        for left in (None, "kind", "skipped", "pid"):
+            if left:
+                (self.folder / left).write_text("0")
+            machine.make_anew(self.folder)
+            self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_of_something_else_is_not_touched(self):
+        self.folder.mkdir()
+        (self.folder / "thesis.tex").write_text("years")
+        with self.assertRaises(machine.MachineError) as raised:
+            machine.make_anew(self.folder)
+        self.assertIn(str(self.folder), str(raised.exception))
+        self.assertEqual((self.folder / "thesis.tex").read_text(), "years")
+
+    def test_that_cannot_be_removed_is_an_error_that_names_it(self):
+        self.folder.write_text("a file of this name")
+        with self.assertRaises(machine.MachineError) as raised:
+            machine.make_anew(self.folder)
+        self.assertIn(str(self.folder), str(raised.exception))
+
+
+class ExitCode(unittest.TestCase):
+    def test_of_what_a_signal_ended_is_the_shells(self):
+        self.assertEqual([machine.as_a_shell_gives_it(code) for code in (0, 1, 77, -9, -15)], [0, 1, 77, 137, 143])
 
 
 if __name__ == "__main__":

@@ -146,6 +146,11 @@ def is_root():
     return os.geteuid() == 0
 
 
+def as_a_shell_gives_it(returncode):
+    """Python tells the signal that ended a program as a negative number."""
+    return 128 - returncode if returncode < 0 else returncode
+
+
 class NativeMachine(Machine):
     """This kernel, with interfaces, mounts and processes of its own."""
     kind = "native"
@@ -157,7 +162,9 @@ class NativeMachine(Machine):
         """As this machine numbers it; None if it is gone, or not yet there."""
         with contextlib.suppress(OSError, ValueError):
             if self.is_running():
-                return int((self.folder / "first").read_text())
+                first = int((self.folder / "first").read_text())
+                if str(self.folder).encode() in pathlib.Path(f"/proc/{first}/cmdline").read_bytes():
+                    return first
         return None
 
     def entered(self, *command):
@@ -173,7 +180,7 @@ class NativeMachine(Machine):
         with open(self.folder / f"{name}.out", "wb") as output:
             done = subprocess.run(self.entered("timeout", "-k", "2", seconds, "bash", script), stdin=subprocess.DEVNULL,
                                   stdout=output, stderr=output, env=ENVIRONMENT, check=False)
-        code = 128 - done.returncode if done.returncode < 0 else done.returncode  # as a shell gives that of what a signal ended
+        code = as_a_shell_gives_it(done.returncode)
         (self.folder / f"{name}.code").write_text(f"{code}\n")
         return code, (self.folder / f"{name}.out").read_bytes()
 
@@ -274,6 +281,8 @@ class VirtualMachine(Machine):
 
 def native_lacks(board):
     """Why a native machine cannot be; None if it can. Changes nothing, but that the kernel may load its module vcan."""
+    if pathlib.Path("/run") in HERE.parents:
+        return f"a native machine has a /run of its own, and {HERE} lies below it"
     try:
         socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW).close()
     except OSError as error:
@@ -295,7 +304,9 @@ def boards_lack():
         return "there is no gpio-sim (modprobe gpio-sim)"
     if not pathlib.Path("/dev/cuse").exists():
         return "there is no CUSE (modprobe cuse)"
-    there = [str(device) for device in BOARD_DEVICES if device.exists()]
+    # An adapter is there without its device, until somebody loads i2c-dev.
+    there = [str(device) for device in BOARD_DEVICES
+             if device.exists() or pathlib.Path("/sys/bus/i2c/devices", device.name).exists()]
     return f"{there[0]} is there already" if there else None
 
 
@@ -327,11 +338,22 @@ def choose(asked, why_not_native, why_not_virtual):
     return "virtual", "OCTOSKIN_HIL=virtual" if asked else lacks
 
 
+def make_anew(folder):
+    """Empty; a folder that was no machine's is not touched."""
+    if folder.is_dir() and any(folder.iterdir()) and not any((folder / name).exists() for name in ("kind", "skipped", "pid")):
+        raise MachineError(f"{folder} is not empty and not a machine's: name another folder")
+    try:
+        with contextlib.suppress(MachineError):
+            machine_in(folder).kill()  # left over from a run that was broken off
+        if folder.exists():
+            shutil.rmtree(folder)
+        folder.mkdir(parents=True)
+    except OSError as error:
+        raise MachineError(f"{error.filename or folder}: {error.strerror}; a machine of another user's? Its owner can stop and remove it") from error
+
+
 def boot(folder, binaries, board, disk):
-    with contextlib.suppress(MachineError):
-        machine_in(folder).kill()  # left over from a run that was broken off
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+    make_anew(folder)
     try:
         boot_in(folder, binaries, board, disk)
     except MachineError as error:

@@ -21,9 +21,9 @@ sleep infinity &
 echo "$first" >"$folder/first"
 : >"$folder/up"
 wait $! || true
-disown
+disown || true  # gone already, if the end was told to all of us
 
-kill -KILL -1  # of its own processes; who was given a line or a device keeps it until then
+kill -KILL -1 || true  # of its own processes; who was given a line or a device keeps it until then
 for _ in {1..100}; do
     left=(/proc/[0-9]*)
     [ ${#left[@]} -gt 1 ] || break

@@ -8,10 +8,15 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <iterator>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -116,6 +121,38 @@ TEST_F(JointSocketTest, counts_what_is_no_sample_under_its_name_and_goes_on) {
     EXPECT_TRUE(socket_.receive(sample));
     EXPECT_TRUE(sample);
     EXPECT_EQ(socket_.samples(), 1U);
+}
+
+// Kept, they would be all that the process may have, some day.
+TEST_F(JointSocketTest, keeps_no_descriptor_that_somebody_sends_along) {
+    const auto descriptors = [] {
+        const std::filesystem::directory_iterator open_now("/proc/self/fd");
+        return std::distance(begin(open_now), end(open_now));
+    };
+    const auto before = descriptors();
+    const int sender = connect_unix_socket(file_, SOCK_DGRAM).value();
+    for (int i = 0; i < 10; ++i) {
+        std::string text = "0.1 0.2 0.3";
+        iovec part{text.data(), text.size()};
+        alignas(cmsghdr) std::array<char, CMSG_SPACE(2 * sizeof(int))> control{};
+        msghdr message{};
+        message.msg_iov = &part;
+        message.msg_iovlen = 1;
+        message.msg_control = control.data();
+        message.msg_controllen = control.size();
+        cmsghdr* const beside = CMSG_FIRSTHDR(&message);
+        beside->cmsg_level = SOL_SOCKET;
+        beside->cmsg_type = SCM_RIGHTS;
+        beside->cmsg_len = CMSG_LEN(2 * sizeof(int));
+        const std::array<int, 2> sent{STDOUT_FILENO, sender};
+        std::memcpy(CMSG_DATA(beside), sent.data(), sizeof(sent));
+        ASSERT_GT(::sendmsg(sender, &message, 0), 0);
+        std::optional<JointSample> sample;
+        ASSERT_TRUE(socket_.receive(sample));
+        EXPECT_TRUE(sample);
+    }
+    ::close(sender);
+    EXPECT_EQ(descriptors(), before);
 }
 
 TEST_F(JointSocketTest, takes_as_many_joints_as_the_rig_that_is_loaded_anew) {

@@ -212,6 +212,11 @@ TEST_F(ProblemsTest, have_joint_states_that_are_not_there_or_of_no_use) {
     const auto with_socket = inputs_with_joint_socket();
     view_.inputs = with_socket.get();
     EXPECT_EQ(told("no joints"), "no joint states: none comes through the socket (`octoskin joints`)");
+    send_joints("half a turn");
+    send_joints("1 2 3 4");
+    with_socket->catch_up();
+    EXPECT_EQ(told("no joints"),
+              "no joint states: what comes through the socket is refused (not_a_number 1, wrong_count 1)");
     Scene scene = daemon_scene();
     scene.bus = ScriptedBus{};
     for (int k = 0; k <= 8; ++k) scene.bus.exchange(0.1 + k, {kLeft});
