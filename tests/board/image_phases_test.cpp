@@ -73,14 +73,14 @@ TEST_P(ImagePhases, sensors_keep_taking_turns_where_the_rig_asks_for_it) {
 }
 
 // A core that takes three cycles an instruction knows ready times less well, the more so where edges are as
-// slow as the specification allows.
+// slow as the specification allows. At 30 Hz a sensor may walk farther before it is started anew.
 INSTANTIATE_TEST_SUITE_P(
     Fleets, ImagePhases,
     testing::Values(HeldFleet{"34_at_30_hz", thirty_four_at_30_hz(), {1, BusEdges::typical}, 450.0},
                     HeldFleet{"34_at_30_hz_slow_core", thirty_four_at_30_hz(), {3, BusEdges::typical}, 600.0},
-                    HeldFleet{"17_at_50_hz", seventeen_at_50_hz(), {1, BusEdges::typical}, 450.0},
-                    HeldFleet{"17_at_50_hz_slow_core", seventeen_at_50_hz(), {3, BusEdges::typical}, 600.0},
-                    HeldFleet{"17_at_50_hz_slow_edges", seventeen_at_50_hz(), {3, BusEdges::slowest}, 600.0}),
+                    HeldFleet{"17_at_50_hz", seventeen_at_50_hz(), {1, BusEdges::typical}, 400.0},
+                    HeldFleet{"17_at_50_hz_slow_core", seventeen_at_50_hz(), {3, BusEdges::typical}, 550.0},
+                    HeldFleet{"17_at_50_hz_slow_edges", seventeen_at_50_hz(), {3, BusEdges::slowest}, 550.0}),
     [](const auto& tested) { return tested.param.name; });
 
 }  // namespace

@@ -106,8 +106,7 @@ void describe(CLI::App& app, Arguments& arguments) {
         "--i2c-fault", arguments.i2c_faults,
         "bus=0,kind=stretch,first=100[,count=1][,position=0][,address=0x30]; may be repeated. Transfers are "
         "counted from power-up, position is the byte (of flip_* the bit; of sda_stuck_low, which has no "
-        "count, the "
-        "clocks that let SDA go). Kinds: "
+        "count, the clocks that let SDA go). Kinds: "
         "nack_address nack_byte nack_read flip_bit flip_written_bit lose_write read_ones "
         "lose_arbitration stretch sda_stuck_low");
     app.add_option("--seed", arguments.seed, "Of the sensors' constants, the unique id and what RAM holds")
