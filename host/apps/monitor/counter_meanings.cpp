@@ -5,14 +5,20 @@
 namespace octoskin {
 namespace {
 
-struct Meaning {
-    std::string_view unit;
-    std::string_view name;
-    std::string_view text;
-};
-
-// As docs/account.md has them, and for the same reader; a test holds them complete.
-constexpr std::array kMeanings = {
+// Word for word as docs/account.md has them; a test holds the two equal and complete.
+constexpr std::array kCounterMeanings = {
+    Meaning{"log lines", "line_blank", "nothing on the line"},
+    Meaning{"log lines", "line_foreign", "does not begin with \"(\": not a line of candump"},
+    Meaning{"log lines", "line_timestamp", "not \"(seconds.fraction)\" with 6 or 9 digits of fraction"},
+    Meaning{"log lines", "line_interface",
+            "the interface is missing, longer than 15 characters, or not printable"},
+    Meaning{"log lines", "line_identifier", "not 3 or 8 hexadecimal digits, or out of range"},
+    Meaning{"log lines", "line_data",
+            "no \"#\", a digit that is not hexadecimal, half a byte, or something behind the frame"},
+    Meaning{"log lines", "line_length", "more than 8 bytes, or a length that CAN FD does not have"},
+    Meaning{"log lines", "line_too_long", "longer than any line that candump writes (256 bytes)"},
+    Meaning{"log lines", "line_truncated", "the file ends within the line"},
+    Meaning{"log lines", "other_interface", "a good line of another CAN interface than the one replayed"},
     Meaning{"CAN frames", "foreign_format",
             "extended, remote or error frame, or CAN FD where classical belongs and the reverse"},
     Meaning{"CAN frames", "unknown_type", "an identifier that the protocol does not assign"},
@@ -108,9 +114,9 @@ constexpr std::array kMeanings = {
     Meaning{"depth frames", "no_camera", "the rig has no camera"},
     Meaning{"depth frames", "wrong_size", "not the camera's width and height in the rig"},
     Meaning{"depth frames", "out_of_order", "not later than the frame before it"},
-    Meaning{
-        "depth frames", "ahead_of_time",
-        "captured over a second after all that the bus told: it is silent, or the camera's clock is wrong"},
+    Meaning{"depth frames", "ahead_of_time",
+            "captured over a second after all that was told of the time: the bus fell silent, its log ends "
+            "before the images, or the camera's clock is wrong"},
     Meaning{"depth frames", "queue_overflow", "displaced by newer ones in a full queue"},
     Meaning{"depth frames", "outside_marks",
             "captured before START, after STOP, or before the first usable reading"},
@@ -119,14 +125,24 @@ constexpr std::array kMeanings = {
             "no pose of the arm at its capture time, so that the robot cannot be taken out"},
     Meaning{"depth frames", "outside_map", "the camera stands beyond the octree, or its pose is no number"},
     Meaning{"depth frames", "box_too_large", "its rays span more voxels than depth_box_voxels_max"},
+    Meaning{"depth images", "without_pose",
+            "groundtruth.txt has no poses about its time; usual at the beginning and the end"},
+    Meaning{"depth images", "unreadable",
+            "missing, damaged, or not grey with 16 bits: the replay ends there"},
+    Meaning{"depth pixels", "no_value", "the camera or the filter gave none"},
+    Meaning{"depth pixels", "robot", "on the robot, taken out"},
+    Meaning{"depth pixels", "bad_value", "infinite, zero or negative"},
+    Meaning{"depth pixels", "outside_map", "beyond the bounds of the octree"},
 };
 
 }  // namespace
 
+std::span<const Meaning> counter_meanings() noexcept {
+    return kCounterMeanings;
+}
+
 std::string_view meaning_of(std::string_view unit, std::string_view name) noexcept {
-    for (const Meaning& meaning : kMeanings)
-        if (meaning.unit == unit && meaning.name == name) return meaning.text;
-    return {};
+    return find_meaning(kCounterMeanings, unit, name);
 }
 
 }  // namespace octoskin

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "host/apps/monitor/counter_meanings.hpp"
+#include "host/apps/monitor/status_meanings.hpp"
 
 namespace octoskin {
 namespace {
@@ -56,6 +57,7 @@ class Screen {
         for (std::size_t i = 0; i < length(at(now_, "nodes")); ++i) add_node(i);
         add_joints();
         add_camera();
+        add_recording();
         add_map();
         add_counters();
         return std::move(lines_);
@@ -94,12 +96,10 @@ class Screen {
                         at(can, "listen_only") == true ? ", listening only" : "",
                         at(clock, "known") == true ? "known" : "NOT known"),
             Emphasis::title);
-        add_nonzero("  ", can,
-                    {"not_sent", "error_frames", "dropped_by_kernel", "malformed", "bus_off", "went_down",
-                     "reopened"});
-        add_nonzero(
-            "  clock: ", clock,
-            {"times_back", "follow_up_outliers", "steps_back", "steps_ahead", "stamps_ignored", "relocks"});
+        add_nonzero("can", {"not_sent", "error_frames", "dropped_by_kernel", "malformed", "bus_off",
+                            "went_down", "reopened"});
+        add_nonzero("clock", {"times_back", "follow_up_outliers", "steps_back", "steps_ahead",
+                              "stamps_ignored", "relocks"});
         const Json& latency = at(now_, "latency");
         add(fmt::format("  from frame to map: {:.2f} ms median, {:.2f} ms 99 %, {:.2f} ms longest",
                         number(at(latency, "median_ms")), number(at(latency, "p99_ms")),
@@ -134,13 +134,15 @@ class Screen {
         const bool is_ranging = text(at(sensor, "state")) == "ranging";
         const bool contradicts = at(at(sensor, "camera"), "contradicts") == true;
         const bool has_fault = !at(sensor, "fault").is_null() && text(at(sensor, "fault")) != "none";
-        add(fmt::format("  {:>2} {:<14} {} {:>8} {:>12}  status {}{}{}{}{}", text(at(sensor, "index")),
+        const bool has_lost = number(at(sensor, "lost")) != 0.0;
+        add(fmt::format("  {:>2} {:<14} {} {:>8} {:>12}  status {}{}{}{}{}{}", text(at(sensor, "index")),
                         text(at(sensor, "name")), range,
                         rate(at(before, "received"), at(sensor, "received"), passed_),
                         age(at(sensor, "age_s")), text(at(sensor, "device_status")),
                         is_ranging ? "" : ", " + text(at(sensor, "state")),
                         has_fault ? ", " + text(at(sensor, "fault")) : "",
                         at(sensor, "rejected").is_null() ? "" : ", not used: " + text(at(sensor, "rejected")),
+                        has_lost ? ", lost on the bus: " + count(at(sensor, "lost")) : "",
                         contradicts ? ", CONTRADICTS the camera" : ""),
             is_ranging && !contradicts ? Emphasis::none : Emphasis::bad);
         add_reflex(sensor, before);
@@ -159,10 +161,8 @@ class Screen {
             return at(at(at(status, "account"), "joint samples"), "used");
         };
         add("joint samples " + rate(used(before_), used(now_), passed_) + " used", Emphasis::title);
-        const Json& socket = at(now_, "joints_socket");
-        add_nonzero("  socket: ", socket,
-                    {"samples", "displaced", "thinned", "joint_node_ignored", "not_a_number", "wrong_count",
-                     "time_off", "too_large", "too_long"});
+        add_nonzero("joints_socket", {"samples", "displaced", "thinned", "joint_node_ignored", "not_a_number",
+                                      "wrong_count", "time_off", "too_large", "too_long"});
     }
     void add_camera() {
         const Json& camera = at(now_, "camera");
@@ -173,7 +173,18 @@ class Screen {
                                   age(at(camera, "age_s")))
                     : "camera closed: " + text(at(camera, "why")),
             is_open ? Emphasis::title : Emphasis::bad);
-        add_nonzero("  ", camera, {"displaced", "untimed", "opened"});
+        add_nonzero("camera", {"displaced", "untimed", "opened"});
+    }
+    void add_recording() {
+        const Json& recording = at(now_, "recording");
+        if (recording.is_null()) return;
+        const std::string error = text(at(recording, "error"));
+        const bool is_whole = error.empty() && at(recording, "is_complete") != false;
+        add(fmt::format("recording {}: {}, {:.0f} s{}", text(at(recording, "folder")),
+                        text(at(recording, "state")), number(at(recording, "seconds")),
+                        error.empty() ? "" : ": " + error),
+            is_whole ? Emphasis::title : Emphasis::bad);
+        add_nonzero("recording", {"lost_can", "lost_commits", "lost_depth"});
     }
     void add_map() {
         const Json& map = at(now_, "map");
@@ -181,7 +192,8 @@ class Screen {
                         text(at(map, "resolution_m")), number(at(map, "memory_mib")),
                         count(at(map, "memory_max_mib")), age(at(map, "saved_age_s"))),
             Emphasis::title);
-        add_nonzero("  ", map, {"no_room", "saves_failed", "saves_skipped"});
+        add_nonzero("map", {"no_room", "saves_failed", "saves_skipped"});
+        add_nonzero("reloads", {"dropped"});
     }
     /// Each unit, and why what was not used was not.
     void add_counters() {
@@ -192,18 +204,21 @@ class Screen {
                 add("  the counters do not add up: a defect of octoskin", Emphasis::bad);
             for (const auto& [name, value] : at(account, "rejected").items()) {
                 const Json& was = at(at(at(at(before_, "account"), unit), "rejected"), name);
-                add(fmt::format("  {:>9} {:<21} {:>8}  {}", count(value), name, rate(was, value, passed_),
-                                meaning_of(unit, name)));
+                add_counter(name, was, value, meaning_of(unit, name));
             }
         }
     }
-    void add_nonzero(const std::string& begin, const Json& object, std::initializer_list<const char*> keys) {
-        std::string line;
-        for (const char* key : keys) {
-            if (number(at(object, key)) == 0.0) continue;
-            line += fmt::format("{}{} {}", line.empty() ? "" : ", ", key, count(at(object, key)));
+    /// Of the object under `group`, those that are not 0.
+    void add_nonzero(const char* group, std::initializer_list<const char*> names) {
+        const Json& object = at(now_, group);
+        for (const char* name : names) {
+            const Json& value = at(object, name);
+            if (number(value) != 0.0)
+                add_counter(name, at(at(before_, group), name), value, status_meaning_of(group, name));
         }
-        if (!line.empty()) add(begin + line);
+    }
+    void add_counter(std::string_view name, const Json& before, const Json& now, std::string_view meaning) {
+        add(fmt::format("  {:>9} {:<21} {:>8}  {}", count(now), name, rate(before, now, passed_), meaning));
     }
 
     const Json& before_;

@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 
 #include "common/wire/codec.hpp"
 #include "common/wire/crc.hpp"
+#include "host/apps/monitor/status_meanings.hpp"
 #include "host/apps/version/version.hpp"
 #include "tests/unit/host/apps/daemon/daemon_view_fixture.hpp"
 
@@ -276,6 +279,39 @@ TEST_F(StatusTest, has_a_balanced_account_of_every_unit_with_the_reasons_that_oc
     EXPECT_EQ(account["joint samples"]["balanced"], true);
     EXPECT_EQ(account["CAN frames"]["balanced"], true);
     EXPECT_EQ(account.size(), 4U);
+}
+
+/// "group name" of each key, as status_meanings() has them; of each unit of the account the same keys.
+void add_keys(const Json& value, const std::string& group, std::set<std::string>& keys) {
+    if (value.is_array()) {
+        for (const Json& item : value) add_keys(item, group, keys);
+        return;
+    }
+    if (!value.is_object()) return;
+    for (const auto& [name, part] : value.items()) {
+        keys.insert(group + " " + name);
+        const std::string path = group.empty() ? name : group + "." + name;
+        if (path == "account") {
+            for (const Json& unit : part) add_keys(unit, path, keys);
+        } else if (path != "account.rejected") {
+            add_keys(part, path, keys);
+        }
+    }
+}
+
+TEST_F(StatusTest, has_every_key_with_a_meaning_and_no_other) {
+    const auto with_socket = inputs_with_joint_socket();
+    view_.inputs = with_socket.get();
+    const Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, host_at(4.3));
+    view_.recorder = &recorder;
+    std::set<std::string> told;
+    add_keys(status(), "", told);
+    std::set<std::string> known;
+    for (const Meaning& meaning : status_meanings()) {
+        EXPECT_FALSE(meaning.text.empty()) << meaning.name;
+        known.insert(std::string(meaning.group) + " " + std::string(meaning.name));
+    }
+    EXPECT_EQ(told, known);
 }
 
 TEST_F(StatusTest, has_no_latency_where_no_reading_came_over_the_bus) {

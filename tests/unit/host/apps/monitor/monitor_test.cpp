@@ -1,11 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
 
 #include "host/apps/monitor/counter_meanings.hpp"
 #include "host/apps/monitor/screen.hpp"
+#include "host/apps/monitor/status_meanings.hpp"
 #include "host/core/ingest/reasons.hpp"
+#include "host/io/candump/log_line.hpp"
 
 namespace octoskin {
 namespace {
@@ -165,16 +171,128 @@ TEST(Monitor, shows_any_object_without_failing) {
     }
 }
 
-template <class Reason>
-void expect_meanings(const char* unit) {
-    for (const char* name : names_of(Reason{})) EXPECT_FALSE(meaning_of(unit, name).empty()) << name;
+TEST(Monitor, shows_each_counter_that_is_not_zero_with_its_rate_and_meaning) {
+    Json before = status();
+    before["can"]["not_sent"] = 2;
+    Json now = before;
+    now["can"]["not_sent"] = 5;
+    now["clock"]["relocks"] = 1;
+    now["joints_socket"] = {{"samples", 9}, {"time_off", 4}};
+    now["camera"] = {{"open", true}, {"frames", 60}, {"age_s", 0.1}, {"untimed", 6}};
+    now["map"]["no_room"] = 7;
+    now["reloads"] = {{"count", 1}, {"dropped", 8}};
+    now["nodes"][0]["sensors"][0]["lost"] = 3;
+    const std::string screen = shown(before, now);
+    const auto expect_line = [&screen](const std::string& begin, const char* group, const char* name) {
+        const std::string line = begin + std::string(status_meaning_of(group, name)) + '\n';
+        EXPECT_FALSE(status_meaning_of(group, name).empty()) << name;
+        EXPECT_TRUE(has(screen, line)) << line << screen;
+    };
+    expect_line("\n          5 not_sent                 1.5/s  ", "can", "not_sent");
+    expect_line("\n          1 relocks                  0.5/s  ", "clock", "relocks");
+    expect_line("          4 time_off                 2.0/s  ", "joints_socket", "time_off");
+    expect_line("          6 untimed                  3.0/s  ", "camera", "untimed");
+    expect_line("          7 no_room                  3.5/s  ", "map", "no_room");
+    expect_line("          8 dropped                  4.0/s  ", "reloads", "dropped");
+    EXPECT_TRUE(has(screen, "wrist            0.532 m    0.0/s   0.02 s ago  status 9, lost on the bus: 3\n"))
+        << screen;
+    EXPECT_FALSE(has(screen, "wrong_count"));
 }
-TEST(CounterMeanings, are_there_for_every_counter) {
-    expect_meanings<FrameReason>("CAN frames");
-    expect_meanings<ReadingReason>("readings");
-    expect_meanings<JointReason>("joint samples");
-    expect_meanings<DepthReason>("depth frames");
+
+TEST(Monitor, shows_the_recording_and_what_it_lost_as_bad) {
+    Json now = status();
+    EXPECT_FALSE(has(shown(now, now), "recording"));
+    now["recording"] = {{"state", "recording"}, {"folder", "/tmp/bench"}, {"error", ""},
+                        {"seconds", 12.2},      {"lost_can", 0},          {"is_complete", true}};
+    const auto title = [&now] {
+        const auto lines = screen_of(now, now, 2s);
+        const auto line = std::ranges::find_if(
+            lines, [](const ScreenLine& one) { return one.text.starts_with("recording "); });
+        return line == lines.end() ? ScreenLine{} : *line;
+    };
+    EXPECT_EQ(title().text, "recording /tmp/bench: recording, 12 s");
+    EXPECT_EQ(title().emphasis, Emphasis::title);
+    now["recording"]["is_complete"] = false;
+    now["recording"]["lost_depth"] = 2;
+    EXPECT_EQ(title().emphasis, Emphasis::bad);
+    EXPECT_TRUE(has(shown(now, now), "          2 lost_depth "));
+    now["recording"]["state"] = "failed";
+    now["recording"]["error"] = "no room";
+    EXPECT_EQ(title().text, "recording /tmp/bench: failed, 12 s: no room");
+}
+
+/// "group name: text" of each row of the tables in a document of docs/, the group from the heading above;
+/// without marks of code and with a link's words alone, as a screen has them.
+std::set<std::string> documented(const std::string& file) {
+    std::ifstream stream(std::string(OCTOSKIN_SOURCE_DIR "/docs/") + file);
+    EXPECT_TRUE(stream) << file;
+    const std::regex link(R"(\[([^\]]*)\]\([^)]*\))");
+    std::set<std::string> rows;
+    std::string group;
+    for (std::string line; std::getline(stream, line);) {
+        const bool is_row = line.starts_with("| `") && line.ends_with(" |");
+        line = std::regex_replace(line, link, "$1");
+        std::erase(line, '`');
+        if (line.starts_with("## ")) group = line.substr(3);
+        if (!is_row) continue;
+        const auto bar = line.find(" | ", 2);
+        const std::string name = line.substr(2, bar - 2);
+        const std::string text = line.substr(bar + 3, line.size() - bar - 5);
+        EXPECT_TRUE(rows.insert(group + " " + name + ": " + text).second) << line;
+    }
+    return rows;
+}
+std::set<std::string> known(std::span<const Meaning> meanings) {
+    std::set<std::string> rows;
+    for (const auto& [group, name, text] : meanings)
+        rows.insert(std::string(group).append(" ").append(name).append(": ").append(text));
+    return rows;
+}
+
+TEST(Meanings, of_the_account_are_word_for_word_those_of_its_document) {
+    std::set<std::string> rows;
+    for (std::string row : documented("account.md")) {
+        // Headings begin with a capital; "CAN" is one all the same.
+        if (!row.starts_with("CAN ")) row[0] = static_cast<char>(std::tolower(row[0]));
+        rows.insert(row);
+    }
+    EXPECT_EQ(rows, known(counter_meanings()));
+}
+
+TEST(Meanings, of_the_status_are_word_for_word_those_of_its_document) {
+    std::set<std::string> rows;
+    for (const std::string& row : documented("status.md")) {
+        const std::string top = "At the top";
+        rows.insert(row.starts_with(top) ? row.substr(top.size()) : row);
+    }
+    EXPECT_EQ(rows, known(status_meanings()));
+}
+
+template <class Reason>
+std::set<std::string> names(const std::string& unit) {
+    std::set<std::string> all;
+    for (const char* name : names_of(Reason{})) all.insert(unit + " " + name);
+    return all;
+}
+TEST(Meanings, are_there_for_every_counter_of_the_account_and_for_no_other) {
+    std::set<std::string> there;
+    for (const Meaning& meaning : counter_meanings()) {
+        EXPECT_FALSE(meaning.text.empty()) << meaning.name;
+        there.insert(std::string(meaning.group) + " " + std::string(meaning.name));
+    }
+    // Those of a replay alone, as octoskin::playback counts them.
+    std::set<std::string> expected{"log lines other_interface", "depth images without_pose",
+                                   "depth images unreadable",   "depth pixels no_value",
+                                   "depth pixels robot",        "depth pixels bad_value",
+                                   "depth pixels outside_map"};
+    expected.merge(names<candump::LineFault>("log lines"));
+    expected.merge(names<FrameReason>("CAN frames"));
+    expected.merge(names<ReadingReason>("readings"));
+    expected.merge(names<JointReason>("joint samples"));
+    expected.merge(names<DepthReason>("depth frames"));
+    EXPECT_EQ(there, expected);
     EXPECT_TRUE(meaning_of("readings", "no_such_counter").empty());
+    EXPECT_TRUE(status_meaning_of("clock", "not_sent").empty()) << "one of another group";
 }
 
 }  // namespace

@@ -1,0 +1,200 @@
+#include "host/apps/monitor/status_meanings.hpp"
+
+#include <array>
+
+namespace octoskin {
+namespace {
+
+// Word for word as docs/status.md has them; tests hold the two equal, and complete by a status of the daemon.
+constexpr std::array kStatusMeanings = {
+    Meaning{"", "octoskin", "program, version and commit"},
+    Meaning{"", "uptime_s", "seconds since the daemon began"},
+    Meaning{"", "rig", "the name of the rig"},
+    Meaning{"", "problems",
+            "what is wrong, a sentence each, the most fundamental first: an empty map has its reason there"},
+    Meaning{"", "can", "the interface, below"},
+    Meaning{"", "clock", "the bus's time, below"},
+    Meaning{"", "nodes", "a list, one object for each node of the rig, below"},
+    Meaning{"", "joints_socket", "joint states from this machine, below; null without --joints"},
+    Meaning{"", "recording", "the recording that is made, or the last one, below; null without"},
+    Meaning{"", "camera", "the depth camera, below; null without one"},
+    Meaning{"", "latency",
+            "from the kernel's stamp of the frame that completed a reading (its own, or the joint state "
+            "behind it) to the map, below"},
+    Meaning{"", "map", "the fused map, below"},
+    Meaning{"", "reloads", "rig, robot and mapping read again, below"},
+    Meaning{"", "account",
+            "one object for each of \"CAN frames\", \"readings\", \"joint samples\" and \"depth frames\", "
+            "below; counts since the newest reload"},
+    Meaning{"can", "interface", "the interface's name"},
+    Meaning{"can", "state", "up, error_passive, bus_off, down or absent: the worst that holds"},
+    Meaning{"can", "why", "why it is not up, with what to do; empty if it is"},
+    Meaning{"can", "listen_only", "the daemon transmits nothing (--listen-only)"},
+    Meaning{"can", "received", "frames that came; the echoes of those sent, too"},
+    Meaning{"can", "sent", "frames handed to the interface: two a second, SYNC and FOLLOW_UP"},
+    Meaning{"can", "not_sent",
+            "frames that the interface did not take, as it was not up or its queue was full: they are not "
+            "sent later, and nodes lose their time if it goes on"},
+    Meaning{"can", "busy_s",
+            "for how many seconds this rig's frames have kept the bus busy, at worst; what grows in a second "
+            "is the bus's load. Frames of others the kernel keeps back"},
+    Meaning{"can", "error_frames",
+            "the adapter's own words about errors: a wrong bit rate or sample point, a missing terminator, a "
+            "disturbed line, nobody who acknowledges. A few when something is plugged in are usual"},
+    Meaning{"can", "dropped_by_kernel",
+            "frames that the kernel threw away, as the daemon was held up for too long to read them"},
+    Meaning{
+        "can", "malformed",
+        "what the interface gave that is no CAN frame: a driver's defect, or a foreign program behind fd:N"},
+    Meaning{"can", "bus_off", "how often the adapter left the bus after too many errors of its own"},
+    Meaning{"can", "went_down", "how often the interface went down"},
+    Meaning{"can", "reopened",
+            "how often the interface was opened again: it had been removed, as an adapter that is unplugged, "
+            "or its frames could not be chosen anew at a reload"},
+    Meaning{"clock", "known", "the bus's time is known; without it nothing is used"},
+    Meaning{"clock", "steps_back",
+            "how often the receive stamps, which are wall time, jumped back: the clock of this machine was "
+            "set. The next exchange of SYNC and FOLLOW_UP settles it"},
+    Meaning{
+        "clock", "steps_ahead",
+        "how often they jumped ahead by over 0.14 s: the clock was set, or the bus was silent for so long"},
+    Meaning{"clock", "stamps_ignored",
+            "receive stamps that jumped alone, without others that agreed: of other interfaces in one log, "
+            "or a driver's mistake"},
+    Meaning{"clock", "relocks",
+            "how often two exchanges agreed on another offset between wall time and the bus's time than "
+            "before, as after a step"},
+    Meaning{"clock", "times_back",
+            "how often the bus's own time went back by over 0.15 s: the host that sends SYNC began anew"},
+    Meaning{"clock", "follow_up_outliers",
+            "exchanges that disagreed with the other host's clock as it was known (with --listen-only); the "
+            "first ones after it was set are among them"},
+    Meaning{"nodes", "id", "its node id"},
+    Meaning{"nodes", "name", "its name in the rig"},
+    Meaning{"nodes", "verdict",
+            "usable, or why it is not: other_version, quarantined, babbling, absent, lost, time_suspect, "
+            "info_incomplete, info_mismatch, build_refused"},
+    Meaning{"nodes", "reason", "of info_mismatch and the like, what it says and what the rig has; else null"},
+    Meaning{"nodes", "state",
+            "its own word in its newest heartbeat; bring-up has each with its remedy; null before the first"},
+    Meaning{"nodes", "age_s", "since it was heard; null: never, or the time is not known"},
+    Meaning{"nodes", "degraded_sensors", "how many of its sensors are not well, by its newest heartbeat"},
+    Meaning{"nodes", "clock_known", "its readings can be dated now"},
+    Meaning{"nodes", "clock_ppm",
+            "seconds of the bus's time per second of its own, less 1, in millionths: negative if its clock "
+            "is fast. Over 250 either way its readings are refused as clock_in_doubt; null: not known"},
+    Meaning{"nodes", "clock_error_ms",
+            "bound on the error of its time now; it grows with silence; null: not known"},
+    Meaning{"nodes", "sensors", "a list, one object for each sensor, below"},
+    Meaning{"nodes.sensors", "index", "its number on the node"},
+    Meaning{"nodes.sensors", "name", "its name in the rig"},
+    Meaning{"nodes.sensors", "state", "its node's word in the newest SENSOR_HEALTH; null before the first"},
+    Meaning{"nodes.sensors", "fault",
+            "why it is not well, by the same message; bring-up has each with its remedy"},
+    Meaning{"nodes.sensors", "received", "readings that came"},
+    Meaning{"nodes.sensors", "lost",
+            "readings that its node sent and that never came, exact as of the newest SENSOR_HEALTH"},
+    Meaning{"nodes.sensors", "age_s",
+            "since its newest reading came; null: none yet, or the time is not known"},
+    Meaning{"nodes.sensors", "range_m", "of its newest reading; not there before the first"},
+    Meaning{"nodes.sensors", "sigma_m",
+            "the standard deviation that the sensor gives its newest range; not there before the first"},
+    Meaning{"nodes.sensors", "device_status",
+            "the sensor's own status of it: 9 is a valid range; not there before the first"},
+    Meaning{"nodes.sensors", "zone", "which of its zones it looked through; not there before the first"},
+    Meaning{"nodes.sensors", "rejected",
+            "why the newest reading was not used, a name of account.md; null: it was, or waits"},
+    Meaning{"nodes.sensors", "reflexes",
+            "how often it sent REFLEX: something came closer than reflex_below_m"},
+    Meaning{"nodes.sensors", "reflex_below_m", "its limit in the rig; 0: none"},
+    Meaning{"nodes.sensors", "reflex_m", "how close what made it do so last was; null: never"},
+    Meaning{"nodes.sensors", "camera", "what the camera says of it, below; null without a camera"},
+    Meaning{"nodes.sensors.camera", "contradicts",
+            "it contradicts the camera: swapped with another, stuck, or not where the rig has it"},
+    Meaning{"nodes.sensors.camera", "agreed",
+            "comparisons in which it saw a surface where the camera sees one"},
+    Meaning{"nodes.sensors.camera", "in_free_space",
+            "comparisons in which it saw a surface where the camera sees through"},
+    Meaning{"nodes.sensors.camera", "behind_surface",
+            "comparisons in which it saw free space through a surface that the camera sees"},
+    Meaning{"joints_socket", "samples", "samples that came, of the right form"},
+    Meaning{"joints_socket", "displaced",
+            "datagrams that gave way to newer ones, as the daemon was held up while 1024 waited"},
+    Meaning{"joints_socket", "thinned",
+            "samples left out, as they came sooner after the one before than the rig's rate has it: usual "
+            "for a quick driver"},
+    Meaning{"joints_socket", "joint_node_ignored",
+            "frames of the rig's joint node on the bus, which is not the source with --joints"},
+    Meaning{"joints_socket", "not_a_number", "refused: a word that is no finite number"},
+    Meaning{"joints_socket", "wrong_count",
+            "refused: neither as many numbers as the rig has joints, nor one more, the time"},
+    Meaning{"joints_socket", "time_off",
+            "refused: its time is over 1 s from when it was read. It wants CLOCK_MONOTONIC of this machine "
+            "in seconds; wall time is what mostly came"},
+    Meaning{"joints_socket", "too_large",
+            "refused: a position beyond +-8.38 rad (or m); degrees are what mostly came"},
+    Meaning{"joints_socket", "too_long", "refused: over 1024 bytes"},
+    Meaning{"recording", "state", "recording, finishing, ended or failed"},
+    Meaning{"recording", "folder", "where it is written"},
+    Meaning{"recording", "error", "why it failed; empty if it has not"},
+    Meaning{"recording", "seconds", "how long it is"},
+    Meaning{"recording", "can_frames", "frames of the bus that are in it"},
+    Meaning{"recording", "depth_frames", "depth frames that are in it"},
+    Meaning{"recording", "commits",
+            "joint samples, readings and depth frames that went into the map meanwhile"},
+    Meaning{"recording", "lost_can",
+            "frames of the bus that the disk could not take in time: they change no voxel of a replay"},
+    Meaning{"recording", "lost_commits",
+            "measurements that the disk could not take in time: a replay makes another map"},
+    Meaning{"recording", "lost_depth",
+            "depth frames that the disk could not take in time, or with depth beyond 32.767 m: a replay "
+            "makes another map"},
+    Meaning{"recording", "is_complete", "nothing that the map was made of is missing in it"},
+    Meaning{"camera", "open", "it is open"},
+    Meaning{"camera", "why", "why it is not; empty if it is"},
+    Meaning{"camera", "frames", "frames that came"},
+    Meaning{"camera", "displaced", "frames that gave way to newer ones, as the daemon was held up"},
+    Meaning{"camera", "untimed",
+            "frames whose time of capture could not be told: over 0.5 s late, or the first ones, until five "
+            "agree on its clock"},
+    Meaning{"camera", "opened",
+            "how often it was opened; over once: it was gone, fell silent, or all its frames came late"},
+    Meaning{"camera", "age_s", "since its newest frame came; null: none yet"},
+    Meaning{"latency", "readings", "how many the figures are of"},
+    Meaning{"latency", "median_ms", "half of them were as quick"},
+    Meaning{"latency", "p99_ms", "99 of 100 were as quick"},
+    Meaning{"latency", "max_ms", "the slowest"},
+    Meaning{"map", "known_voxels", "voxels that are free or occupied"},
+    Meaning{"map", "resolution_m", "the edge of a voxel"},
+    Meaning{"map", "memory_mib", "what they take in memory"},
+    Meaning{"map", "memory_max_mib", "the mapping's limit"},
+    Meaning{"map", "no_room",
+            "updates refused, as the map had reached memory_max_mib and the space was new to it: raise it, "
+            "or use a larger resolution_m"},
+    Meaning{"map", "saved", "how often it was saved"},
+    Meaning{"map", "saves_failed", "saves that failed; problems has why"},
+    Meaning{"map", "saves_skipped", "saves left out, as the one before was still being written: a slow disk"},
+    Meaning{"map", "saved_age_s", "since the newest good save; null: none yet"},
+    Meaning{"reloads", "count", "how often SIGHUP was obeyed"},
+    Meaning{
+        "reloads", "dropped",
+        "readings, joint samples and depth frames that waited at a reload and could not be used any more"},
+    Meaning{"account", "in", "what came"},
+    Meaning{"account", "used", "what went into the map, or was taken in"},
+    Meaning{"account", "pending", "what waits, for a joint state or for others to arrive"},
+    Meaning{"account", "rejected", "the counters that are not 0, by name: account.md has each"},
+    Meaning{"account", "balanced",
+            "in = used + pending + the sum of rejected; if not, it is a defect of octoskin"},
+};
+
+}  // namespace
+
+std::span<const Meaning> status_meanings() noexcept {
+    return kStatusMeanings;
+}
+
+std::string_view status_meaning_of(std::string_view group, std::string_view name) noexcept {
+    return find_meaning(kStatusMeanings, group, name);
+}
+
+}  // namespace octoskin
