@@ -86,8 +86,10 @@ Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig:
                                       const tum::DataSetReader& reader) {
     const auto crc32 = crc32_of(reader.files());
     if (!crc32) {
-        return fail(ExitCode::no_input,
-                    request.recording.directory.string() + ": an image that depth.txt names is not there");
+        const auto missing = reader.missing_image();
+        return fail(ExitCode::no_input, missing ? missing->what
+                                                : request.recording.directory.string() +
+                                                      ": a file of it went away while it was read");
     }
     const auto absolute = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
     return MapOrigin{.made_by = program_version(),

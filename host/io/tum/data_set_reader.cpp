@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <fstream>
 #include <iterator>
 #include <limits>
+#include <system_error>
 
 #include "host/io/tum/depth_png.hpp"
 #include "host/io/tum/line_file.hpp"
@@ -72,6 +74,20 @@ std::vector<std::filesystem::path> DataSetReader::files() const {
     std::vector<std::filesystem::path> files{paths_.images(), paths_.poses()};
     for (const Image& image : images_) files.push_back(paths_.folder / image.named.file);
     return files;
+}
+
+std::optional<DepthSourceError> DataSetReader::missing_image() const {
+    for (const auto& [line, named] : images_) {
+        const std::filesystem::path file = paths_.folder / named.file;
+        std::error_code error;
+        const bool is_there = std::filesystem::is_regular_file(file, error);
+        if (is_there && std::ifstream(file)) continue;
+        return line_error(
+            paths_.images(), line,
+            named.file + (is_there ? ": may not be read: give yourself the right to"
+                                   : ": is not there: unpack the data set anew, or take out the line"));
+    }
+    return std::nullopt;
 }
 
 }  // namespace octoskin::tum

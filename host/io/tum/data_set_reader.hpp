@@ -42,6 +42,9 @@ class DataSetReader final : public DepthSource {
     [[nodiscard]] std::optional<HostTime> begin() const;
     /// Both lists and every image of depth.txt: what the data set measured.
     [[nodiscard]] std::vector<std::filesystem::path> files() const;
+    /// The first image of depth.txt, with its line and a remedy, that is not there or may not be read; empty
+    /// if none is missing.
+    [[nodiscard]] std::optional<DepthSourceError> missing_image() const;
 
   private:
     struct Image {

@@ -135,5 +135,18 @@ TEST_F(DataSet, a_fault_is_named_with_file_and_line_and_leaves_no_map) {
     EXPECT_FALSE(std::filesystem::exists(path("other/maps/fused.ot")));
 }
 
+TEST_F(DataSet, an_image_that_is_not_there_is_named_with_its_line_and_what_to_do) {
+    write_data_set(path("set"));
+    std::filesystem::remove(path("set/depth/1.300000.png"));
+    for (const char* command : {"replay ", "explain 0 0 1 --recording "}) {
+        const Said said = octoskin(command + path("set"));
+        EXPECT_EQ(said.exit_code, 66) << said.output;
+        EXPECT_THAT(said.output, HasSubstr(path("set/depth.txt") +
+                                           ":7: depth/1.300000.png: is not there: unpack the data set anew, "
+                                           "or take out the line"));
+    }
+    EXPECT_FALSE(std::filesystem::exists(path("set/maps")));
+}
+
 }  // namespace
 }  // namespace octoskin

@@ -142,6 +142,19 @@ TEST_F(DataSetReaderTest, an_image_that_cannot_be_read_is_named_with_its_line_ag
     EXPECT_EQ(reader.images_left(), 1U);
 }
 
+TEST_F(DataSetReaderTest, the_first_image_that_is_missing_is_named_whether_or_not_it_has_a_pose) {
+    written_.add_image("100", {1, 1, {7000}});
+    EXPECT_FALSE(open().missing_image());
+    std::filesystem::create_directory(written_.image("101"));
+    written_.add_line("depth.txt", "101 depth/101.png");
+    written_.add_line("depth.txt", "102 depth/102.png");
+    const auto missing = open().missing_image();
+    ASSERT_TRUE(missing);
+    EXPECT_EQ(missing->what, (written_.folder() / "depth.txt").string() +
+                                 ":5: depth/101.png: is not there: unpack the data set anew, or take out "
+                                 "the line");
+}
+
 TEST_F(DataSetReaderTest, images_of_another_kind_are_refused) {
     written_.add_pose("100", "0 0 0 0 0 0 1");
     written_.add_line("depth.txt", "100 depth/100.png");
