@@ -5,8 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -20,22 +22,61 @@ namespace {
 constexpr double kNsPerS = 1e9;
 constexpr double kTimeOffMaxS = 1.0;
 
-/// The numbers in `text`, between blanks; empty if a word is none.
-std::optional<std::vector<double>> numbers_of(std::string_view text) {
+std::vector<std::string_view> words_of(std::string_view text) {
     constexpr std::string_view kBlank = " \t\r\n,";
-    std::vector<double> numbers;
+    std::vector<std::string_view> words;
     while (true) {  // each round takes one word off
         const std::size_t begin = text.find_first_not_of(kBlank);
-        if (begin == std::string_view::npos) return numbers;
+        if (begin == std::string_view::npos) return words;
         text.remove_prefix(begin);
-        const std::string_view word = text.substr(0, text.find_first_of(kBlank));
-        double number = 0.0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-        const bool is_whole = error == std::errc{} && end == word.data() + word.size();
-        if (!is_whole || !std::isfinite(number)) return std::nullopt;
-        numbers.push_back(number);
-        text.remove_prefix(word.size());
+        words.push_back(text.substr(0, text.find_first_of(kBlank)));
+        text.remove_prefix(words.back().size());
     }
+}
+
+/// Empty if the word is no finite number.
+std::optional<double> number_of(std::string_view word) {
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    const bool is_whole = error == std::errc{} && end == word.data() + word.size();
+    return is_whole && std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+/// The numbers in `text`, between blanks; empty if a word is none.
+std::optional<std::vector<double>> numbers_of(std::string_view text) {
+    std::vector<double> numbers;
+    for (const std::string_view word : words_of(text)) {
+        const auto number = number_of(word);
+        if (!number) return std::nullopt;
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+double seconds_at(HostTime time) {
+    return static_cast<double>(time.ns) / kNsPerS;
+}
+bool is_too_large(double position) {
+    return std::abs(position) > LocalJoints::kLargest;
+}
+
+/// What a time that is not CLOCK_MONOTONIC in seconds mostly is.
+std::string guess_at(double time, double now_s) {
+    constexpr double kYear2001S = 1e9;
+    constexpr std::array<std::pair<double, const char*>, 3> kUnits = {
+        {{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}}};
+    for (const auto& [per_s, name] : kUnits)
+        if (std::abs(time / per_s - now_s) <= kTimeOffMaxS) return std::string(": it looks like ") + name;
+    return time >= kYear2001S ? ": it looks like wall time" : "";
+}
+
+/// Of numbers as many as joints, and maybe a time before them.
+std::string describe_too_large(std::span<const double> numbers, std::size_t joint_count) {
+    const auto positions = numbers.last(std::min(joint_count, numbers.size()));
+    const auto found = std::ranges::find_if(positions, is_too_large);
+    if (found == positions.end()) return {};
+    return fmt::format(": joint {} of {} is {}, beyond +-{}: degrees, or millimetres?",
+                       found - positions.begin() + 1, joint_count, *found, LocalJoints::kLargest);
 }
 
 }  // namespace
@@ -49,24 +90,29 @@ Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::siz
     const bool is_dated = came || sample.position.size() == joint_count + 1;
     if (sample.position.size() == joint_count + 1) {
         const double time_s = sample.position.front();
-        if (std::abs(time_s - static_cast<double>(now.ns) / kNsPerS) > kTimeOffMaxS)
-            return unexpected(JointTextFault::time_off);
+        if (std::abs(time_s - seconds_at(now)) > kTimeOffMaxS) return unexpected(JointTextFault::time_off);
         sample.sampled.ns = std::llround(time_s * kNsPerS);
         sample.position.erase(sample.position.begin());
     }
     if (sample.position.size() != joint_count) return unexpected(JointTextFault::wrong_count);
     if (!is_dated) return unexpected(JointTextFault::time_off);
-    const bool is_too_large = std::ranges::any_of(
-        sample.position, [](double position) { return std::abs(position) > LocalJoints::kLargest; });
-    if (is_too_large) return unexpected(JointTextFault::too_large);
+    if (std::ranges::any_of(sample.position, is_too_large)) return unexpected(JointTextFault::too_large);
     return sample;
 }
 
-std::string describe(JointTextFault fault, std::string_view text, std::size_t joint_count) {
+std::string describe(JointTextFault fault, std::string_view text, std::size_t joint_count, HostTime now) {
     const std::string name = names_of(fault).at(static_cast<std::size_t>(fault));
-    const auto numbers = numbers_of(text);
-    if (fault != JointTextFault::wrong_count || !numbers) return name;
-    return fmt::format("{}: {} numbers, the rig has {} joints", name, numbers->size(), joint_count);
+    if (fault == JointTextFault::too_long) return fmt::format("{}: over {} bytes", name, kJointTextMax);
+    const auto words = words_of(text);
+    const auto wrong = std::ranges::find_if(words, [](std::string_view word) { return !number_of(word); });
+    if (wrong != words.end()) return fmt::format("{}: \"{}\"", name, *wrong);
+    const auto numbers = numbers_of(text).value_or(std::vector<double>{});
+    if (fault == JointTextFault::wrong_count)
+        return fmt::format("{}: {} numbers, the rig has {} joints", name, numbers.size(), joint_count);
+    if (fault == JointTextFault::too_large) return name + describe_too_large(numbers, joint_count);
+    if (numbers.size() != joint_count + 1) return name;  // not told
+    return fmt::format("{}: {}, and CLOCK_MONOTONIC here is {:.3f}{}", name, numbers.front(), seconds_at(now),
+                       guess_at(numbers.front(), seconds_at(now)));
 }
 
 Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& file, std::size_t joint_count) {

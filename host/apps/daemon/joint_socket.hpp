@@ -44,8 +44,15 @@ inline constexpr std::size_t kJointTextMax = 1024;
 [[nodiscard]] Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::size_t joint_count,
                                                                HostTime now, std::optional<HostTime> came);
 
-/// The same for a person: "wrong_count: 3 numbers, the rig has 7 joints", of the others their name.
-[[nodiscard]] std::string describe(JointTextFault fault, std::string_view text, std::size_t joint_count);
+/// What a line must be, for whoever sent another.
+inline constexpr std::string_view kJointTextWanted =
+    "[TIME] Q1 ... QN, radians (metres for a prismatic joint) in the rig's order; TIME is CLOCK_MONOTONIC in "
+    "seconds, within 1 s of now";
+
+/// Why `text` was refused at `now`, for a person: "wrong_count: 3 numbers, the rig has 7 joints",
+/// "too_large: joint 2 of 7 is 90, beyond +-8.388607: degrees, or millimetres?".
+[[nodiscard]] std::string describe(JointTextFault fault, std::string_view text, std::size_t joint_count,
+                                   HostTime now);
 
 /// What comes is read and dated by a thread of its own, and waits for `receive`: DatagramFeed::kWaitingMax at
 /// most.

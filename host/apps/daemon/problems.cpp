@@ -129,7 +129,8 @@ std::string why_no_joints(const DaemonView& view) {
                            view.rig->joints.node_id);
     }
     if (const std::string refused = refused_lines(*socket); !refused.empty())
-        return "no joint states: what comes through the socket is refused (" + refused + ")";
+        return fmt::format("no joint states: what comes through the socket is refused ({}); wanted: {}",
+                           refused, kJointTextWanted);
     return "no joint states: none comes through the socket (`octoskin joints`)";
 }
 

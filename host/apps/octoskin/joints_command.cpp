@@ -160,7 +160,7 @@ class Forwarder {
         if (joint_count_) {
             const HostTime now = monotonic_now();  // it counts as taken now unless it says otherwise
             auto parsed = parse_joints(line, *joint_count_, now, now);
-            if (!parsed) return refuse(line, parsed.error());
+            if (!parsed) return refuse(line, parsed.error(), now);
             sample = std::move(parsed).value();
         }
         if (!output_.put(line, sample)) return lose();
@@ -183,9 +183,10 @@ class Forwarder {
         if (!why_.empty() && !std::exchange(was_loss_told_, true))
             spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why_);
     }
-    void refuse(const std::string& line, JointTextFault fault) {
+    void refuse(const std::string& line, JointTextFault fault, HostTime now) {
         ++refused_;
-        why_ = "line not sent, " + describe(fault, line, *joint_count_) + ": " + line;
+        why_ = fmt::format("line not sent, {}: {} (wanted: {})", describe(fault, line, *joint_count_, now),
+                           line, kJointTextWanted);
         if (!std::exchange(was_refusal_told_, true)) spdlog::warn("{}", why_);
     }
 
@@ -247,9 +248,13 @@ void add_joints_command(CLI::App& app) {
                      "Rig (YAML): needed for --can; for the socket, lines are checked against it")
         ->check(existing_file());
     command->footer(
-        "One sample a line: [TIME] Q1 ... QN, in the rig's order; radians, metres for a prismatic joint. "
-        "TIME is\n"
-        "CLOCK_MONOTONIC in seconds; without it a line counts as sampled when it came.\n"
+        "One sample a line: [TIME] Q1 ... QN, numbers between blanks or commas, in the rig's order; radians, "
+        "metres\n"
+        "for a prismatic joint, within +-8.388607. TIME is CLOCK_MONOTONIC of this machine in seconds (as "
+        "Python's\n"
+        "time.monotonic()), within 1 s of now; without it a line counts as sampled when it came. Without "
+        "--rig the\n"
+        "daemon checks the lines, and `octoskin status` says what it refused.\n"
         "Exit codes: 0 lines went through; 64 command line; 65 a line without end; 66 no such rig file;\n"
         "69 not one line went through; 78 the rig is not valid.");
     command->callback([options] { forward(*options); });
