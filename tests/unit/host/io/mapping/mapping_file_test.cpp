@@ -3,6 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <map>
+#include <ostream>
+#include <regex>
+#include <sstream>
 #include <string>
 
 #include "tests/support/scratch_folder.hpp"
@@ -126,6 +131,70 @@ TEST(MappingFile, names_file_line_key_value_and_remedy) {
     EXPECT_THAT(error_of("depth_hit: {range_min_m: -1}\n"), HasSubstr("my.yaml:1: depth_hit.range_min_m: "));
     EXPECT_THAT(error_of("map: [\n"), HasSubstr("my.yaml:"));
     EXPECT_FALSE(read_mapping("no/such/file.yaml").has_value());
+}
+
+struct KeyRow {
+    std::string expected;
+    std::string fallback;  ///< in `robust`, and in `paper` behind it in brackets, if that is another one
+
+    friend bool operator==(const KeyRow&, const KeyRow&) = default;
+    friend std::ostream& operator<<(std::ostream& out, const KeyRow& row) {
+        return out << row.expected << ", default " << row.fallback;
+    }
+};
+using KeyTable = std::map<std::string, KeyRow>;
+
+KeyTable documented_keys() {
+    std::ifstream stream(OCTOSKIN_SOURCE_DIR "/docs/mapping.md");
+    const std::regex row(R"(\| `([a-z_.]+)` \| [^|]*\| ([^|]+) \| ([^|]+) \| [^|]*\|)");
+    KeyTable keys;
+    for (std::string line; std::getline(stream, line);) {
+        std::smatch parts;
+        if (std::regex_match(line, parts, row)) keys[parts[1]] = {parts[2], parts[3]};
+    }
+    return keys;
+}
+
+/// "map.resolution_m" and its value, of text as `mapping_text` writes it.
+std::map<std::string, std::string> values_by_path(const std::string& text) {
+    std::map<std::string, std::string> values;
+    std::istringstream lines(text);
+    std::string table;
+    for (std::string line; std::getline(lines, line);) {
+        const auto colon = line.find(':');
+        const std::string key = line.substr(0, colon);
+        if (colon + 1 == line.size()) {
+            table = key + ".";
+        } else {
+            values[key.starts_with("  ") ? table + key.substr(2) : key] = line.substr(colon + 2);
+        }
+    }
+    return values;
+}
+
+/// What the reader says that it expects of a key, given what no key takes.
+std::string expected_of(const std::string& path) {
+    const auto dot = path.find('.');
+    const std::string text = dot == std::string::npos
+                                 ? path + ": 1e30\n"
+                                 : path.substr(0, dot) + ": {" + path.substr(dot + 1) + ": 1e30}\n";
+    const std::string error = error_of(text);
+    const std::string begin = path + ": expected ";
+    const auto from = error.find(begin);
+    if (from == std::string::npos) return error;
+    return error.substr(from + begin.size(), error.find(", found") - from - begin.size());
+}
+
+TEST(MappingFile, has_each_key_with_its_range_and_default_in_its_document_and_no_other) {
+    const auto robust = values_by_path(mapping_text(robust_mapping()));
+    const auto paper = values_by_path(mapping_text(paper_mapping()));
+    KeyTable keys{{"base", {expected_of("base"), "robust"}}};
+    for (const auto& [path, value] : robust) {
+        const bool is_same = paper.at(path) == value;
+        keys[path] = {expected_of(path), is_same ? value : value + " (" + paper.at(path) + ")"};
+    }
+    EXPECT_EQ(keys.size(), 26U);
+    EXPECT_EQ(documented_keys(), keys);
 }
 
 }  // namespace
