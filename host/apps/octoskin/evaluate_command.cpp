@@ -74,12 +74,14 @@ evaluation::Results judge_recording(const EvaluateOptions& options) {
     if (!configuration) throw CommandFailure(configuration.error());
     const MappingConfig& mapping = configuration->mapping;
     const RecordingPaths recording(options.input);
-    const PlaybackRequest request{.recording = recording,
-                                  .mapping = mapping,
-                                  .configuration = configuration->name,
-                                  .maps = {},
-                                  .rig = options.rig,
-                                  .robot = options.robot};
+    const PlaybackRequest request{
+        .recording = recording,
+        .mapping = mapping,
+        .configuration = configuration->name,
+        .maps = {},
+        .rig = options.rig,
+        .robot = options.robot,
+        .warn_first = [](const std::string& warning) { spdlog::warn("{}", warning); }};
     if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
     const Scene scene = recorded_scene(options.input, options);
     const auto meta = read_meta(recording);

@@ -22,6 +22,11 @@ struct ExplainOptions {
 };
 
 void explain_voxel(const ExplainOptions& options) {
+    if (options.playback.recording.empty()) {
+        throw CommandFailure({ExitCode::usage,
+                              "--recording is required: the directory that `octoskin record` (of a running "
+                              "daemon) or `octoskin simulate` made"});
+    }
     const auto explanation = explain(playback_request(options.playback),
                                      {options.p_map[0], options.p_map[1], options.p_map[2]}, options.lines);
     if (!explanation) throw CommandFailure(explanation.error());
@@ -42,7 +47,9 @@ void add_explain_command(CLI::App& app) {
     command->add_option("x", options->p_map[0], "The point, metres in the map frame")->required();
     command->add_option("y", options->p_map[1])->required();
     command->add_option("z", options->p_map[2])->required();
-    command->add_option("--recording", options->playback.recording, "Directory of the recording")->required();
+    command->add_option(
+        "--recording", options->playback.recording,
+        "Directory of the recording, as `octoskin record` and `octoskin simulate` make it (required)");
     add_playback_options(*command, options->playback);
     command->add_option("--lines", options->lines, "List at most so many contributions, the newest ones")
         ->check(CLI::Range(0, 1'000'000))

@@ -1,5 +1,7 @@
 #include "host/apps/octoskin/playback_options.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/study/configuration.hpp"
@@ -46,7 +48,8 @@ PlaybackRequest playback_request(const PlaybackOptions& options) {
             .camera = options.camera,
             .is_by_capture_time = options.is_by_capture_time,
             .pace = {},
-            .listener = nullptr};
+            .listener = nullptr,
+            .warn_first = [](const std::string& warning) { spdlog::warn("{}", warning); }};
 }
 
 }  // namespace octoskin::app

@@ -274,7 +274,10 @@ Result<Playback, AppError> play_robot(const PlaybackRequest& request, const Repl
     const HostRig& rig = setup->host.rig;
     auto origin = origin_of(request, setup->rig);
     if (!origin) return unexpected(origin.error());
-    const std::vector<std::string> rig_warnings = std::move(setup->host.warnings);
+    std::vector<std::string> rig_warnings = std::move(setup->host.warnings);
+    if (request.warn_first) {
+        for (const std::string& warning : std::exchange(rig_warnings, {})) request.warn_first(warning);
+    }
     DepthInput depth = open_depth(request.recording);
     const auto play = is_played_in_order(request) ? play_order : play_log;
     auto playback = play(request, *setup, depth, std::move(*origin), report);

@@ -34,6 +34,9 @@ struct PlaybackRequest {
     Pace pace = {};
     /// Is told of what goes into the maps; null: nobody is.
     CommitListener* listener = nullptr;
+    /// Is told, before anything is played, what a person should know about rig and robot; empty: that is
+    /// among the warnings at the end.
+    std::function<void(const std::string& warning)> warn_first = {};
 };
 
 struct Playback {

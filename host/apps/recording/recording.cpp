@@ -13,6 +13,12 @@ namespace {
 constexpr const char* kSchema = "octoskin-recording/1";
 constexpr const char* kMetaMissing =
     "no such file; the least that it can be is two lines, 'schema: octoskin-recording/1' and 'source: robot'";
+constexpr const char* kDirectoryMissing =
+    "no such directory; `octoskin record` (of a running daemon), `octoskin simulate` and `./demo` make "
+    "recordings";
+constexpr const char* kLogMissing =
+    "no such file: this is no recording, as `octoskin record` (of a running daemon) and `octoskin simulate` "
+    "make them; by hand, it is what `candump -L` writes";
 
 Unexpected<RecordingError> failure(const std::filesystem::path& file, std::string what) {
     return unexpected(RecordingError{file, std::move(what), 0, ""});
@@ -101,11 +107,10 @@ Status<RecordingError> check_recording(const RecordingPaths& recording, bool is_
                            std::filesystem::absolute(recording.directory).parent_path().string());
     }
     if (!std::filesystem::is_directory(recording.directory, error)) {
-        return failure(recording.directory,
-                       "no such directory; `octoskin simulate` and `./demo` make recordings");
+        return failure(recording.directory, kDirectoryMissing);
     }
     const std::pair<std::filesystem::path, const char*> needed[] = {
-        {recording.can_log(), "no such file; it is what `candump -L` writes"},
+        {recording.can_log(), kLogMissing},
         {recording.rig(), "no such file; put the rig there, or give --rig"},
         {recording.meta(), kMetaMissing}};
     for (const auto& [file, what] : needed) {

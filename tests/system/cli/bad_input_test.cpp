@@ -39,7 +39,15 @@ TEST_F(BadInput, the_command_line_is_refused_with_a_hint) {
 TEST_F(BadInput, a_missing_recording_or_a_missing_part_of_it_is_named) {
     const Said absent = octoskin("replay " + path("nowhere"));
     EXPECT_EQ(absent.exit_code, 66);
-    EXPECT_THAT(absent.output, HasSubstr("nowhere: no such directory"));
+    EXPECT_THAT(absent.output,
+                HasSubstr("nowhere: no such directory; `octoskin record` (of a running daemon)"));
+    const Said untold = octoskin("explain 0 0 1");
+    EXPECT_EQ(untold.exit_code, 64);
+    EXPECT_THAT(untold.output, HasSubstr("`octoskin record`"));
+    std::filesystem::create_directory(path("empty"));
+    const Said empty = octoskin("explain 0 0 1 --recording " + path("empty"));
+    EXPECT_EQ(empty.exit_code, 66);
+    EXPECT_THAT(empty.output, HasSubstr("can.log: no such file: this is no recording, as `octoskin record`"));
     record_short("rec");
     for (const char* file : {"can.log", "rig.yaml", "robot.urdf", "meta.yaml"}) {
         std::filesystem::rename(path(std::string("rec/") + file), path("aside"));
