@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "common/wire/bus_load.hpp"
 #include "common/wire/messages.hpp"
@@ -83,6 +84,23 @@ Bus read_bus(const Value& value) {
     return bus;
 }
 
+/// The robot has more moving joints than a rig can name, or some that it does not.
+[[noreturn]] void fail_unnamed(const Value& list, const std::string& path, const UrdfDocument& robot,
+                               const std::vector<std::string>& moving,
+                               const std::vector<std::string>& unnamed) {
+    const std::string file = robot.file().filename().string();
+    const std::string fix = "make each that stays as it is type=\"fixed\" in " + file;
+    if (moving.size() > wire::kJointsPerSample) {
+        fail(list, path,
+             fmt::format("expected at most {} moving joints, found {} in {}; not named are {}: {}",
+                         wire::kJointsPerSample, moving.size(), file, joined(unnamed), fix));
+    }
+    fail(list, path,
+         fmt::format("expected every moving joint of {}, found none named {}: its position would be unknown. "
+                     "Name it, or {}",
+                     file, joined(unnamed), fix));
+}
+
 std::vector<std::string> read_joint_names(const Table& table, const UrdfDocument& robot,
                                           const std::string& base_link) {
     const Value& list = table.require("names");
@@ -101,18 +119,16 @@ std::vector<std::string> read_joint_names(const Table& table, const UrdfDocument
         }
         names.push_back(std::move(name));
     }
-    for (const auto& name : moving) {
-        if (std::find(names.begin(), names.end(), name) == names.end()) {
-            fail(
-                list, path,
-                fmt::format("expected every moving joint of {}, found none named '{}': its position would be "
-                            "unknown",
-                            robot.file().filename().string(), name));
-        }
-    }
+    std::vector<std::string> unnamed;
+    std::copy_if(moving.begin(), moving.end(), std::back_inserter(unnamed), [&names](const auto& name) {
+        return std::find(names.begin(), names.end(), name) == names.end();
+    });
+    if (!unnamed.empty()) fail_unnamed(list, path, robot, moving, unnamed);
     if (names.empty() || names.size() > wire::kJointsPerSample) {
         fail(list, path,
-             fmt::format("expected 1 to {} joints, found {}", wire::kJointsPerSample, names.size()));
+             fmt::format("expected 1 to {} joints, found {} in {}{}", wire::kJointsPerSample, names.size(),
+                         robot.file().filename().string(),
+                         names.empty() ? "" : ": make those that stay as they are type=\"fixed\" there"));
     }
     return names;
 }

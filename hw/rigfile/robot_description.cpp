@@ -68,7 +68,8 @@ std::string add_body(const urdf::Collision& collision, const std::string& link, 
         bodies.spheres.push_back(body);
     } else {
         return fmt::format(
-            "{} is a {}: expected a cylinder or a sphere (two spheres and a cylinder are a capsule)",
+            "{} is a {}: expected a cylinder or a sphere (two spheres and a cylinder are a capsule); put one "
+            "around it in its place, or remove it",
             name_of(collision), shape_name(*collision.geometry));
     }
     const bool is_sound = T_link_body.matrix().allFinite() && body.radius_m > 0.0 &&

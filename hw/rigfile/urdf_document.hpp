@@ -31,9 +31,9 @@ class UrdfDocument {
     [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
     /// True if `link` is `base_link` or hangs below it; false also if the robot has no such links.
     [[nodiscard]] bool is_below(const std::string& base_link, const std::string& link) const;
-    /// The joints below `base_link` that are not fixed, by name.
     /// At or below `base_link`, by name; all of them if that is empty.
     [[nodiscard]] std::vector<std::string> link_names(const std::string& base_link = {}) const;
+    /// The joints below `base_link` that are not fixed, by name.
     [[nodiscard]] std::vector<std::string> moving_joints(const std::string& base_link) const;
     /// An error about one element ("joint", "panda_joint3"), with its line if there is such an element.
     [[nodiscard]] RigError error(std::string_view tag, std::string_view name, std::string what) const {

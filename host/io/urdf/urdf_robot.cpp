@@ -34,8 +34,15 @@ std::optional<JointKind> kind_of(const urdf::Joint& joint) {
 /// Why a joint cannot be taken, or nothing.
 std::string fault_of(const urdf::Joint& joint) {
     const auto kind = kind_of(joint);
-    if (!kind) return "expected a fixed, revolute, continuous or prismatic joint, found another kind";
-    if (joint.mimic) return "expected a joint with a position of its own, found a mimic joint";
+    if (!kind) {
+        return "expected a fixed, revolute, continuous or prismatic joint, found another kind: make it "
+               "type=\"fixed\"";
+    }
+    if (*kind == JointKind::fixed) return "";  // a <mimic> left in it says nothing
+    if (joint.mimic) {
+        return "expected a joint with a position of its own, found a mimic joint: make it type=\"fixed\", or "
+               "remove <mimic> and name the joint in the rig";
+    }
     const bool needs_limits = *kind == JointKind::revolute || *kind == JointKind::prismatic;
     if (needs_limits && !joint.limits) return "expected <limit>, found none";
     return "";

@@ -11,6 +11,7 @@ namespace octoskin {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -101,6 +102,60 @@ TEST_F(CommandLine, tells_how_much_of_a_robot_the_self_filter_sees) {
     record_short("rec");
     const Said replayed = octoskin("replay " + path("rec") + " --robot " + path("bare.urdf"));
     EXPECT_THAT(replayed.output, HasSubstr("no link at or below panda_link0 has a <collision>"));
+    // Before the work, whatever becomes of that; and once.
+    write(path("rec/can.log"), "no log\n");
+    for (const std::string& command :
+         {"replay " + path("rec"), "explain 0 0 1 --recording " + path("rec"), "evaluate " + path("rec")}) {
+        const Said failed = octoskin(command + " --robot " + path("bare.urdf"));
+        EXPECT_EQ(failed.exit_code, 65) << failed.output;
+        EXPECT_THAT(failed.output, ContainsRegex("warning no link at or below panda_link0 has a <collision>"
+                                                 "[^\n]*\n[^\n]* error [^\n]*can.log"));
+    }
+}
+
+/// The first block of code in this language in docs/robot.md.
+std::string snippet(const std::string& language) {
+    const std::string text = content(source("docs/robot.md"));
+    const std::string begin = "\n```" + language + "\n";
+    const auto from = text.find(begin) + begin.size();
+    return text.substr(from, text.find("\n```\n", from) + 1 - from);
+}
+
+TEST_F(CommandLine, takes_an_arm_with_a_hand_as_its_document_says) {
+    const std::string rig = "rig " + source("hw/rigs/bench_one_board.yaml") + " --robot ";
+    // As Franka's description is, with a mesh for each body, capsules beside it, and two fingers.
+    const std::string mesh =
+        "<collision><geometry><mesh filename=\"package://no/such.stl\"/></geometry></collision>";
+    std::string vendors = content(source("hw/robots/panda.urdf"));
+    vendors = std::regex_replace(vendors, std::regex("<link name=\"panda_link5\"/>"),
+                                 "<link name=\"panda_link5\">" + mesh + "</link>");
+    const auto finger = [&mesh](const std::string& number, const std::string& mimic) {
+        return "<joint name=\"panda_finger_joint" + number +
+               "\" type=\"prismatic\"><parent link=\"panda_link8\"/><child link=\"panda_finger" + number +
+               "\"/><axis xyz=\"0 1 0\"/><limit lower=\"0\" upper=\"0.04\" velocity=\"0.2\" effort=\"20\"/>" +
+               mimic + "</joint><link name=\"panda_finger" + number + "\">" + mesh + "</link>";
+    };
+    vendors.insert(vendors.rfind("</robot>"),
+                   finger("1", "") + finger("2", "<mimic joint=\"panda_finger_joint1\"/>"));
+    write(path("vendor.urdf"), vendors);
+    const Said refused = octoskin(rig + path("vendor.urdf"));
+    EXPECT_EQ(refused.exit_code, 78);
+    EXPECT_THAT(refused.output,
+                HasSubstr("expected at most 7 moving joints, found 9 in vendor.urdf; not named "
+                          "are panda_finger_joint1, panda_finger_joint2"));
+    write(path("fit.py"), snippet("python"));
+    const Said fitted = run("python3 " + path("fit.py") + " " + path("vendor.urdf") + " " + path("my.urdf"));
+    EXPECT_EQ(fitted.exit_code, 0) << fitted.output;
+    const Said taken = octoskin(rig + path("my.urdf"));
+    EXPECT_EQ(taken.exit_code, 0) << taken.output;
+    EXPECT_THAT(taken.output, HasSubstr("11 links at or below panda_link0, 8 capsules"));
+
+    std::string with_hand = content(source("hw/robots/panda.urdf"));
+    with_hand.insert(with_hand.rfind("</robot>"), snippet("xml"));
+    write(path("hand.urdf"), with_hand);
+    const Said hand = octoskin(rig + path("hand.urdf"));
+    EXPECT_EQ(hand.exit_code, 0) << hand.output;
+    EXPECT_THAT(hand.output, HasSubstr("10 links at or below panda_link0, 10 capsules"));
 }
 
 TEST_F(CommandLine, knows_the_same_configurations_in_every_command) {

@@ -54,7 +54,12 @@ const Broken kBroken[] = {
     {"two-rows-of-a-rotation.yaml", 4, "T_map_base.rotation_rows",
      "expected a list of 3 rows, found a list of 2"},
     {"list-for-the-padding.yaml", 3, "robot.link_padding_m", "expected a table of link names and metres"},
-    {"more-joints-than-a-sample-holds.yaml", 7, "joints.names", "expected 1 to 7 joints, found 8"},
+    {"more-joints-than-a-sample-holds.yaml", 7, "joints.names",
+     "expected 1 to 7 joints, found 8 in eight-joints.urdf: make those that stay as they are type=\"fixed\" "
+     "there"},
+    {"seven-of-eight-joints.yaml", 7, "joints.names",
+     "expected at most 7 moving joints, found 8 in eight-joints.urdf; not named are j7: make each that stays "
+     "as it is type=\"fixed\" in eight-joints.urdf"},
     {"missing-nodes.yaml", 1, "nodes", "expected this key, found none"},
     // Types.
     {"word-for-a-number.yaml", 3, "joints.rate_hz", "expected a number from 1 to 1000, found 'fast'"},
@@ -123,7 +128,9 @@ const Broken kBroken[] = {
     {"joint-missing.yaml", 3, "joints.names", "found 'wrist'; it has elbow"},
     {"joint-that-is-fixed.yaml", 3, "joints.names", "found 'bolts'"},
     {"joint-twice.yaml", 3, "joints.names", "expected each joint once"},
-    {"joint-left-out.yaml", 3, "joints.names", "found none named 'elbow'"},
+    {"joint-left-out.yaml", 3, "joints.names",
+     "found none named elbow: its position would be unknown. Name it, or make each that stays as it is "
+     "type=\"fixed\" in "},
     {"urdf-absent.yaml", 3, "robot.urdf", "no-such-robot.urdf"},
     {"board-absent.yaml", 5, "nodes[0].board", "no-such-board.yaml"},
     {"board-with-an-unknown-key.yaml", 5, "nodes[0].board.colour", "expected a known key"},

@@ -123,8 +123,10 @@ TEST_F(Capsules, box_and_mesh_are_refused_by_link_and_name) {
     ASSERT_FALSE(box);
     EXPECT_EQ(box.error().key, "link hull");
     EXPECT_EQ(box.error().line, 2);
-    EXPECT_THAT(box.error().message(),
-                HasSubstr("<collision name=\"lid\"> is a box: expected a cylinder or a sphere"));
+    EXPECT_THAT(
+        box.error().message(),
+        HasSubstr("<collision name=\"lid\"> is a box: expected a cylinder or a sphere (two spheres and a "
+                  "cylinder are a capsule); put one around it in its place, or remove it"));
     const auto mesh = read("<collision><geometry><mesh filename=\"hull.stl\"/></geometry></collision>\n");
     ASSERT_FALSE(mesh);
     EXPECT_THAT(mesh.error().message(), HasSubstr("is a mesh"));

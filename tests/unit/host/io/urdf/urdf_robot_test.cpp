@@ -139,25 +139,24 @@ TEST_P(UrdfRobotRefuses, naming_file_and_element) {
 
 INSTANTIATE_TEST_SUITE_P(
     Files, UrdfRobotRefuses,
-    testing::Values(BrokenUrdf{"missing-child-link.urdf", "hand", "not a usable URDF", 0},
-                    BrokenUrdf{"loop-through-root.urdf", "link base", "found a loop", 2},
-                    BrokenUrdf{"loop-below-root.urdf", "link arm", "elbow and wrist_back", 3},
-                    BrokenUrdf{"loop-apart-from-root.urdf", "link arm", "found a loop", 3},
-                    BrokenUrdf{"two-parents.urdf", "link arm", "elbow and second", 3},
-                    BrokenUrdf{"non-unit-axis.urdf", "joint elbow", "axis of length 1", 4},
-                    BrokenUrdf{"unmoved-joint.urdf", "joint wrist", "gets no position", 11},
-                    BrokenUrdf{"no-such-joint.urdf", "joint elbow", "expected a moving joint", 0},
-                    BrokenUrdf{"base-missing.urdf", "link base", "expected this base link", 0},
-                    BrokenUrdf{"floating-joint.urdf", "joint elbow", "found another kind", 4},
-                    BrokenUrdf{"mimic-joint.urdf", "joint elbow", "mimic", 4},
-                    BrokenUrdf{"limits-reversed.urdf", "joint elbow", "limits the wrong way round", 4},
-                    BrokenUrdf{"nan-origin.urdf", "", "not a usable URDF", 0},
-                    BrokenUrdf{"nested-too-deep.urdf", "", "DEPTH", 1},
-                    BrokenUrdf{"cut-off.urdf", "", "not XML", 5},
-                    BrokenUrdf{"not-xml.urdf", "", "not XML", 1},
-                    BrokenUrdf{"not-a-robot.urdf", "", "expected a URDF with a <robot>", 0},
-                    BrokenUrdf{"empty.urdf", "", "not XML", 0},
-                    BrokenUrdf{"absent.urdf", "", "cannot be opened", 0}));
+    testing::Values(
+        BrokenUrdf{"missing-child-link.urdf", "hand", "not a usable URDF", 0},
+        BrokenUrdf{"loop-through-root.urdf", "link base", "found a loop", 2},
+        BrokenUrdf{"loop-below-root.urdf", "link arm", "elbow and wrist_back", 3},
+        BrokenUrdf{"loop-apart-from-root.urdf", "link arm", "found a loop", 3},
+        BrokenUrdf{"two-parents.urdf", "link arm", "elbow and second", 3},
+        BrokenUrdf{"non-unit-axis.urdf", "joint elbow", "axis of length 1", 4},
+        BrokenUrdf{"unmoved-joint.urdf", "joint wrist", "gets no position", 11},
+        BrokenUrdf{"no-such-joint.urdf", "joint elbow", "expected a moving joint", 0},
+        BrokenUrdf{"base-missing.urdf", "link base", "expected this base link", 0},
+        BrokenUrdf{"floating-joint.urdf", "joint elbow", "found another kind: make it type=\"fixed\"", 4},
+        BrokenUrdf{"mimic-joint.urdf", "joint elbow", "found a mimic joint: make it type=\"fixed\"", 4},
+        BrokenUrdf{"limits-reversed.urdf", "joint elbow", "limits the wrong way round", 4},
+        BrokenUrdf{"nan-origin.urdf", "", "not a usable URDF", 0},
+        BrokenUrdf{"nested-too-deep.urdf", "", "DEPTH", 1}, BrokenUrdf{"cut-off.urdf", "", "not XML", 5},
+        BrokenUrdf{"not-xml.urdf", "", "not XML", 1},
+        BrokenUrdf{"not-a-robot.urdf", "", "expected a URDF with a <robot>", 0},
+        BrokenUrdf{"empty.urdf", "", "not XML", 0}, BrokenUrdf{"absent.urdf", "", "cannot be opened", 0}));
 
 }  // namespace
 }  // namespace octoskin
