@@ -1,6 +1,6 @@
 #!/bin/sh
 # install_test.sh CMAKE BUILD: `cmake --install` stays below its prefix, names it in the units, leaves settings that somebody
-# changed, and installs a program that finds its data.
+# changed, installs a program that finds its data, and documents whose links lead somewhere.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -13,6 +13,11 @@ for name in octoskin octoskin-node; do
 done
 "$folder/prefix/bin/octoskin" rig "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml" > /dev/null
 "$folder/prefix/bin/octoskin" simulate --help | grep -qF "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml"
+/usr/bin/python3 "$(dirname "$0")/links_test.py" "$folder/prefix/share/doc/octoskin"
+documents=$folder/prefix/share/doc/octoskin
+grep -qF "](../packaging/README.md)" "$documents/docs/daemon.md"
+grep -qF "](../hw/worlds/bench.scenario.yaml)" "$documents/docs/scenario.md"
+grep -qF "| common/ |" "$documents/README.md"
 echo "OCTOSKIN_CAN=can9" >> "$folder/prefix/etc/default/octoskin"
 install "$1" "$2"
 grep -q "^OCTOSKIN_CAN=can9\$" "$folder/prefix/etc/default/octoskin"

@@ -1,0 +1,37 @@
+# Part of `cmake --install`: the documents link to each other, to data that is installed elsewhere, and to parts of the source
+# that are not installed at all. The first stay; the second are reached through a link; of the third the words stay.
+set(documents ${CMAKE_INSTALL_PREFIX}/share/doc/octoskin)
+set(link ${documents}/hw)
+message(STATUS "Installing: $ENV{DESTDIR}${link} -> ../../octoskin/hw")
+file(REMOVE "$ENV{DESTDIR}${link}")
+file(CREATE_LINK ../../octoskin/hw "$ENV{DESTDIR}${link}" SYMBOLIC)
+list(APPEND CMAKE_INSTALL_MANIFEST_FILES ${link})
+
+# Takes the links of a document that lead to nothing out of it, and leaves their words.
+function(drop_dead_links document)
+    get_filename_component(folder ${document} DIRECTORY)
+    file(READ ${document} rest)
+    set(text "")
+    # Each round takes the text up to a link off. Not by a list of matches: brackets in one would disturb it.
+    while(rest MATCHES "\\[([^][]*)\\]\\(([^()# ]+)(#[^() ]*)?\\)")
+        set(whole "${CMAKE_MATCH_0}")
+        set(words "${CMAKE_MATCH_1}")
+        set(target "${CMAKE_MATCH_2}")
+        string(FIND "${rest}" "${whole}" at)
+        string(LENGTH "${whole}" length)
+        math(EXPR end "${at} + ${length}")
+        string(SUBSTRING "${rest}" 0 ${at} before)
+        string(SUBSTRING "${rest}" ${end} -1 rest)
+        if(NOT target MATCHES "^[a-z]+:" AND NOT EXISTS ${folder}/${target})
+            set(whole "${words}")
+        endif()
+        string(APPEND text "${before}${whole}")
+    endwhile()
+    file(WRITE ${document} "${text}${rest}")
+endfunction()
+
+cmake_policy(SET CMP0009 NEW)  # not through the link: what is behind it stays as it is
+file(GLOB_RECURSE installed "$ENV{DESTDIR}${documents}/*.md")
+foreach(document ${installed})
+    drop_dead_links(${document})
+endforeach()
