@@ -30,8 +30,9 @@ function(drop_dead_links document)
     file(WRITE ${document} "${text}${rest}")
 endfunction()
 
-cmake_policy(SET CMP0009 NEW)  # not through the link: what is behind it stays as it is
-file(GLOB_RECURSE installed "$ENV{DESTDIR}${documents}/*.md")
+set(there "$ENV{DESTDIR}${documents}")
+# Not through the link: what is behind it stays as it is.
+file(GLOB installed ${there}/*.md ${there}/docs/*.md ${there}/docs/*/*.md ${there}/packaging/*.md)
 foreach(document ${installed})
     drop_dead_links(${document})
 endforeach()
