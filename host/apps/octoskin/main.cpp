@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
     app::add_record_command(app);
     app::add_explain_command(app);
     app::add_joints_command(app);
+    app::add_cameras_command(app);
     app::add_rig_command(app);
     app::add_mapping_command(app);
     app::add_flash_command(app);

@@ -3,6 +3,7 @@
 // is the left half's. It mirrors unless told not to, as OpenNI2's own drivers do, or whatever it is told
 // ($OCTOSKIN_TEST_CAMERA_MIRRORS). Its frames come at the mode's rate, stamped by its own clock.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
@@ -148,9 +149,14 @@ class WallCamera final : public oni::driver::DeviceBase {
     void destroyStream(oni::driver::StreamBase* stream) override { delete stream; }
 
   private:
-    OniVideoMode mode_ = kMode;
-    OniSensorInfo sensor_{
-        .sensorType = ONI_SENSOR_DEPTH, .numSupportedVideoModes = 1, .pSupportedVideoModes = &mode_};
+    /// Only the first is ever shown.
+    std::array<OniVideoMode, 3> modes_{
+        kMode,
+        {.pixelFormat = ONI_PIXEL_FORMAT_DEPTH_1_MM, .resolutionX = 160, .resolutionY = 120, .fps = 30},
+        {.pixelFormat = ONI_PIXEL_FORMAT_DEPTH_100_UM, .resolutionX = 80, .resolutionY = 60, .fps = 2}};
+    OniSensorInfo sensor_{.sensorType = ONI_SENSOR_DEPTH,
+                          .numSupportedVideoModes = static_cast<int>(modes_.size()),
+                          .pSupportedVideoModes = modes_.data()};
 };
 
 /// Tells OpenNI2 of the camera as a USB driver does: when it comes, and when it is gone.

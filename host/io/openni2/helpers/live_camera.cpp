@@ -1,11 +1,15 @@
-// octoskin-camera URI: the depth frames of a camera to standard output (frame_pipe.hpp), each with the time
-// of its capture on the host's monotonic clock. An .oni file as URI is a camera too: played at its own speed,
-// again and again.
+// octoskin-camera --list: which cameras there are (camera_list.hpp). octoskin-camera URI: the depth frames of
+// a camera to standard output (frame_pipe.hpp), each with the time of its capture on the host's monotonic
+// clock. An .oni file as URI is a camera too: played at its own speed, again and again.
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <string>
 
 #include "host/io/openni2/capture_clock.hpp"
+#include "host/io/openni2/helpers/camera_list.hpp"
 #include "host/io/openni2/helpers/depth_stream.hpp"
 
 namespace octoskin::openni2 {
@@ -47,6 +51,11 @@ int watch(DepthStream& depth, const char* uri, int descriptor) {
     return depth.start() ? stream_frames(depth, descriptor) : 1;
 }
 
+int list_cameras(int descriptor) {
+    const std::string text = camera_list();
+    return ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) ? 0 : 1;
+}
+
 }  // namespace
 }  // namespace octoskin::openni2
 
@@ -55,7 +64,8 @@ int main(int argc, char** argv) {
     constexpr const char* kProgram = "octoskin-camera";
     if (argc != 2) {
         std::fputs(
-            "usage: octoskin-camera URI|FILE.oni|'' > frames\nA helper of octoskin; `octoskin run` runs "
+            "usage: octoskin-camera URI|FILE.oni|'' > frames\n       octoskin-camera --list\nA helper of "
+            "octoskin; `octoskin run` runs "
             "it.\n",
             stderr);
         return 2;
@@ -66,6 +76,7 @@ int main(int argc, char** argv) {
     if (std::filesystem::is_regular_file(uri, error)) uri = std::filesystem::absolute(uri).string();
     const auto output = begin_helper(kProgram);
     if (!output) return 1;
+    if (uri == "--list") end_helper(list_cameras(*output));
     DepthStream depth(kProgram);
     end_helper(watch(depth, uri.empty() ? openni::ANY_DEVICE : uri.c_str(), *output));
 }

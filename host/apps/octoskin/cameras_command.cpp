@@ -1,0 +1,69 @@
+// octoskin cameras: which depth cameras OpenNI2 sees, and in which modes.
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <string>
+
+#include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
+#include "host/io/openni2/helper_process.hpp"
+
+namespace octoskin::app {
+namespace {
+
+/// What the helper writes until its end; empty if it takes too long.
+std::optional<std::string> text_of(const openni2::HelperProcess& helper) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::seconds kPatience{20};  // a camera may take seconds to open
+    const auto end = Clock::now() + kPatience;
+    std::string text;
+    while (true) {  // until the helper's end, or ours
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
+        pollfd ready{helper.descriptor(), POLLIN, 0};
+        if (left.count() <= 0 || ::poll(&ready, 1, static_cast<int>(left.count())) != 1) return std::nullopt;
+        std::array<char, 4096> bytes{};
+        const ssize_t count = ::read(helper.descriptor(), bytes.data(), bytes.size());
+        if (count <= 0) return text;
+        text.append(bytes.data(), static_cast<std::size_t>(count));
+    }
+}
+
+void list_cameras() {
+    constexpr const char* kHelper = "octoskin-camera";
+    const auto program = openni2::find_helper(kHelper);
+    if (!program) {
+        throw CommandFailure(
+            {ExitCode::unavailable, std::string(kHelper) + " is neither beside this program nor in libexec"});
+    }
+    auto helper = openni2::HelperProcess::start(*program, "--list", openni2::HelperPipe::its_output);
+    if (!helper) throw CommandFailure({ExitCode::unavailable, helper.error()});
+    const auto text = text_of(*helper);
+    if (!text)
+        throw CommandFailure(
+            {ExitCode::io_failed, "a camera does not answer: unplug it and plug it in again"});
+    if (const auto failed = helper->wait(std::chrono::seconds(2)))
+        throw CommandFailure({ExitCode::io_failed, std::string(kHelper) + " failed: " + *failed});
+    if (text->empty()) {
+        throw CommandFailure({ExitCode::unavailable,
+                              "no camera found: is one plugged in, with a driver of OpenNI2, and may you use "
+                              "it (group video)?"});
+    }
+    print_text(*text);
+}
+
+}  // namespace
+
+void add_cameras_command(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("cameras", "List the depth cameras of this machine and their modes");
+    command->footer(
+        "Of each: its URI (for `octoskin run --camera`), vendor and name, and its depth modes. octoskin uses "
+        "the one\n"
+        "that it begins with: width_px, height_px and rate_hz of the rig's camera must be that mode's.\n"
+        "Exit codes: 0 there is one; 69 there is none; 74 one does not answer.");
+    command->callback(list_cameras);
+}
+
+}  // namespace octoskin::app
