@@ -137,17 +137,16 @@ Microseconds PhaseHold::nearest_to_zero(Microseconds off) const noexcept {
     return off - (off + half) / start_.period * start_.period;
 }
 
-/// Who walks by half a step of its register has not walked through all that is allowed after so few periods.
-/// (It may be out of its phase all the same, if it was started late.)
+/// A sensor that keeps its rate walks by half a step of its register a period: by how badly its times are
+/// known it may seem to walk by more, and by a whole step if it does not keep its rate.
 void PhaseHold::judge_start() noexcept {
     is_judged_ = true;
-    const std::int64_t walked_us = std::abs((off_ - off_at_first_).count());
-    const std::int64_t allowed_us = for_period(policy_.phase_tolerance + policy_.phase_start_off).count();
-    if (walked_us > allowed_us) {
+    const Nanoseconds walked{std::abs(Nanoseconds{off_ - off_at_first_}.count())};
+    const Nanoseconds step_each = start_.step * periods_;
+    if (walked > step_each) {
         count_in_vain();
-    } else if (!is_in_vain_ && walked_us * 6 <= allowed_us * 5) {
-        // One that wanders has not come far now and then by chance. (Who walks by half a step of its register
-        // has come two thirds of what is allowed.)
+    } else if (!is_in_vain_ && walked * 6 <= step_each * 5) {
+        // One that wanders has not come far now and then by chance.
         starts_in_vain_ = std::max(starts_in_vain_ - 1, 0);
     }
 }
@@ -159,11 +158,7 @@ void PhaseHold::count_in_vain() noexcept {
 }
 
 bool PhaseHold::is_out() const noexcept {
-    return std::abs(smoothed_off_.count()) > for_period(policy_.phase_tolerance).count();
-}
-
-Microseconds PhaseHold::for_period(Microseconds of_policy) const noexcept {
-    return of_policy * std::max(start_.period, policy_.phase_period).count() / policy_.phase_period.count();
+    return std::abs(smoothed_off_.count()) > policy_.phase_tolerance.count();
 }
 
 /// So many periods are between two starts.
@@ -191,8 +186,7 @@ void PhaseHold::expect_walk(Nanoseconds walk) noexcept {
 
 Microseconds PhaseHold::start_off(Nanoseconds walk) const noexcept {
     const Microseconds ahead = whole_us(-walk * kPeriodsAhead);
-    const Microseconds off_max = for_period(policy_.phase_start_off);
-    return std::clamp(ahead, -off_max, off_max);
+    return std::clamp(ahead, -policy_.phase_start_off, policy_.phase_start_off);
 }
 
 }  // namespace octoskin::node

@@ -22,7 +22,8 @@ class PhaseHold {
         TimeBracket at;       ///< from when it was begun until it was done
         Microseconds off{0};  ///< how long after the sensor's phase it was begun
         Microseconds period{0};
-        bool is_trimmed = false;  ///< to a step of its register
+        Nanoseconds step{0};      ///< of the register that sets it
+        bool is_trimmed = false;  ///< to one of those
     };
     void restart(const Start& start) noexcept;
     /// A range was ready within `ready`; too vague a time tells nothing. How long after a start the first
@@ -54,7 +55,6 @@ class PhaseHold {
     void count_in_vain() noexcept;
     [[nodiscard]] bool is_out() const noexcept;
     [[nodiscard]] std::int64_t patience() const noexcept;
-    [[nodiscard]] Microseconds for_period(Microseconds of_policy) const noexcept;
     [[nodiscard]] Microseconds nearest_to_zero(Microseconds off) const noexcept;
 
     const Policy& policy_;

@@ -85,9 +85,6 @@ struct Policy {
     std::uint32_t trim_edges_min = 8;        ///< ready times observed before a period counts as measured
 
     // --- holding sensors in their phases, where the rig asks for it
-    /// Tolerance and start are for a period of this length; longer periods leave more room, and each start
-    /// costs a reading: there they grow in proportion.
-    Microseconds phase_period{25'000};
     Microseconds phase_tolerance{170};
     /// A ready time that is known less well says nothing about it.
     Microseconds phase_known_within{500};
@@ -96,9 +93,9 @@ struct Policy {
     /// On which side of its phase a sensor is started, against the way that it walks: the rest is for how
     /// badly ready times are known.
     Microseconds phase_start_off{130};
-    /// Half of it early a sensor wants to start. One that the bus keeps waiting for longer starts a period
+    /// So early a sensor wants to start. One that the bus keeps waiting until it is so late starts a period
     /// later.
-    Microseconds phase_late_max{150};
+    Microseconds phase_start_slack{75};
     /// A sensor of which nobody knows whether its next range has begun is stopped so much later than it could
     /// be: what that tells then holds for those stops, too, that come as soon as they can.
     Microseconds phase_stop_delay{1'000};

@@ -122,7 +122,7 @@ void Ranging::start_due_step(NodeTime now) {
 /// Who was kept waiting for the bus starts a period later rather than out of its phase. Not for ever.
 bool Ranging::is_too_late_to_start(NodeTime now) const noexcept {
     return step_ == Step::awaiting_phase && rules_.holds_phases && starts_put_off_ < kStartsPutOffMax &&
-           elapsed(phase_due_, now) > policy_.phase_late_max / 2;
+           elapsed(phase_due_, now) > policy_.phase_start_slack;
 }
 
 void Ranging::start_step(Step step, NodeTime now) {
@@ -139,7 +139,7 @@ void Ranging::start_step(Step step, NodeTime now) {
         case Step::awaiting_phase:
             phase_due_ = next_phase(now);
             // The bus makes it late: by as much as it was early, in the mean.
-            step_due_ = rules_.holds_phases ? phase_due_ - policy_.phase_late_max / 2 : phase_due_;
+            step_due_ = rules_.holds_phases ? phase_due_ - policy_.phase_start_slack : phase_due_;
             break;
         case Step::starting:
             device_.begin_start();
@@ -293,6 +293,7 @@ void Ranging::on_started(NodeTime now) {
     phase_.restart({.at = {step_began_, now},
                     .off = start_off_ + elapsed(phase_due_, step_began_),
                     .period = trim_.configured(),
+                    .step = device_.period_step().value_or(Nanoseconds{0}),
                     .is_trimmed = trim_.is_refined()});
     starts_put_off_ = 0;
     zones_.settle();
