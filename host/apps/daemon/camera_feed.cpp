@@ -26,10 +26,11 @@ std::string with_complaint(const std::string& what, openni2::HelperProcess& help
 }  // namespace
 
 CameraFeed::CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
-                       std::optional<std::filesystem::path> helper)
+                       std::optional<std::filesystem::path> helper, std::optional<openni2::CameraMode> mode)
     : uri_(std::move(uri)),
       silence_max_(silence_max),
       helper_(std::move(helper)),
+      mode_(mode),
       event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC | EFD_SEMAPHORE)),
       end_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
     if (event_ < 0 || end_ < 0)
@@ -84,7 +85,9 @@ void CameraFeed::watch_camera() {
     if (!helper) {
         return note_closed(std::string(kHelper) + " is neither beside this program nor in libexec");
     }
-    auto process = openni2::HelperProcess::start(*helper, uri_, openni2::HelperPipe::its_output,
+    std::vector<std::string> arguments{uri_};
+    if (mode_) arguments.push_back(to_text(*mode_));
+    auto process = openni2::HelperProcess::start(*helper, arguments, openni2::HelperPipe::its_output,
                                                  openni2::HelperComplaints::kept);
     if (!process) return note_closed(process.error());
     const auto header = openni2::FramePipe(process->descriptor(), kOpenPatience, end_).read_header();

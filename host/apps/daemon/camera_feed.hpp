@@ -13,6 +13,7 @@
 
 #include "common/time.hpp"
 #include "host/core/depth/depth_frame.hpp"
+#include "host/io/openni2/camera_mode.hpp"
 
 namespace octoskin {
 
@@ -37,9 +38,11 @@ class CameraFeed {
     /// `uri`: an OpenNI2 device, or the path of an .oni file that is played at its own speed, again and
     /// again; empty: the first device there is. `silence_max`: a camera that shows nothing for so long is
     /// opened anew, and so is one whose frames all come late (openni2::CaptureClock::is_lost).
-    /// `helper`: the program that reads the camera, in place of octoskin-camera.
+    /// `helper`: the program that reads the camera, in place of octoskin-camera. `mode`: what a device is put
+    /// into, if it has such a mode.
     CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
-               std::optional<std::filesystem::path> helper = {});
+               std::optional<std::filesystem::path> helper = {},
+               std::optional<openni2::CameraMode> mode = {});
     /// Within 2 s, whatever the camera does.
     ~CameraFeed();
     CameraFeed(const CameraFeed&) = delete;
@@ -63,6 +66,7 @@ class CameraFeed {
     std::string uri_;
     std::chrono::milliseconds silence_max_;
     std::optional<std::filesystem::path> helper_;
+    std::optional<openni2::CameraMode> mode_;
     int event_ = -1;
     int end_ = -1;  ///< readable when the thread is to end
     mutable std::mutex mutex_;

@@ -68,18 +68,23 @@ Status<AppError> Inputs::take_sockets(const HostRig& rig) {
 
 void Inputs::watch(const HostRig& rig) {
     if (joints_) joints_ready_ = loop_.on_readable(joints_->descriptor(), [this] { catch_up(); });
-    watch_camera(rig.camera.has_value());
+    watch_camera(rig.camera);
     attend();
 }
 
-void Inputs::watch_camera(bool is_wanted) {
-    if (!is_wanted || !request_.has_camera) {
+void Inputs::watch_camera(const std::optional<HostCamera>& camera) {
+    const bool is_wanted = camera && request_.has_camera;
+    const openni2::CameraMode mode =
+        is_wanted ? openni2::CameraMode{camera->intrinsics.width, camera->intrinsics.height, camera->rate_hz}
+                  : openni2::CameraMode{};
+    if (camera_ && mode != camera_mode_) {
         camera_ready_ = EventSource();
         camera_.reset();
-    } else if (!camera_) {
-        camera_ = std::make_unique<CameraFeed>(request_.camera_uri, kCameraSilenceMax);
-        camera_ready_ = loop_.on_readable(camera_->descriptor(), [this] { drain_camera(); });
     }
+    if (!is_wanted || camera_) return;
+    camera_mode_ = mode;
+    camera_ = std::make_unique<CameraFeed>(request_.camera_uri, kCameraSilenceMax, std::nullopt, mode);
+    camera_ready_ = loop_.on_readable(camera_->descriptor(), [this] { drain_camera(); });
 }
 
 void Inputs::change_rig(const HostRig& rig) {
@@ -88,7 +93,7 @@ void Inputs::change_rig(const HostRig& rig) {
     bit_rates_ = rig.bit_rates;
     local_joints_ = local_joints_of(rig);
     if (joints_) joints_->expect(rig.joints.joints.size());
-    watch_camera(rig.camera.has_value());
+    watch_camera(rig.camera);
 }
 
 void Inputs::attend() {

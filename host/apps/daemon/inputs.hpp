@@ -69,7 +69,7 @@ class Inputs {
     [[nodiscard]] const ForeignClock& foreign_clock() const noexcept { return foreign_clock_; }
 
   private:
-    void watch_camera(bool is_wanted);
+    void watch_camera(const std::optional<HostCamera>& camera);
     /// False if there may be more.
     bool drain_can();
     [[nodiscard]] bool is_of_node(const wire::CanFrame& frame) const;
@@ -95,6 +95,7 @@ class Inputs {
     EventSource joints_ready_;
     std::deque<JointSample> joints_waiting_;  ///< for frames of the bus that came before them
     std::unique_ptr<CameraFeed> camera_;
+    openni2::CameraMode camera_mode_;  ///< of `camera_`
     EventSource camera_ready_;
     LatencyHistogram latency_;
     wire::BitRates bit_rates_;

@@ -180,6 +180,14 @@ void add_camera(const DaemonView& view, Problems& problems) {
                             "camera: its frames have no time: the clock of the host that sends SYNC is not "
                             "known, or in doubt "
                             "(three FOLLOW_UPs must agree)"});
+    } else if (frames.in() > 0 && frames.rejected(DepthReason::wrong_size) == frames.in()) {
+        const CameraIntrinsics& wanted = view.rig->camera->intrinsics;
+        problems.push_back(
+            {"depth of another size",
+             fmt::format("camera: none of its images is {} x {}, as the rig has them (wrong_size): "
+                         "`octoskin cameras` lists its modes, camera.width_px and camera.height_px of "
+                         "the rig must be one's",
+                         wanted.width, wanted.height)});
     } else if (frames.in() > 0 && !view.used.depth_frame) {
         problems.push_back(
             {"depth unused", "no depth frame could be used yet: see the counters of depth frames"});

@@ -37,7 +37,7 @@ void list_cameras() {
         throw CommandFailure(
             {ExitCode::unavailable, std::string(kHelper) + " is neither beside this program nor in libexec"});
     }
-    auto helper = openni2::HelperProcess::start(*program, "--list", openni2::HelperPipe::its_output);
+    auto helper = openni2::HelperProcess::start(*program, {"--list"}, openni2::HelperPipe::its_output);
     if (!helper) throw CommandFailure({ExitCode::unavailable, helper.error()});
     const auto text = text_of(*helper);
     if (!text)
@@ -59,9 +59,10 @@ void add_cameras_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("cameras", "List the depth cameras of this machine and their modes");
     command->footer(
-        "Of each: its URI (for `octoskin run --camera`), vendor and name, and its depth modes. octoskin uses "
-        "the one\n"
-        "that it begins with: width_px, height_px and rate_hz of the rig's camera must be that mode's.\n"
+        "Of each: its URI (for `octoskin run --camera`), vendor and name, and its depth modes. `octoskin "
+        "run` "
+        "puts it\n"
+        "into the one of width_px and height_px of the rig's camera whose rate is nearest rate_hz.\n"
         "Exit codes: 0 there is one; 69 there is none; 74 one does not answer.");
     command->callback(list_cameras);
 }

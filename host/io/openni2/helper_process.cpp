@@ -46,9 +46,11 @@ class Spawning {
 
     void connect(int descriptor, int as) { posix_spawn_file_actions_adddup2(&actions_, descriptor, as); }
     /// 0, or why not.
-    int spawn(pid_t& process, std::string program, std::string argument) const {
-        std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
-        return posix_spawn(&process, program.c_str(), &actions_, &attributes_, arguments.data(), environ);
+    int spawn(pid_t& process, std::string program, std::vector<std::string> arguments) const {
+        std::vector<char*> pointers{program.data()};
+        for (std::string& argument : arguments) pointers.push_back(argument.data());
+        pointers.push_back(nullptr);
+        return posix_spawn(&process, program.c_str(), &actions_, &attributes_, pointers.data(), environ);
     }
 
   private:
@@ -82,8 +84,8 @@ LeftBehind& left_behind() {
 }  // namespace
 
 Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::path& program,
-                                                        const std::string& argument, HelperPipe pipe,
-                                                        HelperComplaints complaints) {
+                                                        const std::vector<std::string>& arguments,
+                                                        HelperPipe pipe, HelperComplaints complaints) {
     left_behind().reap();
     std::array<int, 2> ends{-1, -1};
     // Sockets rather than a pipe: a write to a helper that is stuck must not block, and one to a helper that
@@ -99,7 +101,7 @@ Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::p
     spawning.connect(theirs, pipe == HelperPipe::its_input ? STDIN_FILENO : STDOUT_FILENO);
     if (words[1] >= 0) spawning.connect(words[1], STDERR_FILENO);
     pid_t process = -1;
-    const int failed = spawning.spawn(process, program.string(), argument);
+    const int failed = spawning.spawn(process, program.string(), arguments);
     ::close(theirs);
     if (words[1] >= 0) ::close(words[1]);
     HelperProcess helper(process, ours, words[0]);

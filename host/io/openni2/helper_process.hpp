@@ -22,9 +22,9 @@ enum class HelperComplaints : std::uint8_t {
 
 class HelperProcess {
   public:
-    /// Starts `program argument`, with no signal blocked or ignored. The message says what failed.
+    /// Starts `program` with `arguments`, with no signal blocked or ignored. The message says what failed.
     [[nodiscard]] static Result<HelperProcess, std::string> start(
-        const std::filesystem::path& program, const std::string& argument, HelperPipe pipe,
+        const std::filesystem::path& program, const std::vector<std::string>& arguments, HelperPipe pipe,
         HelperComplaints complaints = HelperComplaints::on_our_standard_error);
     HelperProcess(HelperProcess&& other) noexcept;
     HelperProcess& operator=(HelperProcess&& other) noexcept;

@@ -31,7 +31,7 @@ Result<OniReader, DepthSourceError> OniReader::open(const std::filesystem::path&
     if (!helper)
         return failure(std::string(kReadHelper) +
                        " is neither beside this program nor in libexec; build or install it");
-    auto process = HelperProcess::start(*helper, oni.string(), HelperPipe::its_output);
+    auto process = HelperProcess::start(*helper, {oni.string()}, HelperPipe::its_output);
     if (!process) return failure(process.error());
     const auto header = FramePipe(process->descriptor(), kReadPatience).read_header();
     if (!header) {

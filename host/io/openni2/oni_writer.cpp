@@ -35,7 +35,7 @@ Result<OniWriter, DepthSourceError> OniWriter::create(const std::filesystem::pat
     // An old sidecar must not vouch for a recording that is not finished.
     std::error_code ignored;
     for (const auto& stale : {oni, epoch}) std::filesystem::remove(stale, ignored);
-    auto process = HelperProcess::start(*helper, oni.string(), HelperPipe::its_input);
+    auto process = HelperProcess::start(*helper, {oni.string()}, HelperPipe::its_input);
     if (!process) return failure(process.error());
     if (const auto written = FramePipe(process->descriptor(), kWritePatience).write_header({size});
         !written) {

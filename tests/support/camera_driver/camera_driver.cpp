@@ -21,11 +21,13 @@
 
 namespace {
 
-constexpr OniVideoMode kMode{
-    .pixelFormat = ONI_PIXEL_FORMAT_DEPTH_1_MM, .resolutionX = 80, .resolutionY = 60, .fps = 2};
-constexpr int kStride = kMode.resolutionX * static_cast<int>(sizeof(OniDepthPixel));
+/// It begins with the first.
+constexpr std::array<OniVideoMode, 3> kModes{{
+    {.pixelFormat = ONI_PIXEL_FORMAT_DEPTH_1_MM, .resolutionX = 80, .resolutionY = 60, .fps = 2},
+    {.pixelFormat = ONI_PIXEL_FORMAT_DEPTH_1_MM, .resolutionX = 160, .resolutionY = 120, .fps = 30},
+    {.pixelFormat = ONI_PIXEL_FORMAT_DEPTH_100_UM, .resolutionX = 80, .resolutionY = 60, .fps = 2},
+}};
 constexpr int kDepthMax = 10'000;
-constexpr std::chrono::milliseconds kPeriod{1000 / kMode.fps};
 
 struct Wall {
     OniDepthPixel right_mm;
@@ -71,7 +73,7 @@ class WallStream final : public oni::driver::StreamBase {
     OniStatus getProperty(int property, void* data, int* size) override {
         switch (property) {
             case ONI_STREAM_PROPERTY_VIDEO_MODE:
-                return give(kMode, data, size);
+                return give(mode_, data, size);
             case ONI_STREAM_PROPERTY_MAX_VALUE:
                 return give(kDepthMax, data, size);
             case ONI_STREAM_PROPERTY_MIN_VALUE:
@@ -91,7 +93,10 @@ class WallStream final : public oni::driver::StreamBase {
             is_mirrored_ = *static_cast<const OniBool*>(data) != FALSE;
             return ONI_STATUS_OK;
         }
-        return property == ONI_STREAM_PROPERTY_VIDEO_MODE ? ONI_STATUS_OK : ONI_STATUS_NOT_IMPLEMENTED;
+        if (property != ONI_STREAM_PROPERTY_VIDEO_MODE || size != static_cast<int>(sizeof(mode_)))
+            return ONI_STATUS_NOT_IMPLEMENTED;
+        std::memcpy(&mode_, data, sizeof(mode_));
+        return ONI_STATUS_OK;
     }
 
   private:
@@ -99,7 +104,7 @@ class WallStream final : public oni::driver::StreamBase {
         auto next = std::chrono::steady_clock::now();
         for (int index = 1; is_running_; ++index) {
             if (const auto seen = wall()) raise(index, *seen);
-            next += kPeriod;
+            next += std::chrono::milliseconds(1000 / mode_.fps);
             std::this_thread::sleep_until(next);
         }
     }
@@ -112,17 +117,17 @@ class WallStream final : public oni::driver::StreamBase {
             std::chrono::duration_cast<std::chrono::microseconds>(since_begin).count());
         frame->sensorType = ONI_SENSOR_DEPTH;
         frame->frameIndex = index;
-        frame->videoMode = kMode;
-        frame->width = kMode.resolutionX;
-        frame->height = kMode.resolutionY;
+        frame->videoMode = mode_;
+        frame->width = mode_.resolutionX;
+        frame->height = mode_.resolutionY;
         frame->croppingEnabled = FALSE;
         frame->cropOriginX = frame->cropOriginY = 0;
-        frame->stride = kStride;
-        frame->dataSize = kStride * kMode.resolutionY;
+        frame->stride = mode_.resolutionX * static_cast<int>(sizeof(OniDepthPixel));
+        frame->dataSize = frame->stride * mode_.resolutionY;
         auto* const pixels = static_cast<OniDepthPixel*>(frame->data);
-        const int half = kMode.resolutionX / 2;
-        for (int row = 0; row < kMode.resolutionY; ++row) {
-            auto* const first = pixels + static_cast<std::ptrdiff_t>(row) * kMode.resolutionX;
+        const int half = mode_.resolutionX / 2;
+        for (int row = 0; row < mode_.resolutionY; ++row) {
+            auto* const first = pixels + static_cast<std::ptrdiff_t>(row) * mode_.resolutionX;
             std::fill_n(first, half, is_mirrored_ ? seen.right_mm : seen.left_mm);
             std::fill_n(first + half, half, is_mirrored_ ? seen.left_mm : seen.right_mm);
         }
@@ -130,6 +135,7 @@ class WallStream final : public oni::driver::StreamBase {
         getServices().releaseFrame(frame);
     }
 
+    OniVideoMode mode_ = kModes.front();  ///< set before it starts
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     std::atomic<bool> is_running_ = false;
     std::atomic<bool> is_mirrored_ = true;
@@ -149,11 +155,7 @@ class WallCamera final : public oni::driver::DeviceBase {
     void destroyStream(oni::driver::StreamBase* stream) override { delete stream; }
 
   private:
-    /// Only the first is ever shown.
-    std::array<OniVideoMode, 3> modes_{
-        kMode,
-        {.pixelFormat = ONI_PIXEL_FORMAT_DEPTH_1_MM, .resolutionX = 160, .resolutionY = 120, .fps = 30},
-        {.pixelFormat = ONI_PIXEL_FORMAT_DEPTH_100_UM, .resolutionX = 80, .resolutionY = 60, .fps = 2}};
+    std::array<OniVideoMode, 3> modes_ = kModes;
     OniSensorInfo sensor_{.sensorType = ONI_SENSOR_DEPTH,
                           .numSupportedVideoModes = static_cast<int>(modes_.size()),
                           .pSupportedVideoModes = modes_.data()};

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "host/io/openni2/helpers/frame_pixels.hpp"
@@ -39,10 +40,30 @@ bool DepthStream::open(const char* uri) {
     return device_.open(uri) == openni::STATUS_OK;
 }
 
-bool DepthStream::start() {
+void DepthStream::choose(const CameraMode& wanted) {
+    const openni::SensorInfo* const sensor = device_.getSensorInfo(openni::SENSOR_DEPTH);
+    if (sensor == nullptr) return;
+    const auto& modes = sensor->getSupportedVideoModes();
+    const openni::VideoMode* nearest = nullptr;
+    const auto off = [&wanted](const openni::VideoMode& mode) {
+        return std::abs(mode.getFps() - wanted.rate_hz);
+    };
+    for (int i = 0; i < modes.getSize(); ++i) {
+        const openni::VideoMode& mode = modes[i];
+        const bool fits = mode.getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_1_MM &&
+                          mode.getResolutionX() == static_cast<int>(wanted.width) &&
+                          mode.getResolutionY() == static_cast<int>(wanted.height);
+        if (fits && (nearest == nullptr || off(mode) < off(*nearest))) nearest = &mode;
+    }
+    if (nearest != nullptr && stream_.setVideoMode(*nearest) != openni::STATUS_OK)
+        (void)complain("does not take the mode " + to_text(wanted));
+}
+
+bool DepthStream::start(const std::optional<CameraMode>& wanted) {
     const auto refuse = [this](const char* what) { return complain(what) == 0; };
     if (stream_.create(device_, openni::SENSOR_DEPTH) != openni::STATUS_OK)
         return refuse("it has no depth stream");
+    if (wanted && !device_.isFile()) choose(*wanted);
     const auto size = depth_size(stream_);
     if (!size) return refuse("a video mode that octoskin does not read");
     size_ = *size;

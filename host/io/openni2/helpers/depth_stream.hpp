@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/io/openni2/camera_mode.hpp"
 #include "host/io/openni2/frame_pipe.hpp"
 
 namespace octoskin::openni2 {
@@ -26,8 +27,9 @@ class DepthStream {
 
     /// False if there is no such device or file, or OpenNI2 cannot read it.
     [[nodiscard]] bool open(const char* uri);
-    /// False if it gives no depth in millimetres; that is said then.
-    [[nodiscard]] bool start();
+    /// False if it gives no depth in millimetres; that is said then. `wanted`: a camera is put into the mode
+    /// of this size whose rate comes next, if it has one; else it stays in the mode that it begins with.
+    [[nodiscard]] bool start(const std::optional<CameraMode>& wanted = std::nullopt);
     /// The next frame, within 2 s and 5 s of processor time; false if there is none.
     [[nodiscard]] bool wait_for_frame();
 
@@ -47,6 +49,8 @@ class DepthStream {
     [[nodiscard]] std::vector<std::uint16_t> pixels() const;
 
   private:
+    void choose(const CameraMode& wanted);
+
     const char* program_;
     openni::Device device_;
     openni::VideoStream stream_;

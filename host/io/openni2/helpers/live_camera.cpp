@@ -1,6 +1,6 @@
-// octoskin-camera --list: which cameras there are (camera_list.hpp). octoskin-camera URI: the depth frames of
-// a camera to standard output (frame_pipe.hpp), each with the time of its capture on the host's monotonic
-// clock. An .oni file as URI is a camera too: played at its own speed, again and again.
+// octoskin-camera --list: which cameras there are (camera_list.hpp). octoskin-camera URI [MODE]: the depth
+// frames of a camera to standard output (frame_pipe.hpp), each with the time of its capture on the host's
+// monotonic clock. An .oni file as URI is a camera too: played at its own speed, again and again.
 #include <unistd.h>
 
 #include <chrono>
@@ -42,13 +42,13 @@ int stream_frames(DepthStream& depth, int descriptor) {
     }
 }
 
-int watch(DepthStream& depth, const char* uri, int descriptor) {
+int watch(DepthStream& depth, const char* uri, const std::optional<CameraMode>& mode, int descriptor) {
     if (!depth.open(uri)) return depth.complain("cannot open the camera");
     if (openni::PlaybackControl* playback = depth.playback(); playback != nullptr) {
         playback->setRepeatEnabled(true);
         playback->setSpeed(1.0F);
     }
-    return depth.start() ? stream_frames(depth, descriptor) : 1;
+    return depth.start(mode) ? stream_frames(depth, descriptor) : 1;
 }
 
 int list_cameras(int descriptor) {
@@ -62,9 +62,11 @@ int list_cameras(int descriptor) {
 int main(int argc, char** argv) {
     using namespace octoskin::openni2;
     constexpr const char* kProgram = "octoskin-camera";
-    if (argc != 2) {
+    const auto mode = argc == 3 ? parse_camera_mode(argv[2]) : std::nullopt;
+    if (argc < 2 || argc > 3 || (argc == 3 && !mode)) {
         std::fputs(
-            "usage: octoskin-camera URI|FILE.oni|'' > frames\n       octoskin-camera --list\nA helper of "
+            "usage: octoskin-camera URI|FILE.oni|'' [WIDTHxHEIGHT@HZ] > frames\n       octoskin-camera "
+            "--list\nA helper of "
             "octoskin; `octoskin run` runs "
             "it.\n",
             stderr);
@@ -78,5 +80,5 @@ int main(int argc, char** argv) {
     if (!output) return 1;
     if (uri == "--list") end_helper(list_cameras(*output));
     DepthStream depth(kProgram);
-    end_helper(watch(depth, uri.empty() ? openni::ANY_DEVICE : uri.c_str(), *output));
+    end_helper(watch(depth, uri.empty() ? openni::ANY_DEVICE : uri.c_str(), mode, *output));
 }

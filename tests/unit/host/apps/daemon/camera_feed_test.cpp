@@ -73,5 +73,19 @@ TEST_F(CameraFeedTest, counts_frames_without_a_time_and_hands_over_the_others) {
     EXPECT_EQ(feed.record().frames, 3U);
 }
 
+TEST_F(CameraFeedTest, tells_the_helper_which_camera_and_which_mode) {
+    const std::string told = (scratch_ / "told").string();
+    const auto program = camera("echo \"$# $1 $2\" > " + told + ".new; mv " + told + ".new " + told);
+    const auto wait_for = [&](const std::string& words) {
+        return wait_until([&] { return testing_support::ScratchFolder::read(told) == words + "\n"; });
+    };
+    std::optional<CameraFeed> feed;
+    feed.emplace("the-uri", 2s, program, openni2::CameraMode{640, 480, 30.0});
+    EXPECT_TRUE(wait_for("2 the-uri 640x480@30"));
+    feed.reset();
+    feed.emplace("the-uri", 2s, program);
+    EXPECT_TRUE(wait_for("1 the-uri "));
+}
+
 }  // namespace
 }  // namespace octoskin

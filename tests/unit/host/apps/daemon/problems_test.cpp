@@ -280,9 +280,18 @@ TEST_F(ProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) {
     play(daemon_scene(), 3.95);
     view_.camera->newest = view_.now;
     EXPECT_EQ(told("depth unused"), "") << "none has come";
-    play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
+    play_changed([](Scene& scene) { scene.rig.camera->T_base_camera.translation().x() = 2000.0; });
     view_.camera->newest = view_.now;
     EXPECT_EQ(told("depth unused"), "no depth frame could be used yet: see the counters of depth frames");
+    EXPECT_EQ(told("depth of another size"), "");
+    play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
+    view_.camera->newest = view_.now;
+    EXPECT_EQ(
+        told("depth of another size"),
+        "camera: none of its images is 17 x " + std::to_string(scene_.rig.camera->intrinsics.height) +
+            ", as the rig has them (wrong_size): `octoskin cameras` lists its modes, camera.width_px and "
+            "camera.height_px of the rig must be one's");
+    EXPECT_EQ(told("depth unused"), "");
 }
 
 TEST_F(ProblemsTest, have_nothing_of_a_camera_that_nobody_wants) {
@@ -302,11 +311,11 @@ TEST_F(ProblemsTest, have_a_camera_beside_a_bus_that_fell_silent) {
     EXPECT_EQ(told("depth beside silent bus"),
               "camera: its frames are not used, because the bus is silent: no node tells where the robot is "
               "(joints_missing)");
-    EXPECT_EQ(told("depth unused"), "");
+    EXPECT_EQ(told("depth of another size"), "");
     view_.now = monotonic_now();
     view_.camera->newest = view_.now;
     EXPECT_EQ(told("depth beside silent bus"), "");
-    EXPECT_NE(told("depth unused"), "");
+    EXPECT_NE(told("depth of another size"), "");
 }
 
 TEST_F(ProblemsTest, have_a_camera_without_a_time_until_three_exchanges_of_the_other_host_agree) {

@@ -20,14 +20,14 @@ class HelperProcessTest : public testing::Test {
                                              HelperPipe pipe = HelperPipe::its_output) {
         const auto program = scratch_.write("helper", "#!/bin/sh\n" + script + "\n");
         std::filesystem::permissions(program, std::filesystem::perms::owner_all);
-        return HelperProcess::start(program, "the argument", pipe);
+        return HelperProcess::start(program, {"the argument"}, pipe);
     }
     testing_support::ScratchFolder scratch_;
 };
 
 /// "SigBlk" or "SigIgn" of a helper that tells its own, as the kernel writes them.
 std::string signals_of_helper(const std::string& key) {
-    auto helper = HelperProcess::start("/bin/cat", "/proc/self/status", HelperPipe::its_output);
+    auto helper = HelperProcess::start("/bin/cat", {"/proc/self/status"}, HelperPipe::its_output);
     EXPECT_TRUE(helper) << helper.error();
     std::string text;
     std::array<char, 4096> bytes{};
@@ -59,7 +59,7 @@ TEST_F(HelperProcessTest, has_its_last_complaint_kept_however_much_it_complains)
                        "echo first >&2; echo 'the reason' >&2; echo end\n");
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
     for (const char* how : {"little", "much"}) {
-        auto helper = HelperProcess::start(program, how, HelperPipe::its_output, HelperComplaints::kept);
+        auto helper = HelperProcess::start(program, {how}, HelperPipe::its_output, HelperComplaints::kept);
         ASSERT_TRUE(helper) << helper.error();
         std::array<char, 8> bytes{};
         EXPECT_EQ(::read(helper->descriptor(), bytes.data(), bytes.size()), 4) << "it waits for a reader";
@@ -101,7 +101,7 @@ TEST_F(HelperProcessTest, is_killed_when_it_does_not_end_in_time) {
 }
 
 TEST_F(HelperProcessTest, that_is_not_there_is_an_error_with_its_name) {
-    const auto helper = HelperProcess::start(scratch_ / "absent", "x", HelperPipe::its_output);
+    const auto helper = HelperProcess::start(scratch_ / "absent", {"x"}, HelperPipe::its_output);
     ASSERT_FALSE(helper);
     EXPECT_NE(helper.error().find("absent"), std::string::npos);
     EXPECT_EQ(find_helper("octoskin-no-such-helper"), std::nullopt);
