@@ -31,7 +31,8 @@ constexpr std::array kStatusMeanings = {
     Meaning{"can", "why", "why it is not up, with what to do; empty if it is"},
     Meaning{"can", "listen_only", "the daemon transmits nothing (--listen-only)"},
     Meaning{"can", "received", "frames that came; the echoes of those sent, too"},
-    Meaning{"can", "sent", "frames handed to the interface: two a second, SYNC and FOLLOW_UP"},
+    Meaning{"can", "sent",
+            "frames handed to the interface: two a second, SYNC and FOLLOW_UP; none with --listen-only"},
     Meaning{"can", "not_sent",
             "frames that the interface did not take, as it was not up or its queue was full: they are not "
             "sent later, and nodes lose their time if it goes on"},
@@ -51,7 +52,7 @@ constexpr std::array kStatusMeanings = {
     Meaning{"can", "reopened",
             "how often the interface was opened again: it had been removed, as an adapter that is unplugged, "
             "or its frames could not be chosen anew at a reload"},
-    Meaning{"clock", "known", "the bus's time is known; without it nothing is used"},
+    Meaning{"clock", "known", "the bus's time is known; without it nothing that comes over the bus is used"},
     Meaning{"clock", "steps_back",
             "how often the receive stamps, which are wall time, jumped back: the clock of this machine was "
             "set. The next exchange of SYNC and FOLLOW_UP settles it"},
@@ -129,8 +130,8 @@ constexpr std::array kStatusMeanings = {
     Meaning{"joints_socket", "wrong_count",
             "refused: neither as many numbers as the rig has joints, nor one more, the time"},
     Meaning{"joints_socket", "time_off",
-            "refused: its time is over 1 s from when it was read. It wants CLOCK_MONOTONIC of this machine "
-            "in seconds; wall time is what mostly came"},
+            "refused: its time is over 1 s from when it was read, or it has none and was not read for so "
+            "long. CLOCK_MONOTONIC of this machine in seconds is wanted; wall time is what mostly came"},
     Meaning{"joints_socket", "too_large",
             "refused: a position beyond +-8.38 rad (or m); degrees are what mostly came"},
     Meaning{"joints_socket", "too_long", "refused: over 1024 bytes"},
