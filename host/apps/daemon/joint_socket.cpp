@@ -101,7 +101,7 @@ Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::siz
 }
 
 std::string describe(JointTextFault fault, std::string_view text, std::size_t joint_count, HostTime now) {
-    const std::string name = names_of(fault).at(static_cast<std::size_t>(fault));
+    std::string name = names_of(fault).at(static_cast<std::size_t>(fault));
     if (fault == JointTextFault::too_long) return fmt::format("{}: over {} bytes", name, kJointTextMax);
     const auto words = words_of(text);
     const auto wrong = std::ranges::find_if(words, [](std::string_view word) { return !number_of(word); });
