@@ -221,7 +221,10 @@ TEST(Monitor, shows_the_recording_and_what_it_lost_as_bad) {
     EXPECT_EQ(title().text, "recording /tmp/bench: failed, 12 s: no room");
 }
 
-/// "group name: text" of each row of the tables in a document of docs/, the group from the heading above;
+std::string row_of(const Meaning& meaning) {
+    return std::string(meaning.group).append(" ").append(meaning.name).append(": ").append(meaning.text);
+}
+/// As `row_of` has them, each row of the tables in a document of docs/, the group from the heading above;
 /// without marks of code and with a link's words alone, as a screen has them.
 std::set<std::string> documented(const std::string& file) {
     std::ifstream stream(std::string(OCTOSKIN_SOURCE_DIR "/docs/") + file);
@@ -238,14 +241,13 @@ std::set<std::string> documented(const std::string& file) {
         const auto bar = line.find(" | ", 2);
         const std::string name = line.substr(2, bar - 2);
         const std::string text = line.substr(bar + 3, line.size() - bar - 5);
-        EXPECT_TRUE(rows.insert(group + " " + name + ": " + text).second) << line;
+        EXPECT_TRUE(rows.insert(row_of({group, name, text})).second) << line;
     }
     return rows;
 }
 std::set<std::string> known(std::span<const Meaning> meanings) {
     std::set<std::string> rows;
-    for (const auto& [group, name, text] : meanings)
-        rows.insert(std::string(group).append(" ").append(name).append(": ").append(text));
+    for (const Meaning& meaning : meanings) rows.insert(row_of(meaning));
     return rows;
 }
 

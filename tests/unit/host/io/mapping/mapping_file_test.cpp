@@ -178,7 +178,7 @@ std::string expected_of(const std::string& path) {
     const std::string text = dot == std::string::npos
                                  ? path + ": 1e30\n"
                                  : path.substr(0, dot) + ": {" + path.substr(dot + 1) + ": 1e30}\n";
-    const std::string error = error_of(text);
+    std::string error = error_of(text);
     const std::string begin = path + ": expected ";
     const auto from = error.find(begin);
     if (from == std::string::npos) return error;
