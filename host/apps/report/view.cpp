@@ -8,6 +8,8 @@ namespace octoskin::report {
 namespace {
 
 constexpr double kMargin = 1.04;
+// A single point fits from any distance.
+constexpr double kDistanceMinM = 0.1;
 
 /// Where the middle is looked at from, as a unit vector.
 struct Bearing {
@@ -30,7 +32,7 @@ Eigen::Vector2d half_size_of(const View& view) {
 /// How far from the target the eye must be for all points to be in the picture.
 double distance_for(std::span<const Eigen::Vector3d> points, const View& view, const Eigen::Matrix3d& axes) {
     const Eigen::Vector2d half_size = half_size_of(view);
-    double distance_m = 0.0;
+    double distance_m = kDistanceMinM;
     for (const auto& point : points) {
         const Eigen::Vector3d p_view = axes.transpose() * (point - view.target);
         const double needed = (p_view.head<2>().cwiseAbs().cwiseQuotient(half_size)).maxCoeff();

@@ -264,7 +264,7 @@ TEST_F(DataSetPlayback, what_a_data_set_does_not_have_is_refused) {
     PlaybackRequest unknown = request();
     unknown.camera = "freiburg4";
     EXPECT_THAT(refused(unknown), HasSubstr("kinect, freiburg1, freiburg2, freiburg3"));
-    EXPECT_THAT(refused(request()), HasSubstr("an image that depth.txt names is not there"));
+    EXPECT_THAT(refused(request()), HasSubstr("depth.txt:4: depth/absent.png: is not there"));
 }
 
 TEST_F(DataSetPlayback, a_folder_with_a_log_of_the_bus_is_a_recording) {

@@ -42,9 +42,11 @@ TEST(Views, look_from_the_robots_side_and_from_the_cameras_from_above) {
     EXPECT_GT(views.back.eye.z(), kBox.max().z());
 }
 
-TEST(Views, of_a_single_point_are_finite) {
+TEST(Views, of_a_single_point_have_it_in_the_middle) {
     const std::vector<Eigen::Vector3d> point = {{0.5, 0.5, 0.5}};
-    EXPECT_TRUE(views_of(point).front.eye.allFinite());
+    const View view = views_of(point).front;
+    EXPECT_TRUE(shows(view, point.front()));
+    EXPECT_LT((view.target - point.front()).norm(), 1e-9);
 }
 
 TEST(Views, show_what_lies_within_the_picture_and_before_the_eye) {
