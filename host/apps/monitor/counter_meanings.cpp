@@ -141,8 +141,4 @@ std::span<const Meaning> counter_meanings() noexcept {
     return kCounterMeanings;
 }
 
-std::string_view meaning_of(std::string_view unit, std::string_view name) noexcept {
-    return find_meaning(kCounterMeanings, unit, name);
-}
-
 }  // namespace octoskin

@@ -204,7 +204,7 @@ class Screen {
                 add("  the counters do not add up: a defect of octoskin", Emphasis::bad);
             for (const auto& [name, value] : at(account, "rejected").items()) {
                 const Json& was = at(at(at(at(before_, "account"), unit), "rejected"), name);
-                add_counter(name, was, value, meaning_of(unit, name));
+                add_counter(name, was, value, find_meaning(counter_meanings(), unit, name));
             }
         }
     }
@@ -214,7 +214,8 @@ class Screen {
         for (const char* name : names) {
             const Json& value = at(object, name);
             if (number(value) != 0.0)
-                add_counter(name, at(at(before_, group), name), value, status_meaning_of(group, name));
+                add_counter(name, at(at(before_, group), name), value,
+                            find_meaning(status_meanings(), group, name));
         }
     }
     void add_counter(std::string_view name, const Json& before, const Json& now, std::string_view meaning) {

@@ -194,8 +194,4 @@ std::span<const Meaning> status_meanings() noexcept {
     return kStatusMeanings;
 }
 
-std::string_view status_meaning_of(std::string_view group, std::string_view name) noexcept {
-    return find_meaning(kStatusMeanings, group, name);
-}
-
 }  // namespace octoskin

@@ -184,8 +184,8 @@ TEST(Monitor, shows_each_counter_that_is_not_zero_with_its_rate_and_meaning) {
     now["nodes"][0]["sensors"][0]["lost"] = 3;
     const std::string screen = shown(before, now);
     const auto expect_line = [&screen](const std::string& begin, const char* group, const char* name) {
-        const std::string line = begin + std::string(status_meaning_of(group, name)) + '\n';
-        EXPECT_FALSE(status_meaning_of(group, name).empty()) << name;
+        const std::string line = begin + std::string(find_meaning(status_meanings(), group, name)) + '\n';
+        EXPECT_FALSE(find_meaning(status_meanings(), group, name).empty()) << name;
         EXPECT_TRUE(has(screen, line)) << line << screen;
     };
     expect_line("\n          5 not_sent                 1.5/s  ", "can", "not_sent");
@@ -293,8 +293,8 @@ TEST(Meanings, are_there_for_every_counter_of_the_account_and_for_no_other) {
     expected.merge(names<JointReason>("joint samples"));
     expected.merge(names<DepthReason>("depth frames"));
     EXPECT_EQ(there, expected);
-    EXPECT_TRUE(meaning_of("readings", "no_such_counter").empty());
-    EXPECT_TRUE(status_meaning_of("clock", "not_sent").empty()) << "one of another group";
+    EXPECT_TRUE(find_meaning(counter_meanings(), "readings", "no_such_counter").empty());
+    EXPECT_TRUE(find_meaning(status_meanings(), "clock", "not_sent").empty()) << "one of another group";
 }
 
 }  // namespace
