@@ -48,9 +48,21 @@ void JointAssembler::give_up_stale(HostTime now, Outcome& outcome) {
     }
 }
 
+/// Frames that were held up come in a burst, the next round before this one is stale: of an arm at rest they
+/// look like this round's again. But a repeated frame follows its original, and no newer sample's.
+void JointAssembler::begin_round(std::uint8_t sequence, Outcome& outcome) {
+    const int ahead = (sequence - newest_ + wire::kJointSequenceCount) % wire::kJointSequenceCount;
+    if (ahead == 0 || ahead > wire::kJointSequenceCount / 2) return;
+    newest_ = sequence;
+    auto& sample = samples_[sequence];
+    if (sample && !sample->is_complete) outcome.given_up.push_back(JointReason::incomplete);
+    sample.reset();
+}
+
 JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, HostTime now) {
     Outcome outcome;
     give_up_stale(now, outcome);
+    begin_round(sequence_of(frame), outcome);
     auto& sample = samples_[sequence_of(frame)];
     const std::uint8_t part = part_of(frame);
     if (sample && sample->parts[part]) {

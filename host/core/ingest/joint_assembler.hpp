@@ -49,9 +49,11 @@ class JointAssembler {
         std::array<std::optional<wire::JointState>, kParts> parts;
     };
     void give_up_stale(HostTime now, Outcome& outcome);
+    void begin_round(std::uint8_t sequence, Outcome& outcome);
 
     Nanoseconds patience_;
     JointPace pace_;
+    std::uint8_t newest_ = 0;  ///< sequence number of the newest sample begun
     std::array<std::optional<Sample>, wire::kJointSequenceCount> samples_;
 };
 

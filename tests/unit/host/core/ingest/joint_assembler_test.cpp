@@ -120,6 +120,31 @@ TEST(JointAssembler, ignores_a_repeated_frame_before_and_after_completion) {
     EXPECT_EQ(assembler.pending(), 0U);
 }
 
+// A bus or a program that was held up: several rounds within the time of half a one.
+TEST(JointAssembler, takes_a_burst_of_an_arm_at_rest_for_the_samples_that_they_are) {
+    JointAssembler assembler(kRate);
+    const auto at_rest = [](int n, int index) {
+        wire::JointState frame = part(0, index);
+        std::visit([n](auto& of_sample) { of_sample.sequence = static_cast<std::uint8_t>(n % 8); }, frame);
+        if (index == 3)
+            std::get<wire::JointLast>(frame).sampled.value_us = static_cast<std::uint32_t>(n) * 10'000U;
+        return frame;
+    };
+    for (int n = 0; n < 40; ++n) {
+        for (int index = 0; index < 4; ++index) {
+            const auto outcome = assembler.on_frame(at_rest(n, index), ms(1'000 + n));
+            EXPECT_FALSE(outcome.is_repeated) << n << ' ' << index;
+            EXPECT_TRUE(outcome.given_up.empty()) << n << ' ' << index;
+            ASSERT_EQ(outcome.complete.has_value(), index == 3) << n << ' ' << index;
+            if (index == 3) {
+                EXPECT_EQ(outcome.complete->sampled.value_us, static_cast<std::uint32_t>(n) * 10'000U);
+            }
+            EXPECT_TRUE(assembler.on_frame(at_rest(n, index), ms(1'000 + n)).is_repeated)
+                << n << ' ' << index;
+        }
+    }
+}
+
 TEST(JointAssembler, gives_up_a_sample_that_contradicts_itself) {
     JointAssembler assembler(kRate);
     EXPECT_TRUE(assembler.on_frame(part(0, 0), ms(0)).opened);
