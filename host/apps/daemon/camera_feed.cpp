@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <exception>
 #include <system_error>
 #include <utility>
 
@@ -37,7 +38,13 @@ CameraFeed::CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
         throw std::system_error(errno, std::generic_category(), "cannot make an eventfd");
     record_.why = "not opened yet";
     record_.begun = monotonic_now();
-    thread_ = start_without_signals([this] { work(); });
+    try {
+        thread_ = start_without_signals([this] { work(); });
+    } catch (...) {
+        ::close(event_);
+        ::close(end_);
+        throw;
+    }
 }
 
 CameraFeed::~CameraFeed() {
@@ -70,7 +77,11 @@ CameraRecord CameraFeed::record() const {
 
 void CameraFeed::work() {
     while (!is_ending_) {
-        watch_camera();
+        try {
+            watch_camera();
+        } catch (const std::exception& thrown) {  // no memory for a frame, or for the helper
+            note_closed(thrown.what());
+        }
         wait_before_retry();
     }
 }

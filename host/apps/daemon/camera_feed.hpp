@@ -39,7 +39,7 @@ class CameraFeed {
     /// again; empty: the first device there is. `silence_max`: a camera that shows nothing for so long is
     /// opened anew, and so is one whose frames all come late (openni2::CaptureClock::is_lost).
     /// `helper`: the program that reads the camera, in place of octoskin-camera. `mode`: what a device is put
-    /// into, if it has such a mode.
+    /// into, if it has such a mode. Throws std::system_error if there is no thread or descriptor to be had.
     CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
                std::optional<std::filesystem::path> helper = {},
                std::optional<openni2::CameraMode> mode = {});

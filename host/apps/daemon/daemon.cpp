@@ -3,7 +3,9 @@
 #include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 
+#include <chrono>
 #include <csignal>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -22,9 +24,26 @@ namespace octoskin {
 namespace {
 
 constexpr std::chrono::milliseconds kAttendPeriod{50};
-/// For what is being saved when the end comes, the last save, and what is being recorded. The camera may take
-/// another second, what is left behind 0.2 s: 5 s in all.
-constexpr Nanoseconds kEndPatience{3'500'000'000};
+/// What the end may take besides: the camera a second, what is left behind 0.2 s.
+constexpr Nanoseconds kEndMargin{1'500'000'000};
+
+/// For what is being saved when the end comes, the last save, and what is being recorded. With kEndMargin
+/// that is 5 s up to a map that any disk takes in that time; a larger one has as long as a disk with 50 MB/s
+/// takes to write it twice, as a save may just have begun. A file of dense space is 1.4 times the memory.
+Nanoseconds end_patience(std::size_t map_bytes) {
+    constexpr Nanoseconds kSmallMap{3'500'000'000};
+    constexpr std::size_t kSmallBytes = std::size_t{64} << 20U;
+    constexpr std::int64_t kNsPerByte = 2 * 14 * 2;  // 20 ns a byte at 50 MB/s, 1.4 bytes, twice
+    if (map_bytes <= kSmallBytes) return kSmallMap;
+    return kSmallMap + Nanoseconds{kNsPerByte * static_cast<std::int64_t>(map_bytes - kSmallBytes)};
+}
+
+/// The service manager waits as long, and its watchdog too: the loop that feeds it has ended.
+void tell_end(Nanoseconds patience) {
+    const auto all = std::chrono::duration_cast<std::chrono::microseconds>(patience + kEndMargin);
+    (void)sd_notifyf(0, "STOPPING=1\nEXTEND_TIMEOUT_USEC=%lld\nWATCHDOG_USEC=%lld",
+                     static_cast<long long>(all.count()), static_cast<long long>(all.count()));
+}
 
 void tell_warnings(const Settings& settings) {
     for (const std::string& warning : settings.host.warnings) spdlog::warn("{}", warning);
@@ -46,8 +65,14 @@ struct Daemon::Parts {
     void watch();
     void attend();
     void save_map();
-    bool save_last_map(HostTime end);
+    std::string save_last_map(HostTime end);
     std::uint64_t settle_pipeline();
+    struct Next {
+        Settings settings;
+        Pipeline pipeline;
+    };
+    [[nodiscard]] Result<Next, AppError> read_next() const;
+    [[nodiscard]] bool has_same_grid(const Settings& next) const;
     void reload();
     [[nodiscard]] DaemonView view() const;
     std::string answer(const std::string& line);
@@ -95,17 +120,17 @@ ExitCode Daemon::run() {
     try {
         outcome = parts_->loop.run();
     } catch (const std::exception& error) {
-        spdlog::critical("a defect of octoskin, please report it: {}; the map is saved, and it ends",
+        spdlog::critical("a defect of octoskin, please report it: {}; it saves the map and ends",
                          error.what());
     }
-    (void)sd_notify(0, "STOPPING=1");
+    const Nanoseconds patience = end_patience(parts_->pipeline.maps().fused()->memory_bytes());
+    tell_end(patience);
     parts_->recordings.stop(monotonic_now());
-    const HostTime end = monotonic_now() + kEndPatience;
-    const bool is_saved = parts_->save_last_map(end);
+    const HostTime end = monotonic_now() + patience;
+    const std::string error = parts_->save_last_map(end);
     parts_->recordings.finish(end - monotonic_now());
-    const SaveRecord saves = parts_->keeper->record();
-    if (!is_saved || !saves.error.empty()) {
-        spdlog::error("the map is not saved: {}", is_saved ? saves.error : "the disk took too long");
+    if (!error.empty()) {
+        spdlog::error("the map is not saved as it was at the end: {}", error);
         return ExitCode::cannot_create;
     }
     spdlog::info("stopped; the map is saved in {}", parts_->request.map_folder.string());
@@ -156,10 +181,12 @@ void Daemon::Parts::save_map() {
     (void)keeper->save(*pipeline.maps().fused());  // counted if one is at work still; the next is not far
 }
 
-/// False if the disk takes longer than until `end`.
-bool Daemon::Parts::save_last_map(HostTime end) {
-    return keeper->finish(end - monotonic_now()) && keeper->save(*pipeline.maps().fused()) &&
-           keeper->finish(end - monotonic_now());
+/// Why it could not be saved by `end`; empty: it is saved.
+std::string Daemon::Parts::save_last_map(HostTime end) {
+    if (!keeper->finish(end - monotonic_now())) return "the disk took too long for the save before";
+    keeper->save_last(pipeline.take_fused());
+    if (!keeper->finish(end - monotonic_now())) return "the disk took too long";
+    return keeper->record().error;
 }
 
 /// What waits in the pipeline that is about to go is used or counted; how much was not used.
@@ -176,24 +203,43 @@ std::uint64_t Daemon::Parts::settle_pipeline() {
     return rejected() - before;
 }
 
+bool Daemon::Parts::has_same_grid(const Settings& next) const {
+    return next.mapping.map.resolution_m == settings.mapping.map.resolution_m;
+}
+
+/// All that may speak against a reload, before anything has changed.
+Result<Daemon::Parts::Next, AppError> Daemon::Parts::read_next() const {
+    try {
+        auto read = read_settings(request);
+        if (!read) return unexpected(read.error());
+        const std::string no_room =
+            has_same_grid(*read) ? why_no_room(*pipeline.maps().fused(), read->mapping.map) : std::string();
+        if (!no_room.empty()) return fail(ExitCode::bad_config, no_room);
+        auto made = make_pipeline(request, *read);
+        if (!made) return unexpected(made.error());
+        return Next{std::move(read).value(), std::move(made).value()};
+    } catch (const std::bad_alloc&) {
+        return fail(ExitCode::bad_config, "no memory for what the files say");
+    }
+}
+
 void Daemon::Parts::reload() {
     (void)sd_notify(0, "RELOADING=1");
-    auto read = read_settings(request);
-    auto made = read ? make_pipeline(request, *read) : unexpected(read.error());
-    if (!made) {
-        reload_error = made.error().message;
+    auto next = read_next();
+    if (!next) {
+        reload_error = next.error().message;
         spdlog::error("not reloaded, the old settings hold: {}", reload_error);
     } else {
         const std::uint64_t dropped = settle_pipeline();
         recordings.stop(monotonic_now());  // it has the old settings, and is whole with them
-        const bool is_same_grid = read->mapping.map.resolution_m == settings.mapping.map.resolution_m;
+        const bool is_same_grid = has_same_grid(next->settings);
         if (is_same_grid) {
             FusedMap map = pipeline.take_fused();
-            map.limit(read->mapping.map);
-            made->begin_with(std::move(map));
+            map.limit(next->settings.mapping.map);
+            next->pipeline.begin_with(std::move(map));
         }
-        settings = std::move(read).value();
-        pipeline = std::move(made).value();
+        settings = std::move(next->settings);
+        pipeline = std::move(next->pipeline);
         inputs.change_rig(settings.host.rig);
         reload_error.clear();
         spdlog::info("reloaded: rig '{}'; the map {}; {} of what waited was not used", settings.host.rig.name,
@@ -218,6 +264,7 @@ DaemonView Daemon::Parts::view() const {
             .used = last_used,
             .saves = keeper->record(),
             .recorder = recordings.recorder(),
+            .recording_refusal = recordings.refusal(),
             .reload_error = reload_error,
             .reloads = reloads};
 }
@@ -227,14 +274,9 @@ std::string Daemon::Parts::answer(const std::string& line) {
         inputs.catch_up();  // the loop may have been busy with an image: what came meanwhile counts
         return status_json(view()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     }
-    if (line == "save") {
-        save_map();
-        return R"({"ok": true})";
-    }
     if (RecordRequests::is_one(line))
         return recordings.answer(line, settings.recorded, pipeline, monotonic_now());
-    return nlohmann::ordered_json{{"ok", false},
-                                  {"error", "unknown request; there are: status, save, record"}}
+    return nlohmann::ordered_json{{"ok", false}, {"error", "unknown request; there are: status, record"}}
         .dump();
 }
 

@@ -1,6 +1,7 @@
 #include "host/apps/daemon/inputs.hpp"
 
 #include <cmath>
+#include <system_error>
 #include <utility>
 
 #include "common/wire/codec.hpp"
@@ -73,18 +74,27 @@ void Inputs::watch(const HostRig& rig) {
 }
 
 void Inputs::watch_camera(const std::optional<HostCamera>& camera) {
-    const bool is_wanted = camera && request_.has_camera;
-    const openni2::CameraMode mode =
-        is_wanted ? openni2::CameraMode{camera->intrinsics.width, camera->intrinsics.height, camera->rate_hz}
-                  : openni2::CameraMode{};
-    if (camera_ && mode != camera_mode_) {
+    std::optional<openni2::CameraMode> wanted;
+    if (camera && request_.has_camera)
+        wanted = openni2::CameraMode{camera->intrinsics.width, camera->intrinsics.height, camera->rate_hz};
+    if (wanted != camera_wanted_) {
         camera_ready_ = EventSource();
         camera_.reset();
     }
-    if (!is_wanted || camera_) return;
-    camera_mode_ = mode;
-    camera_ = std::make_unique<CameraFeed>(request_.camera_uri, kCameraSilenceMax, std::nullopt, mode);
-    camera_ready_ = loop_.on_readable(camera_->descriptor(), [this] { drain_camera(); });
+    camera_wanted_ = wanted;
+    if (camera_wanted_ && !camera_) open_camera(monotonic_now());
+}
+
+void Inputs::open_camera(HostTime now) {
+    camera_tried_ = now;
+    try {
+        camera_ = std::make_unique<CameraFeed>(request_.camera_uri, kCameraSilenceMax, std::nullopt,
+                                               camera_wanted_);
+        camera_ready_ = loop_.on_readable(camera_->descriptor(), [this] { drain_camera(); });
+    } catch (const std::system_error& error) {
+        camera_.reset();
+        camera_missing_ = {.begun = now, .why = std::string("no thread to be had for it: ") + error.what()};
+    }
 }
 
 void Inputs::change_rig(const HostRig& rig) {
@@ -104,6 +114,7 @@ void Inputs::attend() {
     }
     catch_up();  // what this host sent comes back without waking anybody, where there is no kernel
     exchange_alone();
+    if (camera_wanted_ && !camera_ && now - camera_tried_ >= CameraFeed::kRetry) open_camera(now);
     const auto bus_now = bus_time_.at(now);
     if (bus_now && now - told_ > BusTime::kSilent) pipeline_.on_silence(*bus_now);
 }
@@ -241,8 +252,8 @@ void Inputs::drain_camera() {
 }
 
 std::optional<CameraRecord> Inputs::camera() const {
-    if (!camera_) return std::nullopt;
-    CameraRecord record = camera_->record();
+    if (!camera_wanted_) return std::nullopt;
+    CameraRecord record = camera_ ? camera_->record() : camera_missing_;
     record.untimed += depth_untimed_;
     return record;
 }

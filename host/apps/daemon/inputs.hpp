@@ -70,6 +70,8 @@ class Inputs {
 
   private:
     void watch_camera(const std::optional<HostCamera>& camera);
+    /// Without a thread to be had it is tried again in a second.
+    void open_camera(HostTime now);
     /// False if there may be more.
     bool drain_can();
     [[nodiscard]] bool is_of_node(const wire::CanFrame& frame) const;
@@ -94,8 +96,10 @@ class Inputs {
     std::optional<JointSocket> joints_;
     EventSource joints_ready_;
     std::deque<JointSample> joints_waiting_;  ///< for frames of the bus that came before them
-    std::unique_ptr<CameraFeed> camera_;
-    openni2::CameraMode camera_mode_;  ///< of `camera_`
+    std::optional<openni2::CameraMode> camera_wanted_;
+    std::unique_ptr<CameraFeed> camera_;  ///< in the mode that is wanted
+    CameraRecord camera_missing_;         ///< what there is to tell while a camera is wanted and none is made
+    HostTime camera_tried_;
     EventSource camera_ready_;
     LatencyHistogram latency_;
     wire::BitRates bit_rates_;

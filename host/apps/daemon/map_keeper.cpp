@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <exception>
 #include <new>
 #include <utility>
@@ -25,6 +26,17 @@ std::uint64_t file_bytes_max(const MapConfig& config) {
 }
 
 }  // namespace
+
+std::string why_no_room(const FusedMap& map, const MapConfig& next) {
+    constexpr unsigned kMib = 20;
+    const std::uint64_t needed_mib = ((std::uint64_t{map.memory_bytes()} - 1) >> kMib) + 1;
+    if (map.memory_bytes() == 0 || needed_mib <= next.memory_max_mib) return {};
+    return fmt::format(
+        "the map takes {} MiB, and map.memory_max_mib is {}: make that {} or more, or end the daemon and "
+        "move "
+        "the saved map away",
+        needed_mib, next.memory_max_mib, needed_mib);
+}
 
 MapKeeper::MapKeeper(std::filesystem::path folder, Writer writer, Copier copier)
     : copier_(std::move(copier)), work_(std::make_shared<Work>()) {
@@ -89,6 +101,16 @@ bool MapKeeper::save(const FusedMap& map) {
     }
     work_->changed.notify_all();
     return true;
+}
+
+void MapKeeper::save_last(FusedMap map) {
+    {
+        const std::lock_guard lock(work_->mutex);
+        assert(!work_->is_busy);
+        work_->is_busy = true;
+        work_->waiting.emplace(std::move(map));
+    }
+    work_->changed.notify_all();
 }
 
 bool MapKeeper::finish(Nanoseconds patience) {

@@ -18,6 +18,10 @@
 
 namespace octoskin {
 
+/// Why a map cannot go on with this mapping: it takes more than `next.memory_max_mib`, and the next start
+/// would refuse it. Empty: it can.
+[[nodiscard]] std::string why_no_room(const FusedMap& map, const MapConfig& next);
+
 struct SaveRecord {
     std::uint64_t saved = 0;
     std::uint64_t failed = 0;
@@ -50,15 +54,17 @@ class MapKeeper {
     /// copied, and false is the answer: there is one copy at a time. False, too, if there is no memory for
     /// it: counted as failed, and the next save is tried as if nothing had been.
     bool save(const FusedMap& map);
+    /// Saves the map itself, which needs no memory for a copy: the last save. `finish` first; asserted.
+    void save_last(FusedMap map);
     /// Waits until nothing is left to save, `patience` at most; false if that was too short.
     [[nodiscard]] bool finish(Nanoseconds patience);
 
     [[nodiscard]] SaveRecord record() const;
 
-  private:
     static std::string write_map(const FusedMap& map, const std::filesystem::path& folder);
     static FusedMap copy_map(const FusedMap& map) { return map.copy(); }
 
+  private:
     /// What the thread needs, for as long as it needs it: it may outlive the keeper.
     struct Work {
         std::filesystem::path folder;

@@ -206,6 +206,13 @@ void add_map(const DaemonView& view, Problems& problems) {
                          "(no_room); raise map.memory_max_mib in the mapping file",
                          map.config().memory_max_mib, map.counters().no_room)});
     }
+    if (map.counters().no_memory > 0) {
+        problems.push_back({"map without memory",
+                            fmt::format("the system had no memory for new space of the map: {} updates were "
+                                        "refused (no_memory); lower map.memory_max_mib in the mapping file, "
+                                        "or give the service more",
+                                        map.counters().no_memory)});
+    }
     if (!view.saves.error.empty())
         problems.push_back({"map not saved", "the map is not saved: " + view.saves.error});
     if (view.recorder != nullptr && !view.recorder->error().empty()) {
@@ -215,6 +222,9 @@ void add_map(const DaemonView& view, Problems& problems) {
                             "the recording lacks something that came too fast for the disk: its replay gives "
                             "another map"});
     }
+    if (!view.recording_refusal.empty())
+        problems.push_back(
+            {"recording refused", "the newest recording did not begin: " + view.recording_refusal});
     if (!view.reload_error.empty())
         problems.push_back(
             {"reload", "the newest reload was refused, and the old settings hold: " + view.reload_error});

@@ -1,10 +1,13 @@
 #include "host/apps/daemon/record_requests.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <new>
+#include <system_error>
 
 namespace octoskin {
 namespace {
@@ -45,8 +48,16 @@ std::string RecordRequests::start(const std::string& arguments, const RecordedSe
                "; `octoskin record --stop` ends that";
     const auto limit = seconds > 0.0 ? std::optional(Nanoseconds{std::llround(seconds * 1e9)}) : std::nullopt;
     recorder_.reset();  // the one before lets go of the pipeline first
-    recorder_ = std::make_unique<Recorder>(folder, limit, settings, pipeline, now);
-    return {};
+    refusal_.clear();
+    try {
+        recorder_ = std::make_unique<Recorder>(folder, limit, settings, pipeline, now, copier_);
+    } catch (const std::bad_alloc&) {
+        refusal_ = fmt::format("no memory for a copy of the map ({} MiB), with which a recording begins",
+                               pipeline.maps().fused()->memory_bytes() >> 20U);
+    } catch (const std::system_error& error_thrown) {
+        refusal_ = fmt::format("no thread to be had for a recording ({})", error_thrown.code().message());
+    }
+    return refusal_;
 }
 
 void RecordRequests::finish(Nanoseconds patience) {

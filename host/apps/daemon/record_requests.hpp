@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "common/time.hpp"
 #include "host/apps/daemon/recorder.hpp"
@@ -16,6 +17,8 @@ namespace octoskin {
 
 class RecordRequests {
   public:
+    explicit RecordRequests(Recorder::Copier copier = Recorder::copy_map) : copier_(std::move(copier)) {}
+
     [[nodiscard]] static bool is_one(const std::string& line) { return line.starts_with("record "); }
     /// A line of JSON: "ok", and "recording" or "error".
     [[nodiscard]] std::string answer(const std::string& line, const RecordedSettings& settings,
@@ -36,11 +39,16 @@ class RecordRequests {
     /// The one at work or, until there is another, the last; null if there was none.
     [[nodiscard]] const Recorder* recorder() const noexcept { return recorder_.get(); }
 
+    /// Why the newest recording could not begin for want of memory or of a thread; empty: it could.
+    [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
+
   private:
     /// What speaks against it; empty: nothing.
     [[nodiscard]] std::string start(const std::string& arguments, const RecordedSettings& settings,
                                     Pipeline& pipeline, HostTime now);
+    Recorder::Copier copier_;
     std::unique_ptr<Recorder> recorder_;
+    std::string refusal_;
 };
 
 }  // namespace octoskin

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <new>
 #include <span>
 #include <utility>
 
@@ -20,7 +21,7 @@ std::uint32_t crc32_of_text(const std::string& text) {
 }
 
 RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSettings& settings,
-                        const Pipeline& pipeline) {
+                        const Pipeline& pipeline, const Recorder::Copier& copier) {
     return {.paths = RecordingPaths(folder),
             .rig = settings.rig,
             .robot = settings.robot,
@@ -29,7 +30,7 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
                       .mapping_crc32 = crc32_of_text(settings.mapping),
                       .joints = settings.joints,
                       .first_map = std::nullopt},
-            .first_map = pipeline.maps().fused()->copy()};
+            .first_map = copier(*pipeline.maps().fused())};
 }
 
 /// OpenNI2's recorder keeps depth up to 32.767 m. A larger one is no value to most rigs anyhow.
@@ -43,20 +44,21 @@ bool is_storable(const DepthFrame& frame, double depth_max_m) {
 }  // namespace
 
 Recorder::Recorder(const std::filesystem::path& folder, std::optional<Nanoseconds> limit,
-                   const RecordedSettings& settings, Pipeline& pipeline, HostTime now)
-    : folder_(folder),
+                   const RecordedSettings& settings, Pipeline& pipeline, HostTime now, Copier copier)
+    : copier_(std::move(copier)),
+      folder_(folder),
       limit_(limit),
       joints_(settings.joints),
       depth_max_m_(pipeline.depth_stage() != nullptr ? pipeline.depth_stage()->camera().depth_max_m : 0.0),
       begun_(now),
       pipeline_(&pipeline),
       accounts_at_begin_(pipeline.account_tables()),
-      writer_(begin_of(folder, settings, pipeline)) {
+      writer_(begin_of(folder, settings, pipeline, copier_)) {
     entry_.interface = settings.interface;
     // Poses go on being interpolated from samples that came before.
     pipeline.builder().for_each_joint_sample([this](const JointMeasurement& joints) { put(joints); });
-    pipeline.tell(this);
     spdlog::info("recording to {}", folder.string());
+    pipeline.tell(this);  // the last: nothing may throw after it
 }
 
 Recorder::~Recorder() {
@@ -115,7 +117,7 @@ void Recorder::stop(HostTime now) {
                               .can_frames = can_frames_,
                               .depth_frames = depth_frames_,
                               .duration_s = seconds_of(now - begun_)},
-                     .last_map = pipeline_->maps().fused()->copy()};
+                     .last_map = last_map()};
     pipeline_->tell(nullptr);
     pipeline_ = nullptr;
     writer_.finish(std::move(end));
@@ -123,6 +125,14 @@ void Recorder::stop(HostTime now) {
         spdlog::error("the recording has failed: {}", why);
     } else {
         spdlog::info("recorded {:.1f} s to {}", seconds_of(now - begun_), folder_.string());
+    }
+}
+
+std::optional<FusedMap> Recorder::last_map() const {
+    try {
+        return copier_(*pipeline_->maps().fused());
+    } catch (const std::bad_alloc&) {
+        return std::nullopt;
     }
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -28,10 +29,14 @@ struct RecordedSettings {
 
 class Recorder final : public CommitListener {
   public:
+    using Copier = std::function<FusedMap(const FusedMap& map)>;
+
     /// Begins with the pipeline as it stands, at any time. `pipeline` must outlive the recording: until
-    /// `stop`. Waits for nothing: what is wrong with the folder shows in `error`.
+    /// `stop`. Waits for nothing: what is wrong with the folder shows in `error`. Throws std::bad_alloc if
+    /// there is no memory for a copy of the map, std::system_error if there is no thread to be had; the
+    /// pipeline then knows nothing of it.
     Recorder(const std::filesystem::path& folder, std::optional<Nanoseconds> limit,
-             const RecordedSettings& settings, Pipeline& pipeline, HostTime now);
+             const RecordedSettings& settings, Pipeline& pipeline, HostTime now, Copier copier = copy_map);
     ~Recorder() override;
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
@@ -40,7 +45,8 @@ class Recorder final : public CommitListener {
     void on_can(const wire::CanFrame& frame, WallTime stamp);
     /// Ends it if it is long enough, or has failed. To be called every now and then.
     void attend(HostTime now);
-    /// What is recorded is complete now; the files become so soon after, see `wait`.
+    /// What is recorded is complete now; the files become so soon after, see `wait`. Without the memory for a
+    /// copy of the map it has failed, and `error` says so.
     void stop(HostTime now);
     /// Until the files are whole, after `stop`; false if `patience` was too short.
     [[nodiscard]] bool wait(Nanoseconds patience) { return writer_.wait(patience); }
@@ -60,11 +66,16 @@ class Recorder final : public CommitListener {
     /// Ends it: its replay could not go on from there.
     void on_time_back() override;
 
+    static FusedMap copy_map(const FusedMap& map) { return map.copy(); }
+
   private:
     void put(const Commit& commit);
+    /// Empty if there is no memory for it.
+    [[nodiscard]] std::optional<FusedMap> last_map() const;
     /// What was rejected since the begin, by name.
     [[nodiscard]] std::string remarks() const;
 
+    Copier copier_;
     std::filesystem::path folder_;
     std::optional<Nanoseconds> limit_;
     std::size_t joints_;

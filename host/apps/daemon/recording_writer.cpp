@@ -221,7 +221,10 @@ Status<std::string> RecordingWriter::Work::end(RecordingEnd last) {
     if (const Step written = write_waiting(); !written) return written;
     if (const Step finished = can_file_.finish(); !finished) return finished;
     if (std::string error = depth_.finish(); !error.empty()) return unexpected(std::move(error));
-    const auto map = keep_map(last.last_map, begin_.paths.last_map());
+    if (!last.last_map)
+        return unexpected(folder().string() +
+                          ": there was no memory for a copy of the map as it was at the end");
+    const auto map = keep_map(*last.last_map, begin_.paths.last_map());
     if (!map) return unexpected(map.error());
     last.order.last_map = *map;
     const std::string text = last.remarks + orderlog::format_trailer(last.order);

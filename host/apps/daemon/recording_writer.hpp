@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/result.hpp"
@@ -33,7 +34,7 @@ struct RecordingEnd {
     orderlog::Trailer order;  ///< but for the checksum of the last map
     std::string remarks;      ///< lines before the trailer, each begun with '#'
     RecordingMeta meta;
-    FusedMap last_map;
+    std::optional<FusedMap> last_map;  ///< empty: there was no memory for it, so that the recording fails
 };
 
 class RecordingWriter {
@@ -44,6 +45,7 @@ class RecordingWriter {
     using MapWriter =
         std::function<Status<MapFileError>(const FusedMap& map, const std::filesystem::path& file)>;
 
+    /// Throws std::system_error if there is no thread to be had.
     explicit RecordingWriter(RecordingBegin begin, MapWriter map_writer = save_map);
     /// Stops writing, wherever it is, unless it has ended. Within 0.2 s: a write that hangs is left behind,
     /// and the log says so.

@@ -146,6 +146,7 @@ Json map_json(const DaemonView& view) {
             {"memory_mib", static_cast<double>(map.memory_bytes()) / (1U << 20U)},
             {"memory_max_mib", map.config().memory_max_mib},
             {"no_room", map.counters().no_room},
+            {"no_memory", map.counters().no_memory},
             {"saved", view.saves.saved},
             {"saves_failed", view.saves.failed},
             {"saves_skipped", view.saves.skipped},

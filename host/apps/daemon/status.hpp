@@ -55,6 +55,7 @@ struct DaemonView {
     LastUsed used;
     SaveRecord saves;
     const Recorder* recorder = nullptr;  ///< at work, or the last one; null if there was none
+    std::string recording_refusal;       ///< why the newest one could not begin; empty if it could
     std::string reload_error;            ///< of the newest SIGHUP; empty if it went well
     ReloadCounts reloads;
 };

@@ -192,7 +192,7 @@ class Screen {
                         text(at(map, "resolution_m")), number(at(map, "memory_mib")),
                         count(at(map, "memory_max_mib")), age(at(map, "saved_age_s"))),
             Emphasis::title);
-        add_nonzero("map", {"no_room", "saves_failed", "saves_skipped"});
+        add_nonzero("map", {"no_room", "no_memory", "saves_failed", "saves_skipped"});
         add_nonzero("reloads", {"dropped"});
     }
     /// Each unit, and why what was not used was not.

@@ -172,6 +172,9 @@ constexpr std::array kStatusMeanings = {
     Meaning{"map", "no_room",
             "updates refused, as the map had reached memory_max_mib and the space was new to it: raise it, "
             "or use a larger resolution_m"},
+    Meaning{"map", "no_memory",
+            "updates refused, as the system had no memory and the space was new to it: lower memory_max_mib, "
+            "or give the service more"},
     Meaning{"map", "saved", "how often it was saved"},
     Meaning{"map", "saves_failed", "saves that failed; problems has why"},
     Meaning{"map", "saves_skipped", "saves left out, as the one before was still being written: a slow disk"},

@@ -6,19 +6,14 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <new>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "host/core/mapping/morton.hpp"
-
 namespace octoskin {
 namespace {
 
-/// Space is held in dense bricks of 8 x 8 x 8 voxels: one look-up serves a run of neighbours, and a brick is
-/// an octree's lowest three levels.
-constexpr unsigned kBrickHeight = 3;
-constexpr std::size_t kBrickVoxels = std::size_t{1} << (3 * kBrickHeight);
 /// Unknown voxels of a brick hold a NaN, so that one load tells known from unknown. No term, clamp or file
 /// can put one there: all of them are checked for finiteness on the way in.
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
@@ -62,13 +57,19 @@ struct FusedMap::Bricks {
         const auto found = by_id.find(brick_id_of(key));
         return found == by_id.end() ? nullptr : found->second;
     }
-    /// The brick of this id, made if it is new; null if it is and there is no room.
+    /// The brick of this id, made if it is new; null if it is and there is no room. Throws std::bad_alloc,
+    /// and then nothing is changed.
     [[nodiscard]] Brick* find_or_make(std::uint64_t id) {
         if (const auto found = by_id.find(id); found != by_id.end()) return found->second;
         if (storage.size() >= bricks_max) return nullptr;
         Brick* const brick = &storage.emplace_back();
+        try {
+            by_id.emplace(id, brick);
+        } catch (...) {  // else room would be taken that nobody finds again
+            storage.pop_back();
+            throw;
+        }
         brick->fill(kUnknown);
-        by_id.emplace(id, brick);
         return brick;
     }
     void set(Brick& brick, std::size_t cell, float log_odds) {
@@ -114,6 +115,7 @@ void FusedMap::limit(const MapConfig& config) {
 void FusedMap::apply(std::span<const VoxelUpdate> updates) {
     std::uint64_t brick_id = std::numeric_limits<std::uint64_t>::max();  // no brick has this one
     Brick* brick = nullptr;
+    std::uint64_t* refused = nullptr;  // where those count for which there is no brick
     for (const VoxelUpdate& update : updates) {
         if (!std::isfinite(update.log_odds)) {
             ++counters_.not_finite;
@@ -125,10 +127,16 @@ void FusedMap::apply(std::span<const VoxelUpdate> updates) {
         }
         if (const std::uint64_t id = brick_id_of(update.key); id != brick_id) {
             brick_id = id;
-            brick = bricks_->find_or_make(id);
+            refused = &counters_.no_room;
+            try {
+                brick = bricks_->find_or_make(id);
+            } catch (const std::bad_alloc&) {
+                brick = nullptr;
+                refused = &counters_.no_memory;
+            }
         }
         if (brick == nullptr) {
-            ++counters_.no_room;
+            ++*refused;
             continue;
         }
         const std::size_t cell = cell_of(update.key);
@@ -182,14 +190,19 @@ Eigen::Vector3d FusedMap::centre_of(VoxelKey key) const noexcept {
     return lattice_.centre_of(key);
 }
 
-void FusedMap::for_each_known(const std::function<void(VoxelKey, float)>& visit) const {
-    std::vector<std::pair<MortonCode, const Brick*>> ordered;
+std::vector<MapBrick> FusedMap::bricks() const {
+    std::vector<MapBrick> ordered;
     ordered.reserve(bricks_->by_id.size());
-    for (const auto& [id, brick] : bricks_->by_id) ordered.emplace_back(morton_of(lowest_key_of(id)), brick);
-    std::sort(ordered.begin(), ordered.end());
-    for (const auto& [lowest, brick] : ordered) {
+    for (const auto& [id, brick] : bricks_->by_id) ordered.push_back({morton_of(lowest_key_of(id)), *brick});
+    std::ranges::sort(ordered, {}, &MapBrick::first);
+    return ordered;
+}
+
+void FusedMap::for_each_known(const std::function<void(VoxelKey, float)>& visit) const {
+    for (const MapBrick& brick : bricks()) {
         for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) {
-            if (!std::isnan((*brick)[cell])) visit(key_of_morton(lowest + cell), (*brick)[cell]);
+            const float log_odds = brick.log_odds[cell];
+            if (!std::isnan(log_odds)) visit(key_of_morton(brick.first + cell), log_odds);
         }
     }
 }

@@ -9,7 +9,9 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "host/core/mapping/morton.hpp"
 #include "host/core/mapping/voxel_lattice.hpp"
 
 namespace octoskin {
@@ -47,7 +49,19 @@ struct MapCounters {
     std::uint64_t zero = 0;        ///< a term of 0 touches nothing
     std::uint64_t not_finite = 0;  ///< refused
     std::uint64_t no_room = 0;     ///< refused: the voxel's space is new, and `memory_max_mib` is reached
+    std::uint64_t no_memory = 0;   ///< refused: the voxel's space is new, and the system has no memory for it
     friend bool operator==(const MapCounters&, const MapCounters&) = default;
+};
+
+/// Space is held in dense bricks of 8 x 8 x 8 voxels: one look-up serves a run of neighbours, and a brick is
+/// an octree's lowest three levels.
+inline constexpr unsigned kBrickHeight = 3;
+inline constexpr std::size_t kBrickVoxels = std::size_t{1} << (3 * kBrickHeight);
+
+/// A brick of a map, for as long as that is there and unchanged.
+struct MapBrick {
+    MortonCode first = 0;                           ///< of its voxels
+    std::span<const float, kBrickVoxels> log_odds;  ///< of its voxels in Morton order; NaN: unknown
 };
 
 /// Not safe for use by two threads at once, unless all of them only read.
@@ -60,7 +74,7 @@ class FusedMap {
     ~FusedMap();
 
     /// The same map again, for whoever shall look at it while this one goes on. O(bricks): about 1 ms for
-    /// each 5 MiB.
+    /// each 5 MiB. Throws std::bad_alloc if there is no memory for it.
     [[nodiscard]] FusedMap copy() const;
 
     /// From now on other limits hold, at the same resolution (asserted): what lies beyond new clamps is
@@ -69,8 +83,8 @@ class FusedMap {
 
     /// Adds each term to its voxel (unknown counts as 0 before) and clamps, one by one, in order, in
     /// OctoMap's single precision. A term of 0 touches nothing: in OctoMap a node at log-odds 0 counts as
-    /// occupied. A term that is not finite is refused and counted. About 5 ns an update if neighbours come
-    /// together.
+    /// occupied. A term that is not finite is refused and counted, as is one for space that cannot be had:
+    /// the next one is tried again. Never throws. About 5 ns an update if neighbours come together.
     void apply(std::span<const VoxelUpdate> updates);
 
     [[nodiscard]] Occupancy occupancy(VoxelKey key) const noexcept;
@@ -94,6 +108,9 @@ class FusedMap {
     /// Visits every known voxel once, in Morton order (an octree's depth-first order), whatever the order in
     /// which the map was filled. O(voxels).
     void for_each_known(const std::function<void(VoxelKey, float log_odds)>& visit) const;
+
+    /// All of the space that the map takes, in Morton order. O(bricks).
+    [[nodiscard]] std::vector<MapBrick> bricks() const;
 
     /// Gives every voxel of a cube this value, clamped; for building a map from a file. False if there was no
     /// room (then part of the cube may be set) or the value is not finite.

@@ -69,11 +69,8 @@ class Save {
     Save(FileOperations& operations, const std::filesystem::path& file, Attributes attributes)
         : operations_(operations), file_(file), partial_(partial_path_of(file)), attributes_(attributes) {}
 
-    std::optional<SaveError> run(std::string_view bytes) {
-        if (auto error = write_partial(bytes)) {
-            operations_.remove(partial_.c_str());
-            return error;
-        }
+    std::optional<SaveError> run(const ByteSource& content) {
+        if (auto error = write_partial_or_remove(content)) return error;
         if (operations_.rename(partial_.c_str(), file_.c_str()) != 0) {
             auto error = failed(SaveStep::rename);
             operations_.remove(partial_.c_str());
@@ -85,18 +82,37 @@ class Save {
   private:
     SaveError failed(SaveStep step) const { return {step, errno, file_}; }
 
-    std::optional<SaveError> write_partial(std::string_view bytes) {
+    std::optional<SaveError> write_partial_or_remove(const ByteSource& content) {
         const int descriptor = operations_.create(partial_.c_str());
-        if (descriptor < 0) return failed(SaveStep::create);
         std::optional<SaveError> error;
+        if (descriptor < 0) {
+            error = failed(SaveStep::create);
+        } else {
+            try {
+                error = fill(descriptor, content);
+            } catch (...) {  // no memory for a piece of it
+                operations_.close(descriptor);
+                operations_.remove(partial_.c_str());
+                throw;
+            }
+            // A late write error may show only here (network file systems).
+            if (operations_.close(descriptor) != 0 && !error) error = failed(SaveStep::close);
+        }
+        if (error) operations_.remove(partial_.c_str());
+        return error;
+    }
+
+    std::optional<SaveError> fill(int descriptor, const ByteSource& content) {
         // Before a byte of it: what only its owner may read, nobody else ever may.
         if (attributes_ == Attributes::of_the_old_file &&
             operations_.copy_attributes(file_.c_str(), descriptor) != 0)
-            error = failed(SaveStep::attributes);
-        if (!error) error = write_all(descriptor, bytes);
+            return failed(SaveStep::attributes);
+        std::optional<SaveError> error;
+        content([&](std::string_view bytes) {
+            if (!error) error = write_all(descriptor, bytes);
+            return !error;
+        });
         if (!error && operations_.sync(descriptor) != 0) error = failed(SaveStep::sync);
-        // A late write error may show only here (network file systems).
-        if (operations_.close(descriptor) != 0 && !error) error = failed(SaveStep::close);
         return error;
     }
 
@@ -144,13 +160,19 @@ std::string SaveError::message() const {
     return fmt::format("{}: {} failed ({}); {}", file.string(), name_of(step), reason, outcome);
 }
 
-Status<SaveError> save_atomically(const std::filesystem::path& file, std::string_view bytes,
+Status<SaveError> save_atomically(const std::filesystem::path& file, const ByteSource& content,
                                   FileOperations& operations, Attributes attributes) {
     if (!file.has_filename() || file.filename() == "." || file.filename() == "..") {
         return unexpected(SaveError{SaveStep::name, 0, file});
     }
-    if (auto error = Save(operations, file, attributes).run(bytes)) return unexpected(std::move(*error));
+    if (auto error = Save(operations, file, attributes).run(content)) return unexpected(std::move(*error));
     return Done{};
+}
+
+Status<SaveError> save_atomically(const std::filesystem::path& file, std::string_view bytes,
+                                  FileOperations& operations, Attributes attributes) {
+    return save_atomically(
+        file, [bytes](const ByteSink& sink) { (void)sink(bytes); }, operations, attributes);
 }
 
 std::size_t remove_leftovers(const std::filesystem::path& directory) {

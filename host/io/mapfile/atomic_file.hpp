@@ -11,6 +11,7 @@
 #include <sys/types.h>
 
 #include "common/result.hpp"
+#include "host/io/mapfile/byte_sink.hpp"
 
 namespace octoskin {
 
@@ -48,9 +49,14 @@ struct SaveError {
 /// Whose a file is and who may read it.
 enum class Attributes : std::uint8_t { of_a_new_file, of_the_old_file };
 
-/// Saves `bytes` as `file`. On an error before `sync_directory` the old file is as it was and nothing is left
-/// behind; on that one the new file is in place, but may be lost if power fails now. Blocks for as long as
-/// the disk takes. Two writers of one file at once are not supported.
+/// Saves what `content` gives as `file`; it is asked for once. On an error before `sync_directory` the old
+/// file is as it was and nothing is left behind; on that one the new file is in place, but may be lost if
+/// power fails now. Blocks for as long as the disk takes. Two writers of one file at once are not supported.
+/// What `content` throws passes through, as after an error.
+[[nodiscard]] Status<SaveError> save_atomically(const std::filesystem::path& file, const ByteSource& content,
+                                                FileOperations& operations = posix_file_operations(),
+                                                Attributes attributes = Attributes::of_a_new_file);
+/// The same with all of its bytes.
 [[nodiscard]] Status<SaveError> save_atomically(const std::filesystem::path& file, std::string_view bytes,
                                                 FileOperations& operations = posix_file_operations(),
                                                 Attributes attributes = Attributes::of_a_new_file);

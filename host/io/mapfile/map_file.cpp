@@ -66,17 +66,17 @@ Result<std::string, MapFileError> read_bytes(const std::filesystem::path& file, 
 
 Status<MapFileError> save_map(const FusedMap& map, const std::filesystem::path& file) {
     const std::string extension = file.extension().string();
-    std::string bytes;
+    ByteSource content;
     if (extension == ".ot") {
-        bytes = encode_ot(map);
+        content = [&map](const ByteSink& sink) { write_ot(map, sink); };
     } else if (extension == ".bt") {
-        bytes = encode_bt(map);
+        content = [&map](const ByteSink& sink) { write_bt(map, sink); };
     } else if (extension == ".ply") {
-        bytes = encode_ply(map);
+        content = [&map](const ByteSink& sink) { (void)sink(encode_ply(map)); };
     } else {
         return fail(file, fmt::format("extension \"{}\" is not one of .ot, .bt, .ply", extension));
     }
-    const auto saved = save_atomically(file, bytes);
+    const auto saved = save_atomically(file, content);
     if (!saved) return unexpected(MapFileError{saved.error().message(), false});
     return Done{};
 }

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "host/io/mapfile/octree.hpp"
 
@@ -14,69 +13,87 @@ namespace {
 
 /// The resolution in its shortest form that reads back exactly; OctoMap's own six digits are the same for any
 /// resolution a person would write.
-std::string header(const char* first_line, std::size_t nodes, double resolution_m) {
+std::string header(const char* first_line, std::uint64_t nodes, double resolution_m) {
     return fmt::format(
         "{}\n# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
         "id OcTree\nsize {}\nres {}\ndata\n",
         first_line, nodes, resolution_m);
 }
 
-void append_little_endian(std::string& bytes, std::uint32_t value, unsigned count) {
-    for (unsigned i = 0; i < count; ++i) bytes.push_back(static_cast<char>((value >> (8 * i)) & 0xFFU));
+char* put_little_endian(char* place, std::uint32_t value, unsigned count) {
+    for (unsigned i = 0; i < count; ++i) *place++ = static_cast<char>((value >> (8 * i)) & 0xFFU);
+    return place;
 }
 
-/// Two bits for each child: 0 unknown, 1 free leaf, 2 occupied leaf, 3 inner node.
-class BinaryTreeWriter {
-  public:
-    BinaryTreeWriter(const std::vector<OctreeNode>& nodes, float log_odds_occupied, std::string& bytes)
-        : nodes_(nodes), log_odds_occupied_(log_odds_occupied), bytes_(bytes) {}
+/// Bit i: child i exists.
+constexpr std::uint32_t which_exist(std::uint32_t children) {
+    std::uint32_t bits = (children | (children >> 1U)) & 0x5555U;
+    bits = (bits | (bits >> 1U)) & 0x3333U;
+    bits = (bits | (bits >> 2U)) & 0x0F0FU;
+    return (bits | (bits >> 4U)) & 0x00FFU;
+}
 
-    /// Writes the inner node at `at` and those below it; returns the index behind them. Recurses 16 deep at
-    /// most, as deep as the tree.
-    std::size_t append(std::size_t at) {
-        const std::size_t place = bytes_.size();
-        append_little_endian(bytes_, 0, 2);
-        std::uint32_t codes = 0;
-        std::size_t next = at + 1;
-        for (unsigned child = 0; child < 8; ++child) {
-            if ((nodes_[at].children & (1U << child)) == 0) continue;
-            if (nodes_[next].children != 0) {
-                codes |= 3U << (2 * child);
-                next = append(next);
-            } else {
-                codes |= (nodes_[next].log_odds >= log_odds_occupied_ ? 2U : 1U) << (2 * child);
-                ++next;
-            }
-        }
-        bytes_[place] = static_cast<char>(codes & 0xFFU);
-        bytes_[place + 1] = static_cast<char>(codes >> 8U);
-        return next;
+/// Log-odds, and which children there are.
+struct OtNode {
+    static constexpr std::size_t kBytes = 5;
+    static bool is_written(const OctreeNode&) { return true; }
+    static char* put(char* place, const OctreeNode& node) {
+        place = put_little_endian(place, std::bit_cast<std::uint32_t>(node.log_odds), 4);
+        return put_little_endian(place, which_exist(node.children), 1);
     }
-
-  private:
-    const std::vector<OctreeNode>& nodes_;
-    float log_odds_occupied_;
-    std::string& bytes_;
 };
+
+/// Of inner nodes alone, what each child is.
+struct BtNode {
+    static constexpr std::size_t kBytes = 2;
+    static bool is_written(const OctreeNode& node) { return node.state == NodeState::inner; }
+    static char* put(char* place, const OctreeNode& node) {
+        return put_little_endian(place, node.children, 2);
+    }
+};
+
+template <class Node>
+void write_nodes(const PrunedOctree& octree, const ByteSink& sink) {
+    std::string bytes;
+    octree.for_each([&](std::span<const OctreeNode> nodes) {
+        bytes.resize(Node::kBytes * nodes.size());
+        char* place = bytes.data();
+        for (const OctreeNode& node : nodes) {
+            if (Node::is_written(node)) place = Node::put(place, node);
+        }
+        return sink({bytes.data(), static_cast<std::size_t>(place - bytes.data())});
+    });
+}
+
+std::string all_bytes(const ByteSource& source) {
+    std::string all;
+    source([&all](std::string_view bytes) {
+        all += bytes;
+        return true;
+    });
+    return all;
+}
 
 }  // namespace
 
+void write_ot(const FusedMap& map, const ByteSink& sink) {
+    const PrunedOctree octree(map, LeafValues::exact);
+    if (sink(header("# Octomap OcTree file", octree.size(), map.resolution_m())))
+        write_nodes<OtNode>(octree, sink);
+}
+
+void write_bt(const FusedMap& map, const ByteSink& sink) {
+    const PrunedOctree octree(map, LeafValues::max_likelihood);
+    if (sink(header("# Octomap OcTree binary file", octree.size(), map.resolution_m())))
+        write_nodes<BtNode>(octree, sink);
+}
+
 std::string encode_ot(const FusedMap& map) {
-    const std::vector<OctreeNode> nodes = pruned_octree(map, LeafValues::exact);
-    std::string bytes = header("# Octomap OcTree file", nodes.size(), map.resolution_m());
-    bytes.reserve(bytes.size() + 5 * nodes.size());
-    for (const OctreeNode& node : nodes) {
-        append_little_endian(bytes, std::bit_cast<std::uint32_t>(node.log_odds), 4);
-        bytes.push_back(static_cast<char>(node.children));
-    }
-    return bytes;
+    return all_bytes([&map](const ByteSink& sink) { write_ot(map, sink); });
 }
 
 std::string encode_bt(const FusedMap& map) {
-    const std::vector<OctreeNode> nodes = pruned_octree(map, LeafValues::max_likelihood);
-    std::string bytes = header("# Octomap OcTree binary file", nodes.size(), map.resolution_m());
-    if (!nodes.empty()) BinaryTreeWriter(nodes, map.config().log_odds_occupied, bytes).append(0);
-    return bytes;
+    return all_bytes([&map](const ByteSink& sink) { write_bt(map, sink); });
 }
 
 }  // namespace octoskin

@@ -72,6 +72,26 @@ TEST_F(DaemonTest, goes_on_with_its_map_when_a_reload_gives_it_more_memory) {
     EXPECT_GE(daemon_->status()["map"]["known_voxels"].get<int>(), voxels) << "the map did not go on";
 }
 
+TEST_F(DaemonTest, refuses_a_reload_that_has_too_little_memory_for_its_map) {
+    FusedMap map{MapConfig{}};  // 4096 bricks of 2112 bytes
+    ASSERT_TRUE(map.set_cube({.lowest = {0, 0, 0}, .height = 7}, 1.0F));
+    std::filesystem::create_directory(folder_ / "maps");
+    ASSERT_TRUE(save_map(map, folder_ / "maps" / "fused.ot"));
+    const auto file = folder_.write("mapping.yaml", "base: robust\n");
+    start({"--no-camera", "--configuration", file.string()});
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    folder_.write("mapping.yaml", "base: robust\nmap:\n  memory_max_mib: 4\n");
+    daemon_->signal(SIGHUP);
+    ASSERT_TRUE(daemon_->wait_until(
+        [](const Json& now) { return has_problem(now, "map.memory_max_mib is 4: make that"); }, 5s))
+        << daemon_->log();
+    const Json status = daemon_->status();
+    EXPECT_EQ(status["reloads"]["count"], 0);
+    EXPECT_NE(status["map"]["memory_max_mib"], 4);
+    EXPECT_GE(status["map"]["known_voxels"].get<std::size_t>(), map.known_voxels());
+    EXPECT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+}
+
 TEST_F(DaemonTest, refuses_a_second_one_on_the_same_maps_and_names_the_first) {
     start();
     ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();

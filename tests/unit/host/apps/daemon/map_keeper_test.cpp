@@ -261,6 +261,35 @@ TEST(MapKeeper, says_what_to_do_about_a_map_that_was_saved_with_more_memory) {
     EXPECT_TRUE(keeper.load(MapConfig{.memory_max_mib = 4}));
 }
 
+TEST(MapKeeper, tells_which_mapping_would_not_load_the_map_again) {
+    const testing_support::ScratchFolder folder;
+    MapKeeper keeper(folder.path());
+    FusedMap map = full_map(4, true);
+    EXPECT_TRUE(keeper.save(map));
+    ASSERT_TRUE(keeper.finish(kPatience));
+    for (std::uint32_t mib = 1; mib < 6; ++mib) {
+        const MapConfig next{.memory_max_mib = mib};
+        EXPECT_EQ(why_no_room(map, next).empty(), keeper.load(next).has_value()) << mib;
+    }
+    EXPECT_EQ(why_no_room(map, MapConfig{.memory_max_mib = 3}),
+              "the map takes 4 MiB, and map.memory_max_mib is 3: make that 4 or more, or end the daemon and "
+              "move the saved map away");
+    EXPECT_EQ(why_no_room(FusedMap(MapConfig{}), MapConfig{.memory_max_mib = 1}), "");
+}
+
+TEST(MapKeeper, saves_the_last_map_without_a_copy_of_it) {
+    const testing_support::ScratchFolder folder;
+    const FusedMap map = some_map(300);
+    MapKeeper keeper(folder.path(), MapKeeper::write_map,
+                     [](const FusedMap&) -> FusedMap { throw std::bad_alloc(); });
+    keeper.save_last(map.copy());
+    ASSERT_TRUE(keeper.finish(kPatience));
+    EXPECT_EQ(keeper.record().saved, 1U) << keeper.record().error;
+    const auto loaded = keeper.load(MapConfig{});
+    ASSERT_TRUE(loaded && *loaded);
+    EXPECT_EQ(encode_ot(**loaded), encode_ot(map));
+}
+
 TEST(MapKeeper, says_why_it_cannot_save) {
     const testing_support::ScratchFolder folder;
     folder.write("file", "in the way");

@@ -357,6 +357,9 @@ TEST_F(ProblemsTest, have_a_save_and_a_reload_that_failed_until_the_next_goes_we
         all_told(),
         ElementsAre("the map is not saved: maps/fused.ot: no space",
                     "the newest reload was refused, and the old settings hold: rig.yaml:3: what is that"));
+    view_.recording_refusal = "no memory";
+    EXPECT_EQ(told("recording refused"), "the newest recording did not begin: no memory");
+    view_.recording_refusal.clear();
     view_.saves.error.clear();
     view_.reload_error.clear();
     EXPECT_THAT(all_told(), IsEmpty());

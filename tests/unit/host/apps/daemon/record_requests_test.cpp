@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
+#include <functional>
+#include <new>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "tests/support/scratch_folder.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
@@ -34,7 +38,11 @@ class RecordRequestsTest : public testing::Test {
                                .rig_hash = 1,
                                .joints = 1,
                                .interface = "can0"};
-    RecordRequests requests_;  ///< lets go of the pipeline before that goes
+    std::function<void()> before_copy_ = [] {};  ///< of a map
+    RecordRequests requests_{[this](const FusedMap& map) {
+        before_copy_();
+        return map.copy();
+    }};  ///< lets go of the pipeline before that goes
 };
 
 TEST_F(RecordRequestsTest, refuses_what_is_no_request_and_begins_nothing) {
@@ -48,6 +56,33 @@ TEST_F(RecordRequestsTest, refuses_what_is_no_request_and_begins_nothing) {
         expect_refused(line, "unknown request");
     expect_refused("record stop", "nothing is being recorded");
     EXPECT_EQ(ask("record status")["ok"], true);
+}
+
+TEST_F(RecordRequestsTest, refuses_to_begin_without_memory_or_thread_and_begins_when_there_is_some) {
+    const std::string start = "record start 0 " + (folder_ / "recording").string();
+    before_copy_ = [] { throw std::bad_alloc(); };
+    expect_refused(start, "no memory for a copy of the map (");
+    EXPECT_NE(requests_.refusal().find("no memory"), std::string::npos);
+    before_copy_ = [] { throw std::system_error(EAGAIN, std::generic_category()); };
+    expect_refused(start, "no thread to be had for a recording (Resource temporarily unavailable)");
+    EXPECT_NE(requests_.refusal().find("no thread"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "recording"));
+    before_copy_ = [] {};
+    EXPECT_TRUE(ask(start)["ok"].get<bool>());
+    EXPECT_EQ(requests_.refusal(), "");
+}
+
+TEST_F(RecordRequestsTest, ends_as_failed_without_memory_for_the_last_map) {
+    EXPECT_TRUE(ask("record start 0 " + (folder_ / "recording").string())["ok"].get<bool>());
+    before_copy_ = [] { throw std::bad_alloc(); };
+    EXPECT_TRUE(ask("record stop")["ok"].get<bool>());
+    requests_.finish(std::chrono::seconds(20));
+    const Json recording = ask("record status")["recording"];
+    EXPECT_EQ(recording["state"], "failed");
+    EXPECT_NE(recording["error"].get<std::string>().find("no memory for a copy of the map"),
+              std::string::npos)
+        << recording;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "recording" / "meta.yaml")) << "nothing vouches for it";
 }
 
 TEST_F(RecordRequestsTest, records_to_one_folder_at_a_time) {

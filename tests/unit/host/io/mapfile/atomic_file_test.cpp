@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <iterator>
+#include <new>
 #include <string>
 
 #include "tests/support/scratch_folder.hpp"
@@ -109,6 +111,45 @@ TEST(AtomicFile, survives_a_failure_at_every_single_call) {
     FailingOperations operations(kCallsThatMatter);
     EXPECT_TRUE(save_atomically(folder / "map.ot", content, operations).has_value());
     EXPECT_TRUE(operations.has_failed());
+}
+
+TEST(AtomicFile, takes_content_in_pieces_and_asks_for_no_more_once_one_is_not_written) {
+    const ByteSource content = [](const ByteSink& sink) {
+        for (const char* const piece : {"one ", "two ", "", "three"}) {
+            if (!sink(piece)) return;
+        }
+    };
+    const ScratchFolder folder;
+    const auto file = folder.write("map.ot", "old");
+    for (int failing_call = 1; failing_call < 4; ++failing_call) {  // after the creation, three writes
+        FailingOperations operations(failing_call);
+        const auto saved = save_atomically(file, content, operations);
+        ASSERT_FALSE(saved);
+        EXPECT_EQ(saved.error().step, SaveStep::write);
+        EXPECT_EQ(saved.error().error_number, ENOSPC);
+        EXPECT_EQ(ScratchFolder::read(file), "old");
+        EXPECT_EQ(folder.entries(), 1);
+    }
+    EXPECT_TRUE(save_atomically(file, content).has_value());
+    EXPECT_EQ(ScratchFolder::read(file), "one two three");
+}
+
+TEST(AtomicFile, leaves_the_old_file_and_nothing_else_if_its_content_throws) {
+    const auto descriptors = [] {
+        const std::filesystem::directory_iterator open_ones("/proc/self/fd");
+        return std::distance(begin(open_ones), end(open_ones));
+    };
+    const ScratchFolder folder;
+    const auto file = folder.write("map.ot", "old");
+    const auto before = descriptors();
+    const ByteSource content = [](const ByteSink& sink) {
+        EXPECT_TRUE(sink("half of it"));
+        throw std::bad_alloc();
+    };
+    EXPECT_THROW((void)save_atomically(file, content), std::bad_alloc);
+    EXPECT_EQ(ScratchFolder::read(file), "old");
+    EXPECT_EQ(folder.entries(), 1);
+    EXPECT_EQ(descriptors(), before);
 }
 
 TEST(AtomicFile, keeps_the_old_files_mode_where_it_is_asked_to) {

@@ -47,4 +47,31 @@ inline FusedMap random_map(unsigned seed) {
     return map;
 }
 
+/// Over 100,000 voxels from one end of the octree to the other: cubes that are pruned up to a height of 5,
+/// single voxels that nothing is near to, and odd values in between.
+inline FusedMap far_map(unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<unsigned> place(0, 65535);
+    std::uniform_int_distribution<unsigned> height(2, 5);
+    std::uniform_real_distribution<float> term(-2.5F, 4.0F);
+    FusedMap map(MapConfig{});
+    const auto axis = [&](unsigned low_bits) {
+        return static_cast<std::uint16_t>(place(random) >> low_bits << low_bits);
+    };
+    for (int cube = 0; cube < 24; ++cube) {
+        const unsigned bits = height(random);
+        const VoxelKey lowest{axis(bits), axis(bits), axis(bits)};
+        if (!map.set_cube({lowest, bits}, term(random))) return map;
+        const auto within = [&] { return static_cast<std::uint16_t>(place(random) & ((1U << bits) - 1U)); };
+        std::vector<VoxelUpdate> updates;
+        for (int i = 0; i < 6 * (cube % 3); ++i) {
+            const auto at = [&](std::uint16_t from) { return static_cast<std::uint16_t>(from + within()); };
+            updates.push_back({{at(lowest.x), at(lowest.y), at(lowest.z)}, term(random)});
+        }
+        for (int i = 0; i < 200; ++i) updates.push_back({{axis(0), axis(0), axis(0)}, term(random)});
+        map.apply(updates);
+    }
+    return map;
+}
+
 }  // namespace octoskin::samples

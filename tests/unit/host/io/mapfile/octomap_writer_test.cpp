@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <span>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "host/io/mapfile/octomap_tree.hpp"
 #include "host/io/mapfile/octree.hpp"
@@ -57,6 +60,30 @@ TEST(OctomapWriter, writes_the_bytes_that_octomap_writes) {
     }
 }
 
+TEST(OctomapWriter, writes_the_bytes_that_octomap_writes_for_a_large_map) {
+    for (const unsigned seed : {1U, 2U}) {
+        const FusedMap map = samples::far_map(seed);
+        ASSERT_GT(map.known_voxels(), 100'000U);
+        std::ostringstream text;
+        ASSERT_TRUE(octomaps_tree(map)->write(text));
+        EXPECT_TRUE(encode_ot(map) == text.str()) << "seed " << seed;
+        std::ostringstream binary;
+        ASSERT_TRUE(octomaps_max_likelihood_tree(map)->writeBinary(binary));
+        EXPECT_TRUE(encode_bt(map) == binary.str()) << "seed " << seed;
+    }
+}
+
+TEST(OctomapWriter, gives_no_more_pieces_once_the_sink_takes_none) {
+    const FusedMap map = samples::far_map(1);
+    for (const auto write : {write_ot, write_bt}) {
+        for (const int pieces_taken : {0, 1}) {
+            int pieces = 0;
+            write(map, [&](std::string_view) { return pieces++ < pieces_taken; });
+            EXPECT_EQ(pieces, pieces_taken + 1);
+        }
+    }
+}
+
 TEST(OctomapWriter, writes_equal_bytes_for_equal_maps_however_they_were_filled) {
     const FusedMap map = samples::random_map(3);
     std::vector<VoxelUpdate> updates;
@@ -97,17 +124,28 @@ TEST(OctomapTree, hands_out_octomaps_own_tree_with_the_same_voxels) {
     EXPECT_EQ(to_octomap(FusedMap(MapConfig{}))->size(), 0U);
 }
 
+std::vector<OctreeNode> nodes_of(const PrunedOctree& octree) {
+    std::vector<OctreeNode> nodes;
+    EXPECT_TRUE(octree.for_each([&nodes](std::span<const OctreeNode> more) {
+        nodes.insert(nodes.end(), more.begin(), more.end());
+        return true;
+    }));
+    EXPECT_EQ(nodes.size(), octree.size());
+    return nodes;
+}
+
 TEST(Octree, prunes_eight_equal_leaves_on_every_level) {
     FusedMap map(MapConfig{});
     ASSERT_TRUE(map.set_cube({.lowest = {32768, 32768, 32768}, .height = 4}, 1.0F));
-    auto nodes = pruned_octree(map, LeafValues::exact);
+    auto nodes = nodes_of(PrunedOctree(map, LeafValues::exact));
     EXPECT_EQ(nodes.size(), 13U);  // the root, eleven inner nodes and the leaf of 16 voxels' edge
-    EXPECT_EQ(nodes.back(), (OctreeNode{1.0F, 0}));
+    EXPECT_EQ(nodes.back(), (OctreeNode{1.0F, 0, NodeState::occupied_leaf}));
     map.apply(std::vector<VoxelUpdate>{{{32768, 32768, 32768}, 0.5F}});
-    nodes = pruned_octree(map, LeafValues::exact);
+    nodes = nodes_of(PrunedOctree(map, LeafValues::exact));
     EXPECT_EQ(nodes.size(), 13U + 4 * 8);  // the path to the voxel opened on four levels
     EXPECT_EQ(nodes.front().log_odds, 1.5F) << "an inner node is as occupied as its most occupied child";
-    EXPECT_EQ(pruned_octree(map, LeafValues::max_likelihood).size(), 13U);
+    EXPECT_EQ(nodes_of(PrunedOctree(map, LeafValues::max_likelihood)).size(), 13U);
+    EXPECT_TRUE(nodes_of(PrunedOctree(FusedMap(MapConfig{}), LeafValues::exact)).empty());
 }
 
 }  // namespace

@@ -1,0 +1,138 @@
+// What a map takes of the heap, and what it does where there is none. A program of its own: every allocation
+// in it is counted, and can be made to fail.
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "host/core/mapping/fused_map.hpp"
+#include "host/io/mapfile/map_file.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace {
+
+std::atomic<std::size_t> bytes_now = 0;
+std::atomic<std::size_t> bytes_most = 0;
+std::atomic<bool> is_memory_gone = false;
+
+void* allocate(std::size_t bytes) {
+    void* const place = is_memory_gone ? nullptr : std::malloc(bytes);
+    if (place == nullptr) throw std::bad_alloc();
+    const std::size_t now = bytes_now += ::malloc_usable_size(place);
+    bytes_most = std::max(bytes_most.load(), now);
+    return place;
+}
+
+void release(void* place) noexcept {
+    if (place != nullptr) bytes_now -= ::malloc_usable_size(place);
+    std::free(place);
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+    return allocate(bytes);
+}
+void* operator new[](std::size_t bytes) {
+    return allocate(bytes);
+}
+void operator delete(void* place) noexcept {
+    release(place);
+}
+void operator delete[](void* place) noexcept {
+    release(place);
+}
+void operator delete(void* place, std::size_t) noexcept {
+    release(place);
+}
+void operator delete[](void* place, std::size_t) noexcept {
+    release(place);
+}
+
+namespace octoskin {
+namespace {
+
+constexpr std::size_t kMib = std::size_t{1} << 20U;
+
+/// Every voxel known and none like its neighbours: nothing can be pruned. `spacing`: of bricks, in bricks.
+FusedMap full_map(std::uint32_t mib, unsigned spacing) {
+    FusedMap map{MapConfig{.memory_max_mib = mib}};
+    constexpr unsigned kEdge = 24;
+    for (unsigned brick = 0; map.counters().no_room == 0; ++brick) {
+        const auto axis = [&](unsigned place, unsigned voxel) {
+            return static_cast<std::uint16_t>(16384 + 8 * spacing * place + voxel);
+        };
+        std::vector<VoxelUpdate> updates;
+        for (unsigned voxel = 0; voxel < 512; ++voxel) {
+            const VoxelKey key{axis(brick % kEdge, voxel % 8), axis(brick / kEdge % kEdge, voxel / 8 % 8),
+                               axis(brick / kEdge / kEdge, voxel / 64)};
+            updates.push_back({key, 0.001F * static_cast<float>(1 + voxel)});
+        }
+        map.apply(updates);
+    }
+    return map;
+}
+
+TEST(MapMemory, a_save_takes_a_quarter_of_the_maps_own_at_most) {
+    constexpr std::uint32_t kMapMib = 16;
+    constexpr std::size_t kConstant = kMib;
+    for (const unsigned spacing : {1U, 64U}) {
+        const testing_support::ScratchFolder folder;
+        const FusedMap map = full_map(kMapMib, spacing);
+        for (const char* const file : {"map.ot", "map.bt"}) {
+            const std::size_t before = bytes_now;
+            bytes_most = before;
+            ASSERT_TRUE(save_map(map, folder / file));
+            EXPECT_LT(bytes_most - before, kMapMib * kMib / 4 + kConstant) << file << ", spacing " << spacing;
+            EXPECT_EQ(bytes_now, before);
+        }
+    }
+}
+
+TEST(MapMemory, what_is_counted_is_what_the_voxels_take) {
+    const std::size_t before = bytes_now;
+    const FusedMap map = full_map(16, 1);
+    const auto taken = static_cast<double>(bytes_now - before);
+    EXPECT_NEAR(taken, static_cast<double>(map.memory_bytes()), 0.03 * taken);
+}
+
+TEST(MapMemory, a_map_that_gets_none_counts_that_and_goes_on_when_there_is_some) {
+    FusedMap map{MapConfig{}};
+    const VoxelUpdate old{{100, 100, 100}, 0.5F};
+    map.apply(std::span(&old, 1));
+    const std::vector<VoxelUpdate> updates{
+        {{200, 0, 0}, 0.5F}, {{201, 0, 0}, 0.5F}, {{100, 100, 101}, 0.5F}, {{300, 0, 0}, 0.5F}};
+    is_memory_gone = true;
+    map.apply(updates);
+    is_memory_gone = false;
+    EXPECT_EQ(map.counters(), (MapCounters{.applied = 2, .no_memory = 3}));
+    EXPECT_EQ(map.known_voxels(), 2U);
+    EXPECT_EQ(map.bricks().size(), 1U);
+    EXPECT_EQ(map.memory_bytes(), FusedMap(map.copy()).memory_bytes()) << "space that nobody finds";
+    map.apply(updates);
+    EXPECT_EQ(map.counters(), (MapCounters{.applied = 6, .no_memory = 3}));
+    EXPECT_EQ(map.known_voxels(), 5U);
+    EXPECT_EQ(map.log_odds({100, 100, 101}), 1.0F);
+}
+
+TEST(MapMemory, a_copy_that_gets_none_says_so_and_the_map_stays) {
+    const FusedMap map = full_map(1, 1);
+    const std::size_t before = bytes_now;
+    is_memory_gone = true;
+    bool has_thrown = false;
+    try {
+        (void)map.copy();
+    } catch (const std::bad_alloc&) {
+        has_thrown = true;
+    }
+    is_memory_gone = false;
+    EXPECT_TRUE(has_thrown);
+    EXPECT_EQ(bytes_now, before);
+}
+
+}  // namespace
+}  // namespace octoskin
