@@ -125,6 +125,7 @@ constexpr std::array kCounterMeanings = {
             "no pose of the arm at its capture time, so that the robot cannot be taken out"},
     Meaning{"depth frames", "outside_map", "the camera stands beyond the octree, or its pose is no number"},
     Meaning{"depth frames", "box_too_large", "its rays span more voxels than depth_box_voxels_max"},
+    Meaning{"depth frames", "no_memory", "the system had no memory to work it out with"},
     Meaning{"depth images", "without_pose",
             "groundtruth.txt has no poses about its time; usual at the beginning and the end"},
     Meaning{"depth images", "unreadable",

@@ -156,10 +156,11 @@ enum class DepthReason : std::uint8_t {
     joints_missing,  ///< no pose at its capture time, so the robot cannot be taken out
     outside_map,     ///< the camera, or a pose that is no number
     box_too_large,   ///< its rays span more voxels than allowed
+    no_memory,       ///< the system had none to work it out with
 };
-[[nodiscard]] constexpr std::array<const char*, 10> names_of(DepthReason) {
-    return {"no_camera",     "wrong_size", "out_of_order",   "ahead_of_time", "queue_overflow",
-            "outside_marks", "late",       "joints_missing", "outside_map",   "box_too_large"};
+[[nodiscard]] constexpr std::array<const char*, 11> names_of(DepthReason) {
+    return {"no_camera", "wrong_size",     "out_of_order", "ahead_of_time", "queue_overflow", "outside_marks",
+            "late",      "joints_missing", "outside_map",  "box_too_large", "no_memory"};
 }
 
 }  // namespace octoskin

@@ -41,6 +41,8 @@ struct DepthIntegrator::Workspace {
                            const VoxelLattice& lattice, const Eigen::Isometry3d& T_map_camera);
     [[nodiscard]] KeyBox box_around(VoxelKey camera_key) const;
     void tally(const VoxelLattice& lattice, const Eigen::Vector3f& origin);
+    /// What half an image has left in the grid must not meet the next one.
+    void forget() noexcept { grid = TallyGrid(); }
 };
 
 DepthPixelCounts DepthIntegrator::Workspace::place(const DepthImage& image, const PixelRays& pixel_rays,
@@ -111,12 +113,23 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage
     const auto camera_key = lattice_.key_of(origin.cast<double>());
     if (!camera_key) return unexpected(DepthRejection::camera_outside_map);
 
+    try {
+        return updates_of(image, T_map_camera, *camera_key);
+    } catch (...) {  // no memory
+        workspace_->forget();
+        throw;
+    }
+}
+
+Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImage& image,
+                                                                 const Eigen::Isometry3d& T_map_camera,
+                                                                 VoxelKey camera_key) {
     DepthUpdates result;
     result.pixels = workspace_->place(image, pixel_rays_, config_.model.depth, lattice_, T_map_camera);
-    if (!workspace_->grid.span(workspace_->box_around(*camera_key), config_.depth_box_voxels_max)) {
+    if (!workspace_->grid.span(workspace_->box_around(camera_key), config_.depth_box_voxels_max)) {
         return unexpected(DepthRejection::box_too_large);
     }
-    workspace_->tally(lattice_, origin);
+    workspace_->tally(lattice_, T_map_camera.translation().cast<float>());
 
     const float miss = config_.model.miss_log_odds;
     const bool is_paper = config_.depth_update == DepthUpdate::paper;

@@ -55,11 +55,15 @@ class DepthIntegrator {
     /// and passed equal those of OctoMap's `computeUpdate` without discretisation and without maximum range.
     /// `paper`: a voxel hit by any endpoint gets the largest of their terms, any other traversed voxel one
     /// miss. `robust`: the mean of all beams' terms, (sum of hits + miss * passed) / (hits + passed).
-    /// O(pixels * range / resolution), about 80 ms for 512 x 424 at 0.04 m.
+    /// O(pixels * range / resolution), about 80 ms for 512 x 424 at 0.04 m. Throws std::bad_alloc; the next
+    /// image is then as if this one had not been.
     [[nodiscard]] Result<DepthUpdates, DepthRejection> integrate(const DepthImage& image,
                                                                  const Eigen::Isometry3d& T_map_camera);
 
   private:
+    [[nodiscard]] Result<DepthUpdates, DepthRejection> updates_of(const DepthImage& image,
+                                                                  const Eigen::Isometry3d& T_map_camera,
+                                                                  VoxelKey camera_key);
     struct Workspace;
     MappingConfig config_;
     PixelRays pixel_rays_;

@@ -1,6 +1,7 @@
 #include "host/core/pipeline/map_builder.hpp"
 
 #include <cassert>
+#include <new>
 #include <utility>
 
 namespace octoskin {
@@ -13,6 +14,16 @@ ReadingReason reason_of(BeamFault fault) {
 ReadingReason reason_of(BeamRejection rejection) {
     return rejection == BeamRejection::outside_map ? ReadingReason::outside_map
                                                    : ReadingReason::beam_not_valid;
+}
+
+/// An image's box may be large: what there is no memory for is refused like what is wrong.
+Result<DepthUpdates, DepthReason> updates_or_reason(DepthStage& stage, const DepthFrame& frame,
+                                                    const RobotPose* robot) {
+    try {
+        return stage.updates(frame, robot);
+    } catch (const std::bad_alloc&) {
+        return unexpected(DepthReason::no_memory);
+    }
 }
 
 }  // namespace
@@ -98,7 +109,7 @@ Status<DepthReason> MapBuilder::integrate(const DepthFrame& frame) {
     if (robot == nullptr && depth_stage_->needs_robot()) {
         return unexpected(DepthReason::joints_missing);
     }
-    const auto updates = depth_stage_->updates(frame, robot);
+    const auto updates = updates_or_reason(*depth_stage_, frame, robot);
     if (!updates) {
         return unexpected(updates.error());
     }

@@ -254,7 +254,7 @@ TEST_P(DepthReasons, are_counted_once_and_leave_the_maps_alone) {
 INSTANTIATE_TEST_SUITE_P(Each, DepthReasons, testing::ValuesIn(depth_cases()), name_of_case<DepthReason>);
 TEST(DepthReasonsAll, have_a_case_each) {
     expect_one_each(depth_cases(), {DepthReason::no_camera, DepthReason::queue_overflow, DepthReason::late,
-                                    DepthReason::outside_map});
+                                    DepthReason::outside_map, DepthReason::no_memory});
 }
 TEST(DepthReasonsAll, reject_every_frame_without_a_camera_in_the_rig) {
     Scene scene = good_scene();

@@ -9,6 +9,7 @@
 #include <new>
 #include <vector>
 
+#include "host/core/mapping/depth_integrator.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -18,9 +19,11 @@ namespace {
 std::atomic<std::size_t> bytes_now = 0;
 std::atomic<std::size_t> bytes_most = 0;
 std::atomic<bool> is_memory_gone = false;
+std::atomic<int> allocations_left = -1;  ///< before one fails; negative: none does
 
 void* allocate(std::size_t bytes) {
-    void* const place = is_memory_gone ? nullptr : std::malloc(bytes);
+    const bool is_refused = is_memory_gone || (allocations_left >= 0 && allocations_left-- == 0);
+    void* const place = is_refused ? nullptr : std::malloc(bytes);
     if (place == nullptr) throw std::bad_alloc();
     const std::size_t now = bytes_now += ::malloc_usable_size(place);
     bytes_most = std::max(bytes_most.load(), now);
@@ -117,6 +120,36 @@ TEST(MapMemory, a_map_that_gets_none_counts_that_and_goes_on_when_there_is_some)
     EXPECT_EQ(map.counters(), (MapCounters{.applied = 6, .no_memory = 3}));
     EXPECT_EQ(map.known_voxels(), 5U);
     EXPECT_EQ(map.log_odds({100, 100, 101}), 1.0F);
+}
+
+TEST(MapMemory, an_image_that_gets_none_at_any_moment_leaves_nothing_to_the_next) {
+    const CameraIntrinsics camera{.width = 16, .height = 1, .fx = 30.0, .fy = 30.0, .cx = 8.0, .cy = 0.5};
+    const auto image = [](float depth_m) {
+        DepthImage made{.width = 16, .height = 1, .depth_m = std::vector<float>(16, depth_m)};
+        made.depth_m[3] = 0.5F * depth_m;
+        return made;
+    };
+    const Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+    const MappingConfig config = paper_mapping();
+    const auto expected =
+        DepthIntegrator(config, camera).integrate(image(2.0F), T_map_camera).value().updates;
+    int failures = 0;
+    for (bool has_failed = true; has_failed; ++failures) {
+        DepthIntegrator integrator(config, camera);
+        const DepthImage first = image(3.0F);
+        has_failed = false;
+        allocations_left = failures;
+        try {
+            (void)integrator.integrate(first, T_map_camera);
+        } catch (const std::bad_alloc&) {
+            has_failed = true;
+        }
+        allocations_left = -1;
+        const auto next = integrator.integrate(image(2.0F), T_map_camera);
+        ASSERT_TRUE(next);
+        EXPECT_EQ(next->updates, expected) << "after failure " << failures;
+    }
+    EXPECT_GT(failures, 5) << "places to fail";
 }
 
 TEST(MapMemory, a_copy_that_gets_none_says_so_and_the_map_stays) {
