@@ -24,11 +24,8 @@ namespace octoskin {
 namespace {
 
 constexpr std::chrono::milliseconds kAttendPeriod{50};
-/// What the end may take besides: the camera a second, what is left behind 0.2 s.
-constexpr Nanoseconds kEndMargin{1'500'000'000};
-
-/// For what is being saved when the end comes, the last save, and what is being recorded. With kEndMargin
-/// that is 5 s up to a map that any disk takes in that time; a larger one has as long as a disk with 50 MB/s
+/// For what is being saved when the end comes, the last save, and what is being recorded. The camera may take
+/// another second, what is left behind 0.2 s: 5 s in all. A large map has as long as a disk with 50 MB/s
 /// takes to write it twice, as a save may just have begun. A file of dense space is 1.4 times the memory.
 Nanoseconds end_patience(std::size_t map_bytes) {
     constexpr Nanoseconds kSmallMap{3'500'000'000};
@@ -40,7 +37,8 @@ Nanoseconds end_patience(std::size_t map_bytes) {
 
 /// The service manager waits as long, and its watchdog too: the loop that feeds it has ended.
 void tell_end(Nanoseconds patience) {
-    const auto all = std::chrono::duration_cast<std::chrono::microseconds>(patience + kEndMargin);
+    constexpr Nanoseconds kMargin{6'500'000'000};  // with a small map the 10 s of the unit's TimeoutStopSec
+    const auto all = std::chrono::duration_cast<std::chrono::microseconds>(patience + kMargin);
     (void)sd_notifyf(0, "STOPPING=1\nEXTEND_TIMEOUT_USEC=%lld\nWATCHDOG_USEC=%lld",
                      static_cast<long long>(all.count()), static_cast<long long>(all.count()));
 }

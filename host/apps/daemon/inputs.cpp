@@ -80,6 +80,7 @@ void Inputs::watch_camera(const std::optional<HostCamera>& camera) {
     if (wanted != camera_wanted_) {
         camera_ready_ = EventSource();
         camera_.reset();
+        camera_missing_.begun = monotonic_now();
     }
     camera_wanted_ = wanted;
     if (camera_wanted_ && !camera_) open_camera(monotonic_now());
@@ -93,7 +94,7 @@ void Inputs::open_camera(HostTime now) {
         camera_ready_ = loop_.on_readable(camera_->descriptor(), [this] { drain_camera(); });
     } catch (const std::system_error& error) {
         camera_.reset();
-        camera_missing_ = {.begun = now, .why = std::string("no thread to be had for it: ") + error.what()};
+        camera_missing_.why = std::string("no thread to be had for it: ") + error.what();
     }
 }
 

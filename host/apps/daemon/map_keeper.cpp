@@ -29,12 +29,11 @@ std::uint64_t file_bytes_max(const MapConfig& config) {
 
 std::string why_no_room(const FusedMap& map, const MapConfig& next) {
     constexpr unsigned kMib = 20;
-    const std::uint64_t needed_mib = ((std::uint64_t{map.memory_bytes()} - 1) >> kMib) + 1;
-    if (map.memory_bytes() == 0 || needed_mib <= next.memory_max_mib) return {};
+    const std::uint64_t needed_mib = (map.memory_bytes() + (std::size_t{1} << kMib) - 1) >> kMib;
+    if (needed_mib <= next.memory_max_mib) return {};
     return fmt::format(
-        "the map takes {} MiB, and map.memory_max_mib is {}: make that {} or more, or end the daemon and "
-        "move "
-        "the saved map away",
+        "the map takes {} MiB, and map.memory_max_mib is {}: make that {} or more, or end the "
+        "daemon and move the saved map away",
         needed_mib, next.memory_max_mib, needed_mib);
 }
 

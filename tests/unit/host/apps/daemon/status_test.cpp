@@ -243,6 +243,7 @@ TEST_F(StatusTest, has_the_map_with_its_memory_and_saves) {
                      static_cast<double>(pipeline_->maps().fused()->memory_bytes()) / 1'048'576);
     EXPECT_EQ(map["memory_max_mib"], 800);
     EXPECT_EQ(map["no_room"], 0);
+    EXPECT_EQ(map["no_memory"], 0);
     EXPECT_EQ(map["saved"], 5);
     EXPECT_EQ(map["saves_failed"], 1);
     EXPECT_EQ(map["saves_skipped"], 2);
