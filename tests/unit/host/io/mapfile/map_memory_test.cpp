@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <new>
+#include <span>
 #include <vector>
 
 #include "host/core/mapping/depth_integrator.hpp"
@@ -115,11 +116,25 @@ TEST(MapMemory, a_map_that_gets_none_counts_that_and_goes_on_when_there_is_some)
     EXPECT_EQ(map.counters(), (MapCounters{.applied = 2, .no_memory = 3}));
     EXPECT_EQ(map.known_voxels(), 2U);
     EXPECT_EQ(map.bricks().size(), 1U);
-    EXPECT_EQ(map.memory_bytes(), FusedMap(map.copy()).memory_bytes()) << "space that nobody finds";
     map.apply(updates);
     EXPECT_EQ(map.counters(), (MapCounters{.applied = 6, .no_memory = 3}));
     EXPECT_EQ(map.known_voxels(), 5U);
     EXPECT_EQ(map.log_odds({100, 100, 101}), 1.0F);
+}
+
+TEST(MapMemory, new_space_that_gets_none_at_any_moment_takes_no_room) {
+    int failures = 0;
+    for (bool has_failed = true; has_failed; ++failures) {
+        FusedMap map{MapConfig{}};
+        const VoxelUpdate update{{200, 0, 0}, 0.5F};
+        allocations_left = failures;
+        map.apply(std::span(&update, 1));
+        allocations_left = -1;
+        has_failed = map.counters().no_memory > 0;
+        EXPECT_EQ(map.memory_bytes() == 0, has_failed) << "after failure " << failures;
+        EXPECT_EQ(map.bricks().empty(), has_failed);
+    }
+    EXPECT_GT(failures, 2) << "places to fail";
 }
 
 TEST(MapMemory, an_image_that_gets_none_at_any_moment_leaves_nothing_to_the_next) {
