@@ -2,6 +2,7 @@
 
 #include <linux/can/error.h>
 
+#include <cerrno>
 #include <utility>
 
 namespace octoskin {
@@ -10,7 +11,7 @@ using socketcan::Received;
 using socketcan::SocketFault;
 
 bool CanLink::attend(HostTime now) {
-    if (socket_) ask_controller(now);
+    if (socket_) ask_kernel(now);
     if (socket_ || (tried_ && now - *tried_ < kRetry)) return false;
     tried_ = now;
     auto opened = opener_();
@@ -113,11 +114,19 @@ void CanLink::on_traffic(bool is_own) {
     if (is_back) set(LinkState::up, {});
 }
 
-void CanLink::ask_controller(HostTime now) {
-    if (!state_reader_ || state_ == LinkState::down || (asked_ && now - *asked_ < kAsk)) return;
+void CanLink::ask_kernel(HostTime now) {
+    const Nanoseconds period = state_ == LinkState::down ? kRetry : kAsk;
+    if (!state_reader_ || (asked_ && now - *asked_ < period)) return;
     asked_ = now;
-    using socketcan::ControllerState;
     const auto state = state_reader_();
+    if (!state) return;
+    if (!state->is_up) return on_fault(socket_->fault(ENETDOWN, "cannot receive"));
+    if (state_ == LinkState::down) set(LinkState::up, {});
+    if (state->controller) believe(*state->controller);
+}
+
+void CanLink::believe(socketcan::ControllerState state) {
+    using socketcan::ControllerState;
     if (state == ControllerState::bus_off && state_ != LinkState::bus_off) set_bus_off();
     if (state == ControllerState::error_passive && state_ != LinkState::error_passive)
         set_error_passive(true);

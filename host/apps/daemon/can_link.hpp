@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/io/socketcan/can_socket.hpp"
-#include "host/io/socketcan/controller_state.hpp"
+#include "host/io/socketcan/interface_state.hpp"
 
 namespace octoskin {
 
@@ -28,18 +28,19 @@ enum class LinkState : std::uint8_t {
 class CanLink {
   public:
     using Opener = std::function<Result<socketcan::CanSocket, socketcan::SocketFault>()>;
-    /// How the controller stands; empty if nobody can say.
-    using StateReader = std::function<std::optional<socketcan::ControllerState>()>;
-    /// How often a closed link is tried.
+    /// How the interface stands; empty if nobody can say.
+    using StateReader = std::function<std::optional<socketcan::InterfaceState>()>;
+    /// How often a closed link is tried, and one that is down asked for.
     static constexpr Nanoseconds kRetry{200'000'000};
-    /// How often the controller of an open one is asked for its state.
+    /// How often the kernel is asked how an open one stands.
     static constexpr Nanoseconds kAsk{1'000'000'000};
     /// An error-passive transmitter has an error count of 128 to 255, and each frame that is acknowledged
     /// takes one off: after so many without an error it is active again (ISO 11898-1, fault confinement).
     static constexpr int kSentToRecover = 128;
 
     /// `on_close` before each close of a descriptor: whoever watches it must let go of it first.
-    /// `state_reader`: asked once a second, for adapters whose controllers recover, or fail, without a word.
+    /// `state_reader`: asked once a second, for adapters whose controllers recover, or fail, without a word,
+    /// and while the link is down, for nothing tells of its being up where nobody sends.
     explicit CanLink(Opener opener, std::function<void()> on_close = {}, StateReader state_reader = {})
         : opener_(std::move(opener)),
           on_close_(std::move(on_close)),
@@ -81,7 +82,8 @@ class CanLink {
     void on_fault(const socketcan::SocketFault& fault);
     void on_error_frame(const wire::CanFrame& frame);
     void on_traffic(bool is_own);
-    void ask_controller(HostTime now);
+    void ask_kernel(HostTime now);
+    void believe(socketcan::ControllerState state);
     void set_bus_off();
     void set_error_passive(bool is_transmitter);
     void set(LinkState state, std::string why);

@@ -34,7 +34,7 @@ CanLink::Opener opener(const DaemonRequest& request, const HostRig& rig) {
 
 CanLink::StateReader state_reader(const DaemonRequest& request) {
     if (request.can_descriptor) return {};
-    return [interface = request.interface] { return socketcan::read_controller_state(interface); };
+    return [interface = request.interface] { return socketcan::read_interface_state(interface); };
 }
 
 Nanoseconds time_on_bus(const wire::CanFrame& frame, const wire::BitRates& rates) {

@@ -76,12 +76,14 @@ class CanSocket {
     /// What was read and was no frame.
     [[nodiscard]] std::uint64_t malformed() const noexcept { return malformed_; }
 
+    /// In words, with what to do: `doing` failed with `error_number`.
+    [[nodiscard]] SocketFault fault(int error_number, const std::string& doing) const;
+
   private:
     /// The next frame out of the descriptor; empty if none is there.
     [[nodiscard]] Result<std::optional<Received>, SocketFault> read_frame();
     /// The same for one datagram, which may be none.
     [[nodiscard]] Result<std::optional<Received>, SocketFault> read_one();
-    [[nodiscard]] SocketFault fault(int error_number, const std::string& doing) const;
 
     std::string interface_;
     int descriptor_ = -1;

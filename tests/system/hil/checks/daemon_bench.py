@@ -18,10 +18,16 @@ OCTOSKIN = os.environ["HIL_BIN"] + "/octoskin"
 OPENNI2 = os.environ["HIL_BIN"] + "/hil_openni2"  # with the driver of tests/support/camera_driver
 RECORDING = pathlib.Path(os.environ["HIL_RECORDING"])
 PATIENCE_S = 60  # the emulated processor is slow, and its host may be busy: this long for what takes a second
+IS_EMULATED = "QEMU" in pathlib.Path("/proc/cpuinfo").read_text()
 
 
 class CheckFailed(Exception):
     pass
+
+
+def limit_s(promised_s, emulated_s):
+    """The promise itself, and on an emulated processor `emulated_s` more: each call of this says what that is for."""
+    return promised_s + (emulated_s if IS_EMULATED else 0)
 
 
 def expect(what, wanted, got):

@@ -47,7 +47,7 @@ class CanLinkTest : public testing::Test {
     }
 
     bool is_there_ = true;
-    std::optional<socketcan::ControllerState> state_;  ///< what the kernel says of the controller
+    std::optional<socketcan::InterfaceState> state_;  ///< what the kernel says
     int tries_ = 0;
     HostTime now_;
     std::optional<socketcan::CanSocket> other_;
@@ -124,26 +124,48 @@ TEST_F(CanLinkTest, believes_the_kernel_about_a_controller_that_recovers_without
     ASSERT_TRUE(link_.attend({}));
     for (const auto recovered : {ControllerState::error_active, ControllerState::error_warning}) {
         say(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
-        state_ = ControllerState::error_passive;
+        state_ = {true, ControllerState::error_passive};
         EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
         EXPECT_EQ(link_.state(), LinkState::error_passive);
-        state_ = recovered;
+        state_ = {true, recovered};
         EXPECT_FALSE(link_.attend(now_ + CanLink::kAsk - Nanoseconds{1}));
         EXPECT_EQ(link_.state(), LinkState::error_passive) << "asked more than once a second";
         EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
         EXPECT_EQ(link_.state(), LinkState::up);
     }
-    state_ = ControllerState::bus_off;
+    state_ = {true, ControllerState::bus_off};
     EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
     EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
     EXPECT_EQ(link_.state(), LinkState::bus_off);
     EXPECT_EQ(link_.counts().bus_off, 1U);
-    state_ = ControllerState::stopped;  // that it is down the socket says, with what to do
+    state_ = {true, ControllerState::stopped};
     EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
     EXPECT_EQ(link_.state(), LinkState::bus_off);
     state_.reset();
     EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
     EXPECT_EQ(link_.state(), LinkState::bus_off) << "nobody said anything";
+}
+
+TEST_F(CanLinkTest, is_down_and_up_again_as_the_kernel_says_where_nobody_sends) {
+    using socketcan::ControllerState;
+    for (const auto controller :
+         {std::optional<ControllerState>(), std::optional(ControllerState::stopped)}) {
+        state_ = {true, std::nullopt};
+        (void)link_.attend(now_ = now_ + CanLink::kAsk);
+        state_ = {false, controller};
+        EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
+        EXPECT_EQ(link_.state(), LinkState::down);
+        EXPECT_NE(link_.why().find("bring it up"), std::string::npos) << link_.why();
+        EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
+        EXPECT_EQ(link_.state(), LinkState::down) << "it stays so";
+        state_ = {true, std::nullopt};
+        EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kRetry));
+        EXPECT_EQ(link_.state(), LinkState::up) << "within 0.2 s";
+    }
+    EXPECT_EQ(link_.counts().went_down, 2U);
+    state_.reset();  // nobody can say
+    EXPECT_FALSE(link_.attend(now_ = now_ + CanLink::kAsk));
+    EXPECT_EQ(link_.state(), LinkState::up);
 }
 
 TEST_F(CanLinkTest, is_no_longer_error_passive_after_128_frames_that_were_acknowledged) {

@@ -1,4 +1,4 @@
-#include "host/io/socketcan/controller_state.hpp"
+#include "host/io/socketcan/interface_state.hpp"
 
 #include <linux/can/netlink.h>
 #include <linux/if_link.h>
@@ -44,13 +44,7 @@ struct Request {
     ifinfomsg link{};
 };
 
-}  // namespace
-
-std::optional<ControllerState> controller_state_of(Bytes answer) {
-    const auto header = read<nlmsghdr>(answer);
-    if (!header || header->nlmsg_type != RTM_NEWLINK || header->nlmsg_len > answer.size())
-        return std::nullopt;
-    const Bytes attributes = after(answer.first(header->nlmsg_len), NLMSG_SPACE(sizeof(ifinfomsg)));
+std::optional<ControllerState> controller_state_of(Bytes attributes) {
     const Bytes info = attribute(attributes, IFLA_LINKINFO);
     const Bytes kind = attribute(info, IFLA_INFO_KIND);
     const bool is_can = kind.size() >= 4 && std::memcmp(kind.data(), "can", 4) == 0;
@@ -59,7 +53,20 @@ std::optional<ControllerState> controller_state_of(Bytes answer) {
     return static_cast<ControllerState>(*state);
 }
 
-std::optional<ControllerState> read_controller_state(const std::string& interface) {
+}  // namespace
+
+std::optional<InterfaceState> interface_state_of(Bytes answer) {
+    const auto header = read<nlmsghdr>(answer);
+    if (!header || header->nlmsg_type != RTM_NEWLINK || header->nlmsg_len > answer.size())
+        return std::nullopt;
+    const Bytes message = answer.first(header->nlmsg_len);
+    const auto link = read<ifinfomsg>(after(message, NLMSG_HDRLEN));
+    if (!link) return std::nullopt;
+    return InterfaceState{.is_up = (link->ifi_flags & IFF_UP) != 0,
+                          .controller = controller_state_of(after(message, NLMSG_SPACE(sizeof(ifinfomsg))))};
+}
+
+std::optional<InterfaceState> read_interface_state(const std::string& interface) {
     Request request;
     request.header = {.nlmsg_len = sizeof(request),
                       .nlmsg_type = RTM_GETLINK,
@@ -76,7 +83,7 @@ std::optional<ControllerState> read_controller_state(const std::string& interfac
     const ssize_t count = is_asked ? ::recv(descriptor, answer.data(), answer.size(), 0) : -1;
     ::close(descriptor);
     if (count <= 0) return std::nullopt;
-    return controller_state_of(Bytes(answer).first(static_cast<std::size_t>(count)));
+    return interface_state_of(Bytes(answer).first(static_cast<std::size_t>(count)));
 }
 
 }  // namespace octoskin::socketcan
