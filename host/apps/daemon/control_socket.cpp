@@ -1,8 +1,8 @@
 #include "host/apps/daemon/control_socket.hpp"
 
+#include <poll.h>
 #include <spdlog/spdlog.h>
 #include <sys/socket.h>
-#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +16,46 @@
 #include "host/apps/daemon/unix_socket.hpp"
 
 namespace octoskin {
+namespace {
+
+/// Whether there is something to read before `end`.
+bool is_readable(int descriptor, HostTime end) {
+    while (true) {  // again after a signal
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - monotonic_now());
+        if (left.count() <= 0) return false;
+        pollfd answer{descriptor, POLLIN, 0};
+        const int ready = ::poll(&answer, 1, static_cast<int>(left.count()));
+        if (ready >= 0 || errno != EINTR) return ready > 0;
+    }
+}
+
+/// A line with its end, and one back, or what happened instead.
+Result<std::string, std::string> exchange_lines(int descriptor, const std::string& line, HostTime end) {
+    // A new connection has room for a request.
+    const ssize_t sent = ::send(descriptor, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && errno != EPIPE)
+        return unexpected(std::string("the daemon takes no request: ") + std::strerror(errno));
+    std::string answer;
+    while (!answer.ends_with('\n')) {  // bounded by the end
+        if (!is_readable(descriptor, end))
+            return unexpected(std::string("the daemon did not answer in time"));
+        std::array<char, 4096> bytes{};
+        const ssize_t count = ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
+        if (count == 0 || (count < 0 && errno == ECONNRESET)) {
+            return unexpected(std::string(answer.empty()
+                                              ? "the daemon closed the connection without an answer"
+                                              : "the daemon closed the connection in mid-answer") +
+                              " (did it end just now?)");
+        }
+        if (count < 0 && errno != EAGAIN && errno != EINTR)
+            return unexpected(std::string("cannot read the daemon's answer: ") + std::strerror(errno));
+        if (count > 0) answer.append(bytes.data(), static_cast<std::size_t>(count));
+    }
+    answer.pop_back();
+    return answer;
+}
+
+}  // namespace
 
 Result<std::unique_ptr<ControlSocket>, AppError> ControlSocket::open(const std::filesystem::path& file,
                                                                      EventLoop& loop, Answer answer,
@@ -112,27 +152,15 @@ void ControlSocket::drop_idle() {
     if (is_resting_) watch();
 }
 
-Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, const std::string& request) {
-    constexpr timeval kPatience{5, 0};  // of each call
-    const HostTime end = monotonic_now() + Nanoseconds{5'000'000'000};
-    const auto descriptor = connect_unix_socket(socket, SOCK_STREAM);
+Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, const std::string& request,
+                                         std::chrono::milliseconds patience) {
+    const HostTime end = monotonic_now() + patience;
+    const auto descriptor = connect_unix_socket(socket, SOCK_STREAM, patience);
     if (!descriptor) return unexpected(descriptor.error());
-    ::setsockopt(*descriptor, SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof(kPatience));
-    ::setsockopt(*descriptor, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof(kPatience));
-    const std::string line = request + '\n';
-    std::string answer;
-    bool is_whole =
-        ::send(*descriptor, line.data(), line.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(line.size());
-    while (is_whole && !answer.ends_with('\n')) {  // bounded by the end
-        std::array<char, 4096> bytes{};
-        const ssize_t count = ::recv(*descriptor, bytes.data(), bytes.size(), 0);
-        is_whole = count > 0 && monotonic_now() < end;
-        if (is_whole) answer.append(bytes.data(), static_cast<std::size_t>(count));
-    }
+    auto answer = exchange_lines(*descriptor, request + '\n', end);
     ::close(*descriptor);
-    if (!is_whole) return fail(ExitCode::io_failed, socket.string() + ": the daemon did not answer in 5 s");
-    answer.pop_back();
-    return answer;
+    if (!answer) return fail(ExitCode::io_failed, socket.string() + ": " + answer.error());
+    return std::move(answer).value();
 }
 
 }  // namespace octoskin

@@ -2,6 +2,7 @@
 
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -44,15 +45,18 @@ std::string listener_of(int probe) {
     return is_told && listener.pid > 0 ? " (process " + std::to_string(listener.pid) + ")" : std::string();
 }
 
-/// Nothing if nobody is there, else what can be told of who is.
+/// Nothing if nobody is there, else what can be told of who is. Whoever lets nobody in is not waited for.
 std::optional<std::string> find_listener(const sockaddr_un& address, int type) {
-    const int probe = ::socket(AF_UNIX, type | SOCK_CLOEXEC, 0);
+    const int probe = ::socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (probe < 0) return std::nullopt;
     const bool is_connected =
         ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
     // Refused, or no such name: nobody. Whatever else goes wrong, somebody may be there.
     const bool is_nobody = !is_connected && (errno == ECONNREFUSED || errno == ENOENT || errno == ENOTSOCK);
-    const std::string listener = is_connected ? listener_of(probe) : std::string();
+    const bool is_full = !is_connected && errno == EAGAIN;
+    const std::string listener = is_connected ? listener_of(probe)
+                                 : is_full    ? " (it lets nobody in: is it stopped?)"
+                                              : std::string();
     ::close(probe);
     return is_nobody ? std::nullopt : std::optional(listener);
 }
@@ -105,11 +109,15 @@ Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int ty
     return descriptor;
 }
 
-Result<int, AppError> connect_unix_socket(const std::filesystem::path& file, int type) {
+Result<int, AppError> connect_unix_socket(const std::filesystem::path& file, int type,
+                                          std::chrono::milliseconds patience) {
     const auto address = address_of(file);
     if (!address) return fail(ExitCode::usage, file.string() + ": a socket's path has 1 to 107 bytes");
     const int descriptor = ::socket(AF_UNIX, type | SOCK_CLOEXEC, 0);
     if (descriptor < 0) return failure(file, "no socket", errno);
+    // connect(2) waits for room among those that are not let in yet, for as long as a send may.
+    const timeval limit{.tv_sec = patience.count() / 1000, .tv_usec = patience.count() % 1000 * 1000};
+    ::setsockopt(descriptor, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof(limit));
     if (::connect(descriptor, reinterpret_cast<const sockaddr*>(&*address), sizeof(*address)) == 0)
         return descriptor;
     const int error = errno;
@@ -119,6 +127,9 @@ Result<int, AppError> connect_unix_socket(const std::filesystem::path& file, int
                     file.string() +
                         ": no octoskin listens there (is `octoskin run` running? --socket names "
                         "another place)");
+    }
+    if (error == EAGAIN) {
+        return fail(ExitCode::io_failed, file.string() + ": the daemon lets nobody in (is it stopped?)");
     }
     return failure(file, "cannot connect", error);
 }

@@ -1,6 +1,7 @@
 // Sockets of the local machine by the name of a file.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 
 #include "common/result.hpp"
@@ -10,11 +11,14 @@ namespace octoskin {
 
 /// A socket bound to `file`; non-blocking. `type`: SOCK_DGRAM or SOCK_STREAM (then it listens). A file that a
 /// dead process left is replaced; one that somebody listens on is refused, also if both begin at once; the
-/// error names the process of a SOCK_STREAM. Waits 2 s at most for another that makes a socket in that
-/// folder. Who may connect: owner and group.
+/// error names the process of a SOCK_STREAM that lets us in. Waits 2 s at most for another that makes a
+/// socket in that folder. Who may connect: owner and group.
 [[nodiscard]] Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int type);
 
-/// A socket connected to `file`.
-[[nodiscard]] Result<int, AppError> connect_unix_socket(const std::filesystem::path& file, int type);
+/// A socket connected to `file`. Waits `patience` at most for whoever listens there and lets nobody in, as a
+/// process that is stopped: ExitCode::io_failed then.
+[[nodiscard]] Result<int, AppError> connect_unix_socket(
+    const std::filesystem::path& file, int type,
+    std::chrono::milliseconds patience = std::chrono::seconds{5});
 
 }  // namespace octoskin

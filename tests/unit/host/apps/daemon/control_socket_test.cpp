@@ -1,6 +1,7 @@
 #include "host/apps/daemon/control_socket.hpp"
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -244,6 +245,96 @@ TEST(UnixSocket, is_never_made_over_something_else) {
     ASSERT_FALSE(nobody);
     EXPECT_EQ(nobody.error().code, ExitCode::unavailable);
     EXPECT_NE(nobody.error().message.find("octoskin run"), std::string::npos);
+}
+
+/// Listens, as a daemon does that is stopped; what is done with who knocks is the test's.
+class Listener {
+  public:
+    explicit Listener(const std::filesystem::path& file)
+        : descriptor_(bind_unix_socket(file, SOCK_STREAM).value()), file_(file) {}
+    ~Listener() {
+        for (const int waiting : waiting_) ::close(waiting);
+        ::close(descriptor_);
+    }
+    Listener(const Listener&) = delete;
+    Listener& operator=(const Listener&) = delete;
+    [[nodiscard]] int descriptor() const { return descriptor_; }
+    /// Until nobody else has room.
+    void fill() {
+        for (auto knocking = connect_unix_socket(file_, SOCK_STREAM, 10ms); knocking;
+             knocking = connect_unix_socket(file_, SOCK_STREAM, 10ms))
+            waiting_.push_back(*knocking);
+    }
+
+  private:
+    int descriptor_;
+    std::filesystem::path file_;
+    std::vector<int> waiting_;
+};
+
+using Clock = std::chrono::steady_clock;
+
+TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_lets_nobody_in) {
+    const testing_support::ScratchFolder folder;
+    Listener stopped(folder / "control");
+    stopped.fill();
+    const auto begun = Clock::now();
+    const auto answer = ask_daemon(folder / "control", "status", 200ms);
+    ASSERT_FALSE(answer);
+    EXPECT_GE(Clock::now() - begun, 190ms);
+    EXPECT_LE(Clock::now() - begun, 1s);
+    EXPECT_EQ(answer.error().code, ExitCode::io_failed);
+    EXPECT_NE(answer.error().message.find("lets nobody in (is it stopped?)"), std::string::npos)
+        << answer.error().message;
+}
+
+TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_let_us_in_and_is_silent) {
+    const testing_support::ScratchFolder folder;
+    const Listener stopped(folder / "control");
+    const auto begun = Clock::now();
+    const auto answer = ask_daemon(folder / "control", "status", 200ms);
+    ASSERT_FALSE(answer);
+    EXPECT_GE(Clock::now() - begun, 190ms);
+    EXPECT_LE(Clock::now() - begun, 1s);
+    EXPECT_NE(answer.error().message.find("did not answer in time"), std::string::npos);
+}
+
+TEST(AskDaemon, says_when_the_daemon_closed_the_connection_and_does_not_wait_then) {
+    const testing_support::ScratchFolder folder;
+    const Listener ending(folder / "control");
+    for (const std::string said : {"", "half a li"}) {
+        std::thread closing([&] {
+            pollfd knocking{ending.descriptor(), POLLIN, 0};
+            (void)::poll(&knocking, 1, 5'000);
+            const int client = ::accept(ending.descriptor(), nullptr, nullptr);
+            std::array<char, 64> request{};
+            (void)!::recv(client, request.data(), request.size(), 0);
+            (void)!::send(client, said.data(), said.size(), MSG_NOSIGNAL);
+            ::close(client);
+        });
+        const auto begun = Clock::now();
+        const auto answer = ask_daemon(folder / "control", "status");
+        closing.join();
+        ASSERT_FALSE(answer);
+        EXPECT_LE(Clock::now() - begun, 2s);
+        EXPECT_NE(answer.error().message.find(said.empty() ? "closed the connection without an answer"
+                                                           : "closed the connection in mid-answer"),
+                  std::string::npos)
+            << answer.error().message;
+    }
+}
+
+TEST(BindUnixSocket, refuses_at_once_the_place_of_one_that_lets_nobody_in) {
+    const testing_support::ScratchFolder folder;
+    Listener stopped(folder / "control");
+    stopped.fill();
+    const auto begun = Clock::now();
+    const auto second = bind_unix_socket(folder / "control", SOCK_STREAM);
+    ASSERT_FALSE(second);
+    EXPECT_LE(Clock::now() - begun, 2s);
+    EXPECT_NE(second.error().message.find("(it lets nobody in: is it stopped?) has this socket"),
+              std::string::npos)
+        << second.error().message;
 }
 
 }  // namespace
