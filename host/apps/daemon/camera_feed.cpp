@@ -48,6 +48,13 @@ CameraFeed::CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
 }
 
 CameraFeed::~CameraFeed() {
+    end();
+    thread_.join();
+    ::close(event_);
+    ::close(end_);
+}
+
+void CameraFeed::end() {
     const std::uint64_t one = 1;
     {
         const std::lock_guard lock(mutex_);
@@ -55,9 +62,6 @@ CameraFeed::~CameraFeed() {
     }
     (void)!::write(end_, &one, sizeof(one));
     changed_.notify_all();
-    thread_.join();
-    ::close(event_);
-    ::close(end_);
 }
 
 std::optional<DepthFrame> CameraFeed::take() {
@@ -84,6 +88,7 @@ void CameraFeed::work() {
         }
         wait_before_retry();
     }
+    has_ended_ = true;
 }
 
 void CameraFeed::wait_before_retry() {
@@ -108,7 +113,7 @@ void CameraFeed::watch_camera() {
                                      : uri_ + ": no camera there that gives depth";
         return note_closed(with_complaint(what, *process));
     }
-    note_opened();
+    note_opened(header->rate_mhz * 1e-3);
     openni2::FramePipe frames(process->descriptor(), silence_max_, end_);
     while (!is_ending_) {
         auto frame = frames.read_frame(header->size);
@@ -125,8 +130,9 @@ void CameraFeed::watch_camera() {
     }
 }
 
-void CameraFeed::note_opened() {
+void CameraFeed::note_opened(double rate_hz) {
     const std::lock_guard lock(mutex_);
+    record_.rate_hz = rate_hz;
     record_.is_open = true;
     record_.why.clear();
     ++record_.opened;
@@ -141,6 +147,7 @@ void CameraFeed::note_untimed() {
 void CameraFeed::put(DepthFrame frame) {
     const std::uint64_t one = 1;
     const std::lock_guard lock(mutex_);
+    if (is_ending_) return;
     ++record_.frames;
     record_.newest = monotonic_now();
     waiting_.push_back(std::move(frame));

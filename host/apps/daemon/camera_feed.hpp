@@ -23,6 +23,7 @@ struct CameraRecord {
     std::uint64_t displaced = 0;  ///< newer ones came before these were taken
     std::uint64_t untimed = 0;    ///< whose time of capture could not be told: late, or the first ones
     std::uint64_t opened = 0;     ///< times
+    double rate_hz = 0.0;         ///< of the mode that it was put into; 0: not told, as of a file
     HostTime begun;               ///< looked for since then
     std::optional<HostTime> newest;
     std::string why;  ///< not open, for a person
@@ -48,6 +49,12 @@ class CameraFeed {
     CameraFeed(const CameraFeed&) = delete;
     CameraFeed& operator=(const CameraFeed&) = delete;
 
+    /// The camera is let go of, soon; no frame comes any more, and those that wait are there to be taken.
+    /// Waits for nothing.
+    void end();
+    /// After `end`: the camera is let go of, and the destructor waits for nothing.
+    [[nodiscard]] bool has_ended() const noexcept { return has_ended_; }
+
     /// Readable when a frame waits.
     [[nodiscard]] int descriptor() const noexcept { return event_; }
     [[nodiscard]] std::optional<DepthFrame> take();
@@ -58,7 +65,7 @@ class CameraFeed {
     /// Until the camera ends or falls silent.
     void watch_camera();
     void put(DepthFrame frame);
-    void note_opened();
+    void note_opened(double rate_hz);
     void note_untimed();
     void note_closed(const std::string& why);
     void wait_before_retry();
@@ -74,6 +81,7 @@ class CameraFeed {
     std::deque<DepthFrame> waiting_;
     CameraRecord record_;
     std::atomic<bool> is_ending_ = false;
+    std::atomic<bool> has_ended_ = false;
     std::thread thread_;
 };
 

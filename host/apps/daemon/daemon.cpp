@@ -172,7 +172,7 @@ void Daemon::Parts::attend() {
     inputs.attend();
     recordings.attend(monotonic_now());
     last_used.note(pipeline, monotonic_now());
-    problem_log.tell(problems(view()));
+    problem_log.tell(problems(view()), monotonic_now());
 }
 
 void Daemon::Parts::save_map() {
@@ -228,6 +228,7 @@ void Daemon::Parts::reload() {
         reload_error = next.error().message;
         spdlog::error("not reloaded, the old settings hold: {}", reload_error);
     } else {
+        inputs.prepare_for(next->settings.host.rig);
         const std::uint64_t dropped = settle_pipeline();
         recordings.stop(monotonic_now());  // it has the old settings, and is whole with them
         const bool is_same_grid = has_same_grid(next->settings);

@@ -69,28 +69,38 @@ Status<AppError> Inputs::take_sockets(const HostRig& rig) {
 
 void Inputs::watch(const HostRig& rig) {
     if (joints_) joints_ready_ = loop_.on_readable(joints_->descriptor(), [this] { catch_up(); });
-    watch_camera(rig.camera);
+    camera_mode_ = mode_for(rig);
     attend();
 }
 
-void Inputs::watch_camera(const std::optional<HostCamera>& camera) {
-    std::optional<openni2::CameraMode> wanted;
-    if (camera && request_.has_camera)
-        wanted = openni2::CameraMode{camera->intrinsics.width, camera->intrinsics.height, camera->rate_hz};
-    if (wanted != camera_wanted_) {
-        camera_ready_ = EventSource();
-        camera_.reset();
-        camera_missing_.begun = monotonic_now();
-    }
-    camera_wanted_ = wanted;
-    if (camera_wanted_ && !camera_) open_camera(monotonic_now());
+std::optional<openni2::CameraMode> Inputs::mode_for(const HostRig& rig) const {
+    if (!rig.camera || !request_.has_camera) return std::nullopt;
+    const CameraIntrinsics& wanted = rig.camera->intrinsics;
+    return openni2::CameraMode{wanted.width, wanted.height, rig.camera->rate_hz};
 }
 
-void Inputs::open_camera(HostTime now) {
+void Inputs::prepare_for(const HostRig& rig) {
+    if (!camera_ || mode_for(rig) == camera_mode_) return;
+    camera_ready_ = EventSource();
+    camera_->end();
+    while (auto frame = camera_->take()) take_depth(std::move(*frame));  // no more than wait there
+    camera_leaving_ = std::move(camera_);
+    camera_missing_ = {};
+    camera_missing_.begun = monotonic_now();
+    camera_missing_.why = "it is being let go of, to be opened in another mode";
+    camera_tried_.reset();
+}
+
+void Inputs::attend_camera() {
+    if (camera_leaving_ && !camera_leaving_->has_ended()) return;
+    camera_leaving_.reset();
+    const HostTime now = monotonic_now();
+    if (camera_ || !camera_mode_ || (camera_tried_ && now - *camera_tried_ < CameraFeed::kRetry)) return;
+    if (!camera_tried_) camera_missing_.begun = now;
     camera_tried_ = now;
     try {
-        camera_ = std::make_unique<CameraFeed>(request_.camera_uri, kCameraSilenceMax, std::nullopt,
-                                               camera_wanted_);
+        camera_ =
+            std::make_unique<CameraFeed>(request_.camera_uri, kCameraSilenceMax, std::nullopt, camera_mode_);
         camera_ready_ = loop_.on_readable(camera_->descriptor(), [this] { drain_camera(); });
     } catch (const std::system_error& error) {
         camera_.reset();
@@ -104,7 +114,8 @@ void Inputs::change_rig(const HostRig& rig) {
     bit_rates_ = rig.bit_rates;
     local_joints_ = local_joints_of(rig);
     if (joints_) joints_->expect(rig.joints.joints.size());
-    watch_camera(rig.camera);
+    camera_mode_ = mode_for(rig);
+    attend_camera();
 }
 
 void Inputs::attend() {
@@ -113,9 +124,9 @@ void Inputs::attend() {
     if (!request_.is_listen_only) {
         if (const auto due = sync_.poll(now)) (void)can_.send(wire::encode(*due, wire::kHostId));
     }
+    attend_camera();
     catch_up();  // what this host sent comes back without waking anybody, where there is no kernel
     exchange_alone();
-    if (camera_wanted_ && !camera_ && now - camera_tried_ >= CameraFeed::kRetry) open_camera(now);
     const auto bus_now = bus_time_.at(now);
     if (bus_now && now - told_ > BusTime::kSilent) pipeline_.on_silence(*bus_now);
 }
@@ -239,21 +250,23 @@ void Inputs::feed_joints(std::optional<WallTime> until) {
 }
 
 void Inputs::drain_camera() {
-    auto frame = camera_->take();
-    if (!frame) return;
+    if (auto frame = camera_->take()) take_depth(std::move(*frame));
+}
+
+void Inputs::take_depth(DepthFrame frame) {
     // Now, not before: by the time of what was read so far it would be a frame of the future.
     catch_up();
     if (request_.is_listen_only) {
         const auto ahead = foreign_clock_.ahead(monotonic_now());
         depth_untimed_ += ahead ? 0U : 1U;
         if (!ahead) return;
-        frame->captured = frame->captured + *ahead;
+        frame.captured = frame.captured + *ahead;
     }
-    pipeline_.on_depth(std::move(*frame));
+    pipeline_.on_depth(std::move(frame));
 }
 
 std::optional<CameraRecord> Inputs::camera() const {
-    if (!camera_wanted_) return std::nullopt;
+    if (!camera_mode_) return std::nullopt;
     CameraRecord record = camera_ ? camera_->record() : camera_missing_;
     record.untimed += depth_untimed_;
     return record;

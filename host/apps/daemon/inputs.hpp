@@ -38,8 +38,12 @@ class Inputs {
     [[nodiscard]] Status<AppError> take_sockets(const HostRig& rig);
     /// From now on the loop brings what comes.
     void watch(const HostRig& rig);
-    /// Another rig: its filters, joints and camera. The pipeline must be that rig's already.
+    /// Another rig: its filters, joints and camera. The pipeline must be that rig's already, and this one
+    /// told before, while the pipeline was the former one's.
     void change_rig(const HostRig& rig);
+    /// That rig comes next: a camera that it wants in another mode, or not at all, is let go of, and what it
+    /// has shown goes into the pipeline.
+    void prepare_for(const HostRig& rig);
 
     /// Twenty times a second: opens what is closed, sends SYNC when it is due.
     void attend();
@@ -69,9 +73,10 @@ class Inputs {
     [[nodiscard]] const ForeignClock& foreign_clock() const noexcept { return foreign_clock_; }
 
   private:
-    void watch_camera(const std::optional<HostCamera>& camera);
-    /// Without a thread to be had it is tried again in a second.
-    void open_camera(HostTime now);
+    [[nodiscard]] std::optional<openni2::CameraMode> mode_for(const HostRig& rig) const;
+    /// Opens the camera, once the one before is let go of; without a thread to be had, again in a second.
+    void attend_camera();
+    void take_depth(DepthFrame frame);
     /// False if there may be more.
     bool drain_can();
     [[nodiscard]] bool is_of_node(const wire::CanFrame& frame) const;
@@ -96,10 +101,11 @@ class Inputs {
     std::optional<JointSocket> joints_;
     EventSource joints_ready_;
     std::deque<JointSample> joints_waiting_;  ///< for frames of the bus that came before them
-    std::optional<openni2::CameraMode> camera_wanted_;
-    std::unique_ptr<CameraFeed> camera_;  ///< in the mode that is wanted
-    CameraRecord camera_missing_;         ///< what there is to tell while a camera is wanted and none is made
-    HostTime camera_tried_;
+    std::unique_ptr<CameraFeed> camera_;
+    std::optional<openni2::CameraMode> camera_mode_;  ///< wanted; empty: no camera is
+    std::unique_ptr<CameraFeed> camera_leaving_;      ///< of another mode; has the device a little longer
+    CameraRecord camera_missing_;           ///< what there is to tell while one is wanted and none is open
+    std::optional<HostTime> camera_tried_;  ///< last, in the mode that is wanted
     EventSource camera_ready_;
     LatencyHistogram latency_;
     wire::BitRates bit_rates_;

@@ -166,10 +166,10 @@ void add_readings(const DaemonView& view, Problems& problems) {
 
 void add_camera(const DaemonView& view, Problems& problems) {
     if (!view.camera || !view.rig->camera) return;
-    const Nanoseconds period{static_cast<std::int64_t>(1e9 / view.rig->camera->rate_hz)};
+    const double rate_hz = view.rig->camera->rate_hz;
     const auto& frames = view.pipeline->accounts().depth_frames;
     const bool is_used = view.used.depth_frame && !has_stopped(view.used.depth_frame, view.now);
-    if (auto problem = camera_problem(*view.camera, period, view.now)) {
+    if (auto problem = camera_problem(*view.camera, rate_hz, view.now)) {
         problems.push_back(std::move(*problem));
     } else if (frames.in() > 0 && !is_used && view.inputs->has_bus_fallen_silent(view.now)) {
         problems.push_back({"depth beside silent bus",
@@ -195,6 +195,7 @@ void add_camera(const DaemonView& view, Problems& problems) {
         problems.push_back(
             {"depth stopped", "depth frames come onto the map no more: see the counters of depth frames"});
     }
+    if (auto problem = camera_rate_problem(*view.camera, rate_hz)) problems.push_back(std::move(*problem));
 }
 
 void add_map(const DaemonView& view, Problems& problems) {
@@ -232,7 +233,7 @@ void add_map(const DaemonView& view, Problems& problems) {
 
 }  // namespace
 
-std::optional<Problem> camera_problem(const CameraRecord& camera, Nanoseconds period, HostTime now) {
+std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz, HostTime now) {
     constexpr Nanoseconds kFirstFrame{5'000'000'000};
     // Before "not open": one that is opened again and again for nothing is both, by turns.
     if (!camera.newest && now - camera.begun > kFirstFrame) {
@@ -244,9 +245,21 @@ std::optional<Problem> camera_problem(const CameraRecord& camera, Nanoseconds pe
                        "camera: " + since + (camera.is_open ? ", and it is open" : ": " + camera.why)};
     }
     if (!camera.is_open) return Problem{"camera: " + camera.why, "camera: " + camera.why};
+    const double true_rate_hz = camera.rate_hz > 0.0 ? camera.rate_hz : rate_hz;
+    const Nanoseconds period{static_cast<std::int64_t>(1e9 / true_rate_hz)};
     if (camera.newest && now - *camera.newest > 3 * period)
         return Problem{"camera silent", "camera: no frame for three periods"};
     return std::nullopt;
+}
+
+std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double rate_hz) {
+    constexpr double kAbout = 1.5;  // 30 Hz where 25 are wanted is nothing to write of
+    const bool is_other = camera.rate_hz > kAbout * rate_hz || camera.rate_hz * kAbout < rate_hz;
+    if (camera.rate_hz <= 0.0 || !is_other) return std::nullopt;
+    return Problem{"camera rate",
+                   fmt::format("camera: its mode of the rig's size has {} frames a second, the rig {}: "
+                               "`octoskin cameras` lists its modes, camera.rate_hz of the rig is to be one's",
+                               camera.rate_hz, rate_hz)};
 }
 
 std::vector<Problem> problems(const DaemonView& view) {

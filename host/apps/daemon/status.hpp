@@ -62,9 +62,11 @@ struct DaemonView {
 
 /// What is wrong, the most fundamental first, a sentence each: "nothing in my map" has its answer here.
 [[nodiscard]] std::vector<Problem> problems(const DaemonView& view);
-/// What is wrong with a camera whose frames come every `period`; empty if it is well.
-[[nodiscard]] std::optional<Problem> camera_problem(const CameraRecord& camera, Nanoseconds period,
-                                                    HostTime now);
+/// What is wrong with a camera of which the rig has `rate_hz` frames a second; empty if it is well. A camera
+/// whose mode has another rate is measured by its own.
+[[nodiscard]] std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz, HostTime now);
+/// Empty if it is in no mode that is known, or in one of about the rig's rate.
+[[nodiscard]] std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double rate_hz);
 
 [[nodiscard]] nlohmann::ordered_json status_json(const DaemonView& view);
 

@@ -12,7 +12,7 @@ namespace octoskin::openni2 {
 namespace {
 
 constexpr std::array<char, 4> kMagic{'O', 'S', 'K', 'D'};
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr std::uint64_t kEnd = ~std::uint64_t{0};
 constexpr std::uint64_t kUntimed = kEnd - 1;
 
@@ -22,6 +22,7 @@ struct Header {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::uint32_t is_salvaged = 0;
+    std::uint32_t rate_mhz = 0;
 };
 
 /// To a socket without blocking and without SIGPIPE, whoever handles that; to anything else as usual.
@@ -51,7 +52,8 @@ const char* name(PipeError error) noexcept {
 Status<PipeError> FramePipe::write_header(const StreamHeader& stream) {
     const Header header{.width = stream.size.width,
                         .height = stream.size.height,
-                        .is_salvaged = stream.is_salvaged ? 1U : 0U};
+                        .is_salvaged = stream.is_salvaged ? 1U : 0U,
+                        .rate_mhz = stream.rate_mhz};
     return write_bytes(std::as_bytes(std::span(&header, 1)));
 }
 
@@ -80,7 +82,7 @@ Result<StreamHeader, PipeError> FramePipe::read_header() {
                               FrameSize{header.width, header.height}.pixels() <= kPixelsMax;
     if (header.magic != kMagic || header.version != kVersion || !is_plausible)
         return unexpected(PipeError::wrong_format);
-    return StreamHeader{{header.width, header.height}, header.is_salvaged != 0};
+    return StreamHeader{{header.width, header.height}, header.is_salvaged != 0, header.rate_mhz};
 }
 
 Result<std::optional<PipedFrame>, PipeError> FramePipe::read_frame(FrameSize size) {

@@ -1,7 +1,7 @@
 // Depth frames through a pipe: the format between octoskin and the two helper programs that alone are linked
 // with OpenNI2.
 //
-//     stream  = "OSKD" version:u32 width:u32 height:u32 is_salvaged:u32  frame*  end
+//     stream  = "OSKD" version:u32 width:u32 height:u32 is_salvaged:u32 rate_mhz:u32  frame*  end
 //     frame   = timestamp_us:u64 pixels:u16[width * height]   timestamps of a recording relative to its first
 //                                                             frame; of a camera, the host's monotonic clock
 //             | 0xFFFFFFFFFFFFFFFE                     one of a camera, whose time is not known
@@ -33,6 +33,8 @@ inline constexpr std::size_t kPixelsMax = std::size_t{1600} * 1200;
 struct StreamHeader {
     FrameSize size;
     bool is_salvaged = false;  ///< the recording has no end: these are its whole frames
+    /// A camera's, of the mode that it is in, in thousandths of a hertz; 0: not told, as of a recording.
+    std::uint32_t rate_mhz = 0;
 };
 
 struct PipedFrame {

@@ -37,7 +37,7 @@ Result<OniWriter, DepthSourceError> OniWriter::create(const std::filesystem::pat
     for (const auto& stale : {oni, epoch}) std::filesystem::remove(stale, ignored);
     auto process = HelperProcess::start(*helper, {oni.string()}, HelperPipe::its_input);
     if (!process) return failure(process.error());
-    if (const auto written = FramePipe(process->descriptor(), kWritePatience).write_header({size});
+    if (const auto written = FramePipe(process->descriptor(), kWritePatience).write_header({.size = size});
         !written) {
         return failure(name(written.error()));
     }

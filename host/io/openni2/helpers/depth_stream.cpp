@@ -67,6 +67,7 @@ bool DepthStream::start(const std::optional<CameraMode>& wanted) {
     const auto size = depth_size(stream_);
     if (!size) return refuse("a video mode that octoskin does not read");
     size_ = *size;
+    if (!device_.isFile()) rate_mhz_ = 1000U * static_cast<std::uint32_t>(stream_.getVideoMode().getFps());
     // OpenNI2's drivers of real cameras mirror unless told not to. A file holds what was recorded, whatever
     // it is told.
     if (!device_.isFile()) (void)stream_.setMirroringEnabled(false);

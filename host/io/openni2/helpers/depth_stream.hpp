@@ -3,6 +3,7 @@
 
 #include <OpenNI.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +44,9 @@ class DepthStream {
     [[nodiscard]] int frame_count() { return playback()->getNumberOfFrames(stream_); }
     /// After `start`.
     [[nodiscard]] FrameSize size() const { return size_; }
+    /// After `start`: of the mode that a camera is in; 0 for a file, whose mode may tell another one than it
+    /// was recorded at.
+    [[nodiscard]] std::uint32_t rate_mhz() const { return rate_mhz_; }
     /// The newest frame, and its pixels, as seen from the camera (never mirrored); empty if it is of another
     /// size.
     [[nodiscard]] const openni::VideoFrameRef& frame() const { return frame_; }
@@ -56,6 +60,7 @@ class DepthStream {
     openni::VideoStream stream_;
     openni::VideoFrameRef frame_;
     FrameSize size_;
+    std::uint32_t rate_mhz_ = 0;
     bool is_mirrored_ = false;
 };
 

@@ -25,7 +25,7 @@ std::int64_t monotonic_us() {
 
 int stream_frames(DepthStream& depth, int descriptor) {
     FramePipe output(descriptor, kPatience);
-    if (!output.write_header({.size = depth.size()})) return 1;
+    if (!output.write_header({.size = depth.size(), .rate_mhz = depth.rate_mhz()})) return 1;
     CaptureClock clock;
     while (true) {  // until the camera is gone, or whoever reads
         if (!depth.wait_for_frame()) return depth.complain("no more frames");

@@ -20,7 +20,7 @@ constexpr const char* kProgram = "octoskin-oni-read";
 int stream_frames(DepthStream& depth, bool is_salvaged, int descriptor) {
     const int frame_count = depth.frame_count();
     FramePipe output(descriptor, kPatience);
-    if (!output.write_header({depth.size(), is_salvaged})) return 1;
+    if (!output.write_header({.size = depth.size(), .is_salvaged = is_salvaged})) return 1;
     for (int read = 0; read < frame_count; ++read) {
         if (!depth.wait_for_frame()) {
             std::fprintf(stderr, "%s: only %d of %d frames\n", kProgram, read, frame_count);

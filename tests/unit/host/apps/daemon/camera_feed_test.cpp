@@ -32,8 +32,9 @@ class CameraFeedTest : public testing::Test {
     testing_support::ScratchFolder scratch_;
 };
 
-// A header of 2 x 1 pixels, as frame_pipe.hpp has it.
-constexpr const char* kHeader = "printf 'OSKD\\003\\0\\0\\0\\002\\0\\0\\0\\001\\0\\0\\0\\0\\0\\0\\0'\n";
+// A header of 2 x 1 pixels at 10 Hz, as frame_pipe.hpp has it.
+constexpr const char* kHeader =
+    "printf 'OSKD\\004\\0\\0\\0\\002\\0\\0\\0\\001\\0\\0\\0\\0\\0\\0\\0\\020\\047\\0\\0'\n";
 constexpr const char* kUntimed = "printf '\\376\\377\\377\\377\\377\\377\\377\\377'\n";
 constexpr const char* kTimed = "printf '\\1\\0\\0\\0\\0\\0\\0\\0\\003\\004\\005\\006'\n";
 
@@ -71,6 +72,20 @@ TEST_F(CameraFeedTest, counts_frames_without_a_time_and_hands_over_the_others) {
     EXPECT_EQ(frame->depth_mm, (std::vector<std::uint16_t>{0x0403, 0x0605}));
     EXPECT_EQ(feed.record().untimed, 2U);
     EXPECT_EQ(feed.record().frames, 3U);
+    EXPECT_DOUBLE_EQ(feed.record().rate_hz, 10.0);
+}
+
+TEST_F(CameraFeedTest, ends_without_keeping_anybody_waiting_and_keeps_what_it_has_shown) {
+    CameraFeed feed("", 100s, camera(std::string(kHeader) + kTimed + kTimed + "exec sleep 100"));
+    ASSERT_TRUE(wait_until([&] { return feed.record().frames == 2; }));
+    EXPECT_FALSE(feed.has_ended());
+    const auto begun = Clock::now();
+    feed.end();
+    EXPECT_TRUE(feed.take());
+    EXPECT_TRUE(feed.take());
+    EXPECT_FALSE(feed.take());
+    EXPECT_LT(Clock::now() - begun, 100ms);
+    EXPECT_TRUE(wait_until([&] { return feed.has_ended(); }));
 }
 
 TEST_F(CameraFeedTest, tells_the_helper_which_camera_and_which_mode) {

@@ -5,12 +5,13 @@
 namespace octoskin {
 namespace {
 
-constexpr Nanoseconds kPeriod{33'000'000};
+constexpr double kRateHz = 20.0;
+constexpr Nanoseconds kPeriod{50'000'000};
 constexpr Nanoseconds kSecond{1'000'000'000};
 constexpr HostTime kBegun{7'000'000'000};
 
 std::string told(const CameraRecord& camera, Nanoseconds after) {
-    const auto problem = camera_problem(camera, kPeriod, kBegun + after);
+    const auto problem = camera_problem(camera, kRateHz, kBegun + after);
     return problem ? problem->text : "";
 }
 
@@ -32,11 +33,11 @@ TEST(CameraProblem, is_that_it_opens_and_never_shows_anything_however_often) {
     camera.is_open = true;
     EXPECT_EQ(told(camera, 4 * kSecond), "") << "it may just need time";
     EXPECT_EQ(told(camera, 6 * kSecond), "camera: no frame has ever come, and it is open");
-    const auto open = camera_problem(camera, kPeriod, kBegun + 6 * kSecond);
+    const auto open = camera_problem(camera, kRateHz, kBegun + 6 * kSecond);
     camera.is_open = false;
     camera.why = "no data in time";
     EXPECT_EQ(told(camera, 7 * kSecond), "camera: no frame has ever come: no data in time");
-    EXPECT_EQ(camera_problem(camera, kPeriod, kBegun + 7 * kSecond)->about, open->about)
+    EXPECT_EQ(camera_problem(camera, kRateHz, kBegun + 7 * kSecond)->about, open->about)
         << "the same problem";
 }
 
@@ -57,6 +58,36 @@ TEST(CameraProblem, is_that_it_fell_silent_and_nothing_while_it_is_well) {
     camera.is_open = false;
     camera.why = "gone";
     EXPECT_EQ(told(camera, 9 * kSecond), "camera: gone");
+}
+
+TEST(CameraProblem, is_no_silence_of_one_that_is_as_slow_as_its_mode) {
+    CameraRecord camera = looked_for();
+    camera.is_open = true;
+    camera.rate_hz = 5.0;
+    camera.newest = kBegun + 9 * kSecond;
+    EXPECT_EQ(told(camera, 9 * kSecond + Nanoseconds{600'000'000}), "");
+    EXPECT_EQ(told(camera, 9 * kSecond + Nanoseconds{600'000'001}), "camera: no frame for three periods");
+    camera.rate_hz = 40.0;
+    EXPECT_EQ(told(camera, 9 * kSecond + Nanoseconds{75'000'000}), "");
+    EXPECT_NE(told(camera, 9 * kSecond + Nanoseconds{75'000'001}), "");
+}
+
+TEST(CameraProblem, is_a_mode_of_a_rate_far_off_the_rigs) {
+    CameraRecord camera = looked_for();
+    EXPECT_FALSE(camera_rate_problem(camera, kRateHz)) << "not told";
+    for (const double near : {14.0, 20.0, 25.0, 30.0}) {
+        camera.rate_hz = near;
+        EXPECT_FALSE(camera_rate_problem(camera, kRateHz)) << near;
+    }
+    for (const double far : {10.0, 13.0, 31.0, 60.0}) {
+        camera.rate_hz = far;
+        EXPECT_TRUE(camera_rate_problem(camera, kRateHz)) << far;
+    }
+    camera.rate_hz = 10.0;
+    EXPECT_EQ(camera_rate_problem(camera, 30.0)
+                  ->text.find("camera: its mode of the rig's size has 10 frames a "
+                              "second, the rig 30: "),
+              0U);
 }
 
 }  // namespace

@@ -19,15 +19,18 @@ class ProblemLogTest : public testing::Test {
         spdlog::set_default_logger(logger);
     }
     ~ProblemLogTest() override { spdlog::set_default_logger(before_); }
-    std::string told(std::vector<Problem> problems) {
+    /// What is logged if there are these `after` the ones before.
+    std::string told(std::vector<Problem> problems, Nanoseconds after = ProblemLog::kOver) {
         text_.str({});
-        log_.tell(std::move(problems));
+        now_ = now_ + after;
+        log_.tell(std::move(problems), now_);
         return text_.str();
     }
 
     std::shared_ptr<spdlog::logger> before_;
     std::ostringstream text_;
     ProblemLog log_;
+    HostTime now_;
 };
 
 TEST_F(ProblemLogTest, tells_each_when_it_comes_and_when_it_goes) {
@@ -53,6 +56,18 @@ TEST_F(ProblemLogTest, tells_those_apart_whose_names_differ_in_a_digit) {
               "info over: node 1 sensor 13: dead\n");
     EXPECT_EQ(told({{"can0", "can0: down"}}), "warning can0: down\ninfo over: node 2 sensor 3: dead\n");
     EXPECT_EQ(told({{"can1", "can1: down"}}), "warning can1: down\ninfo over: can0: down\n");
+}
+
+TEST_F(ProblemLogTest, tells_one_that_comes_and_goes_once) {
+    std::string all;
+    constexpr Nanoseconds kTurn{50'000'000};
+    for (int turn = 0; turn < 280; ++turn)  // 14 s
+        all +=
+            told(turn % 4 < 2 ? std::vector<Problem>{{"silent", "no frame"}} : std::vector<Problem>{}, kTurn);
+    EXPECT_EQ(all, "warning no frame\n");
+    EXPECT_EQ(told({}, ProblemLog::kOver - 3 * kTurn), "");
+    EXPECT_EQ(told({}, 3 * kTurn), "info over: no frame\n");
+    EXPECT_EQ(told({{"silent", "no frame"}}, kTurn), "warning no frame\n");
 }
 
 }  // namespace

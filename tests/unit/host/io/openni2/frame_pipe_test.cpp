@@ -37,15 +37,15 @@ class FramePipeTest : public testing::Test {
     std::array<int, 2> ends_{-1, -1};
 };
 
-// 2 x 1 pixels, salvaged; one frame at 0x0102 us with depths 0x0304 and 0x0506; the end.
+// 2 x 1 pixels, salvaged, 10 Hz; one frame at 0x0102 us with depths 0x0304 and 0x0506; the end.
 constexpr std::string_view kStream =
-    "OSKD\x03\0\0\0\x02\0\0\0\x01\0\0\0\x01\0\0\0"
+    "OSKD\x04\0\0\0\x02\0\0\0\x01\0\0\0\x01\0\0\0\x10\x27\0\0"
     "\x02\x01\0\0\0\0\0\0\x04\x03\x06\x05"
     "\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF"sv;
 
 TEST_F(FramePipeTest, writes_the_documented_bytes) {
     const std::array<std::uint16_t, 2> depth{0x0304, 0x0506};
-    ASSERT_TRUE(near_end().write_header({{2, 1}, true}));
+    ASSERT_TRUE(near_end().write_header({{2, 1}, true, 10'000}));
     ASSERT_TRUE(near_end().write_frame(0x0102, depth));
     ASSERT_TRUE(near_end().write_end());
     std::array<char, 100> bytes{};
@@ -58,6 +58,7 @@ TEST_F(FramePipeTest, reads_the_documented_bytes) {
     const auto header = near_end().read_header();
     ASSERT_TRUE(header);
     EXPECT_EQ(header->size.width, 2U);
+    EXPECT_EQ(header->rate_mhz, 10'000U);
     EXPECT_EQ(header->size.height, 1U);
     EXPECT_TRUE(header->is_salvaged);
     const auto frame = near_end().read_frame(header->size);
@@ -114,12 +115,12 @@ TEST_F(FramePipeTest, finds_every_cut_of_the_stream) {
 }
 
 TEST_F(FramePipeTest, refuses_another_format_version_or_an_impossible_size) {
-    const std::string tail("\0\0\0\0", 4);
+    const std::string tail(8, '\0');
     for (const auto header : {"OSKE\x02\0\0\0\x02\0\0\0\x01\0\0\0"sv, "OSKD\x01\0\0\0\x02\0\0\0\x01\0\0\0"sv,
-                              "OSKD\x03\0\0\0\0\0\0\0\x01\0\0\0"sv, "OSKD\x03\0\0\0\x02\0\0\0\0\0\0\0"sv,
-                              "OSKD\x03\0\0\0\x01\x10\0\0\x01\0\0\0"sv,    // 4097 wide
-                              "OSKD\x03\0\0\0\xD0\x07\0\0\xD0\x07\0\0"sv,  // 2000 x 2000
-                              "OSKD\x03\0\0\0\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF"sv}) {
+                              "OSKD\x04\0\0\0\0\0\0\0\x01\0\0\0"sv, "OSKD\x04\0\0\0\x02\0\0\0\0\0\0\0"sv,
+                              "OSKD\x04\0\0\0\x01\x10\0\0\x01\0\0\0"sv,    // 4097 wide
+                              "OSKD\x04\0\0\0\xD0\x07\0\0\xD0\x07\0\0"sv,  // 2000 x 2000
+                              "OSKD\x04\0\0\0\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF"sv}) {
         send(std::string(header) + tail);
         const auto size = near_end().read_header();
         ASSERT_FALSE(size);
