@@ -75,9 +75,10 @@ void DatagramFeed::put_next() {
     const std::lock_guard lock(mutex_);
     auto datagram = receive();
     if (!datagram) return;  // `take` was quicker
-    const std::uint64_t one = 1;
-    if (waiting_.empty()) (void)!::write(event_, &one, sizeof(one));
+    // First what may fail: an event for nothing would stay, since nothing would ever be taken for it.
     waiting_.push_back(std::move(*datagram));
+    const std::uint64_t one = 1;
+    if (waiting_.size() == 1) (void)!::write(event_, &one, sizeof(one));
     if (waiting_.size() <= kWaitingMax) return;
     waiting_.pop_front();
     ++displaced_;

@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <memory>
 #include <string>
 
@@ -225,7 +227,12 @@ void forward(const JointsOptions& options) {
         if (ready[0].revents == 0) continue;
         std::array<char, 4096> bytes{};
         const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
-        if (count <= 0) break;
+        if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+        if (count < 0) {
+            throw CommandFailure(
+                {ExitCode::io_failed, fmt::format("cannot read standard input: {}", std::strerror(errno))});
+        }
+        if (count == 0) break;
         pending.append(bytes.data(), static_cast<std::size_t>(count));
         put_lines(pending, forwarder);
     }
@@ -256,7 +263,7 @@ void add_joints_command(CLI::App& app) {
         "--rig the\n"
         "daemon checks the lines, and `octoskin status` says what it refused.\n"
         "Exit codes: 0 lines went through; 64 command line; 65 a line without end; 66 no such rig file;\n"
-        "69 not one line went through; 78 the rig is not valid.");
+        "69 not one line went through; 74 standard input cannot be read; 78 the rig is not valid.");
     command->callback([options] { forward(*options); });
 }
 

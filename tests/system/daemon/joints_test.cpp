@@ -116,6 +116,16 @@ TEST(JointsCommand, refuses_lines_of_another_number_of_joints_wherever_they_go) 
     EXPECT_FALSE(taker.gets_a_line(0ms));
 }
 
+TEST(JointsCommand, takes_an_input_that_cannot_be_read_for_no_end_of_it) {
+    const testing_support::ScratchFolder folder;
+    const std::string command = "timeout 20 " OCTOSKIN_PROGRAM " joints --socket " +
+                                (folder / "nobody").string() + " < " + folder.path().string() + " 2> " +
+                                (folder / "log").string();
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 74);
+    const std::string log = testing_support::ScratchFolder::read(folder / "log");
+    EXPECT_NE(log.find("cannot read standard input: Is a directory"), std::string::npos) << log;
+}
+
 /// A descriptor that only shows an error must not keep the processor busy.
 TEST(JointsCommand, rests_while_no_line_comes) {
     const testing_support::ScratchFolder folder;
