@@ -105,6 +105,21 @@ class Package(unittest.TestCase):
         for script in ("postinst", "prerm", "postrm"):
             run("sh", "-n", input=run("dpkg-deb", "--info", self.package, script))
 
+    def test_takes_away_what_systemctl_enable_made_when_it_is_purged(self):
+        """Of a unit that somebody put there instead of ours, the link stays."""
+        postrm = run("dpkg-deb", "--info", self.package, "postrm")
+        for verb, left in (("remove", 2), ("purge", 1)):
+            with tempfile.TemporaryDirectory() as scratch:
+                units = pathlib.Path(scratch, "etc/systemd/system")
+                wants = units / "multi-user.target.wants"
+                wants.mkdir(parents=True)
+                (wants / "octoskin.service").symlink_to("/no/such/octoskin.service")
+                (units / "octoskin-node.service").write_text("[Unit]\n")
+                (wants / "octoskin-node.service").symlink_to("../octoskin-node.service")
+                subprocess.run(["sh", "-s", verb], input=postrm.replace("/run/systemd/system", "/no/such/folder"), text=True, check=True,
+                               env={"PATH": scratch + ":/usr/bin:/bin", "DPKG_ROOT": scratch}, stderr=subprocess.DEVNULL)
+                self.assertEqual(len(list(wants.iterdir())), left, verb)
+
     def test_names_every_command_in_the_manual(self):
         said = run(self.program, "--help").split("Subcommands:")[1].split("Exit codes")[0]
         commands = re.findall(r"^  ([a-z-]+) ", said, re.MULTILINE)
