@@ -156,7 +156,7 @@ function(octoskin_program name)
 endfunction()
 
 function(octoskin_test name)
-    cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS;SOURCES;HOST_SOURCES;DEPENDS;EXTERNAL" ${ARGN})
+    cmake_parse_arguments(ARG "ALONE" "TIMEOUT" "LABELS;SOURCES;HOST_SOURCES;DEPENDS;EXTERNAL" ${ARGN})
     if(NOT ARG_TIMEOUT)
         set(ARG_TIMEOUT 60)
     endif()
@@ -202,7 +202,7 @@ function(octoskin_test name)
             set_tests_properties(${name} PROPERTIES ENVIRONMENT "GTEST_FILTER=-${OCTOSKIN_NOT_IN_QEMU_USER}")
         endif()
     else()
-        gtest_discover_tests(${name} TEST_PREFIX "${name}." PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT}
-            DISCOVERY_TIMEOUT 60)
+        gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+            PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} RUN_SERIAL ${ARG_ALONE})
     endif()
 endfunction()

@@ -74,8 +74,8 @@ class DaemonFigures : public DaemonTest {
             return after["account"][unit][count].get<double>() - before["account"][unit][count].get<double>();
         };
         double clock_error_ms = 0;
-        // It may be in doubt just now: this bus has no kernel's stamps, and its nodes are a thread of a
-        // machine that is busy.
+        // It may be in doubt just now: nobody stamps the echo of our own SYNC on this bus, and its nodes are
+        // a thread of a machine that is busy.
         for (const Json& node : after["nodes"]) {
             if (node["clock_known"].get<bool>())
                 clock_error_ms = std::max(clock_error_ms, node["clock_error_ms"].get<double>());

@@ -34,9 +34,9 @@ TEST_F(DaemonTest, maps_a_live_bus_says_how_quick_it_is_and_saves_at_the_end) {
         status["latency"]["max_ms"].get<double>());
     EXPECT_GT(readings["used"].get<int>(), 1'000);
     EXPECT_LE(status["latency"]["median_ms"].get<double>(), 1.0);
-    // 0.1 to 0.3 ms where nobody else is at work. A hundredth of the readings are those of 40 ms here: so
-    // much a busy machine may hold the daemon up once; a loop that waits for anything, such as the disk, is
-    // over it.
+    // 0.1 to 0.3 ms where nobody else is at work; latency_test.cpp holds it to 5 ms, alone. A hundredth of
+    // the readings are those of 40 ms here: so much a busy machine may hold the daemon up once; a loop that
+    // waits for anything, such as the disk, is over it.
     EXPECT_LE(status["latency"]["p99_ms"].get<double>(), 20.0);
     EXPECT_GT(status["can"]["busy_s"].get<double>(), 0.05);
     EXPECT_LT(status["can"]["busy_s"].get<double>(), 0.7 * status["uptime_s"].get<double>());
