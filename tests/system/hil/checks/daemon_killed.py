@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""SIGKILL at random moments, every other time in the midst of a save. Each time the map's files are whole and at most one save
-old, and the next daemon goes on with that map. 50 times, or OCTOSKIN_HIL_KILLS; the seed is printed, OCTOSKIN_HIL_SEED is one.
+"""SIGKILL at random moments in the midst of a save: a partial file is left of each. Each time the map's files are whole and at most one
+save old, and the next daemon goes on with that map. 50 times, or OCTOSKIN_HIL_KILLS; the seed is printed, OCTOSKIN_HIL_SEED is one.
+A kill that comes after a save's end is looked at as well, and does not count.
 Several daemons, each with a map of its own, hear one bus, so that one works while another waits for its save."""
 import collections
 import concurrent.futures
@@ -18,23 +19,38 @@ SAVE_S = 1.0  # what the emulated processor may need to save: the moment of a sa
 UP_S = 1.5    # a daemon lives so long, at most, before it is killed or its next save is awaited
 LONGER_S = 3  # and some so much longer: they have saved before
 LANES = 3     # daemons at a time
+MEASURED_SAVES = 3
+TRIES = 4     # for each kill that counts
+# How far into a save a kill is aimed, at most, after one that came in it, and after one that came too late: four of five come in it,
+# whatever the machine does to a save's duration.
+LONGER, SHORTER = 1.2, 0.5
 
 
 class Life:
     """One daemon, from its start to SIGKILL."""
 
-    def __init__(self, daemon, random_numbers, is_in_save, is_long):
-        self.daemon, self.random, self.is_in_save = daemon, random_numbers, is_in_save
+    def __init__(self, daemon, random_numbers, save_s, is_long):
+        self.daemon, self.random, self.save_s = daemon, random_numbers, save_s
         self.up_s = random_numbers.uniform(0, UP_S) + (LONGER_S if is_long else 0)
         self.notes = []  # (when it was asked, what it said of its map)
 
     def note(self):
         self.notes.append((time.time(), self.daemon.status()["map"]))
 
-    def await_begin_of_save(self):
+    def await_moment_of_save(self):
+        """A random one, from when the first file of a save is begun until the last one has its name, about."""
         with directory_watch.Watch(self.daemon.maps) as watch:
             watch.await_file(".fused.ot.octoskin-part", daemon_bench.PATIENCE_S)
-        time.sleep(self.random.choice((0, self.random.uniform(0, 0.003))))
+        time.sleep(self.random.uniform(0, self.save_s))
+
+    def measure_saves(self):
+        """Seconds that each of some takes."""
+        with directory_watch.Watch(self.daemon.maps) as watch:
+            for _ in range(MEASURED_SAVES):
+                watch.await_file(".fused.ot.octoskin-part", daemon_bench.PATIENCE_S)
+                began = time.monotonic()
+                watch.await_file("fused.bt", daemon_bench.PATIENCE_S)
+                yield time.monotonic() - began
 
     def live(self):
         """Until it is killed; then when that was."""
@@ -44,8 +60,7 @@ class Life:
         while time.monotonic() < end:
             time.sleep(0.2)
             self.note()
-        if self.is_in_save:
-            self.await_begin_of_save()
+        self.await_moment_of_save()
         self.daemon.process.kill()
         killed = time.time()
         self.daemon.process.wait(daemon_bench.PATIENCE_S)
@@ -78,16 +93,32 @@ class Lane:
         self.seen = collections.Counter()
         self.oldest_s = 0.0
 
+    def start(self):
+        return self.bench.daemon(self.name, "--listen-only", "--save-every", str(SAVE_PERIOD_S), maps=self.maps)
+
+    def measure_save(self):
+        daemon = self.start()
+        daemon.await_start()
+        save_s = min(Life(daemon, self.random, 0, is_long=False).measure_saves())
+        daemon.stop()
+        self.saved = map_file.known_voxels(self.maps / "fused.ot")
+        return save_s
+
     def kill(self, count):
-        for number in range(count):
-            daemon = self.bench.daemon(self.name, "--listen-only", "--save-every", str(SAVE_PERIOD_S), maps=self.maps)
-            life = Life(daemon, self.random, is_in_save=number % 2 == 0, is_long=number % 5 == 4)
+        """So often in a save."""
+        save_s = self.measure_save()
+        while self.seen["in a save"] < count:
+            number = self.seen["killed"]
+            claim(number < TRIES * count, f"of {number} kills only {self.seen['in a save']} came in a save, aimed at {1e3 * save_s:.1f} ms")
+            life = Life(self.start(), self.random, save_s, is_long=number % 5 == 4)
             killed = life.live()
             at_begin = life.notes[0][1]["known_voxels"]
             claim(at_begin >= self.saved, f"{at_begin} voxels at the begin, {self.saved} were saved")
             self.check_files(life, killed)
             self.seen["killed"] += 1
-            self.seen["in a save"] += any(name.startswith(".fused") for name in os.listdir(self.maps))
+            was_in_save = any(name.startswith(".fused") for name in os.listdir(self.maps))
+            self.seen["in a save"] += was_in_save
+            save_s *= LONGER if was_in_save else SHORTER
 
     def check_files(self, life, killed):
         """They are whole, and at most one save old."""
@@ -117,9 +148,8 @@ def check(bench):
             end.result()
     claim(playing.poll() is None, "canplayer ended")
     seen = sum((lane.seen for lane in lanes), collections.Counter())
-    expect("daemons killed", count, seen["killed"])
-    claim(count < 20 or seen["in a save"] > 0, f"none was killed in the midst of a save: {seen}")
-    print(f"{count} times killed, {seen['in a save']} in the midst of a save: the map always whole; {seen['lived through a save']} had "
+    expect("daemons killed in the midst of a save", count, seen["in a save"])
+    print(f"{seen['killed']} times killed, {seen['in a save']} of them in the midst of a save: the map always whole; {seen['lived through a save']} had "
           f"time to save, {max(lane.oldest_s for lane in lanes):.2f} s before their end at most, saving every {SAVE_PERIOD_S} s")
 
 

@@ -1,11 +1,11 @@
-"""Waits for a file to be made in a folder, without asking again and again (inotify(7))."""
+"""Waits for a file to be made in a folder, or to get its name there, without asking again and again (inotify(7))."""
 import ctypes
 import os
 import select
 import struct
 import time
 
-IN_CREATE = 0x100
+IN_CREATE, IN_MOVED_TO = 0x100, 0x80
 LIBC = ctypes.CDLL(None, use_errno=True)
 
 
@@ -14,8 +14,9 @@ class Watch:
 
     def __init__(self, folder):
         self.descriptor = LIBC.inotify_init1(os.O_CLOEXEC)
-        if self.descriptor < 0 or LIBC.inotify_add_watch(self.descriptor, os.fsencode(folder), IN_CREATE) < 0:
+        if self.descriptor < 0 or LIBC.inotify_add_watch(self.descriptor, os.fsencode(folder), IN_CREATE | IN_MOVED_TO) < 0:
             raise OSError(ctypes.get_errno(), f"inotify: {folder}")
+        self.waiting = []  # names that came, and nobody asked for yet
 
     def __enter__(self):
         return self
@@ -24,11 +25,13 @@ class Watch:
         os.close(self.descriptor)
 
     def await_file(self, name, seconds):
-        """TimeoutError if none of that name is made."""
+        """After what was awaited before; TimeoutError if none of that name comes."""
         end = time.monotonic() + seconds
-        while name not in self.names(max(0, end - time.monotonic())):
+        while name not in self.waiting:
             if time.monotonic() > end:
                 raise TimeoutError(f"{name} is not made within {seconds} s")
+            self.waiting = self.names(max(0, end - time.monotonic()))
+        self.waiting = self.waiting[self.waiting.index(name) + 1:]
 
     def names(self, seconds):
         if not select.select([self.descriptor], [], [], seconds)[0]:
