@@ -4,13 +4,17 @@
 #include <spdlog/spdlog.h>
 #include <time.h>
 
+#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <thread>
 
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/recording/recording.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -24,11 +28,9 @@ struct RecordOptions {
     bool stops = false;
 };
 
-/// "recording" of the daemon's answer; what the daemon refuses is a CommandFailure.
-Json ask(const RecordOptions& options, const std::string& line) {
-    const auto answer = ask_daemon(options.socket, line);
-    if (!answer) throw CommandFailure(answer.error());
-    const Json json = Json::parse(*answer, nullptr, false);
+/// "recording" of a daemon's answer; what it refuses is a CommandFailure.
+Json recording_of(const RecordOptions& options, const std::string& answer) {
+    const Json json = Json::parse(answer, nullptr, false);
     if (!json.is_object() || !json.contains("ok"))
         throw CommandFailure({ExitCode::bad_data, options.socket.string() + ": not the answer of a daemon"});
     if (!json["ok"].get<bool>())
@@ -38,6 +40,35 @@ Json ask(const RecordOptions& options, const std::string& line) {
     throw CommandFailure({ExitCode::unavailable,
                           options.socket.string() + ": the daemon knows of no recording: it was started anew "
                                                     "meanwhile, or never began one"});
+}
+
+Json ask(const RecordOptions& options, const std::string& line) {
+    const auto answer = ask_daemon(options.socket, line);
+    if (!answer) throw CommandFailure(answer.error());
+    return recording_of(options, *answer);
+}
+
+bool is_going_on(const Json& recording) {
+    return recording["state"] == "recording" || recording["state"] == "finishing";
+}
+
+/// Within the 5 s in which a daemon ends.
+bool comes(const std::filesystem::path& file) {
+    constexpr int kTries = 50;
+    std::error_code error;
+    for (int i = 0; i < kTries && !std::filesystem::exists(file, error); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return std::filesystem::exists(file, error);
+}
+
+/// Where a recording is whose daemon is gone; that it is not whole is a CommandFailure. meta.yaml comes last.
+void tell_left(const std::filesystem::path& folder) {
+    if (!comes(RecordingPaths(folder).meta())) {
+        throw CommandFailure(
+            {ExitCode::unavailable, "the daemon ended, and did not end the recording: what it wrote is in " +
+                                        folder.string() + ", without meta.yaml"});
+    }
+    fmt::print("{}: whole; the daemon ended, and with it the recording\n", folder.string());
 }
 
 /// SIGINT and SIGTERM, taken in order to end the recording rather than this program.
@@ -59,13 +90,14 @@ class EndSignals {
     sigset_t signals_{};
 };
 
-/// Until the files are whole.
-Json follow(const RecordOptions& options) {
+/// Until the files are whole; empty if the daemon ended before it said so.
+std::optional<Json> follow(const RecordOptions& options, Json recording) {
     const EndSignals signals;
-    Json recording = ask(options, "record status");
-    while (recording["state"] == "recording" || recording["state"] == "finishing") {
+    while (is_going_on(recording)) {
         const bool is_to_end = signals.came();
-        recording = ask(options, is_to_end ? "record stop" : "record status");
+        const auto answer = ask_daemon(options.socket, is_to_end ? "record stop" : "record status");
+        if (!answer) return std::nullopt;
+        recording = recording_of(options, *answer);
     }
     return recording;
 }
@@ -86,14 +118,22 @@ void tell(const Json& recording) {
                                                 " commits: a replay does not give the daemon's map"});
 }
 
+Json stop(const RecordOptions& options) {
+    const Json before = ask(options, "record status");
+    if (is_going_on(before)) return ask(options, "record stop");
+    throw CommandFailure({ExitCode::unavailable, "nothing is being recorded; the last recording, " +
+                                                     before["folder"].get<std::string>() + ", has ended"});
+}
+
+Json start(const RecordOptions& options) {
+    const auto folder = std::filesystem::absolute(options.out).lexically_normal();
+    return ask(options, fmt::format("record start {} {}", options.seconds, folder.string()));
+}
+
 void record(const RecordOptions& options) {
-    if (options.stops) {
-        (void)ask(options, "record stop");
-    } else {
-        const auto folder = std::filesystem::absolute(options.out).lexically_normal();
-        (void)ask(options, fmt::format("record start {} {}", options.seconds, folder.string()));
-    }
-    tell(follow(options));
+    const Json begun = options.stops ? stop(options) : start(options);
+    const auto ended = follow(options, begun);
+    ended ? tell(*ended) : tell_left(begun["folder"].get<std::string>());
 }
 
 }  // namespace

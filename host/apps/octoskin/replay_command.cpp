@@ -13,6 +13,7 @@
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/playback/map_folder.hpp"
 #include "host/apps/playback/onto_bus.hpp"
+#include "host/apps/playback/ordered_playback.hpp"
 #include "host/apps/playback/playback.hpp"
 #include "hw/rigfile/joined.hpp"
 
@@ -49,12 +50,13 @@ Pace pace_of(const ReplayOptions& options) {
     return Pace::times(speed);
 }
 
-void report_progress(const ReplayProgress& progress, int& last_second) {
+/// `unit`: of what the replay takes one after the other.
+void report_progress(const ReplayProgress& progress, const char* unit, int& last_second) {
     if (!progress.begin || !progress.now) return;
     const auto second = static_cast<int>((*progress.now - *progress.begin).count() / 1'000'000'000);
     if (second < last_second + 2) return;
     last_second = second;
-    spdlog::info("replaying: {} s, {} CAN frames, {} depth frames", second, progress.can_frames,
+    spdlog::info("replaying: {} s, {} {}, {} depth frames", second, progress.can_frames, unit,
                  progress.depth_frames);
 }
 
@@ -112,13 +114,15 @@ void replay_recording(const ReplayOptions& options) {
     auto folder = MapFolder::open(options.out);
     if (!folder) throw CommandFailure(folder.error());
     int last_second = 0;
+    const char* const unit = is_played_in_order(request) ? "commits" : "CAN frames";
     const auto playback = play_recording(
-        request, [&](const ReplayProgress& progress) { report_progress(progress, last_second); });
+        request, [&](const ReplayProgress& progress) { report_progress(progress, unit, last_second); });
     if (!playback) throw CommandFailure(playback.error());
 
     for (const AccountTable& table : playback->accounts) print("{}", to_text(table));
     if (!playback->nodes.empty()) print("{}", to_text(std::span<const NodeSummary>(playback->nodes)));
     for (const std::string& note : playback->notes) print("{}\n", note);
+    static_cast<void>(flush_standard_output());  // its failure is told at the end
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     refuse_failed(*playback);
     save(*playback, *folder, options.out);

@@ -75,7 +75,7 @@ bool is_played_in_order(const PlaybackRequest& request) {
 
 Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, const rig::Rig& rig,
                                                 Pipeline& pipeline, DepthSource* depth,
-                                                const ReplayReport& report) {
+                                                std::optional<HostTime> begin, const ReplayReport& report) {
     auto order = orderlog::OrderReader::open(request.recording.order());
     if (!order) return fail(ExitCode::bad_data, order.error().what);
     if (order->header().joints != rig.joints.joints.size()) {
@@ -88,8 +88,8 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
         if (!first) return unexpected(first.error());
         pipeline.begin_with(std::move(first).value());
     }
-    PacedCommits paced(*order, request.pace);
-    OrderedPlayback played{replay_in_order(pipeline.builder(), paced, depth, report), {}, {}, {}};
+    PacedCommits paced(*order, request.pace, begin);
+    OrderedPlayback played{replay_in_order(pipeline.builder(), paced, depth, report, begin), {}, {}, {}};
     played.accounts = {tabulate("readings", played.outcome.readings),
                        tabulate("joint samples", played.outcome.joint_samples),
                        tabulate("depth frames", played.outcome.depth_frames)};

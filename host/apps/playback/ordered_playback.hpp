@@ -23,9 +23,12 @@ struct OrderedPlayback {
 
 /// Plays order.log into the maps of `pipeline`, which has been given nothing, begun with first.ot. Errors: an
 /// order.log of another version or another number of joints; a first.ot that is not the recording's, or of
-/// another resolution than the mapping asks for. `depth`: null if there is none.
+/// another resolution than the mapping asks for. `depth`: null if there is none. `begin`: of the recording,
+/// if it is known.
 [[nodiscard]] Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request,
                                                               const rig::Rig& rig, Pipeline& pipeline,
-                                                              DepthSource* depth, const ReplayReport& report);
+                                                              DepthSource* depth,
+                                                              std::optional<HostTime> begin,
+                                                              const ReplayReport& report);
 
 }  // namespace octoskin

@@ -102,8 +102,9 @@ Result<std::optional<Commit>, CommitSourceError> PacedCommits::next() {
     if (!pace_.waits() || !commit || !commit->has_value()) return commit;
     // A step is a reading or a frame: joint samples only say where the robot was.
     const bool is_step = !std::holds_alternative<JointMeasurement>(**commit);
-    if (is_step || !pace_.steps())
-        pace_.wait(std::visit(TimeOf{}, **commit).ns, std::visit(Describe{}, **commit));
+    const HostTime time = std::visit(TimeOf{}, **commit);
+    has_begun_ = has_begun_ || is_step || (begin_ && time >= *begin_);
+    if (is_step || (has_begun_ && !pace_.steps())) pace_.wait(time.ns, std::visit(Describe{}, **commit));
     return commit;
 }
 

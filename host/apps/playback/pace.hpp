@@ -62,15 +62,19 @@ class PacedDepth final : public DepthSource {
     std::uint64_t frames_ = 0;
 };
 
-/// Commits of a daemon, each at its time.
+/// Commits of a daemon, each at its time. Joint samples of before `begin` (that of the recording; empty: its
+/// first reading or depth frame) come at once: a recording starts with those that the daemon still had.
 class PacedCommits final : public CommitSource {
   public:
-    PacedCommits(CommitSource& source, Pace pace) : source_(source), pace_(std::move(pace)) {}
+    PacedCommits(CommitSource& source, Pace pace, std::optional<HostTime> begin)
+        : source_(source), pace_(std::move(pace)), begin_(begin) {}
     [[nodiscard]] Result<std::optional<Commit>, CommitSourceError> next() override;
 
   private:
     CommitSource& source_;
     Pace pace_;
+    std::optional<HostTime> begin_;
+    bool has_begun_ = false;
 };
 
 }  // namespace octoskin

@@ -11,6 +11,7 @@
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/recording/recording_draft.hpp"
 #include "host/apps/version/version.hpp"
+#include "host/core/ingest/can_intake.hpp"
 #include "host/core/rig/sensor_text.hpp"
 #include "host/io/candump/log_source.hpp"
 #include "host/io/mapping/mapping_file.hpp"
@@ -214,13 +215,25 @@ Result<Playback, AppError> play_log(const PlaybackRequest& request, Setup& setup
     return playback;
 }
 
+/// When can.log begins, as a replay by capture time counts it; empty if nothing in it tells the time.
+std::optional<HostTime> begin_of_log(const RecordingPaths& recording, const HostRig& rig) {
+    auto log = open_log(recording, "");
+    CanIntake intake(rig);
+    while (log && !intake.now()) {
+        const auto entry = log->next();
+        if (!entry || !*entry) break;
+        (void)intake.on_frame((*entry)->frame, (*entry)->stamp);
+    }
+    return intake.host_clock().begun();
+}
+
 /// The daemon's own order, without what decided it.
 Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& setup, DepthInput& depth,
                                       MapOrigin origin, const ReplayReport& report) {
     auto pipeline = make_pipeline(request, setup, MapBegin::first_usable);
     if (!pipeline) return unexpected(pipeline.error());
-    auto played =
-        play_in_order(request, setup.rig, *pipeline, depth.reader ? &*depth.reader : nullptr, report);
+    auto played = play_in_order(request, setup.rig, *pipeline, depth.reader ? &*depth.reader : nullptr,
+                                begin_of_log(request.recording, setup.host.rig), report);
     if (!played) return unexpected(played.error());
     const OrderedOutcome& order = played->outcome;
     ReplayOutcome outcome{.progress = {order.commits, order.depth_frames.in(), order.begin, order.now},

@@ -66,8 +66,9 @@ class Committer {
 }  // namespace
 
 OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order, DepthSource* depth,
-                               const ReplayReport& report) {
+                               const ReplayReport& report, std::optional<HostTime> begin) {
     OrderedOutcome outcome;
+    outcome.begin = begin;
     Committer committer(builder, depth, outcome);
     const auto tell = [&] {
         if (report) report({outcome.commits, outcome.depth_frames.in(), outcome.begin, outcome.now});
@@ -77,7 +78,8 @@ OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order, DepthSo
         if (!commit) outcome.order_error = commit.error();
         if (!commit || !commit->has_value()) break;
         outcome.now = std::visit(committer, **commit);
-        outcome.begin = outcome.begin ? outcome.begin : outcome.now;
+        if (!outcome.begin && !std::holds_alternative<JointMeasurement>(**commit))
+            outcome.begin = outcome.now;
         if (++outcome.commits % kReplayReportEvery == 0) tell();
     }
     tell();

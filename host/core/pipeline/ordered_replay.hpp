@@ -33,8 +33,8 @@ struct OrderedOutcome {
     Account<JointReason> joint_samples;
     Account<DepthReason> depth_frames;
     std::uint64_t depth_missing = 0;  ///< committed by the daemon, and not recorded
-    std::optional<HostTime> begin;    ///< of the first and the newest commit
-    std::optional<HostTime> now;
+    std::optional<HostTime> begin;    ///< of the recording
+    std::optional<HostTime> now;      ///< of the newest commit
     /// A source that failed before its end; what it gave until then was used.
     std::optional<CommitSourceError> order_error;
     std::optional<DepthSourceError> depth_error;
@@ -47,9 +47,11 @@ struct OrderedOutcome {
 };
 
 /// Gives every commit to `builder`, in order, until the source ends. `depth`: the frames that depth commits
-/// speak of by their place, from 0; null if there are none. With the rig, robot, mapping and first map of the
-/// recording the maps are the daemon's own, bit for bit.
+/// speak of by their place, from 0; null if there are none. `begin`: of the recording, where something else
+/// tells it; else that is the first reading or depth frame: the joint samples before may be of long before.
+/// With the rig, robot, mapping and first map of the recording the maps are the daemon's own, bit for bit.
 [[nodiscard]] OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order, DepthSource* depth,
-                                             const ReplayReport& report = {});
+                                             const ReplayReport& report = {},
+                                             std::optional<HostTime> begin = {});
 
 }  // namespace octoskin

@@ -65,7 +65,7 @@ ReplayOutcome replay(Pipeline& pipeline, CanSource& can, DepthSource* depth, con
         if (const auto now = pipeline.now()) {
             depth_feed.feed_until(*now, pipeline);
             progress.now = now;
-            progress.begin = progress.begin ? progress.begin : now;
+            progress.begin = progress.begin ? progress.begin : pipeline.intake().host_clock().begun();
         }
         if (++progress.can_frames % kReplayReportEvery == 0 && report) {
             report(progress);

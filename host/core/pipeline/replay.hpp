@@ -16,9 +16,9 @@ namespace octoskin {
 
 /// How far a replay has come.
 struct ReplayProgress {
-    std::uint64_t can_frames = 0;
+    std::uint64_t can_frames = 0;  ///< of a replay in a daemon's order: commits
     std::uint64_t depth_frames = 0;
-    std::optional<HostTime> begin;  ///< the host's clock when it first was known
+    std::optional<HostTime> begin;  ///< of the recording: its first frame, once the host's clock is known
     std::optional<HostTime> now;
 };
 

@@ -47,6 +47,12 @@ class HostClockEstimate {
     /// stamp, and stands still over a jump, and over a silence that looks like one. What a stamp that ran
     /// ahead added is taken back.
     [[nodiscard]] Nanoseconds running() const noexcept { return running_; }
+    /// When the first frame was received, for who asks as soon as `now` is known: by a later jump of the
+    /// stamps it is off. Empty while `now` is.
+    [[nodiscard]] std::optional<HostTime> begun() const {
+        const auto newest = now();
+        return newest ? std::optional(*newest - running_) : std::nullopt;
+    }
 
     /// How often stamps jumped back, and agreed on it.
     [[nodiscard]] std::uint64_t steps_back() const noexcept { return steps_back_; }

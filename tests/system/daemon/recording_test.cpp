@@ -48,6 +48,7 @@ class DaemonRecording : public DaemonTest {
     void expect_own_map(const std::string& configuration = "") const {
         const Ran replay = run("replay " + out() + " --fused-only " + configuration);
         EXPECT_EQ(replay.exit_code, 0) << replay.output;
+        EXPECT_EQ(replay.output.find("CAN frames"), std::string::npos) << "it plays commits" << replay.output;
         EXPECT_NE(replay.output.find("the daemon's own, byte for byte"), std::string::npos) << replay.output;
         EXPECT_TRUE(ScratchFolder::read(out() + "/maps/fused.ot") == ScratchFolder::read(out() + "/last.ot"));
     }
@@ -86,6 +87,15 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
         went_on += !json["log_odds_at_begin"].is_null() && !json["contributions"].empty() ? 1 : 0;
     }
     EXPECT_GT(went_on, 0) << "no voxel was known at the begin and changed afterwards";
+    // Both orders count from the recording's begin, and the daemon had joint samples of before that.
+    const std::string seen_through = explain + "1.4 -1 1.04";
+    const Json ordered = Json::parse(run(seen_through).output);
+    const Json by_time = Json::parse(run(seen_through + " --by-capture-time").output);
+    ASSERT_FALSE(ordered["contributions"].empty());
+    const double last_s = ordered["contributions"].back()["time_s"].get<double>();
+    EXPECT_NEAR(last_s, by_time["contributions"].back()["time_s"].get<double>(), 0.11) << "a frame's period";
+    EXPECT_LT(last_s, 3.1);
+    EXPECT_GT(last_s, 2.0);
 
     // The same again in the order of capture times: another map, and the same one every time.
     const auto in_order = ScratchFolder::read(out() + "/maps/fused.ot");
@@ -109,6 +119,21 @@ TEST_F(DaemonRecording, is_whole_when_the_daemon_is_told_to_end_in_the_middle_of
     expect_own_map();
     EXPECT_TRUE(ScratchFolder::read(out() + "/last.ot") == ScratchFolder::read(daemon_->maps() / "fused.ot"))
         << "the map of the recording is not the one that was saved";
+}
+
+TEST_F(DaemonRecording, is_told_by_its_command_when_the_daemon_ends_in_the_middle_of_it) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    Ran ran;
+    std::thread command([&] { ran = record(out()); });
+    EXPECT_TRUE(daemon_->wait_until(
+        [](const Json& status) { return status["recording"]["state"] == "recording"; }, 5s));
+    daemon_->signal(SIGTERM);
+    command.join();
+    EXPECT_EQ(ran.exit_code, 0) << ran.output;
+    EXPECT_NE(ran.output.find(out() + ": whole; the daemon ended, and with it the recording"),
+              std::string::npos)
+        << ran.output;
 }
 
 TEST_F(DaemonRecording, ends_whole_when_the_rig_is_read_again) {
@@ -182,6 +207,10 @@ TEST_F(DaemonRecording, names_a_folder_that_it_cannot_record_to_and_goes_on) {
     const Ran stopped = record("--stop");
     EXPECT_EQ(stopped.exit_code, 0) << stopped.output;
     expect_own_map();
+    const Ran stopped_again = record("--stop");
+    EXPECT_EQ(stopped_again.exit_code, 69) << stopped_again.output;
+    EXPECT_NE(stopped_again.output.find("nothing is being recorded"), std::string::npos)
+        << stopped_again.output;
 }
 
 }  // namespace

@@ -92,5 +92,32 @@ TEST(PacedDepth, shows_each_frame_step_by_step) {
                                                "depth image 1 of 7.080000000: 3 x 2"}));
 }
 
+/// Two joint samples 3 s apart, the newer one 60 ms before a reading.
+class ThreeCommits final : public CommitSource {
+  public:
+    [[nodiscard]] Result<std::optional<Commit>, CommitSourceError> next() override {
+        const std::int64_t place = given_++;
+        if (place < 2) return std::optional<Commit>(JointMeasurement{HostTime{3'000'000'000 * place}, {}});
+        return std::optional<Commit>(RangeMeasurement{{1, 0, 0}, HostTime{3'060'000'000}, 0.5, 0.01});
+    }
+
+  private:
+    std::int64_t given_ = 0;
+};
+
+TEST(PacedCommits, waits_for_no_joint_sample_of_before_the_recording) {
+    const auto play = [](std::optional<HostTime> begin) {
+        ThreeCommits source;
+        PacedCommits paced(source, Pace::times(1.0), begin);
+        return time_of([&] {
+            for (int i = 0; i < 3; ++i) EXPECT_TRUE(paced.next());
+        });
+    };
+    EXPECT_LT(play(std::nullopt), 1s) << "begins with the reading";
+    const auto from_joints = play(HostTime{2'990'000'000});
+    EXPECT_GE(from_joints, 59ms);
+    EXPECT_LT(from_joints, 1s);
+}
+
 }  // namespace
 }  // namespace octoskin

@@ -141,6 +141,19 @@ TEST(OrderedReplay, needs_the_first_map_and_the_joint_samples_before_it) {
     EXPECT_FALSE(replay_in_order(without_past, later, &again).took_all());
 }
 
+TEST(OrderedReplay, begins_where_the_recording_does_and_not_with_the_joint_samples_of_before) {
+    const Scene scene = live_scene();
+    const std::string text = "J 1000000000 0\nJ 3010000000 0\nJ 3020000000 0\nR 1 0 0 3015000000 0.52 0.01\n";
+    for (const auto& [told, begin_ns] : {std::pair{std::optional<HostTime>(), 3'015'000'000},
+                                         std::pair{std::optional(HostTime{3'012'000'000}), 3'012'000'000}}) {
+        MapBuilder builder = make_builder(scene, record(scene, 0, 1).first_ot);
+        TextSource order(text);
+        const OrderedOutcome outcome = replay_in_order(builder, order, nullptr, {}, told);
+        EXPECT_EQ(outcome.begin, HostTime{begin_ns});
+        EXPECT_EQ(outcome.now, HostTime{3'015'000'000});
+    }
+}
+
 TEST(OrderedReplay, says_what_it_could_not_take) {
     const Scene scene = live_scene();
     MapBuilder builder = make_builder(scene, record(scene, 0, 1).first_ot);
