@@ -37,6 +37,35 @@ bool is_name_character(char c) {
            c == '-' || c == '.' || c == '/';
 }
 
+/// What was found where a plain value was expected, with what is wrong about it.
+template <class Parse>
+std::string describe_misread(const Value& value, Parse parse) {
+    if (value.kind != Value::Kind::scalar) return describe(value);
+    if (value.is_quoted && parse(value.text))
+        return fmt::format("{} in quotes, which make it a text: leave them out", describe(value));
+    std::string pointed = value.text;
+    const auto comma = pointed.find(',');
+    if (comma != std::string::npos) pointed[comma] = '.';
+    if (comma != std::string::npos && parse_all<double>(pointed))
+        return fmt::format("{}: a decimal point, {}?", describe(value), pointed);
+    return describe(value);
+}
+
+bool is_number_of_digits(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Where else a key belongs; empty if nowhere.
+std::string hint_below(std::string_view key, std::span<const std::string> keys_below) {
+    const std::string ending = fmt::format(".{}", key);
+    std::string found;
+    for (const std::string& path : keys_below) {
+        if (!path.ends_with(ending)) continue;
+        found += (found.empty() ? "did you mean " : " or ") + path;
+    }
+    return found.empty() ? found : found + "?";
+}
+
 /// The length of the character that `text`, which is not empty, begins with; 0 if it begins with none that
 /// can be written to a YAML file again: not UTF-8, a surrogate, or a code point that is set aside.
 std::size_t character_length(std::string_view text) {
@@ -68,6 +97,11 @@ bool is_writable_text(std::string_view text) {
     return true;
 }
 
+std::optional<bool> parse_flag(std::string_view text) {
+    if (text != "true" && text != "false") return std::nullopt;
+    return text == "true";
+}
+
 bool is_plain_scalar(const Value& value) {
     return value.kind == Value::Kind::scalar && !value.is_quoted;
 }
@@ -97,7 +131,9 @@ double read_number(const Value& value, const std::string& path, Range<double> ra
     // Written so that NaN, which from_chars reads, is out of every range.
     if (!number || !(*number >= range.min && *number <= range.max)) {
         fail(value, path,
-             fmt::format("expected a number from {} to {}, found {}", range.min, range.max, describe(value)));
+             fmt::format(
+                 "expected a number from {} to {}, found {}", range.min, range.max,
+                 describe_misread(value, [](std::string_view text) { return parse_all<double>(text); })));
     }
     return *number;
 }
@@ -107,7 +143,7 @@ std::int64_t read_integer(const Value& value, const std::string& path, Range<std
     if (!number || *number < range.min || *number > range.max) {
         fail(value, path,
              fmt::format("expected a whole number from {} to {}, found {}", range.min, range.max,
-                         describe(value)));
+                         describe_misread(value, parse_integer<std::int64_t>)));
     }
     return *number;
 }
@@ -116,7 +152,8 @@ std::uint64_t read_unsigned(const Value& value, const std::string& path) {
     const auto number = is_plain_scalar(value) ? parse_integer<std::uint64_t>(value.text) : std::nullopt;
     if (!number) {
         fail(value, path,
-             fmt::format("expected a whole number from 0 to 2^64 - 1, found {}", describe(value)));
+             fmt::format("expected a whole number from 0 to 2^64 - 1, found {}",
+                         describe_misread(value, parse_integer<std::uint64_t>)));
     }
     return *number;
 }
@@ -147,15 +184,23 @@ const std::vector<Value>& read_list(const Value& value, const std::string& path)
     return value.items;
 }
 
-Table::Table(const Value& value, std::string path, std::initializer_list<std::string_view> known_keys)
+Table::Table(const Value& value, std::string path, std::initializer_list<std::string_view> known_keys,
+             std::span<const std::string> keys_below)
     : value_(value), path_(std::move(path)) {
     if (value.kind != Value::Kind::table) {
         rig::fail(value, path_, fmt::format("expected a table of keys, found {}", describe(value)));
     }
     for (const Value& item : value.items) {
         if (std::find(known_keys.begin(), known_keys.end(), item.key) != known_keys.end()) continue;
-        rig::fail(item, path_of(item.key),
-                  "expected a known key, found this one: " + hint_for_key(item.key, known_keys, path_));
+        // Between braces a comma ends a value: {a: 0,02} has the keys a and 02.
+        const bool is_fraction = item.kind == Value::Kind::null && is_number_of_digits(item.key);
+        std::string hint = is_fraction ? fmt::format(
+                                             "if it is part of a number such as 0,{0}, write a decimal "
+                                             "point: 0.{0}",
+                                             item.key)
+                                       : hint_below(item.key, keys_below);
+        if (hint.empty()) hint = hint_for_key(item.key, known_keys, path_);
+        rig::fail(item, path_of(item.key), "expected a known key, found this one: " + hint);
     }
 }
 
@@ -183,10 +228,12 @@ double Table::number(std::string_view key, Range<double> range, std::optional<do
 bool Table::flag(std::string_view key, std::optional<bool> fallback) const {
     if (!find(key) && fallback) return *fallback;
     const Value& value = require(key);
-    if (!is_plain_scalar(value) || (value.text != "true" && value.text != "false")) {
-        rig::fail(value, path_of(key), fmt::format("expected true or false, found {}", describe(value)));
+    const auto parsed = is_plain_scalar(value) ? parse_flag(value.text) : std::nullopt;
+    if (!parsed) {
+        rig::fail(value, path_of(key),
+                  fmt::format("expected true or false, found {}", describe_misread(value, parse_flag)));
     }
-    return value.text == "true";
+    return *parsed;
 }
 
 std::uint64_t Table::unsigned_integer(std::string_view key, std::uint64_t fallback) const {

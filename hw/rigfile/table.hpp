@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,8 +41,10 @@ struct Range {
 class Table {
   public:
     /// `path`: where the table is, "nodes[0].sensors[3]"; empty at the top. Refuses a value that is no table
-    /// and any key that is not in `known_keys`, with a hint if the unit in its name is the only difference.
-    Table(const Value& value, std::string path, std::initializer_list<std::string_view> known_keys);
+    /// and any key that is not in `known_keys`, with a hint if the unit in its name is the only difference,
+    /// or if it belongs further down: `keys_below`, whole paths as "map.resolution_m".
+    Table(const Value& value, std::string path, std::initializer_list<std::string_view> known_keys,
+          std::span<const std::string> keys_below = {});
 
     [[nodiscard]] const Value& value() const noexcept { return value_; }
     [[nodiscard]] std::string path_of(std::string_view key) const;

@@ -2,12 +2,44 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "hw/rigfile/table.hpp"
 
 namespace octoskin {
 namespace {
 
 using rig::Table;
+using Keys = std::initializer_list<std::string_view>;
+
+const Keys kTopKeys = {"base",
+                       "map",
+                       "proximity_hit",
+                       "depth_hit",
+                       "miss_log_odds",
+                       "depth_update",
+                       "depth_filter",
+                       "removes_robot_from_depth",
+                       "removes_robot_from_ranges",
+                       "no_return_clear_m",
+                       "depth_box_voxels_max"};
+const Keys kMapKeys = {"resolution_m", "log_odds_min", "log_odds_max", "log_odds_occupied", "memory_max_mib"};
+const Keys kHitKeys = {"log_odds_offset", "log_odds_slope_per_m", "range_min_m", "is_range_min_exclusive"};
+const Keys kFilterKeys = {"is_enabled", "window_px", "sigma_m", "gate_sigmas", "mean_sigmas", "min_support"};
+
+std::vector<std::string> keys_below_top() {
+    const std::pair<std::string_view, Keys> tables[] = {{"map", kMapKeys},
+                                                        {"proximity_hit", kHitKeys},
+                                                        {"depth_hit", kHitKeys},
+                                                        {"depth_filter", kFilterKeys}};
+    std::vector<std::string> paths;
+    for (const auto& [table, keys] : tables) {
+        for (const std::string_view key : keys) paths.push_back(fmt::format("{}.{}", table, key));
+    }
+    return paths;
+}
 
 /// Single precision is what maps are made of; a file says -0.4 and means the float nearest to it.
 float single(const Table& table, std::string_view key, rig::Range<double> range, float fallback) {
@@ -47,38 +79,37 @@ DepthFilterConfig read_filter(const Table& table, DepthFilterConfig filter) {
     filter.gate_sigmas = table.number("gate_sigmas", {0.0, 1000.0}, filter.gate_sigmas);
     filter.mean_sigmas = table.number("mean_sigmas", {0.0, 1000.0}, filter.mean_sigmas);
     filter.min_support = table.integer<std::uint32_t>("min_support", {0, 48}, filter.min_support);
+    const std::uint32_t pixels = filter.window * filter.window;
+    if (filter.is_enabled && filter.min_support >= pixels) {
+        table.fail("min_support",
+                   fmt::format("expected at most {} with window_px {}, found {}: a value needs more pixels "
+                               "than that, its window has {}, so none would be left; lower it, widen "
+                               "window_px, or say is_enabled: false",
+                               pixels - 1, filter.window, filter.min_support, pixels));
+    }
     return filter;
 }
 
 /// Reads the table under `key`, if it is there, over the values that hold without it.
 template <class T, class Read>
-void read_part(const Table& top, std::string_view key, std::initializer_list<std::string_view> known_keys,
-               T& part, Read read) {
+void read_part(const Table& top, std::string_view key, Keys known_keys, T& part, Read read) {
     if (const rig::Value* value = top.find(key))
         part = read(Table(*value, std::string(key), known_keys), part);
 }
 
 void read_hit_part(const Table& top, std::string_view key, HitModel& hit) {
-    read_part(top, key, {"log_odds_offset", "log_odds_slope_per_m", "range_min_m", "is_range_min_exclusive"},
-              hit, read_hit);
+    read_part(top, key, kHitKeys, hit, read_hit);
 }
 
 MappingConfig read_checked(const std::string& file) {
     const rig::Value document = rig::load_document(file);
-    const Table top(document, "",
-                    {"base", "map", "proximity_hit", "depth_hit", "miss_log_odds", "depth_update",
-                     "depth_filter", "removes_robot_from_depth", "removes_robot_from_ranges",
-                     "no_return_clear_m", "depth_box_voxels_max"});
+    const Table top(document, "", kTopKeys, keys_below_top());
     const bool is_paper = top.choice<bool>("base", {{"paper", true}, {"robust", false}}, false);
     MappingConfig config = is_paper ? paper_mapping() : robust_mapping();
-    read_part(top, "map",
-              {"resolution_m", "log_odds_min", "log_odds_max", "log_odds_occupied", "memory_max_mib"},
-              config.map, read_map);
+    read_part(top, "map", kMapKeys, config.map, read_map);
     read_hit_part(top, "proximity_hit", config.model.proximity);
     read_hit_part(top, "depth_hit", config.model.depth);
-    read_part(top, "depth_filter",
-              {"is_enabled", "window_px", "sigma_m", "gate_sigmas", "mean_sigmas", "min_support"},
-              config.depth_filter, read_filter);
+    read_part(top, "depth_filter", kFilterKeys, config.depth_filter, read_filter);
     config.model.miss_log_odds = single(top, "miss_log_odds", {-100.0, 0.0}, config.model.miss_log_odds);
     config.depth_update = top.choice<DepthUpdate>(
         "depth_update", {{"paper", DepthUpdate::paper}, {"robust", DepthUpdate::robust}},

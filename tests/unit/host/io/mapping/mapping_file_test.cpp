@@ -133,6 +133,40 @@ TEST(MappingFile, names_file_line_key_value_and_remedy) {
     EXPECT_FALSE(read_mapping("no/such/file.yaml").has_value());
 }
 
+TEST(MappingFile, refuses_a_filter_whose_window_has_too_few_pixels_for_any_value) {
+    EXPECT_THAT(
+        error_of("depth_filter: {window_px: 1}\n"),
+        HasSubstr("my.yaml:1: depth_filter.min_support: expected at most 0 with window_px 1, found 5"));
+    EXPECT_THAT(
+        error_of("depth_filter:\n  window_px: 3\n  min_support: 9\n"),
+        HasSubstr("my.yaml:3: depth_filter.min_support: expected at most 8 with window_px 3, found 9"));
+    EXPECT_THAT(error_of("depth_filter: {min_support: 25}\n"), HasSubstr("its window has 25"));
+    EXPECT_EQ(error_of("depth_filter: {window_px: 1, min_support: 0}\n"), "no error");
+    EXPECT_EQ(error_of("depth_filter: {window_px: 3, min_support: 8}\n"), "no error");
+    EXPECT_EQ(error_of("depth_filter: {is_enabled: false, window_px: 1}\n"), "no error");
+}
+
+TEST(MappingFile, knows_a_number_in_quotes_one_with_a_comma_and_a_key_of_another_table) {
+    EXPECT_THAT(error_of("map: {resolution_m: \"0.02\"}\n"),
+                HasSubstr("found '0.02' in quotes, which make it a text: leave them out"));
+    EXPECT_THAT(error_of("map: {memory_max_mib: '20'}\n"), HasSubstr("in quotes, which make it a text"));
+    EXPECT_THAT(error_of("depth_filter: {is_enabled: 'true'}\n"),
+                HasSubstr("in quotes, which make it a text"));
+    EXPECT_THAT(error_of("map: {resolution_m: \"fine\"}\n"),
+                HasSubstr("expected a number from 0.001 to 10, found 'fine'"));
+    EXPECT_THAT(error_of("map:\n  resolution_m: 0,02\n"), HasSubstr("found '0,02': a decimal point, 0.02?"));
+    EXPECT_THAT(
+        error_of("map: {resolution_m: 0,02}\n"),
+        HasSubstr("my.yaml:1: map.02: expected a known key, found this one: if it is part of a number "
+                  "such as 0,02, write a decimal point: 0.02"));
+    EXPECT_THAT(error_of("resolution_m: 0.02\n"),
+                HasSubstr("my.yaml:1: resolution_m: expected a known key, found this one: did you mean "
+                          "map.resolution_m?"));
+    EXPECT_THAT(error_of("window_px: 3\n"), HasSubstr("did you mean depth_filter.window_px?"));
+    EXPECT_THAT(error_of("range_min_m: 3\n"),
+                HasSubstr("did you mean proximity_hit.range_min_m or depth_hit.range_min_m?"));
+}
+
 struct KeyRow {
     std::string expected;
     std::string fallback;  ///< in `robust`, and in `paper` behind it in brackets, if that is another one
