@@ -69,8 +69,8 @@ struct Daemon::Parts {
         Settings settings;
         Pipeline pipeline;
     };
+    [[nodiscard]] std::string why_map_ends(const Settings& next) const;
     [[nodiscard]] Result<Next, AppError> read_next() const;
-    [[nodiscard]] bool has_same_grid(const Settings& next) const;
     void reload();
     [[nodiscard]] DaemonView view() const;
     std::string answer(const std::string& line);
@@ -201,8 +201,15 @@ std::uint64_t Daemon::Parts::settle_pipeline() {
     return rejected() - before;
 }
 
-bool Daemon::Parts::has_same_grid(const Settings& next) const {
-    return next.mapping.map.resolution_m == settings.mapping.map.resolution_m;
+/// Why the map cannot go on with these settings; empty if it can. Another resolution is refused as at the
+/// start: the next save would replace the map.
+std::string Daemon::Parts::why_map_ends(const Settings& next) const {
+    const double now = settings.mapping.map.resolution_m;
+    const double wanted = next.mapping.map.resolution_m;
+    if (wanted == now) return why_no_room(*pipeline.maps().fused(), next.mapping.map);
+    return (request.map_folder / "fused.ot").string() + ": its voxels are " + std::to_string(now) +
+           " m, the mapping's are " + std::to_string(wanted) +
+           " m; end octoskin, move it away and start octoskin to begin with an empty map";
 }
 
 /// All that may speak against a reload, before anything has changed.
@@ -210,9 +217,8 @@ Result<Daemon::Parts::Next, AppError> Daemon::Parts::read_next() const {
     try {
         auto read = read_settings(request);
         if (!read) return unexpected(read.error());
-        const std::string no_room =
-            has_same_grid(*read) ? why_no_room(*pipeline.maps().fused(), read->mapping.map) : std::string();
-        if (!no_room.empty()) return fail(ExitCode::bad_config, no_room);
+        const std::string why = why_map_ends(*read);
+        if (!why.empty()) return fail(ExitCode::bad_config, why);
         auto made = make_pipeline(request, *read);
         if (!made) return unexpected(made.error());
         return Next{std::move(read).value(), std::move(made).value()};
@@ -231,19 +237,15 @@ void Daemon::Parts::reload() {
         inputs.prepare_for(next->settings.host.rig);
         const std::uint64_t dropped = settle_pipeline();
         recordings.stop(monotonic_now());  // it has the old settings, and is whole with them
-        const bool is_same_grid = has_same_grid(next->settings);
-        if (is_same_grid) {
-            FusedMap map = pipeline.take_fused();
-            map.limit(next->settings.mapping.map);
-            next->pipeline.begin_with(std::move(map));
-        }
+        FusedMap map = pipeline.take_fused();
+        map.limit(next->settings.mapping.map);
+        next->pipeline.begin_with(std::move(map));
         settings = std::move(next->settings);
         pipeline = std::move(next->pipeline);
         inputs.change_rig(settings.host.rig);
         reload_error.clear();
-        spdlog::info("reloaded: rig '{}'; the map {}; {} of what waited was not used", settings.host.rig.name,
-                     is_same_grid ? "goes on" : "begins anew: the mapping has voxels of another size",
-                     dropped);
+        spdlog::info("reloaded: rig '{}'; the map goes on; {} of what waited was not used",
+                     settings.host.rig.name, dropped);
         tell_warnings(settings);
     }
     (void)sd_notify(0, "READY=1");

@@ -92,6 +92,22 @@ TEST_F(DaemonTest, refuses_a_reload_that_has_too_little_memory_for_its_map) {
     EXPECT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
 }
 
+TEST_F(DaemonTest, refuses_a_reload_with_another_resolution_and_keeps_the_map) {
+    const auto file = folder_.write("mapping.yaml", "base: robust\n");
+    start({"--no-camera", "--configuration", file.string(), "--save-every", "1"});
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    const auto voxels = daemon_->status()["map"]["known_voxels"].get<int>();
+    ASSERT_GT(voxels, 0);
+    folder_.write("mapping.yaml", "base: robust\nmap: {resolution_m: 0.02}\n");
+    daemon_->signal(SIGHUP);
+    ASSERT_TRUE(daemon_->wait_until(
+        [](const Json& status) { return has_problem(status, "fused.ot: its voxels are 0.040000 m"); }, 5s))
+        << daemon_->log();
+    EXPECT_TRUE(has_problem(daemon_->status(), "move it away"));
+    EXPECT_GE(daemon_->status()["map"]["known_voxels"].get<int>(), voxels) << "the map did not go on";
+    EXPECT_EQ(daemon_->status()["reloads"]["count"], 0);
+}
+
 TEST_F(DaemonTest, refuses_a_second_one_on_the_same_maps_and_names_the_first) {
     start();
     ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
