@@ -1,6 +1,9 @@
 #include "host/apps/octoskin/arguments.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <net/if.h>
+#include <sys/socket.h>
 
 #include <charconv>
 #include <filesystem>
@@ -27,6 +30,27 @@ std::string is_seed(std::string& text) {
     const auto parsed = std::from_chars(text.data(), end, value);
     if (parsed.ec == std::errc{} && parsed.ptr == end) return {};
     return "expected a whole number from 0 to 2^64 - 1, found '" + text + "'";
+}
+
+void check_interface_name(const std::string& interface) {
+    constexpr std::size_t kLengthMax = IFNAMSIZ - 1;
+    if (!interface.empty() && interface.size() <= kLengthMax) return;
+    throw CommandFailure({ExitCode::usage, fmt::format("'{}': an interface's name has 1 to {} characters, "
+                                                       "this one {}",
+                                                       interface, kLengthMax, interface.size())});
+}
+
+void check_frame_socket(const std::string& interface, int descriptor) {
+    int type = 0;
+    socklen_t size = sizeof(type);
+    if (::getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &size) != 0) {
+        throw CommandFailure({ExitCode::usage, interface + " is no socket: give one that carries frames as a "
+                                                           "raw CAN socket does"});
+    }
+    if (type == SOCK_STREAM) {
+        throw CommandFailure({ExitCode::usage, interface + " is a stream, in which frames have no borders: "
+                                                           "give a socket of datagrams (SOCK_SEQPACKET)"});
+    }
 }
 
 }  // namespace
@@ -78,12 +102,16 @@ void check_command_name(const CLI::App& app, int argc, const char* const* argv) 
 
 std::optional<int> descriptor_of(const std::string& interface) {
     constexpr std::string_view kPrefix = "fd:";
-    if (!interface.starts_with(kPrefix)) return std::nullopt;
+    if (!interface.starts_with(kPrefix)) {
+        check_interface_name(interface);
+        return std::nullopt;
+    }
     int descriptor = -1;
     const char* const last = interface.data() + interface.size();
     const auto [end, error] = std::from_chars(interface.data() + kPrefix.size(), last, descriptor);
     if (error != std::errc{} || end != last || descriptor < 0 || ::fcntl(descriptor, F_GETFD) < 0)
         throw CommandFailure({ExitCode::usage, interface + ": no descriptor of that number is open"});
+    check_frame_socket(interface, descriptor);
     return descriptor;
 }
 

@@ -68,6 +68,23 @@ TEST_F(CommandLine, takes_each_seed_and_each_configuration_once) {
     EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 
+TEST_F(CommandLine, answers_64_to_what_can_be_no_interface_and_no_socket) {
+    const std::string daemon =
+        "run --no-camera --rig " + source("hw/rigs/experiment.yaml") + " --maps " + path("maps") + " --can ";
+    const auto expect = [](const std::string& arguments, const std::string& why) {
+        const Said said = octoskin(arguments);
+        EXPECT_EQ(said.exit_code, 64) << arguments << ": " << said.output;
+        EXPECT_NE(said.output.find(why), std::string::npos) << arguments << ": " << said.output;
+    };
+    expect(daemon + "fd:0 < /dev/null", "fd:0 is no socket");
+    expect(daemon + "fd:0 < " + source("README.md"), "fd:0 is no socket");
+    expect(daemon + "a_name_too_long_",
+           "'a_name_too_long_': an interface's name has 1 to 15 characters, this one 16");
+    const std::string long_path = path(std::string(120, 's'));
+    expect(daemon + "can0 --socket " + long_path, "1 to 107 bytes");
+    expect("status --socket " + long_path, "1 to 107 bytes");
+}
+
 TEST_F(CommandLine, answers_66_wherever_a_file_is_not_there) {
     record_short("rec");
     const std::string nope = path("nope.yaml");
