@@ -24,6 +24,23 @@ std::string with_complaint(const std::string& what, openni2::HelperProcess& help
     return complaint.empty() ? what : what + " (" + complaint + ")";
 }
 
+bool is_oni_name(const std::string& uri) {
+    return std::filesystem::path(uri).extension() == ".oni";
+}
+
+/// Why nothing can be played from there; empty if something may be.
+std::string fault_of_file(const std::string& uri) {
+    std::error_code error;
+    if (!is_oni_name(uri) || std::filesystem::is_regular_file(uri, error)) return {};
+    return uri + (std::filesystem::exists(uri, error) ? ": is no file" : ": no such file");
+}
+
+std::string not_opened(const std::string& uri) {
+    if (uri.empty()) return "no camera found: is one plugged in, with a driver of OpenNI2?";
+    return uri + (is_oni_name(uri) ? ": no .oni file with depth that OpenNI2 can play"
+                                   : ": no camera there that gives depth");
+}
+
 }  // namespace
 
 CameraFeed::CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
@@ -97,6 +114,7 @@ void CameraFeed::wait_before_retry() {
 }
 
 void CameraFeed::watch_camera() {
+    if (const std::string fault = fault_of_file(uri_); !fault.empty()) return note_closed(fault);
     const auto helper = helper_ ? helper_ : openni2::find_helper(kHelper);
     if (!helper) {
         return note_closed(std::string(kHelper) + " is neither beside this program nor in libexec");
@@ -107,12 +125,7 @@ void CameraFeed::watch_camera() {
                                                  openni2::HelperComplaints::kept);
     if (!process) return note_closed(process.error());
     const auto header = openni2::FramePipe(process->descriptor(), kOpenPatience, end_).read_header();
-    if (!header) {
-        const std::string what = uri_.empty()
-                                     ? "no camera found: is one plugged in, with a driver of OpenNI2?"
-                                     : uri_ + ": no camera there that gives depth";
-        return note_closed(with_complaint(what, *process));
-    }
+    if (!header) return note_closed(with_complaint(not_opened(uri_), *process));
     note_opened(header->rate_mhz * 1e-3);
     openni2::FramePipe frames(process->descriptor(), silence_max_, end_);
     while (!is_ending_) {

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "host/io/openni2/one_line.hpp"
+
 namespace octoskin::openni2 {
 namespace {
 
@@ -150,7 +152,7 @@ std::string HelperProcess::complaint() {
     text.resize(count > 0 ? static_cast<std::size_t>(count) : 0U);
     while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
     const std::size_t line = text.rfind('\n');
-    return line == std::string::npos ? text : text.substr(line + 1);
+    return one_line(line == std::string::npos ? text : text.substr(line + 1));
 }
 
 std::optional<std::string> HelperProcess::wait(std::chrono::milliseconds patience) {

@@ -8,6 +8,7 @@
 
 #include "host/io/openni2/helpers/frame_pixels.hpp"
 #include "host/io/openni2/helpers/helper_limits.hpp"
+#include "host/io/openni2/one_line.hpp"
 
 namespace octoskin::openni2 {
 namespace {
@@ -32,7 +33,8 @@ void end_helper(int exit_code) {
 }
 
 int DepthStream::complain(const std::string& what) const {
-    std::fprintf(stderr, "%s: %s: %s\n", program_, what.c_str(), openni::OpenNI::getExtendedError());
+    const std::string why = one_line(openni::OpenNI::getExtendedError());
+    std::fprintf(stderr, "%s: %s%s%s\n", program_, what.c_str(), why.empty() ? "" : ": ", why.c_str());
     return 1;
 }
 

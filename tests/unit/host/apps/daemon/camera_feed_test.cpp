@@ -64,6 +64,27 @@ TEST_F(CameraFeedTest, says_what_the_helper_says) {
     EXPECT_FALSE(feed.record().is_open);
 }
 
+TEST_F(CameraFeedTest, puts_what_the_helper_says_on_one_line_without_a_colon_at_its_end) {
+    const CameraFeed feed("the-uri", 2s,
+                          camera("printf 'octoskin-camera: too late:\\tby 5 s: \\n\\n' >&2; exit 1"));
+    ASSERT_TRUE(wait_until([&] { return feed.record().why.find("the-uri") == 0; }));
+    EXPECT_NE(feed.record().why.find("(octoskin-camera: too late: by 5 s)"), std::string::npos)
+        << feed.record().why;
+}
+
+TEST_F(CameraFeedTest, tells_an_oni_file_that_is_not_there_from_one_that_is_none) {
+    const auto failing = camera("exit 1");
+    const std::string absent = (scratch_ / "nix.oni").string();
+    const CameraFeed without_file(absent, 2s, failing);
+    EXPECT_TRUE(wait_until([&] { return without_file.record().why == absent + ": no such file"; }))
+        << without_file.record().why;
+    const std::string broken = scratch_.write("broken.oni", "no depth").string();
+    const CameraFeed with_file(broken, 2s, failing);
+    EXPECT_TRUE(wait_until([&] {
+        return with_file.record().why == broken + ": no .oni file with depth that OpenNI2 can play";
+    })) << with_file.record().why;
+}
+
 TEST_F(CameraFeedTest, counts_frames_without_a_time_and_hands_over_the_others) {
     CameraFeed feed("", 100s, camera(std::string(kHeader) + kUntimed + kUntimed + kTimed + "exec sleep 100"));
     std::optional<DepthFrame> frame;
