@@ -40,6 +40,11 @@ class UrdfDocument {
         return outline_.error(tag, name, std::move(what));
     }
 
+    /// Whether a joint has a <limit> that says no `upper`, for which urdfdom takes 0.
+    [[nodiscard]] bool is_upper_missing(std::string_view joint) const {
+        return outline_.is_upper_missing(joint);
+    }
+
   private:
     std::filesystem::path file_;
     UrdfOutline outline_;

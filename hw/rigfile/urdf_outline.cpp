@@ -88,9 +88,11 @@ Result<UrdfOutline, RigError> UrdfOutline::read(const std::filesystem::path& fil
                                      kElementsMax)});
         }
         if (auto fault = find_turn_fault(file, *element)) return unexpected(std::move(*fault));
+        const auto* limit = element->FirstChildElement("limit");
         outline.elements_.push_back({tag, attribute(element, "name"), element->GetLineNum(),
                                      attribute(element->FirstChildElement("parent"), "link"),
-                                     attribute(element->FirstChildElement("child"), "link")});
+                                     attribute(element->FirstChildElement("child"), "link"),
+                                     limit != nullptr && limit->Attribute("upper") == nullptr});
     }
     if (auto loop = outline.find_loop()) return unexpected(std::move(*loop));
     return outline;
@@ -121,6 +123,12 @@ std::optional<RigError> UrdfOutline::find_loop() const {
         }
     }
     return std::nullopt;
+}
+
+bool UrdfOutline::is_upper_missing(std::string_view joint) const {
+    return std::any_of(elements_.begin(), elements_.end(), [&](const Element& element) {
+        return element.tag == "joint" && element.name == joint && element.is_upper_missing;
+    });
 }
 
 RigError UrdfOutline::error(std::string_view tag, std::string_view name, std::string what) const {

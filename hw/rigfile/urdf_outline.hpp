@@ -24,6 +24,9 @@ class UrdfOutline {
     /// An error about one element ("joint", "panda_joint3"), with its line if there is such an element.
     [[nodiscard]] RigError error(std::string_view tag, std::string_view name, std::string what) const;
 
+    /// Whether a joint has a <limit> that says no `upper`, for which urdfdom takes 0.
+    [[nodiscard]] bool is_upper_missing(std::string_view joint) const;
+
   private:
     struct Element {
         std::string tag;
@@ -31,6 +34,7 @@ class UrdfOutline {
         int line = 0;
         std::string parent_link;  ///< of a joint
         std::string child_link;
+        bool is_upper_missing = false;  ///< of a joint with a <limit>
     };
     [[nodiscard]] std::optional<RigError> find_loop() const;
 

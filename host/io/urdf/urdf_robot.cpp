@@ -1,10 +1,13 @@
 #include "host/io/urdf/urdf_robot.hpp"
 
+#include <fmt/format.h>
 #include <urdf_model/joint.h>
 #include <urdf_model/link.h>
 #include <urdf_model/model.h>
 
+#include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,8 +34,21 @@ std::optional<JointKind> kind_of(const urdf::Joint& joint) {
     return std::nullopt;
 }
 
+/// The kinematics refuse another length, too; here it is known what was written.
+std::string axis_fault_of(const urdf::Vector3& axis) {
+    constexpr double kUnitTolerance = 1e-6;
+    const double length = std::hypot(axis.x, axis.y, axis.z);
+    if (std::abs(length - 1.0) <= kUnitTolerance) return "";
+    const std::string found =
+        fmt::format("expected an axis of length 1, found <axis xyz=\"{} {} {}\">", axis.x, axis.y, axis.z);
+    // Not a number is no length either.
+    if (!(length > 0.0) || !std::isfinite(length)) return found;
+    return fmt::format("{} of length {:.4g}: scale it to \"{:.6g} {:.6g} {:.6g}\"", found, length,
+                       axis.x / length, axis.y / length, axis.z / length);
+}
+
 /// Why a joint cannot be taken, or nothing.
-std::string fault_of(const urdf::Joint& joint) {
+std::string fault_of(const rig::UrdfDocument& document, const urdf::Joint& joint) {
     const auto kind = kind_of(joint);
     if (!kind) {
         return "expected a fixed, revolute, continuous or prismatic joint, found another kind: make it "
@@ -45,7 +61,9 @@ std::string fault_of(const urdf::Joint& joint) {
     }
     const bool needs_limits = *kind == JointKind::revolute || *kind == JointKind::prismatic;
     if (needs_limits && !joint.limits) return "expected <limit>, found none";
-    return "";
+    if (needs_limits && document.is_upper_missing(joint.name))
+        return "expected <limit> with lower and upper, found no upper, for which URDF takes 0: write it";
+    return axis_fault_of(joint.axis);
 }
 
 JointDescription to_description(const urdf::Joint& joint) {
@@ -72,7 +90,7 @@ Result<std::vector<JointDescription>, rig::RigError> joints_below(const rig::Urd
     for (std::size_t i = 0; i < links.size(); ++i) {
         const urdf::Link& link = *links[i];
         for (const auto& joint : link.child_joints) {
-            auto fault = fault_of(*joint);
+            auto fault = fault_of(document, *joint);
             if (!fault.empty()) return unexpected(document.error("joint", joint->name, std::move(fault)));
             descriptions.push_back(to_description(*joint));
         }
