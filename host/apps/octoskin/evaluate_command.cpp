@@ -12,6 +12,7 @@
 #include "host/apps/octoskin/map_provenance.hpp"
 #include "host/apps/octoskin/recorded_scene.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/playback.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "host/apps/study/configuration.hpp"
@@ -31,6 +32,13 @@ struct EvaluateOptions {
     std::filesystem::path json;
     std::string configuration = "robust";
 };
+
+/// Nobody recorded in which world a data set was made.
+[[noreturn]] void refuse_data_set(const std::filesystem::path& data_set) {
+    throw CommandFailure({ExitCode::usage, data_set.string() +
+                                               ": a data set has no ground truth of its world, so its maps "
+                                               "cannot be judged; look at them (octovis, or the .ply)"});
+}
 
 /// The scene of `recording`, with whatever is given in its place.
 Scene recorded_scene(const std::filesystem::path& recording, const EvaluateOptions& options) {
@@ -82,6 +90,7 @@ evaluation::Results judge_recording(const EvaluateOptions& options) {
         .rig = options.rig,
         .robot = options.robot,
         .warn_first = [](const std::string& warning) { spdlog::warn("{}", warning); }};
+    if (is_data_set(recording)) refuse_data_set(options.input);
     if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
     const Scene scene = recorded_scene(options.input, options);
     const auto meta = read_meta(recording);
@@ -167,6 +176,8 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
     if (!map) throw CommandFailure({ExitCode::bad_data, map.error().message});
     const auto provenance = provenance_of_map(options.input);
     if (!provenance) throw CommandFailure(provenance.error());
+    if (provenance->origin && is_of_data_set(*provenance->origin) && options.scenario.empty())
+        refuse_data_set(provenance->origin->recording);
     for (const std::string& warning : provenance->warnings) spdlog::warn("{}", warning);
     const rig::Rig rig = rig_of_map(options, *provenance);
     const Scene scene = scene_of_map(options, provenance->recording);

@@ -53,6 +53,8 @@ int run(int argc, char** argv) {
         app::print_text(said.str());
         return exit_code == 0 ? 0 : static_cast<int>(ExitCode::usage);
     } catch (const app::CommandFailure& failure) {
+        // First what was printed: it may be what this speaks of. That it could not be is told at the end.
+        static_cast<void>(app::flush_standard_output());
         spdlog::error("{}", failure.what());
         return static_cast<int>(failure.code());
     }

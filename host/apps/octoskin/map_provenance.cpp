@@ -32,7 +32,7 @@ Status<AppError> check_beside(const fs::path& map, const MapOrigin& origin, cons
 /// The recording that the maps.yaml names, if it still is what it was.
 std::optional<fs::path> named_recording(const MapOrigin& origin, std::vector<std::string>& warnings) {
     std::error_code error;
-    if (!fs::is_directory(origin.recording, error)) return std::nullopt;
+    if (is_of_data_set(origin) || !fs::is_directory(origin.recording, error)) return std::nullopt;
     const auto found = crc32_of_recording(RecordingPaths(origin.recording));
     if (found == origin.recording_crc32) return origin.recording;
     warnings.push_back(origin.recording.string() + ": the map was made from it, but it has changed since (" +
@@ -41,6 +41,10 @@ std::optional<fs::path> named_recording(const MapOrigin& origin, std::vector<std
 }
 
 }  // namespace
+
+bool is_of_data_set(const MapOrigin& origin) {
+    return origin.robot == "-";  // as data_set_playback.cpp writes it: there is none
+}
 
 Result<MapProvenance, AppError> provenance_of_map(const fs::path& map) {
     auto origin = origin_of_map(map);

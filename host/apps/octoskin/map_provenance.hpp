@@ -18,6 +18,9 @@ struct MapProvenance {
     std::vector<std::string> warnings;               ///< of what is not known, or cannot be read
 };
 
+/// Whether the map was made from a data set, which has no robot.
+[[nodiscard]] bool is_of_data_set(const MapOrigin& origin);
+
 /// The recording is the one beside the map, else the one that maps.yaml names. Refuses (bad_data) a maps.yaml
 /// that cannot be read, one that describes other bytes than the map has, and one that was written of another
 /// recording than lies beside the map.

@@ -167,6 +167,19 @@ void find_contradictions(const HostRig& rig, Playback& playback) {
     }
 }
 
+/// Frames that are no images of the camera that was given.
+void find_wrong_sizes(Playback& playback) {
+    const DepthStage* const stage = playback.pipeline.depth_stage();
+    if (stage == nullptr || stage->wrong_size().frames == 0) return;
+    const auto& [frames, width, height] = stage->wrong_size();
+    const CameraIntrinsics& camera = stage->camera().intrinsics;
+    playback.warnings.push_back(
+        std::to_string(frames) + " depth images are " + std::to_string(width) + " x " +
+        std::to_string(height) + ", the camera's are " + std::to_string(camera.width) + " x " +
+        std::to_string(camera.height) +
+        " (wrong_size): give a --rig whose camera has their width_px and height_px, and is theirs");
+}
+
 void find_full_maps(Playback& playback) {
     const std::pair<const char*, const FusedMap*> maps[] = {
         {"depth", playback.pipeline.maps().depth()},
@@ -318,6 +331,7 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
     if (!playback) return playback;
     if (const DepthStage* stage = playback->pipeline.depth_stage())
         playback->accounts.push_back(pixel_table(*stage));
+    find_wrong_sizes(*playback);
     find_full_maps(*playback);
     return playback;
 }

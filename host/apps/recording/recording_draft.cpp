@@ -30,6 +30,11 @@ Status<AppError> check_replaceable(const RecordingPaths& paths) {
         return fs::exists(file, error);
     };
     const auto first = std::find_if(files.begin(), files.end(), is_there);
+    if (first == files.end() && is_there(paths.directory / "depth.txt")) {
+        return cannot_create(paths.directory,
+                             "is a data set (depth.txt), which a recording in its place would hide; give "
+                             "another directory");
+    }
     if (first == files.end()) return Done{};
     const auto meta = read_meta(paths);
     if (meta && meta->is_simulated()) return Done{};

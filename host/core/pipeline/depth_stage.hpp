@@ -34,6 +34,14 @@ class DepthStage {
         return frame.T_map_camera.value_or(T_map_camera_);
     }
 
+    /// How many frames were refused as `wrong_size`, by their newest width and height (pixels).
+    struct WrongSize {
+        std::uint64_t frames = 0;
+        std::uint32_t width = 0;
+        std::uint32_t height = 0;
+    };
+    [[nodiscard]] const WrongSize& wrong_size() const noexcept { return wrong_size_; }
+
     /// Pixels set to nothing because they show the robot, over all frames that came into the map.
     [[nodiscard]] std::uint64_t robot_pixels() const noexcept { return robot_pixels_; }
     /// What became of the others, over all frames used.
@@ -55,6 +63,7 @@ class DepthStage {
     DepthImage without_robot_;
     std::uint64_t robot_pixels_ = 0;
     DepthPixelCounts pixels_;
+    WrongSize wrong_size_;
 };
 
 }  // namespace octoskin

@@ -41,6 +41,10 @@ Result<DataSetReader, DepthSourceError> DataSetReader::open(const std::filesyste
         return Done{};
     };
     if (const auto done = read_lines(reader.paths_.images(), take); !done) return unexpected(done.error());
+    if (images.empty()) {
+        return unexpected(DepthSourceError{reader.paths_.images().string() +
+                                           ": names no image: expected lines of TIME FILE"});
+    }
     return reader;
 }
 

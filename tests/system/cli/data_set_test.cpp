@@ -135,6 +135,50 @@ TEST_F(DataSet, a_fault_is_named_with_file_and_line_and_leaves_no_map) {
     EXPECT_FALSE(std::filesystem::exists(path("other/maps/fused.ot")));
 }
 
+TEST_F(DataSet, says_below_the_account_which_size_its_images_have_and_which_is_expected) {
+    write_data_set(path("set"));
+    const Said said = octoskin("replay " + path("set"));
+    EXPECT_EQ(said.exit_code, 1) << said.output;
+    const auto size = said.output.find("6 depth images are 128 x 106, the camera's are 640 x 480");
+    const auto above = said.output.find("the account above says why");
+    EXPECT_NE(size, std::string::npos) << said.output;
+    EXPECT_NE(above, std::string::npos) << said.output;
+    EXPECT_LT(said.output.find("wrong_size"), size) << said.output;
+    EXPECT_LT(size, above) << said.output;
+}
+
+TEST_F(DataSet, without_images_is_named_by_its_list) {
+    write_data_set(path("set"));
+    write(path("set/depth.txt"), "# no image\n");
+    const Said said = octoskin("replay " + path("set"));
+    EXPECT_EQ(said.exit_code, 65) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("set/depth.txt: names no image"));
+}
+
+TEST_F(DataSet, has_no_truth_to_be_judged_by) {
+    write_data_set(path("set"));
+    const Said replayed = octoskin("replay " + path("set") + " --rig " + source("tests/data/short/rig.yaml"));
+    ASSERT_EQ(replayed.exit_code, 0) << replayed.output;
+    for (const std::string& what :
+         {path("set"), path("set/maps/fused.ot") + " --rig " + source("tests/data/short/rig.yaml")}) {
+        const Said said = octoskin("evaluate " + what);
+        EXPECT_EQ(said.exit_code, 64) << said.output;
+        EXPECT_THAT(said.output, HasSubstr(path("set") + ": a data set has no ground truth of its world"));
+        EXPECT_THAT(said.output, testing::Not(HasSubstr("meta.yaml")));
+        EXPECT_THAT(said.output, testing::Not(HasSubstr("changed since")));
+    }
+}
+
+TEST_F(DataSet, is_not_hidden_by_a_simulation_even_by_force) {
+    write_data_set(path("set"));
+    const Said said =
+        octoskin("simulate " + path("set") + " --force --rig " + source("tests/data/short/rig.yaml") +
+                 " --scenario " + source("tests/data/short/scenario.yaml"));
+    EXPECT_EQ(said.exit_code, 73) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("is a data set (depth.txt)"));
+    EXPECT_FALSE(std::filesystem::exists(path("set/can.log")));
+}
+
 TEST_F(DataSet, an_image_that_is_not_there_is_named_with_its_line_and_what_to_do) {
     write_data_set(path("set"));
     std::filesystem::remove(path("set/depth/1.300000.png"));
