@@ -97,11 +97,14 @@ constexpr std::array kStatusMeanings = {
             "readings that its node sent and that never came, exact as of the newest SENSOR_HEALTH"},
     Meaning{"nodes.sensors", "age_s",
             "since its newest reading came; null: none yet, or the time is not known"},
-    Meaning{"nodes.sensors", "range_m", "of its newest reading; not there before the first"},
+    Meaning{"nodes.sensors", "range_m",
+            "of its newest reading, as the sensor has it: a distance only where device_status is 9. Beside a "
+            "status such as 4, no target, it is noise; not there before the first"},
     Meaning{"nodes.sensors", "sigma_m",
             "the standard deviation that the sensor gives its newest range; not there before the first"},
     Meaning{"nodes.sensors", "device_status",
-            "the sensor's own status of it: 9 is a valid range; not there before the first"},
+            "the sensor's own status of it: 9 is a valid range, protocol.md has the others; not there before "
+            "the first"},
     Meaning{"nodes.sensors", "zone", "which of its zones it looked through; not there before the first"},
     Meaning{"nodes.sensors", "rejected",
             "why the newest reading was not used, a name of account.md; null: it was, or waits"},
