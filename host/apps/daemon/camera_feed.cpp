@@ -115,10 +115,8 @@ void CameraFeed::wait_before_retry() {
 
 void CameraFeed::watch_camera() {
     if (const std::string fault = fault_of_file(uri_); !fault.empty()) return note_closed(fault);
-    const auto helper = helper_ ? helper_ : openni2::find_helper(kHelper);
-    if (!helper) {
-        return note_closed(std::string(kHelper) + " is neither beside this program nor in libexec");
-    }
+    const auto helper = openni2::find_helper(kHelper, helper_);
+    if (!helper) return note_closed(helper.error());
     std::vector<std::string> arguments{uri_};
     if (mode_) arguments.push_back(to_text(*mode_));
     auto process = openni2::HelperProcess::start(*helper, arguments, openni2::HelperPipe::its_output,

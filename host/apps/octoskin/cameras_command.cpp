@@ -33,10 +33,7 @@ std::optional<std::string> text_of(const openni2::HelperProcess& helper) {
 void list_cameras() {
     constexpr const char* kHelper = "octoskin-camera";
     const auto program = openni2::find_helper(kHelper);
-    if (!program) {
-        throw CommandFailure(
-            {ExitCode::unavailable, std::string(kHelper) + " is neither beside this program nor in libexec"});
-    }
+    if (!program) throw CommandFailure({ExitCode::unavailable, program.error()});
     auto helper = openni2::HelperProcess::start(*program, {"--list"}, openni2::HelperPipe::its_output);
     if (!helper) throw CommandFailure({ExitCode::unavailable, helper.error()});
     const auto text = text_of(*helper);

@@ -110,10 +110,10 @@ class CanOutput final : public JointOutput {
     /// There is a rig: `sample` is not empty.
     bool put(const std::string& /*line*/, const std::optional<JointSample>& sample) override {
         const auto frames = joints_.frames(sample->sampled, sample->position);
-        if (!frames) return true;  // too soon after the one before: nobody misses it
-        bool is_sent = true;
-        for (const wire::CanFrame& frame : *frames) is_sent = link_.send(frame) && is_sent;
-        return is_sent;
+        if (!frames) return is_through_;  // too soon after the one before, and as good or bad as that
+        is_through_ = true;
+        for (const wire::CanFrame& frame : *frames) is_through_ = link_.send(frame) && is_through_;
+        return is_through_;
     }
     void attend() override {
         (void)link_.attend(monotonic_now());
@@ -132,6 +132,7 @@ class CanOutput final : public JointOutput {
         {{wire::can_id(wire::FrameType::sync, wire::kHostId), wire::kStandardIdMax}}};
     LocalJoints joints_;
     CanLink link_;
+    bool is_through_ = true;  ///< the newest sample that was due
 };
 
 std::optional<rig::Rig> rig_of(const JointsOptions& options) {

@@ -174,14 +174,18 @@ std::optional<std::string> HelperProcess::wait(std::chrono::milliseconds patienc
     }
 }
 
-std::optional<std::filesystem::path> find_helper(const std::string& name) {
+Result<std::filesystem::path, std::string> find_helper(
+    const std::string& name, const std::optional<std::filesystem::path>& in_its_place) {
+    if (in_its_place) return *in_its_place;
     std::error_code error;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
     for (const auto& directory :
          {self, self.parent_path() / "libexec" / "octoskin", std::filesystem::path(OCTOSKIN_HELPER_DIR)}) {
         if (std::filesystem::exists(directory / name, error)) return directory / name;
     }
-    return std::nullopt;
+    return unexpected(name +
+                      " is neither beside this program nor in libexec: build octoskin_programs, or "
+                      "install octoskin anew");
 }
 
 }  // namespace octoskin::openni2

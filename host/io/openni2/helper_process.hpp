@@ -52,8 +52,9 @@ class HelperProcess {
     int complaints_ = -1;
 };
 
-/// A helper program: beside the running executable, in ../libexec/octoskin/, or where the build put it. Empty
-/// if nowhere.
-[[nodiscard]] std::optional<std::filesystem::path> find_helper(const std::string& name);
+/// A helper program: `in_its_place`, or the one beside the running executable, in ../libexec/octoskin/, or
+/// where the build put it. The message says what to do about one that is nowhere.
+[[nodiscard]] Result<std::filesystem::path, std::string> find_helper(
+    const std::string& name, const std::optional<std::filesystem::path>& in_its_place = {});
 
 }  // namespace octoskin::openni2

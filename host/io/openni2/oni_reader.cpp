@@ -27,11 +27,9 @@ Result<OniReader, DepthSourceError> OniReader::open(const std::filesystem::path&
     if (!std::filesystem::is_regular_file(oni, error)) return failure("no such file, or not an ordinary one");
     const auto epoch = read_epoch(epoch_file);
     if (!epoch) return unexpected(epoch.error());
-    if (!helper) helper = find_helper(kReadHelper);
-    if (!helper)
-        return failure(std::string(kReadHelper) +
-                       " is neither beside this program nor in libexec; build or install it");
-    auto process = HelperProcess::start(*helper, {oni.string()}, HelperPipe::its_output);
+    const auto program = find_helper(kReadHelper, helper);
+    if (!program) return failure(program.error());
+    auto process = HelperProcess::start(*program, {oni.string()}, HelperPipe::its_output);
     if (!process) return failure(process.error());
     const auto header = FramePipe(process->descriptor(), kReadPatience).read_header();
     if (!header) {

@@ -28,14 +28,12 @@ Result<OniWriter, DepthSourceError> OniWriter::create(const std::filesystem::pat
         return failure("OpenNI2 cannot record pictures of " + std::to_string(size.width) + " x " +
                        std::to_string(size.height) + " pixels, only up to 1600 x 1200");
     }
-    if (!helper) helper = find_helper(kWriteHelper);
-    if (!helper)
-        return failure(std::string(kWriteHelper) +
-                       " is neither beside this program nor in libexec; build or install it");
+    const auto program = find_helper(kWriteHelper, helper);
+    if (!program) return failure(program.error());
     // An old sidecar must not vouch for a recording that is not finished.
     std::error_code ignored;
     for (const auto& stale : {oni, epoch}) std::filesystem::remove(stale, ignored);
-    auto process = HelperProcess::start(*helper, {oni.string()}, HelperPipe::its_input);
+    auto process = HelperProcess::start(*program, {oni.string()}, HelperPipe::its_input);
     if (!process) return failure(process.error());
     if (const auto written = FramePipe(process->descriptor(), kWritePatience).write_header({.size = size});
         !written) {

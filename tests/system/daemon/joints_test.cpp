@@ -100,6 +100,14 @@ TEST(JointsCommand, says_at_the_end_that_nobody_was_there) {
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69);
 }
 
+/// More lines at once than the rig's rate lets through: those are no better than the ones before them.
+TEST(JointsCommand, says_at_the_end_that_there_was_no_bus_whatever_the_rate_of_the_lines) {
+    const std::string command =
+        "yes 0 0 0 0 0 0 0 | head -n 100 | " OCTOSKIN_PROGRAM
+        " joints --can nocan9 --rig " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml 2> /dev/null";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69);
+}
+
 TEST(JointsCommand, refuses_lines_of_another_number_of_joints_wherever_they_go) {
     const testing_support::ScratchFolder folder;
     const Taker taker(folder / "joints");

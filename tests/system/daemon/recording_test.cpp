@@ -127,7 +127,10 @@ TEST_F(DaemonRecording, is_told_by_its_command_when_the_daemon_ends_in_the_middl
     Ran ran;
     std::thread command([&] { ran = record(out()); });
     EXPECT_TRUE(daemon_->wait_until(
-        [](const Json& status) { return status["recording"]["state"] == "recording"; }, 5s));
+        [](const Json& status) {
+            return status.value(Json::json_pointer("/recording/state"), "") == "recording";
+        },
+        5s));
     daemon_->signal(SIGTERM);
     command.join();
     EXPECT_EQ(ran.exit_code, 0) << ran.output;

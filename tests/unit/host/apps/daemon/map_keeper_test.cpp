@@ -233,15 +233,15 @@ TEST(MapKeeper, loads_any_map_that_it_saved_with_the_same_memory) {
     for (const bool is_dense : {true, false}) {
         const testing_support::ScratchFolder folder;
         MapKeeper keeper(folder.path());
-        const FusedMap map = full_map(8, is_dense);
+        const FusedMap map = full_map(3, is_dense);
         EXPECT_TRUE(keeper.save(map));
         ASSERT_TRUE(keeper.finish(kPatience));
         const auto loaded = keeper.load(map.config());
         ASSERT_TRUE(loaded) << loaded.error().message;
         EXPECT_EQ((*loaded)->known_voxels(), map.known_voxels());
         const auto bytes = std::filesystem::file_size(folder / "fused.ot");
-        EXPECT_LT(bytes, (8U << 20U) * 3 / 2) << "what the limit for files is derived from";
-        EXPECT_EQ(bytes > 8U << 20U, is_dense) << "the file of a dense map is larger than its memory";
+        EXPECT_LT(bytes, (3U << 20U) * 3 / 2) << "what the limit for files is derived from";
+        EXPECT_EQ(bytes > 3U << 20U, is_dense) << "the file of a dense map is larger than its memory";
     }
 }
 

@@ -104,7 +104,12 @@ TEST_F(HelperProcessTest, that_is_not_there_is_an_error_with_its_name) {
     const auto helper = HelperProcess::start(scratch_ / "absent", {"x"}, HelperPipe::its_output);
     ASSERT_FALSE(helper);
     EXPECT_NE(helper.error().find("absent"), std::string::npos);
-    EXPECT_EQ(find_helper("octoskin-no-such-helper"), std::nullopt);
+    const auto nowhere = find_helper("octoskin-no-such-helper");
+    ASSERT_FALSE(nowhere);
+    EXPECT_EQ(nowhere.error(),
+              "octoskin-no-such-helper is neither beside this program nor in libexec: build "
+              "octoskin_programs, or install octoskin anew");
+    EXPECT_EQ(find_helper("octoskin-no-such-helper", "another").value(), "another");
 }
 
 }  // namespace
