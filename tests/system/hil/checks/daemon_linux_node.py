@@ -9,7 +9,7 @@ import time
 
 import daemon_bench
 from daemon_bench import claim, expect
-from linux_node_bench import JOINT_NODE, PATIENCE_S, RIG, TRUE_RANGE_M, is_on_map, keep_arm_at_rest, start_node, used, wrong_ranges
+from linux_node_bench import JOINT_NODE, PATIENCE_S, RIG, TRUE_RANGE_M, OnMap, keep_arm_at_rest, start_node, used, wrong_ranges
 
 WALL_MM = 1500
 # Three periods of a camera of 2 Hz, and on an emulated processor the answers to the questions beside a node that ranges.
@@ -73,10 +73,11 @@ def check(bench):
     expect("voxels of the camera after more images", of_camera, daemon.status()["map"]["known_voxels"])
     expect("readings by then", 0, used(daemon.status(), "readings"))
     node = start_node(bench, "first")
+    is_on_map = OnMap(["first"])
 
     def has_all(status):
         time.sleep(0.3)  # asking costs the node time
-        return used(status, "readings") >= 20 and is_on_map(status, "first")
+        return used(status, "readings") >= 20 and is_on_map(status)
     try:
         daemon.await_status("readings of all sensors on the map", has_all, PATIENCE_S)
     except daemon_bench.CheckFailed:

@@ -6,7 +6,7 @@ import time
 
 import daemon_bench
 from daemon_bench import claim, expect
-from linux_node_bench import PATIENCE_S, RIG, TRUE_RANGE_M, is_on_map, keep_arm_at_rest, start_node, used, wrong_ranges
+from linux_node_bench import PATIENCE_S, RIG, TRUE_RANGE_M, OnMap, keep_arm_at_rest, start_node, used, wrong_ranges
 
 BOARDS = ("first", "second")
 RESOLUTION_M = 0.04
@@ -20,11 +20,11 @@ def check(bench):
     nodes, known = [], []
     for count, board in enumerate(BOARDS, 1):
         nodes.append(start_node(bench, board))
-        before = used(daemon.status(), "readings")
+        before, are_on_map = used(daemon.status(), "readings"), OnMap(BOARDS[:count])
 
         def has_all(status):
             time.sleep(0.5)  # asking costs the nodes time
-            return used(status, "readings") >= before + READINGS and all(is_on_map(status, board) for board in BOARDS[:count])
+            return are_on_map(status) and used(status, "readings") >= before + READINGS
         try:
             daemon.await_status(f"the readings of {count} nodes on the map", has_all, PATIENCE_S)
         except daemon_bench.CheckFailed:

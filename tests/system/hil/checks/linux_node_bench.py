@@ -48,11 +48,22 @@ def node_of(status, board):
     return status["nodes"][("first", "second").index(board)]
 
 
-def is_on_map(status, board):
-    """It is usable, five readings of each of its sensors came, and the newest of those that see something at rest are on the map."""
-    node = node_of(status, board)
-    return (node["verdict"] == "usable" and all(sensor["received"] >= 5 for sensor in node["sensors"]) and
-            all(node["sensors"][sensor]["rejected"] is None for sensor in TRUE_RANGE_M[board]))
+class OnMap:
+    """Whether some boards are: each is usable, five readings of each of its sensors came, and of each that sees something at rest one
+    was on the map when we looked."""
+
+    def __init__(self, boards):
+        self.boards = boards
+        self.missing = {(board, sensor) for board in boards for sensor in TRUE_RANGE_M[board]}
+
+    def __call__(self, status):
+        nodes = {board: node_of(status, board) for board in self.boards}
+        for board, number in list(self.missing):
+            sensor = nodes[board]["sensors"][number]
+            if sensor["received"] > 0 and sensor["rejected"] is None:
+                self.missing.remove((board, number))
+        return not self.missing and all(node["verdict"] == "usable" and all(sensor["received"] >= 5 for sensor in node["sensors"])
+                                        for node in nodes.values())
 
 
 def wrong_ranges(status, board):
