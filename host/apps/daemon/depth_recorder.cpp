@@ -47,6 +47,13 @@ class DepthRecorder::Work {
         changed_.notify_all();
         return true;
     }
+    void begin() {
+        {
+            const std::lock_guard lock(mutex_);
+            may_begin_ = true;
+        }
+        changed_.notify_all();
+    }
     /// After what waits, or at once.
     void end(bool is_at_once) {
         {
@@ -65,8 +72,8 @@ class DepthRecorder::Work {
     /// Empty once no frame will come.
     [[nodiscard]] std::optional<DepthFrame> next() {
         std::unique_lock lock(mutex_);
-        changed_.wait(lock, [this] { return !waiting_.empty() || is_finishing_; });
-        if (waiting_.empty() || is_dropped_) return std::nullopt;
+        changed_.wait(lock, [this] { return (may_begin_ && !waiting_.empty()) || is_finishing_; });
+        if (waiting_.empty() || is_dropped_ || !may_begin_) return std::nullopt;
         DepthFrame frame = std::move(waiting_.front());
         waiting_.pop_front();
         waiting_bytes_ -= bytes_of(frame);
@@ -91,6 +98,7 @@ class DepthRecorder::Work {
     std::condition_variable changed_;
     std::deque<DepthFrame> waiting_;
     std::size_t waiting_bytes_ = 0;
+    bool may_begin_ = false;
     bool is_finishing_ = false;
     bool is_dropped_ = false;
     std::string error_;
@@ -103,6 +111,10 @@ DepthRecorder::DepthRecorder(std::filesystem::path oni, std::filesystem::path ep
 DepthRecorder::~DepthRecorder() {
     work_->end(true);
     (void)thread_.end(kDropPatience);
+}
+
+void DepthRecorder::begin() {
+    work_->begin();
 }
 
 bool DepthRecorder::add(const DepthFrame& frame) {

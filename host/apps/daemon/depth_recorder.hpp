@@ -16,7 +16,7 @@ class DepthRecorder {
     /// What may wait, in bytes of pixels: about 10 s of 512 x 424 at 30 Hz.
     static constexpr std::size_t kWaitingMax = std::size_t{128} << 20U;
 
-    /// Makes the file with the first frame.
+    /// Touches nothing until `begin`; then makes the file with the first frame.
     DepthRecorder(std::filesystem::path oni, std::filesystem::path epoch);
     /// Drops what waits, unless `finish` was called and has ended. Within 0.1 s: a write that hangs is left
     /// behind.
@@ -24,6 +24,8 @@ class DepthRecorder {
     DepthRecorder(const DepthRecorder&) = delete;
     DepthRecorder& operator=(const DepthRecorder&) = delete;
 
+    /// From now on the files may be made: whose folder that is has been found out.
+    void begin();
     /// Frames of one size, in the order of their times. False if there is no room, or recording failed. Never
     /// waits.
     [[nodiscard]] bool add(const DepthFrame& frame);

@@ -85,6 +85,7 @@ void Inputs::prepare_for(const HostRig& rig) {
     camera_->end();
     while (auto frame = camera_->take()) take_depth(std::move(*frame));  // no more than wait there
     camera_leaving_ = std::move(camera_);
+    depth_untimed_ = 0;
     camera_missing_ = {};
     camera_missing_.begun = monotonic_now();
     camera_missing_.why = "it is being let go of, to be opened in another mode";

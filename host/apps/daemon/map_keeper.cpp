@@ -15,6 +15,8 @@
 namespace octoskin {
 namespace {
 
+constexpr float kLogOddsMax = 100.0F;  // a mapping file may say no more
+
 constexpr const char* kMapFile = "fused.ot";
 constexpr const char* kSmallMapFile = "fused.bt";
 constexpr std::uint64_t kBytesPerNode = 5;  ///< of an .ot file: log-odds, and which children there are
@@ -64,7 +66,11 @@ Result<std::optional<FusedMap>, AppError> MapKeeper::load(const MapConfig& confi
     if (error) return fail(ExitCode::no_input, file.string() + ": " + error.message());
     if (!is_there) return std::optional<FusedMap>{};
     const std::uint64_t bytes_max = file_bytes_max(config);
-    auto map = load_map(file, {.map = config, .nodes_max = bytes_max / kBytesPerNode}, bytes_max);
+    // Whatever a mapping may have clamped to: the map goes on within other clamps, as at a reload.
+    MapConfig any_clamps = config;
+    any_clamps.log_odds_min = -kLogOddsMax;
+    any_clamps.log_odds_max = kLogOddsMax;
+    auto map = load_map(file, {.map = any_clamps, .nodes_max = bytes_max / kBytesPerNode}, bytes_max);
     if (!map && map.error().is_too_large) {
         return fail(
             ExitCode::bad_data,
@@ -78,6 +84,7 @@ Result<std::optional<FusedMap>, AppError> MapKeeper::load(const MapConfig& confi
                                             std::to_string(map->resolution_m()) + " m, the mapping's are " +
                                             std::to_string(config.resolution_m) + " m");
     }
+    map->limit(config);
     return std::optional(std::move(map).value());
 }
 

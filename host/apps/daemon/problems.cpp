@@ -220,8 +220,9 @@ void add_map(const DaemonView& view, Problems& problems) {
         problems.push_back({"recording failed", "the recording has failed: " + view.recorder->error()});
     } else if (view.recorder != nullptr && !view.recorder->is_complete()) {
         problems.push_back({"recording incomplete",
-                            "the recording lacks something that came too fast for the disk: its replay gives "
-                            "another map"});
+                            "the recording lacks something, and its replay gives another map: "
+                            "recording.lost_commits and lost_depth (the disk was too slow, there was no "
+                            "memory, or depth lay beyond 32.767 m)"});
     }
     if (!view.recording_refusal.empty())
         problems.push_back(

@@ -9,6 +9,8 @@
 #include <new>
 #include <system_error>
 
+#include "host/apps/daemon/clocks.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -62,9 +64,8 @@ std::string RecordRequests::start(const std::string& arguments, const RecordedSe
 
 void RecordRequests::finish(Nanoseconds patience) {
     if (!recorder_ || recorder_->has_ended()) return;
-    const bool is_whole = recorder_->wait(patience);
-    const std::string why = is_whole ? recorder_->error() : "the disk took too long";
-    if (!why.empty()) spdlog::error("the recording is not whole: {}", why);
+    if (!recorder_->wait(patience)) spdlog::error("the recording is not whole: the disk took too long");
+    recorder_->attend(monotonic_now());
 }
 
 }  // namespace octoskin

@@ -33,6 +33,17 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
             .first_map = copier(*pipeline.maps().fused())};
 }
 
+/// What `add` says; false if there was no memory for it. What it was told of is on the map by then: it is
+/// lost to the recording alone.
+template <class Add>
+bool has_memory_for(const Add& add) {
+    try {
+        return add();
+    } catch (const std::bad_alloc&) {
+        return false;
+    }
+}
+
 /// OpenNI2's recorder keeps depth up to 32.767 m. A larger one is no value to most rigs anyhow.
 bool is_storable(const DepthFrame& frame, double depth_max_m) {
     constexpr double kMmPerM = 1000.0;
@@ -69,12 +80,15 @@ void Recorder::on_can(const wire::CanFrame& frame, WallTime stamp) {
     if (stopped_) return;
     entry_.stamp = stamp;
     entry_.frame = frame;
-    ++(writer_.add_can(candump::format_line(entry_)) ? can_frames_ : counts_.lost_can);
+    const bool is_taken = has_memory_for([&] { return writer_.add_can(candump::format_line(entry_)); });
+    ++(is_taken ? can_frames_ : counts_.lost_can);
 }
 
 void Recorder::put(const Commit& commit) {
     ++counts_.commits;
-    counts_.lost_commits += writer_.add_order(orderlog::format_commit(commit, joints_)) ? 0U : 1U;
+    const bool is_taken =
+        has_memory_for([&] { return writer_.add_order(orderlog::format_commit(commit, joints_)); });
+    counts_.lost_commits += is_taken ? 0U : 1U;
 }
 
 void Recorder::on_reading(const RangeMeasurement& measurement, const Beam&, std::span<const VoxelUpdate>) {
@@ -83,7 +97,7 @@ void Recorder::on_reading(const RangeMeasurement& measurement, const Beam&, std:
 
 void Recorder::on_depth(const DepthFrame& frame, std::span<const VoxelUpdate>) {
     DepthCommit commit{std::nullopt, frame.captured};
-    if (is_storable(frame, depth_max_m_) && writer_.add_depth(frame)) {
+    if (is_storable(frame, depth_max_m_) && has_memory_for([&] { return writer_.add_depth(frame); })) {
         commit.index = depth_frames_++;
     } else {
         ++counts_.lost_depth;
@@ -97,7 +111,7 @@ void Recorder::on_time_back() {
 }
 
 void Recorder::attend(HostTime now) {
-    if (stopped_) return;
+    if (stopped_) return tell_end();
     const bool is_long_enough = limit_ && now - begun_ >= *limit_;
     if (is_long_enough || !writer_.error().empty()) stop(now);
 }
@@ -121,10 +135,17 @@ void Recorder::stop(HostTime now) {
     pipeline_->tell(nullptr);
     pipeline_ = nullptr;
     writer_.finish(std::move(end));
-    if (const std::string why = error(); !why.empty()) {
+    tell_end();
+}
+
+void Recorder::tell_end() {
+    const std::string why = error();
+    if (is_end_told_ || (why.empty() && !has_ended())) return;
+    is_end_told_ = true;
+    if (!why.empty()) {
         spdlog::error("the recording has failed: {}", why);
     } else {
-        spdlog::info("recorded {:.1f} s to {}", seconds_of(now - begun_), folder_.string());
+        spdlog::info("recorded {:.1f} s to {}", seconds_of(*stopped_ - begun_), folder_.string());
     }
 }
 

@@ -54,8 +54,8 @@ class Recorder final : public CommitListener {
     [[nodiscard]] bool has_ended() const { return writer_.has_ended(); }
     /// For a person; empty: all is well so far.
     [[nodiscard]] std::string error() const { return writer_.error(); }
-    /// Something that the map was made of could not be recorded.
-    [[nodiscard]] bool is_complete() const noexcept { return counts_.is_complete(); }
+    /// All that the map was made of could be recorded so far.
+    [[nodiscard]] bool is_complete() const { return counts_.is_complete() && error().empty(); }
     [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
     [[nodiscard]] nlohmann::ordered_json to_json(HostTime now) const;
 
@@ -74,6 +74,8 @@ class Recorder final : public CommitListener {
     [[nodiscard]] std::optional<FusedMap> last_map() const;
     /// What was rejected since the begin, by name.
     [[nodiscard]] std::string remarks() const;
+    /// Once it has: how it ended.
+    void tell_end();
 
     Copier copier_;
     std::filesystem::path folder_;
@@ -82,6 +84,7 @@ class Recorder final : public CommitListener {
     double depth_max_m_;
     HostTime begun_;
     std::optional<HostTime> stopped_;
+    bool is_end_told_ = false;
     Pipeline* pipeline_;
     std::vector<AccountTable> accounts_at_begin_;
     candump::LogEntry entry_;

@@ -171,6 +171,7 @@ Status<std::string> RecordingWriter::Work::record() {
     const auto lock = FileLock::take(begin_.paths.directory, FileLock::Kind::exclusive);
     if (!lock) return unexpected(begin_.paths.directory.string() + ": another octoskin is writing here");
     if (const Step begun = begin(); !begun) return begun;
+    depth_.begin();
     while (!rest()) {
         if (const Step written = write_waiting(); !written) return written;
         if (std::string error = depth_.error(); !error.empty()) return unexpected(std::move(error));

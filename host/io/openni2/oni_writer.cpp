@@ -33,13 +33,20 @@ Result<OniWriter, DepthSourceError> OniWriter::create(const std::filesystem::pat
     // An old sidecar must not vouch for a recording that is not finished.
     std::error_code ignored;
     for (const auto& stale : {oni, epoch}) std::filesystem::remove(stale, ignored);
-    auto process = HelperProcess::start(*program, {oni.string()}, HelperPipe::its_input);
+    auto process =
+        HelperProcess::start(*program, {oni.string()}, HelperPipe::its_input, HelperComplaints::kept);
     if (!process) return failure(process.error());
     if (const auto written = FramePipe(process->descriptor(), kWritePatience).write_header({.size = size});
         !written) {
         return failure(name(written.error()));
     }
     return OniWriter(oni, epoch, size, std::move(*process));
+}
+
+/// Its own last words tell more than how it ended.
+std::string OniWriter::why(const std::string& how) {
+    const std::string complaint = helper_.complaint();
+    return complaint.empty() ? how : complaint;
 }
 
 Status<DepthSourceError> OniWriter::write(HostTime captured, std::span<const std::uint16_t> depth_mm) {
@@ -53,18 +60,18 @@ Status<DepthSourceError> OniWriter::write(HostTime captured, std::span<const std
     }
     const auto since_first = static_cast<std::uint64_t>((whole_us - epoch_.first_frame).count() / 1000);
     const auto written = FramePipe(helper_.descriptor(), kWritePatience).write_frame(since_first, storable);
-    if (!written) return failure(name(written.error()));
+    if (!written) return failure(why(name(written.error())));
     ++epoch_.frames;
     return Done{};
 }
 
 Status<DepthSourceError> OniWriter::close() {
     if (const auto written = FramePipe(helper_.descriptor(), kWritePatience).write_end(); !written) {
-        return failure(name(written.error()));
+        return failure(why(name(written.error())));
     }
     helper_.close_pipe();
     const auto patience = kWritePatience + kPatiencePerFrame * static_cast<std::int64_t>(epoch_.frames);
-    if (const auto how = helper_.wait(patience)) return failure("the recorder failed: " + *how);
+    if (const auto how = helper_.wait(patience)) return failure("the recorder failed: " + why(*how));
     return write_epoch(epoch_file_, epoch_);
 }
 

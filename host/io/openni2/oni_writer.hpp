@@ -37,6 +37,7 @@ class OniWriter {
     OniWriter(std::filesystem::path oni, std::filesystem::path epoch, FrameSize size, HelperProcess helper)
         : oni_(std::move(oni)), epoch_file_(std::move(epoch)), size_(size), helper_(std::move(helper)) {}
     [[nodiscard]] Unexpected<DepthSourceError> failure(const std::string& what) const;
+    [[nodiscard]] std::string why(const std::string& how);
 
     std::filesystem::path oni_;
     std::filesystem::path epoch_file_;

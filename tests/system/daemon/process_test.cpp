@@ -1,10 +1,17 @@
 // The daemon as a process: how it begins, takes new settings and goes on after it was killed; and a second
 // one.
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
+#include <chrono>
 #include <csignal>
+#include <cstdlib>
+#include <string_view>
 
+#include "host/apps/daemon/unix_socket.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
 
@@ -106,6 +113,53 @@ TEST_F(DaemonTest, refuses_a_reload_with_another_resolution_and_keeps_the_map) {
     EXPECT_TRUE(has_problem(daemon_->status(), "move it away"));
     EXPECT_GE(daemon_->status()["map"]["known_voxels"].get<int>(), voxels) << "the map did not go on";
     EXPECT_EQ(daemon_->status()["reloads"]["count"], 0);
+}
+
+/// What systemd would have of it (sd_notify(3)).
+class ServiceManager {
+  public:
+    explicit ServiceManager(const std::filesystem::path& file)
+        : socket_(*bind_unix_socket(file, SOCK_DGRAM)) {
+        ::setenv("NOTIFY_SOCKET", file.c_str(), 1);
+        ::setenv("WATCHDOG_USEC", "400000", 1);
+    }
+    ~ServiceManager() {
+        ::unsetenv("NOTIFY_SOCKET");
+        ::unsetenv("WATCHDOG_USEC");
+        ::close(socket_);
+    }
+    ServiceManager(const ServiceManager&) = delete;
+    ServiceManager& operator=(const ServiceManager&) = delete;
+    /// Reads on until it is told so.
+    [[nodiscard]] bool is_told(const std::string& what, std::chrono::milliseconds patience) const {
+        const auto end = std::chrono::steady_clock::now() + patience;
+        while (std::chrono::steady_clock::now() < end) {
+            pollfd readable{socket_, POLLIN, 0};
+            std::array<char, 1024> text{};
+            if (::poll(&readable, 1, 50) <= 0) continue;
+            const ssize_t count = ::recv(socket_, text.data(), text.size(), 0);
+            if (count > 0 && std::string_view(text.data(), static_cast<std::size_t>(count)).find(what) !=
+                                 std::string::npos)
+                return true;
+        }
+        return false;
+    }
+
+  private:
+    int socket_;
+};
+
+TEST_F(DaemonTest, tells_its_service_manager_of_readiness_life_reloads_and_its_end) {
+    const ServiceManager manager(folder_ / "notify");
+    start();
+    EXPECT_TRUE(manager.is_told("READY=1", 10s)) << daemon_->log();
+    for (int i = 0; i < 5; ++i) EXPECT_TRUE(manager.is_told("WATCHDOG=1", 400ms)) << "it would be killed";
+    daemon_->signal(SIGHUP);
+    EXPECT_TRUE(manager.is_told("RELOADING=1", 2s));
+    EXPECT_TRUE(manager.is_told("READY=1", 2s));
+    daemon_->signal(SIGTERM);
+    EXPECT_TRUE(manager.is_told("STOPPING=1", 2s));
+    EXPECT_EQ(daemon_->wait(5s), 0);
 }
 
 TEST_F(DaemonTest, refuses_a_second_one_on_the_same_maps_and_names_the_first) {

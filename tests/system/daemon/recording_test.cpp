@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 #include "host/apps/daemon/control_socket.hpp"
@@ -149,6 +150,39 @@ TEST_F(DaemonRecording, ends_whole_when_the_rig_is_read_again) {
         daemon_->wait_until([](const Json& status) { return status["recording"]["state"] == "ended"; }, 5s))
         << daemon_->status()["recording"].dump();
     expect_own_map();
+}
+
+/// The recorder of OpenNI2 has them all in its memory until the end: it outlives the daemon for as long as
+/// that takes.
+TEST_F(DaemonRecording, of_a_killed_daemon_has_its_depth_frames) {
+    const auto wall = record_wall(folder_, 24);
+    start({"--camera", wall.string()});
+    const auto depth_frames = [](const Json& now) {
+        return now.value(Json::json_pointer("/recording/depth_frames"), 0);
+    };
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    ASSERT_TRUE(ask("record start 0 " + out())["ok"].get<bool>());
+    ASSERT_TRUE(daemon_->wait_until([&](const Json& now) { return depth_frames(now) >= 8; }, 15s))
+        << daemon_->log();
+    daemon_->signal(SIGKILL);
+    EXPECT_EQ(daemon_->wait(5s), -SIGKILL);
+    const std::string is_at_work = "pgrep -f '[o]ctoskin-oni-write " + out() + "' > /dev/null";
+    for (int i = 0; i < 100 && std::system(is_at_work.c_str()) == 0; ++i) std::this_thread::sleep_for(100ms);
+    std::istringstream order(ScratchFolder::read(out() + "/order.log"));
+    std::string first_frame_us;
+    int frames = 0;
+    for (std::string line; std::getline(order, line);) {
+        if (!line.starts_with("D ")) continue;
+        if (++frames == 1) first_frame_us = std::to_string(std::stoll(line.substr(line.rfind(' '))) / 1000);
+    }
+    ASSERT_GE(frames, 5);
+    std::ofstream(out() + "/meta.yaml") << "schema: octoskin-recording/1\nsource: robot\n";
+    std::ofstream(out() + "/depth.epoch.yaml")
+        << "schema: octoskin-depth-epoch/1\nfirst_frame_us: " << first_frame_us << "\nframes: " << frames
+        << "\n";
+    const Ran replay = run("replay " + out() + " --fused-only");
+    EXPECT_EQ(replay.exit_code, 0) << replay.output;
+    EXPECT_TRUE(std::filesystem::exists(out() + "/maps/fused.ot"));
 }
 
 TEST_F(DaemonRecording, of_a_killed_daemon_can_be_replayed_to_its_last_line) {

@@ -20,9 +20,9 @@ constexpr rlim_t kMemoryMax = rlim_t{2} << 30U;
 
 }  // namespace
 
-void limit_this_process() {
+void limit_this_process(Orphan orphan) {
     std::signal(SIGPIPE, SIG_IGN);
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (orphan == Orphan::is_killed) ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
     const rlimit memory{kMemoryMax, kMemoryMax};

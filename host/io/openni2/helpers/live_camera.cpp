@@ -48,7 +48,10 @@ int watch(DepthStream& depth, const char* uri, const std::optional<CameraMode>& 
         playback->setRepeatEnabled(true);
         playback->setSpeed(1.0F);
     }
-    return depth.start(mode) ? stream_frames(depth, descriptor) : 1;
+    if (!depth.start(mode)) return 1;
+    // One would be shown without a pause, for nothing tells how long it shall stand.
+    if (depth.is_file() && depth.frame_count() < 2) return depth.complain("it has fewer than two frames");
+    return stream_frames(depth, descriptor);
 }
 
 int list_cameras(int descriptor) {

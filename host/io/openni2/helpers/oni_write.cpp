@@ -2,6 +2,7 @@
 // OpenNI2's recorder.
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <deque>
@@ -86,7 +87,9 @@ int main(int argc, char** argv) {
             stderr);
         return 2;
     }
-    octoskin::openni2::limit_this_process();
+    // The frames of a daemon that was killed are here, and nowhere else: they go to the file yet.
+    octoskin::openni2::limit_this_process(octoskin::openni2::Orphan::goes_on);
+    std::signal(SIGTERM, SIG_IGN);
     // OpenNI2 changes the working directory while it loads its drivers.
     const auto file = std::filesystem::absolute(argv[1]);
     const std::string what = octoskin::openni2::record(file);

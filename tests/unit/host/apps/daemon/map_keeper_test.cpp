@@ -245,6 +245,20 @@ TEST(MapKeeper, loads_any_map_that_it_saved_with_the_same_memory) {
     }
 }
 
+TEST(MapKeeper, goes_on_with_a_map_that_was_saved_with_wider_clamps) {
+    const testing_support::ScratchFolder folder;
+    MapKeeper keeper(folder.path());
+    EXPECT_TRUE(keeper.save(some_map(30)));
+    ASSERT_TRUE(keeper.finish(kPatience));
+    const MapConfig tighter{.log_odds_min = -0.1F, .log_odds_max = 0.5F};
+    const auto loaded = keeper.load(tighter);
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    EXPECT_EQ((*loaded)->known_voxels(), 30U);
+    EXPECT_EQ((*loaded)->log_odds({32768, 32768, 32700}), 0.5F);
+    EXPECT_EQ((*loaded)->log_odds({32775, 32768, 32700}), -0.1F);
+    EXPECT_EQ((*loaded)->config(), tighter);
+}
+
 TEST(MapKeeper, says_what_to_do_about_a_map_that_was_saved_with_more_memory) {
     const testing_support::ScratchFolder folder;
     MapKeeper keeper(folder.path());

@@ -381,9 +381,11 @@ TEST_F(ProblemsTest, have_a_recording_that_is_not_complete) {
     view_.recorder = &recorder;
     EXPECT_THAT(all_told(), IsEmpty());
     recorder.on_depth(flat_frame(4.5, 39'000), {});  // more than a recording can hold
-    EXPECT_THAT(all_told(),
-                ElementsAre("the recording lacks something that came too fast for the disk: its replay "
-                            "gives another map"));
+    EXPECT_THAT(
+        all_told(),
+        ElementsAre("the recording lacks something, and its replay gives another map: "
+                    "recording.lost_commits and lost_depth (the disk was too slow, there was no memory, "
+                    "or depth lay beyond 32.767 m)"));
 }
 
 }  // namespace

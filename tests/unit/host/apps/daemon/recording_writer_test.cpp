@@ -65,6 +65,24 @@ class RecordingWriterTest : public testing::Test {
     testing_support::ScratchFolder folder_;
 };
 
+/// Depth frames come from the first moment on, before anybody has looked at the folder.
+TEST_F(RecordingWriterTest, leaves_alone_what_is_in_a_folder_that_it_refuses) {
+    std::filesystem::create_directories(folder_ / "recording");
+    for (const char* const name : {"depth.oni", "depth.epoch.yaml"})
+        folder_.write(std::string("recording/") + name, "somebody's own");
+    DepthFrame frame;
+    frame.width = frame.height = 8;
+    frame.depth_mm.assign(64, 1'000);
+    for (int round = 0; round < 10; ++round) {
+        RecordingWriter writer(begin());
+        (void)writer.add_depth(frame);
+        ASSERT_TRUE(writer.wait(kPatience));
+        EXPECT_NE(writer.error().find("is not empty"), std::string::npos) << writer.error();
+    }
+    EXPECT_EQ(read("depth.oni"), "somebody's own");
+    EXPECT_EQ(read("depth.epoch.yaml"), "somebody's own");
+}
+
 TEST_F(RecordingWriterTest, writes_what_came_before_the_end_and_vouches_for_it_last) {
     RecordingWriter writer(begin());
     ASSERT_TRUE(writer.add_can("(1.000000) can0 001#\n"));
