@@ -66,20 +66,23 @@ JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, 
     auto& sample = samples_[sequence_of(frame)];
     const std::uint8_t part = part_of(frame);
     if (sample && sample->parts[part]) {
-        if (*sample->parts[part] == frame) {
+        const bool is_equal = *sample->parts[part] == frame;
+        // Equal, but not to the frame before: the next round's, of a sample that is never complete.
+        if (is_equal && (sample->is_complete || sample->newest_part == part)) {
             outcome.is_repeated = true;
             return outcome;
         }
         if (!sample->is_complete) {
-            outcome.given_up.push_back(JointReason::contradictory);
+            outcome.given_up.push_back(is_equal ? JointReason::incomplete : JointReason::contradictory);
         }
         sample.reset();
     }
     if (!sample) {
-        sample = Sample{.opened = now, .is_complete = false, .parts = {}};
+        sample = Sample{.opened = now, .parts = {}};
         outcome.opened = true;
     }
     sample->parts[part] = frame;
+    sample->newest_part = part;
     const auto is_here = [](const auto& entry) { return entry.has_value(); };
     if (std::ranges::all_of(sample->parts, is_here)) {
         sample->is_complete = true;

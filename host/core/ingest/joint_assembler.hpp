@@ -46,6 +46,7 @@ class JointAssembler {
     struct Sample {
         HostTime opened;
         bool is_complete = false;  ///< kept, so that a repeated frame does not open it again
+        std::uint8_t newest_part = 0;
         std::array<std::optional<wire::JointState>, kParts> parts;
     };
     void give_up_stale(HostTime now, Outcome& outcome);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <random>
 
@@ -86,6 +87,30 @@ TEST(JointAssembler, never_mixes_frames_of_two_rounds) {
         EXPECT_EQ(third.given_up, std::vector{JointReason::incomplete});
         EXPECT_TRUE(third.opened);
         EXPECT_FALSE(assembler.on_frame(part(later, 3), ms(10 * later)).complete.has_value());
+    }
+}
+
+// Of an arm of which one joint moves, all at once: a frame of one sample is lost, and all of the seven after
+// it.
+TEST(JointAssembler, never_mixes_two_rounds_of_a_burst) {
+    for (const int lost : {1, 2, 3}) {
+        JointAssembler assembler(kRate);
+        const auto moving = [lost](int n, int index) {
+            wire::JointState frame = part(index == lost ? n : 0, index);
+            std::visit([n](auto& of_sample) { of_sample.sequence = static_cast<std::uint8_t>(n % 8); },
+                       frame);
+            return frame;
+        };
+        for (int index = 0; index < 4; ++index) {
+            if (index != lost) (void)assembler.on_frame(moving(7, index), ms(10));
+        }
+        std::vector<JointReason> given_up;
+        for (int index = 0; index < 4; ++index) {
+            const auto outcome = assembler.on_frame(moving(15, index), ms(10));
+            std::ranges::copy(outcome.given_up, std::back_inserter(given_up));
+            EXPECT_EQ(outcome.complete.has_value(), index == 3) << lost << ' ' << index;
+        }
+        EXPECT_EQ(given_up, std::vector{JointReason::incomplete}) << lost;
     }
 }
 
