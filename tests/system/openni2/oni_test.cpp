@@ -275,7 +275,6 @@ TEST_F(OniTest, a_writer_whose_helper_ends_early_reports_it_instead_of_dying_of_
 }
 
 TEST_F(OniTest, a_file_that_is_removed_while_it_is_recorded_is_an_error_that_says_so) {
-    testing::internal::CaptureStderr();
     auto writer = OniWriter::create(oni(), epoch(), kSize);
     ASSERT_TRUE(writer);
     for (int i = 0; i < 2000; ++i) ASSERT_TRUE(writer->write(time_of(i), noisy_frame(i % kFrames)));
@@ -289,10 +288,9 @@ TEST_F(OniTest, a_file_that_is_removed_while_it_is_recorded_is_an_error_that_say
         }
     });
     const auto closed = writer->close();
-    const std::string said = testing::internal::GetCapturedStderr();
     ASSERT_FALSE(closed);
-    EXPECT_THAT(closed.error().what, testing::HasSubstr("exit code 1"));
-    EXPECT_THAT(said, testing::HasSubstr("depth.oni: the file was removed while it was recorded"));
+    EXPECT_THAT(closed.error().what,
+                testing::HasSubstr("depth.oni: the file was removed while it was recorded"));
     EXPECT_FALSE(fs::exists(epoch()));
 }
 
