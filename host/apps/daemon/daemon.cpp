@@ -207,9 +207,8 @@ std::string Daemon::Parts::why_map_ends(const Settings& next) const {
     const double now = settings.mapping.map.resolution_m;
     const double wanted = next.mapping.map.resolution_m;
     if (wanted == now) return why_no_room(*pipeline.maps().fused(), next.mapping.map);
-    return (request.map_folder / "fused.ot").string() + ": its voxels are " + std::to_string(now) +
-           " m, the mapping's are " + std::to_string(wanted) +
-           " m; end octoskin, move it away and start octoskin to begin with an empty map";
+    return describe_other_voxels(request.map_folder / "fused.ot", now, wanted) +
+           "; end octoskin, move it away and start octoskin to begin with an empty map";
 }
 
 /// All that may speak against a reload, before anything has changed.

@@ -39,6 +39,11 @@ std::string why_no_room(const FusedMap& map, const MapConfig& next) {
         needed_mib, next.memory_max_mib, needed_mib);
 }
 
+std::string describe_other_voxels(const std::filesystem::path& file, double map_m, double mapping_m) {
+    return file.string() + ": its voxels are " + std::to_string(map_m) + " m, the mapping's are " +
+           std::to_string(mapping_m) + " m";
+}
+
 MapKeeper::MapKeeper(std::filesystem::path folder, Writer writer, Copier copier)
     : copier_(std::move(copier)), work_(std::make_shared<Work>()) {
     work_->folder = std::move(folder);
@@ -80,9 +85,8 @@ Result<std::optional<FusedMap>, AppError> MapKeeper::load(const MapConfig& confi
     }
     if (!map) return fail(ExitCode::bad_data, map.error().message);
     if (map->resolution_m() != config.resolution_m) {
-        return fail(ExitCode::bad_data, file.string() + ": its voxels are " +
-                                            std::to_string(map->resolution_m()) + " m, the mapping's are " +
-                                            std::to_string(config.resolution_m) + " m");
+        return fail(ExitCode::bad_data,
+                    describe_other_voxels(file, map->resolution_m(), config.resolution_m));
     }
     map->limit(config);
     return std::optional(std::move(map).value());

@@ -22,6 +22,10 @@ namespace octoskin {
 /// would refuse it. Empty: it can.
 [[nodiscard]] std::string why_no_room(const FusedMap& map, const MapConfig& next);
 
+/// That the map in `file` has voxels of one size, and the mapping asks for another, metres both.
+[[nodiscard]] std::string describe_other_voxels(const std::filesystem::path& file, double map_m,
+                                                double mapping_m);
+
 struct SaveRecord {
     std::uint64_t saved = 0;
     std::uint64_t failed = 0;
@@ -39,7 +43,8 @@ class MapKeeper {
 
     /// `folder` gets fused.ot and fused.bt; it must be this process's own (FolderLock). What a dead process
     /// left of a save there is removed.
-    explicit MapKeeper(std::filesystem::path folder, Writer writer = write_map, Copier copier = copy_map);
+    explicit MapKeeper(std::filesystem::path folder, Writer writer = write_map,
+                       Copier copier = &FusedMap::copy);
     /// A save that the disk does not let go of is left behind: `finish` first.
     ~MapKeeper();
     MapKeeper(const MapKeeper&) = delete;
@@ -62,7 +67,6 @@ class MapKeeper {
     [[nodiscard]] SaveRecord record() const;
 
     static std::string write_map(const FusedMap& map, const std::filesystem::path& folder);
-    static FusedMap copy_map(const FusedMap& map) { return map.copy(); }
 
   private:
     /// What the thread needs, for as long as it needs it: it may outlive the keeper.

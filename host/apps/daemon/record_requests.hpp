@@ -17,7 +17,7 @@ namespace octoskin {
 
 class RecordRequests {
   public:
-    explicit RecordRequests(Recorder::Copier copier = Recorder::copy_map) : copier_(std::move(copier)) {}
+    explicit RecordRequests(Recorder::Copier copier = &FusedMap::copy) : copier_(std::move(copier)) {}
 
     [[nodiscard]] static bool is_one(const std::string& line) { return line.starts_with("record "); }
     /// A line of JSON: "ok", and "recording" or "error".

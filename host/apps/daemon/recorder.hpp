@@ -36,7 +36,8 @@ class Recorder final : public CommitListener {
     /// there is no memory for a copy of the map, std::system_error if there is no thread to be had; the
     /// pipeline then knows nothing of it.
     Recorder(const std::filesystem::path& folder, std::optional<Nanoseconds> limit,
-             const RecordedSettings& settings, Pipeline& pipeline, HostTime now, Copier copier = copy_map);
+             const RecordedSettings& settings, Pipeline& pipeline, HostTime now,
+             Copier copier = &FusedMap::copy);
     ~Recorder() override;
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
@@ -65,8 +66,6 @@ class Recorder final : public CommitListener {
     void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) override;
     /// Ends it: its replay could not go on from there.
     void on_time_back() override;
-
-    static FusedMap copy_map(const FusedMap& map) { return map.copy(); }
 
   private:
     void put(const Commit& commit);
