@@ -1,6 +1,6 @@
 #!/bin/sh
 # install_test.sh CMAKE BUILD: `cmake --install` stays below its prefix, names it in the units, leaves settings that somebody
-# changed, installs a program that finds its data, and documents whose links lead somewhere.
+# changed, installs a program that finds its data and its module, and documents whose links lead somewhere.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -13,6 +13,18 @@ for name in octoskin octoskin-node; do
 done
 "$folder/prefix/bin/octoskin" rig "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml" > /dev/null
 "$folder/prefix/bin/octoskin" simulate --help | grep -qF "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml"
+# A world is read by a module, so that nothing else waits for the libraries behind it; without the module that is said.
+ldd "$folder/prefix/bin/octoskin" > "$folder/libraries"
+if grep -q sdformat "$folder/libraries"; then exit 1; fi
+simulate() {
+    "$folder/prefix/bin/octoskin" simulate "$folder/$1" --rig "$folder/prefix/share/octoskin/hw/rigs/bench_one_board.yaml" \
+        --scenario "$folder/prefix/share/octoskin/hw/worlds/bench.scenario.yaml" > "$folder/log" 2>&1
+}
+simulate recording
+mv "$folder/prefix/libexec/octoskin/octoskin-sdf.so" "$folder/module"
+if simulate none; then exit 1; fi
+grep -q "what reads SDF files cannot be loaded: octoskin-sdf.so: .* install octoskin anew" "$folder/log"
+mv "$folder/module" "$folder/prefix/libexec/octoskin/octoskin-sdf.so"
 /usr/bin/python3 "$(dirname "$0")/links_test.py" "$folder/prefix/share/doc/octoskin"
 documents=$folder/prefix/share/doc/octoskin
 grep -qF "](../packaging/README.md)" "$documents/docs/daemon.md"

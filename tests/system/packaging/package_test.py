@@ -14,7 +14,7 @@ PROGRAMS = {"usr/bin/octoskin", "usr/bin/octoskin-node", f"{HELPERS}/octoskin-ca
             f"{HELPERS}/octoskin-oni-read", f"{HELPERS}/octoskin-oni-write"}
 LINKS = {"usr/share/doc/octoskin/hw", f"{HELPERS}/openni2/libOpenNI2.so.0", f"{HELPERS}/openni2/OpenNI2/Drivers/libOniFile.so.0"}
 SETTINGS = {"etc/default/octoskin", "etc/default/octoskin-node"}
-OTHERS = {f"{HELPERS}/openni2/OpenNI2/Drivers/libOctoskinVirtual.so.0",
+OTHERS = {f"{HELPERS}/octoskin-sdf.so", f"{HELPERS}/openni2/OpenNI2/Drivers/libOctoskinVirtual.so.0",
           "usr/lib/systemd/system/octoskin.service", "usr/lib/systemd/system/octoskin-node.service",
           "usr/lib/sysusers.d/octoskin.conf", "usr/lib/udev/rules.d/60-octoskin-node.rules",
           "usr/share/man/man1/octoskin.1.gz", "usr/share/man/man1/octoskin-node.1.gz",

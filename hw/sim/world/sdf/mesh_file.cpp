@@ -1,4 +1,4 @@
-#include "hw/sim/world/mesh_file.hpp"
+#include "hw/sim/world/sdf/mesh_file.hpp"
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>

@@ -1,11 +1,11 @@
-#include "hw/sim/world/sdf_shapes.hpp"
+#include "hw/sim/world/sdf/sdf_shapes.hpp"
 
 #include <cmath>
 #include <ignition/math/eigen3/Conversions.hh>
 #include <sdf/sdf.hh>
 #include <string_view>
 
-#include "hw/sim/world/mesh_file.hpp"
+#include "hw/sim/world/sdf/mesh_file.hpp"
 #include "hw/sim/world/shapes.hpp"
 
 namespace octoskin::sim {
