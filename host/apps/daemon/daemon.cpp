@@ -19,6 +19,7 @@
 #include "host/apps/daemon/problem_log.hpp"
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/daemon/status.hpp"
+#include "host/io/mapfile/map_file.hpp"
 
 namespace octoskin {
 namespace {

@@ -15,17 +15,8 @@
 namespace octoskin {
 namespace {
 
-constexpr float kLogOddsMax = 100.0F;  // a mapping file may say no more
-
 constexpr const char* kMapFile = "fused.ot";
 constexpr const char* kSmallMapFile = "fused.bt";
-constexpr std::uint64_t kBytesPerNode = 5;  ///< of an .ot file: log-odds, and which children there are
-
-/// A brick of 512 known voxels takes 2112 bytes of memory, and 585 nodes of a file; one that is alone 13 more
-/// above it. Half as much again as the memory has room for both, the mebibyte for the header of a small one.
-std::uint64_t file_bytes_max(const MapConfig& config) {
-    return (std::uint64_t{config.memory_max_mib} << 20U) * 3 / 2 + (std::uint64_t{1} << 20U);
-}
 
 }  // namespace
 
@@ -37,11 +28,6 @@ std::string why_no_room(const FusedMap& map, const MapConfig& next) {
         "the map takes {} MiB, and map.memory_max_mib is {}: make that {} or more, or end the "
         "daemon and move the saved map away",
         needed_mib, next.memory_max_mib, needed_mib);
-}
-
-std::string describe_other_voxels(const std::filesystem::path& file, double map_m, double mapping_m) {
-    return file.string() + ": its voxels are " + std::to_string(map_m) + " m, the mapping's are " +
-           std::to_string(mapping_m) + " m";
 }
 
 MapKeeper::MapKeeper(std::filesystem::path folder, Writer writer, Copier copier)
@@ -70,25 +56,11 @@ Result<std::optional<FusedMap>, AppError> MapKeeper::load(const MapConfig& confi
     // What cannot be seen may be there: beginning anew would overwrite it.
     if (error) return fail(ExitCode::no_input, file.string() + ": " + error.message());
     if (!is_there) return std::optional<FusedMap>{};
-    const std::uint64_t bytes_max = file_bytes_max(config);
-    // Whatever a mapping may have clamped to: the map goes on within other clamps, as at a reload.
-    MapConfig any_clamps = config;
-    any_clamps.log_odds_min = -kLogOddsMax;
-    any_clamps.log_odds_max = kLogOddsMax;
-    auto map = load_map(file, {.map = any_clamps, .nodes_max = bytes_max / kBytesPerNode}, bytes_max);
-    if (!map && map.error().is_too_large) {
-        return fail(
-            ExitCode::bad_data,
-            fmt::format("{}: it was saved with more memory than the {} MiB of map.memory_max_mib: raise "
-                        "that in the mapping file ({})",
-                        file.string(), config.memory_max_mib, map.error().message));
+    auto map = load_map_of(config, file);
+    if (!map) {
+        const char* const remedy = map.error().is_of_other_voxels ? ": say map.resolution_m as it was" : "";
+        return fail(ExitCode::bad_data, map.error().message + remedy);
     }
-    if (!map) return fail(ExitCode::bad_data, map.error().message);
-    if (map->resolution_m() != config.resolution_m) {
-        return fail(ExitCode::bad_data,
-                    describe_other_voxels(file, map->resolution_m(), config.resolution_m));
-    }
-    map->limit(config);
     return std::optional(std::move(map).value());
 }
 

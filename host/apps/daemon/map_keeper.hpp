@@ -22,10 +22,6 @@ namespace octoskin {
 /// would refuse it. Empty: it can.
 [[nodiscard]] std::string why_no_room(const FusedMap& map, const MapConfig& next);
 
-/// That the map in `file` has voxels of one size, and the mapping asks for another, metres both.
-[[nodiscard]] std::string describe_other_voxels(const std::filesystem::path& file, double map_m,
-                                                double mapping_m);
-
 struct SaveRecord {
     std::uint64_t saved = 0;
     std::uint64_t failed = 0;

@@ -4,8 +4,6 @@
 
 #include <utility>
 
-#include "host/apps/playback/ordered_playback.hpp"
-#include "host/io/mapfile/map_file.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin {
@@ -27,14 +25,9 @@ std::map<BeamSource, std::string> names_of_sources(const rig::Rig& rig) {
     return names;
 }
 
-/// The voxel in the map that the recording begins with.
-Result<std::optional<float>, AppError> log_odds_at_begin(const PlaybackRequest& request, VoxelKey key) {
-    const auto file = request.recording.first_map();
-    std::error_code error;
-    if (!is_played_in_order(request) || !std::filesystem::exists(file, error)) return std::optional<float>{};
-    const auto map = load_map(file, {.map = request.mapping.map});
-    if (!map) return fail(ExitCode::bad_data, map.error().message);
-    return map->log_odds(key);
+/// No room for the voxel: once a map is full it stays so, and all terms for the voxel were refused.
+bool is_without_room(const FusedMap& map, const VoxelWitness& witness) {
+    return map.counters().no_room > 0 && witness.count() > 0 && !map.log_odds(witness.key());
 }
 
 }  // namespace
@@ -49,21 +42,25 @@ Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vect
                                 p_map.y(), p_map.z(), 32768 * grid.resolution_m()));
     }
     if (const auto checked = check_playable(request); !checked) return unexpected(checked.error());
-    const auto begin = log_odds_at_begin(request, *key);
-    if (!begin) return unexpected(begin.error());
-    VoxelWitness witness(*key, request.mapping.map, *begin, contributions_max);
+    VoxelWitness witness(*key, request.mapping.map, contributions_max);
     request.maps = {.depth = false, .proximity = false, .fused = true};
     request.listener = &witness;
     const auto played = play_recording(request, report);
     if (!played) return unexpected(played.error());
     if (auto failure = failure_of(*played)) return unexpected(std::move(*failure));
     const FusedMap& map = *played->pipeline.maps().fused();
+    std::uint64_t no_room = 0;
+    if (is_without_room(map, witness)) {
+        no_room = witness.count();
+        witness = VoxelWitness(*key, request.mapping.map, contributions_max);
+    }
     if (map.log_odds(*key) != witness.log_odds())
         return fail(ExitCode::failed, "the terms do not add up to the voxel's log-odds in the map");
     return Explanation{.p_map = p_map,
                        .centre = map.centre_of(*key),
                        .resolution_m = map.resolution_m(),
                        .occupancy = map.occupancy(*key),
+                       .no_room = no_room,
                        .witness = std::move(witness),
                        .begin = played->outcome.progress.begin,
                        .names = names_of_sources(played->rig),

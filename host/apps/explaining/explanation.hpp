@@ -22,6 +22,8 @@ struct Explanation {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of its voxel, map frame, metres
     double resolution_m = 0.0;
     Occupancy occupancy = Occupancy::unknown;
+    /// Contributions for which the map, full by then, had no room: the witness has none of them.
+    std::uint64_t no_room = 0;
     VoxelWitness witness;
     std::optional<HostTime> begin;            ///< of the recording: times are told from here
     std::map<BeamSource, std::string> names;  ///< "camera", "forearm_3"; with its zone if there are several
@@ -30,7 +32,7 @@ struct Explanation {
 
 /// Replays the recording, as `octoskin replay` would, and watches the voxel at `p_map` (metres, map frame) in
 /// the fused map. Errors: those of the replay; a point outside the octree (usage); terms that do not add up
-/// to the map's log-odds (failed): a map without room.
+/// to the map's log-odds (failed).
 [[nodiscard]] Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vector3d& p_map,
                                                     std::size_t contributions_max,
                                                     const ReplayReport& report = {});

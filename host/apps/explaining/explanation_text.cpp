@@ -65,6 +65,14 @@ std::optional<Share> main_cause(const Explanation& explanation) {
     return cause;
 }
 
+/// What was there before the recording did more, in the direction in which the voxel stands, than any source.
+bool is_mainly_of_before(const Explanation& explanation, const std::optional<Share>& cause) {
+    const double before = static_cast<double>(explanation.witness.begin().value_or(0.0F));
+    const bool is_up = explanation.occupancy == Occupancy::occupied;
+    return (is_up ? before > 0.0 : before < 0.0) &&
+           (!cause || std::abs(before) > std::abs(cause->second.change));
+}
+
 std::string when(const Explanation& explanation, const SourceShare& share) {
     const double first_s = seconds_of(explanation, share.first);
     if (share.first == share.last) return fmt::format("at {:.3f} s", first_s);
@@ -74,6 +82,10 @@ std::string when(const Explanation& explanation, const SourceShare& share) {
 std::string table_of_shares(const Explanation& explanation) {
     std::string text = fmt::format("  {:<24} {:>6} {:>7} {:>9}  {:>9} {:>9}\n", "source", "hits", "misses",
                                    "log-odds", "first s", "last s");
+    if (const auto before = explanation.witness.begin()) {
+        fmt::format_to(std::back_inserter(text), "  {:<24} {:>6} {:>7} {:>+9.4f}\n", "what was there before",
+                       "-", "-", static_cast<double>(*before));
+    }
     for (const auto& [source, share] : by_weight(explanation)) {
         fmt::format_to(std::back_inserter(text), "  {:<24} {:>6} {:>7} {:>+9.4f}  {:>9.3f} {:>9.3f}\n",
                        name_of(explanation, source), share.hits, share.misses, share.change,
@@ -131,9 +143,19 @@ Json json_of(const Explanation& explanation, const Contribution& contribution) {
 }  // namespace
 
 std::string conclusion_of(const Explanation& explanation) {
+    if (explanation.no_room > 0) {
+        return fmt::format(
+            "unknown: the map was full, and had no room for {} to it; raise map.memory_max_mib in the "
+            "mapping file",
+            plural(explanation.no_room, "contribution", "contributions"));
+    }
     if (explanation.witness.count() == 0 && !explanation.witness.begin())
         return "unknown: no reading and no depth frame ever touched it";
     const auto cause = main_cause(explanation);
+    if (is_mainly_of_before(explanation, cause) && explanation.witness.count() > 0) {
+        return fmt::format("{}, mainly by what was there before the recording; {}",
+                           name(explanation.occupancy), about_camera(explanation));
+    }
     if (!cause) {
         const char* why = explanation.witness.begin() ? "as the map had it at the begin of the recording"
                                                       : "by contributions that cancel out";
@@ -158,9 +180,8 @@ std::string to_text(const Explanation& explanation) {
                     explanation.resolution_m, name(explanation.occupancy));
     if (witness.log_odds())
         text += fmt::format(", log-odds {:.4f}", static_cast<double>(*witness.log_odds()));
-    if (witness.begin()) text += fmt::format(" ({:.4f} at the begin)", static_cast<double>(*witness.begin()));
     text += '\n';
-    if (witness.count() > 0) {
+    if (witness.count() > 0 || witness.begin()) {
         text += table_of_shares(explanation);
         if (!witness.newest().empty()) {
             text += fmt::format("the newest {} of {}:\n", witness.newest().size(), witness.count());
@@ -191,6 +212,7 @@ Json to_json(const Explanation& explanation) {
             {"occupancy", name(explanation.occupancy)},
             {"log_odds_at_begin", json_of(explanation.witness.begin())},
             {"log_odds", json_of(explanation.witness.log_odds())},
+            {"contributions_without_room", explanation.no_room},
             {"contributions_in_all", explanation.witness.count()},
             {"sources", std::move(shares)},
             {"contributions", std::move(contributions)},

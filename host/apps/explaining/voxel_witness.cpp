@@ -6,10 +6,6 @@
 
 namespace octoskin {
 
-VoxelWitness::VoxelWitness(VoxelKey key, const MapConfig& config, std::optional<float> begin,
-                           std::size_t kept_max)
-    : key_(key), config_(config), begin_(begin), now_(begin), kept_max_(kept_max) {}
-
 void VoxelWitness::on_reading(const RangeMeasurement& measurement, const Beam& beam,
                               std::span<const VoxelUpdate> updates) {
     Contribution contribution;

@@ -41,16 +41,18 @@ struct SourceShare {
 
 class VoxelWitness final : public CommitListener {
   public:
-    /// `begin`: the voxel's log-odds in the map that this one goes on from; empty: unknown. Of the
-    /// contributions the newest `kept_max` are kept; the shares count all of them.
-    VoxelWitness(VoxelKey key, const MapConfig& config, std::optional<float> begin, std::size_t kept_max);
+    /// Of the contributions the newest `kept_max` are kept; the shares count all of them.
+    VoxelWitness(VoxelKey key, const MapConfig& config, std::size_t kept_max)
+        : key_(key), config_(config), kept_max_(kept_max) {}
 
+    void on_begin(const FusedMap& map) override { begin_ = now_ = map.log_odds(key_); }
     void on_joints(const JointMeasurement&) override {}
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
     void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) override;
 
     [[nodiscard]] VoxelKey key() const noexcept { return key_; }
+    /// The voxel's log-odds in the map that this one goes on from; empty: unknown.
     [[nodiscard]] std::optional<float> begin() const noexcept { return begin_; }
     /// By the same arithmetic as the map's; empty: unknown.
     [[nodiscard]] std::optional<float> log_odds() const noexcept { return now_; }

@@ -15,48 +15,54 @@
 namespace octoskin {
 namespace {
 
-std::uint32_t crc32_of_text(std::string_view text) {
-    return crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+std::uint32_t crc32_of_text(std::string_view text, std::uint32_t before = 0) {
+    return crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, before);
+}
+
+/// Of its .ot file, which is larger than the map: it need not be in the memory beside that.
+std::uint32_t crc32_of_map(const FusedMap& map) {
+    std::uint32_t crc = 0;
+    write_ot(map, [&crc](std::string_view bytes) {
+        crc = crc32_of_text(bytes, crc);
+        return true;
+    });
+    return crc;
 }
 
 Result<FusedMap, AppError> read_first_map(const PlaybackRequest& request, std::uint32_t crc) {
     const auto file = request.recording.first_map();
     if (crc32_of(file) != crc)
         return fail(ExitCode::bad_data, file.string() + ": is not the map that this recording began with");
-    auto map = load_map(file, {.map = request.mapping.map});
-    if (!map) return fail(ExitCode::bad_data, map.error().message);
-    if (map->resolution_m() != request.mapping.map.resolution_m) {
-        return fail(
-            ExitCode::bad_config,
-            fmt::format("{}: its voxels are {} m, the mapping's are {} m; replay with the recording's own "
-                        "mapping, or with --by-capture-time",
-                        file.string(), map->resolution_m(), request.mapping.map.resolution_m));
-    }
-    return std::move(map).value();
+    auto map = load_map_of(request.mapping.map, file);
+    if (map) return std::move(map).value();
+    const bool is_of_other_mapping = map.error().is_of_other_voxels || map.error().is_too_large;
+    if (!is_of_other_mapping) return fail(ExitCode::bad_data, map.error().message);
+    return fail(ExitCode::bad_config,
+                map.error().message + "; replay with the recording's own mapping, or with --by-capture-time");
 }
 
 /// Why the map need not be the daemon's; empty if it must be.
-std::string why_another(const PlaybackRequest& request, const rig::Rig& rig,
-                        const orderlog::OrderReader& order, const OrderedOutcome& outcome) {
+std::string why_another(const rig::Rig& rig, const orderlog::OrderReader& order,
+                        const OrderedPlayback& played) {
+    const OrderedOutcome& outcome = played.outcome;
     if (outcome.order_error || outcome.depth_error) return "the replay did not come to its end";
     if (!order.trailer()) return "order.log was cut off: the daemon was killed; this is its last whole line";
     if (!order.trailer()->is_complete())
         return fmt::format("{} commits and {} depth frames could not be recorded",
                            order.trailer()->lost_commits, order.trailer()->lost_depth);
     if (order.header().rig_hash != rig::rig_hash(rig)) return "another rig was given";
-    if (order.header().mapping_crc32 != crc32_of_text(mapping_text(request.mapping)))
-        return "another configuration was given";
+    if (!played.has_daemons_mapping) return "another configuration was given";
     return outcome.took_all() ? "" : "not everything could be taken: see the account";
 }
 
-void judge(const PlaybackRequest& request, const rig::Rig& rig, const orderlog::OrderReader& order,
-           const FusedMap& map, OrderedPlayback& played) {
-    if (const std::string why = why_another(request, rig, order, played.outcome); !why.empty()) {
+void judge(const rig::Rig& rig, const orderlog::OrderReader& order, const FusedMap& map,
+           OrderedPlayback& played) {
+    if (const std::string why = why_another(rig, order, played); !why.empty()) {
         played.warnings.push_back("the map is not the daemon's own: " + why);
         return;
     }
     const auto& last = order.trailer()->last_map;
-    const bool is_equal = last ? crc32_of_text(encode_ot(map)) == *last : map.known_voxels() == 0;
+    const bool is_equal = last ? crc32_of_map(map) == *last : map.known_voxels() == 0;
     if (is_equal) {
         played.notes.emplace_back("the fused map is the daemon's own, byte for byte");
     } else {
@@ -87,13 +93,16 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
         auto first = read_first_map(request, *order->header().first_map);
         if (!first) return unexpected(first.error());
         pipeline.begin_with(std::move(first).value());
+        if (request.listener != nullptr) request.listener->on_begin(*pipeline.maps().fused());
     }
     PacedCommits paced(*order, request.pace, begin);
-    OrderedPlayback played{replay_in_order(pipeline.builder(), paced, depth, report, begin), {}, {}, {}};
+    OrderedPlayback played{.outcome = replay_in_order(pipeline.builder(), paced, depth, report, begin)};
+    played.has_daemons_mapping =
+        order->header().mapping_crc32 == crc32_of_text(mapping_text(request.mapping));
     played.accounts = {tabulate("readings", played.outcome.readings),
                        tabulate("joint samples", played.outcome.joint_samples),
                        tabulate("depth frames", played.outcome.depth_frames)};
-    judge(request, rig, *order, *pipeline.maps().fused(), played);
+    judge(rig, *order, *pipeline.maps().fused(), played);
     return played;
 }
 

@@ -12,19 +12,20 @@ namespace octoskin {
 
 struct OrderedPlayback {
     OrderedOutcome outcome;
-    std::vector<AccountTable> accounts;
+    bool has_daemons_mapping = false;  ///< what had no room here had none in the daemon
+    std::vector<AccountTable> accounts = {};
     /// Whether the map is the daemon's own, and if not, why.
-    std::vector<std::string> notes;
-    std::vector<std::string> warnings;
+    std::vector<std::string> notes = {};
+    std::vector<std::string> warnings = {};
 };
 
 /// Whether the recording has an order.log and the request asks for nothing else.
 [[nodiscard]] bool is_played_in_order(const PlaybackRequest& request);
 
 /// Plays order.log into the maps of `pipeline`, which has been given nothing, begun with first.ot. Errors: an
-/// order.log of another version or another number of joints; a first.ot that is not the recording's, or of
-/// another resolution than the mapping asks for. `depth`: null if there is none. `begin`: of the recording,
-/// if it is known.
+/// order.log of another version or another number of joints; a first.ot that is not the recording's, of
+/// another resolution than the mapping asks for, or of more memory. `depth`: null if there is none. `begin`:
+/// of the recording, if it is known.
 [[nodiscard]] Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request,
                                                               const rig::Rig& rig, Pipeline& pipeline,
                                                               DepthSource* depth,

@@ -187,9 +187,11 @@ void find_full_maps(Playback& playback) {
         {"fused", playback.pipeline.maps().fused()}};
     for (const auto& [name, map] : maps) {
         if (map == nullptr || map->counters().no_room == 0) continue;
-        playback.is_map_incomplete = true;
+        const bool is_as_daemons = map == playback.pipeline.maps().fused() && playback.is_as_full_as_daemons;
+        playback.is_map_incomplete |= !is_as_daemons;
         playback.warnings.push_back(std::string(name) + ": " + std::to_string(map->counters().no_room) +
-                                    " voxel terms had no room; raise map.memory_max_mib in the mapping file");
+                                    " voxel terms had no room" + (is_as_daemons ? ", as in the daemon" : "") +
+                                    "; raise map.memory_max_mib in the mapping file");
     }
 }
 
@@ -261,7 +263,8 @@ Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& set
                     std::move(played->notes),
                     std::move(played->warnings),
                     false,
-                    std::move(origin)};
+                    std::move(origin),
+                    played->has_daemons_mapping};
 }
 
 }  // namespace

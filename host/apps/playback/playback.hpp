@@ -50,6 +50,8 @@ struct Playback {
     std::vector<std::string> warnings;  ///< what a person should know about this recording
     bool is_map_incomplete = false;     ///< a map had no room for some of its voxels
     MapOrigin origin;                   ///< of its maps, but for the maps' own checksums
+    /// Played in a daemon's order and with its mapping: what had no room in `fused` had none there either.
+    bool is_as_full_as_daemons = false;
 };
 
 /// Why what came of a recording must not be used as a map; empty if nothing speaks against it: a source that

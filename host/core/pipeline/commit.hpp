@@ -29,6 +29,8 @@ using Commit = std::variant<JointMeasurement, RangeMeasurement, DepthCommit>;
 class CommitListener {
   public:
     virtual ~CommitListener() = default;
+    /// Of a replay: the fused map goes on from this one, before anything went in. Not told if it is empty.
+    virtual void on_begin(const FusedMap&) {}
     virtual void on_joints(const JointMeasurement& joints) = 0;
     virtual void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                             std::span<const VoxelUpdate> updates) = 0;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <new>
 #include <system_error>
 
 #include "host/io/mapfile/atomic_file.hpp"
@@ -14,6 +15,15 @@
 
 namespace octoskin {
 namespace {
+
+constexpr float kLogOddsMax = 100.0F;       // a mapping file may say no more
+constexpr std::uint64_t kBytesPerNode = 5;  ///< of an .ot file: log-odds, and which children there are
+
+/// A brick of 512 known voxels takes 2112 bytes of memory, and 585 nodes of a file; one that is alone 13 more
+/// above it. Half as much again as the memory has room for both, the mebibyte for the header of a small one.
+std::uint64_t file_bytes_max_of(const MapConfig& config) {
+    return (std::uint64_t{config.memory_max_mib} << 20U) * 3 / 2 + (std::uint64_t{1} << 20U);
+}
 
 Unexpected<MapFileError> fail(const std::filesystem::path& file, const std::string& what,
                               bool is_too_large = false) {
@@ -81,6 +91,11 @@ Status<MapFileError> save_map(const FusedMap& map, const std::filesystem::path& 
     return Done{};
 }
 
+std::string describe_other_voxels(const std::filesystem::path& file, double map_m, double mapping_m) {
+    return file.string() + ": its voxels are " + std::to_string(map_m) + " m, the mapping's are " +
+           std::to_string(mapping_m) + " m";
+}
+
 Result<FusedMap, MapFileError> load_map(const std::filesystem::path& file, const MapReadLimits& limits,
                                         std::uint64_t file_bytes_max) {
     const auto bytes = read_bytes(file, file_bytes_max);
@@ -91,6 +106,31 @@ Result<FusedMap, MapFileError> load_map(const std::filesystem::path& file, const
         return fail(file, map.error().what, fault == MapFault::no_room || fault == MapFault::too_many_nodes);
     }
     return std::move(map).value();
+}
+
+Result<FusedMap, MapFileError> load_map_of(const MapConfig& config, const std::filesystem::path& file) try {
+    const std::uint64_t bytes_max = file_bytes_max_of(config);
+    MapConfig any_clamps = config;
+    any_clamps.log_odds_min = -kLogOddsMax;
+    any_clamps.log_odds_max = kLogOddsMax;
+    auto map = load_map(file, {.map = any_clamps, .nodes_max = bytes_max / kBytesPerNode}, bytes_max);
+    if (!map && map.error().is_too_large) {
+        return fail(file,
+                    fmt::format("it was saved with more memory than the {} MiB of map.memory_max_mib: raise "
+                                "that in the mapping file ({})",
+                                config.memory_max_mib, map.error().message),
+                    true);
+    }
+    if (!map) return map;
+    if (map->resolution_m() != config.resolution_m) {
+        return unexpected(
+            MapFileError{.message = describe_other_voxels(file, map->resolution_m(), config.resolution_m),
+                         .is_of_other_voxels = true});
+    }
+    map->limit(config);
+    return map;
+} catch (const std::bad_alloc&) {
+    return fail(file, "there is no memory to read it");
 }
 
 }  // namespace octoskin

@@ -14,8 +14,13 @@ namespace octoskin {
 /// "out/map.ot: byte 4711: the data end within the tree": file, place, value and, where there is one, remedy.
 struct MapFileError {
     std::string message;
-    bool is_too_large = false;  ///< for the limits given; it may be whole
+    bool is_too_large = false;        ///< for the limits given; it may be whole
+    bool is_of_other_voxels = false;  ///< than the mapping asks for; it is whole
 };
+
+/// That the map in `file` has voxels of one size, and the mapping asks for another, metres both.
+[[nodiscard]] std::string describe_other_voxels(const std::filesystem::path& file, double map_m,
+                                                double mapping_m);
 
 /// Writes the map, in the format that the extension names (.ot, .bt or .ply). At every instant the file is
 /// the old one or the new one, whole. Equal maps give equal bytes.
@@ -26,5 +31,11 @@ struct MapFileError {
 [[nodiscard]] Result<FusedMap, MapFileError> load_map(const std::filesystem::path& file,
                                                       const MapReadLimits& limits = {},
                                                       std::uint64_t file_bytes_max = 512ULL << 20U);
+
+/// A map to go on with, as it was saved from one of this resolution and `memory_max_mib`: any such map has
+/// room, also a full one. Whatever it was clamped to, it is clamped as `config` says from now on. Further
+/// errors: it needs more memory than that, or has voxels of another size.
+[[nodiscard]] Result<FusedMap, MapFileError> load_map_of(const MapConfig& config,
+                                                         const std::filesystem::path& file);
 
 }  // namespace octoskin

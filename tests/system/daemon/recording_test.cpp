@@ -1,4 +1,5 @@
 // What the daemon records gives its own map again, byte for byte.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -11,6 +12,8 @@
 #include <thread>
 
 #include "host/apps/daemon/control_socket.hpp"
+#include "host/core/mapping/fused_map.hpp"
+#include "host/io/mapfile/map_file.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
 
 namespace octoskin::test {
@@ -106,6 +109,42 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
     EXPECT_EQ(run(plain).exit_code, 0);
     EXPECT_TRUE(ScratchFolder::read(out() + "/maps/fused.ot") == first);
     EXPECT_FALSE(first == in_order);
+}
+
+/// 496 bricks of 2112 bytes are the one MiB: 448 that nothing touches, the rest is soon taken.
+TEST_F(DaemonRecording, begun_with_a_full_map_gives_the_daemons_own_map_and_explains_what_had_no_room) {
+    FusedMap map{MapConfig{}};
+    for (std::uint16_t i = 0; i < 7; ++i)
+        ASSERT_TRUE(map.set_cube({.lowest = {static_cast<std::uint16_t>(32 * i), 0, 0}, .height = 5}, 1.0F));
+    std::filesystem::create_directory(folder_ / "maps");
+    ASSERT_TRUE(save_map(map, folder_ / "maps" / "fused.ot"));
+    const auto file = folder_.write("mapping.yaml", "base: robust\nmap: {memory_max_mib: 1}\n");
+    start({"--no-camera", "--configuration", file.string()});
+    ASSERT_TRUE(daemon_->wait_until(
+        [](const Json& status) { return is_ranging(status) && has_problem(status, "memory_max_mib"); }, 15s))
+        << daemon_->status()["map"].dump(1) << daemon_->log();
+    const Ran recorded = record(out() + " --seconds 2");
+    ASSERT_EQ(recorded.exit_code, 0) << recorded.output << daemon_->log();
+    expect_own_map();
+    // A voxel that a map with more room has.
+    const auto more = folder_.write("more.yaml", "base: robust\nmap: {memory_max_mib: 100}\n");
+    const Ran roomy = run("replay " + out() + " --fused-only --configuration " + more.string() + " --out " +
+                          (folder_ / "roomy").string());
+    ASSERT_EQ(roomy.exit_code, 0) << roomy.output;
+    const FusedMap own = load_map(out() + "/last.ot").value();
+    std::optional<Eigen::Vector3d> refused;
+    load_map(folder_ / "roomy" / "fused.ot").value().for_each_known([&](VoxelKey key, float) {
+        if (!own.log_odds(key)) refused = own.centre_of(key);
+    });
+    ASSERT_TRUE(refused);
+    const Ran explained = run(
+        fmt::format("explain --recording {} -- {} {} {}", out(), refused->x(), refused->y(), refused->z()));
+    EXPECT_EQ(explained.exit_code, 0) << explained.output;
+    EXPECT_NE(explained.output.find("unknown: the map was full, and had no room for"), std::string::npos)
+        << explained.output;
+    // With another mapping it need not be the daemon's: whether that is complete nobody knows.
+    const auto other = folder_.write("other.yaml", "base: paper\nmap: {memory_max_mib: 1}\n");
+    EXPECT_EQ(run("replay " + out() + " --fused-only --configuration " + other.string()).exit_code, 1);
 }
 
 TEST_F(DaemonRecording, is_whole_when_the_daemon_is_told_to_end_in_the_middle_of_it) {

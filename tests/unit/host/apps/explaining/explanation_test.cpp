@@ -54,6 +54,15 @@ Explanation explanation_of(VoxelWitness witness, Occupancy occupancy) {
             .warnings = {}};
 }
 
+/// Goes on from a map in which the voxel has this log-odds.
+VoxelWitness witness_from(VoxelKey key, float log_odds, std::size_t kept_max = kKept) {
+    FusedMap map{MapConfig{}};
+    EXPECT_TRUE(map.set_cube({key, 0}, log_odds));
+    VoxelWitness witness(key, MapConfig{}, kept_max);
+    witness.on_begin(map);
+    return witness;
+}
+
 RangeMeasurement reading_at(double time_s) {
     return {{1, 3, 0}, {std::llround(time_s * 1e9)}, 0.52, 0.01};
 }
@@ -68,11 +77,10 @@ TEST(VoxelWitness, sums_up_to_the_maps_log_odds_bit_for_bit_clamping_included) {
     Witnesses witnesses;
     std::size_t seen = 0;
     first.maps().fused()->for_each_known([&](VoxelKey key, float) {
-        if (seen++ % 997 == 0) witnesses.all.emplace_back(key, scene.mapping.map, std::nullopt, kKept);
+        if (seen++ % 997 == 0) witnesses.all.emplace_back(key, scene.mapping.map, kKept);
     });
-    first.maps().proximity()->for_each_known([&](VoxelKey key, float) {
-        witnesses.all.emplace_back(key, scene.mapping.map, std::nullopt, kKept);
-    });
+    first.maps().proximity()->for_each_known(
+        [&](VoxelKey key, float) { witnesses.all.emplace_back(key, scene.mapping.map, kKept); });
     Pipeline pipeline = make_pipeline(scene);
     pipeline.tell(&witnesses);
     play(scene, pipeline);
@@ -102,7 +110,7 @@ TEST(VoxelWitness, sums_up_to_the_maps_log_odds_bit_for_bit_clamping_included) {
 
 TEST(VoxelWitness, goes_on_from_the_map_that_was_there_and_keeps_the_newest) {
     const VoxelKey key{1, 2, 3};
-    VoxelWitness witness(key, MapConfig{}, 3.0F, 2);
+    VoxelWitness witness = witness_from(key, 3.0F, 2);
     const std::vector<VoxelUpdate> updates{{key, 0.3F}, {{1, 2, 4}, 5.0F}};
     for (int i = 0; i < 5; ++i) witness.on_reading(reading_at(1.0 + i), Beam{}, updates);
     EXPECT_EQ(witness.log_odds(), 3.5F) << "clamped";
@@ -118,7 +126,7 @@ TEST(Explanation, concludes_in_one_sentence) {
     const VoxelKey key{1, 2, 3};
     const std::vector<VoxelUpdate> hit{{key, 0.9F}};
     const std::vector<VoxelUpdate> miss{{key, -0.4F}};
-    VoxelWitness ghost(key, MapConfig{}, std::nullopt, kKept);
+    VoxelWitness ghost(key, MapConfig{}, kKept);
     ghost.on_reading(reading_at(4.1), Beam{}, hit);
     ghost.on_reading(reading_at(4.6), Beam{}, hit);
     EXPECT_EQ(
@@ -129,19 +137,55 @@ TEST(Explanation, concludes_in_one_sentence) {
         conclusion_of(explanation_of(ghost, Occupancy::occupied)),
         "occupied, mainly by sensor forearm_3 between 4.100 and 4.600 s, 2 hits; the camera never saw it "
         "occupied");
-    VoxelWitness freed(key, MapConfig{}, std::nullopt, kKept);
+    VoxelWitness freed(key, MapConfig{}, kKept);
     freed.on_depth({{4'700'000'000}, 0, 0, {}}, miss);
     EXPECT_EQ(conclusion_of(explanation_of(freed, Occupancy::free)),
               "free, mainly by the camera at 4.700 s, 1 miss");
-    EXPECT_EQ(conclusion_of(explanation_of({key, MapConfig{}, std::nullopt, kKept}, Occupancy::unknown)),
+    EXPECT_EQ(conclusion_of(explanation_of(VoxelWitness(key, MapConfig{}, kKept), Occupancy::unknown)),
               "unknown: no reading and no depth frame ever touched it");
-    EXPECT_EQ(conclusion_of(explanation_of({key, MapConfig{}, 1.0F, kKept}, Occupancy::occupied)),
+    EXPECT_EQ(conclusion_of(explanation_of(witness_from(key, 1.0F), Occupancy::occupied)),
               "occupied, as the map had it at the begin of the recording; the camera never saw it");
+}
+
+TEST(Explanation, weighs_what_was_there_before_as_a_line_of_its_own_and_the_sum_agrees) {
+    const VoxelKey key{1, 2, 3};
+    VoxelWitness witness = witness_from(key, 2.0F);
+    const std::vector<VoxelUpdate> miss{{key, -0.5F}};
+    const std::vector<VoxelUpdate> hit{{key, 0.75F}};
+    witness.on_reading(reading_at(4.1), Beam{}, hit);
+    witness.on_depth({{4'200'000'000}, 0, 0, {}}, miss);
+    const std::string text = to_text(explanation_of(witness, Occupancy::occupied));
+    EXPECT_EQ(text.substr(0, text.find("the newest")),
+              "voxel about 0.020 0.500 0.020 m, edge 0.04 m: occupied, log-odds 2.2500\n"
+              "  source                     hits  misses  log-odds    first s    last s\n"
+              "  what was there before         -       -   +2.0000\n"
+              "  forearm_3                     1       0   +0.7500      4.100     4.100\n"
+              "  camera                        0       1   -0.5000      4.200     4.200\n");
+    EXPECT_EQ(conclusion_of(explanation_of(witness, Occupancy::occupied)),
+              "occupied, mainly by what was there before the recording; the camera never saw it occupied");
+    VoxelWitness weaker = witness_from(key, 0.5F);
+    weaker.on_reading(reading_at(4.1), Beam{}, hit);
+    EXPECT_EQ(conclusion_of(explanation_of(weaker, Occupancy::occupied)),
+              "occupied, mainly by sensor forearm_3 at 4.100 s, 1 hit; the camera never saw it");
+    VoxelWitness against = witness_from(key, -1.0F);
+    for (int i = 0; i < 3; ++i) against.on_reading(reading_at(4.1), Beam{}, hit);
+    EXPECT_EQ(conclusion_of(explanation_of(against, Occupancy::occupied)),
+              "occupied, mainly by sensor forearm_3 at 4.100 s, 3 hits; the camera never saw it")
+        << "it was free before";
+}
+
+TEST(Explanation, says_that_a_full_map_had_no_room) {
+    Explanation explanation = explanation_of(VoxelWitness({1, 2, 3}, MapConfig{}, kKept), Occupancy::unknown);
+    explanation.no_room = 12;
+    EXPECT_EQ(conclusion_of(explanation),
+              "unknown: the map was full, and had no room for 12 contributions to it; raise "
+              "map.memory_max_mib in the mapping file");
+    EXPECT_EQ(to_json(explanation)["contributions_without_room"], 12);
 }
 
 TEST(Explanation, says_the_same_as_json) {
     const VoxelKey key{1, 2, 3};
-    VoxelWitness witness(key, MapConfig{}, 0.5F, kKept);
+    VoxelWitness witness = witness_from(key, 0.5F);
     Beam beam;
     beam.p_map_sensor = {1.0, 2.0, 3.0};
     const std::vector<VoxelUpdate> hit{{key, 0.75F}};

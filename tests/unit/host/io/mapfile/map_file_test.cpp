@@ -53,6 +53,22 @@ TEST(MapFile, says_what_is_wrong_with_a_file_and_where) {
                 HasSubstr("absent.ot: opening failed (No such file or directory)"));
 }
 
+// Whoever has a mapping with that much memory saves such a map, and must be able to go on with it.
+TEST(MapFile, a_map_to_go_on_with_may_be_as_large_as_its_mappings_memory) {
+    const ScratchFolder folder;
+    const auto large =
+        folder.write("large.ot", "# Octomap OcTree file\nid OcTree\nsize 60000000\nres 0.04\ndata\nxx");
+    EXPECT_TRUE(load_map(large).error().is_too_large);
+    const auto loaded = load_map_of(MapConfig{.memory_max_mib = 800}, large);
+    EXPECT_FALSE(loaded.error().is_too_large);
+    EXPECT_THAT(loaded.error().message, HasSubstr("the data end within the tree"));
+    const auto refused = load_map_of(MapConfig{.memory_max_mib = 100}, large);
+    EXPECT_TRUE(refused.error().is_too_large);
+    EXPECT_THAT(refused.error().message,
+                HasSubstr("large.ot: it was saved with more memory than the 100 MiB of map.memory_max_mib: "
+                          "raise that in the mapping file"));
+}
+
 TEST(MapFile, refuses_what_is_no_file_or_too_large_without_waiting) {
     const ScratchFolder folder;
     EXPECT_THAT(load_map(folder.path()).error().message, HasSubstr("not a regular file"));
