@@ -29,6 +29,12 @@ bool is_readable(int descriptor, HostTime end) {
     }
 }
 
+/// Nobody reads an answer there any more.
+bool has_gone(int descriptor) {
+    pollfd client{descriptor, 0, 0};
+    return ::poll(&client, 1, 0) > 0 && (client.revents & (POLLHUP | POLLERR)) != 0;
+}
+
 /// A line with its end, and one back, or what happened instead.
 Result<std::string, std::string> exchange_lines(int descriptor, const std::string& line, HostTime end) {
     // A new connection has room for a request.
@@ -123,6 +129,8 @@ bool ControlSocket::serve(Client& client) {
         const std::string line = client.request.substr(0, end);
         client.request.erase(0, end + 1);
         client.asked = monotonic_now();
+        // Who has given up waiting must not have a recording begun that it knows nothing of.
+        if (has_gone(client.descriptor)) return false;
         if (!reply(client, answer_(line))) return false;
     }
     const bool is_endless = client.request.size() > kRequestMax;

@@ -17,7 +17,8 @@ namespace octoskin {
 
 class ControlSocket {
   public:
-    /// Answers a request (without its line feed) with one line (without a line feed).
+    /// Answers a request (without its line feed) with one line (without a line feed). Is not asked for a
+    /// client that has gone by then.
     using Answer = std::function<std::string(const std::string& request)>;
 
     static constexpr std::size_t kClientsMax = 16;

@@ -1,11 +1,14 @@
 // What clients ask of the recorder, and the recorder that is at work, if one is.
 //
 //     record start SECONDS FOLDER     0: until `record stop`; FOLDER: an absolute path
-//     record stop
+//     record stop [FOLDER]            with FOLDER: only if that is where it is recorded to
 //     record status
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
@@ -15,12 +18,19 @@
 
 namespace octoskin {
 
+/// Why nothing is recorded to a folder of this name; empty if it may be. One with control characters would
+/// end a request, or a line of a log, in its midst.
+[[nodiscard]] std::string fault_of_folder(const std::filesystem::path& folder);
+/// As it is named in requests and answers: without "." or "..", and without a slash at its end.
+[[nodiscard]] std::filesystem::path plain(const std::filesystem::path& folder);
+
 class RecordRequests {
   public:
     explicit RecordRequests(Recorder::Copier copier = &FusedMap::copy) : copier_(std::move(copier)) {}
 
     [[nodiscard]] static bool is_one(const std::string& line) { return line.starts_with("record "); }
-    /// A line of JSON: "ok", and "recording" or "error".
+    /// A line of JSON: "ok"; "error" if it is not; "recording", the one at work or the last, with its
+    /// "number" since this daemon began; and "before", the one before that.
     [[nodiscard]] std::string answer(const std::string& line, const RecordedSettings& settings,
                                      Pipeline& pipeline, HostTime now);
 
@@ -46,7 +56,13 @@ class RecordRequests {
     /// What speaks against it; empty: nothing.
     [[nodiscard]] std::string start(const std::string& arguments, const RecordedSettings& settings,
                                     Pipeline& pipeline, HostTime now);
+    /// The same; nobody ends a recording but where it is said to be.
+    [[nodiscard]] std::string stop(const std::string& folder, HostTime now);
+    [[nodiscard]] nlohmann::ordered_json to_json(HostTime now) const;
+
     Recorder::Copier copier_;
+    std::uint64_t begun_ = 0;  ///< recordings
+    nlohmann::ordered_json before_;
     std::unique_ptr<Recorder> recorder_;
     std::string refusal_;
 };

@@ -68,6 +68,7 @@ Recorder::Recorder(const std::filesystem::path& folder, std::optional<Nanosecond
     entry_.interface = settings.interface;
     // Poses go on being interpolated from samples that came before.
     pipeline.builder().for_each_joint_sample([this](const JointMeasurement& joints) { put(joints); });
+    commits_before_ = counts_.commits;
     spdlog::info("recording to {}", folder.string());
     pipeline.tell(this);  // the last: nothing may throw after it
 }
@@ -179,7 +180,7 @@ nlohmann::ordered_json Recorder::to_json(HostTime now) const {
             {"seconds", seconds_of(stopped_.value_or(now) - begun_)},
             {"can_frames", can_frames_},
             {"depth_frames", depth_frames_},
-            {"commits", counts_.commits},
+            {"commits", counts_.commits - commits_before_},
             {"lost_can", counts_.lost_can},
             {"lost_commits", counts_.lost_commits},
             {"lost_depth", counts_.lost_depth},

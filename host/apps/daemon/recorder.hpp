@@ -88,6 +88,7 @@ class Recorder final : public CommitListener {
     std::vector<AccountTable> accounts_at_begin_;
     candump::LogEntry entry_;
     orderlog::Trailer counts_;
+    std::uint64_t commits_before_ = 0;  ///< joint samples that the daemon had when it began
     std::uint64_t can_frames_ = 0;
     std::uint64_t depth_frames_ = 0;
     RecordingWriter writer_;

@@ -13,6 +13,7 @@
 
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/places.hpp"
+#include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/recording/recording.hpp"
 
@@ -90,14 +91,62 @@ class EndSignals {
     sigset_t signals_{};
 };
 
+bool is_same(const Json& recording, const Json& other) {
+    return recording.is_object() && recording.value("number", 0U) == other.value("number", 0U) &&
+           recording.value("folder", "") == other.value("folder", "");
+}
+
+/// How the recording stands that is followed: another one may have begun since it ended.
+Json own_of(const RecordOptions& options, const std::string& answer, const Json& followed) {
+    const Json all = Json::parse(answer, nullptr, false);
+    const Json before = all.is_object() ? all.value("before", Json()) : Json();
+    if (is_same(before, followed)) return before;
+    Json now = recording_of(options, answer);
+    if (is_same(now, followed)) return now;
+    const auto folder = followed["folder"].get<std::string>();
+    throw CommandFailure({ExitCode::unavailable,
+                          folder + ": the daemon, started anew or asked for others, knows no more of this "
+                                   "recording; it is whole if it has a meta.yaml"});
+}
+
+/// The answer; empty if the daemon ended. That it is there and does not answer is a CommandFailure.
+std::optional<std::string> ask_patiently(const RecordOptions& options, const Json& followed) {
+    constexpr int kTries = 4;
+    constexpr std::chrono::milliseconds kPatience{2'500};
+    AppError error;
+    for (int i = 0; i < kTries; ++i) {
+        auto answer = ask_daemon(options.socket, "record status", kPatience);
+        if (answer) return std::move(answer).value();
+        error = answer.error();
+        if (error.code == ExitCode::unavailable) return std::nullopt;
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+    const auto folder = followed["folder"].get<std::string>();
+    throw CommandFailure({error.code, "the daemon no longer answers, and may record on to " + folder +
+                                          ": `octoskin record --stop " + folder +
+                                          "` ends that once it does (" + error.message + ")"});
+}
+
+std::filesystem::path folder_of(const RecordOptions& options) {
+    const auto folder = plain(std::filesystem::absolute(options.out));
+    if (const std::string fault = fault_of_folder(folder); !fault.empty())
+        throw CommandFailure({ExitCode::usage, fault});
+    return folder;
+}
+
+/// Ends that in the folder named, and nobody else's.
+std::string stop_line(const RecordOptions& options) {
+    return options.out.empty() ? "record stop" : "record stop " + folder_of(options).string();
+}
+
 /// Until the files are whole; empty if the daemon ended before it said so.
 std::optional<Json> follow(const RecordOptions& options, Json recording) {
     const EndSignals signals;
     while (is_going_on(recording)) {
-        const bool is_to_end = signals.came();
-        const auto answer = ask_daemon(options.socket, is_to_end ? "record stop" : "record status");
+        if (signals.came()) (void)ask_daemon(options.socket, stop_line(options));  // what came of it is asked
+        const auto answer = ask_patiently(options, recording);
         if (!answer) return std::nullopt;
-        recording = recording_of(options, *answer);
+        recording = own_of(options, *answer, recording);
     }
     return recording;
 }
@@ -120,14 +169,22 @@ void tell(const Json& recording) {
 
 Json stop(const RecordOptions& options) {
     const Json before = ask(options, "record status");
-    if (is_going_on(before)) return ask(options, "record stop");
+    if (is_going_on(before)) return ask(options, stop_line(options));
     throw CommandFailure({ExitCode::unavailable, "nothing is being recorded; the last recording, " +
                                                      before["folder"].get<std::string>() + ", has ended"});
 }
 
 Json start(const RecordOptions& options) {
-    const auto folder = std::filesystem::absolute(options.out).lexically_normal();
-    return ask(options, fmt::format("record start {} {}", options.seconds, folder.string()));
+    const std::string folder = folder_of(options).string();
+    const auto answer =
+        ask_daemon(options.socket, fmt::format("record start {} {}", options.seconds, folder));
+    if (answer) return recording_of(options, *answer);
+    AppError error = answer.error();
+    if (error.code == ExitCode::io_failed) {  // it took the request, perhaps, and gave no answer
+        error.message += "; whether it records to " + folder + " is not known: `octoskin record --stop " +
+                         folder + "` ends that";
+    }
+    throw CommandFailure(error);
 }
 
 void record(const RecordOptions& options) {
@@ -142,14 +199,13 @@ void add_record_command(CLI::App& app) {
     auto options = std::make_shared<RecordOptions>();
     CLI::App* command =
         app.add_subcommand("record", "The running daemon records, until --seconds are over or Ctrl-C");
-    auto* const out = command->add_option("out", options->out,
-                                          "Directory to make; it must be empty, and one that the daemon's "
-                                          "user may write");
+    command->add_option("out", options->out,
+                        "Directory to make; it must be empty, and one that the daemon's "
+                        "user may write. With --stop: end the recording there, no other");
     command->add_option("--seconds", options->seconds, "For so long; 0: until Ctrl-C or --stop")
         ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
-    auto* const stop = command->add_flag("--stop", options->stops, "End the recording that is going on");
-    stop->excludes(out);
+    command->add_flag("--stop", options->stops, "End the recording that is going on");
     command->add_option("--socket", options->socket, "Where the daemon listens")->capture_default_str();
     command->callback([options] {
         if (options->out.empty() && !options->stops)

@@ -66,6 +66,15 @@ TEST_F(ControlSocketTest, answers_each_line_with_one) {
     EXPECT_EQ(asked_, 3);
 }
 
+// It would be told of nothing that it has begun.
+TEST_F(ControlSocketTest, is_not_asked_by_a_client_that_gave_up_before_it_was_let_in) {
+    const int client = connect();
+    EXPECT_EQ(::send(client, "status\n", 7, MSG_NOSIGNAL), 7);
+    ::close(client);
+    serve([&] { EXPECT_TRUE(ask_daemon(file(), "still there")); });
+    EXPECT_EQ(asked_, 1);
+}
+
 TEST_F(ControlSocketTest, drops_a_request_without_end_and_goes_on) {
     serve([&] {
         const int client = connect();

@@ -52,9 +52,16 @@ TEST_F(RecordRequestsTest, refuses_what_is_no_request_and_begins_nothing) {
     for (const char* const folder : {"", "a", "./a", "../a", "~/a", "\xff"})
         expect_refused(std::string("record start 0 ") + folder, "is no absolute path");
     for (const char* const line :
-         {"record ", "record start", "record stop now", "record  status", "record STOP"})
+         {"record ", "record start", "record stopped", "record  status", "record STOP"})
         expect_refused(line, "unknown request");
+    for (const char* const folder : {"/tmp/a\tb", "/tmp/\x1b[31mred", "/tmp/a\r"}) {
+        for (const char* const request : {"record start 0 ", "record stop "})
+            expect_refused(request + std::string(folder), "may have no control characters");
+    }
+    expect_refused("record start 0 /tmp/\x1b[31mred", "'/tmp/\\x1b[31mred'");
     expect_refused("record stop", "nothing is being recorded");
+    expect_refused("record stop /tmp/a", "nothing is being recorded");
+    expect_refused("record stop here", "is no absolute path");
     EXPECT_EQ(ask("record status")["ok"], true);
 }
 
@@ -83,6 +90,44 @@ TEST_F(RecordRequestsTest, ends_as_failed_without_memory_for_the_last_map) {
               std::string::npos)
         << recording;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "recording" / "meta.yaml")) << "nothing vouches for it";
+}
+
+TEST_F(RecordRequestsTest, ends_no_recording_but_the_one_that_is_named) {
+    const std::string folder = (folder_ / "one").string();
+    EXPECT_TRUE(ask("record start 0 " + folder + "/")["ok"].get<bool>());
+    const Json others = ask("record stop " + (folder_ / "another").string());
+    EXPECT_FALSE(others["ok"].get<bool>());
+    EXPECT_EQ(others["error"],
+              (folder_ / "another").string() + " is not being recorded; the recording goes to " + folder);
+    EXPECT_EQ(others["recording"]["state"], "recording");
+    const Json own = ask("record stop " + folder_.path().string() + "/./one/");
+    EXPECT_TRUE(own["ok"].get<bool>()) << own;
+    EXPECT_NE(own["recording"]["state"], "recording");
+}
+
+TEST_F(RecordRequestsTest, tells_one_recording_from_the_next_and_how_the_one_before_ended) {
+    const Json first = ask("record start 0 " + (folder_ / "first").string());
+    EXPECT_EQ(first["recording"]["number"], 1);
+    EXPECT_TRUE(first["before"].is_null());
+    EXPECT_TRUE(ask("record stop")["ok"].get<bool>());
+    requests_.finish(std::chrono::seconds(20));
+    const Json second = ask("record start 0 " + (folder_ / "second").string());
+    EXPECT_EQ(second["recording"]["number"], 2);
+    EXPECT_EQ(second["before"]["number"], 1);
+    EXPECT_EQ(second["before"]["folder"], (folder_ / "first").string());
+    EXPECT_EQ(second["before"]["state"], "ended");
+}
+
+// What the daemon still has of the arm's way goes into order.log, and no more comes while this is recorded.
+TEST_F(RecordRequestsTest, counts_what_went_into_the_map_since_it_began) {
+    for (const StampedFrame& entry : test::good_scene().bus.frames())
+        pipeline_.on_can(entry.frame, entry.stamp);
+    EXPECT_TRUE(ask("record start 0 " + (folder_ / "late").string())["ok"].get<bool>());
+    EXPECT_TRUE(ask("record stop")["ok"].get<bool>());
+    requests_.finish(std::chrono::seconds(20));
+    const std::string order = testing_support::ScratchFolder::read(folder_ / "late" / "order.log");
+    EXPECT_NE(order.find("\nJ "), std::string::npos) << "there were no samples to be told from";
+    EXPECT_EQ(ask("record status")["recording"]["commits"], 0);
 }
 
 TEST_F(RecordRequestsTest, records_to_one_folder_at_a_time) {
