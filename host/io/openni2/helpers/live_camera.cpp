@@ -11,6 +11,7 @@
 #include "host/io/openni2/capture_clock.hpp"
 #include "host/io/openni2/helpers/camera_list.hpp"
 #include "host/io/openni2/helpers/depth_stream.hpp"
+#include "host/io/openni2/looped_stamps.hpp"
 
 namespace octoskin::openni2 {
 namespace {
@@ -27,10 +28,13 @@ int stream_frames(DepthStream& depth, int descriptor) {
     FramePipe output(descriptor, kPatience);
     if (!output.write_header({.size = depth.size(), .rate_mhz = depth.rate_mhz()})) return 1;
     CaptureClock clock;
+    LoopedStamps film;
     while (true) {  // until the camera is gone, or whoever reads
         if (!depth.wait_for_frame()) return depth.complain("no more frames");
+        const std::int64_t arrived_us = monotonic_us();
+        const auto stamp_us = static_cast<std::int64_t>(depth.frame().getTimestamp());
         const auto captured_us =
-            clock.captured_us(static_cast<std::int64_t>(depth.frame().getTimestamp()), monotonic_us());
+            clock.captured_us(depth.is_file() ? film.running_us(stamp_us, arrived_us) : stamp_us, arrived_us);
         if (!captured_us) {
             if (!output.write_untimed_frame()) return 1;
             if (clock.is_lost()) return depth.complain("its frames came over 0.5 s late for 5 s");
