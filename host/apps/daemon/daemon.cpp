@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <new>
@@ -72,6 +73,7 @@ struct Daemon::Parts {
     };
     [[nodiscard]] std::string why_map_ends(const Settings& next) const;
     [[nodiscard]] Result<Next, AppError> read_next() const;
+    void keep_within(const MapConfig& next);
     void reload();
     [[nodiscard]] DaemonView view() const;
     std::string answer(const std::string& line);
@@ -227,6 +229,13 @@ Result<Daemon::Parts::Next, AppError> Daemon::Parts::read_next() const {
     }
 }
 
+/// What still waits must not make the map larger than it may be from then on: the next start would refuse it.
+void Daemon::Parts::keep_within(const MapConfig& next) {
+    MapConfig both = settings.mapping.map;
+    both.memory_max_mib = std::min(both.memory_max_mib, next.memory_max_mib);
+    pipeline.limit_fused(both);
+}
+
 void Daemon::Parts::reload() {
     (void)sd_notify(0, "RELOADING=1");
     auto next = read_next();
@@ -234,9 +243,10 @@ void Daemon::Parts::reload() {
         reload_error = next.error().message;
         spdlog::error("not reloaded, the old settings hold: {}", reload_error);
     } else {
+        recordings.stop(monotonic_now());  // it has the old settings, and is whole with them
+        keep_within(next->settings.mapping.map);
         inputs.prepare_for(next->settings.host.rig);
         const std::uint64_t dropped = settle_pipeline();
-        recordings.stop(monotonic_now());  // it has the old settings, and is whole with them
         FusedMap map = pipeline.take_fused();
         map.limit(next->settings.mapping.map);
         next->pipeline.begin_with(std::move(map));

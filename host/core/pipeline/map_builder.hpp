@@ -34,6 +34,8 @@ class MapBuilder {
 
     /// The fused map goes on from this one, which has the mapping's resolution (asserted).
     void begin_with(FusedMap fused) { maps_.begin_with(std::move(fused)); }
+    /// Other limits for the fused map, at the same resolution (asserted).
+    void limit_fused(const MapConfig& config) { maps_.limit_fused(config); }
     /// The fused map, for another builder to begin with; nothing may be given in after.
     [[nodiscard]] FusedMap take_fused() { return maps_.take_fused(); }
     /// `listener` is told of what goes in from now on; null: nobody is.

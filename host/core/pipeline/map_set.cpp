@@ -22,6 +22,11 @@ void MapSet::begin_with(FusedMap fused) {
     fused_ = std::move(fused);
 }
 
+void MapSet::limit_fused(const MapConfig& config) {
+    assert(fused_);
+    fused_->limit(config);
+}
+
 FusedMap MapSet::take_fused() {
     assert(fused_);
     return std::move(*fused_);

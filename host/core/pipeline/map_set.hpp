@@ -21,6 +21,9 @@ class MapSet {
     /// In place of the empty fused map, which was chosen (asserted); of the same resolution (asserted).
     void begin_with(FusedMap fused);
 
+    /// Other limits for the fused map, which was chosen (asserted), at the same resolution (asserted).
+    void limit_fused(const MapConfig& config);
+
     /// The fused map, which was chosen (asserted), for another set to begin with; nothing may be added after.
     [[nodiscard]] FusedMap take_fused();
 

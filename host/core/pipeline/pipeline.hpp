@@ -70,6 +70,8 @@ class Pipeline {
 
     /// The fused map goes on from this one, which has the mapping's resolution (asserted).
     void begin_with(FusedMap fused) { builder_.begin_with(std::move(fused)); }
+    /// Other limits for the fused map from now on, at the same resolution (asserted): FusedMap::limit.
+    void limit_fused(const MapConfig& config) { builder_.limit_fused(config); }
     /// After `finish`: the fused map, for another pipeline to begin with.
     [[nodiscard]] FusedMap take_fused() { return builder_.take_fused(); }
     /// `listener` is told of what goes into the maps from now on; null: nobody is.

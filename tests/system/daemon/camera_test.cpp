@@ -132,6 +132,8 @@ TEST_F(DaemonTest, goes_on_with_camera_and_joint_socket_when_the_adapter_is_gone
     EXPECT_TRUE(daemon_->wait_until([&](const Json& now) { return used(now) > used_then + 80; }, 30s))
         << daemon_->status()["account"].dump(1);
     EXPECT_FALSE(has_problem(daemon_->status(), "the time is not known"));
+    EXPECT_LT(daemon_->status()["camera"]["untimed"].get<int>(), 12)
+        << "four at first; the film began anew four times since, and its time went on";
     daemon_->signal(SIGTERM);
     EXPECT_EQ(daemon_->wait(5s), 0) << daemon_->log();
 }

@@ -50,7 +50,6 @@ TEST_F(DaemonTest, listens_to_another_hosts_clock_and_puts_its_own_camera_on_it)
     const auto wall = record_wall(folder_, 24);
     start({"--camera", wall.string(), "--listen-only"});
     bus_->speak_as_host(std::chrono::minutes(15));
-    // Whenever the .oni begins anew, five frames without a time are a problem for half a second.
     Json status;
     const auto took = daemon_->wait_until(
         [&status](const Json& now) {
@@ -76,6 +75,21 @@ TEST_F(DaemonTest, listens_to_another_hosts_clock_and_puts_its_own_camera_on_it)
     const Json rejected = daemon_->status()["account"]["depth frames"]["rejected"];
     EXPECT_EQ(rejected.count("out_of_order"), 0U) << rejected.dump();
     EXPECT_EQ(daemon_->status()["clock"]["follow_up_outliers"], 1);
+}
+
+// What it shows cannot be put on the time of a bus that nobody tells.
+TEST_F(DaemonTest, counts_its_cameras_frames_as_untimed_until_somebody_tells_the_time) {
+    start({"--camera", record_wall(folder_, 24).string(), "--listen-only"});
+    const auto frames = [](const Json& now) { return now["camera"]["frames"].get<int>(); };
+    ASSERT_TRUE(daemon_->wait_until([&](const Json& now) { return frames(now) >= 20; }, 20s))
+        << daemon_->status()["camera"].dump() << daemon_->log();
+    const Json untold = daemon_->status();
+    EXPECT_GE(untold["camera"]["untimed"].get<int>(), frames(untold) - 3) << "what waits is not counted yet";
+    EXPECT_EQ(untold["account"]["depth frames"]["in"], 0);
+    bus_->speak_as_host(std::chrono::minutes(15));
+    EXPECT_TRUE(daemon_->wait_until(
+        [](const Json& now) { return now["account"]["depth frames"]["in"].get<int>() >= 10; }, 15s))
+        << daemon_->status()["camera"].dump();
 }
 
 // It hears them all the time; that their time is in doubt says nothing about them.

@@ -109,6 +109,21 @@ TEST_F(CameraFeedTest, ends_without_keeping_anybody_waiting_and_keeps_what_it_ha
     EXPECT_TRUE(wait_until([&] { return feed.has_ended(); }));
 }
 
+TEST_F(CameraFeedTest, keeps_the_newest_of_what_nobody_takes_and_counts_the_others) {
+    std::string script = kHeader;
+    for (int i = 1; i <= 5; ++i)
+        script += "printf '\\" + std::to_string(i) + "\\0\\0\\0\\0\\0\\0\\0\\003\\004\\005\\006'\n";
+    CameraFeed feed("", 100s, camera(script + "exec sleep 100"));
+    ASSERT_TRUE(wait_until([&] { return feed.record().frames == 5; }));
+    EXPECT_EQ(feed.record().displaced, 2U);
+    for (const std::int64_t us : {3, 4, 5}) {
+        const auto frame = feed.take();
+        ASSERT_TRUE(frame) << us;
+        EXPECT_EQ(frame->captured, HostTime{us * 1'000});
+    }
+    EXPECT_FALSE(feed.take());
+}
+
 TEST_F(CameraFeedTest, tells_the_helper_which_camera_and_which_mode) {
     const std::string told = (scratch_ / "told").string();
     const auto program = camera("echo \"$# $1 $2\" > " + told + ".new; mv " + told + ".new " + told);

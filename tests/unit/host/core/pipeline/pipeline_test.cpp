@@ -255,6 +255,24 @@ TEST(Pipeline, gives_the_same_bytes_in_whatever_order_frames_arrive_within_the_l
     }
 }
 
+// Before a reload: a map that took more than the memory to come would be refused at the next start.
+TEST(Pipeline, takes_no_space_for_what_waits_beyond_a_memory_that_it_is_given_meanwhile) {
+    const Scene scene = good_scene();
+    Pipeline pipeline = make_pipeline(scene);
+    for (const StampedFrame& entry : scene.bus.frames()) {
+        pipeline.on_can(entry.frame, entry.stamp);
+        if (pipeline.now() && *pipeline.now() >= HostTime{3'700'000'000}) break;  // the first: 3.505 s
+    }
+    ASSERT_EQ(pipeline.maps().fused()->known_voxels(), 0U) << "the reading has to wait yet";
+    MapConfig none = scene.mapping.map;
+    none.memory_max_mib = 0;
+    pipeline.limit_fused(none);
+    pipeline.finish();
+    EXPECT_EQ(pipeline.maps().fused()->known_voxels(), 0U);
+    EXPECT_GT(pipeline.maps().fused()->counters().no_room, 0U);
+    EXPECT_GT(pipeline.maps().proximity()->known_voxels(), 0U) << "nothing waited";
+}
+
 TEST(Pipeline, says_when_the_camera_is_stale) {
     const Scene scene = good_scene();
     Pipeline pipeline = make_pipeline(scene);

@@ -44,7 +44,8 @@ TEST(LoopedStamps, leave_a_film_that_is_played_once_as_it_is) {
 }
 
 TEST(LoopedStamps, no_frame_is_without_a_time_because_the_film_began_anew) {
-    for (const std::int64_t pause_us : {std::int64_t{1'000}, kPeriodUs, 3 * kPeriodUs, std::int64_t{2'000'000}}) {
+    for (const std::int64_t pause_us :
+         {std::int64_t{1'000}, kPeriodUs, 3 * kPeriodUs, std::int64_t{2'000'000}}) {
         Film film(pause_us);
         for (int i = 0; i < 4; ++i) EXPECT_FALSE(film.frame().captured_us) << "none is believed before five";
         std::int64_t before_us = 0;
