@@ -88,7 +88,7 @@ TEST_F(DaemonTest, counts_its_cameras_frames_as_untimed_until_somebody_tells_the
     EXPECT_EQ(untold["account"]["depth frames"]["in"], 0);
     bus_->speak_as_host(std::chrono::minutes(15));
     EXPECT_TRUE(daemon_->wait_until(
-        [](const Json& now) { return now["account"]["depth frames"]["in"].get<int>() >= 10; }, 15s))
+        [](const Json& now) { return now["account"]["depth frames"]["in"].get<int>() >= 10; }, 30s))
         << daemon_->status()["camera"].dump();
 }
 
