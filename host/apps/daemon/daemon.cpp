@@ -90,6 +90,7 @@ struct Daemon::Parts {
     HostTime started;
     std::string reload_error;
     ReloadCounts reloads;
+    std::optional<HostTime> reloaded;
     ProblemLog problem_log;
     LastUsed last_used;
 
@@ -175,7 +176,8 @@ void Daemon::Parts::attend() {
     inputs.attend();
     recordings.attend(monotonic_now());
     last_used.note(pipeline, monotonic_now());
-    problem_log.tell(problems(view()), monotonic_now());
+    const DaemonView now = view();
+    problem_log.tell(problems(now), now.now, now.is_settling());
 }
 
 void Daemon::Parts::save_map() {
@@ -254,6 +256,7 @@ void Daemon::Parts::reload() {
         pipeline = std::move(next->pipeline);
         inputs.change_rig(settings.host.rig);
         reload_error.clear();
+        reloaded = monotonic_now();
         spdlog::info("reloaded: rig '{}'; the map goes on; {} of what waited was not used",
                      settings.host.rig.name, dropped);
         tell_warnings(settings);
@@ -277,7 +280,8 @@ DaemonView Daemon::Parts::view() const {
             .recorder = recordings.recorder(),
             .recording_refusal = recordings.refusal(),
             .reload_error = reload_error,
-            .reloads = reloads};
+            .reloads = reloads,
+            .reloaded = reloaded};
 }
 
 std::string Daemon::Parts::answer(const std::string& line) {

@@ -14,9 +14,8 @@ namespace {
 constexpr std::chrono::milliseconds kCameraSilenceMax{2'000};
 /// Frames taken in one go before others have a turn.
 constexpr int kFramesPerTurn = 256;
-// More than any arm tells beside so many frames: a flood does not keep the bus waiting. What is left over
-// then comes a turn too late for its place.
-constexpr int kDatagramsPerTurn = 256;
+// As many as wait for a loop that was held up. A flood does not keep the bus waiting for more.
+constexpr int kDatagramsPerTurn = DatagramFeed::kWaitingMax;
 
 CanLink::Opener opener(const DaemonRequest& request, const HostRig& rig) {
     if (request.can_descriptor) {
@@ -121,7 +120,13 @@ void Inputs::change_rig(const HostRig& rig) {
 
 void Inputs::attend() {
     const HostTime now = monotonic_now();
-    if (can_.attend(now)) can_ready_ = loop_.on_readable(can_.descriptor(), [this] { drain_can(); });
+    note_displaced(now);
+    if (can_.attend(now)) {
+        can_ready_ = loop_.on_readable(can_.descriptor(), [this] {
+            int datagrams_left = kDatagramsPerTurn;
+            (void)drain_can(datagrams_left);
+        });
+    }
     if (!request_.is_listen_only) {
         if (const auto due = sync_.poll(now)) (void)can_.send(wire::encode(*due, wire::kHostId));
     }
@@ -146,20 +151,35 @@ void Inputs::exchange_alone() {
     feed(wire::encode(follow_up, wire::kHostId), stamp);
 }
 
+std::uint64_t Inputs::joints_displaced() const {
+    return joints_late_ + (joints_ ? joints_->displaced() : 0);
+}
+
+void Inputs::note_displaced(HostTime now) {
+    const std::uint64_t displaced = joints_displaced();
+    if (displaced > displaced_noted_) displaced_at_ = now;
+    displaced_noted_ = displaced;
+}
+
+bool Inputs::is_flooded(HostTime now) const {
+    constexpr Nanoseconds kHold{2'000'000'000};
+    return displaced_at_ && now - *displaced_at_ < kHold;
+}
+
 void Inputs::catch_up() {
     constexpr int kTurnsMax = 64;  // as much as the receive buffer holds
-    for (int i = 0; i < kTurnsMax && !drain_can(); ++i) {
+    int datagrams_left = kDatagramsPerTurn;
+    for (int i = 0; i < kTurnsMax && !drain_can(datagrams_left); ++i) {
     }
 }
 
 /// The bus's time is told by the order of stamps: what comes through the socket takes its place in it.
-bool Inputs::drain_can() {
-    int datagrams_left = kDatagramsPerTurn;
+bool Inputs::drain_can(int& datagrams_left) {
     for (int i = 0; i < kFramesPerTurn; ++i) {
         collect_joints(datagrams_left);  // first: what it does not find comes later than the frame
         const auto received = can_.receive();
         feed_joints(received ? std::optional(received->entry.stamp) : std::nullopt);
-        if (!received) return datagrams_left > 0;
+        if (!received) return true;
         take_frame(*received);
     }
     return false;
@@ -174,6 +194,7 @@ void Inputs::take_frame(const socketcan::Received& received) {
         return;
     }
     feed(received.entry.frame, received.entry.stamp);
+    newest_stamp_ = received.entry.stamp;
     if (is_of_node(received.entry.frame)) bus_time_.on_frame(monotonic_now(), pipeline_.now());
     if (const auto at = monotonic_of(received.entry.stamp)) {
         answer_sync(received, *at);
@@ -231,9 +252,25 @@ void Inputs::collect_joints(int& datagrams_left) {
     if (!joints_) return;
     std::optional<JointSample> sample;
     for (; datagrams_left > 0 && joints_waiting_.size() < kWaitingMax; --datagrams_left) {
-        if (!joints_->receive(sample)) return;
-        if (sample) joints_waiting_.push_back(std::move(*sample));  // else counted by the socket
+        if (!joints_->receive(sample)) {
+            has_joints_left_ = false;
+            return;
+        }
+        if (!sample) continue;  // counted by the socket
+        if (has_lost_its_place(*sample)) {
+            ++joints_late_;
+        } else {
+            joints_waiting_.push_back(std::move(*sample));
+        }
     }
+    if (datagrams_left == 0) has_joints_left_ = true;
+}
+
+/// Of a flood: frames that came later are in the pipeline already, to which it would be a clock set back.
+bool Inputs::has_lost_its_place(const JointSample& sample) const {
+    constexpr std::int64_t kClockSetNs = 1'000'000'000;  // that is no turn too late
+    return has_joints_left_ && newest_stamp_ && sample.came < *newest_stamp_ &&
+           newest_stamp_->ns - sample.came.ns < kClockSetNs;
 }
 
 /// Those that came by then; empty: all.

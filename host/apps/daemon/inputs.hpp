@@ -58,6 +58,10 @@ class Inputs {
     [[nodiscard]] const JointSocket* joints() const noexcept { return joints_ ? &*joints_ : nullptr; }
     /// Samples of the socket that came too soon after the one before.
     [[nodiscard]] std::uint64_t joints_thinned() const noexcept { return joints_thinned_; }
+    /// Datagrams of the socket that gave way to newer ones: the loop was held up, or they are a flood.
+    [[nodiscard]] std::uint64_t joints_displaced() const;
+    /// Some have within the last 2 s.
+    [[nodiscard]] bool is_flooded(HostTime now) const;
     /// Frames of the rig's joint node on the bus, while the socket is the source.
     [[nodiscard]] std::uint64_t joint_node_ignored() const noexcept { return joint_node_ignored_; }
     /// Empty without a camera. Its `untimed` has those that came while another host's clock was not known.
@@ -77,8 +81,8 @@ class Inputs {
     /// Opens the camera, once the one before is let go of; without a thread to be had, again in a second.
     void attend_camera();
     void take_depth(DepthFrame frame);
-    /// False if there may be more.
-    bool drain_can();
+    /// False if there may be more frames.
+    bool drain_can(int& datagrams_left);
     [[nodiscard]] bool is_of_node(const wire::CanFrame& frame) const;
     void take_frame(const socketcan::Received& received);
     void exchange_alone();
@@ -86,6 +90,8 @@ class Inputs {
     void hear_host(const socketcan::Received& received, HostTime at);
     void feed(const wire::CanFrame& frame, WallTime stamp);
     void collect_joints(int& datagrams_left);
+    [[nodiscard]] bool has_lost_its_place(const JointSample& sample) const;
+    void note_displaced(HostTime now);
     void feed_joints(std::optional<WallTime> until);
     void drain_camera();
 
@@ -101,6 +107,11 @@ class Inputs {
     std::optional<JointSocket> joints_;
     EventSource joints_ready_;
     std::deque<JointSample> joints_waiting_;  ///< for frames of the bus that came before them
+    bool has_joints_left_ = false;            ///< more came than one turn takes
+    std::uint64_t joints_late_ = 0;           ///< left out, as frames that came later are in the pipeline
+    std::uint64_t displaced_noted_ = 0;
+    std::optional<HostTime> displaced_at_;  ///< when it was noted last that some had given way
+    std::optional<WallTime> newest_stamp_;  ///< of the bus's frames in the pipeline
     std::unique_ptr<CameraFeed> camera_;
     std::optional<openni2::CameraMode> camera_mode_;  ///< wanted; empty: no camera is
     std::unique_ptr<CameraFeed> camera_leaving_;      ///< of another mode; has the device a little longer

@@ -8,8 +8,12 @@
 
 namespace octoskin {
 
-void ProblemLog::tell(std::vector<Problem> problems, HostTime now) {
+void ProblemLog::tell(std::vector<Problem> problems, HostTime now, bool is_settling) {
+    if (is_settling) {
+        for (Told& told : told_) told.seen = now;
+    }
     log(problems, now);
+    log_over(now);
     if (newest_ == problems) return;
     const std::string state = problems.empty() ? "STATUS=all is well" : "STATUS=" + problems.front().text;
     (void)sd_notify(0, state.c_str());
@@ -27,11 +31,19 @@ void ProblemLog::log(const std::vector<Problem>& problems, HostTime now) {
             *told = {problem, now};
         }
     }
-    std::erase_if(told_, [now](const Told& told) {
-        const bool is_over = now - told.seen >= kOver;
-        if (is_over) spdlog::info("over: {}", told.problem.text);
-        return is_over;
-    });
+}
+
+/// A sentence that another of the same subject has replaced is no more, and nothing is over.
+void ProblemLog::log_over(HostTime now) {
+    const auto is_over = [now](const Told& told) { return now - told.seen >= kOver; };
+    for (const Told& told : told_) {
+        const bool is_replaced = std::ranges::any_of(told_, [&](const Told& other) {
+            return !is_over(other) && !other.problem.subject.empty() &&
+                   other.problem.subject == told.problem.subject;
+        });
+        if (is_over(told) && !is_replaced) spdlog::info("over: {}", told.problem.text);
+    }
+    std::erase_if(told_, is_over);
 }
 
 }  // namespace octoskin

@@ -12,6 +12,8 @@ struct Problem {
     /// What is wrong with what: the same as long as the problem is, whatever figures its text has.
     std::string about;
     std::string text;  ///< a sentence for a person
+    /// Whose problem it is, where another sentence may take this one's place; else empty.
+    std::string subject = {};
     friend bool operator==(const Problem&, const Problem&) = default;
 };
 
@@ -20,8 +22,8 @@ class ProblemLog {
     /// A problem is over in the log when it was not there for so long: one that comes and goes is one.
     static constexpr Nanoseconds kOver{2'000'000'000};
 
-    /// All that there are now.
-    void tell(std::vector<Problem> problems, HostTime now);
+    /// All that there are now; while `is_settling` some cannot be judged, and none that was told is over.
+    void tell(std::vector<Problem> problems, HostTime now, bool is_settling = false);
 
   private:
     struct Told {
@@ -29,6 +31,7 @@ class ProblemLog {
         HostTime seen;  ///< the newest time that it was there
     };
     void log(const std::vector<Problem>& problems, HostTime now);
+    void log_over(HostTime now);
 
     std::vector<Told> told_;
     std::vector<Problem> newest_;

@@ -16,7 +16,7 @@ void add_link(const DaemonView& view, Problems& problems) {
         const std::string text = fmt::format(
             "CAN {}: {}", names_of(LinkState{})[static_cast<std::size_t>(view.inputs->can().state())],
             view.inputs->can().why());
-        problems.push_back({text, text});
+        problems.push_back({text, text, "CAN"});
     }
     const CanLink::Counts counts = view.inputs->can().counts();
     if (counts.dropped > 0) {
@@ -36,7 +36,7 @@ bool is_time_known(const DaemonView& view) {
     return view.pipeline->now() && (has_node || has_joints || view.is_listen_only);
 }
 
-void add_clock(const DaemonView& view, Problems& problems) {
+void add_other_hosts(const DaemonView& view, Problems& problems) {
     constexpr Nanoseconds kForeignHold{3'000'000'000};
     const auto foreign = view.inputs->foreign_sync();
     if (!view.is_listen_only && foreign && view.now - *foreign < kForeignHold) {
@@ -53,6 +53,9 @@ void add_clock(const DaemonView& view, Problems& problems) {
                  "SYNC began anew, or there are two; joint states and readings go on from there",
                  view.pipeline->times_back())});
     }
+}
+
+void add_clock(const DaemonView& view, Problems& problems) {
     if (is_time_known(view)) return;
     problems.push_back(
         {"no time",
@@ -69,7 +72,7 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
     if (sensor.health && !is_ranging && sensor.health->state != wire::SensorState::starting) {
         const std::string text = fmt::format("{}: {}, {}", who, wire::name(sensor.health->state),
                                              wire::name(sensor.health->fault));
-        problems.push_back({text, text});
+        problems.push_back({text, text, who});
     } else if (const auto streak = sensor.fates.streak()) {
         problems.push_back(
             {who + " streak",
@@ -83,13 +86,17 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
         problems.push_back({who + " camera", fmt::format("{}: {}", who, describe(evidence))});
 }
 
+std::string node_subject(wire::NodeId node) {
+    return "node " + std::to_string(node);
+}
+
 void add_nodes(const DaemonView& view, Problems& problems) {
     const NodeRegistry& nodes = view.pipeline->intake().nodes();
     for (const HostNode& node : view.rig->nodes) {
         const NodeVerdict verdict = nodes.verdict(node.node_id, view.bus_now);
         if (verdict != NodeVerdict::usable) {
             const std::string text = nodes.describe(node.node_id, view.bus_now);
-            problems.push_back({text, text});
+            problems.push_back({text, text, node_subject(node.node_id)});
             continue;
         }
         for (std::size_t i = 0; i < node.sensors.size(); ++i) add_sensor(view, node, i, problems);
@@ -103,7 +110,7 @@ void add_joint_node(const DaemonView& view, Problems& problems) {
     if (!nodes.knows(source) || nodes.records().at(source).has_block) return;
     if (!is_refused_for_joints(nodes.verdict(source, view.bus_now))) return;
     const std::string text = nodes.describe(source, view.bus_now);
-    problems.push_back({text, text});
+    problems.push_back({text, text, node_subject(source)});
 }
 
 bool has_stopped(const std::optional<HostTime>& last, HostTime now) {
@@ -138,12 +145,20 @@ void add_joints(const DaemonView& view, Problems& problems) {
     constexpr std::uint64_t kFirstSamples = 5;  // of a source: nothing is known of it yet
     const auto& joints = view.pipeline->accounts().joint_samples;
     if (joints.in() == 0) {
-        problems.push_back({"no joints", why_no_joints(view)});
+        problems.push_back({"no joints", why_no_joints(view), "joints"});
     } else if (!view.used.joint_sample) {
         problems.push_back(
-            {"joints unused", "no joint state could be used: see the counters of joint samples"});
+            {"joints unused", "no joint state could be used: see the counters of joint samples", "joints"});
     } else if (has_stopped(view.used.joint_sample, view.now)) {
-        problems.push_back({"joints stopped", "joint states have stopped: readings have no pose"});
+        problems.push_back({"joints stopped", "joint states have stopped: readings have no pose", "joints"});
+    }
+    if (view.inputs->is_flooded(view.now)) {
+        problems.push_back(
+            {"joints flood",
+             fmt::format(
+                 "joint states come, or came, through the socket quicker than they can be taken: {} gave "
+                 "way to newer ones (displaced); the rig has {} Hz, more is of no use",
+                 view.inputs->joints_displaced(), view.rig->joints.rate_hz)});
     }
     if (joints.rejected(JointReason::too_frequent) > kFirstSamples) {
         problems.push_back(
@@ -157,10 +172,11 @@ void add_joints(const DaemonView& view, Problems& problems) {
 void add_readings(const DaemonView& view, Problems& problems) {
     const auto& readings = view.pipeline->accounts().readings;
     if (readings.in() > 0 && !view.used.reading) {
-        problems.push_back({"readings unused", "no reading could be used yet: see the counters of readings"});
-    } else if (has_stopped(view.used.reading, view.now)) {
         problems.push_back(
-            {"readings stopped", "readings come onto the map no more: see the counters of readings"});
+            {"readings unused", "no reading could be used yet: see the counters of readings", "readings"});
+    } else if (has_stopped(view.used.reading, view.now)) {
+        problems.push_back({"readings stopped",
+                            "readings come onto the map no more: see the counters of readings", "readings"});
     }
 }
 
@@ -169,6 +185,7 @@ void add_camera(const DaemonView& view, Problems& problems) {
     const double rate_hz = view.rig->camera->rate_hz;
     const auto& frames = view.pipeline->accounts().depth_frames;
     const bool is_used = view.used.depth_frame && !has_stopped(view.used.depth_frame, view.now);
+    const std::size_t others = problems.size();
     if (auto problem = camera_problem(*view.camera, rate_hz, view.now)) {
         problems.push_back(std::move(*problem));
     } else if (frames.in() > 0 && !is_used && view.inputs->has_bus_fallen_silent(view.now)) {
@@ -195,6 +212,7 @@ void add_camera(const DaemonView& view, Problems& problems) {
         problems.push_back(
             {"depth stopped", "depth frames come onto the map no more: see the counters of depth frames"});
     }
+    if (problems.size() > others) problems.back().subject = "camera";
     if (auto problem = camera_rate_problem(*view.camera, rate_hz)) problems.push_back(std::move(*problem));
 }
 
@@ -266,12 +284,15 @@ std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double ra
 std::vector<Problem> problems(const DaemonView& view) {
     Problems problems;
     add_link(view, problems);
-    add_clock(view, problems);
-    add_nodes(view, problems);
-    add_joint_node(view, problems);
-    add_joints(view, problems);
-    add_readings(view, problems);
-    add_camera(view, problems);
+    add_other_hosts(view, problems);
+    if (!view.is_settling()) {
+        add_clock(view, problems);
+        add_nodes(view, problems);
+        add_joint_node(view, problems);
+        add_joints(view, problems);
+        add_readings(view, problems);
+        add_camera(view, problems);
+    }
     add_map(view, problems);
     return problems;
 }

@@ -124,7 +124,7 @@ Json joints_json(const DaemonView& view) {
     const JointSocket* const joints = view.inputs->joints();
     if (joints == nullptr) return nullptr;
     Json json = {{"samples", joints->samples()},
-                 {"displaced", joints->displaced()},
+                 {"displaced", view.inputs->joints_displaced()},
                  {"thinned", view.inputs->joints_thinned()},
                  {"joint_node_ignored", view.inputs->joint_node_ignored()}};
     for (std::size_t i = 0; i < joints->faults().size(); ++i)

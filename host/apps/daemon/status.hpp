@@ -58,6 +58,14 @@ struct DaemonView {
     std::string recording_refusal;       ///< why the newest one could not begin; empty if it could
     std::string reload_error;            ///< of the newest SIGHUP; empty if it went well
     ReloadCounts reloads;
+    std::optional<HostTime> reloaded;  ///< when SIGHUP was obeyed last
+
+    /// The time, the nodes and what they tell are learnt anew: whether they are missing nobody can say yet.
+    /// Two exchanges of SYNC a second apart, the readings after them, and a camera that is opened again.
+    [[nodiscard]] bool is_settling() const noexcept {
+        constexpr Nanoseconds kSettle{3'000'000'000};
+        return reloaded && now - *reloaded < kSettle;
+    }
 };
 
 /// What is wrong, the most fundamental first, a sentence each: "nothing in my map" has its answer here.

@@ -123,7 +123,8 @@ constexpr std::array kStatusMeanings = {
             "comparisons in which it saw free space through a surface that the camera sees"},
     Meaning{"joints_socket", "samples", "samples that came, of the right form"},
     Meaning{"joints_socket", "displaced",
-            "datagrams that gave way to newer ones, as the daemon was held up while 1024 waited"},
+            "datagrams that gave way to newer ones: the daemon was held up while 1024 waited, or they come "
+            "quicker than it takes them beside the bus"},
     Meaning{"joints_socket", "thinned",
             "samples left out, as they came sooner after the one before than the rig's rate has it: usual "
             "for a quick driver"},

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <string_view>
+#include <thread>
 
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/io/mapfile/map_file.hpp"
@@ -64,6 +65,25 @@ TEST_F(DaemonTest, reloads_all_or_nothing) {
         << daemon_->log();
     EXPECT_EQ(daemon_->status()["rig"], "second");
     EXPECT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+}
+
+/// What the nodes and the clock told is learnt anew, which takes a while: nothing is wrong meanwhile.
+TEST_F(DaemonTest, names_nothing_as_missing_because_it_was_reloaded) {
+    start();
+    const auto is_well = [](const Json& now) { return is_ranging(now) && now["problems"].empty(); };
+    ASSERT_TRUE(daemon_->wait_until(is_well, 15s)) << daemon_->log();
+    std::this_thread::sleep_for(2500ms);  // what was missing at the start is over
+    bus_->silence(1, true);
+    ASSERT_TRUE(daemon_->wait_until([](const Json& now) { return has_problem(now, "node 1 "); }, 5s));
+    const auto before = daemon_->log().size();
+    daemon_->signal(SIGHUP);
+    ASSERT_TRUE(daemon_->wait_until([](const Json& now) { return now["reloads"]["count"] == 1; }, 5s));
+    std::this_thread::sleep_for(6s);
+    const std::string log = daemon_->log().substr(before);
+    EXPECT_NE(log.find("reloaded: rig"), std::string::npos) << log;
+    for (const std::string untrue : {"node 2", "node 3", "joint states", "readings", "the time", "over: "})
+        EXPECT_EQ(log.find(untrue), std::string::npos) << untrue << ":\n" << log;
+    EXPECT_TRUE(has_problem(daemon_->status(), "node 1 ")) << daemon_->status()["problems"].dump(1);
 }
 
 TEST_F(DaemonTest, goes_on_with_its_map_when_a_reload_gives_it_more_memory) {

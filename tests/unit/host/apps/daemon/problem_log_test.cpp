@@ -23,7 +23,7 @@ class ProblemLogTest : public testing::Test {
     std::string told(std::vector<Problem> problems, Nanoseconds after = ProblemLog::kOver) {
         text_.str({});
         now_ = now_ + after;
-        log_.tell(std::move(problems), now_);
+        log_.tell(std::move(problems), now_, is_settling_);
         return text_.str();
     }
 
@@ -31,6 +31,7 @@ class ProblemLogTest : public testing::Test {
     std::ostringstream text_;
     ProblemLog log_;
     HostTime now_;
+    bool is_settling_ = false;
 };
 
 TEST_F(ProblemLogTest, tells_each_when_it_comes_and_when_it_goes) {
@@ -68,6 +69,25 @@ TEST_F(ProblemLogTest, tells_one_that_comes_and_goes_once) {
     EXPECT_EQ(told({}, ProblemLog::kOver - 3 * kTurn), "");
     EXPECT_EQ(told({}, 3 * kTurn), "info over: no frame\n");
     EXPECT_EQ(told({{"silent", "no frame"}}, kTurn), "warning no frame\n");
+}
+
+TEST_F(ProblemLogTest, takes_a_sentence_that_another_replaced_for_no_problem_that_is_over) {
+    EXPECT_EQ(told({{"camera: unplugged", "camera: unplugged", "camera"}}), "warning camera: unplugged\n");
+    EXPECT_EQ(told({{"camera: no such file", "camera: no such file", "camera"}}),
+              "warning camera: no such file\n");
+    EXPECT_EQ(told({{"camera: no such file", "camera: no such file", "camera"}}), "");
+    EXPECT_EQ(told({{"node 1: lost", "node 1: lost", "node 1"}}),
+              "warning node 1: lost\ninfo over: camera: no such file\n");
+}
+
+TEST_F(ProblemLogTest, takes_none_for_over_while_they_cannot_be_judged) {
+    EXPECT_EQ(told({{"a", "it is so"}}), "warning it is so\n");
+    is_settling_ = true;
+    EXPECT_EQ(told({}), "");
+    EXPECT_EQ(told({}), "");
+    is_settling_ = false;
+    EXPECT_EQ(told({{"a", "it is so"}}), "");
+    EXPECT_EQ(told({}), "info over: it is so\n");
 }
 
 }  // namespace
