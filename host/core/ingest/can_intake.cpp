@@ -299,6 +299,9 @@ Result<JointMeasurement, JointReason> CanIntake::place(const JointReading& readi
     if (sampled->time - reading.begun > config_.host_clock.back_tolerance) {
         return unexpected(JointReason::contradictory);
     }
+    // Frames of the next round come a round after this sample was taken, give or take a period of jitter.
+    const bool may_be_mixed = !reading.is_in_order && now - sampled->time > joints_.round() * 7 / 8;
+    if (may_be_mixed) return unexpected(JointReason::contradictory);
     if (now - sampled->time > config_.joint_age_max) {
         return unexpected(JointReason::too_old);
     }

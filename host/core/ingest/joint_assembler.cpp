@@ -80,6 +80,8 @@ JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, 
     if (!sample) {
         sample = Sample{.opened = now, .parts = {}};
         outcome.opened = true;
+    } else {
+        sample->is_in_order = sample->is_in_order && part > sample->newest_part;
     }
     sample->parts[part] = frame;
     sample->newest_part = part;
@@ -88,6 +90,7 @@ JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, 
         sample->is_complete = true;
         outcome.complete = join(sample->parts);
         outcome.complete->begun = sample->opened;
+        outcome.complete->is_in_order = sample->is_in_order;
         pace_.observe(sequence_of(frame), outcome.complete->sampled);
         outcome.complete->has_pace = pace_.is_kept();
     }

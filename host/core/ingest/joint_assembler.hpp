@@ -17,13 +17,16 @@ namespace octoskin {
 struct JointReading {
     std::array<double, wire::kJointsPerSample> position_rad{};
     wire::TimeResidue sampled;
-    HostTime begun;         ///< arrival of its first frame
-    bool has_pace = false;  ///< its source is not quicker than the rig says (JointPace)
+    HostTime begun;           ///< arrival of its first frame
+    bool is_in_order = true;  ///< its frames came as they are sent, that with the time last
+    bool has_pace = false;    ///< its source is not quicker than the rig says (JointPace)
 };
 
 /// The sequence has three bits only, and comes round within 80 ms at 100 Hz: a sample that is not complete
 /// within half a round is given up. A frame that is nearly a whole round late can still meet those of the
-/// next round; it then came before that sample was taken, which `JointReading::begun` shows. Of a source that
+/// next round; it then came before that sample was taken, which `JointReading::begun` shows. One whose first
+/// frames are lost can meet the first frame of the next round instead, which then came a round after it was
+/// taken, and behind later ones: `JointReading::is_in_order`. Of a source that
 /// is quicker than the rig says, frames of several rounds may meet: `JointReading::has_pace`.
 class JointAssembler {
   public:
@@ -38,6 +41,8 @@ class JointAssembler {
     /// Takes frames in the order of arrival.
     [[nodiscard]] Outcome on_frame(const wire::JointState& frame, HostTime now);
 
+    /// A sequence number comes again so long after, at the rig's rate.
+    [[nodiscard]] Nanoseconds round() const noexcept { return 2 * patience_; }
     /// Samples begun and not complete.
     [[nodiscard]] std::uint64_t pending() const;
 
@@ -47,6 +52,7 @@ class JointAssembler {
         HostTime opened;
         bool is_complete = false;  ///< kept, so that a repeated frame does not open it again
         std::uint8_t newest_part = 0;
+        bool is_in_order = true;
         std::array<std::optional<wire::JointState>, kParts> parts;
     };
     void give_up_stale(HostTime now, Outcome& outcome);

@@ -130,7 +130,7 @@ enum class ReadingReason : std::uint8_t {
 
 enum class JointReason : std::uint8_t {
     incomplete,       ///< not all four frames came in time
-    contradictory,    ///< two frames differ that should be one, or one came before the sample was taken
+    contradictory,    ///< two frames differ that should be one, or one is of another round
     clock_not_ready,  ///< ClockFault
     clock_in_doubt,
     clock_silent,

@@ -207,6 +207,39 @@ TEST(CanIntake, takes_no_joints_from_a_node_that_two_boards_share) {
     EXPECT_NEAR(refused, 4 * 40, 4);
 }
 
+/// The first frame of a sample is lost, the others were held up, and so come shortly before the first frame
+/// of the eighth sample after it, which has its number: all between, and the rest of that, is lost.
+TEST(CanIntake, takes_no_joints_of_which_one_frame_is_the_next_round_s) {
+    for (const double rate_hz : {100.0, 200.0}) {
+        HostRig quick = rig();
+        quick.joints.rate_hz = rate_hz;
+        ScriptedBus burst = bus();
+        const double period_s = 1.0 / rate_hz;
+        const double before = 0.0;
+        for (int i = 0; i < 80; ++i) burst.joints(2.5 + i * period_s, kJointNode, {&before, 1});
+        const double sampled_s = 2.5 + 80 * period_s;
+        const double next_round_s = sampled_s + 8 * period_s;
+        const auto held_up_s = next_round_s - 2 * period_s;  // less than half a round before the next one's
+        for (std::uint8_t index = 1; index < 3; ++index)
+            burst.send(held_up_s + 1e-4 * index, wire::JointState{wire::JointPair{index, 0, {}}}, kJointNode);
+        const auto time = wire::fd_residue(burst.node_time(kJointNode, sampled_s));
+        burst.send(held_up_s + 3e-4, wire::JointState{wire::JointLast{0, 0, time}}, kJointNode);
+        burst.send(next_round_s + 1e-4, wire::JointState{wire::JointPair{0, 0, {500'000, 0}}}, kJointNode);
+        int taken = 0;
+        std::vector<JointReason> refused;
+        const auto visit = [&](const FrameOutcome& outcome, HostTime) {
+            for (const auto& sample : outcome.joint_samples) {
+                taken += sample ? 1 : 0;
+                EXPECT_EQ(sample ? sample->position_rad[0] : 0.0, 0.0) << rate_hz;
+                if (!sample && sample.error() != JointReason::too_frequent) refused.push_back(sample.error());
+            }
+        };
+        (void)take(burst, visit, quick);
+        EXPECT_EQ(taken, 80 - 5) << rate_hz;
+        EXPECT_EQ(refused, std::vector{JointReason::contradictory}) << rate_hz;
+    }
+}
+
 TEST(CanIntake, takes_no_joints_of_a_source_twice_as_quick_as_the_rig_says) {
     for (const double rate_hz : {100.0, 150.0, 200.0, 1000.0}) {
         ScriptedBus quick = bus();
