@@ -216,7 +216,10 @@ Value load_document(const std::filesystem::path& file) {
 std::filesystem::path existing_file(const Value& value, const std::string& key_path) {
     auto path = value.file->parent_path() / value.text;
     std::error_code error;  // a name too long, for one, is as absent as any
-    if (value.kind != Value::Kind::scalar || !std::filesystem::is_regular_file(path, error)) {
+    const bool is_file = value.kind == Value::Kind::scalar && std::filesystem::is_regular_file(path, error);
+    if (error == std::errc::permission_denied)
+        throw Fault{{path, 0, "", "cannot be opened (Permission denied)"}};
+    if (!is_file) {
         throw Fault{{*value.file, value.line, key_path,
                      fmt::format("expected the path of a file, relative to this one, found none at '{}'",
                                  std::filesystem::absolute(path, error).lexically_normal().string())}};

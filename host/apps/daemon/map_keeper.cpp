@@ -9,6 +9,7 @@
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/io/mapfile/atomic_file.hpp"
 #include "host/io/mapfile/map_file.hpp"
 
@@ -54,12 +55,13 @@ Result<std::optional<FusedMap>, AppError> MapKeeper::load(const MapConfig& confi
     std::error_code error;
     const bool is_there = std::filesystem::exists(file, error);
     // What cannot be seen may be there: beginning anew would overwrite it.
-    if (error) return fail(ExitCode::no_input, file.string() + ": " + error.message());
+    if (error)
+        return unexpected(reading_error(file, {ExitCode::no_input, file.string() + ": " + error.message()}));
     if (!is_there) return std::optional<FusedMap>{};
     auto map = load_map_of(config, file);
     if (!map) {
         const char* const remedy = map.error().is_of_other_voxels ? ": say map.resolution_m as it was" : "";
-        return fail(ExitCode::bad_data, map.error().message + remedy);
+        return unexpected(reading_error(file, {ExitCode::bad_data, map.error().message + remedy}));
     }
     return std::optional(std::move(map).value());
 }

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "host/apps/recording/permission.hpp"
 #include "host/apps/study/configuration.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "hw/rigfile/rig.hpp"
@@ -22,7 +23,9 @@ Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const 
                               .rig_hash = rig::rig_hash(rig),
                               .joints = rig.joints.joints.size(),
                               .interface = interface};
-    if (!robot) return fail(ExitCode::bad_config, rig.urdf.string() + ": cannot be read");
+    if (!robot)
+        return unexpected(
+            reading_error(rig.urdf, {ExitCode::bad_config, rig.urdf.string() + ": cannot be read"}));
     return recorded;
 }
 
@@ -32,9 +35,15 @@ Result<Settings, AppError> read_settings(const DaemonRequest& request) {
     const auto configuration = study_configuration(request.configuration);
     if (!configuration) return unexpected(configuration.error());
     const auto rig = rig::read_rig(request.rig, request.robot);
-    if (!rig) return fail(ExitCode::bad_config, rig.error().message());
+    if (!rig) return unexpected(reading_error(ExitCode::bad_config, rig.error()));
     auto host = make_host_setup(*rig);
-    if (!host) return fail(ExitCode::bad_config, host.error().message());
+    if (!host) return unexpected(reading_error(ExitCode::bad_config, host.error()));
+    if (!request.camera_uri.empty() && !rig->camera) {
+        return fail(ExitCode::usage,
+                    "--camera " + request.camera_uri + ": " + request.rig.string() +
+                        " has no camera, which says where it is and what it sees: give it one, "
+                        "or leave --camera out");
+    }
     auto recorded = recorded_settings(*rig, configuration->mapping, request.interface);
     if (!recorded) return unexpected(recorded.error());
     return Settings{std::move(host).value(), configuration->mapping, std::move(recorded).value()};

@@ -4,6 +4,7 @@
 
 #include "common/wire/crc.hpp"
 #include "host/apps/flashing/openocd_script.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "hw/image/image_check.hpp"
 
@@ -17,10 +18,12 @@ Result<image::ElfImage, AppError> load_image(const Order& order) {
     std::error_code ignored;
     if (!std::filesystem::exists(order.elf, ignored)) {
         return fail(ExitCode::no_input,
-                    fmt::format("{}: no such file: `firmware/flash` builds it", order.elf.string()));
+                    fmt::format("{}: no such file: `firmware/flash` of octoskin's sources builds it; "
+                                "--elf names one that is built",
+                                order.elf.string()));
     }
     auto image = image::ElfImage::load(order.elf.string());
-    if (!image) return fail(ExitCode::bad_data, image.error().what);
+    if (!image) return unexpected(reading_error(order.elf, {ExitCode::bad_data, image.error().what}));
     const std::vector<std::string> faults = image::faults_of(*image, order.board);
     if (faults.empty()) return image.value();
     std::string message =

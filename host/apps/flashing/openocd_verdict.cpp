@@ -98,9 +98,7 @@ AppError no_adapter(const std::string& serial) {
 std::optional<AppError> run_fault(const OpenocdRun& run) {
     switch (run.end) {
         case OpenocdRun::End::not_found:
-            return AppError{ExitCode::unavailable,
-                            "openocd is not installed: run `toolchains/install_packages flash`, or "
-                            "`sudo apt install openocd`"};
+            return AppError{ExitCode::unavailable, "openocd is not installed: `sudo apt install openocd`"};
         case OpenocdRun::End::no_process:
             return AppError{
                 ExitCode::unavailable,

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "hw/rigfile/file_kind.hpp"
 #include "hw/rigfile/joined.hpp"
@@ -22,6 +23,10 @@ std::string absolute(const std::string& path) {
     std::error_code error;
     const auto whole = std::filesystem::absolute(path, error);
     return error ? path : whole.lexically_normal().string();
+}
+
+void check_readable(const std::string& path) {
+    if (const auto refused = refused_to_read(absolute(path))) throw CommandFailure(*refused);
 }
 
 std::string is_seed(std::string& text) {
@@ -57,6 +62,7 @@ void check_frame_socket(const std::string& interface, int descriptor) {
 
 CLI::Validator existing_file() {
     return {[](std::string& path) -> std::string {
+                check_readable(path);
                 std::error_code error;
                 if (std::filesystem::is_directory(path, error)) return path + " is a directory, not a file";
                 if (const auto kind = rig::other_than_a_file(path); !kind.empty()) {
@@ -72,6 +78,7 @@ CLI::Validator existing_file() {
 
 CLI::Validator existing_path() {
     return {[](std::string& path) -> std::string {
+                check_readable(path);
                 std::error_code error;
                 if (std::filesystem::exists(path, error)) return {};
                 throw CommandFailure({ExitCode::no_input, absolute(path) + ": no such file or directory"});

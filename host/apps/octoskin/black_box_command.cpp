@@ -8,6 +8,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/core/black_box/dump_assembler.hpp"
 #include "host/core/black_box/transfer_script.hpp"
 #include "host/io/candump/log_reader.hpp"
@@ -36,11 +37,11 @@ struct Pieces {
 
 void print_black_boxes(const std::filesystem::path& log) {
     auto reader = candump::LogReader::open(log);
-    if (!reader) throw CommandFailure({ExitCode::no_input, reader.error().message()});
+    if (!reader) throw CommandFailure(reading_error(ExitCode::no_input, reader.error()));
     Pieces pieces;
     while (true) {
         const auto entry = reader->next();
-        if (!entry) throw CommandFailure({ExitCode::bad_data, entry.error().message()});
+        if (!entry) throw CommandFailure(reading_error(ExitCode::bad_data, entry.error()));
         if (!*entry) break;
         pieces.take((*entry)->frame);
     }

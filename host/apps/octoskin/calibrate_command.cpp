@@ -7,6 +7,8 @@
 #include "common/wire/frame_type.hpp"
 #include "host/apps/calibrating/calibrating.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/permission.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -40,19 +42,21 @@ void run(CalibrateOptions options) {
     options.wish.quantity = options.quantity == "offset" ? wire::CalibrationQuantity::offset
                                                          : wire::CalibrationQuantity::crosstalk;
     const auto rig = rig::read_rig(options.rig);
-    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    if (!rig) throw CommandFailure(reading_error(ExitCode::bad_config, rig.error()));
     const auto question = value_or_fail(calibrating::question_of(*rig, options.wish, new_sequence()));
     fmt::print(stderr, "{} of node {} '{}', sensor '{}', target at {} mm: 50 ranges\n", options.quantity,
                question.node_id, question.node_name, question.sensor_name, question.target_mm);
     const rig::SensorEdit edit = calibrating::edit_of(question, calibrate(question, options.interface));
-    fmt::print("{}: {}\n", edit.key, edit.value);
+    print("{}: {}\n", edit.key, edit.value);
     if (!options.is_written) {
         fmt::print(stderr, "not written; --write puts it into the sensor's entry of the rig\n");
         return;
     }
     const auto file = value_or_fail(calibrating::write_into_rig(options.rig, edit));
     fmt::print(stderr,
-               "written to {}; it counts once the node is flashed: firmware/flash --rig {} --node {}\n",
+               "written to {}; it counts once the node is flashed: octoskin flash --rig {} --node {} --elf "
+               "IMAGE (in "
+               "octoskin's sources firmware/flash builds the image, too)\n",
                file.string(), options.rig.string(), question.node_name);
 }
 

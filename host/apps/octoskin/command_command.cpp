@@ -10,6 +10,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/permission.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -77,7 +78,7 @@ void run(const CommandOptions& options) {
     std::optional<rig::Rig> rig;
     if (!options.rig.empty()) {
         auto read = rig::read_rig(options.rig);
-        if (!read) throw CommandFailure({ExitCode::bad_config, read.error().message()});
+        if (!read) throw CommandFailure(reading_error(ExitCode::bad_config, read.error()));
         rig = std::move(*read);
     }
     const auto orders =

@@ -14,6 +14,7 @@
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/playback.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "host/apps/study/configuration.hpp"
 #include "host/apps/study/study.hpp"
@@ -94,7 +95,7 @@ evaluation::Results judge_recording(const EvaluateOptions& options) {
     if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
     const Scene scene = recorded_scene(options.input, options);
     const auto meta = read_meta(recording);
-    if (!meta) throw CommandFailure({ExitCode::bad_data, meta.error().message()});
+    if (!meta) throw CommandFailure(reading_error(ExitCode::bad_data, meta.error()));
     spdlog::info("replaying {}", options.input.string());
     const auto playback = play_recording(request);
     if (!playback) throw CommandFailure(playback.error());
@@ -147,7 +148,7 @@ rig::Rig rig_of_map(const EvaluateOptions& options, const MapProvenance& provena
                  ", which has the map's shift (T_map_base)"});
     }
     auto rig = rig::read_rig(options.rig, options.robot);
-    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    if (!rig) throw CommandFailure(reading_error(ExitCode::bad_config, rig.error()));
     doubt_rig(options, *rig, provenance);
     return std::move(*rig);
 }
@@ -173,7 +174,7 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
     limits.map.log_odds_min = -20.0F;
     limits.map.log_odds_max = 20.0F;
     const auto map = load_map(options.input, limits);
-    if (!map) throw CommandFailure({ExitCode::bad_data, map.error().message});
+    if (!map) throw CommandFailure(reading_error(options.input, {ExitCode::bad_data, map.error().message}));
     const auto provenance = provenance_of_map(options.input);
     if (!provenance) throw CommandFailure(provenance.error());
     if (provenance->origin && is_of_data_set(*provenance->origin) && options.scenario.empty())

@@ -10,6 +10,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "hw/image/option_bytes.hpp"
 
@@ -42,7 +43,7 @@ rig::BoardHardware read_board(const rig::Node& node) {
                  node.name, node.board.name, node.name)});
     }
     const auto board = rig::read_board_hardware(file);
-    if (!board) throw CommandFailure({ExitCode::bad_config, board.error().message()});
+    if (!board) throw CommandFailure(reading_error(ExitCode::bad_config, board.error()));
     return *board;
 }
 
@@ -52,7 +53,7 @@ flashing::Order make_order(const FlashOptions& options) {
         throw CommandFailure({ExitCode::usage, "--adapter-serial: expected letters and digits"});
     }
     const auto rig = rig::read_rig(options.rig);
-    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    if (!rig) throw CommandFailure(reading_error(ExitCode::bad_config, rig.error()));
     const rig::Node node = value_or_fail(flashing::choose_node(*rig, options.node));
     flashing::Order order{.elf = options.elf,
                           .node = node,
@@ -138,7 +139,9 @@ void add_flash_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("flash", kFlashAbout);
     command->add_option("--rig", options->rig, "Rig (YAML)")->required()->check(existing_file());
     command->add_option("--node", options->node, "Name or number of the node; needed if the rig has several");
-    command->add_option("--elf", options->elf, "Image; default: what the preset firmware-release built")
+    command
+        ->add_option("--elf", options->elf,
+                     "Image; default: what the preset firmware-release built of octoskin's sources")
         ->check(existing_file());
     command->add_option("--out", options->folder, "Folder for the files; default: out/flash/RIG_NODE");
     command->add_option("--adapter-serial", options->adapter_serial,

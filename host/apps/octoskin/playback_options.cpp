@@ -4,6 +4,7 @@
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/study/configuration.hpp"
 #include "host/io/tum/data_set_camera.hpp"
 #include "hw/rigfile/joined.hpp"
@@ -37,6 +38,15 @@ void add_playback_options(CLI::App& command, PlaybackOptions& options) {
 
 PlaybackRequest playback_request(const PlaybackOptions& options) {
     const RecordingPaths recording(options.recording);
+    if (!options.camera.empty() && (!options.rig.empty() || !is_data_set(recording))) {
+        throw CommandFailure(
+            {ExitCode::usage,
+             "--camera " + options.camera +
+                 (options.rig.empty() ? ": " + options.recording.string() +
+                                            " is no TUM RGB-D data set, and what recorded it is "
+                                            "in its rig: leave --camera out"
+                                      : ": the camera is --rig's: give one of them")});
+    }
     auto configuration = study_configuration(configuration_of(options.configuration, recording));
     if (!configuration) throw CommandFailure(configuration.error());
     return {.recording = recording,

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/recording.hpp"
 
 namespace octoskin::app {
@@ -97,7 +98,7 @@ Result<fs::path, AppError> find_world(const RecordingMeta& meta, const GivenScen
 Result<RecordedScene, AppError> read_recorded_scene(const fs::path& directory, const GivenScene& given) {
     const RecordingPaths recording(directory);
     const auto meta = read_meta(recording);
-    if (!meta) return unexpected(AppError{ExitCode::bad_data, meta.error().message()});
+    if (!meta) return unexpected(reading_error(ExitCode::bad_data, meta.error()));
     std::vector<std::string> warnings;
     const auto scenario =
         find({"scenario", meta->scenario, given.scenario, scenario_checksum}, recording, warnings);

@@ -142,9 +142,11 @@ void add_replay_command(CLI::App& app) {
     auto* const speed =
         command->add_option("--speed", options->speed,
                             "max; or how many times real time: 1, 10, 0.5 (default: max, with --onto 1)");
-    command->add_option("--onto", options->onto,
-                        "Send the frames of can.log onto this CAN interface (fd:N: an open socket) in place "
-                        "of making maps");
+    command
+        ->add_option("--onto", options->onto,
+                     "Send the frames of can.log onto this CAN interface (fd:N: an open socket) in place "
+                     "of making maps")
+        ->excludes(command->get_option("--camera"));
     command
         ->add_flag(
             "--step", options->is_stepped,

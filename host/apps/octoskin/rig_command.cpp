@@ -12,6 +12,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
@@ -87,9 +88,9 @@ void write_block(const rig::Rig& rig, const RigOptions& options) {
 
 void run(const RigOptions& options) {
     const auto rig = rig::read_rig(options.rig, options.robot);
-    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    if (!rig) throw CommandFailure(reading_error(ExitCode::bad_config, rig.error()));
     const auto host = make_host_setup(*rig);
-    if (!host) throw CommandFailure({ExitCode::bad_config, host.error().message()});
+    if (!host) throw CommandFailure(reading_error(ExitCode::bad_config, host.error()));
     for (const std::string& warning : host->warnings) spdlog::warn("{}", warning);
     if (!options.block.empty()) {
         write_block(*rig, options);

@@ -60,10 +60,13 @@ void add_run_command(CLI::App& app) {
         ->add_option("--configuration", request->configuration,
                      configuration_help("How measurements become voxels"))
         ->capture_default_str();
-    command->add_option("--camera", request->camera_uri,
-                        "OpenNI2 device, or an .oni file to play (default: the first camera there is)");
-    command->add_flag_callback(
-        "--no-camera", [request] { request->has_camera = false; }, "Do without the rig's camera");
+    auto* const camera =
+        command->add_option("--camera", request->camera_uri,
+                            "OpenNI2 device, or an .oni file to play (default: the first camera there is)");
+    command
+        ->add_flag_callback(
+            "--no-camera", [request] { request->has_camera = false; }, "Do without the rig's camera")
+        ->excludes(camera);
     command->add_option("--joints", request->joint_socket,
                         "Make this socket and take joint states from it (`octoskin joints`)");
     command->add_option("--maps", request->map_folder, "Where the map is kept: fused.ot, fused.bt")

@@ -32,15 +32,16 @@ sim::EmulatedBoards emulated_boards(const SimulateOptions& options) {
         throw CommandFailure(
             {ExitCode::no_input,
              boards.program.string() +
-                 ": not there; install libunicorn-dev (toolchains/install_packages demo check), then "
+                 ": not there; no package has it. In octoskin's sources: sudo apt install libunicorn-dev, "
+                 "then "
                  "cmake --preset host-release && cmake --build --preset "
-                 "host-release --target octoskin_board"});
+                 "host-release --target octoskin_board. Without --board, the node core is simulated"});
     }
     if (!std::filesystem::exists(boards.image)) {
-        throw CommandFailure(
-            {ExitCode::no_input, boards.image.string() +
-                                     ": no such image; build preset firmware-release or name one "
-                                     "with --image"});
+        throw CommandFailure({ExitCode::no_input,
+                              boards.image.string() +
+                                  ": no such image; name one with --image: octoskin's sources build it with "
+                                  "the preset firmware-release"});
     }
     return boards;
 }

@@ -1,4 +1,5 @@
 #include "host/apps/octoskin_board/bench.hpp"
+#include "host/apps/recording/permission.hpp"
 
 #include <fmt/format.h>
 
@@ -31,7 +32,7 @@ Result<NodeConfig, AppError> read_block(const std::filesystem::path& file) {
 
 Result<NodeConfig, AppError> config_of_rig(const std::filesystem::path& file, const std::string& wanted) {
     const auto rig = rig::read_rig(file);
-    if (!rig) return fail(ExitCode::bad_config, rig.error().message());
+    if (!rig) return unexpected(reading_error(ExitCode::bad_config, rig.error()));
     for (const rig::Node& node : rig->nodes) {
         if (wanted.empty() || node.name == wanted || std::to_string(node.config.node_id) == wanted)
             return node.config;
@@ -69,7 +70,7 @@ Result<std::unique_ptr<Bench>, AppError> Bench::build(const Arguments& arguments
     const auto config = read_config(arguments);
     if (!config) return unexpected(config.error());
     const auto image = ElfImage::load(arguments.elf);
-    if (!image) return fail(ExitCode::bad_data, image.error().what);
+    if (!image) return unexpected(reading_error(arguments.elf, {ExitCode::bad_data, image.error().what}));
     const sim::BoardParts parts = sim::draw_board_parts({arguments.seed, arguments.slow_clocks}, *config);
     auto bench = std::make_unique<Bench>();
     bench->config_ = *config;

@@ -3,6 +3,7 @@
 #include <span>
 #include <utility>
 
+#include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/version/version.hpp"
 #include "host/io/mapping/mapping_file.hpp"
@@ -44,7 +45,7 @@ Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request) {
     if (request.rig.empty()) return named_camera(request.camera);
     const auto lock = lock_reading();
     const auto rig = rig::read_rig(request.rig);
-    if (!rig) return fail(ExitCode::bad_config, rig.error().message());
+    if (!rig) return unexpected(reading_error(ExitCode::bad_config, rig.error()));
     if (!rig->camera) {
         return fail(ExitCode::bad_config,
                     request.rig.string() + ": has no camera, which a data set is seen by");
@@ -138,7 +139,12 @@ Result<Playback, AppError> play_data_set(const PlaybackRequest& request_given, c
     if (!camera) return unexpected(camera.error());
     rig::Rig rig = make_rig(*camera);
     auto reader = tum::DataSetReader::open(request.recording.directory, camera->data_set);
-    if (!reader) return fail(ExitCode::bad_data, reader.error().what);
+    if (!reader) {
+        AppError error{ExitCode::bad_data, reader.error().what};
+        for (const char* file : {"groundtruth.txt", "depth.txt"})
+            error = reading_error(request.recording.directory / file, std::move(error));
+        return unexpected(std::move(error));
+    }
     auto origin = origin_of(request, rig, *reader);
     if (!origin) return unexpected(origin.error());
     auto pipeline = make_pipeline(request, rig);

@@ -4,6 +4,7 @@
 #include <thread>
 #include <utility>
 
+#include "host/apps/recording/permission.hpp"
 #include "host/io/candump/log_reader.hpp"
 
 namespace octoskin {
@@ -40,11 +41,11 @@ std::string text_of(const candump::LogEntry& entry) {
 Result<OntoBus, AppError> play_onto(const std::filesystem::path& can_log, socketcan::CanSocket& socket,
                                     Pace pace) {
     auto reader = candump::LogReader::open(can_log);
-    if (!reader) return fail(ExitCode::no_input, reader.error().message());
+    if (!reader) return unexpected(reading_error(ExitCode::no_input, reader.error()));
     OntoBus played;
     while (true) {  // ends with the log
         const auto entry = reader->next();
-        if (!entry) return fail(ExitCode::bad_data, entry.error().message());
+        if (!entry) return unexpected(reading_error(ExitCode::bad_data, entry.error()));
         if (!*entry) break;
         const candump::LogEntry& line = **entry;
         if (played.interface.empty()) played.interface = line.interface;

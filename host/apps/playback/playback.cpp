@@ -8,6 +8,7 @@
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/log_survey.hpp"
 #include "host/apps/playback/ordered_playback.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/recording/recording_draft.hpp"
 #include "host/apps/version/version.hpp"
@@ -33,16 +34,17 @@ Result<Setup, AppError> read_setup(const PlaybackRequest& request) {
         std::error_code error;
         const bool is_robot_absent = request.rig.empty() && request.robot.empty() &&
                                      !std::filesystem::exists(request.recording.robot(), error);
-        return fail(is_robot_absent ? ExitCode::no_input : ExitCode::bad_config, rig.error().message());
+        return unexpected(
+            reading_error(is_robot_absent ? ExitCode::no_input : ExitCode::bad_config, rig.error()));
     }
     auto host = make_host_setup(*rig);
-    if (!host) return fail(ExitCode::bad_config, host.error().message());
+    if (!host) return unexpected(reading_error(ExitCode::bad_config, host.error()));
     return Setup{std::move(*rig), std::move(*host)};
 }
 
 Result<candump::LogReader, AppError> open_reader(const RecordingPaths& recording) {
     auto reader = candump::LogReader::open(recording.can_log());
-    if (!reader) return fail(ExitCode::no_input, reader.error().message());
+    if (!reader) return unexpected(reading_error(ExitCode::no_input, reader.error()));
     return std::move(*reader);
 }
 
@@ -53,7 +55,7 @@ Result<LogSurvey, AppError> survey_log(const RecordingPaths& recording, const Ho
     LogSurvey survey(rig);
     while (!survey.is_complete()) {
         const auto entry = reader->next();
-        if (!entry) return fail(ExitCode::bad_data, entry.error().message());
+        if (!entry) return unexpected(reading_error(ExitCode::bad_data, entry.error()));
         if (!*entry) {
             if (const auto foreign = reader->foreign_file())
                 return fail(ExitCode::bad_data, foreign->message());
@@ -289,7 +291,12 @@ Status<AppError> check_playable(const PlaybackRequest& request) {
     if (const auto settled = settle_file_set(request.recording.directory); !settled)
         return unexpected(settled.error());
     if (const auto checked = check_recording(request.recording, !request.rig.empty()); !checked)
-        return fail(ExitCode::no_input, checked.error().message());
+        return unexpected(reading_error(ExitCode::no_input, checked.error()));
+    const RecordingPaths& recording = request.recording;
+    for (const auto& file : {recording.can_log(), recording.meta(), recording.order(), recording.first_map(),
+                             recording.depth(), recording.depth_epoch()}) {
+        if (auto refused = refused_to_read(file)) return unexpected(std::move(*refused));
+    }
     return Done{};
 }
 
@@ -297,7 +304,7 @@ namespace {
 
 Result<Playback, AppError> play_robot(const PlaybackRequest& request, const ReplayReport& report) {
     const auto meta = read_meta(request.recording);
-    if (!meta) return fail(ExitCode::bad_data, meta.error().message());
+    if (!meta) return unexpected(reading_error(ExitCode::bad_data, meta.error()));
     auto setup = read_setup(request);
     if (!setup) return unexpected(setup.error());
     const HostRig& rig = setup->host.rig;

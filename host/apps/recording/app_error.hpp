@@ -19,7 +19,7 @@ enum class ExitCode : int {
     unavailable = 69,    ///< a program or a device that is not there
     cannot_create = 73,  ///< an output file
     io_failed = 74,      ///< a device that was there, or the standard output, failed in its work
-    no_permission = 77,  ///< to use a device
+    no_permission = 77,  ///< to use a device, or to read a file
     bad_config = 78,     ///< rig, robot, mapping or scenario file
 };
 

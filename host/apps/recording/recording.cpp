@@ -14,8 +14,7 @@ constexpr const char* kSchema = "octoskin-recording/1";
 constexpr const char* kMetaMissing =
     "no such file; the least that it can be is two lines, 'schema: octoskin-recording/1' and 'source: robot'";
 constexpr const char* kDirectoryMissing =
-    "no such directory; `octoskin record` (of a running daemon), `octoskin simulate` and `./demo` make "
-    "recordings";
+    "no such directory; `octoskin record` (of a running daemon) and `octoskin simulate` make recordings";
 constexpr const char* kLogMissing =
     "no such file: this is no recording, as `octoskin record` (of a running daemon) and `octoskin simulate` "
     "make them; by hand, it is what `candump -L` writes";

@@ -1,4 +1,5 @@
 #include "host/apps/simulation/scene.hpp"
+#include "host/apps/recording/permission.hpp"
 
 #include "hw/sim/scenario/hidden_models.hpp"
 
@@ -7,10 +8,10 @@ namespace octoskin {
 Result<Scene, AppError> read_scene(const std::filesystem::path& scenario_file,
                                    const std::filesystem::path& world_instead) {
     auto scenario = sim::read_scenario(scenario_file);
-    if (!scenario) return unexpected(AppError{ExitCode::bad_config, scenario.error().message()});
+    if (!scenario) return unexpected(reading_error(ExitCode::bad_config, scenario.error()));
     const auto world_file = world_instead.empty() ? scenario->world : world_instead;
     auto world = sim::World::read(world_file);
-    if (!world) return unexpected(AppError{ExitCode::bad_data, world.error().message()});
+    if (!world) return unexpected(reading_error(ExitCode::bad_data, world.error()));
     if (const auto checked = sim::check_hidden_models(*scenario, *world); !checked) {
         return unexpected(
             AppError{ExitCode::bad_config, checked.error().message() + " (" + world_file.string() + ")"});

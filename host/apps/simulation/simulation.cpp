@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/recording/recording_draft.hpp"
 #include "host/apps/recording/text_file.hpp"
@@ -31,11 +32,11 @@ Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
     auto scene = read_scene(request.scenario, request.world);
     if (!scene) return unexpected(scene.error());
     auto rig = rig::read_rig(request.rig, request.robot);
-    if (!rig) return fail(ExitCode::bad_config, rig.error().message());
+    if (!rig) return unexpected(reading_error(ExitCode::bad_config, rig.error()));
     auto arm = sim::Arm::read(rig->urdf, rig->base_link, rig->joints.joints);
-    if (!arm) return fail(ExitCode::bad_config, arm.error().message());
+    if (!arm) return unexpected(reading_error(ExitCode::bad_config, arm.error()));
     auto body = rig::read_capsules(rig->urdf, {});
-    if (!body) return fail(ExitCode::bad_config, body.error().message());
+    if (!body) return unexpected(reading_error(ExitCode::bad_config, body.error()));
     rig->T_map_base.pretranslate(scene->scenario.map_shift_m(request.seed));
     return Inputs{std::move(*scene), std::move(*rig), std::move(*arm), std::move(*body)};
 }

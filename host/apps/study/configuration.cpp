@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/apps/evaluation/results.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/key_hint.hpp"
@@ -25,10 +26,12 @@ Result<StudyConfiguration, AppError> study_configuration(const std::string& name
     const bool is_built_in =
         std::find(kBuiltInMappings.begin(), kBuiltInMappings.end(), name_or_file) != kBuiltInMappings.end();
     std::error_code error;
+    if (auto refused = refused_to_read(name_or_file); refused && !is_built_in)
+        return unexpected(std::move(*refused));
     if (!is_built_in && !std::filesystem::exists(name_or_file, error))
         return unexpected(absent(name_or_file));
     const auto mapping = read_mapping(name_or_file);
-    if (!mapping) return unexpected(AppError{ExitCode::bad_config, mapping.error().message()});
+    if (!mapping) return unexpected(reading_error(ExitCode::bad_config, mapping.error()));
     const std::string name = is_built_in ? name_or_file : std::filesystem::path(name_or_file).stem().string();
     if (name == evaluation::kReservedName) {
         return fail(ExitCode::usage,

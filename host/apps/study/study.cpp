@@ -8,6 +8,7 @@
 
 #include "host/apps/evaluation/survey.hpp"
 #include "host/apps/playback/map_folder.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "host/apps/report/report.hpp"
 #include "host/apps/simulation/scene.hpp"
@@ -37,7 +38,7 @@ Result<StudyWorld, AppError> prepare_world(const SimulationRequest& inputs, doub
     auto scene = read_scene(inputs.scenario, inputs.world);
     if (!scene) return unexpected(scene.error());
     const auto rig = rig::read_rig(inputs.rig, inputs.robot);
-    if (!rig) return fail(ExitCode::bad_config, rig.error().message());
+    if (!rig) return unexpected(reading_error(ExitCode::bad_config, rig.error()));
     evaluation::TruthConfig truth = truth_config_of(scene->scenario, resolution_m);
     evaluation::Survey survey = evaluation::render_survey(scene->world, survey_config_of(scene->scenario));
     return StudyWorld{std::move(*scene), source_file(inputs.rig, rig->extended_files), std::move(truth),

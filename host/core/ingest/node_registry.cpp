@@ -223,8 +223,9 @@ std::string NodeRegistry::describe(wire::NodeId node, std::optional<HostTime> no
     const auto differs = reason(node, now);
     std::string why = differs ? differs->text() : std::string();
     if (judged == NodeVerdict::info_mismatch) {
-        why += ": flash it with this rig, `firmware/flash --rig RIG --node " + std::to_string(node) +
-               "`, or start octoskin-node with its new block, `octoskin rig RIG --node " +
+        why += ": flash it with this rig, `octoskin flash --rig RIG --node " + std::to_string(node) +
+               " --elf IMAGE` (`firmware/flash` of octoskin's sources builds the image, too), or start "
+               "octoskin-node with its new block, `octoskin rig RIG --node " +
                std::to_string(node) + " --block FILE`";
     }
     if (judged == NodeVerdict::quarantined) why = "two boards send under this node id: take one off the bus";

@@ -103,6 +103,29 @@ TEST_F(CommandLine, answers_66_wherever_a_file_is_not_there) {
     EXPECT_FALSE(std::filesystem::exists(path("o")));
 }
 
+TEST_F(CommandLine, refuses_a_camera_that_nobody_would_use) {
+    record_short("rec");
+    const std::string run_on =
+        "run --can fd:0 --maps " + path("maps") + " --socket " + path("socket") + " --rig ";
+    for (const std::string& command :
+         {run_on + source("hw/rigs/experiment.yaml") + " --no-camera --camera x",
+          run_on + source("hw/rigs/bench_one_board.yaml") + " --camera /no/such.oni",
+          "replay " + path("rec") + " --camera freiburg1",
+          "explain 0 0 1 --camera freiburg1 --recording " + path("rec"),
+          "replay " + path("rec") + " --camera freiburg1 --onto nocan9",
+          "replay " + path("rec") + " --camera freiburg1 --rig " + path("rec/rig.yaml")}) {
+        const Said said =
+            run("python3 -c 'import os, socket, sys; a, b = socket.socketpair(socket.AF_UNIX, "
+                "socket.SOCK_SEQPACKET); os.dup2(a.fileno(), 0); os.execvp(sys.argv[1], sys.argv[1:])' "
+                "timeout 20 " OCTOSKIN_PROGRAM " " +
+                command);
+        EXPECT_EQ(said.exit_code, 64) << command << ": " << said.output;
+        EXPECT_THAT(said.output, HasSubstr("--camera")) << command;
+    }
+    EXPECT_FALSE(std::filesystem::exists(path("maps")));
+    EXPECT_FALSE(std::filesystem::exists(path("rec/maps")));
+}
+
 TEST_F(CommandLine, tells_how_much_of_a_robot_the_self_filter_sees) {
     const Said whole = octoskin("rig " + source("hw/rigs/bench_one_board.yaml"));
     EXPECT_EQ(whole.exit_code, 0);

@@ -101,8 +101,9 @@ TEST(NodeRegistry, describes_a_node_by_name) {
     EXPECT_EQ(
         registry.describe(kNode, ms(0)),
         "node 7 'upper ring': info_mismatch (node_hash aabbccde, the rig has aabbccdd: flash it with this "
-        "rig, "
-        "`firmware/flash --rig RIG --node 7`, or start octoskin-node with its new block, `octoskin rig RIG "
+        "rig, `octoskin flash --rig RIG --node 7 --elf IMAGE` (`firmware/flash` of octoskin's sources builds "
+        "the "
+        "image, too), or start octoskin-node with its new block, `octoskin rig RIG "
         "--node 7 --block FILE`)");
     EXPECT_EQ(registry.describe(kNode, ms(999)), "node 7 'upper ring': lost");
 }

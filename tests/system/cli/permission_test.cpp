@@ -1,0 +1,92 @@
+// Files that are there and may not be read: 77 and their name, wherever they are given; not "no such file".
+#include <gmock/gmock.h>
+
+#include "tests/system/cli/program.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::HasSubstr;
+
+/// The program as somebody who may not read what is not everybody's: root may read everything.
+class PermissionTest : public ProgramTest {
+  protected:
+    void SetUp() override {
+        record_short("rec");
+        ASSERT_EQ(octoskin("replay " + path("rec") + " --out " + path("maps")).exit_code, 0);
+        for (const char* const file : {"hw/robots/panda.urdf", "tests/data/short/scenario.yaml"})
+            std::filesystem::copy(source(file), path(std::filesystem::path(file).filename()));
+        write(path("mapping.yaml"), "base: robust\n");
+        write(path("rig.yaml"), "extends: rec/rig.yaml\nname: mine\n");
+        ASSERT_EQ(
+            run("cp -r $(dirname " OCTOSKIN_PROGRAM ") " + path("bin") + " && chmod -R a+rX,a+w " + path(""))
+                .exit_code,
+            0);
+    }
+    Said as_nobody(const std::string& arguments) const {
+        const std::string who = ::geteuid() == 0 ? "setpriv --reuid 65534 --regid 65534 --clear-groups " : "";
+        return run("cd " + path("") + " && timeout 20 " + who + path("bin/octoskin") + " " + arguments);
+    }
+    /// That each of them says of `file` that it may not be read, and does what it does once it may.
+    void expect_refused(const std::string& file, const std::vector<std::string>& commands) const {
+        const std::filesystem::perms before = std::filesystem::status(path(file)).permissions();
+        std::filesystem::permissions(path(file), std::filesystem::perms::none);
+        for (const std::string& command : commands) {
+            const Said said = as_nobody(command);
+            EXPECT_EQ(said.exit_code, 77) << command << ": " << said.output;
+            EXPECT_THAT(said.output, HasSubstr(path(file) + ": cannot be read (Permission denied)"))
+                << command;
+        }
+        std::filesystem::permissions(path(file), before);
+        for (const std::string& command : commands) EXPECT_NE(as_nobody(command).exit_code, 77) << command;
+    }
+    [[nodiscard]] std::string at(const std::string& file) const { return " " + path(file); }
+};
+
+TEST_F(PermissionTest, of_files_that_are_given) {
+    expect_refused("rig.yaml",
+                   {"rig" + at("rig.yaml"), "simulate" + at("new") + " --rig" + at("rig.yaml"),
+                    "replay" + at("rec") + " --out" + at("out") + " --rig" + at("rig.yaml"),
+                    "command all identify --can nocan9 --rig" + at("rig.yaml"),
+                    "joints --can nocan9 --rig" + at("rig.yaml") + " < /dev/null",
+                    "flash --dry-run --rig" + at("rig.yaml"),
+                    "calibrate offset --can nocan9 --sensor a --target-mm 100 --rig" + at("rig.yaml"),
+                    "evaluate" + at("maps/fused.ot") + " --rig" + at("rig.yaml"),
+                    "run --can fd:0 --rig" + at("rig.yaml")});
+    expect_refused("panda.urdf", {"rig" + at("rec/rig.yaml") + " --robot" + at("panda.urdf")});
+    expect_refused("scenario.yaml", {"simulate" + at("new") + " --scenario" + at("scenario.yaml")});
+    expect_refused("mapping.yaml", {"mapping" + at("mapping.yaml"),
+                                    "replay" + at("rec") + " --configuration" + at("mapping.yaml")});
+    expect_refused("maps/fused.ot", {"evaluate" + at("maps/fused.ot") + " --rig" + at("rec/rig.yaml")});
+    expect_refused("rec/can.log", {"black-box" + at("rec/can.log")});
+}
+
+TEST_F(PermissionTest, of_files_that_others_speak_of) {
+    expect_refused("rec/rig.yaml", {"rig" + at("rig.yaml")});
+    for (const std::string file : {"rec/rig.yaml", "rec/robot.urdf", "rec/can.log", "rec/meta.yaml",
+                                   "rec/depth.oni", "rec/depth.epoch.yaml"}) {
+        ASSERT_TRUE(std::filesystem::exists(path(file))) << file;
+        expect_refused(file, {"replay" + at("rec") + " --out" + at("out"),
+                              "explain 0 0 1 --recording" + at("rec"), "evaluate" + at("rec")});
+    }
+}
+
+TEST_F(PermissionTest, of_what_is_in_a_folder_that_may_not_be_entered) {
+    std::filesystem::permissions(path("rec"), std::filesystem::perms::none);
+    for (const std::string& command :
+         {"rig" + at("rec/rig.yaml"), "replay" + at("rec") + " --out" + at("out"), "evaluate" + at("rec"),
+          "black-box" + at("rec/can.log"), "rig" + at("rig.yaml")}) {
+        const Said said = as_nobody(command);
+        EXPECT_EQ(said.exit_code, 77) << command << ": " << said.output;
+        EXPECT_THAT(said.output, HasSubstr("cannot be read (Permission denied)")) << command;
+    }
+    std::filesystem::permissions(path("rec"), std::filesystem::perms::all);
+}
+
+TEST_F(PermissionTest, is_none_where_there_is_no_file) {
+    EXPECT_EQ(as_nobody("rig" + at("gone.yaml")).exit_code, 66);
+    EXPECT_EQ(as_nobody("replay" + at("gone")).exit_code, 66);
+}
+
+}  // namespace
+}  // namespace octoskin
