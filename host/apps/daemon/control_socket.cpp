@@ -171,4 +171,11 @@ Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, co
     return std::move(answer).value();
 }
 
+AppError foreign_answer(const std::filesystem::path& socket) {
+    return {ExitCode::bad_data,
+            socket.string() +
+                ": not the answer of a daemon of this version: restart the daemon if it is "
+                "another version's; --socket names another place"};
+}
+
 }  // namespace octoskin

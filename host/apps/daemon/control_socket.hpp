@@ -75,5 +75,7 @@ class ControlSocket {
 [[nodiscard]] Result<std::string, AppError> ask_daemon(
     const std::filesystem::path& socket, const std::string& request,
     std::chrono::milliseconds patience = std::chrono::seconds{5});
+/// What came from there is not what a daemon of this version answers.
+[[nodiscard]] AppError foreign_answer(const std::filesystem::path& socket);
 
 }  // namespace octoskin

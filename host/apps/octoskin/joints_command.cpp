@@ -20,6 +20,8 @@
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/end_signals.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/core/ingest/local_joints.hpp"
 #include "host/io/socketcan/can_socket.hpp"
 #include "hw/rigfile/rig.hpp"
@@ -138,7 +140,7 @@ class CanOutput final : public JointOutput {
 std::optional<rig::Rig> rig_of(const JointsOptions& options) {
     if (options.rig.empty()) return std::nullopt;
     auto rig = rig::read_rig(options.rig);
-    if (!rig) throw CommandFailure({ExitCode::bad_config, rig.error().message()});
+    if (!rig) throw CommandFailure(reading_error(ExitCode::bad_config, rig.error()));
     return std::move(rig).value();
 }
 
@@ -172,11 +174,11 @@ class Forwarder {
         was_refusal_told_ = false;
         ++sent_;
     }
-    /// Throws CommandFailure if not a single line went through.
+    /// What became of the lines. Throws CommandFailure if not a single one went through.
     void finish() const {
+        const auto level = lost_ + refused_ > 0 ? spdlog::level::warn : spdlog::level::info;
+        spdlog::log(level, "{} lines sent, {} lost, {} refused", sent_, lost_, refused_);
         if (sent_ == 0 && lost_ + refused_ > 0) throw CommandFailure({ExitCode::unavailable, why_});
-        if (lost_ > 0) spdlog::warn("{} of {} lines were lost", lost_, sent_ + lost_ + refused_);
-        if (refused_ > 0) spdlog::warn("{} of {} lines were refused", refused_, sent_ + lost_ + refused_);
     }
 
   private:
@@ -220,11 +222,15 @@ void forward(const JointsOptions& options) {
     const auto rig = rig_of(options);
     const auto output = make_output(options, rig);
     Forwarder forwarder(*output, rig ? std::optional(rig->joints.joints.size()) : std::nullopt);
+    const EndSignals signals;
     std::string pending;
-    while (true) {  // until standard input ends
+    while (true) {  // until standard input or a signal ends it
         output->attend();
-        std::array<pollfd, 2> ready{{{STDIN_FILENO, POLLIN, 0}, {output->descriptor(), POLLIN, 0}}};
+        std::array<pollfd, 3> ready{{{STDIN_FILENO, POLLIN, 0},
+                                     {output->descriptor(), POLLIN, 0},
+                                     {signals.descriptor(), POLLIN, 0}}};
         ::poll(ready.data(), ready.size(), kAttendMs);
+        if (ready[2].revents != 0) return forwarder.finish();  // what is pending is no whole line
         if (ready[0].revents == 0) continue;
         std::array<char, 4096> bytes{};
         const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
@@ -263,6 +269,8 @@ void add_joints_command(CLI::App& app) {
         "time.monotonic()), within 1 s of now; without it a line counts as sampled when it came. Without "
         "--rig the\n"
         "daemon checks the lines, and `octoskin status` says what it refused.\n"
+        "At the end of the input, and on SIGINT or SIGTERM, it tells how many lines were sent, lost and "
+        "refused.\n"
         "Exit codes: 0 lines went through; 64 command line; 65 a line without end; 66 no such rig file;\n"
         "69 not one line went through; 74 standard input cannot be read; 78 the rig is not valid.");
     command->callback([options] { forward(*options); });

@@ -65,7 +65,7 @@ Result<Json, AppError> ask(const MonitorOptions& options) {
     if (!answer) return unexpected(answer.error());
     Json status = Json::parse(*answer, nullptr, false);
     if (status.is_object()) return status;
-    return fail(ExitCode::bad_data, options.socket.string() + ": answered no JSON");
+    return unexpected(foreign_answer(options.socket));
 }
 
 /// Two questions a second apart, so that rates are known.

@@ -1,8 +1,6 @@
 // octoskin record: the daemon keeps what it takes in and what it puts into its map.
 #include <fmt/format.h>
-#include <signal.h>
 #include <spdlog/spdlog.h>
-#include <time.h>
 
 #include <chrono>
 #include <memory>
@@ -15,6 +13,8 @@
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/end_signals.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/recording/recording.hpp"
 
 namespace octoskin::app {
@@ -32,10 +32,9 @@ struct RecordOptions {
 /// "recording" of a daemon's answer; what it refuses is a CommandFailure.
 Json recording_of(const RecordOptions& options, const std::string& answer) {
     const Json json = Json::parse(answer, nullptr, false);
-    if (!json.is_object() || !json.contains("ok"))
-        throw CommandFailure({ExitCode::bad_data, options.socket.string() + ": not the answer of a daemon"});
-    if (!json["ok"].get<bool>())
-        throw CommandFailure({ExitCode::unavailable, json["error"].get<std::string>()});
+    if (!json.is_object() || !json.contains("ok")) throw CommandFailure(foreign_answer(options.socket));
+    if (!json.at("ok").get<bool>())
+        throw CommandFailure({ExitCode::unavailable, json.at("error").get<std::string>()});
     const Json recording = json.value("recording", Json());
     if (recording.is_object()) return recording;
     throw CommandFailure({ExitCode::unavailable,
@@ -50,7 +49,7 @@ Json ask(const RecordOptions& options, const std::string& line) {
 }
 
 bool is_going_on(const Json& recording) {
-    return recording["state"] == "recording" || recording["state"] == "finishing";
+    return recording.at("state") == "recording" || recording.at("state") == "finishing";
 }
 
 /// Within the 5 s in which a daemon ends.
@@ -69,27 +68,8 @@ void tell_left(const std::filesystem::path& folder) {
             {ExitCode::unavailable, "the daemon ended, and did not end the recording: what it wrote is in " +
                                         folder.string() + ", without meta.yaml"});
     }
-    fmt::print("{}: whole; the daemon ended, and with it the recording\n", folder.string());
+    print("{}: whole; the daemon ended, and with it the recording\n", folder.string());
 }
-
-/// SIGINT and SIGTERM, taken in order to end the recording rather than this program.
-class EndSignals {
-  public:
-    EndSignals() {
-        sigemptyset(&signals_);
-        sigaddset(&signals_, SIGINT);
-        sigaddset(&signals_, SIGTERM);
-        sigprocmask(SIG_BLOCK, &signals_, nullptr);
-    }
-    /// Waits 0.2 s at most; true if one came.
-    [[nodiscard]] bool came() const {
-        constexpr timespec kPatience{0, 200'000'000};
-        return sigtimedwait(&signals_, nullptr, &kPatience) > 0;
-    }
-
-  private:
-    sigset_t signals_{};
-};
 
 bool is_same(const Json& recording, const Json& other) {
     return recording.is_object() && recording.value("number", 0U) == other.value("number", 0U) &&
@@ -143,7 +123,7 @@ std::string stop_line(const RecordOptions& options) {
 std::optional<Json> follow(const RecordOptions& options, Json recording) {
     const EndSignals signals;
     while (is_going_on(recording)) {
-        if (signals.came()) (void)ask_daemon(options.socket, stop_line(options));  // what came of it is asked
+        if (signals.came(std::chrono::milliseconds(200))) (void)ask_daemon(options.socket, stop_line(options));  // what came of it is asked
         const auto answer = ask_patiently(options, recording);
         if (!answer) return std::nullopt;
         recording = own_of(options, *answer, recording);
@@ -152,18 +132,18 @@ std::optional<Json> follow(const RecordOptions& options, Json recording) {
 }
 
 void tell(const Json& recording) {
-    const auto folder = recording["folder"].get<std::string>();
-    if (recording["state"] == "failed")
-        throw CommandFailure({ExitCode::cannot_create, recording["error"].get<std::string>()});
-    fmt::print("{}: {:.1f} s, {} CAN frames, {} depth frames, {} commits\n", folder,
-               recording["seconds"].get<double>(), recording["can_frames"].get<std::uint64_t>(),
-               recording["depth_frames"].get<std::uint64_t>(), recording["commits"].get<std::uint64_t>());
-    if (const auto lost = recording["lost_can"].get<std::uint64_t>(); lost > 0)
+    const auto folder = recording.at("folder").get<std::string>();
+    if (recording.at("state") == "failed")
+        throw CommandFailure({ExitCode::cannot_create, recording.at("error").get<std::string>()});
+    print("{}: {:.1f} s, {} CAN frames, {} depth frames, {} commits\n", folder,
+          recording.at("seconds").get<double>(), recording.at("can_frames").get<std::uint64_t>(),
+          recording.at("depth_frames").get<std::uint64_t>(), recording.at("commits").get<std::uint64_t>());
+    if (const auto lost = recording.at("lost_can").get<std::uint64_t>(); lost > 0)
         spdlog::warn("{} CAN frames are not in can.log: the disk was too slow", lost);
-    if (recording["is_complete"].get<bool>()) return;
+    if (recording.at("is_complete").get<bool>()) return;
     throw CommandFailure({ExitCode::failed, folder + ": the disk was too slow for " +
-                                                recording["lost_depth"].dump() + " depth frames and " +
-                                                recording["lost_commits"].dump() +
+                                                recording.at("lost_depth").dump() + " depth frames and " +
+                                                recording.at("lost_commits").dump() +
                                                 " commits: a replay does not give the daemon's map"});
 }
 
@@ -171,7 +151,7 @@ Json stop(const RecordOptions& options) {
     const Json before = ask(options, "record status");
     if (is_going_on(before)) return ask(options, stop_line(options));
     throw CommandFailure({ExitCode::unavailable, "nothing is being recorded; the last recording, " +
-                                                     before["folder"].get<std::string>() + ", has ended"});
+                                                     before.at("folder").get<std::string>() + ", has ended"});
 }
 
 Json start(const RecordOptions& options) {
@@ -188,9 +168,13 @@ Json start(const RecordOptions& options) {
 }
 
 void record(const RecordOptions& options) {
-    const Json begun = options.stops ? stop(options) : start(options);
-    const auto ended = follow(options, begun);
-    ended ? tell(*ended) : tell_left(begun["folder"].get<std::string>());
+    try {
+        const Json begun = options.stops ? stop(options) : start(options);
+        const auto ended = follow(options, begun);
+        ended ? tell(*ended) : tell_left(begun.at("folder").get<std::string>());
+    } catch (const Json::exception&) {
+        throw CommandFailure(foreign_answer(options.socket));
+    }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -17,28 +18,28 @@ struct StatusOptions {
 };
 
 void print_for_people(const nlohmann::ordered_json& status) {
-    fmt::print("{}\nrig '{}' on {} ({}), {:.0f} s\n", status["octoskin"].get<std::string>(),
-               status["rig"].get<std::string>(), status["can"]["interface"].get<std::string>(),
-               status["can"]["state"].get<std::string>(), status["uptime_s"].get<double>());
-    for (const auto& node : status["nodes"]) {
-        fmt::print("node {:>2} {:<16} {}\n", node["id"].get<int>(), node["name"].get<std::string>(),
-                   node["verdict"].get<std::string>());
+    print("{}\nrig '{}' on {} ({}), {:.0f} s\n", status.at("octoskin").get<std::string>(),
+          status.at("rig").get<std::string>(), status.at("can").at("interface").get<std::string>(),
+          status.at("can").at("state").get<std::string>(), status.at("uptime_s").get<double>());
+    for (const auto& node : status.at("nodes")) {
+        print("node {:>2} {:<16} {}\n", node.at("id").get<int>(), node.at("name").get<std::string>(),
+              node.at("verdict").get<std::string>());
     }
-    fmt::print("map: {} known voxels\n", status["map"]["known_voxels"].get<std::uint64_t>());
-    if (status["problems"].empty()) fmt::print("no problems\n");
-    for (const auto& problem : status["problems"]) fmt::print("! {}\n", problem.get<std::string>());
+    print("map: {} known voxels\n", status.at("map").at("known_voxels").get<std::uint64_t>());
+    if (status.at("problems").empty()) print("no problems\n");
+    for (const auto& problem : status.at("problems")) print("! {}\n", problem.get<std::string>());
 }
 
 void show_status(const StatusOptions& options) {
     const auto answer = ask_daemon(options.socket, "status");
     if (!answer) throw CommandFailure(answer.error());
     const auto status = nlohmann::ordered_json::parse(*answer, nullptr, false);
-    if (status.is_discarded())
-        throw CommandFailure({ExitCode::bad_data, options.socket.string() + ": answered no JSON"});
-    if (options.is_json) {
-        fmt::print("{}\n", status.dump(2));
-    } else {
+    if (!status.is_object()) throw CommandFailure(foreign_answer(options.socket));
+    if (options.is_json) return print("{}\n", status.dump(2));
+    try {
         print_for_people(status);
+    } catch (const nlohmann::ordered_json::exception&) {
+        throw CommandFailure(foreign_answer(options.socket));
     }
 }
 

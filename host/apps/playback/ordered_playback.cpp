@@ -36,7 +36,7 @@ Result<FusedMap, AppError> read_first_map(const PlaybackRequest& request, std::u
     auto map = load_map_of(request.mapping.map, file);
     if (map) return std::move(map).value();
     const bool is_of_other_mapping = map.error().is_of_other_voxels || map.error().is_too_large;
-    if (!is_of_other_mapping) return fail(ExitCode::bad_data, map.error().message);
+    if (!is_of_other_mapping) return unexpected(reading_error(file, {ExitCode::bad_data, map.error().message}));
     return fail(ExitCode::bad_config,
                 map.error().message + "; replay with the recording's own mapping, or with --by-capture-time");
 }

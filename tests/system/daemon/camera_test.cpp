@@ -69,8 +69,8 @@ TEST_F(DaemonTest, takes_the_frames_of_a_camera_and_goes_on_without_it) {
     const int before = used(daemon_->status());
     EXPECT_TRUE(daemon_->wait_until([&](const Json& now) { return used(now) > before; }, 2s)) << "they stand";
     (void)record_wall(folder_);
-    const auto back =
-        daemon_->wait_until([](const Json& now) { return now["camera"]["open"].get<bool>(); }, 10s);
+    const auto back = daemon_->wait_until(
+        [](const Json& now) { return now.value(Json::json_pointer("/camera/open"), false); }, 10s);
     ASSERT_TRUE(back) << daemon_->log();
     std::printf("named %ld ms after it was gone, back %ld ms after it was there again\n",
                 static_cast<long>(told->count()), static_cast<long>(back->count()));
@@ -144,7 +144,7 @@ TEST_F(DaemonTest, tells_of_each_sensor_what_the_camera_says_of_its_ranges) {
     const auto contradicted = [](const Json& status) {
         for (const Json& node : status["nodes"]) {
             for (const Json& sensor : node["sensors"])
-                if (sensor["camera"]["in_free_space"].get<int>() > 0) return true;
+                if (sensor.value(Json::json_pointer("/camera/in_free_space"), 0) > 0) return true;
         }
         return false;
     };

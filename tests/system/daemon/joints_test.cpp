@@ -100,6 +100,29 @@ TEST(JointsCommand, says_at_the_end_that_nobody_was_there) {
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69);
 }
 
+/// As whoever starts and ends it by hand does: what became of the lines is told as at the end of the input.
+TEST(JointsCommand, tells_what_became_of_the_lines_when_a_signal_ends_it) {
+    for (const std::string signal : {"INT", "TERM"}) {
+        const testing_support::ScratchFolder folder;
+        const Taker taker(folder / "joints");
+        // A shell in the background lets its commands ignore SIGINT.
+        const auto script = folder.write(
+            "script", "cd " + folder.path().string() +
+                          "; mkfifo input; exec 3<>input; printf '0 0 0 0 0 0 0\\n1 2 3\\n1 2' >&3\n"
+                          "python3 -c 'import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); "
+                          "os.execv(sys.argv[1], sys.argv[1:])' " OCTOSKIN_PROGRAM
+                          " joints --rig " OCTOSKIN_SOURCE_DIR
+                          "/hw/rigs/experiment.yaml --socket joints < input 2> log &\n"
+                          "until grep -q wrong_count log; do sleep 0.05; done\nkill -" +
+                          signal + " $!; wait $!\n");
+        const auto begun = std::chrono::steady_clock::now();
+        EXPECT_EQ(WEXITSTATUS(std::system(("timeout 20 bash " + script.string()).c_str())), 0);
+        EXPECT_LT(std::chrono::steady_clock::now() - begun, 15s);
+        const std::string log = testing_support::ScratchFolder::read(folder / "log");
+        EXPECT_NE(log.find("1 lines sent, 0 lost, 1 refused"), std::string::npos) << log;
+    }
+}
+
 /// More lines at once than the rig's rate lets through: those are no better than the ones before them.
 TEST(JointsCommand, says_at_the_end_that_there_was_no_bus_whatever_the_rate_of_the_lines) {
     const std::string command =

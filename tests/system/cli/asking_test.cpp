@@ -1,0 +1,67 @@
+// The commands that ask a daemon, before one that answers what a test wants.
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "host/apps/daemon/control_socket.hpp"
+#include "tests/system/cli/program.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::HasSubstr;
+
+class AskingTest : public ProgramTest {
+  protected:
+    /// What `commands` say, each through `call`, while a daemon gives this answer to everything.
+    std::vector<Said> ask(const std::string& answer, const std::vector<std::string>& commands,
+                          const std::function<Said(const std::string&)>& call) const {
+        EventLoop loop;
+        const auto socket =
+            ControlSocket::open(path("control"), loop, [&](const std::string&) { return answer; });
+        EXPECT_TRUE(socket) << socket.error().message;
+        std::vector<Said> said;
+        std::atomic<bool> is_done = false;
+        std::thread asking([&] {
+            for (const std::string& command : commands)
+                said.push_back(call(command + " --socket " + path("control")));
+            is_done = true;
+        });
+        const auto watch = loop.every(std::chrono::milliseconds(20), [&] {
+            if (is_done) loop.stop(0);
+        });
+        loop.run();
+        asking.join();
+        return said;
+    }
+};
+
+/// The answer is more than a buffer of standard output holds, so that writing fails in mid-work.
+TEST_F(AskingTest, a_reader_that_goes_away_is_no_failure) {
+    const std::string answer = R"({"octoskin": ")" + std::string(200'000, 'x') +
+                               R"(", "rig": "a", "can": {"interface": "can0", "state": "up"}, "uptime_s": 1,)"
+                               R"("nodes": [], "map": {"known_voxels": 1}, "problems": []})";
+    const auto said =
+        ask(answer, {"status", "status --json", "monitor --once"}, [](const std::string& arguments) {
+            return run("( ( sleep 0.3; " OCTOSKIN_PROGRAM " " + arguments + "; echo code $? >&2 ) | true )");
+        });
+    ASSERT_EQ(said.size(), 3U);
+    for (const Said& each : said) EXPECT_EQ(each.output, "code 0\n");
+}
+
+TEST_F(AskingTest, an_answer_of_something_else_is_told) {
+    const auto said = ask(R"({"ok": true, "recording": {}})",
+                          {"status", "record " + path("out"), "record --stop"}, octoskin);
+    ASSERT_EQ(said.size(), 3U);
+    for (const Said& each : said) {
+        EXPECT_EQ(each.exit_code, 65) << each.output;
+        EXPECT_THAT(each.output, HasSubstr("control: not the answer of a daemon of this version"));
+    }
+}
+
+}  // namespace
+}  // namespace octoskin
