@@ -28,12 +28,12 @@ using testing_support::ScratchFolder;
 
 struct Ran {
     int exit_code = -1;
-    std::string output;  ///< both streams
+    std::string output;  ///< both streams, unless `errors` go elsewhere
 };
 
-Ran run(const std::string& arguments) {
+Ran run(const std::string& arguments, const std::string& errors = "2>&1") {
     Ran ran;
-    const std::string command = OCTOSKIN_PROGRAM " " + arguments + " 2>&1";
+    const std::string command = OCTOSKIN_PROGRAM " " + arguments + " " + errors;
     FILE* const pipe = ::popen(command.c_str(), "r");
     if (pipe == nullptr) return ran;  // no process to be had
     std::array<char, 4096> bytes{};
@@ -42,6 +42,9 @@ Ran run(const std::string& arguments) {
     ran.exit_code = WEXITSTATUS(::pclose(pipe));
     return ran;
 }
+
+/// Beside JSON, which they would spoil.
+constexpr const char* kNoWarnings = "2> /dev/null";
 
 /// Empty while nothing was recorded: there is a null then.
 std::string state_of_recording(const Json& status) {
@@ -76,7 +79,7 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
         },
         20s))
         << daemon_->log();
-    const Ran recorded = record(out() + " --seconds 3");
+    const Ran recorded = record(out() + " --seconds 6");
     ASSERT_EQ(recorded.exit_code, 0) << recorded.output << daemon_->log();
     const Json recording = daemon_->status()["recording"];
     EXPECT_EQ(recording["state"], "ended");
@@ -94,7 +97,7 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
     int went_on = 0;
     for (const char* point :
          {"1.4 -1 1.04", "1.5 0 0.5", "1 0 0.5", "0.8 0.3 0.3", "0.5 0.5 0.5", "0.3 0.2 0.8"}) {
-        const Ran explained = run(explain + point);
+        const Ran explained = run(explain + point, kNoWarnings);
         ASSERT_EQ(explained.exit_code, 0) << explained.output;
         const Json json = Json::parse(explained.output);
         went_on += !json["log_odds_at_begin"].is_null() && !json["contributions"].empty() ? 1 : 0;
@@ -102,17 +105,17 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
     EXPECT_GT(went_on, 0) << "no voxel was known at the begin and changed afterwards";
     // Both orders count from the recording's begin, and the daemon had joint samples of before that.
     const std::string seen_through = explain + "1.4 -1 1.04";
-    const Json ordered = Json::parse(run(seen_through).output);
-    const Json by_time = Json::parse(run(seen_through + " --by-capture-time").output);
+    const Json ordered = Json::parse(run(seen_through, kNoWarnings).output);
+    const Json by_time = Json::parse(run(seen_through + " --by-capture-time", kNoWarnings).output);
     ASSERT_FALSE(ordered["contributions"].empty());
-    // Of no frame whose pose this machine was too busy to tell in time.
+    // By capture time the clocks are learnt in the recording itself: a busy machine takes seconds for that.
     ASSERT_FALSE(by_time["contributions"].empty())
         << by_time.dump(1)
         << run("replay " + out() + " --fused-only --by-capture-time --out " + out() + "-again").output;
     const double last_s = ordered["contributions"].back()["time_s"].get<double>();
     EXPECT_NEAR(last_s, by_time["contributions"].back()["time_s"].get<double>(), 0.11) << "a frame's period";
-    EXPECT_LT(last_s, 3.1);
-    EXPECT_GT(last_s, 2.0);
+    EXPECT_LT(last_s, 6.1);
+    EXPECT_GT(last_s, 5.0);
 
     // The same again in the order of capture times: another map, and the same one every time.
     const auto in_order = ScratchFolder::read(out() + "/maps/fused.ot");
