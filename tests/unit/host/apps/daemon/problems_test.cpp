@@ -59,20 +59,6 @@ TEST_F(ProblemsTest, come_the_most_fundamental_first) {
                     "camera: no such device", "the map is not saved: the disk is full"));
 }
 
-TEST_F(ProblemsTest, after_a_reload_have_for_three_seconds_only_what_is_not_learnt_anew) {
-    play_changed([](Scene& scene) { scene.bus = ScriptedBus{}, scene.depth.clear(); });
-    view_.camera->is_open = false;
-    view_.saves.error = "the disk is full";
-    view_.reloaded = view_.now - 3 * kSecond + kNs;
-    EXPECT_TRUE(view_.is_settling());
-    EXPECT_THAT(all_told(), ElementsAre("the map is not saved: the disk is full"));
-    view_.reloaded = view_.now - 3 * kSecond;
-    EXPECT_FALSE(view_.is_settling());
-    EXPECT_NE(told("no time"), "");
-    EXPECT_NE(told("no joints"), "");
-    EXPECT_NE(told("node 1 'node 1': absent"), "");
-}
-
 TEST_F(ProblemsTest, have_the_adapters_word_until_traffic_proves_it_wrong) {
     say_error(CAN_ERR_BUSOFF);
     const std::string bus_off =

@@ -252,6 +252,19 @@ TEST_F(StatusTest, has_the_map_with_its_memory_and_saves) {
     EXPECT_EQ(status()["map"]["saved_age_s"], nullptr);
 }
 
+TEST_F(StatusTest, names_nothing_that_is_learnt_anew_for_three_seconds_after_a_reload) {
+    Scene silent = daemon_scene();
+    silent.bus = ScriptedBus{};
+    play(silent, kAllWell);
+    view_.saves.error = "the disk is full";
+    view_.reloaded = view_.now - Nanoseconds{2'999'999'999};
+    EXPECT_EQ(status()["problems"], Json::array({"the map is not saved: the disk is full"}));
+    view_.reloaded = view_.now - Nanoseconds{3'000'000'000};
+    EXPECT_NE(told("no time"), "");
+    EXPECT_NE(told("no joints"), "");
+    EXPECT_NE(told("node 1 'node 1': absent"), "");
+}
+
 TEST_F(StatusTest, has_the_recording_or_null_and_the_reloads) {
     EXPECT_EQ(status()["recording"], nullptr);
     view_.reloads = {.count = 2, .dropped = 7};
