@@ -123,7 +123,8 @@ std::string stop_line(const RecordOptions& options) {
 std::optional<Json> follow(const RecordOptions& options, Json recording) {
     const EndSignals signals;
     while (is_going_on(recording)) {
-        if (signals.came(std::chrono::milliseconds(200))) (void)ask_daemon(options.socket, stop_line(options));  // what came of it is asked
+        if (signals.came(std::chrono::milliseconds(200)))
+            (void)ask_daemon(options.socket, stop_line(options));  // what came of it is asked
         const auto answer = ask_patiently(options, recording);
         if (!answer) return std::nullopt;
         recording = own_of(options, *answer, recording);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/apps/daemon/recorder.hpp"
+#include "tests/support/allocation_hooks.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
 
@@ -14,30 +15,15 @@ namespace {
 
 thread_local bool is_memory_gone = false;
 
-void* allocate(std::size_t bytes) {
+}  // namespace
+
+static void* allocate(std::size_t bytes) {
     void* const place = is_memory_gone ? nullptr : std::malloc(bytes);
     if (place == nullptr) throw std::bad_alloc();
     return place;
 }
 
-}  // namespace
-
-void* operator new(std::size_t bytes) {
-    return allocate(bytes);
-}
-void* operator new[](std::size_t bytes) {
-    return allocate(bytes);
-}
-void operator delete(void* place) noexcept {
-    std::free(place);
-}
-void operator delete[](void* place) noexcept {
-    std::free(place);
-}
-void operator delete(void* place, std::size_t) noexcept {
-    std::free(place);
-}
-void operator delete[](void* place, std::size_t) noexcept {
+static void release(void* place) noexcept {
     std::free(place);
 }
 

@@ -13,6 +13,7 @@
 #include "host/core/mapping/depth_integrator.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/io/mapfile/map_file.hpp"
+#include "tests/support/allocation_hooks.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace {
@@ -22,7 +23,9 @@ std::atomic<std::size_t> bytes_most = 0;
 std::atomic<bool> is_memory_gone = false;
 std::atomic<int> allocations_left = -1;  ///< before one fails; negative: none does
 
-void* allocate(std::size_t bytes) {
+}  // namespace
+
+static void* allocate(std::size_t bytes) {
     const bool is_refused = is_memory_gone || (allocations_left >= 0 && allocations_left-- == 0);
     void* const place = is_refused ? nullptr : std::malloc(bytes);
     if (place == nullptr) throw std::bad_alloc();
@@ -31,30 +34,9 @@ void* allocate(std::size_t bytes) {
     return place;
 }
 
-void release(void* place) noexcept {
+static void release(void* place) noexcept {
     if (place != nullptr) bytes_now -= ::malloc_usable_size(place);
     std::free(place);
-}
-
-}  // namespace
-
-void* operator new(std::size_t bytes) {
-    return allocate(bytes);
-}
-void* operator new[](std::size_t bytes) {
-    return allocate(bytes);
-}
-void operator delete(void* place) noexcept {
-    release(place);
-}
-void operator delete[](void* place) noexcept {
-    release(place);
-}
-void operator delete(void* place, std::size_t) noexcept {
-    release(place);
-}
-void operator delete[](void* place, std::size_t) noexcept {
-    release(place);
 }
 
 namespace octoskin {

@@ -72,5 +72,16 @@ TEST(LoopedStamps, a_round_that_came_late_leaves_nothing_to_the_next) {
     EXPECT_LE(*late_us, 1'000);
 }
 
+TEST(LoopedStamps, a_first_frame_that_came_late_leaves_nothing_to_the_next_rounds) {
+    Film film(kPeriodUs);
+    (void)film.frame(700'000);
+    for (int i = 1; i < kFrames; ++i) (void)film.frame();
+    for (int i = 0; i < 5 * kFrames; ++i) {
+        const auto [captured_us, arrived_us] = film.frame();
+        ASSERT_TRUE(captured_us) << i;
+        EXPECT_LE(arrived_us - *captured_us, 1'000) << i;
+    }
+}
+
 }  // namespace
 }  // namespace octoskin::openni2

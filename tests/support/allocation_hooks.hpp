@@ -1,0 +1,29 @@
+// The operators of a test program that decides itself what an allocation gives. For the program's one source.
+#pragma once
+
+#include <cstddef>
+#include <new>
+
+/// Defined by the program: what every `new` gives; throws std::bad_alloc.
+static void* allocate(std::size_t bytes);
+/// And every `delete` takes.
+static void release(void* place) noexcept;
+
+void* operator new(std::size_t bytes) {
+    return allocate(bytes);
+}
+void* operator new[](std::size_t bytes) {
+    return allocate(bytes);
+}
+void operator delete(void* place) noexcept {
+    release(place);
+}
+void operator delete[](void* place) noexcept {
+    release(place);
+}
+void operator delete(void* place, std::size_t) noexcept {
+    release(place);
+}
+void operator delete[](void* place, std::size_t) noexcept {
+    release(place);
+}
