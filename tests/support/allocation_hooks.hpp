@@ -15,6 +15,15 @@ void* operator new(std::size_t bytes) {
 void* operator new[](std::size_t bytes) {
     return allocate(bytes);
 }
+// The library's own would give what ours then takes back.
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept try {
+    return allocate(bytes);
+} catch (const std::bad_alloc&) {
+    return nullptr;
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t& none) noexcept {
+    return operator new(bytes, none);
+}
 void operator delete(void* place) noexcept {
     release(place);
 }
