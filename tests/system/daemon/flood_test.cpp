@@ -3,6 +3,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -57,8 +58,11 @@ TEST_F(DaemonTest, maps_on_in_a_flood_of_joint_states_tells_of_it_and_ends_in_ti
     const auto begun = std::chrono::steady_clock::now();
     const int sent_before = flood.sent();
     int answers = 0;
+    std::chrono::steady_clock::duration slowest{};
     for (; std::chrono::steady_clock::now() - begun < 4s; std::this_thread::sleep_for(50ms)) {
+        const auto asked = std::chrono::steady_clock::now();
         const Json now = daemon_->status();
+        slowest = std::max(slowest, std::chrono::steady_clock::now() - asked);
         ASSERT_TRUE(now.is_object()) << "no answer";
         ++answers;
         ASSERT_EQ(now["problems"].size(), 1U) << now["problems"].dump(1);
@@ -70,7 +74,7 @@ TEST_F(DaemonTest, maps_on_in_a_flood_of_joint_states_tells_of_it_and_ends_in_ti
         after["joints_socket"]["displaced"].get<int>() - before["joints_socket"]["displaced"].get<int>(),
         (flood.sent() - sent_before) / 4, answers, readings, after["clock"].dump().c_str());
     EXPECT_GT(readings, 800);
-    EXPECT_GT(answers, 30);
+    EXPECT_LT(slowest, 1s) << "what is wrong is named within a second";
     EXPECT_EQ(after["clock"]["steps_back"], 0) << after["clock"].dump();
     EXPECT_EQ(after["clock"]["stamps_ignored"], 0) << after["clock"].dump();
     daemon_->signal(SIGTERM);
