@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "host/apps/evaluation/truth.hpp"
-#include "host/core/mapping/ray_walk.hpp"
-#include "host/core/mapping/voxel_lattice.hpp"
+#include "host/core/voxels/ray_walk.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin::evaluation {
 namespace {

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "host/core/mapping/voxel_lattice.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin::evaluation {
 namespace {

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "host/apps/evaluation/truth.hpp"
-#include "host/core/mapping/voxel_lattice.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin::evaluation {
 namespace {

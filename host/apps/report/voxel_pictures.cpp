@@ -5,7 +5,7 @@
 
 #include "host/apps/report/pictures.hpp"
 #include "host/apps/report/tracer.hpp"
-#include "host/core/mapping/voxel_lattice.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin::report {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "host/core/mapping/ray_walk.hpp"
+#include "host/core/voxels/ray_walk.hpp"
 
 namespace octoskin {
 namespace {

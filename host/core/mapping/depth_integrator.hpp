@@ -12,6 +12,7 @@
 #include "host/core/depth/pixel_rays.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/core/mapping/mapping_config.hpp"
+#include "host/core/traversal/placed_image.hpp"
 
 namespace octoskin {
 
@@ -21,14 +22,6 @@ enum class DepthRejection : std::uint8_t {
     pose_not_finite,     ///< T_map_camera has a NaN or an infinity
     camera_outside_map,  ///< the camera lies outside the octree
     box_too_large,       ///< the rays span more voxels than `MappingConfig::depth_box_voxels_max`
-};
-
-/// What became of each pixel: width * height = the sum of these.
-struct DepthPixelCounts {
-    std::uint64_t used = 0;
-    std::uint64_t no_value = 0;     ///< NaN: no return, filtered, or the robot
-    std::uint64_t bad_value = 0;    ///< infinite, zero or negative
-    std::uint64_t outside_map = 0;  ///< the endpoint lies outside the octree
 };
 
 struct DepthUpdates {
@@ -52,18 +45,22 @@ class DepthIntegrator {
 
     /// The terms of one image (depth along the optical axis, metres, NaN = none), already filtered and
     /// without the robot, seen from `T_map_camera` (optical frame: z forward, x right, y down). Voxels hit
-    /// and passed equal those of OctoMap's `computeUpdate` without discretisation and without maximum range.
-    /// `paper`: a voxel hit by any endpoint gets the largest of their terms, any other traversed voxel one
-    /// miss. `robust`: the mean of all beams' terms, (sum of hits + miss * passed) / (hits + passed).
-    /// O(pixels * range / resolution), about 80 ms for 512 x 424 at 0.04 m. Throws std::bad_alloc; the next
-    /// image is then as if this one had not been.
+    /// and passed equal those of OctoMap's `computeUpdate` without discretisation, maximum range
+    /// `depth_range_max_m`. `paper`: a voxel hit by any endpoint gets the largest of their terms, any other
+    /// traversed voxel one miss. `robust`: the mean of all beams' terms, (sum of hits + miss * passed) /
+    /// (hits + passed). O(pixels * range / resolution), about 80 ms for 512 x 424 at 0.04 m. Throws
+    /// std::bad_alloc; the next image is then as if this one had not been.
     [[nodiscard]] Result<DepthUpdates, DepthRejection> integrate(const DepthImage& image,
                                                                  const Eigen::Isometry3d& T_map_camera);
 
   private:
     [[nodiscard]] Result<DepthUpdates, DepthRejection> updates_of(const DepthImage& image,
-                                                                  const Eigen::Isometry3d& T_map_camera,
-                                                                  VoxelKey camera_key);
+                                                                  const Eigen::Isometry3d& T_map_camera);
+    /// False: the rays span too many voxels.
+    [[nodiscard]] bool take_sets(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
+                                 std::vector<VoxelUpdate>& updates);
+    [[nodiscard]] bool take_means(const PlacedImage& rays, std::vector<VoxelUpdate>& updates);
+
     struct Workspace;
     MappingConfig config_;
     PixelRays pixel_rays_;

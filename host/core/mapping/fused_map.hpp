@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "host/core/mapping/morton.hpp"
-#include "host/core/mapping/voxel_lattice.hpp"
+#include "host/core/voxels/morton.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
 

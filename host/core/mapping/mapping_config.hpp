@@ -20,11 +20,14 @@ struct MappingConfig {
     UpdateModel model;
     DepthUpdate depth_update = DepthUpdate::robust;
     DepthFilterConfig depth_filter;
+    /// A depth pixel whose range is larger clears space up to here and marks nothing; 0: no maximum.
+    double depth_range_max_m = 0.0;
     bool removes_robot_from_depth = true;
     bool removes_robot_from_ranges = true;
     /// A beam without return clears space up to here, and never beyond its own limit; 0 leaves the map alone.
     double no_return_clear_m = 0.0;
-    /// The box around one image's rays may hold this many voxels (8 bytes each); a larger one is refused.
+    /// The box around one image's rays may hold this many voxels (1 byte each with `paper`, 8 with
+    /// `robust`); a larger one is refused.
     std::uint32_t depth_box_voxels_max = 1U << 26U;
     friend bool operator==(const MappingConfig&, const MappingConfig&) = default;
 };

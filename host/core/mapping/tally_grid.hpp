@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/core/mapping/ray_walk.hpp"
-#include "host/core/mapping/voxel_lattice.hpp"
+#include "host/core/voxels/ray_walk.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
 

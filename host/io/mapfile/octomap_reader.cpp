@@ -8,7 +8,7 @@
 #include <functional>
 #include <optional>
 
-#include "host/core/mapping/morton.hpp"
+#include "host/core/voxels/morton.hpp"
 #include "host/io/mapfile/octomap_header.hpp"
 #include "host/io/mapfile/octree.hpp"
 

@@ -23,6 +23,7 @@ const Keys kTopKeys = {"base",
                        "depth_filter",
                        "removes_robot_from_depth",
                        "removes_robot_from_ranges",
+                       "depth_range_max_m",
                        "no_return_clear_m",
                        "depth_box_voxels_max"};
 const Keys kMapKeys = {"resolution_m", "log_odds_min", "log_odds_max", "log_odds_occupied", "memory_max_mib"};
@@ -117,6 +118,7 @@ MappingConfig read_checked(const std::string& file) {
     config.removes_robot_from_depth = top.flag("removes_robot_from_depth", config.removes_robot_from_depth);
     config.removes_robot_from_ranges =
         top.flag("removes_robot_from_ranges", config.removes_robot_from_ranges);
+    config.depth_range_max_m = top.number("depth_range_max_m", {0.0, 100.0}, config.depth_range_max_m);
     config.no_return_clear_m = top.number("no_return_clear_m", {0.0, 100.0}, config.no_return_clear_m);
     config.depth_box_voxels_max =
         top.integer<std::uint32_t>("depth_box_voxels_max", {1000, 1 << 30}, config.depth_box_voxels_max);
@@ -165,10 +167,11 @@ std::string mapping_text(const MappingConfig& config) {
         filter.is_enabled, filter.window, filter.sigma_m, filter.gate_sigmas, filter.mean_sigmas,
         filter.min_support);
     text += fmt::format(
-        "removes_robot_from_depth: {}\nremoves_robot_from_ranges: {}\nno_return_clear_m: {}\n"
+        "removes_robot_from_depth: {}\nremoves_robot_from_ranges: {}\n"
+        "depth_range_max_m: {}\nno_return_clear_m: {}\n"
         "depth_box_voxels_max: {}\n",
-        config.removes_robot_from_depth, config.removes_robot_from_ranges, config.no_return_clear_m,
-        config.depth_box_voxels_max);
+        config.removes_robot_from_depth, config.removes_robot_from_ranges, config.depth_range_max_m,
+        config.no_return_clear_m, config.depth_box_voxels_max);
     return text;
 }
 

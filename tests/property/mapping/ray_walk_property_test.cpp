@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "host/core/mapping/beam_integrator.hpp"
-#include "host/core/mapping/ray_walk.hpp"
+#include "host/core/voxels/ray_walk.hpp"
 #include "tests/property/mapping/random_geometry.hpp"
 #include "tests/support/octomap_oracle.hpp"
 

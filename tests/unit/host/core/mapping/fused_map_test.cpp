@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "host/core/mapping/morton.hpp"
+#include "host/core/voxels/morton.hpp"
 #include "tests/support/octomap_oracle.hpp"
 
 namespace octoskin {

@@ -78,7 +78,8 @@ TEST(MappingFile, reads_every_key) {
         "miss_log_odds: -0.5\ndepth_update: paper\n"
         "depth_filter: {is_enabled: false, window_px: 3, sigma_m: 0.01, gate_sigmas: 5, mean_sigmas: 2, "
         "min_support: 4}\n"
-        "removes_robot_from_depth: false\nremoves_robot_from_ranges: false\nno_return_clear_m: 1.25\n"
+        "removes_robot_from_depth: false\nremoves_robot_from_ranges: false\ndepth_range_max_m: "
+        "3.5\nno_return_clear_m: 1.25\n"
         "depth_box_voxels_max: 5000\n");
     ASSERT_TRUE(config.has_value()) << config.error().message();
     const MappingConfig expected{
@@ -99,6 +100,7 @@ TEST(MappingFile, reads_every_key) {
                          .gate_sigmas = 5.0,
                          .mean_sigmas = 2.0,
                          .min_support = 4},
+        .depth_range_max_m = 3.5,
         .removes_robot_from_depth = false,
         .removes_robot_from_ranges = false,
         .no_return_clear_m = 1.25,
@@ -227,7 +229,7 @@ TEST(MappingFile, has_each_key_with_its_range_and_default_in_its_document_and_no
         const bool is_same = paper.at(path) == value;
         keys[path] = {expected_of(path), is_same ? value : value + " (" + paper.at(path) + ")"};
     }
-    EXPECT_EQ(keys.size(), 26U);
+    EXPECT_EQ(keys.size(), 27U);
     EXPECT_EQ(documented_keys(), keys);
 }
 

@@ -1,4 +1,4 @@
-#include "host/core/mapping/voxel_lattice.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
 
 #include <cassert>
 #include <cmath>

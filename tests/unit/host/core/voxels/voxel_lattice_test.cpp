@@ -1,4 +1,4 @@
-#include "host/core/mapping/voxel_lattice.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "host/core/mapping/morton.hpp"
+#include "host/core/voxels/morton.hpp"
 #include "tests/support/octomap_oracle.hpp"
 
 namespace octoskin {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "host/core/mapping/voxel_lattice.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
 

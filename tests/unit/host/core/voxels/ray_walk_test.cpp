@@ -1,4 +1,4 @@
-#include "host/core/mapping/ray_walk.hpp"
+#include "host/core/voxels/ray_walk.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

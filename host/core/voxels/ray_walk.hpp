@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "common/result.hpp"
-#include "host/core/mapping/voxel_lattice.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
 

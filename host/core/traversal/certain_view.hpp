@@ -1,0 +1,46 @@
+// Which voxels are passed for certain, so that no ray need be walked through them.
+//
+// A voxel is certain if the ray of the pixel nearest to its centre passes its centre within half an edge and
+// reaches beyond the voxel. That is one look-up, and while a pixel is smaller than a voxel it finds nearly
+// all of free space. At the picture's edge, where a voxel is seen in part, and where the nearest pixel has no
+// ray, all pixels that see the voxel are asked. docs/method.md has the figure.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "host/core/depth/depth_frame.hpp"
+#include "host/core/traversal/mark_grid.hpp"
+#include "host/core/traversal/placed_image.hpp"
+#include "host/core/traversal/ray_pieces.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
+
+namespace octoskin {
+
+/// A camera at one pose over one lattice. Depths are along the optical axis, metres.
+struct CertainView {
+    /// Nothing is certain, and `depth_max_m` 0, for a camera with a lens, and where coordinates are so large
+    /// that single precision is not much finer than a voxel.
+    CertainView(const CameraIntrinsics& camera, const VoxelLattice& lattice,
+                const Eigen::Isometry3d& T_map_camera, const PlacedImage& image);
+
+    CameraIntrinsics camera;
+    Eigen::Isometry3d T_camera_map;
+    double resolution_m = 0.0;
+    double radius_m = 0.0;      ///< of the sphere round a voxel
+    double half_depth_m = 0.0;  ///< of a voxel, along the optical axis
+    /// More than all that single precision gets wrong between here and a ray's end.
+    double margin_m = 0.0;
+    /// The nearest pixel's ray passes a voxel if its centre is no further: a pixel's corner lies within the
+    /// sphere inside it.
+    double depth_max_m = 0.0;
+};
+
+/// Marks every voxel up to `depth_max_m` that a ray passes which reaches well beyond it: by twice its depth,
+/// and that of the rays within `WalkLadder`'s square. May mark others that are passed. Adds to `pieces` those
+/// of whose voxels single precision could not tell whether they are passed. The grid spans the image's rays
+/// and has no mark. About 1 ns a voxel.
+void mark_certain_voxels(const CertainView& view, const PlacedImage& image, const VoxelLattice& lattice,
+                         MarkGrid& grid, std::vector<RayPiece>& pieces);
+
+}  // namespace octoskin

@@ -1,0 +1,33 @@
+// Which voxels the rays of one depth image pass: exactly those of OctoMap's computeUpdate, most of them
+// without walking a ray.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "host/core/depth/depth_frame.hpp"
+#include "host/core/depth/pixel_rays.hpp"
+#include "host/core/traversal/mark_grid.hpp"
+#include "host/core/traversal/placed_image.hpp"
+#include "host/core/traversal/ray_pieces.hpp"
+#include "host/core/traversal/walk_ladder.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
+
+namespace octoskin {
+
+/// Marks, in a grid that spans the image's rays and has no mark, each voxel that a ray passes before its end.
+/// Keeps its working memory between images.
+class ImageTraversal {
+  public:
+    void mark_passed(const PlacedImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
+                     const Eigen::Isometry3d& T_map_camera, MarkGrid& grid);
+
+  private:
+    WalkLadder ladder_;
+    std::vector<RayPiece> pieces_;
+    std::vector<std::uint32_t> undecided_;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,47 @@
+// The rays of one depth image, placed in the map: where each pixel's ray ends.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "host/core/depth/depth_frame.hpp"
+#include "host/core/depth/pixel_rays.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
+
+namespace octoskin {
+
+/// What became of each pixel: width * height = the sum of these.
+struct DepthPixelCounts {
+    std::uint64_t used = 0;
+    std::uint64_t no_value = 0;     ///< NaN: no return, filtered, or the robot
+    std::uint64_t bad_value = 0;    ///< infinite, zero or negative
+    std::uint64_t outside_map = 0;  ///< the endpoint lies outside the octree
+};
+
+/// Row-major, one entry a pixel. In a pixel that has no ray the end is the camera and the reach is negative.
+struct PlacedImage {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< of every ray, map frame, metres
+    std::vector<float> end_x;                          ///< map frame, metres, in OctoMap's single precision
+    std::vector<float> end_y;
+    std::vector<float> end_z;
+    std::vector<float> reach_m;   ///< depth of the end along the optical axis
+    std::vector<double> range_m;  ///< measured, along the ray; negative: beyond the maximum, where the ray
+                                  ///< ends in nothing
+    DepthPixelCounts counts;
+    Eigen::Vector3f lowest = Eigen::Vector3f::Zero();  ///< of all ends and the origin
+    Eigen::Vector3f highest = Eigen::Vector3f::Zero();
+};
+
+/// Every pixel's ray is independent of every other's, and of how many are worked on at once: the result is
+/// bit for bit that of Eigen's `T_map_camera * (depth * ray)`. Places every pixel of `image` (of the camera's
+/// size, asserted) as seen from `T_map_camera`. A range beyond `range_max_m` (0: none) ends at it, as in
+/// OctoMap's `computeUpdate`. About 0.6 ms for 512 x 424.
+void place_image(const DepthImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
+                 const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed);
+
+}  // namespace octoskin

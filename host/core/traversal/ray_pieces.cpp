@@ -1,0 +1,290 @@
+// Compiled once for each instruction set that Highway knows; the best one is chosen at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "host/core/traversal/ray_pieces.cpp"
+// clang-format off: foreach_target.h comes before highway.h
+#include "host/core/traversal/ray_pieces.hpp"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// clang-format on
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <limits>
+
+#ifndef OCTOSKIN_RAY_PIECES_TYPES
+#define OCTOSKIN_RAY_PIECES_TYPES
+namespace octoskin {
+
+/// What all rays of the image have in common along one axis. Whole numbers are held as doubles, exactly.
+struct WalkAxis {
+    const float* end = nullptr;  ///< by pixel
+    float origin = 0.0F;
+    double floored_origin = 0.0;  ///< of the voxel that holds it: key less kOriginKey
+    double half_edge_m = 0.0;     ///< OctoMap has it in single precision
+    double stride = 0.0;          ///< what one voxel adds to an index
+};
+
+struct Walk {
+    std::array<WalkAxis, 3> axes;
+    double resolution_m = 0.0;
+    double voxels_per_m = 0.0;
+    double first = 0.0;    ///< index of the voxel that holds the origin
+    double nowhere = 0.0;  ///< index where a mark counts for nothing
+    double error_m = 0.0;  ///< distances differ by less, however they are added up
+    const float* reach_m = nullptr;
+    std::uint8_t* marks = nullptr;
+};
+
+/// Adding it to a whole number below 2^51 leaves that in the low bits, as an integer.
+constexpr double kIntegerShift = 4503599627370496.0;  // 2^52
+constexpr std::uint64_t kIntegerBits = (std::uint64_t{1} << 52U) - 1;
+
+}  // namespace octoskin
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace octoskin::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<double>;
+using F = hn::Rebind<float, D>;
+using I = hn::Rebind<std::int32_t, D>;
+using V = hn::Vec<D>;
+using W = hn::Vec<F>;
+using M = hn::Mask<D>;
+
+/// Some rays along one axis: see `Ray`. `faces`: from origin to end, signed.
+struct Crossings {
+    V next;
+    V step;
+    V stride;
+    V faces;
+};
+
+/// As plan_axis() does. `length_m` and the quotient are in single precision.
+HWY_INLINE Crossings plan(const Walk& walk, const WalkAxis& axis, W end, W length_m) {
+    const D d;
+    const F f;
+    // Two points so near to each other that their distance underflows: no direction, and no step.
+    const W quotient = hn::Div(hn::Sub(end, hn::Set(f, axis.origin)), length_m);
+    const V direction = hn::PromoteTo(d, hn::IfThenElseZero(hn::Gt(length_m, hn::Zero(f)), quotient));
+    const M is_up = hn::Gt(direction, hn::Zero(d));
+    const M is_moving = hn::Or(is_up, hn::Lt(direction, hn::Zero(d)));
+    const V never = hn::Set(d, std::numeric_limits<double>::max());
+    const V resolution = hn::Set(d, walk.resolution_m);
+    const V centre = hn::Mul(hn::Set(d, axis.floored_origin + 0.5), resolution);
+    const V half = hn::Set(d, axis.half_edge_m);
+    const V stride = hn::Set(d, axis.stride);
+    const V border = hn::Add(centre, hn::IfThenElse(is_up, half, hn::Neg(half)));
+    const V to_border = hn::Sub(border, hn::Set(d, static_cast<double>(axis.origin)));
+    const V end_floored = hn::Floor(hn::Mul(hn::Set(d, walk.voxels_per_m), hn::PromoteTo(d, end)));
+    return {hn::IfThenElse(is_moving, hn::Div(to_border, direction), never),
+            hn::IfThenElse(is_moving, hn::Div(resolution, hn::Abs(direction)), never),
+            hn::IfThenElse(is_up, stride, hn::IfThenElseZero(is_moving, hn::Neg(stride))),
+            hn::Sub(end_floored, hn::Set(d, axis.floored_origin))};
+}
+
+/// Goes over the faces that are crossed before `from`, unless that is the origin; true where it is not
+/// certain which those are.
+HWY_INLINE M begin_at(Crossings& axis, V from, V error, V& index) {
+    const D d;
+    const M is_later = hn::Gt(from, hn::Zero(d));
+    const V behind = hn::Ceil(hn::Div(hn::Sub(from, axis.next), axis.step));
+    const V faces = hn::IfThenElseZero(is_later, hn::Max(behind, hn::Zero(d)));
+    axis.next = hn::Add(axis.next, hn::Mul(faces, axis.step));
+    index = hn::Add(index, hn::Mul(faces, axis.stride));
+    const V since_last = hn::Sub(from, hn::Sub(axis.next, axis.step));
+    return hn::And(is_later, hn::Lt(hn::Min(hn::Sub(axis.next, from), since_last), error));
+}
+
+/// Marks the voxel of each lane; what is added to an index keeps it whole.
+HWY_INLINE void mark(V index, std::uint8_t* marks) {
+    const D d;
+    HWY_ALIGN std::array<double, hn::MaxLanes(D())> shifted;
+    hn::Store(hn::Add(index, hn::Set(d, kIntegerShift)), d, shifted.data());
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+        marks[std::bit_cast<std::uint64_t>(shifted[lane]) & kIntegerBits] = MarkGrid::kPassed;
+    }
+}
+
+/// As many pieces as there are lanes, on their way.
+class Walkers {
+  public:
+    /// `count` of them, at least one; a lane without a piece does not walk.
+    HWY_INLINE Walkers(const Walk& walk, const RayPiece* pieces, std::size_t count);
+
+    [[nodiscard]] HWY_INLINE bool have_ended() const { return hn::AllFalse(D(), is_walking_); }
+    /// True where the walk could not tell two faces apart.
+    [[nodiscard]] HWY_INLINE M is_undecided() const { return is_undecided_; }
+    /// One face each; marks the voxel behind it.
+    HWY_INLINE void step(const Walk& walk);
+
+  private:
+    Crossings x_, y_, z_;
+    V nearest_;  ///< distance to the next face of all
+    V index_;
+    V last_;
+    V to_;
+    V error_;
+    V beyond_;         ///< distance at which the walk has certainly passed the end
+    V nearly_beyond_;  ///< and possibly
+    M is_walking_;
+    M is_undecided_;
+};
+
+HWY_INLINE Walkers::Walkers(const Walk& walk, const RayPiece* pieces, std::size_t count) {
+    const D d;
+    const F f;
+    const I i;
+    HWY_ALIGN std::array<std::int32_t, hn::MaxLanes(D())> pixels;
+    HWY_ALIGN std::array<float, hn::MaxLanes(D())> froms;
+    HWY_ALIGN std::array<float, hn::MaxLanes(D())> tos;
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+        const RayPiece& piece = pieces[std::min(lane, count - 1)];
+        pixels[lane] = static_cast<std::int32_t>(piece.pixel);
+        froms[lane] = piece.from_m;
+        tos[lane] = piece.to_m;
+    }
+    const auto pixel = hn::Load(i, pixels.data());
+    const W end_x = hn::GatherIndex(f, walk.axes[0].end, pixel);
+    const W end_y = hn::GatherIndex(f, walk.axes[1].end, pixel);
+    const W end_z = hn::GatherIndex(f, walk.axes[2].end, pixel);
+    const W x = hn::Sub(end_x, hn::Set(f, walk.axes[0].origin));
+    const W y = hn::Sub(end_y, hn::Set(f, walk.axes[1].origin));
+    const W z = hn::Sub(end_z, hn::Set(f, walk.axes[2].origin));
+    const W squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
+    const W length_f = hn::DemoteTo(f, hn::Sqrt(hn::PromoteTo(d, squared)));
+    const V length = hn::PromoteTo(d, length_f);
+    x_ = plan(walk, walk.axes[0], end_x, length_f);
+    y_ = plan(walk, walk.axes[1], end_y, length_f);
+    z_ = plan(walk, walk.axes[2], end_z, length_f);
+
+    index_ = hn::Set(d, walk.first);
+    last_ = hn::Add(index_, hn::Add(hn::Mul(x_.faces, hn::Set(d, walk.axes[0].stride)),
+                                    hn::Add(hn::Mul(y_.faces, hn::Set(d, walk.axes[1].stride)),
+                                            hn::Mul(z_.faces, hn::Set(d, walk.axes[2].stride)))));
+    // A pixel without a ray has its end in the origin's voxel, as has a ray that passes nothing.
+    is_walking_ = hn::And(hn::Ne(index_, last_), hn::FirstN(d, count));
+
+    const V per_depth = hn::Div(length, hn::PromoteTo(d, hn::GatherIndex(f, walk.reach_m, pixel)));
+    const V from = hn::Mul(hn::PromoteTo(d, hn::Load(f, froms.data())), per_depth);
+    to_ = hn::Mul(hn::PromoteTo(d, hn::Load(f, tos.data())), per_depth);
+    const M is_whole = hn::Le(from, hn::Zero(d));
+    error_ = hn::IfThenZeroElse(is_whole, hn::Set(d, walk.error_m));
+    is_undecided_ = begin_at(x_, from, error_, index_);
+    is_undecided_ = hn::Or(is_undecided_, begin_at(y_, from, error_, index_));
+    is_undecided_ = hn::Or(is_undecided_, begin_at(z_, from, error_, index_));
+    beyond_ = hn::Add(length, error_);
+    nearly_beyond_ = hn::Sub(length, error_);
+    nearest_ = hn::Min(hn::Min(x_.next, y_.next), z_.next);
+    // OctoMap leaves out a voxel that it enters so late.
+    is_undecided_ = hn::Or(is_undecided_, hn::AndNot(is_whole, hn::Gt(nearest_, nearly_beyond_)));
+    is_walking_ = hn::And(is_walking_, hn::Ne(index_, last_));
+    is_undecided_ = hn::And(is_undecided_, is_walking_);
+    is_walking_ = hn::AndNot(is_undecided_, is_walking_);
+    mark(hn::IfThenElse(is_walking_, index_, hn::Set(d, walk.nowhere)), walk.marks);
+    is_walking_ = hn::And(is_walking_, hn::Le(nearest_, to_));
+}
+
+HWY_INLINE void Walkers::step(const Walk& walk) {
+    const D d;
+    // As walk_ray(): on a tie z goes before y and y before x.
+    const M x_before_y = hn::Lt(x_.next, y_.next);
+    const V nearer = hn::Min(x_.next, y_.next);
+    const M z_is_later = hn::Lt(nearer, z_.next);
+    const M is_z = hn::AndNot(z_is_later, is_walking_);
+    const M is_x = hn::And(is_walking_, hn::And(z_is_later, x_before_y));
+    const M is_y = hn::AndNot(x_before_y, hn::And(is_walking_, z_is_later));
+    const V second = hn::Max(hn::Min(hn::Max(x_.next, y_.next), z_.next), nearer);
+    const M is_tie = hn::Lt(hn::Sub(second, nearest_), error_);
+    x_.next = hn::IfThenElse(is_x, hn::Add(x_.next, x_.step), x_.next);
+    y_.next = hn::IfThenElse(is_y, hn::Add(y_.next, y_.step), y_.next);
+    z_.next = hn::IfThenElse(is_z, hn::Add(z_.next, z_.step), z_.next);
+    const V stride = hn::IfThenElse(is_z, z_.stride, hn::IfThenElse(x_before_y, x_.stride, y_.stride));
+    index_ = hn::Add(index_, stride);
+    nearest_ = hn::Min(hn::Min(x_.next, y_.next), z_.next);
+    is_walking_ = hn::And(is_walking_, hn::Ne(index_, last_));
+    const M is_past = hn::Gt(nearest_, beyond_);
+    const M is_perhaps_past = hn::Gt(nearest_, nearly_beyond_);
+    const M is_doubtful = hn::And(is_walking_, hn::Or(is_tie, hn::AndNot(is_past, is_perhaps_past)));
+    is_undecided_ = hn::Or(is_undecided_, is_doubtful);
+    is_walking_ = hn::AndNot(hn::Or(is_past, is_doubtful), is_walking_);
+    mark(hn::IfThenElse(is_walking_, index_, hn::Set(d, walk.nowhere)), walk.marks);
+    is_walking_ = hn::And(is_walking_, hn::Le(nearest_, to_));
+}
+
+void tell_undecided(const Walkers& walkers, const RayPiece* pieces, std::size_t count,
+                    std::vector<std::uint32_t>& undecided) {
+    const D d;
+    if (hn::AllFalse(d, walkers.is_undecided())) return;
+    std::array<std::uint8_t, hn::MaxLanes(D()) / 8 + 8> bits{};
+    hn::StoreMaskBits(d, walkers.is_undecided(), bits.data());
+    for (std::size_t lane = 0; lane < count; ++lane) {
+        if ((bits[lane / 8] >> (lane % 8) & 1U) != 0) undecided.push_back(pieces[lane].pixel);
+    }
+}
+
+/// Two at a time: what one waits for the other does not. The last has a piece of its own or goes along.
+void walk_all(const Walk& walk, std::span<const RayPiece> pieces, std::vector<std::uint32_t>& undecided) {
+    const std::size_t lanes = hn::Lanes(D());
+    for (std::size_t first = 0; first < pieces.size(); first += 2 * lanes) {
+        const std::size_t left = pieces.size() - first;
+        const RayPiece* const some = pieces.data() + first;
+        const RayPiece* const others = left > lanes ? some + lanes : some;
+        const std::size_t count = std::min(lanes, left);
+        const std::size_t other_count = left > lanes ? std::min(lanes, left - lanes) : 1;
+        Walkers a(walk, some, count);
+        Walkers b(walk, others, other_count);
+        while (!a.have_ended() || !b.have_ended()) {
+            a.step(walk);
+            b.step(walk);
+        }
+        tell_undecided(a, some, count, undecided);
+        if (left > lanes) tell_undecided(b, others, other_count, undecided);
+    }
+}
+
+}  // namespace octoskin::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace octoskin {
+namespace {
+
+HWY_EXPORT(walk_all);
+
+}  // namespace
+
+void walk_pieces(const PlacedImage& image, const VoxelLattice& lattice, std::span<const RayPiece> pieces,
+                 MarkGrid& grid, std::vector<std::uint32_t>& undecided) {
+    const auto origin = lattice.key_of(image.origin.cast<double>());
+    assert(origin.has_value());
+    const std::array<const float*, 3> ends = {image.end_x.data(), image.end_y.data(), image.end_z.data()};
+    const std::array<std::uint16_t, 3> keys = {origin->x, origin->y, origin->z};
+    const auto size = grid.size();
+    Walk walk{.axes = {},
+              .resolution_m = lattice.resolution_m(),
+              .voxels_per_m = 1.0 / lattice.resolution_m(),
+              .first = static_cast<double>(grid.index_of(*origin)),
+              .nowhere = static_cast<double>(grid.nowhere()),
+              .reach_m = image.reach_m.data(),
+              .marks = grid.marks()};
+    for (std::size_t i = 0; i < 3; ++i) {
+        walk.axes[i] = {.end = ends[i],
+                        .origin = image.origin[static_cast<Eigen::Index>(i)],
+                        .floored_origin = keys[i] - static_cast<double>(kOriginKey),
+                        .half_edge_m = static_cast<double>(static_cast<float>(lattice.resolution_m() * 0.5)),
+                        .stride = static_cast<double>(grid.stride()[i])};
+    }
+    // A sum of n distances up to s is off by n * s * 2^-53 at most, however it is added up; a product by
+    // less.
+    const double faces = static_cast<double>(size[0]) + size[1] + size[2];
+    walk.error_m = 4.0 * faces * faces * lattice.resolution_m() * std::numeric_limits<double>::epsilon();
+    HWY_DYNAMIC_DISPATCH(walk_all)(walk, pieces, undecided);
+}
+
+}  // namespace octoskin
+#endif

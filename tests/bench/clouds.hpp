@@ -1,0 +1,44 @@
+// The same frame and configuration for OctoMap and for us.
+#pragma once
+
+#include <octomap/octomap.h>
+
+#include <string>
+
+#include "host/core/depth/pixel_rays.hpp"
+#include "host/core/mapping/mapping_config.hpp"
+#include "tests/bench/room_frames.hpp"
+
+namespace octoskin::bench {
+
+inline octomap::point3d origin_of(const RoomFrame& frame) {
+    const Eigen::Vector3f origin = frame.T_map_camera.translation().cast<float>();
+    return {origin.x(), origin.y(), origin.z()};
+}
+
+inline octomap::Pointcloud cloud_of(const RoomFrame& frame, const CameraIntrinsics& camera) {
+    const PixelRays rays(camera);
+    octomap::Pointcloud cloud;
+    cloud.reserve(frame.image.depth_m.size());
+    for (std::uint32_t i = 0; i < frame.image.depth_m.size(); ++i) {
+        const RaySlope ray = rays.at(i % camera.width, i / camera.width);
+        const double depth_m = static_cast<double>(frame.image.depth_m[i]);
+        const Eigen::Vector3f point =
+            (frame.T_map_camera * (depth_m * Eigen::Vector3d(ray.x, ray.y, 1.0))).cast<float>();
+        cloud.push_back(point.x(), point.y(), point.z());
+    }
+    return cloud;
+}
+
+/// Whatever is hit counts, so that a key's set can be told from its term.
+inline MappingConfig exact_mapping(const std::string& resolution, double range_max_m) {
+    MappingConfig config = paper_mapping();
+    config.map.resolution_m = std::stod(resolution);
+    config.map.memory_max_mib = 8000;
+    config.model.depth.range_min_m = 0.0;
+    config.depth_range_max_m = range_max_m;
+    config.depth_box_voxels_max = 1U << 30U;
+    return config;
+}
+
+}  // namespace octoskin::bench

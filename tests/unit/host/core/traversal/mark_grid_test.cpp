@@ -1,0 +1,65 @@
+#include "host/core/traversal/mark_grid.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
+namespace octoskin {
+namespace {
+
+using testing::ElementsAre;
+using testing::Pair;
+
+std::vector<std::pair<VoxelKey, int>> drained(MarkGrid& grid) {
+    std::vector<std::pair<VoxelKey, int>> marks;
+    grid.drain([&](VoxelKey key, std::uint8_t mark) { marks.emplace_back(key, mark); });
+    return marks;
+}
+
+TEST(MarkGrid, gives_each_mark_once_in_order_and_is_empty_then) {
+    MarkGrid grid;
+    ASSERT_TRUE(grid.span({100, 200, 300}, {110, 203, 309}, 100'000));
+    grid.marks()[grid.index_of({109, 201, 300})] = MarkGrid::kHit;
+    grid.marks()[grid.index_of({110, 200, 300})] = MarkGrid::kPassed;
+    grid.marks()[grid.index_of({99, 204, 310})] = MarkGrid::kPassed;  // a voxel beside the box
+    EXPECT_THAT(drained(grid), ElementsAre(Pair(VoxelKey{110, 200, 300}, 1), Pair(VoxelKey{109, 201, 300}, 2),
+                                           Pair(VoxelKey{99, 204, 310}, 1)));
+    EXPECT_TRUE(drained(grid).empty());
+}
+
+TEST(MarkGrid, leaves_out_what_has_no_key) {
+    MarkGrid grid;
+    ASSERT_TRUE(grid.span({0, 0, 65535}, {0, 0, 65535}, 100'000));
+    grid.marks()[grid.index_of(-1, 0, 65535)] = MarkGrid::kPassed;
+    grid.marks()[grid.index_of(0, -1, 65535)] = MarkGrid::kPassed;
+    grid.marks()[grid.index_of(0, 0, 65536)] = MarkGrid::kPassed;
+    EXPECT_TRUE(drained(grid).empty());
+    grid.marks()[grid.index_of(0, 0, 65535)] = MarkGrid::kPassed;
+    EXPECT_THAT(drained(grid), ElementsAre(Pair(VoxelKey{0, 0, 65535}, 1)));
+}
+
+TEST(MarkGrid, forgets_marks_that_were_nowhere) {
+    MarkGrid grid;
+    ASSERT_TRUE(grid.span({100, 100, 100}, {101, 101, 101}, 100'000));
+    grid.marks()[grid.nowhere()] = MarkGrid::kPassed;
+    EXPECT_TRUE(drained(grid).empty());
+    ASSERT_TRUE(grid.span({100, 100, 100}, {140, 140, 140}, 1'000'000));
+    EXPECT_TRUE(drained(grid).empty());
+    ASSERT_TRUE(grid.span({100, 100, 100}, {101, 101, 101}, 100'000));
+    grid.marks()[grid.nowhere()] = MarkGrid::kPassed;
+    EXPECT_TRUE(drained(grid).empty());
+    ASSERT_TRUE(grid.span({100, 100, 100}, {110, 110, 110}, 1'000'000));
+    EXPECT_TRUE(drained(grid).empty());
+}
+
+TEST(MarkGrid, refuses_a_box_that_is_too_large) {
+    MarkGrid grid;
+    EXPECT_FALSE(grid.span({0, 0, 0}, {65535, 65535, 65535}, std::size_t{1} << 30U));
+    EXPECT_FALSE(grid.span({100, 100, 100}, {100, 100, 100}, 511));
+    EXPECT_TRUE(grid.span({100, 100, 100}, {100, 100, 100}, 512));
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,56 @@
+// Images, poses and what their rays pass, walked one by one.
+#pragma once
+
+#include <hwy/targets.h>
+
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string>
+
+#include "host/core/traversal/mark_grid.hpp"
+#include "host/core/traversal/placed_image.hpp"
+#include "host/core/voxels/ray_walk.hpp"
+#include "tests/property/mapping/random_geometry.hpp"
+
+namespace octoskin {
+
+inline constexpr CameraIntrinsics kSmallCamera{
+    .width = 64, .height = 53, .fx = 45.6, .fy = 45.6, .cx = 32.0, .cy = 26.5};
+
+/// What walk_ray_keys() visits of every ray.
+inline std::set<VoxelKey> walked(const PlacedImage& image, const VoxelLattice& lattice) {
+    std::set<VoxelKey> voxels;
+    for (std::size_t i = 0; i < image.range_m.size(); ++i) {
+        if (image.reach_m[i] < 0.0F) continue;
+        const auto ray = plan_ray(lattice, image.origin, {image.end_x[i], image.end_y[i], image.end_z[i]});
+        walk_ray_keys(*ray, [&](VoxelKey key) { voxels.insert(key); });
+    }
+    return voxels;
+}
+
+inline void span(MarkGrid& grid, const PlacedImage& image, const VoxelLattice& lattice) {
+    ASSERT_TRUE(grid.span(*lattice.key_of(image.lowest.cast<double>()),
+                          *lattice.key_of(image.highest.cast<double>()), std::size_t{1} << 30U));
+}
+
+inline std::set<VoxelKey> drained(MarkGrid& grid) {
+    std::set<VoxelKey> voxels;
+    grid.drain([&](VoxelKey key, std::uint8_t) { EXPECT_TRUE(voxels.insert(key).second); });
+    return voxels;
+}
+
+/// Calls test(name) with each instruction set of this processor chosen in turn.
+inline void on_each_instruction_set(const std::function<void(const std::string&)>& test) {
+    const auto targets = hwy::SupportedTargets();
+    for (auto left = targets; left != 0; left &= left - 1) {
+        const auto target = left & -left;
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        test(hwy::TargetName(target));
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace octoskin
