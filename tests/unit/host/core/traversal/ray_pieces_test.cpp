@@ -66,7 +66,7 @@ TEST(RayPieces, put_together_are_the_whole_ray_or_the_ray_is_named) {
                 for (std::uint32_t j = 0; j < image.width; ++j) {
                     if (j != i) one.reach_m[j] = -1.0F;
                 }
-                const auto cut = static_cast<float>(random.uniform(0.0, one.reach_m[i]));
+                const auto cut = static_cast<float>(random.uniform(0.0, static_cast<double>(one.reach_m[i])));
                 std::vector<std::uint32_t> undecided;
                 walk_pieces(one, lattice, std::vector<RayPiece>{{i, 0.0F, cut}, {i, cut, kEnd}}, grid,
                             undecided);
