@@ -36,10 +36,10 @@ struct CertainView {
     double depth_max_m = 0.0;
 };
 
-/// Marks every voxel up to `depth_max_m` that a ray passes which reaches well beyond it: by twice its depth,
-/// and that of the rays within `WalkLadder`'s square. May mark others that are passed. Adds to `pieces` those
-/// of whose voxels single precision could not tell whether they are passed. The grid spans the image's rays
-/// and has no mark. About 1 ns a voxel.
+/// Marks voxels that a ray passes: all of those up to `depth_max_m` for which the rays within `WalkLadder`'s
+/// square reach further than the voxel's centre by more than its depth, and others. Adds to `pieces` the
+/// pieces of rays that perhaps pass a voxel and that no other ray passes for certain. The grid spans the
+/// image's rays and has no mark. About 1 ns a voxel.
 void mark_certain_voxels(const CertainView& view, const PlacedImage& image, const VoxelLattice& lattice,
                          MarkGrid& grid, std::vector<RayPiece>& pieces);
 

@@ -16,6 +16,8 @@
 #include <tuple>
 #include <utility>
 
+#include "host/core/traversal/lanes-inl.hpp"
+
 #ifndef OCTOSKIN_PLACED_IMAGE_TYPES
 #define OCTOSKIN_PLACED_IMAGE_TYPES
 namespace octoskin {
@@ -41,55 +43,47 @@ struct Row {
 
 HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::ScalableTag<double>;
-using F = hn::Rebind<float, D>;
-using V = hn::Vec<D>;
-using W = hn::Vec<F>;
-using M = hn::Mask<D>;
 
 /// One row of `T_map_camera * p`, added up as Eigen does.
-HWY_INLINE W placed(const std::array<double, 4>& row, V x, V y, V z) {
-    const D d;
-    const V sum = hn::Add(hn::Add(hn::Mul(hn::Set(d, row[0]), x), hn::Mul(hn::Set(d, row[1]), y)),
-                          hn::Mul(hn::Set(d, row[2]), z));
-    return hn::DemoteTo(F(), hn::Add(sum, hn::Set(d, row[3])));
+HWY_INLINE Float placed(const std::array<double, 4>& row, Double x, Double y, Double z) {
+    const Doubles d;
+    const Double sum = hn::Add(hn::Add(hn::Mul(hn::Set(d, row[0]), x), hn::Mul(hn::Set(d, row[1]), y)),
+                               hn::Mul(hn::Set(d, row[2]), z));
+    return hn::DemoteTo(Floats(), hn::Add(sum, hn::Set(d, row[3])));
 }
 
 /// Where a coordinate has a key (see `VoxelLattice::key_of`).
-HWY_INLINE M has_key(W coordinate, double voxels_per_m) {
-    const D d;
-    const V scaled = hn::Mul(hn::Set(d, voxels_per_m), hn::PromoteTo(d, coordinate));
+HWY_INLINE Mask has_key(Float coordinate, double voxels_per_m) {
+    const Doubles d;
+    const Double scaled = hn::Mul(hn::Set(d, voxels_per_m), hn::PromoteTo(d, coordinate));
     return hn::And(hn::Ge(scaled, hn::Set(d, -kOriginKey)), hn::Lt(scaled, hn::Set(d, kOriginKey)));
 }
 
 /// What is worked out for some pixels at once.
 struct Ends {
-    W x, y, z;
-    W reach_m;
-    V range_m;
+    Float x, y, z;
+    Float reach_m;
+    Double range_m;
 };
 
-HWY_INLINE auto narrow(M mask) {
-    const D d;
-    const F f;
+HWY_INLINE auto narrow(Mask mask) {
+    const Doubles d;
+    const Floats f;
     return hn::Gt(hn::DemoteTo(f, hn::IfThenElseZero(mask, hn::Set(d, 1.0))), hn::Zero(f));
 }
 
 /// Rays beyond the maximum range end there, computed as OctoMap does: float but for the square root.
 HWY_INLINE void clip(Ends& ends, float range_max_m, const Eigen::Vector3f& origin) {
-    const D d;
-    const F f;
-    const W x = hn::Sub(ends.x, hn::Set(f, origin.x()));
-    const W y = hn::Sub(ends.y, hn::Set(f, origin.y()));
-    const W z = hn::Sub(ends.z, hn::Set(f, origin.z()));
-    const W squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-    const V length = hn::Sqrt(hn::PromoteTo(d, squared));
-    const M is_beyond = hn::Gt(length, hn::Set(d, static_cast<double>(range_max_m)));
+    const Doubles d;
+    const Floats f;
+    const Float x = hn::Sub(ends.x, hn::Set(f, origin.x()));
+    const Float y = hn::Sub(ends.y, hn::Set(f, origin.y()));
+    const Float z = hn::Sub(ends.z, hn::Set(f, origin.z()));
+    const Double length = length_of(x, y, z);
+    const Mask is_beyond = hn::Gt(length, hn::Set(d, static_cast<double>(range_max_m)));
     const auto is_beyond_f = narrow(is_beyond);
-    const W length_f = hn::DemoteTo(f, length);
-    const auto end = [&](W offset, float from) {
+    const Float length_f = hn::DemoteTo(f, length);
+    const auto end = [&](Float offset, float from) {
         return hn::Add(hn::Set(f, from), hn::Mul(hn::Div(offset, length_f), hn::Set(f, range_max_m)));
     };
     ends.x = hn::IfThenElse(is_beyond_f, end(x, origin.x()), ends.x);
@@ -101,27 +95,27 @@ HWY_INLINE void clip(Ends& ends, float range_max_m, const Eigen::Vector3f& origi
 }
 
 void place_row(const Placement& to, const Row& row, PlacedImage& image) {
-    const D d;
-    const F f;
-    const W origin_x = hn::Set(f, image.origin.x());
-    const W origin_y = hn::Set(f, image.origin.y());
-    const W origin_z = hn::Set(f, image.origin.z());
+    const Doubles d;
+    const Floats f;
+    const Float origin_x = hn::Set(f, image.origin.x());
+    const Float origin_y = hn::Set(f, image.origin.y());
+    const Float origin_z = hn::Set(f, image.origin.z());
     for (std::size_t u = 0; u < row.width; u += hn::Lanes(d)) {
-        const W depth_m = hn::LoadU(f, row.depth_m + u);
-        const V z = hn::PromoteTo(d, depth_m);
-        const V x = hn::Mul(z, hn::LoadU(d, row.ray_x + u));
-        const V y = hn::Mul(z, hn::LoadU(d, row.ray_y + u));
+        const Float depth_m = hn::LoadU(f, row.depth_m + u);
+        const Double z = hn::PromoteTo(d, depth_m);
+        const Double x = hn::Mul(z, hn::LoadU(d, row.ray_x + u));
+        const Double y = hn::Mul(z, hn::LoadU(d, row.ray_y + u));
         Ends ends{placed(to.T[0], x, y, z), placed(to.T[1], x, y, z), placed(to.T[2], x, y, z), depth_m,
                   hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)))};
         if (to.range_max_m > 0.0F) clip(ends, to.range_max_m, image.origin);
 
-        const M is_number = hn::Eq(z, z);
-        const M is_good = hn::And(hn::Gt(z, hn::Zero(d)), hn::Lt(z, hn::Set(d, HUGE_VAL)));
-        const M has_keys =
+        const Mask is_number = hn::Eq(z, z);
+        const Mask is_good = hn::And(hn::Gt(z, hn::Zero(d)), hn::Lt(z, hn::Set(d, HUGE_VAL)));
+        const Mask has_keys =
             hn::And(has_key(ends.x, to.voxels_per_m),
                     hn::And(has_key(ends.y, to.voxels_per_m), has_key(ends.z, to.voxels_per_m)));
-        const M is_used = hn::And(is_good, has_keys);
-        const M in_row = hn::FirstN(d, row.width - u);
+        const Mask is_used = hn::And(is_good, has_keys);
+        const Mask in_row = hn::FirstN(d, row.width - u);
         image.counts.used += hn::CountTrue(d, hn::And(in_row, is_used));
         image.counts.no_value += hn::CountTrue(d, hn::AndNot(is_number, in_row));
         image.counts.bad_value += hn::CountTrue(d, hn::AndNot(is_good, hn::And(in_row, is_number)));

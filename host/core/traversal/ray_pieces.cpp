@@ -14,6 +14,8 @@
 #include <cassert>
 #include <limits>
 
+#include "host/core/traversal/lanes-inl.hpp"
+
 #ifndef OCTOSKIN_RAY_PIECES_TYPES
 #define OCTOSKIN_RAY_PIECES_TYPES
 namespace octoskin {
@@ -47,40 +49,32 @@ constexpr std::uint64_t kIntegerBits = (std::uint64_t{1} << 52U) - 1;
 
 HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::ScalableTag<double>;
-using F = hn::Rebind<float, D>;
-using I = hn::Rebind<std::int32_t, D>;
-using V = hn::Vec<D>;
-using W = hn::Vec<F>;
-using M = hn::Mask<D>;
 
 /// Some rays along one axis: see `Ray`. `faces`: from origin to end, signed.
 struct Crossings {
-    V next;
-    V step;
-    V stride;
-    V faces;
+    Double next;
+    Double step;
+    Double stride;
+    Double faces;
 };
 
 /// As plan_axis() does. `length_m` and the quotient are in single precision.
-HWY_INLINE Crossings plan(const Walk& walk, const WalkAxis& axis, W end, W length_m) {
-    const D d;
-    const F f;
+HWY_INLINE Crossings plan(const Walk& walk, const WalkAxis& axis, Float end, Float length_m) {
+    const Doubles d;
+    const Floats f;
     // Two points so near to each other that their distance underflows: no direction, and no step.
-    const W quotient = hn::Div(hn::Sub(end, hn::Set(f, axis.origin)), length_m);
-    const V direction = hn::PromoteTo(d, hn::IfThenElseZero(hn::Gt(length_m, hn::Zero(f)), quotient));
-    const M is_up = hn::Gt(direction, hn::Zero(d));
-    const M is_moving = hn::Or(is_up, hn::Lt(direction, hn::Zero(d)));
-    const V never = hn::Set(d, std::numeric_limits<double>::max());
-    const V resolution = hn::Set(d, walk.resolution_m);
-    const V centre = hn::Mul(hn::Set(d, axis.floored_origin + 0.5), resolution);
-    const V half = hn::Set(d, axis.half_edge_m);
-    const V stride = hn::Set(d, axis.stride);
-    const V border = hn::Add(centre, hn::IfThenElse(is_up, half, hn::Neg(half)));
-    const V to_border = hn::Sub(border, hn::Set(d, static_cast<double>(axis.origin)));
-    const V end_floored = hn::Floor(hn::Mul(hn::Set(d, walk.voxels_per_m), hn::PromoteTo(d, end)));
+    const Float quotient = hn::Div(hn::Sub(end, hn::Set(f, axis.origin)), length_m);
+    const Double direction = hn::PromoteTo(d, hn::IfThenElseZero(hn::Gt(length_m, hn::Zero(f)), quotient));
+    const Mask is_up = hn::Gt(direction, hn::Zero(d));
+    const Mask is_moving = hn::Or(is_up, hn::Lt(direction, hn::Zero(d)));
+    const Double never = hn::Set(d, std::numeric_limits<double>::max());
+    const Double resolution = hn::Set(d, walk.resolution_m);
+    const Double centre = hn::Mul(hn::Set(d, axis.floored_origin + 0.5), resolution);
+    const Double half = hn::Set(d, axis.half_edge_m);
+    const Double stride = hn::Set(d, axis.stride);
+    const Double border = hn::Add(centre, hn::IfThenElse(is_up, half, hn::Neg(half)));
+    const Double to_border = hn::Sub(border, hn::Set(d, static_cast<double>(axis.origin)));
+    const Double end_floored = hn::Floor(hn::Mul(hn::Set(d, walk.voxels_per_m), hn::PromoteTo(d, end)));
     return {hn::IfThenElse(is_moving, hn::Div(to_border, direction), never),
             hn::IfThenElse(is_moving, hn::Div(resolution, hn::Abs(direction)), never),
             hn::IfThenElse(is_up, stride, hn::IfThenElseZero(is_moving, hn::Neg(stride))),
@@ -89,21 +83,21 @@ HWY_INLINE Crossings plan(const Walk& walk, const WalkAxis& axis, W end, W lengt
 
 /// Goes over the faces that are crossed before `from`, unless that is the origin; true where it is not
 /// certain which those are.
-HWY_INLINE M begin_at(Crossings& axis, V from, V error, V& index) {
-    const D d;
-    const M is_later = hn::Gt(from, hn::Zero(d));
-    const V behind = hn::Ceil(hn::Div(hn::Sub(from, axis.next), axis.step));
-    const V faces = hn::IfThenElseZero(is_later, hn::Max(behind, hn::Zero(d)));
+HWY_INLINE Mask begin_at(Crossings& axis, Double from, Double error, Double& index) {
+    const Doubles d;
+    const Mask is_later = hn::Gt(from, hn::Zero(d));
+    const Double behind = hn::Ceil(hn::Div(hn::Sub(from, axis.next), axis.step));
+    const Double faces = hn::IfThenElseZero(is_later, hn::Max(behind, hn::Zero(d)));
     axis.next = hn::Add(axis.next, hn::Mul(faces, axis.step));
     index = hn::Add(index, hn::Mul(faces, axis.stride));
-    const V since_last = hn::Sub(from, hn::Sub(axis.next, axis.step));
+    const Double since_last = hn::Sub(from, hn::Sub(axis.next, axis.step));
     return hn::And(is_later, hn::Lt(hn::Min(hn::Sub(axis.next, from), since_last), error));
 }
 
 /// Marks the voxel of each lane; what is added to an index keeps it whole.
-HWY_INLINE void mark(V index, std::uint8_t* marks) {
-    const D d;
-    HWY_ALIGN std::array<double, hn::MaxLanes(D())> shifted;
+HWY_INLINE void mark(Double index, std::uint8_t* marks) {
+    const Doubles d;
+    HWY_ALIGN std::array<double, hn::MaxLanes(Doubles())> shifted;
     hn::Store(hn::Add(index, hn::Set(d, kIntegerShift)), d, shifted.data());
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
         marks[std::bit_cast<std::uint64_t>(shifted[lane]) & kIntegerBits] = MarkGrid::kPassed;
@@ -116,32 +110,32 @@ class Walkers {
     /// `count` of them, at least one; a lane without a piece does not walk.
     HWY_INLINE Walkers(const Walk& walk, const RayPiece* pieces, std::size_t count);
 
-    [[nodiscard]] HWY_INLINE bool have_ended() const { return hn::AllFalse(D(), is_walking_); }
+    [[nodiscard]] HWY_INLINE bool have_ended() const { return hn::AllFalse(Doubles(), is_walking_); }
     /// True where the walk could not tell two faces apart.
-    [[nodiscard]] HWY_INLINE M is_undecided() const { return is_undecided_; }
+    [[nodiscard]] HWY_INLINE Mask is_undecided() const { return is_undecided_; }
     /// One face each; marks the voxel behind it.
     HWY_INLINE void step(const Walk& walk);
 
   private:
     Crossings x_, y_, z_;
-    V nearest_;  ///< distance to the next face of all
-    V index_;
-    V last_;
-    V to_;
-    V error_;
-    V beyond_;         ///< distance at which the walk has certainly passed the end
-    V nearly_beyond_;  ///< and possibly
-    M is_walking_;
-    M is_undecided_;
+    Double nearest_;  ///< distance to the next face of all
+    Double index_;
+    Double last_;
+    Double to_;
+    Double error_;
+    Double beyond_;         ///< distance at which the walk has certainly passed the end
+    Double nearly_beyond_;  ///< and possibly
+    Mask is_walking_;
+    Mask is_undecided_;
 };
 
 HWY_INLINE Walkers::Walkers(const Walk& walk, const RayPiece* pieces, std::size_t count) {
-    const D d;
-    const F f;
-    const I i;
-    HWY_ALIGN std::array<std::int32_t, hn::MaxLanes(D())> pixels;
-    HWY_ALIGN std::array<float, hn::MaxLanes(D())> froms;
-    HWY_ALIGN std::array<float, hn::MaxLanes(D())> tos;
+    const Doubles d;
+    const Floats f;
+    const Ints i;
+    HWY_ALIGN std::array<std::int32_t, hn::MaxLanes(Doubles())> pixels;
+    HWY_ALIGN std::array<float, hn::MaxLanes(Doubles())> froms;
+    HWY_ALIGN std::array<float, hn::MaxLanes(Doubles())> tos;
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
         const RayPiece& piece = pieces[std::min(lane, count - 1)];
         pixels[lane] = static_cast<std::int32_t>(piece.pixel);
@@ -149,15 +143,14 @@ HWY_INLINE Walkers::Walkers(const Walk& walk, const RayPiece* pieces, std::size_
         tos[lane] = piece.to_m;
     }
     const auto pixel = hn::Load(i, pixels.data());
-    const W end_x = hn::GatherIndex(f, walk.axes[0].end, pixel);
-    const W end_y = hn::GatherIndex(f, walk.axes[1].end, pixel);
-    const W end_z = hn::GatherIndex(f, walk.axes[2].end, pixel);
-    const W x = hn::Sub(end_x, hn::Set(f, walk.axes[0].origin));
-    const W y = hn::Sub(end_y, hn::Set(f, walk.axes[1].origin));
-    const W z = hn::Sub(end_z, hn::Set(f, walk.axes[2].origin));
-    const W squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-    const W length_f = hn::DemoteTo(f, hn::Sqrt(hn::PromoteTo(d, squared)));
-    const V length = hn::PromoteTo(d, length_f);
+    const Float end_x = hn::GatherIndex(f, walk.axes[0].end, pixel);
+    const Float end_y = hn::GatherIndex(f, walk.axes[1].end, pixel);
+    const Float end_z = hn::GatherIndex(f, walk.axes[2].end, pixel);
+    const Float x = hn::Sub(end_x, hn::Set(f, walk.axes[0].origin));
+    const Float y = hn::Sub(end_y, hn::Set(f, walk.axes[1].origin));
+    const Float z = hn::Sub(end_z, hn::Set(f, walk.axes[2].origin));
+    const Float length_f = hn::DemoteTo(f, length_of(x, y, z));
+    const Double length = hn::PromoteTo(d, length_f);
     x_ = plan(walk, walk.axes[0], end_x, length_f);
     y_ = plan(walk, walk.axes[1], end_y, length_f);
     z_ = plan(walk, walk.axes[2], end_z, length_f);
@@ -169,10 +162,10 @@ HWY_INLINE Walkers::Walkers(const Walk& walk, const RayPiece* pieces, std::size_
     // A pixel without a ray has its end in the origin's voxel, as has a ray that passes nothing.
     is_walking_ = hn::And(hn::Ne(index_, last_), hn::FirstN(d, count));
 
-    const V per_depth = hn::Div(length, hn::PromoteTo(d, hn::GatherIndex(f, walk.reach_m, pixel)));
-    const V from = hn::Mul(hn::PromoteTo(d, hn::Load(f, froms.data())), per_depth);
+    const Double per_depth = hn::Div(length, hn::PromoteTo(d, hn::GatherIndex(f, walk.reach_m, pixel)));
+    const Double from = hn::Mul(hn::PromoteTo(d, hn::Load(f, froms.data())), per_depth);
     to_ = hn::Mul(hn::PromoteTo(d, hn::Load(f, tos.data())), per_depth);
-    const M is_whole = hn::Le(from, hn::Zero(d));
+    const Mask is_whole = hn::Le(from, hn::Zero(d));
     error_ = hn::IfThenZeroElse(is_whole, hn::Set(d, walk.error_m));
     is_undecided_ = begin_at(x_, from, error_, index_);
     is_undecided_ = hn::Or(is_undecided_, begin_at(y_, from, error_, index_));
@@ -190,26 +183,26 @@ HWY_INLINE Walkers::Walkers(const Walk& walk, const RayPiece* pieces, std::size_
 }
 
 HWY_INLINE void Walkers::step(const Walk& walk) {
-    const D d;
+    const Doubles d;
     // As walk_ray(): on a tie z goes before y and y before x.
-    const M x_before_y = hn::Lt(x_.next, y_.next);
-    const V nearer = hn::Min(x_.next, y_.next);
-    const M z_is_later = hn::Lt(nearer, z_.next);
-    const M is_z = hn::AndNot(z_is_later, is_walking_);
-    const M is_x = hn::And(is_walking_, hn::And(z_is_later, x_before_y));
-    const M is_y = hn::AndNot(x_before_y, hn::And(is_walking_, z_is_later));
-    const V second = hn::Max(hn::Min(hn::Max(x_.next, y_.next), z_.next), nearer);
-    const M is_tie = hn::Lt(hn::Sub(second, nearest_), error_);
+    const Mask x_before_y = hn::Lt(x_.next, y_.next);
+    const Double nearer = hn::Min(x_.next, y_.next);
+    const Mask z_is_later = hn::Lt(nearer, z_.next);
+    const Mask is_z = hn::AndNot(z_is_later, is_walking_);
+    const Mask is_x = hn::And(is_walking_, hn::And(z_is_later, x_before_y));
+    const Mask is_y = hn::AndNot(x_before_y, hn::And(is_walking_, z_is_later));
+    const Double second = hn::Max(hn::Min(hn::Max(x_.next, y_.next), z_.next), nearer);
+    const Mask is_tie = hn::Lt(hn::Sub(second, nearest_), error_);
     x_.next = hn::IfThenElse(is_x, hn::Add(x_.next, x_.step), x_.next);
     y_.next = hn::IfThenElse(is_y, hn::Add(y_.next, y_.step), y_.next);
     z_.next = hn::IfThenElse(is_z, hn::Add(z_.next, z_.step), z_.next);
-    const V stride = hn::IfThenElse(is_z, z_.stride, hn::IfThenElse(x_before_y, x_.stride, y_.stride));
+    const Double stride = hn::IfThenElse(is_z, z_.stride, hn::IfThenElse(x_before_y, x_.stride, y_.stride));
     index_ = hn::Add(index_, stride);
     nearest_ = hn::Min(hn::Min(x_.next, y_.next), z_.next);
     is_walking_ = hn::And(is_walking_, hn::Ne(index_, last_));
-    const M is_past = hn::Gt(nearest_, beyond_);
-    const M is_perhaps_past = hn::Gt(nearest_, nearly_beyond_);
-    const M is_doubtful = hn::And(is_walking_, hn::Or(is_tie, hn::AndNot(is_past, is_perhaps_past)));
+    const Mask is_past = hn::Gt(nearest_, beyond_);
+    const Mask is_perhaps_past = hn::Gt(nearest_, nearly_beyond_);
+    const Mask is_doubtful = hn::And(is_walking_, hn::Or(is_tie, hn::AndNot(is_past, is_perhaps_past)));
     is_undecided_ = hn::Or(is_undecided_, is_doubtful);
     is_walking_ = hn::AndNot(hn::Or(is_past, is_doubtful), is_walking_);
     mark(hn::IfThenElse(is_walking_, index_, hn::Set(d, walk.nowhere)), walk.marks);
@@ -218,18 +211,17 @@ HWY_INLINE void Walkers::step(const Walk& walk) {
 
 void tell_undecided(const Walkers& walkers, const RayPiece* pieces, std::size_t count,
                     std::vector<std::uint32_t>& undecided) {
-    const D d;
+    const Doubles d;
     if (hn::AllFalse(d, walkers.is_undecided())) return;
-    std::array<std::uint8_t, hn::MaxLanes(D()) / 8 + 8> bits{};
-    hn::StoreMaskBits(d, walkers.is_undecided(), bits.data());
-    for (std::size_t lane = 0; lane < count; ++lane) {
-        if ((bits[lane / 8] >> (lane % 8) & 1U) != 0) undecided.push_back(pieces[lane].pixel);
-    }
+    for_each_set(d, walkers.is_undecided(), [&](std::size_t lane) {
+        if (lane < count) undecided.push_back(pieces[lane].pixel);
+    });
 }
 
-/// Two at a time: what one waits for the other does not. The last has a piece of its own or goes along.
+/// Two vectors of them at a time: while one waits for its last sum the other goes on. If too few are left for
+/// two, the second walks what the first walks.
 void walk_all(const Walk& walk, std::span<const RayPiece> pieces, std::vector<std::uint32_t>& undecided) {
-    const std::size_t lanes = hn::Lanes(D());
+    const std::size_t lanes = hn::Lanes(Doubles());
     for (std::size_t first = 0; first < pieces.size(); first += 2 * lanes) {
         const std::size_t left = pieces.size() - first;
         const RayPiece* const some = pieces.data() + first;

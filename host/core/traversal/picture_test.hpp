@@ -1,0 +1,43 @@
+// What the picture of a voxel, or of a brick of voxels, tells before any of its rays is looked at.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "host/core/depth/depth_frame.hpp"
+#include "host/core/traversal/certain_view.hpp"
+#include "host/core/traversal/mark_grid.hpp"
+#include "host/core/traversal/placed_image.hpp"
+#include "host/core/traversal/reach_blocks.hpp"
+
+namespace octoskin {
+
+/// Which of a brick's voxels are passed for certain.
+enum class BrickVerdict : std::uint8_t { none, some, all };
+
+/// Cubes are named by their centre in the camera's frame, metres, and their edge in voxels. Keeps references
+/// to the view and none to the image.
+class PictureTest {
+  public:
+    PictureTest(const CertainView& view, const PlacedImage& image);
+
+    /// No part of the cube is in the picture.
+    [[nodiscard]] bool is_out_of_sight(const Eigen::Vector3d& centre, int voxels) const;
+    /// The pixels that may see a cube; empty if that comes too near to the camera to tell.
+    [[nodiscard]] std::optional<PixelBox> pixels_of(const Eigen::Vector3d& centre, int voxels) const;
+    [[nodiscard]] PixelBox all_pixels() const { return {0, camera_.width - 1, 0, camera_.height - 1}; }
+    [[nodiscard]] BrickVerdict of_brick(const Eigen::Vector3d& centre) const;
+    /// The longest reach in a box, or in one a little larger; negative if no pixel has a ray.
+    [[nodiscard]] float longest(const PixelBox& box) const { return reach_.of(box).longest; }
+
+  private:
+    const CertainView& view_;
+    CameraIntrinsics camera_;
+    std::array<Eigen::Vector3d, 4> sides_;  ///< of the picture: their planes' normals, inwards
+    std::array<double, 4> half_edge_{};     ///< how far a voxel reaches along each, and the margin
+    ReachBlocks reach_;
+};
+
+}  // namespace octoskin
