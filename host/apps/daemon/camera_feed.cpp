@@ -153,6 +153,7 @@ void CameraFeed::note_untimed() {
     const std::lock_guard lock(mutex_);
     ++record_.frames;
     ++record_.untimed;
+    record_.newest_untimed = monotonic_now();
 }
 
 void CameraFeed::put(DepthFrame frame) {

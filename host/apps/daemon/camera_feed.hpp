@@ -19,14 +19,15 @@ namespace octoskin {
 
 struct CameraRecord {
     bool is_open = false;
-    std::uint64_t frames = 0;     ///< that came
-    std::uint64_t displaced = 0;  ///< newer ones came before these were taken
-    std::uint64_t untimed = 0;    ///< whose time of capture could not be told: late, or the first ones
-    std::uint64_t opened = 0;     ///< times
-    double rate_hz = 0.0;         ///< of the mode that it was put into; 0: not told, as of a file
-    HostTime begun;               ///< looked for since then
-    std::optional<HostTime> newest;
-    std::string why;  ///< not open, for a person
+    std::uint64_t frames = 0;        ///< that came
+    std::uint64_t displaced = 0;     ///< newer ones came before these were taken
+    std::uint64_t untimed = 0;       ///< whose time of capture could not be told: late, or the first ones
+    std::uint64_t opened = 0;        ///< times
+    double rate_hz = 0.0;            ///< of the mode that it was put into; 0: not told, as of a file
+    HostTime begun;                  ///< looked for since then
+    std::optional<HostTime> newest;  ///< that has a time
+    std::optional<HostTime> newest_untimed;  ///< came
+    std::string why;                         ///< not open, for a person
 };
 
 class CameraFeed {

@@ -266,8 +266,15 @@ std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz
     if (!camera.is_open) return Problem{"camera: " + camera.why, "camera: " + camera.why};
     const double true_rate_hz = camera.rate_hz > 0.0 ? camera.rate_hz : rate_hz;
     const Nanoseconds period{static_cast<std::int64_t>(1e9 / true_rate_hz)};
-    if (camera.newest && now - *camera.newest > 3 * period)
+    if (camera.newest && now - *camera.newest > 3 * period) {
+        if (camera.newest_untimed && now - *camera.newest_untimed <= 3 * period) {
+            return Problem{
+                "camera untimed",
+                "camera: frames come, none for three periods with a time that could be told: they come "
+                "late; is this machine too busy?"};
+        }
         return Problem{"camera silent", "camera: no frame for three periods"};
+    }
     return std::nullopt;
 }
 

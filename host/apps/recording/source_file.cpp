@@ -14,9 +14,11 @@ std::optional<std::uint32_t> crc32_of(std::span<const std::filesystem::path> fil
     std::uint32_t crc = 0;
     std::array<char, 65'536> buffer{};
     for (const auto& file : files) {
-        std::ifstream stream(file, std::ios::binary);
         std::error_code error;
-        if (!stream || !std::filesystem::is_regular_file(file, error)) return std::nullopt;
+        // Before it is opened: a named pipe would wait for ever.
+        if (!std::filesystem::is_regular_file(file, error)) return std::nullopt;
+        std::ifstream stream(file, std::ios::binary);
+        if (!stream) return std::nullopt;
         while (stream.read(buffer.data(), buffer.size()), stream.gcount() > 0) {
             const auto* bytes = reinterpret_cast<const std::uint8_t*>(buffer.data());
             crc = crc32({bytes, static_cast<std::size_t>(stream.gcount())}, crc);

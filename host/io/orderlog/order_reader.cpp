@@ -3,6 +3,10 @@
 namespace octoskin::orderlog {
 
 Result<OrderReader, CommitSourceError> OrderReader::open(const std::filesystem::path& file) {
+    // Before it is opened: a named pipe would wait for ever.
+    std::error_code error;
+    if (std::filesystem::is_other(std::filesystem::status(file, error)))
+        return unexpected(CommitSourceError{file.string() + ": is a pipe or a device, not an ordinary file"});
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return unexpected(CommitSourceError{file.string() + ": cannot be opened"});
     OrderReader reader(file, std::move(stream));

@@ -63,6 +63,10 @@ void make_room(Decoding& decoding) {
 }  // namespace
 
 Result<DepthPng, std::string> read_depth_png(const std::filesystem::path& file) {
+    // Before it is opened: a named pipe would wait for ever.
+    std::error_code error;
+    if (std::filesystem::is_other(std::filesystem::status(file, error)))
+        return unexpected(std::string("is a pipe or a device, not an ordinary file"));
     Decoding decoding;
     decoding.file.reset(std::fopen(file.c_str(), "rb"));
     if (!decoding.file) return unexpected(std::string("cannot be opened"));

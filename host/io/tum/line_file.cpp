@@ -28,6 +28,10 @@ DepthSourceError line_error(const std::filesystem::path& file, std::uint64_t lin
 }
 
 Status<DepthSourceError> read_lines(const std::filesystem::path& file, const TakeLine& take) {
+    // Before it is opened: a named pipe would wait for ever, and a device may have no end.
+    std::error_code error;
+    if (std::filesystem::is_other(std::filesystem::status(file, error)))
+        return unexpected(DepthSourceError{file.string() + ": is a pipe or a device, not an ordinary file"});
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return unexpected(DepthSourceError{file.string() + ": cannot be opened"});
     std::string line;

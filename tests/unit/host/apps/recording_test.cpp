@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -137,6 +138,8 @@ TEST(SourceFileTest, checksum_is_that_of_all_bytes_in_order) {
     EXPECT_EQ(crc32_of(large), crc32(std::vector<std::uint8_t>(200'001, 'x')));
     EXPECT_EQ(crc32_of(folder / "absent"), std::nullopt);
     EXPECT_EQ(crc32_of(folder.path()), std::nullopt);
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_EQ(crc32_of(folder / "pipe"), std::nullopt) << "and nobody waits for its writer";
     EXPECT_EQ(source_file(parts[0], std::span(parts).subspan(1)).crc32, 0xCBF43926U);
     EXPECT_TRUE(source_file("x").file.is_absolute());
     EXPECT_EQ(crc_text(0xABC), "0x00000abc");

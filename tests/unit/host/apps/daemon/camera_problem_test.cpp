@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "host/apps/daemon/status.hpp"
@@ -47,6 +48,18 @@ TEST(CameraProblem, is_that_no_frame_has_a_time) {
     camera.frames = camera.untimed = 90;
     EXPECT_EQ(told(camera, 6 * kSecond),
               "camera: 90 frames came, none with a time that could be told, and it is open");
+}
+
+TEST(CameraProblem, is_that_frames_have_no_time_any_more_while_they_come) {
+    CameraRecord camera = looked_for();
+    camera.is_open = true;
+    camera.newest = kBegun + 6 * kSecond;
+    camera.newest_untimed = kBegun + 9 * kSecond;
+    EXPECT_THAT(told(camera, 9 * kSecond + 3 * kPeriod),
+                testing::StartsWith("camera: frames come, none for three"));
+    EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod + Nanoseconds{1}), "camera: no frame for three periods");
+    camera.newest = kBegun + 9 * kSecond;
+    EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod), "");
 }
 
 TEST(CameraProblem, is_that_it_fell_silent_and_nothing_while_it_is_well) {

@@ -1,6 +1,7 @@
 #include "host/io/orderlog/order_line.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstring>
 #include <limits>
@@ -142,6 +143,8 @@ TEST_F(OrderFile, with_a_mistake_is_named_with_its_line) {
     EXPECT_TRUE(read(std::string(100'000, 'x')).starts_with(file + ":1: does not begin as an order"));
     std::filesystem::remove(file);
     EXPECT_EQ(OrderReader::open(file).error().what, file + ": cannot be opened");
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    EXPECT_EQ(OrderReader::open(file).error().what, file + ": is a pipe or a device, not an ordinary file");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <random>
@@ -140,6 +141,17 @@ TEST_F(DataSetReaderTest, an_image_that_cannot_be_read_is_named_with_its_line_ag
                   (written_.folder() / "depth.txt").string() + ":4: depth/absent.png: cannot be opened");
     }
     EXPECT_EQ(reader.images_left(), 1U);
+}
+
+TEST_F(DataSetReaderTest, a_named_pipe_is_refused_without_waiting_for_its_writer) {
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_line("depth.txt", "100 pipe.png");
+    ASSERT_EQ(::mkfifo((written_.folder() / "pipe.png").c_str(), 0600), 0);
+    EXPECT_THAT(error_of_next(), HasSubstr("depth.txt:4: pipe.png: is a pipe or a device"));
+    std::filesystem::remove(written_.folder() / "groundtruth.txt");
+    ASSERT_EQ(::mkfifo((written_.folder() / "groundtruth.txt").c_str(), 0600), 0);
+    EXPECT_THAT(DataSetReader::open(written_.folder()).error().what,
+                HasSubstr("groundtruth.txt: is a pipe or a device"));
 }
 
 TEST_F(DataSetReaderTest, the_first_image_that_is_missing_is_named_whether_or_not_it_has_a_pose) {
