@@ -116,7 +116,7 @@ std::string describe(JointTextFault fault, std::string_view text, std::size_t jo
 }
 
 Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& file, std::size_t joint_count) {
-    const auto descriptor = bind_unix_socket(file, SOCK_DGRAM);
+    const auto descriptor = bind_unix_socket(file, SOCK_DGRAM, "--joints");
     if (!descriptor) return unexpected(descriptor.error());
     (void)socketcan::want_stamps(*descriptor);
     try {

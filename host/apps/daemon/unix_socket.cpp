@@ -36,6 +36,27 @@ Unexpected<AppError> failure(const std::filesystem::path& file, const std::strin
     return fail(code, file.string() + ": " + what + ": " + std::strerror(error));
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+    return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+/// What a person can do about a place where nothing can be made.
+Unexpected<AppError> cannot_listen(const std::filesystem::path& file, const std::string& option, int error) {
+    const std::string folder = folder_of(file).string();
+    const std::string elsewhere = "name a place elsewhere with " + option;
+    if (error == ENOENT) {
+        return fail(ExitCode::unavailable, file.string() + ": cannot listen there: the folder " + folder +
+                                               " does not exist; make it, or " + elsewhere);
+    }
+    if (error == ENOTDIR) {
+        return fail(ExitCode::unavailable,
+                    file.string() + ": cannot listen there: " + folder + " is no folder; " + elsewhere);
+    }
+    auto failed = failure(file, "cannot listen there", error);
+    failed.error.message += "; " + elsewhere;
+    return failed;
+}
+
 /// Which process listens where `probe` is connected, as " (process 123)"; empty if the kernel does not tell:
 /// it keeps none for datagrams, and has no number for one of another container.
 std::string listener_of(int probe) {
@@ -52,7 +73,8 @@ std::optional<std::string> find_listener(const sockaddr_un& address, int type) {
     const bool is_connected =
         ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
     // Refused, or no such name: nobody. Whatever else goes wrong, somebody may be there.
-    const bool is_nobody = !is_connected && (errno == ECONNREFUSED || errno == ENOENT || errno == ENOTSOCK);
+    const bool is_nobody =
+        !is_connected && (errno == ECONNREFUSED || errno == ENOENT || errno == ENOTDIR || errno == ENOTSOCK);
     const bool is_full = !is_connected && errno == EAGAIN;
     const std::string listener = is_connected ? listener_of(probe)
                                  : is_full    ? " (it lets nobody in: is it stopped?)"
@@ -66,7 +88,7 @@ std::optional<std::string> find_listener(const sockaddr_un& address, int type) {
 std::optional<FileLock> lock_folder_of(const std::filesystem::path& file) {
     constexpr int kTries = 400;
     constexpr std::chrono::milliseconds kPause{5};
-    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    const auto folder = folder_of(file);
     auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     for (int i = 0; i < kTries && !lock; ++i) {
         std::this_thread::sleep_for(kPause);
@@ -78,7 +100,8 @@ std::optional<FileLock> lock_folder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int type) {
+Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int type,
+                                       const std::string& option) {
     const auto address = address_of(file);
     if (!address) return fail(ExitCode::usage, file.string() + ": a socket's path has 1 to 107 bytes");
     const auto lock = lock_folder_of(file);
@@ -104,7 +127,7 @@ Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int ty
     if (!is_bound || (type == SOCK_STREAM && ::listen(descriptor, kWaiting) != 0)) {
         const int why = is_bound ? errno : error;
         ::close(descriptor);
-        return failure(file, "cannot listen there", why);
+        return cannot_listen(file, option, why);
     }
     return descriptor;
 }
