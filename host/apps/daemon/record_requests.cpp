@@ -19,6 +19,8 @@ namespace {
 constexpr std::string_view kStart = "record start ";
 constexpr std::string_view kStop = "record stop ";
 constexpr double kSecondsMax = 1e6;
+/// For a disk to take a folder, or to refuse it: a reading may wait so long.
+constexpr Nanoseconds kFolderPatience{100'000'000};
 
 bool is_control(char c) {
     constexpr unsigned char kDelete = 0x7F;
@@ -37,10 +39,11 @@ std::string in_one_line(const std::string& name) {
 std::string fault_of_folder(const std::filesystem::path& folder) {
     const std::string name = folder.string();
     if (std::ranges::any_of(name, is_control)) {
-        return "'" + in_one_line(name) +
-               "': a recording's folder may have no control characters in its name; give another one";
+        return fmt::format(
+            "'{}': a recording's folder may have no control characters in its name; give another one",
+            in_one_line(name));
     }
-    return folder.is_absolute() ? std::string() : "'" + name + "' is no absolute path";
+    return folder.is_absolute() ? std::string() : fmt::format("'{}' is no absolute path", name);
 }
 
 std::filesystem::path plain(const std::filesystem::path& folder) {
@@ -50,65 +53,82 @@ std::filesystem::path plain(const std::filesystem::path& folder) {
 
 std::string RecordRequests::answer(const std::string& line, const RecordedSettings& settings,
                                    Pipeline& pipeline, HostTime now) {
-    std::string error;
+    Status<AppError> outcome = Done{};
     if (line.starts_with(kStart)) {
-        error = start(line.substr(kStart.size()), settings, pipeline, now);
+        outcome = start(line.substr(kStart.size()), settings, pipeline, now);
     } else if (line == "record stop") {
-        if (!recorder_) error = "nothing is being recorded";
+        if (!recorder_) outcome = fail(ExitCode::unavailable, "nothing is being recorded");
         stop(now);
     } else if (line.starts_with(kStop)) {
-        error = stop(line.substr(kStop.size()), now);
+        outcome = stop(line.substr(kStop.size()), now);
     } else if (line != "record status") {
-        error =
-            "unknown request; there are: record start SECONDS FOLDER, record stop [FOLDER], record status";
+        outcome = fail(ExitCode::usage,
+                       "unknown request; there are: record start SECONDS FOLDER, record stop [FOLDER], "
+                       "record status");
     }
-    nlohmann::ordered_json answer{{"ok", error.empty()}};
-    if (!error.empty()) answer["error"] = error;
+    nlohmann::ordered_json answer{{"ok", outcome.has_value()}};
+    if (!outcome) {
+        answer["error"] = outcome.error().message;
+        answer["code"] = static_cast<int>(outcome.error().code);
+    }
     answer["recording"] = to_json(now);
     answer["before"] = before_;
     return answer.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-std::string RecordRequests::start(const std::string& arguments, const RecordedSettings& settings,
-                                  Pipeline& pipeline, HostTime now) {
+Status<AppError> RecordRequests::start(const std::string& arguments, const RecordedSettings& settings,
+                                       Pipeline& pipeline, HostTime now) {
     double seconds = 0.0;
     const char* const last = arguments.data() + arguments.size();
     const auto [end, error] = std::from_chars(arguments.data(), last, seconds);
     const bool is_time = error == std::errc{} && seconds >= 0.0 && seconds <= kSecondsMax;
-    if (!is_time || end == last || *end != ' ') return "expected: record start SECONDS FOLDER";
+    if (!is_time || end == last || *end != ' ')
+        return fail(ExitCode::usage, "expected: record start SECONDS FOLDER");
     const std::filesystem::path named(end + 1, last);
-    if (std::string fault = fault_of_folder(named); !fault.empty()) return fault;
-    const std::filesystem::path folder = plain(named);
-    if (recorder_ && !recorder_->has_ended())
-        return "already recording to " + recorder_->folder().string() +
-               "; `octoskin record --stop` ends that";
+    if (const std::string fault = fault_of_folder(named); !fault.empty()) return fail(ExitCode::usage, fault);
+    if (recorder_ && !recorder_->has_ended()) {
+        return fail(ExitCode::cannot_create, "already recording to " + recorder_->folder().string() +
+                                                 "; `octoskin record --stop` ends that");
+    }
     const auto limit = seconds > 0.0 ? std::optional(Nanoseconds{std::llround(seconds * 1e9)}) : std::nullopt;
-    if (recorder_) before_ = to_json(now);
-    recorder_.reset();  // the one before lets go of the pipeline first
-    refusal_.clear();
+    if (recorder_) recorder_->stop(now);  // the one before lets go of the pipeline first
     try {
-        recorder_ = std::make_unique<Recorder>(folder, limit, settings, pipeline, now, copier_);
-        ++begun_;
+        return begin(std::make_unique<Recorder>(plain(named), limit, settings, pipeline, now, copier_), now);
     } catch (const std::bad_alloc&) {
         refusal_ = fmt::format("no memory for a copy of the map ({} MiB), with which a recording begins",
                                pipeline.maps().fused()->memory_bytes() >> 20U);
     } catch (const std::system_error& error_thrown) {
         refusal_ = fmt::format("no thread to be had for a recording ({})", error_thrown.code().message());
     }
-    return refusal_;
+    return fail(ExitCode::unavailable, refusal_);
 }
 
-std::string RecordRequests::stop(const std::string& folder, HostTime now) {
-    if (std::string fault = fault_of_folder(folder); !fault.empty()) return fault;
-    if (!recorder_) return "nothing is being recorded";
+Status<AppError> RecordRequests::begin(std::unique_ptr<Recorder> recorder, HostTime now) {
+    if (const std::string why = recorder->refusal(kFolderPatience); !why.empty()) {
+        spdlog::warn("not recorded: {}", why);
+        return fail(ExitCode::cannot_create, why);
+    }
+    if (recorder_) before_ = to_json(now);
+    recorder_ = std::move(recorder);
+    ++begun_;
+    refusal_.clear();
+    spdlog::info("recording to {}", recorder_->folder().string());
+    return Done{};
+}
+
+Status<AppError> RecordRequests::stop(const std::string& folder, HostTime now) {
+    if (const std::string fault = fault_of_folder(folder); !fault.empty())
+        return fail(ExitCode::usage, fault);
+    if (!recorder_) return fail(ExitCode::unavailable, "nothing is being recorded");
     const std::filesystem::path named = plain(folder);
     if (recorder_->folder() != named) {
-        return fmt::format("{} is not being recorded; the recording {} {}", named.string(),
-                           recorder_->has_ended() ? "that ended last is" : "goes to",
-                           recorder_->folder().string());
+        return fail(ExitCode::unavailable,
+                    fmt::format("{} is not being recorded; the recording {} {}", named.string(),
+                                recorder_->has_ended() ? "that ended last is" : "goes to",
+                                recorder_->folder().string()));
     }
     stop(now);
-    return {};
+    return Done{};
 }
 
 nlohmann::ordered_json RecordRequests::to_json(HostTime now) const {

@@ -12,8 +12,10 @@
 #include <string>
 #include <utility>
 
+#include "common/result.hpp"
 #include "common/time.hpp"
 #include "host/apps/daemon/recorder.hpp"
+#include "host/apps/recording/app_error.hpp"
 #include "host/core/pipeline/pipeline.hpp"
 
 namespace octoskin {
@@ -29,8 +31,8 @@ class RecordRequests {
     explicit RecordRequests(Recorder::Copier copier = &FusedMap::copy) : copier_(std::move(copier)) {}
 
     [[nodiscard]] static bool is_one(const std::string& line) { return line.starts_with("record "); }
-    /// A line of JSON: "ok"; "error" if it is not; "recording", the one at work or the last, with its
-    /// "number" since this daemon began; and "before", the one before that.
+    /// A line of JSON: "ok"; "error" and "code", the exit code for it, if it is not; "recording", the one at
+    /// work or the last, with its "number" since this daemon began; and "before", the one before that.
     [[nodiscard]] std::string answer(const std::string& line, const RecordedSettings& settings,
                                      Pipeline& pipeline, HostTime now);
 
@@ -53,11 +55,12 @@ class RecordRequests {
     [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
 
   private:
-    /// What speaks against it; empty: nothing.
-    [[nodiscard]] std::string start(const std::string& arguments, const RecordedSettings& settings,
-                                    Pipeline& pipeline, HostTime now);
-    /// The same; nobody ends a recording but where it is said to be.
-    [[nodiscard]] std::string stop(const std::string& folder, HostTime now);
+    [[nodiscard]] Status<AppError> start(const std::string& arguments, const RecordedSettings& settings,
+                                         Pipeline& pipeline, HostTime now);
+    /// Unless its folder is refused: then nothing has changed.
+    [[nodiscard]] Status<AppError> begin(std::unique_ptr<Recorder> recorder, HostTime now);
+    /// Nobody ends a recording but where it is said to be.
+    [[nodiscard]] Status<AppError> stop(const std::string& folder, HostTime now);
     [[nodiscard]] nlohmann::ordered_json to_json(HostTime now) const;
 
     Recorder::Copier copier_;

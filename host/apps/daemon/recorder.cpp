@@ -69,7 +69,6 @@ Recorder::Recorder(const std::filesystem::path& folder, std::optional<Nanosecond
     // Poses go on being interpolated from samples that came before.
     pipeline.builder().for_each_joint_sample([this](const JointMeasurement& joints) { put(joints); });
     commits_before_ = counts_.commits;
-    spdlog::info("recording to {}", folder.string());
     pipeline.tell(this);  // the last: nothing may throw after it
 }
 

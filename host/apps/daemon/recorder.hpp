@@ -52,6 +52,10 @@ class Recorder final : public CommitListener {
     /// Until the files are whole, after `stop`; false if `patience` was too short.
     [[nodiscard]] bool wait(Nanoseconds patience) { return writer_.wait(patience); }
 
+    /// Why the folder was not taken: it is not empty, or somebody else's. Empty if it was; and if a disk
+    /// takes longer than `patience` to tell, `error` says it then.
+    [[nodiscard]] std::string refusal(Nanoseconds patience) { return writer_.refusal(patience); }
+
     [[nodiscard]] bool has_ended() const { return writer_.has_ended(); }
     /// For a person; empty: all is well so far.
     [[nodiscard]] std::string error() const { return writer_.error(); }

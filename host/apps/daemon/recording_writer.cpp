@@ -57,6 +57,7 @@ class RecordingWriter::Work {
     [[nodiscard]] bool has_ended() const;
     [[nodiscard]] std::string error() const;
     [[nodiscard]] bool wait(Nanoseconds patience);
+    [[nodiscard]] std::string refusal(Nanoseconds patience);
     [[nodiscard]] const fs::path& folder() const { return begin_.paths.directory; }
 
   private:
@@ -82,6 +83,7 @@ class RecordingWriter::Work {
     std::condition_variable changed_;
     std::optional<RecordingEnd> end_;
     bool is_dropped_ = false;
+    bool has_folder_ = false;  ///< which was empty, and nobody else's
     bool has_ended_ = false;
     std::string error_;
 };
@@ -118,6 +120,9 @@ std::string RecordingWriter::error() const {
 bool RecordingWriter::wait(Nanoseconds patience) {
     return work_->wait(patience);
 }
+std::string RecordingWriter::refusal(Nanoseconds patience) {
+    return work_->refusal(patience);
+}
 
 void RecordingWriter::Work::drop() {
     {
@@ -130,7 +135,7 @@ void RecordingWriter::Work::drop() {
 void RecordingWriter::Work::finish(RecordingEnd end) {
     {
         const std::lock_guard lock(mutex_);
-        end_ = std::move(end);
+        if (!has_ended_) end_ = std::move(end);  // its map would stay in the memory
     }
     changed_.notify_all();
 }
@@ -148,6 +153,12 @@ std::string RecordingWriter::Work::error() const {
 bool RecordingWriter::Work::wait(Nanoseconds patience) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, patience, [this] { return has_ended_; });
+}
+
+std::string RecordingWriter::Work::refusal(Nanoseconds patience) {
+    std::unique_lock lock(mutex_);
+    (void)changed_.wait_for(lock, patience, [this] { return has_folder_ || has_ended_; });
+    return has_folder_ ? std::string() : error_;
 }
 
 void RecordingWriter::Work::run() {
@@ -170,6 +181,11 @@ Status<std::string> RecordingWriter::Work::record() {
     // Whoever else writes recordings or maps there takes the same lock.
     const auto lock = FileLock::take(begin_.paths.directory, FileLock::Kind::exclusive);
     if (!lock) return unexpected(begin_.paths.directory.string() + ": another octoskin is writing here");
+    {
+        const std::lock_guard guard(mutex_);
+        has_folder_ = true;
+    }
+    changed_.notify_all();
     if (const Step begun = begin(); !begun) return begun;
     depth_.begin();
     while (!rest()) {

@@ -62,6 +62,9 @@ class RecordingWriter {
     [[nodiscard]] bool has_ended() const;
     /// What went wrong, for a person; empty: nothing so far.
     [[nodiscard]] std::string error() const;
+    /// Why the folder was not taken, and nothing written; empty if it was, or if the disk has not told within
+    /// `patience`.
+    [[nodiscard]] std::string refusal(Nanoseconds patience);
     /// Waits for the end, after `finish`; false if `patience` was too short.
     [[nodiscard]] bool wait(Nanoseconds patience);
 

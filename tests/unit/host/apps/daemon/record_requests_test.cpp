@@ -79,6 +79,21 @@ TEST_F(RecordRequestsTest, refuses_to_begin_without_memory_or_thread_and_begins_
     EXPECT_EQ(requests_.refusal(), "");
 }
 
+TEST_F(RecordRequestsTest, refuses_a_folder_that_is_not_empty_and_leaves_no_trace) {
+    EXPECT_TRUE(ask("record start 0 " + (folder_ / "whole").string())["ok"].get<bool>());
+    EXPECT_TRUE(ask("record stop")["ok"].get<bool>());
+    requests_.finish(std::chrono::seconds(20));
+    const Json before = ask("record status");
+    const Json refused = ask("record start 0 " + folder_.path().string());
+    EXPECT_FALSE(refused["ok"].get<bool>());
+    EXPECT_EQ(refused["code"], 73);
+    EXPECT_NE(refused["error"].get<std::string>().find("is not empty"), std::string::npos) << refused;
+    EXPECT_EQ(ask("record status"), before);
+    EXPECT_EQ(requests_.refusal(), "");
+    EXPECT_TRUE(ask("record start 0 " + (folder_ / "next").string())["ok"].get<bool>());
+    EXPECT_EQ(ask("record status")["recording"]["number"], 2);
+}
+
 TEST_F(RecordRequestsTest, ends_as_failed_without_memory_for_the_last_map) {
     EXPECT_TRUE(ask("record start 0 " + (folder_ / "recording").string())["ok"].get<bool>());
     before_copy_ = [] { throw std::bad_alloc(); };
