@@ -22,6 +22,17 @@ constexpr std::size_t kFileBytesMax = 1U << 20U;
 constexpr std::size_t kDepthMax = 16;
 constexpr std::size_t kExtendsMax = 8;
 
+/// What it looks like; empty: not like XML.
+std::string_view xml_kind(std::string_view text) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+    const auto begin = text.find_first_not_of(" \t\r\n");
+    if (begin == std::string_view::npos || text[begin] != '<') return {};
+    if (text.find("<robot") != std::string_view::npos) return "XML that looks like a robot (URDF)";
+    if (text.find("<sdf") != std::string_view::npos) return "XML that looks like a world (SDF)";
+    return "XML";
+}
+
 std::string read_text(const std::filesystem::path& file) {
     if (const auto kind = other_than_a_file(file); !kind.empty())
         throw Fault{{file, 0, "", fmt::format("is {}: give the path of an ordinary YAML file", kind)}};
@@ -30,6 +41,10 @@ std::string read_text(const std::filesystem::path& file) {
         throw Fault{{file, 0, "", "cannot be opened: give the path of an existing, readable YAML file"}};
     }
     std::string text = read_bounded(stream, kFileBytesMax);
+    if (const std::string_view what = xml_kind(text); !what.empty()) {
+        throw Fault{{file, 0, "",
+                     fmt::format("expected YAML, found {}: is it given in another file's place?", what)}};
+    }
     if (text.size() > kFileBytesMax) {
         throw Fault{
             {file, 0, "", fmt::format("expected a file of at most {} bytes, found more", kFileBytesMax)}};

@@ -6,9 +6,11 @@
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <string>
+#include <system_error>
 #include <utility>
+
+#include "host/apps/recording/text_file.hpp"
 
 namespace octoskin {
 namespace {
@@ -31,8 +33,9 @@ Result<FolderLock, AppError> FolderLock::take(const std::filesystem::path& folde
     const std::string file = (folder / kLockFile).string();
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640);
     if (descriptor < 0) {
-        const std::string why = made ? made.message() : std::strerror(errno);
-        return cannot_create(folder, "no maps can be saved there: " + why);
+        const std::error_code why = made ? made : std::error_code(errno, std::generic_category());
+        return cannot_create(folder, "no maps can be saved there (" + why.message() + "): " + remedy_of(why) +
+                                         "; --maps names the folder");
     }
     FolderLock lock(descriptor);
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/study/configuration.hpp"
 #include "host/io/mapping/mapping_file.hpp"
@@ -34,8 +35,8 @@ Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const 
 Result<Settings, AppError> read_settings(const DaemonRequest& request) {
     const auto configuration = study_configuration(request.configuration);
     if (!configuration) return unexpected(configuration.error());
-    const auto rig = rig::read_rig(request.rig, request.robot);
-    if (!rig) return unexpected(reading_error(ExitCode::bad_config, rig.error()));
+    const auto rig = read_given_rig(request.rig, request.robot);
+    if (!rig) return unexpected(rig.error());
     auto host = make_host_setup(*rig);
     if (!host) return unexpected(reading_error(ExitCode::bad_config, host.error()));
     if (!request.camera_uri.empty() && !rig->camera) {

@@ -1,8 +1,10 @@
 #include "host/apps/playback/data_set_playback.hpp"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
+#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/version/version.hpp"
@@ -44,8 +46,8 @@ Result<rig::Camera, AppError> named_camera(const std::string& name) {
 Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request) {
     if (request.rig.empty()) return named_camera(request.camera);
     const auto lock = lock_reading();
-    const auto rig = rig::read_rig(request.rig);
-    if (!rig) return unexpected(reading_error(ExitCode::bad_config, rig.error()));
+    const auto rig = read_given_rig(request.rig);
+    if (!rig) return unexpected(rig.error());
     if (!rig->camera) {
         return fail(ExitCode::bad_config,
                     request.rig.string() + ": has no camera, which a data set is seen by");
@@ -88,9 +90,12 @@ Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig:
     const auto crc32 = crc32_of(reader.files());
     if (!crc32) {
         const auto missing = reader.missing_image();
-        return fail(ExitCode::no_input, missing ? missing->what
-                                                : request.recording.directory.string() +
-                                                      ": a file of it went away while it was read");
+        const bool is_refused = std::ranges::any_of(
+            reader.files(), [](const fs::path& file) { return refused_to_read(file).has_value(); });
+        return fail(
+            is_refused ? ExitCode::no_permission : ExitCode::no_input,
+            missing ? missing->what
+                    : request.recording.directory.string() + ": a file of it went away while it was read");
     }
     const auto absolute = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
     return MapOrigin{.made_by = program_version(),
@@ -141,8 +146,12 @@ Result<Playback, AppError> play_data_set(const PlaybackRequest& request_given, c
     auto reader = tum::DataSetReader::open(request.recording.directory, camera->data_set);
     if (!reader) {
         AppError error{ExitCode::bad_data, reader.error().what};
-        for (const char* file : {"groundtruth.txt", "depth.txt"})
-            error = reading_error(request.recording.directory / file, std::move(error));
+        for (const char* name : {"groundtruth.txt", "depth.txt"}) {
+            const fs::path file = request.recording.directory / name;
+            std::error_code ignored;
+            if (!fs::exists(file, ignored)) error.code = ExitCode::no_input;
+            error = reading_error(file, std::move(error));
+        }
         return unexpected(std::move(error));
     }
     auto origin = origin_of(request, rig, *reader);

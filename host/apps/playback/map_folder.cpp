@@ -35,7 +35,8 @@ NamedMaps named_maps(const Playback& playback) {
     NamedMaps named;
     if (maps.depth() != nullptr && playback.outcome.progress.depth_frames > 0)
         named.emplace_back("depth", maps.depth());
-    if (maps.proximity() != nullptr) named.emplace_back("proximity", maps.proximity());
+    if (maps.proximity() != nullptr && !playback.rig.nodes.empty())
+        named.emplace_back("proximity", maps.proximity());
     if (maps.fused() != nullptr) named.emplace_back("fused", maps.fused());
     return named;
 }

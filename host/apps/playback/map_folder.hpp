@@ -17,7 +17,8 @@ namespace octoskin {
 
 using NamedMaps = std::vector<std::pair<std::string, const FusedMap*>>;
 
-/// depth, proximity and fused, as far as they were asked for; no depth without depth frames. They belong to
+/// depth, proximity and fused, as far as they were asked for; no depth without depth frames, no
+/// proximity of a rig without sensor boards. They belong to
 /// the playback.
 [[nodiscard]] NamedMaps named_maps(const Playback& playback);
 

@@ -7,7 +7,6 @@
 
 #include "common/wire/crc.hpp"
 #include "host/apps/playback/pace.hpp"
-#include "host/apps/recording/permission.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "host/io/mapping/mapping_file.hpp"
@@ -32,7 +31,6 @@ std::uint32_t crc32_of_map(const FusedMap& map) {
 
 Result<FusedMap, AppError> read_first_map(const PlaybackRequest& request, std::uint32_t crc) {
     const auto file = request.recording.first_map();
-    if (auto refused = refused_to_read(file)) return unexpected(std::move(*refused));
     if (crc32_of(file) != crc)
         return fail(ExitCode::bad_data, file.string() + ": is not the map that this recording began with");
     auto map = load_map_of(request.mapping.map, file);

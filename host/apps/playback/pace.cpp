@@ -20,8 +20,8 @@ std::int64_t steady_now_ns() {
     return std::chrono::steady_clock::now().time_since_epoch().count();
 }
 
-std::string text_of(const StampedFrame& entry) {
-    std::string line = candump::format_line({entry.stamp, "can", entry.frame});
+std::string text_of(const StampedFrame& entry, const std::string& interface) {
+    std::string line = candump::format_line({entry.stamp, interface, entry.frame});
     line.pop_back();
     return line;
 }
@@ -85,7 +85,8 @@ void Pace::wait(std::int64_t time_ns, const std::string& what) {
 Result<std::optional<StampedFrame>, CanSourceError> PacedCan::next() {
     auto entry = source_.next();
     if (pace_.waits() && entry && entry->has_value())
-        pace_.wait((*entry)->stamp.ns, pace_.steps() ? text_of(**entry) : std::string());
+        pace_.wait((*entry)->stamp.ns,
+                   pace_.steps() ? text_of(**entry, source_.newest_interface()) : std::string());
     return entry;
 }
 

@@ -9,6 +9,7 @@
 #include "host/core/depth/depth_source.hpp"
 #include "host/core/pipeline/can_source.hpp"
 #include "host/core/pipeline/ordered_replay.hpp"
+#include "host/io/candump/log_source.hpp"
 
 namespace octoskin {
 
@@ -42,11 +43,11 @@ class Pace {
 /// Frames of a log, each at its time.
 class PacedCan final : public CanSource {
   public:
-    PacedCan(CanSource& source, Pace pace) : source_(source), pace_(std::move(pace)) {}
+    PacedCan(candump::LogSource& source, Pace pace) : source_(source), pace_(std::move(pace)) {}
     [[nodiscard]] Result<std::optional<StampedFrame>, CanSourceError> next() override;
 
   private:
-    CanSource& source_;
+    candump::LogSource& source_;
     Pace pace_;
 };
 

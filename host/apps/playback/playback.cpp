@@ -8,6 +8,7 @@
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/log_survey.hpp"
 #include "host/apps/playback/ordered_playback.hpp"
+#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/recording/recording_draft.hpp"
@@ -29,14 +30,12 @@ struct Setup {
 
 Result<Setup, AppError> read_setup(const PlaybackRequest& request) {
     const auto lock = lock_reading();
-    auto rig = rig::read_rig(request.rig.empty() ? request.recording.rig() : request.rig, request.robot);
-    if (!rig) {
-        std::error_code error;
-        const bool is_robot_absent = request.rig.empty() && request.robot.empty() &&
-                                     !std::filesystem::exists(request.recording.robot(), error);
-        return unexpected(
-            reading_error(is_robot_absent ? ExitCode::no_input : ExitCode::bad_config, rig.error()));
-    }
+    std::error_code error;
+    const bool is_robot_absent = request.rig.empty() && request.robot.empty() &&
+                                 !std::filesystem::exists(request.recording.robot(), error);
+    auto rig = read_given_rig(request.rig.empty() ? request.recording.rig() : request.rig, request.robot,
+                              is_robot_absent ? ExitCode::no_input : ExitCode::bad_config);
+    if (!rig) return unexpected(rig.error());
     auto host = make_host_setup(*rig);
     if (!host) return unexpected(reading_error(ExitCode::bad_config, host.error()));
     return Setup{std::move(*rig), std::move(*host)};

@@ -11,6 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "host/apps/recording/text_file.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -24,6 +26,11 @@ constexpr const char* kJournalHead = "octoskin-file-set/1";
 Unexpected<AppError> busy(const fs::path& folder) {
     return cannot_create(
         folder, "another octoskin is writing here; wait until it has ended, or give another directory");
+}
+
+Unexpected<AppError> cannot_write(const fs::path& folder, const std::error_code& error) {
+    return cannot_create(folder,
+                         "nothing can be written there (" + error.message() + "): " + remedy_of(error));
 }
 
 bool is_there(const fs::path& path) {
@@ -215,13 +222,18 @@ Status<AppError> finish_interrupted(const fs::path& folder) {
 }  // namespace
 
 FileSet::FileSet(fs::path folder, bool is_new, FileLock lock)
-    : folder_(std::move(folder)), draft_(folder_ / kDraftFolder), is_new_(is_new), lock_(std::move(lock)) {}
+    : folder_(std::move(folder)),
+      draft_(folder_ / kDraftFolder),
+      is_new_(is_new),
+      unfinished_(draft_, is_new ? folder_ : fs::path()),
+      lock_(std::move(lock)) {}
 
 FileSet::FileSet(FileSet&& other) noexcept
     : folder_(std::move(other.folder_)),
       draft_(std::move(other.draft_)),
       is_new_(other.is_new_),
       is_open_(std::exchange(other.is_open_, false)),
+      unfinished_(std::move(other.unfinished_)),
       lock_(std::move(other.lock_)) {}
 
 FileSet::~FileSet() {
@@ -234,14 +246,14 @@ FileSet::~FileSet() {
 Result<FileSet, AppError> FileSet::begin(const fs::path& folder) {
     std::error_code error;
     const bool is_new = fs::create_directories(folder, error);
-    if (error) return cannot_create(folder, error.message());
+    if (error) return cannot_write(folder, error);
     auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     if (!lock) return busy(folder);
     if (const auto finished = finish_interrupted(folder); !finished) return unexpected(finished.error());
     FileSet set(folder, is_new, std::move(*lock));
     fs::remove_all(set.draft_, error);  // of a process that was killed
     fs::create_directory(set.draft_, error);
-    if (error) return cannot_create(folder, error.message());
+    if (error) return cannot_write(folder, error);
     return set;
 }
 
@@ -260,6 +272,7 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     for (const fs::path& last : {draft_ / kJournal, draft_}) {
         if (const auto flushed = flush(last); !flushed) return flushed;
     }
+    const auto whole = unfinished_.finish();
     if (const auto decided = move(draft_, folder_ / kReadyFolder); !decided) return decided;
     is_open_ = false;
     Move moving(folder_, journal);

@@ -8,6 +8,7 @@
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
 #include "host/apps/recording/file_lock.hpp"
+#include "host/apps/recording/unfinished.hpp"
 
 namespace octoskin {
 
@@ -22,7 +23,8 @@ class FileSet {
     [[nodiscard]] static Result<FileSet, AppError> begin(const std::filesystem::path& folder);
     FileSet(FileSet&& other) noexcept;
     FileSet& operator=(FileSet&&) = delete;
-    /// Leaves nothing of what was not committed, nor a folder that was made for it.
+    /// Leaves nothing of what was not committed, nor a folder that was made for it; nor does a process that
+    /// is told to end (Unfinished).
     ~FileSet();
 
     /// Where to write until then.
@@ -47,6 +49,7 @@ class FileSet {
     std::filesystem::path draft_;
     bool is_new_;
     bool is_open_ = true;
+    Unfinished unfinished_;
     FileLock lock_;
 };
 

@@ -47,7 +47,8 @@ RecordingMeta read_checked(const std::filesystem::path& file) {
     constexpr double kDurationMax_s = 1e9;
     RecordingMeta meta;
     meta.made_by = table.text("made_by");
-    meta.source = table.text("source");
+    if (table.find("source") != nullptr)
+        meta.source = table.choice<std::string>("source", {{"robot", "robot"}, {"simulation", "simulation"}});
     meta.world = read_source(table, "world");
     meta.scenario = read_source(table, "scenario");
     meta.rig = read_source(table, "rig");
@@ -121,9 +122,13 @@ Status<RecordingError> check_recording(const RecordingPaths& recording, bool is_
         if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
             return failure(file, "is no ordinary file; move it away, or put the recorded one there");
     }
-    if (std::filesystem::exists(recording.depth(), error) !=
-        std::filesystem::exists(recording.depth_epoch(), error)) {
-        return failure(recording.directory, "depth.oni and depth.epoch.yaml must both be there, or neither");
+    const bool has_depth = std::filesystem::exists(recording.depth(), error);
+    if (has_depth != std::filesystem::exists(recording.depth_epoch(), error)) {
+        const auto missing = has_depth ? recording.depth_epoch() : recording.depth();
+        const auto lonely = has_depth ? recording.depth() : recording.depth_epoch();
+        return failure(missing, "no such file, but " + lonely.filename().string() +
+                                    " is there: put it there, too, or move the other one away to map the "
+                                    "ranges alone");
     }
     return Done{};
 }

@@ -2,12 +2,17 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <system_error>
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
 
 namespace octoskin {
+
+/// What to do where an output cannot be made for this reason, such as "make room there, or write elsewhere".
+[[nodiscard]] std::string remedy_of(const std::error_code& error);
 
 /// Replaces what was there; a device or a pipe takes it, too. Error, `cannot_create`: file, the system's
 /// reason and what to do, such as "out/x: cannot be written (No space left on device): make room there, or

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/recording/recording_draft.hpp"
@@ -31,8 +32,8 @@ Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
     const auto lock = lock_reading();
     auto scene = read_scene(request.scenario, request.world);
     if (!scene) return unexpected(scene.error());
-    auto rig = rig::read_rig(request.rig, request.robot);
-    if (!rig) return unexpected(reading_error(ExitCode::bad_config, rig.error()));
+    auto rig = read_given_rig(request.rig, request.robot);
+    if (!rig) return unexpected(rig.error());
     auto arm = sim::Arm::read(rig->urdf, rig->base_link, rig->joints.joints);
     if (!arm) return unexpected(reading_error(ExitCode::bad_config, arm.error()));
     auto body = rig::read_capsules(rig->urdf, {});

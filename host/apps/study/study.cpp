@@ -8,7 +8,7 @@
 
 #include "host/apps/evaluation/survey.hpp"
 #include "host/apps/playback/map_folder.hpp"
-#include "host/apps/recording/permission.hpp"
+#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "host/apps/report/report.hpp"
 #include "host/apps/simulation/scene.hpp"
@@ -37,8 +37,8 @@ struct StudyWorld {
 Result<StudyWorld, AppError> prepare_world(const SimulationRequest& inputs, double resolution_m) {
     auto scene = read_scene(inputs.scenario, inputs.world);
     if (!scene) return unexpected(scene.error());
-    const auto rig = rig::read_rig(inputs.rig, inputs.robot);
-    if (!rig) return unexpected(reading_error(ExitCode::bad_config, rig.error()));
+    const auto rig = read_given_rig(inputs.rig, inputs.robot);
+    if (!rig) return unexpected(rig.error());
     evaluation::TruthConfig truth = truth_config_of(scene->scenario, resolution_m);
     evaluation::Survey survey = evaluation::render_survey(scene->world, survey_config_of(scene->scenario));
     return StudyWorld{std::move(*scene), source_file(inputs.rig, rig->extended_files), std::move(truth),

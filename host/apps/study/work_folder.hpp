@@ -5,10 +5,11 @@
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
+#include "host/apps/recording/unfinished.hpp"
 
 namespace octoskin {
 
-/// Removed, with all that is in it, at the end of its life.
+/// Removed, with all that is in it, at the end of its life, and if the process is told to end before.
 class WorkFolder {
   public:
     /// A new folder under `parent`, which must exist. Error: cannot_create.
@@ -22,6 +23,7 @@ class WorkFolder {
   private:
     explicit WorkFolder(std::filesystem::path path);
     std::filesystem::path path_;  ///< empty: moved from
+    Unfinished unfinished_;
 };
 
 }  // namespace octoskin

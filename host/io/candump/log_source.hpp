@@ -23,6 +23,7 @@ class LogSource final : public CanSource {
             if (!entry) return unexpected(CanSourceError{entry.error().message()});
             if (!*entry) return std::optional<StampedFrame>{};
             if (interface_.empty() || (*entry)->interface == interface_) {
+                newest_interface_ = std::move((*entry)->interface);
                 return std::optional(StampedFrame{(*entry)->stamp, (*entry)->frame});
             }
             ++other_interface_;
@@ -31,12 +32,15 @@ class LogSource final : public CanSource {
 
     /// For its account of lines.
     [[nodiscard]] const LogReader& reader() const noexcept { return reader_; }
+    /// Of the frame that was given out last.
+    [[nodiscard]] const std::string& newest_interface() const noexcept { return newest_interface_; }
     /// Lines that were frames of another interface.
     [[nodiscard]] std::uint64_t other_interface() const noexcept { return other_interface_; }
 
   private:
     LogReader reader_;
     std::string interface_;
+    std::string newest_interface_;
     std::uint64_t other_interface_ = 0;
 };
 

@@ -104,6 +104,13 @@ void read_hit_part(const Table& top, std::string_view key, HitModel& hit) {
 
 MappingConfig read_checked(const std::string& file) {
     const rig::Value document = rig::load_document(file);
+    for (const std::string_view key : {"nodes", "robot", "sensor_defaults", "extends"}) {
+        if (const rig::Value* found = document.find(key)) {
+            rig::fail(*found, std::string(key),
+                      "no key of a mapping file, but of a rig, which this looks like: give a mapping file "
+                      "(`octoskin mapping robust` prints one)");
+        }
+    }
     const Table top(document, "", kTopKeys, keys_below_top());
     const bool is_paper = top.choice<bool>("base", {{"paper", true}, {"robust", false}}, false);
     MappingConfig config = is_paper ? paper_mapping() : robust_mapping();

@@ -32,6 +32,10 @@ Status<DepthSourceError> read_lines(const std::filesystem::path& file, const Tak
     std::error_code error;
     if (std::filesystem::is_other(std::filesystem::status(file, error)))
         return unexpected(DepthSourceError{file.string() + ": is a pipe or a device, not an ordinary file"});
+    if (!std::filesystem::exists(file, error)) {
+        return unexpected(DepthSourceError{
+            file.string() + ": no such file: a data set has depth.txt and groundtruth.txt; unpack it anew"});
+    }
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return unexpected(DepthSourceError{file.string() + ": cannot be opened"});
     std::string line;

@@ -218,5 +218,24 @@ TEST(FileLockTest, readers_share_and_a_writer_is_alone) {
     EXPECT_TRUE(FileLock::take(folder / "pipe", Kind::exclusive));
 }
 
+TEST(FileSetTest, leaves_nothing_unfinished_of_a_process_that_is_told_to_end) {
+    const ScratchFolder parent;
+    const fs::path folder = parent / "new";
+    {
+        auto set = FileSet::begin(folder);
+        ASSERT_TRUE(set);
+        write(set->draft() / "a", "new");
+        EXPECT_TRUE(remove_unfinished().is_any);
+        EXPECT_FALSE(fs::exists(folder));
+    }
+    fill_old(folder.parent_path());
+    auto set = FileSet::begin(parent.path());
+    ASSERT_TRUE(set);
+    for (const fs::path& file : kFiles) write(set->draft() / file, "new");
+    ASSERT_TRUE(set->commit(kFiles, {"gone"}));
+    EXPECT_FALSE(remove_unfinished().is_any) << "it is whole";
+    EXPECT_EQ(told(parent.path()), kNew);
+}
+
 }  // namespace
 }  // namespace octoskin
