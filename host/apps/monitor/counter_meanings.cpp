@@ -98,8 +98,7 @@ constexpr std::array kCounterMeanings = {
     Meaning{"joint samples", "incomplete", "not all four frames of the sample came in time"},
     Meaning{"joint samples", "contradictory",
             "two frames differ that should be one, or one came before the sample was taken, or out of turn "
-            "and so "
-            "late that it may be of the next round"},
+            "and so late that it may be of the next round"},
     Meaning{"joint samples", "clock_not_ready",
             "fewer than two SYNC exchanges with the node yet: usual in its first seconds"},
     Meaning{"joint samples", "clock_in_doubt",

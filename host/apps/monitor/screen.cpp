@@ -101,9 +101,12 @@ class Screen {
         add_nonzero("clock", {"times_back", "follow_up_outliers", "steps_back", "steps_ahead",
                               "stamps_ignored", "relocks"});
         const Json& latency = at(now_, "latency");
-        add(fmt::format("  from frame to map: {:.2f} ms median, {:.2f} ms 99 %, {:.2f} ms longest",
-                        number(at(latency, "median_ms")), number(at(latency, "p99_ms")),
-                        number(at(latency, "max_ms"))));
+        const bool has_readings = number(at(latency, "readings")) > 0.0;
+        const auto figure = [&](const char* key) {
+            return has_readings ? fmt::format("{:.2f} ms", number(at(latency, key))) : std::string("-");
+        };
+        add(fmt::format("  from frame to map: {} median, {} 99 %, {} longest", figure("median_ms"),
+                        figure("p99_ms"), figure("max_ms")));
     }
     void add_node(std::size_t index) {
         const Json& node = item(at(now_, "nodes"), index);

@@ -122,4 +122,11 @@ std::optional<int> descriptor_of(const std::string& interface) {
     return descriptor;
 }
 
+socketcan::CanSocket open_can(const std::string& interface, const socketcan::SocketOptions& options) {
+    if (const auto descriptor = descriptor_of(interface)) return {interface, *descriptor};
+    auto socket = socketcan::CanSocket::open(interface, options);
+    if (!socket) throw CommandFailure({ExitCode::unavailable, socket.error().message()});
+    return std::move(socket).value();
+}
+
 }  // namespace octoskin::app

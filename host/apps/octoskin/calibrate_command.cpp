@@ -6,9 +6,10 @@
 
 #include "common/wire/frame_type.hpp"
 #include "host/apps/calibrating/calibrating.hpp"
+#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
-#include "host/apps/recording/permission.hpp"
+#include "host/apps/recording/given_rig.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -31,19 +32,17 @@ wire::Calibration calibrate(const calibrating::Question& question, const std::st
     const std::array<socketcan::IdFilter, 2> filters{
         {{wire::can_id(wire::FrameType::heartbeat, question.node_id), wire::kStandardIdMax},
          {wire::can_id(wire::FrameType::calibration, question.node_id), wire::kStandardIdMax}}};
-    auto socket = socketcan::CanSocket::open(interface, {.filters = filters, .wants_error_frames = false});
-    if (!socket) throw CommandFailure({ExitCode::unavailable, socket.error().message()});
+    socketcan::CanSocket socket = open_can(interface, {.filters = filters, .wants_error_frames = false});
     const Outside outside = this_machine();
     calibrating::Dialogue dialogue(question, outside.now());
-    return value_or_fail(calibrating::converse(dialogue, *socket, outside));
+    return value_or_fail(calibrating::converse(dialogue, socket, outside));
 }
 
 void run(CalibrateOptions options) {
     options.wish.quantity = options.quantity == "offset" ? wire::CalibrationQuantity::offset
                                                          : wire::CalibrationQuantity::crosstalk;
-    const auto rig = rig::read_rig(options.rig);
-    if (!rig) throw CommandFailure(reading_error(ExitCode::bad_config, rig.error()));
-    const auto question = value_or_fail(calibrating::question_of(*rig, options.wish, new_sequence()));
+    const rig::Rig rig = value_or_fail(read_given_rig(options.rig));
+    const auto question = value_or_fail(calibrating::question_of(rig, options.wish, new_sequence()));
     fmt::print(stderr, "{} of node {} '{}', sensor '{}', target at {} mm: 50 ranges\n", options.quantity,
                question.node_id, question.node_name, question.sensor_name, question.target_mm);
     const rig::SensorEdit edit = calibrating::edit_of(question, calibrate(question, options.interface));
@@ -55,8 +54,7 @@ void run(CalibrateOptions options) {
     const auto file = value_or_fail(calibrating::write_into_rig(options.rig, edit));
     fmt::print(stderr,
                "written to {}; it counts once the node is flashed: octoskin flash --rig {} --node {} --elf "
-               "IMAGE (in "
-               "octoskin's sources firmware/flash builds the image, too)\n",
+               "IMAGE (in octoskin's sources firmware/flash builds the image, too)\n",
                file.string(), options.rig.string(), question.node_name);
 }
 
@@ -74,8 +72,12 @@ void add_calibrate_command(CLI::App& app) {
     command->add_option("--sensor", options->wish.sensor, "Name of the sensor")->required();
     command->add_option("--target-mm", options->wish.target_mm, "From the sensor's front to the target, mm")
         ->required()
-        ->check(CLI::Range(1, 4'000));
-    command->add_option("--can", options->interface, "CAN interface of Linux, such as can0")->required();
+        ->check(from_to(1, 4'000));
+    command
+        ->add_option(
+            "--can", options->interface,
+            "CAN interface of Linux, such as can0, or fd:N, an open socket that carries frames as one")
+        ->required();
     command->add_flag("--write", options->is_written, "Write what was found into the rig");
     command->callback([options] { run(*options); });
 }

@@ -10,7 +10,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
-#include "host/apps/recording/permission.hpp"
+#include "host/apps/recording/given_rig.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -76,11 +76,7 @@ void perform_each(const std::vector<commanding::Order>& orders, socketcan::CanSo
 
 void run(const CommandOptions& options) {
     std::optional<rig::Rig> rig;
-    if (!options.rig.empty()) {
-        auto read = rig::read_rig(options.rig);
-        if (!read) throw CommandFailure(reading_error(ExitCode::bad_config, read.error()));
-        rig = std::move(*read);
-    }
+    if (!options.rig.empty()) rig = value_or_fail(read_given_rig(options.rig));
     const auto orders =
         value_or_fail(commanding::orders_of(rig ? &*rig : nullptr, options.wish, new_sequence()));
     socketcan::CanSocket socket = open_for(orders, options.interface);
@@ -109,7 +105,7 @@ void add_command_command(CLI::App& app) {
                         "Only this sensor: its number on the node; with --rig also its name");
     command->add_option("--period-ms", options->wish.period_ms, "Of set_rate: from range to range, ms");
     command->add_option("--seconds", options->wish.seconds, "Of identify: how long (10)")
-        ->check(CLI::Range(0, 1'800));
+        ->check(from_to(0, 1'800));
     command->footer(kCommandFooter);
     command->callback([options] { run(*options); });
 }

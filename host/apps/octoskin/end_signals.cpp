@@ -29,11 +29,12 @@ EndSignals::~EndSignals() {
     ::close(descriptor_);
 }
 
-bool EndSignals::came(std::chrono::milliseconds patience) const {
+std::optional<int> EndSignals::came(std::chrono::milliseconds patience) const {
     pollfd readable{descriptor_, POLLIN, 0};
-    if (::poll(&readable, 1, static_cast<int>(patience.count())) != 1) return false;
+    if (::poll(&readable, 1, static_cast<int>(patience.count())) != 1) return std::nullopt;
     signalfd_siginfo signal{};
-    return ::read(descriptor_, &signal, sizeof(signal)) == sizeof(signal);
+    if (::read(descriptor_, &signal, sizeof(signal)) != sizeof(signal)) return std::nullopt;
+    return static_cast<int>(signal.ssi_signo);
 }
 
 }  // namespace octoskin::app

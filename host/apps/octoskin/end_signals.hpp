@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 
 namespace octoskin::app {
 
@@ -16,8 +17,8 @@ class EndSignals {
 
     /// Readable once one came.
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
-    /// Takes one, for which it waits so long at most; true if one came.
-    [[nodiscard]] bool came(std::chrono::milliseconds patience) const;
+    /// Takes one, for which it waits so long at most; which one, if one came.
+    [[nodiscard]] std::optional<int> came(std::chrono::milliseconds patience) const;
 
   private:
     int descriptor_ = -1;

@@ -14,6 +14,7 @@
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/playback.hpp"
+#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "host/apps/study/configuration.hpp"
@@ -137,20 +138,28 @@ void doubt_rig(const EvaluateOptions& options, const rig::Rig& rig, const MapPro
     }
 }
 
+/// The one to give for a map: what it was made with, if it is still there.
+std::string rig_to_give(const MapProvenance& provenance) {
+    std::error_code error;
+    std::vector<std::filesystem::path> candidates;
+    if (provenance.origin) candidates.push_back(provenance.origin->rig);
+    if (provenance.recording) candidates.push_back(RecordingPaths(*provenance.recording).rig());
+    for (const auto& file : candidates)
+        if (std::filesystem::is_regular_file(file, error)) return file.string();
+    return "RECORDING/rig.yaml";
+}
+
 /// The rig that says where the map's grid lies.
 rig::Rig rig_of_map(const EvaluateOptions& options, const MapProvenance& provenance) {
     if (options.rig.empty()) {
-        const auto& recording = provenance.recording;
         throw CommandFailure(
             {ExitCode::usage,
              "a map alone does not say where the robot and the camera stood in it: give --rig " +
-                 (recording ? RecordingPaths(*recording).rig().string() : "RECORDING/rig.yaml") +
-                 ", which has the map's shift (T_map_base)"});
+                 rig_to_give(provenance) + ", which has the map's shift (T_map_base)"});
     }
-    auto rig = rig::read_rig(options.rig, options.robot);
-    if (!rig) throw CommandFailure(reading_error(ExitCode::bad_config, rig.error()));
-    doubt_rig(options, *rig, provenance);
-    return std::move(*rig);
+    rig::Rig rig = value_or_fail(read_given_rig(options.rig, options.robot));
+    doubt_rig(options, rig, provenance);
+    return rig;
 }
 
 Scene scene_of_map(const EvaluateOptions& options, const std::optional<std::filesystem::path>& recording) {

@@ -8,6 +8,7 @@
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/interruption.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/study/study.hpp"
 
@@ -15,6 +16,7 @@ namespace octoskin::app {
 namespace {
 
 void run_experiment(const StudyRequest& request) {
+    const Interruption interruption;
     const auto start = std::chrono::steady_clock::now();
     const auto results = run_study(request, [](const std::string& line) { spdlog::info("{}", line); });
     if (!results) throw CommandFailure(results.error());
@@ -49,7 +51,7 @@ void add_experiment_command(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--jobs", request->jobs, "Seeds at once")
         ->capture_default_str()
-        ->check(CLI::Range(1, 64));
+        ->check(from_to(1, 64));
     command->add_option("--rig", request->inputs.rig, "Rig (YAML)")
         ->capture_default_str()
         ->check(existing_file());

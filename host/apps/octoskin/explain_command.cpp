@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/apps/explaining/explanation.hpp"
+#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/playback_options.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
@@ -52,7 +53,7 @@ void add_explain_command(CLI::App& app) {
         "Directory of the recording, as `octoskin record` and `octoskin simulate` make it (required)");
     add_playback_options(*command, options->playback);
     command->add_option("--lines", options->lines, "List at most so many contributions, the newest ones")
-        ->check(CLI::Range(0, 1'000'000))
+        ->check(from_to(0, 1'000'000))
         ->capture_default_str();
     command->add_flag("--json", options->is_json, "For a script");
     command->callback([options] { explain_voxel(*options); });

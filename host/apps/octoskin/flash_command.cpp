@@ -10,6 +10,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "hw/image/option_bytes.hpp"
@@ -52,9 +53,8 @@ flashing::Order make_order(const FlashOptions& options) {
                      [](unsigned char c) { return std::isalnum(c) != 0; })) {
         throw CommandFailure({ExitCode::usage, "--adapter-serial: expected letters and digits"});
     }
-    const auto rig = rig::read_rig(options.rig);
-    if (!rig) throw CommandFailure(reading_error(ExitCode::bad_config, rig.error()));
-    const rig::Node node = value_or_fail(flashing::choose_node(*rig, options.node));
+    const rig::Rig rig = value_or_fail(read_given_rig(options.rig));
+    const rig::Node node = value_or_fail(flashing::choose_node(rig, options.node));
     flashing::Order order{.elf = options.elf,
                           .node = node,
                           .board = read_board(node),
@@ -64,7 +64,7 @@ flashing::Order make_order(const FlashOptions& options) {
     if (order.elf.empty())
         order.elf = shipped_file("build/firmware-release/bin/octoskin_node_" + node.board.name + ".elf");
     if (order.folder.empty())
-        order.folder = std::filesystem::path("out/flash") / (rig->name + "_" + node.name);
+        order.folder = std::filesystem::path("out/flash") / (rig.name + "_" + node.name);
     return order;
 }
 

@@ -1,5 +1,6 @@
 // octoskin joints: joint states from standard input to the daemon, or onto a CAN interface as the rig's joint
 // node. Whoever takes them may come and go: what cannot be sent is counted, and the next line tries again.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <spdlog/spdlog.h>
@@ -10,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "common/wire/codec.hpp"
@@ -21,7 +23,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/end_signals.hpp"
-#include "host/apps/recording/permission.hpp"
+#include "host/apps/recording/given_rig.hpp"
 #include "host/core/ingest/local_joints.hpp"
 #include "host/io/socketcan/can_socket.hpp"
 #include "hw/rigfile/rig.hpp"
@@ -108,7 +110,7 @@ class CanOutput final : public JointOutput {
   public:
     CanOutput(const std::string& interface, const rig::Rig& rig)
         : joints_(rig.joints.node_id, rig.joints.joints.size(), rig.joints.rate_hz),
-          link_([interface] { return socketcan::CanSocket::open(interface, {.filters = kSyncOnly}); }) {}
+          link_(opener(interface, descriptor_of(interface))) {}
     /// There is a rig: `sample` is not empty.
     bool put(const std::string& /*line*/, const std::optional<JointSample>& sample) override {
         const auto frames = joints_.frames(sample->sampled, sample->position);
@@ -132,6 +134,15 @@ class CanOutput final : public JointOutput {
   private:
     static constexpr std::array<socketcan::IdFilter, 1> kSyncOnly{
         {{wire::can_id(wire::FrameType::sync, wire::kHostId), wire::kStandardIdMax}}};
+    /// Of a descriptor each time a copy: the link closes what failed.
+    static CanLink::Opener opener(const std::string& interface, std::optional<int> descriptor) {
+        return [interface, descriptor]() -> Result<socketcan::CanSocket, socketcan::SocketFault> {
+            if (!descriptor) return socketcan::CanSocket::open(interface, {.filters = kSyncOnly});
+            const int copy = ::fcntl(*descriptor, F_DUPFD_CLOEXEC, 0);
+            if (copy < 0) return unexpected(socketcan::SocketFault{interface, errno, std::strerror(errno)});
+            return socketcan::CanSocket(interface, copy);
+        };
+    }
     LocalJoints joints_;
     CanLink link_;
     bool is_through_ = true;  ///< the newest sample that was due
@@ -139,9 +150,7 @@ class CanOutput final : public JointOutput {
 
 std::optional<rig::Rig> rig_of(const JointsOptions& options) {
     if (options.rig.empty()) return std::nullopt;
-    auto rig = rig::read_rig(options.rig);
-    if (!rig) throw CommandFailure(reading_error(ExitCode::bad_config, rig.error()));
-    return std::move(rig).value();
+    return value_or_fail(read_given_rig(options.rig));
 }
 
 std::unique_ptr<JointOutput> make_output(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
@@ -152,8 +161,8 @@ std::unique_ptr<JointOutput> make_output(const JointsOptions& options, const std
     return std::make_unique<CanOutput>(options.interface, *rig);
 }
 
-/// Lines on their way, and what is said of them: once when they are lost or refused, once when they go
-/// through again.
+/// Lines on their way, and what is said of them: once for each reason why they are lost or refused, once when
+/// they go through again.
 class Forwarder {
   public:
     /// `joint_count`: of the rig, if there is one to check lines against.
@@ -169,30 +178,36 @@ class Forwarder {
             sample = std::move(parsed).value();
         }
         if (!output_.put(line, sample)) return lose();
-        if (std::exchange(was_loss_told_, false))
-            spdlog::info("samples go through again; {} lines are lost so far", lost_);
-        was_refusal_told_ = false;
+        if (!losses_told_.empty()) spdlog::info("samples go through again; so far lost: {}", lines(lost_));
+        losses_told_.clear();
+        refusals_told_.fill(false);
         ++sent_;
     }
     /// What became of the lines. Throws CommandFailure if not a single one went through.
     void finish() const {
         const auto level = lost_ + refused_ > 0 ? spdlog::level::warn : spdlog::level::info;
-        spdlog::log(level, "{} lines sent, {} lost, {} refused", sent_, lost_, refused_);
+        spdlog::log(level, "{} sent, {} lost, {} refused", lines(sent_), lost_, refused_);
         if (sent_ == 0 && lost_ + refused_ > 0) throw CommandFailure({ExitCode::unavailable, why_});
     }
 
   private:
+    static constexpr std::size_t kLossesTold = 8;
+
     void lose() {
         ++lost_;
         why_ = output_.why();
-        if (!why_.empty() && !std::exchange(was_loss_told_, true))
-            spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why_);
+        if (why_.empty() || losses_told_.size() >= kLossesTold || !losses_told_.insert(why_).second) return;
+        spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why_);
     }
     void refuse(const std::string& line, JointTextFault fault, HostTime now) {
         ++refused_;
         why_ = fmt::format("line not sent, {}: {} (wanted: {})", describe(fault, line, *joint_count_, now),
                            line, kJointTextWanted);
-        if (!std::exchange(was_refusal_told_, true)) spdlog::warn("{}", why_);
+        if (!std::exchange(refusals_told_.at(static_cast<std::size_t>(fault)), true))
+            spdlog::warn("{}", why_);
+    }
+    static std::string lines(std::uint64_t count) {
+        return fmt::format("{} line{}", count, count == 1 ? "" : "s");
     }
 
     JointOutput& output_;
@@ -200,9 +215,9 @@ class Forwarder {
     std::uint64_t sent_ = 0;
     std::uint64_t lost_ = 0;
     std::uint64_t refused_ = 0;
-    bool was_loss_told_ = false;     ///< since the last line that went through
-    bool was_refusal_told_ = false;  ///< likewise
-    std::string why_;                ///< of the newest line that did not go through
+    std::set<std::string> losses_told_;  ///< each reason once since the last line that went through
+    std::array<bool, names_of(JointTextFault{}).size()> refusals_told_{};  ///< likewise
+    std::string why_;  ///< of the newest line that did not go through
 };
 
 void put_lines(std::string& pending, Forwarder& forwarder) {
@@ -253,10 +268,15 @@ void add_joints_command(CLI::App& app) {
     auto options = std::make_shared<JointsOptions>();
     CLI::App* command = app.add_subcommand(
         "joints", "Forward joint states from standard input to the daemon, or onto a CAN bus");
-    command->add_option("--socket", options->socket, "Where the daemon takes them (`octoskin run --joints`)")
-        ->capture_default_str();
-    command->add_option("--can", options->interface,
-                        "Send them on this CAN interface instead, as the rig's joint node");
+    auto* const socket =
+        command
+            ->add_option("--socket", options->socket, "Where the daemon takes them (`octoskin run --joints`)")
+            ->capture_default_str();
+    command
+        ->add_option("--can", options->interface,
+                     "Send them on this CAN interface (fd:N: an open socket that carries frames as one) "
+                     "instead, as the rig's joint node")
+        ->excludes(socket);
     command
         ->add_option("--rig", options->rig,
                      "Rig (YAML): needed for --can; for the socket, lines are checked against it")

@@ -12,6 +12,7 @@
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/daemon/record_requests.hpp"
+#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/end_signals.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
@@ -33,8 +34,11 @@ struct RecordOptions {
 Json recording_of(const RecordOptions& options, const std::string& answer) {
     const Json json = Json::parse(answer, nullptr, false);
     if (!json.is_object() || !json.contains("ok")) throw CommandFailure(foreign_answer(options.socket));
-    if (!json.at("ok").get<bool>())
-        throw CommandFailure({ExitCode::unavailable, json.at("error").get<std::string>()});
+    if (!json.at("ok").get<bool>()) {
+        throw CommandFailure(
+            {static_cast<ExitCode>(json.value("code", static_cast<int>(ExitCode::unavailable))),
+             json.at("error").get<std::string>()});
+    }
     const Json recording = json.value("recording", Json());
     if (recording.is_object()) return recording;
     throw CommandFailure({ExitCode::unavailable,
@@ -83,7 +87,7 @@ Json own_of(const RecordOptions& options, const std::string& answer, const Json&
     if (is_same(before, followed)) return before;
     Json now = recording_of(options, answer);
     if (is_same(now, followed)) return now;
-    const auto folder = followed["folder"].get<std::string>();
+    const auto folder = followed.at("folder").get<std::string>();
     throw CommandFailure({ExitCode::unavailable,
                           folder + ": the daemon, started anew or asked for others, knows no more of this "
                                    "recording; it is whole if it has a meta.yaml"});
@@ -101,7 +105,7 @@ std::optional<std::string> ask_patiently(const RecordOptions& options, const Jso
         if (error.code == ExitCode::unavailable) return std::nullopt;
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
     }
-    const auto folder = followed["folder"].get<std::string>();
+    const auto folder = followed.at("folder").get<std::string>();
     throw CommandFailure({error.code, "the daemon no longer answers, and may record on to " + folder +
                                           ": `octoskin record --stop " + folder +
                                           "` ends that once it does (" + error.message + ")"});
@@ -188,10 +192,16 @@ void add_record_command(CLI::App& app) {
                         "Directory to make; it must be empty, and one that the daemon's "
                         "user may write. With --stop: end the recording there, no other");
     command->add_option("--seconds", options->seconds, "For so long; 0: until Ctrl-C or --stop")
-        ->check(CLI::Range(0.0, 1e6))
+        ->check(from_to(0.0, 1e6))
         ->capture_default_str();
     command->add_flag("--stop", options->stops, "End the recording that is going on");
     command->add_option("--socket", options->socket, "Where the daemon listens")->capture_default_str();
+    command->footer(
+        "Exit codes: 0 the recording is whole; 1 it lacks something; 64 command line; 65 not the answer of a "
+        "daemon of\n"
+        "this version; 69 no daemon, or nothing is being recorded; 73 the directory cannot be recorded to, "
+        "or another\n"
+        "recording is going on; 74 the daemon does not answer.");
     command->callback([options] {
         if (options->out.empty() && !options->stops)
             throw CommandFailure({ExitCode::usage, "record: give a directory, or --stop"});

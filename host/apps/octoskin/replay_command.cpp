@@ -9,6 +9,7 @@
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/interruption.hpp"
 #include "host/apps/octoskin/playback_options.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/playback/map_folder.hpp"
@@ -29,11 +30,16 @@ struct ReplayOptions {
     bool is_stepped = false;
 };
 
-/// Shows what comes next, and waits for the enter key; at the end of the input nothing waits any more.
+/// Shows what comes next, and waits for the enter key. Nobody steps on after the end of the input.
 void wait_for_enter(const std::string& what) {
     print("{}", what);
+    static_cast<void>(std::fflush(stdout));  // its failure is told at the end
     std::string line;
-    if (!std::getline(std::cin, line)) print("\n");
+    if (std::getline(std::cin, line)) return;
+    print("\n");
+    throw CommandFailure({ExitCode::io_failed,
+                          "standard input has ended, and with it the replay, before its own end: --step "
+                          "reads a line for each step"});
 }
 
 Pace pace_of(const ReplayOptions& options) {
@@ -83,15 +89,8 @@ void save(const Playback& playback, MapFolder& folder, const std::filesystem::pa
     }
 }
 
-socketcan::CanSocket open_bus(const std::string& interface) {
-    if (const auto descriptor = descriptor_of(interface)) return {interface, *descriptor};
-    auto socket = socketcan::CanSocket::open(interface);
-    if (!socket) throw CommandFailure({ExitCode::unavailable, socket.error().message()});
-    return std::move(socket).value();
-}
-
 void replay_onto_bus(const ReplayOptions& options) {
-    socketcan::CanSocket socket = open_bus(options.onto);
+    socketcan::CanSocket socket = open_can(options.onto);
     const auto played =
         play_onto(RecordingPaths(options.playback.recording).can_log(), socket, pace_of(options));
     if (!played) throw CommandFailure(played.error());
@@ -155,6 +154,7 @@ void add_replay_command(CLI::App& app) {
         ->excludes(speed);
     command->callback([options] {
         if (options->out.empty()) options->out = options->playback.recording / "maps";
+        const Interruption interruption;
         options->onto.empty() ? replay_recording(*options) : replay_onto_bus(*options);
     });
 }

@@ -12,6 +12,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
@@ -87,17 +88,16 @@ void write_block(const rig::Rig& rig, const RigOptions& options) {
 }
 
 void run(const RigOptions& options) {
-    const auto rig = rig::read_rig(options.rig, options.robot);
-    if (!rig) throw CommandFailure(reading_error(ExitCode::bad_config, rig.error()));
-    const auto host = make_host_setup(*rig);
+    const rig::Rig rig = value_or_fail(read_given_rig(options.rig, options.robot));
+    const auto host = make_host_setup(rig);
     if (!host) throw CommandFailure(reading_error(ExitCode::bad_config, host.error()));
     for (const std::string& warning : host->warnings) spdlog::warn("{}", warning);
     if (!options.block.empty()) {
-        write_block(*rig, options);
+        write_block(rig, options);
     } else if (options.prints_canonical) {
-        print("{}", rig::canonical_text(*rig, rig->urdf.string()));
+        print("{}", rig::canonical_text(rig, rig.urdf.string()));
     } else {
-        describe(*rig, *host);
+        describe(rig, *host);
     }
 }
 
@@ -110,12 +110,15 @@ void add_rig_command(CLI::App& app) {
     command->add_option("rig", options->rig, "Rig (YAML)")->required()->check(existing_file());
     command->add_option("--robot", options->robot, "Robot (URDF) in place of the rig's")
         ->check(existing_file());
-    command->add_flag("--canonical", options->prints_canonical,
-                      "Print the rig in full, in its canonical form");
-    command->add_option("--node", options->node,
-                        "For --block: name or number of the node; needed if the rig has several");
-    command->add_option("--block", options->block,
-                        "Write a node's configuration block to this file, for octoskin-node --config");
+    auto* const canonical = command->add_flag("--canonical", options->prints_canonical,
+                                              "Print the rig in full, in its canonical form");
+    auto* const node = command->add_option(
+        "--node", options->node, "For --block: name or number of the node; needed if the rig has several");
+    auto* const block =
+        command->add_option("--block", options->block,
+                            "Write a node's configuration block to this file, for octoskin-node --config");
+    block->excludes(canonical);
+    node->needs(block);
     command->callback([options] { run(*options); });
 }
 

@@ -72,7 +72,7 @@ void add_run_command(CLI::App& app) {
     command->add_option("--maps", request->map_folder, "Where the map is kept: fused.ot, fused.bt")
         ->capture_default_str();
     command->add_option("--save-every", request->save_period, "Seconds between two saves of the map")
-        ->check(CLI::Range(1, 3600))
+        ->check(from_to(1, 3600))
         ->capture_default_str();
     command->add_option("--socket", request->control_socket, "Where `octoskin status` asks")
         ->capture_default_str();

@@ -6,6 +6,7 @@
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/interruption.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/simulation/simulation.hpp"
 
@@ -30,12 +31,11 @@ sim::EmulatedBoards emulated_boards(const SimulateOptions& options) {
     const sim::EmulatedBoards boards{board_program(), options.image, options.cycles_per_instruction};
     if (!std::filesystem::exists(boards.program)) {
         throw CommandFailure(
-            {ExitCode::no_input,
+            {ExitCode::unavailable,
              boards.program.string() +
                  ": not there; no package has it. In octoskin's sources: sudo apt install libunicorn-dev, "
-                 "then "
-                 "cmake --preset host-release && cmake --build --preset "
-                 "host-release --target octoskin_board. Without --board, the node core is simulated"});
+                 "then cmake --preset host-release && cmake --build --preset host-release --target "
+                 "octoskin_board. Without --board, the node core is simulated"});
     }
     if (!std::filesystem::exists(boards.image)) {
         throw CommandFailure({ExitCode::no_input,
@@ -47,6 +47,7 @@ sim::EmulatedBoards emulated_boards(const SimulateOptions& options) {
 }
 
 void simulate(const SimulationRequest& request, bool allows_violations) {
+    const Interruption interruption;
     int last_percent = -10;
     const auto on_progress = [&last_percent](double fraction) {
         const int percent = static_cast<int>(fraction * 10.0) * 10;
@@ -110,7 +111,7 @@ void add_simulate_command(CLI::App& app) {
         ->add_option("--cycles-per-instruction", options->cycles_per_instruction,
                      "Of the emulated boards' cores")
         ->capture_default_str()
-        ->check(CLI::Range(1, 20));
+        ->check(from_to(1, 20));
     command->add_flag("--allow-violations", options->allows_violations,
                       "Exit code 0 although the image does what the chip's manuals forbid");
     command->callback([options] {

@@ -41,7 +41,7 @@ TEST_F(CommandLine, names_the_target_that_builds_emulated_boards) {
     const Said said = run(path("octoskin") + " simulate " + path("out") + " --board emulated --image " +
                           source("README.md") + " --rig " + source("hw/rigs/experiment.yaml") +
                           " --scenario " + source("hw/worlds/experiment.scenario.yaml"));
-    EXPECT_EQ(said.exit_code, 66) << said.output;
+    EXPECT_EQ(said.exit_code, 69) << said.output;
     EXPECT_THAT(said.output, HasSubstr("cmake --build --preset host-release --target octoskin_board"));
 }
 

@@ -74,6 +74,7 @@ TEST_F(DataSet, gives_the_map_of_a_recording_with_the_same_images) {
         EXPECT_EQ(content(path("set/maps/") + map), content(path("recording/maps/") + map)) << map;
     const Said again = octoskin("replay " + path("set") + " --rig " + path("recording/rig.yaml"));
     EXPECT_EQ(again.exit_code, 0) << again.output;  // over the maps of the replay before
+    EXPECT_FALSE(std::filesystem::exists(path("set/maps/proximity.ot"))) << "nothing measured proximity";
 }
 
 TEST_F(DataSet, plays_at_the_speed_asked_for_and_step_by_step_into_the_same_map) {

@@ -1,6 +1,7 @@
 // Files that are there and may not be read: 77 and their name, wherever they are given; not "no such file".
 #include <gmock/gmock.h>
 
+#include "tests/support/data_set/written_data_set.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
@@ -81,6 +82,16 @@ TEST_F(PermissionTest, of_what_is_in_a_folder_that_may_not_be_entered) {
         EXPECT_THAT(said.output, HasSubstr("cannot be read (Permission denied)")) << command;
     }
     std::filesystem::permissions(path("rec"), std::filesystem::perms::all);
+}
+
+TEST_F(PermissionTest, of_an_image_of_a_data_set) {
+    testing_support::WrittenDataSet data_set(path("set"));
+    data_set.add_image("1.0", {640, 480, std::vector<std::uint16_t>(640 * 480, 10'000)});
+    data_set.add_pose("1.0", "0 0 0 0 0 0 1");
+    std::filesystem::permissions(path("set/depth/1.0.png"), std::filesystem::perms::none);
+    const Said said = as_nobody("replay" + at("set") + " --out" + at("out"));
+    EXPECT_EQ(said.exit_code, 77) << said.output;
+    EXPECT_THAT(said.output, HasSubstr("depth/1.0.png: may not be read"));
 }
 
 TEST_F(PermissionTest, is_none_where_there_is_no_file) {

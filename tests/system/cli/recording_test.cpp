@@ -95,9 +95,9 @@ TEST_F(Recording, plays_at_the_speed_asked_for_and_step_by_step) {
     EXPECT_GT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(1'000));
     ASSERT_EQ(octoskin("replay " + path("rec") + " --out " + path("fast")).exit_code, 0);
     EXPECT_TRUE(content(path("slow/fused.ot")) == content(path("fast/fused.ot")));
-    const Said stepped = run("echo | " OCTOSKIN_PROGRAM " replay " + path("rec") + " --step");
+    const Said stepped = run("yes '' | " OCTOSKIN_PROGRAM " replay " + path("rec") + " --step");
     EXPECT_EQ(stepped.exit_code, 0);
-    EXPECT_THAT(stepped.output, HasSubstr("(1750000000.000135) can 040#092E26"));
+    EXPECT_THAT(stepped.output, HasSubstr("(1750000000.000135) can0 040#092E26"));
     EXPECT_EQ(octoskin("replay " + path("rec") + " --speed fast").exit_code, 64);
     EXPECT_EQ(octoskin("replay " + path("rec") + " --speed 0").exit_code, 64);
     EXPECT_EQ(octoskin("replay " + path("rec") + " --onto fd:77").exit_code, 64);

@@ -119,7 +119,7 @@ TEST(JointsCommand, tells_what_became_of_the_lines_when_a_signal_ends_it) {
         EXPECT_EQ(WEXITSTATUS(std::system(("timeout 20 bash " + script.string()).c_str())), 0);
         EXPECT_LT(std::chrono::steady_clock::now() - begun, 15s);
         const std::string log = testing_support::ScratchFolder::read(folder / "log");
-        EXPECT_NE(log.find("1 lines sent, 0 lost, 1 refused"), std::string::npos) << log;
+        EXPECT_NE(log.find("1 line sent, 0 lost, 1 refused"), std::string::npos) << log;
     }
 }
 

@@ -386,10 +386,16 @@ TEST_F(DaemonRecording, names_a_folder_that_it_cannot_record_to_and_goes_on) {
     const Ran not_empty = record(folder_.path().string() + " --seconds 1");
     EXPECT_EQ(not_empty.exit_code, 73) << not_empty.output;
     EXPECT_NE(not_empty.output.find("is not empty"), std::string::npos) << not_empty.output;
-    EXPECT_TRUE(has_problem(daemon_->status(), "the recording has failed"));
+    EXPECT_TRUE(daemon_->status()["recording"].is_null()) << "a refusal leaves no trace";
+    EXPECT_FALSE(has_problem(daemon_->status(), "recording"));
+    const std::string log = daemon_->log();
+    const auto told = log.find("is not empty");
+    EXPECT_NE(told, std::string::npos) << log;
+    EXPECT_EQ(log.find("is not empty", told + 1), std::string::npos) << "twice:\n" << log;
+    EXPECT_EQ(log.find("recording to"), std::string::npos) << log;
 
     ASSERT_TRUE(ask("record start 0 " + out())["ok"].get<bool>());
-    EXPECT_FALSE(ask("record start 0 " + out())["ok"].get<bool>()) << "a second one at once";
+    EXPECT_EQ(ask("record start 0 " + out())["code"], 73) << "a second one at once";
     EXPECT_FALSE(ask("record start -1 /x")["ok"].get<bool>());
     EXPECT_FALSE(ask("record start 0 relative")["ok"].get<bool>());
     EXPECT_FALSE(ask("record tape")["ok"].get<bool>());

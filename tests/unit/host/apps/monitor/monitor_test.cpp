@@ -31,7 +31,7 @@ Json status() {
             {"index": 1, "name": "elbow", "state": "lost", "fault": "no_answer", "received": 7,
              "age_s": null, "rejected": "self_hit"}]}],
         "joints_socket": null, "camera": null,
-        "latency": {"median_ms": 0.2, "p99_ms": 0.5, "max_ms": 3.0},
+        "latency": {"readings": 7, "median_ms": 0.2, "p99_ms": 0.5, "max_ms": 3.0},
         "map": {"known_voxels": 1234, "resolution_m": 0.04, "memory_mib": 3.2, "memory_max_mib": 800,
                 "saved_age_s": 4.0, "no_room": 0},
         "account": {"readings": {"in": 130, "used": 100, "rejected": {"self_hit": 30}, "balanced": true},
