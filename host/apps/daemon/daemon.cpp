@@ -243,7 +243,7 @@ void Daemon::Parts::reload() {
     auto next = read_next();
     if (!next) {
         reload_error = next.error().message;
-        spdlog::error("not reloaded, the old settings hold: {}", reload_error);
+        spdlog::error("not reloaded");  // why, the next look at the problems tells
     } else {
         recordings.stop(monotonic_now());  // it has the old settings, and is whole with them
         keep_within(next->settings.mapping.map);

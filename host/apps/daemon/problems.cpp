@@ -246,8 +246,9 @@ void add_map(const DaemonView& view, Problems& problems) {
         problems.push_back(
             {"recording refused", "the newest recording did not begin: " + view.recording_refusal});
     if (!view.reload_error.empty())
-        problems.push_back(
-            {"reload", "the newest reload was refused, and the old settings hold: " + view.reload_error});
+        problems.push_back({"reload " + view.reload_error,
+                            "the newest reload was refused, and the old settings hold: " + view.reload_error,
+                            "reload"});
 }
 
 }  // namespace
