@@ -100,6 +100,19 @@ TEST(JointsCommand, says_at_the_end_that_nobody_was_there) {
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69);
 }
 
+TEST(JointsCommand, tells_each_reason_why_lines_are_refused) {
+    const testing_support::ScratchFolder folder;
+    const std::string command = "printf '1 2\\n3 4\\nx y z\\n' | " OCTOSKIN_PROGRAM
+                                " joints --rig " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml --socket " +
+                                (folder / "nobody").string() + " 2> " + (folder / "log").string();
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69);
+    const std::string log = testing_support::ScratchFolder::read(folder / "log");
+    EXPECT_NE(log.find("wrong_count: 2 numbers, the rig has 7 joints: 1 2 "), std::string::npos) << log;
+    EXPECT_EQ(log.find("joints: 3 4 "), std::string::npos) << "once for each reason:\n" << log;
+    EXPECT_NE(log.find("warning line not sent, not_a_number"), std::string::npos) << log;
+    EXPECT_NE(log.find("0 lines sent, 0 lost, 3 refused"), std::string::npos) << log;
+}
+
 /// As whoever starts and ends it by hand does: what became of the lines is told as at the end of the input.
 TEST(JointsCommand, tells_what_became_of_the_lines_when_a_signal_ends_it) {
     for (const std::string signal : {"INT", "TERM"}) {

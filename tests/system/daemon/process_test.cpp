@@ -65,6 +65,10 @@ TEST_F(DaemonTest, reloads_all_or_nothing) {
         << daemon_->log();
     EXPECT_EQ(daemon_->status()["rig"], "second");
     EXPECT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    const std::string log = daemon_->log();
+    const auto told = log.find("expected the path of a file");
+    EXPECT_NE(told, std::string::npos) << log;
+    EXPECT_EQ(log.find("expected the path of a file", told + 1), std::string::npos) << "twice:\n" << log;
 }
 
 /// What the nodes and the clock told is learnt anew, which takes a while: nothing is wrong meanwhile.

@@ -98,6 +98,12 @@ TEST(Monitor, shows_that_something_came_too_close_and_that_it_did_so_just_now) {
     EXPECT_EQ(reflex_line(Json(), now).emphasis, Emphasis::none) << "the first picture: nobody knows when";
 }
 
+TEST(Monitor, shows_no_latency_before_the_first_reading) {
+    Json now = status();
+    now["latency"] = {{"readings", 0}, {"median_ms", 0.0}, {"p99_ms", 0.0}, {"max_ms", 0.0}};
+    EXPECT_TRUE(has(shown(now, now), "from frame to map: - median, - 99 %, - longest"));
+}
+
 TEST(Monitor, shows_no_range_of_a_sensor_that_saw_nothing) {
     Json now = status();
     Json& sensor = now["nodes"][0]["sensors"][0];
