@@ -41,7 +41,6 @@ Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vect
                     fmt::format("{} {} {}: not within the map, {:.0f} m about its origin", p_map.x(),
                                 p_map.y(), p_map.z(), 32768 * grid.resolution_m()));
     }
-    if (const auto checked = check_playable(request); !checked) return unexpected(checked.error());
     VoxelWitness witness(*key, request.mapping.map, contributions_max);
     request.maps = {.depth = false, .proximity = false, .fused = true};
     request.listener = &witness;

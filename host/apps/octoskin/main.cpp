@@ -18,10 +18,9 @@ namespace {
 constexpr const char* kFooter =
     "Exit codes: 0 done; 1 done, with a bad result; 64 command line; 65 unusable data;\n"
     "66 no such file; 69 a program or device is missing; 70 a defect of octoskin; 73 cannot write;\n"
-    "74 a device, standard input or output failed; 77 no permission; 78 rig, robot, scenario or mapping "
-    "file;\n"
-    "130, 143 interrupted by Ctrl-C, SIGTERM: what simulate, replay and experiment had not finished is "
-    "removed.";
+    "74 a device, standard input or output failed; 77 no permission;\n"
+    "78 rig, robot, scenario or mapping file; 130, 143 interrupted by Ctrl-C, SIGTERM: what simulate,\n"
+    "replay and experiment had not finished is removed.";
 
 int run(int argc, char** argv) {
     using namespace octoskin;

@@ -127,7 +127,7 @@ TEST_F(DataSetReaderTest, a_fault_in_the_list_names_file_and_line) {
 TEST_F(DataSetReaderTest, a_list_that_is_not_there_is_named) {
     std::filesystem::remove(written_.folder() / "groundtruth.txt");
     EXPECT_THAT(DataSetReader::open(written_.folder()).error().what,
-                HasSubstr("groundtruth.txt: cannot be opened"));
+                HasSubstr("groundtruth.txt: no such file"));
 }
 
 TEST_F(DataSetReaderTest, an_image_that_cannot_be_read_is_named_with_its_line_again_and_again) {
