@@ -1,6 +1,7 @@
 #include "host/apps/recording/unfinished.hpp"
 
 #include <map>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -58,10 +59,14 @@ RemovedUnfinished remove_unfinished() {
     RemovedUnfinished removed{.is_any = false, .lock = std::unique_lock(registry().mutex)};
     const auto& folders = registry().folders;
     removed.is_any = !folders.empty();
-    for (const auto& [folder, made_for_it] : folders) clear_away(folder);
+    std::set<fs::path> made;
+    for (const auto& [folder, made_for_it] : folders) {
+        clear_away(folder);
+        if (!made_for_it.empty()) made.insert(made_for_it);
+    }
     std::error_code ignored;
-    for (const auto& [folder, made_for_it] : folders)
-        if (!made_for_it.empty()) fs::remove(made_for_it, ignored);  // only if it is empty
+    // What lies in another comes after it: only an empty one goes.
+    for (auto folder = made.rbegin(); folder != made.rend(); ++folder) fs::remove(*folder, ignored);
     return removed;
 }
 

@@ -63,7 +63,7 @@ TEST_F(Interrupted, simulate_and_experiment_leave_nothing) {
     const Said experiment =
         interrupt("experiment --out " + path("out") + " --rig " + source("tests/data/short/rig.yaml") +
                       " --scenario " + source("tests/data/short/scenario.yaml"),
-                  "out/.octoskin-part", SIGTERM);
+                  "out/recording/.octoskin-part/can.log", SIGTERM);
     EXPECT_EQ(experiment.exit_code, 143) << experiment.output;
     EXPECT_THAT(experiment.output, HasSubstr(kRemoved));
     EXPECT_FALSE(std::filesystem::exists(path("out")));

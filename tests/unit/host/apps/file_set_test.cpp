@@ -225,6 +225,8 @@ TEST(FileSetTest, leaves_nothing_unfinished_of_a_process_that_is_told_to_end) {
         auto set = FileSet::begin(folder);
         ASSERT_TRUE(set);
         write(set->draft() / "a", "new");
+        const auto within = FileSet::begin(folder / "recording");
+        ASSERT_TRUE(within);
         EXPECT_TRUE(remove_unfinished().is_any);
         EXPECT_FALSE(fs::exists(folder));
     }
