@@ -1,91 +1,64 @@
-// octoskin-bench: how long one depth frame takes, beside OctoMap, on the same frames in the same run.
+// octoskin-bench: how long the work of a map takes, beside OctoMap, on the same data in the same run.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <functional>
-#include <memory>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
 
-#include "host/core/mapping/depth_integrator.hpp"
 #include "tests/bench/clouds.hpp"
 #include "tests/bench/figures.hpp"
+#include "tests/bench/frame_rows.hpp"
+#include "tests/bench/map_rows.hpp"
 #include "tests/bench/room_frames.hpp"
+#include "tests/bench/task.hpp"
 #include "tests/bench/verify.hpp"
 
 namespace octoskin::bench {
 namespace {
 
-constexpr double kRangeMax_m = 4.0;
-constexpr CameraIntrinsics kCamera{
-    .width = 512, .height = 424, .fx = 365.0, .fy = 365.0, .cx = 256.0, .cy = 212.0};
+constexpr unsigned kFrames = 50;
+/// OctoMap takes half a minute for a frame at 1 cm.
+constexpr unsigned kOctomapFramesBelow15mm = 5;
+/// What frames look like decides how long they take, so figures are compared only between such as these.
+constexpr std::array kMeanDepth_m = {3.3, 3.5};
+constexpr std::array kShareBeyond = {0.12, 0.18};
 
-/// A map and what integrates frames into it, one after the other.
-class Integrator {
-  public:
-    virtual ~Integrator() = default;
-    /// Makes ready what the next frame needs that is not part of integrating it.
-    virtual void prepare(const RoomFrame&) {}
-    virtual void integrate(const RoomFrame& frame) = 0;
-    virtual void tell(Figures& figures) const = 0;
+struct NamedCamera {
+    const char* suffix;
+    CameraIntrinsics camera;
+};
+constexpr std::array kCameras = {
+    NamedCamera{"", {.width = 512, .height = 424, .fx = 365.0, .fy = 365.0, .cx = 256.0, .cy = 212.0}},
+    NamedCamera{"_640x480",
+                {.width = 640, .height = 480, .fx = 440.0, .fy = 440.0, .cx = 320.0, .cy = 240.0}},
 };
 
-class OctomapIntegrator final : public Integrator {
+/// Removed at the end, with all that is in it.
+class Folder {
   public:
-    OctomapIntegrator(const std::string& resolution, bool is_lazy)
-        : tree_(std::stod(resolution)), is_lazy_(is_lazy) {}
-    void prepare(const RoomFrame& frame) override { cloud_ = cloud_of(frame, kCamera); }
-    void integrate(const RoomFrame& frame) override {
-        // Lazy evaluation leaves inner nodes to be worked out once: that is part of it.
-        tree_.insertPointCloud(cloud_, origin_of(frame), kRangeMax_m, is_lazy_, is_lazy_);
-        if (is_lazy_) tree_.updateInnerOccupancy();
+    Folder() : path_((std::filesystem::temp_directory_path() / "octoskin-bench-XXXXXX").string()) {
+        if (::mkdtemp(path_.data()) == nullptr)
+            throw std::runtime_error(path_ + ": cannot make this folder for maps to save; set TMPDIR");
     }
-    void tell(Figures& figures) const override {
-        figures.heap_bytes = tree_.memoryUsage();
-        figures.leaves = tree_.getNumLeafNodes();
-        for (auto leaf = tree_.begin_leafs(), end = tree_.end_leafs(); leaf != end; ++leaf) {
-            figures.voxels += std::size_t{1} << (3 * (tree_.getTreeDepth() - leaf.getDepth()));
-        }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
     }
+    [[nodiscard]] std::filesystem::path path() const { return path_; }
 
   private:
-    octomap::OcTree tree_;
-    octomap::Pointcloud cloud_;
-    bool is_lazy_;
+    std::string path_;
 };
 
-class ExactIntegrator final : public Integrator {
-  public:
-    explicit ExactIntegrator(const MappingConfig& config) : integrator_(config, kCamera), map_(config.map) {}
-    void integrate(const RoomFrame& frame) override {
-        const auto result = integrator_.integrate(frame.image, frame.T_map_camera);
-        if (!result) throw std::runtime_error("a frame was refused");
-        map_.apply(result->updates);
-    }
-    void tell(Figures& figures) const override {
-        figures.heap_bytes = map_.memory_bytes();
-        figures.voxels = map_.known_voxels();
-    }
-
-  private:
-    DepthIntegrator integrator_;
-    FusedMap map_;
-};
-
-struct Row {
-    std::string resolution;
-    std::string name;
-    unsigned frames = 0;
-    std::unique_ptr<Integrator> integrator;
-    std::size_t next_frame = 0;
-};
-
-void integrate_next(benchmark::State& state, Row& row, const RoomFrames& room) {
-    const RoomFrame& frame = room.frames[row.next_frame++ % room.frames.size()];
-    row.integrator->prepare(frame);
-    for (auto _ : state) row.integrator->integrate(frame);
-}
-
-/// Gathers each frame's CPU time.
+/// Gathers each run's CPU time.
 class Gatherer : public benchmark::BenchmarkReporter {
   public:
     bool ReportContext(const Context&) override { return true; }
@@ -97,90 +70,181 @@ class Gatherer : public benchmark::BenchmarkReporter {
             }
         }
     }
-    [[nodiscard]] const std::vector<double>& of(const Row& row) const {
-        return times_.at(row.resolution + "/" + row.name);
-    }
+    [[nodiscard]] const std::vector<double>& of(const std::string& row) const { return times_.at(row); }
 
   private:
     std::map<std::string, std::vector<double>> times_;
 };
 
-std::vector<std::unique_ptr<Row>> rows_of(const std::string& resolution, unsigned frames) {
-    // OctoMap takes half a minute for a frame at 1 cm.
-    const unsigned few = std::stod(resolution) < 0.015 ? std::min(frames, 5U) : frames;
-    std::vector<std::unique_ptr<Row>> rows;
-    const auto add = [&](const std::string& name, unsigned count, std::unique_ptr<Integrator> integrator) {
-        rows.push_back(std::make_unique<Row>(Row{resolution, name, count, std::move(integrator)}));
-    };
-    add("octomap", few, std::make_unique<OctomapIntegrator>(resolution, false));
-    add("octomap_lazy", few, std::make_unique<OctomapIntegrator>(resolution, true));
-    add("exact", frames, std::make_unique<ExactIntegrator>(exact_mapping(resolution, kRangeMax_m)));
+struct Options {
+    std::vector<std::string> resolutions = {"0.04", "0.02", "0.01"};
+    std::vector<std::string> rows;
+    unsigned runs = kFrames;
+    std::string json;
+    bool verifies = false;
+    bool lists = false;
+};
+
+std::vector<Row> rows_of(const std::vector<RoomFrames>& rooms, const std::string& resolution,
+                         const Options& options, const std::filesystem::path& folder) {
+    const unsigned octomap_runs =
+        std::stod(resolution) < 0.015 ? std::min(options.runs, kOctomapFramesBelow15mm) : options.runs;
+    std::vector<Row> rows;
+    const auto append = [&](std::vector<Row> more) { std::ranges::move(more, std::back_inserter(rows)); };
+    for (std::size_t i = 0; i < rooms.size(); ++i)
+        append(frame_rows(rooms[i], resolution, options.runs, octomap_runs, kCameras[i].suffix));
+    append(map_rows(rooms.front(), resolution, options.runs, folder));
     return rows;
 }
 
-void measure(const RoomFrames& room, const std::string& resolution, unsigned frames, AllFigures& all) {
-    const auto rows = rows_of(resolution, frames);
+std::string check(const std::vector<Row>& rows, const std::vector<std::string>& asked) {
+    for (const std::string& name : asked) {
+        if (std::ranges::find(rows, name, &Row::name) == rows.end())
+            return fmt::format("--row: there is no row '{}'; --list names them", name);
+    }
+    return {};
+}
+
+void measure(const std::vector<Row>& rows, const Options& options, std::map<std::string, Figures>& all) {
     benchmark::ClearRegisteredBenchmarks();
-    for (const auto& row : rows) {
-        const std::string name = resolution + "/" + row->name;
-        benchmark::RegisterBenchmark(name.c_str(),
-                                     [&](benchmark::State& state) { integrate_next(state, *row, room); })
+    std::map<std::string, std::unique_ptr<Task>> tasks;
+    for (const Row& row : rows) {
+        if (!options.rows.empty() && std::ranges::find(options.rows, row.name) == options.rows.end())
+            continue;
+        Task& task = *(tasks[row.name] = row.make());
+        all[row.name].peer = row.peer;
+        benchmark::RegisterBenchmark(row.name.c_str(),
+                                     [&task](benchmark::State& state) {
+                                         task.prepare();
+                                         for (auto _ : state) task.run();
+                                     })
             ->Iterations(1)
-            ->Repetitions(static_cast<int>(row->frames));
+            ->MeasureProcessCPUTime()
+            ->Repetitions(static_cast<int>(row.runs));
     }
     Gatherer gatherer;
     benchmark::RunSpecifiedBenchmarks(&gatherer);
-    for (const auto& row : rows) {
-        Figures& figures = all[resolution][row->name];
-        figures.frame_ms = gatherer.of(*row);
-        row->integrator->tell(figures);
+    for (const auto& [name, task] : tasks) {
+        all[name].run_ms = gatherer.of(name);
+        task->tell(all[name]);
     }
 }
 
-int run(int argc, char** argv) {
-    CLI::App app("How long a depth frame takes, beside OctoMap, on the same frames in the same run.");
-    std::vector<std::string> resolutions = {"0.04", "0.02", "0.01"};
-    unsigned frames = 50;
-    std::string json;
-    bool verifies = false;
-    app.add_option("--resolution", resolutions, "Of the maps, metres")->capture_default_str();
-    app.add_option("--frames", frames, "Of each row; OctoMap has 5 at most below 1.5 cm")
-        ->capture_default_str();
-    app.add_option("--json", json, "Write the figures to this file, too");
-    app.add_flag("--verify", verifies, "Compare the voxels with OctoMap's, key by key, and measure nothing");
-    CLI11_PARSE(app, argc, argv);
+/// Says in one line what the frames are, and on the error stream if they are not what they should be.
+bool tell_room(const RoomFrames& room) {
+    fmt::print("{} frames of {} x {}: mean depth {:.2f} m, {:.1f} % beyond {} m\n", room.frames.size(),
+               room.camera.width, room.camera.height, room.mean_depth_m, 100.0 * room.share_beyond,
+               kRangeMax_m);
+    const auto is_within = [](double value, const std::array<double, 2>& range) {
+        return value >= range[0] && value <= range[1];
+    };
+    if (room.without_return == 0 && is_within(room.mean_depth_m, kMeanDepth_m) &&
+        is_within(room.share_beyond, kShareBeyond)) {
+        return true;
+    }
+    fmt::print(
+        stderr,
+        "{}: its figures could not be compared: every pixel should return ({} do not), mean depth be {} to "
+        "{} m, and {:.0f} to {:.0f} % be beyond {} m\n",
+        OCTOSKIN_ROOM, room.without_return, kMeanDepth_m[0], kMeanDepth_m[1], 100.0 * kShareBeyond[0],
+        100.0 * kShareBeyond[1], kRangeMax_m);
+    return false;
+}
 
-    const auto room = render_room(OCTOSKIN_ROOM, kCamera, 50, kRangeMax_m);
-    if (!room) {
-        fmt::print(stderr, "{}\n", room.error().message());
+/// Not 0: an exit code, already told why.
+int render(std::vector<RoomFrames>& rooms) {
+    for (const NamedCamera& named : kCameras) {
+        auto room = render_room(OCTOSKIN_ROOM, named.camera, kFrames, kRangeMax_m);
+        if (!room) {
+            fmt::print(stderr, "{}\n", room.error().message());
+            return 1;
+        }
+        if (!tell_room(*room)) return 1;
+        rooms.push_back(std::move(*room));
+    }
+    return 0;
+}
+
+std::string check_resolution(const std::string& text) {
+    char* end = nullptr;
+    const double value_m = std::strtod(text.c_str(), &end);
+    if (end != text.c_str() + text.size() || !(value_m >= 0.005 && value_m <= 1.0))
+        return "'" + text + "' is no number of metres from 0.005 to 1";
+    return {};
+}
+
+int measure_all(const std::vector<RoomFrames>& rooms, const Options& options) {
+    // Better now than after an hour.
+    AllFigures all;
+    if (!options.json.empty() && !write_json(all, options.json)) {
+        fmt::print(stderr, "{}: cannot write\n", options.json);
         return 1;
     }
-    fmt::print("{} frames of {} x {}: mean depth {:.2f} m, {:.1f} % beyond {} m\n", room->frames.size(),
-               kCamera.width, kCamera.height, room->mean_depth_m, 100.0 * room->share_beyond, kRangeMax_m);
-    if (verifies) {
+    const Folder folder;
+    for (const std::string& resolution : options.resolutions)
+        measure(rows_of(rooms, resolution, options, folder.path()), options, all[resolution]);
+    print(all);
+    if (!options.json.empty() && !write_json(all, options.json)) {
+        fmt::print(stderr, "{}: cannot write\n", options.json);
+        return 1;
+    }
+    return 0;
+}
+
+int run_with(const Options& options, char* program) {
+    std::vector<RoomFrames> rooms;
+    // Names depend on the cameras alone.
+    const std::vector<Row> rows = rows_of(std::vector<RoomFrames>(kCameras.size()), "1", options, {});
+    if (options.lists) {
+        for (const Row& row : rows) fmt::print("{:<22} {}\n", row.name, row.peer == row.name ? "" : row.peer);
+        return 0;
+    }
+    if (const std::string fault = check(rows, options.rows); !fault.empty()) {
+        fmt::print(stderr, "{}\n", fault);
+        return 2;
+    }
+    if (const int code = render(rooms); code != 0) return code;
+    if (options.verifies) {
         bool is_equal = true;
-        for (const std::string& resolution : resolutions)
-            is_equal &= verify(*room, resolution, frames, kRangeMax_m);
+        for (const std::string& resolution : options.resolutions)
+            is_equal &= verify(rooms.front(), resolution, options.runs);
         return is_equal ? 0 : 1;
     }
     // Repetitions of all rows in random order: what else the machine does meets each of them alike.
     std::string interleaving = "--benchmark_enable_random_interleaving=true";
-    std::vector<char*> arguments = {argv[0], interleaving.data(), nullptr};
+    std::array<char*, 3> arguments = {program, interleaving.data(), nullptr};
     int count = 2;
     benchmark::Initialize(&count, arguments.data());
-    AllFigures all;
-    for (const std::string& resolution : resolutions) measure(*room, resolution, frames, all);
-    print(all);
-    if (!json.empty() && !write_json(all, json)) {
-        fmt::print(stderr, "{}: cannot write\n", json);
-        return 1;
-    }
-    return 0;
+    return measure_all(rooms, options);
+}
+
+int run(int argc, char** argv) {
+    CLI::App app(
+        "How long the work of a map takes, beside OctoMap, on the same data in the same run: CPU times.");
+    Options options;
+    app.add_option("--resolution", options.resolutions, "Of the maps, metres")
+        ->capture_default_str()
+        ->check(CLI::Validator(check_resolution, "METRES"));
+    app.add_option("--row", options.rows, "Measure these rows only; a ratio needs OctoMap's row, too");
+    app.add_flag("--list", options.lists, "Name the rows, each with OctoMap's that it is compared with");
+    app.add_option("--frames", options.runs, "Runs of each row; 5 at most of OctoMap's frames below 1.5 cm")
+        ->capture_default_str()
+        ->check(CLI::Range(1U, 10'000U));
+    app.add_option("--json", options.json, "Write the figures to this file, too");
+    app.add_flag("--verify", options.verifies,
+                 "Compare the voxels with OctoMap's, key by key, and measure nothing");
+    CLI11_PARSE(app, argc, argv);
+    return run_with(options, argv[0]);
 }
 
 }  // namespace
 }  // namespace octoskin::bench
 
 int main(int argc, char** argv) {
-    return octoskin::bench::run(argc, argv);
+    try {
+        return octoskin::bench::run(argc, argv);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "octoskin-bench: {}\n", error.what());
+        return 1;
+    }
 }

@@ -11,6 +11,9 @@
 
 namespace octoskin::bench {
 
+/// Beyond it a point clears space up to here and marks nothing.
+inline constexpr double kRangeMax_m = 4.0;
+
 inline octomap::point3d origin_of(const RoomFrame& frame) {
     const Eigen::Vector3f origin = frame.T_map_camera.translation().cast<float>();
     return {origin.x(), origin.y(), origin.z()};
@@ -31,12 +34,13 @@ inline octomap::Pointcloud cloud_of(const RoomFrame& frame, const CameraIntrinsi
 }
 
 /// Whatever is hit counts, so that a key's set can be told from its term.
-inline MappingConfig exact_mapping(const std::string& resolution, double range_max_m) {
-    MappingConfig config = paper_mapping();
+inline MappingConfig bench_mapping(const std::string& resolution, DepthUpdate update) {
+    MappingConfig config = update == DepthUpdate::robust ? robust_mapping() : paper_mapping();
+    config.depth_update = update;
     config.map.resolution_m = std::stod(resolution);
     config.map.memory_max_mib = 8000;
     config.model.depth.range_min_m = 0.0;
-    config.depth_range_max_m = range_max_m;
+    config.depth_range_max_m = kRangeMax_m;
     config.depth_box_voxels_max = 1U << 30U;
     return config;
 }

@@ -11,9 +11,11 @@
 namespace octoskin::bench {
 namespace {
 
-double median_of(const AllFigures& all, const std::string& resolution, const std::string& integrator) {
-    const auto& rows = all.at(resolution);
-    return rows.contains(integrator) ? quantile(rows.at(integrator).frame_ms, 0.5) : 0.0;
+/// How many times as long the peer takes; empty if it did not run.
+std::optional<double> ratio_of(const Figures& figures, const std::map<std::string, Figures>& rows) {
+    const auto peer = rows.find(figures.peer);
+    if (peer == rows.end()) return std::nullopt;
+    return quantile(peer->second.run_ms, 0.5) / quantile(figures.run_ms, 0.5);
 }
 
 }  // namespace
@@ -26,14 +28,14 @@ double quantile(std::vector<double> values, double share) {
 }
 
 void print(const AllFigures& all) {
-    fmt::print("\n{:<8} {:<10} {:>10} {:>10} {:>10} {:>10} {:>12} {:>12}\n", "m", "", "median ms", "95 % ms",
-               "x octomap", "MiB", "voxels", "leaves");
+    fmt::print("\n{:<6} {:<22} {:>5} {:>11} {:>11} {:>9} {:>9} {:>11} {:>11}\n", "m", "", "runs", "median ms",
+               "95 % ms", "x octomap", "MiB", "voxels", "leaves");
     for (const auto& [resolution, rows] : all) {
-        const double octomap_ms = median_of(all, resolution, "octomap");
-        for (const auto& [integrator, figures] : rows) {
-            const double median_ms = quantile(figures.frame_ms, 0.5);
-            fmt::print("{:<8} {:<10} {:>10.2f} {:>10.2f} {:>10.1f} {:>10.1f} {:>12} {:>12}\n", resolution,
-                       integrator, median_ms, quantile(figures.frame_ms, 0.95), octomap_ms / median_ms,
+        for (const auto& [name, figures] : rows) {
+            const auto ratio = ratio_of(figures, rows);
+            fmt::print("{:<6} {:<22} {:>5} {:>11.3f} {:>11.3f} {:>9} {:>9.1f} {:>11} {:>11}\n", resolution,
+                       name, figures.run_ms.size(), quantile(figures.run_ms, 0.5),
+                       quantile(figures.run_ms, 0.95), ratio ? fmt::format("{:.2f}", *ratio) : "",
                        static_cast<double>(figures.heap_bytes) / (1 << 20), figures.voxels, figures.leaves);
         }
     }
@@ -42,13 +44,15 @@ void print(const AllFigures& all) {
 bool write_json(const AllFigures& all, const std::filesystem::path& file) {
     nlohmann::json json;
     for (const auto& [resolution, rows] : all) {
-        const double octomap_ms = median_of(all, resolution, "octomap");
-        for (const auto& [integrator, figures] : rows) {
-            const double median_ms = quantile(figures.frame_ms, 0.5);
-            json[resolution][integrator] = {{"ms_median", median_ms},
-                                            {"ms_p95", quantile(figures.frame_ms, 0.95)},
-                                            {"ratio_octomap", octomap_ms / median_ms},
-                                            {"heap_bytes", figures.heap_bytes}};
+        for (const auto& [name, figures] : rows) {
+            const auto ratio = ratio_of(figures, rows);
+            json[resolution][name] = {{"ms_median", quantile(figures.run_ms, 0.5)},
+                                      {"ms_p95", quantile(figures.run_ms, 0.95)},
+                                      {"ratio_octomap", ratio ? nlohmann::json(*ratio) : nlohmann::json()},
+                                      {"heap_bytes", figures.heap_bytes},
+                                      {"leaves", figures.leaves},
+                                      {"voxels", figures.voxels},
+                                      {"runs", figures.run_ms.size()}};
         }
     }
     std::ofstream out(file);

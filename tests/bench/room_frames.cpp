@@ -1,6 +1,7 @@
 #include "tests/bench/room_frames.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -13,10 +14,10 @@ namespace {
 constexpr double kSigma_m = 0.03;
 constexpr double kFurthest_m = 20.0;
 
-/// At `turn` of the way, 0 to 1: a loop in the west of the room, looking east.
+/// At `turn` of the way, 0 to 1: a loop in the middle of the room, looking east to the door.
 Eigen::Isometry3d pose_at(double turn) {
     const double angle = 2.0 * std::numbers::pi * turn;
-    const Eigen::Vector3d eye(-1.15 + 0.25 * std::cos(angle), 0.1 + 0.9 * std::sin(angle),
+    const Eigen::Vector3d eye(-0.15 + 0.25 * std::cos(angle), 0.1 + 0.9 * std::sin(angle),
                               1.55 + 0.3 * std::sin(2.0 * angle));
     const Eigen::Vector3d seen(3.0, 0.1 + 0.7 * std::sin(angle), 1.0);
     Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
@@ -59,6 +60,11 @@ Result<RoomFrames, sim::WorldError> render_room(const std::filesystem::path& sdf
         std::vector<double> depth_m(directions.size());
         world->cast_fan(frame.T_map_camera.translation(), directions, kFurthest_m, depth_m);
         for (std::size_t pixel = 0; pixel < depth_m.size(); ++pixel) {
+            if (!std::isfinite(depth_m[pixel])) {
+                ++room.without_return;
+                frame.image.depth_m.push_back(std::numeric_limits<float>::quiet_NaN());
+                continue;
+            }
             const double measured_m = std::round(1000.0 * (depth_m[pixel] + noise_m(random))) / 1000.0;
             frame.image.depth_m.push_back(static_cast<float>(measured_m));
             room.mean_depth_m += measured_m;
@@ -66,7 +72,8 @@ Result<RoomFrames, sim::WorldError> render_room(const std::filesystem::path& sdf
         }
         room.frames.push_back(std::move(frame));
     }
-    const double pixels = static_cast<double>(count) * camera.width * camera.height;
+    const std::size_t all = std::size_t{count} * camera.width * camera.height;
+    const auto pixels = static_cast<double>(all - room.without_return);
     room.mean_depth_m /= pixels;
     room.share_beyond /= pixels;
     return room;

@@ -20,11 +20,11 @@ struct RoomFrames {
     CameraIntrinsics camera;
     std::vector<RoomFrame> frames;
     double mean_depth_m = 0.0;
-    double share_beyond = 0.0;  ///< of pixels whose range is larger than `range_max_m`
+    double share_beyond = 0.0;       ///< of pixels whose range is larger than `range_max_m`
+    std::size_t without_return = 0;  ///< pixels; they are in neither of the two
 };
 
-/// `count` frames with noise of 3 cm, in millimetres as a camera gives them; every pixel returns. About 20 ms
-/// a frame.
+/// `count` frames with noise of 3 cm, in millimetres as a camera gives them. About 20 ms a frame.
 [[nodiscard]] Result<RoomFrames, sim::WorldError> render_room(const std::filesystem::path& sdf,
                                                               const CameraIntrinsics& camera, unsigned count,
                                                               double range_max_m);

@@ -11,8 +11,8 @@
 
 namespace octoskin::bench {
 
-bool verify(const RoomFrames& room, const std::string& resolution, unsigned frames, double range_max_m) {
-    const MappingConfig config = exact_mapping(resolution, range_max_m);
+bool verify(const RoomFrames& room, const std::string& resolution, unsigned frames) {
+    const MappingConfig config = bench_mapping(resolution, DepthUpdate::paper);
     DepthIntegrator integrator(config, room.camera);
     octomap::OcTree tree(config.map.resolution_m);
     std::size_t keys = 0;
@@ -22,7 +22,7 @@ bool verify(const RoomFrames& room, const std::string& resolution, unsigned fram
         const RoomFrame& frame = room.frames[i % room.frames.size()];
         octomap::KeySet free;
         octomap::KeySet occupied;
-        tree.computeUpdate(cloud_of(frame, room.camera), origin_of(frame), free, occupied, range_max_m);
+        tree.computeUpdate(cloud_of(frame, room.camera), origin_of(frame), free, occupied, kRangeMax_m);
         for (const auto& key : occupied) free.erase(key);
         keys += free.size() + occupied.size();
         const auto result = integrator.integrate(frame.image, frame.T_map_camera);

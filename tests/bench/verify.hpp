@@ -9,7 +9,6 @@ namespace octoskin::bench {
 
 /// Compares hit and passed voxels of the first `frames` frames with OctoMap's `computeUpdate`; prints a line.
 /// False if any is missing or too many.
-[[nodiscard]] bool verify(const RoomFrames& room, const std::string& resolution, unsigned frames,
-                          double range_max_m);
+[[nodiscard]] bool verify(const RoomFrames& room, const std::string& resolution, unsigned frames);
 
 }  // namespace octoskin::bench

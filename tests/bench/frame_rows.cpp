@@ -1,0 +1,142 @@
+#include "tests/bench/frame_rows.hpp"
+
+#include <octomap/octomap.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "host/core/depth/depth_filter.hpp"
+#include "host/core/mapping/depth_integrator.hpp"
+#include "tests/bench/clouds.hpp"
+#include "tests/bench/sizes.hpp"
+
+namespace octoskin::bench {
+namespace {
+
+/// One row for each. An integrator that is meant for filtered images gets them; the filter has its own row.
+struct OurMethod {
+    const char* name;
+    DepthUpdate update;
+    bool is_filtered;
+};
+constexpr std::array kOurs = {
+    OurMethod{.name = "exact", .update = DepthUpdate::paper, .is_filtered = false},
+    OurMethod{.name = "robust", .update = DepthUpdate::robust, .is_filtered = true},
+};
+
+struct OctomapMethod {
+    const char* name;
+    bool is_lazy;
+};
+constexpr const char* kOctomap = "octomap";
+constexpr std::array kOctomaps = {
+    OctomapMethod{.name = kOctomap, .is_lazy = false},
+    OctomapMethod{.name = "octomap_lazy", .is_lazy = true},
+};
+
+/// One frame after the other, then the first again.
+class FrameTask : public Task {
+  public:
+    explicit FrameTask(const RoomFrames& room) : room_(room) {}
+
+  protected:
+    [[nodiscard]] const RoomFrame& next() { return room_.frames[next_++ % room_.frames.size()]; }
+    [[nodiscard]] const CameraIntrinsics& camera() const { return room_.camera; }
+
+  private:
+    const RoomFrames& room_;
+    std::size_t next_ = 0;
+};
+
+class OctomapFrames final : public FrameTask {
+  public:
+    OctomapFrames(const RoomFrames& room, const std::string& resolution, bool is_lazy)
+        : FrameTask(room), tree_(std::stod(resolution)), is_lazy_(is_lazy) {}
+    void prepare() override {
+        const RoomFrame& frame = next();
+        cloud_ = cloud_of(frame, camera());
+        origin_ = origin_of(frame);
+    }
+    void run() override {
+        // Lazy evaluation leaves inner nodes to be worked out once: that is part of it.
+        tree_.insertPointCloud(cloud_, origin_, kRangeMax_m, is_lazy_, is_lazy_);
+        if (is_lazy_) tree_.updateInnerOccupancy();
+    }
+    void tell(Figures& figures) const override { tell_size(tree_, figures); }
+
+  private:
+    octomap::OcTree tree_;
+    octomap::Pointcloud cloud_;
+    octomap::point3d origin_;
+    bool is_lazy_;
+};
+
+class OurFrames final : public FrameTask {
+  public:
+    OurFrames(const RoomFrames& room, const std::string& resolution, const OurMethod& method)
+        : FrameTask(room),
+          config_(bench_mapping(resolution, method.update)),
+          integrator_(config_, room.camera),
+          map_(config_.map),
+          is_filtered_(method.is_filtered) {}
+    void prepare() override {
+        const RoomFrame& frame = next();
+        image_ = is_filtered_ ? filter_depth(frame.image, config_.depth_filter) : frame.image;
+        T_map_camera_ = frame.T_map_camera;
+    }
+    void run() override {
+        const auto result = integrator_.integrate(image_, T_map_camera_);
+        if (!result) throw std::runtime_error("a frame was refused");
+        map_.apply(result->updates);
+    }
+    void tell(Figures& figures) const override {
+        // A map without room for all would be quick for the wrong reason.
+        if (map_.counters().no_room + map_.counters().no_memory > 0)
+            throw std::runtime_error("a map is full");
+        tell_size(map_, figures);
+    }
+
+  private:
+    MappingConfig config_;
+    DepthIntegrator integrator_;
+    FusedMap map_;
+    bool is_filtered_;
+    DepthImage image_;
+    Eigen::Isometry3d T_map_camera_ = Eigen::Isometry3d::Identity();
+};
+
+class FilterFrames final : public FrameTask {
+  public:
+    using FrameTask::FrameTask;
+    void prepare() override { frame_ = &next(); }
+    void run() override { filtered_ = filter_depth(frame_->image, config_); }
+
+  private:
+    DepthFilterConfig config_ = robust_mapping().depth_filter;
+    const RoomFrame* frame_ = nullptr;
+    DepthImage filtered_;
+};
+
+}  // namespace
+
+std::vector<Row> frame_rows(const RoomFrames& room, const std::string& resolution, unsigned runs,
+                            unsigned runs_octomap, const std::string& suffix) {
+    const std::string peer = kOctomap + suffix;
+    std::vector<Row> rows;
+    for (const OctomapMethod& method : kOctomaps) {
+        rows.push_back(
+            {method.name + suffix, peer, std::min(runs, runs_octomap), [&room, resolution, method] {
+                 return std::make_unique<OctomapFrames>(room, resolution, method.is_lazy);
+             }});
+    }
+    for (const OurMethod& method : kOurs) {
+        rows.push_back({method.name + suffix, peer, runs, [&room, resolution, method] {
+                            return std::make_unique<OurFrames>(room, resolution, method);
+                        }});
+    }
+    rows.push_back(
+        {"depth_filter" + suffix, "", runs, [&room] { return std::make_unique<FilterFrames>(room); }});
+    return rows;
+}
+
+}  // namespace octoskin::bench
