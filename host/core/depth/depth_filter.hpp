@@ -1,9 +1,12 @@
 // Removes the camera's noise: a gated median window, then a mean of what lies close to the median.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "host/core/depth/depth_frame.hpp"
+#include "host/core/depth/filtered_row.hpp"
 
 namespace octoskin {
 
@@ -19,9 +22,23 @@ struct DepthFilterConfig {
     friend bool operator==(const DepthFilterConfig&, const DepthFilterConfig&) = default;
 };
 
-/// The filtered image, of the same size. The window is cut off at the image's border; a pixel without a value
-/// stays without. The median of an even number of values is the mean of the middle two. `is_enabled` is the
-/// caller's business. About 25 ms for 512 x 424.
-[[nodiscard]] DepthImage filter_depth(const DepthImage& image, const DepthFilterConfig& config);
+/// Filters one image after the other; from the second of a size on it takes no memory.
+class DepthFilter {
+  public:
+    /// `is_enabled` is the caller's business. A window that is not 1, 3, 5 or 7 is asserted.
+    explicit DepthFilter(const DepthFilterConfig& config);
+
+    /// In place. The window is cut off at the image's border; a pixel without a value stays without. The
+    /// median of an even number of values is the mean of the middle two; values are averaged in the order of
+    /// `filter_row`. About 2 ms for 512 x 424 with a window of 5.
+    void filter(DepthImage& image);
+
+  private:
+    /// Puts a frame of "none" around the image, so that a window needs no border case.
+    void frame(const DepthImage& image, std::size_t stride);
+
+    FilterWindow window_;
+    std::vector<float> framed_m_;
+};
 
 }  // namespace octoskin

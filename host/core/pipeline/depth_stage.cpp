@@ -2,7 +2,6 @@
 
 #include <cassert>
 
-#include "host/core/depth/depth_filter.hpp"
 #include "host/core/depth/depth_image.hpp"
 #include "host/core/self_filter/robot_filter.hpp"
 
@@ -30,6 +29,7 @@ DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config)
       self_margin_m_(rig.depth_self_margin_m),
       T_map_base_(rig.T_map_base),
       T_map_camera_(rig.T_map_base * camera_.T_base_camera),
+      filter_(config.depth_filter),
       integrator_(config, camera_.intrinsics) {}
 
 std::uint64_t DepthStage::take_robot_out(DepthImage& image, const RobotPose& robot,
@@ -54,7 +54,7 @@ Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, c
     }
     DepthImage image = std::move(converted).value();
     if (config_.depth_filter.is_enabled) {
-        image = filter_depth(image, config_.depth_filter);
+        filter_.filter(image);
     }
     const Eigen::Isometry3d T_base_camera =
         frame.T_map_camera ? T_map_base_.inverse() * *frame.T_map_camera : camera_.T_base_camera;

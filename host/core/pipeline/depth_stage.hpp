@@ -5,6 +5,7 @@
 
 #include "common/result.hpp"
 #include "host/core/beams/robot_pose.hpp"
+#include "host/core/depth/depth_filter.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/core/mapping/depth_integrator.hpp"
@@ -57,6 +58,7 @@ class DepthStage {
     double self_margin_m_;
     Eigen::Isometry3d T_map_base_;
     Eigen::Isometry3d T_map_camera_;  ///< of a frame that does not say where the camera was
+    DepthFilter filter_;
     DepthIntegrator integrator_;
     std::vector<PosedCapsule> body_camera_;
     DepthImage with_robot_;

@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "tests/support/instruction_sets.hpp"
 
 namespace octoskin {
 namespace {
@@ -19,6 +23,11 @@ DepthImage flat_image(std::uint32_t width, std::uint32_t height, float depth_m) 
 
 float& at(DepthImage& image, std::uint32_t u, std::uint32_t v) {
     return image.depth_m[v * image.width + u];
+}
+
+DepthImage filter_depth(DepthImage image, const DepthFilterConfig& config) {
+    DepthFilter(config).filter(image);
+    return image;
 }
 
 /// The filter as its documentation says it, pixel by pixel. The oracle.
@@ -134,6 +143,93 @@ TEST(DepthFilter, equals_its_definition_on_noisy_images_with_holes) {
             }
         }
     }
+}
+
+/// The same as `filtered_pixel`, with every rounding where the documentation of `filter_row` has it.
+float filtered_bit_for_bit(const DepthImage& image, int u, int v, const DepthFilterConfig& config) {
+    const int reach = static_cast<int>(config.window / 2);
+    const auto value_at = [&](int column, int row) {
+        const bool is_inside = column >= 0 && row >= 0 && column < static_cast<int>(image.width) &&
+                               row < static_cast<int>(image.height);
+        return is_inside ? image.depth_m[static_cast<std::size_t>(row) * image.width +
+                                         static_cast<std::size_t>(column)]
+                         : kNan;
+    };
+    const auto gate_m = static_cast<float>(config.gate_sigmas * config.sigma_m);
+    const auto mean_gate_m = static_cast<float>(config.mean_sigmas * config.sigma_m);
+    std::vector<std::vector<float>> rows;
+    std::vector<float> sorted;
+    for (int row = v - reach; row <= v + reach; ++row) {
+        rows.emplace_back();
+        for (int column = u - reach; column <= u + reach; ++column) {
+            const float value = value_at(column, row);
+            if (!(std::fabs(value - value_at(u, v)) <= gate_m)) continue;
+            rows.back().push_back(value);
+            sorted.push_back(value);
+        }
+    }
+    if (sorted.empty()) return kNan;
+    std::sort(sorted.begin(), sorted.end());
+    const float median = 0.5F * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
+    float sum = 0.0F;
+    std::uint32_t support = 0;
+    for (const auto& row : rows) {
+        float row_sum = 0.0F;
+        for (const float value : row) {
+            const float offset = value - median;
+            if (!(std::fabs(offset) <= mean_gate_m)) continue;
+            row_sum += offset;
+            ++support;
+        }
+        sum += row_sum;
+    }
+    return support > config.min_support ? median + sum / static_cast<float>(support) : kNan;
+}
+
+/// Noise on surfaces with steps and holes; every other image in millimetres, as a camera gives them, so that
+/// differences meet the gates exactly.
+DepthImage noisy_image(unsigned seed) {
+    std::mt19937 random(seed);
+    const auto up_to = [&](std::uint32_t most) { return static_cast<std::uint32_t>(random() % (most + 1)); };
+    // From no pixel at all to several vectors of any instruction set.
+    DepthImage image{.width = seed < 20 ? seed : up_to(150), .height = up_to(23), .depth_m = {}};
+    std::normal_distribution<float> noise(0.0F, seed % 3 == 0 ? 0.004F : 0.03F);
+    const std::uint32_t holes_percent = up_to(1) == 0 ? 0 : up_to(90);
+    const std::uint32_t step_px = 1 + up_to(30);
+    for (std::uint32_t v = 0; v < image.height; ++v) {
+        for (std::uint32_t u = 0; u < image.width; ++u) {
+            const float surface_m = 1.0F + 0.15F * static_cast<float>((u / step_px + v / step_px) % 4);
+            const float depth_m = surface_m + noise(random);
+            const float measured_m = seed % 2 == 0 ? depth_m : std::round(1000.0F * depth_m) / 1000.0F;
+            image.depth_m.push_back(up_to(99) < holes_percent ? kNan : measured_m);
+        }
+    }
+    return image;
+}
+
+// Oracle: `filtered_bit_for_bit`. One filter takes images of all sizes in turn, as a stream may.
+TEST(DepthFilter, is_bit_for_bit_the_same_on_every_instruction_set) {
+    on_each_instruction_set([](const std::string& name) {
+        for (const std::uint32_t window : {1U, 3U, 5U, 7U}) {
+            DepthFilterConfig config{.window = window, .min_support = window};
+            DepthFilter filter(config);
+            for (unsigned seed = 0; seed < 40; ++seed) {
+                const DepthImage image = noisy_image(seed);
+                DepthImage filtered = image;
+                filter.filter(filtered);
+                ASSERT_EQ(filtered.depth_m.size(), image.depth_m.size());
+                for (std::size_t i = 0; i < image.depth_m.size(); ++i) {
+                    const auto u = static_cast<int>(i % image.width);
+                    const auto v = static_cast<int>(i / image.width);
+                    const float expected = filtered_bit_for_bit(image, u, v, config);
+                    ASSERT_EQ(std::bit_cast<std::uint32_t>(filtered.depth_m[i]),
+                              std::bit_cast<std::uint32_t>(expected))
+                        << name << " window " << window << " seed " << seed << " at " << u << "," << v << ": "
+                        << filtered.depth_m[i] << " for " << expected;
+                }
+            }
+        }
+    });
 }
 
 }  // namespace

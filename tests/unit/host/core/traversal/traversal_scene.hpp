@@ -1,17 +1,14 @@
 // Images, poses and what their rays pass, walked one by one.
 #pragma once
 
-#include <hwy/targets.h>
-
 #include <cmath>
-#include <functional>
 #include <set>
-#include <string>
 
 #include "host/core/traversal/mark_grid.hpp"
 #include "host/core/traversal/placed_image.hpp"
 #include "host/core/voxels/ray_walk.hpp"
 #include "tests/property/mapping/random_geometry.hpp"
+#include "tests/support/instruction_sets.hpp"
 
 namespace octoskin {
 
@@ -38,19 +35,6 @@ inline std::set<VoxelKey> drained(MarkGrid& grid) {
     std::set<VoxelKey> voxels;
     grid.drain([&](VoxelKey key, std::uint8_t) { EXPECT_TRUE(voxels.insert(key).second); });
     return voxels;
-}
-
-/// Calls test(name) with each instruction set of this processor chosen in turn.
-inline void on_each_instruction_set(const std::function<void(const std::string&)>& test) {
-    const auto targets = hwy::SupportedTargets();
-    for (auto left = targets; left != 0; left &= left - 1) {
-        const auto target = left & -left;
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        test(hwy::TargetName(target));
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 }  // namespace octoskin
