@@ -71,7 +71,7 @@ Status<RecordingError> write_meta(const RecordingPaths& recording, const Recordi
     out << YAML::BeginMap;
     out << YAML::Key << "schema" << YAML::Value << kSchema;
     out << YAML::Key << "made_by" << YAML::Value << meta.made_by;
-    out << YAML::Key << "source" << YAML::Value << meta.source;
+    if (!meta.source.empty()) out << YAML::Key << "source" << YAML::Value << meta.source;
     write_source(out, "world", meta.world);
     write_source(out, "scenario", meta.scenario);
     write_source(out, "rig", meta.rig);
