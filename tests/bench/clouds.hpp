@@ -35,7 +35,7 @@ inline octomap::Pointcloud cloud_of(const RoomFrame& frame, const CameraIntrinsi
 
 /// Whatever is hit counts, so that a key's set can be told from its term.
 inline MappingConfig bench_mapping(const std::string& resolution, DepthUpdate update) {
-    MappingConfig config = update == DepthUpdate::robust ? robust_mapping() : paper_mapping();
+    MappingConfig config = update == DepthUpdate::paper ? paper_mapping() : robust_mapping();
     config.depth_update = update;
     config.map.resolution_m = std::stod(resolution);
     config.map.memory_max_mib = 8000;

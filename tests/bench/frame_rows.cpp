@@ -21,6 +21,7 @@ struct OurMethod {
 };
 constexpr std::array kOurs = {
     OurMethod{.name = "exact", .update = DepthUpdate::paper, .is_filtered = false},
+    OurMethod{.name = "fast", .update = DepthUpdate::fast, .is_filtered = true},
     OurMethod{.name = "robust", .update = DepthUpdate::robust, .is_filtered = true},
 };
 
@@ -81,13 +82,14 @@ class OurFrames final : public FrameTask {
           is_filtered_(method.is_filtered) {}
     void prepare() override {
         const RoomFrame& frame = next();
-        image_ = is_filtered_ ? filter_depth(frame.image, config_.depth_filter) : frame.image;
+        image_ = frame.image;
+        if (is_filtered_) DepthFilter(config_.depth_filter).filter(image_);
         T_map_camera_ = frame.T_map_camera;
     }
     void run() override {
         const auto result = integrator_.integrate(image_, T_map_camera_);
         if (!result) throw std::runtime_error("a frame was refused");
-        map_.apply(result->updates);
+        map_.apply(result->terms);
     }
     void tell(Figures& figures) const override {
         // A map without room for all would be quick for the wrong reason.
@@ -108,13 +110,12 @@ class OurFrames final : public FrameTask {
 class FilterFrames final : public FrameTask {
   public:
     using FrameTask::FrameTask;
-    void prepare() override { frame_ = &next(); }
-    void run() override { filtered_ = filter_depth(frame_->image, config_); }
+    void prepare() override { image_ = next().image; }
+    void run() override { filter_.filter(image_); }
 
   private:
-    DepthFilterConfig config_ = robust_mapping().depth_filter;
-    const RoomFrame* frame_ = nullptr;
-    DepthImage filtered_;
+    DepthFilter filter_{robust_mapping().depth_filter};
+    DepthImage image_;
 };
 
 }  // namespace

@@ -44,7 +44,7 @@ class Maps {
         for (std::size_t i = 0; i < std::min(kFramesOfMap, room_.frames.size()); ++i) {
             const auto result = integrator.integrate(room_.frames[i].image, room_.frames[i].T_map_camera);
             if (!result) throw std::runtime_error("a frame was refused");
-            ours_->apply(result->updates);
+            ours_->apply(result->terms);
         }
     }
     const RoomFrames& room_;

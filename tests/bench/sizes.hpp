@@ -20,7 +20,7 @@ inline void tell_size(const octomap::OcTree& tree, Figures& figures) {
 
 /// Leaves are those that a pruned octree of the map has.
 inline void tell_size(const FusedMap& map, Figures& figures) {
-    figures.heap_bytes = map.memory_bytes();
+    figures.heap_bytes = map.heap_bytes();
     figures.voxels = map.known_voxels();
     PrunedOctree(map, LeafValues::exact).for_each([&](std::span<const OctreeNode> nodes) {
         for (const OctreeNode& node : nodes) figures.leaves += node.state == NodeState::inner ? 0 : 1;

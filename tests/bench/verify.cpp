@@ -8,6 +8,7 @@
 
 #include "host/core/mapping/depth_integrator.hpp"
 #include "tests/bench/clouds.hpp"
+#include "tests/support/voxel_updates.hpp"
 
 namespace octoskin::bench {
 
@@ -30,7 +31,7 @@ bool verify(const RoomFrames& room, const std::string& resolution, unsigned fram
             fmt::print(stderr, "{} m: frame {} was refused\n", resolution, i);
             return false;
         }
-        for (const VoxelUpdate& update : result->updates) {
+        for (const VoxelUpdate& update : updates_of(result->terms)) {
             auto& set = update.log_odds < 0.0F ? free : occupied;
             extra += 1 - set.erase({update.key.x, update.key.y, update.key.z});
         }

@@ -95,7 +95,7 @@ void Recorder::on_reading(const RangeMeasurement& measurement, const Beam&, std:
     put(measurement);
 }
 
-void Recorder::on_depth(const DepthFrame& frame, std::span<const VoxelUpdate>) {
+void Recorder::on_depth(const DepthFrame& frame, const DepthTerms&) {
     DepthCommit commit{std::nullopt, frame.captured};
     if (is_storable(frame, depth_max_m_) && has_memory_for([&] { return writer_.add_depth(frame); })) {
         commit.index = depth_frames_++;

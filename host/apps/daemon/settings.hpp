@@ -11,14 +11,16 @@
 #include "host/apps/recording/app_error.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/pipeline/pipeline.hpp"
+#include "host/io/mapping/mapping_file.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 
 namespace octoskin {
 
 struct DaemonRequest {
     std::filesystem::path rig;
-    std::filesystem::path robot;           ///< empty: the rig's
-    std::string configuration = "robust";  ///< how measurements become voxels: a built-in one, or a file
+    std::filesystem::path robot;  ///< empty: the rig's
+    std::string configuration =
+        kDefaultMapping;  ///< how measurements become voxels: a built-in one, or a file
     std::string interface = "can0";
     /// In place of the interface: a descriptor that carries frames as a raw CAN socket does.
     std::optional<int> can_descriptor;

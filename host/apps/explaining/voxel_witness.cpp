@@ -17,11 +17,12 @@ void VoxelWitness::on_reading(const RangeMeasurement& measurement, const Beam& b
     take(std::move(contribution), updates);
 }
 
-void VoxelWitness::on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) {
+void VoxelWitness::on_depth(const DepthFrame& frame, const DepthTerms& terms) {
     Contribution contribution;
     contribution.frame = depth_frames_++;
     contribution.captured = frame.captured;
-    take(std::move(contribution), updates);
+    const VoxelUpdate update{key_, terms.of(key_)};
+    take(std::move(contribution), std::span(&update, 1));
 }
 
 void VoxelWitness::take(Contribution contribution, std::span<const VoxelUpdate> updates) {

@@ -49,7 +49,7 @@ class VoxelWitness final : public CommitListener {
     void on_joints(const JointMeasurement&) override {}
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
-    void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) override;
+    void on_depth(const DepthFrame& frame, const DepthTerms& terms) override;
 
     [[nodiscard]] VoxelKey key() const noexcept { return key_; }
     /// The voxel's log-odds in the map that this one goes on from; empty: unknown.

@@ -20,6 +20,7 @@
 #include "host/apps/study/configuration.hpp"
 #include "host/apps/study/study.hpp"
 #include "host/io/mapfile/map_file.hpp"
+#include "host/io/mapping/mapping_file.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin::app {
@@ -32,7 +33,7 @@ struct EvaluateOptions {
     std::filesystem::path scenario;
     std::filesystem::path world;
     std::filesystem::path json;
-    std::string configuration = "robust";
+    std::string configuration = kDefaultMapping;
 };
 
 /// Nobody recorded in which world a data set was made.

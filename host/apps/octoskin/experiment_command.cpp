@@ -11,6 +11,7 @@
 #include "host/apps/octoskin/interruption.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/study/study.hpp"
+#include "host/io/mapping/mapping_file.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -38,7 +39,7 @@ void add_experiment_command(CLI::App& app) {
     request->inputs.scenario = shipped_file("hw/worlds/experiment.scenario.yaml");
     request->papers_scenario = request->inputs.scenario;
     request->seeds = {0};
-    request->configurations = {"robust"};
+    request->configurations = {kDefaultMapping};
     request->jobs = std::max(1U, std::thread::hardware_concurrency());
     CLI::App* command = app.add_subcommand(
         "experiment", "Simulate, replay and judge over seeds; write maps, metrics and a report");

@@ -12,7 +12,7 @@
 namespace octoskin::app {
 
 void add_mapping_command(CLI::App& app) {
-    auto name = std::make_shared<std::string>("robust");
+    auto name = std::make_shared<std::string>(kDefaultMapping);
     CLI::App* command = app.add_subcommand("mapping", "Check a mapping configuration and print it in full");
     command->add_option("configuration", *name, configuration_help("One of"))->capture_default_str();
     command->callback([name] {

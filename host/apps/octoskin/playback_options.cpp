@@ -6,17 +6,20 @@
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/study/configuration.hpp"
+#include "host/io/mapping/mapping_file.hpp"
 #include "host/io/tum/data_set_camera.hpp"
 #include "hw/rigfile/joined.hpp"
 
 namespace octoskin::app {
 namespace {
 
-/// What --configuration says; else the recording's own mapping.yaml, as the daemon wrote it; else robust.
+/// What --configuration says; else the recording's own mapping.yaml, as the daemon wrote it; else the
+/// default.
 std::string configuration_of(const std::string& asked_for, const RecordingPaths& recording) {
     if (!asked_for.empty()) return asked_for;
     std::error_code error;
-    return std::filesystem::exists(recording.mapping(), error) ? recording.mapping().string() : "robust";
+    return std::filesystem::exists(recording.mapping(), error) ? recording.mapping().string()
+                                                               : kDefaultMapping;
 }
 
 }  // namespace
@@ -24,7 +27,7 @@ std::string configuration_of(const std::string& asked_for, const RecordingPaths&
 void add_playback_options(CLI::App& command, PlaybackOptions& options) {
     command.add_option("--configuration", options.configuration,
                        configuration_help("How measurements become voxels (default: as the daemon "
-                                          "recorded it, else robust)"));
+                                          "recorded it, else fast)"));
     command.add_option("--rig", options.rig, "Rig (YAML) in place of the recording's")
         ->check(existing_file());
     command.add_option("--robot", options.robot, "Robot (URDF) in place of the recording's")

@@ -14,7 +14,7 @@ struct PlaybackOptions {
     std::filesystem::path rig;    ///< empty: the recording's
     std::filesystem::path robot;  ///< empty: the recording's
     std::string camera;           ///< of a data set without rig; empty: what most of them take
-    std::string configuration;    ///< empty: the recording's own, or robust
+    std::string configuration;    ///< empty: the recording's own, or the default
     bool is_by_capture_time = false;
 };
 

@@ -32,7 +32,7 @@ struct ReportInput {
     std::string title = "octoskin: what the camera cannot see";
     evaluation::Results results;
     /// The configuration that the headline and the pictures speak of.
-    std::string main_configuration = "robust";
+    std::string main_configuration = "fast";
     std::uint64_t picture_seed = 0;
     std::vector<PicturePair> pictures;  ///< scene first, then the maps
     UpdateModel update_model;

@@ -20,6 +20,7 @@
 #include "host/apps/study/study_pictures.hpp"
 #include "host/apps/study/work_folder.hpp"
 #include "host/apps/version/version.hpp"
+#include "host/io/mapping/mapping_file.hpp"
 
 namespace octoskin {
 namespace {
@@ -86,10 +87,10 @@ Status<AppError> check_seeds(const std::vector<std::uint64_t>& seeds) {
 
 /// The one that the maps, the pictures and the headline are of.
 const StudyConfiguration& main_of(const std::vector<StudyConfiguration>& configurations) {
-    const auto robust =
+    const auto ours =
         std::find_if(configurations.begin(), configurations.end(),
-                     [](const auto& configuration) { return configuration.name == "robust"; });
-    return robust == configurations.end() ? configurations.front() : *robust;
+                     [](const auto& configuration) { return configuration.name == kDefaultMapping; });
+    return ours == configurations.end() ? configurations.front() : *ours;
 }
 
 /// Studies every seed, `jobs` of them at once.

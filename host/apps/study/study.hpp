@@ -28,8 +28,8 @@ struct StudyRequest {
 
 /// Writes into `out`: metrics.json, report.html, the maps depth (if the rig has a camera), proximity
 /// and fused (.ot .bt .ply) and
-/// recording/ of the first seed in its main configuration (robust if it is among them). `say`: progress, one
-/// line each, called under a lock.
+/// recording/ of the first seed in its main configuration (the default if it is among them). `say`: progress,
+/// one line each, called under a lock.
 [[nodiscard]] Result<evaluation::Results, AppError> run_study(
     const StudyRequest& request, const std::function<void(const std::string&)>& say);
 

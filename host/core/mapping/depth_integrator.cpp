@@ -1,13 +1,17 @@
 #include "host/core/mapping/depth_integrator.hpp"
 
+#include <bit>
 #include <cassert>
-#include <cmath>
+#include <limits>
 #include <utility>
 
-#include "host/core/mapping/hit_table.hpp"
+#include "host/core/bricks/brick_walk.hpp"
+#include "host/core/mapping/hit_bricks.hpp"
 #include "host/core/mapping/tally_grid.hpp"
 #include "host/core/traversal/image_traversal.hpp"
 #include "host/core/traversal/mark_grid.hpp"
+#include "host/core/traversal/picture_test.hpp"
+#include "host/core/traversal/voxel_rays.hpp"
 #include "host/core/voxels/ray_walk.hpp"
 
 namespace octoskin {
@@ -43,6 +47,59 @@ void for_each_hit(const PlacedImage& rays, const VoxelLattice& lattice, Visit&& 
     });
 }
 
+/// The hits of one brick, voxel by voxel.
+class BrickCells {
+  public:
+    explicit BrickCells(std::span<const CellHits> hits) {
+        for (const CellHits& hit : hits) {
+            std::uint64_t& word = mask_[hit.cell / 64];
+            const std::uint64_t bit = std::uint64_t{1} << (hit.cell % 64);
+            Cell& cell = cells_[hit.cell];
+            if ((word & bit) == 0) cell = {};
+            word |= bit;
+            cell.sum += hit.sum;
+            cell.rays += hit.rays;
+            cell.most = hit.most > cell.most ? hit.most : cell.most;
+        }
+    }
+
+    struct Cell {
+        float sum = 0.0F;  ///< of its rays' terms
+        float most = -std::numeric_limits<float>::max();
+        std::uint32_t rays = 0;
+    };
+
+    [[nodiscard]] const BrickMask& mask() const noexcept { return mask_; }
+    /// Calls visit(cell, its hits) in ascending order of cells.
+    template <class Visit>
+    void for_each(Visit&& visit) const {
+        for (std::size_t word = 0; word < mask_.size(); ++word) {
+            for (std::uint64_t bits = mask_[word]; bits != 0; bits &= bits - 1) {
+                const auto cell = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
+                visit(static_cast<std::uint16_t>(cell), cells_[cell]);
+            }
+        }
+    }
+
+  private:
+    BrickMask mask_{};
+    std::array<Cell, kBrickVoxels> cells_;  ///< of what is in the mask
+};
+
+/// The mean over a voxel's rays of a hit or a miss, if that marks it; a voxel in which rays end is never
+/// freed.
+float voted_term(const RayVote& vote, float hit, float miss) {
+    const auto end = static_cast<float>(vote.end);
+    const auto go_on = static_cast<float>(vote.go_on);
+    const float sum = hit * end + miss * go_on;
+    return sum > 0.0F ? sum / (end + go_on) : 0.0F;
+}
+
+BrickMask without(BrickMask mask, const BrickMask& others) {
+    for (std::size_t word = 0; word < mask.size(); ++word) mask[word] &= ~others[word];
+    return mask;
+}
+
 }  // namespace
 
 /// What stays allocated from frame to frame.
@@ -50,9 +107,11 @@ struct DepthIntegrator::Workspace {
     PlacedImage rays;
     ImageTraversal traversal;
     MarkGrid marks;
-    HitTable hits;
+    HitBricks hits;
+    VoxelRays voxel_rays;
     TallyGrid tallies;
-    std::size_t updates_before = 0;  ///< of the image before: this one will have about as many
+    std::size_t bricks_before = 0;  ///< of the image before: this one will have about as many
+    std::size_t hits_before = 0;
 };
 
 DepthIntegrator::DepthIntegrator(const MappingConfig& config, const CameraIntrinsics& camera)
@@ -89,40 +148,51 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
     place_image(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays);
     DepthUpdates result;
     result.pixels = rays.counts;
-    const bool has_room = config_.depth_update == DepthUpdate::paper
-                              ? take_sets(rays, T_map_camera, result.updates)
-                              : take_means(rays, result.updates);
+    DepthTerms& terms = result.terms;
+    terms.miss = config_.model.miss_log_odds;
+    terms.bricks.reserve(workspace_->bricks_before);
+    terms.hits.reserve(workspace_->hits_before);
+    bool has_room = false;
+    switch (config_.depth_update) {
+        case DepthUpdate::paper:
+            has_room = take_sets(rays, T_map_camera, terms);
+            break;
+        case DepthUpdate::robust:
+            has_room = take_means(rays, terms);
+            break;
+        case DepthUpdate::fast:
+            has_room = take_nearest(rays, T_map_camera, terms);
+            break;
+    }
     if (!has_room) return unexpected(DepthRejection::box_too_large);
+    workspace_->bricks_before = terms.bricks.size();
+    workspace_->hits_before = terms.hits.size();
     return result;
 }
 
 /// The paper's sets: a hit wins over any number of rays that passed, and the largest hit counts. A hit with a
 /// term of 0 (too near to be trusted) is a hit all the same: it never turns into a miss.
 bool DepthIntegrator::take_sets(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
-                                std::vector<VoxelUpdate>& updates) {
+                                DepthTerms& terms) {
     MarkGrid& marks = workspace_->marks;
+    HitBricks& hits = workspace_->hits;
     const KeyBox box = box_of(rays, lattice_);
-    if (!marks.span(box.lowest, box.highest, config_.depth_box_voxels_max)) return false;
+    if (!hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max) ||
+        !marks.span(box.lowest, box.highest, config_.depth_box_voxels_max)) {
+        return false;
+    }
     workspace_->traversal.mark_passed(rays, pixel_rays_, lattice_, T_map_camera, marks);
-    HitTable& hits = workspace_->hits;
-    hits.begin(rays.counts.used);
-    for_each_hit(rays, lattice_, [&](VoxelKey key, double range_m) {
-        const std::ptrdiff_t voxel = marks.index_of(key);
-        marks.marks()[voxel] = MarkGrid::kHit;
-        hits.add(voxel, config_.model.depth.log_odds(range_m));
+    marks.drain([&](MortonCode brick, const BrickMask& passed) {
+        const BrickCells cells(hits.of(brick));
+        terms.add(brick, without(passed, cells.mask()));
+        cells.for_each([&](std::uint16_t cell, const BrickCells::Cell& hit) {
+            terms.add_hit(brick, {cell, hit.most});
+        });
     });
-    hits.finish();
-    const float miss = config_.model.miss_log_odds;
-    updates.reserve(workspace_->updates_before);
-    marks.drain([&](VoxelKey key, std::uint8_t mark) {
-        const float term = mark == MarkGrid::kHit ? hits.largest(marks.index_of(key)) : miss;
-        if (term != 0.0F) updates.push_back({key, term});
-    });
-    workspace_->updates_before = updates.size();
     return true;
 }
 
-bool DepthIntegrator::take_means(const PlacedImage& rays, std::vector<VoxelUpdate>& updates) {
+bool DepthIntegrator::take_means(const PlacedImage& rays, DepthTerms& terms) {
     TallyGrid& tallies = workspace_->tallies;
     if (!tallies.span(box_of(rays, lattice_), config_.depth_box_voxels_max)) return false;
     for_each_ray(rays, [&](const Eigen::Vector3f& end, double) {
@@ -133,9 +203,44 @@ bool DepthIntegrator::take_means(const PlacedImage& rays, std::vector<VoxelUpdat
     for_each_hit(rays, lattice_, [&](VoxelKey key, double range_m) {
         tallies.add_hit(tallies.index_of(key), config_.model.depth.log_odds(range_m));
     });
+    std::vector<VoxelUpdate> updates;
     tallies.drain([&](VoxelKey key, const VoxelTally& tally) {
-        const float term = mean_term(tally, config_.model.miss_log_odds);
-        if (term != 0.0F) updates.push_back({key, term});
+        updates.push_back({key, mean_term(tally, config_.model.miss_log_odds)});
+    });
+    terms.take(std::move(updates));
+    return true;
+}
+
+bool DepthIntegrator::take_nearest(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
+                                   DepthTerms& terms) {
+    const CertainView view(pixel_rays_.camera(), lattice_, T_map_camera, rays);
+    if (!(view.depth_max_m > 0.0)) return take_means(rays, terms);
+    HitBricks& hits = workspace_->hits;
+    const KeyBox box = box_of(rays, lattice_);
+    if (!hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max)) return false;
+    const PictureTest picture(view, rays);
+    VoxelRays& voxel_rays = workspace_->voxel_rays;
+    voxel_rays.begin(view, rays, lattice_);
+    const auto verdict_of = [&](const VoxelCube& cube) {
+        const int edge = 1 << cube.height;
+        const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * (edge - 1) * lattice_.resolution_m());
+        return picture.of_cube(view.T_camera_map * (lattice_.centre_of(cube.lowest) + half), edge);
+    };
+    constexpr BrickMask kAll = [] {
+        BrickMask all;
+        all.fill(~std::uint64_t{0});
+        return all;
+    }();
+    walk_bricks(box, verdict_of, [&](MortonCode brick, bool is_all) {
+        if (is_all) return terms.add(brick, kAll);
+        const BrickMask passed = voxel_rays.passed(key_of_morton(brick));
+        const BrickCells cells(hits.of(brick));
+        terms.add(brick, without(passed, cells.mask()));
+        cells.for_each([&](std::uint16_t cell, const BrickCells::Cell& hit) {
+            const RayVote vote = voxel_rays.vote_on(key_of_morton(brick + cell));
+            terms.add_hit(brick, {cell, voted_term(vote, hit.sum / static_cast<float>(hit.rays),
+                                                   config_.model.miss_log_odds)});
+        });
     });
     return true;
 }

@@ -5,12 +5,11 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/depth/pixel_rays.hpp"
-#include "host/core/mapping/fused_map.hpp"
+#include "host/core/mapping/depth_terms.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/traversal/placed_image.hpp"
 
@@ -25,8 +24,7 @@ enum class DepthRejection : std::uint8_t {
 };
 
 struct DepthUpdates {
-    /// One per voxel at most, none with a term of 0, in ascending (z, y, x).
-    std::vector<VoxelUpdate> updates;
+    DepthTerms terms;
     DepthPixelCounts pixels;
 };
 
@@ -44,22 +42,22 @@ class DepthIntegrator {
     [[nodiscard]] const PixelRays& pixel_rays() const noexcept { return pixel_rays_; }
 
     /// The terms of one image (depth along the optical axis, metres, NaN = none), already filtered and
-    /// without the robot, seen from `T_map_camera` (optical frame: z forward, x right, y down). Voxels hit
-    /// and passed equal those of OctoMap's `computeUpdate` without discretisation, maximum range
-    /// `depth_range_max_m`. `paper`: a voxel hit by any endpoint gets the largest of their terms, any other
-    /// traversed voxel one miss. `robust`: the mean of all beams' terms, (sum of hits + miss * passed) /
-    /// (hits + passed). O(pixels * range / resolution), about 80 ms for 512 x 424 at 0.04 m. Throws
-    /// std::bad_alloc; the next image is then as if this one had not been.
+    /// without the robot, seen from `T_map_camera` (optical frame: z forward, x right, y down). What voxels
+    /// are hit and passed is what OctoMap's `computeUpdate` says without discretisation, maximum range
+    /// `depth_range_max_m`; see DepthUpdate for what follows from it. O(pixels * range / resolution).
+    /// Throws std::bad_alloc; the next image is then as if this one had not been.
     [[nodiscard]] Result<DepthUpdates, DepthRejection> integrate(const DepthImage& image,
                                                                  const Eigen::Isometry3d& T_map_camera);
 
   private:
     [[nodiscard]] Result<DepthUpdates, DepthRejection> updates_of(const DepthImage& image,
                                                                   const Eigen::Isometry3d& T_map_camera);
-    /// False: the rays span too many voxels.
+    /// Each of them false: the rays span too many voxels.
     [[nodiscard]] bool take_sets(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
-                                 std::vector<VoxelUpdate>& updates);
-    [[nodiscard]] bool take_means(const PlacedImage& rays, std::vector<VoxelUpdate>& updates);
+                                 DepthTerms& terms);
+    [[nodiscard]] bool take_means(const PlacedImage& rays, DepthTerms& terms);
+    [[nodiscard]] bool take_nearest(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
+                                    DepthTerms& terms);
 
     struct Workspace;
     MappingConfig config_;

@@ -1,122 +1,90 @@
 #include "host/core/mapping/fused_map.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <deque>
-#include <limits>
 #include <new>
-#include <unordered_map>
 #include <utility>
-#include <vector>
 
 namespace octoskin {
 namespace {
 
-/// Unknown voxels of a brick hold a NaN, so that one load tells known from unknown. No term, clamp or file
-/// can put one there: all of them are checked for finiteness on the way in.
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-
-using Brick = std::array<float, kBrickVoxels>;
-constexpr std::size_t kBytesPerBrick = sizeof(Brick) + 64;  // and its entry in the index
-
-std::size_t bricks_in(std::uint32_t memory_max_mib) {
-    return (std::size_t{memory_max_mib} << 20U) / kBytesPerBrick;
+constexpr std::size_t bytes_of(std::uint32_t memory_mib) {
+    return std::size_t{memory_mib} << 20U;
 }
 
-/// Place of a voxel in its brick, in Morton order.
-std::size_t cell_of(VoxelKey key) {
-    constexpr std::array<std::uint8_t, 8> kSpread = {0, 1, 8, 9, 64, 65, 72, 73};
-    return static_cast<std::size_t>(kSpread[key.x & 7U] | (kSpread[key.y & 7U] << 1U) |
-                                    (kSpread[key.z & 7U] << 2U));
-}
-
-std::uint64_t brick_id_of(VoxelKey key) {
-    return static_cast<std::uint64_t>(key.x >> kBrickHeight) |
-           (static_cast<std::uint64_t>(key.y >> kBrickHeight) << 16U) |
-           (static_cast<std::uint64_t>(key.z >> kBrickHeight) << 32U);
-}
-
-VoxelKey lowest_key_of(std::uint64_t brick_id) {
-    const auto axis = [&](unsigned shift) {
-        return static_cast<std::uint16_t>(((brick_id >> shift) & 0xFFFFU) << kBrickHeight);
-    };
-    return {axis(0), axis(16), axis(32)};
+/// If each voxel had a value of its own.
+std::size_t bytes_at_most(const BrickTree& tree) {
+    return tree.nodes() * BrickTree::kNodeBytes + tree.bricks() * BrickTree::kBrickBytes;
 }
 
 }  // namespace
 
-struct FusedMap::Bricks {
-    std::deque<Brick> storage;  // a deque, so that growing moves no brick
-    std::unordered_map<std::uint64_t, Brick*> by_id;
-    std::size_t bricks_max = 0;
-    std::size_t known_voxels = 0;
-
-    [[nodiscard]] const Brick* find(VoxelKey key) const {
-        const auto found = by_id.find(brick_id_of(key));
-        return found == by_id.end() ? nullptr : found->second;
-    }
-    /// The brick of this id, made if it is new; null if it is and there is no room. Throws std::bad_alloc,
-    /// and then nothing is changed.
-    [[nodiscard]] Brick* find_or_make(std::uint64_t id) {
-        if (const auto found = by_id.find(id); found != by_id.end()) return found->second;
-        if (storage.size() >= bricks_max) return nullptr;
-        Brick* const brick = &storage.emplace_back();
-        try {
-            by_id.emplace(id, brick);
-        } catch (...) {  // else room would be taken that nobody finds again
-            storage.pop_back();
-            throw;
-        }
-        brick->fill(kUnknown);
-        return brick;
-    }
-    void set(Brick& brick, std::size_t cell, float log_odds) {
-        known_voxels += std::isnan(brick[cell]) ? 1U : 0U;
-        brick[cell] = log_odds;
-    }
-};
-
-FusedMap::FusedMap(const MapConfig& config)
-    : config_(config), lattice_(config.resolution_m), bricks_(std::make_unique<Bricks>()) {
+FusedMap::FusedMap(const MapConfig& config) : config_(config), lattice_(config.resolution_m) {
     assert(std::isfinite(config.log_odds_min) && std::isfinite(config.log_odds_max));
     assert(config.log_odds_min <= 0.0F && config.log_odds_max >= 0.0F);
-    bricks_->bricks_max = bricks_in(config.memory_max_mib);
-}
-FusedMap::FusedMap(FusedMap&&) noexcept = default;
-FusedMap& FusedMap::operator=(FusedMap&&) noexcept = default;
-FusedMap::~FusedMap() = default;
-
-FusedMap FusedMap::copy() const {
-    FusedMap other(config_);
-    other.counters_ = counters_;
-    other.bricks_->known_voxels = bricks_->known_voxels;
-    other.bricks_->bricks_max = std::max(bricks_->bricks_max, bricks_->storage.size());
-    for (const auto& [id, brick] : bricks_->by_id) *other.bricks_->find_or_make(id) = *brick;
-    return other;
 }
 
 void FusedMap::limit(const MapConfig& config) {
     assert(config.resolution_m == config_.resolution_m);
     const bool clamps_change =
         config.log_odds_min != config_.log_odds_min || config.log_odds_max != config_.log_odds_max;
+    if (clamps_change) {
+        const auto clamp = [&](float& log_odds) {  // a NaN, which is an unknown voxel, stays one
+            log_odds = std::clamp(log_odds, config.log_odds_min, config.log_odds_max);
+        };
+        BrickTree clamped = tree_;
+        tree_.for_each([&](MortonCode brick, const BrickView& view) {
+            if (view.values != nullptr) {
+                std::ranges::for_each(clamped.open(brick), clamp);
+            } else {
+                float value = view.value;
+                clamp(value);
+                clamped.set_all(brick, value);
+            }
+        });
+        tree_ = std::move(clamped);
+    }
     config_ = config;
     counters_ = {};
-    bricks_->bricks_max = bricks_in(config.memory_max_mib);
-    if (!clamps_change) return;
-    for (Brick& brick : bricks_->storage) {
-        for (float& log_odds : brick) {  // a NaN, which is an unknown voxel, stays one
-            log_odds = std::clamp(log_odds, config.log_odds_min, config.log_odds_max);
-        }
+}
+
+bool FusedMap::has_room_for(MortonCode brick) const noexcept {
+    const std::size_t more = tree_.nodes_missing(brick) * BrickTree::kNodeBytes + BrickTree::kBrickBytes;
+    return bytes_at_most(tree_) + more <= bytes_of(config_.memory_max_mib);
+}
+
+template <class Write>
+Status<FusedMap::Refusal> FusedMap::change(MortonCode brick, Write&& write) noexcept {
+    if (tree_.find(brick).is_unknown() && !has_room_for(brick)) return unexpected(&MapCounters::no_room);
+    try {
+        write();
+        return Done{};
+    } catch (const std::bad_alloc&) {
+        return unexpected(&MapCounters::no_memory);
     }
 }
 
+void FusedMap::add(float& voxel, float log_odds) noexcept {
+    known_voxels_ += std::isnan(voxel) ? 1U : 0U;
+    voxel = clamped(log_odds).added_to(voxel);
+}
+
 void FusedMap::apply(std::span<const VoxelUpdate> updates) {
-    std::uint64_t brick_id = std::numeric_limits<std::uint64_t>::max();  // no brick has this one
-    Brick* brick = nullptr;
-    std::uint64_t* refused = nullptr;  // where those count for which there is no brick
-    for (const VoxelUpdate& update : updates) {
+    while (!updates.empty()) {
+        const MortonCode brick = brick_of(updates.front().key);
+        std::size_t count = 1;
+        while (count < updates.size() && brick_of(updates[count].key) == brick) ++count;
+        apply_run(brick, updates.first(count));
+        updates = updates.subspan(count);
+    }
+}
+
+/// Terms of one brick. A brick is made for the first of them that it is needed for.
+void FusedMap::apply_run(MortonCode brick, std::span<const VoxelUpdate> run) noexcept {
+    BrickValues* values = nullptr;
+    Status<Refusal> has_values = Done{};
+    for (const VoxelUpdate& update : run) {
         if (!std::isfinite(update.log_odds)) {
             ++counters_.not_finite;
             continue;
@@ -125,32 +93,51 @@ void FusedMap::apply(std::span<const VoxelUpdate> updates) {
             ++counters_.zero;
             continue;
         }
-        if (const std::uint64_t id = brick_id_of(update.key); id != brick_id) {
-            brick_id = id;
-            refused = &counters_.no_room;
-            try {
-                brick = bricks_->find_or_make(id);
-            } catch (const std::bad_alloc&) {
-                brick = nullptr;
-                refused = &counters_.no_memory;
+        if (values == nullptr && has_values) {
+            const BrickView before = tree_.find(brick);
+            if (before.values == nullptr && clamped(update.log_odds).added_to(before.value) == before.value) {
+                ++counters_.applied;  // a clamped value that stays: most of free space
+                continue;
             }
+            has_values = change(brick, [&] { values = &tree_.open(brick); });
         }
-        if (brick == nullptr) {
-            ++*refused;
+        if (values == nullptr) {
+            ++(counters_.*has_values.error());
             continue;
         }
-        const std::size_t cell = cell_of(update.key);
-        const float before = std::isnan((*brick)[cell]) ? 0.0F : (*brick)[cell];
-        bricks_->set(*brick, cell,
-                     std::clamp(before + update.log_odds, config_.log_odds_min, config_.log_odds_max));
+        add((*values)[cell_of(update.key)], update.log_odds);
         ++counters_.applied;
     }
 }
 
+void FusedMap::apply(const DepthTerms& terms, std::span<const BrickTerms> bricks) {
+    assert(std::isfinite(terms.miss));
+    for (const BrickTerms& brick : bricks) apply_brick(terms, brick);
+}
+
+void FusedMap::apply_brick(const DepthTerms& terms, const BrickTerms& brick) noexcept {
+    const auto hits = terms.hits_of(brick);
+    const ClampedTerm miss = clamped(terms.miss);
+    const std::size_t passed = count_of(brick.passed);
+    const BrickView before = tree_.find(brick.first);
+    Status<Refusal> done = Done{};
+    if (before.values == nullptr && hits.empty() && passed == kBrickVoxels) {
+        const float after = miss.added_to(before.value);
+        if (after != before.value) done = change(brick.first, [&] { tree_.set_all(brick.first, after); });
+        if (done && before.is_unknown()) known_voxels_ += kBrickVoxels;
+    } else if (before.values != nullptr || !hits.empty() || miss.added_to(before.value) != before.value) {
+        done = change(brick.first, [&] {
+            BrickValues& values = tree_.open(brick.first);
+            known_voxels_ += add_to_voxels(values, brick.passed, miss);
+            for (const CellTerm& hit : hits) add(values[hit.cell], hit.log_odds);
+            if (hits.empty() && are_alike(values)) tree_.set_all(brick.first, values.front());
+        });
+    }
+    counters_.*(done ? &MapCounters::applied : done.error()) += passed + hits.size();
+}
+
 std::optional<float> FusedMap::log_odds(VoxelKey key) const noexcept {
-    const Brick* const brick = bricks_->find(key);
-    if (brick == nullptr) return std::nullopt;
-    const float value = (*brick)[cell_of(key)];
+    const float value = tree_.find(brick_of(key)).at(cell_of(key));
     return std::isnan(value) ? std::nullopt : std::optional<float>(value);
 }
 
@@ -176,11 +163,10 @@ const MapCounters& FusedMap::counters() const noexcept {
     return counters_;
 }
 std::size_t FusedMap::known_voxels() const noexcept {
-    return bricks_->known_voxels;
+    return known_voxels_;
 }
-
 std::size_t FusedMap::memory_bytes() const noexcept {
-    return bricks_->storage.size() * kBytesPerBrick;
+    return bytes_at_most(tree_);
 }
 
 std::optional<VoxelKey> FusedMap::key_of(const Eigen::Vector3d& p_map) const noexcept {
@@ -192,35 +178,51 @@ Eigen::Vector3d FusedMap::centre_of(VoxelKey key) const noexcept {
 
 std::vector<MapBrick> FusedMap::bricks() const {
     std::vector<MapBrick> ordered;
-    ordered.reserve(bricks_->by_id.size());
-    for (const auto& [id, brick] : bricks_->by_id) ordered.push_back({morton_of(lowest_key_of(id)), *brick});
-    std::ranges::sort(ordered, {}, &MapBrick::first);
+    ordered.reserve(tree_.bricks());
+    tree_.for_each([&](MortonCode brick, const BrickView& view) { ordered.push_back({brick, view}); });
     return ordered;
 }
 
 void FusedMap::for_each_known(const std::function<void(VoxelKey, float)>& visit) const {
-    for (const MapBrick& brick : bricks()) {
+    tree_.for_each([&](MortonCode brick, const BrickView& view) {
         for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) {
-            const float log_odds = brick.log_odds[cell];
-            if (!std::isnan(log_odds)) visit(key_of_morton(brick.first + cell), log_odds);
+            const float log_odds = view.at(cell);
+            if (!std::isnan(log_odds)) visit(key_of_morton(brick + cell), log_odds);
         }
-    }
+    });
+}
+
+void FusedMap::for_each_difference(const FusedMap& before,
+                                   const std::function<void(const MapBrick&)>& visit) const {
+    tree_.for_each_difference(before.tree_, [&](MortonCode brick) { visit({brick, tree_.find(brick)}); });
 }
 
 bool FusedMap::set_cube(const VoxelCube& cube, float log_odds) {
     if (!std::isfinite(log_odds)) return false;
     const std::size_t bricks = (std::size_t{1} << (3 * cube.height)) / kBrickVoxels;
-    if (bricks > bricks_->bricks_max) return false;  // at once: a file may claim the whole octree
+    // At once: a file may claim the whole octree.
+    if (bricks > bytes_of(config_.memory_max_mib) / BrickTree::kBrickBytes) return false;
     // Adding 0 turns a -0 into a 0: equal values must be equal bytes in a file.
     const float value = std::clamp(log_odds, config_.log_odds_min, config_.log_odds_max) + 0.0F;
     const MortonCode first = morton_of(cube.lowest);
     const MortonCode end = first + (MortonCode{1} << (3 * cube.height));
     const MortonCode step = std::min<MortonCode>(end - first, kBrickVoxels);
     for (MortonCode code = first; code < end; code += step) {
-        Brick* const brick = bricks_->find_or_make(brick_id_of(key_of_morton(code)));
-        if (brick == nullptr) return false;
-        const std::size_t cell = code % kBrickVoxels;
-        for (std::size_t offset = 0; offset < step; ++offset) bricks_->set(*brick, cell + offset, value);
+        const MortonCode brick = code & ~MortonCode{kBrickVoxels - 1};
+        const BrickView before = tree_.find(brick);
+        if (before.is_unknown() && !has_room_for(brick)) return false;
+        if (step == kBrickVoxels) {
+            for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) {
+                known_voxels_ += std::isnan(before.at(cell)) ? 1U : 0U;
+            }
+            tree_.set_all(brick, value);
+            continue;
+        }
+        BrickValues& values = tree_.open(brick);
+        for (std::size_t cell = code % kBrickVoxels, last = cell + step; cell < last; ++cell) {
+            known_voxels_ += std::isnan(values[cell]) ? 1U : 0U;
+            values[cell] = value;
+        }
     }
     return true;
 }

@@ -6,11 +6,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "common/result.hpp"
+#include "host/core/bricks/brick_terms.hpp"
+#include "host/core/bricks/brick_tree.hpp"
+#include "host/core/mapping/depth_terms.hpp"
+#include "host/core/voxels/key_box.hpp"
 #include "host/core/voxels/morton.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
 
@@ -18,27 +22,14 @@ namespace octoskin {
 
 enum class Occupancy : std::uint8_t { unknown, free, occupied };
 
-/// One log-odds term for one voxel.
-struct VoxelUpdate {
-    VoxelKey key;
-    float log_odds = 0.0F;
-    friend bool operator==(const VoxelUpdate&, const VoxelUpdate&) = default;
-};
-
-/// The voxels whose keys agree with `lowest` in all but the low `height` bits, which are 0 in `lowest`: an
-/// octree node's cube, 2^height voxels along each edge.
-struct VoxelCube {
-    VoxelKey lowest;
-    unsigned height = 0;
-};
-
 struct MapConfig {
     double resolution_m = 0.04;
     float log_odds_min = -2.0F;
     float log_odds_max = 3.5F;
     /// A voxel is occupied at or above this log-odds.
     float log_odds_occupied = 0.0F;
-    /// Beyond this the map takes no new space; what it holds goes on being updated.
+    /// Beyond this the map takes no new space; what it holds goes on being updated. Space counts as if each
+    /// of its voxels had a value of its own, for each may come to have one.
     std::uint32_t memory_max_mib = 800;
     friend bool operator==(const MapConfig&, const MapConfig&) = default;
 };
@@ -53,32 +44,32 @@ struct MapCounters {
     friend bool operator==(const MapCounters&, const MapCounters&) = default;
 };
 
-/// Space is held in dense bricks of 8 x 8 x 8 voxels: one look-up serves a run of neighbours, and a brick is
-/// an octree's lowest three levels.
-inline constexpr unsigned kBrickHeight = 3;
-inline constexpr std::size_t kBrickVoxels = std::size_t{1} << (3 * kBrickHeight);
-
 /// A brick of a map, for as long as that is there and unchanged.
 struct MapBrick {
-    MortonCode first = 0;                           ///< of its voxels
-    std::span<const float, kBrickVoxels> log_odds;  ///< of its voxels in Morton order; NaN: unknown
+    MortonCode first = 0;  ///< of its voxels
+    BrickView log_odds;    ///< of its voxels in Morton order; NaN: unknown
 };
 
-/// Not safe for use by two threads at once, unless all of them only read.
+/// Not safe for use by two threads at once, unless all of them only read; a copy may go to another thread.
 class FusedMap {
   public:
     /// Resolution finite and positive, log_odds_min <= 0 <= log_odds_max, both finite (asserted).
     explicit FusedMap(const MapConfig& config);
-    FusedMap(FusedMap&&) noexcept;
-    FusedMap& operator=(FusedMap&&) noexcept;
-    ~FusedMap();
+    FusedMap(FusedMap&&) noexcept = default;
+    FusedMap& operator=(FusedMap&&) noexcept = default;
 
-    /// The same map again, for whoever shall look at it while this one goes on. O(bricks): about 1 ms for
-    /// each 5 MiB. Throws std::bad_alloc if there is no memory for it.
-    [[nodiscard]] FusedMap copy() const;
+    /// The same map again, for whoever shall look at it while this one goes on: a snapshot. O(1), and never
+    /// throws; what this map writes from then on it first copies, brick by brick, if both still hold it.
+    [[nodiscard]] FusedMap copy() const noexcept { return FusedMap(*this); }
+    /// Visits, in Morton order, each brick in which this map may differ from `before`, an earlier copy of it.
+    /// O(what was written since).
+    void for_each_difference(const FusedMap& before,
+                             const std::function<void(const MapBrick& now)>& visit) const;
 
     /// From now on other limits hold, at the same resolution (asserted): what lies beyond new clamps is
     /// clamped; bricks beyond a smaller memory stay. The counters begin anew. O(voxels) if the clamps change.
+    /// Throws std::bad_alloc if a copy holds the voxels, too, and there is no memory for others; then nothing
+    /// is changed.
     void limit(const MapConfig& config);
 
     /// Adds each term to its voxel (unknown counts as 0 before) and clamps, one by one, in order, in
@@ -86,6 +77,9 @@ class FusedMap {
     /// occupied. A term that is not finite is refused and counted, as is one for space that cannot be had:
     /// the next one is tried again. Never throws. About 5 ns an update if neighbours come together.
     void apply(std::span<const VoxelUpdate> updates);
+    /// The same of an image's terms, or of a part of its bricks.
+    void apply(const DepthTerms& terms) { apply(terms, terms.bricks); }
+    void apply(const DepthTerms& terms, std::span<const BrickTerms> bricks);
 
     [[nodiscard]] Occupancy occupancy(VoxelKey key) const noexcept;
     /// Empty for unknown.
@@ -103,8 +97,10 @@ class FusedMap {
     [[nodiscard]] Eigen::Vector3d centre_of(VoxelKey key) const noexcept;
 
     [[nodiscard]] std::size_t known_voxels() const noexcept;
-    /// What the voxels take in memory, of `MapConfig::memory_max_mib`.
+    /// What the map's space may come to take of the heap, of `MapConfig::memory_max_mib`.
     [[nodiscard]] std::size_t memory_bytes() const noexcept;
+    /// What it takes now. Space whose voxels are alike takes next to nothing.
+    [[nodiscard]] std::size_t heap_bytes() const noexcept { return tree_.memory_bytes(); }
     /// Visits every known voxel once, in Morton order (an octree's depth-first order), whatever the order in
     /// which the map was filled. O(voxels).
     void for_each_known(const std::function<void(VoxelKey, float log_odds)>& visit) const;
@@ -117,11 +113,27 @@ class FusedMap {
     [[nodiscard]] bool set_cube(const VoxelCube& cube, float log_odds);
 
   private:
-    struct Bricks;
+    FusedMap(const FusedMap&) noexcept = default;
+
+    /// Which counter tells that a term was refused.
+    using Refusal = std::uint64_t MapCounters::*;
+
+    [[nodiscard]] bool has_room_for(MortonCode brick) const noexcept;
+    /// Makes `write` write a brick, unless there is no room or no memory for it.
+    template <class Write>
+    [[nodiscard]] Status<Refusal> change(MortonCode brick, Write&& write) noexcept;
+    [[nodiscard]] ClampedTerm clamped(float log_odds) const noexcept {
+        return {log_odds, config_.log_odds_min, config_.log_odds_max};
+    }
+    void add(float& voxel, float log_odds) noexcept;
+    void apply_run(MortonCode brick, std::span<const VoxelUpdate> run) noexcept;
+    void apply_brick(const DepthTerms& terms, const BrickTerms& brick) noexcept;
+
     MapConfig config_;
     VoxelLattice lattice_;
     MapCounters counters_;
-    std::unique_ptr<Bricks> bricks_;
+    BrickTree tree_;
+    std::size_t known_voxels_ = 0;
 };
 
 }  // namespace octoskin

@@ -16,4 +16,10 @@ MappingConfig robust_mapping() {
     return config;
 }
 
+MappingConfig fast_mapping() {
+    MappingConfig config = robust_mapping();
+    config.depth_update = DepthUpdate::fast;
+    return config;
+}
+
 }  // namespace octoskin

@@ -13,6 +13,11 @@ namespace octoskin {
 enum class DepthUpdate : std::uint8_t {
     paper,   ///< set-wise: per frame and voxel one term, hit wins over traversed
     robust,  ///< each voxel's term is the mean of its beams' terms; meant for a filtered image
+    /// Meant for a filtered image, and voxel by voxel: its rays are those that are in it at its centre's
+    /// depth. If no ray ends in it, one of them that goes on makes a miss. If any does, it gets the mean of
+    /// hits, for its rays that end before the centre, and misses, for those that go on, or nothing if that is
+    /// no more than 0.
+    fast,
 };
 
 struct MappingConfig {
@@ -36,5 +41,7 @@ struct MappingConfig {
 [[nodiscard]] MappingConfig paper_mapping();
 /// The default: depth filtered, each voxel's term the mean of its beams' terms.
 [[nodiscard]] MappingConfig robust_mapping();
+/// Depth filtered, each voxel asked by one ray.
+[[nodiscard]] MappingConfig fast_mapping();
 
 }  // namespace octoskin

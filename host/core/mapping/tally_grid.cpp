@@ -25,13 +25,12 @@ void TallyGrid::add_hit(std::ptrdiff_t index, float term) {
     if ((marks_[at] & kIsHit) == 0) {
         marks_[at] |= kIsHit;
         hit_slots_[at] = static_cast<std::uint32_t>(hits_.size());
-        hits_.push_back({.hits = 1, .hit_sum = static_cast<double>(term), .hit_max = term});
+        hits_.push_back({.hits = 1, .hit_sum = static_cast<double>(term)});
         return;
     }
     VoxelTally& tally = hits_[hit_slots_[at]];
     ++tally.hits;
     tally.hit_sum += static_cast<double>(term);
-    tally.hit_max = std::max(tally.hit_max, term);
 }
 
 }  // namespace octoskin

@@ -9,28 +9,17 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/core/voxels/key_box.hpp"
 #include "host/core/voxels/ray_walk.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
-
-/// Lowest and highest key along each axis, both inside.
-struct KeyBox {
-    VoxelKey lowest;
-    VoxelKey highest;
-
-    void include(VoxelKey key) noexcept {
-        lowest = {std::min(lowest.x, key.x), std::min(lowest.y, key.y), std::min(lowest.z, key.z)};
-        highest = {std::max(highest.x, key.x), std::max(highest.y, key.y), std::max(highest.z, key.z)};
-    }
-};
 
 /// All that the beams of one image say about one voxel.
 struct VoxelTally {
     std::uint32_t passed = 0;
     std::uint32_t hits = 0;
     double hit_sum = 0.0;
-    float hit_max = 0.0F;  ///< of the hits; meaningless without one
 };
 
 /// A dense grid over a box of voxels, one voxel wider on every side (where rounding may lead a ray, see

@@ -34,7 +34,7 @@ class CommitListener {
     virtual void on_joints(const JointMeasurement& joints) = 0;
     virtual void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                             std::span<const VoxelUpdate> updates) = 0;
-    virtual void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) = 0;
+    virtual void on_depth(const DepthFrame& frame, const DepthTerms& terms) = 0;
     /// Time goes on from before what came so far: a replay in this order ends here.
     virtual void on_time_back() {}
 };

@@ -113,13 +113,13 @@ Status<DepthReason> MapBuilder::integrate(const DepthFrame& frame) {
     if (!updates) {
         return unexpected(updates.error());
     }
-    maps_.add_depth(updates->updates);
+    maps_.add_depth(updates->terms);
     if (witness_) {
         witness_->on_depth(depth_stage_->witness_images(), depth_stage_->T_map_camera_of(frame),
                            frame.captured);
     }
     if (listener_ != nullptr) {
-        listener_->on_depth(frame, updates->updates);
+        listener_->on_depth(frame, updates->terms);
     }
     return Done{};
 }

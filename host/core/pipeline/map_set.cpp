@@ -32,10 +32,10 @@ FusedMap MapSet::take_fused() {
     return std::move(*fused_);
 }
 
-void MapSet::add_depth(std::span<const VoxelUpdate> updates) {
+void MapSet::add_depth(const DepthTerms& terms) {
     for (auto* map : {&depth_, &fused_}) {
         if (*map) {
-            (*map)->apply(updates);
+            (*map)->apply(terms);
         }
     }
 }

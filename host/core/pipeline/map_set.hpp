@@ -28,7 +28,7 @@ class MapSet {
     [[nodiscard]] FusedMap take_fused();
 
     /// To `depth` and `fused`.
-    void add_depth(std::span<const VoxelUpdate> updates);
+    void add_depth(const DepthTerms& terms);
     /// To `proximity` and `fused`.
     void add_proximity(std::span<const VoxelUpdate> updates);
 

@@ -176,11 +176,13 @@ void mark_certain_voxels(const CertainView& view, const PlacedImage& image, cons
             for (int x = 0; x < size[0]; x += kBrick) {
                 const Eigen::Vector3d first(centre_of(corner[0] + x), centre_of(corner[1] + y),
                                             centre_of(corner[2] + z));
-                const BrickVerdict verdict = picture.of_brick(view.T_camera_map * (first + to_middle));
-                if (verdict == BrickVerdict::none) continue;
+                const Eigen::Vector3d middle = view.T_camera_map * (first + to_middle);
+                if (middle.z() - kBrick * view.half_depth_m > view.depth_max_m) continue;
+                const CubeVerdict verdict = picture.of_cube(middle, kBrick);
+                if (verdict == CubeVerdict::none) continue;
                 std::uint8_t* const marks =
                     grid.marks() + grid.index_of(corner[0] + x, corner[1] + y, corner[2] + z);
-                if (verdict == BrickVerdict::all) {
+                if (verdict == CubeVerdict::all) {
                     mark_all(marks, stride[1], stride[2]);
                     continue;
                 }

@@ -1,4 +1,4 @@
-// One byte for each voxel of a box: passed by a ray, hit by one, or neither.
+// One byte for each voxel of a box: passed by a ray or not.
 #pragma once
 
 #include <algorithm>
@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 
+#include "host/core/bricks/brick.hpp"
+#include "host/core/bricks/brick_walk.hpp"
+#include "host/core/voxels/key_box.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
@@ -19,8 +21,7 @@ namespace octoskin {
 class MarkGrid {
   public:
     static constexpr std::uint8_t kPassed = 1;
-    static constexpr std::uint8_t kHit = 2;
-    static constexpr int kBrick = 8;
+    static constexpr int kBrick = kBrickEdge;
 
     /// Spans the voxels from `lowest` to `highest`, both inside, without a mark; false, and nothing done, if
     /// that takes over `voxels_max`. The memory stays, and what is never marked is never touched. Throws
@@ -43,12 +44,17 @@ class MarkGrid {
     [[nodiscard]] const std::array<std::ptrdiff_t, 3>& stride() const noexcept { return stride_; }
     [[nodiscard]] std::uint8_t* marks() noexcept { return marks_.get(); }
 
-    /// Calls take(key, mark) for each marked voxel that has a key, in ascending (z, y, x), and leaves no
-    /// mark.
+    /// Calls take(brick, passed) for each brick of the box, marked or not, in Morton order, and leaves no
+    /// mark; `brick`: the code of its first voxel. What has no key is left out.
     template <class Take>
     void drain(Take&& take);
 
   private:
+    /// What is marked in a brick, and from now on nothing.
+    [[nodiscard]] BrickMask take_brick(VoxelKey lowest) noexcept;
+    /// Where rounding led rays out of the octree there are no keys. `box`: all that have one.
+    void clear_beyond_keys(const KeyBox& box) noexcept;
+
     struct Free {
         void operator()(std::uint8_t* marks) const noexcept { std::free(marks); }
     };
@@ -63,29 +69,16 @@ class MarkGrid {
 
 template <class Take>
 void MarkGrid::drain(Take&& take) {
-    const auto is_key = [](int value) { return value >= 0 && value < kVoxelsPerAxis; };
-    for (int z = corner_[2]; z < corner_[2] + size_[2]; ++z) {
-        for (int y = corner_[1]; y < corner_[1] + size_[1]; ++y) {
-            std::uint8_t* const row = marks_.get() + index_of(corner_[0], y, z);
-            if (!is_key(y) || !is_key(z)) {
-                std::fill_n(row, size_[0], std::uint8_t{0});
-                continue;
-            }
-            for (int i = 0; i < size_[0]; i += kBrick) {
-                std::uint64_t eight = 0;
-                std::memcpy(&eight, row + i, sizeof(eight));
-                if (eight == 0) continue;
-                for (int j = i; j < i + kBrick; ++j) {
-                    const int x = corner_[0] + j;
-                    if (row[j] == 0 || !is_key(x)) continue;
-                    take(VoxelKey{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                                  static_cast<std::uint16_t>(z)},
-                         row[j]);
-                }
-                std::memset(row + i, 0, kBrick);
-            }
-        }
-    }
+    const auto key = [](int value) {
+        return static_cast<std::uint16_t>(std::clamp(value, 0, kVoxelsPerAxis - 1));
+    };
+    const KeyBox box{
+        {key(corner_[0]), key(corner_[1]), key(corner_[2])},
+        {key(corner_[0] + size_[0] - 1), key(corner_[1] + size_[1] - 1), key(corner_[2] + size_[2] - 1)}};
+    walk_bricks(
+        box, [](const VoxelCube&) { return CubeVerdict::some; },
+        [&](MortonCode brick, bool) { take(brick, take_brick(key_of_morton(brick))); });
+    clear_beyond_keys(box);
     marks_[voxels_] = 0;  // nowhere is somewhere in the next grid
 }
 

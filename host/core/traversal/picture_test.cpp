@@ -4,11 +4,6 @@
 #include <cmath>
 
 namespace octoskin {
-namespace {
-
-constexpr int kBrick = MarkGrid::kBrick;
-
-}  // namespace
 
 PictureTest::PictureTest(const CertainView& view, const PlacedImage& image)
     : view_(view), camera_(view.camera), reach_(image) {
@@ -48,19 +43,20 @@ std::optional<PixelBox> PictureTest::pixels_of(const Eigen::Vector3d& centre, in
     return PixelBox{pixel(u - u_apart, camera_.width), pixel(u + u_apart, camera_.width),
                     pixel(v - v_apart, camera_.height), pixel(v + v_apart, camera_.height)};
 }
-BrickVerdict PictureTest::of_brick(const Eigen::Vector3d& centre) const {
-    const double half_depth_m = kBrick * view_.half_depth_m + view_.margin_m;
+
+CubeVerdict PictureTest::of_cube(const Eigen::Vector3d& centre, int voxels) const {
+    const double half_depth_m = voxels * view_.half_depth_m + view_.margin_m;
     const double nearest_m = centre.z() - half_depth_m;
     const double furthest_m = centre.z() + half_depth_m;
-    if (nearest_m > view_.depth_max_m || is_out_of_sight(centre, kBrick)) return BrickVerdict::none;
-    const auto box = pixels_of(centre, kBrick);
-    if (!box) return BrickVerdict::some;
+    if (is_out_of_sight(centre, voxels)) return CubeVerdict::none;
+    const auto box = pixels_of(centre, voxels);
+    if (!box) return CubeVerdict::some;
     const auto span = reach_.of(*box);
-    if (static_cast<double>(span.longest) < nearest_m) return BrickVerdict::none;
+    if (static_cast<double>(span.longest) < nearest_m) return CubeVerdict::none;
     const bool is_whole = box->u_first > 0 && box->u_last + 1 < camera_.width && box->v_first > 0 &&
                           box->v_last + 1 < camera_.height;
     const bool is_passed = static_cast<double>(span.shortest) > furthest_m;
-    return is_whole && is_passed && furthest_m < view_.depth_max_m ? BrickVerdict::all : BrickVerdict::some;
+    return is_whole && is_passed && furthest_m < view_.depth_max_m ? CubeVerdict::all : CubeVerdict::some;
 }
 
 }  // namespace octoskin

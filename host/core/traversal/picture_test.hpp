@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "host/core/bricks/brick_walk.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/traversal/certain_view.hpp"
 #include "host/core/traversal/mark_grid.hpp"
@@ -13,9 +14,6 @@
 #include "host/core/traversal/reach_blocks.hpp"
 
 namespace octoskin {
-
-/// Which of a brick's voxels are passed for certain.
-enum class BrickVerdict : std::uint8_t { none, some, all };
 
 /// Cubes are named by their centre in the camera's frame, metres, and their edge in voxels. Keeps references
 /// to the view and none to the image.
@@ -28,7 +26,8 @@ class PictureTest {
     /// The pixels that may see a cube; empty if that comes too near to the camera to tell.
     [[nodiscard]] std::optional<PixelBox> pixels_of(const Eigen::Vector3d& centre, int voxels) const;
     [[nodiscard]] PixelBox all_pixels() const { return {0, camera_.width - 1, 0, camera_.height - 1}; }
-    [[nodiscard]] BrickVerdict of_brick(const Eigen::Vector3d& centre) const;
+    /// Which of its voxels are passed for certain, by what the nearest pixels tell.
+    [[nodiscard]] CubeVerdict of_cube(const Eigen::Vector3d& centre, int voxels) const;
     /// The longest reach in a box, or in one a little larger; negative if no pixel has a ray.
     [[nodiscard]] float longest(const PixelBox& box) const { return reach_.of(box).longest; }
 

@@ -13,8 +13,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <tuple>
-#include <utility>
 
 #include "host/core/traversal/lanes-inl.hpp"
 
@@ -26,7 +24,8 @@ namespace octoskin {
 struct Placement {
     std::array<std::array<double, 4>, 3> T;  ///< map from camera, row by row
     double voxels_per_m = 0.0;
-    float range_max_m = 0.0F;  ///< 0: none
+    float range_max_m = 0.0F;   ///< 0: none
+    float half_depth_m = 0.0F;  ///< of a voxel, along the optical axis
 };
 
 /// A row of the image: as many entries as are worked on at once may be read beyond its end.
@@ -52,11 +51,30 @@ HWY_INLINE Float placed(const std::array<double, 4>& row, Double x, Double y, Do
     return hn::DemoteTo(Floats(), hn::Add(sum, hn::Set(d, row[3])));
 }
 
-/// Where a coordinate has a key (see `VoxelLattice::key_of`).
-HWY_INLINE Mask has_key(Float coordinate, double voxels_per_m) {
+/// A coordinate in voxels.
+HWY_INLINE Double scaled_by(double voxels_per_m, Float coordinate) {
     const Doubles d;
-    const Double scaled = hn::Mul(hn::Set(d, voxels_per_m), hn::PromoteTo(d, coordinate));
+    return hn::Mul(hn::Set(d, voxels_per_m), hn::PromoteTo(d, coordinate));
+}
+
+/// Where a coordinate has a key (see `VoxelLattice::key_of`).
+HWY_INLINE Mask has_key(Double scaled) {
+    const Doubles d;
     return hn::And(hn::Ge(scaled, hn::Set(d, -kOriginKey)), hn::Lt(scaled, hn::Set(d, kOriginKey)));
+}
+/// Where there is one.
+HWY_INLINE auto key_of(Double scaled) {
+    const Ints i;
+    return hn::Add(hn::DemoteTo(i, hn::Floor(scaled)), hn::Set(i, kOriginKey));
+}
+
+/// Where an end lies so near to a voxel's face that rounding may decide on which side: as OctoMap walks, it
+/// may neither pass nor end in the voxel before the face.
+HWY_INLINE Mask is_at_face(Double scaled) {
+    const Doubles d;
+    const Double from_face = hn::Abs(hn::Sub(scaled, hn::Round(scaled)));
+    const Double margin = hn::Add(hn::Set(d, 1e-3), hn::Mul(hn::Set(d, 4e-6), hn::Abs(scaled)));
+    return hn::Lt(from_face, margin);
 }
 
 /// What is worked out for some pixels at once.
@@ -81,6 +99,7 @@ HWY_INLINE void clip(Ends& ends, float range_max_m, const Eigen::Vector3f& origi
     const Float z = hn::Sub(ends.z, hn::Set(f, origin.z()));
     const Double length = length_of(x, y, z);
     const Mask is_beyond = hn::Gt(length, hn::Set(d, static_cast<double>(range_max_m)));
+    if (hn::AllFalse(d, is_beyond)) return;
     const auto is_beyond_f = narrow(is_beyond);
     const Float length_f = hn::DemoteTo(f, length);
     const auto end = [&](Float offset, float from) {
@@ -100,6 +119,8 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image) {
     const Float origin_x = hn::Set(f, image.origin.x());
     const Float origin_y = hn::Set(f, image.origin.y());
     const Float origin_z = hn::Set(f, image.origin.z());
+    Float lowest_x = origin_x, lowest_y = origin_y, lowest_z = origin_z;
+    Float highest_x = origin_x, highest_y = origin_y, highest_z = origin_z;
     for (std::size_t u = 0; u < row.width; u += hn::Lanes(d)) {
         const Float depth_m = hn::LoadU(f, row.depth_m + u);
         const Double z = hn::PromoteTo(d, depth_m);
@@ -111,9 +132,10 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image) {
 
         const Mask is_number = hn::Eq(z, z);
         const Mask is_good = hn::And(hn::Gt(z, hn::Zero(d)), hn::Lt(z, hn::Set(d, HUGE_VAL)));
-        const Mask has_keys =
-            hn::And(has_key(ends.x, to.voxels_per_m),
-                    hn::And(has_key(ends.y, to.voxels_per_m), has_key(ends.z, to.voxels_per_m)));
+        const Double scaled_x = scaled_by(to.voxels_per_m, ends.x);
+        const Double scaled_y = scaled_by(to.voxels_per_m, ends.y);
+        const Double scaled_z = scaled_by(to.voxels_per_m, ends.z);
+        const Mask has_keys = hn::And(has_key(scaled_x), hn::And(has_key(scaled_y), has_key(scaled_z)));
         const Mask is_used = hn::And(is_good, has_keys);
         const Mask in_row = hn::FirstN(d, row.width - u);
         image.counts.used += hn::CountTrue(d, hn::And(in_row, is_used));
@@ -123,12 +145,39 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image) {
 
         const auto is_used_f = narrow(is_used);
         const std::size_t at = row.first + u;
-        hn::StoreU(hn::IfThenElse(is_used_f, ends.x, origin_x), f, image.end_x.data() + at);
-        hn::StoreU(hn::IfThenElse(is_used_f, ends.y, origin_y), f, image.end_y.data() + at);
-        hn::StoreU(hn::IfThenElse(is_used_f, ends.z, origin_z), f, image.end_z.data() + at);
+        ends.x = hn::IfThenElse(is_used_f, ends.x, origin_x);
+        ends.y = hn::IfThenElse(is_used_f, ends.y, origin_y);
+        ends.z = hn::IfThenElse(is_used_f, ends.z, origin_z);
+        lowest_x = hn::Min(lowest_x, ends.x);
+        lowest_y = hn::Min(lowest_y, ends.y);
+        lowest_z = hn::Min(lowest_z, ends.z);
+        highest_x = hn::Max(highest_x, ends.x);
+        highest_y = hn::Max(highest_y, ends.y);
+        highest_z = hn::Max(highest_z, ends.z);
+        hn::StoreU(ends.x, f, image.end_x.data() + at);
+        hn::StoreU(ends.y, f, image.end_y.data() + at);
+        hn::StoreU(ends.z, f, image.end_z.data() + at);
+        const Ints i;
+        const hn::RebindToUnsigned<Ints> keys;
+        const auto xy = hn::Or(key_of(scaled_x), hn::ShiftLeft<16>(key_of(scaled_y)));
+        hn::StoreU(hn::BitCast(keys, xy), keys, image.key_xy.data() + at);
+        hn::StoreU(hn::BitCast(keys, hn::Add(key_of(scaled_z), hn::Zero(i))), keys, image.key_z.data() + at);
         hn::StoreU(hn::IfThenElse(is_used_f, ends.reach_m, hn::Set(f, -1.0F)), f, image.reach_m.data() + at);
         hn::StoreU(ends.range_m, d, image.range_m.data() + at);
+
+        // A ray that ends in nothing passes no voxel that it ends in.
+        const Mask is_less =
+            hn::Or(hn::Lt(ends.range_m, hn::Zero(d)),
+                   hn::Or(is_at_face(scaled_x), hn::Or(is_at_face(scaled_y), is_at_face(scaled_z))));
+        const Float passed =
+            hn::Sub(ends.reach_m, hn::IfThenElseZero(narrow(is_less), hn::Set(f, to.half_depth_m)));
+        hn::StoreU(hn::IfThenElse(is_used_f, passed, hn::Set(f, -1.0F)), f, image.passed_m.data() + at);
     }
+    const auto least = [](Float values) { return hn::GetLane(hn::MinOfLanes(Floats(), values)); };
+    const auto most = [](Float values) { return hn::GetLane(hn::MaxOfLanes(Floats(), values)); };
+    image.lowest = image.lowest.cwiseMin(Eigen::Vector3f(least(lowest_x), least(lowest_y), least(lowest_z)));
+    image.highest =
+        image.highest.cwiseMax(Eigen::Vector3f(most(highest_x), most(highest_y), most(highest_z)));
 }
 
 }  // namespace octoskin::HWY_NAMESPACE
@@ -144,19 +193,12 @@ HWY_EXPORT(place_row);
 constexpr std::size_t kLanesMax = 64;
 
 void resize(PlacedImage& image, std::size_t entries) {
-    for (auto* values : {&image.end_x, &image.end_y, &image.end_z, &image.reach_m}) values->resize(entries);
-    image.range_m.resize(entries);
-}
-
-/// Of the ends, one axis; the origin is among them if any pixel has no ray.
-std::pair<float, float> bounds_of(const std::vector<float>& values, float origin) {
-    float lowest = origin;
-    float highest = origin;
-    for (const float value : values) {
-        lowest = value < lowest ? value : lowest;
-        highest = value > highest ? value : highest;
+    for (auto* values : {&image.end_x, &image.end_y, &image.end_z, &image.reach_m, &image.passed_m}) {
+        values->resize(entries);
     }
-    return {lowest, highest};
+    image.range_m.resize(entries);
+    image.key_xy.resize(entries);
+    image.key_z.resize(entries);
 }
 
 }  // namespace
@@ -170,11 +212,14 @@ void place_image(const DepthImage& image, const PixelRays& pixel_rays, const Vox
     placed.height = image.height;
     placed.origin = T_map_camera.translation().cast<float>();
     placed.counts = {};
+    placed.lowest = placed.highest = placed.origin;
     resize(placed, pixels + kLanesMax);
 
     Placement to{.T = {},
                  .voxels_per_m = 1.0 / lattice.resolution_m(),
-                 .range_max_m = static_cast<float>(range_max_m)};
+                 .range_max_m = static_cast<float>(range_max_m),
+                 .half_depth_m = static_cast<float>(0.5 * lattice.resolution_m() *
+                                                    T_map_camera.linear().col(2).lpNorm<1>())};
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 4; ++j)
             to.T[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = T_map_camera(i, j);
@@ -194,11 +239,10 @@ void place_image(const DepthImage& image, const PixelRays& pixel_rays, const Vox
         (to, {depth_m.data(), ray_x.data(), ray_y.data(), first, image.width}, placed);
     }
     resize(placed, pixels);
-    placed.reach_m.resize(pixels + kLanesMax, -1.0F);
-    std::fill(placed.reach_m.begin() + static_cast<std::ptrdiff_t>(pixels), placed.reach_m.end(), -1.0F);
-    std::tie(placed.lowest.x(), placed.highest.x()) = bounds_of(placed.end_x, placed.origin.x());
-    std::tie(placed.lowest.y(), placed.highest.y()) = bounds_of(placed.end_y, placed.origin.y());
-    std::tie(placed.lowest.z(), placed.highest.z()) = bounds_of(placed.end_z, placed.origin.z());
+    for (auto* values : {&placed.reach_m, &placed.passed_m}) {
+        values->resize(pixels + kLanesMax);
+        std::fill(values->begin() + static_cast<std::ptrdiff_t>(pixels), values->end(), -1.0F);
+    }
 }
 
 }  // namespace octoskin

@@ -29,9 +29,13 @@ struct PlacedImage {
     std::vector<float> end_x;                          ///< map frame, metres, in OctoMap's single precision
     std::vector<float> end_y;
     std::vector<float> end_z;
-    std::vector<float> reach_m;   ///< depth of the end along the optical axis
+    std::vector<float> reach_m;  ///< depth of the end along the optical axis
+    std::vector<float>
+        passed_m;  ///< a ray passes the voxels that it is in before this depth, or ends in them
     std::vector<double> range_m;  ///< measured, along the ray; negative: beyond the maximum, where the ray
                                   ///< ends in nothing
+    std::vector<std::uint32_t> key_xy;  ///< of the end's voxel: x, and y in the upper half
+    std::vector<std::uint32_t> key_z;
     DepthPixelCounts counts;
     Eigen::Vector3f lowest = Eigen::Vector3f::Zero();  ///< of all ends and the origin
     Eigen::Vector3f highest = Eigen::Vector3f::Zero();

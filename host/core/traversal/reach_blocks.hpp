@@ -1,4 +1,4 @@
-// The shortest and the longest ray of rectangles of pixels.
+// How far the rays of rectangles of pixels go.
 #pragma once
 
 #include <algorithm>
@@ -24,6 +24,7 @@ struct PixelBox {
 class ReachBlocks {
   public:
     struct Span {
+        /// Every ray passes what it is in before this depth, or ends in it; see PlacedImage::passed_m.
         float shortest = std::numeric_limits<float>::infinity();
         float longest = -std::numeric_limits<float>::infinity();
         void include(const Span& other) noexcept {
@@ -38,8 +39,9 @@ class ReachBlocks {
           blocks_(std::size_t{columns_} * ((image.height + kBlock - 1) / kBlock)) {
         for (std::uint32_t v = 0; v < image.height; ++v) {
             const float* const row = image.reach_m.data() + std::size_t{v} * image.width;
+            const float* const passed = image.passed_m.data() + std::size_t{v} * image.width;
             Span* const out = blocks_.data() + std::size_t{v / kBlock} * columns_;
-            for (std::uint32_t u = 0; u < image.width; ++u) out[u / kBlock].include({row[u], row[u]});
+            for (std::uint32_t u = 0; u < image.width; ++u) out[u / kBlock].include({passed[u], row[u]});
         }
     }
 

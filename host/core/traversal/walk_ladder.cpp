@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/core/traversal/sliding_minimum.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -12,49 +14,6 @@ constexpr std::uint32_t kBlock = 4;
 constexpr std::uint32_t kBlockRadius = 8;
 /// The depth at a rung's end, in lengths of that at its beginning.
 constexpr double kRungRatio = 1.2;
-
-/// Values of an image, or of its blocks.
-struct Raster {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-};
-
-/// The least of each value and those `by` to its left and right; at the edge, of those that are there.
-void spread_along_row(const float* in, float* out, std::uint32_t width, std::uint32_t by) {
-    const std::uint32_t edge = std::min(by, width);
-    for (std::uint32_t u = 0; u < edge; ++u)
-        out[u] = std::min({in[0], in[u], in[std::min(u + by, width - 1)]});
-    for (std::uint32_t u = edge; u + by < width; ++u)
-        out[u] = std::min(in[u], std::min(in[u - by], in[u + by]));
-    for (std::uint32_t u = std::max(edge, width - edge); u < width; ++u) {
-        out[u] = std::min({in[u - by], in[u], in[width - 1]});
-    }
-}
-
-/// Each value becomes the least of the square `radius` to each side of it, at the edge of what is there of
-/// it; it is already that of `had`.
-void spread(std::vector<float>& values, std::vector<float>& work, const Raster& raster, std::uint32_t had,
-            std::uint32_t radius) {
-    work.resize(values.size());
-    while (had < radius) {
-        const std::uint32_t by = std::min(radius - had, 2 * had + 1);
-        for (std::uint32_t v = 0; v < raster.height; ++v) {
-            const std::size_t row = std::size_t{v} * raster.width;
-            spread_along_row(values.data() + row, work.data() + row, raster.width, by);
-        }
-        for (std::uint32_t v = 0; v < raster.height; ++v) {
-            const float* const above = work.data() + std::size_t{v < by ? 0 : v - by} * raster.width;
-            const float* const here = work.data() + std::size_t{v} * raster.width;
-            const float* const below =
-                work.data() + std::size_t{std::min(v + by, raster.height - 1)} * raster.width;
-            float* const out = values.data() + std::size_t{v} * raster.width;
-            for (std::uint32_t u = 0; u < raster.width; ++u) {
-                out[u] = std::min(here[u], std::min(above[u], below[u]));
-            }
-        }
-        had += by;
-    }
-}
 
 Raster blocks_of(const PlacedImage& image) {
     return {(image.width + kBlock - 1) / kBlock, (image.height + kBlock - 1) / kBlock};
@@ -137,7 +96,7 @@ void WalkLadder::fill_rungs(const CertainView& view, const PlacedImage& image) {
         std::uint32_t had = 0;
         for (Rung& rung : rungs) {  // from far to near: squares grow
             const std::uint32_t radius = (rung.radius_px + pixels - 1) / pixels;
-            spread(shortest, rows_, raster, had, radius);
+            spread_minimum(shortest, rows_, raster, had, radius);
             had = std::max(had, radius);
             rung.safe_m.resize(shortest.size());
             for (std::size_t i = 0; i < shortest.size(); ++i) rung.safe_m[i] = shortest[i] - kept_clear;

@@ -50,11 +50,11 @@ OctreeNode parent_of(std::span<const OctreeNode, 8> children) {
 }
 
 /// An octree's lowest three levels, of one brick.
-class BrickTree {
+class BrickNodes {
   public:
-    BrickTree(const MapBrick& brick, const MapConfig& config, LeafValues values)
+    BrickNodes(const MapBrick& brick, const MapConfig& config, LeafValues values)
         : log_odds_occupied_(config.log_odds_occupied) {
-        std::ranges::copy(brick.log_odds, voxels_.begin());
+        for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) voxels_[cell] = brick.log_odds.at(cell);
         if (values == LeafValues::max_likelihood) {
             for (float& log_odds : voxels_) {
                 if (std::isnan(log_odds)) continue;
@@ -151,7 +151,7 @@ OctreeNode PrunedOctree::append(std::size_t begin, std::size_t end, unsigned hei
 }
 
 void PrunedOctree::append_brick(std::size_t at) {
-    const BrickTree tree(bricks_[at], config_, values_);
+    const BrickNodes tree(bricks_[at], config_, values_);
     const bool is_inner = tree.root().state == NodeState::inner;
     size_ += is_inner ? tree.size() - 1 : 0;  // its root is among the upper ones
     upper_.push_back({tree.root(), is_inner ? static_cast<std::uint32_t>(at) : kNoBrick});
@@ -166,7 +166,7 @@ bool PrunedOctree::for_each(const std::function<bool(std::span<const OctreeNode>
         if (upper.brick == kNoBrick) {
             nodes.push_back(upper.node);
         } else {
-            BrickTree(bricks_[upper.brick], config_, values_).append_to(nodes);
+            BrickNodes(bricks_[upper.brick], config_, values_).append_to(nodes);
         }
         if (nodes.size() < kNodesAtOnce) continue;
         if (!put(nodes)) return false;

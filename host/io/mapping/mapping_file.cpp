@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,27 @@ const Keys kTopKeys = {"base",
 const Keys kMapKeys = {"resolution_m", "log_odds_min", "log_odds_max", "log_odds_occupied", "memory_max_mib"};
 const Keys kHitKeys = {"log_odds_offset", "log_odds_slope_per_m", "range_min_m", "is_range_min_exclusive"};
 const Keys kFilterKeys = {"is_enabled", "window_px", "sigma_m", "gate_sigmas", "mean_sigmas", "min_support"};
+
+/// The depth updates, each also the name of the configuration that is built round it.
+const std::initializer_list<std::pair<std::string_view, DepthUpdate>> kDepthUpdates = {
+    {"paper", DepthUpdate::paper}, {"robust", DepthUpdate::robust}, {"fast", DepthUpdate::fast}};
+
+std::string_view name_of(DepthUpdate depth_update) {
+    return std::ranges::find(kDepthUpdates, depth_update, [](const auto& entry) { return entry.second; })
+        ->first;
+}
+
+MappingConfig configuration_of(DepthUpdate depth_update) {
+    switch (depth_update) {
+        case DepthUpdate::paper:
+            return paper_mapping();
+        case DepthUpdate::robust:
+            return robust_mapping();
+        case DepthUpdate::fast:
+            return fast_mapping();
+    }
+    return fast_mapping();
+}
 
 std::vector<std::string> keys_below_top() {
     const std::pair<std::string_view, Keys> tables[] = {{"map", kMapKeys},
@@ -108,20 +130,18 @@ MappingConfig read_checked(const std::string& file) {
         if (const rig::Value* found = document.find(key)) {
             rig::fail(*found, std::string(key),
                       "no key of a mapping file, but of a rig, which this looks like: give a mapping file "
-                      "(`octoskin mapping robust` prints one)");
+                      "(`octoskin mapping` prints one)");
         }
     }
     const Table top(document, "", kTopKeys, keys_below_top());
-    const bool is_paper = top.choice<bool>("base", {{"paper", true}, {"robust", false}}, false);
-    MappingConfig config = is_paper ? paper_mapping() : robust_mapping();
+    MappingConfig config =
+        configuration_of(top.choice<DepthUpdate>("base", kDepthUpdates, DepthUpdate::fast));
     read_part(top, "map", kMapKeys, config.map, read_map);
     read_hit_part(top, "proximity_hit", config.model.proximity);
     read_hit_part(top, "depth_hit", config.model.depth);
     read_part(top, "depth_filter", kFilterKeys, config.depth_filter, read_filter);
     config.model.miss_log_odds = single(top, "miss_log_odds", {-100.0, 0.0}, config.model.miss_log_odds);
-    config.depth_update = top.choice<DepthUpdate>(
-        "depth_update", {{"paper", DepthUpdate::paper}, {"robust", DepthUpdate::robust}},
-        config.depth_update);
+    config.depth_update = top.choice<DepthUpdate>("depth_update", kDepthUpdates, config.depth_update);
     config.removes_robot_from_depth = top.flag("removes_robot_from_depth", config.removes_robot_from_depth);
     config.removes_robot_from_ranges =
         top.flag("removes_robot_from_ranges", config.removes_robot_from_ranges);
@@ -142,8 +162,9 @@ std::string hit_text(std::string_view key, const HitModel& hit) {
 }  // namespace
 
 Result<MappingConfig, MappingFileError> read_mapping(const std::string& name_or_file) {
-    if (name_or_file == "paper") return paper_mapping();
-    if (name_or_file == "robust") return robust_mapping();
+    for (const auto& [name, depth_update] : kDepthUpdates) {
+        if (name_or_file == name) return configuration_of(depth_update);
+    }
     if (name_or_file == "paper_noise_free_robot_seen") {
         MappingConfig mapping = paper_mapping();
         mapping.removes_robot_from_depth = false;
@@ -166,7 +187,7 @@ std::string mapping_text(const MappingConfig& config) {
     text += hit_text("proximity_hit", config.model.proximity);
     text += hit_text("depth_hit", config.model.depth);
     text += fmt::format("miss_log_odds: {}\ndepth_update: {}\n", config.model.miss_log_odds,
-                        config.depth_update == DepthUpdate::paper ? "paper" : "robust");
+                        name_of(config.depth_update));
     text += fmt::format(
         "depth_filter:\n  is_enabled: {}\n  window_px: {}\n  sigma_m: {}\n  gate_sigmas: {}\n  mean_sigmas: "
         "{}\n"

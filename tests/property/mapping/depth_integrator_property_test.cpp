@@ -10,6 +10,7 @@
 #include "host/core/mapping/depth_integrator.hpp"
 #include "tests/property/mapping/random_geometry.hpp"
 #include "tests/support/octomap_oracle.hpp"
+#include "tests/support/voxel_updates.hpp"
 
 namespace octoskin::property {
 namespace {
@@ -74,11 +75,11 @@ TEST_P(DepthIntegratorProperty, hits_and_passes_exactly_octomaps_sets) {
         const auto result = integrator.integrate(image, T_map_camera);
         ASSERT_TRUE(result.has_value());
         Sets sets;
-        for (const VoxelUpdate& update : result->updates) {
+        for (const VoxelUpdate& update : updates_of(result->terms)) {
             ASSERT_TRUE(update.log_odds == 1.0F || update.log_odds == -0.4F);
             (update.log_odds == 1.0F ? sets.hit : sets.passed).insert(update.key);
         }
-        ASSERT_EQ(sets.hit.size() + sets.passed.size(), result->updates.size()) << "a voxel came twice";
+        ASSERT_EQ(sets.hit.size() + sets.passed.size(), result->terms.size()) << "a voxel came twice";
         ASSERT_EQ(sets, octomaps_sets(tree, points_of(image, T_map_camera), origin_of(T_map_camera)))
             << "seed " << seed;
     }
@@ -100,7 +101,7 @@ TEST(DepthIntegratorProperty, paper_builds_octomaps_map_bit_for_bit_over_many_fr
         const DepthImage image = random.depth_image(kCamera.width, kCamera.height);
         const auto result = integrator.integrate(image, T_map_camera);
         ASSERT_TRUE(result.has_value());
-        map.apply(result->updates);
+        map.apply(result->terms);
 
         const auto points = points_of(image, T_map_camera);
         std::map<VoxelKey, float> term_of_hit;
@@ -146,8 +147,8 @@ TEST(DepthIntegratorProperty, robust_equals_a_plain_mean_over_all_beams_of_the_f
             hit.sum += point.range_m <= 0.5 ? 0.0 : 1.0 - 0.1 * point.range_m;
             ++hit.beams;
         }
-        ASSERT_LE(result->updates.size(), votes.size());
-        for (const VoxelUpdate& update : result->updates) {
+        ASSERT_LE(result->terms.size(), votes.size());
+        for (const VoxelUpdate& update : updates_of(result->terms)) {
             const Votes expected = votes.at(update.key);
             ASSERT_NEAR(update.log_odds, expected.sum / expected.beams, 1e-6) << "seed " << seed;
             votes.erase(update.key);
@@ -156,8 +157,37 @@ TEST(DepthIntegratorProperty, robust_equals_a_plain_mean_over_all_beams_of_the_f
     }
 }
 
+TEST(DepthIntegratorProperty, fast_frees_only_what_rays_pass_and_marks_only_what_they_hit) {
+    for (const double resolution_m : {0.04, 0.1, 0.25}) {
+        MappingConfig config = fast_mapping();
+        config.map.resolution_m = resolution_m;
+        DepthIntegrator integrator(config, kCamera);
+        octomap::OcTree tree(resolution_m);
+        std::size_t passed = 0;
+        std::size_t freed = 0;
+        for (unsigned seed = 400; seed < 460; ++seed) {
+            RandomGeometry random(seed, resolution_m);
+            const Eigen::Isometry3d T_map_camera = random.camera_pose();
+            const DepthImage image = random.depth_image(kCamera.width, kCamera.height);
+            const auto result = integrator.integrate(image, T_map_camera);
+            ASSERT_TRUE(result.has_value());
+            const Sets sets = octomaps_sets(tree, points_of(image, T_map_camera), origin_of(T_map_camera));
+            for (const VoxelUpdate& update : updates_of(result->terms)) {
+                ASSERT_TRUE((update.log_odds < 0.0F ? sets.passed : sets.hit).contains(update.key))
+                    << "seed " << seed;
+                freed += update.log_odds < 0.0F ? 1U : 0U;
+            }
+            passed += sets.passed.size();
+        }
+        // A pixel is larger than a voxel beyond 2 m at 4 cm, and many of these images are noise.
+        EXPECT_GT(static_cast<double>(freed), 0.3 * static_cast<double>(passed)) << resolution_m;
+        std::printf("%.2f m: %.1f %% of what rays pass\n", resolution_m,
+                    100.0 * static_cast<double>(freed) / static_cast<double>(passed));
+    }
+}
+
 TEST(DepthIntegratorProperty, same_image_and_pose_give_the_same_terms_in_the_same_order) {
-    for (const MappingConfig& config : {paper_mapping(), robust_mapping()}) {
+    for (const MappingConfig& config : {paper_mapping(), robust_mapping(), fast_mapping()}) {
         DepthIntegrator used(config, kCamera);
         RandomGeometry random(300, config.map.resolution_m);
         for (int frame = 0; frame < 5; ++frame) {
@@ -167,7 +197,7 @@ TEST(DepthIntegratorProperty, same_image_and_pose_give_the_same_terms_in_the_sam
             const auto first = used.integrate(image, T_map_camera);
             const auto second = fresh.integrate(image, T_map_camera);
             ASSERT_TRUE(first.has_value() && second.has_value());
-            ASSERT_EQ(first->updates, second->updates);
+            ASSERT_EQ(first->terms, second->terms);
         }
     }
 }

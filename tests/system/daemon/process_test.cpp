@@ -104,7 +104,7 @@ TEST_F(DaemonTest, goes_on_with_its_map_when_a_reload_gives_it_more_memory) {
 }
 
 TEST_F(DaemonTest, refuses_a_reload_that_has_too_little_memory_for_its_map) {
-    FusedMap map{MapConfig{}};  // 4096 bricks of 2112 bytes
+    FusedMap map{MapConfig{}};  // counts as 4096 bricks of 2064 bytes
     ASSERT_TRUE(map.set_cube({.lowest = {0, 0, 0}, .height = 7}, 1.0F));
     std::filesystem::create_directory(folder_ / "maps");
     ASSERT_TRUE(save_map(map, folder_ / "maps" / "fused.ot"));

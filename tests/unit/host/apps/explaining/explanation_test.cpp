@@ -27,11 +27,17 @@ class Witnesses final : public CommitListener {
                     std::span<const VoxelUpdate> updates) override {
         for (VoxelWitness& witness : all) witness.on_reading(reading, beam, updates);
     }
-    void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate> updates) override {
-        for (VoxelWitness& witness : all) witness.on_depth(frame, updates);
+    void on_depth(const DepthFrame& frame, const DepthTerms& terms) override {
+        for (VoxelWitness& witness : all) witness.on_depth(frame, terms);
     }
     std::vector<VoxelWitness> all;
 };
+
+DepthTerms terms_of(const std::vector<VoxelUpdate>& updates) {
+    DepthTerms terms{.miss = -0.4F, .bricks = {}, .hits = {}};
+    terms.take(updates);
+    return terms;
+}
 
 void play(const Scene& scene, Pipeline& pipeline) {
     auto depth = scene.depth.begin();
@@ -132,13 +138,13 @@ TEST(Explanation, concludes_in_one_sentence) {
     EXPECT_EQ(
         conclusion_of(explanation_of(ghost, Occupancy::occupied)),
         "occupied, mainly by sensor forearm_3 between 4.100 and 4.600 s, 2 hits; the camera never saw it");
-    ghost.on_depth({{4'700'000'000}, 0, 0, {}}, miss);
+    ghost.on_depth({{4'700'000'000}, 0, 0, {}}, terms_of(miss));
     EXPECT_EQ(
         conclusion_of(explanation_of(ghost, Occupancy::occupied)),
         "occupied, mainly by sensor forearm_3 between 4.100 and 4.600 s, 2 hits; the camera never saw it "
         "occupied");
     VoxelWitness freed(key, MapConfig{}, kKept);
-    freed.on_depth({{4'700'000'000}, 0, 0, {}}, miss);
+    freed.on_depth({{4'700'000'000}, 0, 0, {}}, terms_of(miss));
     EXPECT_EQ(conclusion_of(explanation_of(freed, Occupancy::free)),
               "free, mainly by the camera at 4.700 s, 1 miss");
     EXPECT_EQ(conclusion_of(explanation_of(VoxelWitness(key, MapConfig{}, kKept), Occupancy::unknown)),
@@ -153,7 +159,7 @@ TEST(Explanation, weighs_what_was_there_before_as_a_line_of_its_own_and_the_sum_
     const std::vector<VoxelUpdate> miss{{key, -0.5F}};
     const std::vector<VoxelUpdate> hit{{key, 0.75F}};
     witness.on_reading(reading_at(4.1), Beam{}, hit);
-    witness.on_depth({{4'200'000'000}, 0, 0, {}}, miss);
+    witness.on_depth({{4'200'000'000}, 0, 0, {}}, terms_of(miss));
     const std::string text = to_text(explanation_of(witness, Occupancy::occupied));
     EXPECT_EQ(text.substr(0, text.find("the newest")),
               "voxel about 0.020 0.500 0.020 m, edge 0.04 m: occupied, log-odds 2.2500\n"

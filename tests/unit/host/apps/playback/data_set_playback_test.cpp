@@ -104,7 +104,7 @@ TEST_F(DataSetPlayback, maps_each_image_from_where_the_camera_was) {
         rig.camera->T_base_camera = pose_of(i);
         MappingConfig mapping = request().mapping;
         mapping.removes_robot_from_depth = false;
-        expected.add_depth(DepthStage(rig, mapping).updates(frame, nullptr)->updates);
+        expected.add_depth(DepthStage(rig, mapping).updates(frame, nullptr)->terms);
     }
     const auto played = play_recording(request());
     ASSERT_TRUE(played) << played.error().message;
@@ -181,7 +181,7 @@ TEST_F(DataSetPlayback, pace_decides_when_an_image_is_mapped_and_not_what_the_ma
     struct Mapped : CommitListener {
         void on_joints(const JointMeasurement&) override {}
         void on_reading(const RangeMeasurement&, const Beam&, std::span<const VoxelUpdate>) override {}
-        void on_depth(const DepthFrame&, std::span<const VoxelUpdate>) override { ++images; }
+        void on_depth(const DepthFrame&, const DepthTerms&) override { ++images; }
         int images = 0;
     };
     Mapped mapped;

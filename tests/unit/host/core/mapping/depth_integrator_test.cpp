@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/voxel_updates.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -42,7 +44,7 @@ VoxelUpdate update_at(int z, float log_odds) {
 std::vector<VoxelUpdate> integrate(const MappingConfig& config, const DepthImage& image) {
     auto result = DepthIntegrator(config, narrow_camera(image.width)).integrate(image, at_half_metres());
     EXPECT_TRUE(result.has_value());
-    return result ? std::move(*result).updates : std::vector<VoxelUpdate>{};
+    return result ? updates_of(result->terms) : std::vector<VoxelUpdate>{};
 }
 
 TEST(DepthIntegrator, paper_gives_one_miss_per_passed_voxel_however_many_beams_pass) {
@@ -90,7 +92,7 @@ TEST(DepthIntegrator, takes_the_range_along_the_ray_and_not_the_depth_for_the_hi
     DepthIntegrator integrator(coarse(paper_mapping()), camera);
     const auto result = integrator.integrate(image_of({2.0F}), at_half_metres());
     ASSERT_TRUE(result.has_value());
-    EXPECT_EQ(result->updates.back(), (VoxelUpdate{{kZero + 2, kZero, kZero + 2}, 0.75F}));
+    EXPECT_EQ(updates_of(result->terms).back(), (VoxelUpdate{{kZero + 2, kZero, kZero + 2}, 0.75F}));
 }
 
 TEST(DepthIntegrator, places_a_point_on_its_ray_and_not_where_the_lens_shows_it) {
@@ -99,7 +101,7 @@ TEST(DepthIntegrator, places_a_point_on_its_ray_and_not_where_the_lens_shows_it)
     CameraIntrinsics camera{.width = 1, .height = 1, .fx = 4.0, .fy = 4.0, .cx = -2.5, .cy = 0.5};
     const auto end_of = [&camera] {
         DepthIntegrator integrator(coarse(paper_mapping()), camera);
-        return integrator.integrate(image_of({4.0F}), at_half_metres())->updates.back().key;
+        return updates_of(integrator.integrate(image_of({4.0F}), at_half_metres())->terms).back().key;
     };
     EXPECT_EQ(end_of(), (VoxelKey{kZero + 3, kZero, kZero + 4}));
     camera.lens.k1 = -0.25;
@@ -115,7 +117,8 @@ TEST(DepthIntegrator, counts_every_pixel_under_one_name_and_uses_only_the_good_o
     EXPECT_EQ(result->pixels.no_value, 1U);
     EXPECT_EQ(result->pixels.bad_value, 4U);
     EXPECT_EQ(result->pixels.outside_map, 2U);
-    EXPECT_THAT(result->updates, ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, 0.8F)));
+    EXPECT_THAT(updates_of(result->terms),
+                ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, 0.8F)));
 }
 
 TEST(DepthIntegrator, gives_nothing_for_an_image_without_values) {
@@ -144,7 +147,7 @@ TEST(DepthIntegrator, refuses_a_box_beyond_its_memory_and_works_again_afterwards
               DepthRejection::box_too_large);
     const auto result = integrator.integrate(image_of({1.0F}), at_half_metres());
     ASSERT_TRUE(result.has_value());
-    EXPECT_THAT(result->updates, ElementsAre(update_at(0, -0.4F), update_at(1, 0.9F)));
+    EXPECT_THAT(updates_of(result->terms), ElementsAre(update_at(0, -0.4F), update_at(1, 0.9F)));
 }
 
 TEST(DepthIntegrator, forgets_a_frame_before_the_next) {
@@ -153,7 +156,8 @@ TEST(DepthIntegrator, forgets_a_frame_before_the_next) {
     ASSERT_TRUE(first.has_value());
     const auto second = integrator.integrate(image_of({kNan, 2.0F}), at_half_metres());
     ASSERT_TRUE(second.has_value());
-    EXPECT_THAT(second->updates, ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, 0.8F)));
+    EXPECT_THAT(updates_of(second->terms),
+                ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, 0.8F)));
 }
 
 }  // namespace

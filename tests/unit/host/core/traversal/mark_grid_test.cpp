@@ -3,30 +3,43 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <utility>
 #include <vector>
 
 namespace octoskin {
 namespace {
 
 using testing::ElementsAre;
-using testing::Pair;
 
-std::vector<std::pair<VoxelKey, int>> drained(MarkGrid& grid) {
-    std::vector<std::pair<VoxelKey, int>> marks;
-    grid.drain([&](VoxelKey key, std::uint8_t mark) { marks.emplace_back(key, mark); });
-    return marks;
+/// In Morton order.
+std::vector<VoxelKey> drained(MarkGrid& grid) {
+    std::vector<VoxelKey> keys;
+    grid.drain([&](MortonCode brick, const BrickMask& passed) {
+        for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) {
+            if ((passed[cell / 64] >> (cell % 64) & 1U) != 0) keys.push_back(key_of_morton(brick + cell));
+        }
+    });
+    return keys;
 }
 
 TEST(MarkGrid, gives_each_mark_once_in_order_and_is_empty_then) {
     MarkGrid grid;
     ASSERT_TRUE(grid.span({100, 200, 300}, {110, 203, 309}, 100'000));
-    grid.marks()[grid.index_of({109, 201, 300})] = MarkGrid::kHit;
+    grid.marks()[grid.index_of({109, 201, 300})] = MarkGrid::kPassed;
     grid.marks()[grid.index_of({110, 200, 300})] = MarkGrid::kPassed;
     grid.marks()[grid.index_of({99, 204, 310})] = MarkGrid::kPassed;  // a voxel beside the box
-    EXPECT_THAT(drained(grid), ElementsAre(Pair(VoxelKey{110, 200, 300}, 1), Pair(VoxelKey{109, 201, 300}, 2),
-                                           Pair(VoxelKey{99, 204, 310}, 1)));
+    EXPECT_THAT(drained(grid),
+                ElementsAre(VoxelKey{109, 201, 300}, VoxelKey{110, 200, 300}, VoxelKey{99, 204, 310}));
     EXPECT_TRUE(drained(grid).empty());
+}
+
+TEST(MarkGrid, gives_each_voxel_of_a_brick_its_own_place) {
+    MarkGrid grid;
+    for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) {
+        const VoxelKey key = key_of_morton(morton_of({104, 208, 304}) + cell);
+        ASSERT_TRUE(grid.span({104, 208, 304}, {111, 215, 311}, 100'000));
+        grid.marks()[grid.index_of(key)] = MarkGrid::kPassed;
+        ASSERT_THAT(drained(grid), ElementsAre(key));
+    }
 }
 
 TEST(MarkGrid, leaves_out_what_has_no_key) {
@@ -37,7 +50,7 @@ TEST(MarkGrid, leaves_out_what_has_no_key) {
     grid.marks()[grid.index_of(0, 0, 65536)] = MarkGrid::kPassed;
     EXPECT_TRUE(drained(grid).empty());
     grid.marks()[grid.index_of(0, 0, 65535)] = MarkGrid::kPassed;
-    EXPECT_THAT(drained(grid), ElementsAre(Pair(VoxelKey{0, 0, 65535}, 1)));
+    EXPECT_THAT(drained(grid), ElementsAre(VoxelKey{0, 0, 65535}));
 }
 
 TEST(MarkGrid, forgets_marks_that_were_nowhere) {

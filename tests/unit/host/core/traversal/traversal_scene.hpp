@@ -1,6 +1,7 @@
 // Images, poses and what their rays pass, walked one by one.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <set>
 
@@ -33,7 +34,14 @@ inline void span(MarkGrid& grid, const PlacedImage& image, const VoxelLattice& l
 
 inline std::set<VoxelKey> drained(MarkGrid& grid) {
     std::set<VoxelKey> voxels;
-    grid.drain([&](VoxelKey key, std::uint8_t) { EXPECT_TRUE(voxels.insert(key).second); });
+    grid.drain([&](MortonCode brick, const BrickMask& passed) {
+        for (std::size_t word = 0; word < passed.size(); ++word) {
+            for (std::uint64_t bits = passed[word]; bits != 0; bits &= bits - 1) {
+                const auto cell = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
+                EXPECT_TRUE(voxels.insert(key_of_morton(brick + cell)).second);
+            }
+        }
+    });
     return voxels;
 }
 

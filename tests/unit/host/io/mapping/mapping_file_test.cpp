@@ -28,8 +28,10 @@ std::string error_of(const std::string& text) {
     return config ? "no error" : config.error().message();
 }
 
-TEST(MappingFile, knows_the_two_that_ship_by_name) {
+TEST(MappingFile, knows_those_that_ship_by_name) {
     EXPECT_EQ(*read_mapping("paper"), paper_mapping());
+    EXPECT_EQ(*read_mapping("fast"), fast_mapping());
+    EXPECT_EQ(*read_mapping(kDefaultMapping), fast_mapping());
     EXPECT_EQ(*read_mapping("robust"), robust_mapping());
     EXPECT_EQ(read_mapping("paper")->depth_update, DepthUpdate::paper);
     EXPECT_FALSE(read_mapping("paper")->depth_filter.is_enabled);
@@ -45,11 +47,14 @@ TEST(MappingFile, shipped_files_say_what_is_built_in) {
     const auto robust = read_mapping(folder + "robust.yaml");
     ASSERT_TRUE(robust.has_value()) << robust.error().message();
     EXPECT_EQ(*robust, robust_mapping());
+    const auto fast = read_mapping(folder + "fast.yaml");
+    ASSERT_TRUE(fast.has_value()) << fast.error().message();
+    EXPECT_EQ(*fast, fast_mapping());
 }
 
 /// With another `base`, so that every value has to come from the file itself.
 TEST(MappingFile, shipped_files_leave_nothing_out) {
-    for (const std::string name : {"paper", "robust"}) {
+    for (const std::string name : {"paper", "robust", "fast"}) {
         std::string text = ScratchFolder::read(OCTOSKIN_SOURCE_DIR "/host/config/" + name + ".yaml");
         const std::string base = "base: " + name;
         ASSERT_NE(text.find(base), std::string::npos);
@@ -58,8 +63,9 @@ TEST(MappingFile, shipped_files_leave_nothing_out) {
     }
 }
 
-TEST(MappingFile, starts_from_robust_or_the_base_it_names_and_overrides_what_it_mentions) {
-    EXPECT_EQ(*read_text("{}"), robust_mapping());
+TEST(MappingFile, starts_from_the_default_or_the_base_it_names_and_overrides_what_it_mentions) {
+    EXPECT_EQ(*read_text("{}"), fast_mapping());
+    EXPECT_EQ(*read_text("base: robust"), robust_mapping());
     MappingConfig expected = paper_mapping();
     expected.map.resolution_m = 0.02;
     expected.removes_robot_from_depth = false;
@@ -222,10 +228,10 @@ std::string expected_of(const std::string& path) {
 }
 
 TEST(MappingFile, has_each_key_with_its_range_and_default_in_its_document_and_no_other) {
-    const auto robust = values_by_path(mapping_text(robust_mapping()));
+    const auto fast = values_by_path(mapping_text(fast_mapping()));
     const auto paper = values_by_path(mapping_text(paper_mapping()));
-    KeyTable keys{{"base", {expected_of("base"), "robust"}}};
-    for (const auto& [path, value] : robust) {
+    KeyTable keys{{"base", {expected_of("base"), "fast"}}};
+    for (const auto& [path, value] : fast) {
         const bool is_same = paper.at(path) == value;
         keys[path] = {expected_of(path), is_same ? value : value + " (" + paper.at(path) + ")"};
     }

@@ -26,7 +26,7 @@ class Keeper final : public CommitListener {
     void on_reading(const RangeMeasurement& reading, const Beam&, std::span<const VoxelUpdate>) override {
         put(reading);
     }
-    void on_depth(const DepthFrame& frame, std::span<const VoxelUpdate>) override {
+    void on_depth(const DepthFrame& frame, const DepthTerms&) override {
         put(DepthCommit{frames.size(), frame.captured});
         frames.push_back(frame);
         frames.back().captured.ns += 999;  // the order's time counts, not that of the frame's recording

@@ -1,0 +1,51 @@
+// Space in bricks of 8 x 8 x 8 voxels: an octree's lowest three levels, in Morton order.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "host/core/voxels/morton.hpp"
+#include "host/core/voxels/voxel_lattice.hpp"
+
+namespace octoskin {
+
+inline constexpr unsigned kBrickHeight = 3;
+inline constexpr int kBrickEdge = 1 << kBrickHeight;
+inline constexpr std::size_t kBrickVoxels = std::size_t{1} << (3 * kBrickHeight);
+
+/// Unknown voxels hold a NaN, so that one load tells known from unknown. No term, clamp or file can put one
+/// there: all of them are checked for finiteness on the way in.
+inline constexpr float kUnknownLogOdds = std::numeric_limits<float>::quiet_NaN();
+
+/// One value for each voxel of a brick, in Morton order.
+using BrickValues = std::array<float, kBrickVoxels>;
+
+/// A set of a brick's voxels: bit i of word w is that of voxel 64 w + i, in Morton order.
+using BrickMask = std::array<std::uint64_t, kBrickVoxels / 64>;
+
+/// A brick to look at, for as long as who owns it leaves it unchanged.
+struct BrickView {
+    const BrickValues* values = nullptr;  ///< null: all voxels are alike
+    float value = kUnknownLogOdds;        ///< of all voxels, if they are alike
+
+    [[nodiscard]] float at(std::size_t cell) const noexcept { return values ? (*values)[cell] : value; }
+    /// No voxel of it is known.
+    [[nodiscard]] bool is_unknown() const noexcept { return values == nullptr && std::isnan(value); }
+};
+
+/// Place of a voxel in its brick.
+[[nodiscard]] constexpr std::size_t cell_of(VoxelKey key) noexcept {
+    constexpr std::array<std::uint8_t, 8> kSpread = {0, 1, 8, 9, 64, 65, 72, 73};
+    return static_cast<std::size_t>(kSpread[key.x & 7U] | (kSpread[key.y & 7U] << 1U) |
+                                    (kSpread[key.z & 7U] << 2U));
+}
+
+/// Code of the first voxel of the brick that holds a voxel.
+[[nodiscard]] constexpr MortonCode brick_of(VoxelKey key) noexcept {
+    return morton_of(key) & ~MortonCode{kBrickVoxels - 1};
+}
+
+}  // namespace octoskin

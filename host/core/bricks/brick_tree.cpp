@@ -1,0 +1,221 @@
+#include "host/core/bricks/brick_tree.hpp"
+
+#include <bit>
+#include <cassert>
+#include <memory>
+#include <utility>
+
+namespace octoskin {
+namespace {
+
+static_assert(sizeof(void*) == 8, "a place holds a pointer or a marked value");
+
+/// Bits of a Morton code that choose a place within one node.
+constexpr unsigned kNodeBits = 6;
+constexpr std::size_t kPlaces = std::size_t{1} << kNodeBits;
+constexpr unsigned kBrickBits = 3 * kBrickHeight;
+/// Levels of nodes, the lowest is 0: 48 bits of code, 9 of them within a brick, and the root's are but three.
+constexpr unsigned kLevels = 7;
+
+constexpr std::size_t place_at(MortonCode brick, unsigned level) {
+    return (brick >> (kBrickBits + kNodeBits * level)) & (kPlaces - 1);
+}
+constexpr MortonCode code_at(MortonCode node, std::size_t place, unsigned level) {
+    return node | (static_cast<MortonCode>(place) << (kBrickBits + kNodeBits * level));
+}
+
+constexpr std::uint64_t kIsValue = 1;
+bool is_value(std::uint64_t place) {
+    return (place & kIsValue) != 0;
+}
+float value_in(std::uint64_t place) {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(place >> 32U));
+}
+std::uint64_t place_of_value(float value) {
+    return (std::uint64_t{std::bit_cast<std::uint32_t>(value)} << 32U) | kIsValue;
+}
+template <class Below>
+Below* below(std::uint64_t place) {
+    return std::bit_cast<Below*>(place);
+}
+template <class Below>
+std::uint64_t place_of_pointer(Below* pointer) {
+    return std::bit_cast<std::uint64_t>(pointer);
+}
+
+}  // namespace
+
+// Whoever counts up holds one already, so that only counting down must be seen in order.
+struct BrickTree::Node {
+    std::atomic<std::uint32_t> owners = 1;
+    std::array<Place, kPlaces> places{};
+};
+struct BrickTree::Dense {
+    std::atomic<std::uint32_t> owners = 1;
+    BrickValues values;
+};
+
+BrickTree::BrickTree(const BrickTree& other) noexcept
+    : root_(other.root_), nodes_(other.nodes_), dense_(other.dense_), bricks_(other.bricks_) {
+    share(place_of_pointer(root_), kLevels);
+}
+BrickTree::BrickTree(BrickTree&& other) noexcept
+    : root_(std::exchange(other.root_, nullptr)),
+      nodes_(std::exchange(other.nodes_, 0)),
+      dense_(std::exchange(other.dense_, 0)),
+      bricks_(std::exchange(other.bricks_, 0)) {}
+BrickTree& BrickTree::operator=(BrickTree other) noexcept {
+    std::swap(root_, other.root_);
+    std::swap(nodes_, other.nodes_);
+    std::swap(dense_, other.dense_);
+    std::swap(bricks_, other.bricks_);
+    return *this;
+}
+BrickTree::~BrickTree() {
+    release(place_of_pointer(root_), kLevels);
+}
+
+/// `level`: of the node in which the place is.
+void BrickTree::share(Place place, unsigned level) noexcept {
+    if (place == 0) return;
+    if (level > 0) {
+        below<Node>(place)->owners.fetch_add(1, std::memory_order_relaxed);
+    } else if (!is_value(place)) {
+        below<Dense>(place)->owners.fetch_add(1, std::memory_order_relaxed);
+    }
+}
+
+/// Recurses as deep as the tree.
+void BrickTree::release(Place place, unsigned level) noexcept {
+    if (place == 0) return;
+    if (level == 0) {
+        if (is_value(place)) return;
+        if (below<Dense>(place)->owners.fetch_sub(1, std::memory_order_acq_rel) == 1) {
+            delete below<Dense>(place);
+        }
+        return;
+    }
+    Node* const node = below<Node>(place);
+    if (node->owners.fetch_sub(1, std::memory_order_acq_rel) != 1) return;
+    for (const Place lower : node->places) release(lower, level - 1);
+    delete node;
+}
+
+BrickView BrickTree::find(MortonCode brick) const noexcept {
+    const Node* node = root_;
+    for (unsigned level = kLevels - 1; level > 0 && node != nullptr; --level) {
+        node = below<Node>(node->places[place_at(brick, level)]);
+    }
+    const Place place = node == nullptr ? 0 : node->places[place_at(brick, 0)];
+    if (place == 0) return {};
+    if (is_value(place)) return {nullptr, value_in(place)};
+    return {&below<Dense>(place)->values, kUnknownLogOdds};
+}
+
+std::size_t BrickTree::nodes_missing(MortonCode brick) const noexcept {
+    const Node* node = root_;
+    for (unsigned level = kLevels - 1; level > 0; --level) {
+        if (node == nullptr) return level + 1;
+        node = below<Node>(node->places[place_at(brick, level)]);
+    }
+    return node == nullptr ? 1 : 0;
+}
+
+BrickTree::Place& BrickTree::place_of(MortonCode brick) {
+    const auto is_ours = [](const Node* node) { return node->owners.load(std::memory_order_acquire) == 1; };
+    // All that is missing is made before any of it is linked.
+    const std::size_t missing = nodes_missing(brick);
+    std::array<std::unique_ptr<Node>, kLevels> made;
+    for (std::size_t i = 0; i < missing; ++i) made[i] = std::make_unique<Node>();
+
+    Place* place = nullptr;  // where `node` stands
+    Node* node = root_;
+    for (unsigned level = kLevels; level-- > 0;) {
+        if (node == nullptr) {
+            node = made[level].release();
+            ++nodes_;
+        } else if (!is_ours(node)) {
+            auto own = std::make_unique<Node>();
+            own->places = node->places;
+            for (const Place lower : own->places) share(lower, level);
+            release(place_of_pointer(node), level + 1);
+            node = own.release();
+        }
+        if (place == nullptr) {
+            root_ = node;
+        } else {
+            *place = place_of_pointer(node);
+        }
+        place = &node->places[place_at(brick, level)];
+        if (level > 0) node = below<Node>(*place);
+    }
+    return *place;
+}
+
+void BrickTree::set_all(MortonCode brick, float value) {
+    assert(!std::isnan(value));
+    Place& place = place_of(brick);
+    bricks_ += place == 0 ? 1U : 0U;
+    if (place != 0 && !is_value(place)) {
+        release(place, 0);
+        --dense_;
+    }
+    place = place_of_value(value);
+}
+
+BrickValues& BrickTree::open(MortonCode brick) {
+    // Made first: a node that had a place for nothing would remain.
+    const BrickView before = find(brick);
+    std::unique_ptr<Dense> made;
+    if (before.values == nullptr) {
+        made = std::make_unique<Dense>();
+        made->values.fill(before.value);
+    }
+    Place& place = place_of(brick);
+    if (made != nullptr) {
+        bricks_ += place == 0 ? 1U : 0U;
+        ++dense_;
+        place = place_of_pointer(made.release());
+    } else if (below<Dense>(place)->owners.load(std::memory_order_acquire) != 1) {
+        auto own = std::make_unique<Dense>();
+        own->values = below<Dense>(place)->values;
+        release(place, 0);
+        place = place_of_pointer(own.release());
+    }
+    return below<Dense>(place)->values;
+}
+
+void BrickTree::for_each(const std::function<void(MortonCode, const BrickView&)>& visit) const {
+    const auto visit_node = [&](const auto& self, const Node& node, MortonCode code, unsigned level) -> void {
+        for (std::size_t i = 0; i < kPlaces; ++i) {
+            const Place place = node.places[i];
+            if (place == 0) continue;
+            const MortonCode lower = code_at(code, i, level);
+            if (level > 0) {
+                self(self, *below<Node>(place), lower, level - 1);
+            } else if (is_value(place)) {
+                visit(lower, {nullptr, value_in(place)});
+            } else {
+                visit(lower, {&below<Dense>(place)->values, kUnknownLogOdds});
+            }
+        }
+    };
+    if (root_ != nullptr) visit_node(visit_node, *root_, 0, kLevels - 1);
+}
+
+void BrickTree::for_each_difference(const BrickTree& before,
+                                    const std::function<void(MortonCode)>& visit) const {
+    // A place of nothing stands for a node of nothings.
+    const auto compare = [&](const auto& self, Place now, Place then, MortonCode code,
+                             unsigned level) -> void {
+        if (now == then) return;
+        if (level == 0) return visit(code);
+        for (std::size_t i = 0; i < kPlaces; ++i) {
+            self(self, now == 0 ? 0 : below<Node>(now)->places[i],
+                 then == 0 ? 0 : below<Node>(then)->places[i], code_at(code, i, level - 1), level - 1);
+        }
+    };
+    compare(compare, place_of_pointer(root_), place_of_pointer(before.root_), 0, kLevels);
+}
+
+}  // namespace octoskin
