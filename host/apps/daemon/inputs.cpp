@@ -128,6 +128,7 @@ void Inputs::attend() {
         });
     }
     if (!request_.is_listen_only) {
+        if (!bus_time_.at(now)) sync_.hasten();  // nodes speak: what they say waits for nothing else
         if (const auto due = sync_.poll(now)) (void)can_.send(wire::encode(*due, wire::kHostId));
     }
     attend_camera();
