@@ -110,8 +110,8 @@ TEST(FilmTest, each_frame_has_the_time_at_which_it_is_shown_however_late_the_fil
     }
     EXPECT_EQ(untimed, 0);
     const std::int64_t lagged_us = before_us - first_us.value_or(0) - (kFrames - 1) * kPeriodUs;
-    std::printf("the film lagged by %.2f s; a frame was %.0f ms old at most when it came\n", 1e-6 * lagged_us,
-                1e-3 * late_us_max);
+    std::printf("the film lagged by %.2f s; a frame was %.0f ms old at most when it came\n",
+                1e-6 * static_cast<double>(lagged_us), 1e-3 * static_cast<double>(late_us_max));
     EXPECT_GT(lagged_us, 500'000) << "or this tests nothing";
     EXPECT_LE(late_us_max, 2 * kPeriodUs);
 }
