@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -118,24 +119,26 @@ void ControlSocket::accept() {
     });
 }
 
+/// One request: the descriptor stays readable while there are more, and the loop comes back when all others
+/// have had their turn. What a client asks in one go must not keep the bus waiting.
 bool ControlSocket::serve(Client& client) {
     std::array<char, 512> bytes{};
-    const ssize_t count = ::recv(client.descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
-    if (count <= 0) return count < 0 && (errno == EAGAIN || errno == EINTR);
-    client.request.append(bytes.data(), static_cast<std::size_t>(count));
-    while (true) {  // each round takes one line off
-        const std::size_t end = client.request.find('\n');
-        if (end == std::string::npos) break;
-        const std::string line = client.request.substr(0, end);
-        client.request.erase(0, end + 1);
-        client.asked = monotonic_now();
-        // Who has given up waiting must not have a recording begun that it knows nothing of.
-        if (has_gone(client.descriptor)) return false;
-        if (!reply(client, answer_(line))) return false;
+    const ssize_t seen = ::recv(client.descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_PEEK);
+    if (seen <= 0) return seen < 0 && (errno == EAGAIN || errno == EINTR);
+    const std::string_view here(bytes.data(), static_cast<std::size_t>(seen));
+    const std::size_t end = here.find('\n');
+    const bool is_whole = end != std::string_view::npos;
+    client.request += here.substr(0, end);
+    const std::size_t taken = is_whole ? end + 1 : here.size();
+    (void)::recv(client.descriptor, bytes.data(), taken, MSG_DONTWAIT);
+    if (!is_whole) {
+        const bool is_endless = client.request.size() > kRequestMax;
+        dropped_ += is_endless ? 1U : 0U;
+        return !is_endless;
     }
-    const bool is_endless = client.request.size() > kRequestMax;
-    dropped_ += is_endless ? 1U : 0U;
-    return !is_endless;
+    client.asked = monotonic_now();
+    // Who has given up waiting must not have a recording begun that it knows nothing of.
+    return !has_gone(client.descriptor) && reply(client, answer_(std::exchange(client.request, {})));
 }
 
 bool ControlSocket::reply(const Client& client, std::string line) const {

@@ -18,7 +18,7 @@ namespace octoskin {
 class ControlSocket {
   public:
     /// Answers a request (without its line feed) with one line (without a line feed). Is not asked for a
-    /// client that has gone by then.
+    /// client that has gone by then, and of each client once in a turn of the loop.
     using Answer = std::function<std::string(const std::string& request)>;
 
     static constexpr std::size_t kClientsMax = 16;
@@ -44,8 +44,8 @@ class ControlSocket {
   private:
     struct Client {
         int descriptor = -1;
-        std::string request;
-        HostTime asked;  ///< newest whole request
+        std::string request;  ///< as much of it as is here
+        HostTime asked;       ///< newest whole request
         EventSource readable;
     };
     ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer,

@@ -79,6 +79,8 @@ std::optional<openni2::CameraMode> Inputs::mode_for(const HostRig& rig) const {
 }
 
 void Inputs::prepare_for(const HostRig& rig) {
+    catch_up();  // joint states that wait are in the order of the former rig
+    feed_joints(std::nullopt);
     if (!camera_ || mode_for(rig) == camera_mode_) return;
     camera_ready_ = EventSource();
     camera_->end();
@@ -113,6 +115,7 @@ void Inputs::change_rig(const HostRig& rig) {
     joint_node_ = rig.joints.node_id;
     bit_rates_ = rig.bit_rates;
     local_joints_ = local_joints_of(rig);
+    rig_changed_ = wall_now();
     if (joints_) joints_->expect(rig.joints.joints.size());
     camera_mode_ = mode_for(rig);
     attend_camera();
@@ -128,6 +131,7 @@ void Inputs::attend() {
         });
     }
     if (!request_.is_listen_only) {
+        if (!bus_time_.at(now)) sync_.hasten();  // nodes speak: what they say waits for nothing else
         if (const auto due = sync_.poll(now)) (void)can_.send(wire::encode(*due, wire::kHostId));
     }
     attend_camera();
@@ -266,11 +270,14 @@ void Inputs::collect_joints(int& datagrams_left) {
     if (datagrams_left == 0) has_joints_left_ = true;
 }
 
-/// Of a flood: frames that came later are in the pipeline already, to which it would be a clock set back.
+/// Of a flood: frames that came later are in the pipeline already, to which it would be a clock set back. Or
+/// it came before a reload: the joints of another rig, or of another order, would make a pose that never was.
 bool Inputs::has_lost_its_place(const JointSample& sample) const {
     constexpr std::int64_t kClockSetNs = 1'000'000'000;  // that is no turn too late
-    return has_joints_left_ && newest_stamp_ && sample.came < *newest_stamp_ &&
-           newest_stamp_->ns - sample.came.ns < kClockSetNs;
+    const auto is_before = [&sample](const std::optional<WallTime>& other) {
+        return other && sample.came < *other && other->ns - sample.came.ns < kClockSetNs;
+    };
+    return is_before(rig_changed_) || (has_joints_left_ && is_before(newest_stamp_));
 }
 
 /// Those that came by then; empty: all.

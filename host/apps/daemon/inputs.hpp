@@ -41,8 +41,8 @@ class Inputs {
     /// Another rig: its filters, joints and camera. The pipeline must be that rig's already, and this one
     /// told before, while the pipeline was the former one's.
     void change_rig(const HostRig& rig);
-    /// That rig comes next: a camera that it wants in another mode, or not at all, is let go of, and what it
-    /// has shown goes into the pipeline.
+    /// That rig comes next: what waits goes into the pipeline, joint states first of all. A camera that it
+    /// wants in another mode, or not at all, is let go of, and what it has shown goes there, too.
     void prepare_for(const HostRig& rig);
 
     /// Twenty times a second: opens what is closed, sends SYNC when it is due.
@@ -108,7 +108,8 @@ class Inputs {
     EventSource joints_ready_;
     std::deque<JointSample> joints_waiting_;  ///< for frames of the bus that came before them
     bool has_joints_left_ = false;            ///< more came than one turn takes
-    std::uint64_t joints_late_ = 0;           ///< left out, as frames that came later are in the pipeline
+    std::uint64_t joints_late_ = 0;  ///< left out: later frames are in the pipeline, or another rig holds
+    std::optional<WallTime> rig_changed_;  ///< by a reload
     std::uint64_t displaced_noted_ = 0;
     std::optional<HostTime> displaced_at_;  ///< when it was noted last that some had given way
     std::optional<WallTime> newest_stamp_;  ///< of the bus's frames in the pipeline

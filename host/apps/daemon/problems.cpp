@@ -28,12 +28,12 @@ void add_link(const DaemonView& view, Problems& problems) {
 
 /// Where no node is, our own SYNC tells a time from each to the next, and then looks like a jump: that is no
 /// time that anybody shares, and coming and going it would fill the log.
-bool is_time_known(const DaemonView& view) {
+bool is_time_shared(const DaemonView& view) {
     const auto& nodes = view.pipeline->intake().nodes().records();
     const bool has_node =
         std::ranges::any_of(nodes, [](const auto& node) { return node.second.heartbeat.has_value(); });
     const bool has_joints = view.inputs->joints() != nullptr && view.inputs->joints()->samples() > 0;
-    return view.pipeline->now() && (has_node || has_joints || view.is_listen_only);
+    return has_node || has_joints || view.is_listen_only;
 }
 
 void add_other_hosts(const DaemonView& view, Problems& problems) {
@@ -55,13 +55,39 @@ void add_other_hosts(const DaemonView& view, Problems& problems) {
     }
 }
 
+std::string why_no_exchange(const DaemonView& view) {
+    if (view.is_listen_only)
+        return "the time is not known: nobody on the bus sends SYNC and FOLLOW_UP (--listen-only sends none)";
+    return fmt::format(
+        "the time is not known yet: nodes are heard, but no SYNC of ours came onto the bus (can.not_sent, "
+        "{})",
+        view.inputs->can().counts().not_sent);
+}
+
 void add_clock(const DaemonView& view, Problems& problems) {
-    if (is_time_known(view)) return;
-    problems.push_back(
-        {"no time",
-         view.is_listen_only
-             ? "the time is not known: nobody on the bus sends SYNC and FOLLOW_UP (--listen-only sends none)"
-             : "the time is not known yet: no SYNC of ours came onto the bus, or no node is there"});
+    const auto fault = view.pipeline->intake().host_clock().fault();
+    if (!is_time_shared(view)) {
+        problems.push_back({"no time",
+                            fault == HostClockFault::no_exchange
+                                ? "the time is not known yet: no SYNC of ours came onto the bus, and no node "
+                                  "is heard"
+                                : "the time is not known: no node is heard that would share it",
+                            "time"});
+    } else if (fault == HostClockFault::no_exchange) {
+        problems.push_back({"no time", why_no_exchange(view), "time"});
+    } else if (fault == HostClockFault::stamps_jumped) {
+        problems.push_back({"time jumped",
+                            "the time is in doubt: the stamps of what was received went back, or ahead by "
+                            "over 0.14 s: the bus was silent, or this machine's clock was set. The next "
+                            "SYNC with its FOLLOW_UP settles it",
+                            "time"});
+    } else if (fault == HostClockFault::exchanges_disagree) {
+        problems.push_back({"time disagrees",
+                            "the time is in doubt: the newest SYNC with its FOLLOW_UP tells another than "
+                            "those before, by over 20 ms: a clock was set, or a frame was stamped late. Two "
+                            "in a row that agree settle it",
+                            "time"});
+    }
 }
 
 void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {

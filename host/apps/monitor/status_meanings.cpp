@@ -31,8 +31,10 @@ constexpr std::array kStatusMeanings = {
     Meaning{"can", "why", "why it is not up, with what to do; empty if it is"},
     Meaning{"can", "listen_only", "the daemon transmits nothing (--listen-only)"},
     Meaning{"can", "received", "frames that came; the echoes of those sent, too"},
-    Meaning{"can", "sent",
-            "frames handed to the interface: two a second, SYNC and FOLLOW_UP; none with --listen-only"},
+    Meaning{
+        "can", "sent",
+        "frames handed to the interface: two a second, SYNC and FOLLOW_UP, and two more where the time came "
+        "into doubt; none with --listen-only"},
     Meaning{"can", "not_sent",
             "frames that the interface did not take, as it was not up or its queue was full: they are not "
             "sent later, and nodes lose their time if it goes on"},
@@ -161,7 +163,7 @@ constexpr std::array kStatusMeanings = {
     Meaning{"camera", "displaced", "frames that gave way to newer ones, as the daemon was held up"},
     Meaning{"camera", "untimed",
             "frames whose time of capture could not be told: over 0.5 s late, or the first ones, until five "
-            "agree on its clock"},
+            "agree on its clock, for 5 s at most"},
     Meaning{"camera", "opened",
             "how often it was opened; over once: it was gone, fell silent, or all its frames came late"},
     Meaning{"camera", "age_s", "since its newest frame came; null: none yet"},

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "host/apps/octoskin/arguments.hpp"
@@ -24,7 +25,7 @@ namespace {
 struct ReplayOptions {
     PlaybackOptions playback;
     std::filesystem::path out;
-    std::string speed;  ///< empty: max into the maps, 1 onto a bus
+    std::optional<std::string> speed;  ///< empty: max into the maps, 1 onto a bus
     std::string onto;
     bool is_fused_only = false;
     bool is_stepped = false;
@@ -44,15 +45,16 @@ void wait_for_enter(const std::string& what) {
 
 Pace pace_of(const ReplayOptions& options) {
     if (options.is_stepped) return Pace::by_step(wait_for_enter);
-    if (options.speed == "max" || (options.speed.empty() && options.onto.empty())) return {};
-    if (options.speed.empty()) return Pace::times(1.0);
+    if (!options.speed) return options.onto.empty() ? Pace{} : Pace::times(1.0);
+    const std::string& text = *options.speed;
+    if (text == "max") return {};
     double speed = 0.0;
-    const char* const last = options.speed.data() + options.speed.size();
-    const auto [end, error] = std::from_chars(options.speed.data(), last, speed);
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, speed);
     const bool is_speed = error == std::errc{} && end == last && speed >= 1e-3 && speed <= 1e6;
     if (!is_speed)
-        throw CommandFailure({ExitCode::usage, "--speed " + options.speed +
-                                                   ": expected 'max', or a number from 0.001 to 1000000"});
+        throw CommandFailure(
+            {ExitCode::usage, "--speed '" + text + "': expected 'max', or a number from 0.001 to 1000000"});
     return Pace::times(speed);
 }
 

@@ -1,5 +1,7 @@
 #include "host/apps/playback/data_set_playback.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -121,6 +123,13 @@ AccountTable image_table(const tum::DataSetReader& reader, const ReplayOutcome& 
             .is_balanced = true};
 }
 
+std::vector<std::string> warnings_of(const PlaybackRequest& request, const tum::DataSetReader& reader) {
+    if (reader.poses_repeated() == 0) return {};
+    const tum::DataSetReader::Paths paths{request.recording.directory};
+    return {fmt::format("{}: {} poses have the time of the one above them, and were left out",
+                        paths.poses().string(), reader.poses_repeated())};
+}
+
 }  // namespace
 
 bool is_data_set(const RecordingPaths& recording) {
@@ -167,8 +176,15 @@ Result<Playback, AppError> play_data_set(const PlaybackRequest& request_given, c
     for (AccountTable& table : pipeline->account_tables()) {
         if (table.in > 0) accounts.push_back(std::move(table));
     }
-    return Playback{std::move(rig), std::move(*pipeline), std::move(outcome), std::move(accounts), {}, {}, {},
-                    false,          std::move(*origin)};
+    return Playback{.rig = std::move(rig),
+                    .pipeline = std::move(*pipeline),
+                    .outcome = std::move(outcome),
+                    .accounts = std::move(accounts),
+                    .nodes = {},
+                    .notes = {},
+                    .warnings = warnings_of(request, *reader),
+                    .is_map_incomplete = false,
+                    .origin = std::move(*origin)};
 }
 
 }  // namespace octoskin

@@ -96,8 +96,15 @@ void HostClockEstimate::learn(const SyncStamp& sync) {
     offset_next_.reset();
 }
 
+std::optional<HostClockFault> HostClockEstimate::fault() const noexcept {
+    if (!offset_ || !stamp_max_) return HostClockFault::no_exchange;
+    if (offset_next_) return HostClockFault::exchanges_disagree;
+    if (jump_ || is_in_doubt_) return HostClockFault::stamps_jumped;
+    return std::nullopt;
+}
+
 std::optional<HostTime> HostClockEstimate::now() const {
-    if (!offset_ || !stamp_max_ || jump_ || is_in_doubt_) {
+    if (fault()) {
         return std::nullopt;
     }
     return HostTime{stamp_max_->ns + offset_->count()};

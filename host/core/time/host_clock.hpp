@@ -24,6 +24,13 @@ struct HostClockConfig {
     unsigned jump_agreement = 4;
 };
 
+/// Why "now" is not known.
+enum class HostClockFault : std::uint8_t {
+    no_exchange,         ///< no SYNC with its FOLLOW_UP yet
+    stamps_jumped,       ///< beyond the tolerances, and no exchange since has confirmed the offset
+    exchanges_disagree,  ///< the newest tells another offset than those before; the next one decides
+};
+
 /// Stamps are wall time: they may step at any moment, and they never place a measurement. They only say which
 /// of several readings of a wrapping clock is meant (see ClockMap) and how far the bus has come. The offset
 /// from stamp to monotonic time is learnt from each SYNC and its FOLLOW_UP. A jump of the stamps makes "now"
@@ -43,6 +50,8 @@ class HostClockEstimate {
     /// At the newest stamp. Never decreases while no stamp jumps or runs ahead; empty before the first
     /// exchange, after a stamp that jumped, and while in doubt.
     [[nodiscard]] std::optional<HostTime> now() const;
+    /// Why there is no `now`; empty if there is.
+    [[nodiscard]] std::optional<HostClockFault> fault() const noexcept;
     /// For how long frames were received by now, whether or not anybody tells the time: goes on from stamp to
     /// stamp, and stands still over a jump, and over a silence that looks like one. What a stamp that ran
     /// ahead added is taken back.

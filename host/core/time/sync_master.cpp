@@ -10,14 +10,22 @@ void SyncMaster::go_on() {
 
 std::optional<wire::Sync> SyncMaster::poll(HostTime now) {
     if (now < due_) return std::nullopt;
+    is_hastened_ = due_ == early();
     due_ = now + period_;
+    newest_ = now;
     go_on();
     is_awaited_ = true;
     return wire::Sync{sequence_};
 }
 
+void SyncMaster::hasten() noexcept {
+    if (is_hastened_ || early() >= due_) return;
+    due_ = early();
+    is_hastened_ = true;
+}
+
 std::optional<wire::Sync> SyncMaster::poll_alone(HostTime now) {
-    if (!is_awaited_ || now < due_ - period_ / 2) return std::nullopt;
+    if (!is_awaited_ || now < newest_ + period_ / 2) return std::nullopt;
     is_awaited_ = false;
     go_on();
     return wire::Sync{sequence_};

@@ -16,6 +16,10 @@ class SyncMaster {
 
     /// The SYNC to send now, if one is due. One that could not be sent is not made up for.
     [[nodiscard]] std::optional<wire::Sync> poll(HostTime now);
+    /// The time is in doubt until the next exchange: the next SYNC is due a quarter of a period after the
+    /// newest. Once only, then one comes as always: nobody has to bear more than twice the rate, whatever the
+    /// doubt is about.
+    void hasten() noexcept;
     /// Our SYNC of this number was on the bus, its end at `ended`: the FOLLOW_UP to send. Empty for any but
     /// the newest, and for the second time: which of two was meant cannot be told.
     [[nodiscard]] std::optional<wire::FollowUp> on_sent(std::uint8_t sequence, HostTime ended);
@@ -30,8 +34,11 @@ class SyncMaster {
 
   private:
     void go_on();
+    [[nodiscard]] HostTime early() const noexcept { return newest_ + period_ / 4; }
     Nanoseconds period_;
     HostTime due_{};
+    HostTime newest_{};         ///< when `poll` last asked for one
+    bool is_hastened_ = false;  ///< the newest one, or the one that is due
     std::uint8_t sequence_ = wire::kSyncSequenceCount - 1;
     bool is_awaited_ = false;
 };

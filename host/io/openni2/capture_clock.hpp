@@ -13,7 +13,9 @@ namespace octoskin::openni2 {
 /// followed. What the camera and its driver always take is not seen, and counts as part of the offset.
 ///
 /// No single frame is believed: the first may have been the slowest. The offset is known once kAgreeing
-/// frames came within kAgreement of the least.
+/// frames came within kAgreement of the least, or a whole window has passed: on a machine so busy that hardly
+/// two frames take alike the least of a window is as good as there is. The error is what the quickest frame
+/// of the newest one to two windows took, and at most 1 ms of drift.
 class CaptureClock {
   public:
     static constexpr std::int64_t kWindowUs = 5'000'000;
@@ -43,7 +45,8 @@ class CaptureClock {
             least_now_ = kNone;
             window_start_us_ = arrived_us;
         }
-        if (agreeing_ < kAgreeing) settle(offset);
+        if (least() == kNone) begun_us_ = arrived_us;
+        if (agreeing_ < kAgreeing) settle(offset, arrived_us - begun_us_ >= kWindowUs);
         least_now_ = std::min(least_now_, offset);
         return agreeing_ < kAgreeing ? std::nullopt : std::optional(stamp_us + least());
     }
@@ -60,9 +63,10 @@ class CaptureClock {
         least_before_ = least_now_ = kNone;
         agreeing_ = 0;
     }
-    void settle(std::int64_t offset) noexcept {
-        if (least() == kNone || offset < least() - kAgreementUs) {
-            forget();
+    void settle(std::int64_t offset, bool has_had_a_window) noexcept {
+        if (has_had_a_window) {
+            agreeing_ = kAgreeing;
+        } else if (least() == kNone || offset < least() - kAgreementUs) {
             agreeing_ = 1;
         } else if (offset <= least() + kAgreementUs) {
             ++agreeing_;
@@ -71,6 +75,7 @@ class CaptureClock {
 
     std::int64_t least_before_ = kNone;
     std::int64_t least_now_ = kNone;
+    std::int64_t begun_us_ = 0;  ///< arrival of the first frame of this count
     std::int64_t window_start_us_ = std::numeric_limits<std::int64_t>::min() / 2;
     std::int64_t stamp_newest_us_ = std::numeric_limits<std::int64_t>::min();
     std::int64_t last_timely_us_ = 0;  ///< arrival of the newest frame that was not late

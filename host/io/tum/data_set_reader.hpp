@@ -36,6 +36,8 @@ class DataSetReader final : public DepthSource {
 
     [[nodiscard]] std::uint64_t images_read() const noexcept { return images_read_; }
     [[nodiscard]] std::uint64_t images_without_pose() const noexcept { return images_without_pose_; }
+    /// Lines of groundtruth.txt that were left out, as the pose above them has their time.
+    [[nodiscard]] std::uint64_t poses_repeated() const noexcept { return trajectory_.repeated(); }
     /// Of images that are neither read nor counted yet.
     [[nodiscard]] std::uint64_t images_left() const noexcept { return images_.size() - next_; }
     /// When the first image was made; empty if there is none.

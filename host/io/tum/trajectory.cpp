@@ -24,12 +24,14 @@ Eigen::Isometry3d between(const PoseLine& before, const PoseLine& after, HostTim
 Result<Trajectory, DepthSourceError> Trajectory::read(const std::filesystem::path& file) {
     Trajectory trajectory;
     std::vector<PoseLine>& poses = trajectory.poses_;
-    const auto take = [&poses](std::uint64_t, std::string_view line) -> Status<std::string> {
+    const auto take = [&trajectory, &poses](std::uint64_t, std::string_view line) -> Status<std::string> {
         const auto pose = parse_pose_line(line);
         if (!pose) return unexpected(pose.error());
         if (!poses.empty() && pose->at < poses.back().at)
             return unexpected(std::string("its time is before that of the pose above it"));
-        if (poses.empty() || pose->at > poses.back().at) poses.push_back(*pose);
+        const bool is_repeated = !poses.empty() && pose->at == poses.back().at;
+        trajectory.repeated_ += is_repeated ? 1U : 0U;
+        if (!is_repeated) poses.push_back(*pose);
         return Done{};
     };
     if (const auto done = read_lines(file, take); !done) return unexpected(done.error());

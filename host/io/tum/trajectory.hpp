@@ -1,6 +1,7 @@
 // Where the camera was: the poses of groundtruth.txt, and those between them.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -18,7 +19,7 @@ inline constexpr Nanoseconds kPoseGapMax{50'000'000};
 class Trajectory {
   public:
     /// Errors name file and line: no pose, or one before its predecessor. Of two with one time the first
-    /// counts.
+    /// counts, see `repeated`.
     [[nodiscard]] static Result<Trajectory, DepthSourceError> read(const std::filesystem::path& file);
 
     /// T_map_camera: position linear, orientation along the shorter arc. Empty before the first pose, after
@@ -26,9 +27,12 @@ class Trajectory {
     [[nodiscard]] std::optional<Eigen::Isometry3d> at(HostTime instant) const;
 
     [[nodiscard]] std::size_t poses() const noexcept { return poses_.size(); }
+    /// Lines that were left out, as the pose above them has their time.
+    [[nodiscard]] std::uint64_t repeated() const noexcept { return repeated_; }
 
   private:
     std::vector<PoseLine> poses_;
+    std::uint64_t repeated_ = 0;
 };
 
 }  // namespace octoskin::tum

@@ -90,7 +90,7 @@ void LiveBus::listen_until(std::int64_t due_ns) {
 bool LiveBus::hear_one() {
     auto received = socket_.receive();
     if (!received) return false;
-    if (*received) {
+    if (*received && !is_cut_) {
         // A node's hardware stamps the end of a frame; here the kernel does, when it was handed over.
         timespec now{};
         ::clock_gettime(CLOCK_REALTIME, &now);
@@ -147,6 +147,7 @@ void LiveBus::be_host() {
 }
 
 void LiveBus::put(const wire::CanFrame& frame) {
+    if (is_cut_) return;
     (void)socket_.send(frame);  // an end that takes nothing any more loses it, as on a bus
 }
 

@@ -36,6 +36,9 @@ class LiveBus {
     void silence(wire::NodeId node, bool is_silent);
     /// A node that with each of its frames says its newest heartbeat a dozen times more. Empty: none.
     void let_babble(std::optional<wire::NodeId> node);
+    /// A line that is broken: nothing comes through, either way, and what was sent meanwhile is gone. The
+    /// nodes and their robot go on.
+    void cut(bool is_cut) noexcept { is_cut_ = is_cut; }
     [[nodiscard]] std::uint64_t syncs_heard() const noexcept { return syncs_heard_; }
     /// Frames of the other end.
     [[nodiscard]] std::uint64_t frames_heard() const noexcept { return frames_heard_; }
@@ -67,6 +70,7 @@ class LiveBus {
     std::int64_t begin_ns_ = 0;         ///< the log's first stamp
     std::int64_t begin_steady_ns_ = 0;  ///< when that was played
     std::atomic<bool> is_ending_ = false;
+    std::atomic<bool> is_cut_ = false;
     std::atomic<std::uint64_t> syncs_heard_ = 0;
     std::atomic<std::uint64_t> frames_heard_ = 0;
     mutable std::mutex mutex_;

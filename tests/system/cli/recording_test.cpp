@@ -100,6 +100,7 @@ TEST_F(Recording, plays_at_the_speed_asked_for_and_step_by_step) {
     EXPECT_THAT(stepped.output, HasSubstr("(1750000000.000135) can0 040#092E26"));
     EXPECT_EQ(octoskin("replay " + path("rec") + " --speed fast").exit_code, 64);
     EXPECT_EQ(octoskin("replay " + path("rec") + " --speed 0").exit_code, 64);
+    EXPECT_EQ(octoskin("replay " + path("rec") + " --speed ''").exit_code, 64);
     EXPECT_EQ(octoskin("replay " + path("rec") + " --onto fd:77").exit_code, 64);
     EXPECT_EQ(octoskin("replay " + path("rec") + " --onto nobus9").exit_code, 69);
 }

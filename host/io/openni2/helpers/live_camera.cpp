@@ -11,7 +11,6 @@
 #include "host/io/openni2/capture_clock.hpp"
 #include "host/io/openni2/helpers/camera_list.hpp"
 #include "host/io/openni2/helpers/depth_stream.hpp"
-#include "host/io/openni2/looped_stamps.hpp"
 
 namespace octoskin::openni2 {
 namespace {
@@ -24,17 +23,20 @@ std::int64_t monotonic_us() {
         .count();
 }
 
+/// A film has no clock of its own, and its stamps tell how long to wait between two frames, no more: what
+/// OpenNI2 shows late on a busy machine makes all that follows as late, and each round begins when it does.
+/// So a frame is of the moment at which it is shown. It is here by then, or as soon as this thread has its
+/// turn: a period later at most, or the next frame would be here in its place.
 int stream_frames(DepthStream& depth, int descriptor) {
     FramePipe output(descriptor, kPatience);
     if (!output.write_header({.size = depth.size(), .rate_mhz = depth.rate_mhz()})) return 1;
     CaptureClock clock;
-    LoopedStamps film;
     while (true) {  // until the camera is gone, or whoever reads
         if (!depth.wait_for_frame()) return depth.complain("no more frames");
         const std::int64_t arrived_us = monotonic_us();
         const auto stamp_us = static_cast<std::int64_t>(depth.frame().getTimestamp());
         const auto captured_us =
-            clock.captured_us(depth.is_file() ? film.running_us(stamp_us, arrived_us) : stamp_us, arrived_us);
+            depth.is_file() ? std::optional(arrived_us) : clock.captured_us(stamp_us, arrived_us);
         if (!captured_us) {
             if (!output.write_untimed_frame()) return 1;
             if (clock.is_lost()) return depth.complain("its frames came over 0.5 s late for 5 s");

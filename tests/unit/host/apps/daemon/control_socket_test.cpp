@@ -10,7 +10,9 @@
 #include <array>
 #include <atomic>
 #include <ctime>
+#include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "host/apps/daemon/unix_socket.hpp"
@@ -64,6 +66,51 @@ TEST_F(ControlSocketTest, answers_each_line_with_one) {
         EXPECT_EQ(ask_daemon(file(), "").value(), "you said ");
     });
     EXPECT_EQ(asked_, 3);
+}
+
+// Of seventy answers in a row the last reading would be as late as they take.
+TEST_F(ControlSocketTest, answers_one_request_and_lets_everybody_else_have_a_turn_before_the_next) {
+    const int client = connect();
+    std::string requests;
+    for (int i = 0; i < 70; ++i) requests += "status\n";
+    ASSERT_EQ(::send(client, requests.data(), requests.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(requests.size()));
+    std::array<int, 2> pipe{};
+    ASSERT_EQ(::pipe(pipe.data()), 0);
+    ASSERT_EQ(::write(pipe[1], "a", 1), 1);  // always readable, as a bus that is never silent
+    int asked_before = 0;
+    int in_a_row_max = 0;
+    const auto bus = loop_.on_readable(pipe[0], [&] {
+        in_a_row_max = std::max(in_a_row_max, asked_ - std::exchange(asked_before, asked_));
+    });
+    std::string answers;
+    serve([&] {
+        std::array<char, 4096> bytes{};
+        while (std::ranges::count(answers, '\n') < 70) {
+            const ssize_t count = ::recv(client, bytes.data(), bytes.size(), 0);
+            ASSERT_GT(count, 0);
+            answers.append(bytes.data(), static_cast<std::size_t>(count));
+        }
+    });
+    EXPECT_EQ(asked_, 70);
+    EXPECT_EQ(in_a_row_max, 1);
+    for (const int descriptor : {client, pipe[0], pipe[1]}) ::close(descriptor);
+}
+
+TEST_F(ControlSocketTest, puts_a_request_together_that_comes_in_pieces) {
+    serve([&] {
+        const int client = connect();
+        for (const char* piece : {"sta", "tus\nand", " more\n"}) {
+            EXPECT_GT(::send(client, piece, std::char_traits<char>::length(piece), MSG_NOSIGNAL), 0);
+            std::this_thread::sleep_for(5ms);
+        }
+        const std::string_view wanted = "you said status\nyou said and more\n";
+        std::array<char, 64> bytes{};
+        ASSERT_EQ(::recv(client, bytes.data(), wanted.size(), MSG_WAITALL),
+                  static_cast<ssize_t>(wanted.size()));
+        EXPECT_EQ(std::string_view(bytes.data(), wanted.size()), wanted);
+        ::close(client);
+    });
 }
 
 // It would be told of nothing that it has begun.

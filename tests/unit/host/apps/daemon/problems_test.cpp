@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
 
+#include <cmath>
+
 #include "common/range_status.hpp"
 #include "common/wire/codec.hpp"
 #include "common/wire/names.hpp"
@@ -53,7 +55,7 @@ TEST_F(ProblemsTest, come_the_most_fundamental_first) {
     EXPECT_THAT(
         all_told(),
         ElementsAre(HasSubstr("CAN absent: can7: closed: No such device"),
-                    "the time is not known yet: no SYNC of ours came onto the bus, or no node is there",
+                    "the time is not known yet: no SYNC of ours came onto the bus, and no node is heard",
                     "node 1 'node 1': absent",
                     "no joint states: none from node 10 on the bus (and no --joints)",
                     "camera: no such device", "the map is not saved: the disk is full"));
@@ -97,7 +99,8 @@ TEST_F(ProblemsTest, have_a_bus_whose_time_went_back_for_a_minute) {
 TEST_F(ProblemsTest, have_a_time_that_nobody_tells_until_somebody_does) {
     play(daemon_scene(), 0.09);
     EXPECT_EQ(told("no time"),
-              "the time is not known yet: no SYNC of ours came onto the bus, or no node is there");
+              "the time is not known yet: nodes are heard, but no SYNC of ours came onto the bus "
+              "(can.not_sent, 0)");
     view_.is_listen_only = true;
     EXPECT_EQ(told("no time"),
               "the time is not known: nobody on the bus sends SYNC and FOLLOW_UP (--listen-only sends none)");
@@ -111,10 +114,35 @@ TEST_F(ProblemsTest, have_no_time_from_our_own_sync_alone) {
     scene.rig.joints.node_id = 45;
     play(scene, 0.2);
     ASSERT_TRUE(pipeline_->now());
-    EXPECT_EQ(told("no time"),
-              "the time is not known yet: no SYNC of ours came onto the bus, or no node is there");
+    EXPECT_EQ(told("no time"), "the time is not known: no node is heard that would share it");
     view_.is_listen_only = true;
     EXPECT_EQ(told("no time"), "");
+}
+
+// It is not that a SYNC is missing, or a node.
+TEST_F(ProblemsTest, have_a_time_in_doubt_with_what_made_it_so) {
+    ScriptedBus after_silence;
+    for (int i = 0; i < 6; ++i) after_silence.heartbeat(5.0 + 0.1 * i, node_of(scene_, kLeft));
+    play_on(after_silence.frames(), 5.55);
+    EXPECT_THAT(told("time jumped"), HasSubstr("the bus was silent, or this machine's clock was set"));
+    EXPECT_EQ(told("no time"), "");
+
+    const auto exchange = [](ScriptedBus& bus, std::uint8_t sequence, double at_s, double told_s) {
+        bus.send(at_s, wire::Sync{sequence}, wire::kHostId);
+        const auto host_us = static_cast<std::uint64_t>(std::llround(told_s * 1e6));
+        bus.send(at_s + 0.001, wire::FollowUp{sequence, host_us}, wire::kHostId);
+    };
+    ScriptedBus told_again;
+    exchange(told_again, 20, 5.6, 5.6);
+    play_on(told_again.frames(), 5.65);
+    EXPECT_EQ(told("time jumped"), "");
+    ScriptedBus told_otherwise;
+    exchange(told_otherwise, 21, 5.7, 5.73);
+    play_on(told_otherwise.frames(), 5.75);
+    EXPECT_THAT(told("time disagrees"), HasSubstr("tells another than those before, by over 20 ms"));
+    EXPECT_EQ(told("no time") + told("time jumped"), "");
+    view_.is_listen_only = true;
+    EXPECT_THAT(told("time disagrees"), HasSubstr("a clock was set")) << "whoever sends SYNC";
 }
 
 TEST_F(ProblemsTest, have_each_node_that_is_not_usable_and_nothing_of_its_sensors) {

@@ -41,6 +41,27 @@ HostClockEstimate locked_at_ms(std::int64_t host_ms) {
     return clock;
 }
 
+TEST(HostClockEstimate, says_why_it_knows_no_time) {
+    HostClockEstimate clock;
+    EXPECT_EQ(clock.fault(), HostClockFault::no_exchange);
+    clock.observe(stamp_ms(1000));
+    EXPECT_EQ(clock.fault(), HostClockFault::no_exchange);
+    clock.learn(sync_ms(1000));
+    EXPECT_EQ(clock.fault(), std::nullopt);
+    clock.observe(stamp_ms(1500));
+    EXPECT_EQ(clock.fault(), HostClockFault::stamps_jumped) << "others may still show that it was wrong";
+    observe_four(clock, 1501, 0);
+    EXPECT_EQ(clock.fault(), HostClockFault::stamps_jumped);
+    clock.learn(sync_ms(1504));
+    EXPECT_EQ(clock.fault(), std::nullopt) << "the bus was silent";
+    clock.observe(stamp_ms(1600));
+    clock.learn({{1630 * kMsNs}, stamp_ms(1600)});
+    EXPECT_EQ(clock.fault(), HostClockFault::exchanges_disagree);
+    clock.observe(stamp_ms(1700));
+    clock.learn({{1730 * kMsNs}, stamp_ms(1700)});
+    EXPECT_EQ(clock.fault(), std::nullopt) << "two agree";
+}
+
 TEST(HostClockEstimate, knows_no_time_before_the_first_exchange) {
     HostClockEstimate clock;
     EXPECT_FALSE(clock.now().has_value());

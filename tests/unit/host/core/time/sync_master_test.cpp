@@ -69,6 +69,31 @@ TEST(SyncMaster, exchanges_with_itself_once_a_period_while_its_sync_does_not_com
     EXPECT_FALSE(master.poll_alone(at_ms(50'500))) << "somebody is there";
 }
 
+TEST(SyncMaster, sends_the_next_one_a_quarter_of_a_period_after_the_newest_when_it_is_hastened) {
+    SyncMaster master;
+    ASSERT_TRUE(master.poll(at_ms(1000)));
+    master.hasten();
+    EXPECT_FALSE(master.poll(at_ms(1249)));
+    EXPECT_TRUE(master.poll(at_ms(1250)));
+    ASSERT_TRUE(master.poll(at_ms(2250)));
+    EXPECT_FALSE(master.poll(at_ms(2900)));
+    master.hasten();
+    EXPECT_TRUE(master.poll(at_ms(2900))) << "at once, if the newest was long ago";
+}
+
+TEST(SyncMaster, hurries_once_and_exchanges_with_itself_where_no_sync_comes_onto_the_bus) {
+    SyncMaster master;
+    int asked = 0;
+    int alone = 0;
+    for (int ms = 1000; ms < 26'000; ms += 50) {
+        master.hasten();
+        asked += master.poll(at_ms(ms)) ? 1 : 0;
+        alone += master.poll_alone(at_ms(ms)) ? 1 : 0;
+    }
+    EXPECT_EQ(asked, 40) << "two in 1.25 s";
+    EXPECT_EQ(alone, 20);
+}
+
 TEST(SyncMaster, agrees_with_the_exchange_that_everybody_sees) {
     SyncMaster master;
     SyncExchange exchange;

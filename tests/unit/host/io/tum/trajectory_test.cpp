@@ -83,6 +83,7 @@ TEST_F(TrajectoryTest, of_two_poses_with_one_time_the_first_counts) {
     const Trajectory trajectory = read("1 5 0 0 0 0 0 1\n1 6 0 0 0 0 0 1\n1.01 5 0 0 0 0 0 1\n");
     EXPECT_EQ(trajectory.at(at_ms(1'000))->translation().x(), 5.0);
     EXPECT_EQ(trajectory.at(at_ms(1'005))->translation().x(), 5.0);
+    EXPECT_EQ(trajectory.repeated(), 1U);
 }
 
 TEST_F(TrajectoryTest, an_error_names_file_and_line) {

@@ -1,0 +1,51 @@
+// What comes in while the daemon changes its mind.
+#include "host/apps/daemon/inputs.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "host/apps/daemon/unix_socket.hpp"
+#include "tests/unit/host/apps/daemon/daemon_view_fixture.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+class InputsTest : public DaemonViewTest {
+  protected:
+    [[nodiscard]] std::uint64_t frames_in() const { return beside_.accounts().frames.in(); }
+};
+
+// By the order of the next rig's joints they would be a pose that never was.
+TEST_F(InputsTest, joint_states_that_wait_are_of_the_rig_that_held_when_they_came) {
+    const auto inputs = inputs_with_joint_socket();
+    send_joints("0.5");
+    inputs->prepare_for(scene_.rig);
+    EXPECT_EQ(inputs->joints()->samples(), 1U);
+    const std::uint64_t before = frames_in();
+    EXPECT_GT(before, 0U) << "they went to the former pipeline";
+    inputs->change_rig(scene_.rig);
+    std::this_thread::sleep_for(20ms);  // or it comes too soon after the first
+    send_joints("0.6");
+    inputs->catch_up();
+    EXPECT_GT(frames_in(), before) << "those that come now are the new rig's";
+    EXPECT_EQ(inputs->joints_displaced(), 0U);
+}
+
+// Of a flood more waits than is taken in one turn.
+TEST_F(InputsTest, joint_states_from_before_a_reload_that_come_to_light_after_it_are_left_out) {
+    const auto inputs = inputs_with_joint_socket();
+    for (int i = 0; i < 5; ++i) send_joints("0.5");
+    inputs->change_rig(scene_.rig);
+    inputs->catch_up();
+    EXPECT_EQ(frames_in(), 0U);
+    EXPECT_EQ(inputs->joints_displaced(), 5U);
+}
+
+}  // namespace
+}  // namespace octoskin::test
