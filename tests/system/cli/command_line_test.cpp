@@ -201,7 +201,7 @@ TEST_F(CommandLine, takes_an_arm_with_a_hand_as_its_document_says) {
 TEST_F(CommandLine, knows_the_same_configurations_in_every_command) {
     const Said near = octoskin("mapping robsut");
     EXPECT_EQ(near.exit_code, 66);
-    EXPECT_THAT(near.output, AllOf(HasSubstr("paper, paper_noise_free_robot_seen, robust"),
+    EXPECT_THAT(near.output, AllOf(HasSubstr("paper, paper_noise_free_robot_seen, robust, fast"),
                                    HasSubstr("did you mean robust?")));
     const Said seen = octoskin("mapping paper_noise_free_robot_seen");
     EXPECT_EQ(seen.exit_code, 0);

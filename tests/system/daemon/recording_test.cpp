@@ -127,7 +127,8 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
     EXPECT_FALSE(first == in_order);
 }
 
-/// Some 490 bricks of 2064 bytes and their nodes are the one MiB: 448 that nothing touches, the rest is soon taken.
+/// Some 490 bricks of 2064 bytes and their nodes are the one MiB: 448 that nothing touches, the rest is soon
+/// taken.
 TEST_F(DaemonRecording, begun_with_a_full_map_gives_the_daemons_own_map_and_explains_what_had_no_room) {
     FusedMap map{MapConfig{}};
     for (std::uint16_t i = 0; i < 7; ++i)

@@ -32,6 +32,7 @@ ReportInput two_seeds() {
         judged("robust", "fused", 1, 1580, 0.12),
     };
     ReportInput input;
+    input.main_configuration = "robust";
     input.results = evaluation::collect(runs, {{"simulate", 12.5, 14.25}}, {{"world", "experiment.sdf"}});
     const Image dot{1, 1, {10, 20, 30, 255}};
     input.pictures = {{"The scene", "A room.", dot, dot}, {"Fused", "Both.", dot, dot}};

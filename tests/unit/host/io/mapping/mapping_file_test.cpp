@@ -123,9 +123,9 @@ TEST(MappingFile, names_file_line_key_value_and_remedy) {
     EXPECT_THAT(error_of("map:\n  resolution: 0.04\n"), HasSubstr("resolution_m"));
     EXPECT_THAT(error_of("\nno_return_clear_mm: 100\n"), HasSubstr("my.yaml:2: no_return_clear_mm: "));
     EXPECT_THAT(error_of("depth_update: best\n"),
-                HasSubstr("my.yaml:1: depth_update: expected paper or robust, found 'best'"));
+                HasSubstr("my.yaml:1: depth_update: expected paper or robust or fast, found 'best'"));
     EXPECT_THAT(error_of("base: worst\n"),
-                HasSubstr("my.yaml:1: base: expected paper or robust, found 'worst'"));
+                HasSubstr("my.yaml:1: base: expected paper or robust or fast, found 'worst'"));
     EXPECT_THAT(error_of("miss_log_odds: 0.4\n"),
                 HasSubstr("my.yaml:1: miss_log_odds: expected a number from "));
     EXPECT_THAT(error_of("depth_filter: {window_px: 4}\n"),
