@@ -1,0 +1,45 @@
+#include "host/core/traversal/picture_test.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/host/core/traversal/traversal_scene.hpp"
+
+namespace octoskin {
+namespace {
+
+// The depth update 'fast' looks for a ray's end only in bricks of which it says "some": were one passed over, a
+// surface would be missing.
+TEST(PictureTest, says_of_every_cube_in_which_a_ray_ends_that_some_of_it_is_passed) {
+    for (const double resolution_m : {0.04, 0.1, 0.3}) {
+        const VoxelLattice lattice(resolution_m);
+        const PixelRays pixel_rays(kSmallCamera);
+        for (unsigned seed = 0; seed < 40; ++seed) {
+            property::RandomGeometry random(seed, resolution_m);
+            const Eigen::Isometry3d T_map_camera = random.camera_pose();
+            PlacedImage image;
+            place_image(random.depth_image(kSmallCamera.width, kSmallCamera.height), pixel_rays, lattice,
+                        T_map_camera, seed % 2 == 0 ? 0.0 : 1.5, image);
+            const CertainView view(kSmallCamera, lattice, T_map_camera, image);
+            const PictureTest picture(view, image);
+            for (std::size_t i = 0; i < std::size_t{image.width} * image.height; i += 7) {
+                if (image.reach_m[i] < 0.0F || image.range_m[i] < 0.0) continue;
+                const Eigen::Vector3f end(image.end_x[i], image.end_y[i], image.end_z[i]);
+                const MortonCode code = morton_of(*lattice.key_of(end.cast<double>()));
+                for (unsigned height = kBrickHeight; height <= 9; ++height) {
+                    const VoxelKey lowest = key_of_morton(code >> (3 * height) << (3 * height));
+                    const int edge = 1 << height;
+                    const Eigen::Vector3d middle =
+                        lattice.centre_of(lowest) +
+                        Eigen::Vector3d::Constant(0.5 * (edge - 1) * resolution_m);
+                    ASSERT_EQ(picture.of_cube(view.T_camera_map * middle, edge), CubeVerdict::some)
+                        << resolution_m << " m, seed " << seed << ", pixel " << i << ", height " << height;
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace octoskin
