@@ -21,7 +21,7 @@ namespace octoskin {
 
 /// The camera in single precision. Pixel (u, v) is seen along ((u - u_centre) / fx, (v - v_centre) / fy, 1).
 struct CertainTest {
-    const float* reach_m = nullptr;
+    const float* passed_m = nullptr;
     float width = 0.0F;
     float last_u = 0.0F;
     float last_v = 0.0F;
@@ -31,7 +31,7 @@ struct CertainTest {
     float v_centre = 0.0F;
     std::array<Eigen::Vector3f, 3> along;  ///< of the map's axes, one voxel, in the camera's frame
     float inside_squared = 0.0F;           ///< how near a ray passes the centre, squared, metres
-    float beyond_m = 0.0F;                 ///< how much further than the centre it reaches
+    float beyond_m = 0.0F;                 ///< how much further than the centre it goes on
     float near_m = 0.0F;                   ///< nearer than this no pixel is the nearest
     float far_m = 0.0F;
 };
@@ -86,9 +86,9 @@ HWY_INLINE RowBits test_row(const CertainTest& test, const Eigen::Vector3f& p_ca
             hn::Gt(z, hn::Set(f, test.near_m)),
             hn::Le(hn::Add(hn::Mul(off_x, off_x), hn::Mul(off_y, off_y)), hn::Set(f, test.inside_squared)));
         const auto pixel = hn::ConvertTo(i, hn::Add(hn::Mul(v, hn::Set(f, test.width)), u));
-        const V reach = hn::GatherIndex(f, test.reach_m, pixel);
-        const auto reaches = hn::Gt(reach, hn::Add(z, hn::Set(f, test.beyond_m)));
-        const auto tells = hn::And(passes, hn::Ge(reach, hn::Zero(f)));
+        const V passed = hn::GatherIndex(f, test.passed_m, pixel);
+        const auto reaches = hn::Gt(passed, hn::Add(z, hn::Set(f, test.beyond_m)));
+        const auto tells = hn::And(passes, hn::Ge(passed, hn::Zero(f)));
         row.certain |= bits_of(hn::And(passes, reaches), first);
         row.open |= bits_of(hn::AndNot(tells, hn::And(hn::Le(z, hn::Set(f, test.far_m)),
                                                       hn::Gt(z, hn::Set(f, -test.near_m)))),
@@ -135,7 +135,7 @@ void mark_all(std::uint8_t* marks, std::ptrdiff_t y_stride, std::ptrdiff_t z_str
 
 CertainTest test_of(const CertainView& view, const PlacedImage& image) {
     const CameraIntrinsics& camera = view.camera;
-    CertainTest test{.reach_m = image.reach_m.data(),
+    CertainTest test{.passed_m = image.passed_m.data(),
                      .width = static_cast<float>(camera.width),
                      .last_u = static_cast<float>(camera.width - 1),
                      .last_v = static_cast<float>(camera.height - 1),
@@ -150,7 +150,7 @@ CertainTest test_of(const CertainView& view, const PlacedImage& image) {
     }
     const double inside_m = 0.5 * view.resolution_m - 0.5 * view.margin_m;
     test.inside_squared = static_cast<float>(inside_m * inside_m);
-    test.beyond_m = static_cast<float>(view.half_depth_m + 0.5 * view.margin_m);
+    test.beyond_m = static_cast<float>(0.5 * view.margin_m);
     test.near_m = static_cast<float>(view.half_depth_m + view.margin_m);
     test.far_m = static_cast<float>(view.depth_max_m);
     return test;

@@ -17,8 +17,9 @@
 
 namespace octoskin {
 
-/// Marks, in a grid that spans the image's rays and has no mark, each voxel that a ray passes before its end.
-/// Keeps its working memory between images.
+/// Marks, in a grid that spans the image's rays and has no mark, each voxel that a ray passes before its end,
+/// and perhaps voxels in which a ray ends in something: who takes those for hits loses nothing. Keeps its
+/// working memory between images.
 class ImageTraversal {
   public:
     void mark_passed(const PlacedImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,

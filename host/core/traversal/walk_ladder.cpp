@@ -19,12 +19,12 @@ Raster blocks_of(const PlacedImage& image) {
     return {(image.width + kBlock - 1) / kBlock, (image.height + kBlock - 1) / kBlock};
 }
 
-std::vector<float> shortest_of_blocks(const PlacedImage& image, const std::vector<float>& reach_m) {
+std::vector<float> shortest_of_blocks(const PlacedImage& image, const std::vector<float>& passed_m) {
     const Raster blocks = blocks_of(image);
     std::vector<float> shortest(std::size_t{blocks.width} * blocks.height,
                                 std::numeric_limits<float>::infinity());
     for (std::uint32_t v = 0; v < image.height; ++v) {
-        const float* const row = reach_m.data() + std::size_t{v} * image.width;
+        const float* const row = passed_m.data() + std::size_t{v} * image.width;
         float* const out = shortest.data() + std::size_t{v / kBlock} * blocks.width;
         for (std::uint32_t u = 0; u < image.width; ++u) out[u / kBlock] = std::min(out[u / kBlock], row[u]);
     }
@@ -90,7 +90,7 @@ void WalkLadder::set_rungs(const CertainView& view, const PlacedImage& image) {
 }
 
 void WalkLadder::fill_rungs(const CertainView& view, const PlacedImage& image) {
-    const auto kept_clear = static_cast<float>(2.0 * (view.half_depth_m + view.margin_m));
+    const auto kept_clear = static_cast<float>(view.half_depth_m + 2.0 * view.margin_m);
     const auto fill = [&](std::vector<Rung>& rungs, std::vector<float> shortest, const Raster& raster,
                           std::uint32_t pixels) {
         std::uint32_t had = 0;
@@ -104,12 +104,13 @@ void WalkLadder::fill_rungs(const CertainView& view, const PlacedImage& image) {
         std::ranges::reverse(rungs);
     };
     // A voxel whose nearest pixel has no ray asks the others.
-    std::vector<float> reach_m(std::size_t{image.width} * image.height);
-    std::transform(image.reach_m.begin(), image.reach_m.begin() + static_cast<std::ptrdiff_t>(reach_m.size()),
-                   reach_m.begin(),
-                   [](float reach) { return reach < 0.0F ? std::numeric_limits<float>::infinity() : reach; });
-    fill(near_, shortest_of_blocks(image, reach_m), blocks_of(image), kBlock);
-    fill(far_, std::move(reach_m), {image.width, image.height}, 1);
+    std::vector<float> passed_m(std::size_t{image.width} * image.height);
+    for (std::size_t i = 0; i < passed_m.size(); ++i) {
+        passed_m[i] =
+            image.reach_m[i] < 0.0F ? std::numeric_limits<float>::infinity() : image.passed_m[i];
+    }
+    fill(near_, shortest_of_blocks(image, passed_m), blocks_of(image), kBlock);
+    fill(far_, std::move(passed_m), {image.width, image.height}, 1);
 }
 
 void WalkLadder::find_pieces(const CertainView& view, const PlacedImage& image,

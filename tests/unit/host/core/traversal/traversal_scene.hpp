@@ -27,6 +27,17 @@ inline std::set<VoxelKey> walked(const PlacedImage& image, const VoxelLattice& l
     return voxels;
 }
 
+/// In which a ray ends in something.
+inline std::set<VoxelKey> hit_by(const PlacedImage& image, const VoxelLattice& lattice) {
+    std::set<VoxelKey> voxels;
+    for (std::size_t i = 0; i < std::size_t{image.width} * image.height; ++i) {
+        if (image.reach_m[i] < 0.0F || image.range_m[i] < 0.0) continue;
+        voxels.insert(
+            *lattice.key_of(Eigen::Vector3f(image.end_x[i], image.end_y[i], image.end_z[i]).cast<double>()));
+    }
+    return voxels;
+}
+
 inline void span(MarkGrid& grid, const PlacedImage& image, const VoxelLattice& lattice) {
     ASSERT_TRUE(grid.span(*lattice.key_of(image.lowest.cast<double>()),
                           *lattice.key_of(image.highest.cast<double>()), std::size_t{1} << 30U));
