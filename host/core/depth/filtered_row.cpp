@@ -65,16 +65,27 @@ HWY_INLINE void exchange(std::array<Float, kCount>& values, std::size_t low, std
 }
 
 template <std::size_t kCount, std::size_t... kIndex>
-HWY_INLINE void sort(std::array<Float, kCount>& values, std::index_sequence<kIndex...>) {
+HWY_INLINE void sort_unrolled(std::array<Float, kCount>& values, std::index_sequence<kIndex...>) {
     [[maybe_unused]] constexpr auto kNetwork = sorting_network<kCount>();
     (exchange(values, kNetwork[kIndex].low, kNetwork[kIndex].high), ...);
+}
+
+template <std::size_t kCount>
+HWY_INLINE void sort(std::array<Float, kCount>& values) {
+    static constexpr auto kNetwork = sorting_network<kCount>();
+    // In one piece up to a window of 5: what is larger takes compilers minutes, and does not fit registers.
+    if constexpr (kNetwork.size() <= 138) {
+        sort_unrolled(values, std::make_index_sequence<kNetwork.size()>());
+    } else {
+        for (const Exchange& next : kNetwork) exchange(values, next.low, next.high);
+    }
 }
 
 /// Sorted completely by its text; the compiler leaves out what the middle does not depend on.
 template <std::size_t kSide>
 HWY_INLINE Float median_of(NearValues<kSide> near) {
     constexpr std::size_t kMiddle = kSide * kSide / 2;
-    sort(near.depth_m, std::make_index_sequence<sorting_network<kSide * kSide>().size()>());
+    sort(near.depth_m);
     const Float upper = near.depth_m[kMiddle];
     if constexpr (kMiddle == 0) {
         return upper;

@@ -1,9 +1,10 @@
 // Which voxels are passed for certain, so that no ray need be walked through them.
 //
 // A voxel is certain if the ray of the pixel nearest to its centre passes its centre within half an edge and
-// goes on from there: then it passes the voxel, or ends in it. That is one look-up, and while a pixel is smaller than a voxel it finds nearly
-// all of free space. At the picture's edge, where a voxel is seen in part, and where the nearest pixel has no
-// ray, all pixels that see the voxel are asked. docs/method.md has the figure.
+// goes on from there: then it passes the voxel, or ends in it. That is one look-up, and while a pixel is
+// smaller than a voxel it finds nearly all of free space. At the picture's edge, where a voxel is seen in
+// part, and where the nearest pixel has no ray, all pixels that see the voxel are asked. docs/method.md has
+// the figure.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -37,8 +38,8 @@ struct CertainView {
 };
 
 /// Marks voxels that a ray passes, or ends in: all of those up to `depth_max_m` for which the rays within
-/// `WalkLadder`'s square go on from the voxel's centre (PlacedImage::passed_m), and others. Adds to `pieces` the
-/// pieces of rays that perhaps pass a voxel and that no other ray passes for certain. The grid spans the
+/// `WalkLadder`'s square go on from the voxel's centre (PlacedImage::passed_m), and others. Adds to `pieces`
+/// the pieces of rays that perhaps pass a voxel and that no other ray passes for certain. The grid spans the
 /// image's rays and has no mark. About 1 ns a voxel.
 void mark_certain_voxels(const CertainView& view, const PlacedImage& image, const VoxelLattice& lattice,
                          MarkGrid& grid, std::vector<RayPiece>& pieces);

@@ -106,8 +106,7 @@ void WalkLadder::fill_rungs(const CertainView& view, const PlacedImage& image) {
     // A voxel whose nearest pixel has no ray asks the others.
     std::vector<float> passed_m(std::size_t{image.width} * image.height);
     for (std::size_t i = 0; i < passed_m.size(); ++i) {
-        passed_m[i] =
-            image.reach_m[i] < 0.0F ? std::numeric_limits<float>::infinity() : image.passed_m[i];
+        passed_m[i] = image.reach_m[i] < 0.0F ? std::numeric_limits<float>::infinity() : image.passed_m[i];
     }
     fill(near_, shortest_of_blocks(image, passed_m), blocks_of(image), kBlock);
     fill(far_, std::move(passed_m), {image.width, image.height}, 1);

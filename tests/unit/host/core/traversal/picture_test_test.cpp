@@ -9,8 +9,8 @@
 namespace octoskin {
 namespace {
 
-// The depth update 'fast' looks for a ray's end only in bricks of which it says "some": were one passed over, a
-// surface would be missing.
+// The depth update 'fast' looks for a ray's end only in bricks of which it says "some": were one passed over,
+// a surface would be missing.
 TEST(PictureTest, says_of_every_cube_in_which_a_ray_ends_that_some_of_it_is_passed) {
     for (const double resolution_m : {0.04, 0.1, 0.3}) {
         const VoxelLattice lattice(resolution_m);
@@ -30,9 +30,8 @@ TEST(PictureTest, says_of_every_cube_in_which_a_ray_ends_that_some_of_it_is_pass
                 for (unsigned height = kBrickHeight; height <= 9; ++height) {
                     const VoxelKey lowest = key_of_morton(code >> (3 * height) << (3 * height));
                     const int edge = 1 << height;
-                    const Eigen::Vector3d middle =
-                        lattice.centre_of(lowest) +
-                        Eigen::Vector3d::Constant(0.5 * (edge - 1) * resolution_m);
+                    const Eigen::Vector3d middle = lattice.centre_of(lowest) +
+                                                   Eigen::Vector3d::Constant(0.5 * (edge - 1) * resolution_m);
                     ASSERT_EQ(picture.of_cube(view.T_camera_map * middle, edge), CubeVerdict::some)
                         << resolution_m << " m, seed " << seed << ", pixel " << i << ", height " << height;
                 }
