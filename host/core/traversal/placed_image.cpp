@@ -62,10 +62,11 @@ HWY_INLINE Mask has_key(Double scaled) {
     const Doubles d;
     return hn::And(hn::Ge(scaled, hn::Set(d, -kOriginKey)), hn::Lt(scaled, hn::Set(d, kOriginKey)));
 }
-/// Where there is one.
-HWY_INLINE auto key_of(Double scaled) {
+/// Anything where there is none: what a NaN converts to depends on the processor.
+HWY_INLINE auto key_of(Double scaled, Mask has_key) {
     const Ints i;
-    return hn::Add(hn::DemoteTo(i, hn::Floor(scaled)), hn::Set(i, kOriginKey));
+    const Double floored = hn::Floor(hn::IfThenElseZero(has_key, scaled));
+    return hn::Add(hn::DemoteTo(i, floored), hn::Set(i, kOriginKey));
 }
 
 /// Where an end lies so near to a voxel's face that rounding may decide on which side: as OctoMap walks, it
@@ -159,9 +160,10 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image) {
         hn::StoreU(ends.z, f, image.end_z.data() + at);
         const Ints i;
         const hn::RebindToUnsigned<Ints> keys;
-        const auto xy = hn::Or(key_of(scaled_x), hn::ShiftLeft<16>(key_of(scaled_y)));
+        const auto xy = hn::Or(key_of(scaled_x, is_used), hn::ShiftLeft<16>(key_of(scaled_y, is_used)));
         hn::StoreU(hn::BitCast(keys, xy), keys, image.key_xy.data() + at);
-        hn::StoreU(hn::BitCast(keys, hn::Add(key_of(scaled_z), hn::Zero(i))), keys, image.key_z.data() + at);
+        hn::StoreU(hn::BitCast(keys, hn::Add(key_of(scaled_z, is_used), hn::Zero(i))), keys,
+                   image.key_z.data() + at);
         hn::StoreU(hn::IfThenElse(is_used_f, ends.reach_m, hn::Set(f, -1.0F)), f, image.reach_m.data() + at);
         hn::StoreU(ends.range_m, d, image.range_m.data() + at);
 
