@@ -82,11 +82,11 @@ void for_some_bricks(const PlacedImage& image, const VoxelLattice& lattice, Visi
         });
 }
 
-/// Calls visit(key) for a hundredth of the voxels about the image's rays.
+/// Calls visit(key) for an eight-hundredth of the voxels about the image's rays.
 template <class Visit>
 void for_some_voxels(const PlacedImage& image, const VoxelLattice& lattice, Visit&& visit) {
     for_some_bricks(image, lattice, [&](MortonCode brick) {
-        for (std::size_t cell = brick / kBrickVoxels % 20; cell < kBrickVoxels; cell += 20)
+        for (std::size_t cell = brick / kBrickVoxels % 160; cell < kBrickVoxels; cell += 160)
             visit(key_of_morton(brick + cell));
     });
 }
