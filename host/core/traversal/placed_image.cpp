@@ -158,12 +158,10 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image) {
         hn::StoreU(ends.x, f, image.end_x.data() + at);
         hn::StoreU(ends.y, f, image.end_y.data() + at);
         hn::StoreU(ends.z, f, image.end_z.data() + at);
-        const Ints i;
         const hn::RebindToUnsigned<Ints> keys;
         const auto xy = hn::Or(key_of(scaled_x, is_used), hn::ShiftLeft<16>(key_of(scaled_y, is_used)));
         hn::StoreU(hn::BitCast(keys, xy), keys, image.key_xy.data() + at);
-        hn::StoreU(hn::BitCast(keys, hn::Add(key_of(scaled_z, is_used), hn::Zero(i))), keys,
-                   image.key_z.data() + at);
+        hn::StoreU(hn::BitCast(keys, key_of(scaled_z, is_used)), keys, image.key_z.data() + at);
         hn::StoreU(hn::IfThenElse(is_used_f, ends.reach_m, hn::Set(f, -1.0F)), f, image.reach_m.data() + at);
         hn::StoreU(ends.range_m, d, image.range_m.data() + at);
 
