@@ -33,7 +33,7 @@ KeyBox box_of(const PlacedImage& rays, const VoxelLattice& lattice) {
 /// Calls visit(end, range) for each pixel that has a ray, row by row.
 template <class Visit>
 void for_each_ray(const PlacedImage& rays, Visit&& visit) {
-    for (std::size_t i = 0; i < rays.range_m.size(); ++i) {
+    for (std::size_t i = 0; i < rays.pixels(); ++i) {
         if (rays.reach_m[i] < 0.0F) continue;
         visit(Eigen::Vector3f(rays.end_x[i], rays.end_y[i], rays.end_z[i]), rays.range_m[i]);
     }
@@ -108,6 +108,7 @@ struct DepthIntegrator::Workspace {
     ImageTraversal traversal;
     MarkGrid marks;
     HitBricks hits;
+    ReachWindows reach;
     VoxelRays voxel_rays;
     TallyGrid tallies;
     std::size_t bricks_before = 0;  ///< of the image before: this one will have about as many
@@ -218,9 +219,11 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const Eigen::Isometr
     HitBricks& hits = workspace_->hits;
     const KeyBox box = box_of(rays, lattice_);
     if (!hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max)) return false;
-    const PictureTest picture(view, rays);
+    ReachWindows& reach = workspace_->reach;
+    reach.take(rays);
+    const PictureTest picture(view, reach);
     VoxelRays& voxel_rays = workspace_->voxel_rays;
-    voxel_rays.begin(view, rays, lattice_);
+    voxel_rays.begin(view, rays, reach, lattice_);
     const auto verdict_of = [&](const VoxelCube& cube) {
         const int edge = 1 << cube.height;
         const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * (edge - 1) * lattice_.resolution_m());
@@ -233,11 +236,12 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const Eigen::Isometr
     }();
     walk_bricks(box, verdict_of, [&](MortonCode brick, bool is_all) {
         if (is_all) return terms.add(brick, kAll);
-        const BrickMask passed = voxel_rays.passed(key_of_morton(brick));
+        const VoxelRays::Brick place = voxel_rays.brick_at(key_of_morton(brick));
+        const BrickMask passed = voxel_rays.passed(place);
         const BrickCells cells(hits.of(brick));
         terms.add(brick, without(passed, cells.mask()));
         cells.for_each([&](std::uint16_t cell, const BrickCells::Cell& hit) {
-            const RayVote vote = voxel_rays.vote_on(key_of_morton(brick + cell));
+            const RayVote vote = voxel_rays.vote_on(place, cell);
             terms.add_hit(brick, {cell, voted_term(vote, hit.sum / static_cast<float>(hit.rays),
                                                    config_.model.miss_log_odds)});
         });

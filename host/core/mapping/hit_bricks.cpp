@@ -1,8 +1,75 @@
+// Compiled once for each instruction set that Highway knows; the best one is chosen at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "host/core/mapping/hit_bricks.cpp"
+// clang-format off: foreach_target.h comes before highway.h
 #include "host/core/mapping/hit_bricks.hpp"
 
-#include <limits>
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// clang-format on
 
+#include <array>
+#include <bit>
+
+#ifndef OCTOSKIN_HIT_BRICKS_TYPES
+#define OCTOSKIN_HIT_BRICKS_TYPES
 namespace octoskin {
+
+/// A row of PlacedImage, from its first pixel on.
+struct RowOfEnds {
+    const std::uint32_t* key_xy;
+    const std::uint32_t* key_z;
+    const double* range_m;
+};
+
+}  // namespace octoskin
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace octoskin::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// HitModel::log_odds() of each pixel, and a bit for each whose next one ends elsewhere; both for whole words
+/// of 64 pixels, of which those beyond the row mean nothing.
+void find_runs(const RowOfEnds& row, const HitModel& model, std::size_t width, float* terms,
+               std::uint64_t* run_ends) {
+    // Sixteen keys at most: the bits of a mask then fit two bytes.
+    const hn::CappedTag<std::uint32_t, 16> k;
+    for (std::size_t word = 0; 64 * word < width; ++word) {
+        run_ends[word] = 0;
+        for (std::size_t bit = 0; bit < 64 && 64 * word + bit < width; bit += hn::Lanes(k)) {
+            const std::size_t u = 64 * word + bit;
+            const auto differs = [&](const std::uint32_t* keys) HWY_ATTR {
+                return hn::Ne(hn::LoadU(k, keys + u), hn::LoadU(k, keys + u + 1));
+            };
+            std::array<std::uint8_t, 8> bits{};
+            hn::StoreMaskBits(k, hn::Or(differs(row.key_xy), differs(row.key_z)), bits.data());
+            const std::uint64_t ends = (bits[0] | static_cast<std::uint64_t>(bits[1]) << 8U) &
+                                       ((std::uint64_t{1} << hn::Lanes(k)) - 1U);
+            run_ends[word] |= ends << bit;
+        }
+    }
+    const hn::CappedTag<double, 8> d;
+    const hn::Rebind<float, decltype(d)> f;
+    for (std::size_t u = 0; u < width; u += hn::Lanes(d)) {
+        const auto range = hn::LoadU(d, row.range_m + u);
+        const auto range_min = hn::Set(d, model.range_min_m);
+        const auto is_below = model.is_min_exclusive ? hn::Le(range, range_min) : hn::Lt(range, range_min);
+        const auto term = hn::Sub(hn::Set(d, model.offset), hn::Mul(hn::Set(d, model.slope_per_m), range));
+        hn::StoreU(hn::DemoteTo(f, hn::IfThenZeroElse(is_below, term)), f, terms + u);
+    }
+}
+
+}  // namespace octoskin::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace octoskin {
+namespace {
+
+HWY_EXPORT(find_runs);
+
+}  // namespace
 
 bool HitBricks::take(const PlacedImage& rays, const KeyBox& box, const HitModel& model,
                      std::size_t voxels_max) {
@@ -34,24 +101,38 @@ bool HitBricks::take(const PlacedImage& rays, const KeyBox& box, const HitModel&
 }
 
 void HitBricks::take_row(const PlacedImage& rays, std::size_t first, const HitModel& model) {
-    std::uint64_t before = ~std::uint64_t{0};  // no voxel
-    for (std::size_t i = first; i < first + rays.width; ++i) {
-        if (rays.reach_m[i] < 0.0F || rays.range_m[i] < 0.0) continue;
-        const float term = model.log_odds(rays.range_m[i]);
-        const std::uint64_t voxel = rays.key_xy[i] | std::uint64_t{rays.key_z[i]} << 32U;
-        if (voxel == before && found_.back().rays < std::numeric_limits<std::uint16_t>::max()) {
-            CellHits& hits = found_.back();
-            ++hits.rays;
-            hits.sum += term;
-            hits.most = term > hits.most ? term : hits.most;
-            continue;
+    constexpr std::size_t kWordBits = 64;
+    run_ends_.resize((rays.width + kWordBits - 1) / kWordBits);
+    terms_.resize(run_ends_.size() * kWordBits);
+    const std::uint32_t* const key_xy = rays.key_xy.data() + first;
+    const std::uint32_t* const key_z = rays.key_z.data() + first;
+    HWY_DYNAMIC_DISPATCH(find_runs)
+    ({key_xy, key_z, rays.range_m.data() + first}, model, rays.width, terms_.data(), run_ends_.data());
+    run_ends_.back() &= ~std::uint64_t{0} >> (kWordBits * run_ends_.size() - rays.width);
+    run_ends_.back() |= std::uint64_t{1} << ((rays.width - 1) % kWordBits);
+
+    std::size_t begin = 0;
+    for (std::size_t word = 0; word < run_ends_.size(); ++word) {
+        for (std::uint64_t bits = run_ends_[word]; bits != 0; bits &= bits - 1) {
+            const std::size_t last = kWordBits * word + static_cast<std::size_t>(std::countr_zero(bits));
+            if (key_z[last] != PlacedImage::kNoKey) take_run(key_xy[last], key_z[last], begin, last);
+            begin = last + 1;
         }
-        before = voxel;
-        const VoxelKey key{static_cast<std::uint16_t>(voxel), static_cast<std::uint16_t>(voxel >> 16U),
-                           static_cast<std::uint16_t>(voxel >> 32U)};
-        found_.push_back({static_cast<std::uint16_t>(cell_of(key)), 1, term, term});
-        bricks_.push_back(static_cast<std::uint32_t>(index_of(key)));
     }
+}
+
+void HitBricks::take_run(std::uint32_t key_xy, std::uint32_t key_z, std::size_t first, std::size_t last) {
+    CellHits hits{
+        .rays = static_cast<std::uint16_t>(last - first + 1), .sum = terms_[first], .most = terms_[first]};
+    for (std::size_t u = first + 1; u <= last; ++u) {
+        hits.sum += terms_[u];
+        hits.most = terms_[u] > hits.most ? terms_[u] : hits.most;
+    }
+    const VoxelKey key{static_cast<std::uint16_t>(key_xy), static_cast<std::uint16_t>(key_xy >> 16U),
+                       static_cast<std::uint16_t>(key_z)};
+    hits.cell = static_cast<std::uint16_t>(cell_of(key));
+    found_.push_back(hits);
+    bricks_.push_back(static_cast<std::uint32_t>(index_of(key)));
 }
 
 std::span<const CellHits> HitBricks::of(MortonCode brick) const noexcept {
@@ -63,3 +144,4 @@ std::span<const CellHits> HitBricks::of(MortonCode brick) const noexcept {
 }
 
 }  // namespace octoskin
+#endif

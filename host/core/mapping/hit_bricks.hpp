@@ -42,8 +42,13 @@ class HitBricks {
     }
 
     void take_row(const PlacedImage& rays, std::size_t first, const HitModel& model);
+    /// Rays of a row that end in one voxel.
+    void take_run(std::uint32_t key_xy, std::uint32_t key_z, std::size_t first, std::size_t last);
 
     KeyBox box_;
+    std::vector<float> terms_;  ///< of a row's rays
+    std::vector<std::uint64_t>
+        run_ends_;  ///< a bit for each: the next one ends in another voxel, or in nothing
     std::size_t bricks_x_ = 0;
     std::size_t bricks_y_ = 0;
     std::vector<CellHits> found_;        ///< in the order of pixels

@@ -14,6 +14,7 @@
 #include "host/core/traversal/mark_grid.hpp"
 #include "host/core/traversal/placed_image.hpp"
 #include "host/core/traversal/ray_pieces.hpp"
+#include "host/core/traversal/reach_windows.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
@@ -41,7 +42,7 @@ struct CertainView {
 /// `WalkLadder`'s square go on from the voxel's centre (PlacedImage::passed_m), and others. Adds to `pieces`
 /// the pieces of rays that perhaps pass a voxel and that no other ray passes for certain. The grid spans the
 /// image's rays and has no mark. About 1 ns a voxel.
-void mark_certain_voxels(const CertainView& view, const PlacedImage& image, const VoxelLattice& lattice,
-                         MarkGrid& grid, std::vector<RayPiece>& pieces);
+void mark_certain_voxels(const CertainView& view, const PlacedImage& image, const ReachWindows& reach,
+                         const VoxelLattice& lattice, MarkGrid& grid, std::vector<RayPiece>& pieces);
 
 }  // namespace octoskin

@@ -158,11 +158,11 @@ CertainTest test_of(const CertainView& view, const PlacedImage& image) {
 
 }  // namespace
 
-void mark_certain_voxels(const CertainView& view, const PlacedImage& image, const VoxelLattice& lattice,
-                         MarkGrid& grid, std::vector<RayPiece>& pieces) {
+void mark_certain_voxels(const CertainView& view, const PlacedImage& image, const ReachWindows& reach,
+                         const VoxelLattice& lattice, MarkGrid& grid, std::vector<RayPiece>& pieces) {
     if (!(view.depth_max_m > 0.0)) return;
     const CertainTest test = test_of(view, image);
-    const PictureTest picture(view, image);
+    const PictureTest picture(view, reach);
     OpenVoxels open_voxels(view, image, lattice, picture);
     const auto corner = grid.corner();
     const auto size = grid.size();

@@ -11,7 +11,8 @@ void ImageTraversal::mark_passed(const PlacedImage& image, const PixelRays& pixe
                                  MarkGrid& grid) {
     const CertainView view(pixel_rays.camera(), lattice, T_map_camera, image);
     pieces_.clear();
-    mark_certain_voxels(view, image, lattice, grid, pieces_);
+    reach_.take(image);
+    mark_certain_voxels(view, image, reach_, lattice, grid, pieces_);
     ladder_.find_pieces(view, image, pieces_);
     undecided_.clear();
     walk_pieces(image, lattice, pieces_, grid, undecided_);

@@ -12,6 +12,7 @@
 #include "host/core/traversal/mark_grid.hpp"
 #include "host/core/traversal/placed_image.hpp"
 #include "host/core/traversal/ray_pieces.hpp"
+#include "host/core/traversal/reach_windows.hpp"
 #include "host/core/traversal/walk_ladder.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
 
@@ -26,6 +27,7 @@ class ImageTraversal {
                      const Eigen::Isometry3d& T_map_camera, MarkGrid& grid);
 
   private:
+    ReachWindows reach_;
     WalkLadder ladder_;
     std::vector<RayPiece> pieces_;
     std::vector<std::uint32_t> undecided_;

@@ -5,8 +5,8 @@
 
 namespace octoskin {
 
-PictureTest::PictureTest(const CertainView& view, const PlacedImage& image)
-    : view_(view), camera_(view.camera), reach_(image) {
+PictureTest::PictureTest(const CertainView& view, const ReachWindows& reach)
+    : view_(view), camera_(view.camera), reach_(reach) {
     const double left = camera_.cx / camera_.fx;
     const double right = (camera_.width - camera_.cx) / camera_.fx;
     const double top = camera_.cy / camera_.fy;

@@ -10,16 +10,15 @@
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/traversal/certain_view.hpp"
 #include "host/core/traversal/mark_grid.hpp"
-#include "host/core/traversal/placed_image.hpp"
-#include "host/core/traversal/reach_blocks.hpp"
+#include "host/core/traversal/reach_windows.hpp"
 
 namespace octoskin {
 
 /// Cubes are named by their centre in the camera's frame, metres, and their edge in voxels. Keeps references
-/// to the view and none to the image.
+/// to the view and to the image's windows.
 class PictureTest {
   public:
-    PictureTest(const CertainView& view, const PlacedImage& image);
+    PictureTest(const CertainView& view, const ReachWindows& reach);
 
     /// No part of the cube is in the picture.
     [[nodiscard]] bool is_out_of_sight(const Eigen::Vector3d& centre, int voxels) const;
@@ -36,7 +35,7 @@ class PictureTest {
     CameraIntrinsics camera_;
     std::array<Eigen::Vector3d, 4> sides_;  ///< of the picture: their planes' normals, inwards
     std::array<double, 4> half_edge_{};     ///< how far a voxel reaches along each, and the margin
-    ReachBlocks reach_;
+    const ReachWindows& reach_;
 };
 
 }  // namespace octoskin

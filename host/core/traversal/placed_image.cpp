@@ -158,10 +158,14 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image) {
         hn::StoreU(ends.x, f, image.end_x.data() + at);
         hn::StoreU(ends.y, f, image.end_y.data() + at);
         hn::StoreU(ends.z, f, image.end_z.data() + at);
+        ends.range_m = hn::IfThenElse(is_used, ends.range_m, hn::Set(d, -1.0));
         const hn::RebindToUnsigned<Ints> keys;
         const auto xy = hn::Or(key_of(scaled_x, is_used), hn::ShiftLeft<16>(key_of(scaled_y, is_used)));
         hn::StoreU(hn::BitCast(keys, xy), keys, image.key_xy.data() + at);
-        hn::StoreU(hn::BitCast(keys, key_of(scaled_z, is_used)), keys, image.key_z.data() + at);
+        const auto key_z = hn::BitCast(keys, key_of(scaled_z, is_used));
+        const auto ends_f = hn::Ge(hn::DemoteTo(f, ends.range_m), hn::Zero(f));
+        hn::StoreU(hn::IfThenElse(hn::RebindMask(keys, ends_f), key_z, hn::Set(keys, PlacedImage::kNoKey)),
+                   keys, image.key_z.data() + at);
         hn::StoreU(hn::IfThenElse(is_used_f, ends.reach_m, hn::Set(f, -1.0F)), f, image.reach_m.data() + at);
         hn::StoreU(ends.range_m, d, image.range_m.data() + at);
 
@@ -238,9 +242,7 @@ void place_image(const DepthImage& image, const PixelRays& pixel_rays, const Vox
         HWY_DYNAMIC_DISPATCH(place_row)
         (to, {depth_m.data(), ray_x.data(), ray_y.data(), first, image.width}, placed);
     }
-    resize(placed, pixels);
     for (auto* values : {&placed.reach_m, &placed.passed_m}) {
-        values->resize(pixels + kLanesMax);
         std::fill(values->begin() + static_cast<std::ptrdiff_t>(pixels), values->end(), -1.0F);
     }
 }

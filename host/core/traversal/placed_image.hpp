@@ -21,8 +21,10 @@ struct DepthPixelCounts {
     std::uint64_t outside_map = 0;  ///< the endpoint lies outside the octree
 };
 
-/// Row-major, one entry a pixel. In a pixel that has no ray the end is the camera and the reach is negative.
+/// Row-major, one entry a pixel, and some more: as many as a vector of any instruction set holds may be read
+/// from each. In a pixel that has no ray the end is the camera and the reach is negative.
 struct PlacedImage {
+    static constexpr std::uint32_t kNoKey = ~std::uint32_t{0};
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< of every ray, map frame, metres
@@ -32,11 +34,12 @@ struct PlacedImage {
     std::vector<float> reach_m;  ///< depth of the end along the optical axis
     std::vector<float>
         passed_m;  ///< a ray passes the voxels that it is in before this depth, or ends in them
-    std::vector<double> range_m;  ///< measured, along the ray; negative: beyond the maximum, where the ray
-                                  ///< ends in nothing
+    std::vector<double> range_m;  ///< measured, along the ray; negative: the ray ends in nothing, as beyond
+                                  ///< the maximum, or there is none
     std::vector<std::uint32_t> key_xy;  ///< of the end's voxel: x, and y in the upper half
-    std::vector<std::uint32_t> key_z;
+    std::vector<std::uint32_t> key_z;   ///< kNoKey where the ray ends in nothing
     DepthPixelCounts counts;
+    [[nodiscard]] std::size_t pixels() const noexcept { return std::size_t{width} * height; }
     Eigen::Vector3f lowest = Eigen::Vector3f::Zero();  ///< of all ends and the origin
     Eigen::Vector3f highest = Eigen::Vector3f::Zero();
 };

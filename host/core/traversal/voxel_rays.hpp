@@ -4,11 +4,11 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "host/core/bricks/brick.hpp"
 #include "host/core/traversal/certain_view.hpp"
 #include "host/core/traversal/placed_image.hpp"
+#include "host/core/traversal/reach_windows.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
@@ -24,17 +24,25 @@ struct RayVote {
 class VoxelRays {
   public:
     /// The view has a `depth_max_m`: a camera without a lens.
-    void begin(const CertainView& view, const PlacedImage& image, const VoxelLattice& lattice);
+    void begin(const CertainView& view, const PlacedImage& image, const ReachWindows& reach,
+               const VoxelLattice& lattice);
 
-    /// The voxels of a brick, `lowest` its first, that a ray of theirs passes or ends in: one look-up for
-    /// most, that of the pixel nearest to the centre; all pixels that see a voxel for those where that one
-    /// does not. None that OctoMap's computeUpdate has not among its free or occupied ones. About 1 us.
-    [[nodiscard]] BrickMask passed(VoxelKey lowest) const;
-    [[nodiscard]] RayVote vote_on(VoxelKey voxel) const;
+    /// A brick's first voxel, in the camera's frame, metres.
+    struct Brick {
+        float x = 0.0F, y = 0.0F, z = 0.0F;
+    };
+    [[nodiscard]] Brick brick_at(VoxelKey lowest) const;
+    /// The voxels of a brick that a ray of theirs passes or ends in. Its eight cubes of 4 x 4 x 4 are looked
+    /// at together: of most all voxels are, or none. In the others, one look-up for most, that of the pixel
+    /// nearest to the centre; all of a voxel's rays for those where that one does not. None that OctoMap's
+    /// computeUpdate has not among its free or occupied ones. About 1 us.
+    [[nodiscard]] BrickMask passed(const Brick& brick) const;
+    [[nodiscard]] RayVote vote_on(const Brick& brick, std::size_t cell) const;
 
     /// What a kernel works with.
     struct Kernel {
         std::array<std::array<float, kBrickVoxels>, 3> offsets;  ///< from the first voxel's centre to each
+        std::array<std::array<float, 8>, 3> middles;  ///< and to the middle of each word of a BrickMask
         /// What camera x and y add along each axis of the map.
         std::array<std::array<float, 2>, 3> across;
         const float* passed_m = nullptr;
@@ -47,29 +55,22 @@ class VoxelRays {
         float u_centre = 0.0F, v_centre = 0.0F;  ///< the optical axis, in pixels from the first one's centre
         float half_x_m = 0.0F, half_y_m = 0.0F;  ///< a voxel reaches no further along the camera's x and y
         float inside_m = 0.0F;                   ///< from a voxel's centre to its faces, less the margin
+        float near_centre_m = 0.0F;  ///< a ray that passes so near to the centre speaks for the voxel
+        float half_edge_m = 0.0F;
         float half_depth_m = 0.0F;
         float end_m = 0.0F;  ///< a ray that ends so far behind the centre ends in the voxel
         float near_m = 0.0F;
         float margin_m = 0.0F;
+        float depth_max_m = 0.0F;
         std::uint32_t blocks_width = 0;
+        std::array<const float*, ReachWindows::kLevels> shortest_m{};
+        std::array<const float*, ReachWindows::kLevels> longest_m{};
     };
 
   private:
-    /// How far rays go, by blocks of pixels, less: the furthest of a square of blocks.
-    struct Furthest {
-        std::uint32_t radius_blocks = 0;
-        std::vector<float> minus_passed_m;
-    };
-    void find_furthest(const PlacedImage& image);
-    /// Of a square that holds what a cube of so many voxels' edge sees from `nearest_m` on; null: no square
-    /// is large enough.
-    [[nodiscard]] const float* furthest_around(float nearest_m, float voxels) const noexcept;
-
     const CertainView* view_ = nullptr;
     const VoxelLattice* lattice_ = nullptr;
     Kernel kernel_;
-    std::vector<Furthest> furthest_;
-    std::vector<float> work_;
 };
 
 }  // namespace octoskin

@@ -22,7 +22,9 @@ TEST(PictureTest, says_of_every_cube_in_which_a_ray_ends_that_some_of_it_is_pass
             place_image(random.depth_image(kSmallCamera.width, kSmallCamera.height), pixel_rays, lattice,
                         T_map_camera, seed % 2 == 0 ? 0.0 : 1.5, image);
             const CertainView view(kSmallCamera, lattice, T_map_camera, image);
-            const PictureTest picture(view, image);
+            ReachWindows reach;
+            reach.take(image);
+            const PictureTest picture(view, reach);
             for (std::size_t i = 0; i < std::size_t{image.width} * image.height; i += 7) {
                 if (image.reach_m[i] < 0.0F || image.range_m[i] < 0.0) continue;
                 const Eigen::Vector3f end(image.end_x[i], image.end_y[i], image.end_z[i]);

@@ -19,7 +19,7 @@ inline constexpr CameraIntrinsics kSmallCamera{
 /// What walk_ray_keys() visits of every ray.
 inline std::set<VoxelKey> walked(const PlacedImage& image, const VoxelLattice& lattice) {
     std::set<VoxelKey> voxels;
-    for (std::size_t i = 0; i < image.range_m.size(); ++i) {
+    for (std::size_t i = 0; i < image.pixels(); ++i) {
         if (image.reach_m[i] < 0.0F) continue;
         const auto ray = plan_ray(lattice, image.origin, {image.end_x[i], image.end_y[i], image.end_z[i]});
         walk_ray_keys(*ray, [&](VoxelKey key) { voxels.insert(key); });

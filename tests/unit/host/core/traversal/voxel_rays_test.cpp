@@ -35,19 +35,24 @@ Truth truth_of(VoxelKey key, const CameraIntrinsics& camera, const VoxelLattice&
     for (std::uint32_t pixel = 0; pixel < camera.width * camera.height; ++pixel) {
         const Eigen::Vector3d ray((pixel % camera.width + 0.5 - camera.cx) / camera.fx,
                                   (pixel / camera.width + 0.5 - camera.cy) / camera.fy, 1.0);
-        const double apart_m = (T_map_camera * (centre.z() * ray) - centre_map).lpNorm<Eigen::Infinity>();
-        if (apart_m > 0.5 * kResolution_m + kUnsure_m) continue;
-        const bool is_in = apart_m < 0.5 * kResolution_m - kUnsure_m;
+        const Eigen::Vector3d at_depth = centre.z() * ray;
+        const double in_voxel_m =
+            0.5 * kResolution_m - (T_map_camera * at_depth - centre_map).lpNorm<Eigen::Infinity>();
+        const double aside_m = (at_depth - centre).head<2>().lpNorm<Eigen::Infinity>();
+        const double near_m = 0.45 * kResolution_m - aside_m;
         const double passed_m = static_cast<double>(image.passed_m[pixel]) - centre.z();
-        truth.is_passed |= is_in && passed_m > kUnsure_m;
-        truth.is_perhaps_passed |= passed_m > -kUnsure_m;
+        truth.is_passed |= near_m > kUnsure_m && in_voxel_m > kUnsure_m && passed_m > kUnsure_m;
+        truth.is_perhaps_passed |= in_voxel_m > -kUnsure_m && passed_m > -kUnsure_m;
+        const double side_m = 0.5 * kResolution_m - aside_m;
         const double reach_m = static_cast<double>(image.reach_m[pixel]) - centre.z();
         const double end_m = 0.2 * kResolution_m;
-        truth.most.go_on += reach_m > end_m - kUnsure_m ? 1U : 0U;
-        truth.least.go_on += is_in && reach_m > end_m + kUnsure_m ? 1U : 0U;
-        truth.most.end += reach_m < end_m + kUnsure_m && reach_m > -half_depth_m - kUnsure_m ? 1U : 0U;
+        const auto count = [](bool is_so) { return is_so ? 1U : 0U; };
+        truth.most.go_on += count(side_m > -kUnsure_m && reach_m > end_m - kUnsure_m);
+        truth.least.go_on += count(side_m > kUnsure_m && reach_m > end_m + kUnsure_m);
+        truth.most.end +=
+            count(side_m > -kUnsure_m && reach_m < end_m + kUnsure_m && reach_m > -half_depth_m - kUnsure_m);
         truth.least.end +=
-            is_in && reach_m < end_m - kUnsure_m && reach_m > -half_depth_m + kUnsure_m ? 1U : 0U;
+            count(side_m > kUnsure_m && reach_m < end_m - kUnsure_m && reach_m > -half_depth_m + kUnsure_m);
     }
     return truth;
 }
@@ -110,9 +115,12 @@ TEST(VoxelRays, say_of_each_voxel_what_all_pixels_that_see_it_say_on_every_instr
         for (unsigned seed = 0; seed < scenes.size(); ++seed) {
             const Scene& scene = scenes[seed];
             const CertainView view(kSmallCamera, lattice, scene.T_map_camera, scene.image);
-            rays.begin(view, scene.image, lattice);
+            ReachWindows reach;
+            reach.take(scene.image);
+            rays.begin(view, scene.image, reach, lattice);
             for_some_voxels(scene.image, lattice, [&](VoxelKey key) {
-                const BrickMask mask = rays.passed(key_of_morton(brick_of(key)));
+                const VoxelRays::Brick brick = rays.brick_at(key_of_morton(brick_of(key)));
+                const BrickMask mask = rays.passed(brick);
                 const std::size_t cell = cell_of(key);
                 const bool is_passed = (mask[cell / 64] >> (cell % 64) & 1U) != 0;
                 const Truth& truth = truths.at({seed, key});
@@ -120,7 +128,7 @@ TEST(VoxelRays, say_of_each_voxel_what_all_pixels_that_see_it_say_on_every_instr
                 passed += is_passed ? 1U : 0U;
                 unsure += truth.is_passed == truth.is_perhaps_passed ? 0U : 1U;
                 ASSERT_TRUE(is_passed ? truth.is_perhaps_passed : !truth.is_passed) << name;
-                const RayVote vote = rays.vote_on(key);
+                const RayVote vote = rays.vote_on(brick, cell);
                 ASSERT_GE(vote.go_on, truth.least.go_on) << name;
                 ASSERT_LE(vote.go_on, truth.most.go_on) << name;
                 ASSERT_GE(vote.end, truth.least.end) << name;
@@ -136,13 +144,16 @@ TEST(VoxelRays, give_the_same_bits_on_every_instruction_set) {
     const VoxelLattice lattice(kResolution_m);
     const Scene scene = scene_of(7, lattice);
     const CertainView view(kSmallCamera, lattice, scene.T_map_camera, scene.image);
+    ReachWindows reach;
+    reach.take(scene.image);
     std::vector<BrickMask> first;
     on_each_instruction_set([&](const std::string& name) {
         VoxelRays rays;
-        rays.begin(view, scene.image, lattice);
+        rays.begin(view, scene.image, reach, lattice);
         std::vector<BrickMask> masks;
-        for_some_bricks(scene.image, lattice,
-                        [&](MortonCode brick) { masks.push_back(rays.passed(key_of_morton(brick))); });
+        for_some_bricks(scene.image, lattice, [&](MortonCode brick) {
+            masks.push_back(rays.passed(rays.brick_at(key_of_morton(brick))));
+        });
         if (first.empty()) first = masks;
         EXPECT_EQ(masks, first) << name;
     });
