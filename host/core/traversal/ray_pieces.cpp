@@ -108,7 +108,7 @@ HWY_INLINE void mark(Double index, std::uint8_t* marks) {
 class Walkers {
   public:
     /// `count` of them, at least one; a lane without a piece does not walk.
-    HWY_INLINE Walkers(const Walk& walk, const RayPiece* pieces, std::size_t count);
+    HWY_NOINLINE Walkers(const Walk& walk, const RayPiece* pieces, std::size_t count);
 
     [[nodiscard]] HWY_INLINE bool have_ended() const { return hn::AllFalse(Doubles(), is_walking_); }
     /// True where the walk could not tell two faces apart.
@@ -129,7 +129,8 @@ class Walkers {
     Mask is_undecided_;
 };
 
-HWY_INLINE Walkers::Walkers(const Walk& walk, const RayPiece* pieces, std::size_t count) {
+// Not part of what calls it: Clang with sanitizers takes minutes to compile the two in one.
+HWY_NOINLINE Walkers::Walkers(const Walk& walk, const RayPiece* pieces, std::size_t count) {
     const Doubles d;
     const Floats f;
     const Ints i;
