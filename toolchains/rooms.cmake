@@ -3,10 +3,11 @@
 #   octoskin_library(<name> ROOM <room> SOURCES a.cpp ... HEADERS a.hpp ... [DEPENDS octoskin::x ...]
 #                    [PRIVATE_DEPENDS octoskin::y ...] [EXTERNAL lib ...] [PRIVATE_EXTERNAL lib ...] [APART])
 #   octoskin_program(<name> ROOM <room> SOURCES ... [DEPENDS ...] [EXTERNAL ...])
-#   octoskin_test(<name> LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...])
+#   octoskin_test(<name> LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...] [APART ...])
 #
-# In the rooms that OCTOSKIN_UNITY names a library's sources are compiled several at once, but for one that is told to keep
-# them APART.
+# In the rooms that OCTOSKIN_UNITY names the sources of a library or a test program are compiled several at once, but for a
+# library that is told to keep them APART, and those of a test program that it names as APART: the name of something that is
+# a file's own is that of something else in another file.
 #
 # DEPENDS names our own targets only; EXTERNAL names third-party ones. Includes are written from the
 # repository's root ("common/wire/codec.hpp"), so every include line says which room it reaches into.
@@ -158,7 +159,7 @@ function(octoskin_program name)
 endfunction()
 
 function(octoskin_test name)
-    cmake_parse_arguments(ARG "ALONE" "TIMEOUT" "LABELS;SOURCES;HOST_SOURCES;DEPENDS;EXTERNAL" ${ARGN})
+    cmake_parse_arguments(ARG "ALONE" "TIMEOUT" "LABELS;SOURCES;HOST_SOURCES;DEPENDS;EXTERNAL;APART" ${ARGN})
     if(NOT ARG_TIMEOUT)
         set(ARG_TIMEOUT 60)
     endif()
@@ -185,6 +186,10 @@ function(octoskin_test name)
     target_compile_definitions(${name} PRIVATE OCTOSKIN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     target_link_libraries(${name} PRIVATE octoskin_compile_options ${ARG_DEPENDS} ${ARG_EXTERNAL}
         GTest::gmock GTest::gtest_main)
+    if(OCTOSKIN_UNITY AND "tests" MATCHES "^(${OCTOSKIN_UNITY})$")
+        set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+        set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
     # Long simulations lose more time than their few files gain: of an inline function the test's copy is linked.
     if(NOT "sim" IN_LIST ARG_LABELS)
         target_link_libraries(${name} PRIVATE octoskin_test_options)

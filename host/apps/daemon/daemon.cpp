@@ -13,6 +13,7 @@
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/depth_thread.hpp"
 #include "host/apps/daemon/event_loop.hpp"
 #include "host/apps/daemon/folder_lock.hpp"
 #include "host/apps/daemon/inputs.hpp"
@@ -82,6 +83,7 @@ struct Daemon::Parts {
     Settings settings;
     EventLoop loop;
     Pipeline pipeline;
+    DepthThread depth_thread;   ///< goes before the pipeline that it works for
     RecordRequests recordings;  ///< lets go of the pipeline before that goes
     Inputs inputs;
     std::optional<FolderLock> folder;
@@ -167,6 +169,11 @@ void Daemon::Parts::watch() {
     for (const int signal : {SIGTERM, SIGINT})
         sources.push_back(loop.on_signal(signal, [this] { loop.stop(0); }));
     sources.push_back(loop.on_signal(SIGHUP, [this] { reload(); }));
+    pipeline.work_beside(&depth_thread);
+    sources.push_back(loop.on_readable(depth_thread.descriptor(), [this] {
+        depth_thread.acknowledge();
+        pipeline.on_worker_done();
+    }));
     sources.push_back(loop.every(kAttendPeriod, [this] { attend(); }));
     sources.push_back(loop.every(request.save_period, [this] { save_map(); }));
     inputs.watch(settings.host.rig);
@@ -254,6 +261,7 @@ void Daemon::Parts::reload() {
         next->pipeline.begin_with(std::move(map));
         settings = std::move(next->settings);
         pipeline = std::move(next->pipeline);
+        pipeline.work_beside(&depth_thread);
         inputs.change_rig(settings.host.rig);
         reload_error.clear();
         reloaded = monotonic_now();

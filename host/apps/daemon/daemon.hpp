@@ -1,5 +1,6 @@
 // `octoskin run`: what is there for as long as the robot is. One thread owns the pipeline and the map; the
-// camera, the disk and the socket for joint states have threads of their own, which hand over values.
+// camera, the disk, the socket for joint states and what is worked out of an image have threads of their own,
+// which hand over values.
 #pragma once
 
 #include <memory>

@@ -101,25 +101,45 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
     return Done{};
 }
 
-Status<DepthReason> MapBuilder::integrate(const DepthFrame& frame) {
+Status<DepthReason> MapBuilder::integrate(DepthFrame frame) {
+    auto depth = begin(std::move(frame));
+    if (!depth) {
+        return unexpected(depth.error());
+    }
+    work(*depth);
+    return finish(*depth);
+}
+
+Result<MapBuilder::DepthWork, DepthReason> MapBuilder::begin(DepthFrame frame) {
     if (!depth_stage_) {
         return unexpected(DepthReason::no_camera);
     }
-    const RobotPose* const robot = depth_stage_->needs_robot() ? robot_.at(frame.captured) : nullptr;
-    if (robot == nullptr && depth_stage_->needs_robot()) {
-        return unexpected(DepthReason::joints_missing);
+    DepthWork depth{.frame = std::move(frame), .robot = {}};
+    if (depth_stage_->needs_robot()) {
+        const RobotPose* const robot = robot_.at(depth.frame.captured);
+        if (robot == nullptr) {
+            return unexpected(DepthReason::joints_missing);
+        }
+        depth.robot = *robot;
     }
-    const auto updates = updates_or_reason(*depth_stage_, frame, robot);
-    if (!updates) {
-        return unexpected(updates.error());
+    return depth;
+}
+
+void MapBuilder::work(DepthWork& depth) {
+    depth.updates = updates_or_reason(*depth_stage_, depth.frame, depth.robot ? &*depth.robot : nullptr);
+}
+
+Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
+    if (!depth.updates) {
+        return unexpected(depth.updates.error());
     }
-    maps_.add_depth(updates->terms);
+    maps_.add_depth(depth.updates->terms);
     if (witness_) {
-        witness_->on_depth(depth_stage_->witness_images(), depth_stage_->T_map_camera_of(frame),
-                           frame.captured);
+        witness_->on_depth(depth_stage_->witness_images(), depth_stage_->T_map_camera_of(depth.frame),
+                           depth.frame.captured);
     }
     if (listener_ != nullptr) {
-        listener_->on_depth(frame, updates->terms);
+        listener_->on_depth(depth.frame, depth.updates->terms);
     }
     return Done{};
 }

@@ -44,7 +44,20 @@ class MapBuilder {
     /// Joint samples in the order of their times.
     [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
     [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
-    [[nodiscard]] Status<DepthReason> integrate(const DepthFrame& frame);
+    [[nodiscard]] Status<DepthReason> integrate(DepthFrame frame);
+
+    /// The same in three steps, for whoever has another thread for the second, which takes the time. One
+    /// frame at a time; from the first step to the last readings and joint samples may be given in, and
+    /// nobody may ask for `depth_stage()`.
+    struct DepthWork {
+        DepthFrame frame;
+        std::optional<RobotPose> robot;  ///< at the frame's time, if it needs to be known
+        Result<DepthUpdates, DepthReason> updates = unexpected(DepthReason::no_camera);
+    };
+    [[nodiscard]] Result<DepthWork, DepthReason> begin(DepthFrame frame);
+    /// Uses nothing of the builder's but the depth stage.
+    void work(DepthWork& depth);
+    [[nodiscard]] Status<DepthReason> finish(const DepthWork& depth);
 
     /// Time goes on from before the newest joint sample: where the robot was is forgotten, the maps stay.
     void forget_motion();

@@ -50,7 +50,7 @@ class Committer {
         if (frame) {
             frame->captured = commit.captured;  // a recording of depth frames has whole microseconds
             outcome_.depth_frames.take_in();
-            outcome_.depth_frames.settle(builder_.integrate(*frame));
+            outcome_.depth_frames.settle(builder_.integrate(std::move(*frame)));
         } else {
             ++outcome_.depth_missing;
         }

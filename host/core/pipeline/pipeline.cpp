@@ -96,6 +96,30 @@ void Pipeline::notice_time_back(HostTime now) {
 void Pipeline::settle_waiting() {
     release_joints(kEndOfTime);
     release_measurements(kEndOfTime);
+    while (in_work_) {  // each round takes one out of a bounded buffer
+        finish_depth();
+        release_measurements(kEndOfTime);
+    }
+}
+
+void Pipeline::work_beside(DepthWorker* worker) {
+    assert(worker == nullptr || config_.release == Release::once_placed);
+    assert(!in_work_);
+    worker_ = worker;
+}
+
+void Pipeline::on_worker_done() {
+    if (!in_work_ || !worker_->is_done()) {
+        return;
+    }
+    finish_depth();
+    release_measurements(released_until_);
+}
+
+void Pipeline::finish_depth() {
+    const auto done = std::exchange(in_work_, nullptr);
+    worker_->finish();
+    accounts_.depth_frames.settle(builder_.finish(*done));
 }
 
 void Pipeline::settle_marks(HostTime now) {
@@ -204,15 +228,16 @@ void Pipeline::release_joints(HostTime until) {
 }
 
 void Pipeline::release_measurements(HostTime until) {
+    released_until_ = until;
     while (true) {  // each round takes one out of a bounded buffer
         const auto reading = readings_waiting_.front();
-        const auto depth = depth_waiting_.front();
+        const auto depth = in_work_ ? std::nullopt : depth_waiting_.front();
         const bool is_depth_next = depth && (!reading || *depth < *reading);
         const auto next = is_depth_next ? depth : reading;
         if (!next || (next->captured > until && !is_placed(*next))) {
             return;
         }
-        const bool is_used = is_depth_next ? accounts_.depth_frames.settle(integrate(depth_waiting_.pop()))
+        const bool is_used = is_depth_next ? take_depth(depth_waiting_.pop())
                                            : accounts_.readings.settle(integrate(readings_waiting_.pop()));
         integrated_ = is_used ? next : integrated_;
     }
@@ -230,11 +255,22 @@ Status<ReadingReason> Pipeline::integrate(const RangeMeasurement& measurement) {
     return integrated;
 }
 
-Status<DepthReason> Pipeline::integrate(const DepthFrame& frame) {
+bool Pipeline::take_depth(DepthFrame frame) {
     if (!marks_.contains(frame.captured)) {
-        return unexpected(DepthReason::outside_marks);
+        accounts_.depth_frames.reject(DepthReason::outside_marks);
+        return false;
     }
-    return builder_.integrate(frame);
+    if (worker_ == nullptr) {
+        return accounts_.depth_frames.settle(builder_.integrate(std::move(frame)));
+    }
+    auto begun = builder_.begin(std::move(frame));
+    if (!begun) {
+        accounts_.depth_frames.reject(begun.error());
+        return false;
+    }
+    in_work_ = std::make_unique<MapBuilder::DepthWork>(std::move(begun).value());
+    worker_->begin([this, depth = in_work_.get()] { builder_.work(*depth); });
+    return false;
 }
 
 void Pipeline::on_silence(HostTime now) {
@@ -272,7 +308,7 @@ std::vector<AccountTable> Pipeline::account_tables() const {
     return {tabulate("CAN frames", accounts_.frames, marks_.waiting()),
             tabulate("readings", accounts_.readings, readings_waiting_.size()),
             tabulate("joint samples", accounts_.joint_samples, joints_waiting_.size() + samples_open),
-            tabulate("depth frames", accounts_.depth_frames, depth_waiting_.size())};
+            tabulate("depth frames", accounts_.depth_frames, depth_waiting_.size() + (in_work_ ? 1U : 0U))};
 }
 
 bool Pipeline::is_balanced() const {

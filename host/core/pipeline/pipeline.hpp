@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "host/core/kinematics/robot_model.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/pipeline/depth_stage.hpp"
+#include "host/core/pipeline/depth_worker.hpp"
 #include "host/core/pipeline/map_builder.hpp"
 #include "host/core/pipeline/map_set.hpp"
 #include "host/core/pipeline/mark_gate.hpp"
@@ -81,6 +83,13 @@ class Pipeline {
     void on_can(const wire::CanFrame& frame, WallTime stamp);
     /// Depth frames in the order of their capture, at about the time when they arrive among the CAN frames.
     void on_depth(DepthFrame frame);
+    /// From now on `worker` turns depth frames into terms, and what is captured after a frame may go into the
+    /// maps before it: a listener is told the order. Null: the call that releases a frame does, and
+    /// everything waits for it. For `Release::once_placed` (asserted). While a frame is worked on, the
+    /// pipeline must not be moved; the worker lives as long as it is named here.
+    void work_beside(DepthWorker* worker);
+    /// The worker may be done with a frame: then that goes into the maps, and the next begins.
+    void on_worker_done();
     /// No CAN frame comes for now, and it is `now` on the host's clock, by who knows beside the bus: what
     /// need not wait any longer is integrated. Until a frame tells the time again the camera does, up to
     /// `now`.
@@ -134,7 +143,9 @@ class Pipeline {
     void release_measurements(HostTime until);
     [[nodiscard]] bool is_placed(const ReleaseKey& key) const;
     [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
-    [[nodiscard]] Status<DepthReason> integrate(const DepthFrame& frame);
+    /// The frame goes into the maps, or the worker begins with it. Whether it is in the maps.
+    bool take_depth(DepthFrame frame);
+    void finish_depth();
     [[nodiscard]] bool is_late(const ReleaseKey& key) const {
         return config_.release == Release::by_capture_time && integrated_ && key <= *integrated_;
     }
@@ -147,6 +158,10 @@ class Pipeline {
     ReorderBuffer<RangeMeasurement> readings_waiting_;
     ReorderBuffer<DepthFrame> depth_waiting_;
     MapBuilder builder_;
+
+    DepthWorker* worker_ = nullptr;
+    std::unique_ptr<MapBuilder::DepthWork> in_work_;  ///< what the worker is at, or has done
+    HostTime released_until_;
 
     PipelineAccounts accounts_;
     std::optional<ReleaseKey> integrated_;        ///< the newest measurement in the maps

@@ -5,9 +5,16 @@
 
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
 #include <thread>
+#include <vector>
 
+#include "host/io/openni2/oni_writer.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
 
 namespace octoskin::test {
@@ -23,41 +30,83 @@ struct Latency {
     int readings = 0;
     double median_ms = 0.0;
     double p99_ms = 0.0;
+    int images = 0;  ///< that went into the map in 4 s
     [[nodiscard]] bool is_as_promised() const {
         return readings > kReadingsMin && median_ms <= kMedianMaxMs && p99_ms <= kP99MaxMs;
     }
 };
 
+int used(const nlohmann::json& status, const char* unit) {
+    return status["account"][unit]["used"].get<int>();
+}
+
 /// Of a daemon that lives for some seconds on a bus that is alive.
-Latency measure() {
-    const testing_support::ScratchFolder folder;
+Latency measure(const testing_support::ScratchFolder& folder, const std::vector<std::string>& arguments) {
     std::array<int, 2> ends{};
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
-    const RunningDaemon daemon(folder, ends[0], {"--no-camera"});
+    const RunningDaemon daemon(folder, ends[0], arguments);
     const LiveBus bus(ends[1], log_of_experiment());
-    const auto has_some = [](const nlohmann::json& status) {
-        return status["account"]["readings"]["used"].get<int>() > 100;
-    };
+    const auto has_some = [](const nlohmann::json& status) { return used(status, "readings") > 100; };
     EXPECT_TRUE(daemon.wait_until(has_some, 15s)) << daemon.log();
+    const auto before = daemon.status();
     std::this_thread::sleep_for(4s);
-    const auto latency = daemon.status()["latency"];
-    return {latency["readings"].get<int>(), latency["median_ms"].get<double>(),
-            latency["p99_ms"].get<double>()};
+    const auto after = daemon.status();
+    const auto latency = after["latency"];
+    return {.readings = latency["readings"].get<int>(),
+            .median_ms = latency["median_ms"].get<double>(),
+            .p99_ms = latency["p99_ms"].get<double>(),
+            .images = used(after, "depth frames") - used(before, "depth frames")};
+}
+
+/// Four seconds at 30 Hz of a wall 2.5 m away, with a step in it and 3 cm of noise.
+std::filesystem::path record_noisy_wall(const testing_support::ScratchFolder& folder) {
+    constexpr openni2::FrameSize kSize{512, 424};
+    auto writer = openni2::OniWriter::create(folder / "wall.oni", folder / "wall.epoch.yaml", kSize);
+    EXPECT_TRUE(writer) << writer.error().what;
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise_mm(0.0, 30.0);
+    std::vector<std::uint16_t> depth_mm(kSize.pixels());
+    for (int frame = 0; frame < 120; ++frame) {
+        for (std::size_t i = 0; i < depth_mm.size(); ++i) {
+            const double wall_mm = i / 64 % 2 == 0 ? 2'500.0 : 1'900.0;
+            depth_mm[i] = static_cast<std::uint16_t>(wall_mm + noise_mm(random));
+        }
+        EXPECT_TRUE(writer->write(HostTime{1'000'000'000LL + frame * 33'333'000LL}, depth_mm));
+    }
+    EXPECT_TRUE(writer->close());
+    return folder / "wall.oni";
 }
 
 /// The best of three: other programs of this machine may want the processor, too, and a defect of ours is
 /// there each time.
-TEST(DaemonLatency, is_1_ms_in_the_median_and_5_ms_for_99_of_100_readings) {
+Latency best_of_three(const testing_support::ScratchFolder& folder,
+                      const std::vector<std::string>& arguments) {
     constexpr int kTries = 3;
     Latency latency;
     for (int i = 0; i < kTries && !latency.is_as_promised(); ++i) {
-        latency = measure();
-        std::printf("%d readings, from frame to map %.2f ms median, %.2f ms 99 %%\n", latency.readings,
-                    latency.median_ms, latency.p99_ms);
+        latency = measure(folder, arguments);
+        std::printf("%d readings, from frame to map %.2f ms median, %.2f ms 99 %%; %d images in 4 s\n",
+                    latency.readings, latency.median_ms, latency.p99_ms, latency.images);
     }
     EXPECT_GT(latency.readings, kReadingsMin);
     EXPECT_LE(latency.median_ms, kMedianMaxMs);
     EXPECT_LE(latency.p99_ms, kP99MaxMs);
+    return latency;
+}
+
+TEST(DaemonLatency, is_1_ms_in_the_median_and_5_ms_for_99_of_100_readings) {
+    const testing_support::ScratchFolder folder;
+    (void)best_of_three(folder, {"--no-camera"});
+}
+
+TEST(DaemonLatency, is_the_same_beside_a_camera_with_30_images_a_second_and_voxels_of_2_cm) {
+    const testing_support::ScratchFolder folder;
+    const auto mapping = folder / "fine.yaml";
+    std::ofstream(mapping) << "base: fast\nmap:\n  resolution_m: 0.02\n";
+    const auto wall = record_noisy_wall(folder);
+    const Latency latency =
+        best_of_three(folder, {"--configuration", mapping.string(), "--camera", wall.string()});
+    EXPECT_GT(latency.images, 60) << "half of those that came";
 }
 
 }  // namespace

@@ -1,0 +1,43 @@
+// The thread that turns depth frames into terms, so that no reading waits for an image.
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "host/core/pipeline/depth_worker.hpp"
+
+namespace octoskin {
+
+class DepthThread final : public DepthWorker {
+  public:
+    /// Throws std::system_error if there is no thread or descriptor to be had.
+    DepthThread();
+    /// After what it is at.
+    ~DepthThread() override;
+    DepthThread(const DepthThread&) = delete;
+    DepthThread& operator=(const DepthThread&) = delete;
+
+    /// Readable when a piece of work is done, until `acknowledge`.
+    [[nodiscard]] int descriptor() const noexcept { return event_; }
+    void acknowledge() const noexcept;
+
+    void begin(std::function<void()> work) override;
+    [[nodiscard]] bool is_done() const override;
+    void finish() override;
+
+  private:
+    void run();
+
+    int event_ = -1;
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::function<void()> work_;  ///< null: there is none, or it is done
+    std::exception_ptr thrown_;
+    bool is_ending_ = false;
+    std::thread thread_;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,176 @@
+// A live map with a worker for depth frames: readings do not wait for an image.
+#include "host/core/pipeline/depth_worker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "host/core/pipeline/ordered_replay.hpp"
+#include "host/core/pipeline/pipeline.hpp"
+#include "host/io/mapfile/octomap_writer.hpp"
+#include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
+
+namespace octoskin {
+namespace {
+
+using namespace test;
+
+/// Works when it is told to, or waited for.
+class PatientWorker final : public DepthWorker {
+  public:
+    void begin(std::function<void()> work) override {
+        EXPECT_FALSE(work_) << "one at a time";
+        work_ = std::move(work);
+        is_done_ = false;
+        ++begun;
+    }
+    bool is_done() const override { return is_done_; }
+    void finish() override {
+        if (!is_done_) ++waits;
+        end();
+        work_ = nullptr;
+    }
+    void end() {
+        if (!is_done_) work_();
+        is_done_ = true;
+    }
+    int begun = 0;
+    int waits = 0;
+
+  private:
+    std::function<void()> work_;
+    bool is_done_ = true;
+};
+
+/// What goes into the maps, in its order.
+class OrderOf final : public CommitListener, public CommitSource {
+  public:
+    void on_joints(const JointMeasurement& joints) override { commits_.emplace_back(joints); }
+    void on_reading(const RangeMeasurement& measurement, const Beam&, std::span<const VoxelUpdate>) override {
+        commits_.emplace_back(measurement);
+    }
+    void on_depth(const DepthFrame& frame, const DepthTerms&) override {
+        commits_.emplace_back(DepthCommit{frames_.size(), frame.captured});
+        frames_.push_back(frame);
+    }
+    Result<std::optional<Commit>, CommitSourceError> next() override {
+        return next_ < commits_.size() ? std::optional(commits_[next_++]) : std::nullopt;
+    }
+    [[nodiscard]] const std::vector<DepthFrame>& frames() const { return frames_; }
+
+  private:
+    std::vector<Commit> commits_;
+    std::vector<DepthFrame> frames_;
+    std::size_t next_ = 0;
+};
+
+/// Readings every 20 ms beside the images, from 4 s to 4.6 s.
+Scene busy_scene() {
+    Scene scene = good_scene();
+    scene.config.release = Release::once_placed;
+    for (int k = 0; k < 30; ++k) scene.bus.range(4.005 + 0.02 * k, kLeft, good_reading(kSpare));
+    return scene;
+}
+
+/// Gives all to a pipeline with this worker, which ends `patience` frames of the bus after it began.
+Pipeline play(const Scene& scene, Pipeline pipeline, PatientWorker& worker, int patience) {
+    auto depth = scene.depth.begin();
+    int begun = 0;
+    int since = 0;
+    for (const StampedFrame& entry : scene.bus.frames()) {
+        pipeline.on_can(entry.frame, entry.stamp);
+        while (depth != scene.depth.end() && pipeline.now() && depth->captured <= *pipeline.now()) {
+            pipeline.on_depth(*depth++);
+        }
+        since = worker.begun > begun ? 0 : since + 1;
+        begun = worker.begun;
+        if (since == patience) {
+            worker.end();
+            pipeline.on_worker_done();
+        }
+        EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
+    }
+    pipeline.finish();
+    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
+    return pipeline;
+}
+
+class DepthWorkerTest : public testing::TestWithParam<int> {};
+
+TEST_P(DepthWorkerTest, loses_nothing_and_the_order_told_makes_the_same_map_however_long_an_image_takes) {
+    const Scene scene = busy_scene();
+    PatientWorker worker;
+    OrderOf order;
+    Pipeline made = make_pipeline(scene);
+    made.tell(&order);
+    made.work_beside(&worker);
+    // The pipeline is moved before anything is given to it.
+    const Pipeline pipeline = play(scene, std::move(made), worker, GetParam());
+    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 6U) << pipeline.account_text();
+    EXPECT_EQ(pipeline.accounts().readings.used(), 40U) << pipeline.account_text();
+    EXPECT_EQ(worker.begun, 6);
+
+    Pipeline replayed = make_pipeline(scene);
+    ScriptedDepth frames(order.frames());
+    const OrderedOutcome outcome = replay_in_order(replayed.builder(), order, &frames);
+    EXPECT_EQ(outcome.depth_frames.used(), 6U);
+    EXPECT_EQ(encode_ot(*replayed.maps().fused()), encode_ot(*pipeline.maps().fused()));
+    EXPECT_EQ(encode_ot(*replayed.maps().depth()), encode_ot(*pipeline.maps().depth()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Patience, DepthWorkerTest, testing::Values(1, 2, 7, 20, 100'000));
+
+TEST(DepthWorker, lets_readings_go_into_the_map_while_it_works) {
+    const Scene scene = busy_scene();
+    PatientWorker worker;
+    Pipeline pipeline = make_pipeline(scene);
+    pipeline.work_beside(&worker);
+    auto depth = scene.depth.begin();
+    std::uint64_t used_at_begin = 0;
+    for (const StampedFrame& entry : scene.bus.frames()) {
+        pipeline.on_can(entry.frame, entry.stamp);
+        while (depth != scene.depth.end() && pipeline.now() && depth->captured <= *pipeline.now()) {
+            pipeline.on_depth(*depth++);
+        }
+        if (worker.begun == 0) used_at_begin = pipeline.accounts().readings.used();
+    }
+    EXPECT_EQ(worker.begun, 1) << "the others wait for the first";
+    EXPECT_GE(pipeline.accounts().readings.used(), used_at_begin + 30);
+    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 0U);
+    pipeline.on_worker_done();
+    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 0U) << "it is not done";
+    EXPECT_EQ(worker.waits, 0);
+    worker.end();
+    pipeline.on_worker_done();
+    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 1U);
+    EXPECT_EQ(worker.begun, 2);
+    pipeline.finish();
+    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 6U);
+    EXPECT_EQ(worker.waits, 5);
+}
+
+TEST(DepthWorker, is_not_given_a_frame_that_cannot_be_placed) {
+    Scene scene = busy_scene();
+    scene.depth = {flat_frame(7.15)};  // no joints between 7.0 and 7.3 s
+    PatientWorker worker;
+    Pipeline made = make_pipeline(scene);
+    made.work_beside(&worker);
+    const Pipeline pipeline = play(scene, std::move(made), worker, 1);
+    EXPECT_EQ(worker.begun, 0);
+    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::joints_missing), 1U);
+}
+
+TEST(DepthWorker, s_refusal_is_counted) {
+    Scene scene = busy_scene();
+    scene.depth = {flat_frame(4.0)};
+    scene.depth.front().width += 1;
+    PatientWorker worker;
+    Pipeline made = make_pipeline(scene);
+    made.work_beside(&worker);
+    const Pipeline pipeline = play(scene, std::move(made), worker, 3);
+    EXPECT_EQ(worker.begun, 1);
+    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::wrong_size), 1U);
+}
+
+}  // namespace
+}  // namespace octoskin
