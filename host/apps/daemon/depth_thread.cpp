@@ -14,7 +14,12 @@ namespace octoskin {
 
 DepthThread::DepthThread() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
     if (event_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
-    thread_ = start_without_signals([this] { run(); });
+    try {
+        thread_ = start_without_signals([this] { run(); });
+    } catch (...) {
+        ::close(event_);
+        throw;
+    }
 }
 
 DepthThread::~DepthThread() {

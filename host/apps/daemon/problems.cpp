@@ -206,6 +206,15 @@ void add_readings(const DaemonView& view, Problems& problems) {
     }
 }
 
+/// For two seconds and still: a machine that is busy for a moment is not worth a word.
+bool is_left_behind(const DaemonView& view) {
+    constexpr Nanoseconds kLong{2'000'000'000};
+    constexpr Nanoseconds kStill{1'000'000'000};
+    const LastUsed& used = view.used;
+    return used.depth_left_out &&
+           view.now - *used.depth_left_out<kStill&& * used.depth_left_out - *used.depth_left_out_since> kLong;
+}
+
 void add_camera(const DaemonView& view, Problems& problems) {
     if (!view.camera || !view.rig->camera) return;
     const double rate_hz = view.rig->camera->rate_hz;
@@ -239,6 +248,13 @@ void add_camera(const DaemonView& view, Problems& problems) {
             {"depth stopped", "depth frames come onto the map no more: see the counters of depth frames"});
     }
     if (problems.size() > others) problems.back().subject = "camera";
+    if (is_left_behind(view)) {
+        problems.push_back(
+            {"depth left out",
+             "camera: its images come quicker than this machine can work on them, and some are left out "
+             "(queue_overflow): a coarser resolution_m, or a mode with a lower rate or fewer pixels",
+             "camera"});
+    }
     if (auto problem = camera_rate_problem(*view.camera, rate_hz)) problems.push_back(std::move(*problem));
 }
 

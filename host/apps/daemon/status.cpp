@@ -180,6 +180,10 @@ void LastUsed::note(const Pipeline& pipeline, HostTime now) {
     note_one(accounts.readings.used(), counts_[1], reading);
     note_one(accounts.depth_frames.used(), counts_[2], depth_frame);
     note_one(pipeline.times_back(), counts_[3], time_back);
+    constexpr Nanoseconds kAgain{1'000'000'000};
+    const auto before = depth_left_out;
+    note_one(accounts.depth_frames.rejected(DepthReason::queue_overflow), counts_[4], depth_left_out);
+    if (depth_left_out == now && (!before || now - *before > kAgain)) depth_left_out_since = now;
 }
 
 Json status_json(const DaemonView& view) {

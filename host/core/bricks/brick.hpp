@@ -48,4 +48,8 @@ struct BrickView {
     return morton_of(key) & ~MortonCode{kBrickVoxels - 1};
 }
 
+[[nodiscard]] constexpr bool are_of_one_brick(VoxelKey a, VoxelKey b) noexcept {
+    return ((a.x ^ b.x) | (a.y ^ b.y) | (a.z ^ b.z)) >> kBrickHeight == 0;
+}
+
 }  // namespace octoskin

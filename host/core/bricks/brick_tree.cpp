@@ -121,8 +121,28 @@ std::size_t BrickTree::nodes_missing(MortonCode brick) const noexcept {
     return node == nullptr ? 1 : 0;
 }
 
+namespace {
+
+template <class Shared>
+bool is_ours(const Shared* shared) {
+    return shared->owners.load(std::memory_order_acquire) == 1;
+}
+
+}  // namespace
+
+BrickValues* BrickTree::own(MortonCode brick) noexcept {
+    const Node* node = root_;
+    for (unsigned level = kLevels - 1; level > 0; --level) {
+        if (node == nullptr || !is_ours(node)) return nullptr;
+        node = below<Node>(node->places[place_at(brick, level)]);
+    }
+    if (node == nullptr || !is_ours(node)) return nullptr;
+    const Place place = node->places[place_at(brick, 0)];
+    if (place == 0 || is_value(place) || !is_ours(below<Dense>(place))) return nullptr;
+    return &below<Dense>(place)->values;
+}
+
 BrickTree::Place& BrickTree::place_of(MortonCode brick) {
-    const auto is_ours = [](const Node* node) { return node->owners.load(std::memory_order_acquire) == 1; };
     // All that is missing is made before any of it is linked.
     const std::size_t missing = nodes_missing(brick);
     std::array<std::unique_ptr<Node>, kLevels> made;
@@ -164,6 +184,7 @@ void BrickTree::set_all(MortonCode brick, float value) {
 }
 
 BrickValues& BrickTree::open(MortonCode brick) {
+    if (BrickValues* const values = own(brick)) return *values;
     // Made first: a node that had a place for nothing would remain.
     const BrickView before = find(brick);
     std::unique_ptr<Dense> made;
@@ -176,7 +197,7 @@ BrickValues& BrickTree::open(MortonCode brick) {
         bricks_ += place == 0 ? 1U : 0U;
         ++dense_;
         place = place_of_pointer(made.release());
-    } else if (below<Dense>(place)->owners.load(std::memory_order_acquire) != 1) {
+    } else if (!is_ours(below<Dense>(place))) {
         auto own = std::make_unique<Dense>();
         own->values = below<Dense>(place)->values;
         release(place, 0);

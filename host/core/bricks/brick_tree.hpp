@@ -34,6 +34,9 @@ class BrickTree {
     /// Nodes that must be made before the brick has a place.
     [[nodiscard]] std::size_t nodes_missing(MortonCode brick) const noexcept;
 
+    /// The brick's values, to be written until this tree is used again, if they have a place each that is
+    /// this tree's alone; null if `open` would have something to do first.
+    [[nodiscard]] BrickValues* own(MortonCode brick) noexcept;
     /// Gives all voxels of a brick one value. Throws std::bad_alloc, and then nothing is changed.
     void set_all(MortonCode brick, float value);
     /// The brick's values, to be written until this tree is used again; those that were alike are so still.

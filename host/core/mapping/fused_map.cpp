@@ -72,17 +72,17 @@ void FusedMap::add(float& voxel, float log_odds) noexcept {
 
 void FusedMap::apply(std::span<const VoxelUpdate> updates) {
     while (!updates.empty()) {
-        const MortonCode brick = brick_of(updates.front().key);
+        const VoxelKey first = updates.front().key;
         std::size_t count = 1;
-        while (count < updates.size() && brick_of(updates[count].key) == brick) ++count;
-        apply_run(brick, updates.first(count));
+        while (count < updates.size() && are_of_one_brick(updates[count].key, first)) ++count;
+        apply_run(brick_of(first), updates.first(count));
         updates = updates.subspan(count);
     }
 }
 
 /// Terms of one brick. A brick is made for the first of them that it is needed for.
 void FusedMap::apply_run(MortonCode brick, std::span<const VoxelUpdate> run) noexcept {
-    BrickValues* values = nullptr;
+    BrickValues* values = tree_.own(brick);
     Status<Refusal> has_values = Done{};
     for (const VoxelUpdate& update : run) {
         if (!std::isfinite(update.log_odds)) {

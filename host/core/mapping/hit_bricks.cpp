@@ -10,6 +10,8 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
+#include <limits>
 
 #ifndef OCTOSKIN_HIT_BRICKS_TYPES
 #define OCTOSKIN_HIT_BRICKS_TYPES
@@ -102,6 +104,7 @@ bool HitBricks::take(const PlacedImage& rays, const KeyBox& box, const HitModel&
 
 void HitBricks::take_row(const PlacedImage& rays, std::size_t first, const HitModel& model) {
     constexpr std::size_t kWordBits = 64;
+    assert(rays.width <= std::numeric_limits<std::uint16_t>::max());  // of CellHits::rays; a rig has 4096
     run_ends_.resize((rays.width + kWordBits - 1) / kWordBits);
     terms_.resize(run_ends_.size() * kWordBits);
     const std::uint32_t* const key_xy = rays.key_xy.data() + first;

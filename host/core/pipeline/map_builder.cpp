@@ -133,6 +133,10 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
     if (!depth.updates) {
         return unexpected(depth.updates.error());
     }
+    // Who replays the order that the listener is told asks for the pose now.
+    if (depth.robot && robot_.at(depth.frame.captured) == nullptr) {
+        return unexpected(DepthReason::late);
+    }
     maps_.add_depth(depth.updates->terms);
     if (witness_) {
         witness_->on_depth(depth_stage_->witness_images(), depth_stage_->T_map_camera_of(depth.frame),

@@ -48,7 +48,8 @@ class MapBuilder {
 
     /// The same in three steps, for whoever has another thread for the second, which takes the time. One
     /// frame at a time; from the first step to the last readings and joint samples may be given in, and
-    /// nobody may ask for `depth_stage()`.
+    /// nobody may ask `depth_stage()` for
+    /// anything but its camera.
     struct DepthWork {
         DepthFrame frame;
         std::optional<RobotPose> robot;  ///< at the frame's time, if it needs to be known
@@ -57,6 +58,7 @@ class MapBuilder {
     [[nodiscard]] Result<DepthWork, DepthReason> begin(DepthFrame frame);
     /// Uses nothing of the builder's but the depth stage.
     void work(DepthWork& depth);
+    /// `late`: where the robot was then has been forgotten meanwhile.
     [[nodiscard]] Status<DepthReason> finish(const DepthWork& depth);
 
     /// Time goes on from before the newest joint sample: where the robot was is forgotten, the maps stay.

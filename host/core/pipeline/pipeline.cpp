@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <utility>
 
 namespace octoskin {
@@ -18,6 +19,9 @@ constexpr Nanoseconds kSameReading{5'000'000};
 /// that a node's clock takes to settle anew (ClockMapConfig::settling): so that no reading finds a pose of
 /// the time before, which was another instant.
 constexpr Nanoseconds kTimeBackMax{150'000'000};
+/// Images that wait for the worker. With one more the map would be older by the time that one takes; with one
+/// less a worker that is quick enough would miss one now and then.
+constexpr std::size_t kBesideWorkMax = 2;
 constexpr HostTime kEndOfTime{std::numeric_limits<std::int64_t>::max()};
 /// The camera's place in the order of sources: node 0 is the host.
 constexpr BeamSource kCameraSource{};
@@ -95,11 +99,19 @@ void Pipeline::notice_time_back(HostTime now) {
 
 void Pipeline::settle_waiting() {
     release_joints(kEndOfTime);
-    release_measurements(kEndOfTime);
-    while (in_work_) {  // each round takes one out of a bounded buffer
+    if (in_work_) {
         finish_depth();
-        release_measurements(kEndOfTime);
     }
+    // A live map does not stand still for images that it had no time for.
+    while (worker_ != nullptr && depth_waiting_.size() > 0) {
+        drop_oldest_depth();
+    }
+    release_measurements(kEndOfTime);
+}
+
+void Pipeline::drop_oldest_depth() {
+    (void)depth_waiting_.pop();
+    accounts_.depth_frames.reject(DepthReason::queue_overflow);
 }
 
 void Pipeline::work_beside(DepthWorker* worker) {
@@ -204,6 +216,9 @@ void Pipeline::on_depth(DepthFrame frame) {
     if (now_known && config_.release == Release::once_placed) {
         advance(*now_known);
     }
+    while (in_work_ && depth_waiting_.size() > kBesideWorkMax && is_placed(*depth_waiting_.front())) {
+        drop_oldest_depth();
+    }
 }
 
 void Pipeline::advance(HostTime now) {
@@ -263,14 +278,26 @@ bool Pipeline::take_depth(DepthFrame frame) {
     if (worker_ == nullptr) {
         return accounts_.depth_frames.settle(builder_.integrate(std::move(frame)));
     }
-    auto begun = builder_.begin(std::move(frame));
+    const Status<DepthReason> begun = begin_depth(std::move(frame));
     if (!begun) {
         accounts_.depth_frames.reject(begun.error());
-        return false;
     }
-    in_work_ = std::make_unique<MapBuilder::DepthWork>(std::move(begun).value());
-    worker_->begin([this, depth = in_work_.get()] { builder_.work(*depth); });
     return false;
+}
+
+Status<DepthReason> Pipeline::begin_depth(DepthFrame frame) {
+    try {
+        auto begun = builder_.begin(std::move(frame));
+        if (!begun) {
+            return unexpected(begun.error());
+        }
+        in_work_ = std::make_unique<MapBuilder::DepthWork>(std::move(begun).value());
+        worker_->begin([this, depth = in_work_.get()] { builder_.work(*depth); });
+        return Done{};
+    } catch (const std::bad_alloc&) {
+        in_work_ = nullptr;
+        return unexpected(DepthReason::no_memory);
+    }
 }
 
 void Pipeline::on_silence(HostTime now) {

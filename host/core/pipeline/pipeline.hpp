@@ -84,9 +84,10 @@ class Pipeline {
     /// Depth frames in the order of their capture, at about the time when they arrive among the CAN frames.
     void on_depth(DepthFrame frame);
     /// From now on `worker` turns depth frames into terms, and what is captured after a frame may go into the
-    /// maps before it: a listener is told the order. Null: the call that releases a frame does, and
-    /// everything waits for it. For `Release::once_placed` (asserted). While a frame is worked on, the
-    /// pipeline must not be moved; the worker lives as long as it is named here.
+    /// maps before it: a listener is told the order. While it is at one, two more wait, and the oldest gives
+    /// way; where what waits has to be settled at once, they are counted as `queue_overflow`. Null: the call
+    /// that releases a frame does, and everything waits for it. For `Release::once_placed` (asserted). While
+    /// a frame is worked on, the pipeline must not be moved; the worker lives as long as it is named here.
     void work_beside(DepthWorker* worker);
     /// The worker may be done with a frame: then that goes into the maps, and the next begins.
     void on_worker_done();
@@ -145,6 +146,8 @@ class Pipeline {
     [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
     /// The frame goes into the maps, or the worker begins with it. Whether it is in the maps.
     bool take_depth(DepthFrame frame);
+    [[nodiscard]] Status<DepthReason> begin_depth(DepthFrame frame);
+    void drop_oldest_depth();
     void finish_depth();
     [[nodiscard]] bool is_late(const ReleaseKey& key) const {
         return config_.release == Release::by_capture_time && integrated_ && key <= *integrated_;

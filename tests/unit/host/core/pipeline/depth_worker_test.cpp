@@ -95,6 +95,8 @@ Pipeline play(const Scene& scene, Pipeline pipeline, PatientWorker& worker, int 
     return pipeline;
 }
 
+constexpr int kNeverDone = 1'000'000;
+
 class DepthWorkerTest : public testing::TestWithParam<int> {};
 
 TEST_P(DepthWorkerTest, loses_nothing_and_the_order_told_makes_the_same_map_however_long_an_image_takes) {
@@ -106,19 +108,25 @@ TEST_P(DepthWorkerTest, loses_nothing_and_the_order_told_makes_the_same_map_howe
     made.work_beside(&worker);
     // The pipeline is moved before anything is given to it.
     const Pipeline pipeline = play(scene, std::move(made), worker, GetParam());
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 6U) << pipeline.account_text();
+    const auto& frames = pipeline.accounts().depth_frames;
+    EXPECT_EQ(frames.used() + frames.rejected(DepthReason::queue_overflow), 6U) << pipeline.account_text();
+    EXPECT_EQ(frames.used(), static_cast<std::uint64_t>(worker.begun));
+    if (GetParam() <= 7) {
+        EXPECT_EQ(frames.used(), 6U) << "it is quick enough";
+    } else if (GetParam() == kNeverDone) {
+        EXPECT_EQ(frames.used(), 1U) << "the first, at the end";
+    }
     EXPECT_EQ(pipeline.accounts().readings.used(), 40U) << pipeline.account_text();
-    EXPECT_EQ(worker.begun, 6);
 
     Pipeline replayed = make_pipeline(scene);
-    ScriptedDepth frames(order.frames());
-    const OrderedOutcome outcome = replay_in_order(replayed.builder(), order, &frames);
-    EXPECT_EQ(outcome.depth_frames.used(), 6U);
+    ScriptedDepth depth(order.frames());
+    const OrderedOutcome outcome = replay_in_order(replayed.builder(), order, &depth);
+    EXPECT_EQ(outcome.depth_frames.used(), frames.used());
     EXPECT_EQ(encode_ot(*replayed.maps().fused()), encode_ot(*pipeline.maps().fused()));
     EXPECT_EQ(encode_ot(*replayed.maps().depth()), encode_ot(*pipeline.maps().depth()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Patience, DepthWorkerTest, testing::Values(1, 2, 7, 20, 100'000));
+INSTANTIATE_TEST_SUITE_P(Patience, DepthWorkerTest, testing::Values(1, 2, 7, 20, 40, kNeverDone));
 
 TEST(DepthWorker, lets_readings_go_into_the_map_while_it_works) {
     const Scene scene = busy_scene();
@@ -135,6 +143,7 @@ TEST(DepthWorker, lets_readings_go_into_the_map_while_it_works) {
         if (worker.begun == 0) used_at_begin = pipeline.accounts().readings.used();
     }
     EXPECT_EQ(worker.begun, 1) << "the others wait for the first";
+    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::queue_overflow), 3U) << "but two";
     EXPECT_GE(pipeline.accounts().readings.used(), used_at_begin + 30);
     EXPECT_EQ(pipeline.accounts().depth_frames.used(), 0U);
     pipeline.on_worker_done();
@@ -145,8 +154,9 @@ TEST(DepthWorker, lets_readings_go_into_the_map_while_it_works) {
     EXPECT_EQ(pipeline.accounts().depth_frames.used(), 1U);
     EXPECT_EQ(worker.begun, 2);
     pipeline.finish();
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 6U);
-    EXPECT_EQ(worker.waits, 5);
+    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 2U);
+    EXPECT_EQ(worker.waits, 1) << "for the one that it was at, and no other";
+    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
 }
 
 TEST(DepthWorker, is_not_given_a_frame_that_cannot_be_placed) {
@@ -158,6 +168,24 @@ TEST(DepthWorker, is_not_given_a_frame_that_cannot_be_placed) {
     const Pipeline pipeline = play(scene, std::move(made), worker, 1);
     EXPECT_EQ(worker.begun, 0);
     EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::joints_missing), 1U);
+}
+
+TEST(DepthWorker, s_frame_is_not_used_once_the_pose_that_a_replay_needs_is_forgotten) {
+    Scene scene = busy_scene();
+    scene.config.joints.capacity = 20;  // 0.2 s
+    scene.depth = {flat_frame(4.0)};
+    for (const int patience : {5, 300}) {
+        PatientWorker worker;
+        OrderOf order;
+        Pipeline made = make_pipeline(scene);
+        made.tell(&order);
+        made.work_beside(&worker);
+        const Pipeline pipeline = play(scene, std::move(made), worker, patience);
+        const auto& frames = pipeline.accounts().depth_frames;
+        EXPECT_EQ(frames.used(), patience == 5 ? 1U : 0U) << pipeline.account_text();
+        EXPECT_EQ(frames.rejected(DepthReason::late), patience == 5 ? 0U : 1U) << pipeline.account_text();
+        EXPECT_EQ(order.frames().size(), frames.used());
+    }
 }
 
 TEST(DepthWorker, s_refusal_is_counted) {
