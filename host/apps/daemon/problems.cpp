@@ -167,14 +167,29 @@ std::string why_no_joints(const DaemonView& view) {
     return "no joint states: none comes through the socket (`octoskin joints`)";
 }
 
+/// Where to look, and the most frequent reason, which is why as often as not.
+template <class Reject>
+std::string see_counters(const char* unit, const Account<Reject>& account) {
+    constexpr auto kNames = names_of(Reject{});
+    std::size_t most = 0;
+    for (std::size_t i = 1; i < kNames.size(); ++i) {
+        if (account.rejected(static_cast<Reject>(i)) > account.rejected(static_cast<Reject>(most))) most = i;
+    }
+    const std::uint64_t count = account.rejected(static_cast<Reject>(most));
+    const std::string where = fmt::format("see the counters of {}", unit);
+    return count == 0 ? where
+                      : fmt::format("{} (most often {}, {} of {})", where, kNames[most], count, account.in());
+}
+
 void add_joints(const DaemonView& view, Problems& problems) {
     constexpr std::uint64_t kFirstSamples = 5;  // of a source: nothing is known of it yet
     const auto& joints = view.pipeline->accounts().joint_samples;
     if (joints.in() == 0) {
         problems.push_back({"no joints", why_no_joints(view), "joints"});
     } else if (!view.used.joint_sample) {
-        problems.push_back(
-            {"joints unused", "no joint state could be used: see the counters of joint samples", "joints"});
+        problems.push_back({"joints unused",
+                            "no joint state could be used: " + see_counters("joint samples", joints),
+                            "joints"});
     } else if (has_stopped(view.used.joint_sample, view.now)) {
         problems.push_back({"joints stopped", "joint states have stopped: readings have no pose", "joints"});
     }
@@ -198,11 +213,13 @@ void add_joints(const DaemonView& view, Problems& problems) {
 void add_readings(const DaemonView& view, Problems& problems) {
     const auto& readings = view.pipeline->accounts().readings;
     if (readings.in() > 0 && !view.used.reading) {
-        problems.push_back(
-            {"readings unused", "no reading could be used yet: see the counters of readings", "readings"});
+        problems.push_back({"readings unused",
+                            "no reading could be used yet: " + see_counters("readings", readings),
+                            "readings"});
     } else if (has_stopped(view.used.reading, view.now)) {
         problems.push_back({"readings stopped",
-                            "readings come onto the map no more: see the counters of readings", "readings"});
+                            "readings come onto the map no more: " + see_counters("readings", readings),
+                            "readings"});
     }
 }
 
@@ -242,10 +259,10 @@ void add_camera(const DaemonView& view, Problems& problems) {
                          wanted.width, wanted.height)});
     } else if (frames.in() > 0 && !view.used.depth_frame) {
         problems.push_back(
-            {"depth unused", "no depth frame could be used yet: see the counters of depth frames"});
+            {"depth unused", "no depth frame could be used yet: " + see_counters("depth frames", frames)});
     } else if (has_stopped(view.used.depth_frame, view.now)) {
-        problems.push_back(
-            {"depth stopped", "depth frames come onto the map no more: see the counters of depth frames"});
+        problems.push_back({"depth stopped", "depth frames come onto the map no more: " +
+                                                 see_counters("depth frames", frames)});
     }
     if (problems.size() > others) problems.back().subject = "camera";
     if (is_left_behind(view)) {

@@ -254,7 +254,9 @@ TEST_F(ProblemsTest, have_joint_states_that_are_not_there_or_of_no_use) {
     for (int k = 0; k < 100; ++k) scene.bus.joints(3.0 + 0.01 * k, kJoints, {&position, 1});
     play(scene, 4.05);
     EXPECT_EQ(told("no joints"), "");
-    EXPECT_EQ(told("joints unused"), "no joint state could be used: see the counters of joint samples");
+    EXPECT_EQ(told("joints unused"),
+              "no joint state could be used: see the counters of joint samples (most often clock_not_ready, "
+              "89 of 89)");
     EXPECT_EQ(told("joints stopped"), "");
 }
 
@@ -289,7 +291,9 @@ TEST_F(ProblemsTest, have_readings_that_are_of_no_use_or_stopped) {
     EXPECT_EQ(told("readings unused") + told("readings stopped"), "") << "none has come";
     view_.used = {};
     play_changed([](Scene& scene) { scene.rig.range_limits.max_m = 0.1; });
-    EXPECT_EQ(told("readings unused"), "no reading could be used yet: see the counters of readings");
+    EXPECT_EQ(
+        told("readings unused"),
+        "no reading could be used yet: see the counters of readings (most often above_range_max, 10 of 10)");
 }
 
 TEST_F(ProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) {
@@ -310,7 +314,9 @@ TEST_F(ProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) {
     EXPECT_EQ(told("depth unused"), "") << "none has come";
     play_changed([](Scene& scene) { scene.rig.camera->T_base_camera.translation().x() = 2000.0; });
     view_.camera->newest = view_.now;
-    EXPECT_EQ(told("depth unused"), "no depth frame could be used yet: see the counters of depth frames");
+    EXPECT_EQ(told("depth unused"),
+              "no depth frame could be used yet: see the counters of depth frames (most often outside_map, 6 "
+              "of 6)");
     EXPECT_EQ(told("depth of another size"), "");
     play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
     view_.camera->newest = view_.now;
