@@ -61,7 +61,7 @@ TEST(RayPieces, put_together_are_the_whole_ray_or_the_ray_is_named) {
             property::RandomGeometry random(seed, 0.04);
             MarkGrid grid;
             span(grid, image, lattice);
-            for (std::uint32_t i = 0; i < image.width; i += 13) {
+            for (std::uint32_t i = 0; i < image.width; i += 41) {
                 PlacedImage one = image;
                 for (std::uint32_t j = 0; j < image.width; ++j) {
                     if (j != i) one.reach_m[j] = -1.0F;
