@@ -227,9 +227,11 @@ void add_readings(const DaemonView& view, Problems& problems) {
 bool is_left_behind(const DaemonView& view) {
     constexpr Nanoseconds kLong{2'000'000'000};
     constexpr Nanoseconds kStill{1'000'000'000};
-    const LastUsed& used = view.used;
-    return used.depth_left_out &&
-           view.now - *used.depth_left_out<kStill&& * used.depth_left_out - *used.depth_left_out_since> kLong;
+    const auto& last = view.used.depth_left_out;
+    if (!last) return false;
+    const Nanoseconds ago = view.now - *last;
+    const Nanoseconds lasted = *last - *view.used.depth_left_out_since;
+    return ago < kStill && lasted > kLong;
 }
 
 void add_camera(const DaemonView& view, Problems& problems) {

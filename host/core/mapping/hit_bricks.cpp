@@ -8,10 +8,11 @@
 #include <hwy/highway.h>
 // clang-format on
 
-#include <array>
 #include <bit>
 #include <cassert>
 #include <limits>
+
+#include "host/core/traversal/lanes-inl.hpp"
 
 #ifndef OCTOSKIN_HIT_BRICKS_TYPES
 #define OCTOSKIN_HIT_BRICKS_TYPES
@@ -35,7 +36,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// of 64 pixels, of which those beyond the row mean nothing.
 void find_runs(const RowOfEnds& row, const HitModel& model, std::size_t width, float* terms,
                std::uint64_t* run_ends) {
-    // Sixteen keys at most: the bits of a mask then fit two bytes.
     const hn::CappedTag<std::uint32_t, 16> k;
     for (std::size_t word = 0; 64 * word < width; ++word) {
         run_ends[word] = 0;
@@ -44,11 +44,7 @@ void find_runs(const RowOfEnds& row, const HitModel& model, std::size_t width, f
             const auto differs = [&](const std::uint32_t* keys) HWY_ATTR {
                 return hn::Ne(hn::LoadU(k, keys + u), hn::LoadU(k, keys + u + 1));
             };
-            std::array<std::uint8_t, 8> bits{};
-            hn::StoreMaskBits(k, hn::Or(differs(row.key_xy), differs(row.key_z)), bits.data());
-            const std::uint64_t ends = (bits[0] | static_cast<std::uint64_t>(bits[1]) << 8U) &
-                                       ((std::uint64_t{1} << hn::Lanes(k)) - 1U);
-            run_ends[word] |= ends << bit;
+            run_ends[word] |= bits_of(k, hn::Or(differs(row.key_xy), differs(row.key_z))) << bit;
         }
     }
     const hn::CappedTag<double, 8> d;

@@ -48,8 +48,7 @@ class MapBuilder {
 
     /// The same in three steps, for whoever has another thread for the second, which takes the time. One
     /// frame at a time; from the first step to the last readings and joint samples may be given in, and
-    /// nobody may ask `depth_stage()` for
-    /// anything but its camera.
+    /// nobody may ask `depth_stage()` for anything but its camera.
     struct DepthWork {
         DepthFrame frame;
         std::optional<RobotPose> robot;  ///< at the frame's time, if it needs to be known

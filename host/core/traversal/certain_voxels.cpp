@@ -15,6 +15,8 @@
 #include <cstring>
 #include <vector>
 
+#include "host/core/traversal/lanes-inl.hpp"
+
 #ifndef OCTOSKIN_CERTAIN_VOXELS_TYPES
 #define OCTOSKIN_CERTAIN_VOXELS_TYPES
 namespace octoskin {
@@ -60,11 +62,6 @@ HWY_INLINE RowBits test_row(const CertainTest& test, const Eigen::Vector3f& p_ca
     const F f;
     const I i;
     RowBits row;
-    const auto bits_of = [&](auto mask, std::size_t first) {
-        std::array<std::uint8_t, 8> bits{};
-        hn::StoreMaskBits(f, mask, bits.data());
-        return static_cast<unsigned>(bits[0] & ((1U << hn::Lanes(f)) - 1U)) << first;
-    };
     for (std::size_t first = 0; first < static_cast<std::size_t>(kBrick); first += hn::Lanes(f)) {
         const V at = hn::Iota(f, static_cast<float>(first));
         const V x = hn::Add(hn::Set(f, p_camera.x()), hn::Mul(at, hn::Set(f, test.along[0].x())));
@@ -89,10 +86,10 @@ HWY_INLINE RowBits test_row(const CertainTest& test, const Eigen::Vector3f& p_ca
         const V passed = hn::GatherIndex(f, test.passed_m, pixel);
         const auto reaches = hn::Gt(passed, hn::Add(z, hn::Set(f, test.beyond_m)));
         const auto tells = hn::And(passes, hn::Ge(passed, hn::Zero(f)));
-        row.certain |= bits_of(hn::And(passes, reaches), first);
-        row.open |= bits_of(hn::AndNot(tells, hn::And(hn::Le(z, hn::Set(f, test.far_m)),
-                                                      hn::Gt(z, hn::Set(f, -test.near_m)))),
-                            first);
+        row.certain |= static_cast<unsigned>(bits_of(f, hn::And(passes, reaches)) << first);
+        const auto is_open = hn::AndNot(
+            tells, hn::And(hn::Le(z, hn::Set(f, test.far_m)), hn::Gt(z, hn::Set(f, -test.near_m))));
+        row.open |= static_cast<unsigned>(bits_of(f, is_open) << first);
     }
     return row;
 }

@@ -25,6 +25,15 @@ using Double = hn::Vec<Doubles>;
 using Float = hn::Vec<Floats>;
 using Mask = hn::Mask<Doubles>;
 
+/// Bit i is that of lane i. Sixteen lanes at most: they fit two bytes.
+template <class Tag, class AnyMask>
+HWY_INLINE std::uint64_t bits_of(Tag tag, AnyMask mask) {
+    std::array<std::uint8_t, 8> bits{};
+    hn::StoreMaskBits(tag, mask, bits.data());
+    return (bits[0] | static_cast<std::uint64_t>(bits[1]) << 8U) &
+           ((std::uint64_t{1} << hn::Lanes(tag)) - 1U);
+}
+
 /// Calls visit(lane) for each lane that is set, in ascending order.
 template <class Tag, class AnyMask, class Visit>
 HWY_INLINE void for_each_set(Tag tag, AnyMask mask, Visit&& visit) {

@@ -9,10 +9,10 @@
 // clang-format on
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "host/core/traversal/lanes-inl.hpp"
 
 #ifndef OCTOSKIN_VOXEL_RAYS_TYPES
 #define OCTOSKIN_VOXEL_RAYS_TYPES
@@ -70,13 +70,6 @@ using Lanes = hn::Vec<Tag>;
 using WordTag = hn::CappedTag<float, 8>;
 using WordInts = hn::RebindToSigned<WordTag>;
 using Words = hn::Vec<WordTag>;
-
-template <class AnyTag, class Mask>
-HWY_INLINE std::uint64_t bits_of(AnyTag f, Mask mask) {
-    std::array<std::uint8_t, 8> bits{};
-    hn::StoreMaskBits(f, mask, bits.data());
-    return (bits[0] | static_cast<std::uint64_t>(bits[1]) << 8U) & ((std::uint64_t{1} << hn::Lanes(f)) - 1U);
-}
 
 /// Where a ray that is `off` the centre at its depth is in the voxel there.
 HWY_INLINE auto is_inside(const Kernel& rays, Lanes off_x, Lanes off_y) {
@@ -340,7 +333,8 @@ HWY_EXPORT(count_votes);
 /// voxel would mark it now and then; at 0 one in the voxel's farther half is not seen (docs/results.md).
 constexpr double kEndsBehindCentre = 0.2;
 
-/// In edges.
+/// In edges. Rays nearer to a voxel's corners graze what is beside it: they would free surfaces
+/// (docs/results.md).
 constexpr double kNearCentre = 0.45;
 
 /// Which holds the pixels of each voxel's rays from `nearest_m` on.
