@@ -19,6 +19,7 @@ if(OCTOSKIN_SANITIZE)
     target_compile_options(octoskin_compile_options INTERFACE
         -fsanitize=${OCTOSKIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(octoskin_compile_options INTERFACE -fsanitize=${OCTOSKIN_SANITIZE})
+    target_compile_definitions(octoskin_compile_options INTERFACE OCTOSKIN_SANITIZED)
 endif()
 if(OCTOSKIN_SANITIZE MATCHES "address")
     # The address sanitizer stops at a null pointer that is followed and at a place beyond an object, too, and a PC reads

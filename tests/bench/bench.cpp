@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <stdexcept>
 
 #include "tests/bench/clouds.hpp"
@@ -58,22 +59,28 @@ class Folder {
     std::string path_;
 };
 
-/// Gathers each run's CPU time.
+/// Each run's times, milliseconds.
+struct Times {
+    std::vector<double> cpu;  ///< of all threads
+    std::vector<double> clock;
+};
+
 class Gatherer : public benchmark::BenchmarkReporter {
   public:
     bool ReportContext(const Context&) override { return true; }
     void ReportRuns(const std::vector<Run>& runs) override {
         for (const Run& run : runs) {
-            if (run.run_type == Run::RT_Iteration) {
-                times_[run.run_name.function_name].push_back(1e3 * run.cpu_accumulated_time /
-                                                             static_cast<double>(run.iterations));
-            }
+            if (run.run_type != Run::RT_Iteration) continue;
+            Times& times = times_[run.run_name.function_name];
+            const auto iterations = static_cast<double>(run.iterations);
+            times.cpu.push_back(1e3 * run.cpu_accumulated_time / iterations);
+            times.clock.push_back(1e3 * run.real_accumulated_time / iterations);
         }
     }
-    [[nodiscard]] const std::vector<double>& of(const std::string& row) const { return times_.at(row); }
+    [[nodiscard]] const Times& of(const std::string& row) const { return times_.at(row); }
 
   private:
-    std::map<std::string, std::vector<double>> times_;
+    std::map<std::string, Times> times_;
 };
 
 struct Options {
@@ -108,11 +115,13 @@ std::string check(const std::vector<Row>& rows, const std::vector<std::string>& 
 void measure(const std::vector<Row>& rows, const Options& options, std::map<std::string, Figures>& all) {
     benchmark::ClearRegisteredBenchmarks();
     std::map<std::string, std::unique_ptr<Task>> tasks;
+    std::set<std::string> by_clock;
     for (const Row& row : rows) {
         if (!options.rows.empty() && std::ranges::find(options.rows, row.name) == options.rows.end())
             continue;
         Task& task = *(tasks[row.name] = row.make());
         all[row.name].peer = row.peer;
+        if (row.is_by_clock) by_clock.insert(row.name);
         benchmark::RegisterBenchmark(row.name.c_str(),
                                      [&task](benchmark::State& state) {
                                          task.prepare();
@@ -125,7 +134,7 @@ void measure(const std::vector<Row>& rows, const Options& options, std::map<std:
     Gatherer gatherer;
     benchmark::RunSpecifiedBenchmarks(&gatherer);
     for (const auto& [name, task] : tasks) {
-        all[name].run_ms = gatherer.of(name);
+        all[name].run_ms = by_clock.contains(name) ? gatherer.of(name).clock : gatherer.of(name).cpu;
         task->tell(all[name]);
     }
 }
@@ -220,7 +229,9 @@ int run_with(const Options& options, char* program) {
 
 int run(int argc, char** argv) {
     CLI::App app(
-        "How long the work of a map takes, beside OctoMap, on the same data in the same run: CPU times.");
+        "How long the work of a map takes, beside OctoMap, on the same data in the same run: CPU times, but "
+        "of "
+        "rows of several threads and their peers the clock's.");
     Options options;
     app.add_option("--resolution", options.resolutions, "Of the maps, metres")
         ->capture_default_str()

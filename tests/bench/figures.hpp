@@ -11,8 +11,8 @@
 namespace octoskin::bench {
 
 struct Figures {
-    std::string peer;            ///< OctoMap's row that does the same; empty if there is none
-    std::vector<double> run_ms;  ///< CPU time of all threads
+    std::string peer;            ///< the row it is compared with, OctoMap's mostly; empty if there is none
+    std::vector<double> run_ms;  ///< CPU time of all threads, or by the clock: Row::is_by_clock
     std::size_t heap_bytes = 0;  ///< of the map at the end; 0: no map
     std::size_t voxels = 0;      ///< known, at the finest level
     std::size_t leaves = 0;      ///< of the map as a pruned octree

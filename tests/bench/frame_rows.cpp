@@ -18,11 +18,19 @@ struct OurMethod {
     const char* name;
     DepthUpdate update;
     bool is_filtered;
+    unsigned threads = 1;
 };
 constexpr std::array kOurs = {
     OurMethod{.name = "exact", .update = DepthUpdate::paper, .is_filtered = false},
     OurMethod{.name = "fast", .update = DepthUpdate::fast, .is_filtered = true},
     OurMethod{.name = "robust", .update = DepthUpdate::robust, .is_filtered = true},
+};
+
+/// By the clock: what several threads gain.
+constexpr const char* kOneThread = "fast_1_thread";
+constexpr std::array kTogether = {
+    OurMethod{.name = kOneThread, .update = DepthUpdate::fast, .is_filtered = true},
+    OurMethod{.name = "fast_2_threads", .update = DepthUpdate::fast, .is_filtered = true, .threads = 2},
 };
 
 struct OctomapMethod {
@@ -77,7 +85,7 @@ class OurFrames final : public FrameTask {
     OurFrames(const RoomFrames& room, const std::string& resolution, const OurMethod& method)
         : FrameTask(room),
           config_(bench_mapping(resolution, method.update)),
-          integrator_(config_, room.camera),
+          integrator_(config_, room.camera, method.threads),
           map_(config_.map),
           is_filtered_(method.is_filtered) {}
     void prepare() override {
@@ -134,6 +142,12 @@ std::vector<Row> frame_rows(const RoomFrames& room, const std::string& resolutio
         rows.push_back({method.name + suffix, peer, runs, [&room, resolution, method] {
                             return std::make_unique<OurFrames>(room, resolution, method);
                         }});
+    }
+    for (const OurMethod& method : kTogether) {
+        rows.push_back(
+            {method.name + suffix, kOneThread + suffix, runs,
+             [&room, resolution, method] { return std::make_unique<OurFrames>(room, resolution, method); },
+             true});
     }
     rows.push_back(
         {"depth_filter" + suffix, "", runs, [&room] { return std::make_unique<FilterFrames>(room); }});

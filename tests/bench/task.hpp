@@ -22,10 +22,11 @@ class Task {
 
 struct Row {
     std::string name;
-    std::string peer;  ///< OctoMap's row that does the same; empty if there is none
+    std::string peer;  ///< the row it is compared with, OctoMap's mostly; empty if there is none
     unsigned runs = 0;
     /// Called only for a row that is asked for; what it makes may take long.
     std::function<std::unique_ptr<Task>()> make;
+    bool is_by_clock = false;  ///< in place of the processors' time: threads work at once
 };
 
 }  // namespace octoskin::bench

@@ -129,7 +129,7 @@ ExitCode Daemon::run() {
     }
     const Nanoseconds patience = end_patience(parts_->pipeline.maps().fused()->memory_bytes());
     tell_end(patience);
-    parts_->recordings.stop(monotonic_now());
+    parts_->recordings.stop(monotonic_now(), "the daemon ended");
     const HostTime end = monotonic_now() + patience;
     const std::string error = parts_->save_last_map(end);
     parts_->recordings.finish(end - monotonic_now());
@@ -252,7 +252,8 @@ void Daemon::Parts::reload() {
         reload_error = next.error().message;
         spdlog::error("not reloaded");  // why, the next look at the problems tells
     } else {
-        recordings.stop(monotonic_now());  // it has the old settings, and is whole with them
+        recordings.stop(monotonic_now(),
+                        "the daemon read its files anew (SIGHUP)");  // whole with the old ones
         keep_within(next->settings.mapping.map);
         inputs.prepare_for(next->settings.host.rig);
         const std::uint64_t dropped = settle_pipeline();

@@ -42,9 +42,9 @@ class RecordRequests {
     void attend(HostTime now) {
         if (recorder_) recorder_->attend(now);
     }
-    /// To be called before the pipeline is replaced, and at the end.
-    void stop(HostTime now) {
-        if (recorder_) recorder_->stop(now);
+    /// To be called before the pipeline is replaced, and at the end. `early`: why, where nobody asked for it.
+    void stop(HostTime now, std::string early = {}) {
+        if (recorder_) recorder_->stop(now, std::move(early));
     }
     /// Until a recording that was stopped is whole; says in the log what came of it.
     void finish(Nanoseconds patience);

@@ -106,8 +106,9 @@ void Recorder::on_depth(const DepthFrame& frame, const DepthTerms&) {
 }
 
 void Recorder::on_time_back() {
-    spdlog::warn("the bus's time went back: the recording ends before that");
-    stop(monotonic_now());
+    stop(monotonic_now(),
+         "the bus's time went back, and a replay could not go on from there: the host that sends SYNC began "
+         "anew, or another one sends it too");
 }
 
 void Recorder::attend(HostTime now) {
@@ -116,9 +117,10 @@ void Recorder::attend(HostTime now) {
     if (is_long_enough || !writer_.error().empty()) stop(now);
 }
 
-void Recorder::stop(HostTime now) {
+void Recorder::stop(HostTime now, std::string early) {
     if (stopped_) return;
     stopped_ = now;
+    early_ = std::move(early);
     RecordingEnd end{.order = counts_,
                      .remarks = remarks(),
                      .meta = {.made_by = program_version(),
@@ -144,6 +146,9 @@ void Recorder::tell_end() {
     is_end_told_ = true;
     if (!why.empty()) {
         spdlog::error("the recording has failed: {}", why);
+    } else if (!early_.empty()) {
+        spdlog::warn("recorded only {:.1f} s to {}: {}", seconds_of(*stopped_ - begun_), folder_.string(),
+                     early_);
     } else {
         spdlog::info("recorded {:.1f} s to {}", seconds_of(*stopped_ - begun_), folder_.string());
     }
@@ -183,7 +188,8 @@ nlohmann::ordered_json Recorder::to_json(HostTime now) const {
             {"lost_can", counts_.lost_can},
             {"lost_commits", counts_.lost_commits},
             {"lost_depth", counts_.lost_depth},
-            {"is_complete", is_complete()}};
+            {"is_complete", is_complete()},
+            {"ended_early", early_}};
 }
 
 }  // namespace octoskin

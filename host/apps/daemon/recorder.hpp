@@ -47,8 +47,9 @@ class Recorder final : public CommitListener {
     /// Ends it if it is long enough, or has failed. To be called every now and then.
     void attend(HostTime now);
     /// What is recorded is complete now; the files become so soon after, see `wait`. Without the memory for a
-    /// copy of the map it has failed, and `error` says so.
-    void stop(HostTime now);
+    /// copy of the map it has failed, and `error` says so. `early`: why it ends though nobody asked for that
+    /// and its time is not over; for a person.
+    void stop(HostTime now, std::string early = {});
     /// Until the files are whole, after `stop`; false if `patience` was too short.
     [[nodiscard]] bool wait(Nanoseconds patience) { return writer_.wait(patience); }
 
@@ -87,6 +88,7 @@ class Recorder final : public CommitListener {
     double depth_max_m_;
     HostTime begun_;
     std::optional<HostTime> stopped_;
+    std::string early_;  ///< why it ended before it was to; empty: it did not
     bool is_end_told_ = false;
     Pipeline* pipeline_;
     std::vector<AccountTable> accounts_at_begin_;

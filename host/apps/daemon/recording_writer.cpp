@@ -28,9 +28,13 @@ Status<std::string> write_file(const fs::path& file, const std::string& text) {
     return stream.finish();
 }
 
+/// Not its parents: where a disk is not mounted, hours of a recording would go to another one.
 Status<std::string> make_folder(const fs::path& folder) {
     std::error_code error;
-    fs::create_directories(folder, error);
+    if (!fs::exists(folder.parent_path(), error) && !error)
+        return unexpected(folder.string() + ": there is no " + folder.parent_path().string() +
+                          "; make it, or mount what should be there");
+    fs::create_directory(folder, error);
     if (error) return unexpected(folder.string() + ": " + error.message());
     const bool is_empty = fs::is_empty(folder, error);
     if (error) return unexpected(folder.string() + ": " + error.message());

@@ -53,6 +53,7 @@ Result<Settings, AppError> read_settings(const DaemonRequest& request) {
 Result<Pipeline, AppError> make_pipeline(const DaemonRequest& request, const Settings& settings) {
     PipelineConfig config;
     config.maps = {.depth = false, .proximity = false, .fused = true};
+    config.depth_threads = request.depth_threads;
     config.release = Release::once_placed;
     auto pipeline = Pipeline::build(settings.host.rig, settings.host.robot, settings.mapping, config);
     if (pipeline) return std::move(pipeline).value();

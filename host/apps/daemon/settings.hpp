@@ -31,6 +31,7 @@ struct DaemonRequest {
     std::filesystem::path control_socket;
     std::filesystem::path map_folder;
     std::chrono::seconds save_period{20};
+    unsigned depth_threads = 1;  ///< how many work on an image
 };
 
 /// Read at the start, and again at each SIGHUP.

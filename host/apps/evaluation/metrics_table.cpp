@@ -44,7 +44,9 @@ void add_table_one(std::string& text, const Results& results) {
         width = std::max(width, map.configuration.size());
     }
     width += 3;
-    fmt::format_to(out, "Voxels against the camera ground truth, mean of the seeds\n");
+    const bool has_seeds =
+        std::ranges::any_of(results.maps, [](const auto& map) { return map.seeds.size() > 1; });
+    fmt::format_to(out, "Voxels against the camera ground truth{}\n", has_seeds ? ", mean of the seeds" : "");
     fmt::format_to(out, kColumns, "configuration", width, "map", "Occupied", "Free", "Missed", "Incorrect",
                    "Lost");
     if (results.is_papers_experiment) {

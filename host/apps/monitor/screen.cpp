@@ -54,11 +54,11 @@ class Screen {
         add_head();
         add_problems();
         add_bus();
-        for (std::size_t i = 0; i < length(at(now_, "nodes")); ++i) add_node(i);
         add_joints();
         add_camera();
         add_recording();
         add_map();
+        for (std::size_t i = 0; i < length(at(now_, "nodes")); ++i) add_node(i);
         add_counters();
         return std::move(lines_);
     }
@@ -264,16 +264,22 @@ std::vector<ScreenLine> screen_of(const Json& before, const Json& now, Seconds p
     return Screen(before, now, passed).lines();
 }
 
-std::string to_terminal(const std::vector<ScreenLine>& lines, ScreenSize size, bool has_colours) {
-    const bool is_cut = lines.size() > size.rows;
-    const std::size_t shown = is_cut ? std::max<std::size_t>(size.rows, 1) - 1 : lines.size();
+std::size_t rows_for(std::size_t lines, ScreenSize size) noexcept {
+    return lines > size.rows ? std::max<std::size_t>(size.rows, 1) - 1 : lines;
+}
+
+std::string to_terminal(const std::vector<ScreenLine>& lines, ScreenSize size, bool has_colours,
+                        std::size_t first) {
+    const std::size_t shown = rows_for(lines.size(), size);
+    first = std::min(first, lines.size() - shown);
     std::string screen;
-    for (std::size_t i = 0; i < shown; ++i) {
+    for (std::size_t i = first; i < first + shown; ++i) {
         const std::string line = cut(lines[i].text, size.columns);
         screen += (has_colours ? coloured(line, lines[i].emphasis) : line) + '\n';
     }
-    if (is_cut)
-        screen += cut(fmt::format("... {} more lines: a taller window, or --once", lines.size() - shown),
+    if (shown < lines.size())
+        screen += cut(fmt::format("lines {}-{} of {}: arrows, space and b scroll, q ends", first + 1,
+                                  first + shown, lines.size()),
                       size.columns) +
                   '\n';
     return screen;

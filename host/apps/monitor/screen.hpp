@@ -21,15 +21,19 @@ struct ScreenLine {
 };
 
 /// `before` and `now`: status objects (docs/daemon.md), the first `passed` earlier: rates are what grew
-/// between them. Problems come first, so that they are seen on the smallest terminal. A status of another
-/// version may lack keys: what is not there is not shown.
+/// between them. Problems come first, then a line for each input and the map, so that they are seen on the
+/// smallest terminal; sensors and counters follow. A status of another version may lack keys: what is not
+/// there is not shown.
 [[nodiscard]] std::vector<ScreenLine> screen_of(const nlohmann::ordered_json& before,
                                                 const nlohmann::ordered_json& now,
                                                 std::chrono::duration<double> passed);
 
-/// Cut to the terminal: what does not fit is said in the last line. With colours as ANSI sequences, if
-/// wanted.
-[[nodiscard]] std::string to_terminal(const std::vector<ScreenLine>& lines, ScreenSize size,
-                                      bool has_colours);
+/// How many of so many lines fit: where they do not all, the last row says so.
+[[nodiscard]] std::size_t rows_for(std::size_t lines, ScreenSize size) noexcept;
+
+/// Cut to the terminal, from line `first` on (of 0, with which those that fit are shown): what does not fit
+/// is said in the last row. With colours as ANSI sequences, if wanted.
+[[nodiscard]] std::string to_terminal(const std::vector<ScreenLine>& lines, ScreenSize size, bool has_colours,
+                                      std::size_t first = 0);
 
 }  // namespace octoskin

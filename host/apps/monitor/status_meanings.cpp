@@ -157,6 +157,9 @@ constexpr std::array kStatusMeanings = {
             "depth frames that the disk could not take in time, or with depth beyond 32.767 m: a replay "
             "makes another map"},
     Meaning{"recording", "is_complete", "nothing that the map was made of is missing in it"},
+    Meaning{"recording", "ended_early",
+            "why it ended though nobody asked for that and its time was not over: the bus's time went back, "
+            "the daemon read its files anew or ended; empty otherwise"},
     Meaning{"camera", "open", "it is open"},
     Meaning{"camera", "why", "why it is not; empty if it is"},
     Meaning{"camera", "frames", "frames that came"},

@@ -12,7 +12,9 @@
 #include <cstring>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "common/wire/codec.hpp"
 #include "host/apps/daemon/can_link.hpp"
@@ -24,7 +26,11 @@
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/end_signals.hpp"
 #include "host/apps/recording/given_rig.hpp"
+#include "host/apps/recording/permission.hpp"
 #include "host/core/ingest/local_joints.hpp"
+#include "host/core/kinematics/joint_history.hpp"
+#include "host/core/kinematics/robot_model.hpp"
+#include "host/io/rig/host_rig_reader.hpp"
 #include "host/io/socketcan/can_socket.hpp"
 #include "hw/rigfile/rig.hpp"
 
@@ -153,6 +159,32 @@ std::optional<rig::Rig> rig_of(const JointsOptions& options) {
     return value_or_fail(read_given_rig(options.rig));
 }
 
+/// What a line must keep to. The daemon drops what is beyond it, where whoever sends the lines does not see.
+struct RigJoints {
+    std::vector<std::string> names;
+    std::vector<JointLimits> limits;
+
+    /// Of a sample that the daemon would not take, why; empty: it is within the limits.
+    [[nodiscard]] std::string fault_of(std::span<const double> position) const {
+        const double tolerance = JointHistoryConfig{}.limit_tolerance;
+        for (std::size_t i = 0; i < position.size(); ++i) {
+            const auto& [min, max] = limits[i];
+            if (position[i] >= min - tolerance && position[i] <= max + tolerance) continue;
+            return fmt::format("joint {} of {}, {}, is {}, beyond the robot's limits {} to {}", i + 1,
+                               position.size(), names[i], position[i], min, max);
+        }
+        return {};
+    }
+};
+
+std::optional<RigJoints> joints_of(const std::optional<rig::Rig>& rig) {
+    if (!rig) return std::nullopt;
+    const auto host = make_host_setup(*rig);
+    if (!host) throw CommandFailure(reading_error(ExitCode::bad_config, host.error()));
+    const auto limits = host->robot.limits();
+    return RigJoints{rig->joints.joints, {limits.begin(), limits.end()}};
+}
+
 std::unique_ptr<JointOutput> make_output(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
     if (options.interface.empty()) return std::make_unique<SocketOutput>(options.socket);
     if (!rig)
@@ -165,22 +197,32 @@ std::unique_ptr<JointOutput> make_output(const JointsOptions& options, const std
 /// they go through again.
 class Forwarder {
   public:
-    /// `joint_count`: of the rig, if there is one to check lines against.
-    Forwarder(JointOutput& output, std::optional<std::size_t> joint_count)
-        : output_(output), joint_count_(joint_count) {}
+    /// `joints`: of the rig, if there is one to check lines against.
+    Forwarder(JointOutput& output, std::optional<RigJoints> joints)
+        : output_(output), joints_(std::move(joints)) {}
 
     void put(const std::string& line) {
         std::optional<JointSample> sample;
-        if (joint_count_) {
+        if (joints_) {
+            const std::size_t count = joints_->names.size();
             const HostTime now = monotonic_now();  // it counts as taken now unless it says otherwise
-            auto parsed = parse_joints(line, *joint_count_, now, now);
-            if (!parsed) return refuse(line, parsed.error(), now);
+            auto parsed = parse_joints(line, count, now, now);
+            if (!parsed) {
+                const char* const name =
+                    names_of(parsed.error()).at(static_cast<std::size_t>(parsed.error()));
+                return refuse(
+                    name, fmt::format("line not sent, {}: {} (wanted: {})",
+                                      describe(parsed.error(), line, count, now), line, kJointTextWanted));
+            }
+            if (const std::string fault = joints_->fault_of(parsed->position); !fault.empty())
+                return refuse("out_of_limits",
+                              fmt::format("line not sent, out_of_limits: {}: {}", fault, line));
             sample = std::move(parsed).value();
         }
         if (!output_.put(line, sample)) return lose();
         if (!losses_told_.empty()) spdlog::info("samples go through again; so far lost: {}", lines(lost_));
         losses_told_.clear();
-        refusals_told_.fill(false);
+        refusals_told_.clear();
         ++sent_;
     }
     /// What became of the lines. Throws CommandFailure if not a single one went through.
@@ -199,25 +241,23 @@ class Forwarder {
         if (why_.empty() || losses_told_.size() >= kLossesTold || !losses_told_.insert(why_).second) return;
         spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why_);
     }
-    void refuse(const std::string& line, JointTextFault fault, HostTime now) {
+    void refuse(const char* reason, std::string why) {
         ++refused_;
-        why_ = fmt::format("line not sent, {}: {} (wanted: {})", describe(fault, line, *joint_count_, now),
-                           line, kJointTextWanted);
-        if (!std::exchange(refusals_told_.at(static_cast<std::size_t>(fault)), true))
-            spdlog::warn("{}", why_);
+        why_ = std::move(why);
+        if (refusals_told_.insert(reason).second) spdlog::warn("{}", why_);
     }
     static std::string lines(std::uint64_t count) {
         return fmt::format("{} line{}", count, count == 1 ? "" : "s");
     }
 
     JointOutput& output_;
-    std::optional<std::size_t> joint_count_;
+    std::optional<RigJoints> joints_;
     std::uint64_t sent_ = 0;
     std::uint64_t lost_ = 0;
     std::uint64_t refused_ = 0;
-    std::set<std::string> losses_told_;  ///< each reason once since the last line that went through
-    std::array<bool, names_of(JointTextFault{}).size()> refusals_told_{};  ///< likewise
-    std::string why_;  ///< of the newest line that did not go through
+    std::set<std::string> losses_told_;    ///< each reason once since the last line that went through
+    std::set<std::string> refusals_told_;  ///< likewise
+    std::string why_;                      ///< of the newest line that did not go through
 };
 
 void put_lines(std::string& pending, Forwarder& forwarder) {
@@ -236,7 +276,7 @@ void forward(const JointsOptions& options) {
     constexpr int kAttendMs = 200;
     const auto rig = rig_of(options);
     const auto output = make_output(options, rig);
-    Forwarder forwarder(*output, rig ? std::optional(rig->joints.joints.size()) : std::nullopt);
+    Forwarder forwarder(*output, joints_of(rig));
     const EndSignals signals;
     std::string pending;
     while (true) {  // until standard input or a signal ends it
@@ -286,9 +326,11 @@ void add_joints_command(CLI::App& app) {
         "metres\n"
         "for a prismatic joint, within +-8.388607. TIME is CLOCK_MONOTONIC of this machine in seconds (as "
         "Python's\n"
-        "time.monotonic()), within 1 s of now; without it a line counts as sampled when it came. Without "
-        "--rig the\n"
-        "daemon checks the lines, and `octoskin status` says what it refused.\n"
+        "time.monotonic()), within 1 s of now; without it a line counts as sampled when it came. With --rig "
+        "a line\n"
+        "of another number of joints, or beyond the robot's joint limits, is refused here; without it the "
+        "daemon\n"
+        "checks the lines, and `octoskin status` says what it refused.\n"
         "At the end of the input, and on SIGINT or SIGTERM, it tells how many lines were sent, lost and "
         "refused.\n"
         "Exit codes: 0 lines went through; 64 command line; 65 a line without end; 66 no such rig file;\n"

@@ -1,17 +1,23 @@
-// octoskin monitor: what the daemon says of itself, on a terminal, until Ctrl-C.
+// octoskin monitor: what the daemon says of itself, on a terminal, until Ctrl-C or q.
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/monitor/screen.hpp"
+#include "host/apps/monitor/scroll.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
 
@@ -29,35 +35,80 @@ struct MonitorOptions {
 
 volatile std::sig_atomic_t is_ended = 0;  // by a signal: nothing else may be touched there
 
-/// The terminal's second screen, without cursor; given back at the end, however that comes.
+/// The terminal's second screen, without cursor, and keys as they are typed; given back at the end, however
+/// that comes.
 class Terminal {
   public:
     Terminal() {
         struct sigaction end {};
         end.sa_handler = [](int) { is_ended = 1; };
         for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &end, nullptr);
+        termios typed{};
+        has_keys_ = ::tcgetattr(STDIN_FILENO, &typed) == 0;  // false: no terminal
+        if (has_keys_) {
+            before_ = typed;
+            typed.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+            ::tcsetattr(STDIN_FILENO, TCSANOW, &typed);
+        }
         write("\x1b[?1049h\x1b[?25l");
     }
-    ~Terminal() { write("\x1b[?25h\x1b[?1049l"); }
+    ~Terminal() {
+        write("\x1b[?25h\x1b[?1049l");
+        if (before_) ::tcsetattr(STDIN_FILENO, TCSANOW, &*before_);
+    }
     Terminal(const Terminal&) = delete;
     Terminal& operator=(const Terminal&) = delete;
 
-    /// From the top; what is right of and below the new text goes. The size is asked each time.
-    void show(const std::vector<ScreenLine>& lines) const {
+    /// What is right of and below the new text goes. The size is asked each time.
+    void show(std::vector<ScreenLine> lines) {
+        lines_ = std::move(lines);
+        show();
+    }
+    /// Until `end`, a signal or the key that ends it; scrolls meanwhile.
+    void wait_until(Clock::time_point end) {
+        while (is_ended == 0) {  // each round waits for the end or for a key
+            const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
+            if (left <= 0ms) return;
+            pollfd typed{has_keys_ ? STDIN_FILENO : -1, POLLIN, 0};
+            if (::poll(&typed, 1, static_cast<int>(left.count())) == 1) take_keys();
+        }
+    }
+
+  private:
+    static ScreenSize size_now() {
         winsize size{};
         const bool is_known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0;
-        const ScreenSize screen = is_known ? ScreenSize{size.ws_col, size.ws_row - 1U} : ScreenSize{};
-        std::string text = to_terminal(lines, screen, true);
+        return is_known ? ScreenSize{size.ws_col, size.ws_row - 1U} : ScreenSize{};
+    }
+    void take_keys() {
+        std::array<char, 64> keys{};
+        const ssize_t count = ::read(STDIN_FILENO, keys.data(), keys.size());
+        if (count <= 0) {  // nobody types any more
+            has_keys_ = count < 0 && errno == EINTR;
+            return;
+        }
+        scroll_.type({keys.data(), static_cast<std::size_t>(count)}, lines_.size(),
+                     rows_for(lines_.size(), size_now()));
+        if (scroll_.is_ended()) is_ended = 1;
+        show();
+    }
+    void show() const {
+        const ScreenSize screen = size_now();
+        std::string text =
+            to_terminal(lines_, screen, true, scroll_.first(lines_.size(), rows_for(lines_.size(), screen)));
         for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 4)
             text.insert(at, "\x1b[K");
         write("\x1b[H" + text + "\x1b[J");
     }
-
-  private:
     static void write(const std::string& text) {
         // A terminal that is gone ends it.
         if (::write(STDOUT_FILENO, text.data(), text.size()) < 0) is_ended = 1;
     }
+
+    std::vector<ScreenLine> lines_;
+    Scroll scroll_;
+    bool has_keys_ = false;
+    std::optional<termios> before_;
 };
 
 Result<Json, AppError> ask(const MonitorOptions& options) {
@@ -83,10 +134,10 @@ void show_once(const MonitorOptions& options) {
 void watch(const MonitorOptions& options) {
     if (::isatty(STDOUT_FILENO) == 0)
         throw CommandFailure({ExitCode::usage, "standard output is no terminal: use --once"});
-    const Terminal terminal;
+    Terminal terminal;
     Json before;
     auto before_at = Clock::now();
-    while (is_ended == 0) {  // until Ctrl-C
+    while (is_ended == 0) {  // until Ctrl-C or q
         const auto now = ask(options);
         const auto now_at = Clock::now();
         if (now) {
@@ -95,9 +146,9 @@ void watch(const MonitorOptions& options) {
             before_at = now_at;
         } else {
             before = Json();
-            terminal.show({{now.error().message, Emphasis::bad}, {"waiting for it; Ctrl-C ends", {}}});
+            terminal.show({{now.error().message, Emphasis::bad}, {"waiting for it; q ends", {}}});
         }
-        std::this_thread::sleep_for(1s);
+        terminal.wait_until(now_at + 1s);
     }
 }
 
@@ -110,6 +161,9 @@ void add_monitor_command(CLI::App& app) {
         "Watch the daemon (`octoskin run`): nodes, sensors, rates, and why what is not used is not");
     command->add_flag("--once", options->is_once, "One picture as plain text, for a script or a pipe");
     command->add_option("--socket", options->socket, "Where the daemon listens")->capture_default_str();
+    command->footer(
+        "Keys: arrows or j and k, Page keys or space and b, Home and End scroll; q or Ctrl-C ends.\n"
+        "Exit codes: 0; 64 command line; 69 no daemon (--once).");
     command->callback([options] { options->is_once ? show_once(*options) : watch(*options); });
 }
 

@@ -65,14 +65,15 @@ bool comes(const std::filesystem::path& file) {
     return std::filesystem::exists(file, error);
 }
 
-/// Where a recording is whose daemon is gone; that it is not whole is a CommandFailure. meta.yaml comes last.
-void tell_left(const std::filesystem::path& folder) {
+/// Says where a recording is whose daemon is gone, and whether it is whole. meta.yaml comes last.
+[[noreturn]] void tell_left(const std::filesystem::path& folder) {
     if (!comes(RecordingPaths(folder).meta())) {
         throw CommandFailure(
             {ExitCode::unavailable, "the daemon ended, and did not end the recording: what it wrote is in " +
                                         folder.string() + ", without meta.yaml"});
     }
-    print("{}: whole; the daemon ended, and with it the recording\n", folder.string());
+    throw CommandFailure({ExitCode::failed, folder.string() + ": whole, but the daemon ended, and with it "
+                                                              "the recording, before it was to"});
 }
 
 bool is_same(const Json& recording, const Json& other) {
@@ -145,11 +146,13 @@ void tell(const Json& recording) {
           recording.at("depth_frames").get<std::uint64_t>(), recording.at("commits").get<std::uint64_t>());
     if (const auto lost = recording.at("lost_can").get<std::uint64_t>(); lost > 0)
         spdlog::warn("{} CAN frames are not in can.log: the disk was too slow", lost);
-    if (recording.at("is_complete").get<bool>()) return;
-    throw CommandFailure({ExitCode::failed, folder + ": the disk was too slow for " +
-                                                recording.at("lost_depth").dump() + " depth frames and " +
-                                                recording.at("lost_commits").dump() +
-                                                " commits: a replay does not give the daemon's map"});
+    if (!recording.at("is_complete").get<bool>())
+        throw CommandFailure({ExitCode::failed, folder + ": the disk was too slow for " +
+                                                    recording.at("lost_depth").dump() + " depth frames and " +
+                                                    recording.at("lost_commits").dump() +
+                                                    " commits: a replay does not give the daemon's map"});
+    if (const auto early = recording.at("ended_early").get<std::string>(); !early.empty())
+        throw CommandFailure({ExitCode::failed, folder + ": whole, but it ended before it was to: " + early});
 }
 
 Json stop(const RecordOptions& options) {
@@ -176,7 +179,8 @@ void record(const RecordOptions& options) {
     try {
         const Json begun = options.stops ? stop(options) : start(options);
         const auto ended = follow(options, begun);
-        ended ? tell(*ended) : tell_left(begun.at("folder").get<std::string>());
+        if (!ended) tell_left(begun.at("folder").get<std::string>());
+        tell(*ended);
     } catch (const Json::exception&) {
         throw CommandFailure(foreign_answer(options.socket));
     }
@@ -197,7 +201,8 @@ void add_record_command(CLI::App& app) {
     command->add_flag("--stop", options->stops, "End the recording that is going on");
     command->add_option("--socket", options->socket, "Where the daemon listens")->capture_default_str();
     command->footer(
-        "Exit codes: 0 the recording is whole; 1 it lacks something; 64 command line; 65 not the answer of a "
+        "Exit codes: 0 the recording is whole; 1 it lacks something, or ended before it was to; 64 command "
+        "line; 65 not the answer of a "
         "daemon of\n"
         "this version; 69 no daemon, or nothing is being recorded; 73 the directory cannot be recorded to, "
         "or another\n"

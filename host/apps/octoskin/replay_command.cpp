@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <charconv>
+#include <chrono>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -21,6 +22,9 @@
 
 namespace octoskin::app {
 namespace {
+
+/// Of the recording, between two lines of progress.
+constexpr int kProgressSeconds = 2;
 
 struct ReplayOptions {
     PlaybackOptions playback;
@@ -62,7 +66,7 @@ Pace pace_of(const ReplayOptions& options) {
 void report_progress(const ReplayProgress& progress, const char* unit, int& last_second) {
     if (!progress.begin || !progress.now) return;
     const auto second = static_cast<int>((*progress.now - *progress.begin).count() / 1'000'000'000);
-    if (second < last_second + 2) return;
+    if (second < last_second + kProgressSeconds) return;
     last_second = second;
     spdlog::info("replaying: {} s, {} {}, {} depth frames", second, progress.can_frames, unit,
                  progress.depth_frames);
@@ -93,8 +97,15 @@ void save(const Playback& playback, MapFolder& folder, const std::filesystem::pa
 
 void replay_onto_bus(const ReplayOptions& options) {
     socketcan::CanSocket socket = open_can(options.onto);
+    int last_second = 0;
+    const auto report = [&](const OntoBus& so_far, Nanoseconds into_log) {
+        const auto second = static_cast<int>(into_log / std::chrono::seconds(1));
+        if (second < last_second + kProgressSeconds) return;
+        last_second = second;
+        spdlog::info("sending: {} s, {} frames", second, so_far.sent);
+    };
     const auto played =
-        play_onto(RecordingPaths(options.playback.recording).can_log(), socket, pace_of(options));
+        play_onto(RecordingPaths(options.playback.recording).can_log(), socket, pace_of(options), report);
     if (!played) throw CommandFailure(played.error());
     print("{}: {} frames of '{}' sent, {} of them had to wait for room\n", options.onto, played->sent,
           played->interface, played->waited);
@@ -127,6 +138,11 @@ void replay_recording(const ReplayOptions& options) {
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     refuse_failed(*playback);
     save(*playback, *folder, options.out);
+    if (playback->is_unlike_daemons) {
+        throw CommandFailure({ExitCode::failed, options.playback.recording.string() +
+                                                    ": replayed, but not into the daemon's own map; the "
+                                                    "warning above says more"});
+    }
 }
 
 }  // namespace

@@ -67,6 +67,11 @@ void add_run_command(CLI::App& app) {
         ->add_flag_callback(
             "--no-camera", [request] { request->has_camera = false; }, "Do without the rig's camera")
         ->excludes(camera);
+    command
+        ->add_option("--depth-threads", request->depth_threads,
+                     "How many threads work on a depth image: the map is the same, and sooner there")
+        ->check(from_to(1, 16))
+        ->capture_default_str();
     command->add_option("--joints", request->joint_socket,
                         "Make this socket and take joint states from it (`octoskin joints`)");
     command->add_option("--maps", request->map_folder, "Where the map is kept: fused.ot, fused.bt")

@@ -39,10 +39,11 @@ std::string text_of(const candump::LogEntry& entry) {
 }  // namespace
 
 Result<OntoBus, AppError> play_onto(const std::filesystem::path& can_log, socketcan::CanSocket& socket,
-                                    Pace pace) {
+                                    Pace pace, const OntoReport& report) {
     auto reader = candump::LogReader::open(can_log);
     if (!reader) return unexpected(reading_error(ExitCode::no_input, reader.error()));
     OntoBus played;
+    std::optional<WallTime> first;
     while (true) {  // ends with the log
         const auto entry = reader->next();
         if (!entry) return unexpected(reading_error(ExitCode::bad_data, entry.error()));
@@ -54,6 +55,8 @@ Result<OntoBus, AppError> play_onto(const std::filesystem::path& can_log, socket
         } else if (line.frame.is_error) {
             ++played.error_frames;
         } else {
+            if (!first) first = line.stamp;
+            if (report) report(played, Nanoseconds{line.stamp.ns - first->ns});
             if (pace.waits()) pace.wait(line.stamp.ns, pace.steps() ? text_of(line) : std::string());
             if (const auto sent = send(socket, line.frame, played); !sent) return unexpected(sent.error());
         }

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "common/result.hpp"
+#include "common/time.hpp"
 #include "host/apps/playback/pace.hpp"
 #include "host/apps/recording/app_error.hpp"
 #include "host/io/socketcan/can_socket.hpp"
@@ -21,9 +23,14 @@ struct OntoBus {
     std::uint64_t waited = 0;           ///< frames for which there was no room at once
 };
 
+/// Told before each frame: what was sent so far, and how long after the log's first frame this one was
+/// received.
+using OntoReport = std::function<void(const OntoBus& so_far, Nanoseconds into_log)>;
+
 /// Sends every frame of `can_log`, classical as classical and FD as FD, at the pace given. Errors: a log that
 /// cannot be read, or has no frame; an interface that fails, or that has had no room for 2 s.
 [[nodiscard]] Result<OntoBus, AppError> play_onto(const std::filesystem::path& can_log,
-                                                  socketcan::CanSocket& socket, Pace pace);
+                                                  socketcan::CanSocket& socket, Pace pace,
+                                                  const OntoReport& report = {});
 
 }  // namespace octoskin

@@ -42,8 +42,8 @@ Result<FusedMap, AppError> read_first_map(const PlaybackRequest& request, std::u
 }
 
 /// Why the map need not be the daemon's; empty if it must be.
-std::string why_another(const rig::Rig& rig, const orderlog::OrderReader& order,
-                        const OrderedPlayback& played) {
+std::string why_another(const PlaybackRequest& request, const rig::Rig& rig,
+                        const orderlog::OrderReader& order, const OrderedPlayback& played) {
     const OrderedOutcome& outcome = played.outcome;
     if (outcome.order_error || outcome.depth_error) return "the replay did not come to its end";
     if (!order.trailer()) return "order.log was cut off: the daemon was killed; this is its last whole line";
@@ -52,23 +52,29 @@ std::string why_another(const rig::Rig& rig, const orderlog::OrderReader& order,
                            order.trailer()->lost_commits, order.trailer()->lost_depth);
     if (order.header().rig_hash != rig::rig_hash(rig)) return "another rig was given";
     if (!played.has_daemons_mapping) return "another configuration was given";
-    return outcome.took_all() ? "" : "not everything could be taken: see the account";
+    if (outcome.depth_missing > 0)
+        return fmt::format("{} depth frames that were recorded are missing", outcome.depth_missing);
+    return request.robot.empty() ? "" : "another robot description was given";
 }
 
-void judge(const rig::Rig& rig, const orderlog::OrderReader& order, const FusedMap& map,
-           OrderedPlayback& played) {
-    if (const std::string why = why_another(rig, order, played); !why.empty()) {
-        played.warnings.push_back("the map is not the daemon's own: " + why);
-        return;
-    }
+bool is_daemons(const orderlog::OrderReader& order, const FusedMap& map) {
+    if (!order.trailer()) return false;
     const auto& last = order.trailer()->last_map;
-    const bool is_equal = last ? crc32_of_map(map) == *last : map.known_voxels() == 0;
-    if (is_equal) {
+    return last ? crc32_of_map(map) == *last : map.known_voxels() == 0;
+}
+
+void judge(const PlaybackRequest& request, const rig::Rig& rig, const orderlog::OrderReader& order,
+           const FusedMap& map, OrderedPlayback& played) {
+    if (is_daemons(order, map)) {
         played.notes.emplace_back("the fused map is the daemon's own, byte for byte");
+    } else if (const std::string why = why_another(request, rig, order, played); !why.empty()) {
+        played.warnings.push_back("the map is not the daemon's own: " + why);
     } else {
-        played.warnings.emplace_back(
-            "the fused map is not the daemon's own, though all is as it was: another robot.urdf, another "
-            "kind of processor, or a defect of octoskin");
+        played.is_unlike_daemons = true;
+        played.warnings.push_back(fmt::format(
+            "the fused map is not the daemon's own, though all is as it was{}: files of the recording were "
+            "changed, another kind of processor, or a defect of octoskin",
+            played.outcome.took_all() ? "" : ", and what the daemon took was rejected (see the account)"));
     }
 }
 
@@ -102,7 +108,7 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
     played.accounts = {tabulate("readings", played.outcome.readings),
                        tabulate("joint samples", played.outcome.joint_samples),
                        tabulate("depth frames", played.outcome.depth_frames)};
-    judge(rig, *order, *pipeline.maps().fused(), played);
+    judge(request, rig, *order, *pipeline.maps().fused(), played);
     return played;
 }
 

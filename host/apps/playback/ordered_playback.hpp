@@ -14,6 +14,7 @@ struct OrderedPlayback {
     OrderedOutcome outcome;
     bool has_daemons_mapping = false;  ///< what had no room here had none in the daemon
     std::vector<AccountTable> accounts = {};
+    bool is_unlike_daemons = false;  ///< the map is not the daemon's own, and nothing given explains that
     /// Whether the map is the daemon's own, and if not, why.
     std::vector<std::string> notes = {};
     std::vector<std::string> warnings = {};

@@ -265,7 +265,8 @@ Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& set
                     std::move(played->warnings),
                     false,
                     std::move(origin),
-                    played->has_daemons_mapping};
+                    played->has_daemons_mapping,
+                    played->is_unlike_daemons};
 }
 
 }  // namespace

@@ -52,6 +52,8 @@ struct Playback {
     MapOrigin origin;                   ///< of its maps, but for the maps' own checksums
     /// Played in a daemon's order and with its mapping: what had no room in `fused` had none there either.
     bool is_as_full_as_daemons = false;
+    /// Played in a daemon's order, and `fused` is not its map, though nothing given explains that.
+    bool is_unlike_daemons = false;
 };
 
 /// Why what came of a recording must not be used as a map; empty if nothing speaks against it: a source that

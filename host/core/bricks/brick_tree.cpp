@@ -131,13 +131,23 @@ bool is_ours(const Shared* shared) {
 }  // namespace
 
 BrickValues* BrickTree::own(MortonCode brick) noexcept {
-    const Node* node = root_;
-    for (unsigned level = kLevels - 1; level > 0; --level) {
+    return OwnBricks(*this).find(brick);
+}
+
+BrickValues* BrickTree::OwnBricks::find(MortonCode brick) noexcept {
+    const MortonCode prefix = brick >> (kBrickBits + kNodeBits);
+    if (lowest_ == nullptr || prefix != prefix_) {
+        lowest_ = nullptr;
+        const Node* node = tree_->root_;
+        for (unsigned level = kLevels - 1; level > 0; --level) {
+            if (node == nullptr || !is_ours(node)) return nullptr;
+            node = below<Node>(node->places[place_at(brick, level)]);
+        }
         if (node == nullptr || !is_ours(node)) return nullptr;
-        node = below<Node>(node->places[place_at(brick, level)]);
+        lowest_ = node;
+        prefix_ = prefix;
     }
-    if (node == nullptr || !is_ours(node)) return nullptr;
-    const Place place = node->places[place_at(brick, 0)];
+    const Place place = lowest_->places[place_at(brick, 0)];
     if (place == 0 || is_value(place) || !is_ours(below<Dense>(place))) return nullptr;
     return &below<Dense>(place)->values;
 }

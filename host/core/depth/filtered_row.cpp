@@ -21,57 +21,66 @@ namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// So many neighbouring pixels are filtered side by side, a lane each.
-using Floats = hn::ScalableTag<float>;
+using Shorts = hn::ScalableTag<std::int16_t>;
+using Short = hn::Vec<Shorts>;
+using Mask = hn::Mask<Shorts>;
+/// Half of them at a time.
+using Floats = hn::Repartition<float, Shorts>;
 using Ints = hn::RebindToSigned<Floats>;
-using Float = hn::Vec<Floats>;
-using Int = hn::Vec<Ints>;
-using Mask = hn::Mask<Floats>;
+using Halves = hn::Rebind<std::int16_t, Floats>;
+using Lanes = std::array<std::int16_t, hn::MaxLanes(Shorts())>;
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+/// In place of what is not near: it sorts beyond all that is, and twice it is no 16-bit number too large.
+constexpr std::int16_t kFar = 16'383;
 
-/// The values near the centre, row by row; infinity in place of the others.
+/// Differences to the centre of the values near it, row by row, mm; far ones in place of the others.
 template <std::size_t kSide>
-struct NearValues {
-    std::array<Float, kSide * kSide> depth_m;
+struct NearOffsets {
+    std::array<Short, kSide * kSide> mm;
     Mask are_even;  ///< how many they are
 };
 
-/// What is not near becomes +infinity and -infinity by turns: then the median is in the middle however many
-/// there are.
+HWY_INLINE Mask is_within(Short value, Short limit) {
+    const hn::RebindToUnsigned<Shorts> u;  // |-32768| is 32768
+    const auto size = hn::BitCast(u, hn::Abs(value));
+    return hn::RebindMask(Shorts(), hn::Eq(hn::Min(size, hn::BitCast(u, limit)), size));
+}
+
+/// What is not near becomes +far and -far by turns: then the median is in the middle however many there are.
 template <std::size_t kSide>
-HWY_INLINE NearValues<kSide> near_values(const float* corner, std::size_t stride, Float centre,
-                                         float gate_m) {
-    const Floats f;
-    const Float gate = hn::Set(f, gate_m);
-    const Float sign = hn::SignBit(f);
-    NearValues<kSide> near;
-    Float far = hn::Set(f, std::numeric_limits<float>::infinity());
+HWY_INLINE NearOffsets<kSide> near_offsets(const CodedDepth* corner, std::size_t stride, Short centre,
+                                           std::int16_t gate_mm) {
+    const Shorts s;
+    const Short gate = hn::Set(s, gate_mm);
+    NearOffsets<kSide> near;
+    Short far = hn::Set(s, kFar);
     HWY_UNROLL(49)
     for (std::size_t i = 0; i < kSide * kSide; ++i) {
-        const Float value = hn::LoadU(f, corner + i / kSide * stride + i % kSide);
-        const Mask is_near = hn::Le(hn::Abs(hn::Sub(value, centre)), gate);  // false if either is a NaN
-        near.depth_m[i] = hn::IfThenElse(is_near, value, far);
-        far = hn::Xor(far, hn::IfThenZeroElse(is_near, sign));
+        const Short value = hn::LoadU(s, corner + i / kSide * stride + i % kSide);
+        const Short offset = hn::SaturatedSub(value, centre);
+        const Mask is_near = is_within(offset, gate);
+        near.mm[i] = hn::IfThenElse(is_near, offset, far);
+        far = hn::IfThenElse(is_near, far, hn::Neg(far));
     }
-    near.are_even = hn::Lt(far, hn::Zero(f));  // of the odd number of values an odd number was replaced
+    near.are_even = hn::Lt(far, hn::Zero(s));  // of the odd number of values an odd number was replaced
     return near;
 }
 
 template <std::size_t kCount>
-HWY_INLINE void exchange(std::array<Float, kCount>& values, std::size_t low, std::size_t high) {
-    const Float smaller = hn::Min(values[low], values[high]);
+HWY_INLINE void exchange(std::array<Short, kCount>& values, std::size_t low, std::size_t high) {
+    const Short smaller = hn::Min(values[low], values[high]);
     values[high] = hn::Max(values[low], values[high]);
     values[low] = smaller;
 }
 
 template <std::size_t kCount, std::size_t... kIndex>
-HWY_INLINE void sort_unrolled(std::array<Float, kCount>& values, std::index_sequence<kIndex...>) {
+HWY_INLINE void sort_unrolled(std::array<Short, kCount>& values, std::index_sequence<kIndex...>) {
     [[maybe_unused]] constexpr auto kNetwork = sorting_network<kCount>();
     (exchange(values, kNetwork[kIndex].low, kNetwork[kIndex].high), ...);
 }
 
 template <std::size_t kCount>
-HWY_INLINE void sort(std::array<Float, kCount>& values) {
+HWY_INLINE void sort(std::array<Short, kCount>& values) {
     static constexpr auto kNetwork = sorting_network<kCount>();
     // In one piece up to a window of 5: what is larger takes compilers minutes, and does not fit registers.
     if constexpr (kNetwork.size() <= 138) {
@@ -81,67 +90,97 @@ HWY_INLINE void sort(std::array<Float, kCount>& values) {
     }
 }
 
-/// Sorted completely by its text; the compiler leaves out what the middle does not depend on.
+/// In half millimetres from the centre. Sorted completely by its text; the compiler leaves out what the
+/// middle does not depend on.
 template <std::size_t kSide>
-HWY_INLINE Float median_of(NearValues<kSide> near) {
+HWY_INLINE Short median_of(NearOffsets<kSide> near) {
     constexpr std::size_t kMiddle = kSide * kSide / 2;
-    sort(near.depth_m);
-    const Float upper = near.depth_m[kMiddle];
+    sort(near.mm);
+    const Short upper = near.mm[kMiddle];
     if constexpr (kMiddle == 0) {
-        return upper;
+        return hn::Add(upper, upper);
     } else {
-        const Float lower = hn::IfThenElse(near.are_even, near.depth_m[kMiddle - 1], upper);
-        return hn::Mul(hn::Set(Floats(), 0.5F), hn::Add(lower, upper));
+        return hn::Add(upper, hn::IfThenElse(near.are_even, near.mm[kMiddle - 1], upper));
     }
 }
 
-/// Offsets from the median are added row by row, each row from its left, then the sums of the rows.
+/// Of so many pixels, in half millimetres: the median's difference to the centre, and, of what is near the
+/// median, how many those are and each row's sum of differences to it. All are whole numbers: no rounding, no
+/// order.
 template <std::size_t kSide>
-HWY_INLINE Float mean_near(Float median, const NearValues<kSide>& near, float gate_m, float min_support) {
-    const Floats f;
-    const Ints n;
-    const Float gate = hn::Set(f, gate_m);
-    Float offset_sum = hn::Zero(f);
-    Int count = hn::Zero(n);
+struct WindowSums {
+    HWY_ALIGN Lanes centre;
+    HWY_ALIGN Lanes median;
+    HWY_ALIGN Lanes count;
+    HWY_ALIGN std::array<Lanes, kSide> rows;
+};
+
+template <std::size_t kSide>
+HWY_INLINE void sum_near(const NearOffsets<kSide>& near, Short median, std::int16_t mean_gate_mm2,
+                         WindowSums<kSide>& sums) {
+    const Shorts s;
+    const Short gate = hn::Set(s, mean_gate_mm2);
+    Short count = hn::Zero(s);
     HWY_UNROLL(7)
     for (std::size_t row = 0; row < kSide; ++row) {
-        Float row_sum = hn::Zero(f);
+        Short row_sum = hn::Zero(s);
         HWY_UNROLL(7)
         for (std::size_t column = 0; column < kSide; ++column) {
-            const Float offset = hn::Sub(near.depth_m[row * kSide + column], median);
-            const Mask is_near = hn::Le(hn::Abs(offset), gate);
+            const Short mm = near.mm[row * kSide + column];
+            const Short offset = hn::SaturatedSub(hn::Add(mm, mm), median);
+            const Mask is_near = is_within(offset, gate);
             row_sum = hn::Add(row_sum, hn::IfThenElseZero(is_near, offset));
-            count = hn::Sub(count, hn::VecFromMask(n, hn::RebindMask(n, is_near)));
+            count = hn::Sub(count, hn::VecFromMask(s, is_near));
         }
-        offset_sum = hn::Add(offset_sum, row_sum);
+        hn::Store(row_sum, s, sums.rows[row].data());
     }
-    const Float support = hn::ConvertTo(f, count);
-    const Float mean = hn::Add(median, hn::Div(offset_sum, support));
-    return hn::IfThenElse(hn::Gt(support, hn::Set(f, min_support)), mean, hn::Set(f, kNone));
+    hn::Store(median, s, sums.median.data());
+    hn::Store(count, s, sums.count.data());
+}
+
+/// The means of the pixels from lane `first` on, metres.
+template <std::size_t kSide>
+HWY_INLINE hn::Vec<Floats> means_of(const WindowSums<kSide>& sums, std::size_t first,
+                                    const FilterWindow& window) {
+    const Floats f;
+    const auto ints = [first](const Lanes& lanes) {
+        return hn::PromoteTo(Ints(), hn::Load(Halves(), lanes.data() + first));
+    };
+    auto sum = hn::Zero(Ints());
+    HWY_UNROLL(7)
+    for (const Lanes& row : sums.rows) sum = hn::Add(sum, ints(row));
+    const auto centre = ints(sums.centre);
+    const auto centre_mm = hn::Sub(centre, hn::Set(Ints(), zero_depth(window)));
+    const auto median_mm2 = hn::Add(hn::Add(centre_mm, centre_mm), ints(sums.median));
+    const auto support = hn::ConvertTo(f, ints(sums.count));
+    const auto mean_mm2 = hn::Add(hn::ConvertTo(f, median_mm2), hn::Div(hn::ConvertTo(f, sum), support));
+    constexpr float kPerMetre = 2'000.0F;
+    const auto mean_m = hn::Div(mean_mm2, hn::Set(f, kPerMetre));
+    const auto is_value = hn::And(hn::Gt(support, hn::Set(f, window.min_support)),
+                                  hn::RebindMask(f, hn::Ne(centre, hn::Set(Ints(), kNoDepth))));
+    return hn::IfThenElse(is_value, mean_m, hn::Set(f, std::numeric_limits<float>::quiet_NaN()));
 }
 
 template <std::size_t kSide>
 HWY_INLINE void filter_with(const FilterWindow& window, const WindowedRow& row, float* filtered) {
+    const Shorts s;
     const Floats f;
-    const std::size_t lanes = hn::Lanes(f);
-    const auto store = [&](Float values, std::size_t u) {
-        if (u + lanes <= row.width) {
-            hn::StoreU(values, f, filtered + u);
-        } else {
-            HWY_ALIGN std::array<float, hn::MaxLanes(Floats())> last;
-            hn::Store(values, f, last.data());
-            std::copy_n(last.begin(), row.width - u, filtered + u);
-        }
-    };
-    for (std::size_t u = 0; u < row.width; u += lanes) {
-        const float* const corner = row.corner + u;
-        const Float centre = hn::LoadU(f, corner + kSide / 2 * row.stride + kSide / 2);
-        if (hn::AllTrue(f, hn::IsNaN(centre))) {
-            store(centre, u);
+    WindowSums<kSide> sums;
+    HWY_ALIGN std::array<float, hn::MaxLanes(Shorts())> means;
+    for (std::size_t u = 0; u < row.width; u += hn::Lanes(s)) {
+        const std::size_t count = std::min(hn::Lanes(s), row.width - u);
+        const CodedDepth* const corner = row.corner + u;
+        const Short centre = hn::LoadU(s, corner + kSide / 2 * row.stride + kSide / 2);
+        if (hn::AllTrue(s, hn::Eq(centre, hn::Set(s, kNoDepth)))) {
+            std::fill_n(filtered + u, count, std::numeric_limits<float>::quiet_NaN());
             continue;
         }
-        const auto near = near_values<kSide>(corner, row.stride, centre, window.gate_m);
-        store(mean_near(median_of(near), near, window.mean_gate_m, window.min_support), u);
+        hn::Store(centre, s, sums.centre.data());
+        const auto near = near_offsets<kSide>(corner, row.stride, centre, window.gate_mm);
+        sum_near(near, median_of(near), window.mean_gate_mm2, sums);
+        for (std::size_t lane = 0; lane < hn::Lanes(s); lane += hn::Lanes(f))
+            hn::Store(means_of(sums, lane, window), f, means.data() + lane);
+        std::copy_n(means.begin(), count, filtered + u);
     }
 }
 

@@ -115,11 +115,13 @@ struct DepthIntegrator::Workspace {
     std::size_t hits_before = 0;
 };
 
-DepthIntegrator::DepthIntegrator(const MappingConfig& config, const CameraIntrinsics& camera)
+DepthIntegrator::DepthIntegrator(const MappingConfig& config, const CameraIntrinsics& camera,
+                                 unsigned threads)
     : config_(config),
       pixel_rays_(camera),
       lattice_(config.map.resolution_m),
-      workspace_(std::make_unique<Workspace>()) {}
+      workspace_(std::make_unique<Workspace>()),
+      crew_(std::make_unique<Crew>(threads)) {}
 DepthIntegrator::DepthIntegrator(DepthIntegrator&&) noexcept = default;
 DepthIntegrator& DepthIntegrator::operator=(DepthIntegrator&&) noexcept = default;
 DepthIntegrator::~DepthIntegrator() = default;
@@ -146,7 +148,7 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage
 Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImage& image,
                                                                  const Eigen::Isometry3d& T_map_camera) {
     PlacedImage& rays = workspace_->rays;
-    place_image(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays);
+    place_image(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays, crew_.get());
     DepthUpdates result;
     result.pixels = rays.counts;
     DepthTerms& terms = result.terms;
@@ -218,9 +220,15 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const Eigen::Isometr
     if (!(view.depth_max_m > 0.0)) return take_means(rays, terms);
     HitBricks& hits = workspace_->hits;
     const KeyBox box = box_of(rays, lattice_);
-    if (!hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max)) return false;
     ReachWindows& reach = workspace_->reach;
-    reach.take(rays);
+    reach.begin(rays);
+    bool has_room = false;
+    crew_->work(3, [&](std::size_t part) {
+        if (part == 0) has_room = hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max);
+        if (part == 1) reach.take_shortest(rays);
+        if (part == 2) reach.take_longest(rays);
+    });
+    if (!has_room) return false;
     const PictureTest picture(view, reach);
     VoxelRays& voxel_rays = workspace_->voxel_rays;
     voxel_rays.begin(view, rays, reach, lattice_);
@@ -234,18 +242,36 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const Eigen::Isometr
         all.fill(~std::uint64_t{0});
         return all;
     }();
-    walk_bricks(box, verdict_of, [&](MortonCode brick, bool is_all) {
-        if (is_all) return terms.add(brick, kAll);
+    const auto add_brick = [&](DepthTerms& to, MortonCode brick, bool is_all) {
+        if (is_all) return to.add(brick, kAll);
         const VoxelRays::Brick place = voxel_rays.brick_at(key_of_morton(brick));
         const BrickMask passed = voxel_rays.passed(place);
         const BrickCells cells(hits.of(brick));
-        terms.add(brick, without(passed, cells.mask()));
+        to.add(brick, without(passed, cells.mask()));
         cells.for_each([&](std::uint16_t cell, const BrickCells::Cell& hit) {
             const RayVote vote = voxel_rays.vote_on(place, cell);
-            terms.add_hit(brick, {cell, voted_term(vote, hit.sum / static_cast<float>(hit.rays),
-                                                   config_.model.miss_log_odds)});
+            to.add_hit(brick, {cell, voted_term(vote, hit.sum / static_cast<float>(hit.rays),
+                                                config_.model.miss_log_odds)});
         });
+    };
+    const auto add_below = [&](DepthTerms& to, const VoxelCube& cube) {
+        walk_bricks(
+            box, verdict_of, [&](MortonCode brick, bool is_all) { add_brick(to, brick, is_all); }, cube);
+    };
+    if (crew_->size() == 1) {
+        add_below(terms, kWholeOctree);
+        return true;
+    }
+    // Cubes of 4 x 4 x 4 bricks, whoever is free: what each says is joined in their order.
+    constexpr unsigned kPartHeight = kBrickHeight + 2;
+    std::vector<VoxelCube> cubes;
+    walk_cubes(box, kPartHeight, verdict_of, [&](const VoxelCube& cube, bool) { cubes.push_back(cube); });
+    std::vector<DepthTerms> parts(cubes.size());
+    crew_->work(cubes.size(), [&](std::size_t i) {
+        parts[i].miss = terms.miss;
+        add_below(parts[i], cubes[i]);
     });
+    for (const DepthTerms& part : parts) terms.append(part);
     return true;
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "common/result.hpp"
+#include "host/core/crew/crew.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/depth/pixel_rays.hpp"
 #include "host/core/mapping/depth_terms.hpp"
@@ -32,8 +33,9 @@ struct DepthUpdates {
 class DepthIntegrator {
   public:
     /// Takes from `config` the map's resolution, the model, the strategy and the limit of memory. Every pixel
-    /// must have a ray (asserted by PixelRays).
-    DepthIntegrator(const MappingConfig& config, const CameraIntrinsics& camera);
+    /// must have a ray (asserted by PixelRays). `threads`: how many work on an image, the caller included;
+    /// the terms are the same. `robust` is the caller's alone, and all of `paper` but the placing of pixels.
+    DepthIntegrator(const MappingConfig& config, const CameraIntrinsics& camera, unsigned threads = 1);
     DepthIntegrator(DepthIntegrator&&) noexcept;
     DepthIntegrator& operator=(DepthIntegrator&&) noexcept;
     ~DepthIntegrator();
@@ -64,6 +66,7 @@ class DepthIntegrator {
     PixelRays pixel_rays_;
     VoxelLattice lattice_;
     std::unique_ptr<Workspace> workspace_;
+    std::unique_ptr<Crew> crew_;
 };
 
 }  // namespace octoskin

@@ -24,6 +24,18 @@ void DepthTerms::add_hit(MortonCode brick, CellTerm hit) {
     terms.hits_end = static_cast<std::uint32_t>(hits.size());
 }
 
+void DepthTerms::append(const DepthTerms& later) {
+    assert(miss == later.miss);
+    assert(bricks.empty() || later.bricks.empty() || bricks.back().first < later.bricks.front().first);
+    const auto shift = static_cast<std::uint32_t>(hits.size());
+    for (BrickTerms brick : later.bricks) {
+        brick.hits_begin += shift;
+        brick.hits_end += shift;
+        bricks.push_back(brick);
+    }
+    hits.insert(hits.end(), later.hits.begin(), later.hits.end());
+}
+
 void DepthTerms::take(std::vector<VoxelUpdate> updates) {
     std::ranges::sort(updates, {}, [](const VoxelUpdate& update) { return morton_of(update.key); });
     for (const VoxelUpdate& update : updates) {

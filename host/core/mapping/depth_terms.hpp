@@ -45,6 +45,8 @@ struct DepthTerms {
     void add(MortonCode brick, const BrickMask& passed);
     /// Adds a hit in the brick that comes next or came last, in ascending order; a term of 0 is none.
     void add_hit(MortonCode brick, CellTerm hit);
+    /// Adds another image part's terms of the same miss, all later in Morton order.
+    void append(const DepthTerms& later);
     /// Takes voxels in any order, each once, in place of what is here. A term equal to `miss` is a miss.
     void take(std::vector<VoxelUpdate> updates);
 

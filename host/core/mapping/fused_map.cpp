@@ -1,6 +1,7 @@
 #include "host/core/mapping/fused_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <new>
@@ -71,18 +72,41 @@ void FusedMap::add(float& voxel, float log_odds) noexcept {
 }
 
 void FusedMap::apply(std::span<const VoxelUpdate> updates) {
-    while (!updates.empty()) {
-        const VoxelKey first = updates.front().key;
-        std::size_t count = 1;
-        while (count < updates.size() && are_of_one_brick(updates[count].key, first)) ++count;
-        apply_run(brick_of(first), updates.first(count));
-        updates = updates.subspan(count);
-    }
+    while (!updates.empty()) updates = updates.subspan(apply_some(updates));
 }
 
-/// Terms of one brick. A brick is made for the first of them that it is needed for.
-void FusedMap::apply_run(MortonCode brick, std::span<const VoxelUpdate> run) noexcept {
-    BrickValues* values = tree_.own(brick);
+/// The voxels of a beam lie in many bricks, and most of a map is in no cache: all are asked for before the
+/// first is written, so that the memory is waited for once. Returns how many updates it took.
+std::size_t FusedMap::apply_some(std::span<const VoxelUpdate> updates) noexcept {
+    constexpr std::size_t kRunsMax = 32;
+    struct Run {
+        BrickValues* values = nullptr;
+        std::size_t end = 0;
+    };
+    std::array<Run, kRunsMax> runs;
+    std::size_t count = 0;
+    std::size_t end = 0;
+    for (BrickTree::OwnBricks own(tree_); end < updates.size() && count < kRunsMax; ++count) {
+        const VoxelKey first = updates[end].key;
+        BrickValues* const values = own.find(brick_of(first));
+        for (; end < updates.size() && are_of_one_brick(updates[end].key, first); ++end) {
+            if (values != nullptr) __builtin_prefetch(&(*values)[cell_of(updates[end].key)], 1);
+        }
+        runs[count] = {values, end};
+    }
+    std::size_t begin = 0;
+    for (const Run& run : std::span(runs).first(count)) {
+        apply_run(run.values, updates.subspan(begin, run.end - begin));
+        begin = run.end;
+    }
+    return end;
+}
+
+/// Terms of one brick, `values` if all of them have a place. A brick is made for the first of them that it is
+/// needed for.
+void FusedMap::apply_run(BrickValues* values, std::span<const VoxelUpdate> run) noexcept {
+    const MortonCode brick = brick_of(run.front().key);
+    if (values == nullptr) values = tree_.own(brick);  // a run before may have made it
     Status<Refusal> has_values = Done{};
     for (const VoxelUpdate& update : run) {
         if (!std::isfinite(update.log_odds)) {

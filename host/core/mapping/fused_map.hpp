@@ -126,7 +126,8 @@ class FusedMap {
         return {log_odds, config_.log_odds_min, config_.log_odds_max};
     }
     void add(float& voxel, float log_odds) noexcept;
-    void apply_run(MortonCode brick, std::span<const VoxelUpdate> run) noexcept;
+    [[nodiscard]] std::size_t apply_some(std::span<const VoxelUpdate> updates) noexcept;
+    void apply_run(BrickValues* values, std::span<const VoxelUpdate> run) noexcept;
     void apply_brick(const DepthTerms& terms, const BrickTerms& brick) noexcept;
 
     MapConfig config_;

@@ -23,14 +23,14 @@ DepthReason reason_of(DepthRejection rejection) {
 
 }  // namespace
 
-DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config)
+DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads)
     : camera_(rig.camera.value()),
       config_(config),
       self_margin_m_(rig.depth_self_margin_m),
       T_map_base_(rig.T_map_base),
       T_map_camera_(rig.T_map_base * camera_.T_base_camera),
       filter_(config.depth_filter),
-      integrator_(config, camera_.intrinsics) {}
+      integrator_(config, camera_.intrinsics, threads) {}
 
 std::uint64_t DepthStage::take_robot_out(DepthImage& image, const RobotPose& robot,
                                          const Eigen::Isometry3d& T_base_camera) {

@@ -18,7 +18,7 @@ namespace octoskin {
 class DepthStage {
   public:
     /// The rig must have a camera.
-    DepthStage(const HostRig& rig, const MappingConfig& config);
+    DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads = 1);
 
     /// Whether a frame needs to know where the robot was.
     [[nodiscard]] bool needs_robot() const noexcept { return config_.removes_robot_from_depth; }

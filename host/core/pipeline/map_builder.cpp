@@ -30,8 +30,8 @@ Result<DepthUpdates, DepthReason> updates_or_reason(DepthStage& stage, const Dep
 
 Result<MapBuilder, RobotModelFault> MapBuilder::build(const HostRig& rig, RobotModel robot,
                                                       const MappingConfig& mapping,
-                                                      const JointHistoryConfig& joints,
-                                                      const MapChoice& maps) {
+                                                      const JointHistoryConfig& joints, const MapChoice& maps,
+                                                      unsigned depth_threads) {
     assert(robot.joint_count() == rig.joints.joints.size());
     auto beams = BeamBuilder::build(
         rig, robot,
@@ -43,17 +43,18 @@ Result<MapBuilder, RobotModelFault> MapBuilder::build(const HostRig& rig, RobotM
     if (!tracker) {
         return unexpected(tracker.error());
     }
-    return MapBuilder(rig, std::move(tracker).value(), std::move(beams).value(), mapping, maps);
+    return MapBuilder(rig, std::move(tracker).value(), std::move(beams).value(), mapping, maps,
+                      depth_threads);
 }
 
 MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams,
-                       const MappingConfig& mapping, const MapChoice& maps)
+                       const MappingConfig& mapping, const MapChoice& maps, unsigned depth_threads)
     : robot_(std::move(robot)),
       beams_(std::move(beams)),
       beam_integrator_(mapping),
       maps_(mapping.map, maps) {
     if (rig.camera) {
-        depth_stage_.emplace(rig, mapping);
+        depth_stage_.emplace(rig, mapping, depth_threads);
     }
     if (rig.camera && mapping.removes_robot_from_depth) {
         witness_.emplace(rig, WitnessConfig{.camera_sigma_m = mapping.depth_filter.sigma_m});

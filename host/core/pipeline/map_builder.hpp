@@ -26,11 +26,12 @@ namespace octoskin {
 class MapBuilder {
   public:
     /// Refuses, by name, a link of the rig that the robot does not have. `robot` moves the joints of
-    /// `rig.joints.joints`, in that order (asserted: as many).
+    /// `rig.joints.joints`, in that order (asserted: as many). `depth_threads`: see DepthIntegrator.
     [[nodiscard]] static Result<MapBuilder, RobotModelFault> build(const HostRig& rig, RobotModel robot,
                                                                    const MappingConfig& mapping,
                                                                    const JointHistoryConfig& joints,
-                                                                   const MapChoice& maps);
+                                                                   const MapChoice& maps,
+                                                                   unsigned depth_threads = 1);
 
     /// The fused map goes on from this one, which has the mapping's resolution (asserted).
     void begin_with(FusedMap fused) { maps_.begin_with(std::move(fused)); }
@@ -86,7 +87,7 @@ class MapBuilder {
 
   private:
     MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
-               const MapChoice& maps);
+               const MapChoice& maps, unsigned depth_threads);
 
     RobotTracker robot_;
     BeamBuilder beams_;

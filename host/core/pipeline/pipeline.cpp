@@ -38,7 +38,8 @@ Result<Pipeline, RobotModelFault> Pipeline::build(const HostRig& rig, RobotModel
                                                   const MappingConfig& mapping,
                                                   const PipelineConfig& config) {
     assert(config.lag > config.joints.bracket_max);
-    auto builder = MapBuilder::build(rig, std::move(robot), mapping, config.joints, config.maps);
+    auto builder =
+        MapBuilder::build(rig, std::move(robot), mapping, config.joints, config.maps, config.depth_threads);
     if (!builder) {
         return unexpected(builder.error());
     }

@@ -52,6 +52,7 @@ struct PipelineConfig {
     std::size_t readings_waiting_max = 4096;
     std::size_t depth_frames_waiting_max = 16;
     std::size_t joint_samples_waiting_max = 256;
+    unsigned depth_threads = 1;  ///< how many work on a depth image; the map is the same
 };
 
 /// The fate of every input, by the units of `reasons.hpp`.

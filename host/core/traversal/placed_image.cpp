@@ -37,6 +37,13 @@ struct Row {
     std::size_t width = 0;
 };
 
+/// What rows add up to.
+struct RowSums {
+    DepthPixelCounts counts;
+    Eigen::Vector3f lowest;
+    Eigen::Vector3f highest;
+};
+
 }  // namespace octoskin
 #endif
 
@@ -114,7 +121,7 @@ HWY_INLINE void clip(Ends& ends, float range_max_m, const Eigen::Vector3f& origi
     ends.range_m = hn::IfThenElse(is_beyond, hn::Set(d, -1.0), ends.range_m);
 }
 
-void place_row(const Placement& to, const Row& row, PlacedImage& image) {
+void place_row(const Placement& to, const Row& row, PlacedImage& image, RowSums& sums) {
     const Doubles d;
     const Floats f;
     const Float origin_x = hn::Set(f, image.origin.x());
@@ -139,10 +146,10 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image) {
         const Mask has_keys = hn::And(has_key(scaled_x), hn::And(has_key(scaled_y), has_key(scaled_z)));
         const Mask is_used = hn::And(is_good, has_keys);
         const Mask in_row = hn::FirstN(d, row.width - u);
-        image.counts.used += hn::CountTrue(d, hn::And(in_row, is_used));
-        image.counts.no_value += hn::CountTrue(d, hn::AndNot(is_number, in_row));
-        image.counts.bad_value += hn::CountTrue(d, hn::AndNot(is_good, hn::And(in_row, is_number)));
-        image.counts.outside_map += hn::CountTrue(d, hn::AndNot(has_keys, hn::And(in_row, is_good)));
+        sums.counts.used += hn::CountTrue(d, hn::And(in_row, is_used));
+        sums.counts.no_value += hn::CountTrue(d, hn::AndNot(is_number, in_row));
+        sums.counts.bad_value += hn::CountTrue(d, hn::AndNot(is_good, hn::And(in_row, is_number)));
+        sums.counts.outside_map += hn::CountTrue(d, hn::AndNot(has_keys, hn::And(in_row, is_good)));
 
         const auto is_used_f = narrow(is_used);
         const std::size_t at = row.first + u;
@@ -179,9 +186,8 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image) {
     }
     const auto least = [](Float values) { return hn::GetLane(hn::MinOfLanes(Floats(), values)); };
     const auto most = [](Float values) { return hn::GetLane(hn::MaxOfLanes(Floats(), values)); };
-    image.lowest = image.lowest.cwiseMin(Eigen::Vector3f(least(lowest_x), least(lowest_y), least(lowest_z)));
-    image.highest =
-        image.highest.cwiseMax(Eigen::Vector3f(most(highest_x), most(highest_y), most(highest_z)));
+    sums.lowest = sums.lowest.cwiseMin(Eigen::Vector3f(least(lowest_x), least(lowest_y), least(lowest_z)));
+    sums.highest = sums.highest.cwiseMax(Eigen::Vector3f(most(highest_x), most(highest_y), most(highest_z)));
 }
 
 }  // namespace octoskin::HWY_NAMESPACE
@@ -196,6 +202,13 @@ HWY_EXPORT(place_row);
 /// A vector of any instruction set holds no more entries.
 constexpr std::size_t kLanesMax = 64;
 
+/// How many rows one of a crew places at a time. What is written beyond the end of a row that is no multiple
+/// of a vector the next row overwrites, so that one has to do all of them.
+std::uint32_t rows_of_band(std::uint32_t width, std::uint32_t height) {
+    constexpr std::uint32_t kBandRows = 32;
+    return width % kLanesMax == 0 ? kBandRows : std::max(height, 1U);
+}
+
 void resize(PlacedImage& image, std::size_t entries) {
     for (auto* values : {&image.end_x, &image.end_y, &image.end_z, &image.reach_m, &image.passed_m}) {
         values->resize(entries);
@@ -208,7 +221,7 @@ void resize(PlacedImage& image, std::size_t entries) {
 }  // namespace
 
 void place_image(const DepthImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
-                 const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed) {
+                 const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed, Crew* crew) {
     const std::size_t pixels = std::size_t{image.width} * image.height;
     assert(image.width == pixel_rays.camera().width && image.height == pixel_rays.camera().height);
     assert(image.depth_m.size() == pixels);
@@ -228,19 +241,36 @@ void place_image(const DepthImage& image, const PixelRays& pixel_rays, const Vox
         for (int j = 0; j < 4; ++j)
             to.T[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = T_map_camera(i, j);
     }
-    std::vector<float> depth_m(image.width + kLanesMax, std::numeric_limits<float>::quiet_NaN());
-    std::vector<double> ray_x(image.width + kLanesMax);
-    std::vector<double> ray_y(image.width + kLanesMax);
-    for (std::uint32_t v = 0; v < image.height; ++v) {
-        const std::size_t first = std::size_t{v} * image.width;
-        std::copy_n(image.depth_m.begin() + static_cast<std::ptrdiff_t>(first), image.width, depth_m.begin());
-        for (std::uint32_t u = 0; u < image.width; ++u) {
-            const RaySlope ray = pixel_rays.at(u, v);
-            ray_x[u] = ray.x;
-            ray_y[u] = ray.y;
+    const std::uint32_t band_rows = rows_of_band(image.width, image.height);
+    const std::uint32_t bands = (image.height + band_rows - 1) / band_rows;
+    std::vector<RowSums> sums(bands, {{}, placed.origin, placed.origin});
+    const auto place_band = [&](std::size_t band) {
+        std::vector<float> depth_m(image.width + kLanesMax, std::numeric_limits<float>::quiet_NaN());
+        std::vector<double> ray_x(image.width + kLanesMax);
+        std::vector<double> ray_y(image.width + kLanesMax);
+        const auto begin = static_cast<std::uint32_t>(band) * band_rows;
+        for (std::uint32_t v = begin; v < std::min(begin + band_rows, image.height); ++v) {
+            const std::size_t first = std::size_t{v} * image.width;
+            std::copy_n(image.depth_m.begin() + static_cast<std::ptrdiff_t>(first), image.width,
+                        depth_m.begin());
+            for (std::uint32_t u = 0; u < image.width; ++u) {
+                const RaySlope ray = pixel_rays.at(u, v);
+                ray_x[u] = ray.x;
+                ray_y[u] = ray.y;
+            }
+            HWY_DYNAMIC_DISPATCH(place_row)
+            (to, {depth_m.data(), ray_x.data(), ray_y.data(), first, image.width}, placed, sums[band]);
         }
-        HWY_DYNAMIC_DISPATCH(place_row)
-        (to, {depth_m.data(), ray_x.data(), ray_y.data(), first, image.width}, placed);
+    };
+    Crew alone(1);
+    (crew == nullptr ? alone : *crew).work(bands, place_band);
+    for (const RowSums& of_band : sums) {
+        placed.counts.used += of_band.counts.used;
+        placed.counts.no_value += of_band.counts.no_value;
+        placed.counts.bad_value += of_band.counts.bad_value;
+        placed.counts.outside_map += of_band.counts.outside_map;
+        placed.lowest = placed.lowest.cwiseMin(of_band.lowest);
+        placed.highest = placed.highest.cwiseMax(of_band.highest);
     }
     for (auto* values : {&placed.reach_m, &placed.passed_m}) {
         std::fill(values->begin() + static_cast<std::ptrdiff_t>(pixels), values->end(), -1.0F);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "host/core/crew/crew.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/depth/pixel_rays.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
@@ -47,8 +48,9 @@ struct PlacedImage {
 /// Every pixel's ray is independent of every other's, and of how many are worked on at once: the result is
 /// bit for bit that of Eigen's `T_map_camera * (depth * ray)`. Places every pixel of `image` (of the camera's
 /// size, asserted) as seen from `T_map_camera`. A range beyond `range_max_m` (0: none) ends at it, as in
-/// OctoMap's `computeUpdate`. About 0.6 ms for 512 x 424.
+/// OctoMap's `computeUpdate`. About 0.6 ms for 512 x 424, which `crew` shares, if there is one.
 void place_image(const DepthImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
-                 const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed);
+                 const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed,
+                 Crew* crew = nullptr);
 
 }  // namespace octoskin

@@ -50,16 +50,23 @@ void widen(const std::vector<float>& in, std::uint32_t columns, std::uint32_t ro
 
 }  // namespace
 
-void ReachWindows::take(const PlacedImage& image) {
+void ReachWindows::begin(const PlacedImage& image) noexcept {
     columns_ = (image.width + kBlock - 1) / kBlock;
     rows_ = (image.height + kBlock - 1) / kBlock;
-    take_blocks(image.passed_m.data(), image.width, image.height, row_, levels_[0].shortest, Less());
-    take_blocks(image.reach_m.data(), image.width, image.height, row_, levels_[0].longest, More());
-    for (std::uint32_t k = 1; k < kLevels; ++k) {
-        const std::uint32_t by = 1U << (k - 1);
-        widen(levels_[k - 1].shortest, columns_, rows_, by, row_, levels_[k].shortest, Less());
-        widen(levels_[k - 1].longest, columns_, rows_, by, row_, levels_[k].longest, More());
-    }
+}
+
+void ReachWindows::take_shortest(const PlacedImage& image) {
+    std::vector<float> row;
+    take_blocks(image.passed_m.data(), image.width, image.height, row, levels_[0].shortest, Less());
+    for (std::uint32_t k = 1; k < kLevels; ++k)
+        widen(levels_[k - 1].shortest, columns_, rows_, 1U << (k - 1), row, levels_[k].shortest, Less());
+}
+
+void ReachWindows::take_longest(const PlacedImage& image) {
+    std::vector<float> row;
+    take_blocks(image.reach_m.data(), image.width, image.height, row, levels_[0].longest, More());
+    for (std::uint32_t k = 1; k < kLevels; ++k)
+        widen(levels_[k - 1].longest, columns_, rows_, 1U << (k - 1), row, levels_[k].longest, More());
 }
 
 }  // namespace octoskin

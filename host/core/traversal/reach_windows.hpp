@@ -42,7 +42,15 @@ class ReachWindows {
     };
 
     /// O(pixels); about 0.3 ms for 512 x 424. Throws std::bad_alloc.
-    void take(const PlacedImage& image);
+    void take(const PlacedImage& image) {
+        begin(image);
+        take_shortest(image);
+        take_longest(image);
+    }
+    /// The same in parts: after `begin` two threads may each do one of the others.
+    void begin(const PlacedImage& image) noexcept;
+    void take_shortest(const PlacedImage& image);
+    void take_longest(const PlacedImage& image);
 
     /// O(1) but for boxes larger than 64 pixels, or much longer than wide.
     [[nodiscard]] Span of(const PixelBox& box) const noexcept {
@@ -78,7 +86,6 @@ class ReachWindows {
     std::uint32_t columns_ = 0;  ///< blocks
     std::uint32_t rows_ = 0;
     std::array<Level, kLevels> levels_;
-    std::vector<float> row_;
 };
 
 }  // namespace octoskin

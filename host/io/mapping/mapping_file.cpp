@@ -101,6 +101,12 @@ DepthFilterConfig read_filter(const Table& table, DepthFilterConfig filter) {
     filter.sigma_m = table.number("sigma_m", {1e-6, 10.0}, filter.sigma_m);
     filter.gate_sigmas = table.number("gate_sigmas", {0.0, 1000.0}, filter.gate_sigmas);
     filter.mean_sigmas = table.number("mean_sigmas", {0.0, 1000.0}, filter.mean_sigmas);
+    for (const auto& [key, gate_m] :
+         {std::pair("gate_sigmas", filter.gate_m()), {"mean_sigmas", filter.mean_gate_m()}}) {
+        if (gate_m > DepthFilterConfig::kGateMax_m)
+            table.fail(key, fmt::format("times sigma_m it is {} m; at most {} m", gate_m,
+                                        DepthFilterConfig::kGateMax_m));
+    }
     filter.min_support = table.integer<std::uint32_t>("min_support", {0, 48}, filter.min_support);
     const std::uint32_t pixels = filter.window * filter.window;
     if (filter.is_enabled && filter.min_support >= pixels) {

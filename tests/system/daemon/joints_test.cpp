@@ -121,7 +121,7 @@ TEST(JointsCommand, tells_what_became_of_the_lines_when_a_signal_ends_it) {
         // A shell in the background lets its commands ignore SIGINT.
         const auto script = folder.write(
             "script", "cd " + folder.path().string() +
-                          "; mkfifo input; exec 3<>input; printf '0 0 0 0 0 0 0\\n1 2 3\\n1 2' >&3\n"
+                          "; mkfifo input; exec 3<>input; printf '0 0 0 -1 0 1 0\\n1 2 3\\n1 2' >&3\n"
                           "python3 -c 'import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); "
                           "os.execv(sys.argv[1], sys.argv[1:])' " OCTOSKIN_PROGRAM
                           " joints --rig " OCTOSKIN_SOURCE_DIR
@@ -139,7 +139,7 @@ TEST(JointsCommand, tells_what_became_of_the_lines_when_a_signal_ends_it) {
 /// More lines at once than the rig's rate lets through: those are no better than the ones before them.
 TEST(JointsCommand, says_at_the_end_that_there_was_no_bus_whatever_the_rate_of_the_lines) {
     const std::string command =
-        "yes 0 0 0 0 0 0 0 | head -n 100 | " OCTOSKIN_PROGRAM
+        "yes '0 0 0 -1 0 1 0' | head -n 100 | " OCTOSKIN_PROGRAM
         " joints --can nocan9 --rig " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml 2> /dev/null";
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69);
 }
@@ -155,6 +155,29 @@ TEST(JointsCommand, refuses_lines_of_another_number_of_joints_wherever_they_go) 
         const std::string log = testing_support::ScratchFolder::read(folder / "log");
         EXPECT_NE(log.find("wrong_count: 3 numbers, the rig has 7 joints: 1 2 3 (wanted: [TIME] Q1 ... QN"),
                   std::string::npos)
+            << log;
+    }
+    EXPECT_FALSE(taker.gets_a_line(0ms));
+}
+
+/// Joint 4 of this arm cannot be stretched: the daemon would drop every such sample, where nobody sees it.
+TEST(JointsCommand, refuses_lines_beyond_the_limits_of_the_rigs_robot_wherever_they_go) {
+    const testing_support::ScratchFolder folder;
+    const Taker taker(folder / "joints");
+    const std::string rig = " --rig " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml";
+    for (const std::string& way : {"--can nocan9" + rig, "--socket " + (folder / "joints").string() + rig}) {
+        const std::string command = "printf '0 0 0 0 0 1 0\\n0 0 0 -0.06 0 1 0\\n' | " OCTOSKIN_PROGRAM
+                                    " joints " +
+                                    way + " 2> " + (folder / "log").string();
+        EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69) << way;
+        const std::string log = testing_support::ScratchFolder::read(folder / "log");
+        EXPECT_NE(log.find("out_of_limits: joint 4 of 7, panda_joint4, is 0, beyond the robot's limits "
+                           "-3.0718 to -0.0698: 0 0 0 0 0 1 0"),
+                  std::string::npos)
+            << log;
+        EXPECT_NE(log.find("2 refused"), std::string::npos) << log;
+        EXPECT_EQ(log.find("warning line not sent"), log.rfind("warning line not sent"))
+            << "once for each reason:\n"
             << log;
     }
     EXPECT_FALSE(taker.gets_a_line(0ms));

@@ -176,6 +176,25 @@ TEST_F(DaemonRecording, is_whole_when_the_daemon_is_told_to_end_in_the_middle_of
     expect_own_map();
     EXPECT_TRUE(ScratchFolder::read(out() + "/last.ot") == ScratchFolder::read(daemon_->maps() / "fused.ot"))
         << "the map of the recording is not the one that was saved";
+
+    // Files that were changed since: the replay is no success, whatever it was that they lost.
+    const std::string order = ScratchFolder::read(out() + "/order.log");
+    const auto expect_unlike = [&](const std::string& changed, const std::string& why) {
+        (void)folder_.write("recording/order.log", changed);
+        const Ran replay = run("replay " + out() + " --fused-only");
+        EXPECT_EQ(replay.exit_code, 1) << replay.output;
+        EXPECT_NE(replay.output.find("is not the daemon's own, though all is as it was" + why),
+                  std::string::npos)
+            << replay.output;
+    };
+    const auto reading = order.find("\nR ", order.size() / 2);
+    ASSERT_NE(reading, std::string::npos);
+    const auto words = order.find(' ', reading + 3);
+    expect_unlike(order.substr(0, reading) + "\nR 99" + order.substr(words),
+                  ", and what the daemon took was rejected (see the account)");
+    const auto crc = order.rfind(" last ");
+    ASSERT_NE(crc, std::string::npos);
+    expect_unlike(order.substr(0, crc) + " last 00000001\n", ": files of the recording were changed");
 }
 
 TEST_F(DaemonRecording, is_told_by_its_command_when_the_daemon_ends_in_the_middle_of_it) {
@@ -187,10 +206,9 @@ TEST_F(DaemonRecording, is_told_by_its_command_when_the_daemon_ends_in_the_middl
         [](const Json& status) { return state_of_recording(status) == "recording"; }, 5s));
     daemon_->signal(SIGTERM);
     command.join();
-    EXPECT_EQ(ran.exit_code, 0) << ran.output;
-    EXPECT_NE(ran.output.find(out() + ": whole; the daemon ended, and with it the recording"),
-              std::string::npos)
-        << ran.output;
+    EXPECT_EQ(ran.exit_code, 1) << ran.output;
+    EXPECT_NE(ran.output.find(out() + ": whole, but "), std::string::npos) << ran.output;
+    EXPECT_NE(ran.output.find("the daemon ended"), std::string::npos) << ran.output;
 }
 
 TEST_F(DaemonRecording, ends_whole_when_the_rig_is_read_again) {
@@ -202,6 +220,7 @@ TEST_F(DaemonRecording, ends_whole_when_the_rig_is_read_again) {
     ASSERT_TRUE(
         daemon_->wait_until([](const Json& status) { return state_of_recording(status) == "ended"; }, 5s))
         << daemon_->status()["recording"].dump();
+    EXPECT_EQ(daemon_->status()["recording"]["ended_early"], "the daemon read its files anew (SIGHUP)");
     expect_own_map();
 }
 
@@ -286,7 +305,8 @@ class RecordCommand : public testing::Test {
                 {"can_frames", 4},  {"depth_frames", 3},
                 {"commits", 2},     {"lost_can", 0},
                 {"lost_depth", 0},  {"lost_commits", 0},
-                {"number", number}, {"is_complete", true}};
+                {"number", number}, {"is_complete", true},
+                {"ended_early", ""}};
     }
 
     ScratchFolder folder_;
@@ -316,6 +336,20 @@ TEST_F(RecordCommand, follows_its_own_recording_alone) {
     const Ran ran = record((folder_ / "own").string());
     EXPECT_EQ(ran.exit_code, 0) << ran.output;
     EXPECT_NE(ran.output.find((folder_ / "own").string() + ": 7.5 s, 4 CAN frames"), std::string::npos)
+        << ran.output;
+}
+
+TEST_F(RecordCommand, says_why_its_recording_ended_before_it_was_to) {
+    answer_ = [this](const std::string& request) -> Json {
+        Json own = recording(1, "own", request.starts_with("record start") ? "recording" : "ended");
+        own["ended_early"] = "the bus's time went back";
+        return {{"ok", true}, {"recording", own}};
+    };
+    const Ran ran = record((folder_ / "own").string());
+    EXPECT_EQ(ran.exit_code, 1) << ran.output;
+    EXPECT_NE(ran.output.find((folder_ / "own").string() +
+                              ": whole, but it ended before it was to: the bus's time went back"),
+              std::string::npos)
         << ran.output;
 }
 

@@ -328,6 +328,48 @@ TEST_F(ProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) {
     EXPECT_EQ(told("depth unused"), "");
 }
 
+TEST_F(ProblemsTest, have_images_that_there_is_no_time_for_once_that_has_lasted_two_seconds) {
+    const auto is_told = [this](Nanoseconds lasted, Nanoseconds ago) {
+        view_.used.depth_left_out = view_.now - ago;
+        view_.used.depth_left_out_since = *view_.used.depth_left_out - lasted;
+        return !told("depth left out").empty();
+    };
+    EXPECT_TRUE(is_told(2 * kSecond + kNs, kSecond - kNs));
+    EXPECT_NE(told("depth left out").find("(queue_overflow): a coarser resolution_m"), std::string::npos);
+    EXPECT_FALSE(is_told(2 * kSecond, kSecond - kNs)) << "a busy moment";
+    EXPECT_FALSE(is_told(2 * kSecond + kNs, kSecond)) << "it keeps up again";
+    view_.used.depth_left_out.reset();
+    EXPECT_EQ(told("depth left out"), "");
+}
+
+/// A pipeline whose worker never ends its first image: of those that come, two wait and the oldest goes.
+TEST_F(ProblemsTest, know_since_when_images_have_been_left_out_again_and_again) {
+    class Stuck final : public DepthWorker {
+        void begin(std::function<void()> work) override { work_ = std::move(work); }
+        [[nodiscard]] bool is_done() const override { return false; }
+        void finish() override { work_(); }
+        std::function<void()> work_;
+    } worker;
+    const Scene scene = daemon_scene();
+    Pipeline pipeline = make_pipeline(scene);
+    pipeline.work_beside(&worker);
+    for (const StampedFrame& entry : scene.bus.frames()) pipeline.on_can(entry.frame, entry.stamp);
+    const auto at = [](double seconds) { return HostTime{std::llround(seconds * 1e9)}; };
+    auto leave_one_out_at = [&, used = LastUsed{}, captured = 4.0](double at_s) mutable {
+        DepthFrame frame = flat_frame(captured += 0.01);
+        pipeline.on_depth(std::move(frame));
+        used.note(pipeline, at(at_s));
+        return used;
+    };
+    for (int i = 0; i < 3; ++i) EXPECT_FALSE(leave_one_out_at(9.0).depth_left_out) << i;
+    EXPECT_EQ(leave_one_out_at(10.0).depth_left_out_since, at(10.0));
+    EXPECT_EQ(leave_one_out_at(11.0).depth_left_out_since, at(10.0)) << "at least once a second";
+    const LastUsed later = leave_one_out_at(12.5);
+    EXPECT_EQ(later.depth_left_out, at(12.5));
+    EXPECT_EQ(later.depth_left_out_since, at(12.5)) << "for a second and a half there was time for all";
+    pipeline.finish();
+}
+
 TEST_F(ProblemsTest, have_nothing_of_a_camera_that_nobody_wants) {
     view_.now = *view_.used.depth_frame + kSecond;
     EXPECT_EQ(told("camera silent"), "camera: no frame for three periods");

@@ -6,9 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "host/apps/monitor/counter_meanings.hpp"
 #include "host/apps/monitor/screen.hpp"
+#include "host/apps/monitor/scroll.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/io/candump/log_line.hpp"
@@ -153,7 +155,47 @@ TEST(Monitor, fits_every_terminal) {
                 EXPECT_LE(end - begin, columns);
         }
     }
-    EXPECT_TRUE(has(shown(status(), status(), {80, 5}), "more lines"));
+    EXPECT_TRUE(has(shown(status(), status(), {80, 5}), "lines 1-4 of"));
+}
+
+TEST(Monitor, shows_each_line_of_a_status_somewhere_as_it_is_scrolled) {
+    const auto lines = screen_of(status(), status(), 2s);
+    const ScreenSize size{1000, 6};
+    std::set<std::string> seen;
+    Scroll scroll;
+    for (std::size_t i = 0; i <= lines.size(); ++i) {
+        const std::size_t rows = rows_for(lines.size(), size);
+        std::istringstream screen(to_terminal(lines, size, false, scroll.first(lines.size(), rows)));
+        std::size_t count = 0;
+        for (std::string line; std::getline(screen, line); ++count) seen.insert(line);
+        EXPECT_EQ(count, size.rows);
+        scroll.type("\x1b[B", lines.size(), rows);
+    }
+    for (const ScreenLine& line : lines) EXPECT_TRUE(seen.contains(line.text)) << line.text;
+}
+
+TEST(Monitor, scrolls_by_its_keys_and_never_beyond_the_lines) {
+    Scroll scroll;
+    const auto first_after = [&scroll](std::string_view keys) {
+        scroll.type(keys, 70, 20);
+        return scroll.first(70, 20);
+    };
+    EXPECT_EQ(first_after("jj\x1b[B\x1bOB\r"), 5U);
+    EXPECT_EQ(first_after("k\x1b[A"), 3U);
+    EXPECT_EQ(first_after(" "), 22U) << "a line of the page before stays in sight";
+    EXPECT_EQ(first_after("\x1b[5~"), 3U);
+    EXPECT_EQ(first_after("bkkk"), 0U);
+    EXPECT_EQ(first_after("\x1b[6~\x1b[6~\x1b[6~\x1b[6~"), 50U);
+    EXPECT_EQ(first_after("k"), 49U) << "what was typed beyond the end is not remembered";
+    EXPECT_EQ(first_after("g"), 0U);
+    EXPECT_EQ(first_after("\x1b[F"), 50U);
+    EXPECT_EQ(scroll.first(30, 20), 10U) << "fewer lines than before";
+    EXPECT_EQ(scroll.first(5, 20), 0U);
+    EXPECT_EQ(first_after("\x1b[1;5Dxyz\x1b"), 50U) << "other keys are nothing";
+    EXPECT_FALSE(scroll.is_ended());
+    EXPECT_EQ(first_after("q"), 50U);
+    EXPECT_TRUE(scroll.is_ended());
+    Scroll(scroll).type("jk bgG", 0, 0);
 }
 
 TEST(Monitor, cuts_no_character_in_two_and_lets_no_name_steer_the_terminal) {

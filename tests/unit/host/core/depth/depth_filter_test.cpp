@@ -6,7 +6,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -25,6 +27,11 @@ float& at(DepthImage& image, std::uint32_t u, std::uint32_t v) {
     return image.depth_m[v * image.width + u];
 }
 
+/// As a camera tells it.
+float in_whole_mm(float depth_m) {
+    return static_cast<float>(std::round(1000.0 * static_cast<double>(depth_m)) / 1000.0);
+}
+
 DepthImage filter_depth(DepthImage image, const DepthFilterConfig& config) {
     DepthFilter(config).filter(image);
     return image;
@@ -36,8 +43,9 @@ float filtered_pixel(const DepthImage& image, int u, int v, const DepthFilterCon
     const float centre =
         image.depth_m[static_cast<std::size_t>(v) * image.width + static_cast<std::size_t>(u)];
     if (std::isnan(centre)) return kNan;
-    const auto gate_m = static_cast<float>(config.gate_sigmas * config.sigma_m);
-    const auto mean_gate_m = static_cast<float>(config.mean_sigmas * config.sigma_m);
+    // Depths are whole millimetres, and half of one is nothing that a gate tells apart.
+    const double gate_m = config.gate_m() + 2e-4;
+    const double mean_gate_m = config.mean_gate_m() + 2e-4;
     std::vector<float> near;
     for (int row = std::max(0, v - reach);
          row <= std::min<int>(static_cast<int>(image.height) - 1, v + reach); ++row) {
@@ -45,7 +53,8 @@ float filtered_pixel(const DepthImage& image, int u, int v, const DepthFilterCon
              column <= std::min<int>(static_cast<int>(image.width) - 1, u + reach); ++column) {
             const float value =
                 image.depth_m[static_cast<std::size_t>(row) * image.width + static_cast<std::size_t>(column)];
-            if (!std::isnan(value) && std::fabs(value - centre) <= gate_m) near.push_back(value);
+            if (!std::isnan(value) && static_cast<double>(std::fabs(value - centre)) <= gate_m)
+                near.push_back(value);
         }
     }
     std::sort(near.begin(), near.end());
@@ -53,7 +62,7 @@ float filtered_pixel(const DepthImage& image, int u, int v, const DepthFilterCon
     double sum = 0.0;
     std::uint32_t support = 0;
     for (const float value : near) {
-        if (std::fabs(value - median) > mean_gate_m) continue;
+        if (static_cast<double>(std::fabs(value - median)) > mean_gate_m) continue;
         sum += static_cast<double>(value);
         ++support;
     }
@@ -127,7 +136,8 @@ TEST(DepthFilter, equals_its_definition_on_noisy_images_with_holes) {
         DepthImage image = flat_image(61, 37, 2.0F);
         for (std::size_t i = 0; i < image.depth_m.size(); ++i) {
             const float surface_m = (i / 7) % 3 == 0 ? 2.15F : 2.0F;
-            image.depth_m[i] = percent(random) < 20 + 5 * seed ? kNan : surface_m + noise(random);
+            image.depth_m[i] =
+                percent(random) < 20 + 5 * seed ? kNan : in_whole_mm(surface_m + noise(random));
         }
         const DepthFilterConfig config{.window = 3 + 2 * (seed % 3)};
         const DepthImage filtered = filter_depth(image, config);
@@ -145,49 +155,45 @@ TEST(DepthFilter, equals_its_definition_on_noisy_images_with_holes) {
     }
 }
 
-/// The same as `filtered_pixel`, with every rounding where the documentation of `filter_row` has it.
+/// The same as `filtered_pixel`, in whole numbers of half millimetres, rounded where `filter_row` rounds.
 float filtered_bit_for_bit(const DepthImage& image, int u, int v, const DepthFilterConfig& config) {
     const int reach = static_cast<int>(config.window / 2);
-    const auto value_at = [&](int column, int row) {
+    const auto mm_at = [&](int column, int row) -> std::optional<int> {
         const bool is_inside = column >= 0 && row >= 0 && column < static_cast<int>(image.width) &&
                                row < static_cast<int>(image.height);
-        return is_inside ? image.depth_m[static_cast<std::size_t>(row) * image.width +
-                                         static_cast<std::size_t>(column)]
-                         : kNan;
+        if (!is_inside) return std::nullopt;
+        const float depth_m =
+            image.depth_m[static_cast<std::size_t>(row) * image.width + static_cast<std::size_t>(column)];
+        return std::isnan(depth_m) ? std::nullopt
+                                   : std::optional(static_cast<int>(std::lround(1000.0F * depth_m)));
     };
-    const auto gate_m = static_cast<float>(config.gate_sigmas * config.sigma_m);
-    const auto mean_gate_m = static_cast<float>(config.mean_sigmas * config.sigma_m);
-    std::vector<std::vector<float>> rows;
-    std::vector<float> sorted;
+    const auto centre = mm_at(u, v);
+    if (!centre) return kNan;
+    std::vector<int> near;
     for (int row = v - reach; row <= v + reach; ++row) {
-        rows.emplace_back();
         for (int column = u - reach; column <= u + reach; ++column) {
-            const float value = value_at(column, row);
-            if (!(std::fabs(value - value_at(u, v)) <= gate_m)) continue;
-            rows.back().push_back(value);
-            sorted.push_back(value);
+            const auto mm = mm_at(column, row);
+            if (mm && std::abs(*mm - *centre) <= 1000.0 * config.gate_m() + 1e-6) near.push_back(*mm);
         }
     }
-    if (sorted.empty()) return kNan;
-    std::sort(sorted.begin(), sorted.end());
-    const float median = 0.5F * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
-    float sum = 0.0F;
+    std::sort(near.begin(), near.end());
+    const int median_mm2 = near[(near.size() - 1) / 2] + near[near.size() / 2];
+    int sum = 0;
     std::uint32_t support = 0;
-    for (const auto& row : rows) {
-        float row_sum = 0.0F;
-        for (const float value : row) {
-            const float offset = value - median;
-            if (!(std::fabs(offset) <= mean_gate_m)) continue;
-            row_sum += offset;
-            ++support;
-        }
-        sum += row_sum;
+    for (const int mm : near) {
+        const int offset = 2 * mm - median_mm2;
+        if (std::abs(offset) > 2000.0 * config.mean_gate_m() + 1e-6) continue;
+        sum += offset;
+        ++support;
     }
-    return support > config.min_support ? median + sum / static_cast<float>(support) : kNan;
+    if (support <= config.min_support) return kNan;
+    const float mean_mm2 =
+        static_cast<float>(median_mm2) + static_cast<float>(sum) / static_cast<float>(support);
+    return mean_mm2 / 2000.0F;
 }
 
-/// Noise on surfaces with steps and holes; every other image in millimetres, as a camera gives them, so that
-/// differences meet the gates exactly.
+/// Noise on surfaces with steps and holes, in millimetres, as a camera gives them: differences meet the gates
+/// exactly.
 DepthImage noisy_image(unsigned seed) {
     std::mt19937 random(seed);
     const auto up_to = [&](std::uint32_t most) { return static_cast<std::uint32_t>(random() % (most + 1)); };
@@ -199,19 +205,46 @@ DepthImage noisy_image(unsigned seed) {
     for (std::uint32_t v = 0; v < image.height; ++v) {
         for (std::uint32_t u = 0; u < image.width; ++u) {
             const float surface_m = 1.0F + 0.15F * static_cast<float>((u / step_px + v / step_px) % 4);
-            const float depth_m = surface_m + noise(random);
-            const float measured_m = seed % 2 == 0 ? depth_m : std::round(1000.0F * depth_m) / 1000.0F;
-            image.depth_m.push_back(up_to(99) < holes_percent ? kNan : measured_m);
+            image.depth_m.push_back(up_to(99) < holes_percent ? kNan
+                                                              : in_whole_mm(surface_m + noise(random)));
         }
     }
     return image;
+}
+
+/// The least and the most that a camera may tell, and neighbours as far away as can be: nothing wraps round.
+TEST(DepthFilter, keeps_apart_the_nearest_and_the_farthest_depths) {
+    for (const double sigma_m : {0.03, 0.5}) {  // a gate of 0.12 m, and the widest
+        const DepthFilterConfig config{.window = 3, .sigma_m = sigma_m, .min_support = 3};
+        const auto most_m = static_cast<float>((65'535.0 - 1000.0 * config.gate_m()) / 1000.0);
+        for (const float depth_m : {0.001F, 0.002F, 32.767F, 32.768F, in_whole_mm(most_m)}) {
+            for (const float other_m : {kNan, 0.001F, 32.767F, 32.768F, in_whole_mm(most_m)}) {
+                if (std::fabs(other_m - depth_m) <= static_cast<float>(config.gate_m())) continue;
+                DepthImage image = flat_image(6, 6, depth_m);
+                for (std::uint32_t v = 0; v < 6; ++v) {
+                    for (std::uint32_t u = 3; u < 6; ++u) at(image, u, v) = other_m;
+                }
+                const DepthImage filtered = filter_depth(image, config);
+                for (std::size_t i = 0; i < image.depth_m.size(); ++i) {
+                    EXPECT_TRUE(filtered.depth_m[i] == image.depth_m[i] ||
+                                (std::isnan(filtered.depth_m[i]) && std::isnan(image.depth_m[i])))
+                        << filtered.depth_m[i] << " for " << image.depth_m[i] << " beside " << other_m;
+                }
+            }
+        }
+        for (const float none_m :
+             {0.0F, -1.0F, in_whole_mm(most_m) + 0.001F, 1e9F, std::numeric_limits<float>::infinity()}) {
+            for (const float depth_m : filter_depth(flat_image(6, 6, none_m), config).depth_m)
+                EXPECT_TRUE(std::isnan(depth_m)) << none_m;
+        }
+    }
 }
 
 // Oracle: `filtered_bit_for_bit`. One filter takes images of all sizes in turn, as a stream may.
 TEST(DepthFilter, is_bit_for_bit_the_same_on_every_instruction_set) {
     on_each_instruction_set([](const std::string& name) {
         for (const std::uint32_t window : {1U, 3U, 5U, 7U}) {
-            DepthFilterConfig config{.window = window, .min_support = window};
+            const DepthFilterConfig config{.window = window, .min_support = window};
             DepthFilter filter(config);
             for (unsigned seed = 0; seed < 40; ++seed) {
                 const DepthImage image = noisy_image(seed);

@@ -8,6 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "tests/support/cases.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -73,7 +75,7 @@ class Random {
 
 TEST(Capsule, distance_equals_numeric_search) {
     Random random(1);
-    for (int i = 0; i < 5000; ++i) {
+    for (unsigned i = 0; i < testing_support::cases(5000); ++i) {
         const PosedCapsule capsule = random.capsule();
         const Vector3d point = random.vector(1.5);
         ASSERT_NEAR(distance_to_surface(capsule, point), searched_distance(capsule, point), 1e-8)
@@ -98,8 +100,8 @@ TEST(Capsule, equal_ends_are_a_sphere) {
 
 TEST(Capsule, ray_entry_equals_numeric_walk) {
     Random random(2);
-    int hits = 0;
-    for (int i = 0; i < 4000; ++i) {
+    unsigned hits = 0;
+    for (unsigned i = 0; i < testing_support::cases(4000); ++i) {
         const PosedCapsule capsule = random.capsule();
         const Vector3d origin = random.vector(1.5);
         // Half of the rays are aimed near the capsule, so that hits and misses are both common.
@@ -121,7 +123,7 @@ TEST(Capsule, ray_entry_equals_numeric_walk) {
             << "draw " << i;
         ASSERT_NEAR(*entry, *expected, 1e-3) << "draw " << i;
     }
-    EXPECT_GT(hits, 500);
+    EXPECT_GT(hits, testing_support::cases(500));
 }
 
 TEST(Capsule, ray_that_starts_inside_enters_at_zero) {

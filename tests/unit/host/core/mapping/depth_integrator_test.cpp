@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "tests/support/voxel_updates.hpp"
 
@@ -158,6 +159,40 @@ TEST(DepthIntegrator, forgets_a_frame_before_the_next) {
     ASSERT_TRUE(second.has_value());
     EXPECT_THAT(updates_of(second->terms),
                 ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, 0.8F)));
+}
+
+/// Walls, noise and holes, from a camera that has turned. Of 64 columns the rows are shared, too.
+TEST(DepthIntegrator, gives_the_same_terms_however_many_threads_work_on_an_image) {
+    for (const DepthUpdate update : {DepthUpdate::paper, DepthUpdate::robust, DepthUpdate::fast}) {
+        for (const std::uint32_t width : {64U, 50U}) {
+            const CameraIntrinsics camera{
+                .width = width, .height = 80, .fx = 60.0, .fy = 60.0, .cx = 0.5 * width, .cy = 40.0};
+            MappingConfig config = fast_mapping();
+            config.depth_update = update;
+            DepthIntegrator alone(config, camera);
+            std::mt19937 random(width);
+            for (int frame = 0; frame < 4; ++frame) {
+                const auto up_to = [&](unsigned most) { return static_cast<float>(random() % (most + 1)); };
+                DepthImage image{.width = width, .height = 80, .depth_m = {}};
+                for (std::uint32_t i = 0; i < width * 80; ++i)
+                    image.depth_m.push_back(up_to(9) == 0.0F ? kNan : 1.0F + up_to(2) + 0.001F * up_to(30));
+                const Eigen::Isometry3d T_map_camera(
+                    Eigen::Translation3d(0.3 * frame, -0.2, 1.0) *
+                    Eigen::AngleAxisd(0.4 * frame, Eigen::Vector3d(1, 2, 3).normalized()));
+                const auto expected = alone.integrate(image, T_map_camera);
+                ASSERT_TRUE(expected.has_value());
+                ASSERT_GT(expected->terms.size(), 1000U);
+                for (const unsigned threads : {2U, 3U}) {
+                    DepthIntegrator together(config, camera, threads);
+                    const auto result = together.integrate(image, T_map_camera);
+                    ASSERT_TRUE(result.has_value());
+                    EXPECT_TRUE(result->terms == expected->terms) << threads << " threads, frame " << frame;
+                    EXPECT_EQ(result->pixels.used, expected->pixels.used);
+                    EXPECT_EQ(result->pixels.no_value, expected->pixels.no_value);
+                }
+            }
+        }
+    }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
 #include <stdexcept>
 
 #include "host/core/pipeline/ordered_replay.hpp"
@@ -198,6 +199,43 @@ TEST(DepthWorker, s_refusal_is_counted) {
     const Pipeline pipeline = play(scene, std::move(made), worker, 3);
     EXPECT_EQ(worker.begun, 1);
     EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::wrong_size), 1U);
+}
+
+/// The first `refusals` pieces of work find no memory to begin with.
+class PoorWorker final : public DepthWorker {
+  public:
+    void begin(std::function<void()> work) override {
+        if (refusals-- > 0) throw std::bad_alloc();
+        worker_.begin(std::move(work));
+        worker_.end();
+    }
+    bool is_done() const override { return worker_.is_done(); }
+    void finish() override { worker_.finish(); }
+    int refusals = 2;
+
+  private:
+    PatientWorker worker_;
+};
+
+TEST(DepthWorker, that_finds_no_memory_costs_its_frame_and_no_other) {
+    Scene scene = busy_scene();
+    ASSERT_GT(scene.depth.size(), 3U);
+    PoorWorker worker;
+    Pipeline pipeline = make_pipeline(scene);
+    pipeline.work_beside(&worker);
+    std::size_t next = 0;
+    for (const StampedFrame& entry : scene.bus.frames()) {
+        pipeline.on_can(entry.frame, entry.stamp);
+        if (worker.is_done()) pipeline.on_worker_done();
+        for (; next < scene.depth.size() && pipeline.now() && scene.depth[next].captured <= *pipeline.now();
+             ++next)
+            pipeline.on_depth(scene.depth[next]);
+    }
+    pipeline.finish();
+    const auto& frames = pipeline.accounts().depth_frames;
+    EXPECT_EQ(frames.rejected(DepthReason::no_memory), 2U) << pipeline.account_text();
+    EXPECT_EQ(frames.used(), next - 2U) << pipeline.account_text();
+    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/cases.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -88,7 +90,7 @@ TEST(RobotFilter, removes_everything_if_it_does_not_know_where_the_robot_is) {
 // camera. Every third camera has a lens that bends the picture by up to two pixels.
 TEST(RobotFilter, equals_testing_every_pixel_against_every_capsule) {
     const PixelRays bent(with_lens({.k1 = 0.1, .k2 = -0.05, .p1 = 0.004, .p2 = -0.006, .k3 = 0.02}));
-    for (unsigned seed = 0; seed < 36; ++seed) {
+    for (unsigned seed = 0; seed < testing_support::cases(36); ++seed) {
         const PixelRays& rays = seed % 3 == 2 ? bent : kRays;
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> side(-1.5, 1.5);

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "tests/support/cases.hpp"
 #include "tests/unit/host/core/traversal/traversal_scene.hpp"
 
 namespace octoskin {
@@ -44,13 +45,13 @@ void expect_exact(const CameraIntrinsics& camera, unsigned seed, const Case& a_c
 
 TEST(ImageTraversal, marks_what_each_ray_by_itself_would_on_every_instruction_set) {
     on_each_instruction_set([](const std::string& name) {
-        for (unsigned seed = 0; seed < 5; ++seed)
+        for (unsigned seed = 0; seed < testing_support::cases(5); ++seed)
             expect_exact(kSmallCamera, seed, {.resolution_m = 0.1}, name);
     });
 }
 
 TEST(ImageTraversal, is_exact_with_holes_and_a_maximum_range) {
-    for (unsigned seed = 100; seed < 104; ++seed) {
+    for (unsigned seed = 100; seed < 100 + testing_support::cases(4); ++seed) {
         expect_exact(kSmallCamera, seed, {.range_max_m = 1.3}, "range");
         expect_exact(kSmallCamera, seed, {.holes = 0.2}, "holes");
         expect_exact(kSmallCamera, seed, {.resolution_m = 0.2, .holes = 0.9}, "nearly all holes");
@@ -59,7 +60,7 @@ TEST(ImageTraversal, is_exact_with_holes_and_a_maximum_range) {
 }
 
 TEST(ImageTraversal, is_exact_where_single_precision_is_coarse) {
-    for (unsigned seed = 200; seed < 206; ++seed) {
+    for (unsigned seed = 200; seed < 200 + testing_support::cases(6); ++seed) {
         expect_exact(kSmallCamera, seed, {.resolution_m = 0.1, .moved = {20.0, -35.0, 8.0}}, "far");
         expect_exact(kSmallCamera, seed, {.resolution_m = 0.1, .moved = {3000.0, -3000.0, 1000.0}},
                      "very far");
@@ -72,7 +73,7 @@ TEST(ImageTraversal, is_exact_for_every_shape_of_image_and_lens) {
     const CameraIntrinsics aside{.width = 33, .height = 41, .fx = 80.0, .fy = 90.0, .cx = -20.0, .cy = 60.0};
     CameraIntrinsics lens = kSmallCamera;
     lens.lens.k1 = -0.1;
-    for (unsigned seed = 300; seed < 306; ++seed) {
+    for (unsigned seed = 300; seed < 300 + testing_support::cases(6); ++seed) {
         expect_exact(oblong, seed, {}, "oblong");
         expect_exact(single, seed, {}, "one pixel");
         expect_exact(aside, seed, {}, "the optical axis beside the picture");

@@ -1,0 +1,79 @@
+#include "host/core/crew/crew.hpp"
+
+#include <cassert>
+#include <exception>
+#include <utility>
+
+namespace octoskin {
+
+Crew::Crew(unsigned size) : size_(size) {
+    assert(size >= 1);
+}
+
+Crew::~Crew() {
+    {
+        const std::scoped_lock lock(mutex_);
+        is_ending_ = true;
+    }
+    changed_.notify_all();
+    for (std::thread& other : others_) other.join();
+}
+
+void Crew::start() noexcept {
+    try {
+        while (others_.size() + 1 < size_) others_.emplace_back([this] { run(); });
+    } catch (const std::exception&) {  // of std::thread, or no memory: whoever is there does it all
+        size_ = static_cast<unsigned>(others_.size()) + 1;
+    }
+}
+
+void Crew::work(std::size_t count, const std::function<void(std::size_t)>& part) {
+    if (size_ == 1 || count <= 1) {
+        for (std::size_t i = 0; i < count; ++i) part(i);
+        return;
+    }
+    start();
+    {
+        const std::scoped_lock lock(mutex_);
+        assert(part_ == nullptr);
+        part_ = &part;
+        count_ = count;
+        next_ = 0;
+        busy_ = static_cast<unsigned>(others_.size());
+        ++round_;
+    }
+    changed_.notify_all();
+    take_parts();
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return busy_ == 0; });
+    part_ = nullptr;
+    if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+}
+
+void Crew::take_parts() noexcept {
+    for (std::size_t index = next_++; index < count_; index = next_++) {
+        try {
+            (*part_)(index);
+        } catch (...) {  // it must not leave its thread
+            const std::scoped_lock lock(mutex_);
+            if (!thrown_) thrown_ = std::current_exception();
+            next_ = count_;
+        }
+    }
+}
+
+void Crew::run() {
+    std::uint64_t round = 0;
+    std::unique_lock lock(mutex_);
+    while (true) {  // ends with the object
+        changed_.wait(lock, [&] { return round_ != round || is_ending_; });
+        if (is_ending_) return;
+        round = round_;
+        lock.unlock();
+        take_parts();
+        lock.lock();
+        if (--busy_ == 0) changed_.notify_all();
+    }
+}
+
+}  // namespace octoskin
