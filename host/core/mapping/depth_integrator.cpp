@@ -111,6 +111,7 @@ struct DepthIntegrator::Workspace {
     ReachWindows reach;
     VoxelRays voxel_rays;
     TallyGrid tallies;
+    std::vector<DepthTerms> parts;  ///< what each thread's cubes say, before they are joined
     std::size_t bricks_before = 0;  ///< of the image before: this one will have about as many
     std::size_t hits_before = 0;
 };
@@ -221,14 +222,13 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const Eigen::Isometr
     HitBricks& hits = workspace_->hits;
     const KeyBox box = box_of(rays, lattice_);
     ReachWindows& reach = workspace_->reach;
+    if (!hits.begin(box, config_.depth_box_voxels_max)) return false;
     reach.begin(rays);
-    bool has_room = false;
-    crew_->work(3, [&](std::size_t part) {
-        if (part == 0) has_room = hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max);
-        if (part == 1) reach.take_shortest(rays);
-        if (part == 2) reach.take_longest(rays);
+    crew_->work(HitBricks::kBands + 2, [&](std::size_t part) {
+        if (part < HitBricks::kBands) return hits.find(rays, config_.model.depth, part);
+        part == HitBricks::kBands ? reach.take_shortest(rays) : reach.take_longest(rays);
     });
-    if (!has_room) return false;
+    hits.sort();
     const PictureTest picture(view, reach);
     VoxelRays& voxel_rays = workspace_->voxel_rays;
     voxel_rays.begin(view, rays, reach, lattice_);
@@ -266,12 +266,15 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const Eigen::Isometr
     constexpr unsigned kPartHeight = kBrickHeight + 2;
     std::vector<VoxelCube> cubes;
     walk_cubes(box, kPartHeight, verdict_of, [&](const VoxelCube& cube, bool) { cubes.push_back(cube); });
-    std::vector<DepthTerms> parts(cubes.size());
+    std::vector<DepthTerms>& parts = workspace_->parts;
+    if (parts.size() < cubes.size()) parts.resize(cubes.size());
     crew_->work(cubes.size(), [&](std::size_t i) {
+        parts[i].bricks.clear();
+        parts[i].hits.clear();
         parts[i].miss = terms.miss;
         add_below(parts[i], cubes[i]);
     });
-    for (const DepthTerms& part : parts) terms.append(part);
+    for (std::size_t i = 0; i < cubes.size(); ++i) terms.append(parts[i]);
     return true;
 }
 

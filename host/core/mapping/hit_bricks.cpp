@@ -71,67 +71,94 @@ HWY_EXPORT(find_runs);
 
 bool HitBricks::take(const PlacedImage& rays, const KeyBox& box, const HitModel& model,
                      std::size_t voxels_max) {
-    box_ = box;
+    if (!begin(box, voxels_max)) return false;
+    for (std::size_t band = 0; band < kBands; ++band) find(rays, model, band);
+    sort();
+    return true;
+}
+
+bool HitBricks::begin(const KeyBox& box, std::size_t voxels_max) {
     const auto bricks_along = [](std::uint16_t low, std::uint16_t high) {
         return static_cast<std::size_t>((high >> kBrickHeight) - (low >> kBrickHeight)) + 1;
     };
-    bricks_x_ = bricks_along(box.lowest.x, box.highest.x);
-    bricks_y_ = bricks_along(box.lowest.y, box.highest.y);
-    const std::size_t bricks = bricks_x_ * bricks_y_ * bricks_along(box.lowest.z, box.highest.z);
+    const std::size_t bricks_x = bricks_along(box.lowest.x, box.highest.x);
+    const std::size_t bricks_y = bricks_along(box.lowest.y, box.highest.y);
+    const std::size_t bricks = bricks_x * bricks_y * bricks_along(box.lowest.z, box.highest.z);
     if (bricks * kBrickVoxels > voxels_max) return false;
-
-    found_.clear();
-    bricks_.clear();
+    box_ = box;
+    bricks_x_ = bricks_x;
+    bricks_y_ = bricks_y;
     ends_.assign(bricks, 0);
-    for (std::uint32_t v = 0; v < rays.height; ++v) {
-        take_row(rays, std::size_t{v} * rays.width, model);
+    return true;
+}
+
+void HitBricks::find(const PlacedImage& rays, const HitModel& model, std::size_t band) {
+    Band& own = bands_.at(band);
+    own.found.clear();
+    own.bricks.clear();
+    const auto row_at = [&](std::size_t part) {
+        return static_cast<std::uint32_t>(std::size_t{rays.height} * part / kBands);
+    };
+    for (std::uint32_t v = row_at(band); v < row_at(band + 1); ++v)
+        take_row(rays, std::size_t{v} * rays.width, model, own);
+}
+
+void HitBricks::sort() {
+    std::size_t found = 0;
+    for (const Band& band : bands_) {
+        for (const std::uint32_t brick : band.bricks) ++ends_[brick];
+        found += band.found.size();
     }
-    for (const std::uint32_t brick : bricks_) ++ends_[brick];
     std::uint32_t begin = 0;
     for (std::uint32_t& end : ends_) {
         const std::uint32_t count = end;
         end = begin;  // for now where it begins
         begin += count;
     }
-    sorted_.resize(found_.size());
-    for (std::size_t i = 0; i < found_.size(); ++i) sorted_[ends_[bricks_[i]]++] = found_[i];
-    return true;
+    sorted_.resize(found);
+    for (const Band& band : bands_) {
+        for (std::size_t i = 0; i < band.found.size(); ++i) sorted_[ends_[band.bricks[i]]++] = band.found[i];
+    }
 }
 
-void HitBricks::take_row(const PlacedImage& rays, std::size_t first, const HitModel& model) {
+void HitBricks::take_row(const PlacedImage& rays, std::size_t first, const HitModel& model,
+                         Band& band) const {
     constexpr std::size_t kWordBits = 64;
     assert(rays.width <= std::numeric_limits<std::uint16_t>::max());  // of CellHits::rays; a rig has 4096
-    run_ends_.resize((rays.width + kWordBits - 1) / kWordBits);
-    terms_.resize(run_ends_.size() * kWordBits);
+    std::vector<std::uint64_t>& run_ends = band.run_ends;
+    run_ends.resize((rays.width + kWordBits - 1) / kWordBits);
+    band.terms.resize(run_ends.size() * kWordBits);
     const std::uint32_t* const key_xy = rays.key_xy.data() + first;
     const std::uint32_t* const key_z = rays.key_z.data() + first;
     HWY_DYNAMIC_DISPATCH(find_runs)
-    ({key_xy, key_z, rays.range_m.data() + first}, model, rays.width, terms_.data(), run_ends_.data());
-    run_ends_.back() &= ~std::uint64_t{0} >> (kWordBits * run_ends_.size() - rays.width);
-    run_ends_.back() |= std::uint64_t{1} << ((rays.width - 1) % kWordBits);
+    ({key_xy, key_z, rays.range_m.data() + first}, model, rays.width, band.terms.data(), run_ends.data());
+    run_ends.back() &= ~std::uint64_t{0} >> (kWordBits * run_ends.size() - rays.width);
+    run_ends.back() |= std::uint64_t{1} << ((rays.width - 1) % kWordBits);
 
     std::size_t begin = 0;
-    for (std::size_t word = 0; word < run_ends_.size(); ++word) {
-        for (std::uint64_t bits = run_ends_[word]; bits != 0; bits &= bits - 1) {
+    for (std::size_t word = 0; word < run_ends.size(); ++word) {
+        for (std::uint64_t bits = run_ends[word]; bits != 0; bits &= bits - 1) {
             const std::size_t last = kWordBits * word + static_cast<std::size_t>(std::countr_zero(bits));
-            if (key_z[last] != PlacedImage::kNoKey) take_run(key_xy[last], key_z[last], begin, last);
+            if (key_z[last] != PlacedImage::kNoKey) take_run(key_xy[last], key_z[last], begin, last, band);
             begin = last + 1;
         }
     }
 }
 
-void HitBricks::take_run(std::uint32_t key_xy, std::uint32_t key_z, std::size_t first, std::size_t last) {
+void HitBricks::take_run(std::uint32_t key_xy, std::uint32_t key_z, std::size_t first, std::size_t last,
+                         Band& band) const {
+    const std::vector<float>& terms = band.terms;
     CellHits hits{
-        .rays = static_cast<std::uint16_t>(last - first + 1), .sum = terms_[first], .most = terms_[first]};
+        .rays = static_cast<std::uint16_t>(last - first + 1), .sum = terms[first], .most = terms[first]};
     for (std::size_t u = first + 1; u <= last; ++u) {
-        hits.sum += terms_[u];
-        hits.most = terms_[u] > hits.most ? terms_[u] : hits.most;
+        hits.sum += terms[u];
+        hits.most = terms[u] > hits.most ? terms[u] : hits.most;
     }
     const VoxelKey key{static_cast<std::uint16_t>(key_xy), static_cast<std::uint16_t>(key_xy >> 16U),
                        static_cast<std::uint16_t>(key_z)};
     hits.cell = static_cast<std::uint16_t>(cell_of(key));
-    found_.push_back(hits);
-    bricks_.push_back(static_cast<std::uint32_t>(index_of(key)));
+    band.found.push_back(hits);
+    band.bricks.push_back(static_cast<std::uint32_t>(index_of(key)));
 }
 
 std::span<const CellHits> HitBricks::of(MortonCode brick) const noexcept {

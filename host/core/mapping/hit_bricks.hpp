@@ -1,6 +1,7 @@
 // The hits of one image, by brick.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -29,6 +30,12 @@ class HitBricks {
     /// `voxels_max` voxels. O(pixels + bricks of the box). Throws std::bad_alloc.
     [[nodiscard]] bool take(const PlacedImage& rays, const KeyBox& box, const HitModel& model,
                             std::size_t voxels_max);
+    /// The same in steps: after `begin`, if it is true, several threads may each `find` in some of `kBands`
+    /// bands of rows; once all are, `sort`.
+    static constexpr std::size_t kBands = 4;
+    [[nodiscard]] bool begin(const KeyBox& box, std::size_t voxels_max);
+    void find(const PlacedImage& rays, const HitModel& model, std::size_t band);
+    void sort();
     /// Of a brick: in the order of pixels.
     [[nodiscard]] std::span<const CellHits> of(MortonCode brick) const noexcept;
 
@@ -41,19 +48,23 @@ class HitBricks {
                bricks_x_ * (along(box_.lowest.y, key.y) + bricks_y_ * along(box_.lowest.z, key.z));
     }
 
-    void take_row(const PlacedImage& rays, std::size_t first, const HitModel& model);
+    struct Band {
+        std::vector<float> terms;  ///< of a row's rays
+        /// A bit for each of those: the next one ends in another voxel, or in nothing.
+        std::vector<std::uint64_t> run_ends;
+        std::vector<CellHits> found;        ///< in the order of pixels
+        std::vector<std::uint32_t> bricks;  ///< of each of those
+    };
+    void take_row(const PlacedImage& rays, std::size_t first, const HitModel& model, Band& band) const;
     /// Rays of a row that end in one voxel.
-    void take_run(std::uint32_t key_xy, std::uint32_t key_z, std::size_t first, std::size_t last);
+    void take_run(std::uint32_t key_xy, std::uint32_t key_z, std::size_t first, std::size_t last,
+                  Band& band) const;
 
     KeyBox box_;
-    std::vector<float> terms_;  ///< of a row's rays
-    std::vector<std::uint64_t>
-        run_ends_;  ///< a bit for each: the next one ends in another voxel, or in nothing
     std::size_t bricks_x_ = 0;
     std::size_t bricks_y_ = 0;
-    std::vector<CellHits> found_;        ///< in the order of pixels
-    std::vector<std::uint32_t> bricks_;  ///< of each of those
-    std::vector<std::uint32_t> ends_;    ///< by brick: where its hits end, and the next one's begin
+    std::array<Band, kBands> bands_;
+    std::vector<std::uint32_t> ends_;  ///< by brick: where its hits end, and the next one's begin
     std::vector<CellHits> sorted_;
 };
 
