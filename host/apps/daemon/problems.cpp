@@ -164,6 +164,10 @@ std::string why_no_joints(const DaemonView& view) {
     if (const std::string refused = refused_lines(*socket); !refused.empty())
         return fmt::format("no joint states: what comes through the socket is refused ({}); wanted: {}",
                            refused, kJointTextWanted);
+    if (view.pipeline->accounts().frames.rejected(FrameReason::joint_no_host_time) > 0) {
+        return "no joint states: those that come through the socket have no time on the bus's clock "
+               "(joint_no_host_time): nobody sends SYNC and FOLLOW_UP on it";
+    }
     return "no joint states: none comes through the socket (`octoskin joints`)";
 }
 

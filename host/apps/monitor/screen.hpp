@@ -28,6 +28,9 @@ struct ScreenLine {
                                                 const nlohmann::ordered_json& now,
                                                 std::chrono::duration<double> passed);
 
+/// Lines that are longer than so many columns go on in the next ones, indented, broken between words.
+[[nodiscard]] std::vector<ScreenLine> wrapped(const std::vector<ScreenLine>& lines, std::size_t columns);
+
 /// How many of so many lines fit: where they do not all, the last row says so.
 [[nodiscard]] std::size_t rows_for(std::size_t lines, ScreenSize size) noexcept;
 

@@ -116,7 +116,10 @@ std::optional<int> descriptor_of(const std::string& interface) {
     int descriptor = -1;
     const char* const last = interface.data() + interface.size();
     const auto [end, error] = std::from_chars(interface.data() + kPrefix.size(), last, descriptor);
-    if (error != std::errc{} || end != last || descriptor < 0 || ::fcntl(descriptor, F_GETFD) < 0)
+    if (error != std::errc{} || end != last)
+        throw CommandFailure(
+            {ExitCode::usage, interface + ": expected fd: and the number of an open descriptor"});
+    if (descriptor < 0 || ::fcntl(descriptor, F_GETFD) < 0)
         throw CommandFailure({ExitCode::usage, interface + ": no descriptor of that number is open"});
     check_frame_socket(interface, descriptor);
     return descriptor;

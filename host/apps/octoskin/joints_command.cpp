@@ -210,13 +210,13 @@ class Forwarder {
             if (!parsed) {
                 const char* const name =
                     names_of(parsed.error()).at(static_cast<std::size_t>(parsed.error()));
-                return refuse(
-                    name, fmt::format("line not sent, {}: {} (wanted: {})",
-                                      describe(parsed.error(), line, count, now), line, kJointTextWanted));
+                return refuse(name, fmt::format("line not sent, {}: {} (wanted: {})",
+                                                describe(parsed.error(), line, count, now), shown(line),
+                                                kJointTextWanted));
             }
             if (const std::string fault = joints_->fault_of(parsed->position); !fault.empty())
                 return refuse("out_of_limits",
-                              fmt::format("line not sent, out_of_limits: {}: {}", fault, line));
+                              fmt::format("line not sent, out_of_limits: {}: {}", fault, shown(line)));
             sample = std::move(parsed).value();
         }
         if (!output_.put(line, sample)) return lose();
@@ -234,6 +234,12 @@ class Forwarder {
 
   private:
     static constexpr std::size_t kLossesTold = 8;
+
+    /// Of a line that may be long, as much as tells what it is.
+    static std::string shown(const std::string& line) {
+        constexpr std::size_t kShown = 120;
+        return line.size() <= kShown ? line : line.substr(0, kShown) + "...";
+    }
 
     void lose() {
         ++lost_;
@@ -328,13 +334,15 @@ void add_joints_command(CLI::App& app) {
         "Python's\n"
         "time.monotonic()), within 1 s of now; without it a line counts as sampled when it came. With --rig "
         "a line\n"
-        "of another number of joints, or beyond the robot's joint limits, is refused here; without it the "
+        "of another number of joints, or beyond the robot's joint limits by over 0.005, is refused here; "
+        "without it the "
         "daemon\n"
         "checks the lines, and `octoskin status` says what it refused.\n"
         "At the end of the input, and on SIGINT or SIGTERM, it tells how many lines were sent, lost and "
         "refused.\n"
         "Exit codes: 0 lines went through; 64 command line; 65 a line without end; 66 no such rig file;\n"
-        "69 not one line went through; 74 standard input cannot be read; 78 the rig is not valid.");
+        "69 of the lines that came not one went through; 74 standard input cannot be read; 78 the rig is not "
+        "valid.");
     command->callback([options] { forward(*options); });
 }
 

@@ -87,15 +87,17 @@ class Terminal {
             has_keys_ = count < 0 && errno == EINTR;
             return;
         }
-        scroll_.type({keys.data(), static_cast<std::size_t>(count)}, lines_.size(),
-                     rows_for(lines_.size(), size_now()));
+        const ScreenSize screen = size_now();
+        const std::size_t lines = wrapped(lines_, screen.columns).size();
+        scroll_.type({keys.data(), static_cast<std::size_t>(count)}, lines, rows_for(lines, screen));
         if (scroll_.is_ended()) is_ended = 1;
         show();
     }
     void show() const {
         const ScreenSize screen = size_now();
+        const std::vector<ScreenLine> lines = wrapped(lines_, screen.columns);
         std::string text =
-            to_terminal(lines_, screen, true, scroll_.first(lines_.size(), rows_for(lines_.size(), screen)));
+            to_terminal(lines, screen, true, scroll_.first(lines.size(), rows_for(lines.size(), screen)));
         for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 4)
             text.insert(at, "\x1b[K");
         write("\x1b[H" + text + "\x1b[J");

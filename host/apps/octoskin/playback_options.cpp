@@ -55,6 +55,7 @@ PlaybackRequest playback_request(const PlaybackOptions& options) {
     return {.recording = recording,
             .mapping = configuration->mapping,
             .configuration = configuration->name,
+            .is_mapping_given = !options.configuration.empty(),
             .maps = {},
             .rig = options.rig,
             .robot = options.robot,

@@ -201,7 +201,8 @@ void add_record_command(CLI::App& app) {
     command->add_flag("--stop", options->stops, "End the recording that is going on");
     command->add_option("--socket", options->socket, "Where the daemon listens")->capture_default_str();
     command->footer(
-        "Exit codes: 0 the recording is whole; 1 it lacks something, or ended before it was to; 64 command "
+        "Exit codes: 0 the recording is whole; 1 it lacks something, or the daemon ended it early; 64 "
+        "command "
         "line; 65 not the answer of a "
         "daemon of\n"
         "this version; 69 no daemon, or nothing is being recorded; 73 the directory cannot be recorded to, "

@@ -1,6 +1,7 @@
 // octoskin replay: a recording through the host's pipeline, into maps.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <charconv>
 #include <chrono>
@@ -40,7 +41,10 @@ void wait_for_enter(const std::string& what) {
     print("{}", what);
     static_cast<void>(std::fflush(stdout));  // its failure is told at the end
     std::string line;
-    if (std::getline(std::cin, line)) return;
+    if (std::getline(std::cin, line)) {
+        if (::isatty(STDIN_FILENO) == 0) print("\n");  // nobody's key has ended the line
+        return;
+    }
     print("\n");
     throw CommandFailure({ExitCode::io_failed,
                           "standard input has ended, and with it the replay, before its own end: --step "
@@ -152,10 +156,12 @@ void add_replay_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("replay", "Play a recording through the pipeline; write maps and the account");
     command->add_option("recording", options->playback.recording, "Directory of the recording")->required();
-    command->add_option("--out", options->out, "Where the maps go (default: RECORDING/maps)");
+    auto* const out =
+        command->add_option("--out", options->out, "Where the maps go (default: RECORDING/maps)");
     add_playback_options(*command, options->playback);
-    command->add_flag("--fused-only", options->is_fused_only,
-                      "Leave out the maps of the camera alone and the sensors alone");
+    auto* const fused_only =
+        command->add_flag("--fused-only", options->is_fused_only,
+                          "Leave out the maps of the camera alone and the sensors alone");
     auto* const speed =
         command->add_option("--speed", options->speed,
                             "max; or how many times real time: 1, 10, 0.5 (default: max, with --onto 1)");
@@ -163,7 +169,9 @@ void add_replay_command(CLI::App& app) {
         ->add_option("--onto", options->onto,
                      "Send the frames of can.log onto this CAN interface (fd:N: an open socket) in place "
                      "of making maps")
-        ->excludes(command->get_option("--camera"));
+        ->excludes(command->get_option("--camera"))
+        ->excludes(out)
+        ->excludes(fused_only);
     command
         ->add_flag(
             "--step", options->is_stepped,

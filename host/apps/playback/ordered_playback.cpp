@@ -50,11 +50,20 @@ std::string why_another(const PlaybackRequest& request, const rig::Rig& rig,
     if (!order.trailer()->is_complete())
         return fmt::format("{} commits and {} depth frames could not be recorded",
                            order.trailer()->lost_commits, order.trailer()->lost_depth);
-    if (order.header().rig_hash != rig::rig_hash(rig)) return "another rig was given";
-    if (!played.has_daemons_mapping) return "another configuration was given";
+    if (order.header().rig_hash != rig::rig_hash(rig) && !request.rig.empty()) return "another rig was given";
+    if (!played.has_daemons_mapping && request.is_mapping_given) return "another configuration was given";
     if (outcome.depth_missing > 0)
         return fmt::format("{} depth frames that were recorded are missing", outcome.depth_missing);
     return request.robot.empty() ? "" : "another robot description was given";
+}
+
+/// Of a map that must be the daemon's and is not, what can be told.
+std::string guess_at_unlike(const rig::Rig& rig, const orderlog::OrderReader& order,
+                            const OrderedPlayback& played) {
+    if (order.header().rig_hash != rig::rig_hash(rig)) return "its rig.yaml is not the daemon's";
+    if (!played.has_daemons_mapping) return "its mapping.yaml is not the daemon's";
+    if (!played.outcome.took_all()) return "what the daemon took was rejected (see the account)";
+    return "files of the recording were changed, another kind of processor, or a defect of octoskin";
 }
 
 bool is_daemons(const orderlog::OrderReader& order, const FusedMap& map) {
@@ -71,10 +80,9 @@ void judge(const PlaybackRequest& request, const rig::Rig& rig, const orderlog::
         played.warnings.push_back("the map is not the daemon's own: " + why);
     } else {
         played.is_unlike_daemons = true;
-        played.warnings.push_back(fmt::format(
-            "the fused map is not the daemon's own, though all is as it was{}: files of the recording were "
-            "changed, another kind of processor, or a defect of octoskin",
-            played.outcome.took_all() ? "" : ", and what the daemon took was rejected (see the account)"));
+        played.warnings.push_back(
+            "the fused map is not the daemon's own, though nothing else was given than the recording: " +
+            guess_at_unlike(rig, order, played));
     }
 }
 

@@ -23,7 +23,8 @@ namespace octoskin {
 struct PlaybackRequest {
     RecordingPaths recording;
     MappingConfig mapping;
-    std::string configuration;  ///< what `mapping` is called
+    std::string configuration;      ///< what `mapping` is called
+    bool is_mapping_given = false;  ///< in place of the recording's
     MapChoice maps;
     std::filesystem::path rig;    ///< in place of the recording's; empty: the recording's
     std::filesystem::path robot;  ///< in place of the recording's; empty: the recording's

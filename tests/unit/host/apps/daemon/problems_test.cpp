@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
 
+#include <array>
 #include <cmath>
 
 #include "common/range_status.hpp"
@@ -232,6 +233,21 @@ TEST_F(ProblemsTest, have_a_joint_node_whose_word_does_not_count) {
                        kJoints);
     });
     EXPECT_THAT(all_told(), ElementsAre("node 10 'node 1': time_suspect"));
+}
+
+TEST_F(ProblemsTest, have_joint_states_without_a_time_where_nobody_tells_it) {
+    play_changed(
+        [](Scene& scene) {
+            scene.bus = ScriptedBus{};
+            scene.bus.joints(0.1, kJoints, std::array{0.2});
+        },
+        0.4);
+    EXPECT_EQ(told("no joints"), "no joint states: none from node 10 on the bus (and no --joints)");
+    const auto with_socket = inputs_with_joint_socket();
+    view_.inputs = with_socket.get();
+    EXPECT_EQ(told("no joints"),
+              "no joint states: those that come through the socket have no time on the bus's clock "
+              "(joint_no_host_time): nobody sends SYNC and FOLLOW_UP on it");
 }
 
 TEST_F(ProblemsTest, have_joint_states_that_are_not_there_or_of_no_use) {

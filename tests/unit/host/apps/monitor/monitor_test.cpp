@@ -174,6 +174,28 @@ TEST(Monitor, shows_each_line_of_a_status_somewhere_as_it_is_scrolled) {
     for (const ScreenLine& line : lines) EXPECT_TRUE(seen.contains(line.text)) << line.text;
 }
 
+TEST(Monitor, breaks_long_lines_between_words_and_loses_none) {
+    const std::string text =
+        "  12 counter   of some words and a long one: " + std::string(40, 'x') + " \u00e4\u00f6\u00fc end";
+    for (std::size_t columns = 18; columns < 100; ++columns) {
+        std::string words;
+        const auto lines = wrapped({{text, Emphasis::bad}, {"", {}}, {"short", Emphasis::title}}, columns);
+        ASSERT_GE(lines.size(), 3U);
+        for (std::size_t i = 0; i + 2 < lines.size(); ++i) {
+            const auto letters = std::ranges::count_if(
+                lines[i].text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+            EXPECT_LE(static_cast<std::size_t>(letters), columns);
+            EXPECT_EQ(lines[i].emphasis, Emphasis::bad);
+            words += lines[i].text;
+        }
+        std::string expected = text;
+        for (std::string* all : {&words, &expected}) std::erase(*all, ' ');
+        EXPECT_EQ(words, expected) << columns;
+        EXPECT_EQ(lines.back().text, "short");
+    }
+    EXPECT_EQ(wrapped({{text, {}}}, 10).size(), 1U) << "too narrow for words: it is cut";
+}
+
 TEST(Monitor, scrolls_by_its_keys_and_never_beyond_the_lines) {
     Scroll scroll;
     const auto first_after = [&scroll](std::string_view keys) {
