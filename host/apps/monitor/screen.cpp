@@ -232,28 +232,40 @@ class Screen {
     std::vector<ScreenLine> lines_;
 };
 
-bool begins_character(char letter) {
-    return (static_cast<unsigned char>(letter) & 0xC0U) != 0x80U;
-}
 /// Of UTF-8: how many bytes its first `characters` are.
 std::size_t bytes_of(std::string_view text, std::size_t characters) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
-        if (begins_character(text[i]) && ++count > characters) return i;
+        const bool begins_one = (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U;
+        if (begins_one && ++count > characters) return i;
     }
     return text.size();
 }
 
 /// So many characters of UTF-8; a control character, which a name might hold, becomes a question mark.
 std::string cut(const std::string& line, std::size_t columns) {
-    std::string shown;
-    std::size_t characters = 0;
-    for (const char letter : line) {
+    std::string shown = line.substr(0, bytes_of(line, columns));
+    for (char& letter : shown) {
         const auto byte = static_cast<unsigned char>(letter);
-        if (begins_character(letter) && ++characters > columns) break;
-        shown += byte < 0x20U || byte == 0x7FU ? '?' : letter;
+        if (byte < 0x20U || byte == 0x7FU) letter = '?';
     }
     return shown;
+}
+
+/// What the next lines of a broken one begin with.
+constexpr std::string_view kIndent = "      ";
+
+void wrap(const ScreenLine& line, std::size_t columns, std::vector<ScreenLine>& all) {
+    std::string rest = line.text;
+    for (std::size_t fits = 0; (fits = bytes_of(rest, columns)) < rest.size();) {
+        const std::size_t blank = rest.rfind(' ', fits);
+        const std::size_t end = blank == std::string::npos || blank <= kIndent.size() ? fits : blank;
+        all.push_back({rest.substr(0, end), line.emphasis});
+        const std::size_t next = rest.find_first_not_of(' ', end);
+        if (next == std::string::npos) return;
+        rest = std::string(kIndent) + rest.substr(next);
+    }
+    all.push_back({rest, line.emphasis});
 }
 
 std::string coloured(const std::string& line, Emphasis emphasis) {
@@ -277,28 +289,9 @@ std::vector<ScreenLine> screen_of(const Json& before, const Json& now, Seconds p
 }
 
 std::vector<ScreenLine> wrapped(const std::vector<ScreenLine>& lines, std::size_t columns) {
-    constexpr std::string_view kIndent = "      ";
-    constexpr std::size_t kColumnsMin = 3 * kIndent.size();
-    if (columns < kColumnsMin) return lines;
+    if (columns < 3 * kIndent.size()) return lines;
     std::vector<ScreenLine> all;
-    for (const ScreenLine& line : lines) {
-        std::string rest = line.text;
-        while (true) {  // each round takes at least a column's worth off
-            const std::size_t fits = bytes_of(rest, columns);
-            if (fits == rest.size()) break;
-            const std::size_t blank = rest.rfind(' ', fits);
-            const bool is_word = blank == std::string::npos || blank <= kIndent.size();
-            const std::size_t end = is_word ? fits : blank;
-            all.push_back({rest.substr(0, end), line.emphasis});
-            const std::size_t next = rest.find_first_not_of(' ', end);
-            if (next == std::string::npos) {
-                rest.clear();
-                break;
-            }
-            rest = std::string(kIndent) + rest.substr(next);
-        }
-        if (!rest.empty() || line.text.empty()) all.push_back({rest, line.emphasis});
-    }
+    for (const ScreenLine& line : lines) wrap(line, columns, all);
     return all;
 }
 

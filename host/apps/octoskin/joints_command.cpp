@@ -166,12 +166,10 @@ struct RigJoints {
 
     /// Of a sample that the daemon would not take, why; empty: it is within the limits.
     [[nodiscard]] std::string fault_of(std::span<const double> position) const {
-        const double tolerance = JointHistoryConfig{}.limit_tolerance;
         for (std::size_t i = 0; i < position.size(); ++i) {
-            const auto& [min, max] = limits[i];
-            if (position[i] >= min - tolerance && position[i] <= max + tolerance) continue;
+            if (limits[i].hold(position[i], JointHistoryConfig{}.limit_tolerance)) continue;
             return fmt::format("joint {} of {}, {}, is {}, beyond the robot's limits {} to {}", i + 1,
-                               position.size(), names[i], position[i], min, max);
+                               position.size(), names[i], position[i], limits[i].min, limits[i].max);
         }
         return {};
     }

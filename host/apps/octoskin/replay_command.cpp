@@ -24,9 +24,6 @@
 namespace octoskin::app {
 namespace {
 
-/// Of the recording, between two lines of progress.
-constexpr int kProgressSeconds = 2;
-
 struct ReplayOptions {
     PlaybackOptions playback;
     std::filesystem::path out;
@@ -66,14 +63,28 @@ Pace pace_of(const ReplayOptions& options) {
     return Pace::times(speed);
 }
 
+/// When a line of progress is due: every two seconds of the recording.
+class ProgressSeconds {
+  public:
+    /// The second to tell; empty: the last one told is not long enough ago.
+    [[nodiscard]] std::optional<int> due(Nanoseconds into_recording) {
+        const auto second = static_cast<int>(into_recording / std::chrono::seconds(1));
+        if (second < told_ + 2) return std::nullopt;
+        told_ = second;
+        return second;
+    }
+
+  private:
+    int told_ = 0;
+};
+
 /// `unit`: of what the replay takes one after the other.
-void report_progress(const ReplayProgress& progress, const char* unit, int& last_second) {
+void report_progress(const ReplayProgress& progress, const char* unit, ProgressSeconds& seconds) {
     if (!progress.begin || !progress.now) return;
-    const auto second = static_cast<int>((*progress.now - *progress.begin).count() / 1'000'000'000);
-    if (second < last_second + kProgressSeconds) return;
-    last_second = second;
-    spdlog::info("replaying: {} s, {} {}, {} depth frames", second, progress.can_frames, unit,
-                 progress.depth_frames);
+    if (const auto second = seconds.due(*progress.now - *progress.begin)) {
+        spdlog::info("replaying: {} s, {} {}, {} depth frames", *second, progress.can_frames, unit,
+                     progress.depth_frames);
+    }
 }
 
 /// A replay that failed leaves the maps of the one before as they are.
@@ -101,12 +112,10 @@ void save(const Playback& playback, MapFolder& folder, const std::filesystem::pa
 
 void replay_onto_bus(const ReplayOptions& options) {
     socketcan::CanSocket socket = open_can(options.onto);
-    int last_second = 0;
+    ProgressSeconds seconds;
     const auto report = [&](const OntoBus& so_far, Nanoseconds into_log) {
-        const auto second = static_cast<int>(into_log / std::chrono::seconds(1));
-        if (second < last_second + kProgressSeconds) return;
-        last_second = second;
-        spdlog::info("sending: {} s, {} frames", second, so_far.sent);
+        if (const auto second = seconds.due(into_log))
+            spdlog::info("sending: {} s, {} frames", *second, so_far.sent);
     };
     const auto played =
         play_onto(RecordingPaths(options.playback.recording).can_log(), socket, pace_of(options), report);
@@ -129,10 +138,10 @@ void replay_recording(const ReplayOptions& options) {
     // Before the work: of two that write there, the second would else find out after it.
     auto folder = MapFolder::open(options.out);
     if (!folder) throw CommandFailure(folder.error());
-    int last_second = 0;
+    ProgressSeconds seconds;
     const char* const unit = is_played_in_order(request) ? "commits" : "CAN frames";
     const auto playback = play_recording(
-        request, [&](const ReplayProgress& progress) { report_progress(progress, unit, last_second); });
+        request, [&](const ReplayProgress& progress) { report_progress(progress, unit, seconds); });
     if (!playback) throw CommandFailure(playback.error());
 
     for (const AccountTable& table : playback->accounts) print("{}", to_text(table));

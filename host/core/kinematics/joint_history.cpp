@@ -18,9 +18,9 @@ Status<JointRejection> JointHistory::add(HostTime sampled, std::span<const doubl
         return unexpected(JointRejection::not_finite);
     }
     for (std::size_t i = 0; i < position.size(); ++i) {
-        const bool is_within = position[i] >= limits_[i].min - config_.limit_tolerance &&
-                               position[i] <= limits_[i].max + config_.limit_tolerance;
-        if (!is_within) return unexpected(JointRejection::outside_limits);
+        if (!limits_[i].hold(position[i], config_.limit_tolerance)) {
+            return unexpected(JointRejection::outside_limits);
+        }
     }
     if (size_ > 0 && sampled <= sample(size_ - 1).sampled) return unexpected(JointRejection::out_of_order);
 

@@ -22,6 +22,10 @@ enum class JointKind : std::uint8_t { fixed, revolute, continuous, prismatic };
 struct JointLimits {
     double min = 0.0;
     double max = 0.0;
+    /// Or it is beyond them by no more than `tolerance`; false for a NaN.
+    [[nodiscard]] bool hold(double position, double tolerance) const noexcept {
+        return position >= min - tolerance && position <= max + tolerance;
+    }
 };
 
 /// A joint as its robot description has it.

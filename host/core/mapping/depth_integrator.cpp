@@ -95,6 +95,24 @@ float voted_term(const RayVote& vote, float hit, float miss) {
     return sum > 0.0F ? sum / (end + go_on) : 0.0F;
 }
 
+/// What one of a crew does at a time: 4 x 4 x 4 bricks.
+constexpr unsigned kPartHeight = kBrickHeight + 2;
+
+/// Calls add_below(terms, cube) for each cube, whoever is free, and joins what they say in the cubes' order.
+/// `parts`: working memory.
+template <class AddBelow>
+void add_together(Crew& crew, const std::vector<VoxelCube>& cubes, const AddBelow& add_below,
+                  std::vector<DepthTerms>& parts, DepthTerms& terms) {
+    if (parts.size() < cubes.size()) parts.resize(cubes.size());
+    crew.work(cubes.size(), [&](std::size_t i) {
+        parts[i].bricks.clear();
+        parts[i].hits.clear();
+        parts[i].miss = terms.miss;
+        add_below(parts[i], cubes[i]);
+    });
+    for (std::size_t i = 0; i < cubes.size(); ++i) terms.append(parts[i]);
+}
+
 BrickMask without(BrickMask mask, const BrickMask& others) {
     for (std::size_t word = 0; word < mask.size(); ++word) mask[word] &= ~others[word];
     return mask;
@@ -260,21 +278,11 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const Eigen::Isometr
     };
     if (crew_->size() == 1) {
         add_below(terms, kWholeOctree);
-        return true;
+    } else {
+        std::vector<VoxelCube> cubes;
+        walk_cubes(box, kPartHeight, verdict_of, [&](const VoxelCube& cube, bool) { cubes.push_back(cube); });
+        add_together(*crew_, cubes, add_below, workspace_->parts, terms);
     }
-    // Cubes of 4 x 4 x 4 bricks, whoever is free: what each says is joined in their order.
-    constexpr unsigned kPartHeight = kBrickHeight + 2;
-    std::vector<VoxelCube> cubes;
-    walk_cubes(box, kPartHeight, verdict_of, [&](const VoxelCube& cube, bool) { cubes.push_back(cube); });
-    std::vector<DepthTerms>& parts = workspace_->parts;
-    if (parts.size() < cubes.size()) parts.resize(cubes.size());
-    crew_->work(cubes.size(), [&](std::size_t i) {
-        parts[i].bricks.clear();
-        parts[i].hits.clear();
-        parts[i].miss = terms.miss;
-        add_below(parts[i], cubes[i]);
-    });
-    for (std::size_t i = 0; i < cubes.size(); ++i) terms.append(parts[i]);
     return true;
 }
 

@@ -68,10 +68,7 @@ Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, c
     }
     without_robot_ = std::move(image);
     robot_pixels_ += robot_pixels;
-    pixels_.used += updates->pixels.used;
-    pixels_.no_value += updates->pixels.no_value;
-    pixels_.bad_value += updates->pixels.bad_value;
-    pixels_.outside_map += updates->pixels.outside_map;
+    pixels_ += updates->pixels;
     return std::move(updates).value();
 }
 

@@ -265,10 +265,7 @@ void place_image(const DepthImage& image, const PixelRays& pixel_rays, const Vox
     Crew alone(1);
     (crew == nullptr ? alone : *crew).work(bands, place_band);
     for (const RowSums& of_band : sums) {
-        placed.counts.used += of_band.counts.used;
-        placed.counts.no_value += of_band.counts.no_value;
-        placed.counts.bad_value += of_band.counts.bad_value;
-        placed.counts.outside_map += of_band.counts.outside_map;
+        placed.counts += of_band.counts;
         placed.lowest = placed.lowest.cwiseMin(of_band.lowest);
         placed.highest = placed.highest.cwiseMax(of_band.highest);
     }

@@ -20,6 +20,13 @@ struct DepthPixelCounts {
     std::uint64_t no_value = 0;     ///< NaN: no return, filtered, or the robot
     std::uint64_t bad_value = 0;    ///< infinite, zero or negative
     std::uint64_t outside_map = 0;  ///< the endpoint lies outside the octree
+    DepthPixelCounts& operator+=(const DepthPixelCounts& others) noexcept {
+        used += others.used;
+        no_value += others.no_value;
+        bad_value += others.bad_value;
+        outside_map += others.outside_map;
+        return *this;
+    }
 };
 
 /// Row-major, one entry a pixel, and some more: as many as a vector of any instruction set holds may be read
