@@ -1,41 +1,17 @@
-// Runs the real `octoskin` as a user does, and keeps what it said.
+// The real `octoskin` as a user runs it, in a directory of its own.
 #pragma once
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 
+#include "tests/system/said.hpp"
+
 namespace octoskin {
-
-struct Said {
-    int exit_code = -1;
-    std::string output;  ///< standard output and standard error
-};
-
-/// Through the shell; `arguments` as typed.
-inline Said run(const std::string& command) {
-    Said said;
-    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-    if (pipe == nullptr) return said;
-    std::array<char, 4096> buffer{};
-    for (std::size_t read = 0; (read = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
-        said.output.append(buffer.data(), read);
-    }
-    const int status = pclose(pipe);
-    said.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return said;
-}
-
-inline Said octoskin(const std::string& arguments) {
-    return run(OCTOSKIN_PROGRAM " " + arguments);
-}
 
 inline std::string source(const std::string& relative) {
     return OCTOSKIN_SOURCE_DIR "/" + relative;

@@ -18,6 +18,7 @@
 #include "host/core/mapping/fused_map.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
+#include "tests/system/said.hpp"
 
 namespace octoskin::test {
 namespace {
@@ -26,25 +27,10 @@ using namespace std::chrono_literals;
 using Json = nlohmann::json;
 using testing_support::ScratchFolder;
 
-struct Ran {
-    int exit_code = -1;
-    std::string output;  ///< both streams, unless `errors` go elsewhere
-};
-
-Ran run(const std::string& arguments, const std::string& errors = "2>&1") {
-    Ran ran;
-    const std::string command = OCTOSKIN_PROGRAM " " + arguments + " " + errors;
-    FILE* const pipe = ::popen(command.c_str(), "r");
-    if (pipe == nullptr) return ran;  // no process to be had
-    std::array<char, 4096> bytes{};
-    while (const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), pipe))
-        ran.output.append(bytes.data(), count);
-    ran.exit_code = WEXITSTATUS(::pclose(pipe));
-    return ran;
+/// Without warnings, which would spoil JSON.
+Said octoskin_json(const std::string& arguments) {
+    return run(OCTOSKIN_PROGRAM " " + arguments, "2> /dev/null");
 }
-
-/// Beside JSON, which they would spoil.
-constexpr const char* kNoWarnings = "2> /dev/null";
 
 /// Empty while nothing was recorded: there is a null then.
 std::string state_of_recording(const Json& status) {
@@ -54,15 +40,15 @@ std::string state_of_recording(const Json& status) {
 class DaemonRecording : public DaemonTest {
   protected:
     std::string out() const { return (folder_ / "recording").string(); }
-    Ran record(const std::string& arguments) const {
-        return run("record " + arguments + " --socket " + (folder_ / "control").string());
+    Said record(const std::string& arguments) const {
+        return octoskin("record " + arguments + " --socket " + (folder_ / "control").string());
     }
     Json ask(const std::string& line) const {
         return Json::parse(ask_daemon(folder_ / "control", line).value());
     }
     /// That a replay gives the map that the daemon had at the end of it.
     void expect_own_map(const std::string& configuration = "") const {
-        const Ran replay = run("replay " + out() + " --fused-only " + configuration);
+        const Said replay = octoskin("replay " + out() + " --fused-only " + configuration);
         EXPECT_EQ(replay.exit_code, 0) << replay.output;
         EXPECT_EQ(replay.output.find("CAN frames"), std::string::npos) << "it plays commits" << replay.output;
         EXPECT_NE(replay.output.find("the daemon's own, byte for byte"), std::string::npos) << replay.output;
@@ -79,7 +65,7 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
         },
         20s))
         << daemon_->log();
-    const Ran recorded = record(out() + " --seconds 6");
+    const Said recorded = record(out() + " --seconds 6");
     ASSERT_EQ(recorded.exit_code, 0) << recorded.output << daemon_->log();
     const Json recording = daemon_->status()["recording"];
     EXPECT_EQ(recording["state"], "ended");
@@ -97,7 +83,7 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
     int went_on = 0;
     for (const char* point :
          {"1.4 -1 1.04", "1.5 0 0.5", "1 0 0.5", "0.8 0.3 0.3", "0.5 0.5 0.5", "0.3 0.2 0.8"}) {
-        const Ran explained = run(explain + point, kNoWarnings);
+        const Said explained = octoskin_json(explain + point);
         ASSERT_EQ(explained.exit_code, 0) << explained.output;
         const Json json = Json::parse(explained.output);
         went_on += !json["log_odds_at_begin"].is_null() && !json["contributions"].empty() ? 1 : 0;
@@ -105,13 +91,13 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
     EXPECT_GT(went_on, 0) << "no voxel was known at the begin and changed afterwards";
     // Both orders count from the recording's begin, and the daemon had joint samples of before that.
     const std::string seen_through = explain + "1.4 -1 1.04";
-    const Json ordered = Json::parse(run(seen_through, kNoWarnings).output);
-    const Json by_time = Json::parse(run(seen_through + " --by-capture-time", kNoWarnings).output);
+    const Json ordered = Json::parse(octoskin_json(seen_through).output);
+    const Json by_time = Json::parse(octoskin_json(seen_through + " --by-capture-time").output);
     ASSERT_FALSE(ordered["contributions"].empty());
     // By capture time the clocks are learnt in the recording itself: a busy machine takes seconds for that.
     ASSERT_FALSE(by_time["contributions"].empty())
         << by_time.dump(1)
-        << run("replay " + out() + " --fused-only --by-capture-time --out " + out() + "-again").output;
+        << octoskin("replay " + out() + " --fused-only --by-capture-time --out " + out() + "-again").output;
     const double last_s = ordered["contributions"].back()["time_s"].get<double>();
     EXPECT_NEAR(last_s, by_time["contributions"].back()["time_s"].get<double>(), 0.11) << "a frame's period";
     EXPECT_LT(last_s, 6.1);
@@ -120,9 +106,9 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
     // The same again in the order of capture times: another map, and the same one every time.
     const auto in_order = ScratchFolder::read(out() + "/maps/fused.ot");
     const std::string plain = "replay " + out() + " --fused-only --by-capture-time";
-    EXPECT_EQ(run(plain).exit_code, 0) << run(plain).output;
+    EXPECT_EQ(octoskin(plain).exit_code, 0) << octoskin(plain).output;
     const auto first = ScratchFolder::read(out() + "/maps/fused.ot");
-    EXPECT_EQ(run(plain).exit_code, 0);
+    EXPECT_EQ(octoskin(plain).exit_code, 0);
     EXPECT_TRUE(ScratchFolder::read(out() + "/maps/fused.ot") == first);
     EXPECT_FALSE(first == in_order);
 }
@@ -140,13 +126,13 @@ TEST_F(DaemonRecording, begun_with_a_full_map_gives_the_daemons_own_map_and_expl
     ASSERT_TRUE(daemon_->wait_until(
         [](const Json& status) { return is_ranging(status) && has_problem(status, "memory_max_mib"); }, 15s))
         << daemon_->status()["map"].dump(1) << daemon_->log();
-    const Ran recorded = record(out() + " --seconds 2");
+    const Said recorded = record(out() + " --seconds 2");
     ASSERT_EQ(recorded.exit_code, 0) << recorded.output << daemon_->log();
     expect_own_map();
     // A voxel that a map with more room has.
     const auto more = folder_.write("more.yaml", "base: robust\nmap: {memory_max_mib: 100}\n");
-    const Ran roomy = run("replay " + out() + " --fused-only --configuration " + more.string() + " --out " +
-                          (folder_ / "roomy").string());
+    const Said roomy = octoskin("replay " + out() + " --fused-only --configuration " + more.string() +
+                                " --out " + (folder_ / "roomy").string());
     ASSERT_EQ(roomy.exit_code, 0) << roomy.output;
     const FusedMap own = load_map(out() + "/last.ot").value();
     std::optional<Eigen::Vector3d> refused;
@@ -154,14 +140,14 @@ TEST_F(DaemonRecording, begun_with_a_full_map_gives_the_daemons_own_map_and_expl
         if (!own.log_odds(key)) refused = own.centre_of(key);
     });
     ASSERT_TRUE(refused);
-    const Ran explained = run(
+    const Said explained = octoskin(
         fmt::format("explain --recording {} -- {} {} {}", out(), refused->x(), refused->y(), refused->z()));
     EXPECT_EQ(explained.exit_code, 0) << explained.output;
     EXPECT_NE(explained.output.find("unknown: the map was full, and had no room for"), std::string::npos)
         << explained.output;
     // With another mapping it need not be the daemon's: whether that is complete nobody knows.
     const auto other = folder_.write("other.yaml", "base: paper\nmap: {memory_max_mib: 1}\n");
-    EXPECT_EQ(run("replay " + out() + " --fused-only --configuration " + other.string()).exit_code, 1);
+    EXPECT_EQ(octoskin("replay " + out() + " --fused-only --configuration " + other.string()).exit_code, 1);
 }
 
 TEST_F(DaemonRecording, is_whole_when_the_daemon_is_told_to_end_in_the_middle_of_it) {
@@ -181,7 +167,7 @@ TEST_F(DaemonRecording, is_whole_when_the_daemon_is_told_to_end_in_the_middle_of
     const std::string order = ScratchFolder::read(out() + "/order.log");
     const auto expect_unlike = [&](const std::string& changed, const std::string& why) {
         (void)folder_.write("recording/order.log", changed);
-        const Ran replay = run("replay " + out() + " --fused-only");
+        const Said replay = octoskin("replay " + out() + " --fused-only");
         EXPECT_EQ(replay.exit_code, 1) << replay.output;
         EXPECT_NE(replay.output.find(
                       "is not the daemon's own, though nothing else was given than the recording: " + why),
@@ -208,7 +194,7 @@ TEST_F(DaemonRecording, is_whole_when_the_daemon_is_told_to_end_in_the_middle_of
 TEST_F(DaemonRecording, is_told_by_its_command_when_the_daemon_ends_in_the_middle_of_it) {
     start();
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
-    Ran ran;
+    Said ran;
     std::thread command([&] { ran = record(out()); });
     EXPECT_TRUE(daemon_->wait_until(
         [](const Json& status) { return state_of_recording(status) == "recording"; }, 5s));
@@ -260,7 +246,7 @@ TEST_F(DaemonRecording, of_a_killed_daemon_has_its_depth_frames) {
     std::ofstream(out() + "/depth.epoch.yaml")
         << "schema: octoskin-depth-epoch/1\nfirst_frame_us: " << first_frame_us << "\nframes: " << frames
         << "\n";
-    const Ran replay = run("replay " + out() + " --fused-only");
+    const Said replay = octoskin("replay " + out() + " --fused-only");
     EXPECT_EQ(replay.exit_code, 0) << replay.output;
     EXPECT_TRUE(std::filesystem::exists(out() + "/maps/fused.ot"));
 }
@@ -272,161 +258,23 @@ TEST_F(DaemonRecording, of_a_killed_daemon_can_be_replayed_to_its_last_line) {
     std::this_thread::sleep_for(1500ms);
     daemon_->signal(SIGKILL);
     EXPECT_EQ(daemon_->wait(5s), -SIGKILL);
-    const Ran without = run("replay " + out());
+    const Said without = octoskin("replay " + out());
     EXPECT_EQ(without.exit_code, 66) << without.output;
     EXPECT_NE(without.output.find("meta.yaml"), std::string::npos) << without.output;
     std::ofstream(out() + "/meta.yaml") << "schema: octoskin-recording/1\nsource: robot\n";
-    const Ran replay = run("replay " + out());
+    const Said replay = octoskin("replay " + out());
     EXPECT_EQ(replay.exit_code, 0) << replay.output;
     EXPECT_NE(replay.output.find("order.log was cut off"), std::string::npos) << replay.output;
-}
-
-/// `octoskin record` beside a daemon that answers as a test says.
-class RecordCommand : public testing::Test {
-  protected:
-    using Answer = std::function<Json(const std::string& request)>;
-
-    explicit RecordCommand() {
-        socket_ = ControlSocket::open(folder_ / "control", loop_, [this](const std::string& request) {
-                      asked_.push_back(request);
-                      return answer_(request).dump();
-                  }).value();
-    }
-    /// Once in a test: a loop that was stopped is over. `answers`: whether the daemon lets anybody in.
-    Ran record(const std::string& arguments, bool answers = true) {
-        Ran ran;
-        is_done_ = false;
-        std::thread command([&] {
-            ran = run("record " + arguments + " --socket " + (folder_ / "control").string());
-            is_done_ = true;
-        });
-        const auto watch = loop_.every(20ms, [&] {
-            if (is_done_) loop_.stop(0);
-        });
-        if (answers) loop_.run();
-        command.join();
-        return ran;
-    }
-    [[nodiscard]] Json recording(int number, const std::string& name, const std::string& state) const {
-        return {{"state", state},   {"folder", (folder_ / name).string()},
-                {"error", ""},      {"seconds", 7.5},
-                {"can_frames", 4},  {"depth_frames", 3},
-                {"commits", 2},     {"lost_can", 0},
-                {"lost_depth", 0},  {"lost_commits", 0},
-                {"number", number}, {"is_complete", true},
-                {"ended_early", ""}};
-    }
-
-    ScratchFolder folder_;
-    EventLoop loop_;
-    std::atomic<bool> is_done_ = false;
-    std::vector<std::string> asked_;
-    Answer answer_;
-    std::unique_ptr<ControlSocket> socket_;
-};
-
-/// One that was started anew knows nothing of what the one before it recorded.
-TEST_F(RecordCommand, says_so_when_the_daemon_knows_of_no_recording) {
-    answer_ = [](const std::string&) -> Json { return {{"ok", true}, {"recording", nullptr}}; };
-    const Ran ran = record((folder_ / "out").string());
-    EXPECT_EQ(ran.exit_code, 69) << ran.output;
-    EXPECT_NE(ran.output.find("knows of no recording"), std::string::npos) << ran.output;
-}
-
-TEST_F(RecordCommand, follows_its_own_recording_alone) {
-    answer_ = [this](const std::string& request) -> Json {
-        if (request.starts_with("record start"))
-            return {{"ok", true}, {"recording", recording(1, "own", "recording")}, {"before", nullptr}};
-        return {{"ok", true},
-                {"recording", recording(2, "others", "recording")},
-                {"before", recording(1, "own", "ended")}};
-    };
-    const Ran ran = record((folder_ / "own").string());
-    EXPECT_EQ(ran.exit_code, 0) << ran.output;
-    EXPECT_NE(ran.output.find((folder_ / "own").string() + ": 7.5 s, 4 CAN frames"), std::string::npos)
-        << ran.output;
-}
-
-TEST_F(RecordCommand, says_why_its_recording_ended_before_it_was_to) {
-    answer_ = [this](const std::string& request) -> Json {
-        Json own = recording(1, "own", request.starts_with("record start") ? "recording" : "ended");
-        own["ended_early"] = "the bus's time went back";
-        return {{"ok", true}, {"recording", own}};
-    };
-    const Ran ran = record((folder_ / "own").string());
-    EXPECT_EQ(ran.exit_code, 1) << ran.output;
-    EXPECT_NE(ran.output.find((folder_ / "own").string() +
-                              ": whole, but it ended before it was to: the bus's time went back"),
-              std::string::npos)
-        << ran.output;
-}
-
-TEST_F(RecordCommand, says_so_when_the_daemon_knows_only_of_others) {
-    answer_ = [this](const std::string& request) -> Json {
-        const bool is_start = request.starts_with("record start");
-        return {{"ok", true},
-                {"recording", recording(is_start ? 1 : 3, is_start ? "own" : "others", "recording")},
-                {"before", is_start ? Json() : recording(2, "others too", "ended")}};
-    };
-    const Ran ran = record((folder_ / "own").string());
-    EXPECT_EQ(ran.exit_code, 69) << ran.output;
-    EXPECT_NE(ran.output.find((folder_ / "own").string() + ": the daemon"), std::string::npos) << ran.output;
-    EXPECT_NE(ran.output.find("knows no more of this recording"), std::string::npos) << ran.output;
-}
-
-TEST_F(RecordCommand, tells_a_daemon_that_no_longer_answers_from_one_that_ended) {
-    answer_ = [this](const std::string& request) -> Json {
-        if (request.starts_with("record start")) loop_.stop(0);  // from now on it hangs
-        return {{"ok", true}, {"recording", recording(1, "own", "recording")}};
-    };
-    const Ran ran = record((folder_ / "own").string());
-    EXPECT_EQ(ran.exit_code, 74) << ran.output;
-    EXPECT_NE(
-        ran.output.find("the daemon no longer answers, and may record on to " + (folder_ / "own").string()),
-        std::string::npos)
-        << ran.output;
-    EXPECT_NE(ran.output.find("octoskin record --stop " + (folder_ / "own").string()), std::string::npos);
-}
-
-TEST_F(RecordCommand, begins_nothing_once_it_has_given_up_waiting_for_the_begin) {
-    answer_ = [](const std::string&) -> Json { return {{"ok", true}, {"recording", nullptr}}; };
-    const Ran ran = record((folder_ / "own").string(), false);
-    EXPECT_EQ(ran.exit_code, 74) << ran.output;
-    EXPECT_NE(ran.output.find("is not known: `octoskin record --stop " + (folder_ / "own").string()),
-              std::string::npos)
-        << ran.output;
-    const auto turn = loop_.every(100ms, [&] { loop_.stop(0); });
-    loop_.run();
-    EXPECT_TRUE(asked_.empty()) << asked_.front();
-}
-
-TEST_F(RecordCommand, names_the_folder_whose_recording_it_ends) {
-    answer_ = [this](const std::string& request) -> Json {
-        const bool is_stop = request.starts_with("record stop");
-        return {{"ok", true}, {"recording", recording(1, "own", is_stop ? "ended" : "recording")}};
-    };
-    EXPECT_EQ(record("--stop " + (folder_ / "own/").string()).exit_code, 0);
-    EXPECT_EQ(asked_.back(), "record stop " + (folder_ / "own").string());
-}
-
-TEST_F(RecordCommand, refuses_a_folder_whose_name_would_be_two_lines) {
-    const Ran ran =
-        run("record \"$(printf '/tmp/a\\nrecord stop')\" --socket " + (folder_ / "control").string());
-    EXPECT_EQ(ran.exit_code, 64) << ran.output;
-    EXPECT_NE(
-        ran.output.find("'/tmp/a\\x0arecord stop': a recording's folder may have no control characters"),
-        std::string::npos)
-        << ran.output;
 }
 
 TEST_F(DaemonRecording, names_a_folder_that_it_cannot_record_to_and_goes_on) {
     start();
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
     (void)folder_.write("file", "");
-    const Ran no_folder = record((folder_ / "file").string() + " --seconds 1");
+    const Said no_folder = record((folder_ / "file").string() + " --seconds 1");
     EXPECT_EQ(no_folder.exit_code, 73) << no_folder.output;
     EXPECT_NE(no_folder.output.find((folder_ / "file").string()), std::string::npos) << no_folder.output;
-    const Ran not_empty = record(folder_.path().string() + " --seconds 1");
+    const Said not_empty = record(folder_.path().string() + " --seconds 1");
     EXPECT_EQ(not_empty.exit_code, 73) << not_empty.output;
     EXPECT_NE(not_empty.output.find("is not empty"), std::string::npos) << not_empty.output;
     EXPECT_TRUE(daemon_->status()["recording"].is_null()) << "a refusal leaves no trace";
@@ -442,13 +290,13 @@ TEST_F(DaemonRecording, names_a_folder_that_it_cannot_record_to_and_goes_on) {
     EXPECT_FALSE(ask("record start -1 /x")["ok"].get<bool>());
     EXPECT_FALSE(ask("record start 0 relative")["ok"].get<bool>());
     EXPECT_FALSE(ask("record tape")["ok"].get<bool>());
-    const Ran others = record("--stop " + (folder_ / "others").string());
+    const Said others = record("--stop " + (folder_ / "others").string());
     EXPECT_EQ(others.exit_code, 69) << others.output;
     EXPECT_NE(others.output.find("is not being recorded; the recording goes to " + out()), std::string::npos);
-    const Ran stopped = record("--stop " + out());
+    const Said stopped = record("--stop " + out());
     EXPECT_EQ(stopped.exit_code, 0) << stopped.output;
     expect_own_map();
-    const Ran stopped_again = record("--stop");
+    const Said stopped_again = record("--stop");
     EXPECT_EQ(stopped_again.exit_code, 69) << stopped_again.output;
     EXPECT_NE(stopped_again.output.find("nothing is being recorded"), std::string::npos)
         << stopped_again.output;

@@ -24,12 +24,22 @@ inline constexpr double kAllWell = 4.55;
 
 class DaemonViewTest : public testing::Test {
   protected:
+    static constexpr Nanoseconds kNs{1};
+    static constexpr Nanoseconds kSecond{1'000'000'000};
+
     /// Up, and silent; only listens, so that nothing is on the bus but what the test puts there.
     explicit DaemonViewTest(const DaemonRequest& request = {});
 
     /// A pipeline of this scene, and all that comes before `until_s`, which is then the time of bus and
     /// daemon.
     void play(const Scene& scene, double until_s);
+    /// A scene like the good one, but for what `change` does to it.
+    template <class Change>
+    void play_changed(const Change& change, double until_s = kAllWell) {
+        Scene scene = daemon_scene();
+        change(scene);
+        play(scene, until_s);
+    }
     /// What more of frames, stamped before `until_s`.
     void play_on(const std::vector<StampedFrame>& frames, double until_s);
     /// The arm turns from image to image, and its sensor reports 0.52 m each time, where the camera sees

@@ -19,19 +19,10 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr Nanoseconds kNs{1};
 constexpr std::uint8_t kWrappedTarget = 7;  ///< a device status: no range
-constexpr Nanoseconds kSecond{1'000'000'000};
 
 class ProblemsTest : public DaemonViewTest {
   protected:
-    /// A scene like the good one, but for what `change` does to it.
-    template <class Change>
-    void play_changed(const Change& change, double until_s = kAllWell) {
-        Scene scene = daemon_scene();
-        change(scene);
-        play(scene, until_s);
-    }
     void set_health(Scene& scene, double at_s, wire::SensorState state, wire::SensorFault fault) {
         scene.bus.send(at_s, wire::SensorHealth{.sensor = kGood, .state = state, .fault = fault}, kLeft);
     }
@@ -214,89 +205,6 @@ TEST_F(ProblemsTest, have_a_sensor_that_contradicts_the_camera_from_when_that_is
     EXPECT_THAT(all_told(), IsEmpty());
 }
 
-TEST_F(ProblemsTest, have_a_joint_node_whose_word_does_not_count) {
-    const auto with_heartbeat = [&](bool is_suspect) {
-        play_changed([&](Scene& scene) {
-            scene.bus.send(4.5,
-                           wire::Heartbeat{.state = wire::NodeState::ranging, .is_time_suspect = is_suspect},
-                           kJoints);
-        });
-        return all_told();
-    };
-    EXPECT_THAT(with_heartbeat(false), IsEmpty());
-    EXPECT_THAT(with_heartbeat(true), ElementsAre("node 10 'joints': time_suspect"));
-    // Where it has sensors, too, it is one of the rig's nodes, and told as such.
-    play_changed([&](Scene& scene) {
-        scene.rig.nodes.push_back(scene.rig.nodes.front());
-        scene.rig.nodes.back().node_id = kJoints;
-        scene.bus.send(4.5, wire::Heartbeat{.state = wire::NodeState::ranging, .is_time_suspect = true},
-                       kJoints);
-    });
-    EXPECT_THAT(all_told(), ElementsAre("node 10 'node 1': time_suspect"));
-}
-
-TEST_F(ProblemsTest, have_joint_states_without_a_time_where_nobody_tells_it) {
-    play_changed(
-        [](Scene& scene) {
-            scene.bus = ScriptedBus{};
-            scene.bus.joints(0.1, kJoints, std::array{0.2});
-        },
-        0.4);
-    EXPECT_EQ(told("no joints"), "no joint states: none from node 10 on the bus (and no --joints)");
-    const auto with_socket = inputs_with_joint_socket();
-    view_.inputs = with_socket.get();
-    EXPECT_EQ(told("no joints"),
-              "no joint states: those that come through the socket have no time on the bus's clock "
-              "(joint_no_host_time): nobody sends SYNC and FOLLOW_UP on it");
-}
-
-TEST_F(ProblemsTest, have_joint_states_that_are_not_there_or_of_no_use) {
-    play(daemon_scene(), 0.4);
-    EXPECT_EQ(told("no joints"), "no joint states: none from node 10 on the bus (and no --joints)");
-    const auto with_socket = inputs_with_joint_socket();
-    view_.inputs = with_socket.get();
-    EXPECT_EQ(told("no joints"), "no joint states: none comes through the socket (`octoskin joints`)");
-    send_joints("half a turn");
-    send_joints("1 2 3 4");
-    with_socket->catch_up();
-    EXPECT_EQ(told("no joints"),
-              "no joint states: what comes through the socket is refused (not_a_number 1, wrong_count 1); "
-              "wanted: [TIME] Q1 ... QN, radians (metres for a prismatic joint) in the rig's order; TIME is "
-              "CLOCK_MONOTONIC in seconds, within 1 s of now");
-    Scene scene = daemon_scene();
-    scene.bus = ScriptedBus{};
-    for (int k = 0; k <= 8; ++k) scene.bus.exchange(0.1 + k, {kLeft});
-    const double position = 0.0;
-    for (int k = 0; k < 100; ++k) scene.bus.joints(3.0 + 0.01 * k, kJoints, {&position, 1});
-    play(scene, 4.05);
-    EXPECT_EQ(told("no joints"), "");
-    EXPECT_EQ(told("joints unused"),
-              "no joint state could be used: see the counters of joint samples (most often clock_not_ready, "
-              "89 of 89)");
-    EXPECT_EQ(told("joints stopped"), "");
-}
-
-TEST_F(ProblemsTest, have_joint_states_that_stopped_eight_tenths_of_a_second_ago) {
-    EXPECT_EQ(told("joints unused"), "");
-    view_.now = *view_.used.joint_sample + Nanoseconds{800'000'000};
-    EXPECT_EQ(told("joints stopped"), "");
-    view_.now = view_.now + kNs;
-    EXPECT_EQ(told("joints stopped"), "joint states have stopped: readings have no pose");
-    EXPECT_EQ(told("no joints") + told("joints unused"), "");
-}
-
-TEST_F(ProblemsTest, have_joint_states_that_come_quicker_than_the_rig_says) {
-    const auto at_rate_of_rig = [&](double rate_hz) {
-        play_changed([&](Scene& scene) { scene.rig.joints.rate_hz = rate_hz; });
-        return told("joints too frequent");
-    };
-    EXPECT_EQ(at_rate_of_rig(100.0), "");
-    EXPECT_THAT(
-        at_rate_of_rig(55.0),
-        testing::MatchesRegex("joint states come, or came, quicker than the 55 Hz of the rig, and were "
-                              "refused \\(too_frequent, [0-9]+\\): put the true rate into joints.rate_hz"));
-}
-
 TEST_F(ProblemsTest, have_readings_that_are_of_no_use_or_stopped) {
     EXPECT_EQ(told("readings unused"), "");
     view_.now = *view_.used.reading + Nanoseconds{800'000'000};
@@ -310,124 +218,6 @@ TEST_F(ProblemsTest, have_readings_that_are_of_no_use_or_stopped) {
     EXPECT_EQ(
         told("readings unused"),
         "no reading could be used yet: see the counters of readings (most often above_range_max, 10 of 10)");
-}
-
-TEST_F(ProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) {
-    EXPECT_EQ(told("depth unused"), "");
-    const auto look_after = [&](Nanoseconds duration) {
-        view_.now = *view_.used.depth_frame + duration;
-        view_.camera->newest = view_.now;
-        return told("depth stopped");
-    };
-    EXPECT_EQ(look_after(Nanoseconds{800'000'000}), "");
-    EXPECT_EQ(look_after(Nanoseconds{800'000'001}),
-              "depth frames come onto the map no more: see the counters of depth frames");
-    view_.camera->newest = view_.now - kSecond;
-    EXPECT_EQ(told("depth stopped"), "") << "its own fault is told first";
-    EXPECT_EQ(told("camera silent"), "camera: no frame for three periods");
-    play(daemon_scene(), 3.95);
-    view_.camera->newest = view_.now;
-    EXPECT_EQ(told("depth unused"), "") << "none has come";
-    play_changed([](Scene& scene) { scene.rig.camera->T_base_camera.translation().x() = 2000.0; });
-    view_.camera->newest = view_.now;
-    EXPECT_EQ(told("depth unused"),
-              "no depth frame could be used yet: see the counters of depth frames (most often outside_map, 6 "
-              "of 6)");
-    EXPECT_EQ(told("depth of another size"), "");
-    play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
-    view_.camera->newest = view_.now;
-    EXPECT_EQ(
-        told("depth of another size"),
-        "camera: none of its images is 17 x " + std::to_string(scene_.rig.camera->intrinsics.height) +
-            ", as the rig has them (wrong_size): `octoskin cameras` lists its modes, camera.width_px and "
-            "camera.height_px of the rig must be one's");
-    EXPECT_EQ(told("depth unused"), "");
-}
-
-TEST_F(ProblemsTest, have_images_that_there_is_no_time_for_once_that_has_lasted_two_seconds) {
-    const auto is_told = [this](Nanoseconds lasted, Nanoseconds ago) {
-        view_.used.depth_left_out = view_.now - ago;
-        view_.used.depth_left_out_since = *view_.used.depth_left_out - lasted;
-        return !told("depth left out").empty();
-    };
-    EXPECT_TRUE(is_told(2 * kSecond + kNs, kSecond - kNs));
-    EXPECT_NE(told("depth left out").find("(queue_overflow): a coarser resolution_m"), std::string::npos);
-    EXPECT_FALSE(is_told(2 * kSecond, kSecond - kNs)) << "a busy moment";
-    EXPECT_FALSE(is_told(2 * kSecond + kNs, kSecond)) << "it keeps up again";
-    view_.used.depth_left_out.reset();
-    EXPECT_EQ(told("depth left out"), "");
-}
-
-/// A pipeline whose worker never ends its first image: of those that come, two wait and the oldest goes.
-TEST_F(ProblemsTest, know_since_when_images_have_been_left_out_again_and_again) {
-    class Stuck final : public DepthWorker {
-        void begin(std::function<void()> work) override { work_ = std::move(work); }
-        [[nodiscard]] bool is_done() const override { return false; }
-        void finish() override { work_(); }
-        std::function<void()> work_;
-    } worker;
-    const Scene scene = daemon_scene();
-    Pipeline pipeline = make_pipeline(scene);
-    pipeline.work_beside(&worker);
-    for (const StampedFrame& entry : scene.bus.frames()) pipeline.on_can(entry.frame, entry.stamp);
-    const auto at = [](double seconds) { return HostTime{std::llround(seconds * 1e9)}; };
-    auto leave_one_out_at = [&, used = LastUsed{}, captured = 4.0](double at_s) mutable {
-        DepthFrame frame = flat_frame(captured += 0.01);
-        pipeline.on_depth(std::move(frame));
-        used.note(pipeline, at(at_s));
-        return used;
-    };
-    for (int i = 0; i < 3; ++i) EXPECT_FALSE(leave_one_out_at(9.0).depth_left_out) << i;
-    EXPECT_EQ(leave_one_out_at(10.0).depth_left_out_since, at(10.0));
-    EXPECT_EQ(leave_one_out_at(11.0).depth_left_out_since, at(10.0)) << "at least once a second";
-    const LastUsed later = leave_one_out_at(12.5);
-    EXPECT_EQ(later.depth_left_out, at(12.5));
-    EXPECT_EQ(later.depth_left_out_since, at(12.5)) << "for a second and a half there was time for all";
-    pipeline.finish();
-}
-
-TEST_F(ProblemsTest, have_nothing_of_a_camera_that_nobody_wants) {
-    view_.now = *view_.used.depth_frame + kSecond;
-    EXPECT_EQ(told("camera silent"), "camera: no frame for three periods");
-    view_.camera.reset();
-    EXPECT_EQ(told("camera silent") + told("depth stopped"), "");
-}
-
-TEST_F(ProblemsTest, have_a_camera_beside_a_bus_that_fell_silent) {
-    play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
-    ScriptedBus bus;
-    bus.heartbeat(0.0, node_of(scene_, kLeft));
-    say(bus.frames().front().frame);
-    view_.now = monotonic_now() + kSecond;
-    view_.camera->newest = view_.now;
-    EXPECT_EQ(told("depth beside silent bus"),
-              "camera: its frames are not used, because the bus is silent: no node tells where the robot is "
-              "(joints_missing)");
-    EXPECT_EQ(told("depth of another size"), "");
-    view_.now = monotonic_now();
-    view_.camera->newest = view_.now;
-    EXPECT_EQ(told("depth beside silent bus"), "");
-    EXPECT_NE(told("depth of another size"), "");
-}
-
-TEST_F(ProblemsTest, have_a_camera_without_a_time_until_three_exchanges_of_the_other_host_agree) {
-    view_.is_listen_only = true;
-    const std::string expected =
-        "camera: its frames have no time: the clock of the host that sends SYNC is not known, or in doubt "
-        "(three "
-        "FOLLOW_UPs must agree)";
-    for (std::uint8_t sequence = 1; sequence <= 3; ++sequence) {
-        EXPECT_EQ(told("camera untimed"), expected);
-        const HostTime heard = say_sync(sequence);
-        say(wire::encode(wire::FollowUp{sequence, static_cast<std::uint64_t>(heard.ns / 1'000) + 900'000'000},
-                         wire::kHostId));
-        view_.now = heard;
-        view_.camera->newest = view_.used.depth_frame = heard;
-    }
-    EXPECT_EQ(told("camera untimed"), "");
-    view_.now = view_.now + 6 * kSecond;
-    view_.camera->newest = view_.now;
-    EXPECT_EQ(told("camera untimed"), expected) << "it is silent again";
 }
 
 TEST_F(ProblemsTest, have_a_map_without_room) {
