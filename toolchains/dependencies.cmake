@@ -25,6 +25,7 @@ endif()
 pkg_check_modules(UNICORN QUIET IMPORTED_TARGET unicorn)  # optional: only the emulated board is made of it
 pkg_check_modules(FUSE3 QUIET IMPORTED_TARGET fuse3)      # optional: only I2C devices for tests are made of it
 pkg_check_modules(GPIOD QUIET IMPORTED_TARGET libgpiod)   # optional: only a Linux board's node is made of it
+find_package(fcl QUIET)                                   # optional: only an oracle of a test is made of it
 find_package(Threads REQUIRED)
 pkg_check_modules(OPENNI2 REQUIRED IMPORTED_TARGET libopenni2)
 pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)

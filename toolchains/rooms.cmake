@@ -3,7 +3,8 @@
 #   octoskin_library(<name> ROOM <room> SOURCES a.cpp ... HEADERS a.hpp ... [DEPENDS octoskin::x ...]
 #                    [PRIVATE_DEPENDS octoskin::y ...] [EXTERNAL lib ...] [PRIVATE_EXTERNAL lib ...] [APART])
 #   octoskin_program(<name> ROOM <room> SOURCES ... [DEPENDS ...] [EXTERNAL ...])
-#   octoskin_test(<name> LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...] [APART ...])
+#   octoskin_test(<name> LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...] [APART ...] [HALF_IN_QEMU <filter>]
+#                 [ALONE | WAITS])
 #
 # In the rooms that OCTOSKIN_UNITY names the sources of a library or a test program are compiled several at once, but for a
 # library that is told to keep them APART, and those of a test program that it names as APART: the name of something that is
@@ -14,7 +15,8 @@
 #
 # Built for a board (preset target-tests), a test program or a library of tests is left out if it depends on a library that
 # is not built for one, and of the others the HOST_SOURCES, which need an operating system, or minutes there. Each is named
-# when configuring.
+# when configuring. A program that mostly WAITS takes half a processor: run with twice as many at once as there are
+# processors. What HALF_IN_QEMU selects there, a filter of GoogleTest's, is a test of its own, and the rest another.
 
 set(OCTOSKIN_MAY_USE_common common)
 set(OCTOSKIN_MAY_USE_firmware/drivers common firmware/drivers)
@@ -159,7 +161,7 @@ function(octoskin_program name)
 endfunction()
 
 function(octoskin_test name)
-    cmake_parse_arguments(ARG "ALONE" "TIMEOUT" "LABELS;SOURCES;HOST_SOURCES;DEPENDS;EXTERNAL;APART" ${ARGN})
+    cmake_parse_arguments(ARG "ALONE;WAITS" "TIMEOUT;HALF_IN_QEMU" "LABELS;SOURCES;HOST_SOURCES;DEPENDS;EXTERNAL;APART" ${ARGN})
     if(NOT ARG_TIMEOUT)
         set(ARG_TIMEOUT 60)
     endif()
@@ -198,18 +200,29 @@ function(octoskin_test name)
         endif()
     endif()
     set_target_properties(${name} PROPERTIES OCTOSKIN_ROOM tests BUILD_RPATH ${PROJECT_BINARY_DIR}/bin)
+    set(halves 2)
+    if(ARG_WAITS AND NOT OCTOSKIN_SANITIZE)  # a sanitizer has much to do
+        set(halves 1)
+    endif()
     if("unit" IN_LIST ARG_LABELS)
         add_dependencies(octoskin_unit_tests ${name})
     endif()
     if("unit" IN_LIST ARG_LABELS OR "property" IN_LIST ARG_LABELS)
         # One process for the whole file: the unit suite has to stay under ten seconds.
-        add_test(NAME ${name} COMMAND ${name})
-        set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+        set(tests ${name})
+        if(ARG_HALF_IN_QEMU AND CMAKE_SYSTEM_NAME STREQUAL "Generic")
+            list(APPEND tests ${name}.other_half)
+            add_test(NAME ${name} COMMAND ${name} -append "--gtest_filter=${ARG_HALF_IN_QEMU}")
+            add_test(NAME ${name}.other_half COMMAND ${name} -append "--gtest_filter=-${ARG_HALF_IN_QEMU}")
+        else()
+            add_test(NAME ${name} COMMAND ${name})
+        endif()
+        set_tests_properties(${tests} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} PROCESSORS ${halves})
         if(CMAKE_CROSSCOMPILING AND NOT CMAKE_SYSTEM_NAME STREQUAL "Generic")
             set_tests_properties(${name} PROPERTIES ENVIRONMENT "GTEST_FILTER=-${OCTOSKIN_NOT_IN_QEMU_USER}")
         endif()
     else()
         gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
-            PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} RUN_SERIAL ${ARG_ALONE})
+            PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} PROCESSORS ${halves} RUN_SERIAL ${ARG_ALONE})
     endif()
 endfunction()

@@ -18,6 +18,10 @@ if(OCTOSKIN_RUN_CLANG_TIDY)
             "${PROJECT_SOURCE_DIR}/(common|firmware|host|hw)/.*\\.cpp$" WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
     endif()
     # What runs on a board, but for the analyzer, which takes as long as all the rest: the part that every check can afford.
-    add_custom_target(tidy-firmware COMMAND ${OCTOSKIN_RUN_CLANG_TIDY} -quiet -checks=-clang-analyzer-* -p ${PROJECT_BINARY_DIR}
-        "${PROJECT_SOURCE_DIR}/(common|firmware)/.*\\.cpp$" WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
+    # Where sources are compiled several at once they are looked at several at once, in a fifth of the time: the file that
+    # includes them is CMake's, and they then count as its headers.
+    add_custom_target(tidy-firmware COMMAND ${OCTOSKIN_RUN_CLANG_TIDY} -quiet -p ${PROJECT_BINARY_DIR}
+        -checks=-clang-analyzer-*,-bugprone-suspicious-include "-header-filter=/(common|firmware)/.*\\.[ch]pp$"
+        "${PROJECT_SOURCE_DIR}/(common|firmware)/.*\\.cpp$" "${PROJECT_BINARY_DIR}/(common|firmware)/.*/Unity/.*\\.cxx$"
+        WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
 endif()

@@ -73,6 +73,14 @@ void write_robot(Writer& out, const Rig& rig, const std::string& urdf) {
     if (!rig.link_padding_m.empty()) out.line("  link_padding_m:");
     for (const auto& [link, padding_m] : rig.link_padding_m)
         out.line("    {}: {}", quoted(link), number(padding_m));
+    // Left out where they are the default: rigs without them keep the hash that they had before these keys.
+    if (rig.fits_capsules) out.line("  fits_capsules: true");
+    if (!rig.attached_capsules.empty()) out.line("  attached_capsules:");
+    for (const AttachedCapsule& capsule : rig.attached_capsules) {
+        out.line("    - {{name: {}, link: {}, from_m: {}, to_m: {}, radius_m: {}, padding_m: {}}}",
+                 quoted(capsule.name), quoted(capsule.link), list(capsule.p_link_a), list(capsule.p_link_b),
+                 number(capsule.radius_m), number(capsule.padding_m));
+    }
     if (!rig.links_ignored_by_sensors.empty()) out.line("  links_ignored_by_sensors:");
     for (const auto& link : rig.links_ignored_by_sensors) out.line("    - {}", quoted(link));
     out.line("  depth_self_margin_m: {}", number(rig.depth_self_margin_m));
@@ -154,6 +162,11 @@ void write_sensor(Writer& out, const Sensor& sensor, const SensorConfig& config)
         const Roi& roi = config.zones[i];
         out.line("          - {{centre_spad: {}, width_spads: {}, height_spads: {}, offset_m: {}}}",
                  roi.centre_spad, roi.width, roi.height, number(sensor.zone_offset_m[i]));
+    }
+    if (sensor.cone) {
+        out.line("        cone: {{sub_rays: {}, half_angle_deg: {}, sigma_deg: {}, blur_deg: {}}}",
+                 sensor.cone->sub_rays, number(sensor.cone->half_angle_deg), number(sensor.cone->sigma_deg),
+                 number(sensor.cone->blur_deg));
     }
 }
 

@@ -51,12 +51,51 @@ void read_self_filter(const Table& robot, const UrdfDocument& document, Rig& rig
             rig.link_padding_m[padding.key] = read_number(padding, entry, {0.0, 0.5});
         }
     }
+    rig.fits_capsules = robot.flag("fits_capsules", false);
     if (const Value* ignored = robot.find("links_ignored_by_sensors")) {
         const std::string path = robot.path_of("links_ignored_by_sensors");
         for (const Value& link : read_list(*ignored, path)) {
             rig.links_ignored_by_sensors.push_back(read_name(link, path));
             require_link(link, path, link.text, document);
         }
+    }
+}
+
+AttachedCapsule read_attached(const Value& value, const std::string& path, const UrdfDocument& robot,
+                              const Rig& rig) {
+    constexpr double kReachM = 2.0;
+    const Table table(value, path, {"name", "link", "from_m", "to_m", "radius_m", "padding_m"});
+    AttachedCapsule capsule;
+    capsule.name = table.name("name");
+    capsule.link = table.name("link");
+    require_link(table.require("link"), table.path_of("link"), capsule.link, robot);
+    if (!robot.is_below(rig.base_link, capsule.link)) {
+        table.fail("link",
+                   fmt::format("expected a link at or below {}, found '{}'", rig.base_link, capsule.link));
+    }
+    capsule.p_link_a = read_position(table.require("from_m"), table.path_of("from_m"), kReachM);
+    capsule.p_link_b = capsule.p_link_a;
+    if (const Value* end = table.find("to_m"))
+        capsule.p_link_b = read_position(*end, table.path_of("to_m"), kReachM);
+    capsule.radius_m = table.number("radius_m", {0.001, 1.0});
+    capsule.padding_m = table.number("padding_m", {0.0, 0.5}, 0.0);
+    for (const AttachedCapsule& other : rig.attached_capsules) {
+        if (other.name == capsule.name)
+            table.fail("name", fmt::format("expected each name once, found '{}' again", capsule.name));
+    }
+    return capsule;
+}
+
+void read_attached_capsules(const Table& robot, const UrdfDocument& document, Rig& rig) {
+    constexpr std::size_t kAttachedMax = 64;
+    const Value* const list = robot.find("attached_capsules");
+    if (list == nullptr) return;
+    const std::string path = robot.path_of("attached_capsules");
+    for (const Value& item : read_list(*list, path)) {
+        if (rig.attached_capsules.size() == kAttachedMax)
+            fail(item, path, fmt::format("expected at most {} capsules, found more", kAttachedMax));
+        rig.attached_capsules.push_back(
+            read_attached(item, fmt::format("{}[{}]", path, rig.attached_capsules.size()), document, rig));
     }
 }
 
@@ -181,11 +220,12 @@ Rig read_checked(const std::filesystem::path& file, const std::filesystem::path&
                      "sensor_defaults", "nodes", "extends"});
     rig.name = top.folder_name("name");
     const Table robot(top.require("robot"), "robot",
-                      {"urdf", "base_link", "link_padding_m", "links_ignored_by_sensors",
-                       "depth_self_margin_m", "range_self_margin_m"});
+                      {"urdf", "base_link", "link_padding_m", "fits_capsules", "attached_capsules",
+                       "links_ignored_by_sensors", "depth_self_margin_m", "range_self_margin_m"});
     const UrdfDocument urdf = read_robot(robot, urdf_instead);
     rig.urdf = urdf.file();
     read_self_filter(robot, urdf, rig);
+    read_attached_capsules(robot, urdf, rig);
     if (const Value* pose = top.find("T_map_base")) {
         rig.T_map_base = read_pose(*pose, "T_map_base", {.reach_m = kRoomReachM});
     }

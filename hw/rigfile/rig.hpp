@@ -17,12 +17,22 @@
 
 namespace octoskin::rig {
 
+/// The optics of a sensor that sees a cone. Degrees, as written: what reads them back is the same to the bit.
+struct Cone {
+    std::uint8_t sub_rays = 16;    ///< across the cone, for the simulator: their grid's side
+    double half_angle_deg = 13.5;  ///< from the axis to the edge
+    double sigma_deg = 7.0;        ///< signal falls off from the axis as a Gaussian of this deviation
+    double blur_deg = 2.5;         ///< deviation of the lens's blur, which widens a zone's view
+    friend bool operator==(const Cone&, const Cone&) = default;
+};
+
 /// A sensor of a node: its extrinsics and what the host must know to use its ranges.
 struct Sensor {
     std::string name;
     std::string link;                                                 ///< URDF link that carries it
     Eigen::Isometry3d T_link_sensor = Eigen::Isometry3d::Identity();  ///< ranges run along the sensor's +z
     std::vector<double> zone_offset_m = {0.0};                        ///< added to a valid range, per zone
+    std::optional<Cone> cone;  ///< none: one ideal ray along the middle of each zone
 };
 
 /// What a type of board can do: the limits that a rig is checked against.
@@ -64,6 +74,17 @@ struct Camera {
     DataSetDepth data_set = {};
 };
 
+/// A piece of the robot's body that its URDF does not have: a tool, a grasped object, a stretch of cable. All
+/// points within `radius_m` of the segment from p_link_a to p_link_b (equal ends: a sphere).
+struct AttachedCapsule {
+    std::string name;
+    std::string link;  ///< that carries it
+    Eigen::Vector3d p_link_a = Eigen::Vector3d::Zero();
+    Eigen::Vector3d p_link_b = Eigen::Vector3d::Zero();
+    double radius_m = 0.0;
+    double padding_m = 0.0;  ///< added to the radius, beside its link's: a cable swings, a grasp slips
+};
+
 struct Bus {
     std::uint32_t nominal_bitrate = 1'000'000;
     bool uses_can_fd = true;
@@ -85,7 +106,9 @@ struct Rig {
     std::filesystem::path urdf;  ///< absolute
     std::string base_link;
     Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
-    std::map<std::string, double> link_padding_m;  ///< added to a link's collision capsules
+    std::map<std::string, double> link_padding_m;  ///< added to the capsules of a link
+    bool fits_capsules = false;                    ///< a box of the URDF is the capsule around it
+    std::vector<AttachedCapsule> attached_capsules;
     /// Links left out when a sensor on them predicts where its beam meets the robot (its own mount).
     std::vector<std::string> links_ignored_by_sensors;
     double depth_self_margin_m = 0.09;  ///< depth points this close to a capsule's surface are the robot

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "hw/rigfile/urdf_document.hpp"
 
@@ -30,6 +31,7 @@ Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
 struct Bodies {
     std::vector<Capsule> cylinders;  ///< ends at the centres of the flat faces
     std::vector<Capsule> spheres;
+    std::vector<Capsule> fitted;  ///< about boxes: ends of nothing else
 };
 
 const char* shape_name(const urdf::Geometry& geometry) {
@@ -51,8 +53,19 @@ std::string name_of(const urdf::Collision& collision) {
                                   : fmt::format("<collision name=\"{}\">", collision.name);
 }
 
+/// The capsule about the box's longest side, through its middle, that its corners lie on.
+Capsule around_box(const urdf::Vector3& size_m, const std::string& link,
+                   const Eigen::Isometry3d& T_link_body) {
+    const Eigen::Vector3d half = 0.5 * Eigen::Vector3d(size_m.x, size_m.y, size_m.z);
+    Eigen::Index longest = 0;
+    half.maxCoeff(&longest);
+    const Eigen::Vector3d to_end = half[longest] * Eigen::Vector3d::Unit(longest);
+    return {link, T_link_body * Eigen::Vector3d(-to_end), T_link_body * to_end, (half - to_end).norm()};
+}
+
 /// Adds one collision element to `bodies`; returns what is wrong with it, or nothing.
-std::string add_body(const urdf::Collision& collision, const std::string& link, Bodies& bodies) {
+std::string add_body(const urdf::Collision& collision, const std::string& link, BoxRule boxes,
+                     Bodies& bodies) {
     if (!collision.geometry) return fmt::format("{} has no geometry", name_of(collision));
     const Eigen::Isometry3d T_link_body = to_isometry(collision.origin);
     Capsule body{link, T_link_body.translation(), T_link_body.translation(), 0.0};
@@ -66,11 +79,18 @@ std::string add_body(const urdf::Collision& collision, const std::string& link, 
     } else if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(collision.geometry.get())) {
         body.radius_m = sphere->radius;
         bodies.spheres.push_back(body);
+    } else if (const auto* box = dynamic_cast<const urdf::Box*>(collision.geometry.get());
+               box != nullptr && boxes == BoxRule::fitted) {
+        length_m = std::min({box->dim.x, box->dim.y, box->dim.z});
+        body = around_box(box->dim, link, T_link_body);
+        bodies.fitted.push_back(body);
     } else {
         return fmt::format(
             "{} is a {}: expected a cylinder or a sphere (two spheres and a cylinder are a capsule); put one "
-            "around it in its place, or remove it",
-            name_of(collision), shape_name(*collision.geometry));
+            "around it in its place, or remove it{}",
+            name_of(collision), shape_name(*collision.geometry),
+            collision.geometry->type == urdf::Geometry::BOX ? "; or let the rig have `fits_capsules: true`"
+                                                            : "");
     }
     const bool is_sound = T_link_body.matrix().allFinite() && body.radius_m > 0.0 &&
                           body.radius_m <= kRadiusMaxM && length_m >= 0.0 && length_m <= kRadiusMaxM;
@@ -99,13 +119,39 @@ std::vector<Capsule> to_capsules(Bodies bodies) {
         for (std::size_t i = 0; i < cylinders; ++i) is_end = absorb(sphere, capsules[i]) || is_end;
         if (!is_end) capsules.push_back(sphere);
     }
+    std::move(bodies.fitted.begin(), bodies.fitted.end(), std::back_inserter(capsules));
     return capsules;
+}
+
+BoxRule box_rule(const Rig& rig) {
+    return rig.fits_capsules ? BoxRule::fitted : BoxRule::refused;
 }
 
 }  // namespace
 
+Result<std::vector<Capsule>, RigError> real_body(const Rig& rig) {
+    auto body = read_capsules(rig.urdf, {}, box_rule(rig));
+    if (!body) return body;
+    for (const AttachedCapsule& capsule : rig.attached_capsules)
+        body->push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
+    return body;
+}
+
+Result<std::vector<Capsule>, RigError> padded_body(const Rig& rig) {
+    auto body = read_capsules(rig.urdf, rig.link_padding_m, box_rule(rig));
+    if (!body) return body;
+    for (const AttachedCapsule& capsule : rig.attached_capsules) {
+        const auto of_link = rig.link_padding_m.find(capsule.link);
+        const double link_padding_m = of_link == rig.link_padding_m.end() ? 0.0 : of_link->second;
+        body->push_back({capsule.link, capsule.p_link_a, capsule.p_link_b,
+                         capsule.radius_m + capsule.padding_m + link_padding_m});
+    }
+    return body;
+}
+
 Result<std::vector<Capsule>, RigError> read_capsules(const std::filesystem::path& urdf,
-                                                     const std::map<std::string, double>& link_padding_m) {
+                                                     const std::map<std::string, double>& link_padding_m,
+                                                     BoxRule boxes) {
     auto document = UrdfDocument::read(urdf);
     if (!document) return unexpected(document.error());
     const auto& links = document->model().links_;
@@ -125,7 +171,7 @@ Result<std::vector<Capsule>, RigError> read_capsules(const std::filesystem::path
                             kCollisionsMax, link->collision_array.size())));
         }
         for (const auto& collision : link->collision_array) {
-            auto fault = add_body(*collision, name, bodies);
+            auto fault = add_body(*collision, name, boxes, bodies);
             if (!fault.empty()) return unexpected(document->error("link", name, std::move(fault)));
         }
         const auto padding = link_padding_m.find(name);

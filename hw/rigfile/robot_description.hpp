@@ -3,7 +3,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,10 +22,22 @@ struct Capsule {
     double radius_m = 0.0;
 };
 
+/// What stands in for a <collision> of the URDF that is neither a cylinder nor a sphere.
+enum class BoxRule : std::uint8_t {
+    refused,  ///< by name
+    fitted,   ///< a box is the capsule about its longest side that its corners lie on; a mesh is refused
+};
+
 /// Every link's collision geometry as capsules, padding added. URDF has no capsule: a cylinder with a sphere
 /// of its radius at each end on one link is one; a lone cylinder is padded to one, a lone sphere is a point
-/// with a radius, and a box or mesh is refused by name. Errors name file and link.
+/// with a radius. Errors name file and link.
 [[nodiscard]] Result<std::vector<Capsule>, RigError> read_capsules(
-    const std::filesystem::path& urdf, const std::map<std::string, double>& link_padding_m);
+    const std::filesystem::path& urdf, const std::map<std::string, double>& link_padding_m,
+    BoxRule boxes = BoxRule::refused);
+
+/// The robot as it is, by its URDF and what the rig attaches to it: without padding. For a simulation.
+[[nodiscard]] Result<std::vector<Capsule>, RigError> real_body(const Rig& rig);
+/// The same with the rig's padding: what the self-filter takes for the robot.
+[[nodiscard]] Result<std::vector<Capsule>, RigError> padded_body(const Rig& rig);
 
 }  // namespace octoskin::rig

@@ -137,6 +137,18 @@ void read_zones(const Table& table, SensorEntry& entry) {
     }
 }
 
+std::optional<Cone> read_cone(const Table& table) {
+    const Value* value = table.find("cone");
+    if (value == nullptr) return std::nullopt;
+    const Table entry(*value, table.path_of("cone"), {"sub_rays", "half_angle_deg", "sigma_deg", "blur_deg"});
+    Cone cone;
+    cone.sub_rays = entry.integer<std::uint8_t>("sub_rays", {1, 64}, cone.sub_rays);
+    cone.half_angle_deg = entry.number("half_angle_deg", {0.1, 45.0}, cone.half_angle_deg);
+    cone.sigma_deg = entry.number("sigma_deg", {0.1, 90.0}, cone.sigma_deg);
+    cone.blur_deg = entry.number("blur_deg", {0.1, 20.0}, cone.blur_deg);
+    return cone;
+}
+
 std::string read_link(const Table& table, const UrdfDocument& robot, const std::string& base_link) {
     auto link = table.name("link");
     if (!robot.is_below(base_link, link)) {
@@ -154,7 +166,7 @@ Table sensor_table(const Value& value, const std::string& path) {
             path,
             {"name", "link", "pose", "bus", "xshut_line", "address", "distance_mode", "timing_budget_ms",
              "inter_measurement_ms", "phase_us", "device_offset_mm", "crosstalk_kcps", "sigma_limit_mm",
-             "signal_limit_mcps", "reflex_below_m", "applies_gain_factor", "zones"}};
+             "signal_limit_mcps", "reflex_below_m", "applies_gain_factor", "zones", "cone"}};
 }
 
 SensorEntry read_sensor(const Table& table, const UrdfDocument& robot, const std::string& base_link,
@@ -167,6 +179,7 @@ SensorEntry read_sensor(const Table& table, const UrdfDocument& robot, const std
     read_timing(table, entry.config);
     read_device_settings(table, entry.config);
     read_zones(table, entry);
+    entry.sensor.cone = read_cone(table);
     return entry;
 }
 

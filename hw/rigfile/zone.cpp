@@ -1,13 +1,11 @@
 #include "hw/rigfile/zone.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace octoskin::rig {
 namespace {
 
 constexpr int kSide = 16;
-constexpr double kRadPerSpad = 27.0 / (kSide * std::numbers::sqrt2) * std::numbers::pi / 180.0;
 
 /// The zone's first column (0 is left) and row (0 is the top).
 struct Corner {
@@ -34,8 +32,20 @@ Eigen::Vector3d zone_direction(const Roi& roi) noexcept {
     const auto [left, top] = corner_of(roi);
     const double right_spads = left + roi.width / 2.0 - kSide / 2.0;
     const double down_spads = top + roi.height / 2.0 - kSide / 2.0;
-    return Eigen::Vector3d(std::tan(-right_spads * kRadPerSpad), std::tan(down_spads * kRadPerSpad), 1.0)
+    return Eigen::Vector3d(std::tan(-right_spads * kSpadPitch_rad), std::tan(down_spads * kSpadPitch_rad),
+                           1.0)
         .normalized();
+}
+
+ZoneSpan zone_span_x(const Roi& roi) noexcept {
+    // The lens inverts: the zone's right edge looks furthest to the left.
+    const double left_spads = corner_of(roi).left - kSide / 2.0;
+    return {-(left_spads + roi.width) * kSpadPitch_rad, -left_spads * kSpadPitch_rad};
+}
+
+ZoneSpan zone_span_y(const Roi& roi) noexcept {
+    const double top_spads = corner_of(roi).top - kSide / 2.0;
+    return {top_spads * kSpadPitch_rad, (top_spads + roi.height) * kSpadPitch_rad};
 }
 
 }  // namespace octoskin::rig

@@ -19,15 +19,27 @@ struct OurMethod {
     DepthUpdate update;
     bool is_filtered;
     unsigned threads = 1;
+    /// The camera is moved to the nearest corner of voxels, where three faces meet: the hardest place for
+    /// rays.
+    bool is_on_face = false;
+    /// The map is told the frames' times, ten of them a second, and keeps those of its voxels.
+    bool is_dated = false;
 };
 constexpr std::array kOurs = {
     OurMethod{.name = "exact", .update = DepthUpdate::paper, .is_filtered = false},
     OurMethod{.name = "fast", .update = DepthUpdate::fast, .is_filtered = true},
     OurMethod{.name = "robust", .update = DepthUpdate::robust, .is_filtered = true},
+    OurMethod{
+        .name = "exact_on_face", .update = DepthUpdate::paper, .is_filtered = false, .is_on_face = true},
+    OurMethod{.name = "fast_on_face", .update = DepthUpdate::fast, .is_filtered = true, .is_on_face = true},
 };
 
 /// By the clock: what several threads gain.
 constexpr const char* kOneThread = "fast_1_thread";
+/// The same by the processor's time: what the voxels' times cost.
+constexpr const char* kUndated = "fast";
+constexpr OurMethod kDated{
+    .name = "fast_dated", .update = DepthUpdate::fast, .is_filtered = true, .is_dated = true};
 constexpr std::array kTogether = {
     OurMethod{.name = kOneThread, .update = DepthUpdate::fast, .is_filtered = true},
     OurMethod{.name = "fast_2_threads", .update = DepthUpdate::fast, .is_filtered = true, .threads = 2},
@@ -87,16 +99,23 @@ class OurFrames final : public FrameTask {
           config_(bench_mapping(resolution, method.update)),
           integrator_(config_, room.camera, method.threads),
           map_(config_.map),
-          is_filtered_(method.is_filtered) {}
+          is_filtered_(method.is_filtered),
+          is_on_face_(method.is_on_face),
+          is_dated_(method.is_dated) {}
     void prepare() override {
         const RoomFrame& frame = next();
         image_ = frame.image;
         if (is_filtered_) DepthFilter(config_.depth_filter).filter(image_);
         T_map_camera_ = frame.T_map_camera;
+        if (!is_on_face_) return;
+        const double edge_m = config_.map.resolution_m;
+        T_map_camera_.translation() =
+            edge_m * (T_map_camera_.translation() / edge_m).array().round().matrix();
     }
     void run() override {
         const auto result = integrator_.integrate(image_, T_map_camera_);
         if (!result) throw std::runtime_error("a frame was refused");
+        if (is_dated_) map_.go_on(HostTime{frames_++ * 100'000'000});
         map_.apply(result->terms);
     }
     void tell(Figures& figures) const override {
@@ -111,6 +130,9 @@ class OurFrames final : public FrameTask {
     DepthIntegrator integrator_;
     FusedMap map_;
     bool is_filtered_;
+    bool is_on_face_;
+    bool is_dated_;
+    std::int64_t frames_ = 0;
     DepthImage image_;
     Eigen::Isometry3d T_map_camera_ = Eigen::Isometry3d::Identity();
 };
@@ -143,6 +165,8 @@ std::vector<Row> frame_rows(const RoomFrames& room, const std::string& resolutio
                             return std::make_unique<OurFrames>(room, resolution, method);
                         }});
     }
+    rows.push_back({std::string(kDated.name) + suffix, kUndated + suffix, runs,
+                    [&room, resolution] { return std::make_unique<OurFrames>(room, resolution, kDated); }});
     for (const OurMethod& method : kTogether) {
         rows.push_back(
             {method.name + suffix, kOneThread + suffix, runs,

@@ -2,6 +2,8 @@
 
 #include <octomap/octomap.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -12,8 +14,11 @@
 #include "host/core/mapping/beam_integrator.hpp"
 #include "host/core/mapping/depth_integrator.hpp"
 #include "host/io/mapfile/map_file.hpp"
+#include "host/io/mapfile/octomap_mirror.hpp"
 #include "host/io/mapfile/octomap_tree.hpp"
+#include "tests/bench/arm_capsules.hpp"
 #include "tests/bench/clouds.hpp"
+#include "tests/bench/planner_rows.hpp"
 #include "tests/bench/sizes.hpp"
 
 namespace octoskin::bench {
@@ -139,6 +144,36 @@ class OctomapBeams final : public Task {
     std::vector<std::pair<octomap::Pointcloud, octomap::point3d>> beams_;
 };
 
+/// From the ten frames' map on, one frame after the other: what each changes, into a tree that shows the
+/// rest.
+class ExportChanges final : public Task {
+  public:
+    ExportChanges(const RoomFrames& room, const std::string& resolution, const FusedMap& ten_frames)
+        : room_(room),
+          integrator_(bench_mapping(resolution, DepthUpdate::paper), room.camera),
+          map_(ten_frames.copy()),
+          mirror_(map_.config()) {
+        (void)mirror_.update(map_);
+    }
+    void prepare() override {
+        const RoomFrame& frame = room_.frames[next_++ % room_.frames.size()];
+        const auto result = integrator_.integrate(frame.image, frame.T_map_camera);
+        if (!result) throw std::runtime_error("a frame was refused");
+        map_.apply(result->terms);
+    }
+    void run() override {
+        if (mirror_.update(map_) == 0) throw std::runtime_error("a frame changed nothing");
+    }
+    void tell(Figures& figures) const override { tell_size(mirror_.tree(), figures); }
+
+  private:
+    const RoomFrames& room_;
+    DepthIntegrator integrator_;
+    FusedMap map_;
+    OctomapMirror mirror_;
+    std::size_t next_ = kFramesOfMap;
+};
+
 std::vector<Eigen::Vector3d> points_in_room() {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> x(-0.5, 3.2);
@@ -197,6 +232,28 @@ class MapRows {
     unsigned runs_;
 };
 
+/// How many capsules are in each state. Equal of two maps of the same voxels.
+using States = std::array<std::size_t, 3>;
+
+States states_of(const FusedMap& map, const std::vector<ArmCapsules>& postures) {
+    States states{};
+    for (const ArmCapsules& capsules : postures) {
+        std::array<CapsuleAnswer, 7> answers;
+        if (!worst_in(map, capsules, answers)) throw std::runtime_error("a capsule was refused");
+        for (const CapsuleAnswer& answer : answers) ++states.at(static_cast<std::size_t>(answer.state));
+    }
+    return states;
+}
+
+States states_of(const octomap::OcTree& tree, const std::vector<ArmCapsules>& postures) {
+    States states{};
+    for (const ArmCapsules& capsules : postures) {
+        for (const PosedCapsule& capsule : capsules)
+            ++states.at(static_cast<std::size_t>(worst_in(tree, capsule).state));
+    }
+    return states;
+}
+
 void require(bool is_done, const char* what) {
     if (!is_done) throw std::runtime_error(what);
 }
@@ -243,6 +300,21 @@ void add_files(MapRows& rows, const std::filesystem::path& folder, const std::st
     rows.rows.back() = with_file(std::move(rows.rows.back()));
 }
 
+/// Both must find the same states, of which each must occur.
+void add_capsules(MapRows& rows) {
+    const auto postures = std::make_shared<const std::vector<ArmCapsules>>(arm_on_the_table(OCTOSKIN_RIG));
+    const auto states = std::make_shared<std::optional<States>>();
+    const auto check = [states](const States& found) {
+        require(std::ranges::find(found, 0U) == found.end(), "a state of capsules does not occur");
+        if (!*states) *states = found;
+        require(**states == found, "capsules are in other states than before, or in OctoMap");
+    };
+    rows.add_octomap("octomap_capsules",
+                     [postures, check](const octomap::OcTree& tree) { check(states_of(tree, *postures)); });
+    rows.add_ours("capsules", "octomap_capsules",
+                  [postures, check](const FusedMap& map) { check(states_of(map, *postures)); });
+}
+
 }  // namespace
 
 std::vector<Row> map_rows(const RoomFrames& room, const std::string& resolution, unsigned runs,
@@ -263,6 +335,9 @@ std::vector<Row> map_rows(const RoomFrames& room, const std::string& resolution,
     });
     rows.add_ours("export", "",
                   [](const FusedMap& map) { require(to_octomap(map)->size() > 1, "an export is empty"); });
+    rows.rows.push_back({"export_changes", "export", runs, [&room, resolution, maps] {
+                             return std::make_unique<ExportChanges>(room, resolution, maps->ours());
+                         }});
     add_files(rows, folder, resolution, maps);
     const auto points = std::make_shared<const std::vector<Eigen::Vector3d>>(points_in_room());
     rows.add_octomap("octomap_points", [points](const octomap::OcTree& tree) {
@@ -271,6 +346,10 @@ std::vector<Row> map_rows(const RoomFrames& room, const std::string& resolution,
     rows.add_ours("points", "octomap_points", [points](const FusedMap& map) {
         require(occupied_of(map, *points) > 0, "nothing is found");
     });
+    add_capsules(rows);
+    for (Row& row :
+         planner_rows(room, resolution, runs, [maps]() -> const FusedMap& { return maps->ours(); }))
+        rows.rows.push_back(std::move(row));
     return std::move(rows.rows);
 }
 

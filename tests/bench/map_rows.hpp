@@ -10,9 +10,9 @@
 
 namespace octoskin::bench {
 
-/// Beams: a cycle of 34. Of the room's first frames as `exact`: a copy, as octomap::OcTree, to a .ot and
-/// back, 100,000 questions for a point. Files go to `folder`, which the caller removes. `room` outlives the
-/// rows.
+/// Beams: a cycle of 34. Of the room's first frames as `exact`: a copy, as octomap::OcTree and what the next
+/// frame changes in that, to a .ot and back, 100,000 questions for a point, 100 postures of an arm. Files go
+/// to `folder`, which the caller removes. `room` outlives the rows.
 [[nodiscard]] std::vector<Row> map_rows(const RoomFrames& room, const std::string& resolution, unsigned runs,
                                         const std::filesystem::path& folder);
 

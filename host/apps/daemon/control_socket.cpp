@@ -114,7 +114,11 @@ void ControlSocket::accept() {
     Client& client = clients_.emplace_back();
     client.descriptor = descriptor;
     client.asked = monotonic_now();
-    client.readable = loop_.on_readable(descriptor, [this, &client] {
+    watch(client);
+}
+
+void ControlSocket::watch(Client& client) {
+    client.readable = loop_.on_readable(client.descriptor, [this, &client] {
         if (!serve(client)) drop(client.descriptor);
     });
 }
@@ -138,10 +142,28 @@ bool ControlSocket::serve(Client& client) {
     }
     client.asked = monotonic_now();
     // Who has given up waiting must not have a recording begun that it knows nothing of.
-    return !has_gone(client.descriptor) && reply(client, answer_(std::exchange(client.request, {})));
+    if (has_gone(client.descriptor)) return false;
+    const std::string request = std::exchange(client.request, {});
+    return is_taken(client, request) || send(client, answer_(request));
 }
 
-bool ControlSocket::reply(const Client& client, std::string line) const {
+bool ControlSocket::is_taken(Client& client, const std::string& request) {
+    if (!later_ || !later_(request, tickets_ + 1)) return false;
+    client.ticket = ++tickets_;
+    client.readable = EventSource();  // the one at work just now: nothing of it is used any more
+    return true;
+}
+
+void ControlSocket::reply(std::uint64_t ticket, const std::string& line) {
+    const auto client = std::ranges::find(clients_, ticket, &Client::ticket);
+    if (ticket == 0 || client == clients_.end()) return;
+    client->ticket = 0;
+    client->asked = monotonic_now();
+    if (!send(*client, line)) return drop(client->descriptor);
+    watch(*client);
+}
+
+bool ControlSocket::send(const Client& client, std::string line) const {
     line += '\n';
     const ssize_t sent = ::send(client.descriptor, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     return sent == static_cast<ssize_t>(line.size());
@@ -157,7 +179,7 @@ void ControlSocket::drop_idle() {
     const HostTime now = monotonic_now();
     std::vector<int> idle;
     for (const Client& client : clients_)
-        if (now - client.asked > idle_max_) idle.push_back(client.descriptor);
+        if (client.ticket == 0 && now - client.asked > idle_max_) idle.push_back(client.descriptor);
     for (const int descriptor : idle) drop(descriptor);
     dropped_ += idle.size();
     if (is_resting_) watch();

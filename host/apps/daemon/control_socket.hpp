@@ -7,6 +7,7 @@
 #include <functional>
 #include <list>
 #include <string>
+#include <utility>
 
 #include "common/result.hpp"
 #include "common/time.hpp"
@@ -21,8 +22,12 @@ class ControlSocket {
     /// client that has gone by then, and of each client once in a turn of the loop.
     using Answer = std::function<std::string(const std::string& request)>;
 
+    /// Takes a request that needs time: true, and `reply` with the ticket will follow, from the loop's
+    /// thread. Until then nothing more is read of that client, which is not idle either.
+    using Later = std::function<bool(const std::string& request, std::uint64_t ticket)>;
+
     static constexpr std::size_t kClientsMax = 16;
-    static constexpr std::size_t kRequestMax = 4096;
+    static constexpr std::size_t kRequestMax = 48 << 10;
     /// What a client has not read yet; beyond, it is dropped.
     static constexpr std::size_t kUnreadMax = 4 << 20;
 
@@ -37,6 +42,11 @@ class ControlSocket {
     ControlSocket(const ControlSocket&) = delete;
     ControlSocket& operator=(const ControlSocket&) = delete;
 
+    /// From now on asked before `answer`, which gets what it does not take.
+    void answer_later(Later later) { later_ = std::move(later); }
+    /// The answer, without a line feed, to a request that was taken. Nothing if the client has gone.
+    void reply(std::uint64_t ticket, const std::string& line);
+
     /// Clients that were dropped: idle for too long, or the longest of too many; too slow to read; a request
     /// without end.
     [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
@@ -44,8 +54,9 @@ class ControlSocket {
   private:
     struct Client {
         int descriptor = -1;
-        std::string request;  ///< as much of it as is here
-        HostTime asked;       ///< newest whole request
+        std::string request;       ///< as much of it as is here
+        HostTime asked;            ///< newest whole request
+        std::uint64_t ticket = 0;  ///< of what it waits for; 0: nothing
         EventSource readable;
     };
     ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer,
@@ -54,7 +65,9 @@ class ControlSocket {
     void accept();
     /// False if the client is to be dropped.
     [[nodiscard]] bool serve(Client& client);
-    [[nodiscard]] bool reply(const Client& client, std::string line) const;
+    [[nodiscard]] bool is_taken(Client& client, const std::string& request);
+    [[nodiscard]] bool send(const Client& client, std::string line) const;
+    void watch(Client& client);
     void drop(int descriptor);
     void drop_idle();
 
@@ -62,6 +75,8 @@ class ControlSocket {
     int descriptor_;
     EventLoop& loop_;
     Answer answer_;
+    Later later_;
+    std::uint64_t tickets_ = 0;
     std::chrono::milliseconds idle_max_;
     EventSource acceptable_;
     EventSource idle_check_;

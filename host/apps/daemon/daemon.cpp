@@ -19,6 +19,7 @@
 #include "host/apps/daemon/inputs.hpp"
 #include "host/apps/daemon/map_keeper.hpp"
 #include "host/apps/daemon/problem_log.hpp"
+#include "host/apps/daemon/query_desk.hpp"
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/daemon/status.hpp"
 #include "host/io/mapfile/map_file.hpp"
@@ -59,6 +60,7 @@ struct Daemon::Parts {
           settings(std::move(settings_in)),
           pipeline(std::move(pipeline_in)),
           inputs(request, settings.host.rig, loop, pipeline, recordings),
+          queries(settings.host),
           started(monotonic_now()) {}
 
     Status<AppError> take_sockets();
@@ -89,6 +91,7 @@ struct Daemon::Parts {
     std::optional<FolderLock> folder;
     std::optional<MapKeeper> keeper;
     std::unique_ptr<ControlSocket> control;
+    QueryDesk queries;
     HostTime started;
     std::string reload_error;
     ReloadCounts reloads;
@@ -146,6 +149,9 @@ Status<AppError> Daemon::Parts::take_sockets() {
                                       [this](const std::string& line) { return answer(line); });
     if (!opened) return unexpected(opened.error());
     control = std::move(opened).value();
+    control->answer_later([this](const std::string& line, std::uint64_t ticket) {
+        return queries.take(line, ticket, pipeline, inputs.bus_now(monotonic_now()));
+    });
     return inputs.take_sockets(settings.host.rig);
 }
 
@@ -173,6 +179,9 @@ void Daemon::Parts::watch() {
     sources.push_back(loop.on_readable(depth_thread.descriptor(), [this] {
         depth_thread.acknowledge();
         pipeline.on_worker_done();
+    }));
+    sources.push_back(loop.on_readable(queries.descriptor(), [this] {
+        for (const auto& [ticket, line] : queries.take_answers()) control->reply(ticket, line);
     }));
     sources.push_back(loop.every(kAttendPeriod, [this] { attend(); }));
     sources.push_back(loop.every(request.save_period, [this] { save_map(); }));
@@ -264,6 +273,7 @@ void Daemon::Parts::reload() {
         pipeline = std::move(next->pipeline);
         pipeline.work_beside(&depth_thread);
         inputs.change_rig(settings.host.rig);
+        queries.change_robot(settings.host);
         reload_error.clear();
         reloaded = monotonic_now();
         spdlog::info("reloaded: rig '{}'; the map goes on; {} of what waited was not used",
@@ -300,7 +310,8 @@ std::string Daemon::Parts::answer(const std::string& line) {
     }
     if (RecordRequests::is_one(line))
         return recordings.answer(line, settings.recorded, pipeline, monotonic_now());
-    return nlohmann::ordered_json{{"ok", false}, {"error", "unknown request; there are: status, record"}}
+    return nlohmann::ordered_json{{"ok", false},
+                                  {"error", "unknown request; there are: status, record, query"}}
         .dump();
 }
 

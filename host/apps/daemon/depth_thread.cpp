@@ -1,26 +1,13 @@
 #include "host/apps/daemon/depth_thread.hpp"
 
-#include <sys/eventfd.h>
-#include <unistd.h>
-
 #include <cassert>
-#include <cerrno>
-#include <system_error>
 #include <utility>
 
 #include "host/apps/daemon/quiet_thread.hpp"
 
 namespace octoskin {
 
-DepthThread::DepthThread() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-    if (event_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
-    try {
-        thread_ = start_without_signals([this] { run(); });
-    } catch (...) {
-        ::close(event_);
-        throw;
-    }
-}
+DepthThread::DepthThread() : thread_(start_without_signals([this] { run(); })) {}
 
 DepthThread::~DepthThread() {
     {
@@ -29,12 +16,6 @@ DepthThread::~DepthThread() {
     }
     changed_.notify_all();
     thread_.join();
-    ::close(event_);
-}
-
-void DepthThread::acknowledge() const noexcept {
-    eventfd_t count = 0;
-    (void)::eventfd_read(event_, &count);
 }
 
 void DepthThread::begin(std::function<void()> work) {
@@ -73,7 +54,7 @@ void DepthThread::run() {
         thrown_ = thrown;
         work_ = nullptr;
         changed_.notify_all();
-        (void)::eventfd_write(event_, 1);
+        event_.wake();
     }
 }
 

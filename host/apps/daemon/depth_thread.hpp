@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "host/apps/daemon/wake_event.hpp"
 #include "host/core/pipeline/depth_worker.hpp"
 
 namespace octoskin {
@@ -21,8 +22,8 @@ class DepthThread final : public DepthWorker {
     DepthThread& operator=(const DepthThread&) = delete;
 
     /// Readable when a piece of work is done, until `acknowledge`.
-    [[nodiscard]] int descriptor() const noexcept { return event_; }
-    void acknowledge() const noexcept;
+    [[nodiscard]] int descriptor() const noexcept { return event_.descriptor(); }
+    void acknowledge() const noexcept { event_.clear(); }
 
     void begin(std::function<void()> work) override;
     [[nodiscard]] bool is_done() const override;
@@ -31,13 +32,13 @@ class DepthThread final : public DepthWorker {
   private:
     void run();
 
-    int event_ = -1;
+    WakeEvent event_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::function<void()> work_;  ///< null: there is none, or it is done
     std::exception_ptr thrown_;
     bool is_ending_ = false;
-    std::thread thread_;
+    std::thread thread_;  ///< the last: it uses all others
 };
 
 }  // namespace octoskin

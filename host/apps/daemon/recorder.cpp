@@ -21,7 +21,8 @@ std::uint32_t crc32_of_text(const std::string& text) {
 }
 
 RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSettings& settings,
-                        const Pipeline& pipeline, const Recorder::Copier& copier) {
+                        Pipeline& pipeline, const Recorder::Copier& copier) {
+    pipeline.builder().forget_counts();  // a replay begins with what a file says
     return {.paths = RecordingPaths(folder),
             .rig = settings.rig,
             .robot = settings.robot,

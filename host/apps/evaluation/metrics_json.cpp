@@ -44,6 +44,20 @@ Json calibration_json(const Calibration& calibration) {
     return bins;
 }
 
+Json unknown_json(const UnknownSpace& space) {
+    Json json = {{"radius_m", space.region.radius_m},
+                 {"region_m3", space.region_m3},
+                 {"samples", Json::array()},
+                 {"pockets", Json::array()}};
+    for (const UnknownSample& sample : space.samples)
+        json["samples"].push_back(
+            {{"t_s", sample.t_s}, {"depth_m3", number(sample.depth_m3)}, {"fused_m3", sample.fused_m3}});
+    for (const UnknownPocket& pocket : space.pockets)
+        json["pockets"].push_back({{"volume_m3", pocket.volume_m3},
+                                   {"centre_m", {pocket.centre.x(), pocket.centre.y(), pocket.centre.z()}}});
+    return json;
+}
+
 Json run_json(const Results& results) {
     Json run = {{"seeds", results.seeds}, {"paired", Json::object()}, {"calibration", Json::object()}};
     for (const auto& difference : results.paired) {
@@ -57,6 +71,7 @@ Json run_json(const Results& results) {
     for (const auto& time : results.times) {
         run["times"].push_back({{"part", time.part}, {"wall_s", time.wall_s}, {"cpu_s", time.cpu_s}});
     }
+    if (results.unknown_space) run["unknown_space"] = unknown_json(*results.unknown_space);
     run["provenance"] = Json::object();
     for (const auto& [key, value] : results.provenance) {
         run["provenance"][key] = value;

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "host/apps/evaluation/aggregate.hpp"
+#include "host/apps/evaluation/unknown_space.hpp"
 
 namespace octoskin::evaluation {
 
@@ -28,6 +30,8 @@ struct Results {
     std::vector<std::pair<std::string, std::string>> provenance;
     /// The paper's experiment, re-enacted: only then do its figures belong beside these.
     bool is_papers_experiment = false;
+    /// Of the first seed and the configuration that the report speaks of.
+    std::optional<UnknownSpace> unknown_space;
 };
 
 /// Aggregates and pairs.

@@ -25,7 +25,19 @@ void VoxelWitness::on_depth(const DepthFrame& frame, const DepthTerms& terms) {
     take(std::move(contribution), std::span(&update, 1));
 }
 
+void VoxelWitness::on_fused(const FusedMap& map) {
+    const auto now = map.log_odds(key_);
+    if (now == now_ && !map.counts().has(brick_of(key_))) return;
+    now_ = now;
+    if (!is_newest_of_commit_ || newest_.empty()) return;
+    Contribution& newest = newest_.back();
+    const double before = newest.change();
+    newest.after = now_.value_or(0.0F);
+    shares_[newest.source].change += newest.change() - before;
+}
+
 void VoxelWitness::take(Contribution contribution, std::span<const VoxelUpdate> updates) {
+    is_newest_of_commit_ = false;
     for (const VoxelUpdate& update : updates) {
         // As FusedMap::apply: neither of these touches a voxel.
         if (update.key != key_ || update.log_odds == 0.0F || !std::isfinite(update.log_odds)) continue;
@@ -42,6 +54,7 @@ void VoxelWitness::take(Contribution contribution, std::span<const VoxelUpdate> 
         ++count_;
         newest_.push_back(contribution);
         if (newest_.size() > kept_max_) newest_.pop_front();
+        is_newest_of_commit_ = true;
     }
 }
 

@@ -26,7 +26,8 @@ struct Contribution {
     float term = 0.0F;                                        ///< log-odds that it asked for
     float before = 0.0F;                                      ///< the voxel's log-odds; 0 if it was unknown
     float after = 0.0F;                                       ///< clamped
-    /// What it did. Exact: their sum is the voxel's log-odds, less that of the begin.
+    /// What it did. Exact: their sum is the voxel's log-odds, less that of the begin, unless the voxel was
+    /// forgotten for its age between.
     [[nodiscard]] double change() const { return static_cast<double>(after) - static_cast<double>(before); }
 };
 
@@ -50,11 +51,17 @@ class VoxelWitness final : public CommitListener {
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
     void on_depth(const DepthFrame& frame, const DepthTerms& terms) override;
+    /// Where range sensors count hits and misses, or the voxel was forgotten for its age, terms do not simply
+    /// add up: there the map is asked.
+    void on_maps(const MapSet& maps) override {
+        if (maps.fused() != nullptr) on_fused(*maps.fused());
+    }
+    void on_fused(const FusedMap& map);
 
     [[nodiscard]] VoxelKey key() const noexcept { return key_; }
     /// The voxel's log-odds in the map that this one goes on from; empty: unknown.
     [[nodiscard]] std::optional<float> begin() const noexcept { return begin_; }
-    /// By the same arithmetic as the map's; empty: unknown.
+    /// By the same arithmetic as the map's, but where that is asked; empty: unknown.
     [[nodiscard]] std::optional<float> log_odds() const noexcept { return now_; }
     [[nodiscard]] const std::deque<Contribution>& newest() const noexcept { return newest_; }
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
@@ -70,6 +77,7 @@ class VoxelWitness final : public CommitListener {
     std::size_t kept_max_;
     std::uint64_t depth_frames_ = 0;
     std::uint64_t count_ = 0;
+    bool is_newest_of_commit_ = false;  ///< newest_.back() is of the reading or frame that came last
     std::deque<Contribution> newest_;
     std::map<BeamSource, SourceShare> shares_;
 };

@@ -36,6 +36,7 @@ void add_evaluate_command(CLI::App& app);
 void add_experiment_command(CLI::App& app);
 void add_run_command(CLI::App& app);
 void add_status_command(CLI::App& app);
+void add_query_command(CLI::App& app);
 void add_monitor_command(CLI::App& app);
 void add_record_command(CLI::App& app);
 void add_joints_command(CLI::App& app);

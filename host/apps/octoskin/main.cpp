@@ -16,7 +16,8 @@
 namespace {
 
 constexpr const char* kFooter =
-    "Exit codes: 0 done; 1 done, with a bad result; 64 command line; 65 unusable data;\n"
+    "Exit codes: 0 done; 1 done, with a bad result; 2 done, and nobody knows (query); 64 command line;\n"
+    "65 unusable data;\n"
     "66 no such file; 69 a program or device is missing; 70 a defect of octoskin; 73 cannot write;\n"
     "74 a device, standard input or output failed; 77 no permission;\n"
     "78 rig, robot, scenario or mapping file; 130, 143 interrupted by Ctrl-C, SIGTERM: what simulate,\n"
@@ -34,6 +35,7 @@ int run(int argc, char** argv) {
     app::add_experiment_command(app);
     app::add_run_command(app);
     app::add_status_command(app);
+    app::add_query_command(app);
     app::add_monitor_command(app);
     app::add_record_command(app);
     app::add_explain_command(app);
@@ -49,6 +51,8 @@ int run(int argc, char** argv) {
         app::check_command_name(app, argc, argv);
         app.parse(argc, argv);
         return static_cast<int>(ExitCode::ok);
+    } catch (const CLI::RuntimeError& outcome) {  // said already
+        return outcome.get_exit_code();
     } catch (const CLI::ParseError& error) {
         std::ostringstream said;
         const int exit_code = app.exit(error, said, std::cerr);

@@ -13,6 +13,7 @@ namespace octoskin {
 enum class ExitCode : int {
     ok = 0,
     failed = 1,          ///< the work was done and its result is bad
+    uncertain = 2,       ///< the work was done, and its result is that nobody knows
     usage = 64,          ///< the command line
     bad_data = 65,       ///< a recording, map or world that cannot be used
     no_input = 66,       ///< a file that is not there

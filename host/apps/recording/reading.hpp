@@ -5,7 +5,7 @@
 
 namespace octoskin {
 
-/// Hold it while calling read_rig, make_host_setup, Arm::read, read_capsules or World::read, if other threads
+/// Hold it while calling read_rig, make_host_setup, Arm::read, real_body or World::read, if other threads
 /// may.
 [[nodiscard]] inline std::unique_lock<std::mutex> lock_reading() {
     static std::mutex mutex;

@@ -15,6 +15,7 @@ constexpr double kLeft = 64.0;
 constexpr double kRight = 18.0;
 constexpr double kTop = 16.0;
 constexpr double kBottom = 52.0;
+static_assert(kLeft + kRight == kChartMarginX_px && kTop + kBottom == kChartMarginY_px);
 
 }  // namespace
 

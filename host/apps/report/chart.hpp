@@ -14,6 +14,10 @@ namespace octoskin::report {
 /// The decimals that tell neighbouring ticks apart, 0 to 6; 2 for fewer than two ticks.
 [[nodiscard]] int tick_digits(const std::vector<double>& ticks);
 
+/// What a chart is wider and higher than the area between its axes, pixels.
+inline constexpr double kChartMarginX_px = 82.0;
+inline constexpr double kChartMarginY_px = 68.0;
+
 struct Axis {
     double low = 0.0;
     double high = 1.0;

@@ -7,17 +7,6 @@
 namespace octoskin::report {
 namespace {
 
-std::string chart_figure(const std::string& svg, std::string_view caption) {
-    if (svg.empty()) {
-        return {};
-    }
-    return fmt::format("<figure class=\"chart\">\n{}<figcaption>{}</figcaption></figure>\n", svg, caption);
-}
-
-std::string legend_entry(std::string_view map, std::string_view title) {
-    return fmt::format("<li><i class=\"line {}\"></i>{}</li>\n", css_class_of(map), title);
-}
-
 constexpr std::string_view kPairedText =
     R"(<p>Each dot is one seed’s fused map minus the same seed’s depth map, the bar their mean (configuration
 <code>{}</code>). The spread of a metric over seeds is mostly the phase of the voxel grid against the furniture; a
@@ -60,6 +49,17 @@ logarithmic scale).</p>
 )";
 
 }  // namespace
+
+std::string chart_figure(const std::string& svg, std::string_view caption) {
+    if (svg.empty()) {
+        return {};
+    }
+    return fmt::format("<figure class=\"chart\">\n{}<figcaption>{}</figcaption></figure>\n", svg, caption);
+}
+
+std::string legend_entry(std::string_view map, std::string_view title) {
+    return fmt::format("<li><i class=\"line {}\"></i>{}</li>\n", css_class_of(map), title);
+}
 
 std::string paired_section(const ReportInput& input) {
     const auto* fused = find_map(input.results.maps, input.main_configuration, "fused");

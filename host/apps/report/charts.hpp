@@ -1,12 +1,14 @@
-// The report's three charts, each as an <svg> element.
+// The report's charts, each as an <svg> element.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "host/apps/evaluation/aggregate.hpp"
+#include "host/apps/evaluation/unknown_space.hpp"
 #include "host/core/mapping/update_model.hpp"
 
 namespace octoskin::report {
@@ -25,5 +27,12 @@ namespace octoskin::report {
 /// without any defined value are left out. Empty if none is left.
 [[nodiscard]] std::string paired_svg(const evaluation::PairedDifference& difference,
                                      const std::vector<std::string_view>& metrics, std::string_view unit);
+
+/// Unknown volume over time. There is a sample (asserted).
+[[nodiscard]] std::string unknown_curves_svg(const evaluation::UnknownSpace& space);
+
+/// Where the first `count` pockets are, seen from above, in metres from the robot's base: a dot's area grows
+/// with the pocket's volume. There is a pocket (asserted).
+[[nodiscard]] std::string pockets_svg(const evaluation::UnknownSpace& space, std::size_t count);
 
 }  // namespace octoskin::report

@@ -18,6 +18,7 @@ std::string report_html(const ReportInput& input) {
     html += pictures_section(input);
     html += paper_section(input);
     html += paired_section(input);
+    html += unknown_section(input);
     html += metrics_section(input);
     html += update_section(input);
     html += calibration_section(input);

@@ -36,7 +36,7 @@ Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
     if (!rig) return unexpected(rig.error());
     auto arm = sim::Arm::read(rig->urdf, rig->base_link, rig->joints.joints);
     if (!arm) return unexpected(reading_error(ExitCode::bad_config, arm.error()));
-    auto body = rig::read_capsules(rig->urdf, {});
+    auto body = rig::real_body(*rig);
     if (!body) return unexpected(reading_error(ExitCode::bad_config, body.error()));
     rig->T_map_base.pretranslate(scene->scenario.map_shift_m(request.seed));
     return Inputs{std::move(*scene), std::move(*rig), std::move(*arm), std::move(*body)};

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "host/apps/recording/given_rig.hpp"
+#include "host/apps/recording/reading.hpp"
 #include "host/apps/study/part_timer.hpp"
 
 namespace octoskin {
@@ -47,16 +49,53 @@ Status<AppError> simulate(const SeedRequest& request, bool is_noise_free, const 
     return Done{};
 }
 
+RecordingPaths recording_of(const SeedRequest& request, const StudyConfiguration& configuration) {
+    return RecordingPaths(configuration.is_depth_noise_free ? request.scratch : request.recording);
+}
+
+/// Where the arm may come: the ball that `octoskin query --unknown` asks about by default.
+PocketRegion region_about_arm(const rig::Rig& rig) {
+    const Eigen::Vector3d base = rig.T_map_base.translation();
+    return {.centre = base, .radius_m = 1.0, .z_min_m = base.z()};
+}
+
+/// Shows the maps to a meter, with the time of what went in last.
+class UnknownSpaceWatch final : public CommitListener {
+  public:
+    explicit UnknownSpaceWatch(const rig::Rig& rig)
+        : has_camera_(rig.camera.has_value()), meter_(region_about_arm(rig)) {}
+    void on_joints(const JointMeasurement&) override {}
+    void on_reading(const RangeMeasurement& measurement, const Beam&, std::span<const VoxelUpdate>) override {
+        captured_ = measurement.captured;
+    }
+    void on_depth(const DepthFrame& frame, const DepthTerms&) override { captured_ = frame.captured; }
+    void on_maps(const MapSet& maps) override { meter_.see(captured_, depth_of(maps), *maps.fused()); }
+
+    [[nodiscard]] evaluation::UnknownSpace finish(const MapSet& maps) {
+        return meter_.finish(depth_of(maps), *maps.fused());
+    }
+
+  private:
+    [[nodiscard]] const FusedMap* depth_of(const MapSet& maps) const {
+        return has_camera_ ? maps.depth() : nullptr;
+    }
+
+    bool has_camera_;
+    evaluation::UnknownSpaceMeter meter_;
+    HostTime captured_;
+};
+
 Result<Playback, AppError> play(const SeedRequest& request, const StudyConfiguration& configuration,
-                                const Say& say, SeedOutcome& outcome) {
-    const RecordingPaths recording(configuration.is_depth_noise_free ? request.scratch : request.recording);
+                                const Say& say, CommitListener* listener, SeedOutcome& outcome) {
+    const RecordingPaths recording = recording_of(request, configuration);
     const PartTimer timer("replay " + configuration.name);
     auto playback = play_recording({.recording = recording,
                                     .mapping = configuration.mapping,
                                     .configuration = configuration.name,
                                     .maps = {},
                                     .rig = {},
-                                    .robot = {}});
+                                    .robot = {},
+                                    .listener = listener});
     if (!playback) return playback;
     if (auto failure = failure_of(*playback)) return unexpected(std::move(*failure));
     outcome.times.push_back(timer.stop());
@@ -94,7 +133,12 @@ Result<evaluation::Truth, AppError> make_truth(const StudyGround& ground, const 
 
 Result<SeedOutcome, AppError> study_seed(const SeedRequest& request, const StudyGround& ground,
                                          const Say& say) {
-    SeedOutcome outcome{.seed = request.simulation.seed, .runs = {}, .times = {}, .main = {}, .truth = {}};
+    SeedOutcome outcome{.seed = request.simulation.seed,
+                        .runs = {},
+                        .times = {},
+                        .main = {},
+                        .truth = {},
+                        .unknown_space = {}};
     for (const bool is_noise_free : {false, true}) {
         const auto& all = request.configurations;
         const auto matches = [&](const StudyConfiguration& c) {
@@ -106,7 +150,15 @@ Result<SeedOutcome, AppError> study_seed(const SeedRequest& request, const Study
         }
         for (const StudyConfiguration& configuration : all) {
             if (!matches(configuration)) continue;
-            auto playback = play(request, configuration, say, outcome);
+            const bool is_main = request.keeps_maps && configuration.name == request.main_configuration;
+            std::optional<UnknownSpaceWatch> watch;
+            if (is_main) {
+                const auto lock = lock_reading();
+                const auto rig = read_given_rig(recording_of(request, configuration).rig());
+                if (!rig) return unexpected(rig.error());
+                watch.emplace(*rig);
+            }
+            auto playback = play(request, configuration, say, watch ? &*watch : nullptr, outcome);
             if (!playback) return unexpected(playback.error());
             if (!outcome.truth) {
                 auto truth = make_truth(ground, playback->rig, outcome);
@@ -114,7 +166,9 @@ Result<SeedOutcome, AppError> study_seed(const SeedRequest& request, const Study
                 outcome.truth = std::move(*truth);
             }
             judge(*playback, configuration.name, *outcome.truth, outcome);
-            if (request.keeps_maps && configuration.name == request.main_configuration) {
+            if (is_main) {
+                playback->pipeline.tell(nullptr);
+                outcome.unknown_space = watch->finish(playback->pipeline.maps());
                 outcome.main.emplace(std::move(*playback));
             }
         }

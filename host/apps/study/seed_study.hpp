@@ -44,6 +44,7 @@ struct SeedOutcome {
     /// Of the main configuration, if `keeps_maps`.
     std::optional<Playback> main;
     std::optional<evaluation::Truth> truth;
+    std::optional<evaluation::UnknownSpace> unknown_space;
 };
 
 /// `say`: one line for a person about what has just been done.

@@ -252,6 +252,7 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     times.push_back(survey_time);
     evaluation::Results results =
         evaluation::collect(runs, times, provenance_of(ground->scene, ground->rig_file));
+    results.unknown_space = outcomes->front().unknown_space;
     results.is_papers_experiment = is_papers_experiment(outcomes->front().main->rig, request.inputs.scenario,
                                                         request.inputs.world, request.papers_scenario);
 

@@ -36,7 +36,7 @@ void dress_with_robot(const sim::World& world, const sim::Scenario& scenario, co
                       report::SceneDressing& dressing) {
     const auto lock = lock_reading();
     const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints);
-    const auto capsules = rig::read_capsules(rig.urdf, {});
+    const auto capsules = rig::real_body(rig);
     if (!arm || !capsules) return;  // the same files were read before; a picture without a robot beats none
     const auto trajectory = sim::Trajectory::circle(*arm, scenario.motion, sim::SimTime{0});
     if (!trajectory) return;

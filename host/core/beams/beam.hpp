@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/time.hpp"
+#include "host/core/rig/beam_optics.hpp"
 
 namespace octoskin {
 
@@ -27,6 +28,7 @@ struct Beam {
     std::optional<double> range_m;
     double sigma_m = 0.0;
     double clear_limit_m = 0.0;  ///< without return: space may be cleared up to here; 0 = not at all
+    BeamOptics optics = {};      ///< what it sees about `direction_map`
 };
 
 }  // namespace octoskin

@@ -1,15 +1,39 @@
 #include "host/core/beams/beam_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "host/core/kinematics/self_hit.hpp"
 
 namespace octoskin {
 namespace {
 
+constexpr std::size_t kRaysMax = 19;
 constexpr double kEndless = std::numeric_limits<double>::infinity();
+
+/// The direction of a zone and, of a cone, 18 rays about it: 6 half as far from it as its edge, 12 just
+/// within.
+std::vector<Eigen::Vector3d> rays_of(const HostZone& zone) {
+    std::vector<Eigen::Vector3d> rays = {zone.direction_sensor};
+    if (!zone.optics.is_cone() || !zone.direction_sensor.allFinite()) return rays;
+    const Eigen::Quaterniond R_sensor_zone =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), zone.direction_sensor);
+    constexpr double kJustWithin = 0.95;
+    for (const auto& [count, share] : {std::pair{6, 0.5}, {12, kJustWithin}}) {
+        const double angle = share * zone.optics.half_angle_rad;
+        for (int i = 0; i < count; ++i) {
+            const double turn = 2.0 * std::numbers::pi * i / count;
+            rays.emplace_back(R_sensor_zone * Eigen::Vector3d(std::sin(angle) * std::cos(turn),
+                                                              std::sin(angle) * std::sin(turn),
+                                                              std::cos(angle)));
+        }
+    }
+    return rays;
+}
 
 RobotModelFault no_such_link(const std::string& name) {
     return {RobotModelError::unreachable, name};
@@ -37,7 +61,12 @@ Result<BeamBuilder, RobotModelFault> BeamBuilder::build(const HostRig& rig, cons
             if (!link) {
                 return unexpected(no_such_link(sensor.link));
             }
-            builder.sensors_[{node.node_id, index++}] = {*link, sensor.T_link_sensor, sensor.zones};
+            Sensor& placed = builder.sensors_[{node.node_id, index++}];
+            placed = {*link, sensor.T_link_sensor, {}};
+            for (HostZone zone : sensor.zones) {
+                if (!rules.sees_cones) zone.optics = {};
+                placed.zones.push_back({zone, rays_of(zone)});
+            }
         }
     }
     return builder;
@@ -46,6 +75,15 @@ Result<BeamBuilder, RobotModelFault> BeamBuilder::build(const HostRig& rig, cons
 bool BeamBuilder::has(const BeamSource& source) const {
     const auto found = sensors_.find({source.node_id, source.sensor});
     return found != sensors_.end() && source.zone < found->second.zones.size();
+}
+
+std::optional<double> BeamBuilder::self_hit(const Zone& zone, const Eigen::Isometry3d& T_base_sensor,
+                                            const RobotPose& robot) const {
+    std::array<Eigen::Vector3d, kRaysMax> rays_base;
+    for (std::size_t i = 0; i < zone.rays.size(); ++i) rays_base[i] = T_base_sensor.linear() * zone.rays[i];
+    return predict_self_hit(robot.body_base, T_base_sensor.translation(),
+                            std::span(rays_base).first(zone.rays.size()), zone.zone.optics.half_angle_rad,
+                            ignored_links_);
 }
 
 Result<Beam, BeamFault> BeamBuilder::place(const RangeMeasurement& measurement,
@@ -57,15 +95,14 @@ Result<Beam, BeamFault> BeamBuilder::place(const RangeMeasurement& measurement,
 
     const Eigen::Isometry3d T_base_sensor = robot.T_base_link[sensor.link] * sensor.T_link_sensor;
     const Eigen::Isometry3d T_map_sensor = T_map_base_ * T_base_sensor;
-    const Eigen::Vector3d& direction_sensor = sensor.zones[measurement.source.zone].direction_sensor;
+    const Zone& zone = sensor.zones[measurement.source.zone];
+    const Eigen::Vector3d& direction_sensor = zone.zone.direction_sensor;
     if (!T_map_sensor.matrix().allFinite() || !direction_sensor.allFinite()) {
         return unexpected(BeamFault::not_finite);
     }
     double free_m = kEndless;
     if (rules_.removes_robot) {
-        const auto self_hit_m = predict_self_hit(robot.body_base, T_base_sensor.translation(),
-                                                 T_base_sensor.linear() * direction_sensor, ignored_links_);
-        free_m = self_hit_m.value_or(kEndless) - self_margin_m_;
+        free_m = self_hit(zone, T_base_sensor, robot).value_or(kEndless) - self_margin_m_;
     }
     const double clear_m = std::min(rules_.no_return_clear_m, free_m);
     if (measurement.range_m ? *measurement.range_m > free_m : clear_m <= 0.0) {
@@ -77,7 +114,8 @@ Result<Beam, BeamFault> BeamBuilder::place(const RangeMeasurement& measurement,
                 .direction_map = T_map_sensor.linear() * direction_sensor,
                 .range_m = measurement.range_m,
                 .sigma_m = measurement.sigma_m,
-                .clear_limit_m = measurement.range_m ? 0.0 : clear_m};
+                .clear_limit_m = measurement.range_m ? 0.0 : clear_m,
+                .optics = zone.zone.optics};
 }
 
 }  // namespace octoskin

@@ -21,6 +21,9 @@ struct BeamRules {
     bool removes_robot = true;
     /// A beam without target clears space up to here at most.
     double no_return_clear_m = 0.0;
+    /// Whether a sensor's cone counts: then the robot is looked for in all of it, else on its axis, and beams
+    /// have no optics.
+    bool sees_cones = false;
 };
 
 enum class BeamFault : std::uint8_t {
@@ -43,12 +46,21 @@ class BeamBuilder {
                                                 const RobotPose& robot) const;
 
   private:
+    struct Zone {
+        HostZone zone;
+        /// What may meet the robot, sensor frame: the zone's direction first, then rays about it if it sees a
+        /// cone.
+        std::vector<Eigen::Vector3d> rays;
+    };
     struct Sensor {
         LinkId link = 0;
         Eigen::Isometry3d T_link_sensor = Eigen::Isometry3d::Identity();
-        std::vector<HostZone> zones;
+        std::vector<Zone> zones;
     };
     BeamBuilder() = default;
+    /// How far the way is free of the robot.
+    [[nodiscard]] std::optional<double> self_hit(const Zone& zone, const Eigen::Isometry3d& T_base_sensor,
+                                                 const RobotPose& robot) const;
 
     BeamRules rules_;
     double self_margin_m_ = 0.0;

@@ -20,27 +20,49 @@ inline constexpr std::size_t kBrickVoxels = std::size_t{1} << (3 * kBrickHeight)
 /// there: all of them are checked for finiteness on the way in.
 inline constexpr float kUnknownLogOdds = std::numeric_limits<float>::quiet_NaN();
 
+/// What a voxel holds of which nothing is known, and whether one does.
+template <class Value>
+struct UnknownValue;
+template <>
+struct UnknownValue<float> {
+    static constexpr float kValue = kUnknownLogOdds;
+    [[nodiscard]] static bool is(float value) noexcept { return std::isnan(value); }
+};
+template <>
+struct UnknownValue<std::uint16_t> {
+    static constexpr std::uint16_t kValue = 0;
+    [[nodiscard]] static bool is(std::uint16_t value) noexcept { return value == 0; }
+};
+
 /// One value for each voxel of a brick, in Morton order.
-using BrickValues = std::array<float, kBrickVoxels>;
+template <class Value>
+using BrickValuesOf = std::array<Value, kBrickVoxels>;
+using BrickValues = BrickValuesOf<float>;
 
 /// A set of a brick's voxels: bit i of word w is that of voxel 64 w + i, in Morton order.
 using BrickMask = std::array<std::uint64_t, kBrickVoxels / 64>;
 
 /// A brick to look at, for as long as who owns it leaves it unchanged.
-struct BrickView {
-    const BrickValues* values = nullptr;  ///< null: all voxels are alike
-    float value = kUnknownLogOdds;        ///< of all voxels, if they are alike
+template <class Value>
+struct BrickViewOf {
+    const BrickValuesOf<Value>* values = nullptr;  ///< null: all voxels are alike
+    Value value = UnknownValue<Value>::kValue;     ///< of all voxels, if they are alike
 
-    [[nodiscard]] float at(std::size_t cell) const noexcept { return values ? (*values)[cell] : value; }
+    [[nodiscard]] Value at(std::size_t cell) const noexcept { return values ? (*values)[cell] : value; }
     /// No voxel of it is known.
-    [[nodiscard]] bool is_unknown() const noexcept { return values == nullptr && std::isnan(value); }
+    [[nodiscard]] bool is_unknown() const noexcept {
+        return values == nullptr && UnknownValue<Value>::is(value);
+    }
 };
+using BrickView = BrickViewOf<float>;
+
+/// spread_bits() of what fits a brick.
+inline constexpr std::array<std::uint8_t, kBrickEdge> kSpreadInBrick = {0, 1, 8, 9, 64, 65, 72, 73};
 
 /// Place of a voxel in its brick.
 [[nodiscard]] constexpr std::size_t cell_of(VoxelKey key) noexcept {
-    constexpr std::array<std::uint8_t, 8> kSpread = {0, 1, 8, 9, 64, 65, 72, 73};
-    return static_cast<std::size_t>(kSpread[key.x & 7U] | (kSpread[key.y & 7U] << 1U) |
-                                    (kSpread[key.z & 7U] << 2U));
+    return static_cast<std::size_t>(kSpreadInBrick[key.x & 7U] | (kSpreadInBrick[key.y & 7U] << 1U) |
+                                    (kSpreadInBrick[key.z & 7U] << 2U));
 }
 
 /// Code of the first voxel of the brick that holds a voxel.

@@ -1,9 +1,12 @@
 #include "host/core/bricks/brick_tree.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <memory>
 #include <utility>
+
+#include "host/core/bricks/cube_parts.hpp"
 
 namespace octoskin {
 namespace {
@@ -28,11 +31,24 @@ constexpr std::uint64_t kIsValue = 1;
 bool is_value(std::uint64_t place) {
     return (place & kIsValue) != 0;
 }
-float value_in(std::uint64_t place) {
-    return std::bit_cast<float>(static_cast<std::uint32_t>(place >> 32U));
+template <class Value>
+Value value_in(std::uint64_t place) {
+    const auto upper = static_cast<std::uint32_t>(place >> 32U);
+    if constexpr (sizeof(Value) == sizeof(upper)) {
+        return std::bit_cast<Value>(upper);
+    } else {
+        return static_cast<Value>(upper);
+    }
 }
-std::uint64_t place_of_value(float value) {
-    return (std::uint64_t{std::bit_cast<std::uint32_t>(value)} << 32U) | kIsValue;
+template <class Value>
+std::uint64_t place_of_value(Value value) {
+    std::uint32_t upper = 0;
+    if constexpr (sizeof(Value) == sizeof(upper)) {
+        upper = std::bit_cast<std::uint32_t>(value);
+    } else {
+        upper = value;
+    }
+    return (std::uint64_t{upper} << 32U) | kIsValue;
 }
 template <class Below>
 Below* below(std::uint64_t place) {
@@ -46,37 +62,44 @@ std::uint64_t place_of_pointer(Below* pointer) {
 }  // namespace
 
 // Whoever counts up holds one already, so that only counting down must be seen in order.
-struct BrickTree::Node {
+template <class Value>
+struct BrickTreeOf<Value>::Node {
     std::atomic<std::uint32_t> owners = 1;
     std::array<Place, kPlaces> places{};
 };
-struct BrickTree::Dense {
+template <class Value>
+struct BrickTreeOf<Value>::Dense {
     std::atomic<std::uint32_t> owners = 1;
-    BrickValues values;
+    Values values;
 };
 
-BrickTree::BrickTree(const BrickTree& other) noexcept
+template <class Value>
+BrickTreeOf<Value>::BrickTreeOf(const BrickTreeOf& other) noexcept
     : root_(other.root_), nodes_(other.nodes_), dense_(other.dense_), bricks_(other.bricks_) {
     share(place_of_pointer(root_), kLevels);
 }
-BrickTree::BrickTree(BrickTree&& other) noexcept
+template <class Value>
+BrickTreeOf<Value>::BrickTreeOf(BrickTreeOf&& other) noexcept
     : root_(std::exchange(other.root_, nullptr)),
       nodes_(std::exchange(other.nodes_, 0)),
       dense_(std::exchange(other.dense_, 0)),
       bricks_(std::exchange(other.bricks_, 0)) {}
-BrickTree& BrickTree::operator=(BrickTree other) noexcept {
+template <class Value>
+BrickTreeOf<Value>& BrickTreeOf<Value>::operator=(BrickTreeOf other) noexcept {
     std::swap(root_, other.root_);
     std::swap(nodes_, other.nodes_);
     std::swap(dense_, other.dense_);
     std::swap(bricks_, other.bricks_);
     return *this;
 }
-BrickTree::~BrickTree() {
+template <class Value>
+BrickTreeOf<Value>::~BrickTreeOf() {
     release(place_of_pointer(root_), kLevels);
 }
 
 /// `level`: of the node in which the place is.
-void BrickTree::share(Place place, unsigned level) noexcept {
+template <class Value>
+void BrickTreeOf<Value>::share(Place place, unsigned level) noexcept {
     if (place == 0) return;
     if (level > 0) {
         below<Node>(place)->owners.fetch_add(1, std::memory_order_relaxed);
@@ -86,7 +109,8 @@ void BrickTree::share(Place place, unsigned level) noexcept {
 }
 
 /// Recurses as deep as the tree.
-void BrickTree::release(Place place, unsigned level) noexcept {
+template <class Value>
+void BrickTreeOf<Value>::release(Place place, unsigned level) noexcept {
     if (place == 0) return;
     if (level == 0) {
         if (is_value(place)) return;
@@ -101,18 +125,44 @@ void BrickTree::release(Place place, unsigned level) noexcept {
     delete node;
 }
 
-BrickView BrickTree::find(MortonCode brick) const noexcept {
+template <class Value>
+BrickViewOf<Value> BrickTreeOf<Value>::find(MortonCode brick) const noexcept {
     const Node* node = root_;
     for (unsigned level = kLevels - 1; level > 0 && node != nullptr; --level) {
         node = below<Node>(node->places[place_at(brick, level)]);
     }
-    const Place place = node == nullptr ? 0 : node->places[place_at(brick, 0)];
-    if (place == 0) return {};
-    if (is_value(place)) return {nullptr, value_in(place)};
-    return {&below<Dense>(place)->values, kUnknownLogOdds};
+    return brick_in(node == nullptr ? 0 : node->places[place_at(brick, 0)]);
 }
 
-std::size_t BrickTree::nodes_missing(MortonCode brick) const noexcept {
+/// `place`: 0, or of a lowest node.
+template <class Value>
+BrickViewOf<Value> BrickTreeOf<Value>::brick_in(Place place) noexcept {
+    if (place == 0) return {};
+    if (is_value(place)) return {nullptr, value_in<Value>(place)};
+    return {&below<Dense>(place)->values, UnknownValue<Value>::kValue};
+}
+
+template <class Value>
+typename BrickTreeOf<Value>::Space BrickTreeOf<Value>::space() const noexcept {
+    // What has no parts is only space: a tree of nothing has no root that is twice as wide.
+    const unsigned height = kBrickHeight + 2 * kLevels - (root_ == nullptr ? 1U : 0U);
+    return {place_of_pointer(root_), {.lowest = {}, .height = height}};
+}
+
+template <class Value>
+typename BrickTreeOf<Value>::Space BrickTreeOf<Value>::Space::part(std::size_t index) const noexcept {
+    assert(has_parts() && index < kPlaces);
+    return {below<Node>(place_)->places[index], part_of(cube_, index)};
+}
+
+template <class Value>
+BrickViewOf<Value> BrickTreeOf<Value>::Space::bricks() const noexcept {
+    assert(!has_parts());
+    return brick_in(place_);
+}
+
+template <class Value>
+std::size_t BrickTreeOf<Value>::nodes_missing(MortonCode brick) const noexcept {
     const Node* node = root_;
     for (unsigned level = kLevels - 1; level > 0; --level) {
         if (node == nullptr) return level + 1;
@@ -130,11 +180,13 @@ bool is_ours(const Shared* shared) {
 
 }  // namespace
 
-BrickValues* BrickTree::own(MortonCode brick) noexcept {
+template <class Value>
+BrickValuesOf<Value>* BrickTreeOf<Value>::own(MortonCode brick) noexcept {
     return OwnBricks(*this).find(brick);
 }
 
-BrickValues* BrickTree::OwnBricks::find(MortonCode brick) noexcept {
+template <class Value>
+BrickValuesOf<Value>* BrickTreeOf<Value>::OwnBricks::find(MortonCode brick) noexcept {
     const MortonCode prefix = brick >> (kBrickBits + kNodeBits);
     if (lowest_ == nullptr || prefix != prefix_) {
         lowest_ = nullptr;
@@ -152,7 +204,8 @@ BrickValues* BrickTree::OwnBricks::find(MortonCode brick) noexcept {
     return &below<Dense>(place)->values;
 }
 
-BrickTree::Place& BrickTree::place_of(MortonCode brick) {
+template <class Value>
+typename BrickTreeOf<Value>::Place& BrickTreeOf<Value>::place_of(MortonCode brick) {
     // All that is missing is made before any of it is linked.
     const std::size_t missing = nodes_missing(brick);
     std::array<std::unique_ptr<Node>, kLevels> made;
@@ -182,8 +235,9 @@ BrickTree::Place& BrickTree::place_of(MortonCode brick) {
     return *place;
 }
 
-void BrickTree::set_all(MortonCode brick, float value) {
-    assert(!std::isnan(value));
+template <class Value>
+void BrickTreeOf<Value>::set_all(MortonCode brick, Value value) {
+    assert(!UnknownValue<Value>::is(value));
     Place& place = place_of(brick);
     bricks_ += place == 0 ? 1U : 0U;
     if (place != 0 && !is_value(place)) {
@@ -193,10 +247,39 @@ void BrickTree::set_all(MortonCode brick, float value) {
     place = place_of_value(value);
 }
 
-BrickValues& BrickTree::open(MortonCode brick) {
-    if (BrickValues* const values = own(brick)) return *values;
+template <class Value>
+void BrickTreeOf<Value>::forget(MortonCode brick) {
+    if (find(brick).is_unknown()) return;
+    Place& place = place_of(brick);
+    dense_ -= is_value(place) ? 0U : 1U;
+    --bricks_;
+    release(place, 0);
+    place = 0;
+    // No node stays that has nothing below it.
+    std::array<Node*, kLevels> path{};
+    Node* node = root_;
+    for (unsigned level = kLevels; level-- > 0;) {
+        path[level] = node;
+        if (level > 0) node = below<Node>(node->places[place_at(brick, level)]);
+    }
+    for (unsigned level = 0; level < kLevels; ++level) {
+        const auto& places = path[level]->places;
+        if (std::any_of(places.begin(), places.end(), [](Place below_it) { return below_it != 0; })) return;
+        delete path[level];
+        --nodes_;
+        if (level + 1 == kLevels) {
+            root_ = nullptr;
+        } else {
+            path[level + 1]->places[place_at(brick, level + 1)] = 0;
+        }
+    }
+}
+
+template <class Value>
+BrickValuesOf<Value>& BrickTreeOf<Value>::open(MortonCode brick) {
+    if (Values* const values = own(brick)) return *values;
     // Made first: a node that had a place for nothing would remain.
-    const BrickView before = find(brick);
+    const View before = find(brick);
     std::unique_ptr<Dense> made;
     if (before.values == nullptr) {
         made = std::make_unique<Dense>();
@@ -216,7 +299,8 @@ BrickValues& BrickTree::open(MortonCode brick) {
     return below<Dense>(place)->values;
 }
 
-void BrickTree::for_each(const std::function<void(MortonCode, const BrickView&)>& visit) const {
+template <class Value>
+void BrickTreeOf<Value>::for_each(const std::function<void(MortonCode, const View&)>& visit) const {
     const auto visit_node = [&](const auto& self, const Node& node, MortonCode code, unsigned level) -> void {
         for (std::size_t i = 0; i < kPlaces; ++i) {
             const Place place = node.places[i];
@@ -224,18 +308,17 @@ void BrickTree::for_each(const std::function<void(MortonCode, const BrickView&)>
             const MortonCode lower = code_at(code, i, level);
             if (level > 0) {
                 self(self, *below<Node>(place), lower, level - 1);
-            } else if (is_value(place)) {
-                visit(lower, {nullptr, value_in(place)});
             } else {
-                visit(lower, {&below<Dense>(place)->values, kUnknownLogOdds});
+                visit(lower, brick_in(place));
             }
         }
     };
     if (root_ != nullptr) visit_node(visit_node, *root_, 0, kLevels - 1);
 }
 
-void BrickTree::for_each_difference(const BrickTree& before,
-                                    const std::function<void(MortonCode)>& visit) const {
+template <class Value>
+void BrickTreeOf<Value>::for_each_difference(const BrickTreeOf& before,
+                                             const std::function<void(MortonCode)>& visit) const {
     // A place of nothing stands for a node of nothings.
     const auto compare = [&](const auto& self, Place now, Place then, MortonCode code,
                              unsigned level) -> void {
@@ -248,5 +331,8 @@ void BrickTree::for_each_difference(const BrickTree& before,
     };
     compare(compare, place_of_pointer(root_), place_of_pointer(before.root_), 0, kLevels);
 }
+
+template class BrickTreeOf<float>;
+template class BrickTreeOf<std::uint16_t>;
 
 }  // namespace octoskin

@@ -1,6 +1,7 @@
 #include "host/core/kinematics/self_hit.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace octoskin {
 
@@ -31,6 +32,35 @@ std::optional<double> predict_self_hit(std::span<const PosedCapsule> capsules, c
         if (std::find(ignored.begin(), ignored.end(), capsule.link) != ignored.end()) continue;
         const auto range_m = ray_entry(capsule, origin, direction);
         if (range_m && (!nearest || *range_m < *nearest)) nearest = range_m;
+    }
+    return nearest;
+}
+
+namespace {
+
+/// False only if the ball about a capsule lies outside the cone.
+bool may_meet(const PosedCapsule& capsule, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis,
+              double half_angle_rad) {
+    const Eigen::Vector3d to_middle = 0.5 * (capsule.p_a + capsule.p_b) - origin;
+    const double radius = 0.5 * (capsule.p_b - capsule.p_a).norm() + capsule.radius_m;
+    const double along = to_middle.dot(axis);
+    const double aside = (to_middle - along * axis).norm();
+    // Behind the origin the nearest point of a cone is its tip.
+    return aside * std::cos(half_angle_rad) - along * std::sin(half_angle_rad) <= radius && along >= -radius;
+}
+
+}  // namespace
+
+std::optional<double> predict_self_hit(std::span<const PosedCapsule> capsules, const Eigen::Vector3d& origin,
+                                       std::span<const Eigen::Vector3d> directions, double half_angle_rad,
+                                       std::span<const LinkId> ignored) noexcept {
+    std::optional<double> nearest;
+    for (const PosedCapsule& capsule : capsules) {
+        if (!may_meet(capsule, origin, directions.front(), half_angle_rad)) continue;
+        for (const Eigen::Vector3d& direction : directions) {
+            const auto range_m = predict_self_hit({&capsule, 1}, origin, direction, ignored);
+            if (range_m && (!nearest || *range_m < *nearest)) nearest = range_m;
+        }
     }
     return nearest;
 }

@@ -1,24 +1,15 @@
 // From one placed range to the log-odds terms of its voxels.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "common/result.hpp"
 #include "host/core/beams/beam.hpp"
+#include "host/core/mapping/beam_rejection.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 
 namespace octoskin {
-
-/// Why a beam was refused.
-enum class BeamRejection : std::uint8_t {
-    origin_not_finite,
-    direction_not_unit,  ///< not finite, or its length differs from 1 by more than 1e-6
-    range_not_valid,     ///< not finite, or negative
-    limit_not_valid,     ///< the clearing limit is not finite, or negative
-    outside_map,         ///< origin or endpoint lies outside the octree
-};
 
 /// Stateless after construction; may be shared by threads.
 class BeamIntegrator {

@@ -55,11 +55,11 @@ class BrickCells {
             std::uint64_t& word = mask_[hit.cell / 64];
             const std::uint64_t bit = std::uint64_t{1} << (hit.cell % 64);
             Cell& cell = cells_[hit.cell];
-            if ((word & bit) == 0) cell = {};
+            // Not a branch: which run is a voxel's first nobody foresees.
+            const Cell before = (word & bit) == 0 ? Cell() : cell;
             word |= bit;
-            cell.sum += hit.sum;
-            cell.rays += hit.rays;
-            cell.most = hit.most > cell.most ? hit.most : cell.most;
+            cell = {before.sum + hit.sum, hit.most > before.most ? hit.most : before.most,
+                    before.rays + hit.rays};
         }
     }
 
@@ -167,7 +167,11 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage
 Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImage& image,
                                                                  const Eigen::Isometry3d& T_map_camera) {
     PlacedImage& rays = workspace_->rays;
-    place_image(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays, crew_.get());
+    const auto place = [&](KeptEnds kept) {
+        place_image(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays, kept,
+                    crew_.get());
+    };
+    place(config_.depth_update == DepthUpdate::fast ? KeptEnds::voxels : KeptEnds::points_and_voxels);
     DepthUpdates result;
     result.pixels = rays.counts;
     DepthTerms& terms = result.terms;
@@ -182,9 +186,16 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
         case DepthUpdate::robust:
             has_room = take_means(rays, terms);
             break;
-        case DepthUpdate::fast:
-            has_room = take_nearest(rays, T_map_camera, terms);
+        case DepthUpdate::fast: {
+            const CertainView view(pixel_rays_.camera(), lattice_, T_map_camera, rays);
+            if (view.depth_max_m > 0.0) {
+                has_room = take_nearest(rays, view, terms);
+            } else {
+                place(KeptEnds::points_and_voxels);
+                has_room = take_means(rays, terms);
+            }
             break;
+        }
     }
     if (!has_room) return unexpected(DepthRejection::box_too_large);
     workspace_->bricks_before = terms.bricks.size();
@@ -203,7 +214,9 @@ bool DepthIntegrator::take_sets(const PlacedImage& rays, const Eigen::Isometry3d
         !marks.span(box.lowest, box.highest, config_.depth_box_voxels_max)) {
         return false;
     }
-    workspace_->traversal.mark_passed(rays, pixel_rays_, lattice_, T_map_camera, marks);
+    workspace_->traversal.mark_passed(
+        rays, pixel_rays_, lattice_, T_map_camera, [&](MortonCode brick) { return hits.mask_of(brick); },
+        marks);
     marks.drain([&](MortonCode brick, const BrickMask& passed) {
         const BrickCells cells(hits.of(brick));
         terms.add(brick, without(passed, cells.mask()));
@@ -233,10 +246,7 @@ bool DepthIntegrator::take_means(const PlacedImage& rays, DepthTerms& terms) {
     return true;
 }
 
-bool DepthIntegrator::take_nearest(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
-                                   DepthTerms& terms) {
-    const CertainView view(pixel_rays_.camera(), lattice_, T_map_camera, rays);
-    if (!(view.depth_max_m > 0.0)) return take_means(rays, terms);
+bool DepthIntegrator::take_nearest(const PlacedImage& rays, const CertainView& view, DepthTerms& terms) {
     HitBricks& hits = workspace_->hits;
     const KeyBox box = box_of(rays, lattice_);
     ReachWindows& reach = workspace_->reach;
@@ -263,8 +273,8 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const Eigen::Isometr
     const auto add_brick = [&](DepthTerms& to, MortonCode brick, bool is_all) {
         if (is_all) return to.add(brick, kAll);
         const VoxelRays::Brick place = voxel_rays.brick_at(key_of_morton(brick));
-        const BrickMask passed = voxel_rays.passed(place);
         const BrickCells cells(hits.of(brick));
+        const BrickMask passed = voxel_rays.passed(place, cells.mask());
         to.add(brick, without(passed, cells.mask()));
         cells.for_each([&](std::uint16_t cell, const BrickCells::Cell& hit) {
             const RayVote vote = voxel_rays.vote_on(place, cell);

@@ -12,6 +12,7 @@
 #include "host/core/depth/pixel_rays.hpp"
 #include "host/core/mapping/depth_terms.hpp"
 #include "host/core/mapping/mapping_config.hpp"
+#include "host/core/traversal/certain_view.hpp"
 #include "host/core/traversal/placed_image.hpp"
 
 namespace octoskin {
@@ -58,8 +59,7 @@ class DepthIntegrator {
     [[nodiscard]] bool take_sets(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
                                  DepthTerms& terms);
     [[nodiscard]] bool take_means(const PlacedImage& rays, DepthTerms& terms);
-    [[nodiscard]] bool take_nearest(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
-                                    DepthTerms& terms);
+    [[nodiscard]] bool take_nearest(const PlacedImage& rays, const CertainView& view, DepthTerms& terms);
 
     struct Workspace;
     MappingConfig config_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "host/core/bricks/brick_sets.hpp"
+
 namespace octoskin {
 
 BrickTerms& DepthTerms::last(MortonCode brick) {
@@ -44,7 +46,7 @@ void DepthTerms::take(std::vector<VoxelUpdate> updates) {
         if (update.log_odds != miss) {
             add_hit(brick, {static_cast<std::uint16_t>(cell), update.log_odds});
         } else if (miss != 0.0F) {
-            last(brick).passed[cell / 64] |= std::uint64_t{1} << (cell % 64);
+            put_in(last(brick).passed, cell);
         }
     }
 }
@@ -53,7 +55,7 @@ float DepthTerms::of(VoxelKey key) const noexcept {
     const auto brick = std::ranges::lower_bound(bricks, brick_of(key), {}, &BrickTerms::first);
     if (brick == bricks.end() || brick->first != brick_of(key)) return 0.0F;
     const std::size_t cell = cell_of(key);
-    if ((brick->passed[cell / 64] >> (cell % 64) & 1U) != 0) return miss;
+    if (contains(brick->passed, cell)) return miss;
     const auto own = hits_of(*brick);
     const auto hit =
         std::ranges::find(own, cell, [](const CellTerm& term) { return std::size_t{term.cell}; });

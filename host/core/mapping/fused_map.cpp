@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <new>
 #include <utility>
 
 namespace octoskin {
@@ -19,35 +18,55 @@ std::size_t bytes_at_most(const BrickTree& tree) {
     return tree.nodes() * BrickTree::kNodeBytes + tree.bricks() * BrickTree::kBrickBytes;
 }
 
+CountFusion fusion_of(const MapConfig& config) {
+    return {config.counts, config.log_odds_min, config.log_odds_max, config.log_odds_occupied};
+}
+
 }  // namespace
 
-FusedMap::FusedMap(const MapConfig& config) : config_(config), lattice_(config.resolution_m) {
+FusedMap::FusedMap(const MapConfig& config)
+    : config_(config), lattice_(config.resolution_m), fusion_(fusion_of(config)) {
     assert(std::isfinite(config.log_odds_min) && std::isfinite(config.log_odds_max));
     assert(config.log_odds_min <= 0.0F && config.log_odds_max >= 0.0F);
 }
+
+namespace {
+
+BrickTree clamped_tree(const BrickTree& tree, float min, float max) {
+    const auto clamp = [&](float& log_odds) {  // a NaN, which is an unknown voxel, stays one
+        log_odds = std::clamp(log_odds, min, max);
+    };
+    BrickTree clamped = tree;
+    tree.for_each([&](MortonCode brick, const BrickView& view) {
+        if (view.values != nullptr) {
+            std::ranges::for_each(clamped.open(brick), clamp);
+        } else {
+            float value = view.value;
+            clamp(value);
+            clamped.set_all(brick, value);
+        }
+    });
+    return clamped;
+}
+
+}  // namespace
 
 void FusedMap::limit(const MapConfig& config) {
     assert(config.resolution_m == config_.resolution_m);
     const bool clamps_change =
         config.log_odds_min != config_.log_odds_min || config.log_odds_max != config_.log_odds_max;
+    const bool fusion_changes = clamps_change || config.counts != config_.counts ||
+                                config.log_odds_occupied != config_.log_odds_occupied;
+    FusedMap next(*this);
     if (clamps_change) {
-        const auto clamp = [&](float& log_odds) {  // a NaN, which is an unknown voxel, stays one
-            log_odds = std::clamp(log_odds, config.log_odds_min, config.log_odds_max);
-        };
-        BrickTree clamped = tree_;
-        tree_.for_each([&](MortonCode brick, const BrickView& view) {
-            if (view.values != nullptr) {
-                std::ranges::for_each(clamped.open(brick), clamp);
-            } else {
-                float value = view.value;
-                clamp(value);
-                clamped.set_all(brick, value);
-            }
-        });
-        tree_ = std::move(clamped);
+        next.tree_ = clamped_tree(tree_, config.log_odds_min, config.log_odds_max);
+        next.counts_.other = clamped_tree(counts_.other, config.log_odds_min, config.log_odds_max);
     }
-    config_ = config;
-    counters_ = {};
+    next.config_ = config;
+    next.counters_ = {};
+    next.fusion_ = fusion_of(config);
+    if (fusion_changes) counts_.hits.for_each([&](MortonCode brick, const BrickView&) { next.fuse(brick); });
+    *this = std::move(next);
 }
 
 bool FusedMap::has_room_for(MortonCode brick) const noexcept {
@@ -55,58 +74,55 @@ bool FusedMap::has_room_for(MortonCode brick) const noexcept {
     return bytes_at_most(tree_) + more <= bytes_of(config_.memory_max_mib);
 }
 
-template <class Write>
-Status<FusedMap::Refusal> FusedMap::change(MortonCode brick, Write&& write) noexcept {
-    if (tree_.find(brick).is_unknown() && !has_room_for(brick)) return unexpected(&MapCounters::no_room);
-    try {
-        write();
-        return Done{};
-    } catch (const std::bad_alloc&) {
-        return unexpected(&MapCounters::no_memory);
-    }
-}
-
-void FusedMap::add(float& voxel, float log_odds) noexcept {
+void FusedMap::add(float& voxel, const ClampedTerm& term) noexcept {
     known_voxels_ += std::isnan(voxel) ? 1U : 0U;
-    voxel = clamped(log_odds).added_to(voxel);
+    voxel = term.added_to(voxel);
 }
 
-void FusedMap::apply(std::span<const VoxelUpdate> updates) {
-    while (!updates.empty()) updates = updates.subspan(apply_some(updates));
-}
-
-/// The voxels of a beam lie in many bricks, and most of a map is in no cache: all are asked for before the
-/// first is written, so that the memory is waited for once. Returns how many updates it took.
-std::size_t FusedMap::apply_some(std::span<const VoxelUpdate> updates) noexcept {
-    constexpr std::size_t kRunsMax = 32;
-    struct Run {
-        BrickValues* values = nullptr;
-        std::size_t end = 0;
-    };
-    std::array<Run, kRunsMax> runs;
-    std::size_t count = 0;
-    std::size_t end = 0;
-    for (BrickTree::OwnBricks own(tree_); end < updates.size() && count < kRunsMax; ++count) {
-        const VoxelKey first = updates[end].key;
-        BrickValues* const values = own.find(brick_of(first));
-        for (; end < updates.size() && are_of_one_brick(updates[end].key, first); ++end) {
-            if (values != nullptr) __builtin_prefetch(&(*values)[cell_of(updates[end].key)], 1);
+void FusedMap::apply(std::span<const VoxelUpdate> updates, SensorKind kind) {
+    const auto all = updates;
+    const std::uint64_t no_memory = counters_.no_memory;
+    while (!updates.empty()) {
+        std::size_t done = counts_.empty() ? apply_owned(updates) : 0;
+        if (done == 0) {
+            const VoxelKey first = updates.front().key;
+            while (done < updates.size() && are_of_one_brick(updates[done].key, first)) ++done;
+            const bool is_counted = !counts_.empty() && counts_.has(brick_of(first));
+            is_counted ? apply_beside_counts(updates.first(done)) : apply_run(updates.first(done));
         }
-        runs[count] = {values, end};
+        updates = updates.subspan(done);
     }
-    std::size_t begin = 0;
-    for (const Run& run : std::span(runs).first(count)) {
-        apply_run(run.values, updates.subspan(begin, run.end - begin));
-        begin = run.end;
-    }
-    return end;
+    // What had no room is in an unknown brick, which is not dated.
+    if (confirmations_.has_begun() && counters_.no_memory == no_memory) confirm(all, kind);
 }
 
-/// Terms of one brick, `values` if all of them have a place. A brick is made for the first of them that it is
-/// needed for.
-void FusedMap::apply_run(BrickValues* values, std::span<const VoxelUpdate> run) noexcept {
+/// Takes updates as long as their voxels have a place each and nothing has to be refused, and returns how
+/// many: all of a beam in known space. Its voxels lie in many bricks, and most of a map is in no cache: all
+/// are asked for before the first is written. Two plain loops, for a beam's runs in bricks are short and no
+/// two are alike: each loop over one would end where the processor does not foresee it.
+std::size_t FusedMap::apply_owned(std::span<const VoxelUpdate> updates) noexcept {
+    constexpr std::size_t kUpdatesMax = 256;
+    std::array<float*, kUpdatesMax> voxels;  // NOLINT: as many as are found are set
+    BrickTree::OwnBricks own(tree_);
+    BrickValues* values = nullptr;
+    std::size_t count = 0;
+    for (; count < std::min(updates.size(), kUpdatesMax); ++count) {
+        const VoxelUpdate& update = updates[count];
+        if (count == 0 || !are_of_one_brick(update.key, updates[count - 1].key))
+            values = own.find(brick_of(update.key));
+        if (values == nullptr || !std::isfinite(update.log_odds) || update.log_odds == 0.0F) break;
+        voxels[count] = &(*values)[cell_of(update.key)];
+        __builtin_prefetch(voxels[count], 1);
+    }
+    for (std::size_t i = 0; i < count; ++i) add(*voxels[i], clamped(updates[i].log_odds));
+    counters_.applied += count;
+    return count;
+}
+
+/// Terms of one brick, which is made for the first of them that it is needed for.
+void FusedMap::apply_run(std::span<const VoxelUpdate> run) noexcept {
     const MortonCode brick = brick_of(run.front().key);
-    if (values == nullptr) values = tree_.own(brick);  // a run before may have made it
+    BrickValues* values = tree_.own(brick);
     Status<Refusal> has_values = Done{};
     for (const VoxelUpdate& update : run) {
         if (!std::isfinite(update.log_odds)) {
@@ -129,19 +145,24 @@ void FusedMap::apply_run(BrickValues* values, std::span<const VoxelUpdate> run) 
             ++(counters_.*has_values.error());
             continue;
         }
-        add((*values)[cell_of(update.key)], update.log_odds);
+        add((*values)[cell_of(update.key)], clamped(update.log_odds));
         ++counters_.applied;
     }
 }
 
 void FusedMap::apply(const DepthTerms& terms, std::span<const BrickTerms> bricks) {
     assert(std::isfinite(terms.miss));
-    for (const BrickTerms& brick : bricks) apply_brick(terms, brick);
+    for (const BrickTerms& brick : bricks) {
+        const bool is_counted = !counts_.empty() && counts_.has(brick.first);
+        const std::uint64_t refused = counters_.refused();
+        is_counted ? apply_beside_counts(terms, brick) : apply_brick(terms, brick);
+        if (confirmations_.has_begun() && counters_.refused() == refused) confirm(terms, brick);
+    }
 }
 
 void FusedMap::apply_brick(const DepthTerms& terms, const BrickTerms& brick) noexcept {
     const auto hits = terms.hits_of(brick);
-    const ClampedTerm miss = clamped(terms.miss);
+    const ClampedTerm miss = passed_term(terms.miss);
     const std::size_t passed = count_of(brick.passed);
     const BrickView before = tree_.find(brick.first);
     Status<Refusal> done = Done{};
@@ -153,7 +174,7 @@ void FusedMap::apply_brick(const DepthTerms& terms, const BrickTerms& brick) noe
         done = change(brick.first, [&] {
             BrickValues& values = tree_.open(brick.first);
             known_voxels_ += add_to_voxels(values, brick.passed, miss);
-            for (const CellTerm& hit : hits) add(values[hit.cell], hit.log_odds);
+            for (const CellTerm& hit : hits) add(values[hit.cell], hit_term(hit.log_odds));
             if (hits.empty() && are_alike(values)) tree_.set_all(brick.first, values.front());
         });
     }
@@ -223,6 +244,7 @@ void FusedMap::for_each_difference(const FusedMap& before,
 
 bool FusedMap::set_cube(const VoxelCube& cube, float log_odds) {
     if (!std::isfinite(log_odds)) return false;
+    assert(counts_.empty());
     const std::size_t bricks = (std::size_t{1} << (3 * cube.height)) / kBrickVoxels;
     // At once: a file may claim the whole octree.
     if (bricks > bytes_of(config_.memory_max_mib) / BrickTree::kBrickBytes) return false;

@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <limits>
@@ -24,6 +25,12 @@ struct RowOfEnds {
     const std::uint32_t* key_z;
     const double* range_m;
 };
+
+BrickMask HitBricks::mask_of(MortonCode brick) const noexcept {
+    BrickMask mask{};
+    for (const CellHits& hit : of(brick)) mask[hit.cell / 64] |= std::uint64_t{1} << (hit.cell % 64);
+    return mask;
+}
 
 }  // namespace octoskin
 #endif
@@ -94,11 +101,13 @@ bool HitBricks::begin(const KeyBox& box, std::size_t voxels_max) {
 
 void HitBricks::find(const PlacedImage& rays, const HitModel& model, std::size_t band) {
     Band& own = bands_.at(band);
-    own.found.clear();
-    own.bricks.clear();
+    own.count = 0;
     const auto row_at = [&](std::size_t part) {
         return static_cast<std::uint32_t>(std::size_t{rays.height} * part / kBands);
     };
+    const std::size_t rows = row_at(band + 1) - row_at(band);
+    own.runs.resize(std::max(own.runs.size(), rows * rays.width));
+    own.bricks.resize(own.runs.size());
     for (std::uint32_t v = row_at(band); v < row_at(band + 1); ++v)
         take_row(rays, std::size_t{v} * rays.width, model, own);
 }
@@ -106,8 +115,8 @@ void HitBricks::find(const PlacedImage& rays, const HitModel& model, std::size_t
 void HitBricks::sort() {
     std::size_t found = 0;
     for (const Band& band : bands_) {
-        for (const std::uint32_t brick : band.bricks) ++ends_[brick];
-        found += band.found.size();
+        for (std::size_t i = 0; i < band.count; ++i) ++ends_[band.bricks[i]];
+        found += band.count;
     }
     std::uint32_t begin = 0;
     for (std::uint32_t& end : ends_) {
@@ -115,9 +124,9 @@ void HitBricks::sort() {
         end = begin;  // for now where it begins
         begin += count;
     }
-    sorted_.resize(found);
+    if (sorted_.size() < found) sorted_.resize(found);
     for (const Band& band : bands_) {
-        for (std::size_t i = 0; i < band.found.size(); ++i) sorted_[ends_[band.bricks[i]]++] = band.found[i];
+        for (std::size_t i = 0; i < band.count; ++i) sorted_[ends_[band.bricks[i]]++] = band.runs[i];
     }
 }
 
@@ -139,26 +148,29 @@ void HitBricks::take_row(const PlacedImage& rays, std::size_t first, const HitMo
     for (std::size_t word = 0; word < run_ends.size(); ++word) {
         for (std::uint64_t bits = run_ends[word]; bits != 0; bits &= bits - 1) {
             const std::size_t last = kWordBits * word + static_cast<std::size_t>(std::countr_zero(bits));
-            if (key_z[last] != PlacedImage::kNoKey) take_run(key_xy[last], key_z[last], begin, last, band);
+            if (key_z[last] != PlacedImage::kNoKey) {
+                const VoxelKey key{static_cast<std::uint16_t>(key_xy[last]),
+                                   static_cast<std::uint16_t>(key_xy[last] >> 16U),
+                                   static_cast<std::uint16_t>(key_z[last])};
+                band.runs[band.count] = run_of(key, std::span(band.terms).subspan(begin, last + 1 - begin));
+                band.bricks[band.count] = static_cast<std::uint32_t>(index_of(key));
+                ++band.count;
+            }
             begin = last + 1;
         }
     }
 }
 
-void HitBricks::take_run(std::uint32_t key_xy, std::uint32_t key_z, std::size_t first, std::size_t last,
-                         Band& band) const {
-    const std::vector<float>& terms = band.terms;
-    CellHits hits{
-        .rays = static_cast<std::uint16_t>(last - first + 1), .sum = terms[first], .most = terms[first]};
-    for (std::size_t u = first + 1; u <= last; ++u) {
-        hits.sum += terms[u];
-        hits.most = terms[u] > hits.most ? terms[u] : hits.most;
+CellHits HitBricks::run_of(VoxelKey key, std::span<const float> terms) {
+    CellHits hits{.cell = static_cast<std::uint16_t>(cell_of(key)),
+                  .rays = static_cast<std::uint16_t>(terms.size()),
+                  .sum = terms.front(),
+                  .most = terms.front()};
+    for (const float term : terms.subspan(1)) {
+        hits.sum += term;
+        hits.most = term > hits.most ? term : hits.most;
     }
-    const VoxelKey key{static_cast<std::uint16_t>(key_xy), static_cast<std::uint16_t>(key_xy >> 16U),
-                       static_cast<std::uint16_t>(key_z)};
-    hits.cell = static_cast<std::uint16_t>(cell_of(key));
-    band.found.push_back(hits);
-    band.bricks.push_back(static_cast<std::uint32_t>(index_of(key)));
+    return hits;
 }
 
 std::span<const CellHits> HitBricks::of(MortonCode brick) const noexcept {

@@ -38,6 +38,7 @@ class HitBricks {
     void sort();
     /// Of a brick: in the order of pixels.
     [[nodiscard]] std::span<const CellHits> of(MortonCode brick) const noexcept;
+    [[nodiscard]] BrickMask mask_of(MortonCode brick) const noexcept;
 
   private:
     [[nodiscard]] std::size_t index_of(VoxelKey key) const noexcept {
@@ -52,13 +53,13 @@ class HitBricks {
         std::vector<float> terms;  ///< of a row's rays
         /// A bit for each of those: the next one ends in another voxel, or in nothing.
         std::vector<std::uint64_t> run_ends;
-        std::vector<CellHits> found;        ///< in the order of pixels
+        std::vector<CellHits> runs;         ///< room for one a pixel; in the order of pixels
         std::vector<std::uint32_t> bricks;  ///< of each of those
+        std::size_t count = 0;              ///< of runs
     };
     void take_row(const PlacedImage& rays, std::size_t first, const HitModel& model, Band& band) const;
-    /// Rays of a row that end in one voxel.
-    void take_run(std::uint32_t key_xy, std::uint32_t key_z, std::size_t first, std::size_t last,
-                  Band& band) const;
+    /// Of neighbouring rays that end in one voxel, from their terms.
+    [[nodiscard]] static CellHits run_of(VoxelKey key, std::span<const float> terms);
 
     KeyBox box_;
     std::size_t bricks_x_ = 0;

@@ -2,6 +2,17 @@
 
 namespace octoskin {
 
+ConeModel zone_model() {
+    return {.hit_range_max_m = 2.0,
+            .cap_half_thickness_m = 0.032,
+            .cap_sigmas = 1.0,
+            .cap_angle_share = 0.58,
+            .core_weight_min = 0.475,
+            .core_margin_voxels = 0.5,
+            .hit_mass = 2.4F,
+            .miss_mass = 1.2F};
+}
+
 MappingConfig paper_mapping() {
     MappingConfig config;
     config.depth_update = DepthUpdate::paper;
@@ -12,6 +23,10 @@ MappingConfig paper_mapping() {
 MappingConfig robust_mapping() {
     MappingConfig config;
     config.depth_update = DepthUpdate::robust;
+    config.range_update = RangeUpdate::cone;
+    config.map.log_odds_passed_max = 1.5F;
+    config.map.log_odds_hit_min = -0.4F;
+    config.map.age = {.stale_after_s = 60, .unknown_after_s = 600};
     config.depth_filter.is_enabled = true;
     return config;
 }

@@ -5,8 +5,10 @@
 #include <cstdint>
 
 #include "host/core/depth/depth_filter.hpp"
-#include "host/core/mapping/fused_map.hpp"
+#include "host/core/mapping/cone_model.hpp"
+#include "host/core/mapping/map_config.hpp"
 #include "host/core/mapping/update_model.hpp"
+#include "host/core/rig/beam_optics.hpp"
 
 namespace octoskin {
 
@@ -20,9 +22,21 @@ enum class DepthUpdate : std::uint8_t {
     fast,
 };
 
+enum class RangeUpdate : std::uint8_t {
+    ray,   ///< the paper's: a miss for each voxel along the axis, a hit at its end
+    cone,  ///< a sensor whose optics are a cone counts hits and misses; others are as with `ray`
+};
+
+/// For a zone of 6 x 6 SPADs of a VL53L1X, one of 3 x 3: a narrow beam's range tells more of where its
+/// surface is, and marks from further away.
+[[nodiscard]] ConeModel zone_model();
+
 struct MappingConfig {
     MapConfig map;
     UpdateModel model;
+    RangeUpdate range_update = RangeUpdate::ray;
+    ConeModel cone = {};            ///< of sensors that see all of their cone at a time, or more than half
+    ConeModel zone = zone_model();  ///< of a zone of at most half of its array's SPADs
     DepthUpdate depth_update = DepthUpdate::robust;
     DepthFilterConfig depth_filter;
     /// A depth pixel whose range is larger clears space up to here and marks nothing; 0: no maximum.
@@ -34,6 +48,10 @@ struct MappingConfig {
     /// The box around one image's rays may hold this many voxels (1 byte each with `paper`, 8 with
     /// `robust`); a larger one is refused.
     std::uint32_t depth_box_voxels_max = 1U << 26U;
+    /// How a range of a beam with these optics, which are a cone, is counted.
+    [[nodiscard]] const ConeModel& cone_of(const BeamOptics& optics) const noexcept {
+        return optics.is_zone ? zone : cone;
+    }
     friend bool operator==(const MappingConfig&, const MappingConfig&) = default;
 };
 

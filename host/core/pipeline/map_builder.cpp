@@ -33,9 +33,10 @@ Result<MapBuilder, RobotModelFault> MapBuilder::build(const HostRig& rig, RobotM
                                                       const JointHistoryConfig& joints, const MapChoice& maps,
                                                       unsigned depth_threads) {
     assert(robot.joint_count() == rig.joints.joints.size());
-    auto beams = BeamBuilder::build(
-        rig, robot,
-        {.removes_robot = mapping.removes_robot_from_ranges, .no_return_clear_m = mapping.no_return_clear_m});
+    auto beams = BeamBuilder::build(rig, robot,
+                                    {.removes_robot = mapping.removes_robot_from_ranges,
+                                     .no_return_clear_m = mapping.no_return_clear_m,
+                                     .sees_cones = mapping.range_update == RangeUpdate::cone});
     if (!beams) {
         return unexpected(beams.error());
     }
@@ -52,6 +53,9 @@ MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams
     : robot_(std::move(robot)),
       beams_(std::move(beams)),
       beam_integrator_(mapping),
+      cone_(mapping.cone),
+      zone_(mapping.zone),
+      cone_finder_(mapping),
       maps_(mapping.map, maps) {
     if (rig.camera) {
         depth_stage_.emplace(rig, mapping, depth_threads);
@@ -88,16 +92,39 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
     if (!beam) {
         return unexpected(reason_of(beam.error()));
     }
-    const auto updates = beam_integrator_.integrate(*beam);
+    const auto added = beam->optics.is_cone() ? add_cone(measurement, *beam) : add_ray(measurement, *beam);
+    if (added && witness_) {
+        witness_->on_beam(*beam);
+    }
+    return added;
+}
+
+Status<ReadingReason> MapBuilder::add_ray(const RangeMeasurement& measurement, const Beam& beam) {
+    const auto updates = beam_integrator_.integrate(beam);
     if (!updates) {
         return unexpected(reason_of(updates.error()));
     }
+    maps_.go_on(measurement.captured);
     maps_.add_proximity(*updates);
-    if (witness_) {
-        witness_->on_beam(*beam);
-    }
     if (listener_ != nullptr) {
-        listener_->on_reading(measurement, *beam, *updates);
+        listener_->on_reading(measurement, beam, *updates);
+        listener_->on_maps(maps_);
+    }
+    return Done{};
+}
+
+Status<ReadingReason> MapBuilder::add_cone(const RangeMeasurement& measurement, const Beam& beam) {
+    const auto voxels = cone_finder_.find(beam);
+    if (!voxels) {
+        return unexpected(reason_of(voxels.error()));
+    }
+    maps_.go_on(measurement.captured);
+    const ConeModel& model = beam.optics.is_zone ? zone_ : cone_;
+    if (listener_ != nullptr) {
+        listener_->on_reading(measurement, beam, maps_.changes_of_proximity(**voxels, model));
+        listener_->on_maps(maps_);
+    } else {
+        maps_.add_proximity(**voxels, model);
     }
     return Done{};
 }
@@ -138,6 +165,7 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
     if (depth.robot && robot_.at(depth.frame.captured) == nullptr) {
         return unexpected(DepthReason::late);
     }
+    maps_.go_on(depth.frame.captured);
     maps_.add_depth(depth.updates->terms);
     if (witness_) {
         witness_->on_depth(depth_stage_->witness_images(), depth_stage_->T_map_camera_of(depth.frame),
@@ -145,6 +173,7 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
     }
     if (listener_ != nullptr) {
         listener_->on_depth(depth.frame, depth.updates->terms);
+        listener_->on_maps(maps_);
     }
     return Done{};
 }

@@ -13,6 +13,7 @@
 #include "host/core/ingest/reasons.hpp"
 #include "host/core/kinematics/robot_model.hpp"
 #include "host/core/mapping/beam_integrator.hpp"
+#include "host/core/mapping/cone_finder.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/pipeline/commit.hpp"
 #include "host/core/pipeline/depth_stage.hpp"
@@ -37,6 +38,9 @@ class MapBuilder {
     void begin_with(FusedMap fused) { maps_.begin_with(std::move(fused)); }
     /// Other limits for the fused map, at the same resolution (asserted).
     void limit_fused(const MapConfig& config) { maps_.limit_fused(config); }
+    /// From now on the maps are as if they had been read from files: who records from here on, and replays
+    /// from a file of the fused map, gets the same.
+    void forget_counts() noexcept { maps_.forget_counts(); }
     /// The fused map, for another builder to begin with; nothing may be given in after.
     [[nodiscard]] FusedMap take_fused() { return maps_.take_fused(); }
     /// `listener` is told of what goes in from now on; null: nobody is.
@@ -89,9 +93,15 @@ class MapBuilder {
     MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
                const MapChoice& maps, unsigned depth_threads);
 
+    [[nodiscard]] Status<ReadingReason> add_cone(const RangeMeasurement& measurement, const Beam& beam);
+    [[nodiscard]] Status<ReadingReason> add_ray(const RangeMeasurement& measurement, const Beam& beam);
+
     RobotTracker robot_;
     BeamBuilder beams_;
     BeamIntegrator beam_integrator_;
+    ConeModel cone_;
+    ConeModel zone_;
+    ConeFinder cone_finder_;
     std::optional<DepthStage> depth_stage_;
     std::optional<SensorWitness> witness_;
     MapSet maps_;

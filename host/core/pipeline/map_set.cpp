@@ -27,6 +27,22 @@ void MapSet::limit_fused(const MapConfig& config) {
     fused_->limit(config);
 }
 
+void MapSet::forget_counts() noexcept {
+    for (auto* map : {&depth_, &proximity_, &fused_}) {
+        if (*map) {
+            (*map)->forget_counts();
+        }
+    }
+}
+
+void MapSet::go_on(HostTime now) noexcept {
+    for (auto* map : {&depth_, &proximity_, &fused_}) {
+        if (*map) {
+            (*map)->go_on(now);
+        }
+    }
+}
+
 FusedMap MapSet::take_fused() {
     assert(fused_);
     return std::move(*fused_);
@@ -45,6 +61,25 @@ void MapSet::add_proximity(std::span<const VoxelUpdate> updates) {
         if (*map) {
             (*map)->apply(updates);
         }
+    }
+}
+
+void MapSet::add_proximity(const ConeVoxels& cone, const ConeModel& model) {
+    count(cone, model, nullptr);
+}
+
+std::vector<VoxelUpdate> MapSet::changes_of_proximity(const ConeVoxels& cone, const ConeModel& model) {
+    std::vector<VoxelUpdate> changes;
+    count(cone, model, &changes);
+    return changes;
+}
+
+void MapSet::count(const ConeVoxels& cone, const ConeModel& model, std::vector<VoxelUpdate>* changes) {
+    if (proximity_) {
+        proximity_->apply(cone, model);
+    }
+    if (fused_) {
+        fused_->apply(cone, model, changes);
     }
 }
 

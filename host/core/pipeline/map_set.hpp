@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "host/core/mapping/fused_map.hpp"
 
@@ -24,13 +25,23 @@ class MapSet {
     /// Other limits for the fused map, which was chosen (asserted), at the same resolution (asserted).
     void limit_fused(const MapConfig& config);
 
+    /// What range sensors counted in any map becomes log-odds like any other (FusedMap::forget_counts).
+    void forget_counts() noexcept;
+
     /// The fused map, which was chosen (asserted), for another set to begin with; nothing may be added after.
     [[nodiscard]] FusedMap take_fused();
+
+    /// When what is added next was measured (FusedMap::go_on).
+    void go_on(HostTime now) noexcept;
 
     /// To `depth` and `fused`.
     void add_depth(const DepthTerms& terms);
     /// To `proximity` and `fused`.
     void add_proximity(std::span<const VoxelUpdate> updates);
+    void add_proximity(const ConeVoxels& cone, const ConeModel& model);
+    /// The same; the answer is by how much each log-odds of `fused`, if it was chosen, changed.
+    [[nodiscard]] std::vector<VoxelUpdate> changes_of_proximity(const ConeVoxels& cone,
+                                                                const ConeModel& model);
 
     /// Null if it was not chosen.
     [[nodiscard]] const FusedMap* depth() const noexcept { return depth_ ? &*depth_ : nullptr; }
@@ -38,6 +49,8 @@ class MapSet {
     [[nodiscard]] const FusedMap* fused() const noexcept { return fused_ ? &*fused_ : nullptr; }
 
   private:
+    void count(const ConeVoxels& cone, const ConeModel& model, std::vector<VoxelUpdate>* changes);
+
     std::optional<FusedMap> depth_;
     std::optional<FusedMap> proximity_;
     std::optional<FusedMap> fused_;

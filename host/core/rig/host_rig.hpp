@@ -13,6 +13,7 @@
 #include "common/wire/bus_load.hpp"
 #include "common/wire/messages.hpp"
 #include "host/core/depth/depth_frame.hpp"
+#include "host/core/rig/beam_optics.hpp"
 
 namespace octoskin {
 
@@ -21,6 +22,7 @@ struct HostZone {
     double offset_m = 0.0;  ///< added to every valid range of this zone
     /// Where the zone looks: unit vector in the sensor's frame. One zone over the whole array looks along +z.
     Eigen::Vector3d direction_sensor = Eigen::Vector3d::UnitZ();
+    BeamOptics optics = {};  ///< about that direction
 };
 
 struct HostSensor {

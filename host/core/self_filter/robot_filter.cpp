@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "host/core/self_filter/axis_distances.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -53,22 +55,54 @@ Interval depths_of(const PosedCapsule& capsule, double radius_m) {
     return {low - radius_m, high + radius_m};
 }
 
+/// A row's pixels within the capsule's columns.
+void take_row(const PixelRays& pixel_rays, PixelSpan columns, std::uint32_t v, const float* depth_m,
+              RowOfPixels& row) {
+    std::copy(depth_m + columns.begin, depth_m + columns.end, row.depth_m.begin());
+    const auto count = static_cast<std::ptrdiff_t>(columns.end - columns.begin);
+    if (pixel_rays.camera().lens.is_none()) {
+        // Of the x there is one for all rows; who removes a capsule has taken it.
+        std::fill(row.y.begin(), row.y.begin() + count, static_cast<float>(pixel_rays.at(0, v).y));
+        return;
+    }
+    for (std::uint32_t u = columns.begin; u < columns.end; ++u) {
+        const RaySlope ray = pixel_rays.at(u, v);
+        row.x[u - columns.begin] = static_cast<float>(ray.x);
+        row.y[u - columns.begin] = static_cast<float>(ray.y);
+    }
+}
+
 std::size_t remove_capsule(DepthImage& image, const PixelRays& pixel_rays, const PosedCapsule& capsule,
-                           double margin_m) {
+                           double margin_m, RowOfPixels& row) {
     const double radius_m = capsule.radius_m + margin_m;
     const PixelRectangle rectangle = rectangle_of(capsule, radius_m, pixel_rays);
+    const std::uint32_t begin = rectangle.columns.begin;
+    const std::uint32_t end = rectangle.columns.end;
+    if (begin == end) return 0;
     const Interval depths = depths_of(capsule, radius_m);
+    const RoughCapsule rough(capsule, radius_m);
+    /// Where single precision does not tell.
+    const auto is_robot = [&](std::uint32_t u, std::uint32_t v, double z) {
+        if (!(z >= depths.low && z <= depths.high)) return false;
+        const RaySlope ray = pixel_rays.at(u, v);
+        return distance_to_surface(capsule, {ray.x * z, ray.y * z, z}) <= margin_m;
+    };
+    for (std::uint32_t u = begin; u < end; ++u) row.x[u - begin] = static_cast<float>(pixel_rays.at(u, 0).x);
     std::size_t removed = 0;
     for (std::uint32_t v = rectangle.rows.begin; v < rectangle.rows.end; ++v) {
-        for (std::uint32_t u = rectangle.columns.begin; u < rectangle.columns.end; ++u) {
-            float& pixel = image.depth_m[std::size_t{v} * image.width + u];
-            const auto z = static_cast<double>(pixel);
-            if (!(z >= depths.low && z <= depths.high))
-                continue;  // no value, or before or behind the capsule
-            const RaySlope ray = pixel_rays.at(u, v);
-            const Eigen::Vector3d p_camera(ray.x * z, ray.y * z, z);
-            if (!(distance_to_surface(capsule, p_camera) <= margin_m)) continue;
-            pixel = std::numeric_limits<float>::quiet_NaN();
+        float* const pixels = image.depth_m.data() + std::size_t{v} * image.width;
+        take_row(pixel_rays, rectangle.columns, v, pixels, row);
+        const RowOutcome outcome = remove_certain(rough, end - begin, row);
+        if (outcome.removed > 0) {
+            std::copy_n(row.depth_m.begin(), end - begin, pixels + begin);
+            removed += outcome.removed;
+        }
+        if (!outcome.is_unsure) continue;
+        for (std::uint32_t u = begin; u < end; ++u) {
+            const float squared_m2 = row.squared_m2[u - begin];
+            const bool is_unsure = squared_m2 > rough.inside_m2 && squared_m2 <= rough.outside_m2;
+            if (!is_unsure || !is_robot(u, v, static_cast<double>(pixels[u]))) continue;
+            pixels[u] = std::numeric_limits<float>::quiet_NaN();
             ++removed;
         }
     }
@@ -96,8 +130,9 @@ std::size_t remove_robot(DepthImage& image, const PixelRays& pixel_rays,
         return remove_everything(image);
     }
     std::size_t removed = 0;
+    RowOfPixels row(image.width);
     for (const PosedCapsule& capsule : body_camera) {
-        removed += remove_capsule(image, pixel_rays, capsule, margin_m);
+        removed += remove_capsule(image, pixel_rays, capsule, margin_m, row);
     }
     return removed;
 }

@@ -14,7 +14,7 @@ namespace octoskin {
 /// returns how many. `body_camera`: capsules in the camera's optical frame (z forward), posed at the frame's
 /// capture time. If any of them, or the margin, is not finite, every pixel goes: nobody knows where the robot
 /// is. The image must be of the camera's size (asserted). Only pixels inside a capsule's bounds are
-/// looked at: about 1 ms.
+/// looked at: below 1 ms for 512 x 424.
 std::size_t remove_robot(DepthImage& image, const PixelRays& pixel_rays,
                          std::span<const PosedCapsule> body_camera, double margin_m);
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <vector>
 
 #include "host/core/depth/depth_frame.hpp"
@@ -36,13 +37,20 @@ struct CertainView {
     /// The nearest pixel's ray passes a voxel if its centre is no further: a pixel's corner lies within the
     /// sphere inside it.
     double depth_max_m = 0.0;
+    /// Up to `depth_max_m` goes all that the rays pass, so that each voxel that is not certain can be asked
+    /// for its rays; else rays are walked where not all they pass is certain.
+    bool is_by_voxel = false;
 };
+
+/// In which voxels of a brick rays end in something; asked once at most of each.
+using EndsOfBrick = std::function<BrickMask(MortonCode brick)>;
 
 /// Marks voxels that a ray passes, or ends in: all of those up to `depth_max_m` for which the rays within
 /// `WalkLadder`'s square go on from the voxel's centre (PlacedImage::passed_m), and others. Adds to `pieces`
 /// the pieces of rays that perhaps pass a voxel and that no other ray passes for certain. The grid spans the
 /// image's rays and has no mark. About 1 ns a voxel.
 void mark_certain_voxels(const CertainView& view, const PlacedImage& image, const ReachWindows& reach,
-                         const VoxelLattice& lattice, MarkGrid& grid, std::vector<RayPiece>& pieces);
+                         const VoxelLattice& lattice, const EndsOfBrick& ends, MarkGrid& grid,
+                         std::vector<RayPiece>& pieces);
 
 }  // namespace octoskin

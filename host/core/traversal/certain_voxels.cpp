@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -34,14 +35,16 @@ struct CertainTest {
     std::array<Eigen::Vector3f, 3> along;  ///< of the map's axes, one voxel, in the camera's frame
     float inside_squared = 0.0F;           ///< how near a ray passes the centre, squared, metres
     float beyond_m = 0.0F;                 ///< how much further than the centre it goes on
-    float near_m = 0.0F;                   ///< nearer than this no pixel is the nearest
+    float near_m = 0.0F;  ///< nearer than this no pixel is the nearest: half a voxel's depth, and the margin
     float far_m = 0.0F;
+    std::int32_t blocks_width = 0;
+    bool asks_all = false;  ///< and not only where the nearest pixel does not tell
 };
 
-/// Of a row of eight voxels, a bit each.
-struct RowBits {
-    unsigned certain = 0;
-    unsigned open = 0;  ///< the nearest pixel does not tell
+/// Of a layer of 8 x 8 voxels, x first, a bit each.
+struct LayerBits {
+    std::uint64_t certain = 0;
+    std::uint64_t open = 0;  ///< the nearest pixel does not tell
 };
 
 inline constexpr int kBrick = MarkGrid::kBrick;
@@ -57,57 +60,113 @@ using F = hn::CappedTag<float, MarkGrid::kBrick>;
 using I = hn::RebindToSigned<F>;
 using V = hn::Vec<F>;
 
-/// The first one's centre at `p_camera`.
-HWY_INLINE RowBits test_row(const CertainTest& test, const Eigen::Vector3f& p_camera) {
+/// Some voxels of a row, a lane each: centres in the camera's frame, and where they are seen, as if at
+/// `near_m` if they are nearer.
+struct LayerCentres {
+    V x, y, z;
+    V u, v;
+};
+
+/// Of a layer whose first voxel's centre is at `p_camera`, those from the `at`-th on.
+HWY_INLINE LayerCentres centres_from(const CertainTest& test, const Eigen::Vector3f& p_camera,
+                                     std::size_t at) {
+    const F f;
+    const Eigen::Vector3f row = p_camera + static_cast<float>(at / kBrick) * test.along[1];
+    const V along = hn::Iota(f, static_cast<float>(at % kBrick));
+    LayerCentres centres;
+    centres.x = hn::Add(hn::Set(f, row.x()), hn::Mul(along, hn::Set(f, test.along[0].x())));
+    centres.y = hn::Add(hn::Set(f, row.y()), hn::Mul(along, hn::Set(f, test.along[0].y())));
+    centres.z = hn::Add(hn::Set(f, row.z()), hn::Mul(along, hn::Set(f, test.along[0].z())));
+    const V per_z = hn::Div(hn::Set(f, 1.0F), hn::Max(centres.z, hn::Set(f, test.near_m)));
+    const auto seen_at = [&](V across, float focal, float middle) HWY_ATTR {
+        return hn::Add(hn::Mul(hn::Mul(across, per_z), hn::Set(f, focal)), hn::Set(f, middle));
+    };
+    centres.u = seen_at(centres.x, test.fx, test.u_centre);
+    centres.v = seen_at(centres.y, test.fy, test.v_centre);
+    return centres;
+}
+
+HWY_INLINE V in_picture(V pixel, float last) {
+    const F f;
+    return hn::Min(hn::Max(pixel, hn::Zero(f)), hn::Set(f, last));
+}
+
+/// Asks the pixel nearest to each centre.
+HWY_INLINE LayerBits ask_nearest_pixels(const CertainTest& test, const Eigen::Vector3f& p_camera) {
     const F f;
     const I i;
-    RowBits row;
-    for (std::size_t first = 0; first < static_cast<std::size_t>(kBrick); first += hn::Lanes(f)) {
-        const V at = hn::Iota(f, static_cast<float>(first));
-        const V x = hn::Add(hn::Set(f, p_camera.x()), hn::Mul(at, hn::Set(f, test.along[0].x())));
-        const V y = hn::Add(hn::Set(f, p_camera.y()), hn::Mul(at, hn::Set(f, test.along[0].y())));
-        const V z = hn::Add(hn::Set(f, p_camera.z()), hn::Mul(at, hn::Set(f, test.along[0].z())));
-        const V per_z = hn::Div(hn::Set(f, 1.0F), hn::Max(z, hn::Set(f, test.near_m)));
-        const auto nearest = [&](V across, float focal, float centre, float last) {
-            const V pixel = hn::Add(hn::Mul(hn::Mul(across, per_z), hn::Set(f, focal)), hn::Set(f, centre));
-            // Of a centre beside the picture the nearest is at its edge, and perhaps too far away.
-            return hn::Min(hn::Max(hn::Round(pixel), hn::Zero(f)), hn::Set(f, last));
-        };
-        const V u = nearest(x, test.fx, test.u_centre, test.last_u);
-        const V v = nearest(y, test.fy, test.v_centre, test.last_v);
+    LookUps<F> passed_m;
+    std::uint64_t passes = 0;    // the nearest pixel's ray the voxel's sphere
+    std::uint64_t in_depth = 0;  // where voxels are open if nothing tells
+    for (std::size_t at = 0; at < 64; at += hn::Lanes(f)) {
+        const LayerCentres centres = centres_from(test, p_camera, at);
+        // Of a centre beside the picture the nearest is at its edge, and perhaps too far away.
+        const V u = in_picture(hn::Round(centres.u), test.last_u);
+        const V v = in_picture(hn::Round(centres.v), test.last_v);
+        passed_m.put(at, hn::ConvertTo(i, hn::Add(hn::Mul(v, hn::Set(f, test.width)), u)));
         const V ray_x = hn::Mul(hn::Sub(u, hn::Set(f, test.u_centre)), hn::Set(f, 1.0F / test.fx));
         const V ray_y = hn::Mul(hn::Sub(v, hn::Set(f, test.v_centre)), hn::Set(f, 1.0F / test.fy));
-        const V off_x = hn::Sub(x, hn::Mul(ray_x, z));
-        const V off_y = hn::Sub(y, hn::Mul(ray_y, z));
-        const auto passes = hn::And(
-            hn::Gt(z, hn::Set(f, test.near_m)),
-            hn::Le(hn::Add(hn::Mul(off_x, off_x), hn::Mul(off_y, off_y)), hn::Set(f, test.inside_squared)));
-        const auto pixel = hn::ConvertTo(i, hn::Add(hn::Mul(v, hn::Set(f, test.width)), u));
-        const V passed = hn::GatherIndex(f, test.passed_m, pixel);
-        const auto reaches = hn::Gt(passed, hn::Add(z, hn::Set(f, test.beyond_m)));
-        const auto tells = hn::And(passes, hn::Ge(passed, hn::Zero(f)));
-        row.certain |= static_cast<unsigned>(bits_of(f, hn::And(passes, reaches)) << first);
-        const auto is_open = hn::AndNot(
-            tells, hn::And(hn::Le(z, hn::Set(f, test.far_m)), hn::Gt(z, hn::Set(f, -test.near_m))));
-        row.open |= static_cast<unsigned>(bits_of(f, is_open) << first);
+        const V off_x = hn::Sub(centres.x, hn::Mul(ray_x, centres.z));
+        const V off_y = hn::Sub(centres.y, hn::Mul(ray_y, centres.z));
+        const V off_squared = hn::Add(hn::Mul(off_x, off_x), hn::Mul(off_y, off_y));
+        passes |= bits_of(f, hn::And(hn::Gt(centres.z, hn::Set(f, test.near_m)),
+                                     hn::Le(off_squared, hn::Set(f, test.inside_squared))))
+                  << at;
+        in_depth |= bits_of(f, hn::And(hn::Le(centres.z, hn::Set(f, test.far_m)),
+                                       hn::Gt(centres.z, hn::Set(f, -test.near_m))))
+                    << at;
     }
-    return row;
+    passed_m.look_up(test.passed_m);
+    std::uint64_t reaches = 0;
+    std::uint64_t has_ray = 0;
+    for (std::size_t at = 0; at < 64; at += hn::Lanes(f)) {
+        const V passed = passed_m.values(at);
+        const V z = centres_from(test, p_camera, at).z;
+        reaches |= bits_of(f, hn::Gt(passed, hn::Add(z, hn::Set(f, test.beyond_m)))) << at;
+        has_ray |= bits_of(f, hn::Ge(passed, hn::Zero(f))) << at;
+    }
+    const std::uint64_t certain = passes & reaches;
+    return {certain, in_depth & ~(test.asks_all ? certain : passes & has_ray)};
+}
+
+/// Those that no ray in the square about them reaches left out.
+HWY_INLINE std::uint64_t ask_windows(const CertainTest& test, const SquareOfPixels& square,
+                                     const Eigen::Vector3f& p_camera) {
+    const F f;
+    const I i;
+    LookUps<F> longest_m;
+    for (std::size_t at = 0; at < 64; at += hn::Lanes(f)) {
+        const LayerCentres centres = centres_from(test, p_camera, at);
+        const auto first_block = [&](V middle, float last) HWY_ATTR {
+            return hn::ShiftRight<1>(
+                hn::ConvertTo(i, in_picture(hn::Sub(middle, hn::Set(f, square.half_px)), last)));
+        };
+        longest_m.put(at, hn::Add(hn::Mul(first_block(centres.v, test.last_v), hn::Set(i, test.blocks_width)),
+                                  first_block(centres.u, test.last_u)));
+    }
+    longest_m.look_up(square.longest_m);
+    std::uint64_t may_pass = 0;
+    for (std::size_t at = 0; at < 64; at += hn::Lanes(f)) {
+        const V nearest = hn::Sub(centres_from(test, p_camera, at).z, hn::Set(f, test.near_m));
+        may_pass |= bits_of(f, hn::Ge(longest_m.values(at), nearest)) << at;
+    }
+    return may_pass;
 }
 
 /// `p_camera`: the centre of the brick's first voxel. `marks`: that voxel's. `open`: by row.
-void test_brick(const CertainTest& test, const Eigen::Vector3f& p_camera, std::uint8_t* marks,
-                std::ptrdiff_t y_stride, std::ptrdiff_t z_stride, std::uint8_t* open) {
+void test_brick(const CertainTest& test, const SquareOfPixels& square, const Eigen::Vector3f& p_camera,
+                std::uint8_t* marks, std::ptrdiff_t y_stride, std::ptrdiff_t z_stride, std::uint8_t* open) {
     for (int z = 0; z < kBrick; ++z) {
+        const Eigen::Vector3f first = p_camera + static_cast<float>(z) * test.along[2];
+        LayerBits layer = ask_nearest_pixels(test, first);
+        if (layer.open != 0 && square.longest_m != nullptr) layer.open &= ask_windows(test, square, first);
         for (int y = 0; y < kBrick; ++y) {
-            const Eigen::Vector3f first =
-                p_camera + static_cast<float>(y) * test.along[1] + static_cast<float>(z) * test.along[2];
-            const RowBits row = test_row(test, first);
-            *open++ = static_cast<std::uint8_t>(row.open);
-            if (row.certain == 0) continue;
+            *open++ = static_cast<std::uint8_t>(layer.open >> (kBrick * y));
+            const std::uint64_t certain = layer.certain >> (kBrick * y) & 0xFFU;
+            if (certain == 0) continue;
             // Bit i to byte i.
-            const std::uint64_t seven =
-                (std::uint64_t{row.certain & 0x7FU} * 0x02040810204081ULL) & 0x0001010101010101ULL;
-            const std::uint64_t eight = seven | (std::uint64_t{row.certain >> 7U} << 56U);
+            const std::uint64_t seven = ((certain & 0x7FU) * 0x02040810204081ULL) & 0x0001010101010101ULL;
+            const std::uint64_t eight = seven | ((certain >> 7U) << 56U);
             std::memcpy(marks + y * y_stride + z * z_stride, &eight, sizeof(eight));
         }
     }
@@ -130,7 +189,7 @@ void mark_all(std::uint8_t* marks, std::ptrdiff_t y_stride, std::ptrdiff_t z_str
     }
 }
 
-CertainTest test_of(const CertainView& view, const PlacedImage& image) {
+CertainTest test_of(const CertainView& view, const PlacedImage& image, const ReachWindows& reach) {
     const CameraIntrinsics& camera = view.camera;
     CertainTest test{.passed_m = image.passed_m.data(),
                      .width = static_cast<float>(camera.width),
@@ -150,15 +209,37 @@ CertainTest test_of(const CertainView& view, const PlacedImage& image) {
     test.beyond_m = static_cast<float>(0.5 * view.margin_m);
     test.near_m = static_cast<float>(view.half_depth_m + view.margin_m);
     test.far_m = static_cast<float>(view.depth_max_m);
+    test.blocks_width = static_cast<std::int32_t>(reach.columns());
+    test.asks_all = view.is_by_voxel;
     return test;
+}
+
+using OpenRows = std::array<std::uint8_t, std::size_t{kBrick} * kBrick>;
+
+/// Who takes a voxel for a hit need not know whether it is passed, too.
+void leave_out(const EndsOfBrick& ends, const std::array<int, 3>& lowest, OpenRows& open) {
+    if (std::ranges::all_of(open, [](std::uint8_t row) { return row == 0; })) return;
+    for (const int key : lowest) {
+        if (key < 0 || key >= kVoxelsPerAxis) return;  // nothing ends where there are no keys
+    }
+    const BrickMask mask =
+        ends(morton_of({static_cast<std::uint16_t>(lowest[0]), static_cast<std::uint16_t>(lowest[1]),
+                        static_cast<std::uint16_t>(lowest[2])}));
+    for (std::size_t word = 0; word < mask.size(); ++word) {
+        for (std::uint64_t bits = mask[word]; bits != 0; bits &= bits - 1) {
+            const VoxelKey at = key_of_morton(64 * word + static_cast<std::size_t>(std::countr_zero(bits)));
+            open[at.y + std::size_t{kBrick} * at.z] &= static_cast<std::uint8_t>(~(1U << at.x));
+        }
+    }
 }
 
 }  // namespace
 
 void mark_certain_voxels(const CertainView& view, const PlacedImage& image, const ReachWindows& reach,
-                         const VoxelLattice& lattice, MarkGrid& grid, std::vector<RayPiece>& pieces) {
+                         const VoxelLattice& lattice, const EndsOfBrick& ends, MarkGrid& grid,
+                         std::vector<RayPiece>& pieces) {
     if (!(view.depth_max_m > 0.0)) return;
-    const CertainTest test = test_of(view, image);
+    const CertainTest test = test_of(view, image, reach);
     const PictureTest picture(view, reach);
     OpenVoxels open_voxels(view, image, lattice, picture);
     const auto corner = grid.corner();
@@ -167,7 +248,7 @@ void mark_certain_voxels(const CertainView& view, const PlacedImage& image, cons
     const double edge_m = lattice.resolution_m();
     const auto centre_of = [&](int key) { return (key - kOriginKey + 0.5) * edge_m; };
     const Eigen::Vector3d to_middle = Eigen::Vector3d::Constant(0.5 * (kBrick - 1) * edge_m);
-    std::array<std::uint8_t, std::size_t{kBrick} * kBrick> open{};
+    OpenRows open{};
     for (int z = 0; z < size[2]; z += kBrick) {
         for (int y = 0; y < size[1]; y += kBrick) {
             for (int x = 0; x < size[0]; x += kBrick) {
@@ -184,7 +265,10 @@ void mark_certain_voxels(const CertainView& view, const PlacedImage& image, cons
                     continue;
                 }
                 const Eigen::Vector3f p_camera = (view.T_camera_map * first).cast<float>();
-                HWY_DYNAMIC_DISPATCH(test_brick)(test, p_camera, marks, stride[1], stride[2], open.data());
+                const SquareOfPixels square = picture.square_of_voxels(middle, kBrick);
+                HWY_DYNAMIC_DISPATCH(test_brick)
+                (test, square, p_camera, marks, stride[1], stride[2], open.data());
+                leave_out(ends, {corner[0] + x, corner[1] + y, corner[2] + z}, open);
                 for (unsigned row = 0; row < open.size(); ++row) {
                     for (unsigned bits = open[row]; bits != 0; bits &= bits - 1) {
                         const int i = std::countr_zero(bits);

@@ -8,12 +8,12 @@ namespace octoskin {
 
 void ImageTraversal::mark_passed(const PlacedImage& image, const PixelRays& pixel_rays,
                                  const VoxelLattice& lattice, const Eigen::Isometry3d& T_map_camera,
-                                 MarkGrid& grid) {
+                                 const EndsOfBrick& ends, MarkGrid& grid) {
     const CertainView view(pixel_rays.camera(), lattice, T_map_camera, image);
     pieces_.clear();
     reach_.take(image);
-    mark_certain_voxels(view, image, reach_, lattice, grid, pieces_);
-    ladder_.find_pieces(view, image, pieces_);
+    mark_certain_voxels(view, image, reach_, lattice, ends, grid, pieces_);
+    if (!view.is_by_voxel) ladder_.find_pieces(view, image, pieces_);
     undecided_.clear();
     walk_pieces(image, lattice, pieces_, grid, undecided_);
 

@@ -24,7 +24,7 @@ namespace octoskin {
 class ImageTraversal {
   public:
     void mark_passed(const PlacedImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
-                     const Eigen::Isometry3d& T_map_camera, MarkGrid& grid);
+                     const Eigen::Isometry3d& T_map_camera, const EndsOfBrick& ends, MarkGrid& grid);
 
   private:
     ReachWindows reach_;

@@ -44,10 +44,34 @@ HWY_INLINE void for_each_set(Tag tag, AnyMask mask, Visit&& visit) {
     }
 }
 
+/// What a raster has at the places of 64 voxels, worked out for as many at once as AnyTag has lanes. Looked
+/// up one by one: a processor has many loads under way at once, and its gathers are no quicker, or much
+/// slower.
+template <class AnyTag>
+class LookUps {
+  public:
+    using Places = hn::RebindToSigned<AnyTag>;
+    HWY_INLINE void put(std::size_t at, hn::Vec<Places> places) {
+        hn::Store(places, Places(), places_.data() + at);
+    }
+    HWY_INLINE void look_up(const float* raster) {
+        for (std::size_t at = 0; at < places_.size(); ++at) values_[at] = raster[places_[at]];
+    }
+    [[nodiscard]] HWY_INLINE hn::Vec<AnyTag> values(std::size_t at) const {
+        return hn::Load(AnyTag(), values_.data() + at);
+    }
+
+  private:
+    alignas(64) std::array<std::int32_t, 64> places_;
+    alignas(64) std::array<float, 64> values_;
+};
+
+HWY_INLINE Float squared_length_of(Float x, Float y, Float z) {
+    return hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
+}
 /// The length of (x, y, z) as OctoMap computes it: in single precision but for the square root.
 HWY_INLINE Double length_of(Float x, Float y, Float z) {
-    const Float squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-    return hn::Sqrt(hn::PromoteTo(Doubles(), squared));
+    return hn::Sqrt(hn::PromoteTo(Doubles(), squared_length_of(x, y, z)));
 }
 
 }  // namespace octoskin::HWY_NAMESPACE

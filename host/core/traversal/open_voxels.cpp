@@ -18,20 +18,34 @@
 #define OCTOSKIN_OPEN_VOXELS_TYPES
 namespace octoskin {
 
-/// A voxel as pixels in a row see it: its faces along each axis of the map, from the camera, metres, the
-/// voxel made a little smaller and a little larger; and the directions of the row's rays, those of its first
-/// pixel and what each next one adds, per metre of depth.
-struct RowOfRays {
-    std::array<float, 3> centre;
-    std::array<float, 3> first;
-    std::array<float, 3> next;
+/// Along each axis of the map.
+using AlongAxes = std::array<float, 3>;
+
+/// The rays of an image, from the camera: pixel (u, v)'s direction, per metre of depth, is
+/// first + u * next_u + v * next_v.
+struct RayField {
+    AlongAxes first;
+    AlongAxes next_u;
+    AlongAxes next_v;
+    const float* reach_m = nullptr;
+    std::uint32_t width = 0;
+};
+
+/// A voxel as the camera sees it, made a little smaller and a little larger; metres.
+struct AskedVoxel {
+    AlongAxes centre;  ///< from the camera
     /// 1 or -1 along an axis on whose upper or lower side of the origin's voxel this one lies, else 0: a ray
     /// that goes the other way never comes there, whatever is rounded.
-    std::array<float, 3> side;
+    AlongAxes side;
     float half_smaller = 0.0F;
     float half_larger = 0.0F;
     float margin_m = 0.0F;
+    float nearest_m = 0.0F;  ///< depths of the larger one
+    float furthest_m = 0.0F;
 };
+
+/// Pixels along each edge of a tile.
+constexpr std::uint32_t kTile = 16;
 
 }  // namespace octoskin
 #endif
@@ -40,48 +54,177 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 
 using Wide = hn::ScalableTag<float>;
+using WideVec = hn::Vec<Wide>;
+using WideMask = hn::Mask<Wide>;
+using Directions = std::array<WideVec, 3>;
 
-/// Does the ray of a pixel, `first` to `last` of the row, pass the voxel for certain? Else adds to `perhaps`
-/// those that perhaps do.
-bool is_passed(const RowOfRays& row, const float* reach_m, std::uint32_t first, std::uint32_t last,
-               std::uint32_t pixel_of_row, std::vector<std::uint32_t>& perhaps) {
+/// Some rays: which lie so that they meet the voxel, or perhaps do, however far they reach.
+struct Meeting {
+    WideMask surely;
+    WideMask perhaps;
+};
+
+/// A line meets a box unless it lies aside of it, seen along an axis that is square to it and to an edge.
+HWY_INLINE Meeting meeting_of(const AskedVoxel& voxel, const Directions& directions) {
+    const Wide f;
+    Meeting meeting{hn::FirstN(f, hn::Lanes(f)), hn::FirstN(f, hn::Lanes(f))};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        const WideVec aside = hn::Abs(hn::Sub(hn::Mul(hn::Set(f, voxel.centre[i]), directions[j]),
+                                              hn::Mul(hn::Set(f, voxel.centre[j]), directions[i])));
+        const WideVec width = hn::Add(hn::Abs(directions[i]), hn::Abs(directions[j]));
+        meeting.surely =
+            hn::And(meeting.surely, hn::Lt(aside, hn::Mul(hn::Set(f, voxel.half_smaller), width)));
+        meeting.perhaps =
+            hn::And(meeting.perhaps, hn::Le(aside, hn::Mul(hn::Set(f, voxel.half_larger), width)));
+    }
+    return meeting;
+}
+
+/// What some rays tell of a voxel: whether one passes it for certain, else which perhaps do.
+struct Told {
+    bool is_passed = false;
+    WideMask perhaps;
+};
+
+/// Of rays that end near the voxel, or of a voxel near the camera.
+HWY_INLINE Told tell_by_distance(const AskedVoxel& voxel, const Directions& directions, WideMask asked,
+                                 WideVec reach) {
+    const Wide f;
+    const WideVec margin = hn::Set(f, voxel.margin_m);
+    auto in_smaller = margin;
+    auto in_larger = hn::Zero(f);
+    auto out_smaller = hn::Set(f, std::numeric_limits<float>::infinity());
+    auto out_larger = out_smaller;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const WideVec direction = directions[axis];
+        const WideVec per_direction = hn::Div(
+            hn::Set(f, 1.0F), hn::CopySign(hn::Max(hn::Abs(direction), hn::Set(f, 1e-9F)), direction));
+        const WideVec middle = hn::Mul(hn::Set(f, voxel.centre[axis]), per_direction);
+        const WideVec smaller = hn::Mul(hn::Set(f, voxel.half_smaller), hn::Abs(per_direction));
+        const WideVec larger = hn::Mul(hn::Set(f, voxel.half_larger), hn::Abs(per_direction));
+        in_smaller = hn::Max(in_smaller, hn::Sub(middle, smaller));
+        out_smaller = hn::Min(out_smaller, hn::Add(middle, smaller));
+        in_larger = hn::Max(in_larger, hn::Sub(middle, larger));
+        out_larger = hn::Min(out_larger, hn::Add(middle, larger));
+    }
+    const WideMask is_in = hn::And(asked, hn::Lt(in_smaller, out_smaller));
+    // What ends in a voxel does not pass it.
+    const WideMask is_end = hn::And(is_in, hn::And(hn::Gt(reach, hn::Add(in_smaller, margin)),
+                                                   hn::Lt(reach, hn::Sub(out_smaller, margin))));
+    const WideMask may_pass =
+        hn::And(hn::Le(in_larger, out_larger), hn::Ge(hn::Add(reach, margin), in_larger));
+    return {!hn::AllFalse(f, hn::And(is_in, hn::Gt(reach, hn::Add(out_larger, margin)))),
+            hn::AndNot(is_end, hn::And(asked, may_pass))};
+}
+
+/// Does the ray of a pixel of a row pass the voxel for certain? Else adds to `perhaps` those that perhaps do.
+HWY_INLINE bool is_passed_in_row(const RayField& rays, const AskedVoxel& voxel, const PixelBox& box,
+                                 std::uint32_t v, std::vector<std::uint32_t>& perhaps) {
+    const Wide f;
+    const std::uint32_t row = v * rays.width;
+    Directions first, next;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        first[axis] = hn::Set(f, rays.first[axis] + static_cast<float>(v) * rays.next_v[axis]);
+        next[axis] = hn::Set(f, rays.next_u[axis]);
+    }
+    for (std::uint32_t u = box.u_first; u <= box.u_last; u += static_cast<std::uint32_t>(hn::Lanes(f))) {
+        const WideVec reach = hn::LoadU(f, rays.reach_m + row + u);
+        const auto reaches =
+            hn::And(hn::FirstN(f, box.u_last + 1 - u), hn::Ge(reach, hn::Set(f, voxel.nearest_m)));
+        if (hn::AllFalse(f, reaches)) continue;
+        const WideVec at = hn::Iota(f, static_cast<float>(u));
+        Directions directions;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            directions[axis] = hn::Add(first[axis], hn::Mul(at, next[axis]));
+        Told told{false, reaches};
+        if (voxel.nearest_m > 0.0F) {
+            const Meeting meeting = meeting_of(voxel, directions);
+            const WideMask goes_on = hn::Gt(reach, hn::Set(f, voxel.furthest_m));
+            told.is_passed = !hn::AllFalse(f, hn::And(hn::And(reaches, meeting.surely), goes_on));
+            told.perhaps = hn::And(reaches, meeting.perhaps);
+        }
+        if (!told.is_passed && !hn::AllFalse(f, told.perhaps))
+            told = tell_by_distance(voxel, directions, told.perhaps, reach);
+        if (told.is_passed) return true;
+        if (hn::AllFalse(f, told.perhaps)) continue;
+        WideMask may_pass = told.perhaps;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            constexpr float kStill = -1e-5F;  // and what single precision may make of it
+            may_pass = hn::And(may_pass, hn::Ge(hn::Mul(directions[axis], hn::Set(f, voxel.side[axis])),
+                                                hn::Set(f, kStill)));
+        }
+        for_each_set(f, may_pass, [&](std::size_t lane) {
+            perhaps.push_back(row + u + static_cast<std::uint32_t>(lane));
+        });
+    }
+    return false;
+}
+
+/// Tiles of a picture, a lane each, beside each other from pixel (u, v) on: those of which a ray may meet the
+/// voxel.
+HWY_INLINE WideMask may_meet(const RayField& rays, const AskedVoxel& voxel, std::uint32_t u,
+                             std::uint32_t v) {
+    const Wide f;
+    constexpr float kHalf_px = 0.5F * kTile;
+    const WideVec at =
+        hn::MulAdd(hn::Iota(f, 0.0F), hn::Set(f, float{kTile}), hn::Set(f, static_cast<float>(u) + kHalf_px));
+    Directions directions;  // of the tiles' middles
+    AlongAxes off;          // the furthest from those
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float in_row = rays.first[axis] + (static_cast<float>(v) + kHalf_px) * rays.next_v[axis];
+        directions[axis] = hn::Add(hn::Set(f, in_row), hn::Mul(at, hn::Set(f, rays.next_u[axis])));
+        const auto size = [](float value) { return value < 0.0F ? -value : value; };
+        off[axis] = kHalf_px * (size(rays.next_u[axis]) + size(rays.next_v[axis]));
+    }
+    WideMask may = hn::FirstN(f, hn::Lanes(f));
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        const WideVec c_i = hn::Set(f, voxel.centre[i]);
+        const WideVec c_j = hn::Set(f, voxel.centre[j]);
+        const WideVec aside = hn::Abs(hn::Sub(hn::Mul(c_i, directions[j]), hn::Mul(c_j, directions[i])));
+        const WideVec nearer =
+            hn::Add(hn::Mul(hn::Abs(c_i), hn::Set(f, off[j])), hn::Mul(hn::Abs(c_j), hn::Set(f, off[i])));
+        const WideVec width =
+            hn::Add(hn::Add(hn::Abs(directions[i]), hn::Abs(directions[j])), hn::Set(f, off[i] + off[j]));
+        may = hn::And(may, hn::Le(hn::Sub(aside, nearer), hn::Mul(hn::Set(f, voxel.half_larger), width)));
+    }
+    return may;
+}
+
+/// For a voxel that many pixels may see: tiles of them first.
+bool is_passed_in_tiles(const RayField& rays, const AskedVoxel& voxel, const PixelBox& box,
+                        std::vector<std::uint32_t>& perhaps) {
     const Wide f;
     const auto lanes = static_cast<std::uint32_t>(hn::Lanes(f));
-    for (std::uint32_t u = first; u <= last; u += lanes) {
-        const auto at = hn::Iota(f, static_cast<float>(u));
-        auto in_smaller = hn::Set(f, row.margin_m);
-        auto in_larger = hn::Zero(f);
-        auto out_smaller = hn::Set(f, std::numeric_limits<float>::infinity());
-        auto out_larger = out_smaller;
-        auto may_pass = hn::FirstN(f, last + 1 - u);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto direction =
-                hn::Add(hn::Set(f, row.first[axis]), hn::Mul(at, hn::Set(f, row.next[axis])));
-            const auto per_direction = hn::Div(
-                hn::Set(f, 1.0F), hn::CopySign(hn::Max(hn::Abs(direction), hn::Set(f, 1e-9F)), direction));
-            constexpr float kStill = -1e-5F;  // and what single precision may make of it
-            may_pass =
-                hn::And(may_pass, hn::Ge(hn::Mul(direction, hn::Set(f, row.side[axis])), hn::Set(f, kStill)));
-            const auto middle = hn::Mul(hn::Set(f, row.centre[axis]), per_direction);
-            const auto smaller = hn::Mul(hn::Set(f, row.half_smaller), hn::Abs(per_direction));
-            const auto larger = hn::Mul(hn::Set(f, row.half_larger), hn::Abs(per_direction));
-            in_smaller = hn::Max(in_smaller, hn::Sub(middle, smaller));
-            out_smaller = hn::Min(out_smaller, hn::Add(middle, smaller));
-            in_larger = hn::Max(in_larger, hn::Sub(middle, larger));
-            out_larger = hn::Min(out_larger, hn::Add(middle, larger));
+    const auto least = [](std::uint32_t a, std::uint32_t b) { return a < b ? a : b; };
+    for (std::uint32_t v = box.v_first; v <= box.v_last; v += kTile) {
+        for (std::uint32_t u = box.u_first; u <= box.u_last; u += kTile * lanes) {
+            std::uint64_t met = bits_of(f, may_meet(rays, voxel, u, v));
+            for (; met != 0; met &= met - 1) {
+                const std::uint32_t u_first = u + kTile * static_cast<std::uint32_t>(__builtin_ctzll(met));
+                if (u_first > box.u_last) break;
+                const PixelBox tile{u_first, least(u_first + kTile - 1, box.u_last), v,
+                                    least(v + kTile - 1, box.v_last)};
+                for (std::uint32_t row = tile.v_first; row <= tile.v_last; ++row) {
+                    if (is_passed_in_row(rays, voxel, tile, row, perhaps)) return true;
+                }
+            }
         }
-        const auto reach = hn::LoadU(f, reach_m + pixel_of_row + u);
-        if (!hn::AllFalse(f,
-                          hn::And(hn::FirstN(f, last + 1 - u),
-                                  hn::And(hn::Lt(in_smaller, out_smaller),
-                                          hn::Gt(reach, hn::Add(out_larger, hn::Set(f, row.margin_m))))))) {
-            return true;
-        }
-        may_pass = hn::And(may_pass, hn::And(hn::Le(in_larger, out_larger),
-                                             hn::Ge(hn::Add(reach, hn::Set(f, row.margin_m)), in_larger)));
-        for_each_set(f, may_pass, [&](std::size_t lane) {
-            perhaps.push_back(pixel_of_row + u + static_cast<std::uint32_t>(lane));
-        });
+    }
+    return false;
+}
+
+/// From the row `middle` outwards: rays that pass are found soonest there.
+bool is_passed(const RayField& rays, const AskedVoxel& voxel, const PixelBox& box, std::uint32_t middle,
+               std::vector<std::uint32_t>& perhaps) {
+    if (box.v_last - box.v_first > 2 * kTile) return is_passed_in_tiles(rays, voxel, box, perhaps);
+    const std::uint32_t below = box.v_last - middle;
+    const std::uint32_t above = middle - box.v_first;
+    if (is_passed_in_row(rays, voxel, box, middle, perhaps)) return true;
+    for (std::uint32_t off = 1; off <= (below > above ? below : above); ++off) {
+        if (off <= below && is_passed_in_row(rays, voxel, box, middle + off, perhaps)) return true;
+        if (off <= above && is_passed_in_row(rays, voxel, box, middle - off, perhaps)) return true;
     }
     return false;
 }
@@ -95,7 +238,7 @@ namespace {
 
 HWY_EXPORT(is_passed);
 
-std::array<float, 3> array_of(const Eigen::Vector3d& p) {
+AlongAxes along_axes(const Eigen::Vector3d& p) {
     return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
 
@@ -106,8 +249,9 @@ OpenVoxels::OpenVoxels(const CertainView& view, const PlacedImage& image, const 
     : view_(view),
       image_(image),
       picture_(picture),
-      centre_of_origin_(lattice.centre_of(*lattice.key_of(image.origin.cast<double>()))),
-      half_depth_m_(static_cast<float>(view.half_depth_m + view.margin_m)) {
+      origin_(image.origin.cast<double>()),
+      centre_of_origin_(lattice.centre_of(*lattice.key_of(origin_))),
+      half_depth_m_(view.half_depth_m + view.margin_m) {
     const CameraIntrinsics& camera = view.camera;
     const Eigen::Matrix3d R_map_camera = view.T_camera_map.linear().transpose();
     const Eigen::Vector3d corner((0.5 - camera.cx) / camera.fx, (0.5 - camera.cy) / camera.fy, 1.0);
@@ -118,49 +262,36 @@ OpenVoxels::OpenVoxels(const CertainView& view, const PlacedImage& image, const 
 
 bool OpenVoxels::is_passed(const Eigen::Vector3d& centre_map, std::vector<RayPiece>& pieces) {
     const Eigen::Vector3d centre = view_.T_camera_map * centre_map;
-    if (picture_.is_out_of_sight(centre, 1)) return false;
-    const PixelBox box = picture_.pixels_of(centre, 1).value_or(picture_.all_pixels());
-    const auto z = static_cast<float>(centre.z());
-    if (picture_.longest(box) < z - half_depth_m_) return false;
+    const auto box = picture_.pixels_of_voxel(centre);
+    if (!box) return false;
+    const double nearest_m = centre.z() - half_depth_m_;
+    if (static_cast<double>(picture_.longest(*box)) < nearest_m) return false;
 
-    const Eigen::Vector3d p = centre_map - image_.origin.cast<double>();
     const double half_edge_m = 0.5 * view_.resolution_m;
-    RowOfRays row{.centre = array_of(p),
-                  .first = {},
-                  .next = array_of(next_u_),
-                  .side = {},
-                  .half_smaller = static_cast<float>(half_edge_m - view_.margin_m),
-                  .half_larger = static_cast<float>(half_edge_m + view_.margin_m),
-                  .margin_m = static_cast<float>(view_.margin_m)};
+    AskedVoxel voxel{.centre = along_axes(centre_map - origin_),
+                     .side = {},
+                     .half_smaller = static_cast<float>(half_edge_m - view_.margin_m),
+                     .half_larger = static_cast<float>(half_edge_m + view_.margin_m),
+                     .margin_m = static_cast<float>(view_.margin_m),
+                     .nearest_m = static_cast<float>(nearest_m),
+                     .furthest_m = static_cast<float>(centre.z() + half_depth_m_)};
     for (Eigen::Index i = 0; i < 3; ++i) {
         const double away = centre_map[i] - centre_of_origin_[i];
-        row.side[static_cast<std::size_t>(i)] = away > half_edge_m    ? 1.0F
-                                                : away < -half_edge_m ? -1.0F
-                                                                      : 0.0F;
+        voxel.side[static_cast<std::size_t>(i)] = away > half_edge_m    ? 1.0F
+                                                  : away < -half_edge_m ? -1.0F
+                                                                        : 0.0F;
     }
-    perhaps_.clear();
+    const RayField rays{along_axes(first_), along_axes(next_u_), along_axes(next_v_), image_.reach_m.data(),
+                        image_.width};
     const double v_middle =
         view_.camera.fy * centre.y() / std::max(centre.z(), half_edge_m) + view_.camera.cy;
-    const auto middle = static_cast<std::int64_t>(std::clamp<double>(v_middle, box.v_first, box.v_last));
-    // From the middle outwards: rays that pass are found soonest there.
-    for (std::int64_t step = 0, v = middle;; ++step) {
-        v += step % 2 == 0 ? step : -step;
-        const bool is_above = v < box.v_first;
-        const bool is_below = v > box.v_last;
-        if (!is_above && !is_below) {
-            row.first = array_of(first_ + static_cast<double>(v) * next_v_);
-            const auto pixel_of_row = static_cast<std::uint32_t>(v) * image_.width;
-            if (HWY_DYNAMIC_DISPATCH(is_passed)(row, image_.reach_m.data(), box.u_first, box.u_last,
-                                                pixel_of_row, perhaps_)) {
-                return true;
-            }
-        }
-        if (step > 2 * (static_cast<std::int64_t>(box.v_last) - box.v_first) + 2) break;
-    }
-    const float from_m = std::max(z - half_depth_m_, 0.0F);
+    const auto middle = static_cast<std::uint32_t>(std::clamp<double>(v_middle, box->v_first, box->v_last));
+    perhaps_.clear();
+    if (HWY_DYNAMIC_DISPATCH(is_passed)(rays, voxel, *box, middle, perhaps_)) return true;
+    const float from_m = std::max(voxel.nearest_m, 0.0F);
+    const float to_m = std::max(voxel.furthest_m, static_cast<float>(half_depth_m_));
     for (const std::uint32_t pixel : perhaps_) {
-        if (from_m < image_.reach_m[pixel])
-            pieces.push_back({pixel, from_m, std::max(z, 0.0F) + half_depth_m_});
+        if (from_m < image_.reach_m[pixel]) pieces.push_back({pixel, from_m, to_m});
     }
     return false;
 }

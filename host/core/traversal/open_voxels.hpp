@@ -26,8 +26,9 @@ class OpenVoxels {
     const CertainView& view_;
     const PlacedImage& image_;
     const PictureTest& picture_;
+    Eigen::Vector3d origin_;            ///< map frame
     Eigen::Vector3d centre_of_origin_;  ///< of the voxel that holds it, map frame
-    float half_depth_m_;
+    double half_depth_m_;
     Eigen::Vector3d first_;  ///< the ray of pixel (0, 0), map frame, per metre of depth
     Eigen::Vector3d next_u_;
     Eigen::Vector3d next_v_;

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace octoskin {
+namespace {
+
+constexpr double kRounding_px = 0.01;
+
+}  // namespace
 
 PictureTest::PictureTest(const CertainView& view, const ReachWindows& reach)
     : view_(view), camera_(view.camera), reach_(reach) {
@@ -42,6 +47,53 @@ std::optional<PixelBox> PictureTest::pixels_of(const Eigen::Vector3d& centre, in
     };
     return PixelBox{pixel(u - u_apart, camera_.width), pixel(u + u_apart, camera_.width),
                     pixel(v - v_apart, camera_.height), pixel(v + v_apart, camera_.height)};
+}
+
+double PictureTest::corner_m(Eigen::Index axis, double slope) const {
+    const double half_m = 0.5 * view_.resolution_m + view_.margin_m;
+    const auto R = view_.T_camera_map.linear();
+    return half_m * (std::abs(R(axis, 0) - slope * R(2, 0)) + std::abs(R(axis, 1) - slope * R(2, 1)) +
+                     std::abs(R(axis, 2) - slope * R(2, 2)));
+}
+
+std::optional<PixelBox> PictureTest::pixels_of_voxel(const Eigen::Vector3d& centre) const {
+    const double nearest_m = centre.z() - view_.half_depth_m - view_.margin_m;
+    if (nearest_m < view_.half_depth_m) {
+        if (is_out_of_sight(centre, 1)) return std::nullopt;
+        return PixelBox{0, camera_.width - 1, 0, camera_.height - 1};
+    }
+    struct Range {
+        int first, last;
+    };
+    const auto range_of = [&](Eigen::Index axis, double focal, double middle, std::uint32_t size) -> Range {
+        const double slope = centre[axis] / centre.z();
+        const double apart = focal * corner_m(axis, slope) / nearest_m + kRounding_px;
+        const double first = focal * slope + middle - apart;
+        const double last = std::min(focal * slope + middle + apart, size - 1.0);
+        if (last < 0.0 || first > last) return {0, -1};
+        const int whole = first > 0.0 ? static_cast<int>(first) : 0;
+        return {whole < first ? whole + 1 : whole, static_cast<int>(last)};
+    };
+    const Range u = range_of(0, camera_.fx, camera_.cx - 0.5, camera_.width);
+    const Range v = range_of(1, camera_.fy, camera_.cy - 0.5, camera_.height);
+    if (u.last < u.first || v.last < v.first) return std::nullopt;
+    return PixelBox{static_cast<std::uint32_t>(u.first), static_cast<std::uint32_t>(u.last),
+                    static_cast<std::uint32_t>(v.first), static_cast<std::uint32_t>(v.last)};
+}
+
+SquareOfPixels PictureTest::square_of_voxels(const Eigen::Vector3d& centre, int voxels) const {
+    const double half_depth_m = voxels * view_.half_depth_m + view_.margin_m;
+    const double nearest_m = centre.z() - half_depth_m;
+    if (nearest_m < half_depth_m) return {};
+    const double other_slopes = voxels * view_.radius_m / nearest_m;
+    const auto apart = [&](Eigen::Index axis, double focal) {
+        const double slope = centre[axis] / centre.z();
+        // Of slopes between two the corners are no further apart than at one of them.
+        return focal * std::max(corner_m(axis, slope - other_slopes), corner_m(axis, slope + other_slopes)) /
+               nearest_m;
+    };
+    return reach_.square(
+        static_cast<float>(std::max(apart(0, camera_.fx), apart(1, camera_.fy)) + kRounding_px));
 }
 
 CubeVerdict PictureTest::of_cube(const Eigen::Vector3d& centre, int voxels) const {

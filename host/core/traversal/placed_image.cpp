@@ -26,6 +26,7 @@ struct Placement {
     double voxels_per_m = 0.0;
     float range_max_m = 0.0F;   ///< 0: none
     float half_depth_m = 0.0F;  ///< of a voxel, along the optical axis
+    bool keeps_points = true;
 };
 
 /// A row of the image: as many entries as are worked on at once may be read beyond its end.
@@ -105,9 +106,12 @@ HWY_INLINE void clip(Ends& ends, float range_max_m, const Eigen::Vector3f& origi
     const Float x = hn::Sub(ends.x, hn::Set(f, origin.x()));
     const Float y = hn::Sub(ends.y, hn::Set(f, origin.y()));
     const Float z = hn::Sub(ends.z, hn::Set(f, origin.z()));
-    const Double length = length_of(x, y, z);
-    const Mask is_beyond = hn::Gt(length, hn::Set(d, static_cast<double>(range_max_m)));
-    if (hn::AllFalse(d, is_beyond)) return;
+    const double max_m = static_cast<double>(range_max_m);
+    const Double squared = hn::PromoteTo(d, squared_length_of(x, y, z));
+    // Most are clearly nearer, and a root takes long. Where this lets one through the next line decides.
+    if (hn::AllFalse(d, hn::Gt(squared, hn::Set(d, max_m * max_m * (1.0 - 1e-9))))) return;
+    const Double length = hn::Sqrt(squared);
+    const Mask is_beyond = hn::Gt(length, hn::Set(d, max_m));
     const auto is_beyond_f = narrow(is_beyond);
     const Float length_f = hn::DemoteTo(f, length);
     const auto end = [&](Float offset, float from) {
@@ -146,10 +150,13 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image, RowSums&
         const Mask has_keys = hn::And(has_key(scaled_x), hn::And(has_key(scaled_y), has_key(scaled_z)));
         const Mask is_used = hn::And(is_good, has_keys);
         const Mask in_row = hn::FirstN(d, row.width - u);
-        sums.counts.used += hn::CountTrue(d, hn::And(in_row, is_used));
-        sums.counts.no_value += hn::CountTrue(d, hn::AndNot(is_number, in_row));
-        sums.counts.bad_value += hn::CountTrue(d, hn::AndNot(is_good, hn::And(in_row, is_number)));
-        sums.counts.outside_map += hn::CountTrue(d, hn::AndNot(has_keys, hn::And(in_row, is_good)));
+        const std::size_t used = hn::CountTrue(d, hn::And(in_row, is_used));
+        sums.counts.used += used;
+        if (used < hn::Lanes(d)) {
+            sums.counts.no_value += hn::CountTrue(d, hn::AndNot(is_number, in_row));
+            sums.counts.bad_value += hn::CountTrue(d, hn::AndNot(is_good, hn::And(in_row, is_number)));
+            sums.counts.outside_map += hn::CountTrue(d, hn::AndNot(has_keys, hn::And(in_row, is_good)));
+        }
 
         const auto is_used_f = narrow(is_used);
         const std::size_t at = row.first + u;
@@ -162,9 +169,11 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image, RowSums&
         highest_x = hn::Max(highest_x, ends.x);
         highest_y = hn::Max(highest_y, ends.y);
         highest_z = hn::Max(highest_z, ends.z);
-        hn::StoreU(ends.x, f, image.end_x.data() + at);
-        hn::StoreU(ends.y, f, image.end_y.data() + at);
-        hn::StoreU(ends.z, f, image.end_z.data() + at);
+        if (to.keeps_points) {
+            hn::StoreU(ends.x, f, image.end_x.data() + at);
+            hn::StoreU(ends.y, f, image.end_y.data() + at);
+            hn::StoreU(ends.z, f, image.end_z.data() + at);
+        }
         ends.range_m = hn::IfThenElse(is_used, ends.range_m, hn::Set(d, -1.0));
         const hn::RebindToUnsigned<Ints> keys;
         const auto xy = hn::Or(key_of(scaled_x, is_used), hn::ShiftLeft<16>(key_of(scaled_y, is_used)));
@@ -209,10 +218,11 @@ std::uint32_t rows_of_band(std::uint32_t width, std::uint32_t height) {
     return width % kLanesMax == 0 ? kBandRows : std::max(height, 1U);
 }
 
-void resize(PlacedImage& image, std::size_t entries) {
-    for (auto* values : {&image.end_x, &image.end_y, &image.end_z, &image.reach_m, &image.passed_m}) {
-        values->resize(entries);
-    }
+void resize(PlacedImage& image, std::size_t entries, bool keeps_points) {
+    for (auto* values : {&image.end_x, &image.end_y, &image.end_z})
+        values->resize(keeps_points ? entries : 0);
+    image.reach_m.resize(entries);
+    image.passed_m.resize(entries);
     image.range_m.resize(entries);
     image.key_xy.resize(entries);
     image.key_z.resize(entries);
@@ -221,7 +231,8 @@ void resize(PlacedImage& image, std::size_t entries) {
 }  // namespace
 
 void place_image(const DepthImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
-                 const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed, Crew* crew) {
+                 const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed,
+                 KeptEnds kept, Crew* crew) {
     const std::size_t pixels = std::size_t{image.width} * image.height;
     assert(image.width == pixel_rays.camera().width && image.height == pixel_rays.camera().height);
     assert(image.depth_m.size() == pixels);
@@ -230,13 +241,15 @@ void place_image(const DepthImage& image, const PixelRays& pixel_rays, const Vox
     placed.origin = T_map_camera.translation().cast<float>();
     placed.counts = {};
     placed.lowest = placed.highest = placed.origin;
-    resize(placed, pixels + kLanesMax);
+    const bool keeps_points = kept == KeptEnds::points_and_voxels;
+    resize(placed, pixels + kLanesMax, keeps_points);
 
     Placement to{.T = {},
                  .voxels_per_m = 1.0 / lattice.resolution_m(),
                  .range_max_m = static_cast<float>(range_max_m),
                  .half_depth_m = static_cast<float>(0.5 * lattice.resolution_m() *
-                                                    T_map_camera.linear().col(2).lpNorm<1>())};
+                                                    T_map_camera.linear().col(2).lpNorm<1>()),
+                 .keeps_points = keeps_points};
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 4; ++j)
             to.T[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = T_map_camera(i, j);

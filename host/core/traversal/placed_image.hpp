@@ -36,7 +36,8 @@ struct PlacedImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< of every ray, map frame, metres
-    std::vector<float> end_x;                          ///< map frame, metres, in OctoMap's single precision
+    /// Map frame, metres, in OctoMap's single precision; empty if nobody wants them.
+    std::vector<float> end_x;
     std::vector<float> end_y;
     std::vector<float> end_z;
     std::vector<float> reach_m;  ///< depth of the end along the optical axis
@@ -52,12 +53,15 @@ struct PlacedImage {
     Eigen::Vector3f highest = Eigen::Vector3f::Zero();
 };
 
+/// What is kept of a ray's end. Writing is most of the work.
+enum class KeptEnds : std::uint8_t { points_and_voxels, voxels };
+
 /// Every pixel's ray is independent of every other's, and of how many are worked on at once: the result is
 /// bit for bit that of Eigen's `T_map_camera * (depth * ray)`. Places every pixel of `image` (of the camera's
 /// size, asserted) as seen from `T_map_camera`. A range beyond `range_max_m` (0: none) ends at it, as in
-/// OctoMap's `computeUpdate`. About 0.6 ms for 512 x 424, which `crew` shares, if there is one.
+/// OctoMap's `computeUpdate`. Some 2 ms for 512 x 424, which `crew` shares, if there is one.
 void place_image(const DepthImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
                  const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed,
-                 Crew* crew = nullptr);
+                 KeptEnds kept = KeptEnds::points_and_voxels, Crew* crew = nullptr);
 
 }  // namespace octoskin

@@ -55,6 +55,16 @@ void ReachWindows::begin(const PlacedImage& image) noexcept {
     rows_ = (image.height + kBlock - 1) / kBlock;
 }
 
+SquareOfPixels ReachWindows::square(float half_px) const noexcept {
+    static_assert(kBlock == 2);
+    // As many blocks as it may begin and end in.
+    const float blocks = half_px + 2.0F;
+    for (std::uint32_t k = 0; k < kLevels; ++k) {
+        if (blocks < static_cast<float>((1U << k) + 1)) return {levels_[k].longest.data(), half_px};
+    }
+    return {};
+}
+
 void ReachWindows::take_shortest(const PlacedImage& image) {
     std::vector<float> row;
     take_blocks(image.passed_m.data(), image.width, image.height, row, levels_[0].shortest, Less());

@@ -21,6 +21,14 @@ struct PixelBox {
     std::uint32_t v_last = 0;
 };
 
+/// Of squares of pixels, wherever they lie.
+struct SquareOfPixels {
+    /// By the block that holds the square's first pixel: of a window that holds the square. Null if there is
+    /// none.
+    const float* longest_m = nullptr;
+    float half_px = 0.0F;
+};
+
 /// A sparse table (Bender & Farach-Colton, LATIN 2000), two-dimensional: for each power of two a window of so
 /// many blocks' edge at every block. A box is covered by windows that overlap, four if it is nearly square,
 /// so the answer is that of a box of whole blocks: at most a pixel larger on each side. A pixel without a ray
@@ -78,6 +86,8 @@ class ReachWindows {
     [[nodiscard]] static constexpr std::uint32_t level_of(std::uint32_t blocks) noexcept {
         return static_cast<std::uint32_t>(std::bit_width(blocks)) - 1U;
     }
+    /// So many pixels to each side of a point; they may be none of the image's.
+    [[nodiscard]] SquareOfPixels square(float half_px) const noexcept;
     [[nodiscard]] const Level& level(std::uint32_t k) const noexcept { return levels_[k]; }
     [[nodiscard]] std::uint32_t columns() const noexcept { return columns_; }
     [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }

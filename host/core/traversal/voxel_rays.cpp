@@ -13,21 +13,11 @@
 #include <numbers>
 
 #include "host/core/traversal/lanes-inl.hpp"
+#include "host/core/traversal/word_verdicts-inl.hpp"
 
 #ifndef OCTOSKIN_VOXEL_RAYS_TYPES
 #define OCTOSKIN_VOXEL_RAYS_TYPES
 namespace octoskin {
-
-/// A voxel's centre in the camera's frame.
-struct Centre {
-    float x, y, z;
-};
-
-/// The furthest that rays in a square of pixels go, by the block in its first corner.
-struct SquareOfPixels {
-    const float* longest_m = nullptr;  ///< none: the square would be too large
-    float half_px = 0.0F;              ///< from its middle on
-};
 
 /// Pixels of an image, both ends inside; empty if a last one is less than its first.
 struct SeenPixels {
@@ -60,16 +50,10 @@ inline SeenPixels seen_pixels(const VoxelRays::Kernel& rays, const Centre& centr
 HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using Kernel = VoxelRays::Kernel;
 
 // Sixteen at most: the bits of a mask then fit two bytes.
 using Tag = hn::CappedTag<float, 16>;
 using Lanes = hn::Vec<Tag>;
-
-// One for each word of a BrickMask, or a part of them.
-using WordTag = hn::CappedTag<float, 8>;
-using WordInts = hn::RebindToSigned<WordTag>;
-using Words = hn::Vec<WordTag>;
 
 /// Where a ray that is `off` the centre at its depth is in the voxel there.
 HWY_INLINE auto is_inside(const Kernel& rays, Lanes off_x, Lanes off_y) {
@@ -99,46 +83,127 @@ HWY_INLINE Lanes within(Lanes pixel, float last) {
     return hn::Min(hn::Max(pixel, hn::Zero(f)), hn::Set(f, last));
 }
 
-/// Of each in a raster: pixels, or blocks of 2^shift pixels.
+/// Their places in a raster: of pixels, or of blocks of 2^shift pixels.
 template <int kShift>
-HWY_INLINE Lanes looked_up(const float* values, std::uint32_t columns, const Pixels& pixels) {
+HWY_INLINE auto places_of(std::uint32_t columns, const Pixels& pixels) {
     const hn::Rebind<std::int32_t, Tag> i;
     const auto row = hn::Mul(hn::ShiftRight<kShift>(hn::ConvertTo(i, pixels.v)),
                              hn::Set(i, static_cast<std::int32_t>(columns)));
-    return hn::GatherIndex(Tag(), values, hn::Add(row, hn::ShiftRight<kShift>(hn::ConvertTo(i, pixels.u))));
+    return hn::Add(row, hn::ShiftRight<kShift>(hn::ConvertTo(i, pixels.u)));
 }
 
-/// Some voxels, bit i that of the i-th: those passed by the ray of the pixel nearest to their centre, and
-/// those of which all rays must be asked.
-struct Passed {
-    std::uint64_t certainly = 0;
-    std::uint64_t perhaps = 0;
+using WordLookUps = LookUps<Tag>;
+
+/// Centres, a lane each, in the camera's frame.
+struct Centres {
+    Lanes x, y, z;
 };
 
-HWY_INLINE Passed ask_nearest(const Kernel& rays, const SquareOfPixels& square, Lanes x, Lanes y, Lanes z) {
+HWY_INLINE Centres centres_of(const Kernel& rays, const Centre& first, std::size_t cell) {
     const Tag f;
-    const auto is_before = hn::Gt(z, hn::Set(f, rays.near_m));
-    const Lanes beyond = hn::Add(z, hn::Set(f, rays.margin_m));
-    const Lanes per_z = hn::Div(hn::Set(f, 1.0F), hn::Max(z, hn::Set(f, rays.near_m)));
+    return {hn::Add(hn::Set(f, first.x), hn::LoadU(f, rays.offsets[0].data() + cell)),
+            hn::Add(hn::Set(f, first.y), hn::LoadU(f, rays.offsets[1].data() + cell)),
+            hn::Add(hn::Set(f, first.z), hn::LoadU(f, rays.offsets[2].data() + cell))};
+}
+
+/// Where they are seen; as if at `near_m`, if they are nearer.
+HWY_INLINE Pixels pixels_at(const Kernel& rays, const Centres& centres) {
+    const Tag f;
+    const Lanes per_z = hn::Div(hn::Set(f, 1.0F), hn::Max(centres.z, hn::Set(f, rays.near_m)));
     const auto seen_at = [&](Lanes across, float focal, float optical_axis) HWY_ATTR {
         return hn::Add(hn::Mul(hn::Mul(across, per_z), hn::Set(f, focal)), hn::Set(f, optical_axis));
     };
-    const Pixels centre{seen_at(x, rays.fx, rays.u_centre), seen_at(y, rays.fy, rays.v_centre)};
-    // Of a centre beside the picture the nearest is at its edge, and perhaps too far away.
-    const Pixels nearest{within(hn::Round(centre.u), rays.last_u), within(hn::Round(centre.v), rays.last_v)};
-    const auto is_in = is_inside(rays, off_by(nearest.u, rays.u_centre, rays.per_fx, z, x),
-                                 off_by(nearest.v, rays.v_centre, rays.per_fy, z, y));
-    const auto is_passed =
-        hn::And(hn::And(is_before, is_in), hn::Gt(looked_up<0>(rays.passed_m, rays.width, nearest), beyond));
-    auto is_open = hn::AndNot(is_passed, is_before);
-    if (hn::AllFalse(f, is_open)) return {bits_of(f, is_passed), 0};
-    if (square.longest_m != nullptr) {
-        const Lanes half = hn::Set(f, square.half_px);
-        const Pixels first{within(hn::Sub(centre.u, half), rays.last_u),
-                           within(hn::Sub(centre.v, half), rays.last_v)};
-        is_open = hn::And(is_open, hn::Gt(looked_up<1>(square.longest_m, rays.blocks_width, first), beyond));
+    return {seen_at(centres.x, rays.fx, rays.u_centre), seen_at(centres.y, rays.fy, rays.v_centre)};
+}
+
+/// Of a word's voxels: those before the camera, and of them those passed by the ray of the pixel nearest to
+/// their centre.
+struct Passed {
+    std::uint64_t is_before = 0;
+    std::uint64_t certainly = 0;
+};
+
+/// Without a branch: none would be foreseen.
+HWY_INLINE Passed ask_nearest(const Kernel& rays, const Centre& first, std::size_t word_cell) {
+    const Tag f;
+    WordLookUps passed_m;
+    Passed passed;
+    for (std::size_t bit = 0; bit < 64; bit += hn::Lanes(f)) {
+        const Centres centres = centres_of(rays, first, word_cell + bit);
+        const Pixels centre = pixels_at(rays, centres);
+        // Of a centre beside the picture the nearest is at its edge, and perhaps too far away.
+        const Pixels nearest{within(hn::Round(centre.u), rays.last_u),
+                             within(hn::Round(centre.v), rays.last_v)};
+        passed_m.put(bit, places_of<0>(rays.width, nearest));
+        const auto is_in =
+            is_inside(rays, off_by(nearest.u, rays.u_centre, rays.per_fx, centres.z, centres.x),
+                      off_by(nearest.v, rays.v_centre, rays.per_fy, centres.z, centres.y));
+        const auto is_before = hn::Gt(centres.z, hn::Set(f, rays.near_m));
+        passed.is_before |= bits_of(f, is_before) << bit;
+        passed.certainly |= bits_of(f, hn::And(is_before, is_in)) << bit;
     }
-    return {bits_of(f, is_passed), bits_of(f, is_open)};
+    passed_m.look_up(rays.passed_m);
+    std::uint64_t goes_on = 0;
+    for (std::size_t bit = 0; bit < 64; bit += hn::Lanes(f)) {
+        const Lanes z = centres_of(rays, first, word_cell + bit).z;
+        goes_on |= bits_of(f, hn::Gt(passed_m.values(bit), hn::Add(z, hn::Set(f, rays.margin_m)))) << bit;
+    }
+    passed.certainly &= goes_on;
+    return passed;
+}
+
+/// For each voxel of a word the pixels whose rays pass near to its centre.
+class NearPixels {
+  public:
+    HWY_INLINE void put(std::size_t bit, const Kernel& rays, const Pixels& centre, Lanes z) {
+        const Tag f;
+        const hn::Rebind<std::int32_t, Tag> i;
+        const Lanes half_m = hn::Div(hn::Set(f, rays.near_centre_m), hn::Max(z, hn::Set(f, rays.near_m)));
+        const Lanes half_u = hn::Mul(half_m, hn::Set(f, rays.fx));
+        const Lanes half_v = hn::Mul(half_m, hn::Set(f, rays.fy));
+        const auto store = [&](Lanes pixel, auto& pixels)
+                               HWY_ATTR { hn::Store(hn::ConvertTo(i, pixel), i, pixels.data() + bit); };
+        // Beside the image a first one is beyond it, or a last one before it.
+        const auto first = [&](Lanes at, float last) HWY_ATTR {
+            return hn::Min(hn::Ceil(hn::Max(at, hn::Zero(f))), hn::Set(f, last + 1.0F));
+        };
+        const auto last_of = [&](Lanes at, float last) HWY_ATTR {
+            return hn::Max(hn::Floor(hn::Min(at, hn::Set(f, last))), hn::Set(f, -1.0F));
+        };
+        store(first(hn::Sub(centre.u, half_u), rays.last_u), u_first_);
+        store(last_of(hn::Add(centre.u, half_u), rays.last_u), u_last_);
+        store(first(hn::Sub(centre.v, half_v), rays.last_v), v_first_);
+        store(last_of(hn::Add(centre.v, half_v), rays.last_v), v_last_);
+    }
+    [[nodiscard]] HWY_INLINE SeenPixels of(unsigned bit) const {
+        return {u_first_[bit], u_last_[bit], v_first_[bit], v_last_[bit]};
+    }
+
+  private:
+    alignas(64) std::array<std::int32_t, 64> u_first_, u_last_, v_first_, v_last_;
+};
+
+/// Those of whose rays perhaps one goes on, and the pixels of each.
+HWY_INLINE std::uint64_t ask_window(const Kernel& rays, const SquareOfPixels& square, const Centre& first,
+                                    std::size_t word_cell, NearPixels& near_pixels) {
+    const Tag f;
+    const Lanes half = hn::Set(f, square.half_px);
+    WordLookUps longest_m;
+    for (std::size_t bit = 0; bit < 64; bit += hn::Lanes(f)) {
+        const Centres centres = centres_of(rays, first, word_cell + bit);
+        const Pixels centre = pixels_at(rays, centres);
+        near_pixels.put(bit, rays, centre, centres.z);
+        longest_m.put(bit, places_of<1>(rays.blocks_width, {within(hn::Sub(centre.u, half), rays.last_u),
+                                                            within(hn::Sub(centre.v, half), rays.last_v)}));
+    }
+    if (square.longest_m == nullptr) return ~std::uint64_t{0};
+    longest_m.look_up(square.longest_m);
+    std::uint64_t may_pass = 0;
+    for (std::size_t bit = 0; bit < 64; bit += hn::Lanes(f)) {
+        const Lanes z = centres_of(rays, first, word_cell + bit).z;
+        may_pass |= bits_of(f, hn::Gt(longest_m.values(bit), hn::Add(z, hn::Set(f, rays.margin_m)))) << bit;
+    }
+    return may_pass;
 }
 
 /// Calls visit(which of the lanes, first column, row) for some pixels of a row after the other until it says
@@ -158,11 +223,25 @@ HWY_INLINE Lanes loaded(const Kernel& rays, const float* values, int u, int v) {
     return hn::LoadU(Tag(), values + static_cast<std::size_t>(v) * rays.width + static_cast<std::size_t>(u));
 }
 
-HWY_INLINE bool is_any_passing(const Kernel& rays, const Centre& centre) {
+/// Whether of a voxel's rays perhaps one goes on. Rows are not asked one by one: of most voxels no ray does.
+HWY_INLINE bool may_any_pass(const Kernel& rays, const Centre& centre, const SeenPixels& seen) {
     const Tag f;
     const Lanes beyond = hn::Set(f, centre.z + rays.margin_m);
-    return visit_pixels(seen_pixels(rays, centre, rays.near_centre_m), [&](auto in_row, int u,
-                                                                           int v) HWY_ATTR {
+    for (int u = seen.u_first; u <= seen.u_last; u += static_cast<int>(hn::Lanes(f))) {
+        Lanes furthest = hn::Zero(f);
+        for (int v = seen.v_first; v <= seen.v_last; ++v)
+            furthest = hn::Max(furthest, loaded(rays, rays.passed_m, u, v));
+        const auto in_row = hn::FirstN(f, static_cast<std::size_t>(seen.u_last + 1 - u));
+        if (!hn::AllFalse(f, hn::And(in_row, hn::Gt(furthest, beyond)))) return true;
+    }
+    return false;
+}
+
+HWY_INLINE bool is_any_passing(const Kernel& rays, const Centre& centre, const SeenPixels& seen) {
+    const Tag f;
+    if (!may_any_pass(rays, centre, seen)) return false;
+    const Lanes beyond = hn::Set(f, centre.z + rays.margin_m);
+    return visit_pixels(seen, [&](auto in_row, int u, int v) HWY_ATTR {
         const auto is_passing = hn::And(in_row, hn::Gt(loaded(rays, rays.passed_m, u, v), beyond));
         if (hn::AllFalse(f, is_passing)) return false;
         const Lanes z = hn::Set(f, centre.z);
@@ -174,133 +253,28 @@ HWY_INLINE bool is_any_passing(const Kernel& rays, const Centre& centre) {
     });
 }
 
-/// Of the eight words of a brick, a bit each: those of which every voxel is passed, and those of which none
-/// is.
-struct WordVerdicts {
-    std::uint32_t all = 0;
-    std::uint32_t none = 0;
-};
-
-/// First and last pixel, of a row or a column, whose rays may be in one of 64 voxels at its centre's depth.
-struct Seen {
-    Words first, last;
-};
-
-HWY_INLINE Seen seen_of(Words middle, float half_m, Words per_nearest, Words per_furthest, float focal,
-                        float optical_axis) {
-    const WordTag f;
-    // A voxel's centre is up to three halves of an edge from the middle, its side a half further.
-    const Words reach = hn::Set(f, 4.0F * half_m);
-    const Words low = hn::Sub(middle, reach);
-    const Words high = hn::Add(middle, reach);
-    const auto pixel = [&](Words slope) {
-        return hn::Add(hn::Mul(slope, hn::Set(f, focal)), hn::Set(f, optical_axis));
-    };
-    constexpr float kRounding_px = 0.01F;
-    return {hn::Sub(pixel(hn::Min(hn::Mul(low, per_nearest), hn::Mul(low, per_furthest))),
-                    hn::Set(f, kRounding_px)),
-            hn::Add(pixel(hn::Max(hn::Mul(high, per_nearest), hn::Mul(high, per_furthest))),
-                    hn::Set(f, kRounding_px))};
-}
-
-HWY_INLINE auto block_of(Words pixel, float last) {
-    const WordTag f;
-    static_assert(ReachWindows::kBlock == 2);
-    const Words inside = hn::Min(hn::Max(pixel, hn::Zero(f)), hn::Set(f, last));
-    return hn::ShiftRight<1>(hn::ConvertTo(WordInts(), inside));
-}
-
-/// What can be said of the words without looking at any voxel. `first`: the centre of the brick's first.
-HWY_INLINE WordVerdicts judge_words(const Kernel& rays, const Centre& first) {
-    const WordTag f;
-    const WordInts i;
-    WordVerdicts verdicts;
-    for (std::size_t word = 0; word < 8; word += hn::Lanes(f)) {
-        const Words x = hn::Add(hn::Set(f, first.x), hn::LoadU(f, rays.middles[0].data() + word));
-        const Words y = hn::Add(hn::Set(f, first.y), hn::LoadU(f, rays.middles[1].data() + word));
-        const Words z = hn::Add(hn::Set(f, first.z), hn::LoadU(f, rays.middles[2].data() + word));
-        const Words half_depth = hn::Set(f, 3.0F * rays.half_depth_m);  // of the voxels' centres
-        const Words nearest = hn::Sub(z, half_depth);
-        const Words furthest = hn::Add(z, half_depth);
-        const Words near = hn::Set(f, rays.near_m);
-        const auto is_before = hn::Gt(nearest, near);
-        const Words per_nearest = hn::Div(hn::Set(f, 1.0F), hn::Max(nearest, near));
-        const Words per_furthest = hn::Div(hn::Set(f, 1.0F), hn::Max(furthest, near));
-        const Seen u = seen_of(x, rays.half_x_m, per_nearest, per_furthest, rays.fx, rays.u_centre);
-        const Seen v = seen_of(y, rays.half_y_m, per_nearest, per_furthest, rays.fy, rays.v_centre);
-        const Words zero = hn::Zero(f);
-        const Words last_u = hn::Set(f, rays.last_u);
-        const Words last_v = hn::Set(f, rays.last_v);
-        const auto is_beside = hn::Or(hn::Or(hn::Lt(u.last, zero), hn::Gt(u.first, last_u)),
-                                      hn::Or(hn::Lt(v.last, zero), hn::Gt(v.first, last_v)));
-        const auto is_whole = hn::And(hn::And(hn::Ge(u.first, zero), hn::Le(u.last, last_u)),
-                                      hn::And(hn::Ge(v.first, zero), hn::Le(v.last, last_v)));
-
-        const auto u_first = block_of(u.first, rays.last_u);
-        const auto u_last = block_of(u.last, rays.last_u);
-        const auto v_first = block_of(v.first, rays.last_v);
-        const auto v_last = block_of(v.last, rays.last_v);
-        // Two windows cover what is twice as long.
-        const auto size = hn::Max(hn::Sub(u_last, u_first), hn::Sub(v_last, v_first));
-        const auto size_max = static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i, size))) + 1;
-        const std::uint32_t level =
-            size_max < 3 ? 0 : 31U - static_cast<std::uint32_t>(__builtin_clz(size_max - 1));
-        if (level >= ReachWindows::kLevels) {
-            verdicts.none |= static_cast<std::uint32_t>(bits_of(f, hn::And(is_before, is_beside)) << word);
-            continue;
-        }
-        const auto edge = hn::Set(i, 1 << level);
-        const auto u_second = hn::Max(hn::Sub(hn::Add(u_last, hn::Set(i, 1)), edge), hn::Zero(i));
-        const auto v_second = hn::Max(hn::Sub(hn::Add(v_last, hn::Set(i, 1)), edge), hn::Zero(i));
-        const auto width = hn::Set(i, static_cast<std::int32_t>(rays.blocks_width));
-        const auto row_first = hn::Mul(v_first, width);
-        const auto row_second = hn::Mul(v_second, width);
-        const auto at = {hn::Add(row_first, u_first), hn::Add(row_first, u_second),
-                         hn::Add(row_second, u_first), hn::Add(row_second, u_second)};
-        Words shortest = hn::Set(f, 1e30F);
-        Words longest = hn::Set(f, -1.0F);
-        for (const auto& block : at) {
-            shortest = hn::Min(shortest, hn::GatherIndex(f, rays.shortest_m[level], block));
-            longest = hn::Max(longest, hn::GatherIndex(f, rays.longest_m[level], block));
-        }
-        const auto is_beyond = hn::Or(is_beside, hn::Le(longest, nearest));
-        const auto is_seen = hn::And(is_whole, hn::Le(furthest, hn::Set(f, rays.depth_max_m)));
-        const auto is_passed =
-            hn::And(is_seen, hn::Gt(shortest, hn::Add(furthest, hn::Set(f, rays.margin_m))));
-        verdicts.none |= static_cast<std::uint32_t>(bits_of(f, hn::And(is_before, is_beyond)) << word);
-        verdicts.all |= static_cast<std::uint32_t>(bits_of(f, hn::And(is_before, is_passed)) << word);
-    }
-    return verdicts;
-}
-
-void find_passed(const Kernel& rays, const SquareOfPixels& square, const Centre& first, BrickMask& mask) {
-    const Tag f;
-    const Lanes x = hn::Set(f, first.x);
-    const Lanes y = hn::Set(f, first.y);
-    const Lanes z = hn::Set(f, first.z);
+/// The voxels of the brick whose first one's centre is at `first`: VoxelRays::passed().
+void find_passed(const Kernel& rays, const SquareOfPixels& square, const Centre& first, const BrickMask& ends,
+                 BrickMask& mask) {
     const WordVerdicts verdicts = judge_words(rays, first);
     for (std::size_t number = 0; number < mask.size(); ++number) {
         std::uint64_t& word = mask[number];
         const bool is_all = (verdicts.all >> number & 1U) != 0;
         word = is_all ? ~std::uint64_t{0} : 0;
         if (is_all || (verdicts.none >> number & 1U) != 0) continue;
-        std::uint64_t open = 0;
         const std::size_t word_cell = 64 * number;
-        std::size_t cell = word_cell;
-        for (std::size_t bit = 0; bit < 64; bit += hn::Lanes(f), cell += hn::Lanes(f)) {
-            const Passed passed =
-                ask_nearest(rays, square, hn::Add(x, hn::LoadU(f, rays.offsets[0].data() + cell)),
-                            hn::Add(y, hn::LoadU(f, rays.offsets[1].data() + cell)),
-                            hn::Add(z, hn::LoadU(f, rays.offsets[2].data() + cell)));
-            word |= passed.certainly << bit;
-            open |= passed.perhaps << bit;
-        }
+        const Passed passed = ask_nearest(rays, first, word_cell);
+        word = passed.certainly;
+        std::uint64_t open = passed.is_before & ~word & ~ends[number];
+        if (open == 0) continue;
+        NearPixels near_pixels;
+        open &= ask_window(rays, square, first, word_cell, near_pixels);
         for (; open != 0; open &= open - 1) {
             const auto bit = static_cast<unsigned>(__builtin_ctzll(open));
             const std::size_t at = word_cell + bit;
             const Centre centre{first.x + rays.offsets[0][at], first.y + rays.offsets[1][at],
                                 first.z + rays.offsets[2][at]};
-            if (is_any_passing(rays, centre)) word |= std::uint64_t{1} << bit;
+            if (is_any_passing(rays, centre, near_pixels.of(bit))) word |= std::uint64_t{1} << bit;
         }
     }
 }
@@ -337,23 +311,12 @@ constexpr double kEndsBehindCentre = 0.2;
 /// (docs/results.md).
 constexpr double kNearCentre = 0.45;
 
-/// Which holds the pixels of each voxel's rays from `nearest_m` on.
-SquareOfPixels square_from(const VoxelRays::Kernel& rays, float nearest_m) {
-    if (!(nearest_m > 0.0F)) return {};
-    const float half_px = std::max(rays.fx, rays.fy) * rays.near_centre_m / nearest_m + 0.01F;
-    // As many blocks as they may begin and end in.
-    const float blocks = half_px + 2.0F;
-    for (std::uint32_t k = 0; k < ReachWindows::kLevels; ++k) {
-        if (blocks < static_cast<float>((1U << k) + 1)) return {rays.longest_m[k], half_px};
-    }
-    return {};
-}
-
 }  // namespace
 
 void VoxelRays::begin(const CertainView& view, const PlacedImage& image, const ReachWindows& reach,
                       const VoxelLattice& lattice) {
     view_ = &view;
+    reach_ = &reach;
     lattice_ = &lattice;
     const CameraIntrinsics& camera = view.camera;
     const Eigen::Matrix3d R_camera_map = view.T_camera_map.linear();
@@ -407,14 +370,21 @@ VoxelRays::Brick VoxelRays::brick_at(VoxelKey lowest) const {
     return {p.x(), p.y(), p.z()};
 }
 
-BrickMask VoxelRays::passed(const Brick& brick) const {
+BrickMask VoxelRays::passed(const Brick& brick, const BrickMask& ends) const {
     BrickMask mask;
     const float* const z_offsets = kernel_.offsets[2].data();
     const float nearest_m =
         brick.z + std::min({z_offsets[0], z_offsets[73], z_offsets[146], z_offsets[219], z_offsets[292],
                             z_offsets[365], z_offsets[438], z_offsets[511]});
+    // Which holds the pixels of each voxel's rays.
+    SquareOfPixels square;
+    if (nearest_m > 0.0F) {
+        constexpr float kRounding_px = 0.01F;
+        square = reach_->square(std::max(kernel_.fx, kernel_.fy) * kernel_.near_centre_m / nearest_m +
+                                kRounding_px);
+    }
     HWY_DYNAMIC_DISPATCH(find_passed)
-    (kernel_, square_from(kernel_, nearest_m), {brick.x, brick.y, brick.z}, mask);
+    (kernel_, square, {brick.x, brick.y, brick.z}, ends, mask);
     return mask;
 }
 

@@ -32,11 +32,12 @@ class VoxelRays {
         float x = 0.0F, y = 0.0F, z = 0.0F;
     };
     [[nodiscard]] Brick brick_at(VoxelKey lowest) const;
-    /// The voxels of a brick that a ray of theirs passes or ends in. Its eight cubes of 4 x 4 x 4 are looked
-    /// at together: of most all voxels are, or none. In the others, one look-up for most, that of the pixel
-    /// nearest to the centre; all of a voxel's rays for those where that one does not. None that OctoMap's
-    /// computeUpdate has not among its free or occupied ones. About 1 us.
-    [[nodiscard]] BrickMask passed(const Brick& brick) const;
+    /// The voxels of a brick that a ray of theirs passes or ends in; but for some of those in which rays end
+    /// in something, which are given. Its eight cubes of 4 x 4 x 4 are looked at together: of most all voxels
+    /// are, or none. In the others, one look-up for most, that of the pixel nearest to the centre; all of a
+    /// voxel's rays for those where that one does not. None that OctoMap's computeUpdate has not among its
+    /// free or occupied ones. About 1 us.
+    [[nodiscard]] BrickMask passed(const Brick& brick, const BrickMask& ends) const;
     [[nodiscard]] RayVote vote_on(const Brick& brick, std::size_t cell) const;
 
     /// What a kernel works with.
@@ -69,6 +70,7 @@ class VoxelRays {
 
   private:
     const CertainView* view_ = nullptr;
+    const ReachWindows* reach_ = nullptr;
     const VoxelLattice* lattice_ = nullptr;
     Kernel kernel_;
 };

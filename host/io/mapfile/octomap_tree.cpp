@@ -9,12 +9,15 @@
 
 namespace octoskin {
 
+void set_limits(octomap::OcTree& tree, const MapConfig& config) {
+    tree.setOccupancyThres(octomap::probability(static_cast<double>(config.log_odds_occupied)));
+    tree.setClampingThresMin(octomap::probability(static_cast<double>(config.log_odds_min)));
+    tree.setClampingThresMax(octomap::probability(static_cast<double>(config.log_odds_max)));
+}
+
 std::unique_ptr<octomap::OcTree> to_octomap(const FusedMap& map) {
     auto tree = std::make_unique<octomap::OcTree>(map.resolution_m());
-    const MapConfig& config = map.config();
-    tree->setOccupancyThres(octomap::probability(static_cast<double>(config.log_odds_occupied)));
-    tree->setClampingThresMin(octomap::probability(static_cast<double>(config.log_odds_min)));
-    tree->setClampingThresMax(octomap::probability(static_cast<double>(config.log_odds_max)));
+    set_limits(*tree, map.config());
     if (map.known_voxels() == 0) return tree;
     // Through OctoMap's own reader: no public function of it makes inner nodes.
     const std::string bytes = encode_ot(map);

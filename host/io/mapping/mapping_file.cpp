@@ -17,19 +17,34 @@ using Keys = std::initializer_list<std::string_view>;
 
 const Keys kTopKeys = {"base",
                        "map",
+                       "age",
                        "proximity_hit",
                        "depth_hit",
                        "miss_log_odds",
                        "depth_update",
                        "depth_filter",
+                       "range_update",
+                       "cone",
+                       "zone",
+                       "counts",
                        "removes_robot_from_depth",
                        "removes_robot_from_ranges",
                        "depth_range_max_m",
                        "no_return_clear_m",
                        "depth_box_voxels_max"};
-const Keys kMapKeys = {"resolution_m", "log_odds_min", "log_odds_max", "log_odds_occupied", "memory_max_mib"};
+const Keys kMapKeys = {"resolution_m",     "log_odds_min",      "log_odds_max",  "log_odds_passed_max",
+                       "log_odds_hit_min", "log_odds_occupied", "memory_max_mib"};
+const Keys kAgeKeys = {"stale_after_s", "unknown_after_s"};
 const Keys kHitKeys = {"log_odds_offset", "log_odds_slope_per_m", "range_min_m", "is_range_min_exclusive"};
 const Keys kFilterKeys = {"is_enabled", "window_px", "sigma_m", "gate_sigmas", "mean_sigmas", "min_support"};
+const Keys kConeKeys = {"hit_range_max_m", "cap_half_thickness_m", "cap_sigmas", "cap_angle_share",
+                        "core_weight_min", "core_margin_voxels",   "hit_mass",   "miss_mass"};
+const Keys kCountKeys = {"prior_hits",           "prior_misses", "occupied_hits", "free_misses",
+                         "occupied_probability", "hits_min",     "misses_min",    "counts_max",
+                         "image_clears",         "image_marks",  "range_clears",  "range_clears_from"};
+
+const std::initializer_list<std::pair<std::string_view, RangeUpdate>> kRangeUpdates = {
+    {"ray", RangeUpdate::ray}, {"cone", RangeUpdate::cone}};
 
 /// The depth updates, each also the name of the configuration that is built round it.
 const std::initializer_list<std::pair<std::string_view, DepthUpdate>> kDepthUpdates = {
@@ -54,9 +69,13 @@ MappingConfig configuration_of(DepthUpdate depth_update) {
 
 std::vector<std::string> keys_below_top() {
     const std::pair<std::string_view, Keys> tables[] = {{"map", kMapKeys},
+                                                        {"age", kAgeKeys},
                                                         {"proximity_hit", kHitKeys},
                                                         {"depth_hit", kHitKeys},
-                                                        {"depth_filter", kFilterKeys}};
+                                                        {"depth_filter", kFilterKeys},
+                                                        {"cone", kConeKeys},
+                                                        {"zone", kConeKeys},
+                                                        {"counts", kCountKeys}};
     std::vector<std::string> paths;
     for (const auto& [table, keys] : tables) {
         for (const std::string_view key : keys) paths.push_back(fmt::format("{}.{}", table, key));
@@ -74,6 +93,8 @@ MapConfig read_map(const Table& table, MapConfig map) {
     map.resolution_m = table.number("resolution_m", {0.001, 10.0}, map.resolution_m);
     map.log_odds_min = single(table, "log_odds_min", {-100.0, 0.0}, map.log_odds_min);
     map.log_odds_max = single(table, "log_odds_max", {0.0, 100.0}, map.log_odds_max);
+    map.log_odds_passed_max = single(table, "log_odds_passed_max", {-100.0, 100.0}, map.log_odds_passed_max);
+    map.log_odds_hit_min = single(table, "log_odds_hit_min", {-100.0, 100.0}, map.log_odds_hit_min);
     map.log_odds_occupied = single(table, "log_odds_occupied", {-100.0, 100.0}, map.log_odds_occupied);
     map.memory_max_mib = table.integer<std::uint32_t>("memory_max_mib", {1, 1'000'000}, map.memory_max_mib);
     if (map.log_odds_occupied <= map.log_odds_min || map.log_odds_occupied > map.log_odds_max) {
@@ -82,6 +103,21 @@ MapConfig read_map(const Table& table, MapConfig map) {
                    "no voxel could be free, or none occupied");
     }
     return map;
+}
+
+AgeModel read_age(const Table& table, AgeModel age) {
+    constexpr std::uint32_t kLongest_s = 7200;
+    age.stale_after_s = table.integer<std::uint32_t>("stale_after_s", {0, kLongest_s}, age.stale_after_s);
+    age.unknown_after_s =
+        table.integer<std::uint32_t>("unknown_after_s", {0, kLongest_s}, age.unknown_after_s);
+    if (age.unknown_after_s > 0 && age.unknown_after_s <= age.stale_after_s) {
+        table.fail(
+            "unknown_after_s",
+            fmt::format("expected more than stale_after_s, {}, or 0 (never), found {}: what is unknown is "
+                        "no longer stale",
+                        age.stale_after_s, age.unknown_after_s));
+    }
+    return age;
 }
 
 HitModel read_hit(const Table& table, HitModel hit) {
@@ -119,6 +155,39 @@ DepthFilterConfig read_filter(const Table& table, DepthFilterConfig filter) {
     return filter;
 }
 
+ConeModel read_cone(const Table& table, ConeModel cone) {
+    cone.hit_range_max_m = table.number("hit_range_max_m", {0.0, 100.0}, cone.hit_range_max_m);
+    cone.cap_half_thickness_m = table.number("cap_half_thickness_m", {0.0, 1.0}, cone.cap_half_thickness_m);
+    cone.cap_sigmas = table.number("cap_sigmas", {0.0, 10.0}, cone.cap_sigmas);
+    cone.cap_angle_share = table.number("cap_angle_share", {0.0, 1.0}, cone.cap_angle_share);
+    cone.core_weight_min = table.number("core_weight_min", {0.01, 0.999}, cone.core_weight_min);
+    cone.core_margin_voxels = table.number("core_margin_voxels", {0.0, 2.0}, cone.core_margin_voxels);
+    cone.hit_mass = single(table, "hit_mass", {0.0, 100.0}, cone.hit_mass);
+    cone.miss_mass = single(table, "miss_mass", {0.0, 100.0}, cone.miss_mass);
+    return cone;
+}
+
+CountModel read_counts(const Table& table, CountModel counts) {
+    counts.prior_hits = single(table, "prior_hits", {0.001, 100.0}, counts.prior_hits);
+    counts.prior_misses = single(table, "prior_misses", {0.001, 100.0}, counts.prior_misses);
+    counts.occupied_hits = single(table, "occupied_hits", {0.0, 10'000.0}, counts.occupied_hits);
+    counts.free_misses = single(table, "free_misses", {0.0, 10'000.0}, counts.free_misses);
+    counts.occupied_probability =
+        single(table, "occupied_probability", {0.01, 0.99}, counts.occupied_probability);
+    counts.hits_min = single(table, "hits_min", {0.0, 1000.0}, counts.hits_min);
+    counts.misses_min = single(table, "misses_min", {0.0, 1000.0}, counts.misses_min);
+    counts.counts_max = single(table, "counts_max", {1.0, 10'000.0}, counts.counts_max);
+    counts.image_clears = single(table, "image_clears", {0.0, 1.0}, counts.image_clears);
+    counts.image_marks = single(table, "image_marks", {0.0, 1.0}, counts.image_marks);
+    counts.range_clears = single(table, "range_clears", {0.0, 100.0}, counts.range_clears);
+    counts.range_clears_from = single(table, "range_clears_from", {0.0, 10'000.0}, counts.range_clears_from);
+    if (counts.hits_min >= counts.counts_max)
+        table.fail("hits_min", "expected less than counts_max: no voxel could have so many hits");
+    if (counts.misses_min >= counts.counts_max)
+        table.fail("misses_min", "expected less than counts_max: no voxel could have so many misses");
+    return counts;
+}
+
 /// Reads the table under `key`, if it is there, over the values that hold without it.
 template <class T, class Read>
 void read_part(const Table& top, std::string_view key, Keys known_keys, T& part, Read read) {
@@ -143,9 +212,14 @@ MappingConfig read_checked(const std::string& file) {
     MappingConfig config =
         configuration_of(top.choice<DepthUpdate>("base", kDepthUpdates, DepthUpdate::fast));
     read_part(top, "map", kMapKeys, config.map, read_map);
+    read_part(top, "age", kAgeKeys, config.map.age, read_age);
     read_hit_part(top, "proximity_hit", config.model.proximity);
     read_hit_part(top, "depth_hit", config.model.depth);
     read_part(top, "depth_filter", kFilterKeys, config.depth_filter, read_filter);
+    config.range_update = top.choice<RangeUpdate>("range_update", kRangeUpdates, config.range_update);
+    read_part(top, "cone", kConeKeys, config.cone, read_cone);
+    read_part(top, "zone", kConeKeys, config.zone, read_cone);
+    read_part(top, "counts", kCountKeys, config.map.counts, read_counts);
     config.model.miss_log_odds = single(top, "miss_log_odds", {-100.0, 0.0}, config.model.miss_log_odds);
     config.depth_update = top.choice<DepthUpdate>("depth_update", kDepthUpdates, config.depth_update);
     config.removes_robot_from_depth = top.flag("removes_robot_from_depth", config.removes_robot_from_depth);
@@ -163,6 +237,24 @@ std::string hit_text(std::string_view key, const HitModel& hit) {
         "{}:\n  log_odds_offset: {}\n  log_odds_slope_per_m: {}\n  range_min_m: {}\n"
         "  is_range_min_exclusive: {}\n",
         key, hit.offset, hit.slope_per_m, hit.range_min_m, hit.is_min_exclusive);
+}
+
+std::string cone_text(std::string_view key, const ConeModel& cone) {
+    return fmt::format(
+        "{}:\n  hit_range_max_m: {}\n  cap_half_thickness_m: {}\n  cap_sigmas: {}\n  cap_angle_share: {}\n"
+        "  core_weight_min: {}\n  core_margin_voxels: {}\n  hit_mass: {}\n  miss_mass: {}\n",
+        key, cone.hit_range_max_m, cone.cap_half_thickness_m, cone.cap_sigmas, cone.cap_angle_share,
+        cone.core_weight_min, cone.core_margin_voxels, cone.hit_mass, cone.miss_mass);
+}
+
+std::string counts_text(const CountModel& counts) {
+    return fmt::format(
+        "counts:\n  prior_hits: {}\n  prior_misses: {}\n  occupied_hits: {}\n  free_misses: {}\n"
+        "  occupied_probability: {}\n  hits_min: {}\n  misses_min: {}\n  counts_max: {}\n  image_clears: "
+        "{}\n  image_marks: {}\n  range_clears: {}\n  range_clears_from: {}\n",
+        counts.prior_hits, counts.prior_misses, counts.occupied_hits, counts.free_misses,
+        counts.occupied_probability, counts.hits_min, counts.misses_min, counts.counts_max,
+        counts.image_clears, counts.image_marks, counts.range_clears, counts.range_clears_from);
 }
 
 }  // namespace
@@ -187,9 +279,11 @@ std::string mapping_text(const MappingConfig& config) {
     const MapConfig& map = config.map;
     const DepthFilterConfig& filter = config.depth_filter;
     std::string text = fmt::format(
-        "map:\n  resolution_m: {}\n  log_odds_min: {}\n  log_odds_max: {}\n  log_odds_occupied: {}\n"
-        "  memory_max_mib: {}\n",
-        map.resolution_m, map.log_odds_min, map.log_odds_max, map.log_odds_occupied, map.memory_max_mib);
+        "map:\n  resolution_m: {}\n  log_odds_min: {}\n  log_odds_max: {}\n  log_odds_passed_max: {}\n"
+        "  log_odds_hit_min: {}\n  log_odds_occupied: {}\n  memory_max_mib: {}\n"
+        "age:\n  stale_after_s: {}\n  unknown_after_s: {}\n",
+        map.resolution_m, map.log_odds_min, map.log_odds_max, map.log_odds_passed_max, map.log_odds_hit_min,
+        map.log_odds_occupied, map.memory_max_mib, map.age.stale_after_s, map.age.unknown_after_s);
     text += hit_text("proximity_hit", config.model.proximity);
     text += hit_text("depth_hit", config.model.depth);
     text += fmt::format("miss_log_odds: {}\ndepth_update: {}\n", config.model.miss_log_odds,
@@ -200,6 +294,8 @@ std::string mapping_text(const MappingConfig& config) {
         "  min_support: {}\n",
         filter.is_enabled, filter.window, filter.sigma_m, filter.gate_sigmas, filter.mean_sigmas,
         filter.min_support);
+    text += fmt::format("range_update: {}\n", config.range_update == RangeUpdate::cone ? "cone" : "ray");
+    text += cone_text("cone", config.cone) + cone_text("zone", config.zone) + counts_text(map.counts);
     text += fmt::format(
         "removes_robot_from_depth: {}\nremoves_robot_from_ranges: {}\n"
         "depth_range_max_m: {}\nno_return_clear_m: {}\n"

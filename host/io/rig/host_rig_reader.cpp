@@ -1,6 +1,8 @@
 #include "host/io/rig/host_rig_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "host/io/urdf/urdf_robot.hpp"
@@ -11,6 +13,26 @@
 namespace octoskin {
 namespace {
 
+/// The cone as a zone sees it. The whole array sees all of it. A smaller zone sees its own SPADs' part,
+/// blurred by the lens: to where the blur has all but ended, and about as a Gaussian of the same variance.
+BeamOptics optics_of(const rig::Sensor& sensor, const Roi& zone) {
+    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+    if (!sensor.cone) return {};
+    const double half_angle = sensor.cone->half_angle_deg * kRadPerDeg;
+    const double sigma = sensor.cone->sigma_deg * kRadPerDeg;
+    constexpr unsigned kArraySide = 16;
+    if (zone.width == kArraySide && zone.height == kArraySide) return {half_angle, sigma, false};
+    const double blur = sensor.cone->blur_deg * kRadPerDeg;
+    const double width = zone.width * rig::kSpadPitch_rad;
+    const double height = zone.height * rig::kSpadPitch_rad;
+    constexpr double kBlurEnd = 1.5;
+    const double variance =
+        (width * width + height * height) / 24.0 + blur * blur;  // a uniform's is w^2 / 12
+    return {std::min(half_angle, 0.5 * std::hypot(width, height) + kBlurEnd * blur),
+            1.0 / std::sqrt(1.0 / variance + 1.0 / (sigma * sigma)),
+            2U * zone.width * zone.height <= kArraySide * kArraySide};
+}
+
 HostSensor to_host(const rig::Sensor& sensor, const SensorConfig& config) {
     HostSensor host;
     host.name = sensor.name;
@@ -20,7 +42,8 @@ HostSensor to_host(const rig::Sensor& sensor, const SensorConfig& config) {
     host.period = std::chrono::milliseconds(config.inter_measurement_ms);
     host.zones.clear();
     for (std::size_t i = 0; i < config.zone_count; ++i) {
-        host.zones.push_back({sensor.zone_offset_m[i], rig::zone_direction(config.zones[i])});
+        host.zones.push_back({sensor.zone_offset_m[i], rig::zone_direction(config.zones[i]),
+                              optics_of(sensor, config.zones[i])});
     }
     host.reflex_below_m = 1e-3 * config.reflex_below_mm;
     return host;
@@ -77,7 +100,7 @@ HostCamera host_camera(const rig::Camera& camera) {
 Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
     auto robot = read_robot_model(rig.urdf, rig.base_link, rig.joints.joints);
     if (!robot) return unexpected(robot.error());
-    const auto capsules = rig::read_capsules(rig.urdf, rig.link_padding_m);
+    const auto capsules = rig::padded_body(rig);
     if (!capsules) return unexpected(capsules.error());
     HostRig host = to_host(rig);
     for (const rig::Capsule& capsule : *capsules) {

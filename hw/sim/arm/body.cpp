@@ -49,13 +49,18 @@ std::optional<double> cast_wall(const BodyCapsule& capsule, const Eigen::Vector3
     return height >= 0.0 && height <= length ? t : std::nullopt;
 }
 
-bool is_inside(const BodyCapsule& capsule, const Eigen::Vector3d& point) {
+/// From the nearest point of the capsule's segment to `point`.
+Eigen::Vector3d offset_from_axis(const BodyCapsule& capsule, const Eigen::Vector3d& point) {
     const Eigen::Vector3d along = capsule.p_base_b - capsule.p_base_a;
     const double length_squared = along.squaredNorm();
     const double part = length_squared == 0.0
                             ? 0.0
                             : std::clamp((point - capsule.p_base_a).dot(along) / length_squared, 0.0, 1.0);
-    return (point - capsule.p_base_a - part * along).squaredNorm() <= capsule.radius_m * capsule.radius_m;
+    return point - capsule.p_base_a - part * along;
+}
+
+bool is_inside(const BodyCapsule& capsule, const Eigen::Vector3d& point) {
+    return offset_from_axis(capsule, point).squaredNorm() <= capsule.radius_m * capsule.radius_m;
 }
 
 std::optional<double> nearer(std::optional<double> a, std::optional<double> b) {
@@ -85,6 +90,10 @@ std::optional<double> cast_capsule(const BodyCapsule& capsule, const Eigen::Vect
     const auto a = cast_sphere(capsule.p_base_a, capsule.radius_m, origin, direction);
     const auto b = cast_sphere(capsule.p_base_b, capsule.radius_m, origin, direction);
     return nearer(nearer(a, b), cast_wall(capsule, origin, direction));
+}
+
+Eigen::Vector3d outward_normal(const BodyCapsule& capsule, const Eigen::Vector3d& p_base) {
+    return offset_from_axis(capsule, p_base).normalized();
 }
 
 std::optional<double> cast_body(const std::vector<BodyCapsule>& body, const Eigen::Vector3d& origin,

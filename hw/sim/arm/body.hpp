@@ -28,6 +28,9 @@ struct BodyCapsule {
 [[nodiscard]] std::optional<double> cast_capsule(const BodyCapsule& capsule, const Eigen::Vector3d& origin,
                                                  const Eigen::Vector3d& direction);
 
+/// The unit vector out of a capsule at a point of its surface.
+[[nodiscard]] Eigen::Vector3d outward_normal(const BodyCapsule& capsule, const Eigen::Vector3d& p_base);
+
 /// The nearest of cast_capsule() over a body.
 [[nodiscard]] std::optional<double> cast_body(const std::vector<BodyCapsule>& body,
                                               const Eigen::Vector3d& origin,

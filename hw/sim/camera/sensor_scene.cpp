@@ -2,24 +2,30 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <numbers>
 
 #include "hw/rigfile/zone.hpp"
 #include "hw/sim/arm/body.hpp"
+#include "hw/sim/camera/cone_view.hpp"
 #include "hw/sim/noise/noise.hpp"
+#include "hw/sim/vl53l1x/ranging_result.hpp"
 
 namespace octoskin::sim {
 namespace {
 
-/// Far above the default limit of 1 Mcps, and what a grey wall at 1 m returns in the dark.
-constexpr double kSignal_mcps = 8.0;
-constexpr double kAmbient_mcps = 0.05;
+constexpr double kAmbient_mcps = 0.05;  ///< of the whole array
+constexpr double kArraySpads = 256.0;
 
-struct Scene {
+/// One ideal ray along the middle of the zone's beam.
+struct RayScene {
     SensorSurroundings surroundings;
     SensorMount mount;
     Noise noise;
 
     RangingReturn operator()(std::uint32_t ranging_index, SimTime window_middle, const Roi& roi) const {
+        /// Far above the default limit of 1 Mcps, and what a grey wall at 1 m returns in the dark.
+        constexpr double kSignal_mcps = 8.0;
         RangingReturn seen;
         seen.sigma_m = surroundings.optics.sigma_m;
         seen.ambient_mcps = kAmbient_mcps;
@@ -47,11 +53,114 @@ struct Scene {
     }
 };
 
+/// Where a sensor and the robot are at one instant.
+struct Instant {
+    Eigen::Isometry3d T_base_sensor;
+    std::vector<BodyCapsule> body;  ///< what of the robot the sensor may see
+};
+
+Instant instant_of(const SensorSurroundings& surroundings, const SensorMount& mount, SimTime time) {
+    const auto poses = surroundings.arm.forward(surroundings.trajectory.at(time));
+    return {poses.at(mount.link) * mount.T_link_sensor,
+            posed_body(surroundings.capsules, poses, surroundings.ignored_links)};
+}
+
+/// A cone of sub-rays.
+struct ConeScene {
+    SensorSurroundings surroundings;
+    SensorMount mount;
+    ConeView view;
+    double half_angle_rad;
+    Noise range_noise;
+    Noise signal_noise;
+
+    RangingReturn operator()(std::uint32_t ranging_index, SimTime window_middle, const Roi& roi) const {
+        auto echoes = echoes_of(window_middle, roi);
+        const auto peak = nearest_peak(echoes);
+        const double signal = peak ? peak->signal : 0.0;
+        RangingReturn seen;
+        seen.sigma_m = cone_sigma_m(signal);
+        seen.peak_signal_mcps =
+            measured_signal(signal, kConeSignalSpread * signal_limit_share(roi), ranging_index) *
+            kConeMcpsPerSignal;
+        seen.ambient_mcps = kAmbient_mcps * roi.width * roi.height / kArraySpads;
+        if (peak && peak->range_m >= surroundings.optics.min_m) {
+            seen.range_m = std::max(0.0, peak->range_m + seen.sigma_m * range_noise.gaussian(ranging_index));
+        }
+        return seen;
+    }
+
+    /// What is measured of a signal spreads logistically: the device, which compares it with its limit, then
+    /// refuses a range with the chance that the logistic curve about that limit gives.
+    [[nodiscard]] double measured_signal(double signal, double spread, std::uint32_t ranging_index) const {
+        const double uniform = signal_noise.uniform(ranging_index);
+        return std::max(0.0, signal + spread * std::log(uniform / (1.0 - uniform)));
+    }
+
+    [[nodiscard]] std::vector<Echo> echoes_of(SimTime time, const Roi& roi) const {
+        const Instant instant = instant_of(surroundings, mount, time);
+        const Eigen::Vector3d origin = instant.T_base_sensor.translation();
+        std::vector<Eigen::Vector3d> directions;
+        for (const Eigen::Vector3d& direction_sensor : view.directions_sensor())
+            directions.emplace_back(instant.T_base_sensor.linear() * direction_sensor);
+        std::vector<RayHit> hits(directions.size());
+        surroundings.world.cast_fan(origin, directions, surroundings.optics.max_m, hits);
+        hide_behind_body(instant, directions, hits);
+        const std::vector<double> weights = view.weights(roi);
+        std::vector<Echo> echoes;
+        for (std::size_t i = 0; i < hits.size(); ++i) {
+            if (!(hits[i].range_m <= surroundings.optics.max_m)) continue;
+            const double cos_incidence = std::abs(hits[i].normal.dot(directions[i]));
+            echoes.push_back({hits[i].range_m, echo_signal(weights[i], surroundings.optics.reflectivity,
+                                                           cos_incidence, hits[i].range_m)});
+        }
+        return echoes;
+    }
+
+    /// Sub-rays that meet the robot first end there.
+    void hide_behind_body(const Instant& instant, const std::vector<Eigen::Vector3d>& directions,
+                          std::vector<RayHit>& hits) const {
+        const Eigen::Vector3d origin = instant.T_base_sensor.translation();
+        for (const BodyCapsule& capsule : instant.body) {
+            if (!may_see(instant.T_base_sensor, capsule)) continue;
+            for (std::size_t i = 0; i < hits.size(); ++i) {
+                const auto t = cast_capsule(capsule, origin, directions[i]);
+                if (!t || *t >= hits[i].range_m) continue;
+                hits[i].range_m = *t;
+                hits[i].normal = outward_normal(capsule, origin + *t * directions[i]);
+            }
+        }
+    }
+
+    /// False only if the ball about a capsule lies outside the cone.
+    [[nodiscard]] bool may_see(const Eigen::Isometry3d& T_base_sensor, const BodyCapsule& capsule) const {
+        const Eigen::Vector3d to_middle =
+            0.5 * (capsule.p_base_a + capsule.p_base_b) - T_base_sensor.translation();
+        const double radius = 0.5 * (capsule.p_base_b - capsule.p_base_a).norm() + capsule.radius_m;
+        const double distance = to_middle.norm();
+        if (distance <= radius) return true;
+        const double cos_middle = T_base_sensor.linear().col(2).dot(to_middle) / distance;
+        return std::acos(std::clamp(cos_middle, -1.0, 1.0)) <= half_angle_rad + std::asin(radius / distance);
+    }
+};
+
 }  // namespace
+
+double cone_sigma_m(double signal) noexcept {
+    constexpr double kFloor_m = 0.01;
+    constexpr double kAtUnitSignal_m = 0.006;
+    constexpr double kLeastSignal = 1e-6;  // 6 m, which any limit refuses
+    return kFloor_m + kAtUnitSignal_m / std::sqrt(std::max(signal, kLeastSignal));
+}
 
 RangingScene ranging_scene(const SensorSurroundings& surroundings, const SensorMount& mount) {
     assert(surroundings.arm.has_link(mount.link));
-    return Scene{surroundings, mount, Noise(surroundings.seed, NoiseSource::range).of(mount.noise_id)};
+    const Noise range_noise = Noise(surroundings.seed, NoiseSource::range).of(mount.noise_id);
+    if (!mount.cone) return RayScene{surroundings, mount, range_noise};
+    const double half_angle = mount.cone->half_angle_deg * std::numbers::pi / 180.0;
+    return ConeScene{surroundings,          mount,
+                     ConeView(*mount.cone), half_angle,
+                     range_noise,           Noise(surroundings.seed, NoiseSource::signal).of(mount.noise_id)};
 }
 
 }  // namespace octoskin::sim

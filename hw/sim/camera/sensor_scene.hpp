@@ -3,9 +3,11 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "hw/rigfile/rig.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/sim/arm/arm.hpp"
 #include "hw/sim/arm/trajectory.hpp"
@@ -35,13 +37,31 @@ struct SensorMount {
     Eigen::Isometry3d T_link_sensor =
         Eigen::Isometry3d::Identity();  ///< ranges run along +z (or the zone's beam)
     std::uint32_t noise_id = 0;
+    std::optional<rig::Cone> cone{};  ///< none: one ideal ray
 };
 
-/// The scene of one sensor, for the simulated device: one ideal ray along the middle of the zone's beam, from
-/// where the arm is at the middle of the ranging window. Nothing within the optics' limits: an empty return.
-/// Otherwise the range plus Gaussian noise, a function of (seed, noise_id, ranging index), with a signal that
-/// passes any limit: how far the sensor sees is set by the optics here and not by the signal. The link must
-/// exist (asserted). About 5 us a call.
+/// Of a sensor that sees a cone: what a signal is in counts, so that the device's default limit of 1 Mcps
+/// lies where half of the ranges fail, at 0.05.
+inline constexpr double kConeMcpsPerSignal = 20.0;
+/// And how it spreads: the scale of the logistic distribution of what is measured of it, by the
+/// whole array.
+inline constexpr double kConeSignalSpread = 0.01;
+/// Deviation of a range by its signal.
+[[nodiscard]] double cone_sigma_m(double signal) noexcept;
+
+/// The scene of one sensor, for the simulated device, from where the arm is at the middle of the ranging
+/// window. The link must exist (asserted).
+///
+/// Without a cone: one ideal ray along the middle of the zone's beam. Nothing within the optics' limits: an
+/// empty return. Otherwise the range plus Gaussian noise, with a signal that passes any limit: how far the
+/// sensor sees is set by the optics here and not by the signal. About 5 us a call.
+///
+/// With one: sub-rays, each ending at the nearest of world and robot, and of their echoes the nearest peak
+/// (cone_view.hpp), within the optics' limits. Its range has Gaussian noise of cone_sigma_m(), its signal
+/// logistic noise of its own; whether it is too weak or too uncertain, the device judges. About 80 us a call
+/// with 16 x 16 sub-rays.
+///
+/// Noise is a function of (seed, noise_id, ranging index).
 [[nodiscard]] RangingScene ranging_scene(const SensorSurroundings& surroundings, const SensorMount& mount);
 
 }  // namespace octoskin::sim

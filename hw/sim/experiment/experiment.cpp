@@ -169,7 +169,7 @@ class RigInOneProcess {
 
     static SensorMount mount_of(const rig::Node& node, std::uint8_t sensor) {
         const rig::Sensor& mounted = node.sensors.at(sensor);
-        return {mounted.link, mounted.T_link_sensor, node.config.node_id * 64U + sensor};
+        return {mounted.link, mounted.T_link_sensor, node.config.node_id * 64U + sensor, mounted.cone};
     }
 
     const ExperimentOutput& output_;

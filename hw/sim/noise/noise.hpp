@@ -9,7 +9,7 @@
 namespace octoskin::sim {
 
 /// Who is noisy. The numbers are part of what a seed means: never reuse one.
-enum class NoiseSource : std::uint64_t { depth = 1, range = 2, map_shift = 3 };
+enum class NoiseSource : std::uint64_t { depth = 1, range = 2, map_shift = 3, signal = 4 };
 
 /// A sequence of independent random numbers that can be read at any index, in O(1). Counter-based: Steele,
 /// Lea and Flood 2014 (SplitMix64), whose output function is applied to a key plus a multiple of the golden

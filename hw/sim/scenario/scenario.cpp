@@ -79,10 +79,11 @@ void read_motion(const Table& top, Scenario& scenario) {
 void read_sensing(const Table& top, Scenario& scenario) {
     const Table depth(top.require("depth"), "depth", {"sigma_m"});
     scenario.depth_sigma_m = depth.number("sigma_m", {0.0, 1.0});
-    const Table ranges(top.require("ranges"), "ranges", {"sigma_m", "min_m", "max_m"});
+    const Table ranges(top.require("ranges"), "ranges", {"sigma_m", "min_m", "max_m", "reflectivity"});
     scenario.ranges.sigma_m = ranges.number("sigma_m", {0.0, 1.0});
     scenario.ranges.min_m = ranges.number("min_m", {0.0, 10.0});
     scenario.ranges.max_m = ranges.number("max_m", {scenario.ranges.min_m, 10.0});
+    scenario.ranges.reflectivity = ranges.number("reflectivity", {0.01, 1.0}, scenario.ranges.reflectivity);
 }
 
 SlowClockSpread read_slow_clocks(const Table& top) {

@@ -21,9 +21,10 @@ namespace octoskin::sim {
 
 /// The optics of the simulated range sensors, where they are not the chip's own.
 struct RangeOptics {
-    double sigma_m = 0.0;
-    double min_m = 0.0;  ///< nothing nearer and
-    double max_m = 0.0;  ///< nothing further is seen
+    double sigma_m = 0.0;       ///< of a sensor that sees one ray
+    double min_m = 0.0;         ///< nothing nearer and
+    double max_m = 0.0;         ///< nothing further is seen
+    double reflectivity = 0.5;  ///< of every surface, for sensors that see a cone
 };
 
 /// The box that the evaluation judges, in the robot's base frame, metres.

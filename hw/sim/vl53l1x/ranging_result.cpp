@@ -60,19 +60,27 @@ bool is_on_array(const Roi& roi) noexcept {
     return left >= 0 && left + roi.width <= 16 && bottom <= 15 && bottom - roi.height + 1 >= 0;
 }
 
+double signal_limit_share(const Roi& roi) noexcept {
+    constexpr double kArraySpads = 256.0;
+    constexpr double kLeast = 0.39;
+    return std::max(std::sqrt(roi.width * roi.height / kArraySpads), kLeast);
+}
+
 RangingConfig ranging_config(const Registers& registers, double crosstalk_kcps) {
     // The optics are off by the factory's value, so that the factory offset gives the true range.
     const double factory_offset_m = offset_m(read16(reset_registers(), reg::kPartToPartOffset));
-    return {.roi = region_of_interest(registers),
-            .range_max_m = valid_range_m(registers.at(reg::kValidPhaseHigh)),
-            .offset_m = offset_m(read16(registers, reg::kPartToPartOffset)) - factory_offset_m,
-            .crosstalk_kcps = crosstalk_kcps,
-            .compensation_kcps = read16(registers, reg::kCrosstalkPlaneOffset) / kCrosstalkScale,
-            .sigma_limit_m = read16(registers, reg::kSigmaThreshold) / kSigmaScale * 1e-3,
-            .signal_limit_mcps = read16(registers, reg::kSignalThreshold) / kRateScale,
-            .interrupt_condition = registers.at(reg::kInterruptConfig),
-            .threshold_low_mm = read16(registers, reg::kThresholdLow),
-            .threshold_high_mm = read16(registers, reg::kThresholdHigh)};
+    const Roi roi = region_of_interest(registers);
+    return {
+        .roi = roi,
+        .range_max_m = valid_range_m(registers.at(reg::kValidPhaseHigh)),
+        .offset_m = offset_m(read16(registers, reg::kPartToPartOffset)) - factory_offset_m,
+        .crosstalk_kcps = crosstalk_kcps,
+        .compensation_kcps = read16(registers, reg::kCrosstalkPlaneOffset) / kCrosstalkScale,
+        .sigma_limit_m = read16(registers, reg::kSigmaThreshold) / kSigmaScale * 1e-3,
+        .signal_limit_mcps = read16(registers, reg::kSignalThreshold) / kRateScale * signal_limit_share(roi),
+        .interrupt_condition = registers.at(reg::kInterruptConfig),
+        .threshold_low_mm = read16(registers, reg::kThresholdLow),
+        .threshold_high_mm = read16(registers, reg::kThresholdHigh)};
 }
 
 std::uint8_t device_status(const RangingConfig& config, const RangingReturn& seen) {

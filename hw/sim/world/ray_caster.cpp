@@ -86,6 +86,45 @@ struct RayCaster::Impl {
         return TriangleHit{exact_t(plane, origin, direction, ray.ray.tfar), ray.hit.geomID, plane.normal};
     }
 
+    /// `take(i, hit)` for every ray, in order.
+    template <class Take>
+    void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions, double t_max,
+                  const Take& take) const {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        for (std::size_t first = 0; first < directions.size(); first += kPacket) {
+            const std::size_t count = std::min(kPacket, directions.size() - first);
+            alignas(32) RTCRayHit8 packet{};
+            alignas(32) int is_valid[kPacket] = {};
+            for (std::size_t i = 0; i < count; ++i) {
+                is_valid[i] = -1;
+                packet.ray.org_x[i] = static_cast<float>(origin.x());
+                packet.ray.org_y[i] = static_cast<float>(origin.y());
+                packet.ray.org_z[i] = static_cast<float>(origin.z());
+                packet.ray.dir_x[i] = static_cast<float>(directions[first + i].x());
+                packet.ray.dir_y[i] = static_cast<float>(directions[first + i].y());
+                packet.ray.dir_z[i] = static_cast<float>(directions[first + i].z());
+                packet.ray.tfar[i] = static_cast<float>(t_max);
+                packet.ray.mask[i] = ~0u;
+                packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+            }
+            rtcIntersect8(is_valid, all, &context, &packet);
+            for (std::size_t i = 0; i < count; ++i) {
+                take(first + i, hit_of(packet.hit.geomID[i], packet.hit.primID[i], origin,
+                                       directions[first + i], packet.ray.tfar[i]));
+            }
+        }
+    }
+
+    /// t is infinity if nothing was found.
+    [[nodiscard]] TriangleHit hit_of(unsigned solid, unsigned triangle, const Eigen::Vector3d& origin,
+                                     const Eigen::Vector3d& direction, float t_found) const {
+        if (solid == RTC_INVALID_GEOMETRY_ID) return {.t = std::numeric_limits<double>::infinity()};
+        const Plane& plane = planes[solid][triangle];
+        return {exact_t(plane, origin, direction, t_found), solid, plane.normal};
+    }
+
     /// A ray that almost grazes the plane gains nothing from it: there Embree's value stays.
     static double exact_t(const Plane& plane, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                           float t_found) {
@@ -135,33 +174,13 @@ std::optional<TriangleHit> RayCaster::cast_at_solid(std::uint32_t solid, const E
 void RayCaster::cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
                          double t_max, std::span<double> t) const {
     assert(t.size() == directions.size());
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    for (std::size_t first = 0; first < directions.size(); first += kPacket) {
-        const std::size_t count = std::min(kPacket, directions.size() - first);
-        alignas(32) RTCRayHit8 packet{};
-        alignas(32) int is_valid[kPacket] = {};
-        for (std::size_t i = 0; i < count; ++i) {
-            is_valid[i] = -1;
-            packet.ray.org_x[i] = static_cast<float>(origin.x());
-            packet.ray.org_y[i] = static_cast<float>(origin.y());
-            packet.ray.org_z[i] = static_cast<float>(origin.z());
-            packet.ray.dir_x[i] = static_cast<float>(directions[first + i].x());
-            packet.ray.dir_y[i] = static_cast<float>(directions[first + i].y());
-            packet.ray.dir_z[i] = static_cast<float>(directions[first + i].z());
-            packet.ray.tfar[i] = static_cast<float>(t_max);
-            packet.ray.mask[i] = ~0u;
-            packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-        }
-        rtcIntersect8(is_valid, impl_->all, &context, &packet);
-        for (std::size_t i = 0; i < count; ++i) {
-            t[first + i] = packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
-                               ? std::numeric_limits<double>::infinity()
-                               : Impl::exact_t(impl_->planes[packet.hit.geomID[i]][packet.hit.primID[i]],
-                                               origin, directions[first + i], packet.ray.tfar[i]);
-        }
-    }
+    impl_->cast_fan(origin, directions, t_max, [&](std::size_t i, const TriangleHit& hit) { t[i] = hit.t; });
+}
+
+void RayCaster::cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
+                         double t_max, std::span<TriangleHit> hits) const {
+    assert(hits.size() == directions.size());
+    impl_->cast_fan(origin, directions, t_max, [&](std::size_t i, const TriangleHit& hit) { hits[i] = hit; });
 }
 
 }  // namespace octoskin::sim

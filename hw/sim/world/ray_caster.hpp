@@ -36,6 +36,9 @@ class RayCaster {
     /// Neighbours in `directions` should point almost the same way. About 50 ns a ray.
     void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions, double t_max,
                   std::span<double> t) const;
+    /// The same with all of each hit; t is infinity where there is none.
+    void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions, double t_max,
+                  std::span<TriangleHit> hits) const;
     /// As cast(), but only against one solid.
     [[nodiscard]] std::optional<TriangleHit> cast_at_solid(std::uint32_t solid, const Eigen::Vector3d& origin,
                                                            const Eigen::Vector3d& direction) const;

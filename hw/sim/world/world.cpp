@@ -1,5 +1,6 @@
 #include "hw/sim/world/world.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -120,6 +121,16 @@ std::optional<RayHit> World::cast(const Eigen::Vector3d& origin, const Eigen::Ve
 void World::cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions, double t_max,
                      std::span<double> t) const {
     impl_->caster.cast_fan(origin, directions, t_max, t);
+}
+
+void World::cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
+                     double range_max_m, std::span<RayHit> hits) const {
+    assert(hits.size() == directions.size());
+    std::vector<TriangleHit> found(directions.size());
+    impl_->caster.cast_fan(origin, directions, range_max_m, found);
+    std::transform(found.begin(), found.end(), hits.begin(), [](const TriangleHit& hit) {
+        return RayHit{hit.t, hit.solid, hit.normal};
+    });
 }
 
 void World::sample_surfaces(double pitch_m,

@@ -43,6 +43,9 @@ class World {
     /// `t_max`.
     void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions, double t_max,
                   std::span<double> t) const;
+    /// The same with the whole hit, for unit vectors; range_m is infinity where nothing is hit.
+    void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
+                  double range_max_m, std::span<RayHit> hits) const;
     [[nodiscard]] const std::vector<Solid>& solids() const noexcept;
 
     /// Calls `visit(point, solid index)` for points of the surface of all solids together, no two neighbours

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "host/core/mapping/beam_integrator.hpp"
-#include "host/core/voxels/ray_walk.hpp"
+#include "host/core/voxels/ray_keys.hpp"
 #include "tests/property/mapping/random_geometry.hpp"
+#include "tests/support/instruction_sets.hpp"
 #include "tests/support/octomap_oracle.hpp"
 
 namespace octoskin::property {
@@ -17,6 +18,14 @@ std::vector<VoxelKey> walk(const VoxelLattice& lattice, const Eigen::Vector3f& o
     std::vector<VoxelKey> keys;
     const auto ray = plan_ray(lattice, origin, end);
     if (ray) walk_ray_keys(*ray, [&](VoxelKey key) { keys.push_back(key); });
+    return keys;
+}
+
+/// The same without walking.
+std::vector<VoxelKey> list(const VoxelLattice& lattice, const Eigen::Vector3f& origin,
+                           const Eigen::Vector3f& end) {
+    std::vector<VoxelKey> keys;
+    if (const auto ray = plan_ray(lattice, origin, end)) list_ray_keys(*ray, keys);
     return keys;
 }
 
@@ -50,6 +59,22 @@ TEST_P(RayWalkProperty, visits_exactly_octomaps_keys_in_octomaps_order) {
         visited += expected.size();
     }
     EXPECT_GT(visited, static_cast<std::size_t>(family.rays));
+}
+
+// Oracle: the walk, which is held against OctoMap above.
+TEST_P(RayWalkProperty, lists_the_keys_of_the_walk_on_each_instruction_set) {
+    const RayFamily family = GetParam();
+    const VoxelLattice lattice(family.resolution_m);
+    on_each_instruction_set([&](const std::string& name) {
+        RandomGeometry random(family.seed + 100, family.resolution_m);
+        for (int i = 0; i < family.rays; ++i) {
+            const Eigen::Vector3f origin = random.point(family.reach_m);
+            const Eigen::Vector3f end = random.end_from(origin, family.reach_m);
+            ASSERT_EQ(list(lattice, origin, end), walk(lattice, origin, end))
+                << name << ", seed " << family.seed + 100 << ", ray " << i << ": " << origin.transpose()
+                << " -> " << end.transpose();
+        }
+    });
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, RayWalkProperty,

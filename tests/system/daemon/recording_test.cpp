@@ -10,6 +10,7 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <regex>
 #include <sstream>
 #include <thread>
 #include <vector>
@@ -174,11 +175,12 @@ TEST_F(DaemonRecording, is_whole_when_the_daemon_is_told_to_end_in_the_middle_of
                   std::string::npos)
             << replay.output;
     };
-    const auto reading = order.find("\nR ", order.size() / 2);
-    ASSERT_NE(reading, std::string::npos);
-    const auto words = order.find(' ', reading + 3);
-    expect_unlike(order.substr(0, reading) + "\nR 99" + order.substr(words),
-                  "what the daemon took was rejected (see the account)");
+    // All readings of the second half: a single one may have changed nothing in voxels that are sure already.
+    const auto half = order.find("\nR ", order.size() / 2);
+    ASSERT_NE(half, std::string::npos);
+    const std::string of_nobody =
+        std::regex_replace(order.substr(half), std::regex("\nR [0-9]+ "), "\nR 99 ");
+    expect_unlike(order.substr(0, half) + of_nobody, "what the daemon took was rejected (see the account)");
     const auto crc = order.rfind(" last ");
     ASSERT_NE(crc, std::string::npos);
     expect_unlike(order.substr(0, crc) + " last 00000001\n", "files of the recording were changed");

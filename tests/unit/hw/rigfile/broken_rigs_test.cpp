@@ -125,6 +125,10 @@ const Broken kBroken[] = {
     {"padded-link-missing.yaml", 4, "robot.link_padding_m.gripper", "found 'gripper'"},
     {"padding-of-millimetres.yaml", 4, "robot.link_padding_m.arm",
      "expected a number from 0 to 0.5, found '20'"},
+    {"attached-to-a-missing-link.yaml", 4, "robot.attached_capsules[0].link", "found 'gripper'"},
+    {"attached-name-twice.yaml", 5, "robot.attached_capsules[1].name", "expected each name once"},
+    {"attached-in-millimetres.yaml", 4, "robot.attached_capsules[0].radius_m",
+     "expected a number from 0.001 to 1, found '20'"},
     {"joint-missing.yaml", 3, "joints.names", "found 'wrist'; it has elbow"},
     {"joint-that-is-fixed.yaml", 3, "joints.names", "found 'bolts'"},
     {"joint-twice.yaml", 3, "joints.names", "expected each joint once"},
@@ -171,6 +175,7 @@ const Broken kBroken[] = {
     // Zones.
     {"zone-off-the-array.yaml", 5, "nodes[0].sensors[0].zones[1].centre_spad", "found 8 x 8 about SPAD 128"},
     {"zone-too-narrow.yaml", 4, "nodes[0].sensors[0].zones[0].width_spads", "from 4 to 16, found '3'"},
+    {"cone-as-a-full-angle.yaml", 3, "nodes[0].sensors[0].cone.half_angle_deg", "from 0.1 to 45, found '54'"},
     {"no-zones.yaml", 3, "nodes[0].sensors[0].zones", "expected 1 to 9 zones, found 0"},
     {"ten-zones.yaml", 3, "nodes[0].sensors[0].zones", "expected 1 to 9 zones, found 10"},
     {"zones-without-a-pause.yaml", 3, "nodes[0].sensors[0].inter_measurement_ms",

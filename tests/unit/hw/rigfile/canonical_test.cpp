@@ -25,6 +25,10 @@ robot:
   urdf: two-links.urdf
   base_link: base
   link_padding_m: {arm: 0.015625}
+  fits_capsules: true
+  attached_capsules:
+    - {name: gripper, link: arm, from_m: [0, 0, 0.125], to_m: [0, 0.0625, 0.25], radius_m: 0.03, padding_m: 0.02}
+    - {name: ball, link: arm, from_m: [0.5, 0, 0], radius_m: 0.04}
   links_ignored_by_sensors: [arm]
   depth_self_margin_m: 0.0875
   range_self_margin_m: 0.125
@@ -79,6 +83,7 @@ nodes:
         zones:
           - {centre_spad: 199, width_spads: 8, height_spads: 8, offset_m: 0.003}
           - {centre_spad: 151, width_spads: 4, height_spads: 6, offset_m: -0.002}
+        cone: {sub_rays: 8, half_angle_deg: 13.25, sigma_deg: 6.1, blur_deg: 2.3}
 )";
 
 /// Writes a rig beside its URDF's copy and reads it.
@@ -132,6 +137,15 @@ TEST_F(RigText, every_value_of_a_full_rig_arrives) {
     EXPECT_EQ(rig.name, "full");
     EXPECT_EQ(rig.urdf, std::filesystem::absolute(folder_ / "two-links.urdf"));
     EXPECT_EQ(rig.link_padding_m.at("arm"), 0.015625);
+    EXPECT_TRUE(rig.fits_capsules);
+    ASSERT_EQ(rig.attached_capsules.size(), 2U);
+    EXPECT_EQ(rig.attached_capsules[0].name, "gripper");
+    EXPECT_EQ(rig.attached_capsules[0].link, "arm");
+    EXPECT_EQ(rig.attached_capsules[0].p_link_a, Eigen::Vector3d(0, 0, 0.125));
+    EXPECT_EQ(rig.attached_capsules[0].p_link_b, Eigen::Vector3d(0, 0.0625, 0.25));
+    EXPECT_EQ(rig.attached_capsules[0].radius_m, 0.03);
+    EXPECT_EQ(rig.attached_capsules[0].padding_m, 0.02);
+    EXPECT_EQ(rig.attached_capsules[1].p_link_b, Eigen::Vector3d(0.5, 0, 0));
     EXPECT_EQ(rig.range_limits.sigma_max_m, 0.15);
     EXPECT_EQ(rig.range_limits.time_uncertainty_max_ms, 2.5);
     EXPECT_EQ(rig.camera->fy, 60.5);
@@ -279,9 +293,19 @@ const Change kChanges[] = {
     {"centre_spad: 151", "centre_spad: 159", true},
     {"width_spads: 4", "width_spads: 5", true},
     {"height_spads: 6", "height_spads: 5", true},
-    // What only the host uses.
+    // What only the host and the simulator use.
+    {"sub_rays: 8", "sub_rays: 9", false},
+    {"half_angle_deg: 13.25", "half_angle_deg: 13.5", false},
+    {"sigma_deg: 6.1", "sigma_deg: 6.2", false},
+    {"blur_deg: 2.3", "blur_deg: 2.4", false},
+    {"cone: {sub_rays: 8, half_angle_deg: 13.25, sigma_deg: 6.1, blur_deg: 2.3}", "cone: ~", false},
     {"name: full", "name: other", false},
     {"arm: 0.015625", "arm: 0.02", false},
+    {"fits_capsules: true", "fits_capsules: false", false},
+    {"to_m: [0, 0.0625, 0.25]", "to_m: [0, 0.0625, 0.3]", false},
+    {"padding_m: 0.02}", "padding_m: 0.03}", false},
+    {"radius_m: 0.04", "radius_m: 0.05", false},
+    {"name: ball", "name: bail", false},
     {"links_ignored_by_sensors: [arm]", "links_ignored_by_sensors: []", false},
     {"depth_self_margin_m: 0.0875", "depth_self_margin_m: 0.09", false},
     {"range_self_margin_m: 0.125", "range_self_margin_m: 0.12", false},

@@ -132,6 +132,44 @@ TEST_F(Capsules, box_and_mesh_are_refused_by_link_and_name) {
     EXPECT_THAT(mesh.error().message(), HasSubstr("is a mesh"));
 }
 
+TEST_F(Capsules, box_is_the_capsule_around_it_if_the_rig_says_so) {
+    std::ofstream(file_) << "<robot name=\"r\"><link name=\"hull\"><collision><origin xyz=\"1 0 0\"/>"
+                            "<geometry><box size=\"0.06 0.4 0.08\"/></geometry></collision></link></robot>";
+    const auto capsules = read_capsules(file_, {{"hull", 0.01}}, BoxRule::fitted);
+    ASSERT_TRUE(capsules) << capsules.error().message();
+    ASSERT_EQ(capsules->size(), 1U);
+    EXPECT_TRUE((*capsules)[0].p_link_a.isApprox(Eigen::Vector3d(1.0, -0.2, 0)));
+    EXPECT_TRUE((*capsules)[0].p_link_b.isApprox(Eigen::Vector3d(1.0, 0.2, 0)));
+    EXPECT_NEAR((*capsules)[0].radius_m, 0.05 + 0.01, 1e-12) << "half the diagonal of 6 x 8 cm";
+}
+
+TEST_F(Capsules, mesh_is_refused_even_then) {
+    std::ofstream(file_) << "<robot name=\"r\"><link name=\"hull\"><collision><geometry><mesh "
+                            "filename=\"hull.stl\"/></geometry></collision></link></robot>";
+    const auto capsules = read_capsules(file_, {}, BoxRule::fitted);
+    ASSERT_FALSE(capsules);
+    EXPECT_THAT(capsules.error().message(), HasSubstr("is a mesh"));
+}
+
+TEST_F(Capsules, what_the_rig_attaches_is_real_and_padded_like_its_link) {
+    std::ofstream(file_) << "<robot name=\"r\"><link name=\"hull\"/></robot>";
+    Rig rig;
+    rig.urdf = file_;
+    rig.link_padding_m["hull"] = 0.01;
+    rig.attached_capsules.push_back({.name = "cable",
+                                     .link = "hull",
+                                     .p_link_a = {0, 0, 0.1},
+                                     .p_link_b = {0, 0, 0.3},
+                                     .radius_m = 0.02,
+                                     .padding_m = 0.05});
+    const auto real = real_body(rig);
+    ASSERT_EQ(real->size(), 1U);
+    EXPECT_EQ((*real)[0].link, "hull");
+    EXPECT_EQ((*real)[0].p_link_b, Eigen::Vector3d(0, 0, 0.3));
+    EXPECT_EQ((*real)[0].radius_m, 0.02);
+    EXPECT_NEAR(padded_body(rig)->at(0).radius_m, 0.08, 1e-12);
+}
+
 TEST_F(Capsules, absurd_size_is_refused) {
     for (const char* radius : {"0", "-0.1", "50"}) {
         const auto capsules = read(sphere("0 0 0", radius));

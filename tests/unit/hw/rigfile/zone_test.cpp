@@ -70,6 +70,18 @@ TEST(Zone, four_quadrants_look_to_the_opposite_corners_at_4_spads) {
     }
 }
 
+TEST(Zone, spans_the_angles_of_its_spads_on_the_other_side) {
+    const double spad = 27.0 / (16.0 * std::numbers::sqrt2) * std::numbers::pi / 180.0;
+    EXPECT_NEAR(zone_span_x(Roi{}).max_rad, 8 * spad, 1e-15);
+    EXPECT_NEAR(zone_span_y(Roi{}).min_rad, -8 * spad, 1e-15);
+    // Columns 12..15 and rows 10..12.
+    const Roi roi{.centre_spad = static_cast<std::uint8_t>(kSpads[11][14]), .width = 4, .height = 3};
+    EXPECT_NEAR(zone_span_x(roi).min_rad, -8 * spad, 1e-15);
+    EXPECT_NEAR(zone_span_x(roi).max_rad, -4 * spad, 1e-15);
+    EXPECT_NEAR(zone_span_y(roi).min_rad, 2 * spad, 1e-15);
+    EXPECT_NEAR(zone_span_y(roi).max_rad, 5 * spad, 1e-15);
+}
+
 TEST(Zone, direction_is_a_unit_vector_within_the_field_of_view) {
     for (int row = 2; row < 14; ++row) {
         for (int column = 2; column < 15; ++column) {

@@ -30,6 +30,9 @@ class Witnesses final : public CommitListener {
     void on_depth(const DepthFrame& frame, const DepthTerms& terms) override {
         for (VoxelWitness& witness : all) witness.on_depth(frame, terms);
     }
+    void on_maps(const MapSet& maps) override {
+        for (VoxelWitness& witness : all) witness.on_maps(maps);
+    }
     std::vector<VoxelWitness> all;
 };
 
@@ -126,6 +129,35 @@ TEST(VoxelWitness, goes_on_from_the_map_that_was_there_and_keeps_the_newest) {
     EXPECT_EQ(witness.newest().back().change(), 0.0);
     EXPECT_NEAR(witness.shares().at({1, 3, 0}).change, 0.5, 1e-12);
     EXPECT_EQ(witness.shares().at({1, 3, 0}).hits, 5U);
+}
+
+TEST(VoxelWitness, says_what_the_map_says_where_sensors_that_see_a_cone_have_counted) {
+    const VoxelKey key{1, 2, 3};
+    MapConfig config;
+    FusedMap map(config);
+    VoxelWitness witness(key, config, kKept);
+    const ConeModel model;
+    const ConeVoxels at{.passed = {}, .cap = {{key, 1.0F}}};
+    const ConeVoxels through{.passed = {key}, .cap = {}};
+    double sum = 0.0;
+    std::size_t known = 0;
+    for (int i = 0; i < 40; ++i) {
+        if (i % 4 == 3) {
+            const DepthTerms terms = terms_of({{key, i % 3 == 0 ? 0.7F : -0.4F}});
+            map.apply(terms);
+            witness.on_depth({{1'000'000 * i}, 0, 0, {}}, terms);
+        } else {
+            std::vector<VoxelUpdate> changes;
+            map.apply(i / 5 % 2 == 0 ? at : through, model, &changes);
+            witness.on_reading(reading_at(1e-3 * i), Beam{}, changes);
+        }
+        witness.on_fused(map);
+        ASSERT_EQ(witness.log_odds(), map.log_odds(key)) << i;
+        known += map.log_odds(key) ? 1U : 0U;
+    }
+    for (const auto& [source, share] : witness.shares()) sum += share.change;
+    EXPECT_GT(known, 20U);
+    EXPECT_NEAR(sum, static_cast<double>(map.log_odds(key).value()), 1e-5);
 }
 
 TEST(Explanation, concludes_in_one_sentence) {

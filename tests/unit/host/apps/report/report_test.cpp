@@ -38,6 +38,14 @@ ReportInput two_seeds() {
     input.pictures = {{"The scene", "A room.", dot, dot}, {"Fused", "Both.", dot, dot}};
     input.accounts = {{"ranges", 100, 90, {{"no_target", 7}, {"stale", 3}, {"duplicate", 0}}}};
     input.results.is_papers_experiment = true;
+    input.results.unknown_space = {.region = {{0.02, 0.0, 0.0}, 1.0, 0.0},
+                                   .region_m3 = 2.1,
+                                   .samples = {{0.0, 2.1, 2.0}, {10.0, 1.4, 0.75}},
+                                   .pockets = {{.voxels = 900,
+                                                .border_voxels = 90,
+                                                .volume_m3 = 0.0576,
+                                                .centre = {0.52, -0.3, 0.4},
+                                                .nearest_border = {}}}};
     input.hidden_objects = {"cone"};
     input.idealisations = {"Nothing moves."};
     input.reproduce = {"octoskin experiment --seeds 0 1"};
@@ -67,8 +75,8 @@ std::string first_unbalanced_tag(const std::string& html) {
 
 TEST(Report, has_every_section) {
     const std::string html = report_html(two_seeds());
-    for (const char* id : {"pictures", "paper", "paired", "metrics", "update", "calibration", "account",
-                           "idealisations", "times", "reproduce"}) {
+    for (const char* id : {"pictures", "paper", "paired", "unknown", "metrics", "update", "calibration",
+                           "account", "idealisations", "times", "reproduce"}) {
         EXPECT_THAT(html, HasSubstr(std::string("<section id=\"") + id + "\"")) << id;
     }
     EXPECT_THAT(html, HasSubstr("<h1>octoskin: what the camera cannot see</h1>"));
@@ -115,6 +123,20 @@ TEST(Report, names_what_fusion_costs_beside_what_it_gains) {
     EXPECT_THAT(report_html(input), HasSubstr("Lost: occupied voxels that the map calls free</div><div "
                                               "class=\"big\"><span class=\"from\">475 →</span> 880</div>"));
     EXPECT_THAT(report_html(input), HasSubstr("+85.3\u00a0%; +405 ± 21, better in 0 of 2 seeds"));
+}
+
+TEST(Report, shows_what_nobody_has_seen_and_where) {
+    ReportInput input = two_seeds();
+    const std::string html = report_html(input);
+    EXPECT_THAT(html, HasSubstr("At the end 0.75 m³ are unknown; the camera alone leaves 1.40 m³."));
+    EXPECT_THAT(html, HasSubstr("<td>1</td><td>57.6</td><td>0.50</td><td>−0.30</td><td>0.40</td>"));
+    input.results.unknown_space->pockets.clear();
+    for (auto& sample : input.results.unknown_space->samples) sample.depth_m3.reset();
+    const std::string alone = report_html(input);
+    EXPECT_THAT(alone, HasSubstr("At the end 0.75 m³ are unknown."));
+    EXPECT_EQ(first_unbalanced_tag(alone), "");
+    input.results.unknown_space->samples.clear();
+    EXPECT_THAT(report_html(input), Not(HasSubstr("<section id=\"unknown\"")));
 }
 
 TEST(Report, judges_timid_and_bold_by_the_side_of_one_half) {

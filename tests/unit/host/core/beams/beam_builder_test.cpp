@@ -35,7 +35,8 @@ HostRig rig() {
     sensor.link = "carriage";
     sensor.T_link_sensor.translation().x() = 0.3;
     sensor.T_link_sensor.linear() << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // sensor z is base x, sensor y is base z
-    sensor.zones.push_back({.offset_m = 0.0, .direction_sensor = Eigen::Vector3d(0, 1, 1).normalized()});
+    sensor.zones.push_back(
+        {.offset_m = 0.0, .direction_sensor = Eigen::Vector3d(0, 1, 1).normalized(), .optics = {}});
     rig.nodes.push_back(
         {.node_id = 4, .name = "n", .node_hash = 0, .pinned_build_id = {}, .sensors = {sensor}});
     rig.joints.joints = {"lift"};
@@ -115,6 +116,32 @@ TEST(BeamBuilder, refuses_poses_that_are_no_numbers) {
             }
         }
     }
+}
+
+// From 0.12 m above its middle the axis passes over the ball, 0.7 m away. The cone's rays half as far from
+// the axis as its edge are 0.083 m lower there, and meet it at 0.62 m: less the margin, 0.5 m are free.
+TEST(BeamBuilder, looks_for_the_robot_in_the_whole_cone) {
+    HostRig with_cone = rig();
+    with_cone.nodes[0].sensors[0].zones[0].optics = {.half_angle_rad = 0.2356, .sigma_rad = 0.12};
+    const BeamRules rules{.removes_robot = true, .no_return_clear_m = 0.0, .sees_cones = true};
+    EXPECT_TRUE(builder().place(measurement(0.8), pose_at(0.62)).has_value());
+    EXPECT_TRUE(builder(rules).place(measurement(0.8), pose_at(0.62)).has_value());
+    EXPECT_EQ(builder(rules, with_cone).place(measurement(0.8), pose_at(0.62)).error(), BeamFault::self_hit);
+    EXPECT_TRUE(builder({}, with_cone).place(measurement(0.8), pose_at(0.62)).has_value());
+    // Nearer than the ball less the margin, or well beside it.
+    EXPECT_TRUE(builder(rules, with_cone).place(measurement(0.4), pose_at(0.62)).has_value());
+    EXPECT_TRUE(builder(rules, with_cone).place(measurement(0.8), pose_at(1.2)).has_value());
+}
+
+TEST(BeamBuilder, gives_beams_their_optics_where_cones_count) {
+    HostRig with_cone = rig();
+    const BeamOptics optics{.half_angle_rad = 0.2, .sigma_rad = 0.1};
+    with_cone.nodes[0].sensors[0].zones[0].optics = optics;
+    EXPECT_EQ(builder({.removes_robot = true, .no_return_clear_m = 0.0, .sees_cones = true}, with_cone)
+                  .place(measurement(0.3), pose_at(1.5))
+                  ->optics,
+              optics);
+    EXPECT_EQ(builder({}, with_cone).place(measurement(0.3), pose_at(1.5))->optics, BeamOptics{});
 }
 
 }  // namespace

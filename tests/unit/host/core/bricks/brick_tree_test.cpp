@@ -70,7 +70,7 @@ TEST(BrickTree, and_its_copies_each_hold_what_they_were_given) {
             const std::size_t which = random() % trees.size();
             const float value = static_cast<float>(random() % 100);
             const MortonCode brick = draw();
-            switch (random() % 8) {
+            switch (random() % 9) {
                 case 0:
                     if (trees.size() < 6) {
                         trees.push_back(trees[which]);
@@ -88,6 +88,10 @@ TEST(BrickTree, and_its_copies_each_hold_what_they_were_given) {
                     truths[which] = truths.front();
                     break;
                 case 3:
+                    trees[which].forget(brick);
+                    truths[which].erase(brick);
+                    break;
+                case 4:
                     trees[which].set_all(brick, value);
                     truths[which][brick] = value;
                     break;
@@ -102,6 +106,31 @@ TEST(BrickTree, and_its_copies_each_hold_what_they_were_given) {
             for (const auto& [brick, value] : truths[i]) ASSERT_EQ(trees[i].find(brick).at(511), value);
         }
     }
+}
+
+TEST(BrickTree, keeps_nothing_of_bricks_that_it_forgot) {
+    BrickTree tree;
+    tree.set_all(brick_at(1, 2, 3), 1.0F);
+    (void)tree.open(brick_at(4000, 2, 3));
+    const BrickTree copy = tree;
+    tree.forget(brick_at(7, 7, 7));  // that it never had
+    tree.forget(brick_at(1, 2, 3));
+    tree.forget(brick_at(4000, 2, 3));
+    EXPECT_EQ(tree.memory_bytes(), 0U);
+    EXPECT_EQ(tree.bricks(), 0U);
+    EXPECT_FALSE(tree.space().has_parts());
+    EXPECT_EQ(copy.find(brick_at(1, 2, 3)).at(9), 1.0F);
+}
+
+TEST(BrickTree, holds_stamps_as_it_holds_log_odds) {
+    BrickTreeOf<std::uint16_t> tree;
+    EXPECT_TRUE(tree.find(brick_at(1, 2, 3)).is_unknown());
+    tree.set_all(brick_at(1, 2, 3), 0xFFFF);
+    EXPECT_EQ(tree.find(brick_at(1, 2, 3)).at(5), 0xFFFF);
+    tree.open(brick_at(1, 2, 3))[5] = 1;
+    EXPECT_EQ(tree.find(brick_at(1, 2, 3)).at(5), 1);
+    EXPECT_EQ(tree.find(brick_at(1, 2, 3)).at(6), 0xFFFF);
+    EXPECT_EQ(tree.memory_bytes(), 7 * 528 + 1040);
 }
 
 TEST(BrickTree, tells_what_is_different_and_passes_over_what_is_shared) {

@@ -120,7 +120,7 @@ TEST(VoxelRays, say_of_each_voxel_what_all_pixels_that_see_it_say_on_every_instr
             rays.begin(view, scene.image, reach, lattice);
             for_some_voxels(scene.image, lattice, [&](VoxelKey key) {
                 const VoxelRays::Brick brick = rays.brick_at(key_of_morton(brick_of(key)));
-                const BrickMask mask = rays.passed(brick);
+                const BrickMask mask = rays.passed(brick, {});
                 const std::size_t cell = cell_of(key);
                 const bool is_passed = (mask[cell / 64] >> (cell % 64) & 1U) != 0;
                 const Truth& truth = truths.at({seed, key});
@@ -152,7 +152,7 @@ TEST(VoxelRays, give_the_same_bits_on_every_instruction_set) {
         rays.begin(view, scene.image, reach, lattice);
         std::vector<BrickMask> masks;
         for_some_bricks(scene.image, lattice, [&](MortonCode brick) {
-            masks.push_back(rays.passed(rays.brick_at(key_of_morton(brick))));
+            masks.push_back(rays.passed(rays.brick_at(key_of_morton(brick)), {}));
         });
         if (first.empty()) first = masks;
         EXPECT_EQ(masks, first) << name;

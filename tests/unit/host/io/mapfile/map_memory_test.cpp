@@ -13,6 +13,8 @@
 #include "host/core/mapping/depth_integrator.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/io/mapfile/map_file.hpp"
+#include "host/io/mapfile/octomap_mirror.hpp"
+#include "host/io/mapfile/octomap_tree.hpp"
 #include "tests/support/allocation_hooks.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -147,6 +149,40 @@ TEST(MapMemory, an_image_that_gets_none_at_any_moment_leaves_nothing_to_the_next
         EXPECT_EQ(next->terms, expected) << "after failure " << failures;
     }
     EXPECT_GT(failures, 5) << "places to fail";
+}
+
+TEST(MapMemory, a_tree_that_gets_none_at_any_moment_is_empty_until_the_next_update) {
+    const auto cube = [](FusedMap& map, std::uint16_t x, unsigned height, float log_odds) {
+        return map.set_cube({.lowest = {x, 32768, 32768}, .height = height}, log_odds);
+    };
+    // Of what is there: one to be opened, one to go, one to change. And one that is new.
+    FusedMap first{MapConfig{}};
+    ASSERT_TRUE(cube(first, 32768, 4, 1.0F) && cube(first, 16384, 1, 1.0F));
+    FusedMap second = first.copy();
+    ASSERT_TRUE(cube(second, 32768, 0, -1.0F) && cube(second, 16386, 0, 1.0F) && cube(second, 8, 0, 1.0F));
+    FusedMap third{MapConfig{}};
+    ASSERT_TRUE(cube(third, 32776, 0, 1.0F));
+    const std::size_t bytes_before = bytes_now;
+    int failures = 0;
+    for (bool has_failed = true; has_failed; ++failures) {
+        OctomapMirror mirror(first.config());
+        (void)mirror.update(first);
+        has_failed = false;
+        allocations_left = failures;
+        try {
+            (void)mirror.update(second);
+            (void)mirror.update(third);
+        } catch (const std::bad_alloc&) {
+            has_failed = true;
+        }
+        allocations_left = -1;
+        EXPECT_EQ(mirror.tree().size(), has_failed ? 0U : to_octomap(third)->size());
+        EXPECT_EQ(mirror.tree().calcNumNodes(), mirror.tree().size());
+        (void)mirror.update(second);
+        EXPECT_TRUE(mirror.tree() == *to_octomap(second)) << "after failure " << failures;
+    }
+    EXPECT_GT(failures, 50) << "places to fail";
+    EXPECT_EQ(bytes_now, bytes_before) << "all that was taken was given back";
 }
 
 TEST(MapMemory, a_copy_takes_none_until_a_brick_is_written) {

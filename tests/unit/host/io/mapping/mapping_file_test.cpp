@@ -75,8 +75,9 @@ TEST(MappingFile, starts_from_the_default_or_the_base_it_names_and_overrides_wha
 
 TEST(MappingFile, reads_every_key) {
     const auto config = read_text(
-        "map: {resolution_m: 0.02, log_odds_min: -3.5, log_odds_max: 4, log_odds_occupied: 0.25, "
-        "memory_max_mib: 10}\n"
+        "map: {resolution_m: 0.02, log_odds_min: -3.5, log_odds_max: 4, log_odds_passed_max: 1.25, "
+        "log_odds_hit_min: -0.75, log_odds_occupied: 0.25, memory_max_mib: 10}\n"
+        "age: {stale_after_s: 5, unknown_after_s: 6}\n"
         "proximity_hit: {log_odds_offset: 0.5, log_odds_slope_per_m: 0.25, range_min_m: 0.125, "
         "is_range_min_exclusive: true}\n"
         "depth_hit: {log_odds_offset: 0.75, log_odds_slope_per_m: 0.5, range_min_m: 1.5, "
@@ -84,6 +85,14 @@ TEST(MappingFile, reads_every_key) {
         "miss_log_odds: -0.5\ndepth_update: paper\n"
         "depth_filter: {is_enabled: false, window_px: 3, sigma_m: 0.01, gate_sigmas: 5, mean_sigmas: 2, "
         "min_support: 4}\n"
+        "range_update: ray\n"
+        "cone: {hit_range_max_m: 2, cap_half_thickness_m: 0.25, cap_sigmas: 1.5, core_weight_min: 0.75, "
+        "core_margin_voxels: 0.125, hit_mass: 1.25, miss_mass: 0.625, cap_angle_share: 0.75}\n"
+        "zone: {hit_range_max_m: 3, cap_half_thickness_m: 0.5, cap_sigmas: 2.5, core_weight_min: 0.875, "
+        "core_margin_voxels: 0.375, hit_mass: 3.25, miss_mass: 1.625, cap_angle_share: 0.25}\n"
+        "counts: {prior_hits: 0.75, prior_misses: 1.25, occupied_hits: 30, free_misses: 4, "
+        "occupied_probability: 0.625, hits_min: 0.5, misses_min: 2.5, counts_max: 40, image_clears: 0.5, "
+        "image_marks: 0.25, range_clears: 0.125, range_clears_from: 4.5}\n"
         "removes_robot_from_depth: false\nremoves_robot_from_ranges: false\ndepth_range_max_m: "
         "3.5\nno_return_clear_m: 1.25\n"
         "depth_box_voxels_max: 5000\n");
@@ -92,13 +101,45 @@ TEST(MappingFile, reads_every_key) {
         .map = {.resolution_m = 0.02,
                 .log_odds_min = -3.5F,
                 .log_odds_max = 4.0F,
+                .log_odds_passed_max = 1.25F,
+                .log_odds_hit_min = -0.75F,
                 .log_odds_occupied = 0.25F,
-                .memory_max_mib = 10},
+                .memory_max_mib = 10,
+                .counts = {.prior_hits = 0.75F,
+                           .prior_misses = 1.25F,
+                           .occupied_hits = 30.0F,
+                           .free_misses = 4.0F,
+                           .occupied_probability = 0.625F,
+                           .hits_min = 0.5F,
+                           .misses_min = 2.5F,
+                           .counts_max = 40.0F,
+                           .image_clears = 0.5F,
+                           .image_marks = 0.25F,
+                           .range_clears = 0.125F,
+                           .range_clears_from = 4.5F},
+                .age = {.stale_after_s = 5, .unknown_after_s = 6}},
         .model =
             {.proximity =
                  {.offset = 0.5, .slope_per_m = 0.25, .range_min_m = 0.125, .is_min_exclusive = true},
              .depth = {.offset = 0.75, .slope_per_m = 0.5, .range_min_m = 1.5, .is_min_exclusive = false},
              .miss_log_odds = -0.5F},
+        .range_update = RangeUpdate::ray,
+        .cone = {.hit_range_max_m = 2.0,
+                 .cap_half_thickness_m = 0.25,
+                 .cap_sigmas = 1.5,
+                 .cap_angle_share = 0.75,
+                 .core_weight_min = 0.75,
+                 .core_margin_voxels = 0.125,
+                 .hit_mass = 1.25F,
+                 .miss_mass = 0.625F},
+        .zone = {.hit_range_max_m = 3.0,
+                 .cap_half_thickness_m = 0.5,
+                 .cap_sigmas = 2.5,
+                 .cap_angle_share = 0.25,
+                 .core_weight_min = 0.875,
+                 .core_margin_voxels = 0.375,
+                 .hit_mass = 3.25F,
+                 .miss_mass = 1.625F},
         .depth_update = DepthUpdate::paper,
         .depth_filter = {.is_enabled = false,
                          .window = 3,
@@ -139,6 +180,17 @@ TEST(MappingFile, names_file_line_key_value_and_remedy) {
     EXPECT_THAT(error_of("depth_hit: {range_min_m: -1}\n"), HasSubstr("my.yaml:1: depth_hit.range_min_m: "));
     EXPECT_THAT(error_of("map: [\n"), HasSubstr("my.yaml:"));
     EXPECT_FALSE(read_mapping("no/such/file.yaml").has_value());
+}
+
+TEST(MappingFile, refuses_ages_at_which_nothing_could_be_stale) {
+    EXPECT_THAT(
+        error_of("age:\n  unknown_after_s: 60\n"),
+        HasSubstr("my.yaml:2: age.unknown_after_s: expected more than stale_after_s, 60, or 0 (never), "
+                  "found 60"));
+    EXPECT_THAT(error_of("age: {stale_after_s: 7201}\n"), HasSubstr("my.yaml:1: age.stale_after_s: "));
+    EXPECT_THAT(error_of("age: {stale_after_s: 1.5}\n"), HasSubstr("my.yaml:1: age.stale_after_s: "));
+    EXPECT_EQ(error_of("age: {stale_after_s: 0, unknown_after_s: 1}\n"), "no error");
+    EXPECT_EQ(error_of("age: {stale_after_s: 7200, unknown_after_s: 0}\n"), "no error");
 }
 
 TEST(MappingFile, refuses_a_filter_whose_window_has_too_few_pixels_for_any_value) {
@@ -235,7 +287,7 @@ TEST(MappingFile, has_each_key_with_its_range_and_default_in_its_document_and_no
         const bool is_same = paper.at(path) == value;
         keys[path] = {expected_of(path), is_same ? value : value + " (" + paper.at(path) + ")"};
     }
-    EXPECT_EQ(keys.size(), 27U);
+    EXPECT_EQ(keys.size(), 60U);
     EXPECT_EQ(documented_keys(), keys);
 }
 

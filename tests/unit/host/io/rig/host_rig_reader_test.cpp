@@ -62,6 +62,49 @@ TEST(HostRigReader, takes_over_everything_the_host_needs) {
     EXPECT_EQ(host.range_limits.time_uncertainty_max, std::chrono::milliseconds(5));
 }
 
+/// The optics of the first sensor's zones, of one of the rigs that ship.
+std::vector<BeamOptics> optics_in(const std::string& file) {
+    const auto rig = rig::read_rig(kSource / "hw/rigs" / file);
+    EXPECT_TRUE(rig) << rig.error().message();
+    const auto setup = make_host_setup(*rig);
+    EXPECT_TRUE(setup) << setup.error().message();
+    std::vector<BeamOptics> optics;
+    for (const HostZone& zone : setup->rig.nodes[0].sensors[0].zones) optics.push_back(zone.optics);
+    return optics;
+}
+
+TEST(HostRigReader, gives_each_zone_its_own_part_of_the_cone) {
+    constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
+    EXPECT_EQ(optics_in("experiment.yaml"), std::vector{BeamOptics{}});
+    EXPECT_EQ(optics_in("experiment_cone.yaml"),
+              (std::vector{BeamOptics{13.5 * kRadPerDeg, 7.0 * kRadPerDeg, false}}));
+    const auto zones = optics_in("experiment_zones.yaml");
+    ASSERT_EQ(zones.size(), 9U);
+    for (const BeamOptics& zone : zones) {
+        EXPECT_TRUE(zone.is_zone);
+        // 6 SPADs of 1.193 degrees: half their diagonal, and one and a half blurs of 2.5 degrees.
+        EXPECT_NEAR(zone.half_angle_rad, (5.0625 + 3.75) * kRadPerDeg, 1e-9);
+        // 1 / (1 / (7.159^2 / 12 + 2.5^2) + 1 / 7^2) is 2.9431 squared.
+        EXPECT_NEAR(zone.sigma_rad, 2.9431 * kRadPerDeg, 1e-3 * kRadPerDeg);
+    }
+}
+
+TEST(HostRigReader, more_than_half_of_the_array_is_no_zone) {
+    rig::Rig rig = experiment();
+    auto& sensor = rig.nodes[0].sensors[0];
+    auto& config = rig.nodes[0].config.sensors[0];
+    sensor.cone = rig::Cone{};
+    config.zone_count = 2;
+    config.zones[0] = {.centre_spad = 199, .width = 16, .height = 8};
+    config.zones[1] = {.centre_spad = 199, .width = 12, .height = 12};
+    sensor.zone_offset_m = {0.0, 0.0};
+    const auto setup = make_host_setup(rig);
+    ASSERT_TRUE(setup) << setup.error().message();
+    const auto& zones = setup->rig.nodes[0].sensors[0].zones;
+    EXPECT_TRUE(zones[0].optics.is_zone);
+    EXPECT_FALSE(zones[1].optics.is_zone);
+}
+
 TEST(HostRigReader, counts_signal_messages_on_a_classical_bus_alone) {
     rig::Rig rig = experiment();
     rig.nodes[0].config.aux_every = 5;

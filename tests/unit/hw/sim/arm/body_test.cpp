@@ -47,6 +47,12 @@ TEST(CastCapsule, treats_equal_ends_as_a_sphere) {
     EXPECT_FALSE(cast_capsule(sphere, {1.51, 1, 5}, {0, 0, -1}));
 }
 
+TEST(OutwardNormal, points_away_from_the_axis_and_from_the_ends) {
+    EXPECT_TRUE(outward_normal(kUpright, {0.1, 0.0, 0.5}).isApprox(Eigen::Vector3d(1, 0, 0), 1e-14));
+    EXPECT_TRUE(outward_normal(kUpright, {0.06, 0.0, 1.08}).isApprox(Eigen::Vector3d(0.6, 0, 0.8), 1e-14));
+    EXPECT_TRUE(outward_normal(kUpright, {0.0, 0.0, -0.1}).isApprox(Eigen::Vector3d(0, 0, -1), 1e-14));
+}
+
 TEST(CastCapsule, finds_the_first_surface_point_of_random_capsules) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> place(-1.0, 1.0), radius(0.02, 0.3);

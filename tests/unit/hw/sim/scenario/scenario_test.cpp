@@ -86,6 +86,10 @@ TEST_F(ScenarioFile, takes_other_values_laid_over_it) {
     ASSERT_TRUE(even) << even.error().message();
     EXPECT_EQ(even->slow_clocks.factor_min, 1.075);
     EXPECT_EQ(even->slow_clocks.factor_max, 1.075);
+    EXPECT_EQ(even->ranges.reflectivity, 0.5);
+    const auto dark = read_with("ranges: {reflectivity: 0.17}");
+    ASSERT_TRUE(dark) << dark.error().message();
+    EXPECT_EQ(dark->ranges.reflectivity, 0.17);
 }
 
 TEST_F(ScenarioFile, with_an_unknown_key_is_refused_with_file_line_and_key) {

@@ -74,6 +74,20 @@ TEST(Region, fits_if_every_spad_of_it_is_on_the_array) {
     }
 }
 
+TEST(Region, has_the_limit_of_signal_that_fits_its_spads) {
+    Registers registers = reset_registers();
+    write16(registers, 0x66, 0x0080);  // 1 Mcps
+    EXPECT_EQ(ranging_config(registers).signal_limit_mcps, 1.0);
+    registers.at(0x80) = 0x33;  // 4 x 4: a sixteenth of the array, which no longer counts as few as that
+    EXPECT_NEAR(ranging_config(registers).signal_limit_mcps, 0.39, 1e-12);
+    registers.at(0x7F) = 199;
+    const RangingReturn seen{.range_m = 1.0, .sigma_m = 0.01, .peak_signal_mcps = 0.4, .ambient_mcps = 0.0};
+    EXPECT_EQ(device_status(ranging_config(registers), seen), 9);
+    registers.at(0x80) = 0x77;  // 8 x 8: half of the array's limit
+    EXPECT_EQ(ranging_config(registers).signal_limit_mcps, 0.5);
+    EXPECT_EQ(device_status(ranging_config(registers), seen), 4);
+}
+
 TEST(Region, sides_below_4_are_raised_to_4) {
     Registers registers = reset_registers();
     registers.at(0x80) = 0x71;  // 8 high, 2 wide: becomes 4 x 8

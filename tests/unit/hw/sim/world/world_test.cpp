@@ -121,6 +121,29 @@ TEST(WorldCast, gives_an_images_rays_what_it_gives_each_alone) {
     EXPECT_GT(hits, 500);
 }
 
+TEST(WorldCast, gives_a_fan_of_unit_rays_whole_hits) {
+    const World world(std::vector<Solid>{solid_of(box_mesh({1.0, 2.0, 2.0}), {3.0, 0.0, 0.0}),
+                                         solid_of(ellipsoid_mesh({0.3, 0.3, 0.3}), {1.5, 0.5, 0.0})});
+    std::vector<Eigen::Vector3d> directions;
+    for (int i = 0; i < 203; ++i) {  // no multiple of a packet's size
+        directions.push_back(Eigen::Vector3d(1.0, -0.7 + 0.007 * i, 0.1).normalized());
+    }
+    std::vector<RayHit> hits(directions.size());
+    world.cast_fan({0.0, 0.0, 0.0}, directions, 10.0, hits);
+    int of_each[2] = {0, 0};
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        const auto hit = world.cast({0.0, 0.0, 0.0}, directions[i], 10.0);
+        ASSERT_EQ(hit.has_value(), std::isfinite(hits[i].range_m));
+        if (!hit) continue;
+        ++of_each[hit->solid];
+        EXPECT_NEAR(hits[i].range_m, hit->range_m, 1e-5);
+        EXPECT_EQ(hits[i].solid, hit->solid);
+        EXPECT_EQ(hits[i].normal, hit->normal);
+    }
+    EXPECT_GT(of_each[0], 20);
+    EXPECT_GT(of_each[1], 20);
+}
+
 TEST(WorldInside, knows_the_interior_of_boxes_and_spheres) {
     const World world(std::vector<Solid>{solid_of(box_mesh({1.0, 1.0, 1.0})),
                                          solid_of(ellipsoid_mesh({0.5, 0.5, 0.5}), {2.0, 0.0, 0.0})});

@@ -1,0 +1,72 @@
+// Questions to the map while it goes on: answered from snapshots, by a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "common/time.hpp"
+#include "host/apps/daemon/wake_event.hpp"
+#include "host/core/mapping/fused_map.hpp"
+#include "host/core/pipeline/pipeline.hpp"
+#include "host/io/rig/host_rig_reader.hpp"
+
+namespace octoskin {
+
+/// Each question is put to a copy of the map as it was when it came: some microseconds of the loop's time.
+/// Who asks when too many wait already is refused: clients may have gone that their questions outlive.
+class QueryDesk {
+  public:
+    /// Throws std::system_error if there is no thread or descriptor to be had.
+    explicit QueryDesk(const HostSetup& setup);
+    /// After the leg or the pockets that it is at.
+    ~QueryDesk();
+    QueryDesk(const QueryDesk&) = delete;
+    QueryDesk& operator=(const QueryDesk&) = delete;
+
+    /// What is asked from now on is asked of this robot.
+    void change_robot(const HostSetup& setup);
+
+    /// False if the line is no query. The arm stands as the newest joint sample says, if that is at most
+    /// `kPresentMax` old at `now`.
+    bool take(const std::string& line, std::uint64_t ticket, const Pipeline& pipeline,
+              std::optional<HostTime> now);
+    static constexpr Nanoseconds kPresentMax{500'000'000};
+    static constexpr std::size_t kWaitingMax = 32;
+
+    /// Readable when there are answers, until they are taken.
+    [[nodiscard]] int descriptor() const noexcept { return event_.descriptor(); }
+    [[nodiscard]] std::vector<std::pair<std::uint64_t, std::string>> take_answers();
+
+  private:
+    struct Question {
+        std::string line;
+        std::uint64_t ticket = 0;
+        std::shared_ptr<const HostSetup> setup;
+        FusedMap map;
+        std::vector<double> present;
+        std::optional<HostTime> now;  ///< when it was asked; empty: nobody knows
+    };
+    void run();
+    void tell(std::uint64_t ticket, std::string line);
+    [[nodiscard]] std::string answer(Question question) const;
+
+    WakeEvent event_;
+    std::shared_ptr<const HostSetup> setup_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<Question> waiting_;
+    std::vector<std::pair<std::uint64_t, std::string>> answers_;
+    std::atomic<bool> is_ending_ = false;
+    std::thread thread_;  ///< the last: it uses all others
+};
+
+}  // namespace octoskin

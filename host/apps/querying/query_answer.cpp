@@ -1,0 +1,238 @@
+#include "host/apps/querying/query_answer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "host/core/query/own_space.hpp"
+#include "host/core/query/path_query.hpp"
+#include "host/core/query/pocket_views.hpp"
+#include "host/core/query/robot_query.hpp"
+#include "host/core/query/unknown_pockets.hpp"
+
+namespace octoskin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// More would keep who asks, and others, waiting for minutes.
+constexpr std::size_t kPosturesMax = 50'000;
+
+std::string text_of(const RobotQueryFault& fault) {
+    switch (fault.error) {
+        case RobotQueryError::unknown_link:
+            return fmt::format("the robot has no link '{}'", fault.element);
+        case RobotQueryError::bad_padding:
+            return "the padding is not within 0 to 1 m";
+        case RobotQueryError::no_body:
+            return "nothing is left to ask about: nothing that a joint moves and that is not ignored has a "
+                   "<collision>";
+    }
+    return {};
+}
+
+std::string text_of(const PostureFault& fault, const HostRig& rig, const RobotModel& robot,
+                    std::span<const double> position) {
+    const auto joint = [&] { return rig.joints.joints.at(fault.joint); };
+    switch (fault.error) {
+        case PostureError::wrong_count:
+            return fmt::format("{} joint positions; the rig has {} joints", position.size(),
+                               robot.joint_count());
+        case PostureError::not_finite:
+            return fmt::format("{}: not a finite number", joint());
+        case PostureError::outside_limits:
+            return fmt::format("{} is {:.6g}; its limits are {:.6g} to {:.6g}", joint(),
+                               position[fault.joint], robot.limits()[fault.joint].min,
+                               robot.limits()[fault.joint].max);
+        case PostureError::too_far:
+            return "the robot would be further than 1000 km from the map's origin";
+    }
+    return {};
+}
+
+/// To a micrometre: in so many digits as that takes.
+Json rounded(const std::optional<double>& metres) {
+    constexpr double kPerMetre = 1e6;
+    return metres ? Json(std::round(*metres * kPerMetre) / kPerMetre + 0.0) : Json(nullptr);  // no "-0.0"
+}
+Json point_json(const Eigen::Vector3d& point) {
+    return {rounded(point.x()), rounded(point.y()), rounded(point.z())};
+}
+
+/// One request on its way to an answer.
+class Asking {
+  public:
+    Asking(const QueryRequest& request, QueryGround ground, const std::function<bool()>& is_ending)
+        : request_(request), ground_(std::move(ground)), is_ending_(is_ending) {}
+
+    Result<Json, AppError> run() {
+        auto robot = RobotQuery::build(*ground_.rig, *ground_.robot,
+                                       {.padding_m = request_.padding_m,
+                                        .links_ignored = request_.links_ignored,
+                                        .ignores_unmoved = !request_.asks_unmoved_links});
+        if (!robot) return fail(ExitCode::usage, text_of(robot.error()));
+        robot_.emplace(std::move(robot).value());
+        if (request_.path.empty() && !ground_.present.empty()) request_.path = {ground_.present};
+        if (request_.path.empty() && (request_.kind == QueryKind::postures || request_.own_space_m))
+            return fail(ExitCode::unavailable,
+                        "nobody knows how the arm stands: give its joints, or see that joint states come");
+        if (const auto checked = check_path(); !checked) return unexpected(checked.error());
+        free_own_space();
+        return request_.kind == QueryKind::postures ? ask_postures() : ask_pockets();
+    }
+
+  private:
+    Status<AppError> check_path() {
+        double postures = 0.0;
+        for (std::size_t i = 0; i < request_.path.size(); ++i) {
+            const auto& position = request_.path[i];
+            if (const auto fault = robot_->fault_of(position)) {
+                return fail(ExitCode::usage,
+                            fmt::format("configuration {}: {}", i + 1,
+                                        text_of(*fault, *ground_.rig, *ground_.robot, position)));
+            }
+            const auto& before = request_.path[i > 0 ? i - 1 : 0];
+            postures += static_cast<double>(Leg(before, position, request_.step).postures());
+        }
+        if (postures > static_cast<double>(kPosturesMax)) {
+            return fail(ExitCode::usage,
+                        fmt::format("the path has {:.0f} postures at a step of {}; at most {} can be asked "
+                                    "about at once: make the step larger, or ask about parts of the path",
+                                    postures, request_.step, kPosturesMax));
+        }
+        return Done{};
+    }
+
+    /// Where the arm stands: as it is known, or where the path begins.
+    void free_own_space() {
+        if (!request_.own_space_m) return;
+        const auto& stands = ground_.present.empty() ? request_.path.front() : ground_.present;
+        // The arm itself, all of it and without padding.
+        const auto body = RobotQuery::build(*ground_.rig, *ground_.robot, {.ignores_unmoved = false});
+        if (!body) return;
+        if (const auto capsules = body->pose(stands))
+            octoskin::free_own_space(ground_.map, *capsules, *request_.own_space_m);
+    }
+
+    Result<Json, AppError> ask_postures() {
+        Json legs = Json::array();
+        PostureState worst = PostureState::free;
+        std::size_t postures = 0;
+        for (std::size_t i = 0; i < request_.path.size(); ++i) {
+            if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the path was asked about");
+            const Leg leg(request_.path[i > 0 ? i - 1 : 0], request_.path[i], request_.step);
+            const auto answer = ask(*robot_, ground_.map, leg, {request_.step, request_.reach_m});
+            if (!answer) {
+                return fail(ExitCode::usage,
+                            text_of(answer.error(), *ground_.rig, *ground_.robot, request_.path[i]));
+            }
+            worst = std::max(worst, answer->worst.state);
+            postures += answer->postures;
+            legs.push_back(leg_json(*answer));
+        }
+        return Json{{"ok", true},
+                    {"state", name(worst)},
+                    {"postures", postures},
+                    {"resolution_m", ground_.map.resolution_m()},
+                    {"legs", std::move(legs)}};
+    }
+
+    [[nodiscard]] Json link_json(const std::optional<LinkId>& link) const {
+        return link ? Json(ground_.robot->link_names()[*link]) : Json(nullptr);
+    }
+
+    [[nodiscard]] Json evidence_json(const std::optional<PostureEvidence>& evidence) const {
+        if (!evidence) return nullptr;
+        const auto& confirmation = evidence->weakest.confirmation;
+        return {{"age_s", confirmation ? Json(confirmation->age_s) : Json(nullptr)},
+                {"kind", confirmation ? Json(name(confirmation->kind)) : Json(nullptr)},
+                {"is_stale", evidence->weakest.is_stale},
+                {"link", link_json(evidence->link)},
+                {"voxel_m", point_json(ground_.map.centre_of(evidence->weakest.voxel))}};
+    }
+
+    [[nodiscard]] Json leg_json(const LegAnswer& answer) const {
+        const auto& voxel = answer.worst.voxel;
+        return {{"state", name(answer.worst.state)},
+                {"share", answer.share},
+                {"link", link_json(answer.worst.link)},
+                {"voxel_m", voxel ? point_json(ground_.map.centre_of(*voxel)) : Json(nullptr)},
+                {"occupied_m", rounded(answer.clearance.occupied_m)},
+                {"occupied_link", link_json(answer.clearance.occupied_link)},
+                {"not_free_m", rounded(answer.clearance.not_free_m)},
+                {"not_free_link", link_json(answer.clearance.not_free_link)},
+                {"evidence", evidence_json(answer.evidence)}};
+    }
+
+    Result<Json, AppError> ask_pockets() {
+        const Eigen::Vector3d base = ground_.rig->T_map_base.translation();
+        const PocketRegion region{base, request_.radius_m, request_.z_min_m.value_or(base.z())};
+        const double voxel_m3 = std::pow(ground_.map.resolution_m(), 3);
+        const auto voxels_min = static_cast<std::size_t>(std::ceil(request_.pocket_min_m3 / voxel_m3));
+        const auto found = UnknownPockets::find(ground_.map, region, voxels_min);
+        if (!found) {
+            return fail(ExitCode::usage,
+                        fmt::format("a region of {} m about the base has too many voxels of {} m, or reaches "
+                                    "out of the octree; ask for a smaller radius",
+                                    request_.radius_m, ground_.map.resolution_m()));
+        }
+        const PocketViewConfig config{.postures = request_.views_tried, .pockets = request_.pockets_max};
+        std::vector<std::optional<PocketView>> views;  // none where nobody knows how the arm stands
+        if (!request_.path.empty())
+            views = find_views(*ground_.rig, *robot_, ground_.map, *found, request_.path.front(), config,
+                               is_ending_);
+        if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the pockets were looked into");
+        Json pockets = Json::array();
+        for (std::size_t i = 0; i < std::min(request_.pockets_max, found->pockets().size()); ++i)
+            pockets.push_back(pocket_json(found->pockets()[i], i < views.size() ? views[i] : std::nullopt));
+        return Json{{"ok", true},
+                    {"resolution_m", ground_.map.resolution_m()},
+                    {"region_m3", rounded(static_cast<double>(found->region_voxels()) * voxel_m3)},
+                    {"unknown_m3", rounded(static_cast<double>(found->unknown_voxels()) * voxel_m3)},
+                    {"pockets_found", found->pockets().size()},
+                    {"pockets", std::move(pockets)}};
+    }
+
+    [[nodiscard]] Json pocket_json(const UnknownPocket& pocket, const std::optional<PocketView>& view) const {
+        Json json = {{"volume_m3", rounded(pocket.volume_m3)},
+                     {"voxels", pocket.voxels},
+                     {"border_voxels", pocket.border_voxels},
+                     {"centre_m", point_json(pocket.centre)},
+                     {"border_m", point_json(ground_.map.centre_of(pocket.nearest_border))},
+                     {"view", nullptr}};
+        if (!view) return json;
+        const Leg way(request_.path.front(), view->position, request_.step);
+        const auto answer = ask(*robot_, ground_.map, way, {request_.step, 0.0});
+        json["view"] = {{"joints", view->position},
+                        {"state", name(view->state)},
+                        {"sensor", view->sensor},
+                        {"range_m", rounded(view->range_m)},
+                        {"way", answer ? Json(name(answer->worst.state)) : Json(nullptr)}};
+        return json;
+    }
+
+    QueryRequest request_;
+    QueryGround ground_;
+    const std::function<bool()>& is_ending_;
+    std::optional<RobotQuery> robot_;
+};
+
+}  // namespace
+
+Json query_refused(const AppError& error) {
+    return {{"ok", false}, {"error", error.message}, {"code", static_cast<int>(error.code)}};
+}
+
+Json answer_query(const QueryRequest& request, QueryGround ground, const std::function<bool()>& is_ending) {
+    const auto begun = std::chrono::steady_clock::now();
+    auto answer = Asking(request, std::move(ground), is_ending).run();
+    if (!answer) return query_refused(answer.error());
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begun;
+    (*answer)["took_us"] = std::round(took.count());
+    return std::move(answer).value();
+}
+
+}  // namespace octoskin

@@ -1,0 +1,42 @@
+// What a map answers.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/apps/querying/query_request.hpp"
+#include "host/core/kinematics/robot_model.hpp"
+#include "host/core/mapping/fused_map.hpp"
+#include "host/core/rig/host_rig.hpp"
+
+namespace octoskin {
+
+/// What there is to be asked.
+struct QueryGround {
+    const HostRig* rig = nullptr;
+    const RobotModel* robot = nullptr;
+    /// A copy of its own: what is the arm's own space is freed in it.
+    FusedMap map;
+    /// The joints as the arm stands; empty: nobody knows. A path then begins where it stands.
+    std::vector<double> present;
+};
+
+/// "ok": true, or false with "error" and "code", the exit code for it. Of postures: "state", the worst, and
+/// "legs", one for each configuration: the way to it from the one before. Of pockets: "pockets". All keys:
+/// docs/planner.md. Some 0.1 ms a posture; `is_ending` is asked between legs and before each posture that is
+/// tried for a view, and true ends it with an error.
+[[nodiscard]] nlohmann::ordered_json answer_query(
+    const QueryRequest& request, QueryGround ground,
+    const std::function<bool()>& is_ending = [] { return false; });
+
+/// An answer that is an error.
+[[nodiscard]] nlohmann::ordered_json query_refused(const AppError& error);
+
+/// For a person, several lines. Throws nlohmann::ordered_json::exception if it is not what a daemon of this
+/// version answers.
+[[nodiscard]] std::string query_text(const nlohmann::ordered_json& answer);
+
+}  // namespace octoskin

@@ -1,0 +1,127 @@
+#include "host/apps/querying/query_request.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace octoskin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kWord = "query ";
+constexpr double kPaddingMax_m = 1.0;
+
+bool is_within(double value, double min, double max) {
+    return value >= min && value <= max;  // false for a NaN
+}
+
+/// Takes what is there out of `json`; throws Json::exception if it is of another kind.
+template <class T>
+void take(Json& json, const char* key, T& value) {
+    const auto found = json.find(key);
+    if (found == json.end()) return;
+    value = found->template get<T>();
+    json.erase(found);
+}
+template <class T>
+void take(Json& json, const char* key, std::optional<T>& value) {
+    T one{};
+    if (!json.contains(key)) return;
+    take(json, key, one);
+    value = one;
+}
+
+QueryRequest from_json(Json& json) {
+    QueryRequest request;
+    bool asks_pockets = false;
+    take(json, "pockets", asks_pockets);
+    request.kind = asks_pockets ? QueryKind::pockets : QueryKind::postures;
+    take(json, "path", request.path);
+    take(json, "padding_m", request.padding_m);
+    take(json, "reach_m", request.reach_m);
+    take(json, "step", request.step);
+    take(json, "links_ignored", request.links_ignored);
+    take(json, "asks_unmoved_links", request.asks_unmoved_links);
+    take(json, "own_space_m", request.own_space_m);
+    take(json, "radius_m", request.radius_m);
+    take(json, "z_min_m", request.z_min_m);
+    take(json, "pocket_min_m3", request.pocket_min_m3);
+    take(json, "pockets_max", request.pockets_max);
+    take(json, "views_tried", request.views_tried);
+    return request;
+}
+
+}  // namespace
+
+bool is_query(std::string_view line) noexcept {
+    return line.starts_with(kWord);
+}
+
+std::string to_line(const QueryRequest& request) {
+    Json json = {{"path", request.path},
+                 {"padding_m", request.padding_m},
+                 {"links_ignored", request.links_ignored},
+                 {"asks_unmoved_links", request.asks_unmoved_links}};
+    if (request.own_space_m) json["own_space_m"] = *request.own_space_m;
+    if (request.kind == QueryKind::postures) {
+        json["reach_m"] = request.reach_m;
+        json["step"] = request.step;
+    } else {
+        json["pockets"] = true;
+        json["radius_m"] = request.radius_m;
+        if (request.z_min_m) json["z_min_m"] = *request.z_min_m;
+        json["pocket_min_m3"] = request.pocket_min_m3;
+        json["pockets_max"] = request.pockets_max;
+        json["views_tried"] = request.views_tried;
+    }
+    return std::string(kWord) + json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Result<QueryRequest, AppError> read_query(std::string_view line) {
+    Json json = Json::parse(line.substr(std::min(kWord.size(), line.size())), nullptr, false);
+    if (!json.is_object()) return fail(ExitCode::usage, "expected: query {\"path\": [[JOINTS], ...], ...}");
+    try {
+        QueryRequest request = from_json(json);
+        if (!json.empty())
+            return fail(ExitCode::usage, fmt::format("query: unknown key '{}'", json.begin().key()));
+        if (const std::string fault = fault_of(request); !fault.empty()) return fail(ExitCode::usage, fault);
+        return request;
+    } catch (const Json::exception& error) {
+        return fail(ExitCode::usage,
+                    fmt::format("query: a key's value is of the wrong kind ({})", error.what()));
+    }
+}
+
+std::string fault_of(const QueryRequest& request) {
+    if (request.path.size() > kConfigurationsMax)
+        return fmt::format("query: {} configurations; at most {} can be asked about at once",
+                           request.path.size(), kConfigurationsMax);
+    const auto not_within = [](const char* key, double value, double min, double max) {
+        return fmt::format("query: {} is {}; expected {} to {}", key, value, min, max);
+    };
+    if (!is_within(request.padding_m, 0.0, kPaddingMax_m))
+        return not_within("padding_m", request.padding_m, 0.0, kPaddingMax_m);
+    if (!is_within(request.reach_m, 0.0, kReachMax_m))
+        return not_within("reach_m", request.reach_m, 0.0, kReachMax_m);
+    if (!is_within(request.step, kStepMin, 10.0)) return not_within("step", request.step, kStepMin, 10.0);
+    if (request.own_space_m && !is_within(*request.own_space_m, 0.0, kPaddingMax_m))
+        return not_within("own_space_m", *request.own_space_m, 0.0, kPaddingMax_m);
+    if (!is_within(request.radius_m, 0.05, kRadiusMax_m))
+        return not_within("radius_m", request.radius_m, 0.05, kRadiusMax_m);
+    if (request.z_min_m && !is_within(*request.z_min_m, -1e3, 1e3))
+        return not_within("z_min_m", *request.z_min_m, -1e3, 1e3);
+    if (!is_within(request.pocket_min_m3, 0.0, 1e3))
+        return not_within("pocket_min_m3", request.pocket_min_m3, 0.0, 1e3);
+    if (request.pockets_max > kConfigurationsMax)
+        return not_within("pockets_max", static_cast<double>(request.pockets_max), 0.0,
+                          static_cast<double>(kConfigurationsMax));
+    if (request.views_tried > kViewsTriedMax)
+        return not_within("views_tried", static_cast<double>(request.views_tried), 0.0,
+                          static_cast<double>(kViewsTriedMax));
+    return {};
+}
+
+}  // namespace octoskin

@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include <cstdint>
+
+#include "host/apps/querying/query_answer.hpp"
+
+namespace octoskin {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string point(const Json& json) {
+    return fmt::format("({:.3f}, {:.3f}, {:.3f}) m", json.at(0).get<double>(), json.at(1).get<double>(),
+                       json.at(2).get<double>());
+}
+
+std::string clearance(const Json& leg, const std::string& kind, const std::string& what) {
+    const Json& gap = leg.at(kind + "_m");
+    if (gap.is_null()) return {};
+    return fmt::format("  nearest {} voxel: {:.3f} m from {}\n", what, gap.get<double>(),
+                       leg.at(kind + "_link").get<std::string>());
+}
+
+/// Of a map that tells no ages, nothing.
+std::string evidence(const Json& leg) {
+    const Json& evidence = leg.at("evidence");
+    if (evidence.is_null()) return {};
+    if (evidence.at("age_s").is_null())
+        return fmt::format("  weakest evidence: nobody knows how old, at {}\n",
+                           point(evidence.at("voxel_m")));
+    const auto kind = evidence.at("kind").get<std::string>();
+    return fmt::format(
+        "  weakest evidence: {} s old, {}, at {}{}\n", evidence.at("age_s").get<std::uint32_t>(),
+        kind == "none" ? "the arm's own space" : "of a " + kind + (kind == "range" ? " sensor" : ""),
+        point(evidence.at("voxel_m")), evidence.at("is_stale").get<bool>() ? ": stale" : "");
+}
+
+std::string leg_text(const Json& leg, std::size_t number, bool is_path) {
+    std::string text = is_path ? fmt::format("{:>4}  ", number) : std::string();
+    text += leg.at("state").get<std::string>();
+    if (is_path && number > 1 && leg.at("state") != "free")
+        text += fmt::format(" from {:.0f} % of the way", 100.0 * leg.at("share").get<double>());
+    if (!leg.at("link").is_null()) text += ": " + leg.at("link").get<std::string>();
+    if (!leg.at("voxel_m").is_null()) text += " at " + point(leg.at("voxel_m"));
+    return text + "\n" + clearance(leg, "occupied", "occupied") + clearance(leg, "not_free", "not free") +
+           evidence(leg);
+}
+
+std::string postures_text(const Json& answer) {
+    const Json& legs = answer.at("legs");
+    if (legs.size() == 1) return leg_text(legs.at(0), 1, false);
+    std::string text;
+    for (std::size_t i = 0; i < legs.size(); ++i) text += leg_text(legs.at(i), i + 1, true);
+    return text + fmt::format("the path is {}: {} configurations, {} postures\n",
+                              answer.at("state").get<std::string>(), legs.size(),
+                              answer.at("postures").get<std::size_t>());
+}
+
+std::string view_text(const Json& view) {
+    if (view.is_null()) return "       no view found\n";
+    std::string joints;
+    for (const Json& joint : view.at("joints"))
+        joints += fmt::format("{}{:.3f}", joints.empty() ? "" : ",", joint.get<double>());
+    return fmt::format("       {} sees it from {:.2f} m at {}, which is {}; the straight way there is {}\n",
+                       view.at("sensor").get<std::string>(), view.at("range_m").get<double>(), joints,
+                       view.at("state").get<std::string>(),
+                       view.at("way").is_null() ? "not known" : view.at("way").get<std::string>());
+}
+
+std::string pockets_text(const Json& answer) {
+    std::string text =
+        fmt::format("{:.3f} of {:.3f} m3 unknown, {} pockets with free space beside them\n",
+                    answer.at("unknown_m3").get<double>(), answer.at("region_m3").get<double>(),
+                    answer.at("pockets_found").get<std::size_t>());
+    std::size_t number = 0;
+    for (const Json& pocket : answer.at("pockets")) {
+        text += fmt::format("{:>4}  {:.2f} l about {}, open at {}\n", ++number,
+                            1000.0 * pocket.at("volume_m3").get<double>(), point(pocket.at("centre_m")),
+                            point(pocket.at("border_m")));
+        text += view_text(pocket.at("view"));
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string query_text(const Json& answer) {
+    return answer.contains("pockets") ? pockets_text(answer) : postures_text(answer);
+}
+
+}  // namespace octoskin

@@ -1,0 +1,35 @@
+// Sets of a brick's voxels: their members, and sets by what voxels hold.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "host/core/bricks/brick.hpp"
+
+namespace octoskin {
+
+[[nodiscard]] inline bool contains(const BrickMask& mask, std::size_t cell) noexcept {
+    return (mask[cell / 64] >> (cell % 64) & 1U) != 0;
+}
+
+inline void put_in(BrickMask& mask, std::size_t cell) noexcept {
+    mask[cell / 64] |= std::uint64_t{1} << (cell % 64);
+}
+
+/// Calls visit(cell) for each that is set, in ascending order.
+template <class Visit>
+void for_each_cell(const BrickMask& mask, const Visit& visit) {
+    for (std::size_t cell = 0; cell < kBrickVoxels; ++cell)
+        if (contains(mask, cell)) visit(cell);
+}
+
+/// Of 64 voxels of a brick, a word of a BrickMask: bit i is voxel i.
+struct WordSets {
+    std::uint64_t known = 0;
+    std::uint64_t at_least = 0;  ///< known, and of the value asked for or more
+};
+
+/// Of the brick's voxels from 64 `word` on; `word` below 8. The same on every processor. About 10 ns.
+[[nodiscard]] WordSets sets_of(const BrickValues& values, std::size_t word, float at_least) noexcept;
+
+}  // namespace octoskin

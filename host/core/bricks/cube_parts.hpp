@@ -1,0 +1,42 @@
+// A cube in 64 parts, four along each edge, in Morton order: a node's places, a brick word's voxels.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "host/core/voxels/key_box.hpp"
+
+namespace octoskin {
+
+/// Of a cube of height 2 or more.
+[[nodiscard]] constexpr VoxelCube part_of(const VoxelCube& cube, std::size_t part) noexcept {
+    const unsigned height = cube.height - 2;
+    // Along an axis the place in fours: its low bit is in the lower three bits of `part`, the high one above.
+    const auto along = [&](std::uint16_t lowest, unsigned axis) {
+        const std::size_t place = ((part >> axis) & 1U) | ((part >> (axis + 2U)) & 2U);
+        return static_cast<std::uint16_t>(lowest + (place << height));
+    };
+    return {{along(cube.lowest.x, 0), along(cube.lowest.y, 1), along(cube.lowest.z, 2)}, height};
+}
+
+/// The parts of a cube of height 2 or more that have a voxel in common with the box: bit i is part i.
+[[nodiscard]] constexpr std::uint64_t parts_in(const VoxelCube& cube, const KeyBox& box) noexcept {
+    const unsigned height = cube.height - 2;
+    // `odd` and `upper`: parts with the low and the high bit of their place along an axis.
+    const auto along = [height](int lowest, int box_lowest, int box_highest, std::uint64_t odd,
+                                std::uint64_t upper) {
+        const int first = std::max((box_lowest - lowest) >> height, 0);
+        const int last = std::min((box_highest - lowest) >> height, 3);
+        std::uint64_t parts = 0;
+        for (int place = first; place <= last; ++place) {
+            parts |= ((place & 1) != 0 ? odd : ~odd) & ((place & 2) != 0 ? upper : ~upper);
+        }
+        return parts;
+    };
+    return along(cube.lowest.x, box.lowest.x, box.highest.x, 0xAAAA'AAAA'AAAA'AAAAU, 0xFF00'FF00'FF00'FF00U) &
+           along(cube.lowest.y, box.lowest.y, box.highest.y, 0xCCCC'CCCC'CCCC'CCCCU, 0xFFFF'0000'FFFF'0000U) &
+           along(cube.lowest.z, box.lowest.z, box.highest.z, 0xF0F0'F0F0'F0F0'F0F0U, 0xFFFF'FFFF'0000'0000U);
+}
+
+}  // namespace octoskin

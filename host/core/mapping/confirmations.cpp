@@ -1,0 +1,111 @@
+#include "host/core/mapping/confirmations.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "host/core/mapping/depth_terms.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+
+/// Towards earlier times.
+std::int64_t whole_seconds(HostTime time) {
+    const std::int64_t seconds = time.ns / kNanosecondsPerSecond;
+    return time.ns % kNanosecondsPerSecond < 0 ? seconds - 1 : seconds;
+}
+
+/// A beam's voxels in a brick are few: one by one they are quicker.
+void put(BrickStamps& stamps, const BrickMask& voxels, std::uint16_t stamp) {
+    constexpr std::size_t kFew = 16;
+    if (count_of(voxels) > kFew) return put_stamp(stamps, voxels, stamp);
+    for (std::size_t word = 0; word < voxels.size(); ++word)
+        for (std::uint64_t bits = voxels[word]; bits != 0; bits &= bits - 1)
+            stamps[64 * word + static_cast<std::size_t>(std::countr_zero(bits))] = stamp;
+}
+
+bool is_whole(const BrickMask& voxels) {
+    return std::ranges::all_of(voxels, [](std::uint64_t word) { return word == ~std::uint64_t{0}; });
+}
+
+}  // namespace
+
+bool Confirmations::go_on(HostTime now) {
+    const std::int64_t second = whole_seconds(now);
+    if (!has_begun_) {
+        has_begun_ = true;
+        now_ = kAgeMax_s;
+        zero_s_ = second - now_;
+        return true;
+    }
+    const std::int64_t shown = second - zero_s_;
+    if (shown == now_ || (shown < now_ && now_ - shown <= kBackMax_s)) return false;
+    if (shown < now_) {
+        zero_s_ = second - now_;
+        return false;
+    }
+    const std::int64_t passed_s = shown - now_;
+    if (shown <= kNowMax) {
+        runs_for_s_ += passed_s;
+        now_ = static_cast<std::uint32_t>(shown);
+        return true;
+    }
+    bring_up(static_cast<std::uint32_t>(std::min<std::int64_t>(shown - kAgeMax_s, kNowMax)));
+    runs_for_s_ += passed_s;
+    now_ = kAgeMax_s;
+    zero_s_ = second - now_;
+    return true;
+}
+
+/// What is too old for that stays the oldest there is.
+void Confirmations::bring_up(std::uint32_t by) {
+    const auto brought_up = [&](std::uint16_t stamp) -> std::uint16_t {
+        if (stamp == 0) return 0;
+        const auto then = std::uint32_t{stamp} >> kKindBits;
+        const std::uint32_t kind = stamp & ((1U << kKindBits) - 1U);
+        return static_cast<std::uint16_t>(((then > by ? then - by : 1U) << kKindBits) | kind);
+    };
+    StampTree next = stamps_;
+    stamps_.for_each([&](MortonCode brick, const StampView& view) {
+        if (view.values == nullptr) return next.set_all(brick, brought_up(view.value));
+        for (std::uint16_t& stamp : next.open(brick)) stamp = brought_up(stamp);
+    });
+    stamps_ = std::move(next);
+}
+
+std::optional<Confirmation> Confirmations::told_by(std::uint16_t stamp) const noexcept {
+    if (stamp == 0 || stamp == kOfBefore) return std::nullopt;
+    const auto then = std::uint32_t{stamp} >> kKindBits;
+    const auto kind = static_cast<SensorKind>(stamp & ((1U << kKindBits) - 1U));
+    return Confirmation{then == 1 ? kAgeMax_s : std::min(now_ - then, kAgeMax_s), kind};
+}
+
+std::uint16_t Confirmations::stamp_before(std::uint32_t age_s) const noexcept {
+    if (age_s >= now_) return kOfBefore + 1;
+    return static_cast<std::uint16_t>((now_ - age_s + 1) << kKindBits);
+}
+
+void Confirmations::confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind) {
+    const std::uint16_t now = stamp(kind);
+    if (BrickStamps* const own = stamps_.own(brick)) {
+        if (is_whole(voxels)) return stamps_.set_all(brick, now);
+        return put(*own, voxels, now);
+    }
+    const StampView before = stamps_.find(brick);
+    // Most frames find what the one before has left in the same second: then nothing is copied.
+    if (before.values == nullptr ? before.value == now : !has_other_stamp(*before.values, voxels, now))
+        return;
+    if (is_whole(voxels)) return stamps_.set_all(brick, now);
+    put(stamps_.open(brick), voxels, now);
+}
+
+void Confirmations::forget(MortonCode brick, const BrickMask& voxels) {
+    if (stamps_.find(brick).is_unknown()) return;
+    if (is_whole(voxels)) return stamps_.forget(brick);
+    BrickStamps& stamps = stamps_.open(brick);
+    put_stamp(stamps, voxels, 0);
+    if (std::ranges::all_of(stamps, [](std::uint16_t stamp) { return stamp == 0; })) stamps_.forget(brick);
+}
+
+}  // namespace octoskin

@@ -1,0 +1,93 @@
+// When each voxel was last measured, and by which kind of sensor.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "common/time.hpp"
+#include "host/core/bricks/brick_stamps.hpp"
+#include "host/core/bricks/brick_tree.hpp"
+
+namespace octoskin {
+
+/// The later one's evidence is the stronger.
+enum class SensorKind : std::uint8_t {
+    none,   ///< no sensor: who asks knows that the robot itself is there
+    range,  ///< a range sensor
+    camera,
+};
+
+/// A voxel's last confirmation.
+struct Confirmation {
+    std::uint32_t age_s = 0;  ///< whole seconds, to 1 s; `kAgeMax_s` if it is that long ago or longer
+    SensorKind kind = SensorKind::none;
+    friend bool operator==(const Confirmation&, const Confirmation&) = default;
+};
+
+using StampTree = BrickTreeOf<std::uint16_t>;
+using StampView = BrickViewOf<std::uint16_t>;
+
+/// A clock of whole seconds, and its reading for each voxel: 14 bits, and two of the kind. Copies share what
+/// they have in common, as a BrickTree's do.
+class Confirmations {
+  public:
+    /// As far back as ages are told apart. A clock that runs further brings all stamps up with it, once in as
+    /// many seconds.
+    static constexpr std::uint32_t kAgeMax_s = 8191;
+
+    [[nodiscard]] bool has_begun() const noexcept { return has_begun_; }
+    /// Time goes on to `now`, or, the first time, begins. Measurements come late by fractions of a second:
+    /// the clock waits for what is earlier by up to `kBackMax_s`; beyond, the time is another one from then
+    /// on, and ages go on from what they were. True if it is another second than before. Throws
+    /// std::bad_alloc once in kAgeMax_s seconds at most; then the clock stands.
+    bool go_on(HostTime now);
+    static constexpr std::int64_t kBackMax_s = 10;
+
+    /// What a voxel that is confirmed now is given. The lower, the weaker: earlier, of another sensor.
+    [[nodiscard]] std::uint16_t stamp(SensorKind kind) const noexcept {
+        return static_cast<std::uint16_t>((now_ << kKindBits) | static_cast<std::uint16_t>(kind));
+    }
+    /// Of a voxel that was there when the clock began: nobody knows since when. Lower than all but 0.
+    static constexpr std::uint16_t kOfBefore = 1U << 2U;
+    /// Empty for a stamp of 0, which is none, and for kOfBefore.
+    [[nodiscard]] std::optional<Confirmation> told_by(std::uint16_t stamp) const noexcept;
+    /// Stamps below this one are `age_s` old or older, up to kAgeMax_s; 0 and kOfBefore always are.
+    [[nodiscard]] std::uint16_t stamp_before(std::uint32_t age_s) const noexcept;
+    /// Whole seconds since the clock began.
+    [[nodiscard]] std::int64_t runs_for_s() const noexcept { return runs_for_s_; }
+
+    /// Confirms voxels of a brick. Throws std::bad_alloc, and then nothing is changed. About 50 ns, and as
+    /// much as a copy of the brick if a copy has it, too, and anything changes.
+    void confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind);
+    /// All of a brick was there when the clock began. Throws std::bad_alloc.
+    void take_from_before(MortonCode brick) { stamps_.set_all(brick, kOfBefore); }
+    /// Makes some voxels of a brick unconfirmed. Throws std::bad_alloc, and then nothing is changed.
+    void forget(MortonCode brick, const BrickMask& voxels);
+
+    [[nodiscard]] StampView find(MortonCode brick) const noexcept { return stamps_.find(brick); }
+    [[nodiscard]] const StampTree& stamps() const noexcept { return stamps_; }
+    /// If every brick had a stamp of its own for each voxel.
+    [[nodiscard]] std::size_t bytes_at_most() const noexcept {
+        return stamps_.nodes() * StampTree::kNodeBytes + stamps_.bricks() * StampTree::kBrickBytes;
+    }
+    /// What a further brick may take.
+    [[nodiscard]] std::size_t bytes_of_new(MortonCode brick) const noexcept {
+        return stamps_.nodes_missing(brick) * StampTree::kNodeBytes + StampTree::kBrickBytes;
+    }
+    [[nodiscard]] std::size_t heap_bytes() const noexcept { return stamps_.memory_bytes(); }
+
+  private:
+    static constexpr unsigned kKindBits = 2;
+    static constexpr std::uint32_t kNowMax = (1U << (16 - kKindBits)) - 1;
+    void bring_up(std::uint32_t by);
+
+    bool has_begun_ = false;
+    std::int64_t runs_for_s_ = 0;
+    std::int64_t zero_s_ = 0;  ///< of the host's time, at which the clock would show 0
+    std::uint32_t now_ = 0;    ///< what the clock shows, from 1 on: a stamp of 0 is none
+    StampTree stamps_;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,191 @@
+// What a FusedMap knows of time: when its voxels were last measured, and which of them nobody has for too
+// long.
+#include <cassert>
+#include <cmath>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include "host/core/bricks/brick_sets.hpp"
+#include "host/core/mapping/fused_map.hpp"
+
+namespace octoskin {
+namespace {
+
+/// Of a brick's voxels those whose stamp is `first` or more, and below the limit.
+BrickMask stamped_from_to(const StampView& view, std::uint16_t first, std::uint16_t limit) {
+    BrickMask voxels{};
+    if (view.values == nullptr) {
+        if (view.value >= first && view.value < limit) voxels.fill(~std::uint64_t{0});
+        return voxels;
+    }
+    for (std::size_t word = 0; word < voxels.size(); ++word) {
+        const std::uint64_t below = stamps_below(*view.values, word, limit);
+        voxels[word] = below == 0 ? 0 : below & ~stamps_below(*view.values, word, first);
+    }
+    return voxels;
+}
+
+bool is_all_unknown(const BrickValues& values) {
+    for (const float value : values)
+        if (!std::isnan(value)) return false;
+    return true;
+}
+
+}  // namespace
+
+void FusedMap::go_on(HostTime now) noexcept {
+    const bool begins = !confirmations_.has_begun();
+    try {
+        if (!confirmations_.go_on(now)) return;
+        if (begins) date_all();
+        if (config_.age.unknown_after_s > 0) expire();
+    } catch (const std::bad_alloc&) {  // what is too old is forgotten in a later second
+        ++counters_.undated;
+    }
+}
+
+/// What is there when the clock begins: nobody knows since when.
+void FusedMap::date_all() {
+    tree_.for_each([&](MortonCode brick, const BrickView&) {
+        if (has_room_to_date(brick)) {
+            confirmations_.take_from_before(brick);
+        } else {
+            counters_.undated += kBrickVoxels;
+        }
+    });
+}
+
+bool FusedMap::has_room_to_date(MortonCode brick) const noexcept {
+    const std::size_t bytes_max = std::size_t{config_.memory_max_mib} << 20U;
+    return 16 * (confirmations_.bytes_at_most() + confirmations_.bytes_of_new(brick)) <= 9 * bytes_max;
+}
+
+void FusedMap::confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind) noexcept {
+    bool is_dated = !confirmations_.find(brick).is_unknown();
+    if (!is_dated) {
+        if (tree_.find(brick).is_unknown()) return;  // refused, or counted and not yet known
+        is_dated = has_room_to_date(brick);
+    }
+    try {
+        if (is_dated) confirmations_.confirm(brick, voxels, kind);
+    } catch (const std::bad_alloc&) {
+        is_dated = false;
+    }
+    if (!is_dated) counters_.undated += count_of(voxels);
+}
+
+void FusedMap::confirm(std::span<const VoxelUpdate> updates, SensorKind kind) noexcept {
+    while (!updates.empty()) {
+        const VoxelKey first = updates.front().key;
+        BrickMask voxels{};
+        std::size_t done = 0;
+        for (; done < updates.size() && are_of_one_brick(updates[done].key, first); ++done) {
+            const float term = updates[done].log_odds;
+            if (std::isfinite(term) && term != 0.0F) put_in(voxels, cell_of(updates[done].key));
+        }
+        if (count_of(voxels) > 0) confirm(brick_of(first), voxels, kind);
+        updates = updates.subspan(done);
+    }
+}
+
+void FusedMap::confirm(const DepthTerms& terms, const BrickTerms& brick) noexcept {
+    const auto hits = terms.hits_of(brick);
+    if (hits.empty()) return confirm(brick.first, brick.passed, SensorKind::camera);
+    BrickMask voxels = brick.passed;
+    for (const CellTerm& hit : hits) put_in(voxels, hit.cell);
+    confirm(brick.first, voxels, SensorKind::camera);
+}
+
+namespace {
+
+/// Calls confirm(brick, voxels) for each run of voxels in one brick of which some are meant. Most voxels of a
+/// cone come in runs.
+template <class Voxels, class KeyOf, class Filter, class Confirm>
+void confirm_runs(const Voxels& voxels, const KeyOf& key_of, const Filter& filter_of,
+                  const Confirm& confirm) {
+    for (std::size_t next = 0; next < voxels.size();) {
+        const VoxelKey first = key_of(voxels[next]);
+        const auto is_meant = filter_of(brick_of(first));
+        BrickMask mask{};
+        bool has_any = false;
+        for (; next < voxels.size() && are_of_one_brick(key_of(voxels[next]), first); ++next) {
+            const std::size_t cell = cell_of(key_of(voxels[next]));
+            if (!is_meant(cell)) continue;
+            has_any = true;
+            put_in(mask, cell);
+        }
+        if (has_any) confirm(brick_of(first), mask);
+    }
+}
+
+}  // namespace
+
+/// Of a cap only what is occupied: a hit that is shared confirms no free voxel.
+void FusedMap::confirm(const ConeVoxels& cone) noexcept {
+    const auto confirm_brick = [&](MortonCode brick, const BrickMask& voxels) {
+        confirm(brick, voxels, SensorKind::range);
+    };
+    confirm_runs(
+        cone.passed, [](VoxelKey key) { return key; },
+        [](MortonCode) { return [](std::size_t) { return true; }; }, confirm_brick);
+    confirm_runs(
+        cone.cap, [](const CapVoxel& voxel) { return voxel.key; },
+        [&](MortonCode brick) {
+            return [view = tree_.find(brick), occupied = config_.log_odds_occupied](std::size_t cell) {
+                return view.at(cell) >= occupied;
+            };
+        },
+        confirm_brick);
+}
+
+void FusedMap::expire() {
+    const std::uint16_t limit = confirmations_.stamp_before(config_.age.unknown_after_s);
+    // What was there before the clock has its time from then on.
+    const bool takes_all = confirmations_.runs_for_s() >= std::int64_t{config_.age.unknown_after_s};
+    const auto first = static_cast<std::uint16_t>(takes_all ? 1 : Confirmations::kOfBefore + 1);
+    std::vector<std::pair<MortonCode, BrickMask>> expired;
+    confirmations_.stamps().for_each([&](MortonCode brick, const StampView& view) {
+        const BrickMask voxels = stamped_from_to(view, first, limit);
+        if (count_of(voxels) > 0) expired.emplace_back(brick, voxels);
+    });
+    for (const auto& [brick, voxels] : expired) {
+        forget_log_odds(brick, voxels);
+        if (!counts_.empty() && counts_.has(brick)) counts_.forget(brick, voxels);
+        confirmations_.forget(brick, voxels);  // last: what there was no memory for is found again
+    }
+}
+
+void FusedMap::forget_log_odds(MortonCode brick, const BrickMask& voxels) {
+    const BrickView before = tree_.find(brick);
+    if (before.is_unknown()) return;
+    const std::size_t count = count_of(voxels);
+    if (before.values == nullptr && count == kBrickVoxels) {
+        tree_.forget(brick);
+        known_voxels_ -= kBrickVoxels;
+        return;
+    }
+    BrickValues& values = tree_.open(brick);
+    for_each_cell(voxels, [&](std::size_t cell) {
+        known_voxels_ -= std::isnan(values[cell]) ? 0U : 1U;
+        values[cell] = kUnknownLogOdds;
+    });
+    if (is_all_unknown(values)) tree_.forget(brick);
+}
+
+std::optional<Confirmation> FusedMap::confirmation(VoxelKey key) const noexcept {
+    if (occupancy(key) == Occupancy::unknown) return std::nullopt;
+    return confirmations_.told_by(confirmations_.find(brick_of(key)).at(cell_of(key)));
+}
+
+std::uint16_t FusedMap::stale_stamp() const noexcept {
+    const bool has_horizon = config_.age.stale_after_s > 0 && confirmations_.has_begun();
+    return has_horizon ? confirmations_.stamp_before(config_.age.stale_after_s) : std::uint16_t{0};
+}
+
+bool FusedMap::is_stale(VoxelKey key) const noexcept {
+    return occupancy(key) != Occupancy::unknown &&
+           confirmations_.find(brick_of(key)).at(cell_of(key)) < stale_stamp();
+}
+
+}  // namespace octoskin

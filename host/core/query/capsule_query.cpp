@@ -1,0 +1,121 @@
+#include "host/core/query/capsule_query.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "host/core/query/nearest_search.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr double kLargest_m = 1e6;
+
+std::optional<CapsuleFault> fault_of(const PosedCapsule& capsule) {
+    if (!capsule.p_a.allFinite() || !capsule.p_b.allFinite() || !std::isfinite(capsule.radius_m))
+        return CapsuleFault::not_finite;
+    if (capsule.radius_m < 0.0) return CapsuleFault::negative_radius;
+    const double largest =
+        std::max({capsule.p_a.cwiseAbs().maxCoeff(), capsule.p_b.cwiseAbs().maxCoeff(), capsule.radius_m});
+    if (largest > kLargest_m) return CapsuleFault::too_large;
+    return std::nullopt;
+}
+
+std::optional<RefusedCapsule> refused_of(std::span<const PosedCapsule> capsules) {
+    for (std::size_t i = 0; i < capsules.size(); ++i) {
+        if (const auto fault = fault_of(capsules[i])) return RefusedCapsule{i, *fault};
+    }
+    return std::nullopt;
+}
+
+CapsuleAnswer search(const FusedMap& map, const PosedCapsule& capsule, SearchFor wanted) {
+    const double reach_m = capsule.radius_m + kDistanceStep_m;
+    NearestSearch search(map, {capsule.p_a, capsule.p_b, reach_m, reach_m, wanted});
+    search.run();
+    const auto occupied = search.occupied();
+    const auto unknown = search.unknown();
+    if (occupied.voxel) return {Occupancy::occupied, occupied.voxel, occupied.distance_m};
+    if (unknown.voxel || search.is_outside()) return {Occupancy::unknown, unknown.voxel, unknown.distance_m};
+    return {};
+}
+
+bool is_reach(double reach_m) {
+    return reach_m >= 0.0 && reach_m <= kLargest_m;
+}
+
+/// From the segment to what lies outside the octree; it ends nearest to it.
+double distance_to_bounds(const FusedMap& map, const PosedCapsule& capsule) {
+    const double bound_m = kOriginKey * map.resolution_m();
+    return std::max(0.0,
+                    bound_m - std::max(capsule.p_a.cwiseAbs().maxCoeff(), capsule.p_b.cwiseAbs().maxCoeff()));
+}
+
+}  // namespace
+
+Result<CapsuleAnswer, CapsuleFault> worst_in(const FusedMap& map, const PosedCapsule& capsule) noexcept {
+    if (const auto fault = fault_of(capsule)) return unexpected(*fault);
+    return search(map, capsule, SearchFor::worst);
+}
+
+Status<RefusedCapsule> worst_in(const FusedMap& map, std::span<const PosedCapsule> capsules,
+                                std::span<CapsuleAnswer> answers) noexcept {
+    assert(answers.size() == capsules.size());
+    if (const auto refused = refused_of(capsules)) return unexpected(*refused);
+    for (std::size_t i = 0; i < capsules.size(); ++i) answers[i] = search(map, capsules[i], SearchFor::worst);
+    return Done{};
+}
+
+Result<bool, RefusedCapsule> is_free(const FusedMap& map, std::span<const PosedCapsule> capsules) noexcept {
+    if (const auto refused = refused_of(capsules)) return unexpected(*refused);
+    for (const PosedCapsule& capsule : capsules) {
+        if (search(map, capsule, SearchFor::any).state != Occupancy::free) return false;
+    }
+    return true;
+}
+
+Result<CapsuleClearance, CapsuleFault> clearance_within(const FusedMap& map, const PosedCapsule& capsule,
+                                                        const ClearanceReach& reach,
+                                                        const SiteMap* sites) noexcept {
+    if (const auto fault = fault_of(capsule)) return unexpected(*fault);
+    if (!is_reach(reach.occupied_m) || !is_reach(reach.not_free_m))
+        return unexpected(CapsuleFault::too_large);
+    const double radius_m = capsule.radius_m + kDistanceStep_m;
+    NearestSearch search(
+        map,
+        {capsule.p_a, capsule.p_b, radius_m + reach.occupied_m, radius_m + reach.not_free_m, SearchFor::both},
+        sites);
+    search.run();
+    const auto from_surface = [&](double distance_m) { return std::max(0.0, distance_m - capsule.radius_m); };
+    CapsuleClearance clearance;
+    const auto take_not_free = [&](double distance_m) {
+        if (distance_m > radius_m + reach.not_free_m) return;
+        const double gap_m = from_surface(distance_m);
+        if (!clearance.not_free_m || gap_m < *clearance.not_free_m) clearance.not_free_m = gap_m;
+    };
+    if (const auto found = search.occupied(); found.voxel) {
+        clearance.occupied_m = from_surface(found.distance_m);
+        take_not_free(found.distance_m);
+    }
+    if (const auto found = search.unknown(); found.voxel) take_not_free(found.distance_m);
+    if (search.is_outside()) take_not_free(distance_to_bounds(map, capsule));
+    return clearance;
+}
+
+Result<CapsuleClearance, CapsuleFault> clearance(const FusedMap& map, const PosedCapsule& capsule,
+                                                 double reach_m) noexcept {
+    if (!is_reach(reach_m)) return unexpected(CapsuleFault::too_large);
+    // What is near is found in little space: most of the time the first step is the last.
+    constexpr double kVoxelsFirst = 2.0;
+    CapsuleClearance found;
+    for (double step_m = kVoxelsFirst * map.resolution_m();; step_m *= 2.0) {
+        const double within_m = std::min(step_m, reach_m);
+        // The half that is known already needs not be looked for again.
+        const auto next = clearance_within(
+            map, capsule, {found.occupied_m.value_or(within_m), found.not_free_m.value_or(within_m)});
+        if (!next) return next;
+        found = *next;
+        if ((found.occupied_m && found.not_free_m) || !(within_m < reach_m)) return found;
+    }
+}
+
+}  // namespace octoskin

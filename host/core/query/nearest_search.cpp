@@ -1,0 +1,141 @@
+#include "host/core/query/nearest_search.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "host/core/bricks/brick_sets.hpp"
+#include "host/core/bricks/cube_parts.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr std::uint64_t kAllParts = ~std::uint64_t{0};
+
+double steps_of(double distance_m) {
+    return std::floor(distance_m / kDistanceStep_m + 0.5);
+}
+
+}  // namespace
+
+NearestSearch::NearestSearch(const FusedMap& map, const SearchRequest& request, const SiteMap* sites) noexcept
+    : map_(map),
+      resolution_m_(map.resolution_m()),
+      sites_(sites),
+      segment_(request.p_a, request.p_b),
+      wanted_(request.wanted) {
+    const double reach_m = std::max(request.occupied_reach_m, request.unknown_reach_m);
+    const Eigen::Vector3d lowest = request.p_a.cwiseMin(request.p_b).array() - reach_m;
+    const Eigen::Vector3d highest = request.p_a.cwiseMax(request.p_b).array() + reach_m;
+    const double bound_m = kOriginKey * map.resolution_m();
+    is_outside_ = lowest.minCoeff() < -bound_m || highest.maxCoeff() > bound_m;
+    meets_octree_ = lowest.maxCoeff() <= bound_m && highest.minCoeff() >= -bound_m;
+    box_ = {key_near(lowest), key_near(highest)};
+    occupied_.reach_m = occupied_.limit_m = request.occupied_reach_m;
+    unknown_.reach_m = unknown_.limit_m = request.unknown_reach_m;
+}
+
+void NearestSearch::run() noexcept {
+    if (meets_octree_ && !(wanted_ == SearchFor::any && is_outside_)) look(map_.space());
+}
+
+/// Of the nearest voxel of the octree, along each axis.
+VoxelKey NearestSearch::key_near(const Eigen::Vector3d& point) const {
+    const auto along = [&](double coordinate) {
+        const double key = std::floor(coordinate / resolution_m_) + kOriginKey;
+        return static_cast<std::uint16_t>(std::clamp(key, 0.0, kVoxelsPerAxis - 1.0));
+    };
+    return {along(point.x()), along(point.y()), along(point.z())};
+}
+
+double NearestSearch::distance_to(const VoxelCube& cube) const {
+    return segment_.distance(centre_of(cube), half_edge(cube));
+}
+
+/// What is further away matters to neither. Where only the worst is wanted the limit of the unknown is never
+/// the larger one: what is unknown ends no search for the occupied.
+double NearestSearch::limit_m() const {
+    return std::max(occupied_.limit_m, unknown_.limit_m);
+}
+
+bool NearestSearch::is_done() const {
+    if (wanted_ == SearchFor::any && (occupied_.found.voxel || unknown_.found.voxel)) return true;
+    return limit_m() == kNever;
+}
+
+void NearestSearch::look(const BrickTree::Space& space) {
+    if (!space.has_parts()) return look_into(space.cube(), space.bricks());
+    for (auto parts = parts_in(space.cube(), box_); parts != 0 && !is_done(); parts &= parts - 1) {
+        const auto part = space.part(static_cast<std::size_t>(std::countr_zero(parts)));
+        if (!is_surely_beyond(part.cube(), limit_m())) look(part);
+    }
+}
+
+void NearestSearch::look_into(const VoxelCube& cube, const BrickView& bricks) {
+    if (bricks.values != nullptr)
+        return sites_ != nullptr ? look_into_sites(cube) : look_into_brick(cube, *bricks.values);
+    if (std::isnan(bricks.value)) return take(unknown_, cube);
+    if (map_.occupancy_of(bricks.value) == Occupancy::occupied) take(occupied_, cube);
+}
+
+void NearestSearch::look_into_brick(const VoxelCube& brick, const BrickValues& values) {
+    const MortonCode first = morton_of(brick.lowest);
+    for (std::size_t word = 0; word < kBrickVoxels / 64 && !is_done(); ++word) {
+        const VoxelCube cube{key_of_morton(first + 64 * word), 2};
+        if (!do_meet(cube, box_)) continue;
+        const WordSets sets = sets_of(values, word, map_.config().log_odds_occupied);
+        take_some(occupied_, cube, sets.at_least);
+        take_some(unknown_, cube, ~sets.known);
+    }
+}
+
+void NearestSearch::look_into_sites(const VoxelCube& brick) {
+    const MortonCode first = morton_of(brick.lowest);
+    const auto found = sites_->find(first);
+    if (found == sites_->end()) return;
+    for (std::size_t word = 0; word < kBrickVoxels / 64 && !is_done(); ++word) {
+        const VoxelCube cube{key_of_morton(first + 64 * word), 2};
+        take_some(occupied_, cube, found->second.occupied[word]);
+        take_some(unknown_, cube, found->second.unknown[word]);
+    }
+}
+
+void NearestSearch::take_some(Nearest& nearest, const VoxelCube& word, std::uint64_t voxels) {
+    if (voxels == 0 || nearest.limit_m == kNever || is_surely_beyond(word, nearest.limit_m)) return;
+    if (voxels == kAllParts) return take(nearest, word);
+    for (voxels &= parts_in(word, box_); voxels != 0; voxels &= voxels - 1)
+        take(nearest, part_of(word, static_cast<std::size_t>(std::countr_zero(voxels))));
+}
+
+/// All voxels of the cube have the state. The distance of the nearest is the cube's own, so that the way
+/// down to it needs no search.
+void NearestSearch::take(Nearest& nearest, VoxelCube cube) {
+    if (nearest.limit_m == kNever || is_surely_beyond(cube, nearest.limit_m)) return;
+    const double distance_m = distance_to(cube);
+    double steps = steps_of(distance_m);
+    Found& found = nearest.found;
+    if (found.voxel ? steps * kDistanceStep_m >= found.distance_m : distance_m > nearest.reach_m) return;
+    while (cube.height > 0) cube = nearest_eighth(cube, steps);
+    found = {cube.lowest, steps * kDistanceStep_m};
+    nearest.limit_m = steps > 0.0 ? found.distance_m : kNever;
+    if (&nearest != &occupied_) return;
+    unknown_.limit_m = wanted_ == SearchFor::both ? std::min(unknown_.limit_m, nearest.limit_m) : kNever;
+}
+
+/// Of the eighths that are nearest, the first. `steps`: then its own.
+VoxelCube NearestSearch::nearest_eighth(const VoxelCube& cube, double& steps) const {
+    const unsigned height = cube.height - 1;
+    const MortonCode first = morton_of(cube.lowest);
+    VoxelCube nearest;
+    steps = std::numeric_limits<double>::infinity();
+    for (MortonCode child = 0; child < 8; ++child) {
+        const VoxelCube eighth{key_of_morton(first + (child << (3 * height))), height};
+        const double steps_to_it = steps_of(distance_to(eighth));
+        if (steps_to_it >= steps) continue;
+        nearest = eighth;
+        steps = steps_to_it;
+    }
+    return nearest;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,111 @@
+// The search behind the questions of capsule_query.hpp: the occupied and the unknown voxel of a map that are
+// nearest to a segment.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <unordered_map>
+
+#include "host/core/bricks/brick.hpp"
+#include "host/core/mapping/fused_map.hpp"
+#include "host/core/query/segment_cube.hpp"
+
+namespace octoskin {
+
+/// What distances are told apart by. Rounding is well below it for all that is within 1000 km.
+inline constexpr double kDistanceStep_m = 1e-9;
+
+/// What a map's brick holds, worked out beforehand.
+struct BrickSites {
+    BrickMask occupied{};
+    BrickMask unknown{};
+};
+/// By the brick's first voxel: each that has an occupied voxel, and of bricks whose voxels are not alike each
+/// that has an unknown one.
+using SiteMap = std::unordered_map<MortonCode, BrickSites>;
+
+enum class SearchFor : std::uint8_t {
+    worst,  ///< the nearest occupied voxel or, if there is none, the nearest unknown one
+    any,    ///< ends with the first voxel that is not free
+    both,   ///< the nearest occupied one, and the nearest unknown one unless that is further away
+};
+
+struct SearchRequest {
+    Eigen::Vector3d p_a = Eigen::Vector3d::Zero();  ///< the segment's ends in the map frame, finite
+    Eigen::Vector3d p_b = Eigen::Vector3d::Zero();
+    double occupied_reach_m =
+        0.0;                       ///< from the segment to a voxel's closed cube; a voxel beyond is not found
+    double unknown_reach_m = 0.0;  ///< no more than the other unless it is for `both`
+    SearchFor wanted = SearchFor::worst;
+};
+
+/// Goes through the space within reach, in Morton order: of two voxels that are equally near the first wins
+/// without being compared. For one `run`.
+class NearestSearch {
+  public:
+    struct Found {
+        std::optional<VoxelKey> voxel;
+        double distance_m = 0.0;  ///< to its closed cube, in whole steps
+    };
+
+    /// `sites`: of this map, if it is there; then nothing else is looked up of bricks whose voxels differ.
+    NearestSearch(const FusedMap& map, const SearchRequest& request, const SiteMap* sites = nullptr) noexcept;
+
+    void run() noexcept;
+
+    [[nodiscard]] Found occupied() const noexcept { return occupied_.found; }
+    [[nodiscard]] Found unknown() const noexcept { return unknown_.found; }
+    /// Some of the space within reach lies outside the octree.
+    [[nodiscard]] bool is_outside() const noexcept { return is_outside_; }
+
+  private:
+    static constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+    /// The nearest voxel of a state so far, and how near another one must be to matter.
+    struct Nearest {
+        Found found;
+        double reach_m = 0.0;
+        double limit_m = 0.0;
+    };
+
+    [[nodiscard]] VoxelKey key_near(const Eigen::Vector3d& point) const;
+    [[nodiscard]] Eigen::Vector3d centre_of(const VoxelCube& cube) const {
+        const double half = 0.5 * (1U << cube.height);
+        return resolution_m_ * Eigen::Vector3d(cube.lowest.x - kOriginKey + half,
+                                               cube.lowest.y - kOriginKey + half,
+                                               cube.lowest.z - kOriginKey + half);
+    }
+    [[nodiscard]] double half_edge(const VoxelCube& cube) const {
+        return 0.5 * resolution_m_ * (1U << cube.height);
+    }
+    [[nodiscard]] bool is_surely_beyond(const VoxelCube& cube, double limit_m) const {
+        return segment_.is_surely_beyond(centre_of(cube), half_edge(cube), limit_m + 4.0 * kDistanceStep_m);
+    }
+    [[nodiscard]] double distance_to(const VoxelCube& cube) const;
+    [[nodiscard]] double limit_m() const;
+    [[nodiscard]] bool is_done() const;
+
+    void look(const BrickTree::Space& space);
+    void look_into(const VoxelCube& cube, const BrickView& bricks);
+    void look_into_brick(const VoxelCube& brick, const BrickValues& values);
+    void look_into_sites(const VoxelCube& brick);
+    void take_some(Nearest& nearest, const VoxelCube& word, std::uint64_t voxels);
+    void take(Nearest& nearest, VoxelCube cube);
+    [[nodiscard]] VoxelCube nearest_eighth(const VoxelCube& cube, double& steps) const;
+
+    const FusedMap& map_;
+    double resolution_m_;
+    const SiteMap* sites_;
+    SegmentToCubes segment_;
+    SearchFor wanted_;
+    bool is_outside_ = false;
+    bool meets_octree_ = false;
+    KeyBox box_;
+    Nearest occupied_;
+    Nearest unknown_;
+};
+
+}  // namespace octoskin

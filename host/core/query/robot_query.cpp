@@ -1,0 +1,169 @@
+#include "host/core/query/robot_query.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace octoskin {
+namespace {
+
+constexpr double kPaddingMax_m = 1.0;
+constexpr double kLimitTolerance = 0.005;
+
+/// Whether some joint position moves the capsule: one about the axis of the only joint that turns it stays
+/// where it is.
+std::vector<bool> moved_by_joints(const RobotModel& robot, const RobotBody& body) {
+    constexpr double kAlike_m = 1e-9;
+    std::vector<double> position(robot.joint_count(), 0.0);
+    std::vector<Eigen::Isometry3d> T_base_link(robot.link_count());
+    std::vector<PosedCapsule> at_zero;
+    std::vector<PosedCapsule> elsewhere;
+    robot.forward(position, T_base_link);
+    body.pose(T_base_link, at_zero);
+    // No two joints by the same, so that none takes back what another did.
+    for (std::size_t i = 0; i < position.size(); ++i) position[i] = 0.1 + 0.07 * static_cast<double>(i);
+    robot.forward(position, T_base_link);
+    body.pose(T_base_link, elsewhere);
+    std::vector<bool> moved;
+    for (std::size_t i = 0; i < at_zero.size(); ++i) {
+        moved.push_back((at_zero[i].p_a - elsewhere[i].p_a).norm() > kAlike_m ||
+                        (at_zero[i].p_b - elsewhere[i].p_b).norm() > kAlike_m);
+    }
+    return moved;
+}
+
+bool is_worse(const CapsuleAnswer& answer, double depth_m, const PostureAnswer& worst, double deepest_m) {
+    const auto state = answer.state == Occupancy::occupied ? PostureState::occupied : PostureState::unknown;
+    if (state != worst.state) return state > worst.state;
+    return depth_m > deepest_m;
+}
+
+void take_nearest(const std::optional<double>& found_m, LinkId link, std::optional<double>& nearest_m,
+                  std::optional<LinkId>& nearest_link) {
+    if (!found_m || (nearest_m && *nearest_m <= *found_m)) return;
+    nearest_m = found_m;
+    nearest_link = link;
+}
+
+template <class ClearanceOf>
+Result<PostureClearance, RefusedCapsule> least_clearance(std::span<const PosedCapsule> capsules,
+                                                         const ClearanceOf& of) {
+    PostureClearance least;
+    for (std::size_t i = 0; i < capsules.size(); ++i) {
+        const auto found = of(capsules[i]);
+        if (!found) return unexpected(RefusedCapsule{i, found.error()});
+        take_nearest(found->occupied_m, capsules[i].link, least.occupied_m, least.occupied_link);
+        take_nearest(found->not_free_m, capsules[i].link, least.not_free_m, least.not_free_link);
+    }
+    return least;
+}
+
+}  // namespace
+
+std::string_view name(PostureState state) noexcept {
+    constexpr std::array<std::string_view, 4> kNames{"free", "stale", "unknown", "occupied"};
+    return kNames.at(static_cast<std::size_t>(state));
+}
+
+Result<RobotQuery, RobotQueryFault> RobotQuery::build(const HostRig& rig, const RobotModel& robot,
+                                                      const RobotQueryConfig& config) {
+    if (!(config.padding_m >= 0.0 && config.padding_m <= kPaddingMax_m))
+        return unexpected(RobotQueryFault{RobotQueryError::bad_padding, {}});
+    for (const std::string& link : config.links_ignored) {
+        if (!robot.find_link(link)) return unexpected(RobotQueryFault{RobotQueryError::unknown_link, link});
+    }
+    const auto whole = RobotBody::build(rig.body, robot);
+    if (!whole) return unexpected(RobotQueryFault{RobotQueryError::unknown_link, whole.error().element});
+    const std::vector<bool> moved = moved_by_joints(robot, *whole);
+    std::vector<LinkCapsule> asked;
+    for (std::size_t i = 0; i < rig.body.size(); ++i) {
+        const LinkCapsule& capsule = rig.body[i];
+        if (config.ignores_unmoved && !moved[i]) continue;
+        if (std::ranges::find(config.links_ignored, capsule.link) == config.links_ignored.end())
+            asked.push_back(capsule);
+    }
+    if (asked.empty()) return unexpected(RobotQueryFault{RobotQueryError::no_body, {}});
+    auto body = RobotBody::build(asked, robot);
+    if (!body) return unexpected(RobotQueryFault{RobotQueryError::unknown_link, body.error().element});
+    return RobotQuery(robot, std::move(body).value(), rig.T_map_base, asked.size(), config.padding_m);
+}
+
+RobotQuery::RobotQuery(const RobotModel& robot, RobotBody body, const Eigen::Isometry3d& T_map_base,
+                       std::size_t capsules, double padding_m)
+    : robot_(robot),
+      body_(std::move(body)),
+      T_map_base_(T_map_base),
+      capsules_(capsules),
+      padding_m_(padding_m) {}
+
+std::optional<PostureFault> RobotQuery::fault_of(std::span<const double> position) const noexcept {
+    const auto limits = robot_.limits();
+    if (position.size() != limits.size())
+        return PostureFault{PostureError::wrong_count, std::min(position.size(), limits.size())};
+    for (std::size_t i = 0; i < position.size(); ++i) {
+        if (!std::isfinite(position[i])) return PostureFault{PostureError::not_finite, i};
+        if (!limits[i].hold(position[i], kLimitTolerance))
+            return PostureFault{PostureError::outside_limits, i};
+    }
+    return std::nullopt;
+}
+
+Result<std::vector<PosedCapsule>, PostureFault> RobotQuery::pose(std::span<const double> position) const {
+    if (const auto fault = fault_of(position)) return unexpected(*fault);
+    std::vector<Eigen::Isometry3d> T_base_link(robot_.link_count());
+    robot_.forward(position, T_base_link);
+    std::vector<PosedCapsule> posed;
+    body_.pose(T_base_link, posed);
+    for (PosedCapsule& capsule : posed) {
+        capsule.p_a = T_map_base_ * capsule.p_a;
+        capsule.p_b = T_map_base_ * capsule.p_b;
+        capsule.radius_m += padding_m_;
+    }
+    return posed;
+}
+
+Result<PostureAnswer, RefusedCapsule> worst_of(const FusedMap& map,
+                                               std::span<const PosedCapsule> capsules) noexcept {
+    PostureAnswer worst;
+    double deepest_m = 0.0;
+    for (std::size_t i = 0; i < capsules.size(); ++i) {
+        const auto answer = worst_in(map, capsules[i]);
+        if (!answer) return unexpected(RefusedCapsule{i, answer.error()});
+        if (answer->state == Occupancy::free) continue;
+        const double depth_m = capsules[i].radius_m - answer->distance_m;
+        if (!is_worse(*answer, depth_m, worst, deepest_m)) continue;
+        deepest_m = depth_m;
+        worst = {answer->state == Occupancy::occupied ? PostureState::occupied : PostureState::unknown,
+                 capsules[i].link, answer->voxel};
+    }
+    if (worst.state != PostureState::free) return worst;
+    const auto evidence = weakest_of(map, capsules);
+    if (evidence && evidence->weakest.is_stale)
+        worst = {PostureState::stale, evidence->link, evidence->weakest.voxel};
+    return worst;
+}
+
+std::optional<PostureEvidence> weakest_of(const FusedMap& map, std::span<const PosedCapsule> capsules,
+                                          std::optional<PostureEvidence> than) noexcept {
+    for (const PosedCapsule& capsule : capsules) {
+        const auto before = than ? std::optional(than->weakest) : std::nullopt;
+        const auto found = weakest_in(map, capsule, before);
+        if (found && (!before || found->stamp < before->stamp)) than = PostureEvidence{*found, capsule.link};
+    }
+    return than;
+}
+
+Result<PostureClearance, RefusedCapsule> clearance_of(const FusedMap& map,
+                                                      std::span<const PosedCapsule> capsules,
+                                                      double reach_m) noexcept {
+    return least_clearance(capsules,
+                           [&](const PosedCapsule& capsule) { return clearance(map, capsule, reach_m); });
+}
+
+Result<PostureClearance, RefusedCapsule> clearance_of(const DistanceField& field,
+                                                      std::span<const PosedCapsule> capsules) noexcept {
+    return least_clearance(capsules, [&](const PosedCapsule& capsule) { return field.clearance(capsule); });
+}
+
+}  // namespace octoskin

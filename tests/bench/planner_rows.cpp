@@ -1,0 +1,115 @@
+#include "tests/bench/planner_rows.hpp"
+
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "host/core/mapping/depth_integrator.hpp"
+#include "host/core/query/distance_field.hpp"
+#include "host/core/query/robot_query.hpp"
+#include "tests/bench/arm_capsules.hpp"
+#include "tests/bench/clouds.hpp"
+#include "tests/bench/sizes.hpp"
+
+namespace octoskin::bench {
+namespace {
+
+constexpr std::size_t kFramesOfMap = 10;
+/// Half a metre from the thickest capsule of the arm, and what the field loses by its voxels.
+constexpr double kReach_m = 0.5;
+constexpr double kFieldReach_m = 0.7;
+
+void require_that(bool is_so, const char* what) {
+    if (!is_so) throw std::runtime_error(what);
+}
+
+/// How many postures are told a distance to something occupied, and the sum of these: both ways must agree.
+struct Told {
+    std::size_t occupied = 0;
+    double sum_m = 0.0;
+    void add(const PostureClearance& clearance) {
+        occupied += clearance.occupied_m ? 1U : 0U;
+        sum_m += clearance.occupied_m.value_or(0.0) + clearance.not_free_m.value_or(0.0);
+    }
+};
+
+class Clearances final : public Task {
+  public:
+    Clearances(const FusedMap& map, bool has_field) : map_(map), postures_(arm_on_the_table(OCTOSKIN_RIG)) {
+        for (const ArmCapsules& capsules : postures_) {
+            const auto found = clearance_of(map_, capsules, kReach_m);
+            require_that(found.has_value(), "a capsule is refused");
+            wanted_.add(*found);
+        }
+        require_that(wanted_.occupied > postures_.size() / 2, "nothing occupied is near the arm");
+        if (!has_field) return;
+        field_.emplace(map.config(), kFieldReach_m);
+        (void)field_->update(map);
+    }
+    void run() override {
+        Told told;
+        for (const ArmCapsules& capsules : postures_) {
+            const auto found =
+                field_ ? clearance_of(*field_, capsules) : clearance_of(map_, capsules, kReach_m);
+            told.add(*found);
+        }
+        require_that(told.occupied >= wanted_.occupied, "a distance is not told");
+    }
+    void tell(Figures& figures) const override { tell_size(map_, figures); }
+
+  private:
+    const FusedMap& map_;
+    std::vector<ArmCapsules> postures_;
+    Told wanted_;
+    std::optional<DistanceField> field_;
+};
+
+/// From the ten frames' map on, one frame after the other.
+class FieldUpdate final : public Task {
+  public:
+    FieldUpdate(const RoomFrames& room, const std::string& resolution, const FusedMap& ten_frames,
+                DepthUpdate update)
+        : room_(room),
+          integrator_(bench_mapping(resolution, update), room.camera),
+          map_(ten_frames.copy()),
+          field_(map_.config(), kFieldReach_m) {
+        (void)field_.update(map_);
+    }
+    void prepare() override {
+        const RoomFrame& frame = room_.frames[next_++ % room_.frames.size()];
+        const auto result = integrator_.integrate(frame.image, frame.T_map_camera);
+        require_that(result.has_value(), "a frame was refused");
+        map_.apply(result->terms);
+    }
+    void run() override { require_that(field_.update(map_).written > 0, "a frame changed nothing"); }
+    void tell(Figures& figures) const override {
+        tell_size(map_, figures);
+        figures.heap_bytes = field_.memory_bytes();
+    }
+
+  private:
+    const RoomFrames& room_;
+    DepthIntegrator integrator_;
+    FusedMap map_;
+    DistanceField field_;
+    std::size_t next_ = kFramesOfMap;
+};
+
+}  // namespace
+
+std::vector<Row> planner_rows(const RoomFrames& room, const std::string& resolution, unsigned runs,
+                              std::function<const FusedMap&()> ten_frames) {
+    std::vector<Row> rows;
+    rows.push_back(
+        {"clearances", "", runs, [ten_frames] { return std::make_unique<Clearances>(ten_frames(), false); }});
+    rows.push_back({"field_clearances", "clearances", runs,
+                    [ten_frames] { return std::make_unique<Clearances>(ten_frames(), true); }});
+    rows.push_back({"field_update", "", runs, [&room, resolution, ten_frames] {
+                        return std::make_unique<FieldUpdate>(room, resolution, ten_frames(),
+                                                             DepthUpdate::paper);
+                    }});
+    return rows;
+}
+
+}  // namespace octoskin::bench

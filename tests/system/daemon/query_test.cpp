@@ -1,0 +1,133 @@
+// What `octoskin query` asks a daemon, while its map goes on.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/unix_socket.hpp"
+#include "host/apps/querying/query_request.hpp"
+#include "tests/system/daemon/daemon_fixture.hpp"
+#include "tests/system/said.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+class QueryTest : public DaemonTest {
+  protected:
+    [[nodiscard]] std::string socket() const { return (folder_ / "control").string(); }
+    [[nodiscard]] Json ask(const QueryRequest& request) const {
+        const auto answer = ask_daemon(socket(), to_line(request), 30s);
+        EXPECT_TRUE(answer) << answer.error().message;
+        return answer ? Json::parse(*answer) : Json();
+    }
+    void start_and_range() {
+        start();
+        ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    }
+};
+
+TEST_F(QueryTest, is_answered_for_the_arm_as_it_stands) {
+    start_and_range();
+    const Json answer = ask({});
+    ASSERT_TRUE(answer.at("ok").get<bool>()) << answer;
+    EXPECT_NE(answer.at("state"), "free") << "without a camera nobody has seen the space of the shoulder";
+    EXPECT_EQ(answer.at("legs").size(), 1U);
+    EXPECT_EQ(answer.at("legs").at(0).at("not_free_m"), 0.0);
+
+    const Said said = octoskin("query --joints -0.1,-0.785,0,-2.356,0,1.571,0.785 --socket " + socket());
+    EXPECT_TRUE(said.exit_code == 1 || said.exit_code == 2) << said.output;
+    EXPECT_NE(said.output.find("panda_link"), std::string::npos) << said.output;
+}
+
+TEST_F(QueryTest, about_the_unknown_lists_pockets) {
+    start_and_range();
+    const Said said = octoskin("query --unknown --tries 300 --json --socket " + socket());
+    ASSERT_EQ(said.exit_code, 0) << said.output;
+    const Json answer = Json::parse(said.output);
+    EXPECT_GT(answer.at("unknown_m3").get<double>(), 0.1);
+    ASSERT_GE(answer.at("pockets").size(), 1U);
+    EXPECT_GT(answer.at("pockets").at(0).at("border_voxels").get<int>(), 0);
+}
+
+TEST_F(QueryTest, is_refused_by_name_of_what_is_wrong) {
+    start_and_range();
+    const Said two = octoskin("query --joints 0,0 --socket " + socket());
+    EXPECT_EQ(two.exit_code, 64) << two.output;
+    EXPECT_NE(two.output.find("2 joint positions; the rig has 7 joints"), std::string::npos) << two.output;
+    const Said beyond = octoskin("query --joints 9,0,0,-1,0,1,0 --socket " + socket());
+    EXPECT_EQ(beyond.exit_code, 64) << beyond.output;
+    EXPECT_NE(beyond.output.find("panda_joint1 is 9; its limits are"), std::string::npos) << beyond.output;
+}
+
+/// Each of these takes the thread a second or so; what the loop answers itself is not behind them.
+TEST_F(QueryTest, holds_nothing_else_up) {
+    start_and_range();
+    QueryRequest request;
+    request.step = 0.01;
+    for (int i = 0; i < 30; ++i)
+        request.path.push_back({i % 2 == 0 ? 1.0 : -1.0, -0.785, 0, -2.356, 0, 1.571, 0});
+    std::vector<std::thread> clients;
+    std::vector<Json> answers(4);
+    for (Json& answer : answers) clients.emplace_back([&] { answer = ask(request); });
+    std::this_thread::sleep_for(50ms);  // they are asking by now
+    const auto begun = std::chrono::steady_clock::now();
+    const Json status = daemon_->status();
+    const auto took = std::chrono::steady_clock::now() - begun;
+    for (std::thread& client : clients) client.join();
+    ASSERT_TRUE(status.is_object());
+    double all_us = 0.0;
+    for (const Json& answer : answers) {
+        EXPECT_TRUE(answer.at("ok").get<bool>()) << answer;
+        all_us += answer.at("took_us").get<double>();
+    }
+    RecordProperty("queries_took_ms", std::to_string(all_us * 1e-3));
+    RecordProperty("status_took_ms", std::to_string(std::chrono::duration<double, std::milli>(took).count()));
+    EXPECT_LT(std::chrono::duration<double>(took).count(), 0.5 * all_us * 1e-6);
+    EXPECT_TRUE(daemon_->wait_until([](const Json& now) { return !has_problem(now, "late"); }, 5s));
+}
+
+/// Of too many clients the daemon drops the first; what they asked waits on.
+TEST_F(QueryTest, is_refused_while_too_many_wait) {
+    start_and_range();
+    QueryRequest slow;
+    slow.kind = QueryKind::pockets;
+    slow.views_tried = kViewsTriedMax;
+    const std::string line = to_line(slow) + "\n";
+    std::vector<int> clients;
+    for (int i = 0; i < 48; ++i) {
+        const auto client = connect_unix_socket(socket(), SOCK_STREAM);
+        ASSERT_TRUE(client) << i;
+        clients.push_back(*client);
+        ASSERT_EQ(::send(*client, line.data(), line.size(), MSG_NOSIGNAL), static_cast<ssize_t>(line.size()));
+        std::this_thread::sleep_for(10ms);
+    }
+    const Json answer = ask(slow);
+    EXPECT_FALSE(answer.at("ok").get<bool>()) << answer;
+    EXPECT_NE(answer.dump().find("too many questions wait"), std::string::npos) << answer;
+    for (const int client : clients) ::close(client);
+    daemon_->signal(SIGTERM);  // it is searching for views, which would take it seconds more
+    EXPECT_EQ(daemon_->wait(10s), std::optional<int>(0)) << daemon_->log();
+}
+
+TEST_F(QueryTest, says_that_nobody_knows_how_the_arm_stands) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    bus_->silence(3, true);  // the joints
+    std::this_thread::sleep_for(1500ms);
+    const Said said = octoskin("query --socket " + socket());
+    EXPECT_EQ(said.exit_code, 69) << said.output;
+    EXPECT_NE(said.output.find("nobody knows how the arm stands"), std::string::npos) << said.output;
+}
+
+}  // namespace
+}  // namespace octoskin::test

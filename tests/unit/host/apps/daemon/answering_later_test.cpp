@@ -1,0 +1,111 @@
+// Answers of the control socket that take their time.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/unix_socket.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin {
+namespace {
+
+using namespace std::chrono_literals;
+
+class AnsweringLater : public testing::Test {
+  protected:
+    AnsweringLater() {
+        auto opened = ControlSocket::open(file(), loop_,
+                                          [](const std::string& request) { return "you said " + request; });
+        EXPECT_TRUE(opened) << opened.error().message;
+        socket_ = std::move(opened).value();
+        socket_->answer_later([this](const std::string& request, std::uint64_t ticket) {
+            if (request != "slow") return false;
+            tickets_.push_back(ticket);
+            return true;
+        });
+    }
+    [[nodiscard]] std::filesystem::path file() const { return folder_ / "control"; }
+    [[nodiscard]] int connect() const {
+        const auto descriptor = connect_unix_socket(file(), SOCK_STREAM);
+        EXPECT_TRUE(descriptor);
+        return descriptor ? *descriptor : -1;
+    }
+    /// Runs the loop while `client` is at work in a thread of its own; it answers what it took once
+    /// `may_answer_`.
+    void serve(const std::function<void()>& client) {
+        std::atomic<bool> is_done = false;
+        std::thread thread([&] {
+            client();
+            is_done = true;
+        });
+        const auto watch = loop_.every(5ms, [&] {
+            if (is_done) loop_.stop(0);
+            if (!may_answer_) return;
+            for (const std::uint64_t ticket : std::exchange(tickets_, {})) socket_->reply(ticket, "at last");
+        });
+        EXPECT_EQ(loop_.run(), 0);
+        thread.join();
+    }
+
+    testing_support::ScratchFolder folder_;
+    EventLoop loop_;
+    std::unique_ptr<ControlSocket> socket_;
+    std::vector<std::uint64_t> tickets_;
+    std::atomic<bool> may_answer_ = false;
+};
+
+TEST_F(AnsweringLater, serves_others_meanwhile_and_reads_on_afterwards) {
+    const int client = connect();
+    EXPECT_EQ(::send(client, "slow\nnext\n", 10, MSG_NOSIGNAL), 10);
+    serve([&] {
+        EXPECT_EQ(ask_daemon(file(), "status").value(), "you said status");
+        std::array<char, 64> bytes{};
+        EXPECT_LT(::recv(client, bytes.data(), bytes.size(), MSG_DONTWAIT), 0) << "answered out of order";
+        may_answer_ = true;
+        const std::string_view wanted = "at last\nyou said next\n";
+        ASSERT_EQ(::recv(client, bytes.data(), wanted.size(), MSG_WAITALL),
+                  static_cast<ssize_t>(wanted.size()));
+        EXPECT_EQ(std::string_view(bytes.data(), wanted.size()), wanted);
+    });
+    ::close(client);
+}
+
+TEST_F(AnsweringLater, has_no_answer_for_who_has_gone_meanwhile) {
+    const int client = connect();
+    EXPECT_EQ(::send(client, "slow\n", 5, MSG_NOSIGNAL), 5);
+    serve([&] {
+        EXPECT_TRUE(ask_daemon(file(), "status"));  // the slow one came first, and was taken
+        ::close(client);
+        may_answer_ = true;
+        EXPECT_EQ(ask_daemon(file(), "slow").value(), "at last");
+    });
+}
+
+TEST_F(AnsweringLater, takes_nobody_for_idle_who_waits) {
+    auto quick = ControlSocket::open(
+        folder_ / "quick", loop_, [](const std::string&) { return std::string("yes"); }, 40ms);
+    ASSERT_TRUE(quick);
+    std::uint64_t taken = 0;
+    (*quick)->answer_later([&](const std::string&, std::uint64_t ticket) {
+        taken = ticket;
+        return true;
+    });
+    const auto answering = loop_.every(200ms, [&] { (*quick)->reply(taken, "after all"); });
+    serve([&] { EXPECT_EQ(ask_daemon(folder_ / "quick", "anything").value(), "after all"); });
+    EXPECT_EQ((*quick)->dropped(), 0U);
+}
+
+}  // namespace
+}  // namespace octoskin

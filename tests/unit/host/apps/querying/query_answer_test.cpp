@@ -1,0 +1,161 @@
+#include "host/apps/querying/query_answer.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/unit/host/core/query/two_joint_arm.hpp"
+
+namespace octoskin {
+namespace {
+
+using testing::HasSubstr;
+using Json = nlohmann::ordered_json;
+
+class QueryAnswer : public testing::Test {
+  protected:
+    Json ask(const QueryRequest& request, const FusedMap& map, std::vector<double> present = {}) const {
+        return answer_query(request, {&arm_.rig, &arm_.robot, map.copy(), std::move(present)});
+    }
+    static QueryRequest path(std::vector<std::vector<double>> path) {
+        QueryRequest request;
+        request.path = std::move(path);
+        return request;
+    }
+    TwoJointArm arm_;
+    FusedMap map_ = free_about_origin();
+};
+
+TEST_F(QueryAnswer, of_a_posture_tells_state_link_voxel_and_distances) {
+    mark(map_, {0.42, 0.02, 0.30});
+    const Json answer = ask(path({{0.0, 0.0}}), map_);
+    ASSERT_TRUE(answer.at("ok").get<bool>()) << answer;
+    EXPECT_EQ(answer.at("state"), "occupied");
+    ASSERT_EQ(answer.at("legs").size(), 1U);
+    const Json& leg = answer.at("legs").at(0);
+    EXPECT_EQ(leg.at("link"), "hand");
+    EXPECT_NEAR(leg.at("voxel_m").at(0).get<double>(), 0.42, 1e-6);
+    EXPECT_EQ(leg.at("occupied_m"), 0.0);
+    EXPECT_EQ(leg.at("occupied_link"), "hand");
+    EXPECT_THAT(query_text(answer), HasSubstr("occupied: hand at (0.420, 0.020, 0.300) m\n"));
+}
+
+TEST_F(QueryAnswer, of_a_free_posture_names_no_link) {
+    const Json answer = ask(path({{0.0, 0.0}}), map_);
+    EXPECT_EQ(answer.at("state"), "free");
+    EXPECT_TRUE(answer.at("legs").at(0).at("link").is_null());
+    EXPECT_TRUE(answer.at("legs").at(0).at("occupied_m").is_null());
+    EXPECT_EQ(query_text(answer), "free\n");
+}
+
+TEST_F(QueryAnswer, of_a_path_is_that_of_what_lies_between_its_configurations) {
+    mark(map_, {0.3, 0.3, 0.30});
+    const Json answer = ask(path({{0.0, 0.0}, {1.5, 0.0}, {1.6, 0.0}}), map_);
+    EXPECT_EQ(answer.at("state"), "occupied");
+    EXPECT_EQ(answer.at("legs").at(0).at("state"), "free");
+    EXPECT_EQ(answer.at("legs").at(1).at("state"), "occupied");
+    EXPECT_EQ(answer.at("legs").at(2).at("state"), "free");
+    EXPECT_THAT(query_text(answer), HasSubstr("the path is occupied: 3 configurations"));
+}
+
+TEST_F(QueryAnswer, without_a_path_is_that_of_the_arm_as_it_stands) {
+    mark(map_, {0.02, 0.42, 0.30});
+    EXPECT_EQ(ask({}, map_, {0.5 * M_PI, 0.0}).at("state"), "occupied");
+    EXPECT_EQ(ask({}, map_, {0.0, 0.0}).at("state"), "free");
+    const Json nobody = ask({}, map_);
+    EXPECT_FALSE(nobody.at("ok").get<bool>());
+    EXPECT_EQ(nobody.at("code"), static_cast<int>(ExitCode::unavailable));
+    EXPECT_THAT(nobody.at("error").get<std::string>(), HasSubstr("nobody knows how the arm stands"));
+}
+
+TEST_F(QueryAnswer, takes_the_arms_own_space_for_free_if_it_is_told_to) {
+    const FusedMap holed = without(map_, {-0.1, -0.12, 0.2}, {0.5, 0.12, 0.4});
+    QueryRequest request = path({{0.0, 0.0}});
+    EXPECT_EQ(ask(request, holed).at("state"), "unknown");
+    request.own_space_m = 0.04;
+    EXPECT_EQ(ask(request, holed).at("state"), "free") << "where the path begins";
+    EXPECT_EQ(ask(request, holed, {0.0, 0.0}).at("state"), "free");
+    EXPECT_EQ(ask(request, holed, {2.0, 0.0}).at("state"), "unknown") << "it stands elsewhere";
+}
+
+TEST_F(QueryAnswer, refuses_what_cannot_be_asked_and_says_why) {
+    const auto error = [&](const QueryRequest& request) {
+        const Json answer = ask(request, map_);
+        return answer.at("ok").get<bool>() ? std::string("ok") : answer.at("error").get<std::string>();
+    };
+    EXPECT_EQ(error(path({{0.0, 0.0}, {0.0, 0.3}})),
+              "configuration 2: slide is 0.3; its limits are 0 to 0.2");
+    EXPECT_EQ(error(path({{0.0}})), "configuration 1: 1 joint positions; the rig has 2 joints");
+    QueryRequest no_link = path({{0.0, 0.0}});
+    no_link.links_ignored = {"wrist"};
+    EXPECT_EQ(error(no_link), "the robot has no link 'wrist'");
+    QueryRequest endless = path({});
+    endless.step = 0.005;
+    for (int i = 0; i < 60; ++i) endless.path.push_back({i % 2 == 0 ? 3.0 : -3.0, 0.0});
+    EXPECT_THAT(error(endless), HasSubstr("at most 50000 can be asked about at once"));
+}
+
+TEST_F(QueryAnswer, tells_how_old_the_weakest_evidence_is_and_by_what) {
+    EXPECT_TRUE(ask(path({{0.0, 0.0}}), map_).at("legs").at(0).at("evidence").is_null())
+        << "a map that was never told the time";
+    FusedMap map = free_about_origin(30);
+    const auto go_on_to = [&](std::int64_t second) { map.go_on(HostTime{second * 1'000'000'000}); };
+    go_on_to(100);
+    const Json of_before = ask(path({{0.0, 0.0}}), map);
+    EXPECT_EQ(of_before.at("state"), "stale");
+    EXPECT_TRUE(of_before.at("legs").at(0).at("evidence").at("age_s").is_null());
+    EXPECT_THAT(query_text(of_before), HasSubstr("weakest evidence: nobody knows how old"));
+    confirm_about_origin(map, HostTime{100'000'000'000});
+    const auto hand = map.key_of({0.42, 0.02, 0.30}).value();
+    go_on_to(105);
+    map.apply(std::vector<VoxelUpdate>{{hand, -0.4F}}, SensorKind::camera);
+    go_on_to(120);
+    const Json young = ask(path({{0.0, 0.0}}), map);
+    EXPECT_EQ(young.at("state"), "free");
+    EXPECT_EQ(young.at("legs").at(0).at("evidence").at("age_s"), 20);
+    EXPECT_EQ(young.at("legs").at(0).at("evidence").at("kind"), "range");
+    EXPECT_FALSE(young.at("legs").at(0).at("evidence").at("is_stale").get<bool>());
+    go_on_to(131);
+    const Json old = ask(path({{0.0, 0.0}}), map);
+    EXPECT_EQ(old.at("state"), "stale");
+    EXPECT_EQ(old.at("legs").at(0).at("link"), "upper");
+    EXPECT_FALSE(old.at("legs").at(0).at("voxel_m").is_null());
+    EXPECT_THAT(query_text(old), HasSubstr("stale: upper at ("));
+    EXPECT_THAT(query_text(old), HasSubstr("weakest evidence: 31 s old, of a range sensor, at ("));
+    QueryRequest own = path({{0.0, 0.0}});
+    own.own_space_m = 0.04;
+    EXPECT_EQ(ask(own, map).at("state"), "free") << "the arm itself is there, now";
+}
+
+TEST_F(QueryAnswer, ends_early_when_it_is_told_to) {
+    const Json answer = answer_query(path({{0.0, 0.0}, {1.0, 0.0}}),
+                                     {&arm_.rig, &arm_.robot, map_.copy(), {}}, [] { return true; });
+    EXPECT_FALSE(answer.at("ok").get<bool>());
+    QueryRequest pockets = path({{0.5, 0.0}});
+    pockets.kind = QueryKind::pockets;
+    int asked = 0;
+    const Json unlooked =
+        answer_query(pockets, {&arm_.rig, &arm_.robot, map_.copy(), {}}, [&] { return ++asked > 0; });
+    EXPECT_FALSE(unlooked.at("ok").get<bool>()) << unlooked;
+}
+
+TEST_F(QueryAnswer, lists_pockets_with_a_view_and_the_way_there) {
+    const FusedMap holed = without(map_, {0.8, -0.08, 0.24}, {0.96, 0.08, 0.4});
+    QueryRequest request = path({{0.5, 0.0}});
+    request.kind = QueryKind::pockets;
+    request.radius_m = 1.2;
+    const Json answer = ask(request, holed);
+    ASSERT_TRUE(answer.at("ok").get<bool>()) << answer;
+    ASSERT_EQ(answer.at("pockets").size(), 1U);
+    const Json& pocket = answer.at("pockets").at(0);
+    EXPECT_EQ(pocket.at("voxels"), 64);
+    ASSERT_FALSE(pocket.at("view").is_null());
+    EXPECT_EQ(pocket.at("view").at("sensor"), "palm");
+    EXPECT_EQ(pocket.at("view").at("way"), "free");
+    EXPECT_THAT(query_text(answer), HasSubstr("   1  4.10 l about (0.880, 0.000, 0.320) m"));
+    request.path.clear();  // nobody knows how the arm stands
+    EXPECT_TRUE(ask(request, holed).at("pockets").at(0).at("view").is_null());
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,82 @@
+#include "host/apps/querying/query_request.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace octoskin {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(QueryRequest, of_a_path_comes_back_as_it_was_sent) {
+    QueryRequest sent;
+    sent.path = {{0.1, -0.785}, {1e-9, 2.0 / 3.0}};
+    sent.padding_m = 0.02;
+    sent.reach_m = 0.3;
+    sent.step = 0.01;
+    sent.links_ignored = {"gripper \"left\""};
+    sent.asks_unmoved_links = true;
+    sent.own_space_m = 0.05;
+    const std::string line = to_line(sent);
+    EXPECT_TRUE(is_query(line));
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    const auto read = read_query(line);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->kind, QueryKind::postures);
+    EXPECT_EQ(read->path, sent.path);
+    EXPECT_EQ(read->padding_m, 0.02);
+    EXPECT_EQ(read->reach_m, 0.3);
+    EXPECT_EQ(read->step, 0.01);
+    EXPECT_EQ(read->links_ignored, sent.links_ignored);
+    EXPECT_TRUE(read->asks_unmoved_links);
+    EXPECT_EQ(read->own_space_m, 0.05);
+}
+
+TEST(QueryRequest, for_pockets_comes_back_as_it_was_sent) {
+    QueryRequest sent;
+    sent.kind = QueryKind::pockets;
+    sent.radius_m = 0.7;
+    sent.z_min_m = -0.1;
+    sent.pocket_min_m3 = 0.002;
+    sent.pockets_max = 3;
+    sent.views_tried = 100;
+    const auto read = read_query(to_line(sent));
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->kind, QueryKind::pockets);
+    EXPECT_EQ(read->radius_m, 0.7);
+    EXPECT_EQ(read->z_min_m, -0.1);
+    EXPECT_EQ(read->pocket_min_m3, 0.002);
+    EXPECT_EQ(read->pockets_max, 3U);
+    EXPECT_EQ(read->views_tried, 100U);
+}
+
+TEST(QueryRequest, is_refused_by_name_of_what_is_wrong_with_it) {
+    const auto fault = [](const std::string& line) {
+        const auto read = read_query(line);
+        return read ? std::string("taken") : read.error().message;
+    };
+    EXPECT_EQ(fault("query {}"), "taken");
+    EXPECT_THAT(fault("query "), HasSubstr("expected: query {"));
+    EXPECT_THAT(fault("query [1]"), HasSubstr("expected: query {"));
+    EXPECT_THAT(fault("query {\"paht\": []}"), HasSubstr("unknown key 'paht'"));
+    EXPECT_THAT(fault("query {\"path\": [0, 1]}"), HasSubstr("wrong kind"));
+    EXPECT_THAT(fault("query {\"step\": \"0.1\"}"), HasSubstr("wrong kind"));
+    EXPECT_THAT(fault("query {\"padding_m\": -1}"), HasSubstr("padding_m is -1; expected 0 to 1"));
+    EXPECT_THAT(fault("query {\"reach_m\": 1e9}"), HasSubstr("reach_m is"));
+    EXPECT_THAT(fault("query {\"step\": 0}"), HasSubstr("step is 0"));
+    EXPECT_THAT(fault("query {\"own_space_m\": 2}"), HasSubstr("own_space_m is 2"));
+    EXPECT_THAT(fault("query {\"pockets\": true, \"radius_m\": 50}"), HasSubstr("radius_m is 50"));
+    EXPECT_THAT(fault("query {\"views_tried\": 1000000}"), HasSubstr("views_tried is"));
+}
+
+TEST(QueryRequest, has_so_many_configurations_and_no_more) {
+    QueryRequest request;
+    request.path.assign(kConfigurationsMax, {0.0});
+    EXPECT_EQ(fault_of(request), "");
+    request.path.push_back({0.0});
+    EXPECT_THAT(fault_of(request), HasSubstr("1001 configurations; at most 1000"));
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,49 @@
+#include "host/core/bricks/cube_parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "host/core/voxels/morton.hpp"
+
+namespace octoskin {
+namespace {
+
+TEST(CubeParts, are_in_morton_order) {
+    const VoxelCube cube{{32768, 32832, 64}, 6};
+    for (MortonCode i = 0; i < 64; ++i) {
+        const VoxelCube part = part_of(cube, i);
+        EXPECT_EQ(part.height, 4U);
+        EXPECT_EQ(morton_of(part.lowest), morton_of(cube.lowest) + (i << 12U));
+    }
+}
+
+TEST(CubeParts, in_a_box_are_those_that_meet_it) {
+    std::mt19937 random(3);
+    const auto near = [&](unsigned height) {
+        return static_cast<std::uint16_t>(1024 - (1U << height) + random() % (3U << height));
+    };
+    for (int round = 0; round < 3000; ++round) {
+        const unsigned height = round % 2 == 0 ? 2 : 5;
+        const VoxelCube cube{{1024, 1024, 1024}, height};
+        KeyBox box{{near(height), near(height), near(height)}, {}};
+        box.highest = box.lowest;
+        box.include({near(height), near(height), near(height)});
+        std::uint64_t expected = 0;
+        for (std::size_t i = 0; i < 64; ++i) {
+            if (do_meet(part_of(cube, i), box)) expected |= std::uint64_t{1} << i;
+        }
+        ASSERT_EQ(parts_in(cube, box), expected) << round;
+    }
+}
+
+TEST(CubeParts, reach_the_octrees_ends) {
+    const KeyBox all{{0, 0, 0}, {65535, 65535, 65535}};
+    EXPECT_EQ(parts_in({{0, 0, 0}, 16}, all), ~std::uint64_t{0});
+    EXPECT_EQ(parts_in({{0, 0, 0}, 17}, all), 0xFFU) << "half as wide in each direction";
+    EXPECT_EQ(parts_in({{65532, 65532, 65532}, 2}, {{65535, 65535, 65535}, {65535, 65535, 65535}}),
+              std::uint64_t{1} << 63U);
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,120 @@
+// How fast the default updates follow what has come and gone: an image at 10 Hz, ranges at 30 Hz.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "host/core/mapping/fused_map.hpp"
+#include "host/core/mapping/mapping_config.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr VoxelKey kKey{32768, 32768, 32768};
+
+DepthTerms image(float term) {
+    DepthTerms terms;
+    terms.miss = -0.4F;
+    terms.take({{kKey, term}});
+    return terms;
+}
+const DepthTerms kPassing = image(-0.4F);
+ConeVoxels cone_through() {
+    ConeVoxels cone;
+    cone.passed = {kKey};
+    return cone;
+}
+ConeVoxels cone_onto() {
+    ConeVoxels cone;
+    cone.cap = {{kKey, 1.0F}};
+    return cone;
+}
+
+/// What a voxel may have been through: images that hit it, then ranges that did, then ranges that passed it.
+struct Past {
+    int images = 0;
+    int hits = 0;
+    int misses = 0;
+};
+
+/// Every past that leaves the voxel occupied.
+std::vector<FusedMap> occupied_maps(const MappingConfig& mapping) {
+    std::vector<FusedMap> maps;
+    for (const int images : {0, 1, 3, 20})
+        for (const int hits : {0, 1, 5, 60})
+            for (const int misses : {0, 3, 10}) {
+                FusedMap map(mapping.map);
+                for (int i = 0; i < images; ++i) map.apply(image(0.9F));
+                for (int i = 0; i < hits; ++i) map.apply(cone_onto(), mapping.cone);
+                for (int i = 0; i < misses; ++i) map.apply(cone_through(), mapping.cone);
+                if (map.occupancy(kKey) == Occupancy::occupied) maps.push_back(std::move(map));
+            }
+    return maps;
+}
+
+template <class Apply>
+int times_until(FusedMap& map, Occupancy wanted, const Apply& apply) {
+    int times = 0;
+    for (; times < 1000 && map.occupancy(kKey) != wanted; ++times) apply(map);
+    return times;
+}
+
+class Clearing : public testing::TestWithParam<MappingConfig> {};
+
+TEST_P(Clearing, is_done_by_five_images_whatever_was_there) {
+    auto maps = occupied_maps(GetParam());
+    EXPECT_GT(maps.size(), 30U);
+    for (FusedMap& map : maps)
+        EXPECT_LE(times_until(map, Occupancy::free, [](FusedMap& m) { m.apply(kPassing); }), 5);
+}
+
+TEST_P(Clearing, is_done_by_a_range_sensors_thirty_cones_whatever_was_there) {
+    for (FusedMap& map : occupied_maps(GetParam()))
+        EXPECT_LE(times_until(map, Occupancy::free,
+                              [](FusedMap& m) { m.apply(cone_through(), robust_mapping().cone); }),
+                  30);
+}
+
+TEST_P(Clearing, is_done_by_a_range_sensors_thirty_rays_whatever_the_camera_saw) {
+    FusedMap map(GetParam().map);
+    for (int i = 0; i < 50; ++i) map.apply(image(0.9F));
+    EXPECT_LE(times_until(map, Occupancy::free,
+                          [](FusedMap& m) {
+                              m.apply(std::vector<VoxelUpdate>{{kKey, -0.4F}});
+                          }),
+              30);
+}
+
+// The third image of what has come is taken 0.2 s after the first.
+TEST_P(Clearing, is_undone_by_three_images_of_what_has_come) {
+    for (const float hit : {0.9F, 0.8F, 0.6F, 0.5F}) {  // ranges of 1 to 5 m
+        for (const int cones : {0, 5, 60}) {
+            FusedMap map(GetParam().map);
+            for (int i = 0; i < 50; ++i) map.apply(kPassing);
+            for (int i = 0; i < cones; ++i) map.apply(cone_through(), GetParam().cone);
+            EXPECT_LE(times_until(map, Occupancy::occupied, [&](FusedMap& m) { m.apply(image(hit)); }), 3)
+                << hit << ' ' << cones;
+        }
+    }
+}
+
+TEST_P(Clearing, leaves_a_surface_that_the_camera_goes_on_seeing) {
+    FusedMap map(GetParam().map);
+    for (int i = 0; i < 20; ++i) map.apply(image(0.9F));
+    for (int i = 0; i < 300; ++i) {
+        map.apply(cone_through(), GetParam().cone);
+        if (i % 3 == 0) map.apply(image(0.9F));
+        EXPECT_EQ(map.occupancy(kKey), Occupancy::occupied);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Default, Clearing, testing::Values(fast_mapping(), robust_mapping()),
+                         [](const auto& tested) { return tested.index == 0 ? "fast" : "robust"; });
+
+TEST(Clearing, of_the_papers_update_takes_what_its_clamps_take) {
+    FusedMap map(paper_mapping().map);
+    for (int i = 0; i < 20; ++i) map.apply(image(0.9F));
+    EXPECT_EQ(times_until(map, Occupancy::free, [](FusedMap& m) { m.apply(kPassing); }), 9);
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,287 @@
+// Maps in which range sensors that see a cone have counted. The oracle keeps every voxel's counts in a
+// std::map and does the arithmetic of docs/method.md in double precision.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <random>
+
+#include "host/core/mapping/fused_map.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr std::uint16_t kZero = 32768;
+
+VoxelKey key_at(int x, int y = 0, int z = 0) {
+    return {static_cast<std::uint16_t>(kZero + x), static_cast<std::uint16_t>(kZero + y),
+            static_cast<std::uint16_t>(kZero + z)};
+}
+
+MapConfig map_config() {
+    MapConfig config;
+    config.counts = {.prior_hits = 0.4F,
+                     .prior_misses = 0.6F,
+                     .occupied_hits = 25.0F,
+                     .free_misses = 8.0F,
+                     .occupied_probability = 0.45F,
+                     .hits_min = 0.35F,
+                     .misses_min = 0.7F,
+                     .counts_max = 20.0F,
+                     .image_clears = 0.25F,
+                     .image_marks = 0.0F,
+                     .range_clears = 0.0F};
+    return config;
+}
+
+struct Oracle {
+    struct Voxel {
+        std::optional<double> other;
+        double hits = 0.0;
+        double misses = 0.0;
+        bool was_known = false;
+        [[nodiscard]] double for_it() const { return 0.4 + hits + 25.0 * std::max(0.0, known()) / 3.5; }
+        [[nodiscard]] double against_it() const { return 0.6 + misses + 8.0 * std::max(0.0, -known()) / 2.0; }
+        [[nodiscard]] double probability() const { return for_it() / (for_it() + against_it()); }
+        [[nodiscard]] double known() const { return other.value_or(0.0); }
+        [[nodiscard]] bool is_counted() const { return hits > 0.0 || misses > 0.0; }
+        /// Single precision may lie on the other side of a threshold.
+        [[nodiscard]] bool is_on_edge() const {
+            return std::abs(hits - 0.35) < 1e-4 || std::abs(misses - 0.7) < 1e-4 ||
+                   (other && std::abs(*other) < 1e-4);
+        }
+        [[nodiscard]] std::optional<double> log_odds() const {
+            if (!is_counted()) return other;
+            const double sum = std::clamp(std::log(for_it() / against_it() * 0.55 / 0.45), -2.0, 3.5);
+            const bool is_marked = probability() >= 0.45 && (hits >= 0.35 || (other && *other >= 0.0));
+            if (is_marked) return sum;
+            if (!other && misses <= 0.7 && !was_known) return std::nullopt;
+            return std::min(sum, -1e-30);
+        }
+        void settle() {
+            const double sum = hits + misses;
+            hits *= sum > 20.0 ? 20.0 / sum : 1.0;
+            misses *= sum > 20.0 ? 20.0 / sum : 1.0;
+            was_known = log_odds().has_value();
+        }
+    };
+    std::map<VoxelKey, Voxel> voxels;
+
+    void add(VoxelKey key, double term) {
+        Voxel& voxel = voxels[key];
+        voxel.other = std::clamp(voxel.known() + term, -2.0, 3.5);
+        voxel.was_known = true;
+    }
+    /// An image all of whose rays pass the voxel.
+    void see_through(VoxelKey key) {
+        Voxel& voxel = voxels[key];
+        voxel.hits = 0.75 * voxel.hits < 0.01 ? 0.0 : 0.75 * voxel.hits;
+        add(key, -0.4);
+    }
+    void count(const ConeVoxels& cone, const ConeModel& model) {
+        double sum = 0.0;
+        for (const CapVoxel& cap : cone.cap)
+            sum += static_cast<double>(cap.weight) * voxels[cap.key].probability();
+        std::map<VoxelKey, double> shares;
+        for (const CapVoxel& cap : cone.cap)
+            shares[cap.key] = static_cast<double>(model.hit_mass) * static_cast<double>(cap.weight) *
+                              voxels[cap.key].probability() / sum;
+        for (const auto& [key, share] : shares) {
+            voxels[key].hits += share;
+            voxels[key].settle();
+        }
+        for (const VoxelKey key : cone.passed) {
+            voxels[key].misses += static_cast<double>(model.miss_mass);
+            voxels[key].settle();
+        }
+    }
+};
+
+void expect_equal(const FusedMap& map, const Oracle& oracle) {
+    std::size_t known = 0;
+    std::size_t on_edge = 0;
+    for (const auto& [key, voxel] : oracle.voxels) {
+        const auto expected = voxel.log_odds();
+        const auto found = map.log_odds(key);
+        if (voxel.is_on_edge()) {
+            ++on_edge;
+            known += found ? 1U : 0U;
+            continue;
+        }
+        ASSERT_EQ(found.has_value(), expected.has_value());
+        known += expected ? 1U : 0U;
+        if (expected) {
+            ASSERT_NEAR(*found, *expected, 2e-4);
+        }
+    }
+    EXPECT_EQ(map.known_voxels(), known);
+    EXPECT_LE(on_edge, oracle.voxels.size() / 20);
+}
+
+TEST(CountingMap, shares_a_hit_by_weight_and_what_was_known) {
+    FusedMap map(map_config());
+    map.apply(std::vector<VoxelUpdate>{{key_at(0), 3.5F}});
+    ConeVoxels cone;
+    cone.cap = {{key_at(0), 1.0F}, {key_at(1), 1.0F}, {key_at(2), 0.5F}};
+    map.apply(cone, {});
+    // P before: 25.4 / 26 = 0.97692, 0.4, 0.4; their weighted sum 1.57692.
+    const RangeCounts& counts = map.counts();
+    const MortonCode brick = brick_of(key_at(0));
+    EXPECT_NEAR(counts.hits.find(brick).at(cell_of(key_at(0))), 0.61951, 1e-5);
+    EXPECT_NEAR(counts.hits.find(brick).at(cell_of(key_at(1))), 0.25366, 1e-5);
+    EXPECT_NEAR(counts.hits.find(brick).at(cell_of(key_at(2))), 0.12683, 1e-5);
+}
+
+TEST(CountingMap, leaves_unknown_what_a_cap_merely_touches) {
+    FusedMap map(map_config());
+    ConeVoxels cone;
+    for (int x = 0; x < 4; ++x) cone.cap.push_back({key_at(x), 1.0F});
+    map.apply(cone, {});  // a quarter of a hit each, less than 0.35
+    EXPECT_EQ(map.known_voxels(), 0U);
+    map.apply(cone, {});
+    EXPECT_EQ(map.known_voxels(), 4U);
+    EXPECT_EQ(map.occupancy(key_at(2)), Occupancy::occupied);
+}
+
+TEST(CountingMap, frees_what_is_passed_but_not_a_surface_that_the_camera_is_sure_of) {
+    FusedMap map(map_config());
+    for (int i = 0; i < 4; ++i) map.apply(std::vector<VoxelUpdate>{{key_at(0), 1.0F}});
+    ConeVoxels cone;
+    cone.passed = {key_at(0), key_at(1)};
+    for (int i = 0; i < 100; ++i) map.apply(cone, {});
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied);
+    EXPECT_EQ(map.occupancy(key_at(1)), Occupancy::free);
+}
+
+TEST(CountingMap, is_fused_anew_when_the_camera_speaks_after_the_counts) {
+    FusedMap map(map_config());
+    ConeVoxels cone;
+    cone.cap = {{key_at(0), 1.0F}};
+    map.apply(cone, {});
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied);
+    DepthTerms terms;
+    terms.miss = -0.4F;
+    terms.take({{key_at(0), -0.4F}});
+    map.apply(terms);  // 0.75 hits are left, and 1.6 misses are as good as known
+    EXPECT_NEAR(map.log_odds(key_at(0)).value(), std::log(1.15 / 2.2 * 0.55 / 0.45), 1e-5);
+}
+
+TEST(CountingMap, loses_hits_where_every_image_sees_through) {
+    FusedMap map(map_config());
+    ConeVoxels cone;
+    cone.cap = {{key_at(0), 1.0F}};
+    for (int i = 0; i < 20; ++i) map.apply(cone, {});
+    DepthTerms terms;
+    terms.miss = -0.4F;
+    terms.take({{key_at(0), -0.4F}});
+    for (int i = 0; i < 40; ++i) map.apply(terms);
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free);
+    EXPECT_EQ(map.counts().hits.find(brick_of(key_at(0))).at(cell_of(key_at(0))), 0.0F);
+}
+
+TEST(CountingMap, forgets_counts_and_keeps_what_they_came_to) {
+    FusedMap map(map_config());
+    ConeVoxels cone;
+    cone.cap = {{key_at(0), 1.0F}};
+    cone.passed = {key_at(1)};
+    map.apply(cone, {});
+    const auto before = map.log_odds(key_at(0));
+    map.forget_counts();
+    EXPECT_EQ(map.log_odds(key_at(0)), before);
+    EXPECT_TRUE(map.counts().empty());
+    map.apply(std::vector<VoxelUpdate>{{key_at(0), -0.4F}});
+    EXPECT_EQ(map.log_odds(key_at(0)), *before - 0.4F);
+}
+
+TEST(CountingMap, equals_the_arithmetic_of_every_voxel_on_its_own) {
+    std::mt19937 random(7);
+    std::uniform_int_distribution<int> place(0, 11);
+    std::uniform_real_distribution<float> real(0.01F, 1.0F);
+    FusedMap map(map_config());
+    Oracle oracle;
+    const ConeModel model{.hit_mass = 0.8F, .miss_mass = 0.6F};
+    const auto any_key = [&] { return key_at(place(random), place(random), place(random) / 3); };
+    for (int step = 0; step < 600; ++step) {
+        if (step % 3 == 0) {
+            std::map<VoxelKey, float> terms;
+            for (int i = 0; i < 40; ++i) terms[any_key()] = real(random) > 0.4F ? -0.4F : 0.5F;
+            std::vector<VoxelUpdate> updates;
+            for (const auto& [key, term] : terms) {
+                updates.push_back({key, term});
+                step % 6 == 0 && term < 0.0F ? oracle.see_through(key)
+                                             : oracle.add(key, static_cast<double>(term));
+            }
+            DepthTerms depth;
+            depth.miss = -0.4F;
+            depth.take(updates);
+            step % 6 == 0 ? map.apply(depth) : map.apply(updates);
+        } else {
+            ConeVoxels cone;
+            std::map<VoxelKey, float> cap;
+            for (int i = 0; i < 10; ++i) cap[any_key()] = real(random);
+            for (const auto& [key, weight] : cap) cone.cap.push_back({key, weight});
+            for (int i = 0; i < 3; ++i) cone.passed.push_back(any_key());
+            map.apply(cone, model);
+            oracle.count(cone, model);
+        }
+    }
+    expect_equal(map, oracle);
+}
+
+TEST(CountingMap, copies_keep_what_they_were_and_go_on_the_same_way) {
+    FusedMap map(map_config());
+    ConeVoxels cone;
+    cone.cap = {{key_at(0), 1.0F}, {key_at(1), 0.5F}};
+    cone.passed = {key_at(-1)};
+    map.apply(cone, {});
+    FusedMap copy = map.copy();
+    const auto before = copy.log_odds(key_at(0));
+    map.apply(cone, {});
+    EXPECT_EQ(copy.log_odds(key_at(0)), before);
+    copy.apply(cone, {});
+    EXPECT_EQ(copy.log_odds(key_at(0)), map.log_odds(key_at(0)));
+    EXPECT_EQ(copy.log_odds(key_at(-1)), map.log_odds(key_at(-1)));
+}
+
+TEST(CountingMap, tells_what_changed) {
+    FusedMap map(map_config());
+    ConeVoxels cone;
+    cone.cap = {{key_at(0), 1.0F}};
+    cone.passed = {key_at(-1)};
+    std::vector<VoxelUpdate> changes;
+    map.apply(cone, {.hit_mass = 1.0F, .miss_mass = 1.0F}, &changes);
+    ASSERT_EQ(changes.size(), 2U);
+    EXPECT_EQ(changes[0], (VoxelUpdate{key_at(0), map.log_odds(key_at(0)).value()}));
+    EXPECT_EQ(changes[1], (VoxelUpdate{key_at(-1), map.log_odds(key_at(-1)).value()}));
+}
+
+TEST(CountingMap, counts_within_three_quarters_more_memory) {
+    MapConfig config = map_config();
+    config.memory_max_mib = 1;
+    FusedMap map(config);
+    ConeVoxels cone;
+    for (int x = 0; x < 1000; ++x) cone.passed.push_back(key_at(8 * x));
+    map.apply(cone, {});
+    EXPECT_GT(map.counters().no_room, 0U);
+    EXPECT_EQ(map.counters().applied + map.counters().no_room, 1000U);
+    EXPECT_LE(map.counts().heap_bytes(), std::size_t{3} << 18U);
+    EXPECT_LE(map.memory_bytes(), std::size_t{1} << 20U);
+}
+
+TEST(CountingMap, is_fused_anew_with_other_limits) {
+    FusedMap map(map_config());
+    ConeVoxels cone;
+    for (int x = 0; x < 4; ++x) cone.cap.push_back({key_at(x), 1.0F});
+    map.apply(cone, {});
+    MapConfig config = map_config();
+    config.counts.hits_min = 0.2F;
+    map.limit(config);
+    EXPECT_EQ(map.occupancy(key_at(3)), Occupancy::occupied);
+    config.log_odds_max = 0.1F;
+    map.limit(config);
+    EXPECT_EQ(map.log_odds(key_at(3)), 0.1F);
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,270 @@
+// When voxels were confirmed, by what, and what becomes of those that nobody confirms. The oracle of the
+// random test keeps a time and a kind for each voxel.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "host/core/mapping/fused_map.hpp"
+#include "host/core/mapping/mapping_config.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr std::uint16_t kZero = 32768;
+
+VoxelKey key_at(int x, int y = 0, int z = 0) {
+    return {static_cast<std::uint16_t>(kZero + x), static_cast<std::uint16_t>(kZero + y),
+            static_cast<std::uint16_t>(kZero + z)};
+}
+HostTime at_s(double seconds) {
+    return {static_cast<std::int64_t>(seconds * 1e9)};
+}
+MapConfig aging(std::uint32_t stale_after_s, std::uint32_t unknown_after_s) {
+    MapConfig config;
+    config.age = {stale_after_s, unknown_after_s};
+    return config;
+}
+std::vector<VoxelUpdate> one(VoxelKey key, float term) {
+    return {{key, term}};
+}
+DepthTerms image_of(std::vector<VoxelUpdate> updates) {
+    DepthTerms terms;
+    terms.miss = -0.4F;
+    terms.take(std::move(updates));
+    return terms;
+}
+Confirmation by(SensorKind kind, std::uint32_t age_s) {
+    return {age_s, kind};
+}
+
+TEST(DatedMap, keeps_no_times_before_it_is_told_one) {
+    FusedMap map(aging(1, 2));
+    map.apply(one(key_at(0), 1.0F));
+    EXPECT_FALSE(map.confirmation(key_at(0)).has_value());
+    EXPECT_FALSE(map.is_stale(key_at(0)));
+    EXPECT_EQ(map.confirmations().heap_bytes(), 0U);
+}
+
+TEST(DatedMap, knows_when_and_by_what_a_voxel_was_last_confirmed) {
+    FusedMap map(MapConfig{});
+    map.go_on(at_s(100.9));
+    map.apply(one(key_at(0), -0.4F));
+    map.apply(image_of({{key_at(1), -0.4F}, {key_at(2), 0.8F}}));
+    map.go_on(at_s(107.0));
+    map.apply(one(key_at(2), 0.5F));
+    EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 7));
+    EXPECT_EQ(map.confirmation(key_at(1)), by(SensorKind::camera, 7));
+    EXPECT_EQ(map.confirmation(key_at(2)), by(SensorKind::range, 0));
+    EXPECT_FALSE(map.confirmation(key_at(3)).has_value()) << "unknown";
+}
+
+TEST(DatedMap, is_confirmed_by_what_changes_nothing_at_a_clamp_but_not_by_a_term_of_zero) {
+    FusedMap map(MapConfig{});
+    map.go_on(at_s(0));
+    for (int i = 0; i < 9; ++i) map.apply(one(key_at(0), -0.4F));
+    map.apply(one(key_at(1), -0.4F));
+    map.go_on(at_s(5));
+    map.apply(one(key_at(0), -0.4F));
+    map.apply(one(key_at(1), 0.0F));
+    EXPECT_EQ(map.confirmation(key_at(0))->age_s, 0U);
+    EXPECT_EQ(map.confirmation(key_at(1))->age_s, 5U);
+}
+
+TEST(DatedMap, has_what_it_held_when_its_clock_began_stale_until_it_is_confirmed_or_unknown) {
+    FusedMap map(aging(10, 20));
+    map.apply(one(key_at(0), -0.4F));
+    map.apply(one(key_at(100), -0.4F));
+    map.go_on(at_s(50));
+    EXPECT_FALSE(map.confirmation(key_at(0)).has_value()) << "nobody knows";
+    EXPECT_TRUE(map.is_stale(key_at(0)));
+    map.apply(one(key_at(100), -0.4F));
+    EXPECT_FALSE(map.is_stale(key_at(100)));
+    map.go_on(at_s(69.9));
+    EXPECT_EQ(map.known_voxels(), 2U);
+    map.apply(one(key_at(100), -0.4F));
+    map.go_on(at_s(70));
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
+    EXPECT_EQ(map.known_voxels(), 1U);
+}
+
+TEST(DatedMap, knows_no_more_of_what_was_before_its_clock_when_that_has_run_for_days) {
+    FusedMap map(aging(10, 0));
+    map.apply(one(key_at(0), -0.4F));
+    for (double s = 0; s < 50'000; s += 900) map.go_on(at_s(s));
+    EXPECT_FALSE(map.confirmation(key_at(0)).has_value());
+    EXPECT_TRUE(map.is_stale(key_at(0)));
+}
+
+TEST(DatedMap, becomes_stale_and_then_unknown) {
+    FusedMap map(aging(10, 20));
+    map.go_on(at_s(0));
+    map.apply(one(key_at(0), 3.0F));
+    map.apply(one(key_at(100), -0.4F));
+    map.go_on(at_s(19));
+    EXPECT_TRUE(map.is_stale(key_at(0)));
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied);
+    EXPECT_EQ(map.known_voxels(), 2U);
+    map.apply(one(key_at(100), -0.4F));
+    map.go_on(at_s(20));
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
+    EXPECT_FALSE(map.is_stale(key_at(0)));
+    EXPECT_EQ(map.occupancy(key_at(100)), Occupancy::free);
+    EXPECT_EQ(map.known_voxels(), 1U);
+    map.apply(one(key_at(0), 0.5F));
+    EXPECT_EQ(map.log_odds(key_at(0)), 0.5F) << "as if nobody had ever been there";
+    map.go_on(at_s(1000));
+    EXPECT_EQ(map.known_voxels(), 0U);
+    EXPECT_EQ(map.heap_bytes(), 0U);
+}
+
+TEST(DatedMap, forgets_counts_of_what_it_forgets) {
+    FusedMap map(aging(0, 5));
+    map.go_on(at_s(0));
+    ConeVoxels cone;
+    cone.passed = {key_at(0)};
+    for (int i = 0; i < 20; ++i) map.apply(cone, {});
+    EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 0));
+    map.go_on(at_s(5));
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
+    EXPECT_FALSE(map.counts().has(brick_of(key_at(0)))) << "an emptied brick is given back";
+    map.apply(cone, {});
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown) << "one reading does not free it";
+}
+
+TEST(DatedMap, has_of_a_cap_only_what_is_occupied_confirmed) {
+    FusedMap map(MapConfig{});
+    map.go_on(at_s(0));
+    map.apply(one(key_at(0), -2.0F));
+    for (int i = 0; i < 4; ++i) map.apply(one(key_at(1), 1.0F));
+    map.go_on(at_s(30));
+    ConeVoxels cone;
+    cone.cap = {{key_at(0), 1.0F}, {key_at(1), 1.0F}};
+    map.apply(cone, {});
+    EXPECT_EQ(map.confirmation(key_at(0))->age_s, 30U);
+    EXPECT_EQ(map.confirmation(key_at(1)), by(SensorKind::range, 0));
+}
+
+TEST(DatedMap, waits_for_late_measurements_and_follows_a_clock_that_was_set_back) {
+    FusedMap map(MapConfig{});
+    map.go_on(at_s(100));
+    map.apply(one(key_at(0), 1.0F));
+    map.go_on(at_s(103));
+    map.go_on(at_s(102));
+    EXPECT_EQ(map.confirmation(key_at(0))->age_s, 3U);
+    map.go_on(at_s(7));
+    EXPECT_EQ(map.confirmation(key_at(0))->age_s, 3U);
+    map.go_on(at_s(9));
+    EXPECT_EQ(map.confirmation(key_at(0))->age_s, 5U);
+}
+
+TEST(DatedMap, tells_ages_over_days) {
+    FusedMap map(MapConfig{});
+    map.go_on(at_s(-3));
+    map.apply(one(key_at(0), 1.0F));
+    for (double s = 0; s < 200'000; s += 997) {
+        map.go_on(at_s(s));
+        map.apply(one(key_at(1), 1.0F));
+        EXPECT_EQ(map.confirmation(key_at(0))->age_s, std::min(s + 3, 8191.0));
+        EXPECT_EQ(map.confirmation(key_at(1))->age_s, 0U);
+    }
+    map.go_on(at_s(1e6));
+    EXPECT_EQ(map.confirmation(key_at(1)), by(SensorKind::range, 8191));
+}
+
+TEST(DatedMap, keeps_what_was_when_a_copy_goes_on) {
+    FusedMap map(aging(10, 20));
+    map.go_on(at_s(0));
+    map.apply(one(key_at(0), 1.0F));
+    FusedMap copy = map.copy();
+    copy.go_on(at_s(20));
+    EXPECT_EQ(copy.known_voxels(), 0U);
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied);
+    EXPECT_EQ(map.confirmation(key_at(0))->age_s, 0U);
+}
+
+TEST(DatedMap, copies_nothing_that_is_confirmed_again_within_a_second) {
+    FusedMap map(MapConfig{});
+    map.go_on(at_s(0));
+    const DepthTerms image = image_of({{key_at(0), -0.4F}, {key_at(1), 0.8F}});
+    map.apply(image);
+    const FusedMap copy = map.copy();
+    map.go_on(at_s(0.9));
+    map.apply(image);
+    copy.confirmations().stamps().for_each_difference(map.confirmations().stamps(),
+                                                      [](MortonCode) { ADD_FAILURE() << "nothing changed"; });
+}
+
+TEST(DatedMap, has_its_times_within_a_bound_and_counts_what_has_none) {
+    MapConfig config = aging(10, 0);
+    config.memory_max_mib = 1;
+    FusedMap map(config);
+    map.go_on(at_s(0));
+    std::vector<VoxelUpdate> updates;  // each in a brick and in nodes of its own: the worst there is
+    for (int x = 0; x < 2000; ++x) updates.push_back({key_at(64 * (x % 100), 64 * (x / 100)), -0.4F});
+    map.apply(updates);
+    EXPECT_LE(map.confirmations().heap_bytes(), std::size_t{9} << 16U);
+    EXPECT_LE(map.memory_bytes(), std::size_t{1} << 20U);
+    std::uint64_t undated = 0;
+    map.for_each_known([&](VoxelKey key, float) {
+        undated += map.confirmation(key) ? 0U : 1U;
+        EXPECT_EQ(map.is_stale(key), !map.confirmation(key)) << "what nobody knows of is not relied on";
+    });
+    EXPECT_EQ(map.counters().undated, undated);
+}
+
+TEST(DatedMap, forgets_times_with_counts_where_they_decide_what_is_known) {
+    FusedMap lasting(aging(10, 0));
+    FusedMap passing(aging(10, 20));
+    for (FusedMap* map : {&lasting, &passing}) {
+        map->go_on(at_s(0));
+        map->apply(one(key_at(0), 1.0F));
+        map->go_on(at_s(15));
+        map->forget_counts();
+        map->go_on(at_s(25));
+    }
+    EXPECT_EQ(lasting.confirmation(key_at(0)), by(SensorKind::range, 25));
+    EXPECT_FALSE(passing.confirmation(key_at(0)).has_value());
+    EXPECT_TRUE(passing.is_stale(key_at(0)));
+}
+
+// Oracle: a std::map of times and kinds, the same terms without a clock for the log-odds.
+TEST(DatedMap, equals_a_time_and_a_kind_kept_for_each_voxel) {
+    struct Dated {
+        int second = 0;
+        SensorKind kind = SensorKind::none;
+    };
+    std::mt19937 random(3);
+    const auto any_key = [&] {
+        return key_at(static_cast<int>(random() % 20), static_cast<int>(random() % 9),
+                      static_cast<int>(random() % 3));
+    };
+    FusedMap map(aging(4, 9));
+    std::map<VoxelKey, Dated> oracle;
+    int second = 0;
+    map.go_on(at_s(0));
+    for (int step = 0; step < 400; ++step) {
+        second += static_cast<int>(random() % 3);
+        map.go_on(at_s(second + 0.5));
+        std::erase_if(oracle, [&](const auto& entry) { return second - entry.second.second >= 9; });
+        std::set<VoxelKey> keys;
+        for (unsigned i = 0; i < random() % 60; ++i) keys.insert(any_key());
+        std::vector<VoxelUpdate> updates;
+        for (const VoxelKey key : keys) updates.push_back({key, random() % 2 == 0 ? -0.4F : 0.7F});
+        const bool is_image = random() % 2 == 0;
+        is_image ? map.apply(image_of(updates)) : map.apply(updates);
+        for (const VoxelKey key : keys)
+            oracle[key] = {second, is_image ? SensorKind::camera : SensorKind::range};
+        ASSERT_EQ(map.known_voxels(), oracle.size()) << "step " << step;
+        for (const auto& [key, dated] : oracle) {
+            ASSERT_EQ(map.confirmation(key),
+                      by(dated.kind, static_cast<std::uint32_t>(second - dated.second)));
+            ASSERT_EQ(map.is_stale(key), second - dated.second >= 4);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,68 @@
+// That the maps are told when what goes into them was measured.
+#include <gtest/gtest.h>
+
+#include "host/core/pipeline/map_builder.hpp"
+#include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
+
+namespace octoskin::test {
+namespace {
+
+/// Where one kind of sensor has confirmed a voxel at this age.
+std::size_t confirmed(const FusedMap& map, SensorKind kind, std::uint32_t age_s) {
+    std::size_t voxels = 0;
+    map.for_each_known([&](VoxelKey key, float) {
+        voxels += map.confirmation(key) == Confirmation{age_s, kind} ? 1U : 0U;
+    });
+    return voxels;
+}
+
+class AgeWiring : public testing::Test {
+  protected:
+    MapBuilder build(const AgeModel& age) {
+        MappingConfig mapping = plain_mapping();
+        mapping.map.age = age;
+        mapping.removes_robot_from_depth = false;
+        return MapBuilder::build(one_joint_rig(), one_joint_robot(), mapping, {}, {}).value();
+    }
+    static void read_at(MapBuilder& builder, double time_s) {
+        const HostTime captured{static_cast<std::int64_t>(time_s * 1e9)};
+        for (const std::int64_t beside_ns : {-5'000'000, 5'000'000}) {
+            JointMeasurement joints{HostTime{captured.ns + beside_ns}, {}};
+            joints.position_rad[0] = 1.57;
+            ASSERT_TRUE(builder.add(joints));
+        }
+        ASSERT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, captured, 0.52, 0.01}));
+    }
+};
+
+TEST_F(AgeWiring, tells_the_maps_the_times_of_readings_and_images) {
+    MapBuilder builder = build({});
+    ASSERT_TRUE(builder.integrate(flat_frame(3.5)));
+    read_at(builder, 10.5);
+    EXPECT_GT(confirmed(*builder.maps().fused(), SensorKind::camera, 7), 100U);
+    EXPECT_GT(confirmed(*builder.maps().fused(), SensorKind::range, 0), 5U);
+    EXPECT_GT(confirmed(*builder.maps().depth(), SensorKind::camera, 7), 100U);
+    EXPECT_GT(confirmed(*builder.maps().proximity(), SensorKind::range, 0), 5U);
+}
+
+TEST_F(AgeWiring, forgets_what_no_sensor_has_confirmed) {
+    MapBuilder builder = build({.stale_after_s = 2, .unknown_after_s = 5});
+    ASSERT_TRUE(builder.integrate(flat_frame(3.5)));
+    read_at(builder, 7.9);
+    EXPECT_GT(builder.maps().fused()->known_voxels(), builder.maps().proximity()->known_voxels());
+    read_at(builder, 8.1);
+    EXPECT_EQ(builder.maps().fused()->known_voxels(), builder.maps().proximity()->known_voxels());
+    EXPECT_GT(builder.maps().proximity()->known_voxels(), 0U);
+}
+
+TEST_F(AgeWiring, begins_anew_where_a_recording_does_if_ages_decide_what_is_known) {
+    MapBuilder builder = build({.stale_after_s = 2, .unknown_after_s = 5});
+    ASSERT_TRUE(builder.integrate(flat_frame(3.5)));
+    const std::size_t known = builder.maps().fused()->known_voxels();
+    builder.forget_counts();
+    read_at(builder, 8.1);
+    EXPECT_GE(builder.maps().fused()->known_voxels(), known);
+}
+
+}  // namespace
+}  // namespace octoskin::test

@@ -1,0 +1,181 @@
+#include "host/core/query/robot_query.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "host/core/query/own_space.hpp"
+#include "host/core/query/path_query.hpp"
+#include "tests/unit/host/core/query/two_joint_arm.hpp"
+
+namespace octoskin {
+namespace {
+
+RobotQuery query_of(const TwoJointArm& arm, const RobotQueryConfig& config = {}) {
+    auto built = RobotQuery::build(arm.rig, arm.robot, config);
+    EXPECT_TRUE(built);
+    return std::move(built).value();
+}
+
+std::string link_name(const TwoJointArm& arm, const std::optional<LinkId>& link) {
+    return link ? arm.robot.link_names()[*link] : "none";
+}
+
+PostureAnswer worst_at(const RobotQuery& query, const FusedMap& map, const std::array<double, 2>& position) {
+    const auto capsules = query.pose(position);
+    EXPECT_TRUE(capsules);
+    return worst_of(map, *capsules).value();
+}
+
+TEST(RobotQuery, asks_about_what_a_joint_moves_and_about_nothing_else) {
+    const TwoJointArm arm;
+    EXPECT_EQ(query_of(arm).capsule_count(), 2U);
+    EXPECT_EQ(query_of(arm, {.ignores_unmoved = false}).capsule_count(), 3U);
+    EXPECT_EQ(query_of(arm, {.links_ignored = {"upper"}}).capsule_count(), 1U);
+}
+
+TEST(RobotQuery, leaves_out_a_column_that_turns_about_itself) {
+    TwoJointArm arm;
+    arm.rig.body.push_back({"upper", {0, 0, -0.1}, {0, 0, 0}, 0.05});
+    EXPECT_EQ(query_of(arm).capsule_count(), 2U);
+    EXPECT_EQ(query_of(arm, {.ignores_unmoved = false}).capsule_count(), 4U);
+}
+
+TEST(RobotQuery, is_not_built_to_say_free_whatever_there_is) {
+    const TwoJointArm arm;
+    const auto fault = [&](const RobotQueryConfig& config) {
+        return RobotQuery::build(arm.rig, arm.robot, config).error();
+    };
+    EXPECT_EQ(fault({.links_ignored = {"upper", "hand"}}).error, RobotQueryError::no_body);
+    EXPECT_EQ(fault({.links_ignored = {"uper"}}).element, "uper");
+    for (const double padding_m : {-0.01, 1.5, std::nan("")})
+        EXPECT_EQ(fault({.padding_m = padding_m}).error, RobotQueryError::bad_padding);
+}
+
+TEST(RobotQuery, poses_the_body_in_the_map_with_its_padding) {
+    TwoJointArm arm;
+    arm.rig.T_map_base.translation() = Eigen::Vector3d(1.0, 2.0, 3.0);
+    const auto capsules = query_of(arm, {.padding_m = 0.01}).pose(std::array{0.5 * M_PI, 0.1});
+    ASSERT_TRUE(capsules);
+    ASSERT_EQ(capsules->size(), 2U);
+    EXPECT_TRUE((*capsules)[0].p_b.isApprox(Eigen::Vector3d(1.0, 2.3, 3.3)));
+    EXPECT_TRUE((*capsules)[1].p_a.isApprox(Eigen::Vector3d(1.0, 2.5, 3.3)));
+    EXPECT_DOUBLE_EQ((*capsules)[1].radius_m, 0.05);
+}
+
+TEST(RobotQuery, refuses_positions_that_the_arm_cannot_take) {
+    const TwoJointArm arm;
+    const RobotQuery query = query_of(arm);
+    EXPECT_EQ(query.pose(std::array{0.0}).error().error, PostureError::wrong_count);
+    EXPECT_EQ(query.pose(std::array{std::nan(""), 0.0}).error().error, PostureError::not_finite);
+    const auto beyond = query.pose(std::array{0.0, 0.25});
+    EXPECT_EQ(beyond.error().error, PostureError::outside_limits);
+    EXPECT_EQ(beyond.error().joint, 1U);
+}
+
+TEST(RobotQuery, names_the_worst_state_the_link_and_the_voxel) {
+    const TwoJointArm arm;
+    const RobotQuery query = query_of(arm);
+    FusedMap map = free_about_origin();
+    EXPECT_EQ(worst_at(query, map, {0.0, 0.0}).state, PostureState::free);
+    EXPECT_FALSE(worst_at(query, map, {0.0, 0.0}).link);
+
+    FusedMap holed = without(map, {0.1, -0.01, 0.28}, {0.2, 0.05, 0.33});
+    const auto unknown = worst_at(query, holed, {0.0, 0.0});
+    EXPECT_EQ(unknown.state, PostureState::unknown);
+    EXPECT_EQ(link_name(arm, unknown.link), "upper");
+
+    mark(holed, {0.42, 0.02, 0.30});
+    const auto occupied = worst_at(query, holed, {0.0, 0.0});
+    EXPECT_EQ(occupied.state, PostureState::occupied);
+    EXPECT_EQ(link_name(arm, occupied.link), "hand");
+    EXPECT_TRUE(map.centre_of(*occupied.voxel).isApprox(Eigen::Vector3d(0.42, 0.02, 0.30), 1e-6));
+    EXPECT_EQ(worst_at(query, holed, {1.5, 0.0}).state, PostureState::free);
+}
+
+TEST(RobotQuery, tells_how_far_the_nearest_is_and_from_which_link) {
+    const TwoJointArm arm;
+    FusedMap map = free_about_origin();
+    mark(map, {0.62, 0.02, 0.30});  // its cube begins at x = 0.6, the hand ends at 0.44
+    const auto capsules = query_of(arm).pose(std::array{0.0, 0.0});
+    const auto near = clearance_of(map, *capsules, 0.5);
+    ASSERT_TRUE(near && near->occupied_m && near->not_free_m);
+    EXPECT_NEAR(*near->occupied_m, 0.16, 1e-8);
+    EXPECT_NEAR(*near->not_free_m, 0.16, 1e-8);
+    EXPECT_EQ(link_name(arm, near->occupied_link), "hand");
+    EXPECT_FALSE(clearance_of(map, *capsules, 0.15)->occupied_m);
+
+    DistanceField field(map.config(), 0.5);
+    (void)field.update(map);
+    EXPECT_NEAR(clearance_of(field, *capsules)->occupied_m.value(), 0.16, 1e-8);
+}
+
+TEST(PathQuery, meets_what_lies_between_two_free_configurations) {
+    const TwoJointArm arm;
+    const RobotQuery query = query_of(arm);
+    FusedMap map = free_about_origin();
+    mark(map, {0.3, 0.3, 0.30});  // at 45 degrees
+    const std::array from{0.0, 0.0};
+    const std::array to{0.5 * M_PI, 0.0};
+    EXPECT_EQ(worst_at(query, map, from).state, PostureState::free);
+    EXPECT_EQ(worst_at(query, map, to).state, PostureState::free);
+    const auto answer = ask(query, map, Leg(from, to, 0.05), {.reach_m = 0.3});
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->worst.state, PostureState::occupied);
+    EXPECT_EQ(link_name(arm, answer->worst.link), "hand");
+    EXPECT_GT(answer->share, 0.3);
+    EXPECT_LT(answer->share, 0.5);
+    EXPECT_EQ(answer->clearance.occupied_m, 0.0);
+    EXPECT_LT(answer->postures, Leg(from, to, 0.05).postures()) << "it went on";
+}
+
+TEST(PathQuery, tells_the_least_distance_on_a_free_way) {
+    const TwoJointArm arm;
+    FusedMap map = free_about_origin();
+    mark(map, {0.5, 0.5, 0.30});  // from x, y = 0.48; the hand passes at 0.44
+    const auto answer = ask(query_of(arm), map, Leg(std::array{0.0, 0.0}, std::array{0.5 * M_PI, 0.0}, 0.01),
+                            {.reach_m = 0.5});
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->worst.state, PostureState::free);
+    EXPECT_NEAR(answer->clearance.occupied_m.value(), std::sqrt(2.0) * 0.48 - 0.44, 1e-3);
+    EXPECT_EQ(answer->postures, 158U);
+}
+
+TEST(PathQuery, ends_each_leg_exactly_where_it_was_asked_to) {
+    const Leg leg(std::array{0.1, 0.0}, std::array{0.7, 0.2}, 0.25);
+    EXPECT_EQ(leg.postures(), 3U);
+    std::array<double, 2> position{};
+    leg.position(0, position);
+    EXPECT_NEAR(position[0], 0.3, 1e-12);
+    leg.position(2, position);
+    EXPECT_EQ(position[0], 0.7);
+    EXPECT_EQ(position[1], 0.2);
+    EXPECT_EQ(Leg(position, position, 0.25).postures(), 1U);
+    EXPECT_EQ(Leg(std::array{0.0}, std::array{0.5}, 0.1).postures(), 5U) << "rounding made one more";
+}
+
+TEST(OwnSpace, is_free_where_the_arm_is_and_where_it_was_unknown_about_it) {
+    const TwoJointArm arm;
+    const RobotQuery query = query_of(arm);
+    FusedMap map = without(free_about_origin(), {-0.1, -0.2, 0.2}, {0.6, 0.2, 0.4});
+    mark(map, {0.2, 0.02, 0.3});
+    const auto capsules = query.pose(std::array{0.0, 0.0});
+    EXPECT_EQ(worst_of(map, *capsules)->state, PostureState::occupied);
+    FusedMap copy = map.copy();
+    EXPECT_GT(free_own_space(copy, *capsules, 0.04), 0U);
+    EXPECT_EQ(worst_of(copy, *capsules)->state, PostureState::free);
+    EXPECT_EQ(copy.occupancy(*copy.key_of({0.2, 0.16, 0.3})), Occupancy::unknown) << "beyond the margin";
+    EXPECT_EQ(worst_of(map, *capsules)->state, PostureState::occupied) << "the map itself was changed";
+}
+
+TEST(OwnSpace, leaves_occupied_what_is_outside_the_arm) {
+    FusedMap map = free_about_origin();
+    mark(map, {0.2, 0.06, 0.3});  // its centre is 0.06 m from the axis, the arm 0.04 m thick
+    const auto capsules = query_of(TwoJointArm()).pose(std::array{0.0, 0.0});
+    EXPECT_EQ(free_own_space(map, *capsules, 0.1), 0U);
+    EXPECT_EQ(worst_of(map, *capsules)->state, PostureState::occupied);
+}
+
+}  // namespace
+}  // namespace octoskin
