@@ -1,7 +1,8 @@
 # The rooms of the house and who may depend on whom. A target that breaks the rule fails to configure.
 #
 #   octoskin_library(<name> ROOM <room> SOURCES a.cpp ... HEADERS a.hpp ... [DEPENDS octoskin::x ...]
-#                    [PRIVATE_DEPENDS octoskin::y ...] [EXTERNAL lib ...] [PRIVATE_EXTERNAL lib ...] [APART])
+#                    [PRIVATE_DEPENDS octoskin::y ...] [EXTERNAL lib ...] [PRIVATE_EXTERNAL lib ...] [APART]
+#                    [IN_MODULE])
 #   octoskin_program(<name> ROOM <room> SOURCES ... [DEPENDS ...] [EXTERNAL ...])
 #   octoskin_test(<name> LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...] [APART ...] [HALF_IN_QEMU <filter>]
 #                 [ALONE | WAITS])
@@ -12,6 +13,8 @@
 #
 # DEPENDS names our own targets only; EXTERNAL names third-party ones. Includes are written from the
 # repository's root ("common/wire/codec.hpp"), so every include line says which room it reaches into.
+#
+# A library that is linked into a module, which is loaded when it is needed, is one IN_MODULE.
 #
 # Built for a board (preset target-tests), a test program or a library of tests is left out if it depends on a library that
 # is not built for one, and of the others the HOST_SOURCES, which need an operating system, or minutes there. Each is named
@@ -104,7 +107,7 @@ function(octoskin_is_left_out result target)
 endfunction()
 
 function(octoskin_library name)
-    cmake_parse_arguments(ARG "APART" "ROOM" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS;EXTERNAL;PRIVATE_EXTERNAL" ${ARGN})
+    cmake_parse_arguments(ARG "APART;IN_MODULE" "ROOM" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS;EXTERNAL;PRIVATE_EXTERNAL" ${ARGN})
     if(ARG_UNPARSED_ARGUMENTS)
         message(FATAL_ERROR "octoskin_library(${name}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
     endif()
@@ -127,6 +130,11 @@ function(octoskin_library name)
             set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
             # A class whose parts are in an unnamed namespace is then no longer in the compiler's main file.
             target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+        endif()
+        if(ARG_IN_MODULE)
+            set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+        elseif(TARGET octoskin_host_headers AND ARG_ROOM MATCHES "^(host|hw)/")
+            target_precompile_headers(${target} REUSE_FROM octoskin_host_headers)
         endif()
         set(scope PUBLIC)
         target_link_libraries(${target} PRIVATE octoskin_compile_options ${ARG_PRIVATE_DEPENDS} ${ARG_PRIVATE_EXTERNAL})

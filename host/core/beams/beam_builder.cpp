@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "host/core/kinematics/self_hit.hpp"
+#include "host/core/kinematics/turned_z.hpp"
 
 namespace octoskin {
 namespace {
@@ -20,8 +21,7 @@ constexpr double kEndless = std::numeric_limits<double>::infinity();
 std::vector<Eigen::Vector3d> rays_of(const HostZone& zone) {
     std::vector<Eigen::Vector3d> rays = {zone.direction_sensor};
     if (!zone.optics.is_cone() || !zone.direction_sensor.allFinite()) return rays;
-    const Eigen::Quaterniond R_sensor_zone =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), zone.direction_sensor);
+    const Eigen::Matrix3d R_sensor_zone = turned_z(zone.direction_sensor.normalized());
     constexpr double kJustWithin = 0.95;
     for (const auto& [count, share] : {std::pair{6, 0.5}, {12, kJustWithin}}) {
         const double angle = share * zone.optics.half_angle_rad;

@@ -10,6 +10,8 @@
 #include <set>
 #include <utility>
 
+#include "host/core/kinematics/turned_z.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -51,9 +53,7 @@ std::optional<RobotModelError> fault_of(const JointDescription& joint) {
 /// The rotation that takes z to the joint's axis; exactly none for z itself.
 Eigen::Isometry3d align_z(const Eigen::Vector3d& axis) {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-    if (axis != Eigen::Vector3d::UnitZ()) {
-        T.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
-    }
+    if (axis != Eigen::Vector3d::UnitZ()) T.linear() = turned_z(axis.normalized());
     return T;
 }
 

@@ -11,6 +11,7 @@
 #include "host/core/traversal/image_traversal.hpp"
 #include "host/core/traversal/mark_grid.hpp"
 #include "host/core/traversal/picture_test.hpp"
+#include "host/core/traversal/placed_voxels.hpp"
 #include "host/core/traversal/voxel_rays.hpp"
 #include "host/core/voxels/ray_walk.hpp"
 
@@ -167,11 +168,10 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage
 Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImage& image,
                                                                  const Eigen::Isometry3d& T_map_camera) {
     PlacedImage& rays = workspace_->rays;
-    const auto place = [&](KeptEnds kept) {
-        place_image(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays, kept,
-                    crew_.get());
+    const auto place = [&](auto& place_how) {
+        place_how(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays, crew_.get());
     };
-    place(config_.depth_update == DepthUpdate::fast ? KeptEnds::voxels : KeptEnds::points_and_voxels);
+    config_.depth_update == DepthUpdate::fast ? place(place_voxels) : place(place_image);
     DepthUpdates result;
     result.pixels = rays.counts;
     DepthTerms& terms = result.terms;
@@ -191,7 +191,7 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
             if (view.depth_max_m > 0.0) {
                 has_room = take_nearest(rays, view, terms);
             } else {
-                place(KeptEnds::points_and_voxels);
+                place(place_image);
                 has_room = take_means(rays, terms);
             }
             break;

@@ -23,7 +23,8 @@ namespace octoskin {
 struct RowOfEnds {
     const std::uint32_t* key_xy;
     const std::uint32_t* key_z;
-    const double* range_m;
+    const double* range_m;  ///< null: there are distances
+    const float* distance_m;
 };
 
 BrickMask HitBricks::mask_of(MortonCode brick) const noexcept {
@@ -39,8 +40,28 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// HitModel::log_odds() of each pixel, and a bit for each whose next one ends elsewhere; both for whole words
-/// of 64 pixels, of which those beyond the row mean nothing.
+/// HitModel::log_odds() of each pixel.
+template <class T>
+HWY_INLINE void find_terms(const T* ranges_m, const HitModel& model, std::size_t width, float* terms) {
+    const hn::CappedTag<T, 64 / sizeof(T)> t;
+    const hn::Rebind<float, decltype(t)> f;
+    const auto range_min = hn::Set(t, static_cast<T>(model.range_min_m));
+    const auto offset = hn::Set(t, static_cast<T>(model.offset));
+    const auto slope_per_m = hn::Set(t, static_cast<T>(model.slope_per_m));
+    for (std::size_t u = 0; u < width; u += hn::Lanes(t)) {
+        const auto range = hn::LoadU(t, ranges_m + u);
+        const auto is_below = model.is_min_exclusive ? hn::Le(range, range_min) : hn::Lt(range, range_min);
+        const auto term = hn::IfThenZeroElse(is_below, hn::Sub(offset, hn::Mul(slope_per_m, range)));
+        if constexpr (sizeof(T) == sizeof(float)) {
+            hn::StoreU(term, t, terms + u);
+        } else {
+            hn::StoreU(hn::DemoteTo(f, term), f, terms + u);
+        }
+    }
+}
+
+/// The terms of a row, and a bit for each pixel whose next one ends elsewhere; both for whole words of 64
+/// pixels, of which those beyond the row mean nothing.
 void find_runs(const RowOfEnds& row, const HitModel& model, std::size_t width, float* terms,
                std::uint64_t* run_ends) {
     const hn::CappedTag<std::uint32_t, 16> k;
@@ -54,14 +75,10 @@ void find_runs(const RowOfEnds& row, const HitModel& model, std::size_t width, f
             run_ends[word] |= bits_of(k, hn::Or(differs(row.key_xy), differs(row.key_z))) << bit;
         }
     }
-    const hn::CappedTag<double, 8> d;
-    const hn::Rebind<float, decltype(d)> f;
-    for (std::size_t u = 0; u < width; u += hn::Lanes(d)) {
-        const auto range = hn::LoadU(d, row.range_m + u);
-        const auto range_min = hn::Set(d, model.range_min_m);
-        const auto is_below = model.is_min_exclusive ? hn::Le(range, range_min) : hn::Lt(range, range_min);
-        const auto term = hn::Sub(hn::Set(d, model.offset), hn::Mul(hn::Set(d, model.slope_per_m), range));
-        hn::StoreU(hn::DemoteTo(f, hn::IfThenZeroElse(is_below, term)), f, terms + u);
+    if (row.range_m != nullptr) {
+        find_terms(row.range_m, model, width, terms);
+    } else {
+        find_terms(row.distance_m, model, width, terms);
     }
 }
 
@@ -140,7 +157,9 @@ void HitBricks::take_row(const PlacedImage& rays, std::size_t first, const HitMo
     const std::uint32_t* const key_xy = rays.key_xy.data() + first;
     const std::uint32_t* const key_z = rays.key_z.data() + first;
     HWY_DYNAMIC_DISPATCH(find_runs)
-    ({key_xy, key_z, rays.range_m.data() + first}, model, rays.width, band.terms.data(), run_ends.data());
+    ({key_xy, key_z, rays.range_m.empty() ? nullptr : rays.range_m.data() + first,
+      rays.range_m.empty() ? rays.distance_m.data() + first : nullptr},
+     model, rays.width, band.terms.data(), run_ends.data());
     run_ends.back() &= ~std::uint64_t{0} >> (kWordBits * run_ends.size() - rays.width);
     run_ends.back() |= std::uint64_t{1} << ((rays.width - 1) % kWordBits);
 

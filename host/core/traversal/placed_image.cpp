@@ -26,7 +26,6 @@ struct Placement {
     double voxels_per_m = 0.0;
     float range_max_m = 0.0F;   ///< 0: none
     float half_depth_m = 0.0F;  ///< of a voxel, along the optical axis
-    bool keeps_points = true;
 };
 
 /// A row of the image: as many entries as are worked on at once may be read beyond its end.
@@ -169,11 +168,9 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image, RowSums&
         highest_x = hn::Max(highest_x, ends.x);
         highest_y = hn::Max(highest_y, ends.y);
         highest_z = hn::Max(highest_z, ends.z);
-        if (to.keeps_points) {
-            hn::StoreU(ends.x, f, image.end_x.data() + at);
-            hn::StoreU(ends.y, f, image.end_y.data() + at);
-            hn::StoreU(ends.z, f, image.end_z.data() + at);
-        }
+        hn::StoreU(ends.x, f, image.end_x.data() + at);
+        hn::StoreU(ends.y, f, image.end_y.data() + at);
+        hn::StoreU(ends.z, f, image.end_z.data() + at);
         ends.range_m = hn::IfThenElse(is_used, ends.range_m, hn::Set(d, -1.0));
         const hn::RebindToUnsigned<Ints> keys;
         const auto xy = hn::Or(key_of(scaled_x, is_used), hn::ShiftLeft<16>(key_of(scaled_y, is_used)));
@@ -218,11 +215,10 @@ std::uint32_t rows_of_band(std::uint32_t width, std::uint32_t height) {
     return width % kLanesMax == 0 ? kBandRows : std::max(height, 1U);
 }
 
-void resize(PlacedImage& image, std::size_t entries, bool keeps_points) {
-    for (auto* values : {&image.end_x, &image.end_y, &image.end_z})
-        values->resize(keeps_points ? entries : 0);
-    image.reach_m.resize(entries);
-    image.passed_m.resize(entries);
+void resize(PlacedImage& image, std::size_t entries) {
+    for (auto* values : {&image.end_x, &image.end_y, &image.end_z, &image.reach_m, &image.passed_m})
+        values->resize(entries);
+    image.distance_m.clear();
     image.range_m.resize(entries);
     image.key_xy.resize(entries);
     image.key_z.resize(entries);
@@ -231,8 +227,7 @@ void resize(PlacedImage& image, std::size_t entries, bool keeps_points) {
 }  // namespace
 
 void place_image(const DepthImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
-                 const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed,
-                 KeptEnds kept, Crew* crew) {
+                 const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed, Crew* crew) {
     const std::size_t pixels = std::size_t{image.width} * image.height;
     assert(image.width == pixel_rays.camera().width && image.height == pixel_rays.camera().height);
     assert(image.depth_m.size() == pixels);
@@ -241,15 +236,13 @@ void place_image(const DepthImage& image, const PixelRays& pixel_rays, const Vox
     placed.origin = T_map_camera.translation().cast<float>();
     placed.counts = {};
     placed.lowest = placed.highest = placed.origin;
-    const bool keeps_points = kept == KeptEnds::points_and_voxels;
-    resize(placed, pixels + kLanesMax, keeps_points);
+    resize(placed, pixels + kLanesMax);
 
     Placement to{.T = {},
                  .voxels_per_m = 1.0 / lattice.resolution_m(),
                  .range_max_m = static_cast<float>(range_max_m),
                  .half_depth_m = static_cast<float>(0.5 * lattice.resolution_m() *
-                                                    T_map_camera.linear().col(2).lpNorm<1>()),
-                 .keeps_points = keeps_points};
+                                                    T_map_camera.linear().col(2).lpNorm<1>())};
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 4; ++j)
             to.T[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = T_map_camera(i, j);

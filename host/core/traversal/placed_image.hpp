@@ -36,15 +36,16 @@ struct PlacedImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< of every ray, map frame, metres
-    /// Map frame, metres, in OctoMap's single precision; empty if nobody wants them.
+    /// Map frame, metres, in OctoMap's single precision; not set by place_voxels().
     std::vector<float> end_x;
     std::vector<float> end_y;
     std::vector<float> end_z;
     std::vector<float> reach_m;  ///< depth of the end along the optical axis
     std::vector<float>
         passed_m;  ///< a ray passes the voxels that it is in before this depth, or ends in them
-    std::vector<double> range_m;  ///< measured, along the ray; negative: the ray ends in nothing, as beyond
-                                  ///< the maximum, or there is none
+    /// Measured, along the ray; negative: the ray ends in nothing, as beyond the maximum, or there is none.
+    std::vector<double> range_m;        ///< of place_image(), empty otherwise
+    std::vector<float> distance_m;      ///< of place_voxels(), in single precision, empty otherwise
     std::vector<std::uint32_t> key_xy;  ///< of the end's voxel: x, and y in the upper half
     std::vector<std::uint32_t> key_z;   ///< kNoKey where the ray ends in nothing
     DepthPixelCounts counts;
@@ -53,15 +54,12 @@ struct PlacedImage {
     Eigen::Vector3f highest = Eigen::Vector3f::Zero();
 };
 
-/// What is kept of a ray's end. Writing is most of the work.
-enum class KeptEnds : std::uint8_t { points_and_voxels, voxels };
-
 /// Every pixel's ray is independent of every other's, and of how many are worked on at once: the result is
 /// bit for bit that of Eigen's `T_map_camera * (depth * ray)`. Places every pixel of `image` (of the camera's
 /// size, asserted) as seen from `T_map_camera`. A range beyond `range_max_m` (0: none) ends at it, as in
 /// OctoMap's `computeUpdate`. Some 2 ms for 512 x 424, which `crew` shares, if there is one.
 void place_image(const DepthImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
                  const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed,
-                 KeptEnds kept = KeptEnds::points_and_voxels, Crew* crew = nullptr);
+                 Crew* crew = nullptr);
 
 }  // namespace octoskin

@@ -18,7 +18,7 @@ namespace octoskin::sim {
 /// A region's limits of signal by those of the whole array: fewer SPADs count less of what disturbs, too,
 /// as the square root of their number, but never less than 0.39 of it. That is chosen: with the optics of
 /// hw/sim/camera the ranges at which half of the rangings fail are to each other as the largest ones of the
-/// datasheet (DS12385 rev 7, table 9) within 15 %, but for the 4 x 4 zone of the darkest target.
+/// datasheet (DS12385 rev 7, table 9) within 15 %; of small zones and dark targets with what the scene adds.
 [[nodiscard]] double signal_limit_share(const Roi& roi) noexcept;
 
 /// What a range is judged by and corrected with.

@@ -1,1 +1,0 @@
-// A target needs a source; what it precompiles is in CMakeLists.txt.

@@ -1,0 +1,1 @@
+// A target needs a source; what it precompiles is told in CMake.
