@@ -44,14 +44,21 @@ void add_other_hosts(const DaemonView& view, Problems& problems) {
             {"another host",
              "another host sends SYNC on this bus: only one may (start this one with --listen-only)"});
     }
-    constexpr Nanoseconds kBackTold{60'000'000'000};
-    if (view.used.time_back && view.now - *view.used.time_back < kBackTold) {
+    constexpr Nanoseconds kLeapTold{60'000'000'000};
+    if (view.used.time_back && view.now - *view.used.time_back < kLeapTold) {
         problems.push_back(
             {"time back",
              fmt::format(
                  "the bus's time went back (times_back, {}) within the last minute: the host that sends "
                  "SYNC began anew, or there are two; joint states and readings go on from there",
                  view.pipeline->times_back())});
+    }
+    if (view.used.time_ahead && view.now - *view.used.time_ahead < kLeapTold) {
+        problems.push_back(
+            {"time ahead",
+             fmt::format("the bus's time leapt ahead (times_ahead, {}) within the last minute: another host "
+                         "sends SYNC, or its clock was set; the map stays as old as it was",
+                         view.pipeline->times_ahead())});
     }
 }
 

@@ -106,10 +106,10 @@ void Recorder::on_depth(const DepthFrame& frame, const DepthTerms&) {
     put(commit);
 }
 
-void Recorder::on_time_back() {
+void Recorder::on_time_leap() {
     stop(monotonic_now(),
-         "the bus's time went back, and a replay could not go on from there: the host that sends SYNC began "
-         "anew, or another one sends it too");
+         "the bus's time leapt, and a replay could not go on from there: the host that sends SYNC began "
+         "anew or was set, or another one sends it too");
 }
 
 void Recorder::attend(HostTime now) {

@@ -70,7 +70,7 @@ class Recorder final : public CommitListener {
                     std::span<const VoxelUpdate> updates) override;
     void on_depth(const DepthFrame& frame, const DepthTerms& terms) override;
     /// Ends it: its replay could not go on from there.
-    void on_time_back() override;
+    void on_time_leap() override;
 
   private:
     void put(const Commit& commit);

@@ -46,6 +46,7 @@ Json clock_json(const DaemonView& view) {
             {"stamps_ignored", clock.stamps_ignored()},
             {"relocks", clock.relocks()},
             {"times_back", pipeline.times_back()},
+            {"times_ahead", pipeline.times_ahead()},
             {"follow_up_outliers", view.inputs->foreign_clock().outliers()}};
 }
 
@@ -147,6 +148,7 @@ Json map_json(const DaemonView& view) {
             {"memory_max_mib", map.config().memory_max_mib},
             {"no_room", map.counters().no_room},
             {"no_memory", map.counters().no_memory},
+            {"undated", map.counters().undated},
             {"saved", view.saves.saved},
             {"saves_failed", view.saves.failed},
             {"saves_skipped", view.saves.skipped},
@@ -180,6 +182,7 @@ void LastUsed::note(const Pipeline& pipeline, HostTime now) {
     note_one(accounts.readings.used(), counts_[1], reading);
     note_one(accounts.depth_frames.used(), counts_[2], depth_frame);
     note_one(pipeline.times_back(), counts_[3], time_back);
+    note_one(pipeline.times_ahead(), counts_[5], time_ahead);
     constexpr Nanoseconds kAgain{1'000'000'000};
     const auto before = depth_left_out;
     note_one(accounts.depth_frames.rejected(DepthReason::queue_overflow), counts_[4], depth_left_out);

@@ -29,11 +29,12 @@ class LastUsed {
     std::optional<HostTime> reading;
     std::optional<HostTime> depth_frame;
     std::optional<HostTime> time_back;             ///< the bus's time went back
+    std::optional<HostTime> time_ahead;            ///< or ahead of what passed
     std::optional<HostTime> depth_left_out;        ///< for lack of time (queue_overflow)...
     std::optional<HostTime> depth_left_out_since;  ///< ... again and again, at least once a second
 
   private:
-    std::array<std::uint64_t, 5> counts_{};
+    std::array<std::uint64_t, 6> counts_{};
 };
 
 struct ReloadCounts {

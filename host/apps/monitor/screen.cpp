@@ -99,7 +99,7 @@ class Screen {
             Emphasis::title);
         add_nonzero("can", {"not_sent", "error_frames", "dropped_by_kernel", "malformed", "bus_off",
                             "went_down", "reopened"});
-        add_nonzero("clock", {"times_back", "follow_up_outliers", "steps_back", "steps_ahead",
+        add_nonzero("clock", {"times_back", "times_ahead", "follow_up_outliers", "steps_back", "steps_ahead",
                               "stamps_ignored", "relocks"});
         const Json& latency = at(now_, "latency");
         const bool has_readings = number(at(latency, "readings")) > 0.0;
@@ -196,7 +196,7 @@ class Screen {
                         text(at(map, "resolution_m")), number(at(map, "memory_mib")),
                         count(at(map, "memory_max_mib")), age(at(map, "saved_age_s"))),
             Emphasis::title);
-        add_nonzero("map", {"no_room", "no_memory", "saves_failed", "saves_skipped"});
+        add_nonzero("map", {"no_room", "no_memory", "undated", "saves_failed", "saves_skipped"});
         add_nonzero("reloads", {"dropped"});
     }
     /// Each unit, and why what was not used was not.

@@ -69,6 +69,9 @@ constexpr std::array kStatusMeanings = {
             "before, as after a step"},
     Meaning{"clock", "times_back",
             "how often the bus's own time went back by over 0.15 s: the host that sends SYNC began anew"},
+    Meaning{"clock", "times_ahead",
+            "how often it went ahead by over a second more than passed: another host sends SYNC, or its "
+            "clock was set. The map stays as old as it was"},
     Meaning{"clock", "follow_up_outliers",
             "exchanges that disagreed with the other host's clock as it was known (with --listen-only); the "
             "first ones after it was set are among them"},
@@ -158,7 +161,7 @@ constexpr std::array kStatusMeanings = {
             "makes another map"},
     Meaning{"recording", "is_complete", "nothing that the map was made of is missing in it"},
     Meaning{"recording", "ended_early",
-            "why it ended though nobody asked for that and its time was not over: the bus's time went back, "
+            "why it ended though nobody asked for that and its time was not over: the bus's time leapt, "
             "the daemon read its files anew or ended; empty otherwise"},
     Meaning{"camera", "open", "it is open"},
     Meaning{"camera", "why", "why it is not; empty if it is"},
@@ -184,6 +187,9 @@ constexpr std::array kStatusMeanings = {
     Meaning{"map", "no_memory",
             "updates refused, as the system had no memory and the space was new to it: lower memory_max_mib, "
             "or give the service more"},
+    Meaning{"map", "undated",
+            "updates that went in without their time, for which there was no room or memory: how old such a "
+            "voxel is nobody knows, so that it is stale and never forgotten. As with no_room and no_memory"},
     Meaning{"map", "saved", "how often it was saved"},
     Meaning{"map", "saves_failed", "saves that failed; problems has why"},
     Meaning{"map", "saves_skipped", "saves left out, as the one before was still being written: a slow disk"},

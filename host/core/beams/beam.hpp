@@ -29,6 +29,8 @@ struct Beam {
     double sigma_m = 0.0;
     double clear_limit_m = 0.0;  ///< without return: space may be cleared up to here; 0 = not at all
     BeamOptics optics = {};      ///< what it sees about `direction_map`
+    /// How the sensor is turned: the same for all of its zones.
+    Eigen::Matrix3d R_map_sensor = Eigen::Matrix3d::Identity();
 };
 
 }  // namespace octoskin

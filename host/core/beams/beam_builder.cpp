@@ -115,7 +115,8 @@ Result<Beam, BeamFault> BeamBuilder::place(const RangeMeasurement& measurement,
                 .range_m = measurement.range_m,
                 .sigma_m = measurement.sigma_m,
                 .clear_limit_m = measurement.range_m ? 0.0 : clear_m,
-                .optics = zone.zone.optics};
+                .optics = zone.zone.optics,
+                .R_map_sensor = T_map_sensor.linear()};
 }
 
 }  // namespace octoskin

@@ -11,9 +11,9 @@ namespace octoskin {
     const double x = direction.x();
     const double y = direction.y();
     const double z = direction.z();
-    constexpr double kOpposite = -1.0 + 1e-12;
-    if (z < kOpposite) return Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
-    const double share = 1.0 / (1.0 + z);
+    const double across = x * x + y * y;
+    if (z < 0.0 && across < 1e-30) return Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
+    const double share = z < 0.0 ? (1.0 - z) / across : 1.0 / (1.0 + z);  // the same, but for rounding
     Eigen::Matrix3d R;
     R << 1.0 - share * x * x, -share * x * y, x,  //
         -share * x * y, 1.0 - share * y * y, y,   //

@@ -110,6 +110,7 @@ Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam) {
     if (!lattice_.key_of(beam.p_map_sensor) || !end_key) return unexpected(BeamRejection::outside_map);
     voxels_.passed.clear();
     voxels_.cap.clear();
+    voxels_.middle.clear();
     const double cap_m = beam.range_m ? model.cap_half_thickness_m + model.cap_sigmas * beam.sigma_m : 0.0;
     const double core_rad =
         std::min(beam.optics.half_angle_rad,
@@ -120,8 +121,10 @@ Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam) {
     if (beam.range_m && length_m <= model.hit_range_max_m) {
         find_cap(beam, {.range_m = length_m,
                         .half_thickness_m = cap_m,
-                        .angle_rad = model.cap_angle_share * beam.optics.half_angle_rad});
+                        .angle_rad = model.cap_angle_share * beam.optics.half_angle_rad,
+                        .middle_rad = config_.standing.angle_share * beam.optics.half_angle_rad});
         if (voxels_.cap.empty()) voxels_.cap.push_back({*end_key, 1.0F});
+        if (voxels_.middle.empty()) voxels_.middle.push_back(*end_key);
     }
     return &voxels_;
 }
@@ -169,7 +172,7 @@ void ConeFinder::find_passed(const Beam& beam, const Passed& passed) {
 }
 
 void ConeFinder::find_cap(const Beam& beam, const Cap& cap) {
-    const auto [range_m, half_thickness_m, angle_rad] = cap;
+    const auto [range_m, half_thickness_m, angle_rad, middle_rad] = cap;
     const double resolution_m = lattice_.resolution_m();
     const double nearest_m = std::max(0.0, range_m - half_thickness_m);
     const double furthest_m = range_m + half_thickness_m;
@@ -194,8 +197,10 @@ void ConeFinder::find_cap(const Beam& beam, const Cap& cap) {
                 const double distance = std::sqrt(square);
                 if (depth < cos * distance || distance == 0.0) continue;
                 const double off_axis = std::acos(std::min(1.0, depth / distance));
-                voxels_.cap.push_back(
-                    {key_at({x, y, z}), static_cast<float>(std::exp(scale * off_axis * off_axis))});
+                const VoxelKey key = key_at({x, y, z});
+                voxels_.cap.push_back({key, static_cast<float>(std::exp(scale * off_axis * off_axis))});
+                if (off_axis <= middle_rad && std::fabs(distance - range_m) <= 0.5 * resolution_m)
+                    voxels_.middle.push_back(key);
             }
         }
     }

@@ -32,6 +32,7 @@ class ConeFinder {
         double range_m = 0.0;
         double half_thickness_m = 0.0;
         double angle_rad = 0.0;
+        double middle_rad = 0.0;
     };
     void find_passed(const Beam& beam, const Passed& passed);
     void find_cap(const Beam& beam, const Cap& cap);

@@ -21,6 +21,10 @@ struct ConeVoxels {
     std::vector<VoxelKey> passed;
     /// | |v| - r | <= h, angle of v and d <= cap angle; each once. Empty beyond `hit_range_max_m`.
     std::vector<CapVoxel> cap;
+    /// Where its surface most likely is, as far as one reading tells: | |v| - r | <= half an edge, angle of v
+    /// and d <= `StandingModel::angle_share` of the half angle; or, if that is no voxel, the end's own. Empty
+    /// where `cap` is.
+    std::vector<VoxelKey> middle;
 };
 
 }  // namespace octoskin

@@ -58,6 +58,10 @@ bool Confirmations::go_on(HostTime now) {
     return true;
 }
 
+void Confirmations::leap(Nanoseconds by) noexcept {
+    zero_s_ += whole_seconds(HostTime{by.count() + kNanosecondsPerSecond / 2});
+}
+
 /// What is too old for that stays the oldest there is.
 void Confirmations::bring_up(std::uint32_t by) {
     const auto brought_up = [&](std::uint16_t stamp) -> std::uint16_t {

@@ -44,6 +44,9 @@ class Confirmations {
     /// std::bad_alloc once in kAgeMax_s seconds at most; then the clock stands.
     bool go_on(HostTime now);
     static constexpr std::int64_t kBackMax_s = 10;
+    /// The time that comes next is ahead by this of the one so far, and none of it has passed. To whole
+    /// seconds.
+    void leap(Nanoseconds by) noexcept;
 
     /// What a voxel that is confirmed now is given. The lower, the weaker: earlier, of another sensor.
     [[nodiscard]] std::uint16_t stamp(SensorKind kind) const noexcept {

@@ -48,6 +48,17 @@ class FusedMap::CountedBrick {
         counts.add(hits, misses, map_->config_.counts.counts_max);
         if (const auto is_cleared = clear_other(cell, misses, counts.misses); !is_cleared)
             return unexpected(is_cleared.error());
+        return put(cell, counts);
+    }
+    /// Of a voxel that is occupied from now on.
+    [[nodiscard]] Result<float, Refusal> mark(std::size_t cell, float hits) noexcept {
+        if (const auto is_open = open_counts(); !is_open) return unexpected(is_open.error());
+        const float enough = std::max(hits, map_->fusion_.hits_that_mark(other_.at(cell)));
+        return put(cell, {.hits = std::max((*hits_)[cell], enough), .misses = 0.0F});
+    }
+
+  private:
+    [[nodiscard]] Result<float, Refusal> put(std::size_t cell, const HitsAndMisses& counts) noexcept {
         const float before = fused_view_.at(cell);
         const float after = map_->fusion_.log_odds(other_.at(cell), counts, !std::isnan(before));
         if (after != before && !std::isnan(after)) {
@@ -58,8 +69,6 @@ class FusedMap::CountedBrick {
         (*misses_)[cell] = counts.misses;
         return std::isnan(after) ? 0.0F : after - (std::isnan(before) ? 0.0F : before);
     }
-
-  private:
     /// After a tree was given a brick.
     void look_anew() noexcept {
         own_hits_ = BrickTree::OwnBricks(map_->counts_.hits);
@@ -162,6 +171,24 @@ void FusedMap::apply(const ConeVoxels& cone, const ConeModel& model, std::vector
     }
     for (const VoxelKey key : cone.passed) add(key, 0.0F, model.miss_mass);
     if (confirmations_.has_begun() && counters_.refused() == refused) confirm(cone);
+}
+
+void FusedMap::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes) {
+    const auto is_occupied = [this](const CapVoxel& voxel) {
+        return occupancy(voxel.key) == Occupancy::occupied;
+    };
+    if (std::ranges::any_of(cone.cap, is_occupied)) return;
+    CountedBrick brick(*this);
+    for (const VoxelKey key : cone.middle) {
+        brick.go_to(key);
+        const auto change = brick.mark(cell_of(key), hits);
+        ++(counters_.*(change ? &MapCounters::applied : change.error()));
+        if (!change) continue;
+        if (changes != nullptr && *change != 0.0F) changes->push_back({key, *change});
+        BrickMask voxel{};
+        put_in(voxel, cell_of(key));
+        if (confirmations_.has_begun()) confirm(brick_of(key), voxel, SensorKind::range);
+    }
 }
 
 void FusedMap::fuse(MortonCode brick) {

@@ -171,7 +171,9 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
     const auto place = [&](auto& place_how) {
         place_how(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays, crew_.get());
     };
-    config_.depth_update == DepthUpdate::fast ? place(place_voxels) : place(place_image);
+    const bool takes_voxels =
+        config_.depth_update == DepthUpdate::fast && pixel_rays_.camera().lens.is_none();
+    takes_voxels ? place(place_voxels) : place(place_image);
     DepthUpdates result;
     result.pixels = rays.counts;
     DepthTerms& terms = result.terms;
@@ -191,7 +193,7 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
             if (view.depth_max_m > 0.0) {
                 has_room = take_nearest(rays, view, terms);
             } else {
-                place(place_image);
+                if (takes_voxels) place(place_image);
                 has_room = take_means(rays, terms);
             }
             break;

@@ -82,6 +82,9 @@ class FusedMap {
     /// is occupied in its cap. No more than O(1) within a second; in a new one O(bricks), if voxels are ever
     /// forgotten.
     void go_on(HostTime now) noexcept;
+    /// The time that is told from now on is ahead by this of the one that was told before (or behind, below
+    /// 0): a clock was set, nothing has become older.
+    void leap(Nanoseconds by) noexcept { confirmations_.leap(by); }
 
     /// Adds each term to its voxel (unknown counts as 0 before) and clamps, one by one, in order, in
     /// OctoMap's single precision. A term of 0 touches nothing: in OctoMap a node at log-odds 0 counts as
@@ -94,6 +97,10 @@ class FusedMap {
     /// `model.miss_mass` misses. Refused and counted as above, voxel by voxel. `changes`, if not null, is
     /// told by how much the log-odds changed. Never throws but for `changes`. About 25 ns a voxel.
     void apply(const ConeVoxels& cone, const ConeModel& model, std::vector<VoxelUpdate>* changes = nullptr);
+    /// Of a range that is believed (StandingRanges), after it was counted: if no voxel of its cap is
+    /// occupied, which would explain it, those of its middle are from now on. They have no misses, and at
+    /// least so many hits, and as many as that takes. Refused, counted and told as above.
+    void mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes = nullptr);
     /// As with VoxelUpdates, of an image's terms, or of a part of its bricks. Where there are counts, the
     /// terms go to what the log-odds are without them.
     void apply(const DepthTerms& terms) { apply(terms, terms.bricks); }

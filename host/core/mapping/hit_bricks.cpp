@@ -40,7 +40,7 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// HitModel::log_odds() of each pixel.
+/// HitModel::log_odds() of each pixel, in the ranges' own precision.
 template <class T>
 HWY_INLINE void find_terms(const T* ranges_m, const HitModel& model, std::size_t width, float* terms) {
     const hn::CappedTag<T, 64 / sizeof(T)> t;

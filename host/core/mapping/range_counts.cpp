@@ -42,6 +42,12 @@ float CountFusion::log_odds(float other, const HitsAndMisses& counts, bool is_kn
     return is_free ? std::min(log_odds_of(odds), below_occupied_) : kUnknownLogOdds;
 }
 
+float CountFusion::hits_that_mark(float other) const noexcept {
+    constexpr float kForRounding = 1.001F;
+    const float hits = odds_occupied_ * misses_known(other) - hits_known(other);
+    return kForRounding * std::max(hits, model_.hits_min);
+}
+
 void RangeCounts::begin(MortonCode brick, const BrickView& now) {
     misses.set_all(brick, 0.0F);
     if (now.values != nullptr) {

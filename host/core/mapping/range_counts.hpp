@@ -43,6 +43,9 @@ class CountFusion {
     /// itself.
     [[nodiscard]] float log_odds(float other, const HitsAndMisses& counts, bool is_known) const noexcept;
 
+    /// Hits that mark a voxel without misses, and hardly more.
+    [[nodiscard]] float hits_that_mark(float other) const noexcept;
+
   private:
     [[nodiscard]] float hits_known(float other) const noexcept {
         return model_.prior_hits + (other > 0.0F ? hits_per_log_odds_ * other : 0.0F);

@@ -38,8 +38,9 @@ class CommitListener {
     virtual void on_depth(const DepthFrame& frame, const DepthTerms& terms) = 0;
     /// After each reading and frame, and after what was told of it.
     virtual void on_maps(const MapSet&) {}
-    /// Time goes on from before what came so far: a replay in this order ends here.
-    virtual void on_time_back() {}
+    /// What comes next is told by another time, from before what came so far or far ahead of it: a replay in
+    /// this order ends here.
+    virtual void on_time_leap() {}
 };
 
 }  // namespace octoskin

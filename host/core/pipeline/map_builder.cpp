@@ -1,5 +1,6 @@
 #include "host/core/pipeline/map_builder.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <new>
 #include <utility>
@@ -56,6 +57,8 @@ MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams
       cone_(mapping.cone),
       zone_(mapping.zone),
       cone_finder_(mapping),
+      standing_model_(mapping.standing),
+      standing_(mapping.standing),
       maps_(mapping.map, maps) {
     if (rig.camera) {
         depth_stage_.emplace(rig, mapping, depth_threads);
@@ -73,10 +76,12 @@ Status<JointReason> MapBuilder::add(const JointMeasurement& joints) {
     return added;
 }
 
-void MapBuilder::forget_motion() {
+void MapBuilder::forget_motion(Nanoseconds leapt) {
     if (listener_ != nullptr) {
-        listener_->on_time_back();
+        listener_->on_time_leap();
     }
+    maps_.leap(leapt);
+    standing_.forget();
     if (witness_) {
         witness_->forget_beams();
     }
@@ -121,12 +126,33 @@ Status<ReadingReason> MapBuilder::add_cone(const RangeMeasurement& measurement, 
     maps_.go_on(measurement.captured);
     const ConeModel& model = beam.optics.is_zone ? zone_ : cone_;
     if (listener_ != nullptr) {
-        listener_->on_reading(measurement, beam, maps_.changes_of_proximity(**voxels, model));
+        std::vector<VoxelUpdate> changes = maps_.changes_of_proximity(**voxels, model);
+        mark_believed(beam, &changes);
+        listener_->on_reading(measurement, beam, changes);
         listener_->on_maps(maps_);
     } else {
         maps_.add_proximity(**voxels, model);
+        mark_believed(beam, nullptr);
     }
     return Done{};
+}
+
+void MapBuilder::mark_believed(const Beam& beam, std::vector<VoxelUpdate>* changes) {
+    std::vector<VoxelUpdate> marked;
+    for (const Beam& believed : standing_.take(beam)) {
+        const auto voxels = cone_finder_.find(believed);
+        if (voxels) {  // so near to the edge of the octree a mean of ranges may lie beyond it
+            maps_.mark(**voxels, standing_model_.hits, changes != nullptr ? &marked : nullptr);
+        }
+    }
+    for (const VoxelUpdate& update : marked) {
+        const auto same = std::ranges::find(*changes, update.key, &VoxelUpdate::key);
+        if (same != changes->end()) {
+            same->log_odds += update.log_odds;
+        } else {
+            changes->push_back(update);
+        }
+    }
 }
 
 Status<DepthReason> MapBuilder::integrate(DepthFrame frame) {

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "common/result.hpp"
 #include "common/time.hpp"
@@ -15,6 +16,7 @@
 #include "host/core/mapping/beam_integrator.hpp"
 #include "host/core/mapping/cone_finder.hpp"
 #include "host/core/mapping/mapping_config.hpp"
+#include "host/core/mapping/standing_ranges.hpp"
 #include "host/core/pipeline/commit.hpp"
 #include "host/core/pipeline/depth_stage.hpp"
 #include "host/core/pipeline/map_set.hpp"
@@ -40,7 +42,10 @@ class MapBuilder {
     void limit_fused(const MapConfig& config) { maps_.limit_fused(config); }
     /// From now on the maps are as if they had been read from files: who records from here on, and replays
     /// from a file of the fused map, gets the same.
-    void forget_counts() noexcept { maps_.forget_counts(); }
+    void forget_counts() noexcept {
+        maps_.forget_counts();
+        standing_.forget();
+    }
     /// The fused map, for another builder to begin with; nothing may be given in after.
     [[nodiscard]] FusedMap take_fused() { return maps_.take_fused(); }
     /// `listener` is told of what goes in from now on; null: nobody is.
@@ -65,8 +70,9 @@ class MapBuilder {
     /// `late`: where the robot was then has been forgotten meanwhile.
     [[nodiscard]] Status<DepthReason> finish(const DepthWork& depth);
 
-    /// Time goes on from before the newest joint sample: where the robot was is forgotten, the maps stay.
-    void forget_motion();
+    /// Time leaps: where the robot was is forgotten, the maps stay. What comes next is told by a time that is
+    /// ahead by this of the one so far, or behind, below 0.
+    void forget_motion(Nanoseconds leapt);
 
     /// Whether the rig has this sensor and zone: no other reading may be given in (asserted).
     [[nodiscard]] bool has(const BeamSource& source) const { return beams_.has(source); }
@@ -95,6 +101,9 @@ class MapBuilder {
 
     [[nodiscard]] Status<ReadingReason> add_cone(const RangeMeasurement& measurement, const Beam& beam);
     [[nodiscard]] Status<ReadingReason> add_ray(const RangeMeasurement& measurement, const Beam& beam);
+    /// Marks what a sensor that stands still is believed. `changes`: of the fused map, each voxel once; may
+    /// be null.
+    void mark_believed(const Beam& beam, std::vector<VoxelUpdate>* changes);
 
     RobotTracker robot_;
     BeamBuilder beams_;
@@ -102,6 +111,8 @@ class MapBuilder {
     ConeModel cone_;
     ConeModel zone_;
     ConeFinder cone_finder_;
+    StandingModel standing_model_;
+    StandingRanges standing_;
     std::optional<DepthStage> depth_stage_;
     std::optional<SensorWitness> witness_;
     MapSet maps_;

@@ -43,6 +43,14 @@ void MapSet::go_on(HostTime now) noexcept {
     }
 }
 
+void MapSet::leap(Nanoseconds by) noexcept {
+    for (auto* map : {&depth_, &proximity_, &fused_}) {
+        if (*map) {
+            (*map)->leap(by);
+        }
+    }
+}
+
 FusedMap MapSet::take_fused() {
     assert(fused_);
     return std::move(*fused_);
@@ -72,6 +80,15 @@ std::vector<VoxelUpdate> MapSet::changes_of_proximity(const ConeVoxels& cone, co
     std::vector<VoxelUpdate> changes;
     count(cone, model, &changes);
     return changes;
+}
+
+void MapSet::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes) {
+    if (proximity_) {
+        proximity_->mark(cone, hits);
+    }
+    if (fused_) {
+        fused_->mark(cone, hits, changes);
+    }
 }
 
 void MapSet::count(const ConeVoxels& cone, const ConeModel& model, std::vector<VoxelUpdate>* changes) {

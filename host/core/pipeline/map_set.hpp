@@ -34,6 +34,9 @@ class MapSet {
     /// When what is added next was measured (FusedMap::go_on).
     void go_on(HostTime now) noexcept;
 
+    /// A clock was set, nothing has become older (FusedMap::leap).
+    void leap(Nanoseconds by) noexcept;
+
     /// To `depth` and `fused`.
     void add_depth(const DepthTerms& terms);
     /// To `proximity` and `fused`.
@@ -42,6 +45,9 @@ class MapSet {
     /// The same; the answer is by how much each log-odds of `fused`, if it was chosen, changed.
     [[nodiscard]] std::vector<VoxelUpdate> changes_of_proximity(const ConeVoxels& cone,
                                                                 const ConeModel& model);
+
+    /// FusedMap::mark. `changes`: of `fused`; may be null.
+    void mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes);
 
     /// Null if it was not chosen.
     [[nodiscard]] const FusedMap* depth() const noexcept { return depth_ ? &*depth_ : nullptr; }

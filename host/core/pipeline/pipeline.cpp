@@ -19,6 +19,8 @@ constexpr Nanoseconds kSameReading{5'000'000};
 /// that a node's clock takes to settle anew (ClockMapConfig::settling): so that no reading finds a pose of
 /// the time before, which was another instant.
 constexpr Nanoseconds kTimeBackMax{150'000'000};
+/// Less ages nothing by a second.
+constexpr Nanoseconds kTimeAheadMax{1'000'000'000};
 /// Images that wait for the worker. With one more the map would be older by the time that one takes; with one
 /// less a worker that is quick enough would miss one now and then.
 constexpr std::size_t kBesideWorkMax = 2;
@@ -66,7 +68,7 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     told_beside_.reset();
     FrameOutcome outcome = intake_.on_frame(frame, stamp);
     if (const auto now_known = now()) {
-        notice_time_back(*now_known);
+        notice_time_leap(*now_known);
     }
     const auto fate = outcome.mark ? marks_.take(*outcome.mark, now()) : MarkGate::Fate::taken;
     if (fate == MarkGate::Fate::ignored) {
@@ -84,18 +86,42 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
 }
 
 /// A smaller step back is over by itself: until then everything is older than what was used. After a larger
-/// one that would last as long as the step, an hour or for ever.
-void Pipeline::notice_time_back(HostTime now) {
-    if (now_newest_ && *now_newest_ - now > kTimeBackMax) {
-        ++times_back_;
-        settle_waiting();
-        builder_.forget_motion();
-        integrated_.reset();
-        used_.clear();
-        depth_newest_.reset();
-        now_newest_ = now;
+/// one that would last as long as the step, an hour or for ever. After a step ahead the map would forget what
+/// nobody has confirmed for as long as the step.
+void Pipeline::notice_time_leap(HostTime now) {
+    const HostClockEstimate& clock = intake_.host_clock();
+    const Told told{now, *clock.newest_stamp(), clock.running()};
+    if (told_newest_) {
+        const Nanoseconds went = now - told_newest_->now;
+        const Nanoseconds leapt = went - passed_between(*told_newest_, told);
+        const bool is_back = went < -kTimeBackMax;
+        if (is_back || leapt > kTimeAheadMax) {
+            ++(is_back ? times_back_ : times_ahead_);
+            go_on_after(leapt);
+            // What was still told by the time before would make the map older by the leap.
+            goes_on_from_ = is_back ? std::nullopt : std::optional(now - kTimeAheadMax);
+        }
     }
-    now_newest_ = now_newest_ ? std::max(*now_newest_, now) : now;
+    if (!told_newest_ || now > told_newest_->now) told_newest_ = told;
+}
+
+void Pipeline::go_on_after(Nanoseconds leapt) {
+    settle_waiting();
+    builder_.forget_motion(leapt);
+    integrated_.reset();
+    used_.clear();
+    depth_newest_.reset();
+    told_newest_.reset();
+}
+
+/// Frames that were received one after the other tell how much passed at least. Over a silence only stamps
+/// do, or "now": whichever of the two clocks was not set. The lesser is taken: too much forgets a map. Where
+/// "now" went back, as after a controller was off for a while, the stamps alone tell.
+Nanoseconds Pipeline::passed_between(const Told& before, const Told& now) {
+    const Nanoseconds by_stamps{now.stamp.ns - before.stamp.ns};
+    const Nanoseconds went = now.now - before.now;
+    const Nanoseconds passed = went < Nanoseconds{0} ? by_stamps : std::min(by_stamps, went);
+    return std::max(now.running - before.running, passed);
 }
 
 void Pipeline::settle_waiting() {

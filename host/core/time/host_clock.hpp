@@ -56,6 +56,8 @@ class HostClockEstimate {
     /// stamp, and stands still over a jump, and over a silence that looks like one. What a stamp that ran
     /// ahead added is taken back.
     [[nodiscard]] Nanoseconds running() const noexcept { return running_; }
+    /// The newest stamp that is believed; empty before the first frame.
+    [[nodiscard]] std::optional<WallTime> newest_stamp() const noexcept { return stamp_max_; }
     /// When the first frame was received, for who asks as soon as `now` is known: by a later jump of the
     /// stamps it is off. Empty while `now` is.
     [[nodiscard]] std::optional<HostTime> begun() const {

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host/core/traversal/image_bands.hpp"
 #include "host/core/traversal/lanes-inl.hpp"
 
 #ifndef OCTOSKIN_PLACED_IMAGE_TYPES
@@ -76,12 +77,10 @@ HWY_INLINE auto key_of(Double scaled, Mask has_key) {
     return hn::Add(hn::DemoteTo(i, floored), hn::Set(i, kOriginKey));
 }
 
-/// Where an end lies so near to a voxel's face that rounding may decide on which side: as OctoMap walks, it
-/// may neither pass nor end in the voxel before the face.
 HWY_INLINE Mask is_at_face(Double scaled) {
     const Doubles d;
     const Double from_face = hn::Abs(hn::Sub(scaled, hn::Round(scaled)));
-    const Double margin = hn::Add(hn::Set(d, 1e-3), hn::Mul(hn::Set(d, 4e-6), hn::Abs(scaled)));
+    const Double margin = hn::Add(hn::Set(d, kAtFace), hn::Mul(hn::Set(d, kAtFaceShare), hn::Abs(scaled)));
     return hn::Lt(from_face, margin);
 }
 
@@ -205,16 +204,6 @@ namespace {
 
 HWY_EXPORT(place_row);
 
-/// A vector of any instruction set holds no more entries.
-constexpr std::size_t kLanesMax = 64;
-
-/// How many rows one of a crew places at a time. What is written beyond the end of a row that is no multiple
-/// of a vector the next row overwrites, so that one has to do all of them.
-std::uint32_t rows_of_band(std::uint32_t width, std::uint32_t height) {
-    constexpr std::uint32_t kBandRows = 32;
-    return width % kLanesMax == 0 ? kBandRows : std::max(height, 1U);
-}
-
 void resize(PlacedImage& image, std::size_t entries) {
     for (auto* values : {&image.end_x, &image.end_y, &image.end_z, &image.reach_m, &image.passed_m})
         values->resize(entries);
@@ -247,15 +236,13 @@ void place_image(const DepthImage& image, const PixelRays& pixel_rays, const Vox
         for (int j = 0; j < 4; ++j)
             to.T[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = T_map_camera(i, j);
     }
-    const std::uint32_t band_rows = rows_of_band(image.width, image.height);
-    const std::uint32_t bands = (image.height + band_rows - 1) / band_rows;
-    std::vector<RowSums> sums(bands, {{}, placed.origin, placed.origin});
-    const auto place_band = [&](std::size_t band) {
+    const ImageBands bands = bands_of(image.width, image.height);
+    std::vector<RowSums> sums(bands.count, {{}, placed.origin, placed.origin});
+    for_each_band(bands, image.height, crew, [&](std::size_t band, std::uint32_t begin, std::uint32_t end) {
         std::vector<float> depth_m(image.width + kLanesMax, std::numeric_limits<float>::quiet_NaN());
         std::vector<double> ray_x(image.width + kLanesMax);
         std::vector<double> ray_y(image.width + kLanesMax);
-        const auto begin = static_cast<std::uint32_t>(band) * band_rows;
-        for (std::uint32_t v = begin; v < std::min(begin + band_rows, image.height); ++v) {
+        for (std::uint32_t v = begin; v < end; ++v) {
             const std::size_t first = std::size_t{v} * image.width;
             std::copy_n(image.depth_m.begin() + static_cast<std::ptrdiff_t>(first), image.width,
                         depth_m.begin());
@@ -267,9 +254,7 @@ void place_image(const DepthImage& image, const PixelRays& pixel_rays, const Vox
             HWY_DYNAMIC_DISPATCH(place_row)
             (to, {depth_m.data(), ray_x.data(), ray_y.data(), first, image.width}, placed, sums[band]);
         }
-    };
-    Crew alone(1);
-    (crew == nullptr ? alone : *crew).work(bands, place_band);
+    });
     for (const RowSums& of_band : sums) {
         placed.counts += of_band.counts;
         placed.lowest = placed.lowest.cwiseMin(of_band.lowest);

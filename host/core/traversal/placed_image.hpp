@@ -36,7 +36,7 @@ struct PlacedImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< of every ray, map frame, metres
-    /// Map frame, metres, in OctoMap's single precision; not set by place_voxels().
+    /// Map frame, metres, in OctoMap's single precision; empty of place_voxels().
     std::vector<float> end_x;
     std::vector<float> end_y;
     std::vector<float> end_z;
@@ -53,6 +53,11 @@ struct PlacedImage {
     Eigen::Vector3f lowest = Eigen::Vector3f::Zero();  ///< of all ends and the origin
     Eigen::Vector3f highest = Eigen::Vector3f::Zero();
 };
+
+/// Nearer to a voxel's face, in voxels and as a share of the coordinate, rounding may decide on which side an
+/// end lies: as OctoMap walks, its ray may neither pass nor end in the voxel before the face.
+inline constexpr double kAtFace = 1e-3;
+inline constexpr double kAtFaceShare = 4e-6;
 
 /// Every pixel's ray is independent of every other's, and of how many are worked on at once: the result is
 /// bit for bit that of Eigen's `T_map_camera * (depth * ray)`. Places every pixel of `image` (of the camera's

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host/core/traversal/image_bands.hpp"
 #include "host/core/traversal/lanes-inl.hpp"
 
 #ifndef OCTOSKIN_PLACED_VOXELS_TYPES
@@ -54,10 +55,6 @@ struct SumsOfRows {
     }
 };
 
-/// Nearer to a voxel's face, in voxels and as a share of the coordinate, rounding may decide on which side an
-/// end lies: as OctoMap walks, its ray may neither pass nor end in the voxel before the face.
-inline constexpr double kAtFace = 1e-3;
-inline constexpr double kAtFaceShare = 4e-6;
 /// So near to the maximum range, as a share of it, rounding may decide whether a ray ends there.
 inline constexpr float kAtRangeMax = 1e-5F;
 
@@ -84,85 +81,110 @@ HWY_INLINE Lanes from_face(Lanes scaled) {
     return hn::Abs(hn::Sub(scaled, hn::Round(scaled)));
 }
 
+/// Of some pixels at once.
+struct Placed {
+    Lanes range_m, reach_m;
+    Lanes end_m[3];
+    Lanes scaled[3];  ///< the end in voxels
+    hn::Mask<Tag> is_beyond, has_keys, is_unsure;
+};
+
+HWY_INLINE Placed place(const VoxelPlacement& to, Lanes depth, Lanes ray_x, Lanes ray_y) {
+    const Tag f;
+    const Lanes range_max = hn::Set(f, to.range_max_m);
+    const auto squared = [](Lanes value) HWY_ATTR { return hn::Mul(value, value); };
+    Placed placed;
+    placed.range_m = hn::Sqrt(
+        hn::Add(hn::Add(squared(hn::Mul(depth, ray_x)), squared(hn::Mul(depth, ray_y))), squared(depth)));
+    placed.is_beyond = hn::Gt(placed.range_m, range_max);
+    placed.reach_m =
+        hn::IfThenElse(placed.is_beyond, hn::Div(hn::Mul(depth, range_max), placed.range_m), depth);
+    const Lanes x = hn::Mul(placed.reach_m, ray_x);
+    const Lanes y = hn::Mul(placed.reach_m, ray_y);
+    Lanes furthest = hn::Zero(f);
+    Lanes to_face = hn::Set(f, 1.0F);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        placed.end_m[axis] = moved(to.T[axis], x, y, placed.reach_m);
+        placed.scaled[axis] = hn::Mul(placed.end_m[axis], hn::Set(f, to.voxels_per_m));
+        furthest = hn::Max(furthest, hn::Abs(placed.scaled[axis]));
+        to_face = hn::Min(to_face, from_face(placed.scaled[axis]));
+    }
+    const Lanes extent = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), placed.reach_m);
+    const Lanes margin = hn::Add(hn::Add(hn::Set(f, to.unsure), hn::Mul(hn::Set(f, to.unsure_per_m), extent)),
+                                 hn::Mul(hn::Set(f, static_cast<float>(kAtFaceShare)), furthest));
+    const Lanes edge = hn::Set(f, static_cast<float>(kOriginKey));
+    // Of a ray that ends in nothing the voxel matters only where the octree ends.
+    const auto is_at_face =
+        hn::And(hn::Lt(to_face, margin),
+                hn::Or(hn::Not(placed.is_beyond), hn::Gt(furthest, hn::Sub(edge, hn::Set(f, 1.0F)))));
+    const auto is_at_max = hn::Lt(
+        hn::Abs(hn::Sub(placed.range_m, range_max)),
+        hn::Add(hn::Mul(hn::Set(f, kAtRangeMax), range_max), hn::Mul(margin, hn::Set(f, to.resolution_m))));
+    placed.is_unsure = hn::Or(is_at_face, is_at_max);
+    placed.has_keys = hn::Lt(furthest, edge);
+    return placed;
+}
+
+/// Which of them are used, and the others counted.
+HWY_INLINE hn::Mask<Tag> count(const Placed& placed, Lanes depth, hn::Mask<Tag> in_row,
+                               DepthPixelCounts& counts) {
+    const Tag f;
+    const auto is_number = hn::Eq(depth, depth);
+    const auto is_good = hn::And(hn::Gt(depth, hn::Zero(f)), hn::Lt(depth, hn::Set(f, HUGE_VALF)));
+    const auto is_sure = hn::AndNot(placed.is_unsure, hn::And(in_row, is_good));
+    const auto is_used = hn::And(is_sure, placed.has_keys);
+    const std::size_t used = hn::CountTrue(f, is_used);
+    counts.used += used;
+    if (used < hn::Lanes(f)) {
+        counts.no_value += hn::CountTrue(f, hn::AndNot(is_number, in_row));
+        counts.bad_value += hn::CountTrue(f, hn::AndNot(is_good, hn::And(in_row, is_number)));
+        counts.outside_map += hn::CountTrue(f, hn::AndNot(placed.has_keys, is_sure));
+    }
+    return is_used;
+}
+
+HWY_INLINE void store(const Placed& placed, hn::Mask<Tag> is_used, float half_depth_m, std::size_t at,
+                      PlacedImage& image) {
+    const Tag f;
+    const hn::RebindToSigned<Tag> i;
+    const hn::RebindToUnsigned<Tag> k;
+    const Lanes none = hn::Set(f, -1.0F);
+    const auto key_of = [&](Lanes along) HWY_ATTR {
+        const Lanes floored = hn::Floor(hn::IfThenElseZero(is_used, along));
+        return hn::BitCast(k, hn::Add(hn::ConvertTo(i, floored), hn::Set(i, kOriginKey)));
+    };
+    const auto key_xy = hn::Or(key_of(placed.scaled[0]), hn::ShiftLeft<16>(key_of(placed.scaled[1])));
+    hn::StoreU(key_xy, k, image.key_xy.data() + at);
+    const auto ends_in_something = hn::AndNot(placed.is_beyond, is_used);
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(k, ends_in_something), key_of(placed.scaled[2]),
+                              hn::Set(k, PlacedImage::kNoKey)),
+               k, image.key_z.data() + at);
+    hn::StoreU(hn::IfThenElse(ends_in_something, placed.range_m, none), f, image.distance_m.data() + at);
+    hn::StoreU(hn::IfThenElse(is_used, placed.reach_m, none), f, image.reach_m.data() + at);
+    const Lanes less = hn::IfThenElseZero(placed.is_beyond, hn::Set(f, half_depth_m));
+    hn::StoreU(hn::IfThenElse(is_used, hn::Sub(placed.reach_m, less), none), f, image.passed_m.data() + at);
+}
+
 /// Places what is sure, and sets a bit for each pixel of the row that is not, in whole words.
 void place_sure(const VoxelPlacement& to, const RowOfDepths& row, PlacedImage& image, SumsOfRows& sums,
                 std::uint64_t* unsure) {
     const Tag f;
-    const hn::RebindToSigned<Tag> i;
-    const hn::RebindToUnsigned<Tag> k;
-    const Lanes zero = hn::Zero(f);
-    const Lanes none = hn::Set(f, -1.0F);
-    const Lanes range_max = hn::Set(f, to.range_max_m);
-    const Lanes edge = hn::Set(f, static_cast<float>(kOriginKey));
     Lanes lowest[3], highest[3];
     for (int axis = 0; axis < 3; ++axis) lowest[axis] = highest[axis] = hn::Set(f, image.origin[axis]);
     for (std::size_t u = 0; u < row.width; u += hn::Lanes(f)) {
         const Lanes depth = hn::LoadU(f, row.depth_m + u);
-        const Lanes ray_x = hn::LoadU(f, row.ray_x + u);
-        const Lanes ray_y = hn::LoadU(f, row.ray_y + u);
-        const Lanes measured_x = hn::Mul(depth, ray_x);
-        const Lanes measured_y = hn::Mul(depth, ray_y);
-        const Lanes range =
-            hn::Sqrt(hn::Add(hn::Add(hn::Mul(measured_x, measured_x), hn::Mul(measured_y, measured_y)),
-                             hn::Mul(depth, depth)));
-        const auto is_beyond = hn::Gt(range, range_max);
-        const Lanes reach = hn::IfThenElse(is_beyond, hn::Div(hn::Mul(depth, range_max), range), depth);
-        const Lanes x = hn::Mul(reach, ray_x);
-        const Lanes y = hn::Mul(reach, ray_y);
-        const Lanes ends[3] = {moved(to.T[0], x, y, reach), moved(to.T[1], x, y, reach),
-                               moved(to.T[2], x, y, reach)};
-        Lanes scaled[3];
-        for (int axis = 0; axis < 3; ++axis) scaled[axis] = hn::Mul(ends[axis], hn::Set(f, to.voxels_per_m));
-        const Lanes furthest = hn::Max(hn::Abs(scaled[0]), hn::Max(hn::Abs(scaled[1]), hn::Abs(scaled[2])));
-        const Lanes extent = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), reach);
-        const Lanes margin =
-            hn::Add(hn::Add(hn::Set(f, to.unsure), hn::Mul(hn::Set(f, to.unsure_per_m), extent)),
-                    hn::Mul(hn::Set(f, static_cast<float>(kAtFaceShare)), furthest));
-        const Lanes to_face =
-            hn::Min(from_face(scaled[0]), hn::Min(from_face(scaled[1]), from_face(scaled[2])));
-
+        const Placed placed = place(to, depth, hn::LoadU(f, row.ray_x + u), hn::LoadU(f, row.ray_y + u));
         const auto in_row = hn::FirstN(f, row.width - u);
-        const auto is_number = hn::Eq(depth, depth);
-        const auto is_good = hn::And(hn::Gt(depth, zero), hn::Lt(depth, hn::Set(f, HUGE_VALF)));
-        // Of a ray that ends in nothing the voxel matters only where the octree ends.
-        const auto is_at_face =
-            hn::And(hn::Lt(to_face, margin),
-                    hn::Or(hn::Not(is_beyond), hn::Gt(furthest, hn::Sub(edge, hn::Set(f, 1.0F)))));
-        const auto is_at_max =
-            hn::Lt(hn::Abs(hn::Sub(range, range_max)), hn::Add(hn::Mul(hn::Set(f, kAtRangeMax), range_max),
-                                                               hn::Mul(margin, hn::Set(f, to.resolution_m))));
-        const auto is_unsure = hn::And(hn::And(in_row, is_good), hn::Or(is_at_face, is_at_max));
-        const auto has_keys = hn::Lt(furthest, edge);
-        const auto is_sure = hn::AndNot(is_unsure, hn::And(in_row, is_good));
-        const auto is_used = hn::And(is_sure, has_keys);
-        const std::size_t used = hn::CountTrue(f, is_used);
-        sums.counts.used += used;
-        if (used < hn::Lanes(f)) {
-            sums.counts.no_value += hn::CountTrue(f, hn::AndNot(is_number, in_row));
-            sums.counts.bad_value += hn::CountTrue(f, hn::AndNot(is_good, hn::And(in_row, is_number)));
-            sums.counts.outside_map += hn::CountTrue(f, hn::AndNot(has_keys, is_sure));
-        }
+        const auto is_used = count(placed, depth, in_row, sums.counts);
+        const auto is_good = hn::And(hn::Gt(depth, hn::Zero(f)), hn::Lt(depth, hn::Set(f, HUGE_VALF)));
+        const auto is_unsure = hn::And(placed.is_unsure, hn::And(in_row, is_good));
         unsure[u / 64] = (u % 64 == 0 ? 0 : unsure[u / 64]) | bits_of(f, is_unsure) << (u % 64);
-
         for (int axis = 0; axis < 3; ++axis) {
-            lowest[axis] = hn::IfThenElse(is_used, hn::Min(lowest[axis], ends[axis]), lowest[axis]);
-            highest[axis] = hn::IfThenElse(is_used, hn::Max(highest[axis], ends[axis]), highest[axis]);
+            const Lanes end = placed.end_m[axis];
+            lowest[axis] = hn::IfThenElse(is_used, hn::Min(lowest[axis], end), lowest[axis]);
+            highest[axis] = hn::IfThenElse(is_used, hn::Max(highest[axis], end), highest[axis]);
         }
-        const auto key_of = [&](Lanes along) HWY_ATTR {
-            const Lanes floored = hn::Floor(hn::IfThenElseZero(is_used, along));
-            return hn::BitCast(k, hn::Add(hn::ConvertTo(i, floored), hn::Set(i, kOriginKey)));
-        };
-        const auto ends_in_something = hn::AndNot(is_beyond, is_used);
-        const std::size_t at = row.first + u;
-        hn::StoreU(hn::Or(key_of(scaled[0]), hn::ShiftLeft<16>(key_of(scaled[1]))), k,
-                   image.key_xy.data() + at);
-        hn::StoreU(hn::IfThenElse(hn::RebindMask(k, ends_in_something), key_of(scaled[2]),
-                                  hn::Set(k, PlacedImage::kNoKey)),
-                   k, image.key_z.data() + at);
-        hn::StoreU(hn::IfThenElse(ends_in_something, range, none), f, image.distance_m.data() + at);
-        hn::StoreU(hn::IfThenElse(is_used, reach, none), f, image.reach_m.data() + at);
-        const Lanes passed = hn::Sub(reach, hn::IfThenElseZero(is_beyond, hn::Set(f, to.half_depth_m)));
-        hn::StoreU(hn::IfThenElse(is_used, passed, none), f, image.passed_m.data() + at);
+        store(placed, is_used, to.half_depth_m, row.first + u, image);
     }
     const auto least = [](Lanes values) { return hn::GetLane(hn::MinOfLanes(Tag(), values)); };
     const auto most = [](Lanes values) { return hn::GetLane(hn::MaxOfLanes(Tag(), values)); };
@@ -179,16 +201,6 @@ namespace {
 
 HWY_EXPORT(place_sure);
 
-/// A vector of any instruction set holds no more entries.
-constexpr std::size_t kLanesMax = 64;
-
-/// How many rows one of a crew places at a time. What is written beyond the end of a row that is no multiple
-/// of a vector the next row overwrites, so that one has to do all of them.
-std::uint32_t rows_of_band(std::uint32_t width, std::uint32_t height) {
-    constexpr std::uint32_t kBandRows = 32;
-    return width % kLanesMax == 0 ? kBandRows : std::max(height, 1U);
-}
-
 /// One image, placed row by row.
 class Placer {
   public:
@@ -201,8 +213,8 @@ class Placer {
           placed_(placed) {
         to_.voxels_per_m = static_cast<float>(1.0 / lattice.resolution_m());
         to_.resolution_m = static_cast<float>(lattice.resolution_m());
-        to_.range_max_m =
-            range_max_m > 0.0 ? static_cast<float>(range_max_m) : std::numeric_limits<float>::infinity();
+        const auto max_m = static_cast<float>(range_max_m);
+        to_.range_max_m = max_m > 0.0F ? max_m : std::numeric_limits<float>::infinity();
         to_.half_depth_m =
             static_cast<float>(0.5 * lattice.resolution_m() * T_map_camera.linear().col(2).lpNorm<1>());
         for (int i = 0; i < 3; ++i) {
@@ -224,16 +236,14 @@ class Placer {
         std::vector<float> ray_x(image_.width + kLanesMax);
         std::vector<float> ray_y(image_.width + kLanesMax);
         std::vector<std::uint64_t> unsure((image_.width + 63) / 64);
-        const bool is_pinhole = pixel_rays_.camera().lens.is_none();
+        // A pinhole's columns have the same x in every row, and its rows the same y in every column.
+        for (std::uint32_t u = 0; u < image_.width; ++u)
+            ray_x[u] = static_cast<float>(pixel_rays_.at(u, 0).x);
         for (std::uint32_t v = begin; v < end; ++v) {
             const std::size_t first = std::size_t{v} * image_.width;
             std::copy_n(image_.depth_m.begin() + static_cast<std::ptrdiff_t>(first), image_.width,
                         depth_m.begin());
-            if (is_pinhole && v > begin) {  // whose columns' x is that of every row
-                std::fill(ray_y.begin(), ray_y.end(), static_cast<float>(pixel_rays_.at(0, v).y));
-            } else {
-                take_rays(v, ray_x, ray_y);
-            }
+            std::fill(ray_y.begin(), ray_y.end(), static_cast<float>(pixel_rays_.at(0, v).y));
             HWY_DYNAMIC_DISPATCH(place_sure)
             (to_, {depth_m.data(), ray_x.data(), ray_y.data(), first, image_.width}, placed_, sums,
              unsure.data());
@@ -247,14 +257,6 @@ class Placer {
     }
 
   private:
-    void take_rays(std::uint32_t v, std::vector<float>& ray_x, std::vector<float>& ray_y) const {
-        for (std::uint32_t u = 0; u < image_.width; ++u) {
-            const RaySlope ray = pixel_rays_.at(u, v);
-            ray_x[u] = static_cast<float>(ray.x);
-            ray_y[u] = static_cast<float>(ray.y);
-        }
-    }
-
     /// As place_image() does.
     void place_exactly(std::uint32_t u, std::uint32_t v, SumsOfRows& sums) const {
         const std::size_t at = std::size_t{v} * image_.width + u;
@@ -291,7 +293,7 @@ class Placer {
     }
 
     [[nodiscard]] bool is_at_face(const Eigen::Vector3f& end) const {
-        const Eigen::Array3d scaled = end.cast<double>().array() / lattice_.resolution_m();
+        const Eigen::Array3d scaled = (1.0 / lattice_.resolution_m()) * end.cast<double>().array();
         return ((scaled - scaled.round()).abs() < kAtFace + kAtFaceShare * scaled.abs()).any();
     }
 
@@ -304,6 +306,7 @@ class Placer {
 };
 
 void resize(PlacedImage& image, std::size_t entries) {
+    for (auto* values : {&image.end_x, &image.end_y, &image.end_z}) values->clear();
     image.range_m.clear();
     image.reach_m.resize(entries);
     image.passed_m.resize(entries);
@@ -319,19 +322,17 @@ void place_voxels(const DepthImage& image, const PixelRays& pixel_rays, const Vo
                   Crew* crew) {
     const std::size_t pixels = std::size_t{image.width} * image.height;
     assert(image.width == pixel_rays.camera().width && image.height == pixel_rays.camera().height);
-    assert(image.depth_m.size() == pixels);
+    assert(image.depth_m.size() == pixels && pixel_rays.camera().lens.is_none());
     placed.width = image.width;
     placed.height = image.height;
     placed.origin = T_map_camera.translation().cast<float>();
     resize(placed, pixels + kLanesMax);
 
     const Placer placer(image, pixel_rays, lattice, T_map_camera, range_max_m, placed);
-    const std::uint32_t band_rows = rows_of_band(image.width, image.height);
-    std::vector<SumsOfRows> sums((image.height + band_rows - 1) / band_rows, placer.none());
-    Crew alone(1);
-    (crew == nullptr ? alone : *crew).work(sums.size(), [&](std::size_t band) {
-        const auto begin = static_cast<std::uint32_t>(band) * band_rows;
-        placer.place_rows(begin, std::min(begin + band_rows, image.height), sums[band]);
+    const ImageBands bands = bands_of(image.width, image.height);
+    std::vector<SumsOfRows> sums(bands.count, placer.none());
+    for_each_band(bands, image.height, crew, [&](std::size_t band, std::uint32_t begin, std::uint32_t end) {
+        placer.place_rows(begin, end, sums[band]);
     });
     SumsOfRows all = placer.none();
     for (const SumsOfRows& of_band : sums) {

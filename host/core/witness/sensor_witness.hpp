@@ -60,7 +60,7 @@ class SensorWitness {
     /// beam, 134 pixels a ray: for 34 sensors 0.1 ms as a rule, and bounded whatever the bus does.
     void on_depth(const WitnessImages& images, const Eigen::Isometry3d& T_map_camera, HostTime captured);
 
-    /// Time went back: what waits to be compared is of another time. What was found out stays.
+    /// Time leapt: what waits to be compared is of another time. What was found out stays.
     void forget_beams();
 
     /// Of a sensor of the rig (asserted).

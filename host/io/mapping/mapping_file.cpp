@@ -26,6 +26,7 @@ const Keys kTopKeys = {"base",
                        "range_update",
                        "cone",
                        "zone",
+                       "standing",
                        "counts",
                        "removes_robot_from_depth",
                        "removes_robot_from_ranges",
@@ -39,6 +40,7 @@ const Keys kHitKeys = {"log_odds_offset", "log_odds_slope_per_m", "range_min_m",
 const Keys kFilterKeys = {"is_enabled", "window_px", "sigma_m", "gate_sigmas", "mean_sigmas", "min_support"};
 const Keys kConeKeys = {"hit_range_max_m", "cap_half_thickness_m", "cap_sigmas", "cap_angle_share",
                         "core_weight_min", "core_margin_voxels",   "hit_mass",   "miss_mass"};
+const Keys kStandingKeys = {"readings", "hits", "angle_share"};
 const Keys kCountKeys = {"prior_hits",           "prior_misses", "occupied_hits", "free_misses",
                          "occupied_probability", "hits_min",     "misses_min",    "counts_max",
                          "image_clears",         "image_marks",  "range_clears",  "range_clears_from"};
@@ -75,6 +77,7 @@ std::vector<std::string> keys_below_top() {
                                                         {"depth_filter", kFilterKeys},
                                                         {"cone", kConeKeys},
                                                         {"zone", kConeKeys},
+                                                        {"standing", kStandingKeys},
                                                         {"counts", kCountKeys}};
     std::vector<std::string> paths;
     for (const auto& [table, keys] : tables) {
@@ -167,6 +170,16 @@ ConeModel read_cone(const Table& table, ConeModel cone) {
     return cone;
 }
 
+StandingModel read_standing(const Table& table, StandingModel standing) {
+    constexpr std::uint32_t kReadingsMax = 8;
+    standing.readings = table.integer<std::uint32_t>("readings", {0, kReadingsMax}, standing.readings);
+    standing.hits = single(table, "hits", {0.0, 10'000.0}, standing.hits);
+    standing.angle_share = table.number("angle_share", {0.0, 1.0}, standing.angle_share);
+    if (standing.readings == 1)
+        table.fail("readings", "expected 2 or more, or 0 (never), found 1: one reading alone may be wrong");
+    return standing;
+}
+
 CountModel read_counts(const Table& table, CountModel counts) {
     counts.prior_hits = single(table, "prior_hits", {0.001, 100.0}, counts.prior_hits);
     counts.prior_misses = single(table, "prior_misses", {0.001, 100.0}, counts.prior_misses);
@@ -219,6 +232,7 @@ MappingConfig read_checked(const std::string& file) {
     config.range_update = top.choice<RangeUpdate>("range_update", kRangeUpdates, config.range_update);
     read_part(top, "cone", kConeKeys, config.cone, read_cone);
     read_part(top, "zone", kConeKeys, config.zone, read_cone);
+    read_part(top, "standing", kStandingKeys, config.standing, read_standing);
     read_part(top, "counts", kCountKeys, config.map.counts, read_counts);
     config.model.miss_log_odds = single(top, "miss_log_odds", {-100.0, 0.0}, config.model.miss_log_odds);
     config.depth_update = top.choice<DepthUpdate>("depth_update", kDepthUpdates, config.depth_update);
@@ -295,7 +309,10 @@ std::string mapping_text(const MappingConfig& config) {
         filter.is_enabled, filter.window, filter.sigma_m, filter.gate_sigmas, filter.mean_sigmas,
         filter.min_support);
     text += fmt::format("range_update: {}\n", config.range_update == RangeUpdate::cone ? "cone" : "ray");
-    text += cone_text("cone", config.cone) + cone_text("zone", config.zone) + counts_text(map.counts);
+    text += cone_text("cone", config.cone) + cone_text("zone", config.zone);
+    text += fmt::format("standing:\n  readings: {}\n  hits: {}\n  angle_share: {}\n",
+                        config.standing.readings, config.standing.hits, config.standing.angle_share);
+    text += counts_text(map.counts);
     text += fmt::format(
         "removes_robot_from_depth: {}\nremoves_robot_from_ranges: {}\n"
         "depth_range_max_m: {}\nno_return_clear_m: {}\n"

@@ -11,7 +11,7 @@ constexpr std::chrono::milliseconds kEndPatience{2'000};
 constexpr const char* kReadHelper = "octoskin-oni-read";
 
 std::string with_end(std::string what, const std::optional<std::string>& how_it_ended) {
-    if (how_it_ended) what += " (" + std::string(kReadHelper) + ": " + *how_it_ended + ")";
+    if (how_it_ended) what.append(" (").append(kReadHelper).append(": ").append(*how_it_ended).append(")");
     return what;
 }
 

@@ -25,9 +25,9 @@ double counted_share(const Roi& zone, double reflectivity) {
     constexpr double kSmall = 4.0 * 4.0, kLarge = 8.0 * 8.0;  // SPADs
     constexpr double kDark = 0.17, kGrey = 0.5;
     constexpr double kOfSmallAndDark = 0.36;
-    const double is_small = std::log(kLarge / (zone.width * zone.height)) / std::log(kLarge / kSmall);
-    const double is_dark = std::log(kGrey / reflectivity) / std::log(kGrey / kDark);
-    return std::pow(kOfSmallAndDark, std::clamp(is_small, 0.0, 1.0) * std::clamp(is_dark, 0.0, 1.0));
+    const double smallness = std::log(kLarge / (zone.width * zone.height)) / std::log(kLarge / kSmall);
+    const double darkness = std::log(kGrey / reflectivity) / std::log(kGrey / kDark);
+    return std::pow(kOfSmallAndDark, std::clamp(smallness, 0.0, 1.0) * std::clamp(darkness, 0.0, 1.0));
 }
 
 /// One ideal ray along the middle of the zone's beam.

@@ -67,7 +67,7 @@ void DaemonViewTest::let_camera_contradict(const std::function<void()>& look) {
     scene.rig.camera->intrinsics.fy = 10.0;
     play(scene, kAllWell);
     MapBuilder& builder = pipeline_->builder();
-    builder.forget_motion();
+    builder.forget_motion({});
     for (int i = 0; i < 6; ++i) {
         const double now_s = 5.0 + 0.1 * i;
         EXPECT_TRUE(builder.add({host_at(now_s), {M_PI / 2.0 - 0.04 * i}}));

@@ -88,6 +88,15 @@ TEST_F(ProblemsTest, have_a_bus_whose_time_went_back_for_a_minute) {
     EXPECT_EQ(told("time back"), "");
 }
 
+TEST_F(ProblemsTest, have_a_bus_whose_time_leapt_ahead_for_a_minute) {
+    view_.used.time_ahead = view_.now - 60 * kSecond + kNs;
+    EXPECT_EQ(told("time ahead"),
+              "the bus's time leapt ahead (times_ahead, 0) within the last minute: another host sends SYNC, "
+              "or its clock was set; the map stays as old as it was");
+    view_.used.time_ahead = view_.now - 60 * kSecond;
+    EXPECT_EQ(told("time ahead"), "");
+}
+
 TEST_F(ProblemsTest, have_a_time_that_nobody_tells_until_somebody_does) {
     play(daemon_scene(), 0.09);
     EXPECT_EQ(told("no time"),

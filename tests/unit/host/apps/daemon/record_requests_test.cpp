@@ -107,15 +107,15 @@ TEST_F(RecordRequestsTest, ends_as_failed_without_memory_for_the_last_map) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "recording" / "meta.yaml")) << "nothing vouches for it";
 }
 
-TEST_F(RecordRequestsTest, ends_whole_and_says_why_when_the_buss_time_goes_back) {
+TEST_F(RecordRequestsTest, ends_whole_and_says_why_when_the_buss_time_leaps) {
     EXPECT_TRUE(ask("record start 60 " + (folder_ / "recording").string())["ok"].get<bool>());
     EXPECT_EQ(ask("record status")["recording"]["ended_early"], "");
-    pipeline_.builder().forget_motion();
+    pipeline_.builder().forget_motion({});
     requests_.finish(std::chrono::seconds(20));
     const Json recording = ask("record status")["recording"];
     EXPECT_EQ(recording["state"], "ended");
     EXPECT_EQ(recording["is_complete"], true);
-    EXPECT_NE(recording["ended_early"].get<std::string>().find("the bus's time went back"), std::string::npos)
+    EXPECT_NE(recording["ended_early"].get<std::string>().find("the bus's time leapt"), std::string::npos)
         << recording;
     EXPECT_TRUE(std::filesystem::exists(folder_ / "recording" / "meta.yaml"));
 }

@@ -63,7 +63,7 @@ TEST_F(StatusTest, has_the_state_of_the_clock) {
     EXPECT_EQ(
         status()["clock"],
         Json::parse(R"({"known": true, "steps_back": 0, "steps_ahead": 0, "stamps_ignored": 0, "relocks": 0,
-                  "times_back": 0, "follow_up_outliers": 0})"));
+                  "times_back": 0, "times_ahead": 0, "follow_up_outliers": 0})"));
     for (std::uint8_t sequence = 1; sequence <= 4; ++sequence) {
         const std::uint64_t wrong_us = sequence == 4 ? 500'000 : 0;
         const auto us = static_cast<std::uint64_t>(say_sync(sequence).ns / 1'000);
@@ -244,12 +244,49 @@ TEST_F(StatusTest, has_the_map_with_its_memory_and_saves) {
     EXPECT_EQ(map["memory_max_mib"], 800);
     EXPECT_EQ(map["no_room"], 0);
     EXPECT_EQ(map["no_memory"], 0);
+    EXPECT_EQ(map["undated"], 0);
     EXPECT_EQ(map["saved"], 5);
     EXPECT_EQ(map["saves_failed"], 1);
     EXPECT_EQ(map["saves_skipped"], 2);
     EXPECT_NEAR(map["saved_age_s"], 0.25, kTiny);
     view_.saves.newest.reset();
     EXPECT_EQ(status()["map"]["saved_age_s"], nullptr);
+}
+
+TEST_F(StatusTest, has_how_much_of_the_map_has_no_time) {
+    FusedMap map(MapConfig{.memory_max_mib = 1});
+    map.go_on(HostTime{0});
+    std::vector<VoxelUpdate> updates;  // each in a brick and in nodes of its own
+    for (std::uint16_t x = 0; x < 100; ++x)
+        for (std::uint16_t y = 0; y < 20; ++y)
+            updates.push_back(
+                {{static_cast<std::uint16_t>(64 * x), static_cast<std::uint16_t>(64 * y), 0}, -0.4F});
+    map.apply(updates);
+    const std::uint64_t undated = map.counters().undated;
+    ASSERT_GT(undated, 0U);
+    pipeline_->begin_with(std::move(map));
+    EXPECT_EQ(status()["map"]["undated"], undated);
+}
+
+TEST_F(StatusTest, knows_when_the_buss_time_leapt_ahead) {
+    play(daemon_scene(), 6.0);
+    EXPECT_FALSE(view_.used.time_ahead);
+    // Another host: what it says is an hour ahead of how the frames go on being stamped.
+    Scene anew = good_scene();
+    std::vector<StampedFrame> frames = anew.bus.frames();
+    for (StampedFrame& entry : frames) {
+        entry.stamp.ns += 6'000'000'000;
+        const auto decoded = wire::decode(entry.frame);
+        const auto* said = decoded ? std::get_if<wire::FollowUp>(&decoded->message) : nullptr;
+        if (said == nullptr) continue;
+        entry.frame = wire::encode(wire::FollowUp{said->sequence, said->host_time_us + 3'600'000'000U},
+                                   decoded->node_id);
+    }
+    play_on(frames, 10.0);
+    ASSERT_TRUE(view_.used.time_ahead);
+    EXPECT_EQ(status()["clock"]["times_ahead"], 1);
+    EXPECT_EQ(status()["clock"]["times_back"], 0);
+    EXPECT_NE(told("time ahead"), "");
 }
 
 TEST_F(StatusTest, names_nothing_that_is_learnt_anew_for_three_seconds_after_a_reload) {

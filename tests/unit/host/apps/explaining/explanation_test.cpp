@@ -137,8 +137,8 @@ TEST(VoxelWitness, says_what_the_map_says_where_sensors_that_see_a_cone_have_cou
     FusedMap map(config);
     VoxelWitness witness(key, config, kKept);
     const ConeModel model;
-    const ConeVoxels at{.passed = {}, .cap = {{key, 1.0F}}};
-    const ConeVoxels through{.passed = {key}, .cap = {}};
+    const ConeVoxels at{.passed = {}, .cap = {{key, 1.0F}}, .middle = {}};
+    const ConeVoxels through{.passed = {key}, .cap = {}, .middle = {}};
     double sum = 0.0;
     std::size_t known = 0;
     for (int i = 0; i < 40; ++i) {

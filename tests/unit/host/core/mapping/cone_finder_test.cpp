@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -75,6 +76,15 @@ class BruteForce {
         return all_of({13.5 * kRadPerDeg - angle(key), v.norm() - (*beam_.range_m - 0.05),
                        *beam_.range_m + 0.05 - v.norm()});
     }
+    /// A quarter of the way off the axis, half an edge before and behind the range.
+    Verdict is_in_middle(VoxelKey key) const {
+        const double off_m =
+            std::fabs((lattice_.centre_of(key) - beam_.p_map_sensor).norm() - *beam_.range_m);
+        return all_of({3.375 * kRadPerDeg - angle(key), 0.5 * config_.map.resolution_m - off_m});
+    }
+    VoxelKey end() const {
+        return *lattice_.key_of(beam_.p_map_sensor + *beam_.range_m * beam_.direction_map);
+    }
     double angle(VoxelKey key) const {
         const Eigen::Vector3d v = lattice_.centre_of(key) - beam_.p_map_sensor;
         return std::atan2(v.cross(beam_.direction_map).norm(), v.dot(beam_.direction_map));
@@ -106,12 +116,20 @@ void expect_as_brute_force(const MappingConfig& config, const Beam& beam) {
     EXPECT_EQ(passed.size(), (*found)->passed.size()) << "a voxel twice";
     std::map<VoxelKey, float> cap;
     for (const CapVoxel& voxel : (*found)->cap) EXPECT_TRUE(cap.emplace(voxel.key, voxel.weight).second);
+    const std::set<VoxelKey> middle((*found)->middle.begin(), (*found)->middle.end());
+    EXPECT_EQ(middle.size(), (*found)->middle.size());
     const BruteForce oracle(config, beam);
     std::size_t in_cap = 0;
+    std::size_t in_middle = 0;
     oracle.for_each([&](VoxelKey key) {
         const Verdict is_passed = oracle.is_passed(key);
         if (!is_passed.is_close) {
             EXPECT_EQ(passed.contains(key), is_passed.is_in);
+        }
+        const Verdict is_in_middle = oracle.is_in_middle(key);
+        in_middle += is_in_middle.is_in ? 1U : 0U;
+        if (!is_in_middle.is_close && is_in_middle.is_in) {
+            EXPECT_TRUE(middle.contains(key));
         }
         const Verdict is_in_cap = oracle.is_in_cap(key);
         if (is_in_cap.is_close) return;
@@ -122,6 +140,10 @@ void expect_as_brute_force(const MappingConfig& config, const Beam& beam) {
         EXPECT_NEAR(cap.at(key), std::exp(-0.5 * sigmas * sigmas), 1e-6);
     });
     EXPECT_GT(in_cap, 0U);
+    EXPECT_EQ(middle.size(), std::max<std::size_t>(in_middle, 1));
+    if (in_middle == 0) {
+        EXPECT_TRUE(middle.contains(oracle.end()));
+    }
 }
 
 TEST(ConeFinder, finds_what_trigonometry_says_of_every_voxel_along_the_axes) {
@@ -147,6 +169,7 @@ TEST(ConeFinder, frees_space_and_marks_nothing_beyond_the_longest_range_that_mar
     const auto found = finder.find(beam_to(Eigen::Vector3d::UnitX(), 0.901));
     ASSERT_TRUE(found.has_value());
     EXPECT_THAT((*found)->cap, testing::IsEmpty());
+    EXPECT_THAT((*found)->middle, testing::IsEmpty());
     EXPECT_GT((*found)->passed.size(), 60U);
 }
 
@@ -159,6 +182,7 @@ TEST(ConeFinder, marks_the_ends_own_voxel_where_a_cap_holds_no_centre) {
     ASSERT_TRUE(found.has_value());
     const VoxelKey end = *VoxelLattice(0.4).key_of(Eigen::Vector3d(0.813, -0.247, 0.391));
     EXPECT_THAT((*found)->cap, testing::ElementsAre(CapVoxel{end, 1.0F}));
+    EXPECT_THAT((*found)->middle, testing::ElementsAre(end));
 }
 
 TEST(ConeFinder, cap_reaches_as_far_off_the_axis_as_it_is_told) {

@@ -283,5 +283,63 @@ TEST(CountingMap, is_fused_anew_with_other_limits) {
     EXPECT_EQ(map.log_odds(key_at(3)), 0.1F);
 }
 
+/// A cap of three voxels, one of them its middle.
+ConeVoxels cap_of_three() {
+    ConeVoxels cone;
+    cone.cap = {{key_at(0), 1.0F}, {key_at(1), 0.5F}, {key_at(2), 0.5F}};
+    cone.middle = {key_at(0)};
+    return cone;
+}
+
+TEST(CountingMap, marks_the_middle_of_what_is_believed_however_free_it_was) {
+    for (const bool has_camera : {false, true}) {
+        FusedMap map(map_config());
+        if (has_camera) map.apply(std::vector<VoxelUpdate>{{key_at(0), -2.0F}});
+        ConeVoxels through;
+        through.passed = {key_at(0), key_at(1)};
+        for (int i = 0; i < 100; ++i) map.apply(through, {});
+        EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free);
+        std::vector<VoxelUpdate> changes;
+        const float before = map.log_odds(key_at(0)).value();
+        map.mark(cap_of_three(), 0.0F, &changes);
+        EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied) << "with no more hits than it takes";
+        EXPECT_EQ(map.occupancy(key_at(1)), Occupancy::free);
+        EXPECT_EQ(map.occupancy(key_at(2)), Occupancy::unknown);
+        ASSERT_EQ(changes.size(), 1U);
+        EXPECT_EQ(changes.front().key, key_at(0));
+        EXPECT_NEAR(before + changes.front().log_odds, map.log_odds(key_at(0)).value(), 1e-5);
+        map.apply(through, {});
+        EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free) << "and one reading takes it back";
+    }
+}
+
+TEST(CountingMap, leaves_what_is_marked_as_many_hits_as_it_is_told) {
+    FusedMap map(map_config());
+    map.mark(cap_of_three(), 2.0F);
+    const RangeCounts& counts = map.counts();
+    const MortonCode brick = brick_of(key_at(0));
+    EXPECT_EQ(counts.hits.find(brick).at(cell_of(key_at(0))), 2.0F);
+    EXPECT_EQ(counts.misses.find(brick).at(cell_of(key_at(0))), 0.0F);
+    EXPECT_EQ(counts.hits.find(brick).at(cell_of(key_at(1))), 0.0F);
+    EXPECT_EQ(map.known_voxels(), 1U);
+    EXPECT_EQ(map.counters().applied, 1U);
+}
+
+TEST(CountingMap, marks_nothing_where_something_known_explains_the_range) {
+    FusedMap map(map_config());
+    map.apply(std::vector<VoxelUpdate>{{key_at(2), 1.0F}});
+    const auto before = map.counters();
+    map.mark(cap_of_three(), 2.0F);
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
+    EXPECT_EQ(map.counters(), before);
+}
+
+TEST(CountingMap, confirms_what_it_marks) {
+    FusedMap map(map_config());
+    map.go_on(HostTime{5'000'000'000});
+    map.mark(cap_of_three(), 2.0F);
+    EXPECT_EQ(map.confirmation(key_at(0)), (Confirmation{0, SensorKind::range}));
+}
+
 }  // namespace
 }  // namespace octoskin

@@ -160,6 +160,32 @@ TEST(DatedMap, waits_for_late_measurements_and_follows_a_clock_that_was_set_back
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 5U);
 }
 
+TEST(DatedMap, grows_no_older_where_time_leaps_and_goes_on_growing_old_after) {
+    for (const int leap_s : {1000, 100'000, -50, -100'000}) {
+        FusedMap map(aging(10, 20));
+        map.go_on(at_s(100));
+        map.apply(one(key_at(0), 1.0F));
+        map.go_on(at_s(103));
+        map.leap(std::chrono::seconds(leap_s));
+        map.go_on(at_s(104 + leap_s));
+        ASSERT_TRUE(map.confirmation(key_at(0)).has_value()) << leap_s;
+        EXPECT_EQ(map.confirmation(key_at(0))->age_s, 4U);
+        map.go_on(at_s(119 + leap_s));
+        EXPECT_EQ(map.confirmation(key_at(0))->age_s, 19U);
+        map.go_on(at_s(120 + leap_s));
+        EXPECT_EQ(map.known_voxels(), 0U);
+    }
+}
+
+TEST(DatedMap, leaps_by_the_nearest_second) {
+    FusedMap map(MapConfig{});
+    map.go_on(at_s(100.5));
+    map.apply(one(key_at(0), 1.0F));
+    map.leap(std::chrono::milliseconds(2'700));
+    map.go_on(at_s(105.2));  // 2.0 s have passed
+    EXPECT_EQ(map.confirmation(key_at(0))->age_s, 2U);
+}
+
 TEST(DatedMap, tells_ages_over_days) {
     FusedMap map(MapConfig{});
     map.go_on(at_s(-3));

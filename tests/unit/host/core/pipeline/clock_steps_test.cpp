@@ -156,6 +156,75 @@ TEST(ClockSteps, back_of_the_host_that_sends_sync_are_counted_and_over_after_two
     }
 }
 
+/// How old a voxel is that range sensors confirmed last; 9999 if there is none.
+std::uint32_t age_of_oldest_s(const FusedMap& map) {
+    std::uint32_t oldest_s = 9999;
+    map.for_each_known([&](VoxelKey key, float) {
+        const auto confirmed = map.confirmation(key);
+        if (!confirmed || confirmed->kind != SensorKind::range) return;
+        oldest_s = oldest_s == 9999 ? confirmed->age_s : std::max(oldest_s, confirmed->age_s);
+    });
+    return oldest_s;
+}
+
+// Of a new host, to --listen-only: nothing is 700 s older by it, and nothing is forgotten.
+TEST(ClockSteps, ahead_of_the_host_that_sends_sync_make_nothing_older) {
+    for (const auto release : {Release::by_capture_time, Release::once_placed}) {
+        for (const double ahead_s : {0.5, 3.0, 700.0, 1e6}) {
+            SCOPED_TRACE("ahead by " + std::to_string(ahead_s) + " s");
+            Scene scene = turning_scene();
+            scene.config.release = release;
+            scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 600};
+            const Pipeline pipeline = play(scene, frames_with_host_back(-ahead_s));
+            expect_hits_where_shots_ended(pipeline, 60);
+            EXPECT_EQ(pipeline.times_ahead(), ahead_s > 1.0 ? 1U : 0U);
+            EXPECT_EQ(pipeline.times_back(), 0U);
+            // The first shot is of 3.0 s, the newest of 7.9 s.
+            EXPECT_NEAR(age_of_oldest_s(*pipeline.maps().fused()), 5.0, 1.0);
+        }
+    }
+}
+
+/// The scene up to the step, and what follows so much later: nobody spoke meanwhile.
+std::vector<StampedFrame> frames_with_silence(double silence_s, double wall_step_s = 0.0) {
+    std::vector<StampedFrame> frames = frames_with_host_back(-silence_s);
+    for (StampedFrame& entry : frames)
+        if (entry.stamp >= wall_at(kStep_s)) entry.stamp.ns += std::llround(1e9 * (silence_s + wall_step_s));
+    return frames;
+}
+
+TEST(ClockSteps, none_over_a_silence_of_a_quarter_of_an_hour_which_makes_a_map_old) {
+    Scene scene = turning_scene();
+    scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 0};
+    const Pipeline pipeline = play(scene, frames_with_silence(900.0));
+    EXPECT_EQ(pipeline.times_ahead(), 0U);
+    EXPECT_NEAR(age_of_oldest_s(*pipeline.maps().fused()), 905.0, 1.0);
+}
+
+// A controller that was off for a while: its clock begins anew, and the map has grown old meanwhile.
+TEST(ClockSteps, back_after_a_silence_make_a_map_as_old_as_it_is) {
+    std::vector<StampedFrame> frames = frames_with_host_back(1000.0);
+    for (StampedFrame& entry : frames)
+        if (entry.stamp >= wall_at(kStep_s)) entry.stamp.ns += 900'000'000'000;
+    Scene scene = turning_scene();
+    scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 0};
+    const Pipeline pipeline = play(scene, frames);
+    EXPECT_EQ(pipeline.times_back(), 1U);
+    EXPECT_NEAR(age_of_oldest_s(*pipeline.maps().fused()), 905.0, 1.0);
+}
+
+TEST(ClockSteps, of_a_wall_clock_while_nobody_spoke_make_nothing_older_than_it_is) {
+    Scene scene = turning_scene();
+    scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 0};
+    const Pipeline ahead = play(scene, frames_with_silence(900.0, 3600.0));
+    EXPECT_EQ(ahead.times_ahead(), 0U);
+    EXPECT_NEAR(age_of_oldest_s(*ahead.maps().fused()), 905.0, 1.0);
+    // Which of the two clocks was set nobody can tell: the lesser counts.
+    const Pipeline back = play(scene, frames_with_silence(900.0, -300.0));
+    EXPECT_EQ(back.times_ahead(), 1U);
+    EXPECT_NEAR(age_of_oldest_s(*back.maps().fused()), 605.0, 1.0);
+}
+
 TEST(ClockSteps, back_leave_the_camera_its_place) {
     Scene scene = turning_scene();
     scene.config.release = Release::once_placed;
@@ -177,6 +246,26 @@ TEST(ClockSteps, back_leave_the_camera_its_place) {
     EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::out_of_order), 0U)
         << pipeline.account_text();
     EXPECT_GE(pipeline.accounts().depth_frames.used(), 30U) << pipeline.account_text();
+}
+
+// A camera that this machine's clock dates does not leap with the bus.
+TEST(ClockSteps, ahead_make_images_of_the_time_before_late_and_the_map_no_older) {
+    Scene scene = turning_scene();
+    scene.config.release = Release::once_placed;
+    scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 600};
+    Pipeline pipeline = make_pipeline(scene);
+    double depth_s = 3.0;
+    for (const StampedFrame& entry : frames_with_host_back(-700.0)) {
+        pipeline.on_can(entry.frame, entry.stamp);
+        const double at_s = 1e-9 * static_cast<double>(entry.stamp.ns - wall_at(0.0).ns);
+        if (at_s < depth_s) continue;
+        pipeline.on_depth(flat_frame(at_s));
+        depth_s = at_s + 0.1;
+    }
+    pipeline.finish();
+    EXPECT_EQ(pipeline.times_ahead(), 1U);
+    EXPECT_GE(pipeline.accounts().depth_frames.rejected(DepthReason::late), 10U) << pipeline.account_text();
+    EXPECT_NEAR(age_of_oldest_s(*pipeline.maps().fused()), 5.0, 1.0);
 }
 
 TEST(ClockSteps, of_any_number_of_foreign_stamps_do_not_change_the_map) {

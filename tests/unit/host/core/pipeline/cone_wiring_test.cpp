@@ -1,6 +1,12 @@
 // Whose ranges are counted as a cone's: those of a sensor that sees one, where the mapping says so.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "host/core/pipeline/map_builder.hpp"
 #include "host/core/pipeline/pipeline.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
 
@@ -45,6 +51,84 @@ TEST(ConeWiring, counts_zones_with_parameters_of_their_own) {
     EXPECT_NE(run(as_zone).fused_ot, run(scene_of(RangeUpdate::cone, kCone)).fused_ot);
     as_zone.mapping.zone = as_zone.mapping.cone;
     EXPECT_TRUE(run(as_zone).has_equal_maps(run(scene_of(RangeUpdate::cone, kCone))));
+}
+
+/// Of the voxels whose log-odds changed, what the listener was told, and what the map says.
+class Changes final : public CommitListener {
+  public:
+    void on_joints(const JointMeasurement&) override {}
+    void on_depth(const DepthFrame&, const DepthTerms&) override {}
+    void on_reading(const RangeMeasurement&, const Beam&, std::span<const VoxelUpdate> updates) override {
+        for (const VoxelUpdate& update : updates) {
+            EXPECT_TRUE(told_now_.insert(update.key).second) << "each voxel once";
+            told_[update.key] += update.log_odds;
+        }
+        told_now_.clear();
+    }
+    void on_maps(const MapSet& maps) override {
+        maps.fused()->for_each_known(
+            [&](VoxelKey key, float log_odds) { EXPECT_NEAR(told_[key], log_odds, 1e-4); });
+    }
+
+  private:
+    std::set<VoxelKey> told_now_;
+    std::map<VoxelKey, float> told_;
+};
+
+/// The arm stands, and its sensor is a cone.
+class StandingCone : public testing::Test {
+  protected:
+    StandingCone() {
+        Scene scene = scene_of(RangeUpdate::cone, kCone);
+        scene.mapping.standing.readings = 4;
+        builder_.emplace(MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, {}).value());
+        builder_->tell(&changes_);
+    }
+    void read(std::optional<double> range_m, int times) {
+        for (int i = 0; i < times; ++i) {
+            now_s_ += 0.033;
+            for (const double beside_s : {-0.01, 0.01})
+                ASSERT_TRUE(builder_->add({host_at(now_s_ + beside_s), {M_PI / 2.0}}));
+            ASSERT_TRUE(
+                builder_->integrate(RangeMeasurement{{kLeft, kGood, 0}, host_at(now_s_), range_m, 0.01}));
+        }
+    }
+    [[nodiscard]] std::size_t occupied() const {
+        std::size_t voxels = 0;
+        const FusedMap& map = *builder_->maps().fused();
+        map.for_each_known([&](VoxelKey, float log_odds) {
+            voxels += map.occupancy_of(log_odds) == Occupancy::occupied ? 1U : 0U;
+        });
+        return voxels;
+    }
+    std::optional<MapBuilder> builder_;
+    Changes changes_;
+    double now_s_ = 1.0;
+};
+
+TEST_F(StandingCone, has_what_comes_on_the_map_with_the_fourth_reading) {
+    read(1.0, 30);
+    EXPECT_EQ(occupied(), 0U);
+    read(0.5, 3);
+    EXPECT_EQ(occupied(), 0U);
+    read(0.5, 1);
+    EXPECT_GE(occupied(), 1U);
+    EXPECT_LE(occupied(), 4U) << "the middle of its cap alone";
+    read(1.0, 30);
+    EXPECT_EQ(occupied(), 0U) << "and off it within a second of its having gone";
+}
+
+TEST_F(StandingCone, forgets_what_it_was_told_where_a_recording_begins_or_time_leaps) {
+    read(1.0, 30);
+    read(0.5, 3);
+    builder_->forget_counts();
+    read(0.5, 3);
+    EXPECT_EQ(occupied(), 0U);
+    builder_->forget_motion({});
+    read(0.5, 3);
+    EXPECT_EQ(occupied(), 0U);
+    read(0.5, 1);
+    EXPECT_GE(occupied(), 1U);
 }
 
 }  // namespace

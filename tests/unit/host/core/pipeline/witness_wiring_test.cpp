@@ -21,7 +21,7 @@ SensorEvidence after_six_images(const MappingConfig& mapping, std::uint16_t dept
         EXPECT_TRUE(builder.add({now, {M_PI / 2.0 - 0.04 * i}}));
         EXPECT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, now, 0.52, 0.02}));
         if (goes_back) {
-            builder.forget_motion();
+            builder.forget_motion({});
             EXPECT_TRUE(builder.add({now, {M_PI / 2.0 - 0.04 * i}}));
         }
         EXPECT_TRUE(builder.integrate(flat_frame(1.0 + 0.1 * i, depth_mm)));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <optional>
 
 #include "tests/unit/host/core/traversal/traversal_scene.hpp"
@@ -15,11 +16,14 @@ struct PlacedTwice {
 };
 
 PlacedTwice placed_twice(const DepthImage& image, const VoxelLattice& lattice,
-                         const Eigen::Isometry3d& T_map_camera, double range_max_m) {
-    const PixelRays pixel_rays(kSmallCamera);
+                         const Eigen::Isometry3d& T_map_camera, double range_max_m, Crew* crew = nullptr) {
+    CameraIntrinsics camera = kSmallCamera;
+    camera.width = image.width;
+    camera.height = image.height;
+    const PixelRays pixel_rays(camera);
     PlacedTwice placed;
-    place_image(image, pixel_rays, lattice, T_map_camera, range_max_m, placed.exact);
-    place_voxels(image, pixel_rays, lattice, T_map_camera, range_max_m, placed.voxels);
+    place_image(image, pixel_rays, lattice, T_map_camera, range_max_m, placed.exact, crew);
+    place_voxels(image, pixel_rays, lattice, T_map_camera, range_max_m, placed.voxels, crew);
     return placed;
 }
 
@@ -50,7 +54,7 @@ void expect_same(const PlacedTwice& placed) {
 }
 
 TEST(PlacedVoxels, are_those_of_the_exact_ends_near_faces_and_maximum_near_and_far_from_the_origin) {
-    for (unsigned seed = 0; seed < 60; ++seed) {
+    for (unsigned seed = 0; seed < 40; ++seed) {
         const double resolution_m = seed % 3 == 0 ? 0.01 : 0.04;
         const VoxelLattice lattice(resolution_m);
         property::RandomGeometry random(seed, resolution_m);
@@ -98,6 +102,23 @@ TEST(PlacedVoxels, of_rays_that_leave_the_octree_are_left_out_as_the_exact_ones_
             on_each_instruction_set([&](const std::string& name) {
                 SCOPED_TRACE(name);
                 expect_same(placed_twice(image, lattice, T_map_camera, range_max_m));
+            });
+        }
+    }
+}
+
+TEST(PlacedVoxels, are_those_of_images_of_any_size_whoever_places_them) {
+    const VoxelLattice lattice(0.04);
+    Crew crew(3);
+    for (const std::uint32_t width : {1U, 5U, 17U, 63U, 64U, 100U, 128U}) {
+        for (const std::uint32_t height : {1U, 33U, 70U}) {
+            property::RandomGeometry random(width + height, 0.04);
+            const DepthImage image = random.depth_image(width, height);
+            const Eigen::Isometry3d T_map_camera = random.camera_pose();
+            on_each_instruction_set([&](const std::string& name) {
+                SCOPED_TRACE(name + ", " + std::to_string(width) + " x " + std::to_string(height));
+                expect_same(placed_twice(image, lattice, T_map_camera, 1.7));
+                expect_same(placed_twice(image, lattice, T_map_camera, 1.7, &crew));
             });
         }
     }

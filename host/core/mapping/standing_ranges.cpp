@@ -1,0 +1,93 @@
+#include "host/core/mapping/standing_ranges.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace octoskin {
+namespace {
+
+bool are_of_one_place(const Beam& a, const Beam& b) {
+    // The trace of a rotation is 1 + 2 cos(angle).
+    static const double trace_min = 1.0 + 2.0 * std::cos(StandingRanges::kTurnedMax_rad);
+    const double moved2 = (a.p_map_sensor - b.p_map_sensor).squaredNorm();
+    return moved2 <= StandingRanges::kMovedMax_m * StandingRanges::kMovedMax_m &&
+           a.R_map_sensor.cwiseProduct(b.R_map_sensor).sum() >= trace_min;
+}
+
+double tolerance_m(const Beam& a, const Beam& b) {
+    return StandingRanges::kAgreement_m + StandingRanges::kAgreementSigmas * std::max(a.sigma_m, b.sigma_m);
+}
+
+/// Both have a range.
+bool agree(const Beam& a, const Beam& b) {
+    const double angle = std::acos(std::clamp(a.direction_map.dot(b.direction_map), -1.0, 1.0));
+    return std::fabs(*a.range_m - *b.range_m) <= tolerance_m(a, b) + angle * *a.range_m;
+}
+
+/// That `before` was already told what `beam` tells, or of something nearer.
+bool is_told_by(const Beam& before, const Beam& beam) {
+    return before.range_m && are_of_one_place(before, beam) &&
+           *before.range_m <= *beam.range_m + tolerance_m(before, beam);
+}
+
+}  // namespace
+
+std::span<const Beam> StandingRanges::take(const Beam& beam) {
+    believed_.clear();
+    if (model_.readings == 0) return believed_;
+    Sensor& sensor = sensors_[{beam.source.node_id, beam.source.sensor}];
+    Zone& zone = sensor.zones[beam.source.zone];
+    const std::size_t window = model_.window();
+    zone.reserve(window + kBefore);
+    if (zone.size() >= window + kBefore) zone.erase(zone.begin());
+    zone.push_back({beam, ++sensor.readings, false});
+    if (!beam.range_m) return believed_;
+
+    window_ = {{&zone, zone.size() - std::min(zone.size(), window)}};
+    believe(beam, window_);
+    if (sensor.zones.size() == 1) return believed_;
+    window_.clear();
+    for (auto& [index, readings] : sensor.zones) {
+        const auto first = std::ranges::find_if(
+            readings, [&](const Reading& reading) { return reading.number + window > sensor.readings; });
+        if (first != readings.end())
+            window_.emplace_back(&readings, static_cast<std::size_t>(first - readings.begin()));
+    }
+    believe(beam, window_);
+    return believed_;
+}
+
+void StandingRanges::believe(const Beam& newest, const Window& window) {
+    agreeing_.clear();
+    for (const auto& [zone, first] : window) {
+        const std::span<Reading> all(*zone);
+        const auto newest_before = all.first(first).last(std::min(first, kBefore));
+        for (Reading& reading : all.subspan(first)) {
+            const Beam& beam = reading.beam;
+            const bool is_new = std::ranges::none_of(
+                newest_before, [&](const Reading& before) { return is_told_by(before.beam, beam); });
+            if (beam.range_m && is_new && are_of_one_place(beam, newest) && agree(beam, newest))
+                agreeing_.push_back(&reading);
+        }
+    }
+    if (agreeing_.size() < model_.readings) return;
+    for (auto reading = agreeing_.begin(); reading != agreeing_.end();) {
+        // Those of a zone stand together, the newest last.
+        double sum_m = 0.0;
+        bool is_believed = true;
+        auto next = reading;
+        for (; next != agreeing_.end() && (*next)->beam.source == (*reading)->beam.source; ++next) {
+            sum_m += *(*next)->beam.range_m;
+            is_believed = is_believed && (*next)->is_believed;
+            (*next)->is_believed = true;
+        }
+        if (!is_believed) {
+            believed_.push_back((*(next - 1))->beam);
+            believed_.back().range_m = sum_m / static_cast<double>(next - reading);
+        }
+        reading = next;
+    }
+}
+
+}  // namespace octoskin

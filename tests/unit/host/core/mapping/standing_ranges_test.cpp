@@ -1,0 +1,154 @@
+// When ranges of a sensor are believed at once: the rules of docs/method.md "A sensor that stands still",
+// with 4 readings of the last 7.
+#include "host/core/mapping/standing_ranges.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace octoskin {
+namespace {
+
+constexpr double kSigma_m = 0.01;  ///< so that ranges agree to 5 cm
+constexpr std::optional<double> kNothing = std::nullopt;
+
+Beam beam_at(std::optional<double> range_m, std::uint8_t zone = 0, double x_m = 0.0,
+             double turned_deg = 0.0) {
+    Beam beam;
+    beam.source = {1, 2, zone};
+    beam.p_map_sensor = {x_m, 0.0, 0.0};
+    beam.R_map_sensor =
+        Eigen::AngleAxisd(turned_deg * M_PI / 180.0, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    // Zones are 9 degrees apart, in a row.
+    const double angle = zone * 9.0 * M_PI / 180.0;
+    beam.direction_map = beam.R_map_sensor * Eigen::Vector3d(0.0, std::sin(angle), std::cos(angle));
+    beam.range_m = range_m;
+    beam.sigma_m = kSigma_m;
+    beam.optics = {.half_angle_rad = 0.2, .sigma_rad = 0.1};
+    return beam;
+}
+
+class StandingRangesTest : public testing::Test {
+  protected:
+    /// How many ranges are believed after each of these, from one place, of one zone.
+    std::vector<std::size_t> take(const std::vector<std::optional<double>>& ranges_m) {
+        std::vector<std::size_t> believed;
+        for (const auto& range_m : ranges_m) believed.push_back(ranges_.take(beam_at(range_m)).size());
+        return believed;
+    }
+    using Counts = std::vector<std::size_t>;
+
+    StandingRanges ranges_{StandingModel{.readings = 4}};
+};
+
+TEST_F(StandingRangesTest, believes_the_fourth_that_agrees_and_its_mean) {
+    EXPECT_EQ(take({0.50, 0.52, 0.49}), Counts({0, 0, 0}));
+    const auto believed = ranges_.take(beam_at(0.53));
+    ASSERT_EQ(believed.size(), 1U);
+    EXPECT_NEAR(*believed.front().range_m, 0.51, 1e-12);
+    EXPECT_EQ(believed.front().source, (BeamSource{1, 2, 0}));
+}
+
+TEST_F(StandingRangesTest, believes_nothing_if_the_mapping_says_never) {
+    StandingRanges never{StandingModel{}};
+    for (int i = 0; i < 20; ++i) EXPECT_TRUE(never.take(beam_at(0.5)).empty());
+}
+
+TEST_F(StandingRangesTest, believes_no_wrong_reading_however_often_one_comes) {
+    take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
+    // Every third is wrong: never four in seven.
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(take({0.5, 1.0, 1.0}), Counts({0, 0, 0}));
+    // And if they do not agree with each other, as many as there are.
+    EXPECT_EQ(take({0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.3, 0.6, 0.2}), Counts(10, 0));
+}
+
+TEST_F(StandingRangesTest, believes_what_comes_though_three_of_seven_are_wrong_or_fail) {
+    take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
+    EXPECT_EQ(take({0.5, 1.0, 0.5, kNothing, 0.5, 0.2, 0.5}), Counts({0, 0, 0, 0, 0, 0, 1}));
+}
+
+TEST_F(StandingRangesTest, believes_what_is_new_for_seven_readings_and_then_no_more) {
+    take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
+    EXPECT_EQ(take(std::vector<std::optional<double>>(12, 0.5)),
+              Counts({0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(take(std::vector<std::optional<double>>(12, 1.0)), Counts(12, 0)) << "it was never nearer";
+}
+
+TEST_F(StandingRangesTest, takes_what_was_as_near_before_for_no_news) {
+    take({0.54, 1.0, 1.0, 1.0, 1.0});
+    // Until the reading of 0.54 m is no longer one of the three before the window.
+    EXPECT_EQ(take({0.5, 0.5, 0.5, 0.5, 0.5, 0.5}), Counts({0, 0, 0, 0, 0, 1}));
+}
+
+TEST_F(StandingRangesTest, believes_no_sensor_that_moves_or_turns_faster_than_it_may) {
+    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0034 * i)).empty());
+    ranges_.forget();
+    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0, 0.34 * i)).empty());
+}
+
+TEST_F(StandingRangesTest, believes_a_sensor_that_moves_and_turns_slowly) {
+    for (int i = 0; i < 30; ++i) {
+        const auto believed = ranges_.take(beam_at(0.5, 0, 0.0033 * i, 0.33 * i));
+        EXPECT_EQ(believed.size(), i < 3 ? 0U : 1U);
+    }
+}
+
+TEST_F(StandingRangesTest, hears_zones_that_are_ranged_in_turn) {
+    for (int cycle = 0; cycle < 2; ++cycle)
+        for (std::uint8_t zone = 0; zone < 9; ++zone) (void)ranges_.take(beam_at(1.0, zone));
+    // Something square before zones 4 to 8: what the fourth of them says makes all four believed.
+    std::vector<std::size_t> counts;
+    for (std::uint8_t zone = 4; zone < 9; ++zone) counts.push_back(ranges_.take(beam_at(0.5, zone)).size());
+    EXPECT_EQ(counts, Counts({0, 0, 0, 4, 1}));
+}
+
+TEST_F(StandingRangesTest, hears_zones_of_what_comes_again_a_second_after_it_left) {
+    const auto cycles_of = [&](int cycles, double range_m) {
+        std::size_t believed = 0;
+        for (int cycle = 0; cycle < cycles; ++cycle)
+            for (std::uint8_t zone = 0; zone < 9; ++zone)
+                believed += ranges_.take(beam_at(range_m, zone)).size();
+        return believed;
+    };
+    (void)cycles_of(2, 1.0);
+    EXPECT_GT(cycles_of(3, 0.5), 0U);
+    EXPECT_EQ(cycles_of(4, 1.0), 0U);  // of each zone the newest three before are of nothing near
+    EXPECT_GT(cycles_of(1, 0.5), 0U);
+}
+
+TEST_F(StandingRangesTest, hears_one_zone_by_its_own_readings) {
+    std::vector<int> cycles;
+    for (int cycle = 0; cycle < 20; ++cycle)
+        for (std::uint8_t zone = 0; zone < 9; ++zone) {
+            const bool is_there = zone == 4 && cycle >= 10;
+            if (!ranges_.take(beam_at(is_there ? 0.5 : 1.0, zone)).empty() && cycle > 7)
+                cycles.push_back(cycle);
+        }
+    EXPECT_EQ(cycles, (std::vector<int>{13, 14, 15, 16}));
+}
+
+TEST_F(StandingRangesTest, believes_no_zone_for_what_its_neighbours_have_always_said) {
+    for (int cycle = 0; cycle < 10; ++cycle)
+        for (std::uint8_t zone = 0; zone < 9; ++zone)
+            (void)ranges_.take(beam_at(zone == 4 ? 1.0 : 0.5, zone));
+    for (std::uint8_t zone = 0; zone < 9; ++zone) EXPECT_TRUE(ranges_.take(beam_at(0.5, zone)).empty());
+}
+
+TEST_F(StandingRangesTest, keeps_sensors_apart) {
+    for (std::uint8_t i = 0; i < 12; ++i) {
+        Beam beam = beam_at(0.5);
+        beam.source = {static_cast<std::uint8_t>(i % 2), static_cast<std::uint8_t>(i / 2 % 2), 0};
+        EXPECT_TRUE(ranges_.take(beam).empty());
+    }
+}
+
+TEST_F(StandingRangesTest, begins_anew_after_it_was_told_to_forget) {
+    take({0.5, 0.5, 0.5});
+    ranges_.forget();
+    EXPECT_EQ(take({0.5, 0.5, 0.5, 0.5}), Counts({0, 0, 0, 1}));
+}
+
+}  // namespace
+}  // namespace octoskin
