@@ -43,12 +43,17 @@ struct EvaluateOptions {
                                                "cannot be judged; look at them (octovis, or the .ply)"});
 }
 
+Scene judged(Scene scene) {
+    if (const auto still = check_stands_still(scene); !still) throw CommandFailure(still.error());
+    return scene;
+}
+
 /// The scene of `recording`, with whatever is given in its place.
 Scene recorded_scene(const std::filesystem::path& recording, const EvaluateOptions& options) {
     auto found = read_recorded_scene(recording, {options.scenario, options.world});
     if (!found) throw CommandFailure(found.error());
     for (const std::string& warning : found->warnings) spdlog::warn("{}", warning);
-    return std::move(found->scene);
+    return judged(std::move(found->scene));
 }
 
 evaluation::Truth build(const Scene& scene, const rig::Rig& rig, double resolution_m) {
@@ -174,7 +179,7 @@ Scene scene_of_map(const EvaluateOptions& options, const std::optional<std::file
     }
     auto scene = read_scene(options.scenario, options.world);
     if (!scene) throw CommandFailure(scene.error());
-    return std::move(*scene);
+    return judged(std::move(*scene));
 }
 
 evaluation::Results judge_map(const EvaluateOptions& options) {

@@ -2,6 +2,7 @@
 #include "host/apps/recording/permission.hpp"
 
 #include "hw/sim/scenario/hidden_models.hpp"
+#include "hw/sim/scenario/motion.hpp"
 
 namespace octoskin {
 
@@ -16,9 +17,27 @@ Result<Scene, AppError> read_scene(const std::filesystem::path& scenario_file,
         return unexpected(
             AppError{ExitCode::bad_config, checked.error().message() + " (" + world_file.string() + ")"});
     }
+    std::vector<sim::ModelMotion> motions;
+    if (!scenario->world_motion.empty()) {
+        auto read = sim::read_motion(scenario->world_motion, world->solids());
+        if (!read) return unexpected(reading_error(ExitCode::bad_config, read.error()));
+        motions = std::move(*read);
+    }
     SourceFile scenario_source = source_file(scenario_file, scenario->extended_files);
-    return Scene{std::move(*scenario), std::move(*world), std::move(scenario_source),
+    return Scene{std::move(*scenario), std::move(*world), std::move(motions), std::move(scenario_source),
                  source_file(world_file)};
+}
+
+Status<AppError> check_stands_still(const Scene& scene) {
+    if (scene.motions.empty()) return Done{};
+    return unexpected(
+        AppError{ExitCode::bad_config,
+                 scene.scenario
+                     .error("world_motion",
+                            "what moves has no one place that a map could be judged by: `octoskin "
+                            "simulate` and `replay` take such a scenario, evaluate and experiment "
+                            "do not")
+                     .message()});
 }
 
 }  // namespace octoskin

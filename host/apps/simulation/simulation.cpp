@@ -115,7 +115,8 @@ Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequ
                                      .seed = request.seed,
                                      .is_depth_noise_free = request.is_depth_noise_free,
                                      .emulated = request.emulated,
-                                     .board_starts = request.board_starts};
+                                     .board_starts = request.board_starts,
+                                     .motions = inputs->scene.motions};
     const sim::ExperimentOutput output{
         .on_frame = [&](const wire::CanFrame& frame, WallTime stamp) { recorder->write(frame, stamp); },
         .on_depth = [&](HostTime captured, std::uint32_t, std::uint32_t,

@@ -38,6 +38,7 @@ struct StudyWorld {
 Result<StudyWorld, AppError> prepare_world(const SimulationRequest& inputs, double resolution_m) {
     auto scene = read_scene(inputs.scenario, inputs.world);
     if (!scene) return unexpected(scene.error());
+    if (const auto still = check_stands_still(*scene); !still) return unexpected(still.error());
     const auto rig = read_given_rig(inputs.rig, inputs.robot);
     if (!rig) return unexpected(rig.error());
     evaluation::TruthConfig truth = truth_config_of(scene->scenario, resolution_m);

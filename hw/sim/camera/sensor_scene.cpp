@@ -58,7 +58,7 @@ struct RayScene {
         const Eigen::Vector3d direction = T_base_sensor.linear() * rig::zone_direction(roi);
         auto nearest =
             cast_robot(surroundings.capsules, poses, origin, direction, surroundings.ignored_links);
-        const auto hit = surroundings.world.cast(origin, direction, surroundings.optics.max_m);
+        const auto hit = surroundings.at(time).cast(origin, direction, surroundings.optics.max_m);
         if (hit && (!nearest || hit->range_m < *nearest)) {
             nearest = hit->range_m;
         }
@@ -117,7 +117,7 @@ struct ConeScene {
         for (const Eigen::Vector3d& direction_sensor : view.directions_sensor())
             directions.emplace_back(instant.T_base_sensor.linear() * direction_sensor);
         std::vector<RayHit> hits(directions.size());
-        surroundings.world.cast_fan(origin, directions, surroundings.optics.max_m, hits);
+        surroundings.at(time).cast_fan(origin, directions, surroundings.optics.max_m, hits);
         hide_behind_body(instant, directions, hits);
         const std::vector<double> weights = view.weights(roi);
         const double reflectivity = surroundings.optics.reflectivity;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,10 @@ struct SensorSurroundings {
     std::vector<std::string> ignored_links;
     RangeOptics optics;
     std::uint64_t seed = 0;
+    /// The world as it is at an instant, in place of `world`; empty: nothing in that moves.
+    std::function<const World&(SimTime)> world_at{};
+
+    [[nodiscard]] const World& at(SimTime time) const { return world_at ? world_at(time) : world; }
 };
 
 /// One sensor: where it is, and the number that keeps its noise apart from the others'.

@@ -41,10 +41,21 @@ NodeClock draw_clock(std::mt19937_64& random, bool is_first) {
     return {NodeTime{is_first ? 0U - 6'000'000U : start}, drift_ppm};
 }
 
+using WorldAt = std::function<const World&(SimTime)>;
+
+/// Empty if nothing moves. One instant's world at a time.
+WorldAt world_at(const ExperimentInput& input, SimTime start) {
+    if (input.motions.empty()) return {};
+    const auto moving = std::make_shared<MovingWorld>(input.world.solids(), input.motions);
+    return [moving, start](SimTime time) -> const World& {
+        return moving->at(1e-6 * static_cast<double>(time.us - start.us));
+    };
+}
+
 /// Everything that takes part, wired together.
 class RigInOneProcess {
   public:
-    RigInOneProcess(const ExperimentInput& input, const Trajectory& trajectory,
+    RigInOneProcess(const ExperimentInput& input, const Trajectory& trajectory, const WorldAt& world_at,
                     const ExperimentOutput& output)
         : output_(output),
           turn_us_(input.emulated ? kRemoteTurnUs : kTurnUs),
@@ -54,7 +65,8 @@ class RigInOneProcess {
                         .capsules = input.capsules,
                         .ignored_links = input.rig.links_ignored_by_sensors,
                         .optics = input.scenario.ranges,
-                        .seed = input.seed},
+                        .seed = input.seed,
+                        .world_at = world_at},
           bus_({input.rig.bus.nominal_bitrate, input.rig.bus.data_bitrate}),
           master_(SimulatedHostClock(kHostAtStart), kSyncPeriod) {
         std::mt19937_64 random(input.seed);
@@ -198,23 +210,28 @@ Result<ExperimentSummary, ExperimentError> run(const ExperimentInput& input, con
     }
     const SimTime end = trajectory->end();
 
-    RigInOneProcess rig(input, *trajectory, output);
+    const WorldAt moving = world_at(input, start);
+    RigInOneProcess rig(input, *trajectory, moving, output);
     rig.mark(wire::MarkKind::start, start);
     rig.mark(wire::MarkKind::stop, end);
     std::uint32_t frames = 0;
     if (input.rig.camera) {
         const double sigma_m = input.is_depth_noise_free ? 0.0 : input.scenario.depth_sigma_m;
-        const DepthCamera camera(input.world, *input.rig.camera, sigma_m, input.seed);
+        std::optional<DepthCamera> camera;
         const double period_s = 1.0 / input.rig.camera->rate_hz;
         for (int index = -kFramesBeforeStart;; ++index) {
             const SimTime captured{start.us + from_seconds(period_s * index).us};
             if (captured >= end) break;
             rig.run_until(captured);
+            // It sees the world's surfaces once and for all; where those move, anew each time.
+            if (!camera || moving)
+                camera.emplace(moving ? moving(captured) : input.world, *input.rig.camera, sigma_m,
+                               input.seed);
             output.on_depth(
                 SimulatedHostClock(kHostAtStart).at(captured), input.rig.camera->width,
                 input.rig.camera->height,
-                camera.render(posed_body(input.capsules, input.arm.forward(trajectory->at(captured))),
-                              frames));
+                camera->render(posed_body(input.capsules, input.arm.forward(trajectory->at(captured))),
+                               frames));
             ++frames;
             if (output.on_progress) {
                 output.on_progress(static_cast<double>(captured.us) / static_cast<double>(end.us));

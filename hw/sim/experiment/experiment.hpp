@@ -18,6 +18,7 @@
 #include "hw/sim/experiment/emulated_board.hpp"
 #include "hw/sim/experiment/rig_board.hpp"
 #include "hw/sim/scenario/scenario.hpp"
+#include "hw/sim/world/moving_world.hpp"
 #include "hw/sim/world/world.hpp"
 
 namespace octoskin::sim {
@@ -34,6 +35,8 @@ struct ExperimentInput {
     /// Of boards in this process: one for each node, or none. Then they run from time 0, and their counters
     /// start anywhere.
     std::vector<BoardStart> board_starts{};
+    /// Of models of `world`, each once (asserted); seconds count from where the arm starts.
+    std::vector<ModelMotion> motions{};
 };
 
 /// What a sensor truly did: the oracle that no recorder has.

@@ -129,26 +129,31 @@ void read_judgement(const Table& top, Scenario& scenario) {
     }
 }
 
-std::filesystem::path read_world(const Table& top) {
-    const Value& value = top.require("world");
-    auto world = std::filesystem::absolute(value.file->parent_path() / value.text).lexically_normal();
+/// `what`: it holds, for a person.
+std::filesystem::path read_path(const Table& top, std::string_view key, const std::string& what) {
+    const Value& value = top.require(key);
+    auto file = std::filesystem::absolute(value.file->parent_path() / value.text).lexically_normal();
     std::error_code error;  // a name too long, for one, is as absent as any
-    if (value.kind != Value::Kind::scalar || !std::filesystem::is_regular_file(world, error)) {
-        top.fail("world", "expected the path of an SDF file, relative to this file; there is none at " +
-                              world.string());
+    if (value.kind != Value::Kind::scalar || !std::filesystem::is_regular_file(file, error)) {
+        top.fail(key, "expected the path of " + what + ", relative to this file; there is none at " +
+                          file.string());
     }
-    return world;
+    return file;
 }
 
 Scenario read_checked(const std::filesystem::path& file) {
     Scenario scenario;
     scenario.file = file;
     const Value document = rig::load_with_extends(file, &scenario.extended_files);
-    const Table top(
-        document, "",
-        {"name", "world", "motion", "depth", "ranges", "slow_clocks", "seeds", "hidden_models", "region"});
+    const Table top(document, "",
+                    {"name", "world", "world_motion", "motion", "depth", "ranges", "slow_clocks", "seeds",
+                     "hidden_models", "region"});
     scenario.name = top.name("name");
-    scenario.world = read_world(top);
+    scenario.world = read_path(top, "world", "an SDF file");
+    if (top.find("world_motion") != nullptr) {
+        scenario.world_motion = read_path(top, "world_motion", "a file that says what moves in the world");
+        note_place(top, "world_motion", scenario);
+    }
     read_motion(top, scenario);
     read_sensing(top, scenario);
     scenario.slow_clocks = read_slow_clocks(top);

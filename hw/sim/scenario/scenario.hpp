@@ -45,7 +45,9 @@ struct Scenario {
     std::vector<std::filesystem::path> extended_files;  ///< that this file extends
     std::string name;
     std::filesystem::path world;  ///< absolute
-    double rest_s = 0.0;          ///< at rest from the start of the recording to the START mark
+    /// What moves in it and when (motion.hpp), absolute; empty: nothing does.
+    std::filesystem::path world_motion;
+    double rest_s = 0.0;  ///< at rest from the start of the recording to the START mark
     CircleMotion motion;
     double depth_sigma_m = 0.0;
     RangeOptics ranges;

@@ -214,5 +214,59 @@ TEST_F(SceneOfARecording, hides_no_model_that_is_not_there) {
     EXPECT_FALSE(std::filesystem::exists(path("rec")));
 }
 
+class MovingWorld : public ProgramTest {
+  protected:
+    /// A recording of 1 s before a wall that a box comes before after half of it, or does not.
+    void record(const std::string& name, const std::string& more) const {
+        write(path(name + ".yaml"), "extends: " + source("tests/data/short/scenario.yaml") +
+                                        "\nname: " + name + "\nworld: " + source("hw/worlds/moving.sdf") +
+                                        "\nhidden_models: []\n" + more);
+        const Said said =
+            octoskin("simulate " + path(name) + " --rig " + source("tests/data/short/rig.yaml") +
+                     " --scenario " + path(name + ".yaml"));
+        ASSERT_EQ(said.exit_code, 0) << said.output;
+    }
+};
+
+TEST_F(MovingWorld, is_what_camera_and_sensors_see) {
+    record("still", "");
+    write(path("no.motion.yaml"), "models: [{model: guest, places: [{at_s: 100, is_there: false}]}]\n");
+    record("later", "world_motion: no.motion.yaml\n");
+    EXPECT_EQ(content(path("later/can.log")), content(path("still/can.log"))) << "nothing moves yet";
+    EXPECT_EQ(content(path("later/depth.oni")), content(path("still/depth.oni")));
+    write(path("floor.motion.yaml"), "models: [{model: floor, places: [{at_s: 0.5, is_there: false}]}]\n");
+    record("gone", "world_motion: floor.motion.yaml\n");
+    EXPECT_NE(content(path("gone/can.log")), content(path("still/can.log")));
+    EXPECT_NE(content(path("gone/depth.oni")), content(path("still/depth.oni")));
+    ASSERT_EQ(octoskin("replay " + path("gone")).exit_code, 0);
+}
+
+TEST_F(MovingWorld, is_not_judged) {
+    write(path("floor.motion.yaml"), "models: [{model: floor, places: [{at_s: 0.5, is_there: false}]}]\n");
+    record("gone", "world_motion: floor.motion.yaml\n");
+    const Said judged = octoskin("evaluate " + path("gone"));
+    EXPECT_EQ(judged.exit_code, 78) << judged.output;
+    EXPECT_THAT(judged.output, HasSubstr("gone.yaml:5: world_motion: what moves has no one place"));
+    const Said studied = octoskin("experiment --rig " + source("tests/data/short/rig.yaml") + " --scenario " +
+                                  path("gone.yaml") + " --out " + path("study"));
+    EXPECT_EQ(studied.exit_code, 78) << studied.output;
+    EXPECT_THAT(studied.output, HasSubstr("world_motion: what moves has no one place"));
+}
+
+TEST_F(MovingWorld, is_refused_where_its_motion_is_not_there_or_of_another_world) {
+    write(path("mine.yaml"),
+          "extends: " + source("tests/data/short/scenario.yaml") + "\nworld_motion: no.yaml\n");
+    const std::string simulate = "simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
+                                 " --scenario " + path("mine.yaml");
+    const Said absent = octoskin(simulate);
+    EXPECT_EQ(absent.exit_code, 78) << absent.output;
+    EXPECT_THAT(absent.output,
+                HasSubstr("mine.yaml:2: world_motion: expected the path of a file that says what moves"));
+    write(path("no.yaml"), "models: [{model: guest, places: [{at_s: 1, is_there: false}]}]\n");
+    const Said other = octoskin(simulate);
+    EXPECT_EQ(other.exit_code, 78) << other.output;
+    EXPECT_THAT(other.output, HasSubstr("no.yaml:1"));
+}
+
 }  // namespace
 }  // namespace octoskin
