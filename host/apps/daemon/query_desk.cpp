@@ -24,8 +24,10 @@ std::vector<double> present_joints(const Pipeline& pipeline, std::size_t count, 
 
 }  // namespace
 
-QueryDesk::QueryDesk(const HostSetup& setup)
-    : setup_(std::make_shared<const HostSetup>(setup)), thread_(start_without_signals([this] { run(); })) {}
+QueryDesk::QueryDesk(const HostSetup& setup, std::chrono::milliseconds field_idle_max)
+    : field_idle_max_(field_idle_max),
+      setup_(std::make_shared<const HostSetup>(setup)),
+      thread_(start_without_signals([this] { run(); })) {}
 
 QueryDesk::~QueryDesk() {
     {
@@ -75,7 +77,7 @@ std::vector<std::pair<std::uint64_t, std::string>> QueryDesk::take_answers() {
 void QueryDesk::run() {
     std::unique_lock lock(mutex_);
     while (true) {  // ends with the object
-        changed_.wait(lock, [this] { return !waiting_.empty() || is_ending_; });
+        wait_for_questions(lock);
         if (is_ending_) return;
         Question question = std::move(waiting_.front());
         waiting_.pop_front();
@@ -87,20 +89,30 @@ void QueryDesk::run() {
     }
 }
 
+void QueryDesk::wait_for_questions(std::unique_lock<std::mutex>& lock) {
+    const auto has_work = [this] { return !waiting_.empty() || is_ending_; };
+    if (field_.is_there() && !changed_.wait_for(lock, field_idle_max_, has_work)) {
+        lock.unlock();  // who puts a question need not wait for it to go
+        field_.drop();
+        lock.lock();
+    }
+    changed_.wait(lock, has_work);
+}
+
 /// With the lock.
 void QueryDesk::tell(std::uint64_t ticket, std::string line) {
     answers_.emplace_back(ticket, std::move(line));
     event_.wake();
 }
 
-std::string QueryDesk::answer(Question question) const {
+std::string QueryDesk::answer(Question question) {
     nlohmann::ordered_json json;
     try {
         if (question.now) question.map.go_on(*question.now);  // nothing may have been measured for long
         const auto request = read_query(question.line);
         json = request ? answer_query(*request,
                                       {&question.setup->rig, &question.setup->robot, std::move(question.map),
-                                       std::move(question.present)},
+                                       std::move(question.present), &field_},
                                       [this] { return is_ending_.load(); })
                        : query_refused(request.error());
     } catch (const std::exception& error) {  // no memory, most likely

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -15,6 +16,7 @@
 
 #include "common/time.hpp"
 #include "host/apps/daemon/wake_event.hpp"
+#include "host/apps/querying/kept_field.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/core/pipeline/pipeline.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
@@ -22,11 +24,14 @@
 namespace octoskin {
 
 /// Each question is put to a copy of the map as it was when it came: some microseconds of the loop's time.
-/// Who asks when too many wait already is refused: clients may have gone that their questions outlive.
+/// A distance field that long paths make for themselves follows from copy to copy, and goes when nobody has
+/// asked for `field_idle_max`. Who asks when too many wait already is refused: clients may have gone that
+/// their questions outlive.
 class QueryDesk {
   public:
+    static constexpr std::chrono::milliseconds kFieldIdleMax{10'000};
     /// Throws std::system_error if there is no thread or descriptor to be had.
-    explicit QueryDesk(const HostSetup& setup);
+    explicit QueryDesk(const HostSetup& setup, std::chrono::milliseconds field_idle_max = kFieldIdleMax);
     /// After the leg or the pockets that it is at.
     ~QueryDesk();
     QueryDesk(const QueryDesk&) = delete;
@@ -56,9 +61,11 @@ class QueryDesk {
         std::optional<HostTime> now;  ///< when it was asked; empty: nobody knows
     };
     void run();
+    void wait_for_questions(std::unique_lock<std::mutex>& lock);
     void tell(std::uint64_t ticket, std::string line);
-    [[nodiscard]] std::string answer(Question question) const;
+    [[nodiscard]] std::string answer(Question question);
 
+    const std::chrono::milliseconds field_idle_max_;
     WakeEvent event_;
     std::shared_ptr<const HostSetup> setup_;
     std::mutex mutex_;
@@ -66,6 +73,7 @@ class QueryDesk {
     std::deque<Question> waiting_;
     std::vector<std::pair<std::uint64_t, std::string>> answers_;
     std::atomic<bool> is_ending_ = false;
+    KeptField field_;     ///< the thread's own
     std::thread thread_;  ///< the last: it uses all others
 };
 

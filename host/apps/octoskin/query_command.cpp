@@ -130,7 +130,8 @@ Json ask_map_file(const QueryOptions& options, const QueryRequest& request) {
     limits.map.log_odds_max = 20.0F;
     auto map = load_map(options.map, limits);
     if (!map) throw CommandFailure(reading_error(options.map, {ExitCode::bad_data, map.error().message}));
-    return answer_query(request, {&setup->rig, &setup->robot, std::move(map).value(), {}});
+    KeptField field;
+    return answer_query(request, {&setup->rig, &setup->robot, std::move(map).value(), {}, &field});
 }
 
 Json ask_running_daemon(const QueryOptions& options, const QueryRequest& request) {

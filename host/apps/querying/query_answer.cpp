@@ -94,8 +94,7 @@ class Asking {
                             fmt::format("configuration {}: {}", i + 1,
                                         text_of(*fault, *ground_.rig, *ground_.robot, position)));
             }
-            const auto& before = request_.path[i > 0 ? i - 1 : 0];
-            postures += static_cast<double>(Leg(before, position, request_.step).postures());
+            postures += static_cast<double>(leg_to(i).postures());
         }
         if (postures > static_cast<double>(kPosturesMax)) {
             return fail(ExitCode::usage,
@@ -104,6 +103,30 @@ class Asking {
                                     postures, request_.step, kPosturesMax));
         }
         return Done{};
+    }
+
+    /// From the configuration before; to the first from itself.
+    [[nodiscard]] Leg leg_to(std::size_t configuration) const {
+        return {request_.path[configuration > 0 ? configuration - 1 : 0], request_.path[configuration],
+                request_.step};
+    }
+
+    /// Null: distances are not asked for, or better searched for.
+    [[nodiscard]] const DistanceField* field_for_path() const {
+        if (ground_.field == nullptr || !(request_.reach_m > 0.0)) return nullptr;
+        AskedSpace asked;
+        asked.reach_m = request_.reach_m;
+        std::vector<double> position(ground_.robot->joint_count());
+        for (std::size_t i = 0; i < request_.path.size(); ++i) {
+            const Leg leg = leg_to(i);
+            for (std::size_t posture = 0; posture < leg.postures(); ++posture) {
+                leg.position(posture, position);
+                const auto capsules = robot_->pose(position);
+                if (!capsules) return nullptr;  // whoever asks finds it out
+                asked.include(*capsules);
+            }
+        }
+        return ground_.field->of(ground_.map, asked);
     }
 
     /// Where the arm stands: as it is known, or where the path begins.
@@ -121,10 +144,10 @@ class Asking {
         Json legs = Json::array();
         PostureState worst = PostureState::free;
         std::size_t postures = 0;
+        const LegConfig config{request_.step, request_.reach_m, field_for_path()};
         for (std::size_t i = 0; i < request_.path.size(); ++i) {
             if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the path was asked about");
-            const Leg leg(request_.path[i > 0 ? i - 1 : 0], request_.path[i], request_.step);
-            const auto answer = ask(*robot_, ground_.map, leg, {request_.step, request_.reach_m});
+            const auto answer = ask(*robot_, ground_.map, leg_to(i), config);
             if (!answer) {
                 return fail(ExitCode::usage,
                             text_of(answer.error(), *ground_.rig, *ground_.robot, request_.path[i]));
@@ -137,6 +160,8 @@ class Asking {
                     {"state", name(worst)},
                     {"postures", postures},
                     {"resolution_m", ground_.map.resolution_m()},
+                    {"distances", request_.reach_m > 0.0 ? Json(config.field != nullptr ? "field" : "search")
+                                                         : Json(nullptr)},
                     {"legs", std::move(legs)}};
     }
 
@@ -205,7 +230,7 @@ class Asking {
                      {"view", nullptr}};
         if (!view) return json;
         const Leg way(request_.path.front(), view->position, request_.step);
-        const auto answer = ask(*robot_, ground_.map, way, {request_.step, 0.0});
+        const auto answer = ask(*robot_, ground_.map, way, {.step = request_.step, .reach_m = 0.0});
         json["view"] = {{"joints", view->position},
                         {"state", name(view->state)},
                         {"sensor", view->sensor},

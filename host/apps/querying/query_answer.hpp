@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/apps/querying/kept_field.hpp"
 #include "host/apps/querying/query_request.hpp"
 #include "host/core/kinematics/robot_model.hpp"
 #include "host/core/mapping/fused_map.hpp"
@@ -22,6 +23,8 @@ struct QueryGround {
     FusedMap map;
     /// The joints as the arm stands; empty: nobody knows. A path then begins where it stands.
     std::vector<double> present;
+    /// For distances; what was asked of it before is kept. Null: they are searched for.
+    KeptField* field = nullptr;
 };
 
 /// "ok": true, or false with "error" and "code", the exit code for it. Of postures: "state", the worst, and

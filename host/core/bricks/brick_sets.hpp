@@ -1,6 +1,7 @@
 // Sets of a brick's voxels: their members, and sets by what voxels hold.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -19,8 +20,9 @@ inline void put_in(BrickMask& mask, std::size_t cell) noexcept {
 /// Calls visit(cell) for each that is set, in ascending order.
 template <class Visit>
 void for_each_cell(const BrickMask& mask, const Visit& visit) {
-    for (std::size_t cell = 0; cell < kBrickVoxels; ++cell)
-        if (contains(mask, cell)) visit(cell);
+    for (std::size_t word = 0; word < mask.size(); ++word)
+        for (std::uint64_t voxels = mask[word]; voxels != 0; voxels &= voxels - 1)
+            visit(64 * word + static_cast<std::size_t>(std::countr_zero(voxels)));
 }
 
 /// Of 64 voxels of a brick, a word of a BrickMask: bit i is voxel i.

@@ -2,12 +2,19 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "host/core/voxels/key_box.hpp"
 
 namespace octoskin {
+
+/// Along an axis (0 to 2): parts at the second and fourth place, and at the upper two.
+inline constexpr std::array<std::uint64_t, 3> kOddParts = {0xAAAA'AAAA'AAAA'AAAAU, 0xCCCC'CCCC'CCCC'CCCCU,
+                                                           0xF0F0'F0F0'F0F0'F0F0U};
+inline constexpr std::array<std::uint64_t, 3> kUpperParts = {0xFF00'FF00'FF00'FF00U, 0xFFFF'0000'FFFF'0000U,
+                                                             0xFFFF'FFFF'0000'0000U};
 
 /// Of a cube of height 2 or more.
 [[nodiscard]] constexpr VoxelCube part_of(const VoxelCube& cube, std::size_t part) noexcept {
@@ -34,9 +41,20 @@ namespace octoskin {
         }
         return parts;
     };
-    return along(cube.lowest.x, box.lowest.x, box.highest.x, 0xAAAA'AAAA'AAAA'AAAAU, 0xFF00'FF00'FF00'FF00U) &
-           along(cube.lowest.y, box.lowest.y, box.highest.y, 0xCCCC'CCCC'CCCC'CCCCU, 0xFFFF'0000'FFFF'0000U) &
-           along(cube.lowest.z, box.lowest.z, box.highest.z, 0xF0F0'F0F0'F0F0'F0F0U, 0xFFFF'FFFF'0000'0000U);
+    return along(cube.lowest.x, box.lowest.x, box.highest.x, kOddParts[0], kUpperParts[0]) &
+           along(cube.lowest.y, box.lowest.y, box.highest.y, kOddParts[1], kUpperParts[1]) &
+           along(cube.lowest.z, box.lowest.z, box.highest.z, kOddParts[2], kUpperParts[2]);
+}
+
+/// The parts next to these in the direction of the axis.
+[[nodiscard]] constexpr std::uint64_t parts_after(std::uint64_t parts, std::size_t axis) noexcept {
+    const std::uint64_t odd = kOddParts[axis];
+    return (parts & ~odd) << (1U << axis) | (parts & odd & ~kUpperParts[axis]) << (7U << axis);
+}
+/// And in the other.
+[[nodiscard]] constexpr std::uint64_t parts_before(std::uint64_t parts, std::size_t axis) noexcept {
+    const std::uint64_t odd = kOddParts[axis];
+    return (parts & odd) >> (1U << axis) | (parts & ~odd & kUpperParts[axis]) >> (7U << axis);
 }
 
 }  // namespace octoskin

@@ -25,6 +25,16 @@ void put(BrickStamps& stamps, const BrickMask& voxels, std::uint16_t stamp) {
             stamps[64 * word + static_cast<std::size_t>(std::countr_zero(bits))] = stamp;
 }
 
+/// Of those that are; 0 if none is.
+std::uint16_t oldest_of(const StampView& view) {
+    if (view.values == nullptr) return view.value;
+    // One less, 0 is the latest of all.
+    std::uint16_t least = 0xFFFF;
+    for (const std::uint16_t stamp : *view.values)
+        least = std::min(least, static_cast<std::uint16_t>(stamp - 1U));
+    return static_cast<std::uint16_t>(least + 1U);
+}
+
 bool is_whole(const BrickMask& voxels) {
     return std::ranges::all_of(voxels, [](std::uint64_t word) { return word == ~std::uint64_t{0}; });
 }
@@ -76,6 +86,25 @@ void Confirmations::bring_up(std::uint32_t by) {
         for (std::uint16_t& stamp : next.open(brick)) stamp = brought_up(stamp);
     });
     stamps_ = std::move(next);
+    agenda_.change_stamps(brought_up);
+}
+
+void Confirmations::begin_agenda() {
+    ExpiryAgenda agenda;
+    stamps_.for_each([&](MortonCode brick, const StampView& view) {
+        agenda.make_room();
+        agenda.put(brick, oldest_of(view));
+    });
+    agenda.begin();
+    agenda_ = std::move(agenda);
+}
+
+std::uint16_t Confirmations::oldest_in(MortonCode brick) const noexcept {
+    return oldest_of(stamps_.find(brick));
+}
+
+void Confirmations::take_from_before(MortonCode brick) {
+    stamp_first(brick, kOfBefore, [&] { stamps_.set_all(brick, kOfBefore); });
 }
 
 std::optional<Confirmation> Confirmations::told_by(std::uint16_t stamp) const noexcept {
@@ -100,8 +129,10 @@ void Confirmations::confirm(MortonCode brick, const BrickMask& voxels, SensorKin
     // Most frames find what the one before has left in the same second: then nothing is copied.
     if (before.values == nullptr ? before.value == now : !has_other_stamp(*before.values, voxels, now))
         return;
-    if (is_whole(voxels)) return stamps_.set_all(brick, now);
-    put(stamps_.open(brick), voxels, now);
+    const auto stamp_voxels = [&] {
+        is_whole(voxels) ? stamps_.set_all(brick, now) : put(stamps_.open(brick), voxels, now);
+    };
+    before.is_unknown() ? stamp_first(brick, now, stamp_voxels) : stamp_voxels();
 }
 
 void Confirmations::forget(MortonCode brick, const BrickMask& voxels) {

@@ -9,6 +9,7 @@
 #include "common/time.hpp"
 #include "host/core/bricks/brick_stamps.hpp"
 #include "host/core/bricks/brick_tree.hpp"
+#include "host/core/mapping/expiry_agenda.hpp"
 
 namespace octoskin {
 
@@ -64,33 +65,61 @@ class Confirmations {
     /// Confirms voxels of a brick. Throws std::bad_alloc, and then nothing is changed. About 50 ns, and as
     /// much as a copy of the brick if a copy has it, too, and anything changes.
     void confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind);
-    /// All of a brick was there when the clock began. Throws std::bad_alloc.
-    void take_from_before(MortonCode brick) { stamps_.set_all(brick, kOfBefore); }
+    /// All of a brick, which has no stamps yet, was there when the clock began. Throws std::bad_alloc, and
+    /// then nothing is changed.
+    void take_from_before(MortonCode brick);
     /// Makes some voxels of a brick unconfirmed. Throws std::bad_alloc, and then nothing is changed.
     void forget(MortonCode brick, const BrickMask& voxels);
+
+    /// Calls look(brick) for each brick that may have a stamp from `first` on and before `limit`, and for a
+    /// few others. Throws what it does, and std::bad_alloc the first time, which is O(stamps): from then on
+    /// it is known which bricks these may be.
+    template <class Look>
+    void look_at_due(std::uint16_t first, std::uint16_t limit, const Look& look) {
+        if (!agenda_.is_kept()) begin_agenda();
+        agenda_.look_at_due(first, limit, [&](MortonCode brick) {
+            look(brick);
+            return oldest_in(brick);
+        });
+    }
 
     [[nodiscard]] StampView find(MortonCode brick) const noexcept { return stamps_.find(brick); }
     [[nodiscard]] const StampTree& stamps() const noexcept { return stamps_; }
     /// If every brick had a stamp of its own for each voxel.
     [[nodiscard]] std::size_t bytes_at_most() const noexcept {
-        return stamps_.nodes() * StampTree::kNodeBytes + stamps_.bricks() * StampTree::kBrickBytes;
+        return stamps_.nodes() * StampTree::kNodeBytes +
+               stamps_.bricks() * (StampTree::kBrickBytes + ExpiryAgenda::kEntryBytes);
     }
     /// What a further brick may take.
     [[nodiscard]] std::size_t bytes_of_new(MortonCode brick) const noexcept {
-        return stamps_.nodes_missing(brick) * StampTree::kNodeBytes + StampTree::kBrickBytes;
+        return stamps_.nodes_missing(brick) * StampTree::kNodeBytes + StampTree::kBrickBytes +
+               ExpiryAgenda::kEntryBytes;
     }
-    [[nodiscard]] std::size_t heap_bytes() const noexcept { return stamps_.memory_bytes(); }
+    [[nodiscard]] std::size_t heap_bytes() const noexcept {
+        return stamps_.memory_bytes() + agenda_.heap_bytes();
+    }
 
   private:
     static constexpr unsigned kKindBits = 2;
     static constexpr std::uint32_t kNowMax = (1U << (16 - kKindBits)) - 1;
     void bring_up(std::uint32_t by);
+    void begin_agenda();
+    /// The earliest stamp; 0 if no voxel has one.
+    [[nodiscard]] std::uint16_t oldest_in(MortonCode brick) const noexcept;
+    /// Makes `stamp` give stamps to voxels of a brick that has none.
+    template <class Stamp>
+    void stamp_first(MortonCode brick, std::uint16_t with, const Stamp& stamp) {
+        if (agenda_.is_kept()) agenda_.make_room();
+        stamp();
+        if (agenda_.is_kept()) agenda_.put(brick, with);
+    }
 
     bool has_begun_ = false;
     std::int64_t runs_for_s_ = 0;
     std::int64_t zero_s_ = 0;  ///< of the host's time, at which the clock would show 0
     std::uint32_t now_ = 0;    ///< what the clock shows, from 1 on: a stamp of 0 is none
     StampTree stamps_;
+    ExpiryAgenda agenda_;  ///< of each brick that has stamps, once somebody asked
 };
 
 }  // namespace octoskin

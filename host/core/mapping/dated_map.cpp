@@ -3,8 +3,6 @@
 #include <cassert>
 #include <cmath>
 #include <new>
-#include <utility>
-#include <vector>
 
 #include "host/core/bricks/brick_sets.hpp"
 #include "host/core/mapping/fused_map.hpp"
@@ -26,10 +24,10 @@ BrickMask stamped_from_to(const StampView& view, std::uint16_t first, std::uint1
     return voxels;
 }
 
-bool is_all_unknown(const BrickValues& values) {
-    for (const float value : values)
-        if (!std::isnan(value)) return false;
-    return true;
+BrickMask known_in(const BrickValues& values) {
+    BrickMask known{};
+    for (std::size_t word = 0; word < known.size(); ++word) known[word] = sets_of(values, word, 0.0F).known;
+    return known;
 }
 
 }  // namespace
@@ -144,33 +142,37 @@ void FusedMap::expire() {
     // What was there before the clock has its time from then on.
     const bool takes_all = confirmations_.runs_for_s() >= std::int64_t{config_.age.unknown_after_s};
     const auto first = static_cast<std::uint16_t>(takes_all ? 1 : Confirmations::kOfBefore + 1);
-    std::vector<std::pair<MortonCode, BrickMask>> expired;
-    confirmations_.stamps().for_each([&](MortonCode brick, const StampView& view) {
-        const BrickMask voxels = stamped_from_to(view, first, limit);
-        if (count_of(voxels) > 0) expired.emplace_back(brick, voxels);
-    });
-    for (const auto& [brick, voxels] : expired) {
+    confirmations_.look_at_due(first, limit, [&](MortonCode brick) {
+        const BrickMask voxels = stamped_from_to(confirmations_.find(brick), first, limit);
+        if (count_of(voxels) == 0) return;
         forget_log_odds(brick, voxels);
         if (!counts_.empty() && counts_.has(brick)) counts_.forget(brick, voxels);
         confirmations_.forget(brick, voxels);  // last: what there was no memory for is found again
-    }
+    });
 }
 
 void FusedMap::forget_log_odds(MortonCode brick, const BrickMask& voxels) {
     const BrickView before = tree_.find(brick);
     if (before.is_unknown()) return;
-    const std::size_t count = count_of(voxels);
-    if (before.values == nullptr && count == kBrickVoxels) {
-        tree_.forget(brick);
-        known_voxels_ -= kBrickVoxels;
-        return;
+    BrickMask known{};
+    if (before.values == nullptr) {
+        known.fill(~std::uint64_t{0});
+    } else {
+        known = known_in(*before.values);
     }
-    BrickValues& values = tree_.open(brick);
-    for_each_cell(voxels, [&](std::size_t cell) {
-        known_voxels_ -= std::isnan(values[cell]) ? 0U : 1U;
-        values[cell] = kUnknownLogOdds;
-    });
-    if (is_all_unknown(values)) tree_.forget(brick);
+    BrickMask forgotten{};
+    bool is_all = true;
+    for (std::size_t word = 0; word < known.size(); ++word) {
+        forgotten[word] = known[word] & voxels[word];
+        is_all &= forgotten[word] == known[word];
+    }
+    if (is_all) {
+        tree_.forget(brick);
+    } else {
+        BrickValues& values = tree_.open(brick);
+        for_each_cell(forgotten, [&](std::size_t cell) { values[cell] = kUnknownLogOdds; });
+    }
+    known_voxels_ -= count_of(forgotten);
 }
 
 std::optional<Confirmation> FusedMap::confirmation(VoxelKey key) const noexcept {

@@ -11,16 +11,6 @@ namespace {
 
 constexpr double kLargest_m = 1e6;
 
-std::optional<CapsuleFault> fault_of(const PosedCapsule& capsule) {
-    if (!capsule.p_a.allFinite() || !capsule.p_b.allFinite() || !std::isfinite(capsule.radius_m))
-        return CapsuleFault::not_finite;
-    if (capsule.radius_m < 0.0) return CapsuleFault::negative_radius;
-    const double largest =
-        std::max({capsule.p_a.cwiseAbs().maxCoeff(), capsule.p_b.cwiseAbs().maxCoeff(), capsule.radius_m});
-    if (largest > kLargest_m) return CapsuleFault::too_large;
-    return std::nullopt;
-}
-
 std::optional<RefusedCapsule> refused_of(std::span<const PosedCapsule> capsules) {
     for (std::size_t i = 0; i < capsules.size(); ++i) {
         if (const auto fault = fault_of(capsules[i])) return RefusedCapsule{i, *fault};
@@ -52,6 +42,16 @@ double distance_to_bounds(const FusedMap& map, const PosedCapsule& capsule) {
 
 }  // namespace
 
+std::optional<CapsuleFault> fault_of(const PosedCapsule& capsule) noexcept {
+    if (!capsule.p_a.allFinite() || !capsule.p_b.allFinite() || !std::isfinite(capsule.radius_m))
+        return CapsuleFault::not_finite;
+    if (capsule.radius_m < 0.0) return CapsuleFault::negative_radius;
+    const double largest =
+        std::max({capsule.p_a.cwiseAbs().maxCoeff(), capsule.p_b.cwiseAbs().maxCoeff(), capsule.radius_m});
+    if (largest > kLargest_m) return CapsuleFault::too_large;
+    return std::nullopt;
+}
+
 Result<CapsuleAnswer, CapsuleFault> worst_in(const FusedMap& map, const PosedCapsule& capsule) noexcept {
     if (const auto fault = fault_of(capsule)) return unexpected(*fault);
     return search(map, capsule, SearchFor::worst);
@@ -73,18 +73,17 @@ Result<bool, RefusedCapsule> is_free(const FusedMap& map, std::span<const PosedC
     return true;
 }
 
-Result<CapsuleClearance, CapsuleFault> clearance_within(const FusedMap& map, const PosedCapsule& capsule,
-                                                        const ClearanceReach& reach,
-                                                        const SiteMap* sites) noexcept {
-    if (const auto fault = fault_of(capsule)) return unexpected(*fault);
-    if (!is_reach(reach.occupied_m) || !is_reach(reach.not_free_m))
-        return unexpected(CapsuleFault::too_large);
+NearestSearch clearance_search(const FusedMap& map, const PosedCapsule& capsule,
+                               const ClearanceReach& reach) noexcept {
     const double radius_m = capsule.radius_m + kDistanceStep_m;
-    NearestSearch search(
-        map,
-        {capsule.p_a, capsule.p_b, radius_m + reach.occupied_m, radius_m + reach.not_free_m, SearchFor::both},
-        sites);
-    search.run();
+    return {map,
+            {capsule.p_a, capsule.p_b, radius_m + reach.occupied_m, radius_m + reach.not_free_m,
+             SearchFor::both}};
+}
+
+CapsuleClearance clearance_told(const NearestSearch& search, const FusedMap& map, const PosedCapsule& capsule,
+                                const ClearanceReach& reach) noexcept {
+    const double radius_m = capsule.radius_m + kDistanceStep_m;
     const auto from_surface = [&](double distance_m) { return std::max(0.0, distance_m - capsule.radius_m); };
     CapsuleClearance clearance;
     const auto take_not_free = [&](double distance_m) {
@@ -102,19 +101,26 @@ Result<CapsuleClearance, CapsuleFault> clearance_within(const FusedMap& map, con
 }
 
 Result<CapsuleClearance, CapsuleFault> clearance(const FusedMap& map, const PosedCapsule& capsule,
-                                                 double reach_m) noexcept {
-    if (!is_reach(reach_m)) return unexpected(CapsuleFault::too_large);
+                                                 const ClearanceReach& reach) noexcept {
+    if (const auto fault = fault_of(capsule)) return unexpected(*fault);
+    if (!is_reach(reach.occupied_m) || !is_reach(reach.not_free_m))
+        return unexpected(CapsuleFault::too_large);
     // What is near is found in little space: most of the time the first step is the last.
     constexpr double kVoxelsFirst = 2.0;
     CapsuleClearance found;
     for (double step_m = kVoxelsFirst * map.resolution_m();; step_m *= 2.0) {
-        const double within_m = std::min(step_m, reach_m);
         // The half that is known already needs not be looked for again.
-        const auto next = clearance_within(
-            map, capsule, {found.occupied_m.value_or(within_m), found.not_free_m.value_or(within_m)});
-        if (!next) return next;
-        found = *next;
-        if ((found.occupied_m && found.not_free_m) || !(within_m < reach_m)) return found;
+        const auto within = [&](const std::optional<double>& found_m, double reach_m) {
+            return found_m.value_or(std::min(step_m, reach_m));
+        };
+        const ClearanceReach next{within(found.occupied_m, reach.occupied_m),
+                                  within(found.not_free_m, reach.not_free_m)};
+        NearestSearch search = clearance_search(map, capsule, next);
+        search.run();
+        found = clearance_told(search, map, capsule, next);
+        const bool has_occupied = found.occupied_m || !(step_m < reach.occupied_m);
+        const bool has_not_free = found.not_free_m || !(step_m < reach.not_free_m);
+        if (has_occupied && has_not_free) return found;
     }
 }
 

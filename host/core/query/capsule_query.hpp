@@ -55,6 +55,7 @@ struct CapsuleClearance {
 };
 
 /// Up to where something is looked for, metres from the capsule's surface, 0 to 1e6 (else `too_large`).
+/// `not_free_m` is no more than the other: what is occupied is not free.
 struct ClearanceReach {
     double occupied_m = 0.0;
     double not_free_m = 0.0;
@@ -64,10 +65,22 @@ struct ClearanceReach {
 /// up to 0.5 m takes some 10 us at 0.04 m. No allocation.
 [[nodiscard]] Result<CapsuleClearance, CapsuleFault> clearance(const FusedMap& map,
                                                                const PosedCapsule& capsule,
-                                                               double reach_m) noexcept;
-/// The same in one search: for whoever knows how far to look, and perhaps where (DistanceField).
-[[nodiscard]] Result<CapsuleClearance, CapsuleFault> clearance_within(
-    const FusedMap& map, const PosedCapsule& capsule, const ClearanceReach& reach,
-    const SiteMap* sites = nullptr) noexcept;
+                                                               const ClearanceReach& reach) noexcept;
+[[nodiscard]] inline Result<CapsuleClearance, CapsuleFault> clearance(const FusedMap& map,
+                                                                      const PosedCapsule& capsule,
+                                                                      double reach_m) noexcept {
+    return clearance(map, capsule, ClearanceReach{reach_m, reach_m});
+}
+
+/// Why no question about the capsule can be answered; empty if one can.
+[[nodiscard]] std::optional<CapsuleFault> fault_of(const PosedCapsule& capsule) noexcept;
+
+/// For whoever knows where to look (DistanceField): the search of a capsule that is no fault, to be shown
+/// what may be near, and what it then tells.
+[[nodiscard]] NearestSearch clearance_search(const FusedMap& map, const PosedCapsule& capsule,
+                                             const ClearanceReach& reach) noexcept;
+[[nodiscard]] CapsuleClearance clearance_told(const NearestSearch& search, const FusedMap& map,
+                                              const PosedCapsule& capsule,
+                                              const ClearanceReach& reach) noexcept;
 
 }  // namespace octoskin

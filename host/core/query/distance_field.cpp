@@ -69,84 +69,212 @@ int voxels_of(const MapConfig& map, double reach_m) {
                       DistanceLayer::kReachMax);
 }
 
+BrickBox bricks_about(const MapConfig& map, const Eigen::AlignedBox3d& region) {
+    assert(!region.isEmpty() && region.min().allFinite() && region.max().allFinite());
+    const auto along = [&](double coordinate) {
+        const double key = std::floor(coordinate / map.resolution_m) + kOriginKey;
+        return static_cast<std::uint16_t>(std::clamp(key, 0.0, kVoxelsPerAxis - 1.0));
+    };
+    const auto key_of = [&](const Eigen::Vector3d& point) {
+        return VoxelKey{along(point.x()), along(point.y()), along(point.z())};
+    };
+    return BrickBox::of({key_of(region.min()), key_of(region.max())});
+}
+
 }  // namespace
 
-DistanceField::DistanceField(const MapConfig& map, double reach_m)
-    : reach_voxels_(voxels_of(map, reach_m)),
-      map_(map),
-      occupied_(false, reach_voxels_),
-      not_free_(true, reach_voxels_) {}
+DistanceField::DistanceField(const MapConfig& map, const FieldExtent& extent)
+    : map_(map),
+      reach_voxels_(voxels_of(map, extent.reach_m)),
+      region_(bricks_about(map, extent.region)),
+      occupied_(false, reach_voxels_, region_),
+      not_free_(true, reach_voxels_, region_),
+      sites_(not_free_.sites_box()) {}
+
+std::size_t DistanceField::bricks_of(const MapConfig& map, const FieldExtent& extent) noexcept {
+    return DistanceLayer::sites_box(bricks_about(map, extent.region), voxels_of(map, extent.reach_m))
+        .bricks();
+}
 
 DistanceField::Update DistanceField::update(const FusedMap& now) {
     assert(now.resolution_m() == map_.resolution_m());
     Update update;
-    const auto take = [&](const MapBrick& brick) {
-        ++update.written;
-        const BrickSites sites = sites_of(now, brick.log_odds);
-        const bool is_alike = brick.log_odds.values == nullptr;
-        if (is_none(sites.occupied) && (is_alike || is_none(sites.unknown))) {
-            sites_.erase(brick.first);
-        } else {
-            sites_[brick.first] = sites;
-        }
-        const bool is_changed = occupied_.set_sites(brick.first, slices_of(sites.occupied));
-        update.changed += (not_free_.set_sites(brick.first, slices_of(both(sites))) || is_changed) ? 1U : 0U;
-    };
     // With another threshold every brick may be another one.
     const bool is_judged_alike = now.config().log_odds_occupied == map_.config().log_odds_occupied;
-    now.for_each_difference(map_, take);
+    now.for_each_difference(map_, [&](const MapBrick& brick) { take(now, brick, update); });
     if (!is_judged_alike) {
-        for (const MapBrick& brick : now.bricks()) take(brick);
+        for (const MapBrick& brick : now.bricks()) take(now, brick, update);
     }
     map_ = now.copy();
     update.worked = occupied_.settle() + not_free_.settle();
     return update;
 }
 
+void DistanceField::take(const FusedMap& now, const MapBrick& brick, Update& update) {
+    ++update.written;
+    const BrickPlace place = BrickPlace::of(key_of_morton(brick.first));
+    if (!sites_.box().holds(place)) return;
+    const BrickSites sites = sites_of(now, brick.log_odds);
+    const bool is_alike = brick.log_odds.values == nullptr;
+    if (is_none(sites.occupied) && (is_alike || is_none(sites.unknown))) {
+        sites_.take_away(sites_.index(place));
+    } else {
+        sites_.open(sites_.index(place), sites) = sites;
+    }
+    const bool is_changed = occupied_.set_sites(place, slices_of(sites.occupied));
+    update.changed += (not_free_.set_sites(place, slices_of(both(sites))) || is_changed) ? 1U : 0U;
+}
+
 std::optional<double> DistanceField::occupied_m(VoxelKey key) const noexcept {
+    assert(region_.holds(BrickPlace::of(key)));
     const auto squared = occupied_.squared(key);
     if (!squared) return std::nullopt;
     return std::sqrt(static_cast<double>(*squared)) * map_.resolution_m();
 }
 
 std::optional<double> DistanceField::not_free_m(VoxelKey key) const noexcept {
+    assert(region_.holds(BrickPlace::of(key)));
     const auto squared = not_free_.squared(key);
     if (!squared) return std::nullopt;
     return std::sqrt(static_cast<double>(*squared)) * map_.resolution_m();
 }
 
-Result<CapsuleClearance, CapsuleFault> DistanceField::clearance(const PosedCapsule& capsule) const noexcept {
-    const double beyond_m = axis_reach_m() - capsule.radius_m;
-    const auto bounds = beyond_m > 0.0 ? bounds_along(capsule) : std::nullopt;
-    if (!bounds) return octoskin::clearance(map_, capsule, std::max(0.0, beyond_m));
-    const auto reach_of = [&](double bound_m) {
-        return std::clamp(bound_m - capsule.radius_m, 0.0, beyond_m);
+bool DistanceField::tells_of(const PosedCapsule& capsule) const noexcept {
+    const auto is_inside = [this](const Eigen::Vector3d& point) {
+        const auto key = map_.key_of(point);
+        return key && region_.holds(BrickPlace::of(*key));
     };
-    // Of what is nowhere near the axis nothing is found, however far is looked.
-    const double not_free_m = reach_of(bounds->not_free_m.value_or(0.0));
-    const double occupied_m = bounds->occupied_m ? reach_of(*bounds->occupied_m) : not_free_m;
-    return clearance_within(map_, capsule, {occupied_m, not_free_m}, &sites_);
+    return is_inside(capsule.p_a) && is_inside(capsule.p_b);
 }
 
-/// No voxel of the kind need be looked for further from the axis. Empty: the field does not tell.
-std::optional<DistanceField::Bounds> DistanceField::bounds_along(const PosedCapsule& capsule) const noexcept {
-    const Eigen::Vector3d axis = capsule.p_b - capsule.p_a;
-    const double steps = std::ceil(axis.norm() / map_.resolution_m());
-    constexpr double kStepsMax = 1000.0;  // a longer one is searched as it is
-    if (!(steps <= kStepsMax)) return std::nullopt;
-    Bounds bounds;
-    for (double step = 0.0; step <= steps; ++step) {
-        const Eigen::Vector3d point = capsule.p_a + (steps > 0.0 ? step / steps : 0.0) * axis;
-        const auto key = map_.key_of(point);
-        if (!key) return std::nullopt;
-        const double to_centre_m = (point - map_.centre_of(*key)).norm() + kDistanceStep_m;
-        const auto take = [&](std::optional<double>& bound_m, const std::optional<double>& found_m) {
-            if (found_m && !(bound_m && *bound_m <= *found_m + to_centre_m)) bound_m = *found_m + to_centre_m;
-        };
-        take(bounds.occupied_m, occupied_m(*key));
-        take(bounds.not_free_m, not_free_m(*key));
+/// What the field tells at points of a segment, each for the piece of the segment about it.
+class DistanceField::Samples {
+  public:
+    static constexpr std::size_t kMax = 256;
+
+    /// False: the segment is too long, or leaves the region.
+    [[nodiscard]] bool take(const DistanceField& field, const PosedCapsule& capsule) {
+        const double resolution_m = field.map_.resolution_m();
+        const Eigen::Vector3d axis = capsule.p_b - capsule.p_a;
+        const double length_m = axis.norm();
+        const double steps = std::ceil(length_m / resolution_m);
+        if (!(steps < static_cast<double>(kMax))) return false;
+        const double half_step_m = steps > 0.0 ? 0.5 * length_m / steps : 0.0;
+        for (double step = 0.0; step <= steps; ++step) {
+            Sample& sample = samples_[count_++];
+            sample.point = capsule.p_a + (steps > 0.0 ? step / steps : 0.0) * axis;
+            const auto key = field.map_.key_of(sample.point);
+            if (!key || !field.region_.holds(BrickPlace::of(*key))) return false;
+            const double to_centre_m = (sample.point - field.map_.centre_of(*key)).norm();
+            const auto look = [&](const DistanceLayer& layer, double& at_least_m, Bound& bound) {
+                const auto squared = layer.squared(*key);
+                const double found_m =
+                    resolution_m * (squared ? std::sqrt(static_cast<double>(*squared)) : field.reach_voxels_);
+                at_least_m = found_m - to_centre_m - half_step_m - kHalfDiagonal * resolution_m;
+                // A cube is nearer than its centre by half its edge, or reaches the point.
+                const double at_most_m = std::max(0.0, found_m + to_centre_m - 0.5 * resolution_m);
+                if (squared && !(bound.axis_m && *bound.axis_m <= at_most_m)) bound = {at_most_m, *key};
+            };
+            look(field.occupied_, sample.occupied_at_least_m, occupied_);
+            look(field.not_free_, sample.not_free_at_least_m, not_free_);
+        }
+        half_step_m_ = half_step_m;
+        return true;
     }
-    return bounds;
+
+    /// Of the kind something is no further from the axis than this, and what is nearest to this voxel is not.
+    struct Bound {
+        std::optional<double> axis_m;  ///< empty: none is within `axis_reach_m()`
+        VoxelKey at{};
+    };
+    [[nodiscard]] const Bound& occupied() const { return occupied_; }
+    [[nodiscard]] const Bound& not_free() const { return not_free_; }
+
+    /// Where the points are about whose pieces something may be so near; empty if there is none.
+    [[nodiscard]] Eigen::AlignedBox3d box_within(double occupied_limit_m, double not_free_limit_m) const {
+        Eigen::AlignedBox3d box;
+        for (std::size_t i = 0; i < count_; ++i) {
+            const Sample& sample = samples_[i];
+            if (sample.occupied_at_least_m <= occupied_limit_m ||
+                sample.not_free_at_least_m <= not_free_limit_m)
+                box.extend(sample.point);
+        }
+        return box;
+    }
+    /// How far the pieces reach.
+    [[nodiscard]] double half_step_m() const { return half_step_m_; }
+
+  private:
+    static constexpr double kHalfDiagonal = 0.8660254037844387;
+    struct Sample {
+        Eigen::Vector3d point;
+        double occupied_at_least_m;
+        double not_free_at_least_m;
+    };
+    std::array<Sample, kMax> samples_;
+    std::size_t count_ = 0;
+    double half_step_m_ = 0.0;
+    Bound occupied_;
+    Bound not_free_;
+};
+
+Result<CapsuleClearance, CapsuleFault> DistanceField::clearance(const PosedCapsule& capsule) const noexcept {
+    const double reach_m = std::max(0.0, axis_reach_m() - capsule.radius_m);
+    return clearance(capsule, {reach_m, reach_m});
+}
+
+Result<CapsuleClearance, CapsuleFault> DistanceField::clearance(const PosedCapsule& capsule,
+                                                                const ClearanceReach& reach) const noexcept {
+    const auto is_told = [&](double reach_m) {
+        return reach_m >= 0.0 && capsule.radius_m + reach_m <= axis_reach_m() + kDistanceStep_m;
+    };
+    Samples samples;
+    if (fault_of(capsule) || !is_told(reach.occupied_m) || !is_told(reach.not_free_m) ||
+        !samples.take(*this, capsule))
+        return octoskin::clearance(map_, capsule, reach);
+    const auto within = [&](const Samples::Bound& bound, double reach_m) {
+        if (!bound.axis_m) return reach_m;
+        return std::clamp(*bound.axis_m - capsule.radius_m + kDistanceStep_m, 0.0, reach_m);
+    };
+    const ClearanceReach nearer{within(samples.occupied(), reach.occupied_m),
+                                within(samples.not_free(), reach.not_free_m)};
+    NearestSearch search = clearance_search(map_, capsule, nearer);
+    look_about(samples, search);
+    return clearance_told(search, map_, capsule, nearer);
+}
+
+void DistanceField::look_at_nearest(const std::optional<VoxelKey>& site, NearestSearch& search) const {
+    if (!site) return;
+    const Occupancy state = map_.occupancy(*site);
+    state == Occupancy::occupied ? search.look_at_occupied({*site, 0}) : search.look_at_unknown({*site, 0});
+}
+
+/// First at what is surely near, so that little else matters.
+void DistanceField::look_about(const Samples& samples, NearestSearch& search) const {
+    const auto may_be_near = [&] {
+        return samples.box_within(search.occupied_limit_m() + kDistanceStep_m,
+                                  search.unknown_limit_m() + kDistanceStep_m);
+    };
+    if (may_be_near().isEmpty()) return;
+    if (samples.not_free().axis_m) look_at_nearest(not_free_.nearest(samples.not_free().at), search);
+    if (samples.occupied().axis_m) look_at_nearest(occupied_.nearest(samples.occupied().at), search);
+    Eigen::AlignedBox3d box = may_be_near();
+    if (box.isEmpty()) return;
+    const Eigen::Vector3d margin =
+        Eigen::Vector3d::Constant(search.limit_m() + samples.half_step_m() + kDistanceStep_m);
+    const BrickBox bricks = bricks_about(map_.config(), {box.min() - margin, box.max() + margin});
+    for (int z = bricks.lowest.at[2]; z <= bricks.highest.at[2]; ++z) {
+        for (int y = bricks.lowest.at[1]; y <= bricks.highest.at[1]; ++y) {
+            for (int x = bricks.lowest.at[0]; x <= bricks.highest.at[0]; ++x) {
+                const BrickPlace place{{x, y, z}};
+                if (const BrickSites* const sites = sites_.find(place)) {
+                    search.look_at(place.cube(), *sites);
+                } else if (not_free_.is_plain(place)) {
+                    search.look_at_unknown(place.cube());
+                }
+            }
+        }
+    }
 }
 
 double DistanceField::axis_reach_m() const noexcept {

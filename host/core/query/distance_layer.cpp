@@ -8,230 +8,284 @@
 namespace octoskin {
 namespace {
 
-constexpr int kBricksPerAxis = kVoxelsPerAxis / kBrickEdge;
 constexpr std::uint64_t kAllOfSlice = ~std::uint64_t{0};
-constexpr auto kRow = static_cast<std::size_t>(kBrickEdge);
+constexpr std::uint64_t kRowBits = 0xFF;
 
-/// By place along z, y and x: the order of the sweeps.
-struct BrickPlace {
-    std::array<int, 3> at{};
-};
+constexpr int square(int value) {
+    return value * value;
+}
+constexpr int bricks_of(int voxels) {
+    return (voxels + kBrickEdge - 1) / kBrickEdge;
+}
+static_assert(bricks_of(DistanceLayer::kReachMax) <= SweepColumn::kSideMax);
 
-BrickPlace place_of(std::uint64_t key) {
-    constexpr std::uint64_t kMask = kBricksPerAxis - 1;
-    return {{static_cast<int>(key >> 26U & kMask), static_cast<int>(key >> 13U & kMask),
-             static_cast<int>(key & kMask)}};
+bool hold_the_same(const DistanceRow& a, const DistanceRow& b) {
+    using Words = std::array<std::uint64_t, 2>;
+    return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
 }
-std::uint64_t brick_key(const BrickPlace& place) {
-    const auto part = [&](std::size_t axis) { return static_cast<std::uint64_t>(place.at.at(axis)); };
-    return part(0) << 26U | part(1) << 13U | part(2);
+/// Compilers make one wide instruction of it.
+void lower(DistanceRow& least, const DistanceRow& values) {
+    for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], values[i]);
 }
-std::uint64_t brick_key(VoxelKey voxel) {
-    return brick_key({{voxel.z / kBrickEdge, voxel.y / kBrickEdge, voxel.x / kBrickEdge}});
+std::int16_t least_of(const DistanceRow& row) {
+    return *std::ranges::min_element(row);
 }
-bool is_in_octree(int place) {
-    return place >= 0 && place < kBricksPerAxis;
+std::int16_t largest_of(const DistanceRow& row) {
+    return *std::ranges::max_element(row);
 }
 
-/// Compilers make a few wide instructions of each of these.
-template <class Slab, class Value>
-void lower(Slab& least, const Slab& values, Value square) {
-    for (std::size_t i = 0; i < least.size(); ++i) {
-        const auto sum = static_cast<Value>(values[i] + square);
-        least[i] = sum < least[i] ? sum : least[i];
-    }
+template <class Visit>
+void for_each_bit(std::uint64_t bits, const Visit& visit) {
+    for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
 }
-template <class Slab>
-auto largest_of(const Slab& values) {
-    auto largest = values[0];
-    for (const auto value : values) largest = value > largest ? value : largest;
-    return largest;
-}
-template <class Slab>
-auto least_of(const Slab& values) {
-    auto least = values[0];
-    for (const auto value : values) least = value < least ? value : least;
-    return least;
+
+constexpr Axis after(Axis axis) {
+    return axis == Axis::x ? Axis::y : Axis::z;
 }
 
 }  // namespace
 
-DistanceLayer::DistanceLayer(bool is_site_elsewhere, int reach)
+DistanceLayer::DistanceLayer(bool is_site_elsewhere, int reach, const BrickBox& region)
     : reach_(reach),
-      brick_reach_((reach + kBrickEdge - 1) / kBrickEdge),
-      beyond_(static_cast<Value>(reach * reach + 1)),
-      elsewhere_(is_site_elsewhere ? Value{0} : beyond_) {
+      brick_reach_(bricks_of(reach)),
+      beyond_(static_cast<Value>(square(reach) + 1)),
+      sites_(sites_box(region, reach)),
+      stages_{Stage(region.wider(Axis::y, brick_reach_).wider(Axis::z, brick_reach_)),
+              Stage(region.wider(Axis::z, brick_reach_)), Stage(region)} {
     assert(reach >= 1 && reach <= kReachMax);
-    plain_.sites.fill(is_site_elsewhere ? kAllOfSlice : 0);
-    for (Values& values : plain_.after) {
-        for (Slab& slab : values.slabs) slab.fill(elsewhere_);
-        values.least.fill(elsewhere_);
+    plain_sites_.fill(is_site_elsewhere ? kAllOfSlice : 0);
+    const Value elsewhere = is_site_elsewhere ? Value{0} : beyond_;
+    for (DistanceRow& row : plain_.rows) row.fill(elsewhere);
+    plain_.least.fill(elsewhere);
+    plain_.largest.fill(elsewhere);
+}
+
+BrickBox DistanceLayer::sites_box(const BrickBox& region, int reach) noexcept {
+    const int bricks = bricks_of(reach);
+    return region.wider(Axis::x, bricks).wider(Axis::y, bricks).wider(Axis::z, bricks);
+}
+
+bool DistanceLayer::set_sites(const BrickPlace& brick, const SiteSlices& sites) {
+    const SiteSlices& before = sites_of(brick);
+    std::uint64_t rows = 0;
+    for (std::size_t z = 0; z < kEdge; ++z)
+        for (std::size_t y = 0; y < kEdge; ++y)
+            if (((before[z] ^ sites[z]) >> (kEdge * y) & kRowBits) != 0)
+                rows |= std::uint64_t{1} << row_of(Axis::x, y, z);
+    if (rows == 0) return false;
+    if (sites == plain_sites_) {
+        sites_.take_away(sites_.index(brick));
+    } else {
+        sites_.open(sites_.index(brick), sites) = sites;
     }
-}
-
-/// One that is not there is plain.
-const DistanceLayer::Brick* DistanceLayer::find(BrickKey key) const noexcept {
-    const auto found = bricks_.find(key);
-    return found == bricks_.end() ? &plain_ : found->second.get();
-}
-
-DistanceLayer::Brick& DistanceLayer::open(BrickKey key) {
-    auto& brick = bricks_[key];
-    if (!brick) brick = std::make_unique<Brick>(plain_);
-    return *brick;
-}
-
-bool DistanceLayer::set_sites(MortonCode brick, const SiteSlices& sites) {
-    const BrickKey key = brick_key(key_of_morton(brick));
-    if (find(key)->sites == sites) return false;
-    open(key).sites = sites;
-    changed_.push_back(key);
+    spread_sites(brick, rows);
     return true;
 }
 
-/// Changes travel along z, then along y, then along x: each sweep begins with what the one before changed.
+void DistanceLayer::want(Stage& stage, const BrickPlace& brick, std::uint64_t parts) {
+    if (parts == 0) return;
+    const std::size_t index = stage.values.index(brick);
+    if (stage.due[index] == 0) stage.bricks_due.push_back(index);
+    stage.due[index] |= parts;
+}
+
+/// A site matters to a row if one of its voxels has none that is nearer.
+void DistanceLayer::spread_sites(const BrickPlace& brick, std::uint64_t rows) {
+    Stage& first = stage(Axis::x);
+    for (int step = -brick_reach_; step <= brick_reach_; ++step) {
+        const BrickPlace target = brick.moved(Axis::x, step);
+        if (!first.values.box().holds(target)) continue;
+        const int nearest = std::min(gap_squared(step), square(reach_));
+        const Values& values = values_of(Axis::x, target);
+        std::uint64_t matter = 0;
+        for_each_bit(rows, [&](std::size_t row) {
+            if (largest_of(values.rows[row]) >= nearest) matter |= std::uint64_t{1} << row;
+        });
+        want(first, target, matter);
+    }
+}
+
+/// Old values may have come from what is no more, and new ones may come, only where no voxel's is less than
+/// what comes from there.
+void DistanceLayer::spread(Axis next, const BrickPlace& brick, const Change& change) {
+    Stage& wanted = stage(next);
+    for (int step = -brick_reach_; step <= brick_reach_; ++step) {
+        const BrickPlace target = brick.moved(next, step);
+        if (!wanted.values.box().holds(target)) continue;
+        const int further = gap_squared(step);
+        const OfLayers& largest = values_of(next, target).largest;
+        std::uint64_t matter = 0;
+        for_each_bit(change.layers, [&](std::size_t layer) {
+            const int comes = change.least[layer] + further;
+            if (comes <= square(reach_) && comes <= largest[layer]) matter |= std::uint64_t{1} << layer;
+        });
+        want(wanted, target, matter);
+    }
+}
+
+/// Changes travel along x, then along y, then along z: each sweep begins with what the one before changed.
 std::size_t DistanceLayer::settle() {
     std::size_t worked = 0;
-    std::vector<BrickKey> changed = std::exchange(changed_, {});
-    std::vector<BrickKey> touched = changed;
-    for (const Axis axis : kAxes) {
-        const std::vector<BrickKey> keys = neighbours(changed, axis);
-        worked += keys.size();
-        changed.clear();
-        for (const BrickKey key : keys)
-            if (sweep(key, axis)) changed.push_back(key);
-        touched.insert(touched.end(), changed.begin(), changed.end());
-    }
-    drop_plain(touched);
+    for (const Axis axis : {Axis::x, Axis::y, Axis::z}) worked += sweep_due(axis);
     return worked;
 }
 
-std::vector<DistanceLayer::BrickKey> DistanceLayer::neighbours(const std::vector<BrickKey>& changed,
-                                                               Axis axis) const {
-    std::vector<BrickKey> keys;
-    keys.reserve(changed.size() * static_cast<std::size_t>(2 * brick_reach_ + 1));
-    for (const BrickKey key : changed) {
-        for (int step = -brick_reach_; step <= brick_reach_; ++step) {
-            BrickPlace place = place_of(key);
-            int& at = place.at.at(static_cast<std::size_t>(axis));
-            at += step;
-            if (is_in_octree(at)) keys.push_back(brick_key(place));
-        }
-    }
-    std::ranges::sort(keys);
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    return keys;
-}
-
-/// Whether the brick's values after this axis are others than before.
-bool DistanceLayer::sweep(BrickKey key, Axis axis) {
-    const Values values = axis == Axis::z ? along_z(key) : along(key, axis);
-    const auto number = static_cast<std::size_t>(axis);
-    if (find(key)->after.at(number).slabs == values.slabs) return false;
-    open(key).after.at(number) = values;
-    return true;
-}
-
-/// Of 64 columns at once: those that meet a site one step further away than any before get that distance.
-DistanceLayer::Values DistanceLayer::along_z(BrickKey key) const {
-    std::vector<std::uint64_t> column;
-    column.reserve(static_cast<std::size_t>(2 * brick_reach_ + 1) * kRow);
-    for (int step = -brick_reach_; step <= brick_reach_; ++step) {
-        BrickPlace place = place_of(key);
-        place.at[0] += step;
-        const SiteSlices& sites = is_in_octree(place.at[0]) ? find(brick_key(place))->sites : plain_.sites;
-        column.insert(column.end(), sites.begin(), sites.end());
-    }
-    Values values;
-    for (Slab& slab : values.slabs) slab.fill(beyond_);
-    values.least.fill(beyond_);
-    const auto middle = static_cast<std::ptrdiff_t>(brick_reach_) * kBrickEdge;
-    for (std::size_t z = 0; z < kRow; ++z) {
-        const std::uint64_t* const centre = column.data() + middle + static_cast<std::ptrdiff_t>(z);
-        std::uint64_t met = 0;
-        for (int step = 0; step <= reach_ && met != kAllOfSlice; ++step) {
-            const auto square = static_cast<Value>(step * step);
-            for (auto fresh = (centre[step] | centre[-step]) & ~met; fresh != 0; fresh &= fresh - 1) {
-                const auto bit = static_cast<std::size_t>(std::countr_zero(fresh));
-                values.slabs[bit / kRow][bit % kRow + kRow * z] = square;
-                values.least[bit / kRow] = std::min(values.least[bit / kRow], square);
-            }
-            met |= centre[step] | centre[-step];
-        }
-    }
-    return values;
-}
-
-/// Slab by slab outwards, until what comes is too far away to be less for any voxel.
-DistanceLayer::Values DistanceLayer::along(BrickKey key, Axis axis) const {
-    const auto number = static_cast<std::size_t>(axis);
-    std::vector<const Values*> column;
-    for (int step = -brick_reach_; step <= brick_reach_; ++step) {
-        BrickPlace place = place_of(key);
-        place.at.at(number) += step;
-        const Brick* const brick = is_in_octree(place.at.at(number)) ? find(brick_key(place)) : &plain_;
-        column.push_back(&brick->after.at(number - 1));
-    }
-    Values values;
-    for (int at = 0; at < kBrickEdge; ++at) {
-        const int middle = brick_reach_ * kBrickEdge + at;
-        const auto slab_at = [&](int place) -> const Slab& {
-            return column[static_cast<std::size_t>(place / kBrickEdge)]
-                ->slabs[static_cast<std::size_t>(place % kBrickEdge)];
-        };
-        const auto least_at = [&](int place) {
-            return column[static_cast<std::size_t>(place / kBrickEdge)]
-                ->least[static_cast<std::size_t>(place % kBrickEdge)];
-        };
-        Slab least = slab_at(middle);
-        Value worst = largest_of(least);
-        for (int step = 1; step <= reach_ && step * step < worst; ++step) {
-            const auto square = static_cast<Value>(step * step);
-            bool is_lowered = false;
-            for (const int place : {middle - step, middle + step}) {
-                if (least_at(place) + square >= worst) continue;
-                lower(least, slab_at(place), square);
-                is_lowered = true;
-            }
-            if (is_lowered) worst = largest_of(least);
-        }
-        for (Value& value : least) value = std::min(value, beyond_);
+std::size_t DistanceLayer::sweep_due(Axis axis) {
+    std::size_t worked = 0;
+    Stage& swept = stage(axis);
+    const std::vector<std::size_t> bricks = std::exchange(swept.bricks_due, {});
+    SweptRows rows;
+    for (const std::size_t index : bricks) {
+        const std::uint64_t due = std::exchange(swept.due[index], 0);
+        const BrickPlace brick = swept.values.place(index);
+        OfLayers largest = values_of(axis, brick).largest;
+        std::uint64_t swept_rows = due;
         if (axis == Axis::x) {
-            values.slabs[static_cast<std::size_t>(at)] = least;
+            sweep_x(brick, due, rows);
         } else {
-            // The next sweep goes along x: of row z, voxel x goes to slab x.
-            for (std::size_t i = 0; i < kSlab; ++i)
-                values.slabs[i % kRow][static_cast<std::size_t>(at) + kRow * (i / kRow)] = least[i];
+            swept_rows = sweep(axis, brick, static_cast<unsigned>(due), rows, largest);
+        }
+        worked += static_cast<std::size_t>(std::popcount(swept_rows) + 7) / kEdge;
+        const Change change = take(swept, index, swept_rows, rows, largest);
+        if (change.layers != 0 && axis != Axis::z) spread(after(axis), brick, change);
+    }
+    return worked;
+}
+
+/// From each voxel to the nearest site of its row: in the brick itself, and in the first on each side that
+/// has one.
+void DistanceLayer::sweep_x(const BrickPlace& brick, std::uint64_t rows, SweptRows& swept) const {
+    std::array<const SiteSlices*, 2 * SweepColumn::kSideMax + 1> column{};
+    const auto middle = static_cast<std::size_t>(brick_reach_);
+    for (std::size_t i = 0; i <= 2 * middle; ++i)
+        column[i] = &sites_of(brick.moved(Axis::x, static_cast<int>(i) - brick_reach_));
+    for_each_bit(rows, [&](std::size_t row) {
+        const std::size_t y = row / kEdge;
+        const std::size_t z = row % kEdge;
+        const auto row_in = [&](std::size_t place) {
+            return static_cast<unsigned>((*column[place])[z] >> (kEdge * y) & kRowBits);
+        };
+        DistanceRow nearest;
+        nearest.fill(static_cast<Value>(reach_ + 1));
+        const auto take_site = [&](int site) {
+            for (std::size_t x = 0; x < kEdge; ++x) {
+                const auto steps = static_cast<Value>(std::abs(static_cast<int>(x) - site));
+                nearest[x] = std::min(nearest[x], steps);
+            }
+        };
+        for_each_bit(row_in(middle), [&](std::size_t x) { take_site(static_cast<int>(x)); });
+        for (std::size_t step = 1; step <= middle; ++step) {
+            const unsigned below = row_in(middle - step);
+            if (below == 0) continue;
+            take_site(static_cast<int>(std::bit_width(below)) - 1 - kBrickEdge * static_cast<int>(step));
+            break;
+        }
+        for (std::size_t step = 1; step <= middle; ++step) {
+            const unsigned above = row_in(middle + step);
+            if (above == 0) continue;
+            take_site(std::countr_zero(above) + kBrickEdge * static_cast<int>(step));
+            break;
+        }
+        for (std::size_t x = 0; x < kEdge; ++x)
+            swept[row][x] = std::min(static_cast<Value>(nearest[x] * nearest[x]), beyond_);
+    });
+}
+
+/// Of some layers, along y or z; the answer is which rows they are.
+std::uint64_t DistanceLayer::sweep(Axis axis, const BrickPlace& brick, unsigned layers, SweptRows& swept,
+                                   OfLayers& largest) const {
+    const Axis before = axis == Axis::y ? Axis::x : Axis::y;
+    SweepColumn column;
+    column.side = brick_reach_;
+    for (int step = -brick_reach_; step <= brick_reach_; ++step) {
+        const Values& values = values_of(before, brick.moved(axis, step));
+        column.bricks[static_cast<std::size_t>(step + brick_reach_)] = {&values.rows, &values.least};
+    }
+    constexpr std::uint64_t kOfEachPlace = 0x0101'0101'0101'0101U;
+    if (axis == Axis::z) {
+        sweep_layers(column, layers, beyond_, swept, largest);
+        return layers * kOfEachPlace;
+    }
+    SweptRows by_layer;
+    sweep_layers(column, layers, beyond_, by_layer, largest);
+    std::uint64_t rows = 0;
+    for_each_bit(layers, [&](std::size_t z) {
+        for (std::size_t y = 0; y < kEdge; ++y) swept[y + kEdge * z] = by_layer[z + kEdge * y];
+        rows |= kRowBits << (kEdge * z);
+    });
+    return rows;
+}
+
+/// What is another value than before, into the brick. Both before and after the last sweep the layer of the
+/// next is the row's place in eight.
+DistanceLayer::Change DistanceLayer::take(Stage& stage, std::size_t index, std::uint64_t rows,
+                                          const SweptRows& swept, const OfLayers& largest) {
+    const Values* const there = stage.values[index];
+    const Values& before = there != nullptr ? *there : plain_;
+    std::uint64_t changed = 0;
+    for_each_bit(rows, [&](std::size_t row) {
+        if (!hold_the_same(swept[row], before.rows[row])) changed |= std::uint64_t{1} << row;
+    });
+    Change change;
+    if (changed == 0) return change;
+    Values& values = stage.values.open(index, plain_);
+    values.largest = largest;
+    std::array<DistanceRow, kEdge> least;
+    for_each_bit(changed, [&](std::size_t row) {
+        const std::size_t layer = row % kEdge;
+        if ((change.layers >> layer & 1U) == 0) least[layer] = swept[row];
+        change.layers |= std::uint64_t{1} << layer;
+        lower(least[layer], swept[row]);
+        lower(least[layer], values.rows[row]);
+        values.rows[row] = swept[row];
+    });
+    for_each_bit(change.layers, [&](std::size_t layer) {
+        change.least[layer] = least_of(least[layer]);
+        DistanceRow of_layer = values.rows[layer];
+        for (std::size_t along = 1; along < kEdge; ++along)
+            lower(of_layer, values.rows[layer + kEdge * along]);
+        values.least[layer] = least_of(of_layer);
+    });
+    if (std::ranges::equal(values.rows, plain_.rows, hold_the_same)) stage.values.take_away(index);
+    return change;
+}
+
+template <class IsNearest>
+std::optional<VoxelKey> DistanceLayer::step_to(VoxelKey key, Axis axis, const IsNearest& is_nearest) const {
+    std::uint16_t& along = axis == Axis::x ? key.x : axis == Axis::y ? key.y : key.z;
+    const int middle = along;
+    for (int step = 0; step <= reach_; ++step) {
+        for (const int at : {middle - step, middle + step}) {
+            if (at < 0 || at >= kVoxelsPerAxis) continue;
+            along = static_cast<std::uint16_t>(at);
+            if (is_nearest(key, square(step))) return key;
         }
     }
-    for (std::size_t i = 0; i < kRow; ++i) values.least[i] = least_of(values.slabs[i]);
-    return values;
+    return std::nullopt;
 }
 
-/// Bricks that are as they would be if nobody had spoken of them.
-void DistanceLayer::drop_plain(const std::vector<BrickKey>& touched) {
-    const auto is_plain = [&](const Brick& brick) {
-        for (std::size_t i = 0; i < brick.after.size(); ++i)
-            if (brick.after[i].slabs != plain_.after[i].slabs) return false;
-        return brick.sites == plain_.sites;
-    };
-    for (const BrickKey key : touched) {
-        const auto found = bricks_.find(key);
-        if (found != bricks_.end() && is_plain(*found->second)) bricks_.erase(found);
-    }
-}
-
-std::optional<int> DistanceLayer::squared(VoxelKey key) const noexcept {
-    const auto in_brick = [](std::uint16_t place) { return static_cast<std::size_t>(place % kBrickEdge); };
-    const Values& values = find(brick_key(key))->after.back();
-    const Value value = values.slabs[in_brick(key.x)][in_brick(key.y) + kRow * in_brick(key.z)];
-    if (value >= beyond_) return std::nullopt;
-    return value;
+/// Back along z, y and x: to where each value came from.
+std::optional<VoxelKey> DistanceLayer::nearest(VoxelKey key) const noexcept {
+    const int all = value_at(Axis::z, key);
+    if (all >= beyond_) return std::nullopt;
+    const auto in_layer = step_to(
+        key, Axis::z, [&](VoxelKey at, int squared) { return value_at(Axis::y, at) + squared == all; });
+    if (!in_layer) return std::nullopt;
+    const int of_layer = value_at(Axis::y, *in_layer);
+    const auto in_row = step_to(*in_layer, Axis::y, [&](VoxelKey at, int squared) {
+        return value_at(Axis::x, at) + squared == of_layer;
+    });
+    if (!in_row) return std::nullopt;
+    const int of_row = value_at(Axis::x, *in_row);
+    return step_to(*in_row, Axis::x,
+                   [&](VoxelKey at, int squared) { return squared == of_row && is_site(at); });
 }
 
 std::size_t DistanceLayer::memory_bytes() const noexcept {
-    constexpr std::size_t kEntry = 64;  // what the table takes for it, about
-    return bricks_.size() * (sizeof(Brick) + kEntry);
+    std::size_t bytes = sites_.memory_bytes();
+    for (const Stage& stage : stages_)
+        bytes += stage.values.memory_bytes() + stage.due.size() * sizeof(std::uint64_t);
+    return bytes;
 }
 
 }  // namespace octoskin

@@ -18,15 +18,16 @@ double steps_of(double distance_m) {
 
 }  // namespace
 
-NearestSearch::NearestSearch(const FusedMap& map, const SearchRequest& request, const SiteMap* sites) noexcept
+NearestSearch::NearestSearch(const FusedMap& map, const SearchRequest& request) noexcept
     : map_(map),
       resolution_m_(map.resolution_m()),
-      sites_(sites),
       segment_(request.p_a, request.p_b),
+      lowest_(request.p_a.cwiseMin(request.p_b)),
+      highest_(request.p_a.cwiseMax(request.p_b)),
       wanted_(request.wanted) {
     const double reach_m = std::max(request.occupied_reach_m, request.unknown_reach_m);
-    const Eigen::Vector3d lowest = request.p_a.cwiseMin(request.p_b).array() - reach_m;
-    const Eigen::Vector3d highest = request.p_a.cwiseMax(request.p_b).array() + reach_m;
+    const Eigen::Vector3d lowest = lowest_.array() - reach_m;
+    const Eigen::Vector3d highest = highest_.array() + reach_m;
     const double bound_m = kOriginKey * map.resolution_m();
     is_outside_ = lowest.minCoeff() < -bound_m || highest.maxCoeff() > bound_m;
     meets_octree_ = lowest.maxCoeff() <= bound_m && highest.minCoeff() >= -bound_m;
@@ -52,9 +53,9 @@ double NearestSearch::distance_to(const VoxelCube& cube) const {
     return segment_.distance(centre_of(cube), half_edge(cube));
 }
 
-/// What is further away matters to neither. Where only the worst is wanted the limit of the unknown is never
-/// the larger one: what is unknown ends no search for the occupied.
-double NearestSearch::limit_m() const {
+/// Where only the worst is wanted the limit of the unknown is never the larger one: what is unknown ends no
+/// search for the occupied.
+double NearestSearch::limit_m() const noexcept {
     return std::max(occupied_.limit_m, unknown_.limit_m);
 }
 
@@ -72,8 +73,7 @@ void NearestSearch::look(const BrickTree::Space& space) {
 }
 
 void NearestSearch::look_into(const VoxelCube& cube, const BrickView& bricks) {
-    if (bricks.values != nullptr)
-        return sites_ != nullptr ? look_into_sites(cube) : look_into_brick(cube, *bricks.values);
+    if (bricks.values != nullptr) return look_into_brick(cube, *bricks.values);
     if (std::isnan(bricks.value)) return take(unknown_, cube);
     if (map_.occupancy_of(bricks.value) == Occupancy::occupied) take(occupied_, cube);
 }
@@ -89,21 +89,47 @@ void NearestSearch::look_into_brick(const VoxelCube& brick, const BrickValues& v
     }
 }
 
-void NearestSearch::look_into_sites(const VoxelCube& brick) {
-    const MortonCode first = morton_of(brick.lowest);
-    const auto found = sites_->find(first);
-    if (found == sites_->end()) return;
-    for (std::size_t word = 0; word < kBrickVoxels / 64 && !is_done(); ++word) {
-        const VoxelCube cube{key_of_morton(first + 64 * word), 2};
-        take_some(occupied_, cube, found->second.occupied[word]);
-        take_some(unknown_, cube, found->second.unknown[word]);
+void NearestSearch::look_at(const VoxelCube& brick, const BrickSites& sites) noexcept {
+    if (is_surely_beyond(brick, limit_m())) return;
+    for (std::size_t word = 0; word < kBrickVoxels / 64; ++word) {
+        if ((sites.occupied[word] | sites.unknown[word]) == 0) continue;  // most are
+        const auto along = [word](std::uint16_t lowest, unsigned axis) {
+            return static_cast<std::uint16_t>(lowest + 4 * (word >> axis & 1U));
+        };
+        const VoxelCube cube{{along(brick.lowest.x, 0), along(brick.lowest.y, 1), along(brick.lowest.z, 2)},
+                             2};
+        const auto look_at_some = [&](Nearest& nearest, std::uint64_t voxels) {
+            if (is_near(nearest, cube, voxels)) take_each(nearest, cube, facing(cube, voxels));
+        };
+        look_at_some(occupied_, sites.occupied[word]);
+        look_at_some(unknown_, sites.unknown[word]);
     }
 }
 
+/// Of a word's voxels those that have no other of them before them: where the whole segment is on one side, a
+/// neighbour on that side is no further from any point of it.
+std::uint64_t NearestSearch::facing(const VoxelCube& word, std::uint64_t voxels) const {
+    if ((voxels & (voxels - 1)) == 0) return voxels;
+    const Eigen::Vector3d corner =
+        resolution_m_ *
+        Eigen::Vector3d(word.lowest.x - kOriginKey, word.lowest.y - kOriginKey, word.lowest.z - kOriginKey);
+    std::uint64_t behind = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto along = static_cast<Eigen::Index>(axis);
+        if (highest_[along] <= corner[along] + resolution_m_) behind |= parts_after(voxels, axis);
+        if (lowest_[along] >= corner[along] + 3.0 * resolution_m_) behind |= parts_before(voxels, axis);
+    }
+    return voxels & ~behind;
+}
+
 void NearestSearch::take_some(Nearest& nearest, const VoxelCube& word, std::uint64_t voxels) {
-    if (voxels == 0 || nearest.limit_m == kNever || is_surely_beyond(word, nearest.limit_m)) return;
+    if (!is_near(nearest, word, voxels)) return;
     if (voxels == kAllParts) return take(nearest, word);
-    for (voxels &= parts_in(word, box_); voxels != 0; voxels &= voxels - 1)
+    take_each(nearest, word, voxels & parts_in(word, box_));
+}
+
+void NearestSearch::take_each(Nearest& nearest, const VoxelCube& word, std::uint64_t voxels) {
+    for (; voxels != 0; voxels &= voxels - 1)
         take(nearest, part_of(word, static_cast<std::size_t>(std::countr_zero(voxels))));
 }
 

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <unordered_map>
 
 #include "host/core/bricks/brick.hpp"
 #include "host/core/mapping/fused_map.hpp"
@@ -23,9 +22,6 @@ struct BrickSites {
     BrickMask occupied{};
     BrickMask unknown{};
 };
-/// By the brick's first voxel: each that has an occupied voxel, and of bricks whose voxels are not alike each
-/// that has an unknown one.
-using SiteMap = std::unordered_map<MortonCode, BrickSites>;
 
 enum class SearchFor : std::uint8_t {
     worst,  ///< the nearest occupied voxel or, if there is none, the nearest unknown one
@@ -43,7 +39,8 @@ struct SearchRequest {
 };
 
 /// Goes through the space within reach, in Morton order: of two voxels that are equally near the first wins
-/// without being compared. For one `run`.
+/// without being compared. For one `run`, or for whoever knows where to look: `look_at` what may be near, in
+/// any order.
 class NearestSearch {
   public:
     struct Found {
@@ -51,10 +48,18 @@ class NearestSearch {
         double distance_m = 0.0;  ///< to its closed cube, in whole steps
     };
 
-    /// `sites`: of this map, if it is there; then nothing else is looked up of bricks whose voxels differ.
-    NearestSearch(const FusedMap& map, const SearchRequest& request, const SiteMap* sites = nullptr) noexcept;
+    NearestSearch(const FusedMap& map, const SearchRequest& request) noexcept;
 
     void run() noexcept;
+    /// A brick of the map, some of whose voxels are occupied or unknown.
+    void look_at(const VoxelCube& brick, const BrickSites& sites) noexcept;
+    /// Voxels that are all occupied, or all unknown.
+    void look_at_occupied(const VoxelCube& cube) noexcept { take(occupied_, cube); }
+    void look_at_unknown(const VoxelCube& cube) noexcept { take(unknown_, cube); }
+    /// What is further away matters to neither. Never more than the request's reach.
+    [[nodiscard]] double limit_m() const noexcept;
+    [[nodiscard]] double occupied_limit_m() const noexcept { return occupied_.limit_m; }
+    [[nodiscard]] double unknown_limit_m() const noexcept { return unknown_.limit_m; }
 
     [[nodiscard]] Found occupied() const noexcept { return occupied_.found; }
     [[nodiscard]] Found unknown() const noexcept { return unknown_.found; }
@@ -85,21 +90,26 @@ class NearestSearch {
         return segment_.is_surely_beyond(centre_of(cube), half_edge(cube), limit_m + 4.0 * kDistanceStep_m);
     }
     [[nodiscard]] double distance_to(const VoxelCube& cube) const;
-    [[nodiscard]] double limit_m() const;
     [[nodiscard]] bool is_done() const;
 
     void look(const BrickTree::Space& space);
     void look_into(const VoxelCube& cube, const BrickView& bricks);
     void look_into_brick(const VoxelCube& brick, const BrickValues& values);
-    void look_into_sites(const VoxelCube& brick);
+    /// Whether some of these voxels of the word may matter.
+    [[nodiscard]] bool is_near(const Nearest& nearest, const VoxelCube& word, std::uint64_t voxels) const {
+        return voxels != 0 && nearest.limit_m != kNever && !is_surely_beyond(word, nearest.limit_m);
+    }
     void take_some(Nearest& nearest, const VoxelCube& word, std::uint64_t voxels);
+    void take_each(Nearest& nearest, const VoxelCube& word, std::uint64_t voxels);
+    [[nodiscard]] std::uint64_t facing(const VoxelCube& word, std::uint64_t voxels) const;
     void take(Nearest& nearest, VoxelCube cube);
     [[nodiscard]] VoxelCube nearest_eighth(const VoxelCube& cube, double& steps) const;
 
     const FusedMap& map_;
     double resolution_m_;
-    const SiteMap* sites_;
     SegmentToCubes segment_;
+    Eigen::Vector3d lowest_;  ///< of the segment, along each axis
+    Eigen::Vector3d highest_;
     SearchFor wanted_;
     bool is_outside_ = false;
     bool meets_octree_ = false;

@@ -16,21 +16,14 @@ std::size_t postures_of(std::span<const double> from, std::span<const double> to
     return static_cast<std::size_t>(std::max(1.0, std::ceil(longest / step - kRounding)));
 }
 
-void lower(const std::optional<double>& found_m, const std::optional<LinkId>& link,
-           std::optional<double>& least_m, std::optional<LinkId>& least_link) {
-    if (!found_m || (least_m && *least_m <= *found_m)) return;
-    least_m = found_m;
-    least_link = link;
-}
-
 bool is_blocked(const LegAnswer& answer, double reach_m) {
     return answer.worst.state == PostureState::occupied &&
            (!(reach_m > 0.0) || (answer.clearance.occupied_m && answer.clearance.not_free_m));
 }
 
 /// False if a capsule is refused.
-bool take_posture(const FusedMap& map, std::span<const PosedCapsule> capsules, double share, double reach_m,
-                  LegAnswer& answer) {
+bool take_posture(const FusedMap& map, std::span<const PosedCapsule> capsules, double share,
+                  const LegConfig& config, LegAnswer& answer) {
     const auto worst = worst_of(map, capsules);
     if (!worst) return false;
     if (worst->state > answer.worst.state) {
@@ -39,12 +32,12 @@ bool take_posture(const FusedMap& map, std::span<const PosedCapsule> capsules, d
     }
     answer.evidence = weakest_of(map, capsules, answer.evidence);
     ++answer.postures;
-    if (!(reach_m > 0.0)) return true;
-    const auto clearance = clearance_of(map, capsules, reach_m);
+    if (!(config.reach_m > 0.0)) return true;
+    const auto clearance = config.field != nullptr
+                               ? clearance_of(*config.field, capsules, config.reach_m, answer.clearance)
+                               : clearance_of(map, capsules, config.reach_m, answer.clearance);
     if (!clearance) return false;
-    PostureClearance& least = answer.clearance;
-    lower(clearance->occupied_m, clearance->occupied_link, least.occupied_m, least.occupied_link);
-    lower(clearance->not_free_m, clearance->not_free_link, least.not_free_m, least.not_free_link);
+    answer.clearance = *clearance;
     return true;
 }
 
@@ -67,7 +60,7 @@ Result<LegAnswer, PostureFault> ask(const RobotQuery& robot, const FusedMap& map
         leg.position(i, position);
         const auto capsules = robot.pose(position);
         if (!capsules) return unexpected(capsules.error());
-        if (!take_posture(map, *capsules, leg.share(i), config.reach_m, answer))
+        if (!take_posture(map, *capsules, leg.share(i), config, answer))
             return unexpected(PostureFault{PostureError::too_far, 0});
     }
     return answer;

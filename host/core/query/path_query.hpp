@@ -15,6 +15,8 @@ struct LegConfig {
     /// (asserted).
     double step = 0.05;
     double reach_m = 0.5;  ///< up to here clearances are told; 0: none are
+    /// Of the same map: then distances come from there, and are the same. Null: they are searched for.
+    const DistanceField* field = nullptr;
 };
 
 /// The postures on the straight way in joint space from one configuration to another: the first is one step

@@ -46,12 +46,15 @@ void take_nearest(const std::optional<double>& found_m, LinkId link, std::option
     nearest_link = link;
 }
 
+/// What is further away than what was found is not looked for.
 template <class ClearanceOf>
 Result<PostureClearance, RefusedCapsule> least_clearance(std::span<const PosedCapsule> capsules,
-                                                         const ClearanceOf& of) {
-    PostureClearance least;
+                                                         PostureClearance least, const ClearanceOf& of) {
     for (std::size_t i = 0; i < capsules.size(); ++i) {
-        const auto found = of(capsules[i]);
+        const auto found = of(capsules[i], [&](double reach_m) {
+            return ClearanceReach{std::min(reach_m, least.occupied_m.value_or(reach_m)),
+                                  std::min(reach_m, least.not_free_m.value_or(reach_m))};
+        });
         if (!found) return unexpected(RefusedCapsule{i, found.error()});
         take_nearest(found->occupied_m, capsules[i].link, least.occupied_m, least.occupied_link);
         take_nearest(found->not_free_m, capsules[i].link, least.not_free_m, least.not_free_link);
@@ -155,15 +158,26 @@ std::optional<PostureEvidence> weakest_of(const FusedMap& map, std::span<const P
 }
 
 Result<PostureClearance, RefusedCapsule> clearance_of(const FusedMap& map,
-                                                      std::span<const PosedCapsule> capsules,
-                                                      double reach_m) noexcept {
-    return least_clearance(capsules,
-                           [&](const PosedCapsule& capsule) { return clearance(map, capsule, reach_m); });
+                                                      std::span<const PosedCapsule> capsules, double reach_m,
+                                                      const PostureClearance& than) noexcept {
+    return least_clearance(capsules, than, [&](const PosedCapsule& capsule, const auto& within) {
+        return clearance(map, capsule, within(reach_m));
+    });
+}
+
+Result<PostureClearance, RefusedCapsule> clearance_of(const DistanceField& field,
+                                                      std::span<const PosedCapsule> capsules, double reach_m,
+                                                      const PostureClearance& than) noexcept {
+    return least_clearance(capsules, than, [&](const PosedCapsule& capsule, const auto& within) {
+        return field.clearance(capsule, within(reach_m));
+    });
 }
 
 Result<PostureClearance, RefusedCapsule> clearance_of(const DistanceField& field,
                                                       std::span<const PosedCapsule> capsules) noexcept {
-    return least_clearance(capsules, [&](const PosedCapsule& capsule) { return field.clearance(capsule); });
+    return least_clearance(capsules, {}, [&](const PosedCapsule& capsule, const auto& within) {
+        return field.clearance(capsule, within(std::max(0.0, field.axis_reach_m() - capsule.radius_m)));
+    });
 }
 
 }  // namespace octoskin

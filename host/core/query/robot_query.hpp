@@ -119,11 +119,16 @@ struct PostureEvidence {
 /// its evidence is. About 4 us a capsule at 0.04 m.
 [[nodiscard]] Result<PostureAnswer, RefusedCapsule> worst_of(const FusedMap& map,
                                                              std::span<const PosedCapsule> capsules) noexcept;
-/// Up to `reach_m` from the surface of each capsule.
-[[nodiscard]] Result<PostureClearance, RefusedCapsule> clearance_of(const FusedMap& map,
-                                                                    std::span<const PosedCapsule> capsules,
-                                                                    double reach_m) noexcept;
-/// The same of a field's map, up to what it tells.
+/// Up to `reach_m` from the surface of each capsule. `than`: of other postures; the answer is the least of
+/// all, and what is further away is not looked for.
+[[nodiscard]] Result<PostureClearance, RefusedCapsule> clearance_of(
+    const FusedMap& map, std::span<const PosedCapsule> capsules, double reach_m,
+    const PostureClearance& than = {}) noexcept;
+/// The same of a field's map.
+[[nodiscard]] Result<PostureClearance, RefusedCapsule> clearance_of(
+    const DistanceField& field, std::span<const PosedCapsule> capsules, double reach_m,
+    const PostureClearance& than = {}) noexcept;
+/// As far as it tells.
 [[nodiscard]] Result<PostureClearance, RefusedCapsule> clearance_of(
     const DistanceField& field, std::span<const PosedCapsule> capsules) noexcept;
 

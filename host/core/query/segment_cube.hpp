@@ -26,7 +26,8 @@ class SegmentToCubes {
         const double squared = nearest.squaredNorm();
         const double depth =
             half_edge * (std::abs(nearest.x()) + std::abs(nearest.y()) + std::abs(nearest.z()));
-        return squared - depth > limit_m * std::sqrt(squared);
+        const double beyond = squared - depth;  // the bound, times the way to the centre
+        return beyond > 0.0 && (limit_m < 0.0 || beyond * beyond > limit_m * limit_m * squared);
     }
 
   private:

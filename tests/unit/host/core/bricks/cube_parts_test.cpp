@@ -45,5 +45,24 @@ TEST(CubeParts, reach_the_octrees_ends) {
               std::uint64_t{1} << 63U);
 }
 
+TEST(CubeParts, have_those_next_to_them_along_each_axis) {
+    constexpr VoxelCube kCube{{0, 0, 0}, 2};  // parts are voxels
+    for (std::size_t part = 0; part < 64; ++part) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto moved = [&](int by) -> std::uint64_t {
+                const VoxelKey key = part_of(kCube, part).lowest;
+                std::array<int, 3> at{key.x, key.y, key.z};
+                at[axis] += by;
+                if (at[axis] < 0 || at[axis] > 3) return 0;
+                const auto along = [&](std::size_t a) { return static_cast<std::uint16_t>(at[a]); };
+                return std::uint64_t{1} << morton_of({along(0), along(1), along(2)});
+            };
+            EXPECT_EQ(parts_after(std::uint64_t{1} << part, axis), moved(1)) << part;
+            EXPECT_EQ(parts_before(std::uint64_t{1} << part, axis), moved(-1)) << part;
+        }
+    }
+    EXPECT_EQ(parts_after(~std::uint64_t{0}, 0), kOddParts[0] | kUpperParts[0]);
+}
+
 }  // namespace
 }  // namespace octoskin

@@ -200,6 +200,25 @@ TEST(DatedMap, tells_ages_over_days) {
     EXPECT_EQ(map.confirmation(key_at(1)), by(SensorKind::range, 8191));
 }
 
+TEST(DatedMap, forgets_in_time_when_its_clock_is_brought_up_meanwhile) {
+    FusedMap map(aging(0, 7000));
+    for (int second = 0; second <= 8000; second += 1000) {
+        map.go_on(at_s(second));
+        map.apply(one(key_at(100), 1.0F));
+    }
+    map.apply(one(key_at(0), 1.0F));
+    map.go_on(at_s(9000));  // beyond what a stamp can hold
+    map.apply(one(key_at(100), 1.0F));
+    map.go_on(at_s(14'999));
+    EXPECT_EQ(map.confirmation(key_at(0))->age_s, 6999U);
+    map.go_on(at_s(15'000));
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
+    map.go_on(at_s(15'999));
+    EXPECT_EQ(map.known_voxels(), 1U);
+    map.go_on(at_s(16'000));
+    EXPECT_EQ(map.known_voxels(), 0U);
+}
+
 TEST(DatedMap, keeps_what_was_when_a_copy_goes_on) {
     FusedMap map(aging(10, 20));
     map.go_on(at_s(0));

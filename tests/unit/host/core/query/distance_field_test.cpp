@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -15,6 +16,12 @@ namespace octoskin {
 namespace {
 
 constexpr double kResolution_m = 0.04;
+
+/// So many voxels about the origin, along each axis.
+FieldExtent about_origin(int voxels, double reach_m) {
+    const Eigen::Vector3d corner = Eigen::Vector3d::Constant(voxels * kResolution_m - 1e-6);
+    return {{-corner, corner}, reach_m};
+}
 
 VoxelKey voxel_at(int x, int y, int z) {
     const auto at = [](int offset) { return static_cast<std::uint16_t>(kOriginKey + offset); };
@@ -89,7 +96,7 @@ void put(FusedMap& map, VoxelKey at, float log_odds) {
 }
 
 TEST(DistanceField, of_an_empty_map_knows_of_nothing_occupied_and_of_nothing_free) {
-    const DistanceField field(MapConfig{}, 0.5);
+    const DistanceField field(MapConfig{}, about_origin(8, 0.5));
     EXPECT_EQ(field.occupied_m(voxel_at(0, 0, 0)), std::nullopt);
     EXPECT_EQ(field.not_free_m(voxel_at(0, 0, 0)), 0.0);
     EXPECT_NEAR(field.reach_m(), 0.52, 1e-12);  // 13 voxels
@@ -98,7 +105,7 @@ TEST(DistanceField, of_an_empty_map_knows_of_nothing_occupied_and_of_nothing_fre
 TEST(DistanceField, of_one_occupied_voxel_is_what_pythagoras_says_up_to_its_reach) {
     FusedMap map{MapConfig{}};
     put(map, voxel_at(0, 0, 0), 1.0F);
-    DistanceField field(map.config(), 0.52);
+    DistanceField field(map.config(), about_origin(16, 0.52));
     (void)field.update(map);
     EXPECT_DOUBLE_EQ(field.occupied_m(voxel_at(0, 0, 0)).value(), 0.0);
     EXPECT_DOUBLE_EQ(field.occupied_m(voxel_at(-3, 4, 12)).value(), 0.52);
@@ -116,7 +123,7 @@ TEST_P(ChangingMap, has_the_field_of_a_look_at_every_voxel_at_each_step) {
     std::mt19937 random(static_cast<unsigned>(reach));
     RandomSpace space(7, kResolution_m);
     FusedMap map = space.map();
-    DistanceField field(map.config(), reach * kResolution_m);
+    DistanceField field(map.config(), about_origin(16 + reach + 2, reach * kResolution_m));
     const auto steps = testing_support::cases(12);
     for (unsigned step = 0; step < steps; ++step) {
         if (step % 5 == 4) map = space.map();
@@ -139,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(Reaches, ChangingMap, testing::Values(1, 7, 8, 13));
 
 TEST(DistanceField, works_on_nothing_if_no_voxel_changed_its_state) {
     FusedMap map = RandomSpace(3, kResolution_m).map();
-    DistanceField field(map.config(), 0.5);
+    DistanceField field(map.config(), about_origin(24, 0.5));
     EXPECT_GT(field.update(map).worked, 0U);
     const FusedMap before = map.copy();
     const VoxelUpdate more{voxel_at(0, 0, 0),
@@ -153,21 +160,22 @@ TEST(DistanceField, works_on_nothing_if_no_voxel_changed_its_state) {
 
 TEST(DistanceField, forgets_bricks_that_are_as_they_would_be_without_any_change) {
     FusedMap map{MapConfig{}};
-    DistanceField field(map.config(), 0.5);
+    DistanceField field(map.config(), about_origin(24, 0.5));
+    const std::size_t bytes = field.memory_bytes();
     put(map, voxel_at(3, 3, 3), 1.0F);
     (void)field.update(map);
-    EXPECT_GT(field.memory_bytes(), 0U);
+    EXPECT_GT(field.memory_bytes(), bytes);
     (void)field.update(FusedMap{MapConfig{}});
-    EXPECT_EQ(field.memory_bytes(), 0U);
+    EXPECT_EQ(field.memory_bytes(), bytes);
 }
 
 TEST(DistanceField, finds_the_clearance_of_a_capsule_that_a_search_finds) {
     RandomSpace space(8, kResolution_m);
-    unsigned far = 0;
+    unsigned beyond = 0;
     unsigned between = 0;
     for (unsigned i = 0; i < testing_support::cases(150); ++i) {
         const FusedMap map = space.map();
-        DistanceField field(map.config(), 0.3);
+        DistanceField field(map.config(), about_origin(i % 3 == 0 ? 6 : 24, 0.3));
         (void)field.update(map);
         const PosedCapsule capsule = space.capsule(i);
         const double reach_m = field.axis_reach_m() - capsule.radius_m;
@@ -176,15 +184,61 @@ TEST(DistanceField, finds_the_clearance_of_a_capsule_that_a_search_finds) {
         ASSERT_TRUE(expected && found);
         ASSERT_EQ(found->occupied_m, expected->occupied_m) << i;
         ASSERT_EQ(found->not_free_m, expected->not_free_m) << i;
-        far += found->occupied_m ? 0U : 1U;
+        beyond += field.tells_of(capsule) ? 0U : 1U;
         between += found->occupied_m.value_or(0.0) > 0.0 ? 1U : 0U;
     }
     EXPECT_GT(between, testing_support::cases(150) / 20);
-    (void)far;
+    EXPECT_GT(beyond, testing_support::cases(150) / 20) << "of the region: these are searched for";
+}
+
+TEST(DistanceField, looks_no_further_than_it_is_told_to) {
+    RandomSpace space(9, kResolution_m);
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> uniform(0.0, 0.2);
+    for (unsigned i = 0; i < testing_support::cases(150); ++i) {
+        const FusedMap map = space.map();
+        DistanceField field(map.config(), about_origin(24, 0.4));
+        (void)field.update(map);
+        const PosedCapsule capsule = space.capsule(i);
+        const double not_free_m = i % 4 == 0 ? 0.0 : uniform(random);
+        const ClearanceReach reach{i % 3 == 0 ? not_free_m : not_free_m + uniform(random), not_free_m};
+        const auto expected = clearance(map, capsule, reach);
+        const auto found = field.clearance(capsule, reach);
+        ASSERT_TRUE(expected && found);
+        ASSERT_EQ(found->occupied_m, expected->occupied_m) << i;
+        ASSERT_EQ(found->not_free_m, expected->not_free_m) << i;
+    }
+}
+
+/// Beyond the octree all is unknown, and there are no voxels.
+TEST(DistanceField, ends_with_the_octree) {
+    constexpr std::array<std::uint16_t, 2> kMiddle{32752, 32768};
+    constexpr std::array<std::uint16_t, 2> kLast{65504, 65520};
+    const double edge_m = kOriginKey * kResolution_m;
+    FusedMap map{MapConfig{}};
+    for (const std::uint16_t y : kMiddle)
+        for (const std::uint16_t z : kMiddle)
+            for (const std::uint16_t x : kLast) ASSERT_TRUE(map.set_cube({{x, y, z}, 4}, -1.0F));
+    put(map, {65520, 32768, 32768}, 1.0F);
+    const Eigen::Vector3d corner(edge_m - 0.7, -0.3, -0.3);
+    const Eigen::AlignedBox3d region(corner, Eigen::Vector3d(edge_m + 1.0, 0.3, 0.3));
+    DistanceField field(map.config(), {region, 0.5});
+    (void)field.update(map);
+    EXPECT_DOUBLE_EQ(field.not_free_m({65535, 32768, 32768}).value(), kResolution_m);
+    for (const double from_edge_m : {0.05, 0.2, 0.33, 0.5}) {
+        const PosedCapsule capsule{{edge_m - from_edge_m, 0.1, 0.0}, {edge_m - from_edge_m, 0.15, 0.1}, 0.03};
+        ASSERT_TRUE(field.tells_of(capsule));
+        const auto expected = clearance(map, capsule, 0.3);
+        const auto found = field.clearance(capsule, {0.3, 0.3});
+        ASSERT_TRUE(expected && found);
+        EXPECT_EQ(found->occupied_m, expected->occupied_m) << from_edge_m;
+        EXPECT_EQ(found->not_free_m, expected->not_free_m) << from_edge_m;
+        EXPECT_TRUE(found->not_free_m) << from_edge_m;
+    }
 }
 
 TEST(DistanceField, refuses_a_capsule_that_a_search_refuses) {
-    const DistanceField field(MapConfig{}, 0.3);
+    const DistanceField field(MapConfig{}, about_origin(24, 0.3));
     EXPECT_EQ(field.clearance({{std::nan(""), 0, 0}, {0, 0, 0}, 0.1}).error(), CapsuleFault::not_finite);
     EXPECT_EQ(field.clearance({{0, 0, 0}, {0, 0, 0}, -0.1}).error(), CapsuleFault::negative_radius);
     EXPECT_EQ(field.clearance({{2e6, 0, 0}, {0, 0, 0}, 0.1}).error(), CapsuleFault::too_large);

@@ -4,9 +4,12 @@
 
 #include <array>
 #include <cmath>
+#include <random>
+#include <vector>
 
 #include "host/core/query/own_space.hpp"
 #include "host/core/query/path_query.hpp"
+#include "tests/support/cases.hpp"
 #include "tests/unit/host/core/query/two_joint_arm.hpp"
 
 namespace octoskin {
@@ -106,7 +109,8 @@ TEST(RobotQuery, tells_how_far_the_nearest_is_and_from_which_link) {
     EXPECT_EQ(link_name(arm, near->occupied_link), "hand");
     EXPECT_FALSE(clearance_of(map, *capsules, 0.15)->occupied_m);
 
-    DistanceField field(map.config(), 0.5);
+    const Eigen::Vector3d corner = Eigen::Vector3d::Constant(1.0);
+    DistanceField field(map.config(), {{-corner, corner}, 0.5});
     (void)field.update(map);
     EXPECT_NEAR(clearance_of(field, *capsules)->occupied_m.value(), 0.16, 1e-8);
 }
@@ -140,6 +144,47 @@ TEST(PathQuery, tells_the_least_distance_on_a_free_way) {
     EXPECT_EQ(answer->worst.state, PostureState::free);
     EXPECT_NEAR(answer->clearance.occupied_m.value(), std::sqrt(2.0) * 0.48 - 0.44, 1e-3);
     EXPECT_EQ(answer->postures, 158U);
+}
+
+/// What is further than the nearest so far is not looked for, in a map or in a field.
+TEST(PathQuery, tells_the_least_of_what_each_posture_is_from_with_and_without_a_field) {
+    const TwoJointArm arm;
+    const RobotQuery query = query_of(arm);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> along(-0.9, 0.9);
+    std::uniform_real_distribution<double> turn(-3.0, 3.0);
+    FusedMap map = free_about_origin();
+    const Eigen::Vector3d corner = Eigen::Vector3d::Constant(0.8);
+    DistanceField field(map.config(), {{-corner, corner}, 0.5});
+    for (unsigned i = 0; i < testing_support::cases(30); ++i) {
+        mark(map, {along(random), along(random), along(random)}, i % 3 == 0 ? 1.0F : -1.0F);
+        (void)field.update(map);
+        const Leg leg(std::array{turn(random), 0.0}, std::array{turn(random), 0.2}, 0.1);
+        const double reach_m = i % 2 == 0 ? 0.3 : 0.5;  // the field tells as far as 0.38
+        const auto searched = ask(query, map, leg, {.reach_m = reach_m});
+        const auto told = ask(query, map, leg, {.reach_m = reach_m, .field = &field});
+        ASSERT_TRUE(searched && told);
+        PostureClearance least;
+        std::vector<double> position(2);
+        for (std::size_t posture = 0; posture < searched->postures; ++posture) {
+            leg.position(posture, position);
+            const auto capsules = query.pose(position);
+            for (const PosedCapsule& capsule : *capsules) {
+                const auto found = clearance(map, capsule, reach_m);
+                const auto take = [](std::optional<double>& nearest_m, const std::optional<double>& found_m) {
+                    if (found_m && !(nearest_m && *nearest_m <= *found_m)) nearest_m = found_m;
+                };
+                take(least.occupied_m, found->occupied_m);
+                take(least.not_free_m, found->not_free_m);
+            }
+        }
+        for (const LegAnswer& answer : {*searched, *told}) {
+            ASSERT_EQ(answer.clearance.occupied_m, least.occupied_m) << i;
+            ASSERT_EQ(answer.clearance.not_free_m, least.not_free_m) << i;
+            EXPECT_EQ(answer.clearance.not_free_link, searched->clearance.not_free_link);
+            EXPECT_EQ(answer.clearance.occupied_link, searched->clearance.occupied_link);
+        }
+    }
 }
 
 TEST(PathQuery, ends_each_leg_exactly_where_it_was_asked_to) {

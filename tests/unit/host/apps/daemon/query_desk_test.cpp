@@ -1,0 +1,127 @@
+// Questions that come while the map goes on. The oracle is a search in a copy of the map as it was when the
+// question came.
+#include "host/apps/daemon/query_desk.hpp"
+
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <chrono>
+#include <map>
+#include <random>
+#include <thread>
+
+#include "host/apps/querying/query_answer.hpp"
+#include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class QueryDeskTest : public testing::Test {
+  protected:
+    static FusedMap free_about_base(const MapConfig& config) {
+        FusedMap map(config);
+        for (int i = 0; i < 8; ++i) {
+            const auto along = [i](int axis) {
+                return static_cast<std::uint16_t>(kOriginKey - ((i >> axis & 1) != 0 ? 32 : 0));
+            };
+            EXPECT_TRUE(map.set_cube({{along(0), along(1), along(2)}, 5}, -1.0F));
+        }
+        return map;
+    }
+    void SetUp() override { pipeline_.begin_with(free_about_base(scene_.mapping.map)); }
+
+    [[nodiscard]] const FusedMap& map() const { return *pipeline_.maps().fused(); }
+    void mark(std::mt19937& random) {
+        std::uniform_real_distribution<double> along(-0.6, 0.6);
+        FusedMap next = map().copy();
+        for (int i = 0; i < 5; ++i) {
+            const Eigen::Vector3d point(along(random), along(random), along(random));
+            EXPECT_TRUE(next.set_cube({*next.key_of(point), 0}, random() % 5 == 0 ? 2.0F : -1.0F));
+        }
+        pipeline_.begin_with(std::move(next));
+    }
+    void ask(const QueryRequest& request, std::uint64_t ticket) { ask(desk_, request, ticket); }
+    void ask(QueryDesk& desk, const QueryRequest& request, std::uint64_t ticket) {
+        ASSERT_TRUE(desk.take(to_line(request), ticket, pipeline_, std::nullopt));
+    }
+    std::map<std::uint64_t, Json> answers(std::size_t count) { return answers(desk_, count); }
+    /// All of them; fewer if they take too long.
+    static std::map<std::uint64_t, Json> answers(QueryDesk& desk, std::size_t count) {
+        std::map<std::uint64_t, Json> answers;
+        constexpr int kPatience_ms = 20'000;
+        while (answers.size() < count) {
+            pollfd readable{desk.descriptor(), POLLIN, 0};
+            if (::poll(&readable, 1, kPatience_ms) != 1) return answers;
+            for (const auto& [ticket, line] : desk.take_answers()) answers[ticket] = Json::parse(line);
+        }
+        return answers;
+    }
+    static QueryRequest path(std::vector<std::vector<double>> configurations) {
+        QueryRequest request;
+        request.path = std::move(configurations);
+        return request;
+    }
+
+    Scene scene_ = good_scene();
+    Pipeline pipeline_ = make_pipeline(scene_);
+    HostSetup setup_{scene_.rig, one_joint_robot(), {}};
+    QueryDesk desk_{setup_};
+};
+
+TEST_F(QueryDeskTest, keeps_a_field_for_long_paths_and_none_for_a_posture) {
+    ask(path({{0.0}}), 1);
+    EXPECT_EQ(answers(1)[1].at("distances"), "search");
+    ask(path({{0.0}, {3.0}}), 2);
+    EXPECT_EQ(answers(1)[2].at("distances"), "field");
+    ask(path({{1.0}}), 3);
+    EXPECT_EQ(answers(1)[3].at("distances"), "field") << "it is there, and nothing has changed";
+    QueryRequest touched = path({{0.0}, {3.0}});
+    touched.reach_m = 0.0;
+    ask(touched, 4);
+    EXPECT_TRUE(answers(1)[4].at("distances").is_null());
+}
+
+TEST_F(QueryDeskTest, lets_go_of_the_field_when_nobody_asks) {
+    QueryDesk hasty(setup_, std::chrono::milliseconds(1));
+    ask(hasty, path({{0.0}, {3.0}}), 1);
+    EXPECT_EQ(answers(hasty, 1)[1].at("distances"), "field");
+    std::string of_a_posture = "field";
+    for (std::uint64_t ticket = 2; ticket < 200 && of_a_posture == "field"; ++ticket) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        ask(hasty, path({{1.0}}), ticket);
+        of_a_posture = answers(hasty, 1)[ticket].at("distances");
+    }
+    EXPECT_EQ(of_a_posture, "search");
+}
+
+TEST_F(QueryDeskTest, answers_of_the_map_as_it_was_when_the_question_came) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> turn(-1.5, 3.0);
+    std::map<std::uint64_t, Json> wanted;
+    std::size_t by_field = 0;
+    for (std::uint64_t round = 0; round < 6; ++round) {
+        for (std::uint64_t i = 0; i < 8; ++i) {
+            const std::uint64_t ticket = 10 * round + i;
+            mark(random);
+            const QueryRequest request = path({{turn(random)}, {turn(random)}, {turn(random)}});
+            ask(request, ticket);
+            wanted[ticket] = answer_query(request, {&setup_.rig, &setup_.robot, map().copy(), {}});
+        }
+        for (auto& [ticket, answer] : answers(8)) {
+            by_field += answer.at("distances") == "field" ? 1U : 0U;
+            for (Json* json : {&answer, &wanted[ticket]}) {
+                json->erase("took_us");
+                json->erase("distances");
+            }
+            EXPECT_EQ(answer, wanted[ticket]) << ticket;
+            wanted.erase(ticket);
+        }
+    }
+    EXPECT_TRUE(wanted.empty()) << wanted.size() << " were not answered";
+    EXPECT_GT(by_field, 24U);
+}
+
+}  // namespace
+}  // namespace octoskin::test
