@@ -115,7 +115,7 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
     const SensorWitness* const witness = view.pipeline->builder().witness();
     if (witness == nullptr) return;
     const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(index));
-    if (evidence.contradicts)
+    if (evidence.contradicts())
         problems.push_back({who + " camera", fmt::format("{}: {}", who, describe(evidence))});
 }
 

@@ -76,7 +76,13 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
     json["camera"] = nullptr;
     if (const SensorWitness* const witness = view.pipeline->builder().witness()) {
         const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(index));
-        json["camera"] = {{"contradicts", evidence.contradicts},
+        const bool is_refused =
+            view.pipeline->builder().is_refused(node.node_id, static_cast<std::uint8_t>(index));
+        json["camera"] = {{"contradicts", evidence.contradicts()},
+                          {"fault", evidence.fault ? Json(name(*evidence.fault)) : Json(nullptr)},
+                          {"refused", is_refused},
+                          {"compared", evidence.compared},
+                          {"fitted", evidence.fitted},
                           {"agreed", evidence.agreed},
                           {"in_free_space", evidence.in_free_space},
                           {"behind_surface", evidence.behind_surface}};

@@ -95,6 +95,10 @@ constexpr std::array kCounterMeanings = {
             "the beam reaches the robot's own body: usual for a sensor that sees another link"},
     Meaning{"readings", "beam_not_valid", "a pose or range that is no number"},
     Meaning{"readings", "outside_map", "beyond the bounds of the octree"},
+    Meaning{
+        "readings", "contradicts_camera",
+        "its sensor contradicts the camera (the problems say how): the map does without it until it agrees "
+        "again"},
     Meaning{"joint samples", "incomplete", "not all four frames of the sample came in time"},
     Meaning{"joint samples", "contradictory",
             "two frames differ that should be one, or one came before the sample was taken, or out of turn "

@@ -136,7 +136,13 @@ class Screen {
                                       ? fmt::format("{:7.3f} m", number(at(sensor, "range_m")))
                                       : std::string("        -");
         const bool is_ranging = text(at(sensor, "state")) == "ranging";
-        const bool contradicts = at(at(sensor, "camera"), "contradicts") == true;
+        const Json& camera = at(sensor, "camera");
+        const bool contradicts = at(camera, "contradicts") == true;
+        const std::string contradiction =
+            !contradicts ? ""
+                         : std::string(", CONTRADICTS the camera") +
+                               (at(camera, "fault").is_string() ? ": " + text(at(camera, "fault")) : "") +
+                               (at(camera, "refused") == true ? ", refused" : "");
         const bool has_fault = !at(sensor, "fault").is_null() && text(at(sensor, "fault")) != "none";
         const bool has_lost = number(at(sensor, "lost")) != 0.0;
         add(fmt::format("  {:>2} {:<14} {} {:>8} {:>12}  status {}{}{}{}{}{}", text(at(sensor, "index")),
@@ -146,8 +152,7 @@ class Screen {
                         is_ranging ? "" : ", " + text(at(sensor, "state")),
                         has_fault ? ", " + text(at(sensor, "fault")) : "",
                         at(sensor, "rejected").is_null() ? "" : ", not used: " + text(at(sensor, "rejected")),
-                        has_lost ? ", lost on the bus: " + count(at(sensor, "lost")) : "",
-                        contradicts ? ", CONTRADICTS the camera" : ""),
+                        has_lost ? ", lost on the bus: " + count(at(sensor, "lost")) : "", contradiction),
             is_ranging && !contradicts ? Emphasis::none : Emphasis::bad);
         add_reflex(sensor, before);
     }

@@ -120,6 +120,14 @@ constexpr std::array kStatusMeanings = {
     Meaning{"nodes.sensors", "camera", "what the camera says of it, below; null without a camera"},
     Meaning{"nodes.sensors.camera", "contradicts",
             "it contradicts the camera: swapped with another, stuck, or not where the rig has it"},
+    Meaning{"nodes.sensors.camera", "fault",
+            "what it ranges like: ranges_too_long, ranges_too_short, often_short, turned or exchanged; null: "
+            "none of these"},
+    Meaning{"nodes.sensors.camera", "refused",
+            "its readings stay out of the map (contradicts_camera): it contradicts the camera, and no fewer "
+            "others agree with it"},
+    Meaning{"nodes.sensors.camera", "compared", "ranges for which the camera predicted a surface"},
+    Meaning{"nodes.sensors.camera", "fitted", "those of them that were what it predicted"},
     Meaning{"nodes.sensors.camera", "agreed",
             "comparisons in which it saw a surface where the camera sees one"},
     Meaning{"nodes.sensors.camera", "in_free_space",

@@ -162,7 +162,7 @@ void find_contradictions(const HostRig& rig, Playback& playback) {
     for (const HostNode& node : rig.nodes) {
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
             const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(i));
-            if (!evidence.contradicts) continue;
+            if (!evidence.contradicts()) continue;
             playback.warnings.push_back(sensor_text(node, i) + ": " + describe(evidence));
         }
     }

@@ -119,4 +119,10 @@ Result<Beam, BeamFault> BeamBuilder::place(const RangeMeasurement& measurement,
                 .R_map_sensor = T_map_sensor.linear()};
 }
 
+Eigen::Isometry3d BeamBuilder::T_map_sensor(const BeamSource& source, const RobotPose& robot) const {
+    const auto found = sensors_.find({source.node_id, source.sensor});
+    assert(found != sensors_.end());
+    return T_map_base_ * robot.T_base_link[found->second.link] * found->second.T_link_sensor;
+}
+
 }  // namespace octoskin

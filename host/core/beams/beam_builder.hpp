@@ -45,6 +45,9 @@ class BeamBuilder {
     [[nodiscard]] Result<Beam, BeamFault> place(const RangeMeasurement& measurement,
                                                 const RobotPose& robot) const;
 
+    /// Where the sensor of such a reading is, map frame. The source must be one of the rig's (asserted).
+    [[nodiscard]] Eigen::Isometry3d T_map_sensor(const BeamSource& source, const RobotPose& robot) const;
+
   private:
     struct Zone {
         HostZone zone;

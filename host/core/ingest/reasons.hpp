@@ -81,15 +81,16 @@ enum class ReadingReason : std::uint8_t {
     above_range_max,
     sigma_above_max,
     // On its way into the map.
-    queue_overflow,  ///< displaced by newer ones
-    outside_marks,   ///< captured before START or after STOP
-    late,            ///< came after the map had gone on
-    joints_missing,  ///< no pose at its capture time
-    self_hit,        ///< reaches the robot's own body
-    beam_not_valid,  ///< a pose or range that is no number
-    outside_map,     ///< beyond the octree
+    queue_overflow,      ///< displaced by newer ones
+    outside_marks,       ///< captured before START or after STOP
+    late,                ///< came after the map had gone on
+    joints_missing,      ///< no pose at its capture time
+    self_hit,            ///< reaches the robot's own body
+    beam_not_valid,      ///< a pose or range that is no number
+    outside_map,         ///< beyond the octree
+    contradicts_camera,  ///< its sensor does: it is off, turned, exchanged with another, or stuck
 };
-[[nodiscard]] constexpr std::array<const char*, 36> names_of(ReadingReason) {
+[[nodiscard]] constexpr std::array<const char*, 37> names_of(ReadingReason) {
     return {"node_absent",
             "node_lost",
             "node_version",
@@ -125,7 +126,8 @@ enum class ReadingReason : std::uint8_t {
             "joints_missing",
             "self_hit",
             "beam_not_valid",
-            "outside_map"};
+            "outside_map",
+            "contradicts_camera"};
 }
 
 enum class JointReason : std::uint8_t {

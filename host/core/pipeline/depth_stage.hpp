@@ -1,6 +1,7 @@
 // From a depth frame to the terms of its voxels: convert, filter, take the robot out, integrate.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "common/result.hpp"
@@ -11,7 +12,6 @@
 #include "host/core/mapping/depth_integrator.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/rig/host_rig.hpp"
-#include "host/core/witness/sensor_witness.hpp"
 
 namespace octoskin {
 
@@ -29,7 +29,11 @@ class DepthStage {
     [[nodiscard]] const HostCamera& camera() const noexcept { return camera_; }
     /// Of the newest frame that gave updates, if the robot is taken out: filtered, as it came and without the
     /// robot.
-    [[nodiscard]] WitnessImages witness_images() const noexcept { return {with_robot_, without_robot_}; }
+    /// Given for two others, of which only the memory is used.
+    void swap_images(DepthImage& with_robot, DepthImage& without_robot) noexcept {
+        std::swap(with_robot_, with_robot);
+        std::swap(without_robot_, without_robot);
+    }
     /// Where a frame was seen from.
     [[nodiscard]] Eigen::Isometry3d T_map_camera_of(const DepthFrame& frame) const {
         return frame.T_map_camera.value_or(T_map_camera_);

@@ -64,7 +64,9 @@ MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams
         depth_stage_.emplace(rig, mapping, depth_threads);
     }
     if (rig.camera && mapping.removes_robot_from_depth) {
-        witness_.emplace(rig, WitnessConfig{.camera_sigma_m = mapping.depth_filter.sigma_m});
+        witness_.emplace(rig, WitnessConfig{.camera_sigma_m = mapping.depth_filter.sigma_m,
+                                            .is_filtered = mapping.depth_filter.is_enabled});
+        refuses_contradicting_ = mapping.refuses_contradicting_sensors;
     }
 }
 
@@ -97,9 +99,13 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
     if (!beam) {
         return unexpected(reason_of(beam.error()));
     }
-    const auto added = beam->optics.is_cone() ? add_cone(measurement, *beam) : add_ray(measurement, *beam);
-    if (added && witness_) {
-        witness_->on_beam(*beam);
+    const BeamSource& source = measurement.source;
+    const bool is_out = is_refused(source.node_id, source.sensor);
+    const Status<ReadingReason> added = is_out ? unexpected(ReadingReason::contradicts_camera)
+                                        : beam->optics.is_cone() ? add_cone(measurement, *beam)
+                                                                 : add_ray(measurement, *beam);
+    if (witness_ && (added || is_out)) {
+        witness_->on_beam(*beam, beams_.T_map_sensor(source, *robot));
     }
     return added;
 }
@@ -194,7 +200,8 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
     maps_.go_on(depth.frame.captured);
     maps_.add_depth(depth.updates->terms);
     if (witness_) {
-        witness_->on_depth(depth_stage_->witness_images(), depth_stage_->T_map_camera_of(depth.frame),
+        depth_stage_->swap_images(with_robot_, without_robot_);
+        witness_->on_depth(with_robot_, without_robot_, depth_stage_->T_map_camera_of(depth.frame),
                            depth.frame.captured);
     }
     if (listener_ != nullptr) {

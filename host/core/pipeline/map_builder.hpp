@@ -51,6 +51,10 @@ class MapBuilder {
     /// `listener` is told of what goes in from now on; null: nobody is.
     void tell(CommitListener* listener) noexcept { listener_ = listener; }
 
+    /// From now on readings of a sensor that contradicts the camera go into the map, too: who replays what
+    /// went into a map has none of those that did not.
+    void refuse_nobody() noexcept { refuses_contradicting_ = false; }
+
     /// Joint samples in the order of their times.
     [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
     [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
@@ -94,6 +98,10 @@ class MapBuilder {
     /// What the camera says of the range sensors; null without a camera, and where the robot stays in its
     /// image.
     [[nodiscard]] const SensorWitness* witness() const noexcept { return witness_ ? &*witness_ : nullptr; }
+    /// Whether the readings of a sensor of the rig stay out of the map, because it contradicts the camera.
+    [[nodiscard]] bool is_refused(std::uint8_t node_id, std::uint8_t sensor) const {
+        return refuses_contradicting_ && witness_ && witness_->is_to_be_refused(node_id, sensor);
+    }
 
   private:
     MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
@@ -115,6 +123,9 @@ class MapBuilder {
     StandingRanges standing_;
     std::optional<DepthStage> depth_stage_;
     std::optional<SensorWitness> witness_;
+    bool refuses_contradicting_ = false;
+    DepthImage with_robot_;  ///< their memory goes to the depth stage and comes back
+    DepthImage without_robot_;
     MapSet maps_;
     CommitListener* listener_ = nullptr;
 };

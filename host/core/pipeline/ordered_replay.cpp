@@ -70,6 +70,7 @@ OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order, DepthSo
     OrderedOutcome outcome;
     outcome.begin = begin;
     Committer committer(builder, depth, outcome);
+    builder.refuse_nobody();
     const auto tell = [&] {
         if (report) report({outcome.commits, outcome.depth_frames.in(), outcome.begin, outcome.now});
     };

@@ -18,18 +18,12 @@ constexpr Nanoseconds kSameTime{150'000'000};
 /// Where a sensor has moved or turned by so much since, it says something new.
 constexpr double kMovedM = 0.015;
 constexpr double kTurnedCos = 0.99939;  // 2 degrees
-/// The sensor sees 27 degrees; what it reports lies in the inner half as a rule.
+/// Of a sensor whose cone nobody knows: it sees 27 degrees; what it reports lies in the inner half as a rule.
 constexpr double kInnerHalfAngle = 6.75 * std::numbers::pi / 180.0;
-/// Along a ray. A surface is crossed where the camera's depth and the ray's own come within this of each
-/// other.
-constexpr double kWalkBeginM = 0.1;
-constexpr double kWalkStepM = 0.03;
-constexpr double kCrossingM = 0.12;
-
 constexpr std::size_t kRays = 19;
 
 /// The axis, six rays half-way to the rim, twelve at the rim.
-std::array<Eigen::Vector3d, kRays> cone_about(const Eigen::Vector3d& axis) {
+std::array<Eigen::Vector3d, kRays> cone_about(const Eigen::Vector3d& axis, double half_angle) {
     const Eigen::Vector3d right = axis.unitOrthogonal();
     const Eigen::Vector3d up = axis.cross(right);
     std::array<Eigen::Vector3d, kRays> rays;
@@ -38,7 +32,7 @@ std::array<Eigen::Vector3d, kRays> cone_about(const Eigen::Vector3d& axis) {
     for (const auto& [count, part] : {std::pair{6, 0.5}, std::pair{12, 1.0}}) {
         for (int i = 0; i < count; ++i) {
             const double turn = 2.0 * std::numbers::pi * i / count;
-            const double off = part * kInnerHalfAngle;
+            const double off = part * half_angle;
             rays[next++] =
                 std::cos(off) * axis + std::sin(off) * (std::cos(turn) * right + std::sin(turn) * up);
         }
@@ -51,130 +45,194 @@ bool has_moved(const Beam& beam, const Beam& before) {
            beam.direction_map.dot(before.direction_map) <= kTurnedCos;
 }
 
-}  // namespace
+/// The camera's filter takes about half of its noise.
+constexpr double kFiltered = 0.5;
+/// So many ranges that fit, and a sensor speaks for the camera.
+constexpr std::uint64_t kAgreeingFrom = 10;
 
-std::string describe(const SensorEvidence& evidence) {
-    return "contradicts the camera (" + std::to_string(evidence.in_free_space) +
-           " ranges end where it sees through, " + std::to_string(evidence.behind_surface) +
-           " behind a surface that it sees, " + std::to_string(evidence.agreed) +
-           " agree): is it swapped with another at the harness, stuck, or its pose in the rig not the true "
-           "one?";
+std::vector<std::size_t> sensors_of_nodes(const HostRig& rig) {
+    std::vector<std::size_t> counts;
+    for (const HostNode& node : rig.nodes) counts.push_back(node.sensors.size());
+    return counts;
 }
 
-/// An image, asked about points of the map.
-class SensorWitness::View {
-  public:
-    View(const DepthImage& image, const CameraIntrinsics& camera, const Eigen::Isometry3d& T_map_camera,
-         double ray_slope_max)
-        : image_(image),
-          camera_(camera),
-          T_camera_map_(T_map_camera.inverse()),
-          ray_slope_max_(ray_slope_max) {}
+}  // namespace
 
-    /// By how much what the camera sees in the point's direction lies behind the point, along the optical
-    /// axis; empty if it does not look there or has no value.
-    [[nodiscard]] std::optional<double> behind_m(const Eigen::Vector3d& p_map) const {
-        const Eigen::Vector3d p_camera = T_camera_map_ * p_map;
-        if (!(p_camera.z() > 0.0)) return std::nullopt;
-        const auto pixel = pixel_of({p_camera.x() / p_camera.z(), p_camera.y() / p_camera.z()});
-        if (!pixel) return std::nullopt;
-        const auto depth_m = static_cast<double>(image_.depth_m[*pixel]);
-        if (!std::isfinite(depth_m)) return std::nullopt;
-        return depth_m - p_camera.z();
+const char* name(SensorFault fault) {
+    switch (fault) {
+        case SensorFault::ranges_too_long:
+            return "ranges_too_long";
+        case SensorFault::ranges_too_short:
+            return "ranges_too_short";
+        case SensorFault::often_short:
+            return "often_short";
+        case SensorFault::turned:
+            return "turned";
+        case SensorFault::exchanged:
+            return "exchanged";
     }
+    return "unknown";
+}
 
-    /// Whether the ray goes through a surface that the camera sees, and on behind it by over `bound_m`. It
-    /// must be seen on both sides of the surface: a ray that passes behind an object's outline is not stopped
-    /// by it.
-    [[nodiscard]] bool is_stopped(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                                  double range_m, double bound_m) const {
-        std::optional<double> before;
-        bool has_crossed = false;
-        for (double along_m = kWalkBeginM; along_m <= range_m; along_m += kWalkStepM) {
-            const auto now = behind_m(origin + along_m * direction);
-            const bool is_continuous = before && now && std::abs(*now - *before) <= kCrossingM;
-            if (!is_continuous || *now >= 0.0) {
-                has_crossed = false;
-            } else if (*before >= 0.0) {
-                has_crossed = true;
-            }
-            if (has_crossed && *now < -bound_m) return true;
-            before = now;
-        }
-        return false;
+std::string describe(const SensorEvidence& evidence) {
+    std::string text = "contradicts the camera (" + std::to_string(evidence.in_free_space) +
+                       " ranges end where it sees through, " + std::to_string(evidence.behind_surface) +
+                       " behind a surface that it sees, " + std::to_string(evidence.agreed) + " agree";
+    if (evidence.compared > 0)
+        text += "; " + std::to_string(evidence.fitted) + " of " + std::to_string(evidence.compared) +
+                " are what it predicts";
+    text += "): ";
+    if (!evidence.fault)
+        return text +
+               "is it swapped with another at the harness, stuck, or its pose in the rig not the true one?";
+    switch (*evidence.fault) {
+        case SensorFault::ranges_too_long:
+            return text + "its ranges are some centimetres too long: is its offset in the rig the true one?";
+        case SensorFault::ranges_too_short:
+            return text +
+                   "its ranges are some centimetres too short: is its offset in the rig the true one, "
+                   "its cover glass clean?";
+        case SensorFault::often_short:
+            return text + "some of its ranges end where nothing is: is its cover glass clean?";
+        case SensorFault::turned:
+            return text +
+                   "it ranges like one turned by some 10 degrees: is its mount bent, or its pose in the "
+                   "rig not the true one?";
+        case SensorFault::exchanged:
+            break;
     }
-
-  private:
-    /// The pixel that the ray goes through, row-major.
-    [[nodiscard]] std::optional<std::size_t> pixel_of(RaySlope ray) const {
-        if (std::hypot(ray.x, ray.y) > ray_slope_max_) return std::nullopt;
-        const RaySlope picture = distorted(camera_.lens, ray);
-        const double u = std::floor(picture.x * camera_.fx + camera_.cx);
-        const double v = std::floor(picture.y * camera_.fy + camera_.cy);
-        if (!(u >= 0.0 && u < camera_.width && v >= 0.0 && v < camera_.height)) return std::nullopt;
-        return static_cast<std::size_t>(v) * camera_.width + static_cast<std::size_t>(u);
-    }
-
-    const DepthImage& image_;
-    const CameraIntrinsics& camera_;
-    Eigen::Isometry3d T_camera_map_;
-    double ray_slope_max_;
-};
+    return text + "it ranges like sensor " + std::to_string(evidence.exchanged_with.value_or(0)) +
+           " of its node: are the two swapped at the harness?";
+}
 
 SensorWitness::SensorWitness(const HostRig& rig, const WitnessConfig& config)
     : config_(config),
       camera_(rig.camera.value().intrinsics),
-      ray_slope_max_(LensInverse(camera_.lens).radius()) {
+      ray_slope_max_(LensInverse(camera_.lens).radius()),
+      judge_(sensors_of_nodes(rig)) {
     assert(0.0 < config.contradicted_sound && config.contradicted_sound < config.contradicted_faulty &&
            config.contradicted_faulty < 1.0);
+    const PredictorConfig predictor{.camera_sigma_m =
+                                        config.camera_sigma_m * (config.is_filtered ? kFiltered : 1.0)};
     for (const HostNode& node : rig.nodes) {
-        for (std::size_t i = 0; i < node.sensors.size(); ++i)
-            sensors_.try_emplace({node.node_id, static_cast<std::uint8_t>(i)});
+        for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+            places_.try_emplace({node.node_id, static_cast<std::uint8_t>(i)}, sensors_.size());
+            Sensor& sensor = sensors_.emplace_back();
+            sensor.node_id = node.node_id;
+            for (const HostZone& zone : node.sensors[i].zones) {
+                sensor.predictors.emplace_back(zone.direction_sensor, zone.optics, predictor);
+                sensor.optics.push_back(zone.optics);
+            }
+        }
     }
+    next_ = sensors_.size();
 }
 
-void SensorWitness::on_beam(const Beam& beam) {
-    const auto found = sensors_.find({beam.source.node_id, beam.source.sensor});
-    assert(found != sensors_.end());
-    found->second.newest = beam;
+void SensorWitness::on_beam(const Beam& beam, const Eigen::Isometry3d& T_map_sensor) {
+    auto& newest = sensors_[index_of(beam.source.node_id, beam.source.sensor)].newest;
+    std::rotate(newest.begin(), newest.end() - 1, newest.end());
+    newest.front() = Placed{beam, T_map_sensor};
+    compare_next();
 }
 
-void SensorWitness::on_depth(const WitnessImages& images, const Eigen::Isometry3d& T_map_camera,
+void SensorWitness::on_depth(DepthImage& everything, DepthImage& world, const Eigen::Isometry3d& T_map_camera,
                              HostTime captured) {
-    assert(images.world.depth_m.size() == std::size_t{camera_.width} * camera_.height);
-    assert(images.everything.depth_m.size() == images.world.depth_m.size());
-    const View everything(images.everything, camera_, T_map_camera, ray_slope_max_);
-    const View world(images.world, camera_, T_map_camera, ray_slope_max_);
-    for (auto& [source, sensor] : sensors_) {
-        const auto beam = std::exchange(sensor.newest, std::nullopt);
-        if (!beam || std::chrono::abs(captured - beam->captured) > kSameTime) continue;
-        if (sensor.counted && !has_moved(*beam, *sensor.counted)) continue;
-        const Finding finding = compare(*beam, everything, world);
-        if (finding == Finding::nothing) continue;
-        sensor.counted = beam;
-        count(sensor, finding);
+    assert(world.depth_m.size() == std::size_t{camera_.width} * camera_.height);
+    assert(everything.depth_m.size() == world.depth_m.size());
+    if (next_ < sensors_.size()) judge();
+    std::swap(everything_, everything);
+    std::swap(world_, world);
+    T_map_camera_ = T_map_camera;
+    // Not always the newest: of a sensor with a rhythm of its own, every third image would see the same.
+    const std::size_t wanted = images_++ % 3;
+    for (Sensor& sensor : sensors_) {
+        sensor.waiting.reset();
+        std::size_t age = wanted;
+        while (age > 0 && !sensor.newest[age]) --age;
+        const auto& placed = sensor.newest[age];
+        if (placed && std::chrono::abs(captured - placed->beam.captured) <= kSameTime &&
+            !(sensor.counted && !has_moved(placed->beam, *sensor.counted)))
+            sensor.waiting = placed;
+        sensor.newest = {};
+    }
+    next_ = 0;
+}
+
+void SensorWitness::settle() {
+    while (next_ < sensors_.size()) compare_next();
+}
+
+void SensorWitness::compare_next() {
+    while (next_ < sensors_.size() && !sensors_[next_].waiting) ++next_;
+    if (next_ < sensors_.size()) {
+        Sensor& sensor = sensors_[next_];
+        const auto placed = std::exchange(sensor.waiting, std::nullopt);
+        const Beam& beam = placed->beam;
+        const std::size_t zone = beam.source.zone;
+        const CameraView view({everything_, world_}, camera_, T_map_camera_, ray_slope_max_);
+        const Finding finding = compare(beam, sensor.optics[zone], view);
+        bool says_something = finding != Finding::nothing;
+        if (says_something) count(sensor, finding);
+        if (beam.range_m) {
+            compared_.push_back({static_cast<std::uint16_t>(next_), beam,
+                                 sensor.predictors[zone].predict(view, placed->T_map_sensor)});
+            says_something |= compared_.back().predictions.mounted.range_m.has_value();
+        }
+        if (says_something) sensor.counted = beam;
+        while (next_ < sensors_.size() && !sensors_[next_].waiting) ++next_;
+        if (next_ == sensors_.size()) judge();
     }
 }
 
-SensorWitness::Finding SensorWitness::compare(const Beam& beam, const View& everything,
-                                              const View& world) const {
+/// Once for each image.
+void SensorWitness::judge() {
+    next_ = sensors_.size();
+    judge_.judge(compared_);
+    compared_.clear();
+    contradicting_ = 0;
+    agreeing_ = 0;
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+        const SensorJudge::Verdict& verdict = judge_.verdict(static_cast<std::uint16_t>(i));
+        SensorEvidence& evidence = sensors_[i].evidence;
+        evidence.fault = verdict.fault;
+        evidence.compared = verdict.compared;
+        evidence.fitted = verdict.agreed;
+        evidence.exchanged_with.reset();
+        if (verdict.exchanged_with) {
+            std::size_t begin = i;
+            while (begin > 0 && sensors_[begin - 1].node_id == sensors_[i].node_id) --begin;
+            evidence.exchanged_with = static_cast<std::uint8_t>(*verdict.exchanged_with - begin);
+        }
+        sensors_[i].contradicted = evidence.contradicts();
+        contradicting_ += evidence.contradicts() ? 1U : 0U;
+        agreeing_ +=
+            !evidence.contradicts() && std::max(evidence.fitted, evidence.agreed) >= kAgreeingFrom ? 1U : 0U;
+    }
+}
+
+bool SensorWitness::is_to_be_refused(std::uint8_t node_id, std::uint8_t sensor) const {
+    return contradicting_ <= agreeing_ && sensors_[index_of(node_id, sensor)].contradicted;
+}
+
+SensorWitness::Finding SensorWitness::compare(const Beam& beam, const BeamOptics& optics,
+                                              const CameraView& view) const {
     const double bound_m = kSigmas * (config_.camera_sigma_m + beam.sigma_m) + kPoseErrorM;
     const double range_m = beam.range_m.value_or(beam.clear_limit_m);
-    const auto cone = cone_about(beam.direction_map);
+    const auto cone =
+        cone_about(beam.direction_map, optics.is_cone() ? optics.half_angle_rad : kInnerHalfAngle);
     const auto all_of_cone = [&cone](const auto& holds) { return std::ranges::all_of(cone, holds); };
     const bool sees_through = beam.range_m && all_of_cone([&](const Eigen::Vector3d& ray) {
-                                  const auto behind_m =
-                                      everything.behind_m(beam.p_map_sensor + range_m * ray);
+                                  const auto behind_m = view.behind_m(beam.p_map_sensor + range_m * ray);
                                   return behind_m && *behind_m > bound_m;
                               });
     if (sees_through) return Finding::in_free_space;
     const bool sees_it = beam.range_m && all_of_cone([&](const Eigen::Vector3d& ray) {
-                             const auto behind_m = world.behind_m(beam.p_map_sensor + range_m * ray);
+                             const auto behind_m = view.world_behind_m(beam.p_map_sensor + range_m * ray);
                              return behind_m && std::abs(*behind_m) <= bound_m;
                          });
     if (sees_it) return Finding::agrees;
     const bool is_stopped = all_of_cone([&](const Eigen::Vector3d& ray) {
-        return world.is_stopped(beam.p_map_sensor, ray, range_m, bound_m);
+        return view.is_stopped(beam.p_map_sensor, ray, range_m, bound_m);
     });
     return is_stopped ? Finding::behind_surface : Finding::nothing;
 }
@@ -197,18 +255,27 @@ void SensorWitness::count(Sensor& sensor, Finding finding) const {
     const bool is_sound =
         evidence.log_likelihood_ratio <= std::log(config_.missed / (1.0 - config_.false_alarm));
     if (!is_faulty && !is_sound) return;
-    evidence.contradicts = is_faulty;
+    evidence.is_far_off = is_faulty;
     evidence.log_likelihood_ratio = 0.0;
 }
 
 void SensorWitness::forget_beams() {
-    for (auto& [source, sensor] : sensors_) sensor.newest.reset();
+    compared_.clear();
+    next_ = sensors_.size();
+    for (Sensor& sensor : sensors_) {
+        sensor.newest = {};
+        sensor.waiting.reset();
+    }
+}
+
+std::size_t SensorWitness::index_of(std::uint8_t node_id, std::uint8_t sensor) const {
+    const auto found = places_.find({node_id, sensor});
+    assert(found != places_.end());
+    return found->second;
 }
 
 const SensorEvidence& SensorWitness::evidence(std::uint8_t node_id, std::uint8_t sensor) const {
-    const auto found = sensors_.find({node_id, sensor});
-    assert(found != sensors_.end());
-    return found->second.evidence;
+    return sensors_[index_of(node_id, sensor)].evidence;
 }
 
 }  // namespace octoskin

@@ -30,6 +30,7 @@ const Keys kTopKeys = {"base",
                        "counts",
                        "removes_robot_from_depth",
                        "removes_robot_from_ranges",
+                       "refuses_contradicting_sensors",
                        "depth_range_max_m",
                        "no_return_clear_m",
                        "depth_box_voxels_max"};
@@ -239,6 +240,8 @@ MappingConfig read_checked(const std::string& file) {
     config.removes_robot_from_depth = top.flag("removes_robot_from_depth", config.removes_robot_from_depth);
     config.removes_robot_from_ranges =
         top.flag("removes_robot_from_ranges", config.removes_robot_from_ranges);
+    config.refuses_contradicting_sensors =
+        top.flag("refuses_contradicting_sensors", config.refuses_contradicting_sensors);
     config.depth_range_max_m = top.number("depth_range_max_m", {0.0, 100.0}, config.depth_range_max_m);
     config.no_return_clear_m = top.number("no_return_clear_m", {0.0, 100.0}, config.no_return_clear_m);
     config.depth_box_voxels_max =
@@ -315,10 +318,12 @@ std::string mapping_text(const MappingConfig& config) {
     text += counts_text(map.counts);
     text += fmt::format(
         "removes_robot_from_depth: {}\nremoves_robot_from_ranges: {}\n"
+        "refuses_contradicting_sensors: {}\n"
         "depth_range_max_m: {}\nno_return_clear_m: {}\n"
         "depth_box_voxels_max: {}\n",
-        config.removes_robot_from_depth, config.removes_robot_from_ranges, config.depth_range_max_m,
-        config.no_return_clear_m, config.depth_box_voxels_max);
+        config.removes_robot_from_depth, config.removes_robot_from_ranges,
+        config.refuses_contradicting_sensors, config.depth_range_max_m, config.no_return_clear_m,
+        config.depth_box_voxels_max);
     return text;
 }
 

@@ -106,7 +106,7 @@ WitnessOutcome WitnessBench::run(std::uint64_t seed, const RigFault& fault, doub
                                              parts.rig.links_ignored_by_sensors, parts.scenario.ranges, seed},
                                             sensor.mount));
     }
-    SensorWitness witness(host, {});
+    SensorWitness witness(host, {.is_filtered = false});
     WitnessOutcome outcome;
     outcome.flagged_s.resize(parts.mounted.size());
     const auto frames = static_cast<std::uint32_t>(10.0 * frames_hz);
@@ -126,7 +126,7 @@ WitnessOutcome WitnessBench::run(std::uint64_t seed, const RigFault& fault, doub
             const double range_m = fault.altered ? fault.altered(i, *seen.range_m) : *seen.range_m;
             if (range_m < host.range_limits.min_m || range_m > host.range_limits.max_m) continue;
             const auto beam = beams.place({parts.mounted[i].source, captured, range_m, seen.sigma_m}, robot);
-            if (beam) witness.on_beam(*beam);
+            if (beam) witness.on_beam(*beam, beams.T_map_sensor(beam->source, robot));
         }
         DepthImage image = needed(
             to_depth_image({captured, host.camera->intrinsics.width, host.camera->intrinsics.height,
@@ -138,15 +138,16 @@ WitnessOutcome WitnessBench::run(std::uint64_t seed, const RigFault& fault, doub
             capsule.p_a = T_camera_base * capsule.p_a;
             capsule.p_b = T_camera_base * capsule.p_b;
         }
-        const DepthImage everything = image;
+        DepthImage everything = image;
         remove_robot(image, pixel_rays, body_camera, host.depth_self_margin_m);
         const auto began = std::chrono::steady_clock::now();
-        witness.on_depth({everything, image}, host.T_map_base * host.camera->T_base_camera, captured);
+        witness.on_depth(everything, image, host.T_map_base * host.camera->T_base_camera, captured);
+        witness.settle();
         const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - began;
         outcome.compared_us_max = std::max(outcome.compared_us_max, took.count());
         for (SensorNumber i = 0; i < parts.mounted.size(); ++i) {
             const auto [node_id, sensor, zone] = parts.mounted[i].source;
-            if (!outcome.flagged_s[i] && witness.evidence(node_id, sensor).contradicts)
+            if (!outcome.flagged_s[i] && witness.evidence(node_id, sensor).contradicts())
                 outcome.flagged_s[i] = at_s;
         }
     }

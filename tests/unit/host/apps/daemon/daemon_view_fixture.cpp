@@ -68,7 +68,8 @@ void DaemonViewTest::let_camera_contradict(const std::function<void()>& look) {
     play(scene, kAllWell);
     MapBuilder& builder = pipeline_->builder();
     builder.forget_motion({});
-    for (int i = 0; i < 6; ++i) {
+    // What is compared is so with the next reading.
+    for (int i = 0; i < 7; ++i) {
         const double now_s = 5.0 + 0.1 * i;
         EXPECT_TRUE(builder.add({host_at(now_s), {M_PI / 2.0 - 0.04 * i}}));
         EXPECT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, host_at(now_s), 0.52, 0.02}));

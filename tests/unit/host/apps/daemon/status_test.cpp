@@ -108,7 +108,8 @@ TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
         sensor(0),
         Json::parse(R"({"index": 0, "name": "good", "state": null, "fault": null, "received": 0, "lost": 0,
         "age_s": null, "rejected": null, "reflexes": 0, "reflex_below_m": 0.0, "reflex_m": null,
-        "camera": {"contradicts": false, "agreed": 0, "in_free_space": 0, "behind_surface": 0}})"));
+        "camera": {"contradicts": false, "fault": null, "refused": false, "compared": 0, "fitted": 0,
+                   "agreed": 0, "in_free_space": 0, "behind_surface": 0}})"));
 }
 
 TEST_F(StatusTest, has_why_a_node_is_refused_and_what_it_says_of_its_sensors) {

@@ -244,7 +244,8 @@ std::string name_of_case(const testing::TestParamInfo<ReadingCase>& given) {
 INSTANTIATE_TEST_SUITE_P(Each, ReadingReasons, testing::ValuesIn(cases()), name_of_case);
 
 TEST(ReadingReasonsAll, have_a_case_each) {
-    std::set<ReadingReason> seen = {ReadingReason::queue_overflow};  // below
+    std::set<ReadingReason> seen = {ReadingReason::queue_overflow,       // below
+                                    ReadingReason::contradicts_camera};  // witness_wiring_test
     for (const ReadingCase& given : cases()) {
         EXPECT_TRUE(seen.insert(given.reason).second);
     }

@@ -10,13 +10,13 @@ namespace octoskin::test {
 namespace {
 
 /// The arm turns by 2.3 degrees from image to image; its sensor reports 0.52 m each time, and the camera sees
-/// this far.
-SensorEvidence after_six_images(const MappingConfig& mapping, std::uint16_t depth_mm, bool goes_back) {
+/// this far. What is compared is so with the next reading.
+SensorEvidence after_seven_images(const MappingConfig& mapping, std::uint16_t depth_mm, bool goes_back) {
     HostRig rig = one_joint_rig();
     rig.camera->intrinsics.fx = 10.0;
     rig.camera->intrinsics.fy = 10.0;
     auto builder = MapBuilder::build(rig, one_joint_robot(), mapping, {}, {}).value();
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < 7; ++i) {
         const HostTime now = host_at(1.0 + 0.1 * i);
         EXPECT_TRUE(builder.add({now, {M_PI / 2.0 - 0.04 * i}}));
         EXPECT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, now, 0.52, 0.02}));
@@ -30,13 +30,13 @@ SensorEvidence after_six_images(const MappingConfig& mapping, std::uint16_t dept
 }
 
 TEST(Witness, flags_a_sensor_whose_ranges_end_where_the_camera_sees_through) {
-    const SensorEvidence evidence = after_six_images(plain_mapping(), 3'000, false);
+    const SensorEvidence evidence = after_seven_images(plain_mapping(), 3'000, false);
     EXPECT_EQ(evidence.in_free_space, 6U);
-    EXPECT_TRUE(evidence.contradicts);
+    EXPECT_TRUE(evidence.contradicts());
 }
 
 TEST(Witness, has_nothing_to_say_of_readings_of_a_time_that_is_over) {
-    EXPECT_EQ(after_six_images(plain_mapping(), 3'000, true).in_free_space, 0U);
+    EXPECT_EQ(after_seven_images(plain_mapping(), 3'000, true).in_free_space, 0U);
 }
 
 TEST(Witness, is_not_there_without_a_camera_or_where_the_robot_stays_in_the_image) {
@@ -60,7 +60,79 @@ TEST(Witness, sees_through_in_front_of_the_robot) {
     ASSERT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, now, 0.5, 0.02}));
     ASSERT_TRUE(builder.integrate(DepthFrame{now, 20, 20, std::vector<std::uint16_t>(400, 1'840)}));
     EXPECT_GT(builder.depth_stage()->robot_pixels(), 10U);
+    ASSERT_TRUE(builder.add({host_at(1.01), {0.0}}));
+    ASSERT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, host_at(1.01), 0.5, 0.02}));
     EXPECT_EQ(builder.witness()->evidence(kLeft, kGood).in_free_space, 1U);
+}
+
+/// The arm looks away from the camera at a wall 1 m behind the column, and swings; one sensor ranges the
+/// wall, the other `off_m` less.
+class TwoSensors {
+  public:
+    explicit TwoSensors(bool refuses)
+        : builder(
+              MapBuilder::build(one_joint_rig(), one_joint_robot(), mapping_that(refuses), {}, {}).value()) {}
+
+    /// What became of the second one's reading.
+    Status<ReadingReason> look(double off_m) {
+        const double angle = M_PI - 0.04 * ((image_ / 8) % 2 == 0 ? image_ % 8 : 8 - image_ % 8);
+        const double at_s = 1.0 + 0.1 * image_++;
+        now = host_at(at_s);
+        EXPECT_TRUE(builder.add({now, {angle}}));
+        const double range_m = -1.0 / std::cos(angle) - 0.12;
+        EXPECT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kSpare, 0}, now, range_m, 0.02}));
+        const auto fate = builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, now, range_m - off_m, 0.02});
+        EXPECT_TRUE(builder.integrate(flat_frame(at_s, 3'000)));
+        return fate;
+    }
+    /// Looks until it is, or until 100 images are over; how many.
+    int look_until(double off_m, bool is_refused) {
+        for (int i = 1; i <= 100; ++i) {
+            if (look(off_m).has_value() != is_refused) return i;
+        }
+        return 0;
+    }
+    const SensorEvidence& evidence() const { return builder.witness()->evidence(kLeft, kGood); }
+
+    MapBuilder builder;
+    HostTime now{};  ///< of the newest image
+
+  private:
+    static MappingConfig mapping_that(bool refuses) {
+        MappingConfig mapping = plain_mapping();
+        mapping.refuses_contradicting_sensors = refuses;
+        return mapping;
+    }
+    int image_ = 0;
+};
+
+TEST(Witness, keeps_a_sensor_that_contradicts_out_of_the_map_until_it_agrees_again) {
+    TwoSensors two(true);
+    EXPECT_GT(two.look_until(0.5, true), 10);
+    EXPECT_TRUE(two.evidence().contradicts());
+    EXPECT_TRUE(two.builder.is_refused(kLeft, kGood));
+    EXPECT_FALSE(two.builder.is_refused(kLeft, kSpare));
+    EXPECT_EQ(two.look(0.5).error(), ReadingReason::contradicts_camera);
+    // A reading that is refused changes nothing: with it and without it the map is the same.
+    const auto known = [&] { return two.builder.maps().fused()->counters(); };
+    const auto before = known();
+    EXPECT_FALSE(two.builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, two.now, 0.3, 0.02}));
+    EXPECT_EQ(known(), before);
+    EXPECT_TRUE(two.builder.integrate(RangeMeasurement{{kLeft, kSpare, 0}, two.now, 0.3, 0.02}));
+    EXPECT_NE(known(), before);
+    EXPECT_GT(two.look_until(0.0, false), 10);
+    EXPECT_FALSE(two.evidence().contradicts());
+}
+
+TEST(Witness, only_names_it_where_the_mapping_says_so_or_the_order_is_given) {
+    TwoSensors named(false);
+    TwoSensors ordered(true);
+    ordered.builder.refuse_nobody();
+    for (TwoSensors* two : {&named, &ordered}) {
+        EXPECT_EQ(two->look_until(0.5, true), 0);
+        EXPECT_TRUE(two->evidence().contradicts());
+        EXPECT_FALSE(two->builder.is_refused(kLeft, kGood));
+    }
 }
 
 }  // namespace

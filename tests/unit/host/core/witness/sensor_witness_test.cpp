@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace octoskin {
 namespace {
@@ -42,6 +43,24 @@ Beam beam(int number, std::optional<double> range_m, const Eigen::Vector3d& dire
             .clear_limit_m = range_m ? 0.0 : 1.5};
 }
 
+/// Where a sensor is that makes such a beam.
+Eigen::Isometry3d T_map_sensor_of(const Beam& beam) {
+    Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+    T_map_sensor.translation() = beam.p_map_sensor;
+    T_map_sensor.linear() =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), beam.direction_map).toRotationMatrix();
+    return T_map_sensor;
+}
+
+void give(SensorWitness& witness, const Beam& beam) {
+    witness.on_beam(beam, T_map_sensor_of(beam));
+}
+
+void show(SensorWitness& witness, DepthImage everything, DepthImage world, HostTime captured) {
+    witness.on_depth(everything, world, Eigen::Isometry3d::Identity(), captured);
+    witness.settle();
+}
+
 class SensorWitnessTest : public testing::Test {
   protected:
     /// `count` beams like this, each with an image of its time.
@@ -49,9 +68,8 @@ class SensorWitnessTest : public testing::Test {
                  const Eigen::Vector3d& direction = {0, 0, 1}) {
         for (int i = 0; i < count; ++i) {
             ++number_;
-            witness_.on_beam(beam(number_, range_m, direction));
-            witness_.on_depth({image, image}, Eigen::Isometry3d::Identity(),
-                              HostTime{100'000'000LL * number_});
+            give(witness_, beam(number_, range_m, direction));
+            show(witness_, image, image, HostTime{100'000'000LL * number_});
         }
     }
     const SensorEvidence& evidence() const { return witness_.evidence(4, 1); }
@@ -67,7 +85,7 @@ TEST_F(SensorWitnessTest, a_range_to_the_surface_that_the_camera_sees_agrees) {
     compare(5, 1.0, wall_at(2.0F));
     EXPECT_EQ(evidence().agreed, 5U);
     EXPECT_EQ(findings(), 5U);
-    EXPECT_FALSE(evidence().contradicts);
+    EXPECT_FALSE(evidence().contradicts());
 }
 
 // The bound is 3 (0.03 + 0.02) + 0.03 m = 0.18 m.
@@ -83,7 +101,7 @@ TEST_F(SensorWitnessTest, a_range_through_a_surface_that_the_camera_sees_contrad
     EXPECT_EQ(evidence().behind_surface, 3U);
     compare(3, std::nullopt, wall_at(2.0F));  // free up to 1.5 m, it says
     EXPECT_EQ(evidence().behind_surface, 6U);
-    EXPECT_TRUE(evidence().contradicts);
+    EXPECT_TRUE(evidence().contradicts());
 }
 
 TEST_F(SensorWitnessTest, what_the_camera_does_not_see_says_nothing) {
@@ -98,9 +116,8 @@ TEST_F(SensorWitnessTest, in_front_of_the_robot_the_camera_sees_through_but_the_
     const DepthImage robot = wall_at(2.0F);
     const DepthImage no_world = wall_at(kNone);
     for (int i = 0; i < 6; ++i) {
-        witness_.on_beam(beam(++number_, i < 3 ? 0.5 : i < 5 ? 1.0 : 1.4));
-        witness_.on_depth({robot, no_world}, Eigen::Isometry3d::Identity(),
-                          HostTime{100'000'000LL * number_});
+        give(witness_, beam(++number_, i < 3 ? 0.5 : i < 5 ? 1.0 : 1.4));
+        show(witness_, robot, no_world, HostTime{100'000'000LL * number_});
     }
     EXPECT_EQ(evidence().in_free_space, 3U);
     EXPECT_EQ(findings(), 3U);
@@ -125,8 +142,8 @@ TEST_F(SensorWitnessTest, a_ray_that_passes_behind_an_outline_is_not_stopped_by_
         Beam across = beam(++number_, 0.9, {1.0, 0.0, 0.0});
         across.p_map_sensor.z() = 1.5;
         across.p_map_sensor.x() -= 0.2;
-        witness_.on_beam(across);
-        witness_.on_depth({image, image}, Eigen::Isometry3d::Identity(), across.captured);
+        give(witness_, across);
+        show(witness_, image, image, across.captured);
     }
     EXPECT_EQ(findings(), 0U);
 }
@@ -135,14 +152,16 @@ TEST_F(SensorWitnessTest, a_ray_that_passes_behind_an_outline_is_not_stopped_by_
 // worth log(0.7 / 0.98) = -0.336, and log(0.001) = -6.91 clears.
 TEST_F(SensorWitnessTest, six_contradictions_flag_a_sensor_and_twenty_one_agreements_clear_it) {
     compare(5, 0.5, wall_at(2.0F));
-    EXPECT_FALSE(evidence().contradicts);
+    EXPECT_FALSE(evidence().contradicts());
     compare(1, 0.5, wall_at(2.0F));
-    EXPECT_TRUE(evidence().contradicts);
+    EXPECT_TRUE(evidence().contradicts());
     EXPECT_THAT(describe(evidence()), HasSubstr("6 ranges end where it sees through"));
+    EXPECT_EQ(evidence().fault, SensorFault::often_short);
+    EXPECT_TRUE(evidence().is_far_off);
     compare(20, 1.0, wall_at(2.0F));
-    EXPECT_TRUE(evidence().contradicts);
+    EXPECT_TRUE(evidence().is_far_off);
     compare(1, 1.0, wall_at(2.0F));
-    EXPECT_FALSE(evidence().contradicts);
+    EXPECT_FALSE(evidence().is_far_off);
     EXPECT_EQ(witness_.evidence(4, 0).agreed, 0U);
 }
 
@@ -150,7 +169,7 @@ TEST_F(SensorWitnessTest, one_contradiction_among_twenty_never_flags_a_sensor) {
     for (int i = 0; i < 200; ++i) {
         compare(1, 0.5, wall_at(2.0F));
         compare(19, 1.0, wall_at(2.0F));
-        ASSERT_FALSE(evidence().contradicts) << i;
+        ASSERT_FALSE(evidence().contradicts()) << i;
     }
 }
 
@@ -158,8 +177,8 @@ TEST_F(SensorWitnessTest, a_sensor_that_stands_still_says_a_thing_once) {
     for (int i = 0; i < 50; ++i) {
         Beam still = beam(0, 0.5);
         still.captured = HostTime{100'000'000LL * i};
-        witness_.on_beam(still);
-        witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), still.captured);
+        give(witness_, still);
+        show(witness_, wall_at(2.0F), wall_at(2.0F), still.captured);
     }
     EXPECT_EQ(findings(), 1U);
     // It turns by three degrees, and again.
@@ -168,23 +187,78 @@ TEST_F(SensorWitnessTest, a_sensor_that_stands_still_says_a_thing_once) {
             beam(0, 0.5,
                  Eigen::AngleAxisd(0.0524 * (i - 49), Eigen::Vector3d::UnitX()) * Eigen::Vector3d::UnitZ());
         turned.captured = HostTime{100'000'000LL * i};
-        witness_.on_beam(turned);
-        witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), turned.captured);
+        give(witness_, turned);
+        show(witness_, wall_at(2.0F), wall_at(2.0F), turned.captured);
     }
     EXPECT_EQ(findings(), 3U);
 }
 
 TEST_F(SensorWitnessTest, only_beams_of_about_the_images_time_are_compared_and_each_but_once) {
-    witness_.on_beam(beam(10, 0.5));
-    witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), HostTime{1'150'000'001});
+    give(witness_, beam(10, 0.5));
+    show(witness_, wall_at(2.0F), wall_at(2.0F), HostTime{1'150'000'001});
     EXPECT_EQ(findings(), 0U);
-    witness_.on_beam(beam(11, 0.5));
-    witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), HostTime{1'250'000'000});
-    witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), HostTime{1'250'000'000});
+    give(witness_, beam(11, 0.5));
+    show(witness_, wall_at(2.0F), wall_at(2.0F), HostTime{1'250'000'000});
+    show(witness_, wall_at(2.0F), wall_at(2.0F), HostTime{1'250'000'000});
     EXPECT_EQ(findings(), 1U);
-    witness_.on_beam(beam(12, 0.5));
+    give(witness_, beam(12, 0.5));
     witness_.forget_beams();
-    witness_.on_depth({wall_at(2.0F), wall_at(2.0F)}, Eigen::Isometry3d::Identity(), HostTime{1'200'000'000});
+    show(witness_, wall_at(2.0F), wall_at(2.0F), HostTime{1'200'000'000});
+    EXPECT_EQ(findings(), 1U);
+}
+
+// 6 cm are less than what is_far_off asks for, and enough to be named: of 14, each comparison brings at the
+// least 0.15 less than (0.06 - 0.02)^2 / (2 * 0.028^2).
+TEST_F(SensorWitnessTest, names_ranges_that_are_six_centimetres_off_and_forgets_it_when_they_are_right) {
+    for (const auto& [off_m, fault] :
+         {std::pair{0.06, SensorFault::ranges_too_long}, std::pair{-0.06, SensorFault::ranges_too_short}}) {
+        compare(10, 1.0, wall_at(2.0F));
+        EXPECT_EQ(evidence().fault, std::nullopt);
+        int needed = 0;
+        while (!evidence().fault && needed < 40) {
+            compare(1, 1.0 + off_m, wall_at(2.0F));
+            ++needed;
+        }
+        EXPECT_GT(needed, 5);
+        EXPECT_LT(needed, 40);
+        EXPECT_EQ(evidence().fault, fault);
+        EXPECT_TRUE(evidence().contradicts());
+        EXPECT_FALSE(evidence().is_far_off);
+        EXPECT_THAT(describe(evidence()), HasSubstr("some centimetres too"));
+        compare(5, 1.0, wall_at(2.0F));
+        EXPECT_TRUE(evidence().contradicts());
+        compare(50, 1.0, wall_at(2.0F));
+        EXPECT_FALSE(evidence().contradicts());
+    }
+    compare(200, 1.015, wall_at(2.0F));
+    EXPECT_FALSE(evidence().contradicts()) << "what a rig may be off is no fault";
+}
+
+TEST_F(SensorWitnessTest, refuses_no_sensor_unless_as_many_others_agree_with_the_camera) {
+    compare(6, 0.5, wall_at(2.0F));
+    ASSERT_TRUE(evidence().contradicts());
+    EXPECT_FALSE(witness_.is_to_be_refused(4, 1)) << "it may be the camera";
+    for (int i = 0; i < 10; ++i) {
+        Beam agreeing = beam(++number_, 1.0);
+        agreeing.source.sensor = 0;
+        EXPECT_FALSE(witness_.is_to_be_refused(4, 1)) << i;
+        give(witness_, agreeing);
+        show(witness_, wall_at(2.0F), wall_at(2.0F), agreeing.captured);
+    }
+    EXPECT_TRUE(witness_.is_to_be_refused(4, 1));
+    EXPECT_FALSE(witness_.is_to_be_refused(4, 0));
+}
+
+// As long as nobody tells it to go on, a beam is only compared when another one comes.
+TEST_F(SensorWitnessTest, compares_one_beam_at_a_time) {
+    DepthImage everything = wall_at(2.0F);
+    DepthImage world = wall_at(2.0F);
+    give(witness_, beam(1, 0.5));
+    witness_.on_depth(everything, world, Eigen::Isometry3d::Identity(), HostTime{100'000'000});
+    EXPECT_EQ(findings(), 0U);
+    give(witness_, beam(2, 0.5));
+    EXPECT_EQ(findings(), 1U);
+    give(witness_, beam(3, 0.5));
     EXPECT_EQ(findings(), 1U);
 }
 
@@ -199,11 +273,11 @@ TEST_F(SensorWitnessTest, looks_through_the_lens) {
         for (int u = 92; u < 100; ++u) image.depth_m[static_cast<std::size_t>(v * 100 + u)] = kNone;
     Beam aside = beam(1, 0.3);
     aside.p_map_sensor = {0.9 * 1.2, 0.0, 0.9};
-    witness.on_beam(aside);
-    witness.on_depth({image, image}, Eigen::Isometry3d::Identity(), aside.captured);
+    give(witness, aside);
+    show(witness, image, image, aside.captured);
     EXPECT_EQ(witness.evidence(4, 1).in_free_space, 1U);
-    witness_.on_beam(aside);
-    witness_.on_depth({image, image}, Eigen::Isometry3d::Identity(), aside.captured);
+    give(witness_, aside);
+    show(witness_, image, image, aside.captured);
     EXPECT_EQ(findings(), 0U);
 }
 

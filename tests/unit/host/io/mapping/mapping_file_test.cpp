@@ -94,7 +94,8 @@ TEST(MappingFile, reads_every_key) {
         "counts: {prior_hits: 0.75, prior_misses: 1.25, occupied_hits: 30, free_misses: 4, "
         "occupied_probability: 0.625, hits_min: 0.5, misses_min: 2.5, counts_max: 40, image_clears: 0.5, "
         "image_marks: 0.25, range_clears: 0.125, range_clears_from: 4.5}\n"
-        "removes_robot_from_depth: false\nremoves_robot_from_ranges: false\ndepth_range_max_m: "
+        "removes_robot_from_depth: false\nremoves_robot_from_ranges: false\n"
+        "refuses_contradicting_sensors: false\ndepth_range_max_m: "
         "3.5\nno_return_clear_m: 1.25\n"
         "depth_box_voxels_max: 5000\n");
     ASSERT_TRUE(config.has_value()) << config.error().message();
@@ -152,6 +153,7 @@ TEST(MappingFile, reads_every_key) {
         .depth_range_max_m = 3.5,
         .removes_robot_from_depth = false,
         .removes_robot_from_ranges = false,
+        .refuses_contradicting_sensors = false,
         .no_return_clear_m = 1.25,
         .depth_box_voxels_max = 5000};
     EXPECT_EQ(*config, expected);
@@ -296,7 +298,7 @@ TEST(MappingFile, has_each_key_with_its_range_and_default_in_its_document_and_no
         const bool is_same = paper.at(path) == value;
         keys[path] = {expected_of(path), is_same ? value : value + " (" + paper.at(path) + ")"};
     }
-    EXPECT_EQ(keys.size(), 63U);
+    EXPECT_EQ(keys.size(), 64U);
     EXPECT_EQ(documented_keys(), keys);
 }
 

@@ -1,0 +1,150 @@
+#include "host/core/witness/camera_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octoskin {
+namespace {
+
+/// Nearer to the sensor the robot's own surroundings are no evidence.
+constexpr double kWalkBeginM = 0.1;
+constexpr double kWalkStepM = 0.03;
+/// A surface is crossed where the camera's depth and the ray's own come within this of each other.
+constexpr double kCrossingM = 0.12;
+/// Of a walk in steps of changing length: the part of the way to what is seen that a step takes.
+constexpr double kStepShare = 0.4;
+constexpr double kStepMinM = 0.02;
+constexpr double kStepMaxM = 0.2;
+constexpr int kSamplesMax = 120;
+/// How far something that nobody has seen hides what is behind it, for the length of a step.
+constexpr double kUnknownM = 0.1;
+/// A surface is looked at this far before and behind where the ray meets it.
+constexpr double kBesideM = 0.05;
+/// A ray that slides along a surface says nothing of where it meets it.
+constexpr double kDepthPerMMin = 0.25;
+
+}  // namespace
+
+CameraView::CameraView(const WitnessImages& images, const CameraIntrinsics& camera,
+                       const Eigen::Isometry3d& T_map_camera, double ray_slope_max)
+    : everything_(images.everything),
+      world_(images.world),
+      camera_(camera),
+      T_camera_map_(T_map_camera.inverse()),
+      ray_slope_max_(ray_slope_max) {}
+
+/// The pixel that the point is seen in, row-major.
+std::optional<std::size_t> CameraView::pixel_at(const Eigen::Vector3d& p_camera) const {
+    if (!(p_camera.z() > 0.0)) return std::nullopt;
+    const RaySlope ray{p_camera.x() / p_camera.z(), p_camera.y() / p_camera.z()};
+    if (!(ray.x * ray.x + ray.y * ray.y <= ray_slope_max_ * ray_slope_max_)) return std::nullopt;
+    const RaySlope picture = distorted(camera_.lens, ray);
+    const double u = picture.x * camera_.fx + camera_.cx;
+    const double v = picture.y * camera_.fy + camera_.cy;
+    if (!(u >= 0.0 && u < camera_.width && v >= 0.0 && v < camera_.height)) return std::nullopt;
+    return static_cast<std::size_t>(v) * camera_.width + static_cast<std::size_t>(u);
+}
+
+std::optional<CameraView::Seen> CameraView::seen_at(const Eigen::Vector3d& p_camera) const {
+    const auto pixel = pixel_at(p_camera);
+    if (!pixel) return std::nullopt;
+    const auto world_m = static_cast<double>(world_.depth_m[*pixel]);
+    if (std::isfinite(world_m)) return Seen{world_m - p_camera.z(), false};
+    const auto depth_m = static_cast<double>(everything_.depth_m[*pixel]);
+    if (!std::isfinite(depth_m)) return std::nullopt;
+    return Seen{depth_m - p_camera.z(), true};
+}
+
+std::optional<double> CameraView::behind_m(const Eigen::Vector3d& p_map) const {
+    const auto seen = seen_at(T_camera_map_ * p_map);
+    return seen ? std::optional(seen->behind_m) : std::nullopt;
+}
+
+std::optional<double> CameraView::world_behind_m(const Eigen::Vector3d& p_map) const {
+    const auto seen = seen_at(T_camera_map_ * p_map);
+    return seen && !seen->is_robot ? std::optional(seen->behind_m) : std::nullopt;
+}
+
+bool CameraView::is_stopped(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range_m,
+                            double bound_m) const {
+    std::optional<double> before;
+    bool has_crossed = false;
+    for (double along_m = kWalkBeginM; along_m <= range_m; along_m += kWalkStepM) {
+        const auto now = world_behind_m(origin + along_m * direction);
+        const bool is_continuous = before && now && std::abs(*now - *before) <= kCrossingM;
+        if (!is_continuous || *now >= 0.0) {
+            has_crossed = false;
+        } else if (*before >= 0.0) {
+            has_crossed = true;
+        }
+        if (has_crossed && *now < -bound_m) return true;
+        before = now;
+    }
+    return false;
+}
+
+/// `crossed_m` along a ray in camera coordinates: where it goes through the surface, and how fast. Negative
+/// speed: from behind.
+std::optional<CameraView::Crossing> CameraView::crossing_at(const Eigen::Vector3d& p,
+                                                            const Eigen::Vector3d& d,
+                                                            double crossed_m) const {
+    double sum = 0.0;
+    double ends[2] = {};
+    for (int i = -1; i <= 1; ++i) {
+        const auto seen = seen_at(p + (crossed_m + i * kBesideM) * d);
+        if (!seen || seen->is_robot) return std::nullopt;
+        sum += seen->behind_m;
+        if (i != 0) ends[(i + 1) / 2] = seen->behind_m;
+    }
+    const double depth_per_m = (ends[0] - ends[1]) / (2.0 * kBesideM);
+    if (!(std::abs(depth_per_m) >= kDepthPerMMin && std::abs(depth_per_m) <= kCrossingM / kBesideM))
+        return std::nullopt;
+    return Crossing{crossed_m + sum / (3.0 * depth_per_m), depth_per_m};
+}
+
+RayReach CameraView::reach(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                           double range_max_m) const {
+    const Eigen::Vector3d p = T_camera_map_ * origin;
+    const Eigen::Vector3d d = T_camera_map_.linear() * direction;
+    RayReach reach;
+    struct Before {
+        double along_m;
+        double behind_m;
+        bool is_robot;
+    };
+    std::optional<Before> before;
+    double along_m = kWalkBeginM;
+    for (int i = 0; i < kSamplesMax && along_m <= range_max_m; ++i) {
+        // A pixel without a value hides as the robot does.
+        const Seen seen = seen_at(p + along_m * d).value_or(Seen{-kUnknownM, true});
+        const bool is_hidden = seen.behind_m < 0.0;
+        const bool was_hidden = before && before->behind_m < 0.0;
+        if (before && is_hidden != was_hidden) {
+            const double step_m = along_m - before->along_m;
+            const double jump_m = std::abs(before->behind_m - seen.behind_m);
+            const bool is_world = !before->is_robot && !seen.is_robot;
+            if (jump_m > kCrossingM && step_m > 1.01 * kStepMinM) {
+                along_m = before->along_m + std::max(kStepMinM, 0.25 * step_m);
+                continue;
+            }
+            if (is_world && jump_m <= kCrossingM) {
+                const auto crossing =
+                    crossing_at(p, d, before->along_m + step_m * std::abs(before->behind_m) / jump_m);
+                if (!crossing || (crossing->depth_per_m < 0.0) != was_hidden) return reach;
+                reach.surface_m = crossing->along_m;
+                reach.depth_per_m = std::abs(crossing->depth_per_m);
+                reach.is_from_behind = was_hidden;
+                (was_hidden ? reach.hidden_until_m : reach.clear_m) = crossing->along_m;
+                return reach;
+            }
+            // Else the ray passes an outline.
+        }
+        if (is_hidden || was_hidden) reach.hidden_until_m = along_m;
+        if (!is_hidden) reach.clear_m = along_m;
+        before = Before{along_m, seen.behind_m, seen.is_robot};
+        along_m += std::clamp(kStepShare * std::abs(seen.behind_m), kStepMinM, kStepMaxM);
+    }
+    return reach;
+}
+
+}  // namespace octoskin

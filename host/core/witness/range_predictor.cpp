@@ -1,0 +1,171 @@
+#include "host/core/witness/range_predictor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace octoskin {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+/// About an ideal ray four more, to see how its range changes with its direction.
+constexpr double kBesideRad = 1.0 * kRadPerDeg;
+/// Between the rays of a cone.
+constexpr double kSpacingRad = 5.0 * kRadPerDeg;
+/// The first so many metres of range with this much of the most signal of any such are what is measured.
+constexpr double kPeakWidthM = 0.15;
+constexpr double kPeakShare = 0.3;
+/// If more of the signal may come from where the camera does not see, there is no prediction.
+constexpr double kUnseenShareMax = 0.1;
+/// Rays of a smaller part do not count for what is clear.
+constexpr double kWeightMin = 0.003;
+/// Of how far the peak's ranges are spread, and of how far the peak is from the mean of all.
+constexpr double kSpreadShare = 0.25;
+
+/// `axis` moved by `angle` towards `turn` about it; turns are the same for every axis of one sensor.
+Eigen::Vector3d off_axis(const Eigen::Vector3d& axis, double angle, double turn) {
+    const Eigen::Quaterniond R = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis);
+    return R * Eigen::Vector3d(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn),
+                               std::cos(angle));
+}
+
+double turn_rad(std::size_t i) {
+    return 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(kTurns);
+}
+
+}  // namespace
+
+RangePredictor::RangePredictor(const Eigen::Vector3d& direction_sensor, const BeamOptics& optics,
+                               const PredictorConfig& config)
+    : config_(config) {
+    if (!direction_sensor.allFinite()) return;  // nor is any beam
+    const double turned_by = kTurnDeg * kRadPerDeg;
+    std::array<Eigen::Vector3d, kTurns> turned_axes;
+    for (std::size_t i = 0; i < kTurns; ++i)
+        turned_axes[i] = off_axis(direction_sensor, turned_by, turn_rad(i));
+    if (!optics.is_cone()) {
+        rays_sensor_.push_back(direction_sensor);
+        for (std::size_t i = 0; i < 4; ++i)
+            rays_sensor_.push_back(off_axis(direction_sensor, kBesideRad, 2.0 * turn_rad(i)));
+        for (std::size_t i = 0; i < rays_sensor_.size(); ++i) mounted_.push_back({i, 0.2});
+        for (std::size_t i = 0; i < kTurns; ++i) {
+            turned_[i].push_back({rays_sensor_.size(), 1.0});
+            rays_sensor_.push_back(turned_axes[i]);
+        }
+        return;
+    }
+    const double reach = optics.half_angle_rad + turned_by;
+    const double spacing = kSpacingRad;
+    const int rows = static_cast<int>(std::ceil(reach / (spacing * std::sqrt(0.75))));
+    for (int row = -rows; row <= rows; ++row) {
+        const double y = row * spacing * std::sqrt(0.75);
+        for (int column = -2 * rows; column <= 2 * rows; ++column) {
+            const double x = (column + (row % 2 != 0 ? 0.5 : 0.0)) * spacing;
+            const double angle = std::hypot(x, y);
+            if (angle <= reach) rays_sensor_.push_back(off_axis(direction_sensor, angle, std::atan2(y, x)));
+        }
+    }
+    const auto bundle_about = [&](const Eigen::Vector3d& axis) {
+        Bundle bundle;
+        double sum = 0.0;
+        for (std::size_t i = 0; i < rays_sensor_.size(); ++i) {
+            const double angle = std::acos(std::clamp(axis.dot(rays_sensor_[i]), -1.0, 1.0));
+            if (angle > optics.half_angle_rad) continue;
+            bundle.push_back({i, std::exp(-0.5 * angle * angle / (optics.sigma_rad * optics.sigma_rad))});
+            sum += bundle.back().weight;
+        }
+        for (Weighed& ray : bundle) ray.weight /= sum;
+        return bundle;
+    };
+    mounted_ = bundle_about(direction_sensor);
+    for (std::size_t i = 0; i < kTurns; ++i) turned_[i] = bundle_about(turned_axes[i]);
+}
+
+RangePredictions RangePredictor::predict(const CameraView& view,
+                                         const Eigen::Isometry3d& T_map_sensor) const {
+    std::vector<RayReach> reaches;
+    reaches.reserve(rays_sensor_.size());
+    for (const Eigen::Vector3d& ray : rays_sensor_)
+        reaches.push_back(
+            view.reach(T_map_sensor.translation(), T_map_sensor.linear() * ray, config_.range_max_m));
+    RangePredictions predictions;
+    predictions.mounted = prediction_of(mounted_, reaches);
+    for (std::size_t i = 0; i < kTurns; ++i) predictions.turned[i] = prediction_of(turned_[i], reaches);
+    return predictions;
+}
+
+RangePrediction RangePredictor::prediction_of(const Bundle& bundle,
+                                              const std::vector<RayReach>& reaches) const {
+    struct Echo {
+        double range_m;
+        double signal;
+        double variance;
+        double depth_per_m;
+        bool is_from_behind;
+    };
+    std::array<Echo, 128> echoes;
+    std::size_t count = 0;
+    RangePrediction prediction{.range_m = {},
+                               .sigma_m = 0.0,
+                               .hidden_until_m = 0.0,
+                               .clear_m = config_.range_max_m,
+                               .depth_per_m = 0.0,
+                               .is_from_behind = false};
+    if (bundle.empty()) return {};
+    double unseen_signal = 0.0;
+    double signal = 0.0;
+    for (const Weighed& ray : bundle) {
+        const RayReach& reach = reaches[ray.ray];
+        const double clear_m = std::max({reach.clear_m, reach.hidden_until_m, 0.05});
+        if (ray.weight >= kWeightMin)
+            prediction.hidden_until_m = std::max(prediction.hidden_until_m, reach.hidden_until_m);
+        if (ray.weight >= kWeightMin) prediction.clear_m = std::min(prediction.clear_m, reach.clear_m);
+        if (!reach.surface_m) {
+            unseen_signal += ray.weight / (clear_m * clear_m);
+            continue;
+        }
+        if (count == echoes.size()) break;
+        const double sigma_m = config_.camera_sigma_m / reach.depth_per_m;
+        echoes[count++] = {*reach.surface_m, ray.weight / (clear_m * clear_m), sigma_m * sigma_m,
+                           reach.depth_per_m, reach.is_from_behind};
+        signal += echoes[count - 1].signal;
+    }
+    if (count == 0 || unseen_signal > kUnseenShareMax * (signal + unseen_signal)) return prediction;
+    const auto end = echoes.begin() + static_cast<std::ptrdiff_t>(count);
+    std::sort(echoes.begin(), end, [](const Echo& a, const Echo& b) { return a.range_m < b.range_m; });
+    std::array<double, 128> stretches;
+    double strongest = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+        stretches[i] = 0.0;
+        for (std::size_t j = i; j < count && echoes[j].range_m <= echoes[i].range_m + kPeakWidthM; ++j)
+            stretches[i] += echoes[j].signal;
+        strongest = std::max(strongest, stretches[i]);
+    }
+    std::size_t first = 0;
+    while (stretches[first] < kPeakShare * strongest) ++first;
+    double moment = 0.0;
+    double square = 0.0;
+    double noise = 0.0;
+    double peak = 0.0;
+    double all = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+        all += echoes[i].signal * echoes[i].range_m;
+        if (i < first || echoes[i].range_m > echoes[first].range_m + kPeakWidthM) continue;
+        peak += echoes[i].signal;
+        prediction.depth_per_m += echoes[i].signal * echoes[i].depth_per_m;
+        prediction.is_from_behind |= echoes[i].is_from_behind;
+        moment += echoes[i].signal * echoes[i].range_m;
+        square += echoes[i].signal * echoes[i].range_m * echoes[i].range_m;
+        noise += echoes[i].signal * echoes[i].signal * echoes[i].variance;
+    }
+    const double range_m = moment / peak;
+    const double spread_m = std::sqrt(std::max(0.0, square / peak - range_m * range_m));
+    const double beyond_m = all / signal - range_m;
+    const double share_m = kSpreadShare * std::hypot(spread_m, beyond_m);
+    prediction.range_m = range_m;
+    prediction.depth_per_m /= peak;
+    prediction.sigma_m = std::sqrt(noise / (peak * peak) + share_m * share_m);
+    return prediction;
+}
+
+}  // namespace octoskin

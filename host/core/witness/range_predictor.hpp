@@ -1,0 +1,65 @@
+// Which range the camera's image makes one expect of a sensor: as the rig has it mounted, and turned.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "host/core/rig/beam_optics.hpp"
+#include "host/core/witness/camera_view.hpp"
+
+namespace octoskin {
+
+struct RangePrediction {
+    std::optional<double> range_m;  ///< of the surface that the camera sees there
+    double sigma_m = 0.0;           ///< of that, without the range's own
+    double hidden_until_m = 0.0;    ///< nearer than this there may be anything
+    double clear_m = 0.0;           ///< from there to here the camera sees nothing
+    double depth_per_m = 1.0;       ///< RayReach's, of most of it
+    bool is_from_behind = false;    ///< RayReach's, of any of it
+};
+
+/// In so many directions, evenly about the zone's axis.
+inline constexpr std::size_t kTurns = 8;
+inline constexpr double kTurnDeg = 10.0;
+
+struct RangePredictions {
+    RangePrediction mounted;                     ///< as the rig has it
+    std::array<RangePrediction, kTurns> turned;  ///< about the sensor's position by kTurnDeg
+};
+
+struct PredictorConfig {
+    double camera_sigma_m = 0.03;   ///< of an image's value
+    double turn_sigma_rad = 0.012;  ///< by which a mount may be off that nobody would call turned
+    double range_max_m = 2.5;       ///< further away nothing is predicted
+};
+
+/// One zone of one sensor.
+class RangePredictor {
+  public:
+    RangePredictor(const Eigen::Vector3d& direction_sensor, const BeamOptics& optics,
+                   const PredictorConfig& config);
+
+    /// From where the sensor was. Follows 13 rays for an ideal ray, about 170 for the VL53L1X's cone: 5 and
+    /// 50 us.
+    [[nodiscard]] RangePredictions predict(const CameraView& view,
+                                           const Eigen::Isometry3d& T_map_sensor) const;
+
+  private:
+    struct Weighed {
+        std::size_t ray = 0;
+        double weight = 0.0;
+    };
+    using Bundle = std::vector<Weighed>;
+
+    [[nodiscard]] RangePrediction prediction_of(const Bundle& bundle,
+                                                const std::vector<RayReach>& reaches) const;
+
+    PredictorConfig config_;
+    std::vector<Eigen::Vector3d> rays_sensor_;
+    Bundle mounted_;
+    std::array<Bundle, kTurns> turned_;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,267 @@
+#include "host/core/witness/sensor_judge.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace octoskin {
+namespace {
+
+/// By so much camera, robot and rig may be off without anybody's fault.
+constexpr double kToleranceM = 0.02;
+constexpr double kPoseSigmaM = 0.01;
+/// What one comparison may say at the most: one in fifty is of something that nobody thought of.
+constexpr double kMisfitMax = 4.0;
+/// The offset that is looked for.
+constexpr double kOffsetM = 0.06;
+/// Each comparison that says anything takes this of the evidence.
+constexpr double kDoubt = 0.15;
+/// Where the camera does not see what is before a surface, a range that is shorter by this is of something
+/// else,
+constexpr double kSomethingElseM = 0.12;
+/// and one that is a little shorter may be.
+constexpr double kMisfitOfHiddenMax = 1.2;
+/// Thinner than this is a wall, and that much of noise.
+constexpr double kWallM = 0.1;
+constexpr double kWallNoiseM = 0.06;
+/// Short is shorter than what is there by this and 3 sigma. Then log(1/3 / 1/50), and log(2/3) where not.
+constexpr double kShortM = 0.12;
+constexpr double kShortRatio = 2.8;
+constexpr double kNotShortRatio = -0.4;
+
+/// No fault is named, but that of single ranges, while the newest dozen fit what the rig says this well.
+constexpr double kMisfitShare = 1.0 / 12.0;
+constexpr double kMisfitOfSoundMax = 0.35;
+
+/// Places in Sensor::faults; turns come after these.
+constexpr std::size_t kTooLong = 0;
+constexpr std::size_t kTooShort = 1;
+constexpr std::size_t kOftenShort = 2;
+constexpr std::size_t kTurned = 3;
+
+SensorFault fault_at(std::size_t place) {
+    switch (place) {
+        case kTooLong:
+            return SensorFault::ranges_too_long;
+        case kTooShort:
+            return SensorFault::ranges_too_short;
+        case kOftenShort:
+            return SensorFault::often_short;
+        default:
+            return SensorFault::turned;
+    }
+}
+
+}  // namespace
+
+void SensorJudge::Sum::add(double ratio) {
+    if (ratio == 0.0) return;
+    for_it = std::clamp(for_it + ratio - kDoubt, 0.0, 2.0 * kNamedFrom);
+    against_it = std::clamp(against_it - ratio - kDoubt, 0.0, 2.0 * kNamedFrom);
+}
+
+SensorJudge::SensorJudge(std::span<const std::size_t> sensors_of_nodes) {
+    for (const std::size_t count : sensors_of_nodes) {
+        const std::size_t begin = sensors_.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            sensors_.emplace_back();
+            sensors_.back().node_begin = begin;
+            sensors_.back().exchanged.resize(count);
+        }
+    }
+}
+
+SensorJudge::Expected SensorJudge::expected(const Compared& compared,
+                                            const RangePrediction& prediction) const {
+    Expected expected{
+        .at = prediction, .has_lower_bound = !prediction.is_from_behind, .sigma_m = prediction.sigma_m};
+    if (!prediction.range_m || !prediction.is_from_behind) return expected;
+    // Of a turned mount this is not quite the place; the memory's cells are larger than that.
+    const Eigen::Vector3d p_map =
+        compared.beam.p_map_sensor + *prediction.range_m * compared.beam.direction_map;
+    const auto known = thickness_.known_to_others(compared.sensor, p_map);
+    if (!known) return expected;
+    *expected.at.range_m -= known->thickness_m / prediction.depth_per_m;
+    expected.sigma_m = std::hypot(expected.sigma_m, known->sigma_m / prediction.depth_per_m);
+    expected.has_lower_bound = true;
+    return expected;
+}
+
+/// Minus the logarithm of a range's likelihood, but for a constant; empty: nothing can be said.
+std::optional<double> SensorJudge::misfit(const Expected& expected, double range_m, double sigma_m) {
+    const RangePrediction& at = expected.at;
+    double off_m = 0.0;
+    double misfit_max = kMisfitMax;
+    if (!at.range_m) {
+        // Nothing is known but where there is nothing.
+        off_m = std::min(range_m - at.hidden_until_m, at.clear_m - range_m);
+        if (!(off_m > kToleranceM + 3.0 * sigma_m)) return std::nullopt;
+    } else if (range_m >= *at.range_m) {
+        off_m = range_m - *at.range_m;
+    } else {
+        off_m = *at.range_m - range_m;
+        if (at.is_from_behind) {
+            if (!expected.has_lower_bound) return 0.0;
+            if (off_m > kSomethingElseM) return std::nullopt;
+            misfit_max = kMisfitOfHiddenMax;
+        } else if (range_m < at.hidden_until_m) {
+            return std::nullopt;
+        }
+    }
+    const double sigmas = std::max(0.0, off_m - kToleranceM) / sigma_m;
+    return std::min(0.5 * sigmas * sigmas, misfit_max);
+}
+
+double SensorJudge::sigma_of(const Compared& compared, const Expected& a, const Expected& b) {
+    return std::hypot(std::max(a.sigma_m, b.sigma_m), compared.beam.sigma_m, kPoseSigmaM);
+}
+
+double SensorJudge::gain(const Compared& compared, const Expected& mounted, const Expected& if_faulty) const {
+    if (!mounted.at.range_m || !if_faulty.at.range_m) return 0.0;
+    const double sigma_m = sigma_of(compared, mounted, if_faulty);
+    if (std::abs(*compared.beam.range_m - *if_faulty.at.range_m) > kToleranceM + 3.0 * sigma_m) return 0.0;
+    const auto sound = misfit(mounted, *if_faulty.at.range_m, sigma_m);
+    return sound && *sound > kDoubt ? *sound - kDoubt : 0.0;
+}
+
+double SensorJudge::gain_if_off(const Compared& compared, double by_m) const {
+    const Expected mounted = expected(compared, compared.predictions.mounted);
+    Expected off = mounted;
+    if (off.at.range_m) *off.at.range_m += by_m;
+    return gain(compared, mounted, off);
+}
+
+double SensorJudge::gain_if_turned(const Compared& compared, std::size_t turn) const {
+    return gain(compared, expected(compared, compared.predictions.mounted),
+                expected(compared, compared.predictions.turned[turn]));
+}
+
+double SensorJudge::gain_if_exchanged(const Compared& compared, const Compared& other) const {
+    return gain(compared, expected(compared, compared.predictions.mounted),
+                expected(other, other.predictions.mounted));
+}
+
+void SensorJudge::judge(std::span<const Compared> compared) {
+    std::vector<Expected> mounted;
+    mounted.reserve(compared.size());
+    looks_.assign(sensors_.size(), Look::nothing);
+    for (const Compared& one : compared) {
+        assert(one.sensor < sensors_.size() && one.beam.range_m);
+        mounted.push_back(expected(one, one.predictions.mounted));
+    }
+    for (std::size_t i = 0; i < compared.size(); ++i) {
+        weigh(compared[i], mounted[i]);
+        for (std::size_t j = 0; j < compared.size(); ++j) {
+            if (i != j && compared[i].beam.source.node_id == compared[j].beam.source.node_id &&
+                compared[i].beam.source.zone == compared[j].beam.source.zone)
+                weigh_exchange(compared[i], mounted[i], compared[j], mounted[j]);
+        }
+    }
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+        decide(sensors_[i]);
+        sensors_[i].looks = {looks_[i], sensors_[i].looks[0]};
+    }
+    for (const Compared& one : compared) remember(one);
+}
+
+void SensorJudge::weigh(const Compared& compared, const Expected& mounted) {
+    Sensor& sensor = sensors_[compared.sensor];
+    const double range_m = *compared.beam.range_m;
+    const double sigma_m = sigma_of(compared, mounted, mounted);
+    const auto sound = misfit(mounted, range_m, sigma_m);
+    weigh_short(sensor, compared, mounted, sound.value_or(kMisfitMax));
+    if (!sound) return;
+    if (!mounted.at.range_m) return;
+    if (mounted.has_lower_bound || *sound > 0.0) {
+        sensor.misfit_mean += kMisfitShare * (*sound - sensor.misfit_mean);
+        ++sensor.verdict.compared;
+        sensor.verdict.agreed += *sound <= kMisfitOfHiddenMax ? 1U : 0U;
+    }
+    if (const auto other = misfit(mounted, range_m - kOffsetM, sigma_m))
+        sensor.faults[kTooLong].add(*sound - *other);
+    if (const auto other = misfit(mounted, range_m + kOffsetM, sigma_m))
+        sensor.faults[kTooShort].add(*sound - *other);
+    for (std::size_t i = 0; i < kTurns; ++i) {
+        if (!compared.predictions.turned[i].range_m) continue;
+        const Expected turned = expected(compared, compared.predictions.turned[i]);
+        const double sigma_both_m = sigma_of(compared, mounted, turned);
+        const auto as_mounted = misfit(mounted, range_m, sigma_both_m);
+        const auto as_turned = misfit(turned, range_m, sigma_both_m);
+        if (as_mounted && as_turned) sensor.faults[kTurned + i].add(*as_mounted - *as_turned);
+    }
+}
+
+/// Where the camera sees that nothing is, once is enough. Elsewhere something may be: but not between two
+/// images in which the sensor saw the surface behind it.
+void SensorJudge::weigh_short(Sensor& sensor, const Compared& compared, const Expected& mounted,
+                              double misfit_mounted) {
+    const RangePrediction& at = mounted.at;
+    const double range_m = *compared.beam.range_m;
+    const double margin_m = kShortM + 3.0 * sigma_of(compared, mounted, mounted);
+    Look& look = looks_[compared.sensor];
+    Sum& sum = sensor.faults[kOftenShort];
+    if (!at.is_from_behind && range_m > at.hidden_until_m + margin_m && range_m < at.clear_m - margin_m) {
+        sum.add(kShortRatio);
+        return;
+    }
+    if (!at.range_m || !mounted.has_lower_bound) return;
+    if (range_m < *at.range_m - margin_m) {
+        look = Look::is_short;
+    } else if (misfit_mounted <= kMisfitOfHiddenMax) {
+        look = Look::agrees;
+        const bool agreed_before = sensor.looks[0] == Look::agrees;
+        const bool was_short_between = sensor.looks[0] == Look::is_short && sensor.looks[1] == Look::agrees;
+        if (was_short_between) sum.add(kShortRatio);
+        if (agreed_before) sum.add(kNotShortRatio);
+    }
+}
+
+void SensorJudge::weigh_exchange(const Compared& of, const Expected& own, const Compared& other,
+                                 const Expected& others) {
+    if (!own.at.range_m || !others.at.range_m) return;
+    Sensor& sensor = sensors_[of.sensor];
+    const double sigma_m = sigma_of(of, own, others);
+    const auto sound = misfit(own, *of.beam.range_m, sigma_m);
+    const auto exchanged = misfit(others, *of.beam.range_m, sigma_m);
+    if (sound && exchanged) sensor.exchanged[other.sensor - sensor.node_begin].add(*sound - *exchanged);
+}
+
+void SensorJudge::decide(Sensor& sensor) {
+    const auto by_evidence = [](const Sum& a, const Sum& b) { return a.for_it < b.for_it; };
+    if (sensor.named != nullptr && sensor.named->against_it >= kNamedFrom) {
+        sensor.named = nullptr;
+        sensor.verdict.fault.reset();
+        sensor.verdict.exchanged_with.reset();
+        sensor.faults.fill({});
+        std::ranges::fill(sensor.exchanged, Sum{});
+    }
+    const auto fault = std::ranges::max_element(sensor.faults, by_evidence);
+    const auto exchange = std::ranges::max_element(sensor.exchanged, by_evidence);
+    const bool is_exchange = exchange->for_it > fault->for_it;
+    Sum& likeliest = is_exchange ? *exchange : *fault;
+    sensor.verdict.evidence = likeliest.for_it;
+    if (sensor.named != nullptr || likeliest.for_it < kNamedFrom) return;
+    const bool is_short = &likeliest == &sensor.faults[kOftenShort];
+    if (!is_short && sensor.misfit_mean < kMisfitOfSoundMax) return;
+    sensor.named = &likeliest;
+    likeliest.against_it = 0.0;
+    if (is_exchange) {
+        sensor.verdict.fault = SensorFault::exchanged;
+        sensor.verdict.exchanged_with = static_cast<std::uint16_t>(
+            sensor.node_begin + static_cast<std::size_t>(exchange - sensor.exchanged.begin()));
+    } else {
+        sensor.verdict.fault = fault_at(static_cast<std::size_t>(fault - sensor.faults.begin()));
+    }
+}
+
+/// A lying sensor's word is not for others.
+void SensorJudge::remember(const Compared& compared) {
+    const RangePrediction& at = compared.predictions.mounted;
+    if (sensors_[compared.sensor].verdict.fault || !at.range_m || !at.is_from_behind) return;
+    const double thickness_m = (*at.range_m - *compared.beam.range_m) * at.depth_per_m;
+    if (thickness_m > -kWallNoiseM && thickness_m < kWallM)
+        thickness_.add(compared.sensor,
+                       compared.beam.p_map_sensor + *at.range_m * compared.beam.direction_map, thickness_m);
+}
+
+}  // namespace octoskin

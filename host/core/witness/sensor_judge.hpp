@@ -1,0 +1,104 @@
+// Sequential tests of range sensors against what the camera predicts of them: whether each ranges as the rig
+// has it, or as one that is off, turned, exchanged with another, or short every now and then.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "host/core/beams/beam.hpp"
+#include "host/core/witness/range_predictor.hpp"
+#include "host/core/witness/thickness_memory.hpp"
+
+namespace octoskin {
+
+enum class SensorFault : std::uint8_t {
+    ranges_too_long,   ///< by several centimetres
+    ranges_too_short,  ///< the same
+    often_short,       ///< one range of a few ends where there is nothing
+    turned,            ///< its mount, by about 10 degrees
+    exchanged,         ///< with another of its node
+};
+
+/// One range and what the camera predicts at its time.
+struct Compared {
+    std::uint16_t sensor = 0;  ///< by its place in the rig, node by node
+    Beam beam;                 ///< with a range
+    RangePredictions predictions;
+};
+
+class SensorJudge {
+  public:
+    /// `sensors_of_nodes`: how many each node has.
+    explicit SensorJudge(std::span<const std::size_t> sensors_of_nodes);
+
+    /// All that is compared with one image, at most one range a sensor. 0.1 ms for 34.
+    void judge(std::span<const Compared> compared);
+
+    struct Verdict {
+        std::optional<SensorFault> fault;
+        std::optional<std::uint16_t> exchanged_with;
+        std::uint64_t agreed = 0;    ///< comparisons with a surface that fit what the rig says
+        std::uint64_t compared = 0;  ///< and all of them
+        double evidence = 0.0;       ///< for the likeliest fault: log-likelihood ratio to a sound sensor
+    };
+    [[nodiscard]] const Verdict& verdict(std::uint16_t sensor) const { return sensors_[sensor].verdict; }
+
+    /// What a comparison adds to the evidence if the range is, without noise, off by so much, that of a
+    /// turned mount, or `other`'s; 0 where it tells nothing, or where the faulty sensor, which ranges
+    /// `compared.beam.range_m`, sees something else than what is predicted. To know beforehand whom a fault
+    /// would give away.
+    [[nodiscard]] double gain_if_off(const Compared& compared, double by_m) const;
+    [[nodiscard]] double gain_if_turned(const Compared& compared, std::size_t turn) const;
+    [[nodiscard]] double gain_if_exchanged(const Compared& compared, const Compared& other) const;
+
+    /// With so much evidence a fault is named, and with so much against it, it is no more.
+    static constexpr double kNamedFrom = 14.0;
+
+  private:
+    /// One fault that a sensor may have.
+    struct Sum {
+        double for_it = 0.0;  ///< log-likelihood ratio to a sound sensor, from the last time that it was 0
+        double against_it = 0.0;  ///< the same the other way round
+        void add(double ratio);
+    };
+    static constexpr std::size_t kFaults = 3 + kTurns;
+    enum class Look : std::uint8_t { nothing, agrees, is_short };
+    struct Sensor {
+        std::size_t node_begin = 0;  ///< the node's sensors are numbered from here
+        std::array<Sum, kFaults> faults{};
+        std::vector<Sum> exchanged;   ///< by sensor of the node
+        const Sum* named = nullptr;   ///< of those
+        double misfit_mean = 0.0;     ///< of the newest ranges, to what the rig says
+        std::array<Look, 2> looks{};  ///< of the two images before, the newest first
+        Verdict verdict;
+    };
+    /// Where a hypothesis has the range.
+    struct Expected {
+        RangePrediction at;
+        bool has_lower_bound = false;  ///< else anything nearer is as likely
+        double sigma_m = 0.0;
+    };
+
+    [[nodiscard]] Expected expected(const Compared& compared, const RangePrediction& prediction) const;
+    [[nodiscard]] static std::optional<double> misfit(const Expected& expected, double range_m,
+                                                      double sigma_m);
+    [[nodiscard]] static double sigma_of(const Compared& compared, const Expected& a, const Expected& b);
+    [[nodiscard]] double gain(const Compared& compared, const Expected& mounted,
+                              const Expected& if_faulty) const;
+    void weigh(const Compared& compared, const Expected& mounted);
+    void weigh_short(Sensor& sensor, const Compared& compared, const Expected& mounted,
+                     double misfit_mounted);
+    void weigh_exchange(const Compared& of, const Expected& own, const Compared& other,
+                        const Expected& others);
+    void decide(Sensor& sensor);
+    void remember(const Compared& compared);
+
+    std::vector<Sensor> sensors_;
+    std::vector<Look> looks_;  ///< of the image that is judged
+    ThicknessMemory thickness_;
+};
+
+}  // namespace octoskin
