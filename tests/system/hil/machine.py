@@ -200,9 +200,10 @@ class NativeMachine(Machine):
 class VirtualMachine(Machine):
     kind = "virtual"
 
-    def __init__(self, folder, disk=None):
+    def __init__(self, folder, disk=None, processors=1):
         super().__init__(folder)
         self.disk = disk  # a file, to the machine /dev/vda
+        self.processors = processors
 
     def boot(self):
         self.make_initramfs()
@@ -213,13 +214,15 @@ class VirtualMachine(Machine):
         self.start(self.qemu_command(), "qemu.log")
 
     def qemu_command(self):
-        """One processor: two spend as much time again on waiting for each other. Of a kind without AVX, whose use by the C library takes a
+        """Two processors where there are boards: nodes, sensors, daemon and camera are a dozen programs, and a reading that comes late
+        is asked for again. Elsewhere one: two spend as much time again on waiting for each other. Of a kind without AVX, whose use by the C library takes a
         fifth more time when emulated. Never KVM: its device may be there and hang. Time by
         the HPET: the rate of the TSC is measured at the start, on a busy host several times too low. Idle by halt, and without checks that
         emulation only makes slower: a timer that wakes a program then costs a third less. What the machine flushes to its disk goes to the
         host's kernel, and nobody waits until it is on the host's disk (unsafe): it is QEMU whose power is cut, not the host's."""
         return [
-            "timeout", "-k", "5", str(LIFE_S), QEMU, "-accel", "tcg,thread=multi", "-cpu", "Nehalem", "-m", "1G", "-smp", "1",
+            "timeout", "-k", "5", str(LIFE_S), QEMU, "-accel", "tcg,thread=multi", "-cpu", "Nehalem", "-m", "1G",
+            "-smp", str(self.processors),
             "-nodefaults", "-display", "none", "-no-reboot", "-kernel", str(KERNEL / "vmlinux"),
             "-initrd", str(self.folder / "initramfs"), "-append", KERNEL_OPTIONS,
             "-chardev", f"file,id=console,path={self.folder}/console", "-serial", "chardev:console",
@@ -367,7 +370,7 @@ def boot_in(folder, binaries, board, disk):
     kind, why = choose(os.environ.get("OCTOSKIN_HIL", ""), lambda: native_lacks(board), virtual_lacks)
     print(f"{kind} machine: {why}", flush=True)
     (folder / "kind").write_text(kind)
-    machine = NativeMachine(folder) if kind == "native" else VirtualMachine(folder, disk)
+    machine = NativeMachine(folder) if kind == "native" else VirtualMachine(folder, disk, 2 if board == "up" else 1)
     machine.boot()
     up = time.monotonic()
     code, output = machine.run([str(HERE / "board.sh"), board, str(folder), str(binaries)], PREPARE_S)

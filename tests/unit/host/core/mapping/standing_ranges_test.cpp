@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -112,7 +113,7 @@ TEST_F(StandingRangesTest, hears_zones_of_what_comes_again_a_second_after_it_lef
                 believed += ranges_.take(beam_at(range_m, zone)).size();
         return believed;
     };
-    (void)cycles_of(2, 1.0);
+    (void)cycles_of(8, 1.0);
     EXPECT_GT(cycles_of(3, 0.5), 0U);
     EXPECT_EQ(cycles_of(4, 1.0), 0U);  // of each zone the newest three before are of nothing near
     EXPECT_GT(cycles_of(1, 0.5), 0U);
