@@ -103,7 +103,7 @@ ConeFinder::ConeFinder(const MappingConfig& config) : config_(config), lattice_(
 Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam) {
     assert(beam.optics.is_cone());
     if (const auto fault = fault_of(beam)) return unexpected(*fault);
-    const ConeModel& model = config_.cone_of(beam.optics);
+    const ConeModel& model = model_of(beam);
     const double length_m = beam.range_m.value_or(std::min(config_.no_return_clear_m, beam.clear_limit_m));
     const Eigen::Vector3d end = beam.p_map_sensor + length_m * beam.direction_map;
     const auto end_key = lattice_.key_of(end);

@@ -16,10 +16,14 @@ class ConeFinder {
     explicit ConeFinder(const MappingConfig& config);
 
     /// The voxels of a beam whose optics are a cone (asserted), by the parameters for these optics
-    /// (`MappingConfig::cone_of`); valid until the next call. Without return:
+    /// (`model_of`); valid until the next call. Without return:
     /// what is passed up to the smaller of `MappingConfig::no_return_clear_m` and the beam's limit. What lies
     /// outside the octree is left out. O(voxels); about 3 us at 1 m and 0.04 m. Throws std::bad_alloc.
     [[nodiscard]] Result<const ConeVoxels*, BeamRejection> find(const Beam& beam);
+    /// By which they are found, and are to be counted.
+    [[nodiscard]] const ConeModel& model_of(const Beam& beam) const noexcept {
+        return config_.cone_of(beam.optics);
+    }
 
   private:
     /// Which voxels: how far, how wide, how far off the axis.

@@ -37,6 +37,7 @@ class StandingRanges {
     /// sensor), below 1 us; 2 kB a zone. Throws std::bad_alloc.
     [[nodiscard]] std::span<const Beam> take(const Beam& beam);
 
+    [[nodiscard]] const StandingModel& model() const noexcept { return model_; }
     /// As if there had been no beam.
     void forget() noexcept { sensors_.clear(); }
 

@@ -54,10 +54,7 @@ MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams
     : robot_(std::move(robot)),
       beams_(std::move(beams)),
       beam_integrator_(mapping),
-      cone_(mapping.cone),
-      zone_(mapping.zone),
       cone_finder_(mapping),
-      standing_model_(mapping.standing),
       standing_(mapping.standing),
       maps_(mapping.map, maps) {
     if (rig.camera) {
@@ -130,7 +127,7 @@ Status<ReadingReason> MapBuilder::add_cone(const RangeMeasurement& measurement, 
         return unexpected(reason_of(voxels.error()));
     }
     maps_.go_on(measurement.captured);
-    const ConeModel& model = beam.optics.is_zone ? zone_ : cone_;
+    const ConeModel& model = cone_finder_.model_of(beam);
     if (listener_ != nullptr) {
         std::vector<VoxelUpdate> changes = maps_.changes_of_proximity(**voxels, model);
         mark_believed(beam, &changes);
@@ -148,7 +145,7 @@ void MapBuilder::mark_believed(const Beam& beam, std::vector<VoxelUpdate>* chang
     for (const Beam& believed : standing_.take(beam)) {
         const auto voxels = cone_finder_.find(believed);
         if (voxels) {  // so near to the edge of the octree a mean of ranges may lie beyond it
-            maps_.mark(**voxels, standing_model_.hits, changes != nullptr ? &marked : nullptr);
+            maps_.mark(**voxels, standing_.model().hits, changes != nullptr ? &marked : nullptr);
         }
     }
     for (const VoxelUpdate& update : marked) {

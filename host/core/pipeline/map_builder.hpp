@@ -116,10 +116,7 @@ class MapBuilder {
     RobotTracker robot_;
     BeamBuilder beams_;
     BeamIntegrator beam_integrator_;
-    ConeModel cone_;
-    ConeModel zone_;
     ConeFinder cone_finder_;
-    StandingModel standing_model_;
     StandingRanges standing_;
     std::optional<DepthStage> depth_stage_;
     std::optional<SensorWitness> witness_;

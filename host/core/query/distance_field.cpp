@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/core/bricks/brick_sets.hpp"
+#include "host/core/query/cube_geometry.hpp"
 #include "host/core/query/nearest_search.hpp"
 
 namespace octoskin {
@@ -71,14 +72,7 @@ int voxels_of(const MapConfig& map, double reach_m) {
 
 BrickBox bricks_about(const MapConfig& map, const Eigen::AlignedBox3d& region) {
     assert(!region.isEmpty() && region.min().allFinite() && region.max().allFinite());
-    const auto along = [&](double coordinate) {
-        const double key = std::floor(coordinate / map.resolution_m) + kOriginKey;
-        return static_cast<std::uint16_t>(std::clamp(key, 0.0, kVoxelsPerAxis - 1.0));
-    };
-    const auto key_of = [&](const Eigen::Vector3d& point) {
-        return VoxelKey{along(point.x()), along(point.y()), along(point.z())};
-    };
-    return BrickBox::of({key_of(region.min()), key_of(region.max())});
+    return BrickBox::of({key_near(region.min(), map.resolution_m), key_near(region.max(), map.resolution_m)});
 }
 
 }  // namespace
@@ -125,18 +119,19 @@ void DistanceField::take(const FusedMap& now, const MapBrick& brick, Update& upd
     update.changed += (not_free_.set_sites(place, slices_of(both(sites))) || is_changed) ? 1U : 0U;
 }
 
-std::optional<double> DistanceField::occupied_m(VoxelKey key) const noexcept {
+std::optional<double> DistanceField::told_by(const DistanceLayer& layer, VoxelKey key) const noexcept {
     assert(region_.holds(BrickPlace::of(key)));
-    const auto squared = occupied_.squared(key);
+    const auto squared = layer.squared(key);
     if (!squared) return std::nullopt;
     return std::sqrt(static_cast<double>(*squared)) * map_.resolution_m();
 }
 
+std::optional<double> DistanceField::occupied_m(VoxelKey key) const noexcept {
+    return told_by(occupied_, key);
+}
+
 std::optional<double> DistanceField::not_free_m(VoxelKey key) const noexcept {
-    assert(region_.holds(BrickPlace::of(key)));
-    const auto squared = not_free_.squared(key);
-    if (!squared) return std::nullopt;
-    return std::sqrt(static_cast<double>(*squared)) * map_.resolution_m();
+    return told_by(not_free_, key);
 }
 
 bool DistanceField::tells_of(const PosedCapsule& capsule) const noexcept {

@@ -73,6 +73,8 @@ class DistanceField {
     class Samples;
     void take(const FusedMap& now, const MapBrick& brick, Update& update);
     void look_about(const Samples& samples, NearestSearch& search) const;
+    /// Metres between centres.
+    [[nodiscard]] std::optional<double> told_by(const DistanceLayer& layer, VoxelKey key) const noexcept;
     void look_at_nearest(const std::optional<VoxelKey>& site, NearestSearch& search) const;
 
     FusedMap map_;

@@ -8,6 +8,7 @@
 #include "host/core/bricks/brick_sets.hpp"
 #include "host/core/bricks/brick_stamps.hpp"
 #include "host/core/bricks/cube_parts.hpp"
+#include "host/core/query/cube_geometry.hpp"
 #include "host/core/query/nearest_search.hpp"
 #include "host/core/query/segment_cube.hpp"
 
@@ -22,8 +23,8 @@ class EvidenceSearch {
           resolution_m_(map.resolution_m()),
           reach_m_(capsule.radius_m + kDistanceStep_m),
           segment_(capsule.p_a, capsule.p_b),
-          box_{key_near(capsule.p_a.cwiseMin(capsule.p_b).array() - reach_m_),
-               key_near(capsule.p_a.cwiseMax(capsule.p_b).array() + reach_m_)},
+          box_{key_near(capsule.p_a.cwiseMin(capsule.p_b).array() - reach_m_, resolution_m_),
+               key_near(capsule.p_a.cwiseMax(capsule.p_b).array() + reach_m_, resolution_m_)},
           limit_(limit) {}
 
     void run() noexcept { look(map_.space()); }
@@ -32,19 +33,9 @@ class EvidenceSearch {
     [[nodiscard]] std::uint16_t stamp() const noexcept { return static_cast<std::uint16_t>(limit_); }
 
   private:
-    [[nodiscard]] VoxelKey key_near(const Eigen::Vector3d& point) const {
-        const auto along = [&](double coordinate) {
-            const double key = std::floor(coordinate / resolution_m_) + kOriginKey;
-            return static_cast<std::uint16_t>(std::clamp(key, 0.0, kVoxelsPerAxis - 1.0));
-        };
-        return {along(point.x()), along(point.y()), along(point.z())};
-    }
     [[nodiscard]] bool is_touched(const VoxelCube& cube) const {
-        const double half = 0.5 * (1U << cube.height);
-        const Eigen::Vector3d centre = resolution_m_ * Eigen::Vector3d(cube.lowest.x - kOriginKey + half,
-                                                                       cube.lowest.y - kOriginKey + half,
-                                                                       cube.lowest.z - kOriginKey + half);
-        const double half_m = half * resolution_m_;
+        const Eigen::Vector3d centre = centre_of(cube, resolution_m_);
+        const double half_m = half_edge_of(cube, resolution_m_);
         return !segment_.is_surely_beyond(centre, half_m, reach_m_ + 4.0 * kDistanceStep_m) &&
                segment_.distance(centre, half_m) <= reach_m_;
     }

@@ -31,7 +31,7 @@ NearestSearch::NearestSearch(const FusedMap& map, const SearchRequest& request) 
     const double bound_m = kOriginKey * map.resolution_m();
     is_outside_ = lowest.minCoeff() < -bound_m || highest.maxCoeff() > bound_m;
     meets_octree_ = lowest.maxCoeff() <= bound_m && highest.minCoeff() >= -bound_m;
-    box_ = {key_near(lowest), key_near(highest)};
+    box_ = {key_near(lowest, resolution_m_), key_near(highest, resolution_m_)};
     occupied_.reach_m = occupied_.limit_m = request.occupied_reach_m;
     unknown_.reach_m = unknown_.limit_m = request.unknown_reach_m;
 }
@@ -40,17 +40,8 @@ void NearestSearch::run() noexcept {
     if (meets_octree_ && !(wanted_ == SearchFor::any && is_outside_)) look(map_.space());
 }
 
-/// Of the nearest voxel of the octree, along each axis.
-VoxelKey NearestSearch::key_near(const Eigen::Vector3d& point) const {
-    const auto along = [&](double coordinate) {
-        const double key = std::floor(coordinate / resolution_m_) + kOriginKey;
-        return static_cast<std::uint16_t>(std::clamp(key, 0.0, kVoxelsPerAxis - 1.0));
-    };
-    return {along(point.x()), along(point.y()), along(point.z())};
-}
-
 double NearestSearch::distance_to(const VoxelCube& cube) const {
-    return segment_.distance(centre_of(cube), half_edge(cube));
+    return segment_.distance(centre_of(cube, resolution_m_), half_edge_of(cube, resolution_m_));
 }
 
 /// Where only the worst is wanted the limit of the unknown is never the larger one: what is unknown ends no

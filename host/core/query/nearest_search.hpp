@@ -10,6 +10,7 @@
 
 #include "host/core/bricks/brick.hpp"
 #include "host/core/mapping/fused_map.hpp"
+#include "host/core/query/cube_geometry.hpp"
 #include "host/core/query/segment_cube.hpp"
 
 namespace octoskin {
@@ -76,18 +77,9 @@ class NearestSearch {
         double limit_m = 0.0;
     };
 
-    [[nodiscard]] VoxelKey key_near(const Eigen::Vector3d& point) const;
-    [[nodiscard]] Eigen::Vector3d centre_of(const VoxelCube& cube) const {
-        const double half = 0.5 * (1U << cube.height);
-        return resolution_m_ * Eigen::Vector3d(cube.lowest.x - kOriginKey + half,
-                                               cube.lowest.y - kOriginKey + half,
-                                               cube.lowest.z - kOriginKey + half);
-    }
-    [[nodiscard]] double half_edge(const VoxelCube& cube) const {
-        return 0.5 * resolution_m_ * (1U << cube.height);
-    }
     [[nodiscard]] bool is_surely_beyond(const VoxelCube& cube, double limit_m) const {
-        return segment_.is_surely_beyond(centre_of(cube), half_edge(cube), limit_m + 4.0 * kDistanceStep_m);
+        return segment_.is_surely_beyond(centre_of(cube, resolution_m_), half_edge_of(cube, resolution_m_),
+                                         limit_m + 4.0 * kDistanceStep_m);
     }
     [[nodiscard]] double distance_to(const VoxelCube& cube) const;
     [[nodiscard]] bool is_done() const;

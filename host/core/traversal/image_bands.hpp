@@ -1,16 +1,30 @@
 // The rows of an image in bands, one for each that works on it at a time.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "host/core/crew/crew.hpp"
+#include "host/core/traversal/placed_image.hpp"
 
 namespace octoskin {
 
 /// A vector of any instruction set holds no more entries.
 inline constexpr std::size_t kLanesMax = 64;
+
+/// What placed rows add up to.
+struct RowSums {
+    DepthPixelCounts counts;
+    Eigen::Vector3f lowest;  ///< of all ends
+    Eigen::Vector3f highest;
+    void bound(const Eigen::Vector3f& end) {
+        lowest = lowest.cwiseMin(end);
+        highest = highest.cwiseMax(end);
+    }
+};
 
 struct ImageBands {
     std::uint32_t rows = 0;  ///< of each but the last
@@ -33,6 +47,19 @@ void for_each_band(const ImageBands& bands, std::uint32_t height, Crew* crew, Wo
         const auto begin = static_cast<std::uint32_t>(band) * bands.rows;
         work(band, begin, std::min(begin + bands.rows, height));
     });
+}
+
+/// Takes the sums of each band; `placed.origin` is bounded, too.
+inline void take_sums(const std::vector<RowSums>& bands, PlacedImage& placed) {
+    RowSums all{{}, placed.origin, placed.origin};
+    for (const RowSums& band : bands) {
+        all.counts += band.counts;
+        all.bound(band.lowest);
+        all.bound(band.highest);
+    }
+    placed.counts = all.counts;
+    placed.lowest = all.lowest;
+    placed.highest = all.highest;
 }
 
 }  // namespace octoskin

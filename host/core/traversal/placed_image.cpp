@@ -38,13 +38,6 @@ struct Row {
     std::size_t width = 0;
 };
 
-/// What rows add up to.
-struct RowSums {
-    DepthPixelCounts counts;
-    Eigen::Vector3f lowest;
-    Eigen::Vector3f highest;
-};
-
 }  // namespace octoskin
 #endif
 
@@ -191,8 +184,8 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image, RowSums&
     }
     const auto least = [](Float values) { return hn::GetLane(hn::MinOfLanes(Floats(), values)); };
     const auto most = [](Float values) { return hn::GetLane(hn::MaxOfLanes(Floats(), values)); };
-    sums.lowest = sums.lowest.cwiseMin(Eigen::Vector3f(least(lowest_x), least(lowest_y), least(lowest_z)));
-    sums.highest = sums.highest.cwiseMax(Eigen::Vector3f(most(highest_x), most(highest_y), most(highest_z)));
+    sums.bound({least(lowest_x), least(lowest_y), least(lowest_z)});
+    sums.bound({most(highest_x), most(highest_y), most(highest_z)});
 }
 
 }  // namespace octoskin::HWY_NAMESPACE
@@ -223,8 +216,6 @@ void place_image(const DepthImage& image, const PixelRays& pixel_rays, const Vox
     placed.width = image.width;
     placed.height = image.height;
     placed.origin = T_map_camera.translation().cast<float>();
-    placed.counts = {};
-    placed.lowest = placed.highest = placed.origin;
     resize(placed, pixels + kLanesMax);
 
     Placement to{.T = {},
@@ -255,11 +246,7 @@ void place_image(const DepthImage& image, const PixelRays& pixel_rays, const Vox
             (to, {depth_m.data(), ray_x.data(), ray_y.data(), first, image.width}, placed, sums[band]);
         }
     });
-    for (const RowSums& of_band : sums) {
-        placed.counts += of_band.counts;
-        placed.lowest = placed.lowest.cwiseMin(of_band.lowest);
-        placed.highest = placed.highest.cwiseMax(of_band.highest);
-    }
+    take_sums(sums, placed);
     for (auto* values : {&placed.reach_m, &placed.passed_m}) {
         std::fill(values->begin() + static_cast<std::ptrdiff_t>(pixels), values->end(), -1.0F);
     }

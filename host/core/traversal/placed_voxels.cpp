@@ -44,17 +44,6 @@ struct RowOfDepths {
     std::size_t width = 0;
 };
 
-/// What rows add up to.
-struct SumsOfRows {
-    DepthPixelCounts counts;
-    Eigen::Vector3f lowest;
-    Eigen::Vector3f highest;
-    void bound(const Eigen::Vector3f& end) {
-        lowest = lowest.cwiseMin(end);
-        highest = highest.cwiseMax(end);
-    }
-};
-
 /// So near to the maximum range, as a share of it, rounding may decide whether a ray ends there.
 inline constexpr float kAtRangeMax = 1e-5F;
 
@@ -85,7 +74,8 @@ HWY_INLINE Lanes from_face(Lanes scaled) {
 struct Placed {
     Lanes range_m, reach_m;
     Lanes end_m[3];
-    Lanes scaled[3];  ///< the end in voxels
+    Lanes scaled[3];        ///< the end in voxels
+    hn::Mask<Tag> is_good;  ///< there is a depth
     hn::Mask<Tag> is_beyond, has_keys, is_unsure;
 };
 
@@ -94,6 +84,7 @@ HWY_INLINE Placed place(const VoxelPlacement& to, Lanes depth, Lanes ray_x, Lane
     const Lanes range_max = hn::Set(f, to.range_max_m);
     const auto squared = [](Lanes value) HWY_ATTR { return hn::Mul(value, value); };
     Placed placed;
+    placed.is_good = hn::And(hn::Gt(depth, hn::Zero(f)), hn::Lt(depth, hn::Set(f, HUGE_VALF)));
     placed.range_m = hn::Sqrt(
         hn::Add(hn::Add(squared(hn::Mul(depth, ray_x)), squared(hn::Mul(depth, ray_y))), squared(depth)));
     placed.is_beyond = hn::Gt(placed.range_m, range_max);
@@ -120,7 +111,7 @@ HWY_INLINE Placed place(const VoxelPlacement& to, Lanes depth, Lanes ray_x, Lane
     const auto is_at_max = hn::Lt(
         hn::Abs(hn::Sub(placed.range_m, range_max)),
         hn::Add(hn::Mul(hn::Set(f, kAtRangeMax), range_max), hn::Mul(margin, hn::Set(f, to.resolution_m))));
-    placed.is_unsure = hn::Or(is_at_face, is_at_max);
+    placed.is_unsure = hn::And(placed.is_good, hn::Or(is_at_face, is_at_max));
     placed.has_keys = hn::Lt(furthest, edge);
     return placed;
 }
@@ -130,14 +121,13 @@ HWY_INLINE hn::Mask<Tag> count(const Placed& placed, Lanes depth, hn::Mask<Tag> 
                                DepthPixelCounts& counts) {
     const Tag f;
     const auto is_number = hn::Eq(depth, depth);
-    const auto is_good = hn::And(hn::Gt(depth, hn::Zero(f)), hn::Lt(depth, hn::Set(f, HUGE_VALF)));
-    const auto is_sure = hn::AndNot(placed.is_unsure, hn::And(in_row, is_good));
+    const auto is_sure = hn::AndNot(placed.is_unsure, hn::And(in_row, placed.is_good));
     const auto is_used = hn::And(is_sure, placed.has_keys);
     const std::size_t used = hn::CountTrue(f, is_used);
     counts.used += used;
     if (used < hn::Lanes(f)) {
         counts.no_value += hn::CountTrue(f, hn::AndNot(is_number, in_row));
-        counts.bad_value += hn::CountTrue(f, hn::AndNot(is_good, hn::And(in_row, is_number)));
+        counts.bad_value += hn::CountTrue(f, hn::AndNot(placed.is_good, hn::And(in_row, is_number)));
         counts.outside_map += hn::CountTrue(f, hn::AndNot(placed.has_keys, is_sure));
     }
     return is_used;
@@ -166,7 +156,7 @@ HWY_INLINE void store(const Placed& placed, hn::Mask<Tag> is_used, float half_de
 }
 
 /// Places what is sure, and sets a bit for each pixel of the row that is not, in whole words.
-void place_sure(const VoxelPlacement& to, const RowOfDepths& row, PlacedImage& image, SumsOfRows& sums,
+void place_sure(const VoxelPlacement& to, const RowOfDepths& row, PlacedImage& image, RowSums& sums,
                 std::uint64_t* unsure) {
     const Tag f;
     Lanes lowest[3], highest[3];
@@ -176,9 +166,8 @@ void place_sure(const VoxelPlacement& to, const RowOfDepths& row, PlacedImage& i
         const Placed placed = place(to, depth, hn::LoadU(f, row.ray_x + u), hn::LoadU(f, row.ray_y + u));
         const auto in_row = hn::FirstN(f, row.width - u);
         const auto is_used = count(placed, depth, in_row, sums.counts);
-        const auto is_good = hn::And(hn::Gt(depth, hn::Zero(f)), hn::Lt(depth, hn::Set(f, HUGE_VALF)));
-        const auto is_unsure = hn::And(placed.is_unsure, hn::And(in_row, is_good));
-        unsure[u / 64] = (u % 64 == 0 ? 0 : unsure[u / 64]) | bits_of(f, is_unsure) << (u % 64);
+        const std::uint64_t bits = bits_of(f, hn::And(placed.is_unsure, in_row)) << (u % 64);
+        unsure[u / 64] = (u % 64 == 0 ? 0 : unsure[u / 64]) | bits;
         for (int axis = 0; axis < 3; ++axis) {
             const Lanes end = placed.end_m[axis];
             lowest[axis] = hn::IfThenElse(is_used, hn::Min(lowest[axis], end), lowest[axis]);
@@ -229,9 +218,7 @@ class Placer {
         to_.unsure_per_m = static_cast<float>(per_voxel);
     }
 
-    [[nodiscard]] SumsOfRows none() const { return {{}, placed_.origin, placed_.origin}; }
-
-    void place_rows(std::uint32_t begin, std::uint32_t end, SumsOfRows& sums) const {
+    void place_rows(std::uint32_t begin, std::uint32_t end, RowSums& sums) const {
         std::vector<float> depth_m(image_.width + kLanesMax, std::numeric_limits<float>::quiet_NaN());
         std::vector<float> ray_x(image_.width + kLanesMax);
         std::vector<float> ray_y(image_.width + kLanesMax);
@@ -258,7 +245,7 @@ class Placer {
 
   private:
     /// As place_image() does.
-    void place_exactly(std::uint32_t u, std::uint32_t v, SumsOfRows& sums) const {
+    void place_exactly(std::uint32_t u, std::uint32_t v, RowSums& sums) const {
         const std::size_t at = std::size_t{v} * image_.width + u;
         const float depth_m = image_.depth_m[at];
         const RaySlope ray = pixel_rays_.at(u, v);
@@ -330,19 +317,11 @@ void place_voxels(const DepthImage& image, const PixelRays& pixel_rays, const Vo
 
     const Placer placer(image, pixel_rays, lattice, T_map_camera, range_max_m, placed);
     const ImageBands bands = bands_of(image.width, image.height);
-    std::vector<SumsOfRows> sums(bands.count, placer.none());
+    std::vector<RowSums> sums(bands.count, {{}, placed.origin, placed.origin});
     for_each_band(bands, image.height, crew, [&](std::size_t band, std::uint32_t begin, std::uint32_t end) {
         placer.place_rows(begin, end, sums[band]);
     });
-    SumsOfRows all = placer.none();
-    for (const SumsOfRows& of_band : sums) {
-        all.counts += of_band.counts;
-        all.bound(of_band.lowest);
-        all.bound(of_band.highest);
-    }
-    placed.counts = all.counts;
-    placed.lowest = all.lowest;
-    placed.highest = all.highest;
+    take_sums(sums, placed);
     for (auto* values : {&placed.reach_m, &placed.passed_m})
         std::fill(values->begin() + static_cast<std::ptrdiff_t>(pixels), values->end(), -1.0F);
 }

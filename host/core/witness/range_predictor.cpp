@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/core/kinematics/turned_z.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -24,9 +26,8 @@ constexpr double kSpreadShare = 0.25;
 
 /// `axis` moved by `angle` towards `turn` about it; turns are the same for every axis of one sensor.
 Eigen::Vector3d off_axis(const Eigen::Vector3d& axis, double angle, double turn) {
-    const Eigen::Quaterniond R = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis);
-    return R * Eigen::Vector3d(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn),
-                               std::cos(angle));
+    return turned_z(axis.normalized()) * Eigen::Vector3d(std::sin(angle) * std::cos(turn),
+                                                         std::sin(angle) * std::sin(turn), std::cos(angle));
 }
 
 double turn_rad(std::size_t i) {
@@ -55,12 +56,11 @@ RangePredictor::RangePredictor(const Eigen::Vector3d& direction_sensor, const Be
         return;
     }
     const double reach = optics.half_angle_rad + turned_by;
-    const double spacing = kSpacingRad;
-    const int rows = static_cast<int>(std::ceil(reach / (spacing * std::sqrt(0.75))));
+    const int rows = static_cast<int>(std::ceil(reach / (kSpacingRad * std::sqrt(0.75))));
     for (int row = -rows; row <= rows; ++row) {
-        const double y = row * spacing * std::sqrt(0.75);
+        const double y = row * kSpacingRad * std::sqrt(0.75);
         for (int column = -2 * rows; column <= 2 * rows; ++column) {
-            const double x = (column + (row % 2 != 0 ? 0.5 : 0.0)) * spacing;
+            const double x = (column + (row % 2 != 0 ? 0.5 : 0.0)) * kSpacingRad;
             const double angle = std::hypot(x, y);
             if (angle <= reach) rays_sensor_.push_back(off_axis(direction_sensor, angle, std::atan2(y, x)));
         }
@@ -117,9 +117,10 @@ RangePrediction RangePredictor::prediction_of(const Bundle& bundle,
     for (const Weighed& ray : bundle) {
         const RayReach& reach = reaches[ray.ray];
         const double clear_m = std::max({reach.clear_m, reach.hidden_until_m, 0.05});
-        if (ray.weight >= kWeightMin)
+        if (ray.weight >= kWeightMin) {
             prediction.hidden_until_m = std::max(prediction.hidden_until_m, reach.hidden_until_m);
-        if (ray.weight >= kWeightMin) prediction.clear_m = std::min(prediction.clear_m, reach.clear_m);
+            prediction.clear_m = std::min(prediction.clear_m, reach.clear_m);
+        }
         if (!reach.surface_m) {
             unseen_signal += ray.weight / (clear_m * clear_m);
             continue;

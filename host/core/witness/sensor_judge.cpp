@@ -247,8 +247,7 @@ void SensorJudge::decide(Sensor& sensor) {
     likeliest.against_it = 0.0;
     if (is_exchange) {
         sensor.verdict.fault = SensorFault::exchanged;
-        sensor.verdict.exchanged_with = static_cast<std::uint16_t>(
-            sensor.node_begin + static_cast<std::size_t>(exchange - sensor.exchanged.begin()));
+        sensor.verdict.exchanged_with = static_cast<std::uint8_t>(exchange - sensor.exchanged.begin());
     } else {
         sensor.verdict.fault = fault_at(static_cast<std::size_t>(fault - sensor.faults.begin()));
     }

@@ -39,7 +39,7 @@ class SensorJudge {
 
     struct Verdict {
         std::optional<SensorFault> fault;
-        std::optional<std::uint16_t> exchanged_with;
+        std::optional<std::uint8_t> exchanged_with;  ///< local index on its node
         std::uint64_t agreed = 0;    ///< comparisons with a surface that fit what the rig says
         std::uint64_t compared = 0;  ///< and all of them
         double evidence = 0.0;       ///< for the likeliest fault: log-likelihood ratio to a sound sensor

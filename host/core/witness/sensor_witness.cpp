@@ -118,7 +118,6 @@ SensorWitness::SensorWitness(const HostRig& rig, const WitnessConfig& config)
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
             places_.try_emplace({node.node_id, static_cast<std::uint8_t>(i)}, sensors_.size());
             Sensor& sensor = sensors_.emplace_back();
-            sensor.node_id = node.node_id;
             for (const HostZone& zone : node.sensors[i].zones) {
                 sensor.predictors.emplace_back(zone.direction_sensor, zone.optics, predictor);
                 sensor.optics.push_back(zone.optics);
@@ -162,8 +161,12 @@ void SensorWitness::settle() {
     while (next_ < sensors_.size()) compare_next();
 }
 
-void SensorWitness::compare_next() {
+void SensorWitness::go_to_waiting() {
     while (next_ < sensors_.size() && !sensors_[next_].waiting) ++next_;
+}
+
+void SensorWitness::compare_next() {
+    go_to_waiting();
     if (next_ < sensors_.size()) {
         Sensor& sensor = sensors_[next_];
         const auto placed = std::exchange(sensor.waiting, std::nullopt);
@@ -179,7 +182,7 @@ void SensorWitness::compare_next() {
             says_something |= compared_.back().predictions.mounted.range_m.has_value();
         }
         if (says_something) sensor.counted = beam;
-        while (next_ < sensors_.size() && !sensors_[next_].waiting) ++next_;
+        go_to_waiting();
         if (next_ == sensors_.size()) judge();
     }
 }
@@ -197,12 +200,7 @@ void SensorWitness::judge() {
         evidence.fault = verdict.fault;
         evidence.compared = verdict.compared;
         evidence.fitted = verdict.agreed;
-        evidence.exchanged_with.reset();
-        if (verdict.exchanged_with) {
-            std::size_t begin = i;
-            while (begin > 0 && sensors_[begin - 1].node_id == sensors_[i].node_id) --begin;
-            evidence.exchanged_with = static_cast<std::uint8_t>(*verdict.exchanged_with - begin);
-        }
+        evidence.exchanged_with = verdict.exchanged_with;
         sensors_[i].contradicted = evidence.contradicts();
         contradicting_ += evidence.contradicts() ? 1U : 0U;
         agreeing_ +=

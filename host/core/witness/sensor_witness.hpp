@@ -90,7 +90,6 @@ class SensorWitness {
         Eigen::Isometry3d T_map_sensor;
     };
     struct Sensor {
-        std::uint8_t node_id = 0;
         std::vector<RangePredictor> predictors;  ///< by zone
         std::vector<BeamOptics> optics;
         std::array<std::optional<Placed>, 3> newest;  ///< the newest first
@@ -101,6 +100,7 @@ class SensorWitness {
     };
     enum class Finding : std::uint8_t { nothing, agrees, in_free_space, behind_surface };
 
+    void go_to_waiting();
     void compare_next();
     void judge();
     [[nodiscard]] Finding compare(const Beam& beam, const BeamOptics& optics, const CameraView& view) const;

@@ -18,10 +18,6 @@ constexpr double kSigmaM = 0.015;
 
 ThicknessMemory::ThicknessMemory() : cells_(kCells) {}
 
-void ThicknessMemory::forget() {
-    std::ranges::fill(cells_, Cell{});
-}
-
 ThicknessMemory::Place ThicknessMemory::place_of(const Eigen::Vector3d& p_map) {
     Place place;
     for (int i = 0; i < 3; ++i)

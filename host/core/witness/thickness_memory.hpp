@@ -26,8 +26,6 @@ class ThicknessMemory {
     [[nodiscard]] std::optional<Known> known_to_others(std::uint16_t sensor,
                                                        const Eigen::Vector3d& p_map) const;
 
-    void forget();
-
   private:
     struct Word {
         std::uint16_t sensor = 0;
