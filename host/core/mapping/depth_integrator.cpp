@@ -1,13 +1,15 @@
 #include "host/core/mapping/depth_integrator.hpp"
 
-#include <bit>
+#include <array>
 #include <cassert>
 #include <limits>
 #include <utility>
 
+#include "host/core/bricks/brick_sets.hpp"
 #include "host/core/bricks/brick_walk.hpp"
 #include "host/core/mapping/hit_bricks.hpp"
 #include "host/core/mapping/tally_grid.hpp"
+#include "host/core/traversal/end_voxels.hpp"
 #include "host/core/traversal/image_traversal.hpp"
 #include "host/core/traversal/mark_grid.hpp"
 #include "host/core/traversal/picture_test.hpp"
@@ -48,43 +50,27 @@ void for_each_hit(const PlacedImage& rays, const VoxelLattice& lattice, Visit&& 
     });
 }
 
-/// The hits of one brick, voxel by voxel.
-class BrickCells {
+/// The largest hit of each voxel of one brick.
+class LargestHits {
   public:
-    explicit BrickCells(std::span<const CellHits> hits) {
+    explicit LargestHits(std::span<const CellHits> hits) {
         for (const CellHits& hit : hits) {
             std::uint64_t& word = mask_[hit.cell / 64];
             const std::uint64_t bit = std::uint64_t{1} << (hit.cell % 64);
-            Cell& cell = cells_[hit.cell];
+            float& most = most_[hit.cell];
             // Not a branch: which run is a voxel's first nobody foresees.
-            const Cell before = (word & bit) == 0 ? Cell() : cell;
+            const float before = (word & bit) == 0 ? -std::numeric_limits<float>::max() : most;
             word |= bit;
-            cell = {before.sum + hit.sum, hit.most > before.most ? hit.most : before.most,
-                    before.rays + hit.rays};
+            most = hit.most > before ? hit.most : before;
         }
     }
-
-    struct Cell {
-        float sum = 0.0F;  ///< of its rays' terms
-        float most = -std::numeric_limits<float>::max();
-        std::uint32_t rays = 0;
-    };
 
     [[nodiscard]] const BrickMask& mask() const noexcept { return mask_; }
-    /// Calls visit(cell, its hits) in ascending order of cells.
-    template <class Visit>
-    void for_each(Visit&& visit) const {
-        for (std::size_t word = 0; word < mask_.size(); ++word) {
-            for (std::uint64_t bits = mask_[word]; bits != 0; bits &= bits - 1) {
-                const auto cell = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
-                visit(static_cast<std::uint16_t>(cell), cells_[cell]);
-            }
-        }
-    }
+    [[nodiscard]] float of(std::size_t cell) const noexcept { return most_[cell]; }
 
   private:
     BrickMask mask_{};
-    std::array<Cell, kBrickVoxels> cells_;  ///< of what is in the mask
+    std::array<float, kBrickVoxels> most_;  ///< of what is in the mask
 };
 
 /// The mean over a voxel's rays of a hit or a miss, if that marks it; a voxel in which rays end is never
@@ -99,19 +85,25 @@ float voted_term(const RayVote& vote, float hit, float miss) {
 /// What one of a crew does at a time: 4 x 4 x 4 bricks.
 constexpr unsigned kPartHeight = kBrickHeight + 2;
 
+/// In cache lines of its own: with each hit its ends are written.
+struct alignas(64) PartTerms {
+    DepthTerms terms;
+};
+
 /// Calls add_below(terms, cube) for each cube, whoever is free, and joins what they say in the cubes' order.
 /// `parts`: working memory.
 template <class AddBelow>
 void add_together(Crew& crew, const std::vector<VoxelCube>& cubes, const AddBelow& add_below,
-                  std::vector<DepthTerms>& parts, DepthTerms& terms) {
+                  std::vector<PartTerms>& parts, DepthTerms& terms) {
     if (parts.size() < cubes.size()) parts.resize(cubes.size());
     crew.work(cubes.size(), [&](std::size_t i) {
-        parts[i].bricks.clear();
-        parts[i].hits.clear();
-        parts[i].miss = terms.miss;
-        add_below(parts[i], cubes[i]);
+        DepthTerms& own = parts[i].terms;
+        own.bricks.clear();
+        own.hits.clear();
+        own.miss = terms.miss;
+        add_below(own, cubes[i]);
     });
-    for (std::size_t i = 0; i < cubes.size(); ++i) terms.append(parts[i]);
+    for (std::size_t i = 0; i < cubes.size(); ++i) terms.append(parts[i].terms);
 }
 
 BrickMask without(BrickMask mask, const BrickMask& others) {
@@ -127,10 +119,11 @@ struct DepthIntegrator::Workspace {
     ImageTraversal traversal;
     MarkGrid marks;
     HitBricks hits;
+    EndVoxels ends;
     ReachWindows reach;
     VoxelRays voxel_rays;
     TallyGrid tallies;
-    std::vector<DepthTerms> parts;  ///< what each thread's cubes say, before they are joined
+    std::vector<PartTerms> parts;  ///< what each thread's cubes say, before they are joined
     std::size_t bricks_before = 0;  ///< of the image before: this one will have about as many
     std::size_t hits_before = 0;
 };
@@ -220,10 +213,10 @@ bool DepthIntegrator::take_sets(const PlacedImage& rays, const Eigen::Isometry3d
         rays, pixel_rays_, lattice_, T_map_camera, [&](MortonCode brick) { return hits.mask_of(brick); },
         marks);
     marks.drain([&](MortonCode brick, const BrickMask& passed) {
-        const BrickCells cells(hits.of(brick));
-        terms.add(brick, without(passed, cells.mask()));
-        cells.for_each([&](std::uint16_t cell, const BrickCells::Cell& hit) {
-            terms.add_hit(brick, {cell, hit.most});
+        const LargestHits largest(hits.of(brick));
+        terms.add(brick, without(passed, largest.mask()));
+        for_each_cell(largest.mask(), [&](std::size_t cell) {
+            terms.add_hit(brick, {static_cast<std::uint16_t>(cell), largest.of(cell)});
         });
     });
     return true;
@@ -249,16 +242,16 @@ bool DepthIntegrator::take_means(const PlacedImage& rays, DepthTerms& terms) {
 }
 
 bool DepthIntegrator::take_nearest(const PlacedImage& rays, const CertainView& view, DepthTerms& terms) {
-    HitBricks& hits = workspace_->hits;
+    EndVoxels& ends = workspace_->ends;
     const KeyBox box = box_of(rays, lattice_);
     ReachWindows& reach = workspace_->reach;
-    if (!hits.begin(box, config_.depth_box_voxels_max)) return false;
+    const std::size_t parts = crew_->size();
+    if (!ends.begin(box, config_.depth_box_voxels_max, parts)) return false;
     reach.begin(rays);
-    crew_->work(HitBricks::kBands + 2, [&](std::size_t part) {
-        if (part < HitBricks::kBands) return hits.find(rays, config_.model.depth, part);
-        part == HitBricks::kBands ? reach.take_shortest(rays) : reach.take_longest(rays);
+    crew_->work(parts + 2, [&](std::size_t part) {
+        if (part < parts) return ends.mark(rays, part);
+        part == parts ? reach.take_shortest(rays) : reach.take_longest(rays);
     });
-    hits.sort();
     const PictureTest picture(view, reach);
     VoxelRays& voxel_rays = workspace_->voxel_rays;
     voxel_rays.begin(view, rays, reach, lattice_);
@@ -275,13 +268,14 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const CertainView& v
     const auto add_brick = [&](DepthTerms& to, MortonCode brick, bool is_all) {
         if (is_all) return to.add(brick, kAll);
         const VoxelRays::Brick place = voxel_rays.brick_at(key_of_morton(brick));
-        const BrickCells cells(hits.of(brick));
-        const BrickMask passed = voxel_rays.passed(place, cells.mask());
-        to.add(brick, without(passed, cells.mask()));
-        cells.for_each([&](std::uint16_t cell, const BrickCells::Cell& hit) {
-            const RayVote vote = voxel_rays.vote_on(place, cell);
-            to.add_hit(brick, {cell, voted_term(vote, hit.sum / static_cast<float>(hit.rays),
-                                                config_.model.miss_log_odds)});
+        const BrickMask hit = ends.of(brick);
+        to.add(brick, without(voxel_rays.passed(place, hit), hit));
+        std::array<RayVote, kBrickVoxels> votes;  // NOLINT: those of the voxels hit are set
+        voxel_rays.vote_on(place, hit, votes);
+        for_each_cell(hit, [&](std::size_t cell) {
+            const auto range_m = static_cast<double>(voxel_rays.range_m(place, cell));
+            const float term = voted_term(votes[cell], config_.model.depth.log_odds(range_m), terms.miss);
+            to.add_hit(brick, {static_cast<std::uint16_t>(cell), term});
         });
     };
     const auto add_below = [&](DepthTerms& to, const VoxelCube& cube) {

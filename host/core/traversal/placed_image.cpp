@@ -200,7 +200,6 @@ HWY_EXPORT(place_row);
 void resize(PlacedImage& image, std::size_t entries) {
     for (auto* values : {&image.end_x, &image.end_y, &image.end_z, &image.reach_m, &image.passed_m})
         values->resize(entries);
-    image.distance_m.clear();
     image.range_m.resize(entries);
     image.key_xy.resize(entries);
     image.key_z.resize(entries);

@@ -45,7 +45,6 @@ struct PlacedImage {
         passed_m;  ///< a ray passes the voxels that it is in before this depth, or ends in them
     /// Measured, along the ray; negative: the ray ends in nothing, as beyond the maximum, or there is none.
     std::vector<double> range_m;        ///< of place_image(), empty otherwise
-    std::vector<float> distance_m;      ///< of place_voxels(), in single precision, empty otherwise
     std::vector<std::uint32_t> key_xy;  ///< of the end's voxel: x, and y in the upper half
     std::vector<std::uint32_t> key_z;   ///< kNoKey where the ray ends in nothing
     DepthPixelCounts counts;

@@ -72,7 +72,7 @@ HWY_INLINE Lanes from_face(Lanes scaled) {
 
 /// Of some pixels at once.
 struct Placed {
-    Lanes range_m, reach_m;
+    Lanes reach_m;
     Lanes end_m[3];
     Lanes scaled[3];        ///< the end in voxels
     hn::Mask<Tag> is_good;  ///< there is a depth
@@ -85,11 +85,10 @@ HWY_INLINE Placed place(const VoxelPlacement& to, Lanes depth, Lanes ray_x, Lane
     const auto squared = [](Lanes value) HWY_ATTR { return hn::Mul(value, value); };
     Placed placed;
     placed.is_good = hn::And(hn::Gt(depth, hn::Zero(f)), hn::Lt(depth, hn::Set(f, HUGE_VALF)));
-    placed.range_m = hn::Sqrt(
+    const Lanes range_m = hn::Sqrt(
         hn::Add(hn::Add(squared(hn::Mul(depth, ray_x)), squared(hn::Mul(depth, ray_y))), squared(depth)));
-    placed.is_beyond = hn::Gt(placed.range_m, range_max);
-    placed.reach_m =
-        hn::IfThenElse(placed.is_beyond, hn::Div(hn::Mul(depth, range_max), placed.range_m), depth);
+    placed.is_beyond = hn::Gt(range_m, range_max);
+    placed.reach_m = hn::IfThenElse(placed.is_beyond, hn::Div(hn::Mul(depth, range_max), range_m), depth);
     const Lanes x = hn::Mul(placed.reach_m, ray_x);
     const Lanes y = hn::Mul(placed.reach_m, ray_y);
     Lanes furthest = hn::Zero(f);
@@ -109,7 +108,7 @@ HWY_INLINE Placed place(const VoxelPlacement& to, Lanes depth, Lanes ray_x, Lane
         hn::And(hn::Lt(to_face, margin),
                 hn::Or(hn::Not(placed.is_beyond), hn::Gt(furthest, hn::Sub(edge, hn::Set(f, 1.0F)))));
     const auto is_at_max = hn::Lt(
-        hn::Abs(hn::Sub(placed.range_m, range_max)),
+        hn::Abs(hn::Sub(range_m, range_max)),
         hn::Add(hn::Mul(hn::Set(f, kAtRangeMax), range_max), hn::Mul(margin, hn::Set(f, to.resolution_m))));
     placed.is_unsure = hn::And(placed.is_good, hn::Or(is_at_face, is_at_max));
     placed.has_keys = hn::Lt(furthest, edge);
@@ -149,7 +148,6 @@ HWY_INLINE void store(const Placed& placed, hn::Mask<Tag> is_used, float half_de
     hn::StoreU(hn::IfThenElse(hn::RebindMask(k, ends_in_something), key_of(placed.scaled[2]),
                               hn::Set(k, PlacedImage::kNoKey)),
                k, image.key_z.data() + at);
-    hn::StoreU(hn::IfThenElse(ends_in_something, placed.range_m, none), f, image.distance_m.data() + at);
     hn::StoreU(hn::IfThenElse(is_used, placed.reach_m, none), f, image.reach_m.data() + at);
     const Lanes less = hn::IfThenElseZero(placed.is_beyond, hn::Set(f, half_depth_m));
     hn::StoreU(hn::IfThenElse(is_used, hn::Sub(placed.reach_m, less), none), f, image.passed_m.data() + at);
@@ -273,10 +271,6 @@ class Placer {
         placed_.key_z[at] = is_beyond ? PlacedImage::kNoKey : key->z;
         placed_.reach_m[at] = reach_m;
         placed_.passed_m[at] = is_beyond || is_at_face(end) ? reach_m - to_.half_depth_m : reach_m;
-        // In the vectors' arithmetic: how many are placed together must not matter.
-        const float x = depth_m * static_cast<float>(ray.x);
-        const float y = depth_m * static_cast<float>(ray.y);
-        placed_.distance_m[at] = is_beyond ? -1.0F : std::sqrt(x * x + y * y + depth_m * depth_m);
     }
 
     [[nodiscard]] bool is_at_face(const Eigen::Vector3f& end) const {
@@ -297,7 +291,6 @@ void resize(PlacedImage& image, std::size_t entries) {
     image.range_m.clear();
     image.reach_m.resize(entries);
     image.passed_m.resize(entries);
-    image.distance_m.resize(entries);
     image.key_xy.resize(entries);
     image.key_z.resize(entries);
 }

@@ -24,26 +24,6 @@ struct SeenPixels {
     int u_first, u_last, v_first, v_last;
 };
 
-/// Those whose rays are no further than `half_m` from a centre at its depth, along the camera's x and y.
-/// Written without the library's functions, which would be compiled for one instruction set and used by all.
-inline SeenPixels seen_pixels(const VoxelRays::Kernel& rays, const Centre& centre, float half_m) {
-    struct Range {
-        int first, last;
-    };
-    const auto range_of = [](float middle, float half, float last) -> Range {
-        const float from = middle - half < 0.0F ? 0.0F : middle - half;
-        const float to = middle + half > last ? last : middle + half;
-        if (!(from <= to)) return {0, -1};
-        const int first = static_cast<int>(from);
-        return {static_cast<float>(first) < from ? first + 1 : first, static_cast<int>(to)};
-    };
-    const float u_per_m = rays.fx / centre.z;
-    const float v_per_m = rays.fy / centre.z;
-    const Range u = range_of(centre.x * u_per_m + rays.u_centre, half_m * u_per_m, rays.last_u);
-    const Range v = range_of(centre.y * v_per_m + rays.v_centre, half_m * v_per_m, rays.last_v);
-    return {u.first, u.last, v.first, v.last};
-}
-
 }  // namespace octoskin
 #endif
 
@@ -152,15 +132,16 @@ HWY_INLINE Passed ask_nearest(const Kernel& rays, const Centre& first, std::size
     return passed;
 }
 
-/// For each voxel of a word the pixels whose rays pass near to its centre.
+/// For each voxel of a word the pixels whose rays are no further than `half_m` from its centre at its depth,
+/// along the camera's x and y.
 class NearPixels {
   public:
-    HWY_INLINE void put(std::size_t bit, const Kernel& rays, const Pixels& centre, Lanes z) {
+    HWY_INLINE void put(std::size_t bit, const Kernel& rays, const Pixels& centre, Lanes z, float half_m) {
         const Tag f;
         const hn::Rebind<std::int32_t, Tag> i;
-        const Lanes half_m = hn::Div(hn::Set(f, rays.near_centre_m), hn::Max(z, hn::Set(f, rays.near_m)));
-        const Lanes half_u = hn::Mul(half_m, hn::Set(f, rays.fx));
-        const Lanes half_v = hn::Mul(half_m, hn::Set(f, rays.fy));
+        const Lanes half = hn::Div(hn::Set(f, half_m), hn::Max(z, hn::Set(f, rays.near_m)));
+        const Lanes half_u = hn::Mul(half, hn::Set(f, rays.fx));
+        const Lanes half_v = hn::Mul(half, hn::Set(f, rays.fy));
         const auto store = [&](Lanes pixel, auto& pixels)
                                HWY_ATTR { hn::Store(hn::ConvertTo(i, pixel), i, pixels.data() + bit); };
         // Beside the image a first one is beyond it, or a last one before it.
@@ -192,7 +173,7 @@ HWY_INLINE std::uint64_t ask_window(const Kernel& rays, const SquareOfPixels& sq
     for (std::size_t bit = 0; bit < 64; bit += hn::Lanes(f)) {
         const Centres centres = centres_of(rays, first, word_cell + bit);
         const Pixels centre = pixels_at(rays, centres);
-        near_pixels.put(bit, rays, centre, centres.z);
+        near_pixels.put(bit, rays, centre, centres.z, rays.near_centre_m);
         longest_m.put(bit, places_of<1>(rays.blocks_width, {within(hn::Sub(centre.u, half), rays.last_u),
                                                             within(hn::Sub(centre.v, half), rays.last_v)}));
     }
@@ -279,11 +260,13 @@ void find_passed(const Kernel& rays, const SquareOfPixels& square, const Centre&
     }
 }
 
-void count_votes(const Kernel& rays, const Centre& centre, RayVote& vote) {
+/// Of one voxel, by those of its rays' pixels.
+HWY_INLINE RayVote vote_of(const Kernel& rays, float z, const SeenPixels& seen) {
     const Tag f;
-    const Lanes begin = hn::Set(f, centre.z - rays.half_depth_m);
-    const Lanes end = hn::Set(f, centre.z + rays.end_m);
-    (void)visit_pixels(seen_pixels(rays, centre, rays.half_edge_m), [&](auto in_row, int u, int v) HWY_ATTR {
+    const Lanes begin = hn::Set(f, z - rays.half_depth_m);
+    const Lanes end = hn::Set(f, z + rays.end_m);
+    RayVote vote;
+    (void)visit_pixels(seen, [&](auto in_row, int u, int v) HWY_ATTR {
         const Lanes reach = loaded(rays, rays.reach_m, u, v);
         const auto is_beyond = hn::Gt(reach, end);
         vote.go_on += static_cast<std::uint32_t>(hn::CountTrue(f, hn::And(in_row, is_beyond)));
@@ -291,6 +274,27 @@ void count_votes(const Kernel& rays, const Centre& centre, RayVote& vote) {
             hn::CountTrue(f, hn::And(in_row, hn::AndNot(is_beyond, hn::Ge(reach, begin)))));
         return false;
     });
+    return vote;
+}
+
+/// VoxelRays::vote_on().
+void count_votes(const Kernel& rays, const Centre& first, const BrickMask& voxels, RayVote* votes) {
+    const Tag f;
+    for (std::size_t number = 0; number < voxels.size(); ++number) {
+        if (voxels[number] == 0) continue;
+        NearPixels near_pixels;
+        const std::size_t word_cell = 64 * number;
+        for (std::size_t bit = 0; bit < 64; bit += hn::Lanes(f)) {
+            const Centres centres = centres_of(rays, first, word_cell + bit);
+            near_pixels.put(bit, rays, pixels_at(rays, centres), centres.z, rays.half_edge_m);
+        }
+        for (std::uint64_t left = voxels[number]; left != 0; left &= left - 1) {
+            const auto bit = static_cast<unsigned>(__builtin_ctzll(left));
+            const std::size_t cell = word_cell + bit;
+            const float z = first.z + rays.offsets[2][cell];
+            votes[cell] = z > rays.near_m ? vote_of(rays, z, near_pixels.of(bit)) : RayVote();
+        }
+    }
 }
 
 }  // namespace octoskin::HWY_NAMESPACE
@@ -388,12 +392,16 @@ BrickMask VoxelRays::passed(const Brick& brick, const BrickMask& ends) const {
     return mask;
 }
 
-RayVote VoxelRays::vote_on(const Brick& brick, std::size_t cell) const {
-    RayVote vote;
-    const Centre centre{brick.x + kernel_.offsets[0][cell], brick.y + kernel_.offsets[1][cell],
-                        brick.z + kernel_.offsets[2][cell]};
-    if (centre.z > kernel_.near_m) HWY_DYNAMIC_DISPATCH(count_votes)(kernel_, centre, vote);
-    return vote;
+void VoxelRays::vote_on(const Brick& brick, const BrickMask& voxels,
+                        std::span<RayVote, kBrickVoxels> votes) const {
+    HWY_DYNAMIC_DISPATCH(count_votes)(kernel_, {brick.x, brick.y, brick.z}, voxels, votes.data());
+}
+
+float VoxelRays::range_m(const Brick& brick, std::size_t cell) const noexcept {
+    const float x = brick.x + kernel_.offsets[0][cell];
+    const float y = brick.y + kernel_.offsets[1][cell];
+    const float z = brick.z + kernel_.offsets[2][cell];
+    return std::sqrt(x * x + y * y + z * z);
 }
 
 }  // namespace octoskin

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "host/core/bricks/brick.hpp"
 #include "host/core/traversal/certain_view.hpp"
@@ -38,7 +39,11 @@ class VoxelRays {
     /// voxel's rays for those where that one does not. None that OctoMap's computeUpdate has not among its
     /// free or occupied ones. About 1 us.
     [[nodiscard]] BrickMask passed(const Brick& brick, const BrickMask& ends) const;
-    [[nodiscard]] RayVote vote_on(const Brick& brick, std::size_t cell) const;
+    /// Of those voxels, by their cell; the others' votes stay as they are. None of a voxel that is not wholly
+    /// before the camera.
+    void vote_on(const Brick& brick, const BrickMask& voxels, std::span<RayVote, kBrickVoxels> votes) const;
+    /// From the camera to a voxel's centre.
+    [[nodiscard]] float range_m(const Brick& brick, std::size_t cell) const noexcept;
 
     /// What a kernel works with.
     struct Kernel {

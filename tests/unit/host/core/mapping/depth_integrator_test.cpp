@@ -87,6 +87,20 @@ TEST(DepthIntegrator, robust_counts_a_hit_of_zero_as_a_beam) {
     EXPECT_THAT(integrate(config, image_of({1.1F})), ElementsAre(update_at(0, -0.4F)));
 }
 
+TEST(DepthIntegrator, fast_lets_rays_vote_and_takes_the_hit_of_the_voxels_centre) {
+    // Voxel 1: one ray ends, two go on. Voxel 3: both end, one of them behind the centre. Voxel 0 is not
+    // wholly before the camera.
+    EXPECT_THAT(integrate(coarse(fast_mapping()), image_of({1.0F, 3.0F, 3.1F})),
+                ElementsAre(update_at(1, (0.9F - 0.8F) / 3.0F), update_at(2, -0.4F), update_at(3, 0.7F)));
+    // All go on, and noise has put an end into voxel 2: it is neither marked nor freed.
+    EXPECT_THAT(integrate(coarse(fast_mapping()), image_of({2.4F, 3.0F, 3.0F})),
+                ElementsAre(update_at(1, -0.4F), update_at(3, 0.7F)));
+    // Nearer than any hit is trusted.
+    MappingConfig config = coarse(fast_mapping());
+    config.model.depth.range_min_m = 1.2;
+    EXPECT_THAT(integrate(config, image_of({1.1F, 2.0F})), ElementsAre(update_at(2, 0.8F)));
+}
+
 TEST(DepthIntegrator, takes_the_range_along_the_ray_and_not_the_depth_for_the_hit) {
     // One pixel that looks 3 to the side for 4 ahead: depth 2 m is a range of 2.5 m.
     const CameraIntrinsics camera{.width = 1, .height = 1, .fx = 4.0, .fy = 4.0, .cx = -2.5, .cy = 0.5};

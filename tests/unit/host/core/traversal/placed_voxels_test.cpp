@@ -27,7 +27,7 @@ PlacedTwice placed_twice(const DepthImage& image, const VoxelLattice& lattice,
     return placed;
 }
 
-/// Of rays that end in something, and of which do, all is equal but for the range's precision.
+/// Of rays that end in something, and of which do, all is equal.
 void expect_same(const PlacedTwice& placed) {
     const auto& [exact, voxels] = placed;
     ASSERT_EQ(voxels.counts.used, exact.counts.used);
@@ -41,7 +41,6 @@ void expect_same(const PlacedTwice& placed) {
         ASSERT_EQ(voxels.key_z[i], exact.key_z[i]);
         ASSERT_EQ(voxels.reach_m[i] < 0.0F, exact.reach_m[i] < 0.0F);
         if (exact.key_z[i] == PlacedImage::kNoKey) {
-            ASSERT_EQ(voxels.distance_m[i], -1.0F);
             ASSERT_NEAR(voxels.reach_m[i], exact.reach_m[i], rounding_m);
             ASSERT_NEAR(voxels.passed_m[i], exact.passed_m[i], rounding_m);
             continue;
@@ -49,7 +48,6 @@ void expect_same(const PlacedTwice& placed) {
         ASSERT_EQ(voxels.key_xy[i], exact.key_xy[i]);
         ASSERT_EQ(voxels.reach_m[i], exact.reach_m[i]);
         ASSERT_EQ(voxels.passed_m[i], exact.passed_m[i]);
-        ASSERT_NEAR(voxels.distance_m[i], exact.range_m[i], 1e-6 * exact.range_m[i]);
     }
 }
 
@@ -81,7 +79,6 @@ TEST(PlacedVoxels, are_those_of_the_exact_ends_near_faces_and_maximum_near_and_f
             };
             EXPECT_TRUE(is_equal(placed.voxels.reach_m, first->reach_m));
             EXPECT_TRUE(is_equal(placed.voxels.passed_m, first->passed_m));
-            EXPECT_TRUE(is_equal(placed.voxels.distance_m, first->distance_m));
             EXPECT_EQ(placed.voxels.lowest, first->lowest);
             EXPECT_EQ(placed.voxels.highest, first->highest);
         });

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
 
+#include "host/core/bricks/brick_sets.hpp"
 #include "host/core/bricks/brick_walk.hpp"
 #include "tests/unit/host/core/traversal/traversal_scene.hpp"
 
@@ -128,7 +130,15 @@ TEST(VoxelRays, say_of_each_voxel_what_all_pixels_that_see_it_say_on_every_instr
                 passed += is_passed ? 1U : 0U;
                 unsure += truth.is_passed == truth.is_perhaps_passed ? 0U : 1U;
                 ASSERT_TRUE(is_passed ? truth.is_perhaps_passed : !truth.is_passed) << name;
-                const RayVote vote = rays.vote_on(brick, cell);
+                BrickMask asked_for{};
+                put_in(asked_for, cell);
+                std::array<RayVote, kBrickVoxels> votes;
+                votes.fill({77, 77});
+                rays.vote_on(brick, asked_for, votes);
+                const RayVote vote = votes[cell];
+                ASSERT_EQ(votes[(cell + 1) % kBrickVoxels].end, 77U) << "not asked for";
+                const double range_m = (lattice.centre_of(key) - scene.T_map_camera.translation()).norm();
+                ASSERT_NEAR(rays.range_m(brick, cell), range_m, 1e-5 * range_m);
                 ASSERT_GE(vote.go_on, truth.least.go_on) << name;
                 ASSERT_LE(vote.go_on, truth.most.go_on) << name;
                 ASSERT_GE(vote.end, truth.least.end) << name;
@@ -146,16 +156,31 @@ TEST(VoxelRays, give_the_same_bits_on_every_instruction_set) {
     const CertainView view(kSmallCamera, lattice, scene.T_map_camera, scene.image);
     ReachWindows reach;
     reach.take(scene.image);
+    constexpr BrickMask kAll = [] {
+        BrickMask all;
+        all.fill(~std::uint64_t{0});
+        return all;
+    }();
     std::vector<BrickMask> first;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> first_votes;
     on_each_instruction_set([&](const std::string& name) {
         VoxelRays rays;
         rays.begin(view, scene.image, reach, lattice);
         std::vector<BrickMask> masks;
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> all_votes;
         for_some_bricks(scene.image, lattice, [&](MortonCode brick) {
-            masks.push_back(rays.passed(rays.brick_at(key_of_morton(brick)), {}));
+            const VoxelRays::Brick place = rays.brick_at(key_of_morton(brick));
+            masks.push_back(rays.passed(place, {}));
+            std::array<RayVote, kBrickVoxels> votes;
+            rays.vote_on(place, kAll, votes);
+            for (const RayVote& vote : votes) all_votes.emplace_back(vote.end, vote.go_on);
         });
-        if (first.empty()) first = masks;
+        if (first.empty()) {
+            first = masks;
+            first_votes = all_votes;
+        }
         EXPECT_EQ(masks, first) << name;
+        EXPECT_EQ(all_votes, first_votes) << name;
     });
 }
 
