@@ -89,7 +89,10 @@ TriangleMesh ellipsoid_mesh(const Eigen::Vector3d& radii_m) {
 }
 
 TriangleMesh plane_mesh(const Eigen::Vector3d& normal, const Eigen::Vector2d& size_m) {
-    const Eigen::Quaterniond q_plane_z = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
+    // Half way from z to the normal; of -z half a turn about x. Eigen's FromTwoVectors takes the compiler ten
+    // seconds.
+    Eigen::Quaterniond q_plane_z(1.0 + normal.z(), -normal.y(), normal.x(), 0.0);
+    q_plane_z = q_plane_z.norm() < 1e-9 ? Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0) : q_plane_z.normalized();
     TriangleMesh mesh;
     for (int corner = 0; corner < 4; ++corner) {
         const Eigen::Vector3d flat((corner & 1) != 0 ? size_m.x() / 2.0 : -size_m.x() / 2.0,

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "tests/support/cases.hpp"
 #include "tests/unit/host/core/traversal/traversal_scene.hpp"
 
 namespace octoskin {
@@ -52,7 +53,7 @@ void expect_same(const PlacedTwice& placed) {
 }
 
 TEST(PlacedVoxels, are_those_of_the_exact_ends_near_faces_and_maximum_near_and_far_from_the_origin) {
-    for (unsigned seed = 0; seed < 40; ++seed) {
+    for (unsigned seed = 0; seed < testing_support::cases(20); ++seed) {
         const double resolution_m = seed % 3 == 0 ? 0.01 : 0.04;
         const VoxelLattice lattice(resolution_m);
         property::RandomGeometry random(seed, resolution_m);

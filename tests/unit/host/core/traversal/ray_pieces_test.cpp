@@ -37,7 +37,7 @@ PlacedImage nasty_rays(unsigned seed, const VoxelLattice& lattice) {
 
 TEST(RayPieces, of_whole_rays_are_what_octomap_visits_on_every_instruction_set) {
     on_each_instruction_set([](const std::string& name) {
-        for (unsigned seed = 0; seed < testing_support::cases(10); ++seed) {
+        for (unsigned seed = 0; seed < testing_support::cases(4); ++seed) {
             const VoxelLattice lattice(seed % 2 == 0 ? 0.04 : 0.1);
             const PlacedImage image = nasty_rays(seed, lattice);
             MarkGrid grid;
@@ -56,7 +56,7 @@ TEST(RayPieces, put_together_are_the_whole_ray_or_the_ray_is_named) {
     std::size_t named = 0;
     std::size_t rays = 0;
     on_each_instruction_set([&](const std::string& name) {
-        for (unsigned seed = 100; seed < 100 + testing_support::cases(4); ++seed) {
+        for (unsigned seed = 100; seed < 100 + testing_support::cases(2); ++seed) {
             const VoxelLattice lattice(0.04);
             const PlacedImage image = nasty_rays(seed, lattice);
             property::RandomGeometry random(seed, 0.04);

@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "host/core/kinematics/turned_z.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -47,8 +49,7 @@ Beam beam(int number, std::optional<double> range_m, const Eigen::Vector3d& dire
 Eigen::Isometry3d T_map_sensor_of(const Beam& beam) {
     Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
     T_map_sensor.translation() = beam.p_map_sensor;
-    T_map_sensor.linear() =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), beam.direction_map).toRotationMatrix();
+    T_map_sensor.linear() = turned_z(beam.direction_map);
     return T_map_sensor;
 }
 

@@ -242,11 +242,15 @@ TEST(Shapes, a_mesh_with_one_triangle_missing_or_turned_is_open) {
 }
 
 TEST(Shapes, a_plane_faces_along_its_normal) {
-    const auto mesh = plane_mesh(Eigen::Vector3d(0.0, 0.6, 0.8), {1.0, 1.0});
-    const auto& t = mesh.triangles[0];
-    const auto vertex = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
-    const Eigen::Vector3d normal = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)).normalized();
-    EXPECT_NEAR((normal - Eigen::Vector3d(0.0, 0.6, 0.8)).norm(), 0.0, 1e-12);
+    using Vector = Eigen::Vector3d;
+    for (const Vector& asked : {Vector(0.0, 0.6, 0.8), Vector(0.0, 0.0, 1.0), Vector(0.0, 0.0, -1.0),
+                                Vector(-1.0, 0.0, 0.0), Vector(0.48, -0.64, -0.6)}) {
+        const auto mesh = plane_mesh(asked, {1.0, 1.0});
+        const auto& t = mesh.triangles[0];
+        const auto vertex = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
+        const Vector normal = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)).normalized();
+        EXPECT_NEAR((normal - asked).norm(), 0.0, 1e-12);
+    }
 }
 
 }  // namespace
