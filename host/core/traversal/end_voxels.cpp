@@ -82,21 +82,21 @@ bool EndVoxels::begin(const KeyBox& box, std::size_t voxels_max, std::size_t par
 }
 
 void EndVoxels::mark(const PlacedImage& rays, std::size_t part) {
-    auto& [words, places, bits] = parts_[part];
-    places.resize(rays.width + kLanesMax);
-    bits.resize(places.size());
+    Part& own = parts_[part];
+    own.places.resize(rays.width + kLanesMax);
+    own.bits.resize(own.places.size());
     const auto number = [](auto value) { return static_cast<std::uint32_t>(value); };
     const WordGrid grid{
         .lowest = {number(box_.lowest.at[0]), number(box_.lowest.at[1]), number(box_.lowest.at[2])},
         .steps = {number(kWords), number(kWords * box_.edge(0)),
                   number(kWords * box_.edge(0) * box_.edge(1))},
-        .nowhere = number(words.size() - 1)};
+        .nowhere = number(own.words.size() - 1)};
     const std::size_t end = std::size_t{rays.height} * (part + 1) / parts_.size();
     for (std::size_t v = std::size_t{rays.height} * part / parts_.size(); v < end; ++v) {
         HWY_DYNAMIC_DISPATCH(find_places)
         (grid, rays.key_xy.data() + v * rays.width, rays.key_z.data() + v * rays.width, rays.width,
-         places.data(), bits.data());
-        const auto set = [&](std::size_t u) { words[places[u]] |= std::uint64_t{1} << bits[u]; };
+         own.places.data(), own.bits.data());
+        const auto set = [&](std::size_t u) { own.words[own.places[u]] |= std::uint64_t{1} << own.bits[u]; };
         // Neighbours' bits are of one word, for which the next would wait.
         const std::size_t quarter = rays.width / 4;
         for (std::size_t u = 0; u < quarter; ++u) {
