@@ -77,6 +77,7 @@ struct Daemon::Parts {
     [[nodiscard]] std::string why_map_ends(const Settings& next) const;
     [[nodiscard]] Result<Next, AppError> read_next() const;
     void keep_within(const MapConfig& next);
+    [[nodiscard]] bool take_limits(const MapConfig& next);
     void reload();
     [[nodiscard]] DaemonView view() const;
     std::string answer(const std::string& line);
@@ -254,6 +255,19 @@ void Daemon::Parts::keep_within(const MapConfig& next) {
     pipeline.limit_fused(both);
 }
 
+/// While the map is still the pipeline's: it must not be lost with what there is no memory for.
+bool Daemon::Parts::take_limits(const MapConfig& next) {
+    try {
+        pipeline.limit_fused(next);
+        return true;
+    } catch (const std::bad_alloc&) {
+        pipeline.limit_fused(settings.mapping.map);
+        reload_error = "there is no memory for the map within its new limits beside the old one";
+        spdlog::error("not reloaded: {}", reload_error);
+        return false;
+    }
+}
+
 void Daemon::Parts::reload() {
     (void)sd_notify(0, "RELOADING=1");
     auto next = read_next();
@@ -266,9 +280,12 @@ void Daemon::Parts::reload() {
         keep_within(next->settings.mapping.map);
         inputs.prepare_for(next->settings.host.rig);
         const std::uint64_t dropped = settle_pipeline();
-        FusedMap map = pipeline.take_fused();
-        map.limit(next->settings.mapping.map);
-        next->pipeline.begin_with(std::move(map));
+        if (!take_limits(next->settings.mapping.map)) {
+            inputs.prepare_for(settings.host.rig);
+            (void)sd_notify(0, "READY=1");
+            return;
+        }
+        next->pipeline.begin_with(pipeline.take_fused());
         settings = std::move(next->settings);
         pipeline = std::move(next->pipeline);
         pipeline.work_beside(&depth_thread);

@@ -120,6 +120,7 @@ class Asking {
         for (std::size_t i = 0; i < request_.path.size(); ++i) {
             const Leg leg = leg_to(i);
             for (std::size_t posture = 0; posture < leg.postures(); ++posture) {
+                if (is_ending_()) return nullptr;
                 leg.position(posture, position);
                 const auto capsules = robot_->pose(position);
                 if (!capsules) return nullptr;  // whoever asks finds it out
@@ -144,10 +145,10 @@ class Asking {
         Json legs = Json::array();
         PostureState worst = PostureState::free;
         std::size_t postures = 0;
-        const LegConfig config{request_.step, request_.reach_m, field_for_path()};
+        const LegConfig config{request_.step, request_.reach_m, field_for_path(), is_ending_};
         for (std::size_t i = 0; i < request_.path.size(); ++i) {
-            if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the path was asked about");
             const auto answer = ask(*robot_, ground_.map, leg_to(i), config);
+            if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the path was asked about");
             if (!answer) {
                 return fail(ExitCode::usage,
                             text_of(answer.error(), *ground_.rig, *ground_.robot, request_.path[i]));
@@ -213,6 +214,8 @@ class Asking {
         Json pockets = Json::array();
         for (std::size_t i = 0; i < std::min(request_.pockets_max, found->pockets().size()); ++i)
             pockets.push_back(pocket_json(found->pockets()[i], i < views.size() ? views[i] : std::nullopt));
+        if (is_ending_())
+            return fail(ExitCode::unavailable, "it ended before the ways there were asked about");
         return Json{{"ok", true},
                     {"resolution_m", ground_.map.resolution_m()},
                     {"region_m3", rounded(static_cast<double>(found->region_voxels()) * voxel_m3)},
@@ -230,7 +233,9 @@ class Asking {
                      {"view", nullptr}};
         if (!view) return json;
         const Leg way(request_.path.front(), view->position, request_.step);
-        const auto answer = ask(*robot_, ground_.map, way, {.step = request_.step, .reach_m = 0.0});
+        const auto answer =
+            ask(*robot_, ground_.map, way,
+                {.step = request_.step, .reach_m = 0.0, .field = nullptr, .is_ending = is_ending_});
         json["view"] = {{"joints", view->position},
                         {"state", name(view->state)},
                         {"sensor", view->sensor},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 namespace octoskin {
 namespace {
@@ -23,7 +24,11 @@ template <class T>
 void take(Json& json, const char* key, T& value) {
     const auto found = json.find(key);
     if (found == json.end()) return;
-    value = found->template get<T>();
+    if constexpr (std::is_same_v<T, std::size_t>) {  // of another kind it would be cut down to a whole number
+        value = found->template get_ref<const Json::number_unsigned_t&>();
+    } else {
+        value = found->template get<T>();
+    }
     json.erase(found);
 }
 template <class T>

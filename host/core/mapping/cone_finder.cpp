@@ -112,9 +112,11 @@ Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam) {
     voxels_.cap.clear();
     voxels_.middle.clear();
     const double cap_m = beam.range_m ? model.cap_half_thickness_m + model.cap_sigmas * beam.sigma_m : 0.0;
+    // Wider ones have slices that are no ellipses (SlicedCone).
+    constexpr double kCoreMax_rad = 0.6;
     const double core_rad =
-        std::min(beam.optics.half_angle_rad,
-                 beam.optics.sigma_rad * std::sqrt(-2.0 * std::log(model.core_weight_min)));
+        std::min({beam.optics.half_angle_rad,
+                  beam.optics.sigma_rad * std::sqrt(-2.0 * std::log(model.core_weight_min)), kCoreMax_rad});
     find_passed(beam, {.end_m = length_m - cap_m,
                        .tan_core = std::tan(core_rad),
                        .margin_m = model.core_margin_voxels * lattice_.resolution_m()});

@@ -150,13 +150,37 @@ class FusedMap::CountedBrick {
     BrickView other_;
 };
 
+namespace {
+
+/// False: there is no memory for it.
+bool is_listed(std::vector<VoxelKey>& keys, VoxelKey key) noexcept {
+    try {
+        keys.push_back(key);
+        return true;
+    } catch (const std::bad_alloc&) {
+        return false;
+    }
+}
+
+ConeVoxels without(const ConeVoxels& cone, const std::vector<VoxelKey>& refused) {
+    const auto is_refused = [&](VoxelKey key) { return std::ranges::find(refused, key) != refused.end(); };
+    ConeVoxels taken = cone;
+    std::erase_if(taken.passed, is_refused);
+    std::erase_if(taken.cap, [&](const CapVoxel& voxel) { return is_refused(voxel.key); });
+    return taken;
+}
+
+}  // namespace
+
 void FusedMap::apply(const ConeVoxels& cone, const ConeModel& model, std::vector<VoxelUpdate>* changes) {
-    const std::uint64_t refused = counters_.refused();
+    std::vector<VoxelKey> refused;
+    bool names_refused = true;
     CountedBrick brick(*this);
     const auto add = [&](VoxelKey key, float hits, float misses) {
         brick.go_to(key);
         const auto change = brick.add(cell_of(key), hits, misses);
         ++(counters_.*(change ? &MapCounters::applied : change.error()));
+        if (!change && !is_listed(refused, key)) names_refused = false;
         if (changes != nullptr && change && *change != 0.0F) changes->push_back({key, *change});
     };
     // A voxel comes once in a cap: its share is of what it was before, whoever got theirs first.
@@ -170,7 +194,12 @@ void FusedMap::apply(const ConeVoxels& cone, const ConeModel& model, std::vector
         for (const CapVoxel& voxel : cone.cap) add(voxel.key, model.hit_mass * blame_of(voxel) / sum, 0.0F);
     }
     for (const VoxelKey key : cone.passed) add(key, 0.0F, model.miss_mass);
-    if (confirmations_.has_begun() && counters_.refused() == refused) confirm(cone);
+    if (!confirmations_.has_begun() || !names_refused) return;
+    if (refused.empty()) return confirm(cone);
+    try {
+        confirm(without(cone, refused));
+    } catch (const std::bad_alloc&) {  // then nobody has confirmed the others either
+    }
 }
 
 void FusedMap::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes) {
@@ -195,11 +224,19 @@ void FusedMap::fuse(MortonCode brick) {
     const BrickView hits = counts_.hits.find(brick);
     const BrickView misses = counts_.misses.find(brick);
     const BrickView other = counts_.other.find(brick);
+    const BrickView before = tree_.find(brick);
+    const auto after = [&](std::size_t cell) {
+        return fusion_.log_odds(other.at(cell), {hits.at(cell), misses.at(cell)},
+                                !std::isnan(before.at(cell)));
+    };
+    std::size_t cell = 0;
+    while (cell < kBrickVoxels && std::isnan(after(cell))) ++cell;
+    if (cell == kBrickVoxels) return;  // counted, and nothing known: it needs no place
+    BrickValues fused;
+    for (std::size_t i = 0; i < kBrickVoxels; ++i) fused[i] = after(i);
     BrickValues& values = tree_.open(brick);
-    for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) {
-        const float after =
-            fusion_.log_odds(other.at(cell), {hits.at(cell), misses.at(cell)}, !std::isnan(values[cell]));
-        if (!std::isnan(after)) set_known(values[cell], after);
+    for (; cell < kBrickVoxels; ++cell) {
+        if (!std::isnan(fused[cell])) set_known(values[cell], fused[cell]);
     }
 }
 
@@ -288,6 +325,14 @@ void FusedMap::apply_beside_counts(const DepthTerms& terms, const BrickTerms& br
         });
     }
     counters_.*(done ? &MapCounters::applied : done.error()) += passed + new_hits.size();
+}
+
+void FusedMap::forget_counts_of(std::span<const VoxelUpdate> voxels) {
+    for (const VoxelUpdate& voxel : voxels) {
+        BrickMask mask{};
+        put_in(mask, cell_of(voxel.key));
+        if (counts_.has(brick_of(voxel.key))) counts_.forget(brick_of(voxel.key), mask);
+    }
 }
 
 void FusedMap::forget_counts() noexcept {

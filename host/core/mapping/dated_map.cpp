@@ -33,12 +33,13 @@ BrickMask known_in(const BrickValues& values) {
 }  // namespace
 
 void FusedMap::go_on(HostTime now) noexcept {
-    const bool begins = !confirmations_.has_begun();
+    has_undated_ = has_undated_ || !confirmations_.has_begun();
     try {
         if (!confirmations_.go_on(now)) return;
-        if (begins) date_all();
+        if (has_undated_) date_all();
+        has_undated_ = false;
         if (config_.age.unknown_after_s > 0) expire();
-    } catch (const std::bad_alloc&) {  // what is too old is forgotten in a later second
+    } catch (const std::bad_alloc&) {  // what is too old is forgotten, or dated, in a later second
         ++counters_.undated;
     }
 }
@@ -46,6 +47,7 @@ void FusedMap::go_on(HostTime now) noexcept {
 /// What is there when the clock begins: nobody knows since when.
 void FusedMap::date_all() {
     tree_.for_each([&](MortonCode brick, const BrickView&) {
+        if (!confirmations_.find(brick).is_unknown()) return;  // an earlier second came so far
         if (has_room_to_date(brick)) {
             confirmations_.take_from_before(brick);
         } else {

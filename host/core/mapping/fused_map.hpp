@@ -66,14 +66,18 @@ class FusedMap {
 
     /// From now on other limits hold, at the same resolution (asserted): what lies beyond new clamps is
     /// clamped; bricks beyond a smaller memory stay. The counters begin anew. O(voxels) if the clamps change.
-    /// Throws std::bad_alloc if a copy holds the voxels, too, and there is no memory for others; then nothing
-    /// is changed.
+    /// Throws std::bad_alloc if there is no memory for as many voxels once more, if the clamps or the counts'
+    /// model change; then nothing is changed.
     void limit(const MapConfig& config);
 
     /// What was counted becomes log-odds like any other, and counting begins anew: what a file keeps of a
     /// map. Where times come to decide what is known (`age.unknown_after_s`), they are forgotten, too, and
     /// the clock begins anew. O(what was counted).
     void forget_counts() noexcept;
+
+    /// What range sensors counted in these voxels is forgotten; a term for each of them is to follow. Throws
+    /// std::bad_alloc.
+    void forget_counts_of(std::span<const VoxelUpdate> voxels);
 
     /// Time goes on, to when what is applied next was measured. A map that was never told the time keeps
     /// none of its voxels'; told it first, nobody knows how old what it holds is, and that is stale until it
@@ -218,6 +222,7 @@ class FusedMap {
     RangeCounts counts_;
     CountFusion fusion_;
     Confirmations confirmations_;
+    bool has_undated_ = false;  ///< what was there when the clock began has not all been dated
     std::size_t known_voxels_ = 0;
 };
 

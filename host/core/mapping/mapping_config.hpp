@@ -1,5 +1,5 @@
-// Everything that decides how measurements become voxels. Two named configurations ship; a file may override
-// any value (host/io/mapping).
+// Everything that decides how measurements become voxels. Three named configurations ship; a file may
+// override any value (host/io/mapping).
 #pragma once
 
 #include <cstdint>
@@ -61,9 +61,10 @@ struct MappingConfig {
 
 /// The paper's equations as they stand: no filter, one term per voxel and frame.
 [[nodiscard]] MappingConfig paper_mapping();
-/// The default: depth filtered, each voxel's term the mean of its beams' terms.
+/// Depth filtered, each voxel's term the mean of its beams' terms: the default before `fast`, and its
+/// reference.
 [[nodiscard]] MappingConfig robust_mapping();
-/// Depth filtered, each voxel asked by one ray.
+/// The default: depth filtered, each voxel asked what the rays about its centre do.
 [[nodiscard]] MappingConfig fast_mapping();
 
 }  // namespace octoskin

@@ -13,7 +13,8 @@ std::size_t postures_of(std::span<const double> from, std::span<const double> to
     for (std::size_t i = 0; i < from.size(); ++i) longest = std::max(longest, std::abs(to[i] - from[i]));
     // Rounding must not make one more of a way that is a whole number of steps.
     constexpr double kRounding = 1e-9;
-    return static_cast<std::size_t>(std::max(1.0, std::ceil(longest / step - kRounding)));
+    constexpr double kMost = 1e15;  // more would not fit a number; nobody asks about so many
+    return static_cast<std::size_t>(std::clamp(std::ceil(longest / step - kRounding), 1.0, kMost));
 }
 
 bool is_blocked(const LegAnswer& answer, double reach_m) {
@@ -57,6 +58,7 @@ Result<LegAnswer, PostureFault> ask(const RobotQuery& robot, const FusedMap& map
     LegAnswer answer;
     std::vector<double> position(robot.robot().joint_count());
     for (std::size_t i = 0; i < leg.postures() && !is_blocked(answer, config.reach_m); ++i) {
+        if (config.is_ending && config.is_ending()) break;
         leg.position(i, position);
         const auto capsules = robot.pose(position);
         if (!capsules) return unexpected(capsules.error());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct LegConfig {
     double reach_m = 0.5;  ///< up to here clearances are told; 0: none are
     /// Of the same map: then distances come from there, and are the same. Null: they are searched for.
     const DistanceField* field = nullptr;
+    /// Asked before each posture: once it says true, the others are left out. Empty: nobody ends it.
+    std::function<bool()> is_ending = {};
 };
 
 /// The postures on the straight way in joint space from one configuration to another: the first is one step
@@ -25,7 +28,7 @@ class Leg {
   public:
     Leg(std::span<const double> from, std::span<const double> to, double step);
 
-    /// At least 1. The caller bounds it: it is as large as the way is long.
+    /// At least 1, and 1e15 at most. The caller bounds it: it is as large as the way is long.
     [[nodiscard]] std::size_t postures() const noexcept { return postures_; }
     /// Of the way, up to 1.
     [[nodiscard]] double share(std::size_t index) const noexcept {

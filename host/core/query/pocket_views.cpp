@@ -64,8 +64,9 @@ class Postures {
     void next(std::vector<double>& position) {
         const bool is_near = (count_++ % 2) == 0;
         for (std::size_t i = 0; i < position.size(); ++i) {
-            const double lowest = std::max(limits_[i].min, -std::numbers::pi);  // a continuous joint has none
-            const double highest = std::min(limits_[i].max, std::numbers::pi);
+            // A continuous joint has no limits.
+            const double lowest = std::isfinite(limits_[i].min) ? limits_[i].min : -std::numbers::pi;
+            const double highest = std::isfinite(limits_[i].max) ? limits_[i].max : std::numbers::pi;
             const double wanted = is_near ? from_[i] + spread_ * normal_(random_)
                                           : lowest + (highest - lowest) * unit_(random_);
             position[i] = std::clamp(wanted, limits_[i].min, limits_[i].max);

@@ -34,7 +34,7 @@ class UnknownPockets {
     /// Voxels are connected by their faces, and belong to the region if their centres do. Pockets of fewer
     /// than `voxels_min` voxels, and those that no free voxel borders, are left out. Empty: the region is not
     /// finite, reaches out of the octree, or its box has more than kVoxelsMax voxels. About 30 ns a voxel of
-    /// the box, and two bytes for as long as it works; throws std::bad_alloc.
+    /// the box, and for as long as it works a byte and up to 16 more if it is unknown; throws std::bad_alloc.
     [[nodiscard]] static std::optional<UnknownPockets> find(const FusedMap& map, const PocketRegion& region,
                                                             std::size_t voxels_min);
 

@@ -12,7 +12,7 @@
 
 namespace octoskin {
 
-/// A bit for each voxel of a box. Its memory stays for the next image.
+/// A bit for each voxel of a box and part. Its memory stays for the next image.
 class EndVoxels {
   public:
     /// Takes all rays that end in something; `box` holds them. False, and nothing done, if it has over
