@@ -116,7 +116,7 @@ std::string QueryDesk::answer(Question question) {
         const auto request = read_query(question.line);
         json = request ? answer_query(*request,
                                       {&question.setup->rig, &question.setup->robot, std::move(question.map),
-                                       std::move(question.present), &field_},
+                                       std::move(question.present), &field_, true},
                                       [this] { return is_ending_.load(); })
                        : query_refused(request.error());
     } catch (const std::exception& error) {  // no memory, most likely

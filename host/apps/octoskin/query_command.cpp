@@ -44,7 +44,7 @@ struct QueryOptions {
     std::filesystem::path rig;
     std::filesystem::path robot;
     std::filesystem::path socket = default_control_socket();
-    std::string joints;
+    std::optional<std::string> joints;
     std::string path;
     bool is_json = false;
     bool lists_unknown = false;
@@ -97,10 +97,10 @@ QueryRequest request_of(const QueryOptions& options) {
     request.kind = options.lists_unknown ? QueryKind::pockets : QueryKind::postures;
     request.own_space_m = options.own_space_m;
     request.z_min_m = options.z_min_m;
-    if (!options.joints.empty()) {
-        const auto position = numbers_of(options.joints);
+    if (options.joints) {
+        const auto position = numbers_of(*options.joints);
         if (!position || position->empty())
-            throw CommandFailure({ExitCode::usage, "--joints '" + options.joints +
+            throw CommandFailure({ExitCode::usage, "--joints '" + *options.joints +
                                                        "': expected numbers with commas between them"});
         request.path = {*position};
     } else if (options.path == "-") {
@@ -131,7 +131,7 @@ Json ask_map_file(const QueryOptions& options, const QueryRequest& request) {
     auto map = load_map(options.map, limits);
     if (!map) throw CommandFailure(reading_error(options.map, {ExitCode::bad_data, map.error().message}));
     KeptField field;
-    return answer_query(request, {&setup->rig, &setup->robot, std::move(map).value(), {}, &field});
+    return answer_query(request, {&setup->rig, &setup->robot, std::move(map).value(), {}, &field, false});
 }
 
 Json ask_running_daemon(const QueryOptions& options, const QueryRequest& request) {

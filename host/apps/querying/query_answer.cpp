@@ -76,6 +76,10 @@ class Asking {
         if (!robot) return fail(ExitCode::usage, text_of(robot.error()));
         robot_.emplace(std::move(robot).value());
         if (request_.path.empty() && !ground_.present.empty()) request_.path = {ground_.present};
+        if (request_.own_space_m && ground_.is_live && ground_.present.empty())
+            return fail(
+                ExitCode::unavailable,
+                "nobody knows how the arm stands, so nothing is its own space: see that joint states come");
         if (request_.path.empty() && (request_.kind == QueryKind::postures || request_.own_space_m))
             return fail(ExitCode::unavailable,
                         "nobody knows how the arm stands: give its joints, or see that joint states come");

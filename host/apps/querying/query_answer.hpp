@@ -25,12 +25,15 @@ struct QueryGround {
     std::vector<double> present;
     /// For distances; what was asked of it before is kept. Null: they are searched for.
     KeptField* field = nullptr;
+    /// The arm stands somewhere now: without `present` nothing is its own space. Else it stands where the
+    /// path begins.
+    bool is_live = false;
 };
 
 /// "ok": true, or false with "error" and "code", the exit code for it. Of postures: "state", the worst, and
 /// "legs", one for each configuration: the way to it from the one before. Of pockets: "pockets". All keys:
-/// docs/planner.md. Some 0.1 ms a posture; `is_ending` is asked between legs and before each posture that is
-/// tried for a view, and true ends it with an error.
+/// docs/planner.md. Some 0.1 ms a posture; `is_ending` is asked before each posture, and true ends it with an
+/// error.
 [[nodiscard]] nlohmann::ordered_json answer_query(
     const QueryRequest& request, QueryGround ground,
     const std::function<bool()>& is_ending = [] { return false; });

@@ -2,8 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 
+#include "host/core/mapping/mapping_config.hpp"
+#include "host/core/query/path_query.hpp"
 #include "tests/unit/host/core/query/two_joint_arm.hpp"
 
 namespace octoskin {
@@ -155,6 +158,54 @@ TEST_F(QueryAnswer, lists_pockets_with_a_view_and_the_way_there) {
     EXPECT_THAT(query_text(answer), HasSubstr("   1  4.10 l about (0.880, 0.000, 0.320) m"));
     request.path.clear();  // nobody knows how the arm stands
     EXPECT_TRUE(ask(request, holed).at("pockets").at(0).at("view").is_null());
+}
+
+TEST_F(QueryAnswer, takes_own_space_for_free_whatever_range_sensors_counted_there) {
+    const MappingConfig config = fast_mapping();
+    FusedMap map(config.map);
+    constexpr std::array<std::uint16_t, 2> kSides{32736, 32768};
+    for (const auto x : kSides) {
+        for (const auto y : kSides) {
+            for (const auto z : kSides) ASSERT_TRUE(map.set_cube({{x, y, z}, 5}, -1.0F));
+        }
+    }
+    const VoxelKey inside = *map.key_of({0.2, 0.02, 0.3});
+    ConeVoxels cone;
+    cone.cap = {{inside, 1.0F}};
+    cone.middle = {inside};
+    FusedMap marked = map.copy();
+    marked.mark(cone, 2.0F);
+    for (int i = 0; i < 6; ++i) map.apply(cone, config.cone);
+    QueryRequest request = path({{0.0, 0.0}});
+    for (const FusedMap* counted : {&map, &marked}) {
+        request.own_space_m.reset();
+        ASSERT_EQ(ask(request, *counted).at("state"), "occupied");
+        request.own_space_m = 0.04;
+        EXPECT_EQ(ask(request, *counted).at("state"), "free");
+    }
+}
+
+TEST_F(QueryAnswer, of_a_daemon_that_does_not_know_how_the_arm_stands_takes_nothing_for_its_own_space) {
+    QueryRequest request = path({{0.0, 0.0}});
+    request.own_space_m = 0.04;
+    const Json answer =
+        answer_query(request, {&arm_.rig, &arm_.robot, map_.copy(), {}, nullptr, true}, [] { return false; });
+    EXPECT_FALSE(answer.at("ok").get<bool>());
+    EXPECT_THAT(answer.at("error").get<std::string>(), HasSubstr("nobody knows how the arm stands"));
+}
+
+TEST(Leg, has_no_more_postures_than_fit_a_number_and_one_at_least) {
+    const std::array from{0.0, 0.0};
+    EXPECT_EQ(Leg(from, std::array{1e20, 0.0}, 0.05).postures(), std::size_t{1'000'000'000'000'000});
+    EXPECT_EQ(Leg(from, from, 0.05).postures(), 1U);
+}
+
+TEST_F(QueryAnswer, ends_between_two_postures_of_a_leg) {
+    int asked = 0;
+    const Json answer = answer_query(path({{0.0, 0.0}, {3.0, 0.0}}),
+                                     {&arm_.rig, &arm_.robot, map_.copy(), {}}, [&] { return ++asked > 5; });
+    EXPECT_FALSE(answer.at("ok").get<bool>());
+    EXPECT_LT(asked, 12);
 }
 
 }  // namespace

@@ -65,6 +65,9 @@ TEST(QueryRequest, is_refused_by_name_of_what_is_wrong_with_it) {
     EXPECT_THAT(fault("query {\"padding_m\": -1}"), HasSubstr("padding_m is -1; expected 0 to 1"));
     EXPECT_THAT(fault("query {\"reach_m\": 1e9}"), HasSubstr("reach_m is"));
     EXPECT_THAT(fault("query {\"step\": 0}"), HasSubstr("step is 0"));
+    for (const char* number : {"1e300", "-0.5", "2.7", "-1"}) {
+        EXPECT_THAT(fault(std::string("query {\"pockets_max\": ") + number + "}"), HasSubstr("wrong kind"));
+    }
     EXPECT_THAT(fault("query {\"own_space_m\": 2}"), HasSubstr("own_space_m is 2"));
     EXPECT_THAT(fault("query {\"pockets\": true, \"radius_m\": 50}"), HasSubstr("radius_m is 50"));
     EXPECT_THAT(fault("query {\"views_tried\": 1000000}"), HasSubstr("views_tried is"));
