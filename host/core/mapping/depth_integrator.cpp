@@ -123,7 +123,7 @@ struct DepthIntegrator::Workspace {
     ReachWindows reach;
     VoxelRays voxel_rays;
     TallyGrid tallies;
-    std::vector<PartTerms> parts;  ///< what each thread's cubes say, before they are joined
+    std::vector<PartTerms> parts;   ///< what each thread's cubes say, before they are joined
     std::size_t bricks_before = 0;  ///< of the image before: this one will have about as many
     std::size_t hits_before = 0;
 };

@@ -15,7 +15,8 @@ namespace octoskin {
 /// A vector of any instruction set holds no more entries.
 inline constexpr std::size_t kLanesMax = 64;
 
-/// What placed rows add up to. In a cache line of its own: each band's are written with every vector of pixels.
+/// What placed rows add up to. In a cache line of its own: each band's are written with every vector of
+/// pixels.
 struct alignas(64) RowSums {
     DepthPixelCounts counts;
     Eigen::Vector3f lowest;  ///< of all ends
