@@ -78,6 +78,7 @@ struct Daemon::Parts {
     [[nodiscard]] Result<Next, AppError> read_next() const;
     void keep_within(const MapConfig& next);
     [[nodiscard]] bool take_limits(const MapConfig& next);
+    [[nodiscard]] bool go_on_with(Next& next);
     void reload();
     [[nodiscard]] DaemonView view() const;
     std::string answer(const std::string& line);
@@ -263,40 +264,40 @@ bool Daemon::Parts::take_limits(const MapConfig& next) {
     } catch (const std::bad_alloc&) {
         pipeline.limit_fused(settings.mapping.map);
         reload_error = "there is no memory for the map within its new limits beside the old one";
-        spdlog::error("not reloaded: {}", reload_error);
         return false;
     }
+}
+
+/// False, and as before: there is no memory for that.
+bool Daemon::Parts::go_on_with(Next& next) {
+    recordings.stop(monotonic_now(), "the daemon read its files anew (SIGHUP)");  // whole with the old ones
+    keep_within(next.settings.mapping.map);
+    inputs.prepare_for(next.settings.host.rig);
+    const std::uint64_t dropped = settle_pipeline();
+    if (!take_limits(next.settings.mapping.map)) {
+        inputs.prepare_for(settings.host.rig);
+        return false;
+    }
+    next.pipeline.begin_with(pipeline.take_fused());
+    settings = std::move(next.settings);
+    pipeline = std::move(next.pipeline);
+    pipeline.work_beside(&depth_thread);
+    inputs.change_rig(settings.host.rig);
+    queries.change_robot(settings.host);
+    reload_error.clear();
+    reloaded = monotonic_now();
+    spdlog::info("reloaded: rig '{}'; the map goes on; {} of what waited was not used",
+                 settings.host.rig.name, dropped);
+    tell_warnings(settings);
+    return true;
 }
 
 void Daemon::Parts::reload() {
     (void)sd_notify(0, "RELOADING=1");
     auto next = read_next();
-    if (!next) {
-        reload_error = next.error().message;
+    if (!next) reload_error = next.error().message;
+    if (!next || !go_on_with(*next))
         spdlog::error("not reloaded");  // why, the next look at the problems tells
-    } else {
-        recordings.stop(monotonic_now(),
-                        "the daemon read its files anew (SIGHUP)");  // whole with the old ones
-        keep_within(next->settings.mapping.map);
-        inputs.prepare_for(next->settings.host.rig);
-        const std::uint64_t dropped = settle_pipeline();
-        if (!take_limits(next->settings.mapping.map)) {
-            inputs.prepare_for(settings.host.rig);
-            (void)sd_notify(0, "READY=1");
-            return;
-        }
-        next->pipeline.begin_with(pipeline.take_fused());
-        settings = std::move(next->settings);
-        pipeline = std::move(next->pipeline);
-        pipeline.work_beside(&depth_thread);
-        inputs.change_rig(settings.host.rig);
-        queries.change_robot(settings.host);
-        reload_error.clear();
-        reloaded = monotonic_now();
-        spdlog::info("reloaded: rig '{}'; the map goes on; {} of what waited was not used",
-                     settings.host.rig.name, dropped);
-        tell_warnings(settings);
-    }
     (void)sd_notify(0, "READY=1");
 }
 

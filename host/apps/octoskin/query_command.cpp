@@ -131,7 +131,7 @@ Json ask_map_file(const QueryOptions& options, const QueryRequest& request) {
     auto map = load_map(options.map, limits);
     if (!map) throw CommandFailure(reading_error(options.map, {ExitCode::bad_data, map.error().message}));
     KeptField field;
-    return answer_query(request, {&setup->rig, &setup->robot, std::move(map).value(), {}, &field, false});
+    return answer_query(request, {&setup->rig, &setup->robot, std::move(map).value(), {}, &field});
 }
 
 Json ask_running_daemon(const QueryOptions& options, const QueryRequest& request) {

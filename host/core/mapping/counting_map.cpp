@@ -153,7 +153,7 @@ class FusedMap::CountedBrick {
 namespace {
 
 /// False: there is no memory for it.
-bool is_listed(std::vector<VoxelKey>& keys, VoxelKey key) noexcept {
+bool has_listed(std::vector<VoxelKey>& keys, VoxelKey key) noexcept {
     try {
         keys.push_back(key);
         return true;
@@ -180,7 +180,7 @@ void FusedMap::apply(const ConeVoxels& cone, const ConeModel& model, std::vector
         brick.go_to(key);
         const auto change = brick.add(cell_of(key), hits, misses);
         ++(counters_.*(change ? &MapCounters::applied : change.error()));
-        if (!change && !is_listed(refused, key)) names_refused = false;
+        if (!change && !has_listed(refused, key)) names_refused = false;
         if (changes != nullptr && change && *change != 0.0F) changes->push_back({key, *change});
     };
     // A voxel comes once in a cap: its share is of what it was before, whoever got theirs first.
@@ -225,17 +225,16 @@ void FusedMap::fuse(MortonCode brick) {
     const BrickView misses = counts_.misses.find(brick);
     const BrickView other = counts_.other.find(brick);
     const BrickView before = tree_.find(brick);
-    const auto after = [&](std::size_t cell) {
-        return fusion_.log_odds(other.at(cell), {hits.at(cell), misses.at(cell)},
-                                !std::isnan(before.at(cell)));
-    };
-    std::size_t cell = 0;
-    while (cell < kBrickVoxels && std::isnan(after(cell))) ++cell;
-    if (cell == kBrickVoxels) return;  // counted, and nothing known: it needs no place
     BrickValues fused;
-    for (std::size_t i = 0; i < kBrickVoxels; ++i) fused[i] = after(i);
+    bool is_any_known = false;
+    for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) {
+        fused[cell] =
+            fusion_.log_odds(other.at(cell), {hits.at(cell), misses.at(cell)}, !std::isnan(before.at(cell)));
+        is_any_known = is_any_known || !std::isnan(fused[cell]);
+    }
+    if (!is_any_known) return;  // counted only: it needs no place
     BrickValues& values = tree_.open(brick);
-    for (; cell < kBrickVoxels; ++cell) {
+    for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) {
         if (!std::isnan(fused[cell])) set_known(values[cell], fused[cell]);
     }
 }
@@ -328,11 +327,10 @@ void FusedMap::apply_beside_counts(const DepthTerms& terms, const BrickTerms& br
 }
 
 void FusedMap::forget_counts_of(std::span<const VoxelUpdate> voxels) {
-    for (const VoxelUpdate& voxel : voxels) {
-        BrickMask mask{};
-        put_in(mask, cell_of(voxel.key));
-        if (counts_.has(brick_of(voxel.key))) counts_.forget(brick_of(voxel.key), mask);
-    }
+    if (counts_.empty()) return;
+    for_each_run(voxels, [this](MortonCode brick, const BrickMask& mask) {
+        if (counts_.has(brick)) counts_.forget(brick, mask);
+    });
 }
 
 void FusedMap::forget_counts() noexcept {

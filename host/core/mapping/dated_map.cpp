@@ -76,17 +76,7 @@ void FusedMap::confirm(MortonCode brick, const BrickMask& voxels, SensorKind kin
 }
 
 void FusedMap::confirm(std::span<const VoxelUpdate> updates, SensorKind kind) noexcept {
-    while (!updates.empty()) {
-        const VoxelKey first = updates.front().key;
-        BrickMask voxels{};
-        std::size_t done = 0;
-        for (; done < updates.size() && are_of_one_brick(updates[done].key, first); ++done) {
-            const float term = updates[done].log_odds;
-            if (std::isfinite(term) && term != 0.0F) put_in(voxels, cell_of(updates[done].key));
-        }
-        if (count_of(voxels) > 0) confirm(brick_of(first), voxels, kind);
-        updates = updates.subspan(done);
-    }
+    for_each_run(updates, [&](MortonCode brick, const BrickMask& voxels) { confirm(brick, voxels, kind); });
 }
 
 void FusedMap::confirm(const DepthTerms& terms, const BrickTerms& brick) noexcept {

@@ -270,7 +270,8 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const CertainView& v
         const VoxelRays::Brick place = voxel_rays.brick_at(key_of_morton(brick));
         const BrickMask hit = ends.of(brick);
         to.add(brick, without(voxel_rays.passed(place, hit), hit));
-        std::array<RayVote, kBrickVoxels> votes;  // NOLINT: those of the voxels hit are set
+        if (count_of(hit) == 0) return;
+        std::array<RayVote, kBrickVoxels> votes;
         voxel_rays.vote_on(place, hit, votes);
         for_each_cell(hit, [&](std::size_t cell) {
             const auto range_m = static_cast<double>(voxel_rays.range_m(place, cell));

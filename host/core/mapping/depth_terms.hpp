@@ -2,12 +2,14 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "host/core/bricks/brick.hpp"
+#include "host/core/bricks/brick_sets.hpp"
 
 namespace octoskin {
 
@@ -17,6 +19,26 @@ struct VoxelUpdate {
     float log_odds = 0.0F;
     friend bool operator==(const VoxelUpdate&, const VoxelUpdate&) = default;
 };
+
+/// Calls visit(brick, voxels) for each run of updates in one brick, with those that have a finite term other
+/// than 0; not for a run of none.
+template <class Visit>
+void for_each_run(std::span<const VoxelUpdate> updates, const Visit& visit) {
+    while (!updates.empty()) {
+        const VoxelKey first = updates.front().key;
+        BrickMask voxels{};
+        bool has_any = false;
+        std::size_t done = 0;
+        for (; done < updates.size() && are_of_one_brick(updates[done].key, first); ++done) {
+            const float term = updates[done].log_odds;
+            if (!std::isfinite(term) || term == 0.0F) continue;
+            put_in(voxels, cell_of(updates[done].key));
+            has_any = true;
+        }
+        if (has_any) visit(brick_of(first), voxels);
+        updates = updates.subspan(done);
+    }
+}
 
 /// A term of its own for a voxel of a brick.
 struct CellTerm {

@@ -79,7 +79,8 @@ TEST(EndVoxels, are_none_outside_of_the_box_and_forgotten_with_the_next_image) {
     const VoxelLattice lattice(0.04);
     const PlacedImage rays = placed(64, 40, lattice, 0.0);
     EndVoxels ends;
-    ASSERT_TRUE(ends.take(rays, box_of(rays, lattice), kVoxelsMax));
+    ASSERT_TRUE(ends.begin(box_of(rays, lattice), kVoxelsMax, 1));
+    ends.mark(rays, 0);
     const BrickBox box = BrickBox::of(box_of(rays, lattice));
     for (const Axis axis : {Axis::x, Axis::y, Axis::z}) {
         EXPECT_EQ(ends.of(morton_of(box.lowest.moved(axis, -1).cube().lowest)), BrickMask{});
@@ -87,7 +88,8 @@ TEST(EndVoxels, are_none_outside_of_the_box_and_forgotten_with_the_next_image) {
     }
     PlacedImage nothing = rays;
     nothing.key_z.assign(nothing.key_z.size(), PlacedImage::kNoKey);
-    ASSERT_TRUE(ends.take(nothing, box_of(rays, lattice), kVoxelsMax));
+    ASSERT_TRUE(ends.begin(box_of(rays, lattice), kVoxelsMax, 1));
+    ends.mark(nothing, 0);
     for (const auto& [brick, mask] : masks_of(rays)) EXPECT_EQ(ends.of(brick), BrickMask{});
 }
 
@@ -97,8 +99,8 @@ TEST(EndVoxels, are_refused_where_the_box_is_too_large) {
     const KeyBox box = box_of(rays, lattice);
     const std::size_t voxels = BrickBox::of(box).bricks() * kBrickVoxels;
     EndVoxels ends;
-    EXPECT_FALSE(ends.take(rays, box, voxels - 1));
-    EXPECT_TRUE(ends.take(rays, box, voxels));
+    EXPECT_FALSE(ends.begin(box, voxels - 1, 1));
+    EXPECT_TRUE(ends.begin(box, voxels, 1));
 }
 
 }  // namespace
