@@ -9,9 +9,12 @@
 namespace octoskin {
 
 void ProblemLog::tell(std::vector<Problem> problems, HostTime now, bool is_settling) {
-    if (is_settling) {
-        for (Told& told : told_) told.seen = now;
-    }
+    const auto is_hidden = [&problems](const Problem& told) {
+        return !told.hidden_by.empty() &&
+               std::ranges::find(problems, told.hidden_by, &Problem::subject) != problems.end();
+    };
+    for (Told& told : told_)
+        if (is_settling || is_hidden(told.problem)) told.seen = now;
     log(problems, now);
     log_over(now);
     if (newest_ == problems) return;

@@ -14,6 +14,9 @@ struct Problem {
     std::string text;  ///< a sentence for a person
     /// Whose problem it is, where another sentence may take this one's place; else empty.
     std::string subject = {};
+    /// Whose problem hides this one: while there is one of that subject, nobody can tell whether this is
+    /// over.
+    std::string hidden_by = {};
     friend bool operator==(const Problem&, const Problem&) = default;
 };
 

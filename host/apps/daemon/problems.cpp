@@ -97,30 +97,33 @@ void add_clock(const DaemonView& view, Problems& problems) {
     }
 }
 
+std::string node_subject(wire::NodeId node) {
+    return "node " + std::to_string(node);
+}
+
 void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {
     const SensorRecord& sensor =
         view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
     const std::string who = sensor_text(node, index);
+    const std::string on = node_subject(node.node_id);
     const bool is_ranging = sensor.health && sensor.health->state == wire::SensorState::ranging;
     if (sensor.health && !is_ranging && sensor.health->state != wire::SensorState::starting) {
         const std::string text = fmt::format("{}: {}, {}", who, wire::name(sensor.health->state),
                                              wire::name(sensor.health->fault));
-        problems.push_back({text, text, who});
+        problems.push_back({text, text, who, on});
     } else if (const auto streak = sensor.fates.streak()) {
         problems.push_back(
             {who + " streak",
              fmt::format("{}: (nearly) all of its last {} readings were rejected, most as {}", who,
-                         FateHistory::kKept, names_of(ReadingReason{})[static_cast<std::size_t>(*streak)])});
+                         FateHistory::kKept, names_of(ReadingReason{})[static_cast<std::size_t>(*streak)]),
+             {},
+             on});
     }
     const SensorWitness* const witness = view.pipeline->builder().witness();
     if (witness == nullptr) return;
     const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(index));
     if (evidence.contradicts())
-        problems.push_back({who + " camera", fmt::format("{}: {}", who, describe(evidence))});
-}
-
-std::string node_subject(wire::NodeId node) {
-    return "node " + std::to_string(node);
+        problems.push_back({who + " camera", fmt::format("{}: {}", who, describe(evidence)), {}, on});
 }
 
 void add_nodes(const DaemonView& view, Problems& problems) {

@@ -16,7 +16,8 @@ bool is_well(ReadingReason reason) noexcept {
 bool is_of_sensor(ReadingReason reason) noexcept {
     const bool is_at_gate =
         reason >= ReadingReason::time_uncertain && reason <= ReadingReason::sigma_above_max;
-    return (is_at_gate && !is_well(reason)) || reason > ReadingReason::self_hit;
+    const bool is_in_map = reason > ReadingReason::self_hit && reason != ReadingReason::contradicts_camera;
+    return (is_at_gate && !is_well(reason)) || is_in_map;
 }
 
 void FateHistory::note(std::optional<ReadingReason> rejected) noexcept {

@@ -74,35 +74,40 @@ const char* name(SensorFault fault) {
     return "unknown";
 }
 
-std::string describe(const SensorEvidence& evidence) {
-    std::string text = "contradicts the camera (" + std::to_string(evidence.in_free_space) +
-                       " ranges end where it sees through, " + std::to_string(evidence.behind_surface) +
-                       " behind a surface that it sees, " + std::to_string(evidence.agreed) + " agree";
-    if (evidence.compared > 0)
-        text += "; " + std::to_string(evidence.fitted) + " of " + std::to_string(evidence.compared) +
-                " are what it predicts";
-    text += "): ";
+namespace {
+
+std::string describe_fault(const SensorEvidence& evidence) {
+    const std::string offset = ": set its offset (docs/bring-up.md, \"A sensor with a wrong offset\")";
     if (!evidence.fault)
-        return text +
-               "is it swapped with another at the harness, stuck, or its pose in the rig not the true one?";
+        return "is it swapped with another at the harness, stuck, or its pose in the rig not the true one?";
     switch (*evidence.fault) {
         case SensorFault::ranges_too_long:
-            return text + "its ranges are some centimetres too long: is its offset in the rig the true one?";
+            return "its ranges are some centimetres too long" + offset;
         case SensorFault::ranges_too_short:
-            return text +
-                   "its ranges are some centimetres too short: is its offset in the rig the true one, "
-                   "its cover glass clean?";
+            return "its ranges are some centimetres too short" + offset + ", if its cover glass is clean";
         case SensorFault::often_short:
-            return text + "some of its ranges end where nothing is: is its cover glass clean?";
+            return "some of its ranges end where nothing is: is its cover glass clean?";
         case SensorFault::turned:
-            return text +
-                   "it ranges like one turned by some 10 degrees: is its mount bent, or its pose in the "
-                   "rig not the true one?";
+            return "it ranges like one turned by some 10 degrees: is its mount bent, or its pose in the rig "
+                   "not "
+                   "the true one?";
         case SensorFault::exchanged:
             break;
     }
-    return text + "it ranges like sensor " + std::to_string(evidence.exchanged_with.value_or(0)) +
+    return "it ranges like sensor " + std::to_string(evidence.exchanged_with.value_or(0)) +
            " of its node: are the two swapped at the harness?";
+}
+
+}  // namespace
+
+/// Ranges that agree are not told: those of a sensor that is 6 cm off do, and more of them come while it is
+/// about to be cleared.
+std::string describe(const SensorEvidence& evidence) {
+    std::string text = "contradicts the camera: " + describe_fault(evidence);
+    if (evidence.in_free_space + evidence.behind_surface == 0) return text;
+    return text + " (" + std::to_string(evidence.in_free_space) +
+           " of its ranges end where the camera sees through, " + std::to_string(evidence.behind_surface) +
+           " behind a surface that it sees)";
 }
 
 SensorWitness::SensorWitness(const HostRig& rig, const WitnessConfig& config)

@@ -50,7 +50,7 @@ struct SensorEvidence {
     [[nodiscard]] bool contradicts() const noexcept { return is_far_off || fault.has_value(); }
 };
 
-/// "contradicts the camera (...): ..." with the counts, for a person.
+/// "contradicts the camera: ..." with what to do and the ranges that speak against it, for a person.
 [[nodiscard]] std::string describe(const SensorEvidence& evidence);
 /// "ranges_too_long", ...
 [[nodiscard]] const char* name(SensorFault fault);

@@ -80,6 +80,21 @@ TEST_F(ProblemLogTest, takes_a_sentence_that_another_replaced_for_no_problem_tha
               "warning node 1: lost\ninfo over: camera: no such file\n");
 }
 
+TEST_F(ProblemLogTest, takes_none_for_over_that_another_hides_and_tells_it_once) {
+    const Problem lies{"sensor 3 camera", "sensor 3: lies", {}, "node 1"};
+    const Problem lost{"node 1: lost", "node 1: lost", "node 1"};
+    const Problem other{"node 2: lost", "node 2: lost", "node 2"};
+    EXPECT_EQ(told({lies}), "warning sensor 3: lies\n");
+    EXPECT_EQ(told({lost}), "warning node 1: lost\n");
+    EXPECT_EQ(told({lost}), "");
+    EXPECT_EQ(told({lies}), "info over: node 1: lost\n") << "it lies as before";
+    EXPECT_EQ(told({lost}), "warning node 1: lost\n");
+    EXPECT_EQ(told({}, ProblemLog::kOver - Nanoseconds{1}), "");
+    EXPECT_EQ(told({}, Nanoseconds{1}), "info over: sensor 3: lies\ninfo over: node 1: lost\n");
+    EXPECT_EQ(told({lies}), "warning sensor 3: lies\n");
+    EXPECT_EQ(told({other}), "warning node 2: lost\ninfo over: sensor 3: lies\n") << "another's";
+}
+
 TEST_F(ProblemLogTest, takes_none_for_over_while_they_cannot_be_judged) {
     EXPECT_EQ(told({{"a", "it is so"}}), "warning it is so\n");
     is_settling_ = true;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -205,13 +206,49 @@ TEST_F(ProblemsTest, have_a_sensor_that_contradicts_the_camera_from_when_that_is
     });
     EXPECT_THAT(told_after, testing::AllOf(testing::Gt(1), testing::Lt(7)));
     EXPECT_THAT(all_told(),
-                ElementsAre(HasSubstr("node 1 'node 1' sensor 0 'good': contradicts the camera")));
+                ElementsAre(testing::AllOf(
+                    testing::StartsWith("node 1 'node 1' sensor 0 'good': contradicts the camera: "),
+                    HasSubstr("(6 of its ranges end where the camera sees through, 0 behind a surface"))));
     // Without the robot taken out of its images the camera says nothing of any sensor.
     Scene scene = daemon_scene();
     scene.mapping.removes_robot_from_depth = false;
     play(scene, kAllWell);
     ASSERT_EQ(pipeline_->builder().witness(), nullptr);
     EXPECT_THAT(all_told(), IsEmpty());
+}
+
+TEST_F(ProblemsTest, have_of_a_lost_nodes_sensors_none_and_none_that_is_over) {
+    let_camera_contradict();
+    std::vector<Problem> all = problems(view_);
+    const auto lies = std::ranges::find(all, "node 1 'node 1' sensor 0 'good' camera", &Problem::about);
+    ASSERT_NE(lies, all.end());
+    const std::string hidden_by = lies->hidden_by;
+    set_now(9.4);
+    all = problems(view_);
+    EXPECT_EQ(std::ranges::find(all, "node 1 'node 1' sensor 0 'good' camera", &Problem::about), all.end());
+    const auto lost = std::ranges::find(all, "node 1 'node 1': lost", &Problem::about);
+    ASSERT_NE(lost, all.end());
+    EXPECT_EQ(lost->subject, hidden_by) << "else it would be over in the log";
+}
+
+// Most of what a sensor with a wrong offset ranges is within what camera and range may be off together.
+TEST_F(ProblemsTest, tell_of_a_sensor_that_contradicts_the_camera_nothing_that_acquits_it) {
+    SensorEvidence evidence{
+        .agreed = 400, .fault = SensorFault::ranges_too_long, .compared = 412, .fitted = 380};
+    EXPECT_EQ(describe(evidence),
+              "contradicts the camera: its ranges are some centimetres too long: set its offset "
+              "(docs/bring-up.md, \"A sensor with a wrong offset\")");
+    evidence.in_free_space = 7;
+    evidence.behind_surface = 2;
+    for (const SensorFault fault : {SensorFault::ranges_too_short, SensorFault::often_short,
+                                    SensorFault::turned, SensorFault::exchanged}) {
+        evidence.fault = fault;
+        EXPECT_THAT(describe(evidence),
+                    HasSubstr(" (7 of its ranges end where the camera sees through, 2 behind "
+                              "a surface that it sees)"));
+        for (const char* acquits : {"400", "412", "380", "agree"})
+            EXPECT_THAT(describe(evidence), testing::Not(HasSubstr(acquits)));
+    }
 }
 
 TEST_F(ProblemsTest, have_readings_that_are_of_no_use_or_stopped) {

@@ -36,7 +36,7 @@ TEST(FateHistory, blames_a_sensor_for_what_is_its_own) {
         " time_uncertain duplicate out_of_window too_soon too_young too_old sensor_misconfigured "
         "status_fault "
         "zone_unknown zone_not_in_rig not_finite below_range_min above_range_max sigma_above_max "
-        "beam_not_valid outside_map contradicts_camera ";
+        "beam_not_valid outside_map ";
     for (std::size_t i = 0; i < names_of(ReadingReason{}).size(); ++i) {
         const std::string name = names_of(ReadingReason{}).at(i);
         FateHistory fates;

@@ -156,7 +156,7 @@ TEST_F(SensorWitnessTest, six_contradictions_flag_a_sensor_and_twenty_one_agreem
     EXPECT_FALSE(evidence().contradicts());
     compare(1, 0.5, wall_at(2.0F));
     EXPECT_TRUE(evidence().contradicts());
-    EXPECT_THAT(describe(evidence()), HasSubstr("6 ranges end where it sees through"));
+    EXPECT_THAT(describe(evidence()), HasSubstr("6 of its ranges end where the camera sees through"));
     EXPECT_EQ(evidence().fault, SensorFault::often_short);
     EXPECT_TRUE(evidence().is_far_off);
     compare(20, 1.0, wall_at(2.0F));
