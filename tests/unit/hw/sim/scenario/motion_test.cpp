@@ -45,6 +45,9 @@ TEST_F(Motion, is_read_with_every_place) {
 TEST_F(Motion, is_refused_with_file_line_and_reason) {
     EXPECT_THAT(error("[{at_s: 2}, {at_s: 2}]"),
                 HasSubstr("motion_test.motion.yaml:3: models[0].places[1].at_s: expected later"));
+    for (const char* at_s : {"-601", "601"})
+        EXPECT_THAT(error(std::string("[{at_s: ") + at_s + "}]"),
+                    HasSubstr("at_s: expected a number from -600 to 600"));
     EXPECT_THAT(error("[{at_s: 2, offset: [0, 0, 0]}]"), HasSubstr("offset"));
     EXPECT_THAT(error("[{at_s: 2, moves_on: true}]"), HasSubstr("a place to go to"));
     EXPECT_THAT(error("[{at_s: 2, moves_on: true}, {at_s: 3, is_there: false}]"),
