@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <span>
 #include <system_error>
 #include <utility>
 
 #include "host/apps/daemon/unix_socket.hpp"
+#include "host/apps/querying/joint_lines.hpp"
 #include "host/core/ingest/local_joints.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
 
@@ -21,37 +21,6 @@ namespace {
 
 constexpr double kNsPerS = 1e9;
 constexpr double kTimeOffMaxS = 1.0;
-
-std::vector<std::string_view> words_of(std::string_view text) {
-    constexpr std::string_view kBlank = " \t\r\n,";
-    std::vector<std::string_view> words;
-    while (true) {  // each round takes one word off
-        const std::size_t begin = text.find_first_not_of(kBlank);
-        if (begin == std::string_view::npos) return words;
-        text.remove_prefix(begin);
-        words.push_back(text.substr(0, text.find_first_of(kBlank)));
-        text.remove_prefix(words.back().size());
-    }
-}
-
-/// Empty if the word is no finite number.
-std::optional<double> number_of(std::string_view word) {
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    const bool is_whole = error == std::errc{} && end == word.data() + word.size();
-    return is_whole && std::isfinite(number) ? std::optional(number) : std::nullopt;
-}
-
-/// The numbers in `text`, between blanks; empty if a word is none.
-std::optional<std::vector<double>> numbers_of(std::string_view text) {
-    std::vector<double> numbers;
-    for (const std::string_view word : words_of(text)) {
-        const auto number = number_of(word);
-        if (!number) return std::nullopt;
-        numbers.push_back(*number);
-    }
-    return numbers;
-}
 
 double seconds_at(HostTime time) {
     return static_cast<double>(time.ns) / kNsPerS;
@@ -84,7 +53,7 @@ std::string describe_too_large(std::span<const double> numbers, std::size_t join
 Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::size_t joint_count, HostTime now,
                                                  std::optional<HostTime> came) {
     if (text.size() > kJointTextMax) return unexpected(JointTextFault::too_long);
-    auto numbers = numbers_of(text);
+    auto numbers = read_numbers(text);
     if (!numbers) return unexpected(JointTextFault::not_a_number);
     JointSample sample{came.value_or(HostTime{}), std::move(*numbers), {}};
     const bool is_dated = came || sample.position.size() == joint_count + 1;
@@ -103,10 +72,9 @@ Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::siz
 std::string describe(JointTextFault fault, std::string_view text, std::size_t joint_count, HostTime now) {
     std::string name = names_of(fault).at(static_cast<std::size_t>(fault));
     if (fault == JointTextFault::too_long) return fmt::format("{}: over {} bytes", name, kJointTextMax);
-    const auto words = words_of(text);
-    const auto wrong = std::ranges::find_if(words, [](std::string_view word) { return !number_of(word); });
-    if (wrong != words.end()) return fmt::format("{}: \"{}\"", name, *wrong);
-    const auto numbers = numbers_of(text).value_or(std::vector<double>{});
+    const auto read = read_numbers(text);
+    if (!read) return fmt::format("{}: \"{}\"", name, read.error());
+    const std::vector<double>& numbers = *read;
     if (fault == JointTextFault::wrong_count)
         return fmt::format("{}: {} numbers, the rig has {} joints", name, numbers.size(), joint_count);
     if (fault == JointTextFault::too_large) return name + describe_too_large(numbers, joint_count);

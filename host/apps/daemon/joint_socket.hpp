@@ -29,7 +29,7 @@ struct JointSample {
 };
 
 enum class JointTextFault : std::uint8_t {
-    not_a_number,  ///< a word that is no finite number
+    not_a_number,  ///< a word that is no finite number, or none where a comma divides two
     wrong_count,   ///< neither as many numbers as joints, nor one more
     time_off,      ///< more than 1 s from when it was read, or not told, and it waited for as long to be read
     too_large,     ///< a position beyond the +-8.38 rad of the wire

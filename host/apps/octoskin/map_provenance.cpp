@@ -11,15 +11,6 @@ std::string describe(const std::optional<std::uint32_t>& crc32) {
     return crc32 ? "CRC-32 " + crc_text(*crc32) : "which cannot be read";
 }
 
-Result<std::optional<MapOrigin>, AppError> origin_of_map(const fs::path& map) {
-    auto origin = read_map_origin(fs::absolute(map).parent_path());
-    if (!origin || !*origin || !(*origin)->maps.contains(map.filename().string())) {
-        return origin ? std::optional<MapOrigin>{} : std::move(origin);
-    }
-    if (auto fault = fault_of_map(map, **origin)) return unexpected(std::move(*fault));
-    return origin;
-}
-
 Status<AppError> check_beside(const fs::path& map, const MapOrigin& origin, const fs::path& recording) {
     const auto found = crc32_of_recording(RecordingPaths(recording));
     if (found == origin.recording_crc32) return Done{};
@@ -44,6 +35,15 @@ std::optional<fs::path> named_recording(const MapOrigin& origin, std::vector<std
 
 bool is_of_data_set(const MapOrigin& origin) {
     return origin.robot == "-";  // as data_set_playback.cpp writes it: there is none
+}
+
+Result<std::optional<MapOrigin>, AppError> origin_of_map(const fs::path& map) {
+    auto origin = read_map_origin(fs::absolute(map).parent_path());
+    if (!origin || !*origin || !(*origin)->maps.contains(map.filename().string())) {
+        return origin ? std::optional<MapOrigin>{} : std::move(origin);
+    }
+    if (auto fault = fault_of_map(map, **origin)) return unexpected(std::move(*fault));
+    return origin;
 }
 
 Result<MapProvenance, AppError> provenance_of_map(const fs::path& map) {

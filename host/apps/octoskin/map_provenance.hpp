@@ -21,6 +21,10 @@ struct MapProvenance {
 /// Whether the map was made from a data set, which has no robot.
 [[nodiscard]] bool is_of_data_set(const MapOrigin& origin);
 
+/// What the maps.yaml beside the map says of it; empty: nothing. Errors (bad_data): it cannot be read, or
+/// describes other bytes than the map has.
+[[nodiscard]] Result<std::optional<MapOrigin>, AppError> origin_of_map(const std::filesystem::path& map);
+
 /// The recording is the one beside the map, else the one that maps.yaml names. Refuses (bad_data) a maps.yaml
 /// that cannot be read, one that describes other bytes than the map has, and one that was written of another
 /// recording than lies beside the map.

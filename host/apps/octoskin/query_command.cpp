@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
+#include <initializer_list>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,13 +17,16 @@
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/map_provenance.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/querying/joint_lines.hpp"
 #include "host/apps/querying/query_answer.hpp"
 #include "host/apps/querying/query_request.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
+#include "hw/rigfile/rig.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -32,11 +37,10 @@ constexpr const char* kFooter =
     "Exit codes: 0 all of it is free (or, with --unknown, pockets are listed); 1 something occupied is in "
     "the\n"
     "way; 2 nothing is, but something unknown or stale; 64 command line, joints beyond their limits; 65 a "
-    "map or "
-    "path\n"
-    "that cannot be used, not the answer of a daemon of this version; 66 no such file; 69 no daemon, or "
-    "nobody\n"
-    "knows how the arm stands; 74 the daemon does not answer; 78 the rig.\n"
+    "map or\n"
+    "path that cannot be used, not the answer of a daemon of this version; 66 no such file; 69 no daemon, "
+    "or\n"
+    "nobody knows how the arm stands; 74 the daemon does not answer; 78 the rig.\n"
     "An answer tells links, voxels and distances: docs/planner.md.";
 
 struct QueryOptions {
@@ -45,6 +49,7 @@ struct QueryOptions {
     std::filesystem::path robot;
     std::filesystem::path socket = default_control_socket();
     std::optional<std::string> joints;
+    std::optional<std::string> stands;
     std::string path;
     bool is_json = false;
     bool lists_unknown = false;
@@ -53,71 +58,96 @@ struct QueryOptions {
     QueryRequest request;
 };
 
-/// Numbers with commas or blanks between them; empty if something else is among them.
-std::optional<std::vector<double>> numbers_of(std::string line) {
-    for (char& c : line)
-        if (c == ',' || c == ';') c = ' ';
-    std::istringstream words(line);
-    std::vector<double> numbers;
-    for (std::string word; words >> word;) {
-        std::size_t end = 0;
-        try {
-            numbers.push_back(std::stod(word, &end));
-        } catch (const std::exception&) {
-            return std::nullopt;
-        }
-        if (end != word.size()) return std::nullopt;
-    }
-    return numbers;
+struct Question {
+    QueryRequest request;
+    std::vector<double> stands;  ///< of a map file: the arm; empty: nobody says
+    std::vector<std::size_t>
+        lines;  ///< of the path's file, where each configuration is; empty: there is none
+};
+
+void check_file(const std::filesystem::path& file) {
+    std::string name = file.string();
+    if (name.empty()) return;
+    if (const std::string fault = existing_file()(name); !fault.empty())
+        throw CommandFailure({ExitCode::usage, fault});
 }
 
-/// A configuration a line; empty lines and those that begin with # are none.
-std::vector<std::vector<double>> read_path(std::istream& stream, const std::string& name) {
-    std::vector<std::vector<double>> path;
-    std::size_t number = 0;
-    for (std::string line; std::getline(stream, line);) {
-        ++number;
-        if (line.find_first_not_of(" \t\r") == std::string::npos || line.front() == '#') continue;
-        const auto configuration = numbers_of(line);
-        if (!configuration || path.size() >= kConfigurationsMax) {
-            throw CommandFailure(
-                {ExitCode::bad_data,
-                 fmt::format("{}:{}: {}", name, number,
-                             configuration ? fmt::format("more than {} configurations", kConfigurationsMax)
-                                           : "expected a joint configuration: numbers and commas")});
-        }
-        path.push_back(*configuration);
+/// Who gives what is not looked at expects another answer.
+void check_options(const CLI::App& command, const QueryOptions& options) {
+    const auto refuse = [&command](std::initializer_list<const char*> names, const std::string& why) {
+        for (const char* name : names)
+            if (command.count(name) > 0) throw CommandFailure({ExitCode::usage, name + why});
+    };
+    if (options.map.empty()) {
+        refuse({"--rig", "--robot"},
+               " is of a map file; a daemon has its own: leave it out, or name the map");
+        refuse({"--stands"},
+               " is of a map file; a daemon knows how the arm stands: leave it out, or name the map");
+    } else {
+        refuse({"--socket"}, " is where a daemon listens, but a map file is asked: leave out one of the two");
     }
-    if (path.empty()) throw CommandFailure({ExitCode::bad_data, name + ": no joint configuration in it"});
-    return path;
+    if (options.lists_unknown) {
+        refuse({"--path"}, ": views are looked for from one posture, give it as --joints");
+        refuse({"--reach"}, ": of --unknown no distances are told, leave it out");
+    } else {
+        refuse({"--radius", "--above", "--pockets", "--tries"},
+               " is of --unknown: give that, too, or leave it out");
+    }
+    for (const auto& file : {options.map, options.rig, options.robot}) check_file(file);
 }
 
-QueryRequest request_of(const QueryOptions& options) {
-    QueryRequest request = options.request;
+std::vector<double> read_joints(const char* option, const std::string& text) {
+    const auto numbers = read_numbers(text);
+    if (numbers && !numbers->empty()) return *numbers;
+    throw CommandFailure({ExitCode::usage, fmt::format("{} '{}': {}", option, text,
+                                                       describe_field(numbers ? "" : numbers.error()))});
+}
+
+JointPath read_path(const std::string& name) {
+    if (name == "-") return value_or_fail(read_joint_path(std::cin, "standard input"));
+    if (std::filesystem::is_directory(name))
+        throw CommandFailure(
+            {ExitCode::usage, name + " is a directory, not a file with a configuration a line"});
+    std::ifstream file(name);
+    if (!file)
+        throw CommandFailure(reading_error(
+            name, {ExitCode::no_input, fmt::format("{}: cannot be read: {}", name, std::strerror(errno))}));
+    return value_or_fail(read_joint_path(file, name));
+}
+
+Question question_of(const QueryOptions& options) {
+    Question question{options.request, {}, {}};
+    QueryRequest& request = question.request;
     request.kind = options.lists_unknown ? QueryKind::pockets : QueryKind::postures;
     request.own_space_m = options.own_space_m;
     request.z_min_m = options.z_min_m;
-    if (options.joints) {
-        const auto position = numbers_of(*options.joints);
-        if (!position || position->empty())
-            throw CommandFailure({ExitCode::usage, "--joints '" + *options.joints +
-                                                       "': expected numbers with commas between them"});
-        request.path = {*position};
-    } else if (options.path == "-") {
-        request.path = read_path(std::cin, "standard input");
-    } else if (!options.path.empty()) {
-        std::ifstream file(options.path);
-        if (!file)
-            throw CommandFailure(
-                reading_error(options.path, {ExitCode::no_input, options.path + ": cannot be read"}));
-        request.path = read_path(file, options.path);
+    if (options.stands) question.stands = read_joints("--stands", *options.stands);
+    if (options.joints) request.path = {read_joints("--joints", *options.joints)};
+    if (!options.path.empty()) {
+        JointPath path = read_path(options.path);
+        request.path = std::move(path.configurations);
+        question.lines = std::move(path.lines);
     }
     if (const std::string fault = fault_of(request); !fault.empty())
         throw CommandFailure({ExitCode::usage, fault});
-    return request;
+    return question;
 }
 
-Json ask_map_file(const QueryOptions& options, const QueryRequest& request) {
+/// A map of a replay says by what rig it was made.
+void doubt_rig(const QueryOptions& options, const rig::Rig& rig) {
+    const auto origin = origin_of_map(options.map);
+    if (!origin) {
+        spdlog::warn("{}; so nothing says whether {} is the rig that the map was made with",
+                     origin.error().message, options.rig.string());
+    } else if (*origin && (*origin)->rig_hash != rig::rig_hash(rig)) {
+        spdlog::warn(
+            "{} is another rig than {}, which the map was made with: the answer may be of another arm, or "
+            "of another place",
+            options.rig.string(), (*origin)->rig.string());
+    }
+}
+
+Json ask_map_file(const QueryOptions& options, const Question& question) {
     if (options.rig.empty())
         throw CommandFailure({ExitCode::usage,
                               "a map file does not say what robot is asked about: give --rig, "
@@ -128,10 +158,12 @@ Json ask_map_file(const QueryOptions& options, const QueryRequest& request) {
     MapReadLimits limits;
     limits.map.log_odds_min = -20.0F;  // whoever made it may have clamped wider
     limits.map.log_odds_max = 20.0F;
+    doubt_rig(options, rig);
     auto map = load_map(options.map, limits);
     if (!map) throw CommandFailure(reading_error(options.map, {ExitCode::bad_data, map.error().message}));
     KeptField field;
-    return answer_query(request, {&setup->rig, &setup->robot, std::move(map).value(), {}, &field});
+    return answer_query(question.request,
+                        {&setup->rig, &setup->robot, std::move(map).value(), question.stands, &field});
 }
 
 Json ask_running_daemon(const QueryOptions& options, const QueryRequest& request) {
@@ -154,36 +186,62 @@ ExitCode outcome_of(const Json& answer) {
     return answer.at("state") == "occupied" ? ExitCode::failed : ExitCode::uncertain;
 }
 
-void ask(const QueryOptions& options) {
-    const QueryRequest request = request_of(options);
+/// What the answer has in place of one, with the line of the path that it is about.
+CommandFailure refusal(const QueryOptions& options, const Question& question, const Json& answer) {
+    const int code = answer.value("code", static_cast<int>(ExitCode::unavailable));
+    std::string text = answer.at("error").get<std::string>();
+    const std::size_t configuration = answer.value("configuration", std::size_t{0});
+    if (configuration > 0 && configuration <= question.lines.size())
+        text = fmt::format("{}:{}: {}", options.path == "-" ? "standard input" : options.path,
+                           question.lines[configuration - 1], text);
+    return CommandFailure({static_cast<ExitCode>(code), text});
+}
+
+ExitCode answered(const QueryOptions& options) {
+    const Question question = question_of(options);
     const Json answer =
-        options.map.empty() ? ask_running_daemon(options, request) : ask_map_file(options, request);
-    ExitCode outcome = ExitCode::ok;
+        options.map.empty() ? ask_running_daemon(options, question.request) : ask_map_file(options, question);
     try {
-        if (!answer.at("ok").get<bool>()) {
-            const int code = answer.value("code", static_cast<int>(ExitCode::unavailable));
-            throw CommandFailure({static_cast<ExitCode>(code), answer.at("error").get<std::string>()});
-        }
-        outcome = outcome_of(answer);
+        if (!answer.at("ok").get<bool>()) throw refusal(options, question, answer);
+        const ExitCode outcome = outcome_of(answer);
         print("{}", options.is_json ? answer.dump(2) + "\n" : query_text(answer));
+        return outcome;
     } catch (const Json::exception&) {
         throw CommandFailure(foreign_answer(options.socket));
+    }
+}
+
+void ask(const CLI::App& command, const QueryOptions& options) {
+    ExitCode outcome = ExitCode::ok;
+    try {
+        check_options(command, options);
+        outcome = answered(options);
+    } catch (const CommandFailure& failure) {
+        if (options.is_json)
+            print("{}\n", query_refused({failure.code(), failure.what()})
+                              .dump(2, ' ', false, Json::error_handler_t::replace));
+        throw;
     }
     if (outcome != ExitCode::ok) throw CLI::RuntimeError(static_cast<int>(outcome));
 }
 
 void add_posture_options(CLI::App& command, QueryOptions& options) {
-    CLI::Option* const joints = command.add_option(
-        "--joints", options.joints,
-        "The joint configuration, rad (m for a prismatic joint), in the order of the rig's "
-        "joints: 0,-0.785,0,...; without it as the arm stands (of a daemon)");
+    CLI::Option* const joints =
+        command
+            .add_option("--joints", options.joints,
+                        "The joint configuration: plain numbers with commas between them, rad (m for a "
+                        "prismatic joint), one for each of the rig's joints in their order, such as "
+                        "0,-0.785,0,-2.356,0,1.571,0.785; without it, as the arm stands")
+            ->type_name("JOINTS");
     command
         .add_option("--path", options.path,
-                    "A file with a configuration a line, or '-'; what lies between two lines is asked about, "
-                    "too")
+                    "A file with such a configuration a line, or '-' for standard input: at most 1000, in 1 "
+                    "MiB; what lies between two lines is asked about, too")
+        ->type_name("FILE")
         ->excludes(joints);
     command
-        .add_option("--step", options.request.step, "No joint moves further between two postures asked about")
+        .add_option("--step", options.request.step,
+                    "No joint moves further between two postures asked about, rad (m)")
         ->check(from_to(kStepMin, 10.0))
         ->capture_default_str();
     command.add_option("--padding", options.request.padding_m, "Added to the radius of each capsule, m")
@@ -192,36 +250,46 @@ void add_posture_options(CLI::App& command, QueryOptions& options) {
     command.add_option("--reach", options.request.reach_m, "How far distances are told, m; 0: none are")
         ->check(from_to(0.0, kReachMax_m))
         ->capture_default_str();
-    command.add_option("--ignore-link", options.request.links_ignored, "A link that is not asked about")
-        ->allow_extra_args(false);
+    command
+        .add_option("--ignore-link", options.request.links_ignored,
+                    "A link of the robot that is not asked about; once for each such link")
+        ->type_name("LINK")
+        ->expected(1)
+        ->take_all();
     command.add_flag("--all-links", options.request.asks_unmoved_links,
                      "Ask about bodies that no joint moves, too: the arm's base");
     command
         .add_option(
             "--own-space", options.own_space_m,
-            "What lies within the arm as it stands (of a map file: where the path begins), and what is "
-            "unknown within so many metres of it, counts as free. Give it where nothing can hide "
-            "there")
+            "What lies within the arm as it stands, and what is unknown or stale within so many metres of "
+            "it, counts as free. Give it where nothing can hide there")
         ->check(from_to(0.0, 1.0));
+    command
+        .add_option("--stands", options.stands,
+                    "Of a map file: how the arm stands, as --joints; without it, where --joints or --path "
+                    "begin. A daemon knows")
+        ->type_name("JOINTS");
 }
 
 void add_pocket_options(CLI::App& command, QueryOptions& options) {
     command.add_flag("--unknown", options.lists_unknown,
                      "List the largest pockets of unknown space about the robot's base that border on free "
                      "space, and how the arm would have to stand so that a sensor looks into them");
-    command.add_option("--radius", options.request.radius_m, "With --unknown: of the ball about the base, m")
+    command
+        .add_option("--radius", options.request.radius_m,
+                    "With --unknown: within so many metres of the robot's base")
         ->check(from_to(0.05, kRadiusMax_m))
         ->capture_default_str();
     command
         .add_option("--above", options.z_min_m,
-                    "With --unknown: from this height on, m in the map (the base's)")
+                    "With --unknown: from this height in the map on, m; without it, from the base's")
         ->check(from_to(-1000.0, 1000.0));
     command.add_option("--pockets", options.request.pockets_max, "With --unknown: list so many at most")
         ->check(from_to(std::size_t{0}, kConfigurationsMax))
         ->capture_default_str();
     command
         .add_option("--tries", options.request.views_tried,
-                    "With --unknown: try so many postures of the arm; 0: none")
+                    "With --unknown: try so many postures of the arm; 0: none, no view is looked for")
         ->check(from_to(std::size_t{0}, kViewsTriedMax))
         ->capture_default_str();
 }
@@ -234,19 +302,25 @@ void add_query_command(CLI::App& app) {
                                            "Is a posture or a path of the arm free, stale, unknown or "
                                            "occupied, how far is what is in the way, and "
                                            "how old is what that rests on");
+    // That they are there is checked with the question, so that --json tells it, too.
     command
         ->add_option("map", options->map, "A saved map (.ot or .bt); without it the running daemon is asked")
-        ->check(existing_file());
+        ->type_name("FILE");
     command->add_option("--rig", options->rig, "Of a map file: the rig that it was made with")
-        ->check(existing_file());
+        ->type_name("FILE");
     command->add_option("--robot", options->robot, "Of a map file: URDF in place of the rig's")
-        ->check(existing_file());
+        ->type_name("FILE");
     add_posture_options(*command, *options);
     add_pocket_options(*command, *options);
-    command->add_option("--socket", options->socket, "Where the daemon listens")->capture_default_str();
-    command->add_flag("--json", options->is_json, "For a script");
+    command->add_option("--socket", options->socket, "Where the daemon listens")
+        ->type_name("FILE")
+        ->capture_default_str();
+    command->add_flag(
+        "--json", options->is_json,
+        "For a script: the answer as the daemon gives it, or an object with \"error\" and the exit "
+        "\"code\"");
     command->footer(kFooter);
-    command->callback([options] { ask(*options); });
+    command->callback([options, command] { ask(*command, *options); });
 }
 
 }  // namespace octoskin::app

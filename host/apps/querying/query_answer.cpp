@@ -34,13 +34,19 @@ std::string text_of(const RobotQueryFault& fault) {
     return {};
 }
 
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
 std::string text_of(const PostureFault& fault, const HostRig& rig, const RobotModel& robot,
                     std::span<const double> position) {
     const auto joint = [&] { return rig.joints.joints.at(fault.joint); };
     switch (fault.error) {
         case PostureError::wrong_count:
-            return fmt::format("{} joint positions; the rig has {} joints", position.size(),
-                               robot.joint_count());
+            return fmt::format("{} joint positions; the rig has {} joints: {}", position.size(),
+                               robot.joint_count(), listed(rig.joints.joints));
         case PostureError::not_finite:
             return fmt::format("{}: not a finite number", joint());
         case PostureError::outside_limits:
@@ -83,17 +89,31 @@ class Asking {
         if (request_.path.empty() && (request_.kind == QueryKind::postures || request_.own_space_m))
             return fail(ExitCode::unavailable,
                         "nobody knows how the arm stands: give its joints, or see that joint states come");
+        if (const auto checked = check_present(); !checked) return unexpected(checked.error());
         if (const auto checked = check_path(); !checked) return unexpected(checked.error());
         free_own_space();
         return request_.kind == QueryKind::postures ? ask_postures() : ask_pockets();
     }
 
+    /// That of the request's path which was refused, from 1 on.
+    [[nodiscard]] std::optional<std::size_t> refused() const noexcept { return refused_; }
+
   private:
+    /// What a daemon knows of it was within the limits.
+    Status<AppError> check_present() const {
+        if (ground_.is_live || ground_.present.empty()) return Done{};
+        const auto fault = robot_->fault_of(ground_.present);
+        if (!fault) return Done{};
+        return fail(ExitCode::usage,
+                    "how the arm stands: " + text_of(*fault, *ground_.rig, *ground_.robot, ground_.present));
+    }
+
     Status<AppError> check_path() {
         double postures = 0.0;
         for (std::size_t i = 0; i < request_.path.size(); ++i) {
             const auto& position = request_.path[i];
             if (const auto fault = robot_->fault_of(position)) {
+                refused_ = i + 1;
                 return fail(ExitCode::usage,
                             fmt::format("configuration {}: {}", i + 1,
                                         text_of(*fault, *ground_.rig, *ground_.robot, position)));
@@ -210,8 +230,9 @@ class Asking {
                                     request_.radius_m, ground_.map.resolution_m()));
         }
         const PocketViewConfig config{.postures = request_.views_tried, .pockets = request_.pockets_max};
-        std::vector<std::optional<PocketView>> views;  // none where nobody knows how the arm stands
-        if (!request_.path.empty())
+        std::vector<std::optional<PocketView>> views;
+        const Json why_no_views = why_not_tried();
+        if (why_no_views.is_null())
             views = find_views(*ground_.rig, *robot_, ground_.map, *found, request_.path.front(), config,
                                is_ending_);
         if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the pockets were looked into");
@@ -225,7 +246,18 @@ class Asking {
                     {"region_m3", rounded(static_cast<double>(found->region_voxels()) * voxel_m3)},
                     {"unknown_m3", rounded(static_cast<double>(found->unknown_voxels()) * voxel_m3)},
                     {"pockets_found", found->pockets().size()},
+                    {"views_not_tried", why_no_views},
                     {"pockets", std::move(pockets)}};
+    }
+
+    /// Why no view into a pocket was looked for; null: some were.
+    [[nodiscard]] Json why_not_tried() const {
+        if (request_.views_tried == 0) return "no posture was to be tried";
+        if (request_.path.empty()) return "nobody knows how the arm stands";
+        if (std::ranges::all_of(ground_.rig->nodes,
+                                [](const HostNode& node) { return node.sensors.empty(); }))
+            return "the rig has no range sensor";
+        return nullptr;
     }
 
     [[nodiscard]] Json pocket_json(const UnknownPocket& pocket, const std::optional<PocketView>& view) const {
@@ -252,6 +284,7 @@ class Asking {
     QueryGround ground_;
     const std::function<bool()>& is_ending_;
     std::optional<RobotQuery> robot_;
+    std::optional<std::size_t> refused_;
 };
 
 }  // namespace
@@ -262,8 +295,13 @@ Json query_refused(const AppError& error) {
 
 Json answer_query(const QueryRequest& request, QueryGround ground, const std::function<bool()>& is_ending) {
     const auto begun = std::chrono::steady_clock::now();
-    auto answer = Asking(request, std::move(ground), is_ending).run();
-    if (!answer) return query_refused(answer.error());
+    Asking asking(request, std::move(ground), is_ending);
+    auto answer = asking.run();
+    if (!answer) {
+        Json refused = query_refused(answer.error());
+        if (asking.refused()) refused["configuration"] = *asking.refused();
+        return refused;
+    }
     const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begun;
     (*answer)["took_us"] = std::round(took.count());
     return std::move(answer).value();

@@ -21,7 +21,8 @@ struct QueryGround {
     const RobotModel* robot = nullptr;
     /// A copy of its own: what is the arm's own space is freed in it.
     FusedMap map;
-    /// The joints as the arm stands; empty: nobody knows. A path then begins where it stands.
+    /// The joints as the arm stands; empty: nobody knows. It is what is asked about where the request names
+    /// no path.
     std::vector<double> present;
     /// For distances; what was asked of it before is kept. Null: they are searched for.
     KeptField* field = nullptr;
@@ -30,10 +31,10 @@ struct QueryGround {
     bool is_live = false;
 };
 
-/// "ok": true, or false with "error" and "code", the exit code for it. Of postures: "state", the worst, and
-/// "legs", one for each configuration: the way to it from the one before. Of pockets: "pockets". All keys:
-/// docs/planner.md. Some 0.1 ms a posture; `is_ending` is asked before each posture, and true ends it with an
-/// error.
+/// "ok": true, or false with "error" and "code", the exit code for it, and with "configuration" where the
+/// error is one of the path's. Of postures: "state", the worst, and "legs", one for each configuration: the
+/// way to it from the one before. Of pockets: "pockets". All keys: docs/planner.md. Some 0.1 ms a posture;
+/// `is_ending` is asked before each posture, and true ends it with an error.
 [[nodiscard]] nlohmann::ordered_json answer_query(
     const QueryRequest& request, QueryGround ground,
     const std::function<bool()>& is_ending = [] { return false; });

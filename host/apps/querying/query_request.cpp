@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <type_traits>
 
 namespace octoskin {
@@ -19,15 +20,41 @@ bool is_within(double value, double min, double max) {
     return value >= min && value <= max;  // false for a NaN
 }
 
-/// Takes what is there out of `json`; throws Json::exception if it is of another kind.
+/// What a value must be.
+template <class T>
+constexpr const char* kExpected = nullptr;
+template <>
+constexpr const char* kExpected<bool> = "true or false";
+template <>
+constexpr const char* kExpected<double> = "a number";
+template <>
+constexpr const char* kExpected<std::size_t> = "a whole number from 0 on";
+template <>
+constexpr const char* kExpected<std::vector<std::string>> = "a list of names, such as [\"gripper\"]";
+template <>
+constexpr const char* kExpected<std::vector<std::vector<double>>> =
+    "a list of joint configurations, each a list of finite numbers, such as [[0, -0.785, 1.5]]";
+
+std::string shown(const Json& json) {
+    constexpr std::size_t kShown = 40;
+    const std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
+    return text.size() <= kShown ? text : text.substr(0, kShown) + "...";
+}
+
+/// Takes what is there out of `json`; throws std::invalid_argument, which names the key.
 template <class T>
 void take(Json& json, const char* key, T& value) {
     const auto found = json.find(key);
     if (found == json.end()) return;
-    if constexpr (std::is_same_v<T, std::size_t>) {  // of another kind it would be cut down to a whole number
-        value = found->template get_ref<const Json::number_unsigned_t&>();
-    } else {
-        value = found->template get<T>();
+    try {
+        if constexpr (std::is_same_v<T, std::size_t>) {  // else it would be cut down to a whole number
+            value = found->template get_ref<const Json::number_unsigned_t&>();
+        } else {
+            value = found->template get<T>();
+        }
+    } catch (const Json::exception&) {
+        throw std::invalid_argument(
+            fmt::format("query: {} is {}; expected {}", key, shown(*found), kExpected<T>));
     }
     json.erase(found);
 }
@@ -37,6 +64,16 @@ void take(Json& json, const char* key, std::optional<T>& value) {
     if (!json.contains(key)) return;
     take(json, key, one);
     value = one;
+}
+
+/// Why it is no JSON, and where.
+Unexpected<AppError> fail_at(std::string_view text, std::size_t byte) {
+    constexpr std::size_t kShown = 20;
+    const std::size_t at = std::min(byte > 0 ? byte - 1 : 0, text.size());
+    return fail(ExitCode::usage,
+                fmt::format("query: no JSON from its byte {} on ({}); expected: query {{\"path\": [[JOINTS], "
+                            "...], ...}}, with finite numbers: JSON has no NaN and no Infinity",
+                            at, at < text.size() ? shown(text.substr(at, kShown)) : "its end"));
 }
 
 QueryRequest from_json(Json& json) {
@@ -71,9 +108,9 @@ std::string to_line(const QueryRequest& request) {
                  {"links_ignored", request.links_ignored},
                  {"asks_unmoved_links", request.asks_unmoved_links}};
     if (request.own_space_m) json["own_space_m"] = *request.own_space_m;
+    json["step"] = request.step;
     if (request.kind == QueryKind::postures) {
         json["reach_m"] = request.reach_m;
-        json["step"] = request.step;
     } else {
         json["pockets"] = true;
         json["radius_m"] = request.radius_m;
@@ -86,17 +123,22 @@ std::string to_line(const QueryRequest& request) {
 }
 
 Result<QueryRequest, AppError> read_query(std::string_view line) {
-    Json json = Json::parse(line.substr(std::min(kWord.size(), line.size())), nullptr, false);
-    if (!json.is_object()) return fail(ExitCode::usage, "expected: query {\"path\": [[JOINTS], ...], ...}");
+    const std::string_view text = line.substr(std::min(kWord.size(), line.size()));
     try {
+        Json json = Json::parse(text);
+        if (!json.is_object())
+            return fail(ExitCode::usage, "expected: query {\"path\": [[JOINTS], ...], ...}");
         QueryRequest request = from_json(json);
         if (!json.empty())
             return fail(ExitCode::usage, fmt::format("query: unknown key '{}'", json.begin().key()));
         if (const std::string fault = fault_of(request); !fault.empty()) return fail(ExitCode::usage, fault);
         return request;
-    } catch (const Json::exception& error) {
-        return fail(ExitCode::usage,
-                    fmt::format("query: a key's value is of the wrong kind ({})", error.what()));
+    } catch (const Json::parse_error& error) {
+        return fail_at(text, error.byte);
+    } catch (const Json::exception&) {
+        return fail(ExitCode::usage, "query: a number is too large for any");
+    } catch (const std::invalid_argument& wrong) {
+        return fail(ExitCode::usage, wrong.what());
     }
 }
 

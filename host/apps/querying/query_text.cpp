@@ -56,7 +56,9 @@ std::string postures_text(const Json& answer) {
                               answer.at("postures").get<std::size_t>());
 }
 
-std::string view_text(const Json& view) {
+std::string view_text(const Json& view, const Json& why_not_tried) {
+    if (!why_not_tried.is_null())
+        return fmt::format("       no view was tried: {}\n", why_not_tried.get<std::string>());
     if (view.is_null()) return "       no view found\n";
     std::string joints;
     for (const Json& joint : view.at("joints"))
@@ -77,7 +79,7 @@ std::string pockets_text(const Json& answer) {
         text += fmt::format("{:>4}  {:.2f} l about {}, open at {}\n", ++number,
                             1000.0 * pocket.at("volume_m3").get<double>(), point(pocket.at("centre_m")),
                             point(pocket.at("border_m")));
-        text += view_text(pocket.at("view"));
+        text += view_text(pocket.at("view"), answer.at("views_not_tried"));
     }
     return text;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "host/io/mapfile/map_file.hpp"
 #include "tests/system/cli/program.hpp"
@@ -132,10 +133,21 @@ TEST_F(QueryCommandTest, that_cannot_be_asked_says_why) {
     write(path("bad.txt"), "0,0,0,0,0,0,0\n0,0,x\n");
     write(path("none.txt"), "# nothing\n");
     expect("", 69, "nobody knows how the arm stands");
-    expect(" --joints 1,2", 64, "2 joint positions; the rig has 7 joints");
-    expect(" --joints a,b", 64, "expected numbers");
+    expect(" --joints 1,2", 64, "2 joint positions; the rig has 7 joints: panda_joint1, panda_joint2");
+    for (const char* joints : {"a,b", "0,,0,0,0,0,0", "0,-1,0,-2,0,1,0,", "'0;-1;0;-2;0;1;0'",
+                               "0x0,-1,0,-2,0,1,0", "nan,-1,0,-2,0,1,0", "inf,-1,0,-2,0,1,0", "''"}) {
+        expect(std::string(" --joints ") + joints, 64, "expected a joint configuration: one number for each");
+    }
     expect(" --joints 0,9,0,-2,0,1,0", 64, "panda_joint2 is 9; its limits are");
-    expect(" --path " + path("bad.txt"), 65, "bad.txt:2: expected a joint configuration");
+    expect(" --path " + path("bad.txt"), 65, "bad.txt:2: 'x' is no plain, finite number; expected a joint");
+    write(path("few.txt"), std::string("# two\n") + kReady + "\n\n0,0,0\n");
+    expect(" --path " + path("few.txt"), 64, "few.txt:4: configuration 2: 3 joint positions; the rig has 7");
+    write(path("beyond.txt"), std::string("# one\n0,9,0,-2,0,1,0\n"));
+    expect(" --path " + path("beyond.txt"), 64,
+           "beyond.txt:2: configuration 1: panda_joint2 is 9; its limits");
+    expect(" --path " + path("beyond.txt") + " --path -", 64, "--path");
+    expect(" --path /dev/zero", 65, "/dev/zero: has more than 1048576 bytes, which no path has");
+    expect(" --path " + directory_.string(), 64, "is a directory, not a file with a configuration a line");
     expect(" --path " + path("none.txt"), 65, "no joint configuration");
     expect(" --path " + path("nowhere.txt"), 66, "nowhere.txt");
     expect(std::string(" --ignore-link hand --joints ") + kReady, 64, "the robot has no link 'hand'");
@@ -144,6 +156,94 @@ TEST_F(QueryCommandTest, that_cannot_be_asked_says_why) {
     EXPECT_THAT(no_rig.output, HasSubstr("give --rig"));
     const Said no_daemon = octoskin("query --socket " + path("nobody"));
     EXPECT_EQ(no_daemon.exit_code, 69) << no_daemon.output;
+}
+
+TEST_F(QueryCommandTest, refuses_what_would_not_be_looked_at) {
+    const std::string map = free_map();
+    const std::string rig = " --rig " + source("hw/rigs/experiment.yaml");
+    const std::string joints = std::string(" --joints ") + kReady;
+    const auto refused = [&](const std::string& arguments) {
+        const Said said = octoskin("query " + arguments);
+        EXPECT_EQ(said.exit_code, 64) << arguments << ": " << said.output;
+        return said.output;
+    };
+    EXPECT_THAT(refused(joints + rig + " --socket " + path("nobody")),
+                HasSubstr("--rig is of a map file; a daemon has its own: leave it out, or name the map"));
+    EXPECT_THAT(refused(joints + " --robot " + source("hw/rigs/experiment.yaml")),
+                HasSubstr("--robot is of a"));
+    EXPECT_THAT(refused(joints + " --stands " + kReady), HasSubstr("--stands is of a map file"));
+    EXPECT_THAT(refused(map + rig + joints + " --socket " + path("nobody")),
+                HasSubstr("--socket is where a daemon listens, but a map file is asked"));
+    for (const char* option : {" --radius 1", " --above 0", " --pockets 1", " --tries 1"})
+        EXPECT_THAT(refused(map + rig + joints + option), HasSubstr(" is of --unknown: give that, too"));
+    EXPECT_THAT(refused(map + rig + joints + " --unknown --reach 1"), HasSubstr("--reach: of --unknown no"));
+    write(path("way.txt"), std::string(kReady) + "\n");
+    EXPECT_THAT(refused(map + rig + " --unknown --path " + path("way.txt")),
+                HasSubstr("give it as --joints"));
+}
+
+/// Standard output alone: what a script parses.
+Said said_to_script(const std::string& arguments) {
+    return run(OCTOSKIN_PROGRAM " query --json " + arguments, "2>/dev/null");
+}
+
+TEST_F(QueryCommandTest, tells_an_error_as_json_too) {
+    const std::string asked = free_map() + " --rig " + source("hw/rigs/experiment.yaml");
+    const std::array<std::pair<std::string, int>, 6> refused{{{asked + " --joints 1,2", 64},
+                                                              {asked + " --joints 1,,2", 64},
+                                                              {asked + " --path " + path("nowhere"), 66},
+                                                              {asked + " --tries 1", 64},
+                                                              {path("none.ot"), 66},
+                                                              {"--socket " + path("nobody"), 69}}};
+    for (const auto& [arguments, exit_code] : refused) {
+        const Said said = said_to_script(arguments);
+        EXPECT_EQ(said.exit_code, exit_code) << said.output;
+        const Json answer = Json::parse(said.output, nullptr, false);
+        ASSERT_TRUE(answer.is_object()) << arguments << ": " << said.output;
+        EXPECT_EQ(answer.value("ok", true), false);
+        EXPECT_NE(answer.value("error", ""), "");
+        EXPECT_EQ(answer.value("code", 0), exit_code);
+    }
+}
+
+TEST_F(QueryCommandTest, takes_for_own_space_where_the_arm_is_said_to_stand) {
+    const std::string unknown = path("empty.ot");
+    ASSERT_TRUE(save_map(FusedMap{MapConfig{}}, unknown));
+    const std::string aside = " --joints 1.5,-0.785,0,-2.356,0,1.571,0.785 --own-space 0.05";
+    EXPECT_EQ(query(unknown + aside).exit_code, 0) << "about itself";
+    EXPECT_EQ(query(unknown + aside + " --stands " + kReady).exit_code, 2) << "there it does not stand";
+    EXPECT_EQ(query(unknown + " --own-space 0.05 --stands " + kReady).exit_code, 0) << "as it stands";
+    const Said few = query(unknown + aside + " --stands 0,1");
+    EXPECT_EQ(few.exit_code, 64);
+    EXPECT_THAT(few.output, HasSubstr("how the arm stands: 2 joint positions; the rig has 7 joints"));
+    EXPECT_THAT(query(unknown + aside + " --stands 1,,2").output,
+                HasSubstr("--stands '1,,2': a number is missing"));
+}
+
+TEST_F(QueryCommandTest, warns_if_the_map_was_made_with_another_rig) {
+    record_short("run");
+    const Said replayed = octoskin("replay " + path("run") + " --out " + path("maps"));
+    ASSERT_EQ(replayed.exit_code, 0) << replayed.output;
+    const std::string asked = "query " + path("maps/fused.ot") + " --joints " + kReady + " --rig ";
+    const Said same = octoskin(asked + path("run/rig.yaml"));
+    EXPECT_THAT(same.output, testing::Not(HasSubstr("another rig"))) << same.output;
+    const Said other = octoskin(asked + source("hw/rigs/experiment.yaml"));
+    EXPECT_EQ(other.exit_code, same.exit_code);
+    EXPECT_THAT(other.output, HasSubstr("experiment.yaml is another rig than " + path("run/rig.yaml")));
+    write(path("maps/fused.ot"), content(path("maps/proximity.ot")));
+    EXPECT_THAT(octoskin(asked + path("run/rig.yaml")).output, HasSubstr("so nothing says whether"));
+}
+
+TEST_F(QueryCommandTest, help_says_what_each_option_takes) {
+    const Said said = octoskin("query --help");
+    for (const char* line : {"--ignore-link LINK  ", "--joints JOINTS ", "--path FILE ", "--rig FILE ",
+                             "--stands JOINTS ", "--socket FILE="})
+        EXPECT_THAT(said.output, HasSubstr(line));
+    EXPECT_THAT(said.output, testing::Not(HasSubstr("TEXT")));
+    EXPECT_THAT(said.output, testing::Not(HasSubstr(" ...  ")));
+    const Said twice =
+        query(free_map() + " --ignore-link panda_link6 --joints " + kReady + " --ignore-link panda_link7");
+    EXPECT_EQ(twice.exit_code, 0) << twice.output;
 }
 
 }  // namespace

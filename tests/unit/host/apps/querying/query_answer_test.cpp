@@ -81,14 +81,26 @@ TEST_F(QueryAnswer, takes_the_arms_own_space_for_free_if_it_is_told_to) {
     EXPECT_EQ(ask(request, holed, {2.0, 0.0}).at("state"), "unknown") << "it stands elsewhere";
 }
 
+TEST_F(QueryAnswer, refuses_a_posture_in_which_the_arm_cannot_stand) {
+    const auto error = [&](std::vector<double> stands) {
+        const Json answer = ask(path({{0.0, 0.0}}), map_, std::move(stands));
+        EXPECT_FALSE(answer.contains("configuration")) << "it is none of the path's";
+        return answer.value("error", "none");
+    };
+    EXPECT_EQ(error({0.0, 0.1}), "none");
+    EXPECT_EQ(error({0.0}), "how the arm stands: 1 joint positions; the rig has 2 joints: turn, slide");
+    EXPECT_EQ(error({0.0, 0.3}), "how the arm stands: slide is 0.3; its limits are 0 to 0.2");
+}
+
 TEST_F(QueryAnswer, refuses_what_cannot_be_asked_and_says_why) {
+    EXPECT_EQ(ask(path({{0.0, 0.0}, {0.0, 0.3}}), map_).at("configuration"), 2);
     const auto error = [&](const QueryRequest& request) {
         const Json answer = ask(request, map_);
         return answer.at("ok").get<bool>() ? std::string("ok") : answer.at("error").get<std::string>();
     };
     EXPECT_EQ(error(path({{0.0, 0.0}, {0.0, 0.3}})),
               "configuration 2: slide is 0.3; its limits are 0 to 0.2");
-    EXPECT_EQ(error(path({{0.0}})), "configuration 1: 1 joint positions; the rig has 2 joints");
+    EXPECT_EQ(error(path({{0.0}})), "configuration 1: 1 joint positions; the rig has 2 joints: turn, slide");
     QueryRequest no_link = path({{0.0, 0.0}});
     no_link.links_ignored = {"wrist"};
     EXPECT_EQ(error(no_link), "the robot has no link 'wrist'");
@@ -156,8 +168,32 @@ TEST_F(QueryAnswer, lists_pockets_with_a_view_and_the_way_there) {
     EXPECT_EQ(pocket.at("view").at("sensor"), "palm");
     EXPECT_EQ(pocket.at("view").at("way"), "free");
     EXPECT_THAT(query_text(answer), HasSubstr("   1  4.10 l about (0.880, 0.000, 0.320) m"));
-    request.path.clear();  // nobody knows how the arm stands
-    EXPECT_TRUE(ask(request, holed).at("pockets").at(0).at("view").is_null());
+    EXPECT_TRUE(answer.at("views_not_tried").is_null());
+}
+
+TEST_F(QueryAnswer, says_of_a_pocket_without_a_view_whether_any_was_tried) {
+    const FusedMap holed = without(map_, {0.8, -0.08, 0.24}, {0.96, 0.08, 0.4});
+    QueryRequest request = path({{0.5, 0.0}});
+    request.kind = QueryKind::pockets;
+    request.radius_m = 1.2;
+    const auto told = [&](const Json& answer) {
+        EXPECT_TRUE(answer.at("pockets").at(0).at("view").is_null()) << answer;
+        return query_text(answer);
+    };
+    QueryRequest few = request;
+    few.views_tried = 1;  // as it stands, or near: it looks past the pocket
+    EXPECT_THAT(told(ask(few, holed)), HasSubstr("       no view found\n"));
+    QueryRequest none = request;
+    none.views_tried = 0;
+    EXPECT_THAT(told(ask(none, holed)), HasSubstr("       no view was tried: no posture was to be tried\n"));
+    request.path.clear();
+    EXPECT_THAT(told(ask(request, holed)),
+                HasSubstr("       no view was tried: nobody knows how the arm stands\n"));
+    HostRig blind = arm_.rig;
+    for (HostNode& node : blind.nodes) node.sensors.clear();
+    request.path = {{0.5, 0.0}};
+    EXPECT_THAT(told(answer_query(request, {&blind, &arm_.robot, holed.copy(), {}})),
+                HasSubstr("       no view was tried: the rig has no range sensor\n"));
 }
 
 TEST_F(QueryAnswer, takes_own_space_for_free_whatever_range_sensors_counted_there) {

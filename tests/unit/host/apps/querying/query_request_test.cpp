@@ -41,6 +41,7 @@ TEST(QueryRequest, for_pockets_comes_back_as_it_was_sent) {
     sent.pocket_min_m3 = 0.002;
     sent.pockets_max = 3;
     sent.views_tried = 100;
+    sent.step = 0.02;  // of the way to a view
     const auto read = read_query(to_line(sent));
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->kind, QueryKind::pockets);
@@ -49,6 +50,7 @@ TEST(QueryRequest, for_pockets_comes_back_as_it_was_sent) {
     EXPECT_EQ(read->pocket_min_m3, 0.002);
     EXPECT_EQ(read->pockets_max, 3U);
     EXPECT_EQ(read->views_tried, 100U);
+    EXPECT_EQ(read->step, 0.02);
 }
 
 TEST(QueryRequest, is_refused_by_name_of_what_is_wrong_with_it) {
@@ -57,20 +59,40 @@ TEST(QueryRequest, is_refused_by_name_of_what_is_wrong_with_it) {
         return read ? std::string("taken") : read.error().message;
     };
     EXPECT_EQ(fault("query {}"), "taken");
-    EXPECT_THAT(fault("query "), HasSubstr("expected: query {"));
+    EXPECT_THAT(fault("query "), HasSubstr("no JSON from its byte 0 on (its end); expected: query {"));
     EXPECT_THAT(fault("query [1]"), HasSubstr("expected: query {"));
     EXPECT_THAT(fault("query {\"paht\": []}"), HasSubstr("unknown key 'paht'"));
-    EXPECT_THAT(fault("query {\"path\": [0, 1]}"), HasSubstr("wrong kind"));
-    EXPECT_THAT(fault("query {\"step\": \"0.1\"}"), HasSubstr("wrong kind"));
+    EXPECT_EQ(fault("query {\"path\": [0, 1]}"),
+              "query: path is [0,1]; expected a list of joint configurations, each a list of finite numbers, "
+              "such as [[0, -0.785, 1.5]]");
+    EXPECT_EQ(fault("query {\"step\": \"0.1\"}"), "query: step is \"0.1\"; expected a number");
+    EXPECT_EQ(fault("query {\"pockets\": 1}"), "query: pockets is 1; expected true or false");
+    EXPECT_EQ(fault("query {\"links_ignored\": \"hand\"}"),
+              "query: links_ignored is \"hand\"; expected a list of names, such as [\"gripper\"]");
     EXPECT_THAT(fault("query {\"padding_m\": -1}"), HasSubstr("padding_m is -1; expected 0 to 1"));
     EXPECT_THAT(fault("query {\"reach_m\": 1e9}"), HasSubstr("reach_m is"));
     EXPECT_THAT(fault("query {\"step\": 0}"), HasSubstr("step is 0"));
     for (const char* number : {"1e300", "-0.5", "2.7", "-1"}) {
-        EXPECT_THAT(fault(std::string("query {\"pockets_max\": ") + number + "}"), HasSubstr("wrong kind"));
+        EXPECT_THAT(fault(std::string("query {\"pockets_max\": ") + number + "}"),
+                    HasSubstr("; expected a whole number from 0 on"));
     }
     EXPECT_THAT(fault("query {\"own_space_m\": 2}"), HasSubstr("own_space_m is 2"));
     EXPECT_THAT(fault("query {\"pockets\": true, \"radius_m\": 50}"), HasSubstr("radius_m is 50"));
     EXPECT_THAT(fault("query {\"views_tried\": 1000000}"), HasSubstr("views_tried is"));
+}
+
+// As Python's and JavaScript's serializers write them.
+TEST(QueryRequest, with_a_number_that_is_none_is_refused_in_our_words) {
+    const auto fault = [](const std::string& number) {
+        const auto read = read_query("query {\"path\": [[" + number + "]]}");
+        return read ? std::string("taken") : read.error().message;
+    };
+    EXPECT_THAT(fault("null"), HasSubstr("path is [[null]]; expected a list of joint configurations"));
+    EXPECT_THAT(fault("NaN"), HasSubstr("no JSON from its byte 11 on (\"NaN]]}\")"));
+    EXPECT_THAT(fault("-Infinity"), HasSubstr("JSON has no NaN and no Infinity"));
+    EXPECT_THAT(fault("1e999"), HasSubstr("a number is too large"));
+    for (const char* number : {"null", "NaN", "-Infinity", "1e999", "\"\xff\""})
+        EXPECT_THAT(fault(number), testing::Not(HasSubstr("json.exception"))) << number;
 }
 
 TEST(QueryRequest, has_so_many_configurations_and_no_more) {
