@@ -1,5 +1,6 @@
 #include "host/apps/daemon/control_socket.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <spdlog/spdlog.h>
 #include <sys/socket.h>
@@ -105,6 +106,7 @@ void ControlSocket::accept() {
         acceptable_ = EventSource();
         return;
     }
+    drop_gone();
     if (clients_.size() >= kClientsMax) {
         ++dropped_;
         drop(std::ranges::min_element(clients_, {}, &Client::asked)->descriptor);
@@ -132,19 +134,30 @@ bool ControlSocket::serve(Client& client) {
     const std::string_view here(bytes.data(), static_cast<std::size_t>(seen));
     const std::size_t end = here.find('\n');
     const bool is_whole = end != std::string_view::npos;
-    client.request += here.substr(0, end);
+    if (!client.is_refused) client.request += here.substr(0, end);
     const std::size_t taken = is_whole ? end + 1 : here.size();
     (void)::recv(client.descriptor, bytes.data(), taken, MSG_DONTWAIT);
-    if (!is_whole) {
-        const bool is_endless = client.request.size() > kRequestMax;
-        dropped_ += is_endless ? 1U : 0U;
-        return !is_endless;
-    }
+    if (client.request.size() > kRequestMax) refuse(client);
+    if (client.is_refused) return !is_whole;
+    if (!is_whole) return true;
     client.asked = monotonic_now();
     // Who has given up waiting must not have a recording begun that it knows nothing of.
     if (has_gone(client.descriptor)) return false;
     const std::string request = std::exchange(client.request, {});
     return is_taken(client, request) || send(client, answer_(request));
+}
+
+/// At once, for it may have no end. A client that is still sending would not come to read the answer if the
+/// connection were closed now: it goes when its line ends, or as one that is idle.
+void ControlSocket::refuse(Client& client) {
+    ++dropped_;
+    client.is_refused = true;
+    client.request = {};
+    (void)send(client,
+               fmt::format(R"({{"ok":false,"error":"a request has at most {} bytes, this one has more: )"
+                           R"(ask about parts of it","code":{}}})",
+                           kRequestMax, static_cast<int>(ExitCode::usage)));
+    ::shutdown(client.descriptor, SHUT_WR);
 }
 
 bool ControlSocket::is_taken(Client& client, const std::string& request) {
@@ -170,18 +183,30 @@ bool ControlSocket::send(const Client& client, std::string line) const {
 }
 
 void ControlSocket::drop(int descriptor) {
-    // The client's own source is at work just now: it goes with the client.
-    clients_.remove_if([descriptor](const Client& client) { return client.descriptor == descriptor; });
+    const auto client = std::ranges::find(clients_, descriptor, &Client::descriptor);
+    if (client == clients_.end()) return;
+    if (client->ticket != 0) gone_(client->ticket);
+    clients_.erase(client);  // with its own source, which may be at work just now
     ::close(descriptor);
+}
+
+void ControlSocket::drop_gone() {
+    std::vector<int> gone;
+    for (const Client& client : clients_)
+        if (client.ticket != 0 && has_gone(client.descriptor)) gone.push_back(client.descriptor);
+    for (const int descriptor : gone) drop(descriptor);
 }
 
 void ControlSocket::drop_idle() {
     const HostTime now = monotonic_now();
     std::vector<int> idle;
-    for (const Client& client : clients_)
-        if (client.ticket == 0 && now - client.asked > idle_max_) idle.push_back(client.descriptor);
+    for (const Client& client : clients_) {
+        if (client.ticket != 0 || now - client.asked <= idle_max_) continue;
+        idle.push_back(client.descriptor);
+        dropped_ += client.is_refused ? 0U : 1U;  // that one is counted already
+    }
     for (const int descriptor : idle) drop(descriptor);
-    dropped_ += idle.size();
+    drop_gone();
     if (is_resting_) watch();
 }
 

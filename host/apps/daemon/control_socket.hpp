@@ -27,6 +27,7 @@ class ControlSocket {
     using Later = std::function<bool(const std::string& request, std::uint64_t ticket)>;
 
     static constexpr std::size_t kClientsMax = 16;
+    /// A longer request is answered with an error, once so much of it is here, and its client then dropped.
     static constexpr std::size_t kRequestMax = 48 << 10;
     /// What a client has not read yet; beyond, it is dropped.
     static constexpr std::size_t kUnreadMax = 4 << 20;
@@ -42,8 +43,15 @@ class ControlSocket {
     ControlSocket(const ControlSocket&) = delete;
     ControlSocket& operator=(const ControlSocket&) = delete;
 
+    /// Is told the ticket of a request that was taken, and whose client has gone: nobody waits for its
+    /// answer.
+    using Gone = std::function<void(std::uint64_t ticket)>;
+
     /// From now on asked before `answer`, which gets what it does not take.
-    void answer_later(Later later) { later_ = std::move(later); }
+    void answer_later(Later later, Gone gone) {
+        later_ = std::move(later);
+        gone_ = std::move(gone);
+    }
     /// The answer, without a line feed, to a request that was taken. Nothing if the client has gone.
     void reply(std::uint64_t ticket, const std::string& line);
 
@@ -57,6 +65,7 @@ class ControlSocket {
         std::string request;       ///< as much of it as is here
         HostTime asked;            ///< newest whole request
         std::uint64_t ticket = 0;  ///< of what it waits for; 0: nothing
+        bool is_refused = false;   ///< its request had no end: the rest of it is read and forgotten
         EventSource readable;
     };
     ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer,
@@ -65,17 +74,21 @@ class ControlSocket {
     void accept();
     /// False if the client is to be dropped.
     [[nodiscard]] bool serve(Client& client);
+    void refuse(Client& client);
     [[nodiscard]] bool is_taken(Client& client, const std::string& request);
     [[nodiscard]] bool send(const Client& client, std::string line) const;
     void watch(Client& client);
     void drop(int descriptor);
     void drop_idle();
+    /// Those who wait for an answer and have gone: nothing is read of them, which would tell it.
+    void drop_gone();
 
     std::filesystem::path file_;
     int descriptor_;
     EventLoop& loop_;
     Answer answer_;
     Later later_;
+    Gone gone_;
     std::uint64_t tickets_ = 0;
     std::chrono::milliseconds idle_max_;
     EventSource acceptable_;

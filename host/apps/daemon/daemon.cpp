@@ -151,9 +151,11 @@ Status<AppError> Daemon::Parts::take_sockets() {
                                       [this](const std::string& line) { return answer(line); });
     if (!opened) return unexpected(opened.error());
     control = std::move(opened).value();
-    control->answer_later([this](const std::string& line, std::uint64_t ticket) {
-        return queries.take(line, ticket, pipeline, inputs.bus_now(monotonic_now()));
-    });
+    control->answer_later(
+        [this](const std::string& line, std::uint64_t ticket) {
+            return queries.take(line, ticket, pipeline, inputs.bus_now(monotonic_now()));
+        },
+        [this](std::uint64_t ticket) { queries.forget(ticket); });
     return inputs.take_sockets(settings.host.rig);
 }
 

@@ -45,15 +45,6 @@ void QueryDesk::change_robot(const HostSetup& setup) {
 bool QueryDesk::take(const std::string& line, std::uint64_t ticket, const Pipeline& pipeline,
                      std::optional<HostTime> now) {
     if (!is_query(line)) return false;
-    {
-        const std::scoped_lock lock(mutex_);
-        if (waiting_.size() >= kWaitingMax) {
-            tell(ticket,
-                 query_refused({ExitCode::unavailable, "too many questions wait for an answer already"})
-                     .dump());
-            return true;
-        }
-    }
     Question question{line,
                       ticket,
                       setup_,
@@ -66,6 +57,12 @@ bool QueryDesk::take(const std::string& line, std::uint64_t ticket, const Pipeli
     }
     changed_.notify_all();
     return true;
+}
+
+void QueryDesk::forget(std::uint64_t ticket) {
+    const std::scoped_lock lock(mutex_);
+    std::erase_if(waiting_, [ticket](const Question& question) { return question.ticket == ticket; });
+    if (asked_ == ticket) is_forgotten_ = true;
 }
 
 std::vector<std::pair<std::uint64_t, std::string>> QueryDesk::take_answers() {
@@ -81,7 +78,8 @@ void QueryDesk::run() {
         if (is_ending_) return;
         Question question = std::move(waiting_.front());
         waiting_.pop_front();
-        const std::uint64_t ticket = question.ticket;
+        asked_ = question.ticket;
+        is_forgotten_ = false;
         lock.unlock();
         std::string line;
         try {
@@ -89,7 +87,7 @@ void QueryDesk::run() {
         } catch (const std::exception&) {  // no memory to say so: an empty line, which is an answer, too
         }
         lock.lock();
-        tell(ticket, std::move(line));
+        tell(asked_, std::move(line));
     }
 }
 
@@ -117,7 +115,7 @@ std::string QueryDesk::answer(Question question) {
         json = request ? answer_query(*request,
                                       {&question.setup->rig, &question.setup->robot, std::move(question.map),
                                        std::move(question.present), &field_, true},
-                                      [this] { return is_ending_.load(); })
+                                      [this] { return is_ending_ || is_forgotten_; })
                        : query_refused(request.error());
     } catch (const std::exception& error) {  // no memory, most likely
         json = query_refused({ExitCode::unavailable, std::string("no answer: ") + error.what()});

@@ -25,8 +25,8 @@ namespace octoskin {
 
 /// Each question is put to a copy of the map as it was when it came: some microseconds of the loop's time.
 /// A distance field that long paths make for themselves follows from copy to copy, and goes when nobody has
-/// asked for `field_idle_max`. Who asks when too many wait already is refused: clients may have gone that
-/// their questions outlive.
+/// asked for `field_idle_max`. As many questions wait as the control socket has clients, at the most: each
+/// has one.
 class QueryDesk {
   public:
     static constexpr std::chrono::milliseconds kFieldIdleMax{10'000};
@@ -45,7 +45,8 @@ class QueryDesk {
     bool take(const std::string& line, std::uint64_t ticket, const Pipeline& pipeline,
               std::optional<HostTime> now);
     static constexpr Nanoseconds kPresentMax{500'000'000};
-    static constexpr std::size_t kWaitingMax = 32;
+    /// Nobody waits for this answer any more: it is not sought, or not to its end.
+    void forget(std::uint64_t ticket);
 
     /// Readable when there are answers, until they are taken.
     [[nodiscard]] int descriptor() const noexcept { return event_.descriptor(); }
@@ -72,9 +73,11 @@ class QueryDesk {
     std::condition_variable changed_;
     std::deque<Question> waiting_;
     std::vector<std::pair<std::uint64_t, std::string>> answers_;
+    std::uint64_t asked_ = 0;  ///< ticket of the question that is at work, or was the last
     std::atomic<bool> is_ending_ = false;
-    KeptField field_;     ///< the thread's own
-    std::thread thread_;  ///< the last: it uses all others
+    std::atomic<bool> is_forgotten_ = false;  ///< the question at work
+    KeptField field_;                         ///< the thread's own
+    std::thread thread_;                      ///< the last: it uses all others
 };
 
 }  // namespace octoskin

@@ -30,11 +30,13 @@ class AnsweringLater : public testing::Test {
                                           [](const std::string& request) { return "you said " + request; });
         EXPECT_TRUE(opened) << opened.error().message;
         socket_ = std::move(opened).value();
-        socket_->answer_later([this](const std::string& request, std::uint64_t ticket) {
-            if (request != "slow") return false;
-            tickets_.push_back(ticket);
-            return true;
-        });
+        socket_->answer_later(
+            [this](const std::string& request, std::uint64_t ticket) {
+                if (request != "slow") return false;
+                tickets_.push_back(ticket);
+                return true;
+            },
+            [this](std::uint64_t ticket) { gone_.push_back(ticket); });
     }
     [[nodiscard]] std::filesystem::path file() const { return folder_ / "control"; }
     [[nodiscard]] int connect() const {
@@ -63,6 +65,7 @@ class AnsweringLater : public testing::Test {
     EventLoop loop_;
     std::unique_ptr<ControlSocket> socket_;
     std::vector<std::uint64_t> tickets_;
+    std::vector<std::uint64_t> gone_;
     std::atomic<bool> may_answer_ = false;
 };
 
@@ -93,15 +96,56 @@ TEST_F(AnsweringLater, has_no_answer_for_who_has_gone_meanwhile) {
     });
 }
 
+TEST_F(AnsweringLater, tells_that_nobody_waits_any_more_when_the_next_one_comes) {
+    const int gone = connect();
+    const int waiting = connect();
+    EXPECT_EQ(::send(gone, "slow\n", 5, MSG_NOSIGNAL), 5);
+    EXPECT_EQ(::send(waiting, "slow\n", 5, MSG_NOSIGNAL), 5);
+    serve([&] {
+        EXPECT_TRUE(ask_daemon(file(), "status"));  // after both
+        ::shutdown(waiting, SHUT_WR);               // it still reads
+        ::close(gone);
+        EXPECT_TRUE(ask_daemon(file(), "status"));
+    });
+    EXPECT_EQ(tickets_.size(), 2U);
+    EXPECT_EQ(gone_, std::vector<std::uint64_t>{tickets_.front()});
+    ::close(waiting);
+}
+
+TEST_F(AnsweringLater, tells_it_in_time_though_nobody_else_comes) {
+    auto quick = ControlSocket::open(
+        folder_ / "quick", loop_, [](const std::string&) { return std::string("yes"); }, 40ms);
+    ASSERT_TRUE(quick);
+    std::atomic<std::uint64_t> gone = 0;
+    std::atomic<std::uint64_t> taken = 0;
+    (*quick)->answer_later(
+        [&](const std::string&, std::uint64_t ticket) {
+            taken = ticket;
+            return true;
+        },
+        [&](std::uint64_t ticket) { gone = ticket; });
+    const int client = *connect_unix_socket(folder_ / "quick", SOCK_STREAM);
+    EXPECT_EQ(::send(client, "slow\n", 5, MSG_NOSIGNAL), 5);
+    serve([&] {
+        for (int i = 0; i < 400 && taken == 0; ++i) std::this_thread::sleep_for(5ms);
+        ::close(client);
+        for (int i = 0; i < 400 && gone == 0; ++i) std::this_thread::sleep_for(5ms);
+    });
+    EXPECT_NE(gone, 0U);
+    EXPECT_EQ(gone, taken);
+}
+
 TEST_F(AnsweringLater, takes_nobody_for_idle_who_waits) {
     auto quick = ControlSocket::open(
         folder_ / "quick", loop_, [](const std::string&) { return std::string("yes"); }, 40ms);
     ASSERT_TRUE(quick);
     std::uint64_t taken = 0;
-    (*quick)->answer_later([&](const std::string&, std::uint64_t ticket) {
-        taken = ticket;
-        return true;
-    });
+    (*quick)->answer_later(
+        [&](const std::string&, std::uint64_t ticket) {
+            taken = ticket;
+            return true;
+        },
+        [](std::uint64_t) {});
     const auto answering = loop_.every(200ms, [&] { (*quick)->reply(taken, "after all"); });
     serve([&] { EXPECT_EQ(ask_daemon(folder_ / "quick", "anything").value(), "after all"); });
     EXPECT_EQ((*quick)->dropped(), 0U);

@@ -122,17 +122,55 @@ TEST_F(ControlSocketTest, is_not_asked_by_a_client_that_gave_up_before_it_was_le
     EXPECT_EQ(asked_, 1);
 }
 
-TEST_F(ControlSocketTest, drops_a_request_without_end_and_goes_on) {
+/// All that is said until the other end closes; empty at once if it does not say why.
+std::string said_until_the_end(int client) {
+    std::string said;
+    std::array<char, 256> bytes{};
+    while (true) {
+        const ssize_t count = ::recv(client, bytes.data(), bytes.size(), 0);
+        if (count <= 0) return count == 0 ? said : said + " and a broken connection";
+        said.append(bytes.data(), static_cast<std::size_t>(count));
+    }
+}
+
+constexpr const char* kTooLong =
+    R"({"ok":false,"error":"a request has at most 49152 bytes, this one has more: ask about parts of it","code":64})"
+    "\n";
+
+TEST_F(ControlSocketTest, refuses_a_request_without_end_and_goes_on) {
     serve([&] {
         const int client = connect();
         const std::string endless(64 << 10, 'a');
         (void)!::send(client, endless.data(), endless.size(), MSG_NOSIGNAL);
-        std::array<char, 8> bytes{};
-        EXPECT_LE(::recv(client, bytes.data(), bytes.size(), 0), 0) << "it was answered";
+        EXPECT_EQ(said_until_the_end(client), kTooLong);
         ::close(client);
         EXPECT_TRUE(ask_daemon(file(), "still there"));
     });
     EXPECT_EQ(socket_->dropped(), 1U);
+    EXPECT_EQ(asked_, 1);
+}
+
+// More than a socket has room for: who sends it all before it reads must be let finish.
+TEST_F(ControlSocketTest, hears_a_long_request_out_before_it_closes) {
+    serve([&] {
+        const int client = connect();
+        std::string request(1 << 20, 'a');
+        request += "\nstatus\n";
+        EXPECT_EQ(::send(client, request.data(), request.size(), MSG_NOSIGNAL),
+                  static_cast<ssize_t>(request.size()));
+        EXPECT_EQ(said_until_the_end(client), kTooLong);
+        ::close(client);
+    });
+    EXPECT_EQ(asked_, 0) << "what follows is not asked on a connection that is given up";
+}
+
+TEST_F(ControlSocketTest, takes_a_request_of_just_the_length_that_there_may_be) {
+    const std::string longest(ControlSocket::kRequestMax, 'a');
+    serve([&] {
+        EXPECT_EQ(ask_daemon(file(), longest).value(), "you said " + longest);
+        EXPECT_EQ(ask_daemon(file(), longest + "a").value() + "\n", kTooLong);
+    });
+    EXPECT_EQ(asked_, 1);
 }
 
 TEST_F(ControlSocketTest, is_not_stopped_by_clients_that_ask_and_never_read) {

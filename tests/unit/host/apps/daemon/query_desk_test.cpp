@@ -96,6 +96,39 @@ TEST_F(QueryDeskTest, lets_go_of_the_field_when_nobody_asks) {
     EXPECT_EQ(of_a_posture, "search");
 }
 
+/// Seconds of work: nobody waits for the end of it.
+QueryRequest long_one() {
+    QueryRequest request;
+    request.step = 0.005;
+    for (int i = 0; i < 80; ++i) request.path.push_back({i % 2 == 0 ? -1.5 : 1.5});
+    request.reach_m = 5.0;
+    return request;
+}
+
+TEST_F(QueryDeskTest, seeks_no_answer_that_nobody_waits_for) {
+    constexpr std::uint64_t kAsked = 40;
+    for (std::uint64_t ticket = 1; ticket <= kAsked; ++ticket) ask(long_one(), ticket);
+    ask(path({{0.0}}), kAsked + 1);
+    for (std::uint64_t ticket = 1; ticket <= kAsked; ++ticket) desk_.forget(ticket);
+    std::map<std::uint64_t, Json> told;
+    while (!told.contains(kAsked + 1)) {
+        auto more = answers(1);
+        ASSERT_FALSE(more.empty()) << "it works on for those that have gone";
+        told.merge(more);
+    }
+    EXPECT_TRUE(told[kAsked + 1].at("ok").get<bool>());
+    EXPECT_LE(told.size(), 2U) << "one was at work, the others were waiting";
+    told.erase(kAsked + 1);
+    for (const auto& [ticket, answer] : told)
+        EXPECT_FALSE(answer.at("ok").get<bool>()) << ticket << " was worked out to its end";
+}
+
+TEST_F(QueryDeskTest, answers_all_that_are_not_forgotten) {
+    for (std::uint64_t ticket = 1; ticket <= 40; ++ticket) ask(path({{0.0}}), ticket);
+    desk_.forget(41);
+    EXPECT_EQ(answers(40).size(), 40U);
+}
+
 TEST_F(QueryDeskTest, answers_of_the_map_as_it_was_when_the_question_came) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> turn(-1.5, 3.0);
