@@ -50,7 +50,7 @@ struct QueryOptions {
     std::filesystem::path socket = default_control_socket();
     std::optional<std::string> joints;
     std::optional<std::string> stands;
-    std::string path;
+    std::optional<std::string> path;
     bool is_json = false;
     bool lists_unknown = false;
     std::optional<double> own_space_m;
@@ -105,7 +105,8 @@ std::vector<double> read_joints(const char* option, const std::string& text) {
 
 JointPath read_path(const std::string& name) {
     if (name == "-") return value_or_fail(read_joint_path(std::cin, "standard input"));
-    if (std::filesystem::is_directory(name))
+    std::error_code error;
+    if (std::filesystem::is_directory(name, error))
         throw CommandFailure(
             {ExitCode::usage, name + " is a directory, not a file with a configuration a line"});
     std::ifstream file(name);
@@ -123,8 +124,8 @@ Question question_of(const QueryOptions& options) {
     request.z_min_m = options.z_min_m;
     if (options.stands) question.stands = read_joints("--stands", *options.stands);
     if (options.joints) request.path = {read_joints("--joints", *options.joints)};
-    if (!options.path.empty()) {
-        JointPath path = read_path(options.path);
+    if (options.path) {
+        JointPath path = read_path(*options.path);
         request.path = std::move(path.configurations);
         question.lines = std::move(path.lines);
     }
@@ -192,7 +193,7 @@ CommandFailure refusal(const QueryOptions& options, const Question& question, co
     std::string text = answer.at("error").get<std::string>();
     const std::size_t configuration = answer.value("configuration", std::size_t{0});
     if (configuration > 0 && configuration <= question.lines.size())
-        text = fmt::format("{}:{}: {}", options.path == "-" ? "standard input" : options.path,
+        text = fmt::format("{}:{}: {}", options.path == "-" ? "standard input" : *options.path,
                            question.lines[configuration - 1], text);
     return CommandFailure({static_cast<ExitCode>(code), text});
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -28,10 +29,13 @@ std::optional<double> number_of(std::string_view word) {
 }
 
 Result<std::string, AppError> read_bounded(std::istream& stream, const std::string& name) {
-    std::string text(kPathBytesMax + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    std::string text;
+    std::array<char, 4096> block{};
+    while (stream && text.size() <= kPathBytesMax) {
+        stream.read(block.data(), block.size());
+        text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+    }
     if (stream.bad()) return fail(ExitCode::io_failed, name + ": cannot be read");
-    text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() <= kPathBytesMax) return text;
     return fail(
         ExitCode::bad_data,

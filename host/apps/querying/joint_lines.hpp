@@ -28,9 +28,9 @@ struct JointPath {
 /// What a file of a path may have, all comments counted: some 1 kB for each of kConfigurationsMax.
 inline constexpr std::size_t kPathBytesMax = 1 << 20;
 
-/// A configuration a line; empty lines and those that begin with # are none. Reads no more than
-/// kPathBytesMax and one. Errors name `name`, the line and what it has: bad_data; io_failed if `stream`
-/// cannot be read.
+/// A configuration a line; empty lines and those that begin with # are none. Reads a block
+/// more than kPathBytesMax at the most. Errors name `name`, the line and what it has: bad_data; io_failed if
+/// `stream` cannot be read.
 [[nodiscard]] Result<JointPath, AppError> read_joint_path(std::istream& stream, const std::string& name);
 
 }  // namespace octoskin

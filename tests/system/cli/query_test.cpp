@@ -146,6 +146,8 @@ TEST_F(QueryCommandTest, that_cannot_be_asked_says_why) {
     expect(" --path " + path("beyond.txt"), 64,
            "beyond.txt:2: configuration 1: panda_joint2 is 9; its limits");
     expect(" --path " + path("beyond.txt") + " --path -", 64, "--path");
+    expect(" --path ''", 66, "cannot be read: No such file");
+    expect(" --path /proc/self/mem", 74, "/proc/self/mem: cannot be read");
     expect(" --path /dev/zero", 65, "/dev/zero: has more than 1048576 bytes, which no path has");
     expect(" --path " + directory_.string(), 64, "is a directory, not a file with a configuration a line");
     expect(" --path " + path("none.txt"), 65, "no joint configuration");
