@@ -64,7 +64,7 @@ bool FusedMap::has_room_to_date(MortonCode brick) const noexcept {
 void FusedMap::confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind) noexcept {
     bool is_dated = !confirmations_.find(brick).is_unknown();
     if (!is_dated) {
-        if (tree_.find(brick).is_unknown()) return;  // refused, or counted and not yet known
+        if (tree_.find(brick).is_unknown() && !counts_.has(brick)) return;  // refused
         is_dated = has_room_to_date(brick);
     }
     try {
@@ -111,7 +111,8 @@ void confirm_runs(const Voxels& voxels, const KeyOf& key_of, const Filter& filte
 
 }  // namespace
 
-/// Of a cap only what is occupied: a hit that is shared confirms no free voxel.
+/// Of a cap all but what is free, which a hit that is shared does not confirm. What is unknown and only
+/// counted has its time, too: counts that lead to nothing are forgotten like all else.
 void FusedMap::confirm(const ConeVoxels& cone) noexcept {
     const auto confirm_brick = [&](MortonCode brick, const BrickMask& voxels) {
         confirm(brick, voxels, SensorKind::range);
@@ -123,7 +124,8 @@ void FusedMap::confirm(const ConeVoxels& cone) noexcept {
         cone.cap, [](const CapVoxel& voxel) { return voxel.key; },
         [&](MortonCode brick) {
             return [view = tree_.find(brick), occupied = config_.log_odds_occupied](std::size_t cell) {
-                return view.at(cell) >= occupied;
+                const bool is_free = view.at(cell) < occupied;
+                return !is_free;
             };
         },
         confirm_brick);

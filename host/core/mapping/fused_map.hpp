@@ -83,9 +83,10 @@ class FusedMap {
     /// none of its voxels'; told it first, nobody knows how old what it holds is, and that is stale until it
     /// is confirmed. What nobody has confirmed for `age.unknown_after_s` is forgotten, at the next whole
     /// second. Confirmed is what a term changes or would change but for a clamp, what a cone passes, and what
-    /// is occupied in its cap. No more than O(1) within a second; in a new one, if voxels are ever forgotten,
-    /// a 64th of the bricks are looked at and those that may have voxels that are too old: some 50 us for
-    /// 10,000 bricks, and all of them the first time.
+    /// is not free in its cap (counts in unknown voxels are forgotten in the same way). No more than O(1)
+    /// within a second; in a new one, if voxels are ever forgotten, a 64th of the bricks are looked at and
+    /// those that may have voxels that are too old: some 50 us for 10,000 bricks, and all of them the first
+    /// time.
     void go_on(HostTime now) noexcept;
     /// The time that is told from now on is ahead by this of the one that was told before (or behind, below
     /// 0): a clock was set, nothing has become older.

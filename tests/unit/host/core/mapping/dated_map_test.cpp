@@ -147,6 +147,35 @@ TEST(DatedMap, has_of_a_cap_only_what_is_occupied_confirmed) {
     EXPECT_EQ(map.confirmation(key_at(1)), by(SensorKind::range, 0));
 }
 
+TEST(DatedMap, adds_no_hits_up_over_longer_than_it_knows_anything) {
+    FusedMap map(aging(0, 600));
+    ConeVoxels cone;  // a hit of a hundred voxels marks none of them
+    for (int x = 0; x < 100; ++x) cone.cap.push_back({key_at(x), 1.0F});
+    for (int hour = 0; hour < 100; ++hour) {
+        map.go_on(at_s(3600.0 * hour));
+        map.apply(cone, {});
+    }
+    EXPECT_EQ(map.known_voxels(), 0U);
+    EXPECT_FALSE(map.confirmation(key_at(0)).has_value()) << "unknown";
+    map.go_on(at_s(3600.0 * 100));
+    EXPECT_TRUE(map.counts().empty());
+    EXPECT_EQ(map.heap_bytes(), 0U);
+    for (int reading = 0; reading < 100; ++reading) map.apply(cone, {});
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied) << "so many would have marked it at once";
+}
+
+TEST(DatedMap, forgets_hits_of_an_unknown_voxel_whose_neighbours_are_confirmed) {
+    FusedMap map(aging(0, 5));
+    ConeVoxels cone;
+    for (int x = 0; x < 100; ++x) cone.cap.push_back({key_at(x), 1.0F});
+    for (int second = 0; second < 800; second += 4) {
+        map.go_on(at_s(second));
+        if (second % 8 == 0) map.apply(cone, {});
+        map.apply(one(key_at(0, 1), -0.4F));
+    }
+    EXPECT_EQ(map.known_voxels(), 1U) << "each was forgotten before the next";
+}
+
 TEST(DatedMap, waits_for_late_measurements_and_follows_a_clock_that_was_set_back) {
     FusedMap map(MapConfig{});
     map.go_on(at_s(100));
