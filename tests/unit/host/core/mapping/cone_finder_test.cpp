@@ -59,12 +59,12 @@ class BruteForce {
     BruteForce(const MappingConfig& config, const Beam& beam)
         : config_(config), beam_(beam), lattice_(config.map.resolution_m) {}
 
-    Verdict is_passed(VoxelKey key) const {
+    // 0.7 of the peak of a Gaussian of 7 degrees: 5.9123 degrees off the axis.
+    Verdict is_passed(VoxelKey key, double core_rad = 5.912313 * kRadPerDeg) const {
         const Eigen::Vector3d v = lattice_.centre_of(key) - beam_.p_map_sensor;
         const double along = v.dot(beam_.direction_map);
         const double aside = v.cross(beam_.direction_map).norm();
-        // 0.7 of the peak of a Gaussian of 7 degrees: 5.9123 degrees off the axis.
-        const double core = std::tan(5.912313 * kRadPerDeg);
+        const double core = std::tan(core_rad);
         const double end = *beam_.range_m - 0.05;
         const Verdict verdict =
             all_of({along, 0.5 * config_.map.resolution_m + along * core - aside, end - v.norm()});
@@ -161,6 +161,29 @@ TEST(ConeFinder, finds_what_trigonometry_says_of_every_voxel_in_any_direction) {
         SCOPED_TRACE(direction.transpose());
         expect_as_brute_force(config_of(0.04), beam_to(direction, 0.2 + 0.03 * i));
         expect_as_brute_force(config_of(0.1), beam_to(direction, 0.6 + 0.01 * i));
+    }
+}
+
+TEST(ConeFinder, frees_no_more_than_34_degrees_off_the_axis_of_a_cone_that_is_wider) {
+    std::mt19937 random(2);
+    std::normal_distribution<double> normal;
+    for (const double half_deg : {30.0, 34.0, 36.0, 45.0, 89.0}) {
+        for (int i = 0; i < 3; ++i) {
+            Beam beam = beam_to({normal(random), normal(random), normal(random)}, 0.7);
+            beam.optics = {.half_angle_rad = half_deg * kRadPerDeg, .sigma_rad = 2.0};
+            ConeFinder finder(config_of(0.04));
+            const auto found = finder.find(beam);
+            ASSERT_TRUE(found.has_value());
+            const std::set<VoxelKey> passed((*found)->passed.begin(), (*found)->passed.end());
+            const BruteForce oracle(config_of(0.04), beam);
+            std::size_t wrong = 0;
+            oracle.for_each([&](VoxelKey key) {
+                const Verdict verdict = oracle.is_passed(key, std::min(half_deg * kRadPerDeg, 0.6));
+                wrong += !verdict.is_close && verdict.is_in != passed.contains(key) ? 1U : 0U;
+            });
+            EXPECT_EQ(wrong, 0U) << half_deg << " degrees about " << beam.direction_map.transpose();
+            EXPECT_GT(passed.size(), 300U);
+        }
     }
 }
 

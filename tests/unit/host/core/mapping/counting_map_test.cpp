@@ -283,6 +283,19 @@ TEST(CountingMap, is_fused_anew_with_other_limits) {
     EXPECT_EQ(map.log_odds(key_at(3)), 0.1F);
 }
 
+TEST(CountingMap, takes_no_space_for_what_other_limits_leave_unknown) {
+    FusedMap map(map_config());
+    ConeVoxels cone;
+    for (int x = 0; x < 100; ++x) cone.cap.push_back({key_at(8 * x), 1.0F});
+    map.apply(cone, {});
+    ASSERT_EQ(map.known_voxels(), 0U);
+    MapConfig config = map_config();
+    config.counts.hits_min *= 1.5F;
+    map.limit(config);
+    EXPECT_TRUE(map.bricks().empty());
+    EXPECT_TRUE(map.counts().has(brick_of(key_at(0)))) << "what was counted goes on";
+}
+
 /// A cap of three voxels, one of them its middle.
 ConeVoxels cap_of_three() {
     ConeVoxels cone;

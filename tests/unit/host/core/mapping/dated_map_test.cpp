@@ -176,6 +176,27 @@ TEST(DatedMap, forgets_hits_of_an_unknown_voxel_whose_neighbours_are_confirmed) 
     EXPECT_EQ(map.known_voxels(), 1U) << "each was forgotten before the next";
 }
 
+TEST(DatedMap, is_confirmed_by_a_cone_of_which_one_voxel_finds_no_room) {
+    MapConfig config = aging(10, 60);
+    config.memory_max_mib = 1;
+    FusedMap map(config);
+    map.go_on(at_s(0));
+    ConeVoxels cone;
+    cone.passed = {key_at(0), key_at(1)};
+    for (int i = 0; i < 20; ++i) map.apply(cone, {});
+    for (int x = 1; x < 2000; ++x) map.apply(one(key_at(-8 * x), -0.4F));
+    ASSERT_GT(map.counters().no_room, 0U);
+    cone.passed.push_back(key_at(0, 4000));
+    const auto before = map.counters();
+    for (int second = 1; second <= 20; ++second) {
+        map.go_on(at_s(second));
+        map.apply(cone, {});
+    }
+    EXPECT_GT(map.counters().no_room, before.no_room) << "as soon as it would be free";
+    EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 0));
+    EXPECT_EQ(map.confirmation(key_at(1)), by(SensorKind::range, 0));
+}
+
 TEST(DatedMap, waits_for_late_measurements_and_follows_a_clock_that_was_set_back) {
     FusedMap map(MapConfig{});
     map.go_on(at_s(100));

@@ -118,5 +118,38 @@ TEST(PocketViews, are_none_through_what_is_occupied_and_from_where_the_arm_may_n
     EXPECT_FALSE(find_views(arm.rig, *query, blocked, *pockets, std::array{0.0, 0.0}, {.postures = 500})[0]);
 }
 
+TEST(PocketViews, are_looked_for_all_along_a_rail) {
+    TwoJointArm arm;
+    arm.rig.joints.joints = {"rail"};
+    arm.rig.body = {{"hand", {0, 0, 0}, {0, 0, 0}, 0.04}};
+    arm.rig.range_limits.max_m = 0.8;
+    HostSensor& eye = arm.rig.nodes[0].sensors[0];
+    eye.T_link_sensor = Eigen::Isometry3d::Identity();  // looks up
+    eye.T_link_sensor.translation() = Eigen::Vector3d(0, 0, 0.1);
+    JointDescription rail;
+    rail.name = "rail";
+    rail.parent_link = "post";
+    rail.child_link = "hand";
+    rail.kind = JointKind::prismatic;
+    rail.axis = Eigen::Vector3d::UnitX();
+    rail.limits = {0.0, 6.0};
+    const std::array<std::string, 1> moved{"rail"};
+    const RobotModel robot = RobotModel::build("post", std::array{rail}, moved).value();
+    FusedMap free{MapConfig{.resolution_m = 0.04}};
+    for (unsigned cube = 0; cube < 28; ++cube) {
+        const auto key = [](unsigned place) { return static_cast<std::uint16_t>(32736 + 32 * place); };
+        ASSERT_TRUE(free.set_cube({{key(cube / 4), key(cube / 2 % 2), key(cube % 2)}, 5}, -1.0F));
+    }
+    const auto query = RobotQuery::build(arm.rig, robot);
+    for (const double x : {0.7, 2.5, 4.5, 5.7}) {
+        const FusedMap map = without(free, {x - 0.2, -0.2, 0.6}, {x + 0.2, 0.2, 0.9});
+        const auto pockets = UnknownPockets::find(map, {{x, 0, 0.7}, 0.5, -0.5}, 1);
+        const auto views = find_views(arm.rig, *query, map, *pockets, std::array{0.0}, {.postures = 200});
+        ASSERT_EQ(views.size(), 1U) << x;
+        ASSERT_TRUE(views[0]) << x;
+        EXPECT_NEAR(views[0]->position[0], x, 0.21);
+    }
+}
+
 }  // namespace
 }  // namespace octoskin

@@ -216,5 +216,42 @@ TEST(MapMemory, space_of_one_value_takes_next_to_none_and_counts_as_if_it_took_m
     EXPECT_EQ(map.log_odds({32769, 32768, 32768}), -2.0F);
 }
 
+TEST(MapMemory, a_map_that_gets_none_for_other_limits_is_as_it_was) {
+    FusedMap map = full_map(4, 1);
+    const FusedMap before = map.copy();
+    MapConfig config = map.config();
+    config.log_odds_max = 0.1F;
+    int failures = 0;
+    for (bool has_failed = true; has_failed; failures += has_failed ? 1 : 0) {
+        has_failed = false;
+        allocations_left = 10 * failures;
+        try {
+            map.limit(config);
+        } catch (const std::bad_alloc&) {
+            has_failed = true;
+        }
+        allocations_left = -1;
+        std::size_t differences = 0;
+        map.for_each_difference(before, [&](const MapBrick&) { ++differences; });
+        EXPECT_EQ(differences == 0, has_failed);
+        EXPECT_EQ(map.config().log_odds_max == 0.1F, !has_failed);
+        EXPECT_EQ(map.known_voxels(), before.known_voxels());
+    }
+    EXPECT_GT(failures, 20) << "places to fail";
+}
+
+TEST(MapMemory, a_map_that_gets_none_to_date_what_it_holds_tries_again) {
+    FusedMap map{MapConfig{.age = {.stale_after_s = 1, .unknown_after_s = 2}}};
+    ASSERT_TRUE(map.set_cube({.lowest = {32768, 32768, 32768}, .height = 6}, -1.0F));
+    constexpr std::int64_t kSecond = 1'000'000'000;
+    is_memory_gone = true;
+    for (int second = 0; second < 5; ++second) map.go_on({second * kSecond});
+    is_memory_gone = false;
+    EXPECT_EQ(map.counters().undated, 5U);
+    EXPECT_EQ(map.known_voxels(), 1U << 18U);
+    for (int second = 5; second < 9; ++second) map.go_on({second * kSecond});
+    EXPECT_EQ(map.known_voxels(), 0U) << "since the clock began nobody has confirmed it";
+}
+
 }  // namespace
 }  // namespace octoskin
