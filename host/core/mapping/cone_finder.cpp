@@ -100,11 +100,15 @@ VoxelKey key_at(const std::array<int, 3>& key) {
 
 ConeFinder::ConeFinder(const MappingConfig& config) : config_(config), lattice_(config.map.resolution_m) {}
 
+double ConeFinder::length_m(const Beam& beam) const noexcept {
+    return beam.range_m.value_or(std::min(config_.no_return_clear_m, beam.clear_limit_m));
+}
+
 Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam) {
     assert(beam.optics.is_cone());
     if (const auto fault = fault_of(beam)) return unexpected(*fault);
     const ConeModel& model = model_of(beam);
-    const double length_m = beam.range_m.value_or(std::min(config_.no_return_clear_m, beam.clear_limit_m));
+    const double length_m = this->length_m(beam);
     const Eigen::Vector3d end = beam.p_map_sensor + length_m * beam.direction_map;
     const auto end_key = lattice_.key_of(end);
     if (!lattice_.key_of(beam.p_map_sensor) || !end_key) return unexpected(BeamRejection::outside_map);

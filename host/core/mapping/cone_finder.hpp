@@ -20,6 +20,8 @@ class ConeFinder {
     /// what is passed up to the smaller of `MappingConfig::no_return_clear_m` and the beam's limit. What lies
     /// outside the octree is left out. O(voxels); about 3 us at 1 m and 0.04 m. Throws std::bad_alloc.
     [[nodiscard]] Result<const ConeVoxels*, BeamRejection> find(const Beam& beam);
+    /// How far it reaches: its range, or how far it may free space without one.
+    [[nodiscard]] double length_m(const Beam& beam) const noexcept;
     /// By which they are found, and are to be counted.
     [[nodiscard]] const ConeModel& model_of(const Beam& beam) const noexcept {
         return config_.cone_of(beam.optics);

@@ -57,6 +57,17 @@ class FusedMap::CountedBrick {
         return put(cell, {.hits = std::max((*hits_)[cell], enough), .misses = 0.0F});
     }
 
+    /// Of a voxel that is free from now on, though it was occupied.
+    [[nodiscard]] Result<float, Refusal> clear(std::size_t cell) noexcept {
+        if (const auto is_open = open_counts(); !is_open) return unexpected(is_open.error());
+        if (other_.at(cell) > 0.0F) {
+            if (const auto is_set = set_other(cell, kUnknownLogOdds); !is_set)
+                return unexpected(is_set.error());
+        }
+        const float enough = map_->fusion_.misses_that_free(other_.at(cell));
+        return put(cell, {.hits = 0.0F, .misses = std::max((*misses_)[cell], enough)});
+    }
+
   private:
     [[nodiscard]] Result<float, Refusal> put(std::size_t cell, const HitsAndMisses& counts) noexcept {
         const float before = fused_view_.at(cell);
@@ -113,6 +124,9 @@ class FusedMap::CountedBrick {
         const bool clears =
             model.range_clears > 0.0F && misses > 0.0F && misses_in_all >= model.range_clears_from;
         if (!clears || !(before > 0.0F)) return Done{};
+        return set_other(cell, std::max(before - model.range_clears, map_->config_.log_odds_min));
+    }
+    [[nodiscard]] Status<Refusal> set_other(std::size_t cell, float log_odds) noexcept {
         BrickValues* own = map_->counts_.other.own(first_);
         if (own == nullptr) {
             try {
@@ -122,7 +136,7 @@ class FusedMap::CountedBrick {
             }
             other_ = BrickView{own};
         }
-        (*own)[cell] = std::max(before - model.range_clears, map_->config_.log_odds_min);
+        (*own)[cell] = log_odds;
         return Done{};
     }
     [[nodiscard]] Status<Refusal> open_fused() noexcept {
@@ -210,14 +224,27 @@ void FusedMap::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>
     CountedBrick brick(*this);
     for (const VoxelKey key : cone.middle) {
         brick.go_to(key);
-        const auto change = brick.mark(cell_of(key), hits);
-        ++(counters_.*(change ? &MapCounters::applied : change.error()));
-        if (!change) continue;
-        if (changes != nullptr && *change != 0.0F) changes->push_back({key, *change});
-        BrickMask voxel{};
-        put_in(voxel, cell_of(key));
-        if (confirmations_.has_begun()) confirm(brick_of(key), voxel, SensorKind::range);
+        take(key, brick.mark(cell_of(key), hits), changes);
     }
+}
+
+void FusedMap::clear(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes) {
+    CountedBrick brick(*this);
+    for (const VoxelKey key : cone.passed) {
+        if (occupancy(key) != Occupancy::occupied) continue;
+        brick.go_to(key);
+        take(key, brick.clear(cell_of(key)), changes);
+    }
+}
+
+/// What became of one voxel that was told to change.
+void FusedMap::take(VoxelKey key, const Result<float, Refusal>& change, std::vector<VoxelUpdate>* changes) {
+    ++(counters_.*(change ? &MapCounters::applied : change.error()));
+    if (!change) return;
+    if (changes != nullptr && *change != 0.0F) changes->push_back({key, *change});
+    BrickMask voxel{};
+    put_in(voxel, cell_of(key));
+    if (confirmations_.has_begun()) confirm(brick_of(key), voxel, SensorKind::range);
 }
 
 void FusedMap::fuse(MortonCode brick) {

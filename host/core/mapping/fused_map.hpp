@@ -107,6 +107,10 @@ class FusedMap {
     /// occupied, which would explain it, those of its middle are from now on. They have no misses, and at
     /// least so many hits, and as many as that takes. Refused, counted and told as above.
     void mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes = nullptr);
+    /// Of a sensor that surely sees through (StandingSight), after it was counted: what was passed and is
+    /// occupied is free from now on, has no hits and nothing that the camera once knew of it. Refused,
+    /// counted and told as above.
+    void clear(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes = nullptr);
     /// As with VoxelUpdates, of an image's terms, or of a part of its bricks. Where there are counts, the
     /// terms go to what the log-odds are without them.
     void apply(const DepthTerms& terms) { apply(terms, terms.bricks); }
@@ -202,6 +206,7 @@ class FusedMap {
     [[nodiscard]] bool has_room_to_count(MortonCode brick) const noexcept;
     void apply_beside_counts(std::span<const VoxelUpdate> run) noexcept;
     void apply_beside_counts(const DepthTerms& terms, const BrickTerms& brick) noexcept;
+    void take(VoxelKey key, const Result<float, Refusal>& change, std::vector<VoxelUpdate>* changes);
     /// Makes every voxel of a brick with counts what they and its other log-odds say.
     void fuse(MortonCode brick);
     void set_known(float& voxel, float log_odds) noexcept;

@@ -26,6 +26,7 @@ MappingConfig robust_mapping() {
     config.depth_update = DepthUpdate::robust;
     config.range_update = RangeUpdate::cone;
     config.standing.readings = 4;
+    config.standing.clears_after_s = 0.55;
     config.map.log_odds_passed_max = 1.5F;
     config.map.log_odds_hit_min = -0.4F;
     config.map.age = {.stale_after_s = 60, .unknown_after_s = 600};

@@ -48,6 +48,13 @@ float CountFusion::hits_that_mark(float other) const noexcept {
     return kForRounding * std::max(hits, model_.hits_min);
 }
 
+float CountFusion::misses_that_free(float other) const noexcept {
+    constexpr float kForRounding = 1.001F;
+    constexpr float kLeast = 0.01F;  // with none, nothing would be known of it
+    const float misses = hits_known(other) / odds_occupied_ - misses_known(other);
+    return std::max(kForRounding * misses, kLeast);
+}
+
 void RangeCounts::begin(MortonCode brick, const BrickView& now) {
     misses.set_all(brick, 0.0F);
     if (now.values != nullptr) {

@@ -45,6 +45,9 @@ class CountFusion {
 
     /// Hits that mark a voxel without misses, and hardly more.
     [[nodiscard]] float hits_that_mark(float other) const noexcept;
+    /// Misses that free a known voxel without hits of which nothing else is known but what speaks against it,
+    /// and hardly more.
+    [[nodiscard]] float misses_that_free(float other) const noexcept;
 
   private:
     [[nodiscard]] float hits_known(float other) const noexcept {

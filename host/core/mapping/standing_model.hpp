@@ -1,4 +1,4 @@
-// When ranges of a sensor that stands still mark at once what has come before it.
+// When ranges of a sensor that stands still mark at once what has come before it, and free what has gone.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,9 @@ struct StandingModel {
     std::uint32_t readings = 0;
     float hits = 2.0F;          ///< what they leave a voxel at least, and no misses
     double angle_share = 0.25;  ///< how far off the axis, of the way to where nothing is seen any more
+
+    /// What readings of one zone over so long agree to see through is free at once; 0: nothing ever is.
+    double clears_after_s = 0.0;
 
     /// Some may be wrong or fail, and what has come is still on the map after 0.2 s at 30 readings a second.
     [[nodiscard]] constexpr std::uint32_t window() const noexcept { return readings + 3; }

@@ -7,16 +7,8 @@
 namespace octoskin {
 namespace {
 
-bool are_of_one_place(const Beam& a, const Beam& b) {
-    // The trace of a rotation is 1 + 2 cos(angle).
-    static const double trace_min = 1.0 + 2.0 * std::cos(StandingRanges::kTurnedMax_rad);
-    const double moved2 = (a.p_map_sensor - b.p_map_sensor).squaredNorm();
-    return moved2 <= StandingRanges::kMovedMax_m * StandingRanges::kMovedMax_m &&
-           a.R_map_sensor.cwiseProduct(b.R_map_sensor).sum() >= trace_min;
-}
-
 double tolerance_m(const Beam& a, const Beam& b) {
-    return StandingRanges::kAgreement_m + StandingRanges::kAgreementSigmas * std::max(a.sigma_m, b.sigma_m);
+    return StandingRanges::tolerance_m(std::max(a.sigma_m, b.sigma_m));
 }
 
 /// Both have a range.
@@ -27,11 +19,19 @@ bool agree(const Beam& a, const Beam& b) {
 
 /// That `before` was already told what `beam` tells, or of something nearer.
 bool is_told_by(const Beam& before, const Beam& beam) {
-    return before.range_m && are_of_one_place(before, beam) &&
+    return before.range_m && StandingRanges::are_of_one_place(before, beam) &&
            *before.range_m <= *beam.range_m + tolerance_m(before, beam);
 }
 
 }  // namespace
+
+bool StandingRanges::are_of_one_place(const Beam& a, const Beam& b) {
+    // The trace of a rotation is 1 + 2 cos(angle).
+    static const double trace_min = 1.0 + 2.0 * std::cos(kTurnedMax_rad);
+    const double moved2 = (a.p_map_sensor - b.p_map_sensor).squaredNorm();
+    return moved2 <= kMovedMax_m * kMovedMax_m &&
+           a.R_map_sensor.cwiseProduct(b.R_map_sensor).sum() >= trace_min;
+}
 
 std::span<const Beam> StandingRanges::take(const Beam& beam) {
     believed_.clear();

@@ -56,6 +56,7 @@ MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams
       beam_integrator_(mapping),
       cone_finder_(mapping),
       standing_(mapping.standing),
+      sight_(mapping.standing),
       maps_(mapping.map, maps) {
     if (rig.camera) {
         depth_stage_.emplace(rig, mapping, depth_threads);
@@ -81,6 +82,7 @@ void MapBuilder::forget_motion(Nanoseconds leapt) {
     }
     maps_.leap(leapt);
     standing_.forget();
+    sight_.forget();
     if (witness_) {
         witness_->forget_beams();
     }
@@ -130,25 +132,31 @@ Status<ReadingReason> MapBuilder::add_cone(const RangeMeasurement& measurement, 
     const ConeModel& model = cone_finder_.model_of(beam);
     if (listener_ != nullptr) {
         std::vector<VoxelUpdate> changes = maps_.changes_of_proximity(**voxels, model);
-        mark_believed(beam, &changes);
+        believe_standing(beam, &changes);
         listener_->on_reading(measurement, beam, changes);
         listener_->on_maps(maps_);
     } else {
         maps_.add_proximity(**voxels, model);
-        mark_believed(beam, nullptr);
+        believe_standing(beam, nullptr);
     }
     return Done{};
 }
 
-void MapBuilder::mark_believed(const Beam& beam, std::vector<VoxelUpdate>* changes) {
-    std::vector<VoxelUpdate> marked;
+void MapBuilder::believe_standing(const Beam& beam, std::vector<VoxelUpdate>* changes) {
+    std::vector<VoxelUpdate> more;
+    std::vector<VoxelUpdate>* const told = changes != nullptr ? &more : nullptr;
+    if (const auto through = sight_.take(beam, cone_finder_.length_m(beam))) {
+        if (const auto voxels = cone_finder_.find(*through)) {
+            maps_.clear(**voxels, told);
+        }
+    }
     for (const Beam& believed : standing_.take(beam)) {
         const auto voxels = cone_finder_.find(believed);
         if (voxels) {  // so near to the edge of the octree a mean of ranges may lie beyond it
-            maps_.mark(**voxels, standing_.model().hits, changes != nullptr ? &marked : nullptr);
+            maps_.mark(**voxels, standing_.model().hits, told);
         }
     }
-    for (const VoxelUpdate& update : marked) {
+    for (const VoxelUpdate& update : more) {
         const auto same = std::ranges::find(*changes, update.key, &VoxelUpdate::key);
         if (same != changes->end()) {
             same->log_odds += update.log_odds;

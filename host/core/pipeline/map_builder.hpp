@@ -17,6 +17,7 @@
 #include "host/core/mapping/cone_finder.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/mapping/standing_ranges.hpp"
+#include "host/core/mapping/standing_sight.hpp"
 #include "host/core/pipeline/commit.hpp"
 #include "host/core/pipeline/depth_stage.hpp"
 #include "host/core/pipeline/map_set.hpp"
@@ -45,6 +46,7 @@ class MapBuilder {
     void forget_counts() noexcept {
         maps_.forget_counts();
         standing_.forget();
+        sight_.forget();
     }
     /// The fused map, for another builder to begin with; nothing may be given in after.
     [[nodiscard]] FusedMap take_fused() { return maps_.take_fused(); }
@@ -109,15 +111,16 @@ class MapBuilder {
 
     [[nodiscard]] Status<ReadingReason> add_cone(const RangeMeasurement& measurement, const Beam& beam);
     [[nodiscard]] Status<ReadingReason> add_ray(const RangeMeasurement& measurement, const Beam& beam);
-    /// Marks what a sensor that stands still is believed. `changes`: of the fused map, each voxel once; may
-    /// be null.
-    void mark_believed(const Beam& beam, std::vector<VoxelUpdate>* changes);
+    /// Marks and frees what a sensor that stands still is believed. `changes`: of the fused map, each voxel
+    /// once; may be null.
+    void believe_standing(const Beam& beam, std::vector<VoxelUpdate>* changes);
 
     RobotTracker robot_;
     BeamBuilder beams_;
     BeamIntegrator beam_integrator_;
     ConeFinder cone_finder_;
     StandingRanges standing_;
+    StandingSight sight_;
     std::optional<DepthStage> depth_stage_;
     std::optional<SensorWitness> witness_;
     bool refuses_contradicting_ = false;

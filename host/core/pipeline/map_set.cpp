@@ -91,6 +91,15 @@ void MapSet::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* 
     }
 }
 
+void MapSet::clear(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes) {
+    if (proximity_) {
+        proximity_->clear(cone);
+    }
+    if (fused_) {
+        fused_->clear(cone, changes);
+    }
+}
+
 void MapSet::count(const ConeVoxels& cone, const ConeModel& model, std::vector<VoxelUpdate>* changes) {
     if (proximity_) {
         proximity_->apply(cone, model);

@@ -41,7 +41,7 @@ const Keys kHitKeys = {"log_odds_offset", "log_odds_slope_per_m", "range_min_m",
 const Keys kFilterKeys = {"is_enabled", "window_px", "sigma_m", "gate_sigmas", "mean_sigmas", "min_support"};
 const Keys kConeKeys = {"hit_range_max_m", "cap_half_thickness_m", "cap_sigmas", "cap_angle_share",
                         "core_weight_min", "core_margin_voxels",   "hit_mass",   "miss_mass"};
-const Keys kStandingKeys = {"readings", "hits", "angle_share"};
+const Keys kStandingKeys = {"readings", "hits", "angle_share", "clears_after_s"};
 const Keys kCountKeys = {"prior_hits",           "prior_misses", "occupied_hits", "free_misses",
                          "occupied_probability", "hits_min",     "misses_min",    "counts_max",
                          "image_clears",         "image_marks",  "range_clears",  "range_clears_from"};
@@ -176,6 +176,7 @@ StandingModel read_standing(const Table& table, StandingModel standing) {
     standing.readings = table.integer<std::uint32_t>("readings", {0, kReadingsMax}, standing.readings);
     standing.hits = single(table, "hits", {0.0, 10'000.0}, standing.hits);
     standing.angle_share = table.number("angle_share", {0.0, 1.0}, standing.angle_share);
+    standing.clears_after_s = table.number("clears_after_s", {0.0, 60.0}, standing.clears_after_s);
     if (standing.readings == 1)
         table.fail("readings", "expected 2 or more, or 0 (never), found 1: one reading alone may be wrong");
     return standing;
@@ -313,8 +314,9 @@ std::string mapping_text(const MappingConfig& config) {
         filter.min_support);
     text += fmt::format("range_update: {}\n", config.range_update == RangeUpdate::cone ? "cone" : "ray");
     text += cone_text("cone", config.cone) + cone_text("zone", config.zone);
-    text += fmt::format("standing:\n  readings: {}\n  hits: {}\n  angle_share: {}\n",
-                        config.standing.readings, config.standing.hits, config.standing.angle_share);
+    text += fmt::format("standing:\n  readings: {}\n  hits: {}\n  angle_share: {}\n  clears_after_s: {}\n",
+                        config.standing.readings, config.standing.hits, config.standing.angle_share,
+                        config.standing.clears_after_s);
     text += counts_text(map.counts);
     text += fmt::format(
         "removes_robot_from_depth: {}\nremoves_robot_from_ranges: {}\n"

@@ -354,5 +354,34 @@ TEST(CountingMap, confirms_what_it_marks) {
     EXPECT_EQ(map.confirmation(key_at(0)), (Confirmation{0, SensorKind::range}));
 }
 
+TEST(CountingMap, frees_at_once_what_is_surely_seen_through_however_sure_it_was) {
+    for (const int images : {0, 1, 20}) {
+        for (const int hits : {0, 1, 60}) {
+            FusedMap map(map_config());
+            ConeVoxels onto;
+            onto.cap = {{key_at(0), 1.0F}};
+            for (int i = 0; i < images; ++i) map.apply(std::vector<VoxelUpdate>{{key_at(0), 1.0F}});
+            for (int i = 0; i < hits; ++i) map.apply(onto, {});
+            map.apply(std::vector<VoxelUpdate>{{key_at(1), -1.0F}});
+            const auto before = map.copy();
+            ConeVoxels through;
+            through.passed = {key_at(0), key_at(1), key_at(2)};
+            std::vector<VoxelUpdate> changes;
+            map.clear(through, &changes);
+            EXPECT_EQ(map.log_odds(key_at(1)), before.log_odds(key_at(1))) << "what is free stays as it is";
+            EXPECT_EQ(map.occupancy(key_at(2)), Occupancy::unknown);
+            if (before.occupancy(key_at(0)) != Occupancy::occupied) {
+                EXPECT_TRUE(changes.empty());
+                continue;
+            }
+            EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free) << images << " images, " << hits << " hits";
+            ASSERT_EQ(changes.size(), 1U);
+            EXPECT_NEAR(*before.log_odds(key_at(0)) + changes[0].log_odds, *map.log_odds(key_at(0)), 1e-5);
+            for (int i = 0; i < 3; ++i) map.apply(std::vector<VoxelUpdate>{{key_at(0), 1.0F}});
+            EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied) << "and may come again";
+        }
+    }
+}
+
 }  // namespace
 }  // namespace octoskin

@@ -80,7 +80,7 @@ class StandingCone : public testing::Test {
   protected:
     StandingCone() {
         Scene scene = scene_of(RangeUpdate::cone, kCone);
-        scene.mapping.standing.readings = 4;
+        scene.mapping.standing = fast_mapping().standing;
         builder_.emplace(MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, {}).value());
         builder_->tell(&changes_);
     }

@@ -90,7 +90,7 @@ TEST(MappingFile, reads_every_key) {
         "core_margin_voxels: 0.125, hit_mass: 1.25, miss_mass: 0.625, cap_angle_share: 0.75}\n"
         "zone: {hit_range_max_m: 3, cap_half_thickness_m: 0.5, cap_sigmas: 2.5, core_weight_min: 0.875, "
         "core_margin_voxels: 0.375, hit_mass: 3.25, miss_mass: 1.625, cap_angle_share: 0.25}\n"
-        "standing: {readings: 6, hits: 1.75, angle_share: 0.375}\n"
+        "standing: {readings: 6, hits: 1.75, angle_share: 0.375, clears_after_s: 1.25}\n"
         "counts: {prior_hits: 0.75, prior_misses: 1.25, occupied_hits: 30, free_misses: 4, "
         "occupied_probability: 0.625, hits_min: 0.5, misses_min: 2.5, counts_max: 40, image_clears: 0.5, "
         "image_marks: 0.25, range_clears: 0.125, range_clears_from: 4.5}\n"
@@ -142,7 +142,7 @@ TEST(MappingFile, reads_every_key) {
                  .core_margin_voxels = 0.375,
                  .hit_mass = 3.25F,
                  .miss_mass = 1.625F},
-        .standing = {.readings = 6, .hits = 1.75F, .angle_share = 0.375},
+        .standing = {.readings = 6, .hits = 1.75F, .angle_share = 0.375, .clears_after_s = 1.25},
         .depth_update = DepthUpdate::paper,
         .depth_filter = {.is_enabled = false,
                          .window = 3,
@@ -298,7 +298,7 @@ TEST(MappingFile, has_each_key_with_its_range_and_default_in_its_document_and_no
         const bool is_same = paper.at(path) == value;
         keys[path] = {expected_of(path), is_same ? value : value + " (" + paper.at(path) + ")"};
     }
-    EXPECT_EQ(keys.size(), 64U);
+    EXPECT_EQ(keys.size(), 65U);
     EXPECT_EQ(documented_keys(), keys);
 }
 
