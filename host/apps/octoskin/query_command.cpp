@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -198,6 +199,24 @@ CommandFailure refusal(const QueryOptions& options, const Question& question, co
     return CommandFailure({static_cast<ExitCode>(code), text});
 }
 
+/// Why so little is free, as a rule, for who does not know of it.
+std::string hint(const QueryOptions& options, const Json& answer) {
+    constexpr const char* kHint =
+        "(No sensor sees where the arm itself stands, and all of that is unknown: with --own-space M, what "
+        "is "
+        "unknown or stale within M metres of the arm counts as free.)\n";
+    if (options.own_space_m) return {};
+    if (!answer.contains("pockets")) {
+        const Json& state = answer.at("state");
+        return state == "unknown" || state == "stale" ? kHint : std::string();
+    }
+    const bool lacks_views = answer.at("views_not_tried").is_null() &&
+                             std::ranges::any_of(answer.at("pockets"), [](const Json& pocket) {
+                                 return pocket.at("view").is_null();
+                             });
+    return lacks_views ? kHint : std::string();
+}
+
 ExitCode answered(const QueryOptions& options) {
     const Question question = question_of(options);
     const Json answer =
@@ -205,7 +224,7 @@ ExitCode answered(const QueryOptions& options) {
     try {
         if (!answer.at("ok").get<bool>()) throw refusal(options, question, answer);
         const ExitCode outcome = outcome_of(answer);
-        print("{}", options.is_json ? answer.dump(2) + "\n" : query_text(answer));
+        print("{}", options.is_json ? answer.dump(2) + "\n" : query_text(answer) + hint(options, answer));
         return outcome;
     } catch (const Json::exception&) {
         throw CommandFailure(foreign_answer(options.socket));

@@ -68,7 +68,9 @@ TEST_F(QueryCommandTest, of_an_unknown_posture_ends_with_2) {
     const Said said = query(nothing_known + " --joints " + kReady);
     EXPECT_EQ(said.exit_code, 2) << said.output;
     EXPECT_THAT(said.output, testing::StartsWith("unknown: panda_link"));
+    EXPECT_THAT(said.output, HasSubstr("--own-space M")) << "why, as a rule";
     const Said own = query(nothing_known + " --joints " + kReady + " --own-space 0.05");
+    EXPECT_THAT(own.output, testing::Not(HasSubstr("--own-space")));
     EXPECT_EQ(own.exit_code, 0) << own.output;
 }
 
