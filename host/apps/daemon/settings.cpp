@@ -6,7 +6,7 @@
 
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
-#include "host/apps/study/configuration.hpp"
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "hw/rigfile/rig.hpp"
 
@@ -33,7 +33,7 @@ Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const 
 }  // namespace
 
 Result<Settings, AppError> read_settings(const DaemonRequest& request) {
-    const auto configuration = study_configuration(request.configuration);
+    const auto configuration = named_mapping(request.configuration);
     if (!configuration) return unexpected(configuration.error());
     const auto rig = read_given_rig(request.rig, request.robot);
     if (!rig) return unexpected(rig.error());

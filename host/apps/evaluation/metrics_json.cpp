@@ -1,6 +1,7 @@
 #include <cassert>
 #include <nlohmann/json.hpp>
 
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/evaluation/results.hpp"
 
 namespace octoskin::evaluation {

@@ -38,9 +38,6 @@ struct Results {
 [[nodiscard]] Results collect(std::span<const Run> runs, std::vector<PartTime> times = {},
                               std::vector<std::pair<std::string, std::string>> provenance = {});
 
-/// metrics.json's own key beside the configurations.
-inline constexpr std::string_view kReservedName = "run";
-
 /// JSON text: configuration -> map -> metric -> {mean, sd, per_seed}, and under the one reserved key "run"
 /// the seeds, paired differences, calibration tables, times and provenance. Undefined values are null. No
 /// configuration may be called so (asserted). Equal results give equal text.

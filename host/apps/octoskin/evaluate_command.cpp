@@ -17,7 +17,7 @@
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
-#include "host/apps/study/configuration.hpp"
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/study/study.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapping/mapping_file.hpp"
@@ -86,7 +86,7 @@ evaluation::Results results_of(const std::vector<evaluation::Run>& runs, const r
 }
 
 evaluation::Results judge_recording(const EvaluateOptions& options) {
-    const auto configuration = study_configuration(options.configuration);
+    const auto configuration = named_mapping(options.configuration);
     if (!configuration) throw CommandFailure(configuration.error());
     const MappingConfig& mapping = configuration->mapping;
     const RecordingPaths recording(options.input);

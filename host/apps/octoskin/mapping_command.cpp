@@ -6,7 +6,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
-#include "host/apps/study/configuration.hpp"
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 
 namespace octoskin::app {
@@ -16,7 +16,7 @@ void add_mapping_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("mapping", "Check a mapping configuration and print it in full");
     command->add_option("configuration", *name, configuration_help("One of"))->capture_default_str();
     command->callback([name] {
-        const auto configuration = study_configuration(*name);
+        const auto configuration = named_mapping(*name);
         if (!configuration) throw CommandFailure(configuration.error());
         print("{}", mapping_text(configuration->mapping));
     });

@@ -5,7 +5,7 @@
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/playback/data_set_playback.hpp"
-#include "host/apps/study/configuration.hpp"
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "host/io/tum/data_set_camera.hpp"
 #include "hw/rigfile/joined.hpp"
@@ -50,7 +50,7 @@ PlaybackRequest playback_request(const PlaybackOptions& options) {
                                             "in its rig: leave --camera out"
                                       : ": the camera is --rig's: give one of them")});
     }
-    auto configuration = study_configuration(configuration_of(options.configuration, recording));
+    auto configuration = named_mapping(configuration_of(options.configuration, recording));
     if (!configuration) throw CommandFailure(configuration.error());
     return {.recording = recording,
             .mapping = configuration->mapping,

@@ -9,7 +9,7 @@
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/study/configuration.hpp"
+#include "host/apps/choosing/named_mapping.hpp"
 
 namespace octoskin::app {
 namespace {

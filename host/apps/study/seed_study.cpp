@@ -49,7 +49,7 @@ Status<AppError> simulate(const SeedRequest& request, bool is_noise_free, const 
     return Done{};
 }
 
-RecordingPaths recording_of(const SeedRequest& request, const StudyConfiguration& configuration) {
+RecordingPaths recording_of(const SeedRequest& request, const NamedMapping& configuration) {
     return RecordingPaths(configuration.is_depth_noise_free ? request.scratch : request.recording);
 }
 
@@ -85,8 +85,8 @@ class UnknownSpaceWatch final : public CommitListener {
     HostTime captured_;
 };
 
-Result<Playback, AppError> play(const SeedRequest& request, const StudyConfiguration& configuration,
-                                const Say& say, CommitListener* listener, SeedOutcome& outcome) {
+Result<Playback, AppError> play(const SeedRequest& request, const NamedMapping& configuration, const Say& say,
+                                CommitListener* listener, SeedOutcome& outcome) {
     const RecordingPaths recording = recording_of(request, configuration);
     const PartTimer timer("replay " + configuration.name);
     auto playback = play_recording({.recording = recording,
@@ -141,14 +141,12 @@ Result<SeedOutcome, AppError> study_seed(const SeedRequest& request, const Study
                         .unknown_space = {}};
     for (const bool is_noise_free : {false, true}) {
         const auto& all = request.configurations;
-        const auto matches = [&](const StudyConfiguration& c) {
-            return c.is_depth_noise_free == is_noise_free;
-        };
+        const auto matches = [&](const NamedMapping& c) { return c.is_depth_noise_free == is_noise_free; };
         if (std::none_of(all.begin(), all.end(), matches)) continue;
         if (const auto simulated = simulate(request, is_noise_free, say, outcome); !simulated) {
             return unexpected(simulated.error());
         }
-        for (const StudyConfiguration& configuration : all) {
+        for (const NamedMapping& configuration : all) {
             if (!matches(configuration)) continue;
             const bool is_main = request.keeps_maps && configuration.name == request.main_configuration;
             std::optional<UnknownSpaceWatch> watch;

@@ -13,7 +13,7 @@
 #include "host/apps/evaluation/truth.hpp"
 #include "host/apps/playback/playback.hpp"
 #include "host/apps/simulation/simulation.hpp"
-#include "host/apps/study/configuration.hpp"
+#include "host/apps/choosing/named_mapping.hpp"
 #include "hw/sim/scenario/scenario.hpp"
 #include "hw/sim/world/world.hpp"
 
@@ -29,7 +29,7 @@ struct StudyGround {
 
 struct SeedRequest {
     SimulationRequest simulation;  ///< `seed` set; `out` and the noise are chosen here
-    std::vector<StudyConfiguration> configurations;
+    std::vector<NamedMapping> configurations;
     std::filesystem::path recording;  ///< where the noisy recording goes
     std::filesystem::path scratch;    ///< for the noise-free one; removed afterwards
     bool keeps_recording = false;

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <set>
 
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/evaluation/survey.hpp"
 #include "host/apps/playback/map_folder.hpp"
 #include "host/apps/recording/given_rig.hpp"
@@ -13,7 +14,6 @@
 #include "host/apps/report/report.hpp"
 #include "host/apps/simulation/scene.hpp"
 #include "host/apps/study/captions.hpp"
-#include "host/apps/study/configuration.hpp"
 #include "host/apps/study/parallel.hpp"
 #include "host/apps/study/part_timer.hpp"
 #include "host/apps/study/seed_study.hpp"
@@ -48,8 +48,8 @@ Result<StudyWorld, AppError> prepare_world(const SimulationRequest& inputs, doub
 }
 
 /// That a configuration can be told from those before it, and compared with them.
-Status<AppError> check_next(const std::vector<StudyConfiguration>& before, const StudyConfiguration& next) {
-    for (const StudyConfiguration& one : before) {
+Status<AppError> check_next(const std::vector<NamedMapping>& before, const NamedMapping& next) {
+    for (const NamedMapping& one : before) {
         if (one.name == next.name)
             return fail(ExitCode::usage, fmt::format("configuration '{}' is given twice", next.name));
         if (one.mapping.map.resolution_m != next.mapping.map.resolution_m) {
@@ -64,10 +64,10 @@ Status<AppError> check_next(const std::vector<StudyConfiguration>& before, const
     return Done{};
 }
 
-Result<std::vector<StudyConfiguration>, AppError> find_configurations(const std::vector<std::string>& names) {
-    std::vector<StudyConfiguration> found;
+Result<std::vector<NamedMapping>, AppError> find_configurations(const std::vector<std::string>& names) {
+    std::vector<NamedMapping> found;
     for (const std::string& name : names) {
-        auto configuration = study_configuration(name);
+        auto configuration = named_mapping(name);
         if (!configuration) return unexpected(configuration.error());
         if (const auto checked = check_next(found, *configuration); !checked)
             return unexpected(checked.error());
@@ -87,7 +87,7 @@ Status<AppError> check_seeds(const std::vector<std::uint64_t>& seeds) {
 }
 
 /// The one that the maps, the pictures and the headline are of.
-const StudyConfiguration& main_of(const std::vector<StudyConfiguration>& configurations) {
+const NamedMapping& main_of(const std::vector<NamedMapping>& configurations) {
     const auto ours =
         std::find_if(configurations.begin(), configurations.end(),
                      [](const auto& configuration) { return configuration.name == kDefaultMapping; });
@@ -98,7 +98,7 @@ const StudyConfiguration& main_of(const std::vector<StudyConfiguration>& configu
 class SeedWorkers {
   public:
     /// What is not kept is made, and removed, in `work`.
-    SeedWorkers(const StudyRequest& request, const std::vector<StudyConfiguration>& configurations,
+    SeedWorkers(const StudyRequest& request, const std::vector<NamedMapping>& configurations,
                 const StudyWorld& ground, const fs::path& work, const Say& say)
         : request_(request),
           work_(work),
@@ -134,7 +134,7 @@ class SeedWorkers {
 
     const StudyRequest& request_;
     const fs::path work_;
-    const std::vector<StudyConfiguration>& configurations_;
+    const std::vector<NamedMapping>& configurations_;
     StudyGround ground_;
     const Say& say_;
     std::mutex say_mutex_;
@@ -166,7 +166,7 @@ report::Account report_account(const AccountTable& table) {
 
 Status<AppError> write_report(const StudyRequest& request, const StudyWorld& ground,
                               const evaluation::Results& results, const SeedOutcome& first,
-                              const StudyConfiguration& main_configuration) {
+                              const NamedMapping& main_configuration) {
     const Playback& main = *first.main;
     report::ReportInput input{.results = results,
                               .main_configuration = main_configuration.name,

@@ -10,7 +10,10 @@
 
 namespace octoskin {
 
-struct StudyConfiguration {
+/// What metrics.json has beside the configurations.
+inline constexpr std::string_view kReservedName = "run";
+
+struct NamedMapping {
     std::string name;  ///< of a file: its name without folder and extension
     MappingConfig mapping;
     bool is_depth_noise_free = false;  ///< which of the two recordings the experiment makes it from
@@ -19,6 +22,6 @@ struct StudyConfiguration {
 /// One of kBuiltInMappings (host/io/mapping), or the path of a YAML file. Errors: neither (no_input, with the
 /// name that was meant, if one is like it); a file with a mistake (bad_config); a file
 /// called as metrics.json calls something else (usage).
-[[nodiscard]] Result<StudyConfiguration, AppError> study_configuration(const std::string& name_or_file);
+[[nodiscard]] Result<NamedMapping, AppError> named_mapping(const std::string& name_or_file);
 
 }  // namespace octoskin

@@ -1,10 +1,9 @@
-#include "host/apps/study/configuration.hpp"
+#include "host/apps/choosing/named_mapping.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <vector>
 
-#include "host/apps/evaluation/results.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "hw/rigfile/joined.hpp"
@@ -22,7 +21,7 @@ AppError absent(const std::string& name) {
 
 }  // namespace
 
-Result<StudyConfiguration, AppError> study_configuration(const std::string& name_or_file) {
+Result<NamedMapping, AppError> named_mapping(const std::string& name_or_file) {
     const bool is_built_in =
         std::find(kBuiltInMappings.begin(), kBuiltInMappings.end(), name_or_file) != kBuiltInMappings.end();
     std::error_code error;
@@ -33,11 +32,11 @@ Result<StudyConfiguration, AppError> study_configuration(const std::string& name
     const auto mapping = read_mapping(name_or_file);
     if (!mapping) return unexpected(reading_error(ExitCode::bad_config, mapping.error()));
     const std::string name = is_built_in ? name_or_file : std::filesystem::path(name_or_file).stem().string();
-    if (name == evaluation::kReservedName) {
+    if (name == kReservedName) {
         return fail(ExitCode::usage,
                     "a configuration cannot be called '" + name + "': rename " + name_or_file);
     }
-    return StudyConfiguration{name, *mapping, is_built_in && name == "paper_noise_free_robot_seen"};
+    return NamedMapping{name, *mapping, is_built_in && name == "paper_noise_free_robot_seen"};
 }
 
 }  // namespace octoskin
