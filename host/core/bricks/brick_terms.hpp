@@ -17,7 +17,8 @@ struct ClampedTerm {
     /// Of one voxel; an unknown one counts as 0 before. OctoMap's single precision.
     [[nodiscard]] float added_to(float before) const noexcept {
         const float sum = (before == before ? before : 0.0F) + log_odds;
-        return sum < min ? min : sum > max ? max : sum;
+        const float raised = min > sum ? min : sum;  // no branch: what is clamped no processor foresees
+        return max < raised ? max : raised;
     }
 };
 

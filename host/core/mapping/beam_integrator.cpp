@@ -2,29 +2,26 @@
 
 #include <algorithm>
 
-#include "host/core/voxels/ray_keys.hpp"
+#include "host/core/voxels/ray_updates.hpp"
 
 namespace octoskin {
 
 BeamIntegrator::BeamIntegrator(const MappingConfig& config)
     : model_(config.model), no_return_clear_m_(config.no_return_clear_m), lattice_(config.map.resolution_m) {}
 
-Result<std::vector<VoxelUpdate>, BeamRejection> BeamIntegrator::integrate(const Beam& beam) const {
+Result<std::span<const VoxelUpdate>, BeamRejection> BeamIntegrator::integrate(const Beam& beam) & {
     if (const auto fault = fault_of(beam)) return unexpected(*fault);
     const double length_m = beam.range_m.value_or(std::min(no_return_clear_m_, beam.clear_limit_m));
-    std::vector<VoxelUpdate> updates;
-    if (!beam.range_m && length_m == 0.0) return updates;
+    if (!beam.range_m && length_m == 0.0) return std::span<const VoxelUpdate>();
 
     const Eigen::Vector3f origin = beam.p_map_sensor.cast<float>();
     const Eigen::Vector3f end = (beam.p_map_sensor + length_m * beam.direction_map).cast<float>();
     const auto ray = plan_ray(lattice_, origin, end);
     if (!ray) return unexpected(BeamRejection::outside_map);
-    std::vector<VoxelKey> passed;
-    list_ray_keys(*ray, passed);
+    const std::size_t passed = list_ray_updates(*ray, model_.miss_log_odds, updates_).size();
     const float hit = beam.range_m ? model_.proximity.log_odds(*beam.range_m) : 0.0F;
-    updates.resize(passed.size() + (hit != 0.0F ? 1 : 0), {ray->last, hit});
-    for (std::size_t i = 0; i < passed.size(); ++i) updates[i] = {passed[i], model_.miss_log_odds};
-    return updates;
+    updates_[passed] = {ray->last, hit};
+    return std::span<const VoxelUpdate>(updates_).first(passed + (hit != 0.0F ? 1 : 0));
 }
 
 }  // namespace octoskin

@@ -10,15 +10,9 @@
 
 #include "host/core/bricks/brick.hpp"
 #include "host/core/bricks/brick_sets.hpp"
+#include "host/core/voxels/voxel_update.hpp"
 
 namespace octoskin {
-
-/// One log-odds term for one voxel.
-struct VoxelUpdate {
-    VoxelKey key;
-    float log_odds = 0.0F;
-    friend bool operator==(const VoxelUpdate&, const VoxelUpdate&) = default;
-};
 
 /// Calls visit(brick, voxels) for each run of updates in one brick, with those that have a finite term other
 /// than 0; not for a run of none.

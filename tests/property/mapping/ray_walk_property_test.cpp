@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "host/core/mapping/beam_integrator.hpp"
-#include "host/core/voxels/ray_keys.hpp"
+#include "host/core/voxels/ray_updates.hpp"
 #include "tests/property/mapping/random_geometry.hpp"
 #include "tests/support/instruction_sets.hpp"
 #include "tests/support/octomap_oracle.hpp"
@@ -24,8 +24,16 @@ std::vector<VoxelKey> walk(const VoxelLattice& lattice, const Eigen::Vector3f& o
 /// The same without walking.
 std::vector<VoxelKey> list(const VoxelLattice& lattice, const Eigen::Vector3f& origin,
                            const Eigen::Vector3f& end) {
+    constexpr float kTerm = -0.4F;
+    std::vector<VoxelUpdate> buffer(3, {{1, 2, 3}, 4.0F});
     std::vector<VoxelKey> keys;
-    if (const auto ray = plan_ray(lattice, origin, end)) list_ray_keys(*ray, keys);
+    if (const auto ray = plan_ray(lattice, origin, end)) {
+        for (const VoxelUpdate& update : list_ray_updates(*ray, kTerm, buffer)) {
+            EXPECT_EQ(update.log_odds, kTerm);
+            keys.push_back(update.key);
+        }
+        EXPECT_GT(buffer.size(), keys.size());
+    }
     return keys;
 }
 
@@ -112,7 +120,7 @@ TEST(RayWalkProperty, takes_no_more_steps_and_strays_no_farther_than_it_promises
 TEST(BeamIntegratorProperty, a_map_of_random_beams_equals_octomaps) {
     constexpr unsigned kSeed = 31;
     const MappingConfig config = paper_mapping();
-    const BeamIntegrator integrator(config);
+    BeamIntegrator integrator(config);
     FusedMap map(config.map);
     oracle::ClampedTree tree(config.map);
     RandomGeometry random(kSeed, config.map.resolution_m);

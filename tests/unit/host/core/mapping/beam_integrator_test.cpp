@@ -31,7 +31,7 @@ VoxelUpdate update_at(int x, float log_odds) {
 }
 
 TEST(BeamIntegrator, misses_what_it_passes_and_hits_its_endpoint_last) {
-    const BeamIntegrator integrator(paper_mapping());
+    BeamIntegrator integrator(paper_mapping());
     const auto updates = integrator.integrate(beam_along_x(0.12));
     ASSERT_TRUE(updates.has_value());
     EXPECT_THAT(*updates, ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, -0.4F),
@@ -41,7 +41,8 @@ TEST(BeamIntegrator, misses_what_it_passes_and_hits_its_endpoint_last) {
 TEST(BeamIntegrator, leaves_out_a_hit_of_zero_but_not_the_misses_before_it) {
     MappingConfig config = paper_mapping();
     config.model.proximity.range_min_m = 0.2;
-    const auto updates = BeamIntegrator(config).integrate(beam_along_x(0.08));
+    BeamIntegrator integrator(config);
+    const auto updates = integrator.integrate(beam_along_x(0.08));
     ASSERT_TRUE(updates.has_value());
     EXPECT_THAT(*updates, ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F)));
 }
@@ -49,14 +50,16 @@ TEST(BeamIntegrator, leaves_out_a_hit_of_zero_but_not_the_misses_before_it) {
 TEST(BeamIntegrator, hits_only_if_sensor_and_endpoint_share_a_voxel) {
     MappingConfig config = paper_mapping();
     config.map.resolution_m = 0.4;
-    const auto updates = BeamIntegrator(config).integrate(beam_along_x(0.1));
+    BeamIntegrator integrator(config);
+    const auto updates = integrator.integrate(beam_along_x(0.1));
     ASSERT_TRUE(updates.has_value());
     EXPECT_THAT(*updates, ElementsAre(update_at(0, 0.993F)));
 }
 
 TEST(BeamIntegrator, leaves_the_map_alone_without_return_by_default) {
     for (const MappingConfig& config : {paper_mapping(), robust_mapping()}) {
-        const auto updates = BeamIntegrator(config).integrate(beam_along_x(std::nullopt, 1.0));
+        BeamIntegrator integrator(config);
+        const auto updates = integrator.integrate(beam_along_x(std::nullopt, 1.0));
         ASSERT_TRUE(updates.has_value());
         EXPECT_THAT(*updates, IsEmpty());
     }
@@ -65,7 +68,7 @@ TEST(BeamIntegrator, leaves_the_map_alone_without_return_by_default) {
 TEST(BeamIntegrator, clears_without_return_up_to_the_smaller_limit_and_never_marks) {
     MappingConfig config = paper_mapping();
     config.no_return_clear_m = 0.12;
-    const BeamIntegrator integrator(config);
+    BeamIntegrator integrator(config);
     const auto by_config = integrator.integrate(beam_along_x(std::nullopt, 4.0));
     ASSERT_TRUE(by_config.has_value());
     EXPECT_THAT(*by_config, ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, -0.4F)));
@@ -80,7 +83,7 @@ TEST(BeamIntegrator, clears_without_return_up_to_the_smaller_limit_and_never_mar
 TEST(BeamIntegrator, names_why_a_beam_is_refused) {
     MappingConfig config = paper_mapping();
     config.no_return_clear_m = 1.0;
-    const BeamIntegrator integrator(config);
+    BeamIntegrator integrator(config);
     for (const double bad : {kNan, kInfinity, -kInfinity}) {
         Beam beam = beam_along_x(1.0);
         beam.p_map_sensor.y() = bad;
