@@ -45,6 +45,23 @@ std::size_t add_to_voxels(float* values, const std::uint64_t* words, const Clamp
     return unknown;
 }
 
+/// One by one, as a voxel may be among them twice.
+std::size_t add_to_each(float* const* voxels, const VoxelUpdate* updates, std::size_t count,
+                        const ClampedTerm& clamps) {
+    const hn::CappedTag<float, 1> f;
+    const auto min = hn::Set(f, clamps.min);
+    const auto max = hn::Set(f, clamps.max);
+    auto known = hn::Zero(f);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto before = hn::Load(f, voxels[i]);
+        const auto is_known = hn::Eq(before, before);
+        const auto sum = hn::Add(hn::IfThenElseZero(is_known, before), hn::Set(f, updates[i].log_odds));
+        hn::Store(hn::Min(max, hn::Max(min, sum)), f, voxels[i]);
+        known = hn::Add(known, hn::IfThenElseZero(is_known, hn::Set(f, 1.0F)));
+    }
+    return count - static_cast<std::size_t>(hn::GetLane(known));
+}
+
 bool are_alike(const float* values) {
     const Tag f;
     const auto first = hn::Set(f, values[0]);
@@ -62,12 +79,18 @@ namespace octoskin {
 namespace {
 
 HWY_EXPORT(add_to_voxels);
+HWY_EXPORT(add_to_each);
 HWY_EXPORT(are_alike);
 
 }  // namespace
 
 std::size_t add_to_voxels(BrickValues& values, const BrickMask& voxels, const ClampedTerm& term) noexcept {
     return HWY_DYNAMIC_DISPATCH(add_to_voxels)(values.data(), voxels.data(), term);
+}
+
+std::size_t add_to_each(std::span<float* const> voxels, std::span<const VoxelUpdate> updates,
+                        const ClampedTerm& clamps) noexcept {
+    return HWY_DYNAMIC_DISPATCH(add_to_each)(voxels.data(), updates.data(), voxels.size(), clamps);
 }
 
 bool are_alike(const BrickValues& values) noexcept {

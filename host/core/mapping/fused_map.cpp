@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "host/core/bricks/brick_runs.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -98,25 +100,30 @@ void FusedMap::apply(std::span<const VoxelUpdate> updates, SensorKind kind) {
 
 /// Takes updates as long as their voxels have a place each and nothing has to be refused, and returns how
 /// many: all of a beam in known space. Its voxels lie in many bricks, and most of a map is in no cache: all
-/// are asked for before the first is written. Two plain loops, for a beam's runs in bricks are short and no
-/// two are alike: each loop over one would end where the processor does not foresee it.
+/// bricks are asked for, then all voxels, before the first is written.
 std::size_t FusedMap::apply_owned(std::span<const VoxelUpdate> updates) noexcept {
-    constexpr std::size_t kUpdatesMax = 256;
-    std::array<float*, kUpdatesMax> voxels;  // NOLINT: as many as are found are set
+    BrickRuns found;
+    find_runs(updates, found);
+    std::array<float*, BrickRuns::kUpdatesMax> bricks;  // NOLINT: as many as there are runs are set
     BrickTree::OwnBricks own(tree_);
-    BrickValues* values = nullptr;
-    std::size_t count = 0;
-    for (; count < std::min(updates.size(), kUpdatesMax); ++count) {
-        const VoxelUpdate& update = updates[count];
-        if (count == 0 || !are_of_one_brick(update.key, updates[count - 1].key))
-            values = own.find(brick_of(update.key));
-        if (values == nullptr || !std::isfinite(update.log_odds) || update.log_odds == 0.0F) break;
-        voxels[count] = &(*values)[cell_of(update.key)];
-        __builtin_prefetch(voxels[count], 1);
+    for (std::size_t run = 0; run < found.runs; ++run) {
+        const std::uint32_t first = found.first_of[run];
+        BrickValues* const values = own.find(brick_of(updates[first].key));
+        if (values == nullptr) {
+            found.updates = first;
+            break;
+        }
+        bricks[run] = values->data();
     }
-    for (std::size_t i = 0; i < count; ++i) add(*voxels[i], clamped(updates[i].log_odds));
-    counters_.applied += count;
-    return count;
+    std::array<float*, BrickRuns::kUpdatesMax> voxels;  // NOLINT: as many as there are updates are set
+    for (std::size_t i = 0; i < found.updates; ++i) {
+        voxels[i] = bricks[found.run_of[i]] + found.cell_of[i];
+        __builtin_prefetch(voxels[i], 1);
+    }
+    known_voxels_ +=
+        add_to_each(std::span<float* const>(voxels).first(found.updates), updates, clamped(0.0F));
+    counters_.applied += found.updates;
+    return found.updates;
 }
 
 /// Terms of one brick, which is made for the first of them that it is needed for.
