@@ -65,6 +65,9 @@ std::uint64_t place_of_pointer(Below* pointer) {
 template <class Value>
 struct BrickTreeOf<Value>::Node {
     std::atomic<std::uint32_t> owners = 1;
+    /// A bit for each place: clear, what is there has no owner but this node. So that who owns the node need
+    /// not ask what lies below, which is in no cache.
+    std::atomic<std::uint64_t> maybe_shared = 0;
     std::array<Place, kPlaces> places{};
 };
 template <class Value>
@@ -190,7 +193,7 @@ BrickValuesOf<Value>* BrickTreeOf<Value>::OwnBricks::find(MortonCode brick) noex
     const MortonCode prefix = brick >> (kBrickBits + kNodeBits);
     if (lowest_ == nullptr || prefix != prefix_) {
         lowest_ = nullptr;
-        const Node* node = tree_->root_;
+        Node* node = tree_->root_;
         for (unsigned level = kLevels - 1; level > 0; --level) {
             if (node == nullptr || !is_ours(node)) return nullptr;
             node = below<Node>(node->places[place_at(brick, level)]);
@@ -199,9 +202,16 @@ BrickValuesOf<Value>* BrickTreeOf<Value>::OwnBricks::find(MortonCode brick) noex
         lowest_ = node;
         prefix_ = prefix;
     }
-    const Place place = lowest_->places[place_at(brick, 0)];
-    if (place == 0 || is_value(place) || !is_ours(below<Dense>(place))) return nullptr;
-    return &below<Dense>(place)->values;
+    const std::size_t index = place_at(brick, 0);
+    const Place place = lowest_->places[index];
+    if (place == 0 || is_value(place)) return nullptr;
+    Dense* const dense = below<Dense>(place);
+    const std::uint64_t maybe_shared = lowest_->maybe_shared.load(std::memory_order_relaxed);
+    if ((maybe_shared >> index & 1U) != 0) {
+        if (!is_ours(dense)) return nullptr;
+        lowest_->maybe_shared.store(maybe_shared & ~(std::uint64_t{1} << index), std::memory_order_relaxed);
+    }
+    return &dense->values;
 }
 
 template <class Value>
@@ -221,6 +231,8 @@ typename BrickTreeOf<Value>::Place& BrickTreeOf<Value>::place_of(MortonCode bric
             auto own = std::make_unique<Node>();
             own->places = node->places;
             for (const Place lower : own->places) share(lower, level);
+            own->maybe_shared = ~std::uint64_t{0};
+            node->maybe_shared = ~std::uint64_t{0};  // before it is released: its next owner must see it
             release(place_of_pointer(node), level + 1);
             node = own.release();
         }

@@ -30,7 +30,7 @@ class BrickTreeOf {
 
   public:
     /// What a node and a dense brick take of the heap.
-    static constexpr std::size_t kNodeBytes = 528;
+    static constexpr std::size_t kNodeBytes = 544;
     static constexpr std::size_t kBrickBytes = kBrickVoxels * sizeof(Value) + 16;
 
     BrickTreeOf() noexcept = default;
@@ -57,7 +57,7 @@ class BrickTreeOf {
 
       private:
         BrickTreeOf* tree_;
-        const Node* lowest_ = nullptr;  ///< the node below which `prefix_` is, if it is the tree's alone
+        Node* lowest_ = nullptr;  ///< the node below which `prefix_` is, if it is the tree's alone
         MortonCode prefix_ = 0;
     };
     /// Gives all voxels of a brick one value. Throws std::bad_alloc, and then nothing is changed.

@@ -130,7 +130,7 @@ TEST(BrickTree, holds_stamps_as_it_holds_log_odds) {
     tree.open(brick_at(1, 2, 3))[5] = 1;
     EXPECT_EQ(tree.find(brick_at(1, 2, 3)).at(5), 1);
     EXPECT_EQ(tree.find(brick_at(1, 2, 3)).at(6), 0xFFFF);
-    EXPECT_EQ(tree.memory_bytes(), 7 * 528 + 1040);
+    EXPECT_EQ(tree.memory_bytes(), 7 * 544 + 1040);
 }
 
 TEST(BrickTree, tells_what_is_different_and_passes_over_what_is_shared) {

@@ -76,16 +76,16 @@ TEST(FusedMap, clamps_after_every_term_and_not_only_at_the_end) {
 
 TEST(FusedMap, takes_no_new_space_beyond_its_memory_but_goes_on_updating) {
     MapConfig config;
-    config.memory_max_mib = 1;  // 467 bricks of 2,064 bytes in 160 nodes of 528
+    config.memory_max_mib = 1;  // 465 bricks of 2,064 bytes in 160 nodes of 544
     FusedMap map(config);
     std::vector<VoxelUpdate> updates;
     for (unsigned i = 0; i < 600; ++i) updates.push_back({{static_cast<std::uint16_t>(8 * i), 0, 0}, 1.0F});
     map.apply(updates);
-    EXPECT_EQ(map.counters(), (MapCounters{.applied = 467, .no_room = 133}));
+    EXPECT_EQ(map.counters(), (MapCounters{.applied = 465, .no_room = 135}));
     EXPECT_EQ(map.occupancy({8 * 599, 0, 0}), Occupancy::unknown);
     map.apply(updates);
     EXPECT_EQ(map.log_odds({0, 0, 0}), 2.0F);
-    EXPECT_EQ(map.known_voxels(), 467U);
+    EXPECT_EQ(map.known_voxels(), 465U);
     EXPECT_FALSE(map.set_cube({.lowest = {60000, 0, 0}, .height = 0}, 1.0F));
 }
 
