@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "host/core/bricks/brick_runs.hpp"
 #include "host/core/mapping/depth_terms.hpp"
 
 namespace octoskin {
@@ -133,6 +134,16 @@ void Confirmations::confirm(MortonCode brick, const BrickMask& voxels, SensorKin
         is_whole(voxels) ? stamps_.set_all(brick, now) : put(stamps_.open(brick), voxels, now);
     };
     before.is_unknown() ? stamp_first(brick, now, stamp_voxels) : stamp_voxels();
+}
+
+std::size_t Confirmations::confirm_owned(std::span<const VoxelUpdate> updates, SensorKind kind) noexcept {
+    BrickRuns found;
+    find_runs(updates, found);
+    BricksOfRuns<std::uint16_t> bricks;  // NOLINT: as many as there are runs are set
+    own_bricks(stamps_, updates, found, bricks);
+    const std::uint16_t now = stamp(kind);
+    for (std::size_t i = 0; i < found.updates; ++i) bricks[found.run_of[i]][found.cell_of[i]] = now;
+    return found.updates;
 }
 
 void Confirmations::forget(MortonCode brick, const BrickMask& voxels) {

@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "common/time.hpp"
 #include "host/core/bricks/brick_stamps.hpp"
 #include "host/core/bricks/brick_tree.hpp"
 #include "host/core/mapping/expiry_agenda.hpp"
+#include "host/core/voxels/voxel_update.hpp"
 
 namespace octoskin {
 
@@ -65,6 +67,10 @@ class Confirmations {
     /// Confirms voxels of a brick. Throws std::bad_alloc, and then nothing is changed. About 50 ns, and as
     /// much as a copy of the brick if a copy has it, too, and anything changes.
     void confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind);
+    /// Confirms the voxels of updates as long as they have a place each and the terms are finite and not 0,
+    /// and returns how many: all of a beam's where it was seen before. As `FusedMap` adds their terms. About
+    /// 3 ns each.
+    [[nodiscard]] std::size_t confirm_owned(std::span<const VoxelUpdate> updates, SensorKind kind) noexcept;
     /// All of a brick, which has no stamps yet, was there when the clock began. Throws std::bad_alloc, and
     /// then nothing is changed.
     void take_from_before(MortonCode brick);

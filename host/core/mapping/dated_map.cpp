@@ -76,7 +76,15 @@ void FusedMap::confirm(MortonCode brick, const BrickMask& voxels, SensorKind kin
 }
 
 void FusedMap::confirm(std::span<const VoxelUpdate> updates, SensorKind kind) noexcept {
-    for_each_run(updates, [&](MortonCode brick, const BrickMask& voxels) { confirm(brick, voxels, kind); });
+    while (!updates.empty()) {
+        std::size_t done = confirmations_.confirm_owned(updates, kind);
+        if (done == 0) {
+            done = length_of_first_run(updates);
+            for_each_run(updates.first(done),
+                         [&](MortonCode brick, const BrickMask& voxels) { confirm(brick, voxels, kind); });
+        }
+        updates = updates.subspan(done);
+    }
 }
 
 void FusedMap::confirm(const DepthTerms& terms, const BrickTerms& brick) noexcept {

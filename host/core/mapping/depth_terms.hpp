@@ -14,6 +14,13 @@
 
 namespace octoskin {
 
+/// How many updates from the first on are of one brick.
+[[nodiscard]] inline std::size_t length_of_first_run(std::span<const VoxelUpdate> updates) noexcept {
+    std::size_t length = 0;
+    while (length < updates.size() && are_of_one_brick(updates[length].key, updates.front().key)) ++length;
+    return length;
+}
+
 /// Calls visit(brick, voxels) for each run of updates in one brick, with those that have a finite term other
 /// than 0; not for a run of none.
 template <class Visit>

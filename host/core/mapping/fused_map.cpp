@@ -87,9 +87,8 @@ void FusedMap::apply(std::span<const VoxelUpdate> updates, SensorKind kind) {
     while (!updates.empty()) {
         std::size_t done = counts_.empty() ? apply_owned(updates) : 0;
         if (done == 0) {
-            const VoxelKey first = updates.front().key;
-            while (done < updates.size() && are_of_one_brick(updates[done].key, first)) ++done;
-            const bool is_counted = !counts_.empty() && counts_.has(brick_of(first));
+            done = length_of_first_run(updates);
+            const bool is_counted = !counts_.empty() && counts_.has(brick_of(updates.front().key));
             is_counted ? apply_beside_counts(updates.first(done)) : apply_run(updates.first(done));
         }
         updates = updates.subspan(done);
@@ -104,17 +103,8 @@ void FusedMap::apply(std::span<const VoxelUpdate> updates, SensorKind kind) {
 std::size_t FusedMap::apply_owned(std::span<const VoxelUpdate> updates) noexcept {
     BrickRuns found;
     find_runs(updates, found);
-    std::array<float*, BrickRuns::kUpdatesMax> bricks;  // NOLINT: as many as there are runs are set
-    BrickTree::OwnBricks own(tree_);
-    for (std::size_t run = 0; run < found.runs; ++run) {
-        const std::uint32_t first = found.first_of[run];
-        BrickValues* const values = own.find(brick_of(updates[first].key));
-        if (values == nullptr) {
-            found.updates = first;
-            break;
-        }
-        bricks[run] = values->data();
-    }
+    BricksOfRuns<float> bricks;  // NOLINT: as many as there are runs are set
+    own_bricks(tree_, updates, found, bricks);
     std::array<float*, BrickRuns::kUpdatesMax> voxels;  // NOLINT: as many as there are updates are set
     for (std::size_t i = 0; i < found.updates; ++i) {
         voxels[i] = bricks[found.run_of[i]] + found.cell_of[i];
