@@ -99,8 +99,10 @@ class BeamCycles {
 
 class OurBeams final : public Task {
   public:
-    explicit OurBeams(const std::string& resolution)
-        : config_(bench_mapping(resolution, DepthUpdate::robust)), integrator_(config_), map_(config_.map) {}
+    OurBeams(const std::string& resolution, bool keeps_times)
+        : config_(bench_mapping(resolution, DepthUpdate::robust)), integrator_(config_), map_(config_.map) {
+        if (keeps_times) map_.go_on(HostTime{0});
+    }
     void prepare() override { beams_ = cycles_.next(); }
     void run() override {
         for (const Beam& beam : beams_) {
@@ -323,8 +325,10 @@ std::vector<Row> map_rows(const RoomFrames& room, const std::string& resolution,
     MapRows rows(maps, runs);
     rows.rows.push_back({"octomap_beams", "octomap_beams", runs,
                          [resolution] { return std::make_unique<OctomapBeams>(resolution); }});
-    rows.rows.push_back(
-        {"beams", "octomap_beams", runs, [resolution] { return std::make_unique<OurBeams>(resolution); }});
+    rows.rows.push_back({"beams", "octomap_beams", runs,
+                         [resolution] { return std::make_unique<OurBeams>(resolution, false); }});
+    rows.rows.push_back({"beams_dated", "beams", runs,
+                         [resolution] { return std::make_unique<OurBeams>(resolution, true); }});
     rows.add_octomap("octomap_snapshot", [](const octomap::OcTree& tree) {
         const octomap::OcTree copy(tree);
         require(copy.size() == tree.size(), "OctoMap's copy differs");
