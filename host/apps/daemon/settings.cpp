@@ -4,9 +4,9 @@
 #include <iterator>
 #include <utility>
 
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
-#include "host/apps/choosing/named_mapping.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "hw/rigfile/rig.hpp"
 

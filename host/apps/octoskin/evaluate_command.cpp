@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/evaluation/results.hpp"
 #include "host/apps/evaluation/survey.hpp"
 #include "host/apps/evaluation/truth.hpp"
@@ -17,7 +18,6 @@
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
-#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/study/study.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapping/mapping_file.hpp"

@@ -3,10 +3,10 @@
 
 #include <memory>
 
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
-#include "host/apps/choosing/named_mapping.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 
 namespace octoskin::app {

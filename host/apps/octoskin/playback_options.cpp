@@ -2,10 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/playback/data_set_playback.hpp"
-#include "host/apps/choosing/named_mapping.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "host/io/tum/data_set_camera.hpp"
 #include "hw/rigfile/joined.hpp"

@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <memory>
 
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/daemon/daemon.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/choosing/named_mapping.hpp"
 
 namespace octoskin::app {
 namespace {

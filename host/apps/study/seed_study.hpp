@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/evaluation/aggregate.hpp"
 #include "host/apps/evaluation/results.hpp"
 #include "host/apps/evaluation/survey.hpp"
 #include "host/apps/evaluation/truth.hpp"
 #include "host/apps/playback/playback.hpp"
 #include "host/apps/simulation/simulation.hpp"
-#include "host/apps/choosing/named_mapping.hpp"
 #include "hw/sim/scenario/scenario.hpp"
 #include "hw/sim/world/world.hpp"
 
