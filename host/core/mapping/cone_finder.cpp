@@ -104,6 +104,21 @@ double ConeFinder::length_m(const Beam& beam) const noexcept {
     return beam.range_m.value_or(std::min(config_.no_return_clear_m, beam.clear_limit_m));
 }
 
+double ConeFinder::cap_half_m(const Beam& beam) const noexcept {
+    const ConeModel& model = model_of(beam);
+    return model.cap_half_thickness_m + model.cap_sigmas * beam.sigma_m;
+}
+
+bool ConeFinder::ends_about(const Beam& beam, VoxelKey key) const noexcept {
+    const Eigen::Vector3d v = lattice_.centre_of(key) - beam.p_map_sensor;
+    const double half_m = 0.5 * lattice_.resolution_m();
+    const double angle_rad = model_of(beam).cap_angle_share * beam.optics.half_angle_rad;
+    const double along_m = v.dot(beam.direction_map);
+    const double aside_m = (v - along_m * beam.direction_map).norm();
+    return std::fabs(v.norm() - *beam.range_m) <= cap_half_m(beam) + half_m &&
+           std::atan2(std::max(0.0, aside_m - half_m), along_m) <= angle_rad;
+}
+
 Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam) {
     assert(beam.optics.is_cone());
     if (const auto fault = fault_of(beam)) return unexpected(*fault);
@@ -115,7 +130,7 @@ Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam) {
     voxels_.passed.clear();
     voxels_.cap.clear();
     voxels_.middle.clear();
-    const double cap_m = beam.range_m ? model.cap_half_thickness_m + model.cap_sigmas * beam.sigma_m : 0.0;
+    const double cap_m = beam.range_m ? cap_half_m(beam) : 0.0;
     // Wider ones have slices that are no ellipses (SlicedCone).
     constexpr double kCoreMax_rad = 0.6;
     const double core_rad =

@@ -22,6 +22,9 @@ class ConeFinder {
     [[nodiscard]] Result<const ConeVoxels*, BeamRejection> find(const Beam& beam);
     /// How far it reaches: its range, or how far it may free space without one.
     [[nodiscard]] double length_m(const Beam& beam) const noexcept;
+    /// Whether a voxel touches the cap of a beam with a range, as far as a cube and a cap can be told apart
+    /// by the cube's centre and half its edge, however long the range.
+    [[nodiscard]] bool ends_about(const Beam& beam, VoxelKey key) const noexcept;
     /// By which they are found, and are to be counted.
     [[nodiscard]] const ConeModel& model_of(const Beam& beam) const noexcept {
         return config_.cone_of(beam.optics);
@@ -40,6 +43,7 @@ class ConeFinder {
         double angle_rad = 0.0;
         double middle_rad = 0.0;
     };
+    [[nodiscard]] double cap_half_m(const Beam& beam) const noexcept;
     void find_passed(const Beam& beam, const Passed& passed);
     void find_cap(const Beam& beam, const Cap& cap);
 

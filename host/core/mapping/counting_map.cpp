@@ -228,13 +228,19 @@ void FusedMap::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>
     }
 }
 
-void FusedMap::clear(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes) {
+void FusedMap::clear(const ConeVoxels& cone, const std::function<bool(VoxelKey)>& is_ranged,
+                     std::vector<VoxelUpdate>* changes) {
     CountedBrick brick(*this);
     for (const VoxelKey key : cone.passed) {
-        if (occupancy(key) != Occupancy::occupied) continue;
+        if (occupancy(key) != Occupancy::occupied || is_seen_by_camera(key) || is_ranged(key)) continue;
         brick.go_to(key);
         take(key, brick.clear(cell_of(key)), changes);
     }
+}
+
+bool FusedMap::is_seen_by_camera(VoxelKey key) const noexcept {
+    const auto last = confirmation(key);
+    return last && last->kind == SensorKind::camera && last->age_s <= 1;
 }
 
 /// What became of one voxel that was told to change.

@@ -64,7 +64,9 @@ bool FusedMap::has_room_to_date(MortonCode brick) const noexcept {
 void FusedMap::confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind) noexcept {
     bool is_dated = !confirmations_.find(brick).is_unknown();
     if (!is_dated) {
-        if (tree_.find(brick).is_unknown() && !counts_.has(brick)) return;  // refused
+        // Refused, or of counts alone where nothing is ever forgotten.
+        const bool is_to_expire = config_.age.unknown_after_s > 0 && counts_.has(brick);
+        if (tree_.find(brick).is_unknown() && !is_to_expire) return;
         is_dated = has_room_to_date(brick);
     }
     try {

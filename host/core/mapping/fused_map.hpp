@@ -108,9 +108,11 @@ class FusedMap {
     /// least so many hits, and as many as that takes. Refused, counted and told as above.
     void mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes = nullptr);
     /// Of a sensor that surely sees through (StandingSight), after it was counted: what was passed and is
-    /// occupied is free from now on, has no hits and nothing that the camera once knew of it. Refused,
-    /// counted and told as above.
-    void clear(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes = nullptr);
+    /// occupied is free from now on, has no hits and nothing that the camera once knew of it; but for what
+    /// the camera confirmed in this second or the one before, and what `is_ranged` says of: others see it.
+    /// Refused, counted and told as above.
+    void clear(const ConeVoxels& cone, const std::function<bool(VoxelKey)>& is_ranged,
+               std::vector<VoxelUpdate>* changes = nullptr);
     /// As with VoxelUpdates, of an image's terms, or of a part of its bricks. Where there are counts, the
     /// terms go to what the log-odds are without them.
     void apply(const DepthTerms& terms) { apply(terms, terms.bricks); }
@@ -206,6 +208,7 @@ class FusedMap {
     [[nodiscard]] bool has_room_to_count(MortonCode brick) const noexcept;
     void apply_beside_counts(std::span<const VoxelUpdate> run) noexcept;
     void apply_beside_counts(const DepthTerms& terms, const BrickTerms& brick) noexcept;
+    [[nodiscard]] bool is_seen_by_camera(VoxelKey key) const noexcept;
     void take(VoxelKey key, const Result<float, Refusal>& change, std::vector<VoxelUpdate>* changes);
     /// Makes every voxel of a brick with counts what they and its other log-odds say.
     void fuse(MortonCode brick);

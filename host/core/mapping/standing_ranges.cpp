@@ -8,7 +8,7 @@ namespace octoskin {
 namespace {
 
 double tolerance_m(const Beam& a, const Beam& b) {
-    return StandingRanges::tolerance_m(std::max(a.sigma_m, b.sigma_m));
+    return StandingRanges::kAgreement_m + StandingRanges::kAgreementSigmas * std::max(a.sigma_m, b.sigma_m);
 }
 
 /// Both have a range.

@@ -28,9 +28,6 @@ class StandingRanges {
     /// Readings of a zone before the window that are held against those in it.
     static constexpr std::size_t kBefore = 3;
 
-    [[nodiscard]] static double tolerance_m(double sigma_m) {
-        return kAgreement_m + kAgreementSigmas * sigma_m;
-    }
     [[nodiscard]] static bool are_of_one_place(const Beam& a, const Beam& b);
 
     explicit StandingRanges(const StandingModel& model) : model_(model) {}

@@ -1,9 +1,9 @@
 // How far a sensor that stands still has surely seen: as far as all of its readings of half a second.
 #pragma once
 
+#include <algorithm>
+#include <deque>
 #include <map>
-#include <optional>
-#include <vector>
 
 #include "host/core/beams/beam.hpp"
 #include "host/core/mapping/standing_model.hpp"
@@ -11,19 +11,29 @@
 namespace octoskin {
 
 /// Counting frees what is gone within a second at 30 readings a second. A zone that is ranged in turn with
-/// others has not so many: what three of its readings see through is free.
+/// others has not so many: what three of its readings see through is free, if nobody else sees it.
 class StandingSight {
   public:
     static constexpr std::size_t kReadingsMin = 3;
 
     explicit StandingSight(const StandingModel& model) : model_(model) {}
 
-    /// Takes a beam that went into the map, in the order in which they do, and how far that freed space at
-    /// most. The answer, as a rule none: the shortest of the zone's newest readings, as many as last
-    /// `StandingModel::clears_after_s`, if all are of one place (StandingRanges). It is told when it is news:
-    /// at first, when it is longer than what was told, and after something was nearer than that. O(readings
-    /// of so long), below 1 us; 0.2 kB each. Throws std::bad_alloc.
-    [[nodiscard]] std::optional<Beam> take(const Beam& beam, double frees_m);
+    /// Takes a beam that went into the map, and how far that frees space. The answer: the shortest of the
+    /// zone's newest readings of this place (StandingRanges), as many as last `StandingModel::clears_after_s`
+    /// and no longer than twice that; null while there are not three, or not of so long; valid until the next
+    /// call. A beam that frees nothing is none. O(readings of so long), below 1 us; 0.2 kB each. Throws std::bad_alloc.
+    [[nodiscard]] const Beam* take(const Beam& beam, double frees_m);
+
+    /// Whether `ends_there` says so of the newest reading of any zone, if that has a range and is no older
+    /// than `now` by twice `StandingModel::clears_after_s`. O(zones).
+    template <class EndsThere>
+    [[nodiscard]] bool any_newest(HostTime now, const EndsThere& ends_there) const {
+        return std::ranges::any_of(zones_, [&](const auto& zone) {
+            const Beam& beam = zone.second.back().beam;
+            return beam.range_m && seconds_between(beam, now) <= 2.0 * model_.clears_after_s &&
+                   ends_there(beam);
+        });
+    }
 
     /// As if there had been no beam.
     void forget() noexcept { zones_.clear(); }
@@ -33,17 +43,16 @@ class StandingSight {
         Beam beam;
         double frees_m = 0.0;
     };
-    struct Zone {
-        std::vector<Reading> newest;  ///< of one place, the newest last
-        std::optional<double> told_m;
-    };
+    using Readings = std::deque<Reading>;  ///< of a zone, at least one, the newest last
 
-    /// Leaves out what is older than it need be.
-    void keep_newest(std::vector<Reading>& readings) const;
-    [[nodiscard]] bool lasts(const std::vector<Reading>& readings, std::size_t from) const;
+    [[nodiscard]] static double seconds_between(const Beam& before, HostTime now) {
+        constexpr double kNanoseconds = 1e9;
+        return static_cast<double>(now.ns - before.captured.ns) / kNanoseconds;
+    }
+    [[nodiscard]] bool lasts(const Readings& readings, std::size_t from) const;
 
     StandingModel model_;
-    std::map<BeamSource, Zone> zones_;
+    std::map<BeamSource, Readings> zones_;
 };
 
 }  // namespace octoskin

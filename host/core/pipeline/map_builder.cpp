@@ -145,9 +145,13 @@ Status<ReadingReason> MapBuilder::add_cone(const RangeMeasurement& measurement, 
 void MapBuilder::believe_standing(const Beam& beam, std::vector<VoxelUpdate>* changes) {
     std::vector<VoxelUpdate> more;
     std::vector<VoxelUpdate>* const told = changes != nullptr ? &more : nullptr;
-    if (const auto through = sight_.take(beam, cone_finder_.length_m(beam))) {
+    if (const Beam* const through = sight_.take(beam, cone_finder_.length_m(beam))) {
+        const auto is_ranged = [&](VoxelKey key) {
+            return sight_.any_newest(beam.captured,
+                                     [&](const Beam& other) { return cone_finder_.ends_about(other, key); });
+        };
         if (const auto voxels = cone_finder_.find(*through)) {
-            maps_.clear(**voxels, told);
+            maps_.clear(**voxels, is_ranged, told);
         }
     }
     for (const Beam& believed : standing_.take(beam)) {

@@ -91,12 +91,13 @@ void MapSet::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* 
     }
 }
 
-void MapSet::clear(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes) {
+void MapSet::clear(const ConeVoxels& cone, const std::function<bool(VoxelKey)>& is_ranged,
+                   std::vector<VoxelUpdate>* changes) {
     if (proximity_) {
-        proximity_->clear(cone);
+        proximity_->clear(cone, is_ranged);
     }
     if (fused_) {
-        fused_->clear(cone, changes);
+        fused_->clear(cone, is_ranged, changes);
     }
 }
 

@@ -49,7 +49,8 @@ class MapSet {
     /// FusedMap::mark. `changes`: of `fused`; may be null.
     void mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes);
     /// FusedMap::clear, likewise.
-    void clear(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes);
+    void clear(const ConeVoxels& cone, const std::function<bool(VoxelKey)>& is_ranged,
+               std::vector<VoxelUpdate>* changes);
 
     /// Null if it was not chosen.
     [[nodiscard]] const FusedMap* depth() const noexcept { return depth_ ? &*depth_ : nullptr; }

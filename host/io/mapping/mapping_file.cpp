@@ -176,7 +176,7 @@ StandingModel read_standing(const Table& table, StandingModel standing) {
     standing.readings = table.integer<std::uint32_t>("readings", {0, kReadingsMax}, standing.readings);
     standing.hits = single(table, "hits", {0.0, 10'000.0}, standing.hits);
     standing.angle_share = table.number("angle_share", {0.0, 1.0}, standing.angle_share);
-    standing.clears_after_s = table.number("clears_after_s", {0.0, 60.0}, standing.clears_after_s);
+    standing.clears_after_s = table.number("clears_after_s", {0.0, 5.0}, standing.clears_after_s);
     if (standing.readings == 1)
         table.fail("readings", "expected 2 or more, or 0 (never), found 1: one reading alone may be wrong");
     return standing;

@@ -354,6 +354,8 @@ TEST(CountingMap, confirms_what_it_marks) {
     EXPECT_EQ(map.confirmation(key_at(0)), (Confirmation{0, SensorKind::range}));
 }
 
+const auto kNobodyRanges = [](VoxelKey) { return false; };
+
 TEST(CountingMap, frees_at_once_what_is_surely_seen_through_however_sure_it_was) {
     for (const int images : {0, 1, 20}) {
         for (const int hits : {0, 1, 60}) {
@@ -367,7 +369,7 @@ TEST(CountingMap, frees_at_once_what_is_surely_seen_through_however_sure_it_was)
             ConeVoxels through;
             through.passed = {key_at(0), key_at(1), key_at(2)};
             std::vector<VoxelUpdate> changes;
-            map.clear(through, &changes);
+            map.clear(through, kNobodyRanges, &changes);
             EXPECT_EQ(map.log_odds(key_at(1)), before.log_odds(key_at(1))) << "what is free stays as it is";
             EXPECT_EQ(map.occupancy(key_at(2)), Occupancy::unknown);
             if (before.occupancy(key_at(0)) != Occupancy::occupied) {
@@ -377,10 +379,32 @@ TEST(CountingMap, frees_at_once_what_is_surely_seen_through_however_sure_it_was)
             EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free) << images << " images, " << hits << " hits";
             ASSERT_EQ(changes.size(), 1U);
             EXPECT_NEAR(*before.log_odds(key_at(0)) + changes[0].log_odds, *map.log_odds(key_at(0)), 1e-5);
-            for (int i = 0; i < 3; ++i) map.apply(std::vector<VoxelUpdate>{{key_at(0), 1.0F}});
+            for (int i = 0; i < 2; ++i) map.apply(std::vector<VoxelUpdate>{{key_at(0), 0.8F}});
             EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied) << "and may come again";
         }
     }
+}
+
+TEST(CountingMap, frees_not_what_others_see_at_the_same_time) {
+    FusedMap map(map_config());
+    const std::vector<VoxelUpdate> surface{{key_at(0), 1.0F}, {key_at(1), 1.0F}};
+    const auto occupied = [&] {
+        return std::pair(map.occupancy(key_at(0)) == Occupancy::occupied,
+                         map.occupancy(key_at(1)) == Occupancy::occupied);
+    };
+    ConeVoxels through;
+    through.passed = {key_at(0), key_at(1)};
+    map.go_on(HostTime{10'900'000'000});
+    for (int i = 0; i < 3; ++i) map.apply(surface, SensorKind::camera);
+    map.go_on(HostTime{11'900'000'000});
+    map.clear(through, kNobodyRanges);
+    EXPECT_EQ(occupied(), std::pair(true, true)) << "the camera, in the second before";
+    map.go_on(HostTime{12'000'000'000});
+    map.clear(through, [](VoxelKey key) { return key == key_at(1); });
+    EXPECT_EQ(occupied(), std::pair(false, true));
+    for (int i = 0; i < 3; ++i) map.apply(surface, SensorKind::range);
+    map.clear(through, kNobodyRanges);
+    EXPECT_EQ(occupied(), std::pair(false, false)) << "an earlier range does not count";
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,80 +17,104 @@ constexpr double kNoReturn_m = 0.0;  ///< frees nothing
 
 class StandingSightTest : public testing::Test {
   protected:
-    std::optional<Beam> take(double frees_m, double x_m = 0.0, std::uint8_t zone = 0) {
+    Beam beam(double frees_m, double x_m = 0.0, std::uint8_t zone = 0) {
         Beam beam;
         beam.source = {1, 2, zone};
         beam.captured = HostTime{now_ns_};
         now_ns_ += kPeriod_ns;
         beam.p_map_sensor = {x_m, 0.0, 0.0};
         if (frees_m > kNoReturn_m) beam.range_m = frees_m;
-        beam.sigma_m = 0.01;  // 5 cm nearer is something else
-        return sight_.take(beam, frees_m);
+        return beam;
     }
-    /// A letter for each reading: whether it tells.
-    std::string told(const std::vector<double>& ranges_m) {
-        std::string letters;
-        for (const double range_m : ranges_m) letters += take(range_m) ? 'x' : '.';
-        return letters;
+    /// How far it is seen through, in centimetres, after each reading.
+    std::string seen(const std::vector<double>& ranges_m) {
+        std::string text;
+        for (const double range_m : ranges_m) {
+            const Beam* const through = sight_.take(beam(range_m), range_m);
+            text += through == nullptr ? " -" : " " + std::to_string(std::lround(100.0 * *through->range_m));
+        }
+        return text;
     }
 
     StandingSight sight_{StandingModel{.clears_after_s = 0.55}};
     std::int64_t now_ns_ = 0;
 };
 
-TEST_F(StandingSightTest, tells_the_shortest_of_three_and_no_more_until_all_see_further) {
-    EXPECT_FALSE(take(1.02));
-    EXPECT_FALSE(take(0.99));
-    const auto through = take(1.03);
-    ASSERT_TRUE(through);
-    EXPECT_EQ(through->range_m, 0.99);
-    EXPECT_EQ(told({0.99, 0.98, 1.02, 0.99, 1.02, 0.98, 1.0}), ".......");
-    EXPECT_EQ(told({1.0, 1.0, 1.0, 1.5, 1.5, 1.5}), ".x...x") << "the newest three";
+TEST_F(StandingSightTest, is_the_shortest_of_the_newest_three) {
+    EXPECT_EQ(seen({1.02, 0.99, 1.03, 1.01, 1.05, 1.06, 1.02}), " - - 99 99 101 101 102");
+    EXPECT_EQ(seen({0.5, 1.0, 1.0, 1.0}), " 50 50 50 100");
 }
 
-TEST_F(StandingSightTest, tells_that_something_has_gone_that_came) {
-    EXPECT_EQ(told({1.0, 1.0, 1.0, 1.0}), "..x.");
-    EXPECT_EQ(told({0.5, 1.0, 1.0, 1.0, 1.0}), "x..x.") << "what is before it, then that it has gone";
-    EXPECT_EQ(told({0.96, 1.0, 1.0, 1.0}), "....") << "noise";
-}
-
-TEST_F(StandingSightTest, sees_as_far_as_all_do_where_they_differ) {
-    EXPECT_EQ(told({0.5, 1.5, 0.5, 1.5, 0.5}), "..x..");
-    EXPECT_EQ(told({1.5, kNoReturn_m, 1.5, kNoReturn_m}), ".x..") << "and frees nothing";
-}
-
-TEST_F(StandingSightTest, waits_for_half_a_second_however_many_readings_that_are) {
-    now_ns_ = 0;
+TEST_F(StandingSightTest, takes_half_a_second_however_many_readings_that_are) {
     for (int reading = 0; reading < 30; ++reading) {
         now_ns_ = reading * 33'000'000;
-        EXPECT_EQ(take(1.0).has_value(), reading == 17) << reading << ": and then it is no news";
+        EXPECT_EQ(sight_.take(beam(1.0), 1.0) != nullptr, reading >= 17) << reading;
+    }
+    now_ns_ = 30 * 33'000'000;
+    EXPECT_EQ(*sight_.take(beam(2.0), 2.0)->range_m, 1.0);
+    for (int reading = 31; reading < 47; ++reading) {
+        now_ns_ = reading * 33'000'000;
+        EXPECT_EQ(*sight_.take(beam(2.0), 2.0)->range_m, 1.0) << "of so long, not of the newest three";
+    }
+    now_ns_ = 47 * 33'000'000;
+    EXPECT_EQ(*sight_.take(beam(2.0), 2.0)->range_m, 2.0);
+}
+
+TEST_F(StandingSightTest, is_none_where_readings_are_further_apart_than_they_may_be) {
+    EXPECT_EQ(seen({1.0, 1.0}), " - -");
+    now_ns_ += 20'000'000'000;
+    EXPECT_EQ(seen({1.0, 1.0, 1.0}), " - - 100");
+    now_ns_ += kPeriod_ns;
+    EXPECT_EQ(seen({1.0, 1.0}), " 100 100") << "one was lost";
+    for (int reading = 0; reading < 20; ++reading) {
+        now_ns_ += 2 * kPeriod_ns;
+        EXPECT_EQ(seen({1.0}), " -");
     }
 }
 
-TEST_F(StandingSightTest, tells_nothing_where_the_sensor_moves) {
-    for (int reading = 0; reading < 20; ++reading) EXPECT_FALSE(take(1.0, 0.006 * reading)) << reading;
+TEST_F(StandingSightTest, is_not_told_by_what_frees_nothing) {
+    EXPECT_EQ(seen({1.0, kNoReturn_m, 1.0, 1.0, kNoReturn_m, 1.0}), " - - - 100 - 100");
+}
+
+TEST_F(StandingSightTest, is_none_where_the_sensor_moves) {
+    for (int reading = 0; reading < 20; ++reading)
+        EXPECT_EQ(sight_.take(beam(1.0, 0.006 * reading), 1.0), nullptr) << reading;
+    for (int reading = 0; reading < 20; ++reading)
+        EXPECT_EQ(sight_.take(beam(1.0, 0.011 * (reading % 2)), 1.0), nullptr) << reading;
+    for (int reading = 0; reading < 20; ++reading)
+        EXPECT_EQ(sight_.take(beam(1.0, 1.0 + 0.004 * reading), 1.0) != nullptr, reading >= 2) << "a creep";
 }
 
 TEST_F(StandingSightTest, hears_each_zone_by_itself) {
-    EXPECT_FALSE(take(1.0, 0.0, 0));
-    EXPECT_FALSE(take(1.0, 0.0, 1));
-    EXPECT_FALSE(take(1.0, 0.0, 0));
-    EXPECT_FALSE(take(0.5, 0.0, 1));
-    EXPECT_EQ(take(1.0, 0.0, 0).value().range_m, 1.0);
-    EXPECT_EQ(take(1.0, 0.0, 1).value().range_m, 0.5);
+    for (int reading = 0; reading < 3; ++reading) {
+        now_ns_ = reading * kPeriod_ns;
+        const Beam far = beam(1.0, 0.0, 0);
+        now_ns_ = reading * kPeriod_ns;
+        const Beam near = beam(0.5, 0.0, 1);
+        EXPECT_EQ(sight_.take(far, 1.0) != nullptr, reading == 2);
+        EXPECT_EQ(sight_.take(near, 0.5) != nullptr, reading == 2);
+    }
 }
 
-TEST_F(StandingSightTest, tells_nothing_if_the_mapping_says_never_and_forgets) {
-    (void)told({1.0, 1.0});
+TEST_F(StandingSightTest, knows_where_other_zones_ranges_end_as_long_as_they_are_new) {
+    const auto ends_at = [](double range_m) {
+        return [range_m](const Beam& beam) { return *beam.range_m == range_m; };
+    };
+    (void)sight_.take(beam(0.5, 0.0, 1), 0.5);
+    (void)sight_.take(beam(1.0, 0.0, 2), 1.0);
+    EXPECT_TRUE(sight_.any_newest(HostTime{1'100'000'000}, ends_at(0.5)));
+    EXPECT_FALSE(sight_.any_newest(HostTime{1'110'000'000}, ends_at(0.5)));
+    EXPECT_TRUE(sight_.any_newest(HostTime{1'110'000'000}, ends_at(1.0)));
+    (void)sight_.take(beam(0.7, 0.0, 1), 0.7);
+    EXPECT_FALSE(sight_.any_newest(HostTime{600'000'000}, ends_at(0.5))) << "a newer one of the zone";
+}
+
+TEST_F(StandingSightTest, is_none_if_the_mapping_says_never_and_is_forgotten) {
+    (void)seen({1.0, 1.0});
     sight_.forget();
-    EXPECT_EQ(told({1.0, 1.0, 1.0}), "..x");
+    EXPECT_EQ(seen({1.0, 1.0, 1.0}), " - - 100");
     StandingSight never{StandingModel{}};
-    Beam beam;
-    beam.range_m = 1.0;
-    for (int reading = 0; reading < 20; ++reading) {
-        beam.captured.ns += kPeriod_ns;
-        EXPECT_FALSE(never.take(beam, 1.0));
-    }
+    for (int reading = 0; reading < 20; ++reading) EXPECT_EQ(never.take(beam(1.0), 1.0), nullptr);
 }
 
 }  // namespace

@@ -84,9 +84,9 @@ class StandingCone : public testing::Test {
         builder_.emplace(MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, {}).value());
         builder_->tell(&changes_);
     }
-    void read(std::optional<double> range_m, int times) {
+    void read(std::optional<double> range_m, int times, double period_s = 0.033) {
         for (int i = 0; i < times; ++i) {
-            now_s_ += 0.033;
+            now_s_ += period_s;
             for (const double beside_s : {-0.01, 0.01})
                 ASSERT_TRUE(builder_->add({host_at(now_s_ + beside_s), {M_PI / 2.0}}));
             ASSERT_TRUE(
@@ -116,6 +116,78 @@ TEST_F(StandingCone, has_what_comes_on_the_map_with_the_fourth_reading) {
     EXPECT_LE(occupied(), 4U) << "the middle of its cap alone";
     read(1.0, 30);
     EXPECT_EQ(occupied(), 0U) << "and off it within a second of its having gone";
+}
+
+TEST_F(StandingCone, has_what_has_gone_off_the_map_with_the_third_reading_however_slow_they_come) {
+    constexpr double kOfNineZones_s = 0.3;
+    read(0.5, 30, kOfNineZones_s);
+    ASSERT_GE(occupied(), 1U);
+    read(1.0, 2, kOfNineZones_s);
+    EXPECT_GE(occupied(), 1U);
+    read(1.0, 1, kOfNineZones_s);
+    EXPECT_EQ(occupied(), 0U);
+}
+
+TEST_F(StandingCone, sees_through_nothing_over_where_a_recording_begins_or_time_leaps) {
+    constexpr double kOfNineZones_s = 0.3;
+    read(0.5, 30, kOfNineZones_s);
+    read(1.0, 2, kOfNineZones_s);
+    builder_->forget_counts();
+    read(1.0, 1, kOfNineZones_s);
+    EXPECT_GE(occupied(), 1U);
+    read(1.0, 1, kOfNineZones_s);
+    builder_->forget_motion({});
+    read(1.0, 2, kOfNineZones_s);
+    EXPECT_GE(occupied(), 1U);
+    read(1.0, 1, kOfNineZones_s);
+    EXPECT_EQ(occupied(), 0U);
+}
+
+/// Two zones, side by side, whose cones overlap.
+class StandingZones : public testing::Test {
+  protected:
+    StandingZones() {
+        Scene scene =
+            scene_of(RangeUpdate::cone, {.half_angle_rad = 0.15, .sigma_rad = 0.05, .is_zone = true});
+        auto& zones = scene.rig.nodes.front().sensors.front().zones;
+        zones.push_back(zones.front());
+        zones.back().direction_sensor = Eigen::Vector3d(0.1, 0.0, 1.0).normalized();
+        scene.mapping.standing = fast_mapping().standing;
+        builder_.emplace(MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, {}).value());
+    }
+    /// Both, one after the other.
+    void read(double first_m, double second_m) {
+        for (const std::uint8_t zone : {std::uint8_t{0}, std::uint8_t{1}}) {
+            now_s_ += 0.15;
+            for (const double beside_s : {-0.01, 0.01})
+                ASSERT_TRUE(builder_->add({host_at(now_s_ + beside_s), {M_PI / 2.0}}));
+            ASSERT_TRUE(builder_->integrate(RangeMeasurement{
+                {kLeft, kGood, zone}, host_at(now_s_), zone == 0 ? first_m : second_m, 0.005}));
+        }
+    }
+    /// Well before the wall.
+    [[nodiscard]] bool has_hand() const {
+        bool is_any = false;
+        const FusedMap& map = *builder_->maps().fused();
+        map.for_each_known([&](VoxelKey key, float log_odds) {
+            is_any = is_any ||
+                     (map.occupancy_of(log_odds) == Occupancy::occupied && map.centre_of(key).norm() < 0.6);
+        });
+        return is_any;
+    }
+    std::optional<MapBuilder> builder_;
+    double now_s_ = 1.0;
+};
+
+TEST_F(StandingZones, take_nothing_from_each_other) {
+    for (int i = 0; i < 10; ++i) read(0.2, 1.0);
+    ASSERT_TRUE(has_hand());
+    for (int i = 0; i < 100; ++i) {
+        read(0.2, i % 10 == 0 ? 0.9 : 1.0);
+        EXPECT_TRUE(has_hand()) << i;
+    }
+    for (int i = 0; i < 4; ++i) read(1.0, 1.0);
+    EXPECT_FALSE(has_hand()) << "it has gone";
 }
 
 TEST_F(StandingCone, forgets_what_it_was_told_where_a_recording_begins_or_time_leaps) {
