@@ -280,7 +280,7 @@ bool Daemon::Parts::go_on_with(Next& next) {
         inputs.prepare_for(settings.host.rig);
         return false;
     }
-    next.pipeline.begin_with(pipeline.take_fused());
+    next.pipeline.go_on_from(pipeline);
     settings = std::move(next.settings);
     pipeline = std::move(next.pipeline);
     pipeline.work_beside(&depth_thread);

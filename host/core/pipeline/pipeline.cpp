@@ -62,6 +62,15 @@ Pipeline::Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& 
     }
 }
 
+void Pipeline::go_on_from(Pipeline& ended) {
+    assert(ended.is_finished_);
+    begin_with(ended.take_fused());
+    told_newest_ = ended.told_newest_;
+    goes_on_from_ = ended.goes_on_from_;
+    // This one's clock has not begun to run.
+    if (told_newest_) told_newest_->running -= ended.intake_.host_clock().running();
+}
+
 void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     assert(!is_finished_);
     accounts_.frames.take_in();

@@ -75,8 +75,12 @@ class Pipeline {
     void begin_with(FusedMap fused) { builder_.begin_with(std::move(fused)); }
     /// Other limits for the fused map from now on, at the same resolution (asserted): FusedMap::limit.
     void limit_fused(const MapConfig& config) { builder_.limit_fused(config); }
-    /// After `finish`: the fused map, for another pipeline to begin with.
+    /// After `finish`: the fused map.
     [[nodiscard]] FusedMap take_fused() { return builder_.take_fused(); }
+    /// The fused map of another one goes on, which has ended (`finish`) and has this one's resolution
+    /// (asserted), and with it what time it was there: what passes meanwhile makes the map older, and where
+    /// the time leaps nothing does.
+    void go_on_from(Pipeline& ended);
     /// `listener` is told of what goes into the maps from now on; null: nobody is.
     void tell(CommitListener* listener) noexcept { builder_.tell(listener); }
 

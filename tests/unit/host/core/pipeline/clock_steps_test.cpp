@@ -213,6 +213,41 @@ TEST(ClockSteps, back_after_a_silence_make_a_map_as_old_as_it_is) {
     EXPECT_NEAR(age_of_oldest_s(*pipeline.maps().fused()), 905.0, 1.0);
 }
 
+/// As `play`, but from the step on with another pipeline, as a daemon that reads its files anew.
+Pipeline play_in_two(const Scene& scene, const std::vector<StampedFrame>& frames) {
+    const auto step = std::ranges::find_if(
+        frames, [](const StampedFrame& entry) { return entry.stamp >= wall_at(kStep_s); });
+    Pipeline first = play(scene, {frames.begin(), step});
+    Pipeline second = make_pipeline(scene);
+    second.go_on_from(first);
+    std::vector<StampedFrame> rest;
+    for (const StampedFrame& entry : frames) {  // who the nodes are is asked for anew
+        const auto decoded = wire::decode(entry.frame);
+        if (decoded && std::holds_alternative<wire::NodeInfo>(decoded->message))
+            rest.push_back({step->stamp, entry.frame});
+    }
+    rest.insert(rest.end(), step, frames.end());
+    ScriptedSource source(rest);
+    EXPECT_TRUE(replay(second, source, nullptr).is_complete());
+    EXPECT_GT(second.accounts().readings.used(), 30U) << second.account_text();
+    return second;
+}
+
+TEST(ClockSteps, that_come_while_a_pipeline_gives_way_to_another_age_the_map_as_they_do_else) {
+    Scene scene = turning_scene();
+    scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 0};
+    const auto age_s = [&](const std::vector<StampedFrame>& frames) {
+        return age_of_oldest_s(*play_in_two(scene, frames).maps().fused());
+    };
+    EXPECT_NEAR(age_s(turning_scene().bus.frames()), 5.0, 1.0);
+    EXPECT_NEAR(age_s(frames_with_silence(900.0)), 905.0, 1.0);
+    EXPECT_NEAR(age_s(frames_with_host_back(-700.0)), 5.0, 1.0) << "another host's clock, 700 s ahead";
+    std::vector<StampedFrame> anew = frames_with_host_back(3.0);
+    for (StampedFrame& entry : anew)
+        if (entry.stamp >= wall_at(kStep_s)) entry.stamp.ns += 900'000'000'000;
+    EXPECT_NEAR(age_s(anew), 905.0, 1.0) << "the time begins anew after a silence";
+}
+
 TEST(ClockSteps, of_a_wall_clock_while_nobody_spoke_make_nothing_older_than_it_is) {
     Scene scene = turning_scene();
     scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 0};
