@@ -23,6 +23,11 @@ bool is_told_by(const Beam& before, const Beam& beam) {
            *before.range_m <= *beam.range_m + tolerance_m(before, beam);
 }
 
+/// That it tells of what its zone was believed before.
+bool goes_on(const Beam& believed, const Beam& beam) {
+    return beam.range_m && StandingRanges::are_of_one_place(believed, beam) && agree(believed, beam);
+}
+
 }  // namespace
 
 bool StandingRanges::are_of_one_place(const Beam& a, const Beam& b) {
@@ -39,29 +44,59 @@ std::span<const Beam> StandingRanges::take(const Beam& beam) {
     Sensor& sensor = sensors_[{beam.source.node_id, beam.source.sensor}];
     Zone& zone = sensor.zones[beam.source.zone];
     const std::size_t window = model_.window();
-    zone.reserve(window + kBefore);
-    if (zone.size() >= window + kBefore) zone.erase(zone.begin());
-    zone.push_back({beam, ++sensor.readings, false});
+    zone.newest.reserve(window + kBefore);
+    if (zone.newest.size() >= window + kBefore) zone.newest.erase(zone.newest.begin());
+    zone.newest.push_back({beam, ++sensor.readings, false});
+    follow_believed(zone);
     if (!beam.range_m) return believed_;
 
-    window_ = {{&zone, zone.size() - std::min(zone.size(), window)}};
+    window_ = {{&zone, zone.newest.size() - std::min(zone.newest.size(), window)}};
     believe(beam, window_);
-    if (sensor.zones.size() == 1) return believed_;
-    window_.clear();
-    for (auto& [index, readings] : sensor.zones) {
-        const auto first = std::ranges::find_if(
-            readings, [&](const Reading& reading) { return reading.number + window > sensor.readings; });
-        if (first != readings.end())
-            window_.emplace_back(&readings, static_cast<std::size_t>(first - readings.begin()));
+    if (sensor.zones.size() > 1) {
+        window_.clear();
+        for (auto& [index, each] : sensor.zones) {
+            const auto first = std::ranges::find_if(each.newest, [&](const Reading& reading) {
+                return reading.number + window > sensor.readings;
+            });
+            if (first != each.newest.end())
+                window_.emplace_back(&each, static_cast<std::size_t>(first - each.newest.begin()));
+        }
+        believe(beam, window_);
     }
-    believe(beam, window_);
+    for (const Beam& believed : believed_) sensor.zones[believed.source.zone].believed = believed;
+    add_what_stays(beam, sensor);
     return believed_;
+}
+
+/// What is believed may move slowly; it has gone if none of so many readings tells of it.
+void StandingRanges::follow_believed(Zone& zone) {
+    if (!zone.believed) return;
+    const Beam& newest = zone.newest.back().beam;
+    if (goes_on(*zone.believed, newest)) {
+        constexpr double kShare = 0.25;
+        *zone.believed->range_m += kShare * (*newest.range_m - *zone.believed->range_m);
+        return;
+    }
+    const auto last = std::span(zone.newest).last(std::min(zone.newest.size(), kBefore));
+    const auto tells = [&](const Reading& reading) { return goes_on(*zone.believed, reading.beam); };
+    if (std::ranges::none_of(last, tells)) zone.believed.reset();
+}
+
+void StandingRanges::add_what_stays(const Beam& newest, const Sensor& sensor) {
+    for (const auto& [index, zone] : sensor.zones) {
+        if (!zone.believed || !goes_on(*zone.believed, zone.newest.back().beam)) continue;
+        const bool is_asked = index == newest.source.zone || *zone.believed->range_m < *newest.range_m;
+        const bool is_added =
+            std::ranges::any_of(believed_, [&](const Beam& added) { return added.source.zone == index; });
+        if (is_asked && !is_added && are_of_one_place(*zone.believed, newest))
+            believed_.push_back(*zone.believed);
+    }
 }
 
 void StandingRanges::believe(const Beam& newest, const Window& window) {
     agreeing_.clear();
     for (const auto& [zone, first] : window) {
-        const std::span<Reading> all(*zone);
+        const std::span<Reading> all(zone->newest);
         const auto newest_before = all.first(first).last(std::min(first, kBefore));
         for (Reading& reading : all.subspan(first)) {
             const Beam& beam = reading.beam;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -32,11 +33,13 @@ class StandingRanges {
 
     explicit StandingRanges(const StandingModel& model) : model_(model) {}
 
-    /// Takes a beam that went into the map, in the order in which they do. The answer: which ranges it makes
-    /// believed, one for each zone: the zone's newest beam, with the mean of the ranges that agree. None as a
-    /// rule; valid until the next call. A range is believed once, and only while it is new: if none of the
-    /// `kBefore` readings of its zone before the window was of this place and as short. O(zones of the
-    /// sensor), below 1 us; 2 kB a zone. Throws std::bad_alloc.
+    /// Takes a beam that went into the map, in the order in which they do. The answer: which ranges are
+    /// believed now, one for each zone: the zone's newest beam, with the mean of the ranges that agree. None
+    /// as a rule; valid until the next call. A range is believed first while it is new: if none of the
+    /// `kBefore` readings of its zone before the window was of this place and as short. It stays believed,
+    /// with each reading of its zone that agrees with it, and with those of other zones that see further,
+    /// until `kBefore` in a row do not agree. O(zones of the sensor), below 1 us; 2 kB a zone. Throws
+    /// std::bad_alloc.
     [[nodiscard]] std::span<const Beam> take(const Beam& beam);
 
     [[nodiscard]] const StandingModel& model() const noexcept { return model_; }
@@ -49,7 +52,10 @@ class StandingRanges {
         std::uint64_t number = 0;  ///< of the sensor's, from 1
         bool is_believed = false;
     };
-    using Zone = std::vector<Reading>;  ///< the newest, the last of them last
+    struct Zone {
+        std::vector<Reading> newest;  ///< the last of them last
+        std::optional<Beam> believed;
+    };
     struct Sensor {
         std::uint64_t readings = 0;
         std::map<std::uint8_t, Zone> zones;
@@ -58,6 +64,8 @@ class StandingRanges {
     using Window = std::vector<std::pair<Zone*, std::size_t>>;
 
     void believe(const Beam& newest, const Window& window);
+    static void follow_believed(Zone& zone);
+    void add_what_stays(const Beam& newest, const Sensor& sensor);
 
     StandingModel model_;
     std::map<std::pair<std::uint8_t, std::uint8_t>, Sensor> sensors_;  ///< by node and local index

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -33,11 +34,16 @@ Beam beam_at(std::optional<double> range_m, std::uint8_t zone = 0, double x_m = 
 
 class StandingRangesTest : public testing::Test {
   protected:
-    /// How many ranges are believed after each of these, from one place, of one zone.
+    /// How many ranges of something well before the wall, which is at 1 m, are believed after each of these,
+    /// from one place, of one zone.
     std::vector<std::size_t> take(const std::vector<std::optional<double>>& ranges_m) {
-        std::vector<std::size_t> believed;
-        for (const auto& range_m : ranges_m) believed.push_back(ranges_.take(beam_at(range_m)).size());
-        return believed;
+        std::vector<std::size_t> counts;
+        for (const auto& range_m : ranges_m) {
+            const auto believed = ranges_.take(beam_at(range_m));
+            counts.push_back(static_cast<std::size_t>(
+                std::ranges::count_if(believed, [](const Beam& beam) { return *beam.range_m < 0.9; })));
+        }
+        return counts;
     }
     using Counts = std::vector<std::size_t>;
 
@@ -70,11 +76,30 @@ TEST_F(StandingRangesTest, believes_what_comes_though_three_of_seven_are_wrong_o
     EXPECT_EQ(take({0.5, 1.0, 0.5, kNothing, 0.5, 0.2, 0.5}), Counts({0, 0, 0, 0, 0, 0, 1}));
 }
 
-TEST_F(StandingRangesTest, believes_what_is_new_for_seven_readings_and_then_no_more) {
+TEST_F(StandingRangesTest, believes_what_was_new_as_long_as_it_stays) {
+    StandingRanges ranges{StandingModel{.readings = 4}};
+    const auto told = [&](const std::vector<std::optional<double>>& ranges_m) {
+        std::vector<std::size_t> believed;
+        for (const auto& range_m : ranges_m) believed.push_back(ranges.take(beam_at(range_m)).size());
+        return believed;
+    };
+    told({0.3, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
+    EXPECT_EQ(told({1.0, 1.0, 1.0, 1.0, 1.0}), Counts({1, 1, 1, 1, 1})) << "new when it began";
+    EXPECT_EQ(told(std::vector<std::optional<double>>(12, 0.5)),
+              Counts({0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1}));
+    EXPECT_EQ(told({1.0, 0.5, kNothing, 1.0, 0.5}), Counts({0, 1, 0, 0, 1})) << "two in a row are nothing";
+    EXPECT_EQ(told({1.0, 1.0, 1.0, 0.5, 1.0}), Counts(5, 0)) << "three are";
+    EXPECT_EQ(told(std::vector<std::optional<double>>(12, 1.0)), Counts(12, 0)) << "it was never nearer";
+}
+
+TEST_F(StandingRangesTest, follows_what_it_believes_as_it_moves_away) {
     take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
-    EXPECT_EQ(take(std::vector<std::optional<double>>(12, 0.5)),
-              Counts({0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0, 0}));
-    EXPECT_EQ(take(std::vector<std::optional<double>>(12, 1.0)), Counts(12, 0)) << "it was never nearer";
+    take({0.5, 0.5, 0.5, 0.5});
+    for (double range_m = 0.5; range_m < 0.9; range_m += 0.01) {
+        const auto believed = ranges_.take(beam_at(range_m));
+        ASSERT_EQ(believed.size(), 1U) << range_m;
+        EXPECT_NEAR(*believed.front().range_m, range_m, 0.035);
+    }
 }
 
 TEST_F(StandingRangesTest, takes_what_was_as_near_before_for_no_news) {
@@ -115,7 +140,8 @@ TEST_F(StandingRangesTest, hears_zones_of_what_comes_again_a_second_after_it_lef
     };
     (void)cycles_of(8, 1.0);
     EXPECT_GT(cycles_of(3, 0.5), 0U);
-    EXPECT_EQ(cycles_of(4, 1.0), 0U);  // of each zone the newest three before are of nothing near
+    (void)cycles_of(1, 1.0);           // each stays until its own zone has looked again
+    EXPECT_EQ(cycles_of(3, 1.0), 0U);  // of each zone the newest three before are of nothing near
     EXPECT_GT(cycles_of(1, 0.5), 0U);
 }
 
@@ -124,17 +150,22 @@ TEST_F(StandingRangesTest, hears_one_zone_by_its_own_readings) {
     for (int cycle = 0; cycle < 20; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone) {
             const bool is_there = zone == 4 && cycle >= 10;
-            if (!ranges_.take(beam_at(is_there ? 0.5 : 1.0, zone)).empty() && cycle > 7)
+            const auto believed = ranges_.take(beam_at(is_there ? 0.5 : 1.0, zone));
+            if (std::ranges::any_of(believed, [](const Beam& beam) { return *beam.range_m == 0.5; }))
                 cycles.push_back(cycle);
         }
-    EXPECT_EQ(cycles, (std::vector<int>{13, 14, 15, 16}));
+    ASSERT_FALSE(cycles.empty());
+    EXPECT_EQ(cycles.front(), 13) << "with its fourth reading";
+    EXPECT_EQ(cycles.size(), 5U + 6U * 9U) << "and from then on whichever zone looks past it";
 }
 
 TEST_F(StandingRangesTest, believes_no_zone_for_what_its_neighbours_have_always_said) {
     for (int cycle = 0; cycle < 10; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone)
             (void)ranges_.take(beam_at(zone == 4 ? 1.0 : 0.5, zone));
-    for (std::uint8_t zone = 0; zone < 9; ++zone) EXPECT_TRUE(ranges_.take(beam_at(0.5, zone)).empty());
+    for (std::uint8_t zone = 0; zone < 9; ++zone)
+        for (const Beam& believed : ranges_.take(beam_at(0.5, zone)))
+            EXPECT_NE(believed.source.zone, 4U) << "one reading does not change what it was believed";
 }
 
 TEST_F(StandingRangesTest, keeps_sensors_apart) {

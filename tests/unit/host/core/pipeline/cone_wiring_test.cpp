@@ -179,6 +179,15 @@ class StandingZones : public testing::Test {
     double now_s_ = 1.0;
 };
 
+TEST_F(StandingZones, keep_what_one_of_them_sees_and_the_other_looks_past) {
+    for (int i = 0; i < 10; ++i) read(1.0, 1.0);
+    for (int i = 0; i < 4; ++i) read(0.4, 1.0);
+    for (int i = 0; i < 300; ++i) {
+        EXPECT_TRUE(has_hand()) << i;
+        read(0.4, 1.0);
+    }
+}
+
 TEST_F(StandingZones, take_nothing_from_each_other) {
     for (int i = 0; i < 10; ++i) read(0.2, 1.0);
     ASSERT_TRUE(has_hand());
