@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 #include <type_traits>
 
@@ -19,6 +21,11 @@ constexpr double kPaddingMax_m = 1.0;
 bool is_within(double value, double min, double max) {
     return value >= min && value <= max;  // false for a NaN
 }
+
+template <class T>
+constexpr bool is_list = false;
+template <class T>
+constexpr bool is_list<std::vector<T>> = true;
 
 /// What a value must be.
 template <class T>
@@ -35,7 +42,11 @@ template <>
 constexpr const char* kExpected<std::vector<std::vector<double>>> =
     "a list of joint configurations, each a list of finite numbers, such as [[0, -0.785, 1.5]]";
 
+/// Of a list or an object only that it is one: there may be as many in it as there are bytes, each in the one
+/// before, and to write them out takes as many calls.
 std::string shown(const Json& json) {
+    if (json.is_array()) return "a list";
+    if (json.is_object()) return "an object";
     constexpr std::size_t kShown = 40;
     const std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
     return text.size() <= kShown ? text : text.substr(0, kShown) + "...";
@@ -53,8 +64,9 @@ void take(Json& json, const char* key, T& value) {
             value = found->template get<T>();
         }
     } catch (const Json::exception&) {
-        throw std::invalid_argument(
-            fmt::format("query: {} is {}; expected {}", key, shown(*found), kExpected<T>));
+        throw std::invalid_argument(fmt::format("query: {} is {}{}; expected {}", key, shown(*found),
+                                                found->is_array() && is_list<T> ? " of something else" : "",
+                                                kExpected<T>));
     }
     json.erase(found);
 }
@@ -76,12 +88,41 @@ Unexpected<AppError> fail_at(std::string_view text, std::size_t byte) {
                             at, at < text.size() ? shown(text.substr(at, kShown)) : "its end"));
 }
 
+/// Whoever sends what is not looked at expects another answer.
+void refuse_unasked(const Json& json, bool asks_pockets) {
+    const auto refuse = [&json](std::initializer_list<const char*> keys, const char* why) {
+        for (const char* key : keys)
+            if (json.contains(key))
+                throw std::invalid_argument(fmt::format("query: {} says nothing {}", key, why));
+    };
+    if (asks_pockets) {
+        refuse({"reach_m"}, "of pockets, of which no distances are told: leave it out");
+    } else {
+        refuse({"radius_m", "z_min_m", "pocket_min_m3", "pockets_max", "views_tried"},
+               "without \"pockets\": true: give that, too, or leave it out");
+    }
+}
+
+/// Of two values of one key the last would be taken.
+Json parse_once(std::string_view text) {
+    std::set<std::string> keys;
+    return Json::parse(text, [&keys](int depth, Json::parse_event_t event, Json& parsed) {
+        if (event == Json::parse_event_t::key && depth == 1 && !keys.insert(parsed.get<std::string>()).second)
+            throw std::invalid_argument(fmt::format("query: the key {} comes twice", shown(parsed)));
+        return true;
+    });
+}
+
 QueryRequest from_json(Json& json) {
     QueryRequest request;
     bool asks_pockets = false;
     take(json, "pockets", asks_pockets);
     request.kind = asks_pockets ? QueryKind::pockets : QueryKind::postures;
+    refuse_unasked(json, asks_pockets);
+    const bool has_path = json.contains("path");
     take(json, "path", request.path);
+    if (has_path && request.path.empty())
+        throw std::invalid_argument("query: path is empty; leave it out to ask about the arm as it stands");
     take(json, "padding_m", request.padding_m);
     take(json, "reach_m", request.reach_m);
     take(json, "step", request.step);
@@ -103,10 +144,10 @@ bool is_query(std::string_view line) noexcept {
 }
 
 std::string to_line(const QueryRequest& request) {
-    Json json = {{"path", request.path},
-                 {"padding_m", request.padding_m},
+    Json json = {{"padding_m", request.padding_m},
                  {"links_ignored", request.links_ignored},
                  {"asks_unmoved_links", request.asks_unmoved_links}};
+    if (!request.path.empty()) json["path"] = request.path;
     if (request.own_space_m) json["own_space_m"] = *request.own_space_m;
     json["step"] = request.step;
     if (request.kind == QueryKind::postures) {
@@ -125,7 +166,7 @@ std::string to_line(const QueryRequest& request) {
 Result<QueryRequest, AppError> read_query(std::string_view line) {
     const std::string_view text = line.substr(std::min(kWord.size(), line.size()));
     try {
-        Json json = Json::parse(text);
+        Json json = parse_once(text);
         if (!json.is_object())
             return fail(ExitCode::usage, "expected: query {\"path\": [[JOINTS], ...], ...}");
         QueryRequest request = from_json(json);
@@ -146,6 +187,9 @@ std::string fault_of(const QueryRequest& request) {
     if (request.path.size() > kConfigurationsMax)
         return fmt::format("query: {} configurations; at most {} can be asked about at once",
                            request.path.size(), kConfigurationsMax);
+    if (request.kind == QueryKind::pockets && request.path.size() > 1)
+        return fmt::format("query: path has {} configurations; views into pockets are looked for from one",
+                           request.path.size());
     const auto not_within = [](const char* key, double value, double min, double max) {
         return fmt::format("query: {} is {}; expected {} to {}", key, value, min, max);
     };

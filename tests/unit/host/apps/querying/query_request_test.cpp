@@ -63,7 +63,8 @@ TEST(QueryRequest, is_refused_by_name_of_what_is_wrong_with_it) {
     EXPECT_THAT(fault("query [1]"), HasSubstr("expected: query {"));
     EXPECT_THAT(fault("query {\"paht\": []}"), HasSubstr("unknown key 'paht'"));
     EXPECT_EQ(fault("query {\"path\": [0, 1]}"),
-              "query: path is [0,1]; expected a list of joint configurations, each a list of finite numbers, "
+              "query: path is a list of something else; expected a list of joint configurations, each a list "
+              "of finite numbers, "
               "such as [[0, -0.785, 1.5]]");
     EXPECT_EQ(fault("query {\"step\": \"0.1\"}"), "query: step is \"0.1\"; expected a number");
     EXPECT_EQ(fault("query {\"pockets\": 1}"), "query: pockets is 1; expected true or false");
@@ -73,12 +74,42 @@ TEST(QueryRequest, is_refused_by_name_of_what_is_wrong_with_it) {
     EXPECT_THAT(fault("query {\"reach_m\": 1e9}"), HasSubstr("reach_m is"));
     EXPECT_THAT(fault("query {\"step\": 0}"), HasSubstr("step is 0"));
     for (const char* number : {"1e300", "-0.5", "2.7", "-1"}) {
-        EXPECT_THAT(fault(std::string("query {\"pockets_max\": ") + number + "}"),
+        EXPECT_THAT(fault(std::string("query {\"pockets\": true, \"pockets_max\": ") + number + "}"),
                     HasSubstr("; expected a whole number from 0 on"));
     }
     EXPECT_THAT(fault("query {\"own_space_m\": 2}"), HasSubstr("own_space_m is 2"));
     EXPECT_THAT(fault("query {\"pockets\": true, \"radius_m\": 50}"), HasSubstr("radius_m is 50"));
-    EXPECT_THAT(fault("query {\"views_tried\": 1000000}"), HasSubstr("views_tried is"));
+    EXPECT_THAT(fault("query {\"pockets\": true, \"views_tried\": 1000000}"), HasSubstr("views_tried is"));
+}
+
+TEST(QueryRequest, with_what_would_not_be_looked_at_is_refused_by_name) {
+    const auto fault = [](const std::string& request) {
+        const auto read = read_query("query " + request);
+        return read ? std::string("taken") : read.error().message;
+    };
+    for (const std::string key : {"radius_m", "z_min_m", "pocket_min_m3", "pockets_max", "views_tried"}) {
+        EXPECT_EQ(fault("{\"" + key + "\": 1}"),
+                  "query: " + key +
+                      " says nothing without \"pockets\": true: give that, too, "
+                      "or leave it out");
+        EXPECT_EQ(fault("{\"pockets\": true, \"" + key + "\": 1}"), "taken");
+    }
+    EXPECT_THAT(fault(R"({"pockets": false, "radius_m": 1})"), HasSubstr("radius_m says nothing without"));
+    EXPECT_THAT(fault(R"({"pockets": true, "reach_m": 1})"), HasSubstr("reach_m says nothing of pockets"));
+    EXPECT_THAT(fault(R"({"pockets": true, "path": [[0], [1]]})"), HasSubstr("path has 2 configurations"));
+    EXPECT_EQ(fault(R"({"pockets": true, "path": [[0]]})"), "taken");
+    EXPECT_THAT(fault(R"({"path": []})"), HasSubstr("path is empty; leave it out"));
+    EXPECT_EQ(fault(R"({"path": [[0]], "step": 1, "path": [[1]]})"), "query: the key \"path\" comes twice");
+    EXPECT_THAT(fault(R"({"step": {"a": 1}})"), HasSubstr("step is an object; expected a number"));
+}
+
+// Written out it would take as many calls as it has bytes.
+TEST(QueryRequest, with_lists_within_lists_is_refused_in_a_few_words) {
+    constexpr std::size_t kDeep = 20'000;
+    const auto read =
+        read_query("query {\"step\": " + std::string(kDeep, '[') + std::string(kDeep, ']') + "}");
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().message, "query: step is a list; expected a number");
 }
 
 // As Python's and JavaScript's serializers write them.
@@ -87,7 +118,7 @@ TEST(QueryRequest, with_a_number_that_is_none_is_refused_in_our_words) {
         const auto read = read_query("query {\"path\": [[" + number + "]]}");
         return read ? std::string("taken") : read.error().message;
     };
-    EXPECT_THAT(fault("null"), HasSubstr("path is [[null]]; expected a list of joint configurations"));
+    EXPECT_THAT(fault("null"), HasSubstr("path is a list of something else; expected a list of joint"));
     EXPECT_THAT(fault("NaN"), HasSubstr("no JSON from its byte 11 on (\"NaN]]}\")"));
     EXPECT_THAT(fault("-Infinity"), HasSubstr("JSON has no NaN and no Infinity"));
     EXPECT_THAT(fault("1e999"), HasSubstr("a number is too large"));
