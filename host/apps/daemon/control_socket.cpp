@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -35,6 +36,11 @@ bool is_readable(int descriptor, HostTime end) {
 bool has_gone(int descriptor) {
     pollfd client{descriptor, 0, 0};
     return ::poll(&client, 1, 0) > 0 && (client.revents & (POLLHUP | POLLERR)) != 0;
+}
+
+bool has_sent_something(int descriptor) {
+    pollfd client{descriptor, POLLIN, 0};
+    return ::poll(&client, 1, 0) > 0;
 }
 
 /// A line with its end, and one back, or what happened instead.
@@ -107,16 +113,37 @@ void ControlSocket::accept() {
         return;
     }
     drop_gone();
-    if (clients_.size() >= kClientsMax) {
-        ++dropped_;
-        drop(std::ranges::min_element(clients_, {}, &Client::asked)->descriptor);
-    }
     const int room = kUnreadMax;
     ::setsockopt(descriptor, SOL_SOCKET, SO_SNDBUF, &room, sizeof(room));
     Client& client = clients_.emplace_back();
     client.descriptor = descriptor;
     client.asked = monotonic_now();
     watch(client);
+    make_room();
+}
+
+/// One more than are served: the one that has been silent for longest is refused, which may be the new one,
+/// or else the new one. Of too many that were refused the one that came first goes.
+void ControlSocket::make_room() {
+    const auto served = std::ranges::count(clients_, false, &Client::is_refused);
+    if (std::cmp_greater(served, kClientsMax)) {
+        Client* const silent = longest_silent();
+        refuse(silent != nullptr ? *silent : clients_.back(),
+               fmt::format("too many clients: {} are served at once; ask again later", kClientsMax),
+               ExitCode::unavailable);
+    }
+    if (std::cmp_greater(std::ssize(clients_) - std::ranges::count(clients_, false, &Client::is_refused),
+                         kRefusedMax))
+        drop(std::ranges::find(clients_, true, &Client::is_refused)->descriptor);
+}
+
+/// Has never asked, and is not about to. Null: there is none.
+ControlSocket::Client* ControlSocket::longest_silent() {
+    const auto found = std::ranges::find_if(clients_, [](const Client& client) {  // in the order they came
+        return !client.has_asked && !client.is_refused && client.request.empty() &&
+               !has_sent_something(client.descriptor);
+    });
+    return found != clients_.end() ? &*found : nullptr;
 }
 
 void ControlSocket::watch(Client& client) {
@@ -137,10 +164,16 @@ bool ControlSocket::serve(Client& client) {
     if (!client.is_refused) client.request += here.substr(0, end);
     const std::size_t taken = is_whole ? end + 1 : here.size();
     (void)::recv(client.descriptor, bytes.data(), taken, MSG_DONTWAIT);
-    if (client.request.size() > kRequestMax) refuse(client);
+    if (client.request.size() > kRequestMax) {
+        refuse(client,
+               fmt::format("a request has at most {} bytes, this one has more: ask about parts of it",
+                           kRequestMax),
+               ExitCode::usage);
+    }
     if (client.is_refused) return !is_whole;
     if (!is_whole) return true;
     client.asked = monotonic_now();
+    client.has_asked = true;
     // Who has given up waiting must not have a recording begun that it knows nothing of.
     if (has_gone(client.descriptor)) return false;
     const std::string request = std::exchange(client.request, {});
@@ -149,14 +182,12 @@ bool ControlSocket::serve(Client& client) {
 
 /// At once, for it may have no end. A client that is still sending would not come to read the answer if the
 /// connection were closed now: it goes when its line ends, or as one that is idle.
-void ControlSocket::refuse(Client& client) {
+void ControlSocket::refuse(Client& client, const std::string& error, ExitCode code) {
     ++dropped_;
     client.is_refused = true;
     client.request = {};
     (void)send(client,
-               fmt::format(R"({{"ok":false,"error":"a request has at most {} bytes, this one has more: )"
-                           R"(ask about parts of it","code":{}}})",
-                           kRequestMax, static_cast<int>(ExitCode::usage)));
+               fmt::format(R"({{"ok":false,"error":"{}","code":{}}})", error, static_cast<int>(code)));
     ::shutdown(client.descriptor, SHUT_WR);
 }
 
@@ -193,7 +224,7 @@ void ControlSocket::drop(int descriptor) {
 void ControlSocket::drop_gone() {
     std::vector<int> gone;
     for (const Client& client : clients_)
-        if (client.ticket != 0 && has_gone(client.descriptor)) gone.push_back(client.descriptor);
+        if (has_gone(client.descriptor)) gone.push_back(client.descriptor);
     for (const int descriptor : gone) drop(descriptor);
 }
 

@@ -26,7 +26,11 @@ class ControlSocket {
     /// thread. Until then nothing more is read of that client, which is not idle either.
     using Later = std::function<bool(const std::string& request, std::uint64_t ticket)>;
 
+    /// Who comes while so many are served takes the place of one that has asked nothing yet, or else is
+    /// itself refused: each with a line that says so. A question that waits is never given up for another.
     static constexpr std::size_t kClientsMax = 16;
+    /// So many of those who were refused may still finish what they are sending before they are closed.
+    static constexpr std::size_t kRefusedMax = 16;
     /// A longer request is answered with an error, once so much of it is here, and its client then dropped.
     static constexpr std::size_t kRequestMax = 48 << 10;
     /// What a client has not read yet; beyond, it is dropped.
@@ -55,8 +59,8 @@ class ControlSocket {
     /// The answer, without a line feed, to a request that was taken. Nothing if the client has gone.
     void reply(std::uint64_t ticket, const std::string& line);
 
-    /// Clients that were dropped: idle for too long, or the longest of too many; too slow to read; a request
-    /// without end.
+    /// Clients that were dropped: idle for too long, or one of too many; too slow to read; a request without
+    /// end.
     [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
 
   private:
@@ -65,7 +69,8 @@ class ControlSocket {
         std::string request;       ///< as much of it as is here
         HostTime asked;            ///< newest whole request
         std::uint64_t ticket = 0;  ///< of what it waits for; 0: nothing
-        bool is_refused = false;   ///< its request had no end: the rest of it is read and forgotten
+        bool has_asked = false;    ///< a whole request, at least once
+        bool is_refused = false;   ///< it was told why: what it still sends is read and forgotten
         EventSource readable;
     };
     ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer,
@@ -74,13 +79,16 @@ class ControlSocket {
     void accept();
     /// False if the client is to be dropped.
     [[nodiscard]] bool serve(Client& client);
-    void refuse(Client& client);
+    void make_room();
+    [[nodiscard]] Client* longest_silent();
+    void refuse(Client& client, const std::string& error, ExitCode code);
     [[nodiscard]] bool is_taken(Client& client, const std::string& request);
     [[nodiscard]] bool send(const Client& client, std::string line) const;
     void watch(Client& client);
     void drop(int descriptor);
     void drop_idle();
-    /// Those who wait for an answer and have gone: nothing is read of them, which would tell it.
+    /// Those who have gone: nothing is read of who waits for an answer, which would tell it, and nobody else
+    /// is to be refused for them.
     void drop_gone();
 
     std::filesystem::path file_;

@@ -135,6 +135,28 @@ TEST_F(AnsweringLater, tells_it_in_time_though_nobody_else_comes) {
     EXPECT_EQ(gone, taken);
 }
 
+TEST_F(AnsweringLater, is_not_given_up_for_others_however_many_come) {
+    std::vector<int> waiting;
+    for (std::size_t i = 0; i < ControlSocket::kClientsMax; ++i) {
+        waiting.push_back(connect());
+        EXPECT_EQ(::send(waiting.back(), "slow\n", 5, MSG_NOSIGNAL), 5);
+    }
+    serve([&] {
+        for (int i = 0; i < 40; ++i)
+            EXPECT_NE(ask_daemon(file(), "status").value().find("too many clients"), std::string::npos);
+        may_answer_ = true;
+        const std::string_view wanted = "at last\n";
+        for (const int client : waiting) {
+            std::array<char, 64> bytes{};
+            ASSERT_EQ(::recv(client, bytes.data(), wanted.size(), MSG_WAITALL),
+                      static_cast<ssize_t>(wanted.size()));
+            EXPECT_EQ(std::string_view(bytes.data(), wanted.size()), wanted);
+        }
+    });
+    EXPECT_TRUE(gone_.empty());
+    for (const int client : waiting) ::close(client);
+}
+
 TEST_F(AnsweringLater, takes_nobody_for_idle_who_waits) {
     auto quick = ControlSocket::open(
         folder_ / "quick", loop_, [](const std::string&) { return std::string("yes"); }, 40ms);

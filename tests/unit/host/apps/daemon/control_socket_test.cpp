@@ -197,7 +197,43 @@ TEST_F(ControlSocketTest, takes_so_many_clients_and_no_more) {
     EXPECT_EQ(socket_->dropped(), 4U);
 }
 
-TEST_F(ControlSocketTest, drops_the_one_that_was_idle_longest_for_a_new_one) {
+constexpr const char* kTooMany =
+    R"({"ok":false,"error":"too many clients: 16 are served at once; ask again later","code":69})"
+    "\n";
+
+TEST_F(ControlSocketTest, refuses_who_comes_while_all_others_have_asked) {
+    serve([&] {
+        std::vector<int> clients;
+        std::array<char, 64> bytes{};
+        for (std::size_t i = 0; i < ControlSocket::kClientsMax; ++i) {
+            clients.push_back(connect());
+            EXPECT_EQ(::send(clients.back(), "a\n", 2, MSG_NOSIGNAL), 2);
+            EXPECT_GT(::recv(clients.back(), bytes.data(), bytes.size(), 0), 0);
+        }
+        EXPECT_EQ(ask_daemon(file(), "status").value() + "\n", kTooMany);
+        const int slow = connect();
+        EXPECT_EQ(said_until_the_end(slow), kTooMany);
+        EXPECT_EQ(::send(slow, "status\n", 7, MSG_NOSIGNAL), 7) << "let finish what it says";
+        ::close(slow);
+        // However many knock and stay.
+        std::vector<int> knocking;
+        for (std::size_t i = 0; i < 3 * ControlSocket::kRefusedMax; ++i) {
+            knocking.push_back(connect());
+            EXPECT_EQ(said_until_the_end(knocking.back()), kTooMany);
+        }
+        for (const int client : clients) {
+            EXPECT_EQ(::send(client, "b\n", 2, MSG_NOSIGNAL), 2);
+            EXPECT_GT(::recv(client, bytes.data(), bytes.size(), 0), 0) << "given up for another";
+        }
+        ::close(clients.back());
+        clients.pop_back();
+        EXPECT_EQ(ask_daemon(file(), "status").value(), "you said status") << "room again";
+        for (const int client : clients) ::close(client);
+        for (const int client : knocking) ::close(client);
+    });
+}
+
+TEST_F(ControlSocketTest, drops_the_one_that_was_silent_longest_for_a_new_one) {
     serve([&] {
         std::vector<int> clients;
         for (std::size_t i = 0; i < ControlSocket::kClientsMax; ++i) {
@@ -206,7 +242,7 @@ TEST_F(ControlSocketTest, drops_the_one_that_was_idle_longest_for_a_new_one) {
         }
         EXPECT_TRUE(ask_daemon(file(), "status")) << "sixteen that say nothing keep everybody out";
         std::array<char, 8> bytes{};
-        EXPECT_EQ(::recv(clients.front(), bytes.data(), bytes.size(), 0), 0);
+        EXPECT_EQ(said_until_the_end(clients.front()), kTooMany);
         EXPECT_LT(::recv(clients.back(), bytes.data(), bytes.size(), MSG_DONTWAIT), 0);
         for (const int client : clients) ::close(client);
     });
