@@ -22,6 +22,7 @@
 #include "host/apps/daemon/query_desk.hpp"
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/daemon/status.hpp"
+#include "host/apps/querying/query_answer.hpp"
 #include "host/io/mapfile/map_file.hpp"
 
 namespace octoskin {
@@ -330,9 +331,7 @@ std::string Daemon::Parts::answer(const std::string& line) {
     }
     if (RecordRequests::is_one(line))
         return recordings.answer(line, settings.recorded, pipeline, monotonic_now());
-    return nlohmann::ordered_json{{"ok", false},
-                                  {"error", "unknown request; there are: status, record, query"}}
-        .dump();
+    return query_refused({ExitCode::usage, "unknown request; there are: status, record, query"}).dump();
 }
 
 }  // namespace octoskin

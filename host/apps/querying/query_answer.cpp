@@ -87,8 +87,12 @@ class Asking {
                 ExitCode::unavailable,
                 "nobody knows how the arm stands, so nothing is its own space: see that joint states come");
         if (request_.path.empty() && (request_.kind == QueryKind::postures || request_.own_space_m))
-            return fail(ExitCode::unavailable,
-                        "nobody knows how the arm stands: give its joints, or see that joint states come");
+            return fail(
+                ExitCode::unavailable,
+                ground_.is_live
+                    ? "nobody knows how the arm stands: give its joints, or see that joint states come"
+                    : "nobody says how the arm stands: give the posture to ask about as --joints, or "
+                      "how it stands as --stands");
         if (const auto checked = check_present(); !checked) return unexpected(checked.error());
         if (const auto checked = check_path(); !checked) return unexpected(checked.error());
         free_own_space();
@@ -185,9 +189,15 @@ class Asking {
                     {"state", name(worst)},
                     {"postures", postures},
                     {"resolution_m", ground_.map.resolution_m()},
+                    {"own_space_m", own_space_json()},
                     {"distances", request_.reach_m > 0.0 ? Json(config.field != nullptr ? "field" : "search")
                                                          : Json(nullptr)},
                     {"legs", std::move(legs)}};
+    }
+
+    /// Null: nothing was taken for the arm's own space.
+    [[nodiscard]] Json own_space_json() const {
+        return request_.own_space_m ? Json(*request_.own_space_m) : Json(nullptr);
     }
 
     [[nodiscard]] Json link_json(const std::optional<LinkId>& link) const {
@@ -222,6 +232,13 @@ class Asking {
         const PocketRegion region{base, request_.radius_m, request_.z_min_m.value_or(base.z())};
         const double voxel_m3 = std::pow(ground_.map.resolution_m(), 3);
         const auto voxels_min = static_cast<std::size_t>(std::ceil(request_.pocket_min_m3 / voxel_m3));
+        if (region.z_min_m > base.z() + region.radius_m) {
+            return fail(
+                ExitCode::usage,
+                fmt::format("nothing of the {} m about the base, which is at {:.3f} m in the map, lies "
+                            "above {} m: ask from less high on (z_min_m, --above)",
+                            request_.radius_m, base.z(), region.z_min_m));
+        }
         const auto found = UnknownPockets::find(ground_.map, region, voxels_min);
         if (!found) {
             return fail(ExitCode::usage,
@@ -243,6 +260,7 @@ class Asking {
             return fail(ExitCode::unavailable, "it ended before the ways there were asked about");
         return Json{{"ok", true},
                     {"resolution_m", ground_.map.resolution_m()},
+                    {"own_space_m", own_space_json()},
                     {"region_m3", rounded(static_cast<double>(found->region_voxels()) * voxel_m3)},
                     {"unknown_m3", rounded(static_cast<double>(found->unknown_voxels()) * voxel_m3)},
                     {"pockets_found", found->pockets().size()},
@@ -253,7 +271,9 @@ class Asking {
     /// Why no view into a pocket was looked for; null: some were.
     [[nodiscard]] Json why_not_tried() const {
         if (request_.views_tried == 0) return "no posture was to be tried";
-        if (request_.path.empty()) return "nobody knows how the arm stands";
+        if (request_.path.empty())
+            return ground_.is_live ? "nobody knows how the arm stands"
+                                   : "nobody says how the arm stands: give it as --stands";
         if (std::ranges::all_of(ground_.rig->nodes,
                                 [](const HostNode& node) { return node.sensors.empty(); }))
             return "the rig has no range sensor";
@@ -291,6 +311,14 @@ class Asking {
 
 Json query_refused(const AppError& error) {
     return {{"ok", false}, {"error", error.message}, {"code", static_cast<int>(error.code)}};
+}
+
+std::optional<AppError> refusal_of(const Json& answer) {
+    if (!answer.is_object() || answer.value("ok", Json()) != false || !answer.contains("error")) return {};
+    const Json& error = answer.at("error");
+    const Json code = answer.value("code", Json());
+    return AppError{code.is_number_integer() ? static_cast<ExitCode>(code.get<int>()) : ExitCode::unavailable,
+                    error.is_string() ? error.get<std::string>() : error.dump()};
 }
 
 Json answer_query(const QueryRequest& request, QueryGround ground, const std::function<bool()>& is_ending) {

@@ -27,20 +27,24 @@ struct QueryGround {
     /// For distances; what was asked of it before is kept. Null: they are searched for.
     KeptField* field = nullptr;
     /// The arm stands somewhere now: without `present` nothing is its own space. Else it stands where the
-    /// path begins.
+    /// path begins; of a single posture the answer is then about what that frees itself.
     bool is_live = false;
 };
 
 /// "ok": true, or false with "error" and "code", the exit code for it, and with "configuration" where the
-/// error is one of the path's. Of postures: "state", the worst, and "legs", one for each configuration: the
-/// way to it from the one before. Of pockets: "pockets". All keys: docs/planner.md. Some 0.1 ms a posture;
-/// `is_ending` is asked before each posture, and true ends it with an error.
+/// error is one of the path's. "own_space_m": as in the request, or null. Of postures: "state", the worst,
+/// and "legs", one for each configuration: the way to it from the one before. Of pockets: "pockets". All
+/// keys: docs/planner.md. Some 0.1 ms a posture; `is_ending` is asked before each posture, and true ends it
+/// with an error.
 [[nodiscard]] nlohmann::ordered_json answer_query(
     const QueryRequest& request, QueryGround ground,
     const std::function<bool()>& is_ending = [] { return false; });
 
 /// An answer that is an error.
 [[nodiscard]] nlohmann::ordered_json query_refused(const AppError& error);
+
+/// Such an answer back; empty: it is none.
+[[nodiscard]] std::optional<AppError> refusal_of(const nlohmann::ordered_json& answer);
 
 /// For a person, several lines. Throws nlohmann::ordered_json::exception if it is not what a daemon of this
 /// version answers.

@@ -69,11 +69,18 @@ std::string view_text(const Json& view, const Json& why_not_tried) {
                        view.at("way").is_null() ? "not known" : view.at("way").get<std::string>());
 }
 
+/// In a unit of which there is at least some.
+std::string unknown_share(double unknown_m3, double region_m3) {
+    constexpr double kSmall_m3 = 0.1;
+    if (region_m3 >= kSmall_m3) return fmt::format("{:.3f} of {:.3f} m3", unknown_m3, region_m3);
+    return fmt::format("{:.3f} of {:.3f} l", 1000.0 * unknown_m3, 1000.0 * region_m3);
+}
+
 std::string pockets_text(const Json& answer) {
-    std::string text =
-        fmt::format("{:.3f} of {:.3f} m3 unknown, {} pockets with free space beside them\n",
-                    answer.at("unknown_m3").get<double>(), answer.at("region_m3").get<double>(),
-                    answer.at("pockets_found").get<std::size_t>());
+    std::string text = fmt::format(
+        "{} unknown, {} pockets with free space beside them\n",
+        unknown_share(answer.at("unknown_m3").get<double>(), answer.at("region_m3").get<double>()),
+        answer.at("pockets_found").get<std::size_t>());
     std::size_t number = 0;
     for (const Json& pocket : answer.at("pockets")) {
         text += fmt::format("{:>4}  {:.2f} l about {}, open at {}\n", ++number,

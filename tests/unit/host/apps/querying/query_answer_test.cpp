@@ -68,14 +68,36 @@ TEST_F(QueryAnswer, without_a_path_is_that_of_the_arm_as_it_stands) {
     const Json nobody = ask({}, map_);
     EXPECT_FALSE(nobody.at("ok").get<bool>());
     EXPECT_EQ(nobody.at("code"), static_cast<int>(ExitCode::unavailable));
-    EXPECT_THAT(nobody.at("error").get<std::string>(), HasSubstr("nobody knows how the arm stands"));
+    EXPECT_THAT(nobody.at("error").get<std::string>(),
+                HasSubstr("nobody says how the arm stands: give the posture to ask about as --joints"));
+}
+
+TEST_F(QueryAnswer, of_a_small_region_tells_how_much_is_unknown_in_litres_and_of_none_why) {
+    QueryRequest request;
+    request.kind = QueryKind::pockets;
+    request.radius_m = 0.1;
+    request.z_min_m = -1.0;
+    EXPECT_THAT(query_text(ask(request, FusedMap{MapConfig{}})), HasSubstr(" l unknown, 0 pockets"));
+    request.z_min_m = 999.0;
+    EXPECT_THAT(ask(request, map_).value("error", ""), HasSubstr("(z_min_m, --above)"));
+}
+
+TEST(QueryRefused, is_read_back_and_no_other_answer_is_one) {
+    const auto back = refusal_of(query_refused({ExitCode::usage, "why"}));
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->code, ExitCode::usage);
+    EXPECT_EQ(back->message, "why");
+    EXPECT_FALSE(refusal_of(Json{{"ok", true}, {"error", "none"}}));
+    EXPECT_FALSE(refusal_of(Json::array()));
 }
 
 TEST_F(QueryAnswer, takes_the_arms_own_space_for_free_if_it_is_told_to) {
     const FusedMap holed = without(map_, {-0.1, -0.12, 0.2}, {0.5, 0.12, 0.4});
     QueryRequest request = path({{0.0, 0.0}});
     EXPECT_EQ(ask(request, holed).at("state"), "unknown");
+    EXPECT_TRUE(ask(request, holed).at("own_space_m").is_null());
     request.own_space_m = 0.04;
+    EXPECT_EQ(ask(request, holed).at("own_space_m"), 0.04);
     EXPECT_EQ(ask(request, holed).at("state"), "free") << "where the path begins";
     EXPECT_EQ(ask(request, holed, {0.0, 0.0}).at("state"), "free");
     EXPECT_EQ(ask(request, holed, {2.0, 0.0}).at("state"), "unknown") << "it stands elsewhere";
@@ -188,7 +210,7 @@ TEST_F(QueryAnswer, says_of_a_pocket_without_a_view_whether_any_was_tried) {
     EXPECT_THAT(told(ask(none, holed)), HasSubstr("       no view was tried: no posture was to be tried\n"));
     request.path.clear();
     EXPECT_THAT(told(ask(request, holed)),
-                HasSubstr("       no view was tried: nobody knows how the arm stands\n"));
+                HasSubstr("       no view was tried: nobody says how the arm stands: give it as --stands\n"));
     HostRig blind = arm_.rig;
     for (HostNode& node : blind.nodes) node.sensors.clear();
     request.path = {{0.5, 0.0}};
