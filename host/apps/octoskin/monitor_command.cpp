@@ -20,6 +20,7 @@
 #include "host/apps/monitor/scroll.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/querying/query_answer.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -117,6 +118,7 @@ Result<Json, AppError> ask(const MonitorOptions& options) {
     const auto answer = ask_daemon(options.socket, "status");
     if (!answer) return unexpected(answer.error());
     Json status = Json::parse(*answer, nullptr, false);
+    if (const auto refused = refusal_of(status)) return unexpected(*refused);
     if (status.is_object()) return status;
     return unexpected(foreign_answer(options.socket));
 }

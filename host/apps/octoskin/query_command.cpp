@@ -45,9 +45,9 @@ constexpr const char* kFooter =
     "An answer tells links, voxels and distances: docs/planner.md.";
 
 struct QueryOptions {
-    std::filesystem::path map;
-    std::filesystem::path rig;
-    std::filesystem::path robot;
+    std::optional<std::string> map;  ///< empty: a daemon is asked
+    std::optional<std::string> rig;
+    std::optional<std::string> robot;
     std::filesystem::path socket = default_control_socket();
     std::optional<std::string> joints;
     std::optional<std::string> stands;
@@ -66,9 +66,16 @@ struct Question {
         lines;  ///< of the path's file, where each configuration is; empty: there is none
 };
 
-void check_file(const std::filesystem::path& file) {
-    std::string name = file.string();
-    if (name.empty()) return;
+AppError missing_name(const char* option) {
+    return {ExitCode::usage,
+            fmt::format("{}: the name of a file is missing (is a variable of the shell empty?)", option)};
+}
+
+/// An empty name is a variable that nothing set, and not one that was left out.
+void check_file(const char* option, const std::optional<std::string>& file) {
+    if (!file) return;
+    if (file->empty()) throw CommandFailure(missing_name(option));
+    std::string name = *file;
     if (const std::string fault = existing_file()(name); !fault.empty())
         throw CommandFailure({ExitCode::usage, fault});
 }
@@ -79,7 +86,7 @@ void check_options(const CLI::App& command, const QueryOptions& options) {
         for (const char* name : names)
             if (command.count(name) > 0) throw CommandFailure({ExitCode::usage, name + why});
     };
-    if (options.map.empty()) {
+    if (!options.map) {
         refuse({"--rig", "--robot"},
                " is of a map file; a daemon has its own: leave it out, or name the map");
         refuse({"--stands"},
@@ -94,7 +101,10 @@ void check_options(const CLI::App& command, const QueryOptions& options) {
         refuse({"--radius", "--above", "--pockets", "--tries"},
                " is of --unknown: give that, too, or leave it out");
     }
-    for (const auto& file : {options.map, options.rig, options.robot}) check_file(file);
+    if (options.socket.empty()) throw CommandFailure(missing_name("--socket"));
+    check_file("map", options.map);
+    check_file("--rig", options.rig);
+    check_file("--robot", options.robot);
 }
 
 std::vector<double> read_joints(const char* option, const std::string& text) {
@@ -117,6 +127,17 @@ JointPath read_path(const std::string& name) {
     return value_or_fail(read_joint_path(file, name));
 }
 
+/// Else the answer would be about what the arm's own body frees there, "free" on a map of nothing. A path of
+/// some length begins where the arm stands, and so do the ways to views.
+void check_own_space(const QueryOptions& options, const Question& question) {
+    if (!options.map || !options.own_space_m || options.stands || options.lists_unknown) return;
+    if (question.request.path.size() > 1) return;
+    throw CommandFailure(
+        {ExitCode::usage,
+         "--own-space of a map file needs --stands, how the arm stands there: a posture that is asked about "
+         "would be its own space, and free whatever the map says"});
+}
+
 Question question_of(const QueryOptions& options) {
     Question question{options.request, {}, {}};
     QueryRequest& request = question.request;
@@ -132,37 +153,38 @@ Question question_of(const QueryOptions& options) {
     }
     if (const std::string fault = fault_of(request); !fault.empty())
         throw CommandFailure({ExitCode::usage, fault});
+    check_own_space(options, question);
     return question;
 }
 
 /// A map of a replay says by what rig it was made.
 void doubt_rig(const QueryOptions& options, const rig::Rig& rig) {
-    const auto origin = origin_of_map(options.map);
+    const auto origin = origin_of_map(*options.map);
     if (!origin) {
         spdlog::warn("{}; so nothing says whether {} is the rig that the map was made with",
-                     origin.error().message, options.rig.string());
+                     origin.error().message, *options.rig);
     } else if (*origin && (*origin)->rig_hash != rig::rig_hash(rig)) {
         spdlog::warn(
             "{} is another rig than {}, which the map was made with: the answer may be of another arm, or "
             "of another place",
-            options.rig.string(), (*origin)->rig.string());
+            *options.rig, (*origin)->rig.string());
     }
 }
 
 Json ask_map_file(const QueryOptions& options, const Question& question) {
-    if (options.rig.empty())
+    if (!options.rig)
         throw CommandFailure({ExitCode::usage,
                               "a map file does not say what robot is asked about: give --rig, "
                               "the one that the map was made with"});
-    const rig::Rig rig = value_or_fail(read_given_rig(options.rig, options.robot));
+    const rig::Rig rig = value_or_fail(read_given_rig(*options.rig, options.robot.value_or("")));
     const auto setup = make_host_setup(rig);
     if (!setup) throw CommandFailure(reading_error(ExitCode::bad_config, setup.error()));
     MapReadLimits limits;
     limits.map.log_odds_min = -20.0F;  // whoever made it may have clamped wider
     limits.map.log_odds_max = 20.0F;
     doubt_rig(options, rig);
-    auto map = load_map(options.map, limits);
-    if (!map) throw CommandFailure(reading_error(options.map, {ExitCode::bad_data, map.error().message}));
+    auto map = load_map(*options.map, limits);
+    if (!map) throw CommandFailure(reading_error(*options.map, {ExitCode::bad_data, map.error().message}));
     KeptField field;
     return answer_query(question.request,
                         {&setup->rig, &setup->robot, std::move(map).value(), question.stands, &field});
@@ -188,39 +210,50 @@ ExitCode outcome_of(const Json& answer) {
     return answer.at("state") == "occupied" ? ExitCode::failed : ExitCode::uncertain;
 }
 
+/// An answer that is an error, of one of the path's configurations or (0) of all of it.
+class Refusal : public CommandFailure {
+  public:
+    Refusal(const AppError& error, std::size_t configuration)
+        : CommandFailure(error), configuration_(configuration) {}
+    [[nodiscard]] std::size_t configuration() const noexcept { return configuration_; }
+
+  private:
+    std::size_t configuration_;
+};
+
 /// What the answer has in place of one, with the line of the path that it is about.
-CommandFailure refusal(const QueryOptions& options, const Question& question, const Json& answer) {
+Refusal refusal(const QueryOptions& options, const Question& question, const Json& answer) {
     const int code = answer.value("code", static_cast<int>(ExitCode::unavailable));
     std::string text = answer.at("error").get<std::string>();
     const std::size_t configuration = answer.value("configuration", std::size_t{0});
     if (configuration > 0 && configuration <= question.lines.size())
         text = fmt::format("{}:{}: {}", options.path == "-" ? "standard input" : *options.path,
                            question.lines[configuration - 1], text);
-    return CommandFailure({static_cast<ExitCode>(code), text});
+    return {{static_cast<ExitCode>(code), text}, configuration};
 }
 
 /// Why so little is free, as a rule, for who does not know of it.
 std::string hint(const QueryOptions& options, const Json& answer) {
-    constexpr const char* kHint =
-        "(No sensor sees where the arm itself stands, and all of that is unknown: with --own-space M, what "
-        "is "
-        "unknown or stale within M metres of the arm counts as free.)\n";
+    const std::string hint = fmt::format(
+        "(No sensor sees where the arm itself stands, and all of that is unknown: with "
+        "--own-space M{}, what is unknown or stale within M metres of the arm counts as free.)\n",
+        options.map ? " and --stands JOINTS, how it stands" : "");
     if (options.own_space_m) return {};
     if (!answer.contains("pockets")) {
         const Json& state = answer.at("state");
-        return state == "unknown" || state == "stale" ? kHint : std::string();
+        return state == "unknown" || state == "stale" ? hint : std::string();
     }
     const bool lacks_views = answer.at("views_not_tried").is_null() &&
                              std::ranges::any_of(answer.at("pockets"), [](const Json& pocket) {
                                  return pocket.at("view").is_null();
                              });
-    return lacks_views ? kHint : std::string();
+    return lacks_views ? hint : std::string();
 }
 
 ExitCode answered(const QueryOptions& options) {
     const Question question = question_of(options);
     const Json answer =
-        options.map.empty() ? ask_running_daemon(options, question.request) : ask_map_file(options, question);
+        options.map ? ask_map_file(options, question) : ask_running_daemon(options, question.request);
     try {
         if (!answer.at("ok").get<bool>()) throw refusal(options, question, answer);
         const ExitCode outcome = outcome_of(answer);
@@ -231,15 +264,23 @@ ExitCode answered(const QueryOptions& options) {
     }
 }
 
+/// For a script; the sentence follows on the standard error.
+void print_refusal(const CommandFailure& failure, std::size_t configuration) {
+    Json refused = query_refused({failure.code(), failure.what()});
+    if (configuration > 0) refused["configuration"] = configuration;
+    print("{}\n", refused.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
 void ask(const CLI::App& command, const QueryOptions& options) {
     ExitCode outcome = ExitCode::ok;
     try {
         check_options(command, options);
         outcome = answered(options);
+    } catch (const Refusal& refused) {
+        if (options.is_json) print_refusal(refused, refused.configuration());
+        throw;
     } catch (const CommandFailure& failure) {
-        if (options.is_json)
-            print("{}\n", query_refused({failure.code(), failure.what()})
-                              .dump(2, ' ', false, Json::error_handler_t::replace));
+        if (options.is_json) print_refusal(failure, 0);
         throw;
     }
     if (outcome != ExitCode::ok) throw CLI::RuntimeError(static_cast<int>(outcome));
@@ -286,8 +327,8 @@ void add_posture_options(CLI::App& command, QueryOptions& options) {
         ->check(from_to(0.0, 1.0));
     command
         .add_option("--stands", options.stands,
-                    "Of a map file: how the arm stands, as --joints; without it, where --joints or --path "
-                    "begin. A daemon knows")
+                    "Of a map file: how the arm stands, as --joints; without it, where --path begins. A "
+                    "daemon knows")
         ->type_name("JOINTS");
 }
 

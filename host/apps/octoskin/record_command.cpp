@@ -16,6 +16,7 @@
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/end_signals.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/querying/query_answer.hpp"
 #include "host/apps/recording/recording.hpp"
 
 namespace octoskin::app {
@@ -101,9 +102,11 @@ std::optional<std::string> ask_patiently(const RecordOptions& options, const Jso
     AppError error;
     for (int i = 0; i < kTries; ++i) {
         auto answer = ask_daemon(options.socket, "record status", kPatience);
-        if (answer) return std::move(answer).value();
-        error = answer.error();
-        if (error.code == ExitCode::unavailable) return std::nullopt;
+        const auto refused =  // there are too many clients just now
+            answer ? refusal_of(Json::parse(*answer, nullptr, false)) : std::optional<AppError>();
+        if (answer && !refused) return std::move(answer).value();
+        error = refused ? *refused : answer.error();
+        if (!refused && error.code == ExitCode::unavailable) return std::nullopt;
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
     }
     const auto folder = followed.at("folder").get<std::string>();

@@ -8,6 +8,7 @@
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/querying/query_answer.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -35,6 +36,7 @@ void show_status(const StatusOptions& options) {
     if (!answer) throw CommandFailure(answer.error());
     const auto status = nlohmann::ordered_json::parse(*answer, nullptr, false);
     if (!status.is_object()) throw CommandFailure(foreign_answer(options.socket));
+    if (const auto refused = refusal_of(status)) throw CommandFailure(*refused);
     if (options.is_json) return print("{}\n", status.dump(2));
     try {
         print_for_people(status);

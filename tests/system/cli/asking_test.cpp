@@ -63,5 +63,15 @@ TEST_F(AskingTest, an_answer_of_something_else_is_told) {
     }
 }
 
+TEST_F(AskingTest, what_a_daemon_refuses_is_told_as_it_says) {
+    const auto said = ask(R"({"ok": false, "error": "too many clients", "code": 69})",
+                          {"status", "monitor --once", "record --stop", "query"}, octoskin);
+    ASSERT_EQ(said.size(), 4U);
+    for (const Said& each : said) {
+        EXPECT_EQ(each.exit_code, 69) << each.output;
+        EXPECT_THAT(each.output, HasSubstr("too many clients"));
+    }
+}
+
 }  // namespace
 }  // namespace octoskin

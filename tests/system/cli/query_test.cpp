@@ -68,8 +68,8 @@ TEST_F(QueryCommandTest, of_an_unknown_posture_ends_with_2) {
     const Said said = query(nothing_known + " --joints " + kReady);
     EXPECT_EQ(said.exit_code, 2) << said.output;
     EXPECT_THAT(said.output, testing::StartsWith("unknown: panda_link"));
-    EXPECT_THAT(said.output, HasSubstr("--own-space M")) << "why, as a rule";
-    const Said own = query(nothing_known + " --joints " + kReady + " --own-space 0.05");
+    EXPECT_THAT(said.output, HasSubstr("--own-space M and --stands JOINTS")) << "why, as a rule";
+    const Said own = query(nothing_known + " --own-space 0.05 --stands " + kReady);
     EXPECT_THAT(own.output, testing::Not(HasSubstr("--own-space")));
     EXPECT_EQ(own.exit_code, 0) << own.output;
 }
@@ -134,7 +134,7 @@ TEST_F(QueryCommandTest, that_cannot_be_asked_says_why) {
     };
     write(path("bad.txt"), "0,0,0,0,0,0,0\n0,0,x\n");
     write(path("none.txt"), "# nothing\n");
-    expect("", 69, "nobody knows how the arm stands");
+    expect("", 69, "give the posture to ask about as --joints");
     expect(" --joints 1,2", 64, "2 joint positions; the rig has 7 joints: panda_joint1, panda_joint2");
     for (const char* joints : {"a,b", "0,,0,0,0,0,0", "0,-1,0,-2,0,1,0,", "'0;-1;0;-2;0;1;0'",
                                "0x0,-1,0,-2,0,1,0", "nan,-1,0,-2,0,1,0", "inf,-1,0,-2,0,1,0", "''"}) {
@@ -186,6 +186,20 @@ TEST_F(QueryCommandTest, refuses_what_would_not_be_looked_at) {
                 HasSubstr("give it as --joints"));
 }
 
+TEST_F(QueryCommandTest, takes_no_variable_that_nothing_set_for_an_option_that_was_left_out) {
+    const std::string map = free_map();
+    const std::string joints = std::string(" --joints ") + kReady;
+    const auto expect_refused = [](const std::string& arguments, const std::string& what) {
+        const Said said = octoskin("query " + arguments);
+        EXPECT_EQ(said.exit_code, 64) << arguments << ": " << said.output;
+        EXPECT_THAT(said.output, HasSubstr(what + ": the name of a file is missing"));
+    };
+    expect_refused("''" + joints, "map");
+    expect_refused(map + " --rig ''" + joints, "--rig");
+    expect_refused(map + " --rig " + source("hw/rigs/experiment.yaml") + " --robot ''" + joints, "--robot");
+    expect_refused("--socket ''" + joints, "--socket");
+}
+
 /// Standard output alone: what a script parses.
 Said said_to_script(const std::string& arguments) {
     return run(OCTOSKIN_PROGRAM " query --json " + arguments, "2>/dev/null");
@@ -210,11 +224,27 @@ TEST_F(QueryCommandTest, tells_an_error_as_json_too) {
     }
 }
 
+TEST_F(QueryCommandTest, tells_a_script_which_configuration_is_refused) {
+    write(path("beyond.txt"), std::string(kReady) + "\n0,9,0,-2,0,1,0\n");
+    const Said said = said_to_script(free_map() + " --rig " + source("hw/rigs/experiment.yaml") + " --path " +
+                                     path("beyond.txt"));
+    EXPECT_EQ(said.exit_code, 64);
+    EXPECT_EQ(Json::parse(said.output).at("configuration"), 2) << said.output;
+}
+
 TEST_F(QueryCommandTest, takes_for_own_space_where_the_arm_is_said_to_stand) {
     const std::string unknown = path("empty.ot");
     ASSERT_TRUE(save_map(FusedMap{MapConfig{}}, unknown));
     const std::string aside = " --joints 1.5,-0.785,0,-2.356,0,1.571,0.785 --own-space 0.05";
-    EXPECT_EQ(query(unknown + aside).exit_code, 0) << "about itself";
+    const Said itself = query(unknown + aside);
+    EXPECT_EQ(itself.exit_code, 64) << "it would be free whatever the map says";
+    EXPECT_THAT(itself.output, HasSubstr("--own-space of a map file needs --stands"));
+    write(path("one.txt"), std::string(kReady) + "\n");
+    EXPECT_EQ(query(unknown + " --own-space 0.05 --path " + path("one.txt")).exit_code, 64);
+    write(path("two.txt"), std::string(kReady) + "\n" + kReady + "\n");
+    const Said way = query(unknown + " --json --own-space 0.05 --path " + path("two.txt"));
+    EXPECT_EQ(way.exit_code, 0) << "a way begins where the arm stands: " << way.output;
+    EXPECT_EQ(Json::parse(way.output).at("own_space_m"), 0.05);
     EXPECT_EQ(query(unknown + aside + " --stands " + kReady).exit_code, 2) << "there it does not stand";
     EXPECT_EQ(query(unknown + " --own-space 0.05 --stands " + kReady).exit_code, 0) << "as it stands";
     const Said few = query(unknown + aside + " --stands 0,1");

@@ -69,6 +69,9 @@ TEST_F(QueryTest, is_refused_by_name_of_what_is_wrong) {
     const Said beyond = octoskin("query --joints 9,0,0,-1,0,1,0 --socket " + socket());
     EXPECT_EQ(beyond.exit_code, 64) << beyond.output;
     EXPECT_NE(beyond.output.find("panda_joint1 is 9; its limits are"), std::string::npos) << beyond.output;
+    const auto unheard = ask_daemon(socket(), "where are you", 30s);
+    ASSERT_TRUE(unheard);
+    EXPECT_EQ(Json::parse(*unheard).at("code"), 64) << *unheard;
 }
 
 /// Each of these takes the thread a second or so; what the loop answers itself is not behind them.
