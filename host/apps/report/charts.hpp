@@ -9,6 +9,7 @@
 
 #include "host/apps/evaluation/aggregate.hpp"
 #include "host/apps/evaluation/unknown_space.hpp"
+#include "host/apps/report/report.hpp"
 #include "host/core/mapping/update_model.hpp"
 
 namespace octoskin::report {
@@ -16,8 +17,13 @@ namespace octoskin::report {
 /// The style sheet's class of a map: "depth", "proximity", "fused", or "other".
 [[nodiscard]] std::string_view css_class_of(std::string_view map) noexcept;
 
-/// Probability of a voxel after one hit, over the range, for both sensors: Strong et al. 2021, Fig. 2.
-[[nodiscard]] std::string update_curves_svg(const UpdateModel& model);
+/// Probability of a voxel after one hit, over the range, for the camera and, if some are, for range sensors
+/// that are rays: Strong et al. 2021, Fig. 2.
+[[nodiscard]] std::string update_curves_svg(const UpdateModel& model, bool has_rays = true);
+
+/// Probability of a voxel of which nothing else is known, over how many ranges hit it alone or passed it, of
+/// whole cones and of zones, whichever there are. There is one (asserted).
+[[nodiscard]] std::string counting_curves_svg(const RangeCounting& counting);
 
 /// Reliability diagram of the maps of one configuration: observed share of surface voxels over predicted
 /// probability; a dot's radius grows with the logarithm of the voxels.

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "host/apps/evaluation/results.hpp"
 #include "host/apps/report/image.hpp"
+#include "host/core/mapping/cone_model.hpp"
 #include "host/core/mapping/update_model.hpp"
 
 namespace octoskin::report {
@@ -28,6 +30,14 @@ struct Account {
     std::vector<std::pair<std::string, std::uint64_t>> rejected;  ///< counter name, count
 };
 
+/// How the ranges of a run came into its map.
+struct RangeCounting {
+    bool has_rays = true;           ///< some are rays, with the update model's terms
+    std::optional<ConeModel> cone;  ///< of beams that were counted, if there are any, and are whole cones
+    std::optional<ConeModel> zone;  ///< the same of zones
+    CountModel counts;
+};
+
 struct ReportInput {
     std::string title = "octoskin: what the camera cannot see";
     evaluation::Results results;
@@ -36,6 +46,7 @@ struct ReportInput {
     std::uint64_t picture_seed = 0;
     std::vector<PicturePair> pictures;  ///< scene first, then the maps
     UpdateModel update_model;
+    RangeCounting range_counting;
     std::vector<Account> accounts;
     std::vector<std::string> hidden_objects;  ///< what the scenario names as hidden: "cone", "crate"
     std::vector<std::string> idealisations;   ///< one sentence each

@@ -104,11 +104,13 @@ svg .line.depth { stroke: var(--depth); } svg .line.proximity { stroke: var(--pr
 svg .line.fused { stroke: var(--fused); }
 svg .line.miss { stroke: var(--miss); stroke-dasharray: 6 4; stroke-width: 1.6; }
 svg .line.ideal { stroke: var(--soft); stroke-dasharray: 3 4; stroke-width: 1.4; }
+svg .line.passed { stroke-dasharray: 6 4; stroke-width: 1.6; }
 svg .line.faint { stroke-width: 1.4; stroke-dasharray: 2 3; }
 svg .dot { fill-opacity: .55; fill: var(--soft); }
 svg .dot.depth { fill: var(--depth); } svg .dot.proximity { fill: var(--proximity); }
 svg .dot.fused { fill: var(--fused); }
 svg .note.depth { fill: var(--depth); } svg .note.proximity { fill: var(--proximity); }
+svg .note.fused { fill: var(--fused); }
 svg .note.miss { fill: var(--miss); }
 svg .bar { fill-opacity: .38; } svg .bar.better { fill: var(--depth); } svg .bar.worse { fill: var(--proximity); }
 svg .seed { fill: var(--ink); fill-opacity: .85; }

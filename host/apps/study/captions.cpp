@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <set>
 #include <tuple>
+#include <utility>
+
+#include "host/io/rig/zone_optics.hpp"
 
 namespace octoskin {
 namespace {
@@ -51,6 +54,73 @@ std::string timing_sentence(DistanceMode mode, unsigned budget_ms, unsigned peri
     return text;
 }
 
+/// What the rig's sensors see, all boards together.
+struct Optics {
+    std::size_t rays = 0;  ///< sensors that are ideal rays
+    std::size_t cones = 0;
+    bool has_ray_zones = false;   ///< a ray for each of several zones, or for a part of the array
+    bool has_cone_zones = false;  ///< the same of a cone
+    std::set<double> cone_degrees;
+};
+
+bool has_zones(const SensorConfig& sensor) {
+    constexpr unsigned kArraySide = 16;
+    const Roi& first = sensor.zones[0];
+    return sensor.zone_count > 1 || first.width < kArraySide || first.height < kArraySide;
+}
+
+Optics optics_of(const rig::Rig& rig) {
+    Optics optics;
+    for (const rig::Node& node : rig.nodes) {
+        for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+            const auto& cone = node.sensors[i].cone;
+            ++(cone ? optics.cones : optics.rays);
+            (cone ? optics.has_cone_zones : optics.has_ray_zones) |= has_zones(node.config.sensors[i]);
+            if (cone) optics.cone_degrees.insert(2.0 * cone->half_angle_deg);
+        }
+    }
+    return optics;
+}
+
+/// "The range sensors", or how many of them if others are otherwise.
+std::string sensors_text(std::size_t count, const Optics& optics) {
+    const std::size_t all = optics.rays + optics.cones;
+    return count == all ? "The range sensors" : fmt::format("{} of the {} range sensors", count, all);
+}
+
+std::vector<std::string> ray_sentences(const Optics& optics, const sim::RangeOptics& ranges) {
+    if (optics.rays == 0) return {};
+    return {
+        fmt::format("{} measure along one ideal ray each{}. The real sensor sees a cone of 27 degrees and "
+                    "answers with something like the nearest part of it.",
+                    sensors_text(optics.rays, optics),
+                    optics.has_ray_zones ? ", of a zone along its middle" : ""),
+        fmt::format("The noise ({:g} cm) and reach ({:g} to {:g} m) of these rays are set by the scenario, "
+                    "not by budget, target or ambient light; of the mode, only the longest range that it "
+                    "can tell counts.",
+                    100.0 * ranges.sigma_m, ranges.min_m, ranges.max_m)};
+}
+
+std::vector<std::string> cone_sentences(const Optics& optics, const sim::RangeOptics& ranges) {
+    if (optics.cones == 0) return {};
+    std::string degrees;
+    for (const double each : optics.cone_degrees)
+        degrees += fmt::format("{}{:g}", degrees.empty() ? "" : ", ", each);
+    return {
+        fmt::format("{} see a cone of {} degrees as a bundle of sub-rays{}; a range is that of the nearest "
+                    "peak of what returns. Every surface scatters {:g} % of the light evenly: none "
+                    "mirrors, is darker than another or lets light bounce twice, and the arm stands still "
+                    "while a sensor measures.",
+                    sensors_text(optics.cones, optics), degrees,
+                    optics.has_cone_zones ? ", of which each zone gets its part" : "",
+                    100.0 * ranges.reflectivity),
+        fmt::format("The noise of these ranges, and whether there is one, follow from the signal: from "
+                    "distance, incidence and how much of the cone a thing fills, not from budget or "
+                    "ambient light. Of the mode, only the longest range that it can tell counts; nothing "
+                    "nearer than {:g} m or further than {:g} m is seen.",
+                    ranges.min_m, ranges.max_m)};
+}
+
 /// As one word of a POSIX shell.
 std::string shell_word(const std::string& text) {
     const auto is_plain = [](char c) {
@@ -86,13 +156,9 @@ std::vector<std::string> idealisations_of(const rig::Rig& rig, const sim::Scenar
     for (const auto& [mode, budget_ms, period_ms] : timings_of(rig)) {
         sentences.push_back(timing_sentence(mode, budget_ms, period_ms));
     }
-    sentences.push_back(
-        fmt::format("Their noise ({:g} cm) and reach ({:g} to {:g} m) are set by the scenario, not by mode, "
-                    "budget, target or ambient light.",
-                    100.0 * scenario.ranges.sigma_m, scenario.ranges.min_m, scenario.ranges.max_m));
-    sentences.push_back(
-        "A range is measured along one ideal ray. The real sensor sees a cone of 27 degrees and answers with "
-        "something like the nearest part of it.");
+    const Optics optics = optics_of(rig);
+    for (auto& sentence : ray_sentences(optics, scenario.ranges)) sentences.push_back(std::move(sentence));
+    for (auto& sentence : cone_sentences(optics, scenario.ranges)) sentences.push_back(std::move(sentence));
     if (rig.camera) {
         sentences.push_back(fmt::format(
             "The camera's noise ({:g} cm along the ray, independent from pixel to pixel) knows no "
@@ -104,6 +170,27 @@ std::vector<std::string> idealisations_of(const rig::Rig& rig, const sim::Scenar
         "description.");
     sentences.push_back("Nothing in the scene moves but the arm.");
     return sentences;
+}
+
+report::RangeCounting range_counting_of(const rig::Rig& rig, const MappingConfig& mapping) {
+    report::RangeCounting counting{.has_rays = false, .cone = {}, .zone = {}, .counts = mapping.map.counts};
+    bool has_cone = false;
+    bool has_zone = false;
+    for (const rig::Node& node : rig.nodes) {
+        for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+            const SensorConfig& config = node.config.sensors[i];
+            for (std::size_t z = 0; z < config.zone_count; ++z) {
+                const BeamOptics optics = beam_optics(node.sensors[i], config.zones[z]);
+                const bool is_counted = mapping.range_update == RangeUpdate::cone && optics.is_cone();
+                counting.has_rays |= !is_counted;
+                has_zone |= is_counted && optics.is_zone;
+                has_cone |= is_counted && !optics.is_zone;
+            }
+        }
+    }
+    if (has_cone) counting.cone = mapping.cone;
+    if (has_zone) counting.zone = mapping.zone;
+    return counting;
 }
 
 std::string command_of(const StudyRequest& request) {

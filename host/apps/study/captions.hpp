@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "host/apps/report/report.hpp"
 #include "host/apps/study/study.hpp"
+#include "host/core/mapping/mapping_config.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/sim/scenario/scenario.hpp"
 
@@ -18,6 +20,9 @@ namespace octoskin {
 
 /// What this simulation leaves out or makes kinder than a robot cell, one sentence each.
 [[nodiscard]] std::vector<std::string> idealisations_of(const rig::Rig& rig, const sim::Scenario& scenario);
+
+/// How the ranges of this rig's sensors come into the map: which as rays, which as counts.
+[[nodiscard]] report::RangeCounting range_counting_of(const rig::Rig& rig, const MappingConfig& mapping);
 
 /// The shell command that does a study again, every choice written out.
 [[nodiscard]] std::string command_of(const StudyRequest& request);

@@ -174,6 +174,7 @@ Status<AppError> write_report(const StudyRequest& request, const StudyWorld& gro
                               .pictures = draw_pictures(ground.scene.world, ground.scene.scenario, main.rig,
                                                         main.pipeline.maps(), *first.truth),
                               .update_model = main_configuration.mapping.model,
+                              .range_counting = range_counting_of(main.rig, main_configuration.mapping),
                               .accounts = {},
                               .hidden_objects = ground.scene.scenario.hidden_models,
                               .idealisations = idealisations_of(main.rig, ground.scene.scenario),

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "host/io/rig/zone_optics.hpp"
 #include "host/io/urdf/urdf_robot.hpp"
 #include "hw/rigfile/reflex.hpp"
 #include "hw/rigfile/robot_description.hpp"
@@ -12,26 +13,6 @@
 
 namespace octoskin {
 namespace {
-
-/// The cone as a zone sees it. The whole array sees all of it. A smaller zone sees its own SPADs' part,
-/// blurred by the lens: to where the blur has all but ended, and about as a Gaussian of the same variance.
-BeamOptics optics_of(const rig::Sensor& sensor, const Roi& zone) {
-    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-    if (!sensor.cone) return {};
-    const double half_angle = sensor.cone->half_angle_deg * kRadPerDeg;
-    const double sigma = sensor.cone->sigma_deg * kRadPerDeg;
-    constexpr unsigned kArraySide = 16;
-    if (zone.width == kArraySide && zone.height == kArraySide) return {half_angle, sigma, false};
-    const double blur = sensor.cone->blur_deg * kRadPerDeg;
-    const double width = zone.width * rig::kSpadPitch_rad;
-    const double height = zone.height * rig::kSpadPitch_rad;
-    constexpr double kBlurEnd = 1.5;
-    const double variance =
-        (width * width + height * height) / 24.0 + blur * blur;  // a uniform's is w^2 / 12
-    return {std::min(half_angle, 0.5 * std::hypot(width, height) + kBlurEnd * blur),
-            1.0 / std::sqrt(1.0 / variance + 1.0 / (sigma * sigma)),
-            2U * zone.width * zone.height <= kArraySide * kArraySide};
-}
 
 HostSensor to_host(const rig::Sensor& sensor, const SensorConfig& config) {
     HostSensor host;
@@ -43,7 +24,7 @@ HostSensor to_host(const rig::Sensor& sensor, const SensorConfig& config) {
     host.zones.clear();
     for (std::size_t i = 0; i < config.zone_count; ++i) {
         host.zones.push_back({sensor.zone_offset_m[i], rig::zone_direction(config.zones[i]),
-                              optics_of(sensor, config.zones[i])});
+                              beam_optics(sensor, config.zones[i])});
     }
     host.reflex_below_m = 1e-3 * config.reflex_below_mm;
     return host;

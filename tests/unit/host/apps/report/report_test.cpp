@@ -158,6 +158,26 @@ TEST(Report, names_the_papers_swapped_labels) {
     EXPECT_THAT(report_html(two_seeds()), HasSubstr("the two labels are swapped"));
 }
 
+TEST(Report, draws_what_ranges_count_as_they_were_counted) {
+    ReportInput input = two_seeds();
+    EXPECT_THAT(report_html(input), Not(HasSubstr("see a cone")));
+    input.range_counting = {.has_rays = false, .cone = ConeModel{}, .zone = {}, .counts = {}};
+    const std::string cones = report_html(input);
+    EXPECT_THAT(cones, HasSubstr("The range sensors of this run see a cone."));
+    EXPECT_THAT(cones, HasSubstr("A range of up to 0.7 m adds 1 to H in all"));
+    EXPECT_THAT(cones, HasSubstr("whole cone: 0.646")) << "1.37 of 2.12";
+    EXPECT_THAT(cones, Not(HasSubstr("Range sensor</li>"))) << "the update model's curve is of none of them";
+    EXPECT_THAT(cones, Not(HasSubstr("Fig. 2")));
+    EXPECT_EQ(first_unbalanced_tag(cones), "");
+    input.range_counting.has_rays = true;
+    input.range_counting.zone = ConeModel{.hit_mass = 2.5F};
+    const std::string mixed = report_html(input);
+    EXPECT_THAT(mixed, HasSubstr("The range sensors that are no rays see a cone."));
+    EXPECT_THAT(mixed, HasSubstr("adds 1 (of a zone 2.5) to H"));
+    EXPECT_THAT(mixed, HasSubstr("zone: 0.793")) << "2.87 of 3.62";
+    EXPECT_THAT(mixed, HasSubstr("Range sensor</li>"));
+}
+
 TEST(Report, balances_the_account_or_says_that_it_does_not) {
     ReportInput input = two_seeds();
     EXPECT_THAT(report_html(input), HasSubstr("<th>ranges</th><td>100</td><td>90</td><td>10</td>"));

@@ -56,6 +56,52 @@ TEST(Idealisations, blame_only_what_the_datasheet_does_not_allow) {
     EXPECT_THAT(idealisations_of(rig, kitchen()), Each(Not(HasSubstr("datasheet"))));
 }
 
+TEST(Idealisations, call_a_sensor_a_ray_only_if_the_rig_does) {
+    rig::Rig rig = bench();
+    EXPECT_THAT(idealisations_of(rig, kitchen()),
+                AllOf(Contains(HasSubstr("The range sensors measure along one ideal ray each.")),
+                      Each(Not(HasSubstr("sub-rays")))));
+    for (rig::Sensor& sensor : rig.nodes[0].sensors) sensor.cone = rig::Cone{};
+    EXPECT_THAT(
+        idealisations_of(rig, kitchen()),
+        AllOf(Contains(HasSubstr("The range sensors see a cone of 27 degrees as a bundle of sub-rays;")),
+              Contains(HasSubstr("scatters 50 % of the light")),
+              Contains(HasSubstr("follow from the signal")), Each(Not(HasSubstr("ideal ray"))),
+              Each(Not(HasSubstr("1.5 cm")))));
+}
+
+TEST(Idealisations, tell_sensors_of_both_kinds_apart_and_name_zones) {
+    rig::Rig rig = bench();
+    rig.nodes[0].sensors[1].cone = rig::Cone{.half_angle_deg = 10.0};
+    EXPECT_THAT(idealisations_of(rig, kitchen()),
+                AllOf(Contains(HasSubstr("2 of the 3 range sensors measure along one ideal ray each.")),
+                      Contains(HasSubstr("1 of the 3 range sensors see a cone of 20 degrees")),
+                      Each(Not(HasSubstr("zone")))));
+    rig.nodes[0].config.sensors[1].zones[0].width = 6;
+    EXPECT_THAT(idealisations_of(rig, kitchen()), Contains(HasSubstr("of which each zone gets its part")));
+    rig.nodes[0].config.sensors[0].zone_count = 2;
+    EXPECT_THAT(idealisations_of(rig, kitchen()),
+                Contains(HasSubstr("ray each, of a zone along its middle")));
+}
+
+TEST(RangeCounting, is_what_the_mapping_does_with_the_optics_of_the_rig) {
+    rig::Rig rig = bench();
+    const auto rays = range_counting_of(rig, fast_mapping());
+    EXPECT_TRUE(rays.has_rays);
+    EXPECT_FALSE(rays.cone || rays.zone);
+    for (rig::Sensor& sensor : rig.nodes[0].sensors) sensor.cone = rig::Cone{};
+    const auto cones = range_counting_of(rig, fast_mapping());
+    EXPECT_FALSE(cones.has_rays);
+    EXPECT_EQ(cones.cone, fast_mapping().cone);
+    EXPECT_FALSE(cones.zone);
+    EXPECT_TRUE(range_counting_of(rig, paper_mapping()).has_rays) << "range_update: ray";
+    EXPECT_FALSE(range_counting_of(rig, paper_mapping()).cone);
+    rig.nodes[0].config.sensors[0].zones[0] = {.centre_spad = 199, .width = 6, .height = 6};
+    const auto both = range_counting_of(rig, fast_mapping());
+    EXPECT_EQ(both.cone, fast_mapping().cone);
+    EXPECT_EQ(both.zone, fast_mapping().zone);
+}
+
 TEST(Idealisations, speak_of_a_camera_only_if_there_is_one) {
     rig::Rig rig = bench();
     EXPECT_THAT(idealisations_of(rig, kitchen()), Each(Not(HasSubstr("camera"))));
