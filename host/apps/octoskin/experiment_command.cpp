@@ -43,7 +43,8 @@ void add_experiment_command(CLI::App& app) {
     request->jobs = std::max(1U, std::thread::hardware_concurrency());
     CLI::App* command = app.add_subcommand(
         "experiment", "Simulate, replay and judge over seeds; write maps, metrics and a report");
-    command->add_option("--out", request->out, "Directory of the results")->required();
+    command->add_option("--out", request->out, "Directory of the results: empty, or of an experiment before")
+        ->required();
     command->add_option("--seeds", request->seeds, "Seeds; the first one's maps and recording are kept")
         ->capture_default_str()
         ->check(seed());

@@ -7,11 +7,13 @@
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/study/part_timer.hpp"
+#include "host/apps/study/results_folder.hpp"
 
 namespace octoskin {
 namespace {
 
 using Say = std::function<void(const std::string&)>;
+namespace fs = std::filesystem;
 
 /// Says how far a long part is, every quarter.
 class Quarters {
@@ -40,6 +42,11 @@ Status<AppError> simulate(const SeedRequest& request, bool is_noise_free, const 
     Quarters quarters(say, is_noise_free ? "simulating without depth noise" : "simulating");
     const auto summary = simulate_recording(simulation, [&](double fraction) { quarters.reach(fraction); });
     if (!summary) return unexpected(summary.error());
+    if (request.keeps_recording && !is_noise_free) {
+        const fs::path& kept = request.recording;
+        if (const auto noted = note_result(kept.parent_path(), kept.filename().string()); !noted)
+            return noted;
+    }
     outcome.times.push_back(timer.stop());
     say(
         fmt::format("simulated {:.1f} s: {} CAN frames, {} depth frames, first range after {:.2f} s, bus "

@@ -16,6 +16,7 @@
 #include "host/apps/study/captions.hpp"
 #include "host/apps/study/parallel.hpp"
 #include "host/apps/study/part_timer.hpp"
+#include "host/apps/study/results_folder.hpp"
 #include "host/apps/study/seed_study.hpp"
 #include "host/apps/study/study_pictures.hpp"
 #include "host/apps/study/work_folder.hpp"
@@ -28,23 +29,26 @@ namespace {
 using Say = std::function<void(const std::string&)>;
 namespace fs = std::filesystem;
 
+/// What every seed has in common.
 struct StudyWorld {
     Scene scene;
     SourceFile rig_file;
     evaluation::TruthConfig truth;
-    evaluation::Survey survey;
 };
 
-Result<StudyWorld, AppError> prepare_world(const SimulationRequest& inputs, double resolution_m) {
+/// Reads it, and refuses what cannot be judged: before anything is rendered or simulated.
+Result<StudyWorld, AppError> read_world(const SimulationRequest& inputs, double resolution_m) {
     auto scene = read_scene(inputs.scenario, inputs.world);
     if (!scene) return unexpected(scene.error());
     if (const auto still = check_stands_still(*scene); !still) return unexpected(still.error());
     const auto rig = read_given_rig(inputs.rig, inputs.robot);
     if (!rig) return unexpected(rig.error());
     evaluation::TruthConfig truth = truth_config_of(scene->scenario, resolution_m);
-    evaluation::Survey survey = evaluation::render_survey(scene->world, survey_config_of(scene->scenario));
-    return StudyWorld{std::move(*scene), source_file(inputs.rig, rig->extended_files), std::move(truth),
-                      std::move(survey)};
+    // Each seed shifts the map a little and is looked at again: this is for what is hopeless.
+    if (auto fault =
+            evaluation::region_fault(truth.region, truth.resolution_m, Eigen::Isometry3d::Identity()))
+        return fail(ExitCode::bad_config, scene->scenario.error("region", *fault).message());
+    return StudyWorld{std::move(*scene), source_file(inputs.rig, rig->extended_files), std::move(truth)};
 }
 
 /// That a configuration can be told from those before it, and compared with them.
@@ -99,12 +103,8 @@ class SeedWorkers {
   public:
     /// What is not kept is made, and removed, in `work`.
     SeedWorkers(const StudyRequest& request, const std::vector<NamedMapping>& configurations,
-                const StudyWorld& ground, const fs::path& work, const Say& say)
-        : request_(request),
-          work_(work),
-          configurations_(configurations),
-          ground_{ground.scene.world, ground.scene.scenario, ground.survey, ground.truth},
-          say_(say) {}
+                const StudyGround& ground, const fs::path& work, const Say& say)
+        : request_(request), work_(work), configurations_(configurations), ground_(ground), say_(say) {}
 
     Result<std::vector<SeedOutcome>, AppError> run() {
         return work_in_parallel<SeedOutcome, AppError>(
@@ -135,7 +135,7 @@ class SeedWorkers {
     const StudyRequest& request_;
     const fs::path work_;
     const std::vector<NamedMapping>& configurations_;
-    StudyGround ground_;
+    const StudyGround& ground_;
     const Say& say_;
     std::mutex say_mutex_;
 };
@@ -164,20 +164,20 @@ report::Account report_account(const AccountTable& table) {
     return account;
 }
 
-Status<AppError> write_report(const StudyRequest& request, const StudyWorld& ground,
+Status<AppError> write_report(const StudyRequest& request, const StudyWorld& world,
                               const evaluation::Results& results, const SeedOutcome& first,
                               const NamedMapping& main_configuration) {
     const Playback& main = *first.main;
     report::ReportInput input{.results = results,
                               .main_configuration = main_configuration.name,
                               .picture_seed = first.seed,
-                              .pictures = draw_pictures(ground.scene.world, ground.scene.scenario, main.rig,
+                              .pictures = draw_pictures(world.scene.world, world.scene.scenario, main.rig,
                                                         main.pipeline.maps(), *first.truth),
                               .update_model = main_configuration.mapping.model,
                               .range_counting = range_counting_of(main.rig, main_configuration.mapping),
                               .accounts = {},
-                              .hidden_objects = ground.scene.scenario.hidden_models,
-                              .idealisations = idealisations_of(main.rig, ground.scene.scenario),
+                              .hidden_objects = world.scene.scenario.hidden_models,
+                              .idealisations = idealisations_of(main.rig, world.scene.scenario),
                               .reproduce = {command_of(request)}};
     if (!main.rig.camera) input.title = "octoskin: what the range sensors see";
     for (const AccountTable& table : main.accounts) {
@@ -228,24 +228,22 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     if (const auto checked = check_seeds(request.seeds); !checked) return unexpected(checked.error());
     const auto configurations = find_configurations(request.configurations);
     if (!configurations) return unexpected(configurations.error());
+    const auto world = read_world(request.inputs, configurations->front().mapping.map.resolution_m);
+    if (!world) return unexpected(world.error());
     auto folder = MapFolder::open(request.out);
     if (!folder) return unexpected(folder.error());
+    if (const auto checked = check_results_folder(request.out); !checked) return unexpected(checked.error());
 
     say("ground truth: a noise-free camera goes round the scene");
     const PartTimer survey_timer("ground truth survey");
-    const auto ground = prepare_world(request.inputs, configurations->front().mapping.map.resolution_m);
-    if (!ground) return unexpected(ground.error());
+    const evaluation::Survey survey =
+        evaluation::render_survey(world->scene.world, survey_config_of(world->scene.scenario));
     const evaluation::PartTime survey_time = survey_timer.stop();
-    // Each seed shifts the map a little and is looked at again: this is for what is hopeless, before
-    // simulating.
-    const auto& truth = ground->truth;
-    if (auto fault =
-            evaluation::region_fault(truth.region, truth.resolution_m, Eigen::Isometry3d::Identity()))
-        return fail(ExitCode::bad_config, ground->scene.scenario.error("region", *fault).message());
+    const StudyGround ground{world->scene.world, world->scene.scenario, survey, world->truth};
 
     const auto work = WorkFolder::create(request.out);
     if (!work) return unexpected(work.error());
-    auto outcomes = SeedWorkers(request, *configurations, *ground, work->path(), say).run();
+    auto outcomes = SeedWorkers(request, *configurations, ground, work->path(), say).run();
     if (!outcomes) return unexpected(outcomes.error());
     std::vector<evaluation::Run> runs;
     for (const SeedOutcome& outcome : *outcomes)
@@ -253,7 +251,7 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     std::vector<evaluation::PartTime> times = total_times(*outcomes);
     times.push_back(survey_time);
     evaluation::Results results =
-        evaluation::collect(runs, times, provenance_of(ground->scene, ground->rig_file));
+        evaluation::collect(runs, times, provenance_of(world->scene, world->rig_file));
     results.unknown_space = outcomes->front().unknown_space;
     results.is_papers_experiment = is_papers_experiment(outcomes->front().main->rig, request.inputs.scenario,
                                                         request.inputs.world, request.papers_scenario);
@@ -266,9 +264,11 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
         !written) {
         return unexpected(written.error());
     }
+    if (const auto noted = note_result(request.out, "metrics.json"); !noted) return unexpected(noted.error());
     say(fmt::format("seed {}: drawing the report", first.seed));
-    const auto reported = write_report(request, *ground, results, first, main_of(*configurations));
+    const auto reported = write_report(request, *world, results, first, main_of(*configurations));
     if (!reported) return unexpected(reported.error());
+    if (const auto noted = note_result(request.out, "report.html"); !noted) return unexpected(noted.error());
     return results;
 }
 

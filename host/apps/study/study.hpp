@@ -29,7 +29,8 @@ struct StudyRequest {
 /// Writes into `out`: metrics.json, report.html, the maps depth (if the rig has a camera), proximity
 /// and fused (.ot .bt .ply) and
 /// recording/ of the first seed in its main configuration (the default if it is among them). `say`: progress,
-/// one line each, called under a lock.
+/// one line each, called under a lock. What cannot
+/// be judged is refused first; so is an `out` with anything to lose (check_results_folder()).
 [[nodiscard]] Result<evaluation::Results, AppError> run_study(
     const StudyRequest& request, const std::function<void(const std::string&)>& say);
 

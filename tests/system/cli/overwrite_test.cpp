@@ -191,5 +191,56 @@ TEST_F(Overwrite, maps_that_a_replay_has_none_of_go_with_the_replay_before) {
     EXPECT_EQ(content(path("rec/maps/depth.ot")), "somebody's own");
 }
 
+class OverwriteByExperiment : public Overwrite {
+  protected:
+    [[nodiscard]] Said experiment() const {
+        return octoskin("experiment --out " + path("out") + " --rig " + source("tests/data/short/rig.yaml") +
+                        " --scenario " + source("tests/data/short/scenario.yaml"));
+    }
+    void expect_refused_for(const std::string& name) const {
+        const Said said = experiment();
+        EXPECT_EQ(said.exit_code, 73) << said.output;
+        EXPECT_THAT(said.output,
+                    AllOf(HasSubstr(path("out") + ": has a " + name + " that no experiment left there"),
+                          HasSubstr("give another directory"), testing::Not(HasSubstr("ground truth"))));
+    }
+};
+
+TEST_F(OverwriteByExperiment, replaces_nothing_that_no_experiment_left) {
+    std::filesystem::create_directory(path("out"));
+    write(path("out/fused.ot"), "precious");
+    expect_refused_for("fused.ot");
+    EXPECT_EQ(names_in("out"), "fused.ot\n");
+    std::filesystem::remove(path("out/fused.ot"));
+    write(path("out/thesis.txt"), "no result's name, but somebody's folder");
+    expect_refused_for("thesis.txt");
+    std::filesystem::remove(path("out/thesis.txt"));
+    record_short("out/recording", "--seed 5");
+    const std::string log = content(path("out/recording/can.log"));
+    expect_refused_for("recording");
+    EXPECT_EQ(content(path("out/recording/can.log")), log);
+}
+
+TEST_F(OverwriteByExperiment, replaces_its_own_results_again_and_again) {
+    ASSERT_EQ(experiment().exit_code, 0);
+    // As README.md has it: maps of the recording beside it, and something of one's own.
+    ASSERT_EQ(octoskin("replay " + path("out/recording")).exit_code, 0);
+    write(path("out/notes.txt"), "what I saw");
+    const Said again = experiment();
+    ASSERT_EQ(again.exit_code, 0) << again.output;
+    EXPECT_EQ(content(path("out/notes.txt")), "what I saw");
+    const auto expect_kept = [&](const std::string& name) {
+        const std::string ours = content(path("out/" + name));
+        write(path("out/" + name), "precious");
+        expect_refused_for(name);
+        EXPECT_EQ(content(path("out/" + name)), "precious");
+        write(path("out/" + name), ours);
+    };
+    for (const char* name : {"fused.ot", "metrics.json", "report.html"}) expect_kept(name);
+    std::filesystem::remove_all(path("out/recording"));
+    record_short("out/recording", "--seed 5");
+    expect_refused_for("recording");
+}
+
 }  // namespace
 }  // namespace octoskin

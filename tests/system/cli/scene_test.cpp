@@ -251,6 +251,8 @@ TEST_F(MovingWorld, is_not_judged) {
                                   path("gone.yaml") + " --out " + path("study"));
     EXPECT_EQ(studied.exit_code, 78) << studied.output;
     EXPECT_THAT(studied.output, HasSubstr("world_motion: what moves has no one place"));
+    EXPECT_THAT(studied.output, Not(HasSubstr("ground truth"))) << "before any work";
+    EXPECT_FALSE(std::filesystem::exists(path("study")));
 }
 
 TEST_F(MovingWorld, is_refused_where_its_motion_is_not_there_or_of_another_world) {

@@ -1,0 +1,22 @@
+// Where an experiment's results go: what an experiment left there may be replaced, anything else may not.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "common/result.hpp"
+#include "host/apps/recording/app_error.hpp"
+
+namespace octoskin {
+
+/// That an experiment may write its results into `folder`: nothing is in it, or the results of one before,
+/// byte for byte as they were left, and beside them what no experiment writes. To be called while the folder
+/// is locked (MapFolder). Error: cannot_create, which names what would be lost. Reads all that would be
+/// replaced.
+[[nodiscard]] Status<AppError> check_results_folder(const std::filesystem::path& folder);
+
+/// Notes in `folder` that its `name`, metrics.json, report.html or the directory recording, is there as this
+/// experiment made it. The maps have notes of their own (MapOrigin). Error: cannot_create.
+[[nodiscard]] Status<AppError> note_result(const std::filesystem::path& folder, const std::string& name);
+
+}  // namespace octoskin
