@@ -83,11 +83,13 @@ void StandingRanges::follow_believed(Zone& zone) {
 }
 
 void StandingRanges::add_what_stays(const Beam& newest, const Sensor& sensor) {
-    for (const auto& [index, zone] : sensor.zones) {
-        if (!zone.believed || !goes_on(*zone.believed, zone.newest.back().beam)) continue;
-        const bool is_asked = index == newest.source.zone || *zone.believed->range_m < *newest.range_m;
-        const bool is_added =
-            std::ranges::any_of(believed_, [&](const Beam& added) { return added.source.zone == index; });
+    for (const auto& entry : sensor.zones) {
+        const Zone& zone = entry.second;
+        const Beam& own_newest = zone.newest.back().beam;
+        if (!zone.believed || !goes_on(*zone.believed, own_newest)) continue;
+        const bool is_asked = own_newest.source == newest.source || *zone.believed->range_m < *newest.range_m;
+        const bool is_added = std::ranges::any_of(
+            believed_, [&](const Beam& added) { return added.source == own_newest.source; });
         if (is_asked && !is_added && are_of_one_place(*zone.believed, newest))
             believed_.push_back(*zone.believed);
     }
