@@ -21,7 +21,8 @@ class StandingSight {
     /// Takes a beam that went into the map, and how far that frees space. The answer: the shortest of the
     /// zone's newest readings of this place (StandingRanges), as many as last `StandingModel::clears_after_s`
     /// and no longer than twice that; null while there are not three, or not of so long; valid until the next
-    /// call. A beam that frees nothing is none. O(readings of so long), below 1 us; 0.2 kB each. Throws std::bad_alloc.
+    /// call. A beam that frees nothing is none. O(readings of so long), below 1 us; 0.2 kB each. Throws
+    /// std::bad_alloc.
     [[nodiscard]] const Beam* take(const Beam& beam, double frees_m);
 
     /// Whether `ends_there` says so of the newest reading of any zone, if that has a range and is no older
