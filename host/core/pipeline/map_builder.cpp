@@ -155,6 +155,8 @@ void MapBuilder::believe_standing(const Beam& beam, std::vector<VoxelUpdate>* ch
         }
     }
     for (const Beam& believed : standing_.take(beam)) {
+        // As a rule what was marked once is still there, and nothing else need be found.
+        if (maps_.is_marked(believed.p_map_sensor + *believed.range_m * believed.direction_map)) continue;
         const auto voxels = cone_finder_.find(believed);
         if (voxels) {  // so near to the edge of the octree a mean of ranges may lie beyond it
             maps_.mark(**voxels, standing_.model().hits, told);

@@ -91,6 +91,15 @@ void MapSet::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* 
     }
 }
 
+bool MapSet::is_marked(const Eigen::Vector3d& p_map) const noexcept {
+    const auto is_in = [&](const std::optional<FusedMap>& map) {
+        if (!map) return true;
+        const auto key = map->key_of(p_map);
+        return key && map->occupancy(*key) == Occupancy::occupied;
+    };
+    return is_in(proximity_) && is_in(fused_);
+}
+
 void MapSet::clear(const ConeVoxels& cone, const std::function<bool(VoxelKey)>& is_ranged,
                    std::vector<VoxelUpdate>* changes) {
     if (proximity_) {

@@ -48,6 +48,8 @@ class MapSet {
 
     /// FusedMap::mark. `changes`: of `fused`; may be null.
     void mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes);
+    /// Whether a point is in an occupied voxel of each map that is marked.
+    [[nodiscard]] bool is_marked(const Eigen::Vector3d& p_map) const noexcept;
     /// FusedMap::clear, likewise.
     void clear(const ConeVoxels& cone, const std::function<bool(VoxelKey)>& is_ranged,
                std::vector<VoxelUpdate>* changes);
