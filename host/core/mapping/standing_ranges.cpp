@@ -85,8 +85,9 @@ void StandingRanges::follow_believed(Zone& zone) {
 void StandingRanges::add_what_stays(const Beam& newest, const Sensor& sensor) {
     for (const auto& entry : sensor.zones) {
         const Zone& zone = entry.second;
+        if (!zone.believed) continue;  // nor need it have a reading, if there was no memory for it
         const Beam& own_newest = zone.newest.back().beam;
-        if (!zone.believed || !goes_on(*zone.believed, own_newest)) continue;
+        if (!goes_on(*zone.believed, own_newest)) continue;
         const bool is_asked = own_newest.source == newest.source || *zone.believed->range_m < *newest.range_m;
         const bool is_added = std::ranges::any_of(
             believed_, [&](const Beam& added) { return added.source == own_newest.source; });

@@ -12,10 +12,8 @@ bool StandingSight::lasts(const Readings& readings, std::size_t from) const {
 const Beam* StandingSight::take(const Beam& beam, double frees_m) {
     if (!(model_.clears_after_s > 0.0 && frees_m > 0.0)) return nullptr;
     Readings& newest = zones_[beam.source];
-    // What nobody heard of meanwhile may have come and gone.
     std::erase_if(newest, [&](const Reading& before) {
-        return seconds_between(before.beam, beam.captured) > 2.0 * model_.clears_after_s ||
-               !StandingRanges::are_of_one_place(before.beam, beam);
+        return !counts(before.beam, beam.captured) || !StandingRanges::are_of_one_place(before.beam, beam);
     });
     newest.push_back({beam, frees_m});
     while (lasts(newest, 1)) newest.pop_front();

@@ -26,13 +26,13 @@ class StandingSight {
     [[nodiscard]] const Beam* take(const Beam& beam, double frees_m);
 
     /// Whether `ends_there` says so of the newest reading of any zone, if that has a range and is no older
-    /// than `now` by twice `StandingModel::clears_after_s`. O(zones).
+    /// than `now` by as long as readings count. O(zones).
     template <class EndsThere>
     [[nodiscard]] bool any_newest(HostTime now, const EndsThere& ends_there) const {
         return std::ranges::any_of(zones_, [&](const auto& zone) {
+            if (zone.second.empty()) return false;
             const Beam& beam = zone.second.back().beam;
-            return beam.range_m && seconds_between(beam, now) <= 2.0 * model_.clears_after_s &&
-                   ends_there(beam);
+            return beam.range_m && counts(beam, now) && ends_there(beam);
         });
     }
 
@@ -44,11 +44,15 @@ class StandingSight {
         Beam beam;
         double frees_m = 0.0;
     };
-    using Readings = std::deque<Reading>;  ///< of a zone, at least one, the newest last
+    using Readings = std::deque<Reading>;  ///< of a zone, the newest last; none if there was no memory
 
     [[nodiscard]] static double seconds_between(const Beam& before, HostTime now) {
         constexpr double kNanoseconds = 1e9;
         return static_cast<double>(now.ns - before.captured.ns) / kNanoseconds;
+    }
+    /// What nobody heard of for longer may have come and gone.
+    [[nodiscard]] bool counts(const Beam& before, HostTime now) const {
+        return seconds_between(before, now) <= 2.0 * model_.clears_after_s;
     }
     [[nodiscard]] bool lasts(const Readings& readings, std::size_t from) const;
 
