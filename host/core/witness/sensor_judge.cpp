@@ -116,31 +116,6 @@ double SensorJudge::sigma_of(const Compared& compared, const Expected& a, const 
     return std::hypot(std::max(a.sigma_m, b.sigma_m), compared.beam.sigma_m, kPoseSigmaM);
 }
 
-double SensorJudge::gain(const Compared& compared, const Expected& mounted, const Expected& if_faulty) const {
-    if (!mounted.at.range_m || !if_faulty.at.range_m) return 0.0;
-    const double sigma_m = sigma_of(compared, mounted, if_faulty);
-    if (std::abs(*compared.beam.range_m - *if_faulty.at.range_m) > kToleranceM + 3.0 * sigma_m) return 0.0;
-    const auto sound = misfit(mounted, *if_faulty.at.range_m, sigma_m);
-    return sound && *sound > kDoubt ? *sound - kDoubt : 0.0;
-}
-
-double SensorJudge::gain_if_off(const Compared& compared, double by_m) const {
-    const Expected mounted = expected(compared, compared.predictions.mounted);
-    Expected off = mounted;
-    if (off.at.range_m) *off.at.range_m += by_m;
-    return gain(compared, mounted, off);
-}
-
-double SensorJudge::gain_if_turned(const Compared& compared, std::size_t turn) const {
-    return gain(compared, expected(compared, compared.predictions.mounted),
-                expected(compared, compared.predictions.turned[turn]));
-}
-
-double SensorJudge::gain_if_exchanged(const Compared& compared, const Compared& other) const {
-    return gain(compared, expected(compared, compared.predictions.mounted),
-                expected(other, other.predictions.mounted));
-}
-
 void SensorJudge::judge(std::span<const Compared> compared) {
     std::vector<Expected> mounted;
     mounted.reserve(compared.size());

@@ -46,14 +46,6 @@ class SensorJudge {
     };
     [[nodiscard]] const Verdict& verdict(std::uint16_t sensor) const { return sensors_[sensor].verdict; }
 
-    /// What a comparison adds to the evidence if the range is, without noise, off by so much, that of a
-    /// turned mount, or `other`'s; 0 where it tells nothing, or where the faulty sensor, which ranges
-    /// `compared.beam.range_m`, sees something else than what is predicted. To know beforehand whom a fault
-    /// would give away.
-    [[nodiscard]] double gain_if_off(const Compared& compared, double by_m) const;
-    [[nodiscard]] double gain_if_turned(const Compared& compared, std::size_t turn) const;
-    [[nodiscard]] double gain_if_exchanged(const Compared& compared, const Compared& other) const;
-
     /// With so much evidence a fault is named, and with so much against it, it is no more.
     static constexpr double kNamedFrom = 14.0;
 
@@ -86,8 +78,6 @@ class SensorJudge {
     [[nodiscard]] static std::optional<double> misfit(const Expected& expected, double range_m,
                                                       double sigma_m);
     [[nodiscard]] static double sigma_of(const Compared& compared, const Expected& a, const Expected& b);
-    [[nodiscard]] double gain(const Compared& compared, const Expected& mounted,
-                              const Expected& if_faulty) const;
     void weigh(const Compared& compared, const Expected& mounted);
     void weigh_short(Sensor& sensor, const Compared& compared, const Expected& mounted,
                      double misfit_mounted);

@@ -16,6 +16,7 @@ namespace octoskin {
 namespace {
 
 using testing_support::keep_runs;
+using testing_support::KeptRange;
 using testing_support::KeptReading;
 using testing_support::KeptRun;
 using testing_support::SensorNumber;
@@ -29,26 +30,16 @@ std::uint64_t long_seeds() {
     return text == nullptr ? 1 : std::strtoull(text, nullptr, 10);
 }
 
-/// Who may be expected to be found: the noise may take half of what a fault says of itself.
+/// Who must be found: whose fault says twice as much as names it when its ranges have no noise, which may
+/// take half.
 constexpr double kTellingFrom = 2.0 * SensorJudge::kNamedFrom;
 
 using Image = std::vector<KeptReading>;
 /// What a sensor says with an image; empty: nothing.
-using Says = std::function<std::optional<double>(const Image&, std::size_t image, SensorNumber)>;
+using Says = std::function<std::optional<KeptRange>(const Image&, std::size_t image, SensorNumber)>;
 
-std::vector<Compared> compared_with(const Image& image, std::size_t number, const Says& says) {
-    std::vector<Compared> compared;
-    for (SensorNumber i = 0; i < kSensors; ++i) {
-        const auto range_m = says(image, number, i);
-        if (!range_m) continue;
-        compared.push_back({static_cast<std::uint16_t>(i), image[i].beam, image[i].predictions});
-        compared.back().beam.range_m = range_m;
-    }
-    return compared;
-}
-
-std::optional<double> sound(const Image& image, std::size_t, SensorNumber sensor) {
-    return image[sensor].beam.range_m;
+std::optional<KeptRange> sound(const Image& image, std::size_t, SensorNumber sensor) {
+    return image[sensor].sound;
 }
 
 SensorJudge judge_of_rig() {
@@ -62,17 +53,19 @@ struct Outcome {
     std::uint64_t compared = 0;
 };
 
-/// `before`, if any, is asked with each image before it is judged.
-Outcome outcome_of(const KeptRun& run, const Says& says,
-                   const std::function<void(const SensorJudge&, const std::vector<Compared>&)>& before = {},
-                   const std::function<void(const SensorJudge&)>& after = {}) {
+Outcome outcome_of(const KeptRun& run, const Says& says) {
     SensorJudge judge = judge_of_rig();
     Outcome outcome;
     for (std::size_t number = 0; number < run.images.size(); ++number) {
-        const auto compared = compared_with(run.images[number], number, says);
-        if (before) before(judge, compared);
+        const Image& image = run.images[number];
+        std::vector<Compared> compared;
+        for (SensorNumber i = 0; i < kSensors; ++i) {
+            const auto range = says(image, number, i);
+            if (!range) continue;
+            compared.push_back({static_cast<std::uint16_t>(i), image[i].beam, image[i].predictions});
+            compared.back().beam.range_m = range->range_m;
+        }
         judge.judge(compared);
-        if (after) after(judge);
         for (SensorNumber i = 0; i < kSensors; ++i) {
             const auto& verdict = judge.verdict(static_cast<std::uint16_t>(i));
             outcome.evidence_max[i] = std::max(outcome.evidence_max[i], verdict.evidence);
@@ -90,121 +83,89 @@ SensorNumber partner_of(SensorNumber sensor, std::size_t steps) {
     return node_begin + (sensor - node_begin + steps) % kPerNode;
 }
 
-/// A fault that one sensor has, and the evidence for it that its geometry gives without noise.
+/// A fault that one sensor has.
 struct Fault {
-    const char* name;
     std::function<Says(SensorNumber faulty)> says;
-    std::function<double(const SensorJudge&, const std::vector<Compared>&, const Compared& of)> gain;
     /// Who else says what is not true; the sensor itself: nobody.
     std::function<SensorNumber(SensorNumber faulty)> partner = [](SensorNumber faulty) { return faulty; };
 };
 
-Fault altered(const char* name, double by_m) {
-    return {.name = name,
-            .says = [by_m](SensorNumber faulty) -> Says {
-                return [=](const Image& image, std::size_t number, SensorNumber sensor) {
-                    auto range_m = sound(image, number, sensor);
-                    if (range_m && sensor == faulty) *range_m += by_m;
-                    return range_m;
-                };
-            },
-            .gain = [by_m](const SensorJudge& judge, const auto&,
-                           const Compared& of) { return judge.gain_if_off(of, by_m); }};
+Fault altered(double by_m) {
+    return {.says = [by_m](SensorNumber faulty) -> Says {
+        return [=](const Image& image, std::size_t number, SensorNumber sensor) {
+            auto range = sound(image, number, sensor);
+            if (range && sensor == faulty) range->range_m += by_m;
+            return range;
+        };
+    }};
 }
 
 Fault turned(std::size_t turn) {
-    return {.name = "turned",
-            .says = [turn](SensorNumber faulty) -> Says {
-                return [=](const Image& image, std::size_t number, SensorNumber sensor) {
-                    return sensor == faulty ? image[sensor].turned_m[turn] : sound(image, number, sensor);
-                };
-            },
-            .gain = [turn](const SensorJudge& judge, const auto&,
-                           const Compared& of) { return judge.gain_if_turned(of, turn); }};
+    return {.says = [turn](SensorNumber faulty) -> Says {
+        return [=](const Image& image, std::size_t number, SensorNumber sensor) {
+            return sensor == faulty ? image[sensor].turned[turn] : sound(image, number, sensor);
+        };
+    }};
 }
 
-Fault exchanged(const char* name, std::size_t steps) {
+Fault exchanged(std::size_t steps) {
     return {
-        .name = name,
         .says = [steps](SensorNumber faulty) -> Says {
             const SensorNumber partner = partner_of(faulty, steps);
             return [=](const Image& image, std::size_t number, SensorNumber sensor) {
                 return sound(image, number, sensor == faulty ? partner : sensor == partner ? faulty : sensor);
             };
         },
-        .gain =
-            [steps](const SensorJudge& judge, const std::vector<Compared>& all, const Compared& of) {
-                const auto other = std::ranges::find(all, partner_of(of.sensor, steps), &Compared::sensor);
-                return other == all.end() ? 0.0 : judge.gain_if_exchanged(of, *other);
-            },
         .partner = [steps](SensorNumber faulty) { return partner_of(faulty, steps); }};
 }
 
 Fault every_third_short() {
-    return {.name = "every third range half as long",
-            .says = [](SensorNumber faulty) -> Says {
-                return [=](const Image& image, std::size_t number, SensorNumber sensor) {
-                    auto range_m = sound(image, number, sensor);
-                    if (range_m && sensor == faulty && number % 3 == 0) *range_m *= 0.5;
-                    return range_m;
-                };
-            },
-            .gain = {}};
+    return {.says = [](SensorNumber faulty) -> Says {
+        return [=](const Image& image, std::size_t number, SensorNumber sensor) {
+            auto range = sound(image, number, sensor);
+            if (range && sensor == faulty && number % 3 == 0) {
+                range->range_m *= 0.5;
+                range->noise_m *= 0.5;
+            }
+            return range;
+        };
+    }};
 }
 
-/// Of every sensor, what the fault adds to the evidence over a run if there is no noise.
-std::vector<double> expected_evidence(const KeptRun& run, const Fault& fault) {
-    std::vector<double> expected(kSensors);
-    if (fault.gain) {
-        std::size_t number = 0;
-        outcome_of(run, sound, [&](const SensorJudge& judge, const std::vector<Compared>& compared) {
-            const Image& image = run.images[number];
-            for (Compared of : compared) {
-                of.beam.range_m = fault.says(of.sensor)(image, number, of.sensor);
-                if (of.beam.range_m) expected[of.sensor] += fault.gain(judge, compared, of);
-            }
-            ++number;
-        });
-        return expected;
-    }
-    // One short range between two that agree, for each three images in a row that can be compared.
-    std::vector<std::uint64_t> agreed(kSensors);
-    std::vector<int> in_a_row(kSensors);
-    outcome_of(run, sound, {}, [&](const SensorJudge& judge) {
-        for (SensorNumber i = 0; i < kSensors; ++i) {
-            const auto now = judge.verdict(static_cast<std::uint16_t>(i)).agreed;
-            in_a_row[i] = now > agreed[i] ? in_a_row[i] + 1 : 0;
-            agreed[i] = now;
-            if (in_a_row[i] >= 3) expected[i] += (2.8 - 0.15 - 0.55) / 3.0;
-        }
-    });
-    return expected;
+/// The same, but the sensor's own ranges have no noise.
+Says without_noise(const Says& says, SensorNumber faulty) {
+    return [=](const Image& image, std::size_t number, SensorNumber sensor) {
+        auto range = says(image, number, sensor);
+        if (range && sensor == faulty) range->range_m -= range->noise_m;
+        return range;
+    };
 }
 
 struct Row {
-    std::size_t telling = 0;       ///< sensors whose geometry tells
-    std::size_t found = 0;         ///< of those
-    std::size_t others_found = 0;  ///< of the sensors that see anything that can be compared
-    std::size_t others = 0;
+    std::size_t telling = 0;  ///< sensors whose geometry tells
+    std::size_t found = 0;    ///< of those
+    std::size_t others = 0;   ///< of whose fault a little can be seen
+    std::size_t others_found = 0;
     std::size_t wronged = 0;
     std::vector<double> after_s;
 };
 
 void inject(const KeptRun& run, const Fault& fault, Row& row) {
-    const std::vector<double> expected = expected_evidence(run, fault);
     for (SensorNumber faulty = 0; faulty < kSensors; ++faulty) {
-        if (!(expected[faulty] > 0.0)) continue;
-        const Outcome outcome = outcome_of(run, fault.says(faulty));
-        const bool tells = expected[faulty] >= kTellingFrom;
-        const auto& named_s = outcome.named_s[faulty];
-        (tells ? row.telling : row.others) += 1;
-        (tells ? row.found : row.others_found) += named_s ? 1U : 0U;
-        if (tells && !named_s)
-            std::printf("  missed: sensor %zu, expected %.0f, reached %.1f\n", faulty, expected[faulty],
-                        outcome.evidence_max[faulty]);
-        if (tells && named_s) row.after_s.push_back(*named_s);
+        const Says says = fault.says(faulty);
+        const double expected = outcome_of(run, without_noise(says, faulty)).evidence_max[faulty];
+        const Outcome outcome = outcome_of(run, says);
         for (SensorNumber i = 0; i < kSensors; ++i)
             row.wronged += i != faulty && i != fault.partner(faulty) && outcome.named_s[i] ? 1U : 0U;
+        const auto& named_s = outcome.named_s[faulty];
+        if (expected < SensorJudge::kNamedFrom / 2.0) continue;
+        const bool tells = expected >= kTellingFrom;
+        (tells ? row.telling : row.others) += 1;
+        (tells ? row.found : row.others_found) += named_s ? 1U : 0U;
+        if (tells && named_s) row.after_s.push_back(*named_s);
+        if (tells && !named_s)
+            std::printf("  missed: sensor %zu, evidence of %.1f at the most\n", faulty,
+                        outcome.evidence_max[faulty]);
     }
 }
 
@@ -218,29 +179,32 @@ void print(const char* rig, const char* fault, Row& row) {
 }
 
 TEST(WitnessFaults, are_found_in_thirty_seconds_where_the_geometry_tells_of_them) {
-    const std::vector<std::string> rigs = {"experiment.yaml", "experiment_cone.yaml"};
+    const std::vector<std::string> rigs = {"experiment.yaml", "experiment_cone.yaml",
+                                           "experiment_zones.yaml"};
+    // Who must be found is asked of the judge itself: so many it finds, told to or not, lest it become a
+    // worse one.
+    const std::size_t found_min[] = {105, 31, 35};
     const auto runs = keep_runs(rigs, kPixelDivisor, {.seed = 0, .revolutions = 3, .has_turned = true});
     for (std::size_t rig = 0; rig < rigs.size(); ++rig) {
         std::vector<std::pair<const char*, std::vector<Fault>>> faults = {
-            {"6 cm too long", {altered("", 0.06)}},
-            {"6 cm too short", {altered("", -0.06)}},
+            {"6 cm too long", {altered(0.06)}},
+            {"6 cm too short", {altered(-0.06)}},
             {"every third range half as long", {every_third_short()}},
             {"turned by 10 degrees, 8 ways", {}},
-            {"exchanged with the neighbour", {exchanged("", 1)}},
-            {"exchanged with the other side", {exchanged("", 8)}}};
+            {"exchanged with the neighbour", {exchanged(1)}},
+            {"exchanged with the other side", {exchanged(8)}}};
         for (std::size_t turn = 0; turn < kTurns; ++turn) faults[3].second.push_back(turned(turn));
+        std::size_t found = 0;
         for (const auto& [name, all] : faults) {
             Row row;
             for (const Fault& fault : all) inject(runs[rig], fault, row);
             print(rigs[rig].c_str(), name, row);
-            // What a cone sees changes by little more than its noise when it turns.
-            const bool is_turned_cone = rig == 1 && all.size() == kTurns;
-            EXPECT_GE(static_cast<double>(row.found),
-                      (is_turned_cone ? 0.7 : 0.9) * static_cast<double>(row.telling))
+            EXPECT_GE(static_cast<double>(row.found), 0.9 * static_cast<double>(row.telling))
                 << rigs[rig] << ", " << name;
-            EXPECT_GT(row.telling, 0U) << rigs[rig] << ", " << name << ": nothing was tried";
             EXPECT_EQ(row.wronged, 0U) << rigs[rig] << ", " << name;
+            found += row.found + row.others_found;
         }
+        EXPECT_GE(found, found_min[rig]) << rigs[rig];
     }
 }
 

@@ -17,6 +17,7 @@
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/sim/camera/depth_camera.hpp"
 #include "hw/sim/camera/sensor_scene.hpp"
+#include "hw/sim/noise/noise.hpp"
 
 namespace octoskin::testing_support {
 namespace {
@@ -74,6 +75,7 @@ struct Sensor {
     std::string link;
     Eigen::Isometry3d T_link_sensor;
     std::vector<Roi> zones;
+    sim::Noise noise;  ///< of its ranges, as its scenes have it
     sim::RangingScene scene;
     std::array<sim::RangingScene, kTurns> turned;
     std::vector<RangePredictor> predictors;  ///< by zone
@@ -107,6 +109,7 @@ class Rig {
                             .link = sensor.link,
                             .T_link_sensor = sensor.T_link_sensor,
                             .zones = {},
+                            .noise = sim::Noise(choice.seed, sim::NoiseSource::range).of(noise_id),
                             .scene = scene_of(sensor, sensor.T_link_sensor),
                             .turned = {},
                             .predictors = {}};
@@ -155,29 +158,22 @@ class Rig {
         const std::size_t zone = image % sensor.zones.size();
         BeamSource source = sensor.source;
         source.zone = static_cast<std::uint8_t>(zone);
-        const auto ranged = [&](const sim::RangingScene& scene) -> std::optional<RangeMeasurement> {
+        KeptReading kept;
+        kept.beam.source = source;
+        kept.beam.captured = HostTime{1'000 * us};
+        const auto ranged = [&](const sim::RangingScene& scene) -> std::optional<KeptRange> {
             const auto seen = scene(image, sim::SimTime{us}, sensor.zones[zone]);
             const HostRangeLimits& limits = host().range_limits;
             if (!seen.range_m || seen.peak_signal_mcps < kSignalMinMcps || *seen.range_m < limits.min_m ||
-                *seen.range_m > limits.max_m || seen.sigma_m > limits.sigma_max_m)
+                *seen.range_m > limits.max_m || seen.sigma_m > limits.sigma_max_m ||
+                !beams_.place({source, kept.beam.captured, seen.range_m, seen.sigma_m}, robot))
                 return std::nullopt;
-            return RangeMeasurement{source, HostTime{1'000 * us}, seen.range_m, seen.sigma_m};
+            kept.beam.sigma_m = std::max(kept.beam.sigma_m, seen.sigma_m);
+            return KeptRange{*seen.range_m, seen.sigma_m * sensor.noise.gaussian(image)};
         };
-        const auto placed = [&](const std::optional<RangeMeasurement>& measured) -> std::optional<Beam> {
-            if (!measured) return std::nullopt;
-            const auto beam = beams_.place(*measured, robot);
-            return beam ? std::optional(*beam) : std::nullopt;
-        };
-        KeptReading kept;
-        kept.beam = placed(ranged(sensor.scene)).value_or(Beam{});
-        kept.beam.source = source;
-        kept.beam.captured = HostTime{1'000 * us};
-        for (std::size_t turn = 0; turn < kTurns && has_turned_; ++turn) {
-            const auto beam = placed(ranged(sensor.turned[turn]));
-            if (!beam) continue;
-            kept.turned_m[turn] = beam->range_m;
-            kept.beam.sigma_m = std::max(kept.beam.sigma_m, beam->sigma_m);
-        }
+        kept.sound = ranged(sensor.scene);
+        for (std::size_t turn = 0; turn < kTurns && has_turned_; ++turn)
+            kept.turned[turn] = ranged(sensor.turned[turn]);
         const Eigen::Isometry3d T_map_sensor = beams_.T_map_sensor(source, robot);
         kept.beam.p_map_sensor = T_map_sensor.translation();
         kept.beam.direction_map =

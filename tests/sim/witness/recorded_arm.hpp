@@ -19,11 +19,17 @@ namespace octoskin::testing_support {
 /// A sensor by its place in the rig: node by node, 0 .. 33.
 using SensorNumber = std::size_t;
 
+struct KeptRange {
+    double range_m = 0.0;
+    double noise_m = 0.0;  ///< what of that is noise
+};
+
 /// One reading of one sensor.
 struct KeptReading {
-    Beam beam;  ///< sound; without range where the sensor saw nothing or the gate refuses it
+    Beam beam;  ///< of the sound sensor, but for the range
     RangePredictions predictions;
-    std::array<std::optional<double>, kTurns> turned_m;  ///< what it ranges with its mount turned
+    std::optional<KeptRange> sound;                       ///< empty: it saw nothing, or the gate refuses it
+    std::array<std::optional<KeptRange>, kTurns> turned;  ///< with its mount turned
 };
 
 struct KeptRun {
@@ -37,7 +43,7 @@ struct KeptRun {
 struct KeptChoice {
     std::uint64_t seed = 0;
     std::uint32_t revolutions = 3;
-    bool has_turned = false;  ///< whether `turned_m` is wanted: nine times the work
+    bool has_turned = false;  ///< whether `turned` is wanted: nine times the work
 };
 
 /// Of each rig, with the same images. `pixel_divisor` as WitnessBench has it; the image is filtered with a
