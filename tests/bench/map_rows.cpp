@@ -19,6 +19,7 @@
 #include "tests/bench/arm_capsules.hpp"
 #include "tests/bench/clouds.hpp"
 #include "tests/bench/planner_rows.hpp"
+#include "tests/bench/reading_rows.hpp"
 #include "tests/bench/sizes.hpp"
 
 namespace octoskin::bench {
@@ -351,8 +352,9 @@ std::vector<Row> map_rows(const RoomFrames& room, const std::string& resolution,
         require(occupied_of(map, *points) > 0, "nothing is found");
     });
     add_capsules(rows);
-    for (Row& row :
-         planner_rows(room, resolution, runs, [maps]() -> const FusedMap& { return maps->ours(); }))
+    const auto map = [maps]() -> const FusedMap& { return maps->ours(); };
+    for (Row& row : planner_rows(room, resolution, runs, map)) rows.rows.push_back(std::move(row));
+    for (Row& row : reading_rows(std::filesystem::path(OCTOSKIN_RIG).parent_path(), resolution, runs, map))
         rows.rows.push_back(std::move(row));
     return std::move(rows.rows);
 }
