@@ -106,12 +106,4 @@ class ControlSocket {
     bool is_resting_ = false;  ///< no descriptor was left for a new client
 };
 
-/// Asks a daemon one thing, and waits so long at most, in all, until it lets us in and its whole line is
-/// here.
-[[nodiscard]] Result<std::string, AppError> ask_daemon(
-    const std::filesystem::path& socket, const std::string& request,
-    std::chrono::milliseconds patience = std::chrono::seconds{5});
-/// What came from there is not what a daemon of this version answers.
-[[nodiscard]] AppError foreign_answer(const std::filesystem::path& socket);
-
 }  // namespace octoskin

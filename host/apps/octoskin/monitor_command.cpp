@@ -14,7 +14,7 @@
 #include <optional>
 #include <thread>
 
-#include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/monitor/screen.hpp"
 #include "host/apps/monitor/scroll.hpp"

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/arguments.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/octoskin/arguments.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"

@@ -54,7 +54,7 @@ HWY_INLINE void find_terms(const double* ranges_m, const HitModel& model, std::s
 
 /// The terms of a row, and a bit for each pixel whose next one ends elsewhere; both for whole words of 64
 /// pixels, of which those beyond the row mean nothing.
-void find_runs(const RowOfEnds& row, const HitModel& model, std::size_t width, float* terms,
+void find_row_runs(const RowOfEnds& row, const HitModel& model, std::size_t width, float* terms,
                std::uint64_t* run_ends) {
     const hn::CappedTag<std::uint32_t, 16> k;
     for (std::size_t word = 0; 64 * word < width; ++word) {
@@ -77,7 +77,7 @@ HWY_AFTER_NAMESPACE();
 namespace octoskin {
 namespace {
 
-HWY_EXPORT(find_runs);
+HWY_EXPORT(find_row_runs);
 
 }  // namespace
 
@@ -101,7 +101,7 @@ void HitBricks::take_row(const PlacedImage& rays, std::size_t first, const HitMo
     terms_.resize(run_ends_.size() * kWordBits);
     const std::uint32_t* const key_xy = rays.key_xy.data() + first;
     const std::uint32_t* const key_z = rays.key_z.data() + first;
-    HWY_DYNAMIC_DISPATCH(find_runs)
+    HWY_DYNAMIC_DISPATCH(find_row_runs)
     ({key_xy, key_z, rays.range_m.data() + first}, model, rays.width, terms_.data(), run_ends_.data());
     run_ends_.back() &= ~std::uint64_t{0} >> (kWordBits * run_ends_.size() - rays.width);
     run_ends_.back() |= std::uint64_t{1} << ((rays.width - 1) % kWordBits);

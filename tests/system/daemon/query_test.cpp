@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/apps/querying/query_request.hpp"
 #include "host/io/mapfile/map_file.hpp"

@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/asking.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/asking.hpp"
 
 namespace octoskin::test {
 

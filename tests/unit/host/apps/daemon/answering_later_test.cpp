@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "tests/support/scratch_folder.hpp"

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -308,35 +309,6 @@ TEST_F(ControlSocketTest, rests_without_descriptors_and_lets_in_who_waited) {
     });
 }
 
-TEST(UnixSocket, is_given_to_one_of_many_that_begin_at_once) {
-    const testing_support::ScratchFolder folder;
-    for (const int type : {SOCK_STREAM, SOCK_DGRAM}) {
-        for (int round = 0; round < 50; ++round) {
-            const auto file = folder / ("socket" + std::to_string(type));
-            const auto dead =
-                bind_unix_socket(file, type);  // a name, and nobody behind: each wants to replace it
-            ASSERT_TRUE(dead);
-            ::close(*dead);
-            std::atomic<int> waiting = 4;
-            std::array<int, 4> got{-1, -1, -1, -1};
-            std::vector<std::thread> threads;
-            for (int& mine : got) {
-                threads.emplace_back([&] {
-                    --waiting;
-                    while (waiting > 0) std::this_thread::yield();
-                    if (const auto bound = bind_unix_socket(file, type)) mine = *bound;
-                });
-            }
-            for (std::thread& thread : threads) thread.join();
-            EXPECT_EQ(std::ranges::count_if(got, [](int descriptor) { return descriptor >= 0; }), 1) << round;
-            EXPECT_TRUE(connect_unix_socket(file, type)) << "its name was taken away";
-            for (const int descriptor : got)
-                if (descriptor >= 0) ::close(descriptor);
-            ::unlink(file.c_str());
-        }
-    }
-}
-
 TEST_F(ControlSocketTest, is_one_at_a_place_and_takes_over_from_the_dead) {
     auto second = ControlSocket::open(file(), loop_, [](const std::string&) { return std::string(); });
     ASSERT_FALSE(second);
@@ -350,121 +322,6 @@ TEST_F(ControlSocketTest, is_one_at_a_place_and_takes_over_from_the_dead) {
     ASSERT_TRUE(dead);
     ::close(*dead);
     EXPECT_TRUE(ControlSocket::open(file(), loop_, [](const std::string&) { return std::string(); }));
-}
-
-TEST(UnixSocket, for_datagrams_is_refused_without_the_others_process) {
-    const testing_support::ScratchFolder folder;
-    const auto first = bind_unix_socket(folder / "joints", SOCK_DGRAM);
-    ASSERT_TRUE(first);
-    const auto second = bind_unix_socket(folder / "joints", SOCK_DGRAM);
-    ASSERT_FALSE(second);
-    EXPECT_EQ(second.error().message, (folder / "joints").string() +
-                                          ": another octoskin has this socket; stop it, or name another one");
-    ::close(*first);
-}
-
-TEST(UnixSocket, is_never_made_over_something_else) {
-    const testing_support::ScratchFolder folder;
-    const auto file = folder.write("precious", "words");
-    const auto bound = bind_unix_socket(file, SOCK_DGRAM);
-    ASSERT_FALSE(bound);
-    EXPECT_EQ(testing_support::ScratchFolder::read(file), "words");
-    EXPECT_FALSE(bind_unix_socket(folder / "no/such/folder", SOCK_DGRAM));
-    EXPECT_FALSE(bind_unix_socket(folder.path() / std::string(200, 'x'), SOCK_DGRAM));
-    const auto nobody = ask_daemon(folder / "nobody", "status");
-    ASSERT_FALSE(nobody);
-    EXPECT_EQ(nobody.error().code, ExitCode::unavailable);
-    EXPECT_NE(nobody.error().message.find("octoskin run"), std::string::npos);
-}
-
-/// Listens, as a daemon does that is stopped; what is done with who knocks is the test's.
-class Listener {
-  public:
-    explicit Listener(const std::filesystem::path& file)
-        : descriptor_(bind_unix_socket(file, SOCK_STREAM).value()), file_(file) {}
-    ~Listener() {
-        for (const int waiting : waiting_) ::close(waiting);
-        ::close(descriptor_);
-    }
-    Listener(const Listener&) = delete;
-    Listener& operator=(const Listener&) = delete;
-    [[nodiscard]] int descriptor() const { return descriptor_; }
-    /// Until nobody else has room.
-    void fill() {
-        for (auto knocking = connect_unix_socket(file_, SOCK_STREAM, 10ms); knocking;
-             knocking = connect_unix_socket(file_, SOCK_STREAM, 10ms))
-            waiting_.push_back(*knocking);
-    }
-
-  private:
-    int descriptor_;
-    std::filesystem::path file_;
-    std::vector<int> waiting_;
-};
-
-using Clock = std::chrono::steady_clock;
-
-TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_lets_nobody_in) {
-    const testing_support::ScratchFolder folder;
-    Listener stopped(folder / "control");
-    stopped.fill();
-    const auto begun = Clock::now();
-    const auto answer = ask_daemon(folder / "control", "status", 200ms);
-    ASSERT_FALSE(answer);
-    EXPECT_GE(Clock::now() - begun, 190ms);
-    EXPECT_LE(Clock::now() - begun, 1s);
-    EXPECT_EQ(answer.error().code, ExitCode::io_failed);
-    EXPECT_NE(answer.error().message.find("lets nobody in (is it stopped?)"), std::string::npos)
-        << answer.error().message;
-}
-
-TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_let_us_in_and_is_silent) {
-    const testing_support::ScratchFolder folder;
-    const Listener stopped(folder / "control");
-    const auto begun = Clock::now();
-    const auto answer = ask_daemon(folder / "control", "status", 200ms);
-    ASSERT_FALSE(answer);
-    EXPECT_GE(Clock::now() - begun, 190ms);
-    EXPECT_LE(Clock::now() - begun, 1s);
-    EXPECT_NE(answer.error().message.find("did not answer in time"), std::string::npos);
-}
-
-TEST(AskDaemon, says_when_the_daemon_closed_the_connection_and_does_not_wait_then) {
-    const testing_support::ScratchFolder folder;
-    const Listener ending(folder / "control");
-    for (const std::string said : {"", "half a li"}) {
-        std::thread closing([&] {
-            pollfd knocking{ending.descriptor(), POLLIN, 0};
-            (void)::poll(&knocking, 1, 5'000);
-            const int client = ::accept(ending.descriptor(), nullptr, nullptr);
-            std::array<char, 64> request{};
-            (void)!::recv(client, request.data(), request.size(), 0);
-            (void)!::send(client, said.data(), said.size(), MSG_NOSIGNAL);
-            ::close(client);
-        });
-        const auto begun = Clock::now();
-        const auto answer = ask_daemon(folder / "control", "status");
-        closing.join();
-        ASSERT_FALSE(answer);
-        EXPECT_LE(Clock::now() - begun, 2s);
-        EXPECT_NE(answer.error().message.find(said.empty() ? "closed the connection without an answer"
-                                                           : "closed the connection in mid-answer"),
-                  std::string::npos)
-            << answer.error().message;
-    }
-}
-
-TEST(BindUnixSocket, refuses_at_once_the_place_of_one_that_lets_nobody_in) {
-    const testing_support::ScratchFolder folder;
-    Listener stopped(folder / "control");
-    stopped.fill();
-    const auto begun = Clock::now();
-    const auto second = bind_unix_socket(folder / "control", SOCK_STREAM);
-    ASSERT_FALSE(second);
-    EXPECT_LE(Clock::now() - begun, 2s);
-    EXPECT_NE(second.error().message.find("(it lets nobody in: is it stopped?) has this socket"),
-              std::string::npos)
-        << second.error().message;
 }
 
 }  // namespace

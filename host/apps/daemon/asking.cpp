@@ -1,0 +1,76 @@
+#include "host/apps/daemon/asking.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "common/time.hpp"
+#include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/unix_socket.hpp"
+
+namespace octoskin {
+namespace {
+
+/// Whether there is something to read before `end`.
+bool is_readable(int descriptor, HostTime end) {
+    while (true) {  // again after a signal
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - monotonic_now());
+        if (left.count() <= 0) return false;
+        pollfd answer{descriptor, POLLIN, 0};
+        const int ready = ::poll(&answer, 1, static_cast<int>(left.count()));
+        if (ready >= 0 || errno != EINTR) return ready > 0;
+    }
+}
+
+/// A line with its end, and one back, or what happened instead.
+Result<std::string, std::string> exchange_lines(int descriptor, const std::string& line, HostTime end) {
+    // A new connection has room for a request.
+    const ssize_t sent = ::send(descriptor, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && errno != EPIPE)
+        return unexpected(std::string("the daemon takes no request: ") + std::strerror(errno));
+    std::string answer;
+    while (!answer.ends_with('\n')) {  // bounded by the end
+        if (!is_readable(descriptor, end))
+            return unexpected(std::string("the daemon did not answer in time"));
+        std::array<char, 4096> bytes{};
+        const ssize_t count = ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
+        if (count == 0 || (count < 0 && errno == ECONNRESET)) {
+            return unexpected(std::string(answer.empty()
+                                              ? "the daemon closed the connection without an answer"
+                                              : "the daemon closed the connection in mid-answer") +
+                              " (did it end just now?)");
+        }
+        if (count < 0 && errno != EAGAIN && errno != EINTR)
+            return unexpected(std::string("cannot read the daemon's answer: ") + std::strerror(errno));
+        if (count > 0) answer.append(bytes.data(), static_cast<std::size_t>(count));
+    }
+    answer.pop_back();
+    return answer;
+}
+
+}  // namespace
+
+Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, const std::string& request,
+                                         std::chrono::milliseconds patience) {
+    const HostTime end = monotonic_now() + patience;
+    const auto descriptor = connect_unix_socket(socket, SOCK_STREAM, patience);
+    if (!descriptor) return unexpected(descriptor.error());
+    auto answer = exchange_lines(*descriptor, request + '\n', end);
+    ::close(*descriptor);
+    if (!answer) return fail(ExitCode::io_failed, socket.string() + ": " + answer.error());
+    return std::move(answer).value();
+}
+
+AppError foreign_answer(const std::filesystem::path& socket) {
+    return {ExitCode::bad_data,
+            socket.string() +
+                ": not the answer of a daemon of this version: restart the daemon if it is "
+                "another version's; --socket names another place"};
+}
+
+}  // namespace octoskin

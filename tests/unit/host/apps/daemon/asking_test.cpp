@@ -1,0 +1,83 @@
+#include "host/apps/daemon/asking.hpp"
+
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "tests/support/scratch_folder.hpp"
+#include "tests/unit/host/apps/daemon/stopped_listener.hpp"
+
+namespace octoskin {
+namespace {
+
+using namespace std::chrono_literals;
+using testing_support::StoppedListener;
+
+using Clock = std::chrono::steady_clock;
+
+TEST(AskDaemon, says_how_to_begin_one_where_there_is_none) {
+    const testing_support::ScratchFolder folder;
+    const auto nobody = ask_daemon(folder / "nobody", "status");
+    ASSERT_FALSE(nobody);
+    EXPECT_EQ(nobody.error().code, ExitCode::unavailable);
+    EXPECT_NE(nobody.error().message.find("octoskin run"), std::string::npos);
+}
+
+TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_lets_nobody_in) {
+    const testing_support::ScratchFolder folder;
+    StoppedListener stopped(folder / "control");
+    stopped.fill();
+    const auto begun = Clock::now();
+    const auto answer = ask_daemon(folder / "control", "status", 200ms);
+    ASSERT_FALSE(answer);
+    EXPECT_GE(Clock::now() - begun, 190ms);
+    EXPECT_LE(Clock::now() - begun, 1s);
+    EXPECT_EQ(answer.error().code, ExitCode::io_failed);
+    EXPECT_NE(answer.error().message.find("lets nobody in (is it stopped?)"), std::string::npos)
+        << answer.error().message;
+}
+
+TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_let_us_in_and_is_silent) {
+    const testing_support::ScratchFolder folder;
+    const StoppedListener stopped(folder / "control");
+    const auto begun = Clock::now();
+    const auto answer = ask_daemon(folder / "control", "status", 200ms);
+    ASSERT_FALSE(answer);
+    EXPECT_GE(Clock::now() - begun, 190ms);
+    EXPECT_LE(Clock::now() - begun, 1s);
+    EXPECT_NE(answer.error().message.find("did not answer in time"), std::string::npos);
+}
+
+TEST(AskDaemon, says_when_the_daemon_closed_the_connection_and_does_not_wait_then) {
+    const testing_support::ScratchFolder folder;
+    const StoppedListener ending(folder / "control");
+    for (const std::string said : {"", "half a li"}) {
+        std::thread closing([&] {
+            pollfd knocking{ending.descriptor(), POLLIN, 0};
+            (void)::poll(&knocking, 1, 5'000);
+            const int client = ::accept(ending.descriptor(), nullptr, nullptr);
+            std::array<char, 64> request{};
+            (void)!::recv(client, request.data(), request.size(), 0);
+            (void)!::send(client, said.data(), said.size(), MSG_NOSIGNAL);
+            ::close(client);
+        });
+        const auto begun = Clock::now();
+        const auto answer = ask_daemon(folder / "control", "status");
+        closing.join();
+        ASSERT_FALSE(answer);
+        EXPECT_LE(Clock::now() - begun, 2s);
+        EXPECT_NE(answer.error().message.find(said.empty() ? "closed the connection without an answer"
+                                                           : "closed the connection in mid-answer"),
+                  std::string::npos)
+            << answer.error().message;
+    }
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,87 @@
+#include "host/apps/daemon/unix_socket.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/support/scratch_folder.hpp"
+#include "tests/unit/host/apps/daemon/stopped_listener.hpp"
+
+namespace octoskin {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(UnixSocket, is_given_to_one_of_many_that_begin_at_once) {
+    const testing_support::ScratchFolder folder;
+    for (const int type : {SOCK_STREAM, SOCK_DGRAM}) {
+        for (int round = 0; round < 50; ++round) {
+            const auto file = folder / ("socket" + std::to_string(type));
+            const auto dead =
+                bind_unix_socket(file, type);  // a name, and nobody behind: each wants to replace it
+            ASSERT_TRUE(dead);
+            ::close(*dead);
+            std::atomic<int> waiting = 4;
+            std::array<int, 4> got{-1, -1, -1, -1};
+            std::vector<std::thread> threads;
+            for (int& mine : got) {
+                threads.emplace_back([&] {
+                    --waiting;
+                    while (waiting > 0) std::this_thread::yield();
+                    if (const auto bound = bind_unix_socket(file, type)) mine = *bound;
+                });
+            }
+            for (std::thread& thread : threads) thread.join();
+            EXPECT_EQ(std::ranges::count_if(got, [](int descriptor) { return descriptor >= 0; }), 1) << round;
+            EXPECT_TRUE(connect_unix_socket(file, type)) << "its name was taken away";
+            for (const int descriptor : got)
+                if (descriptor >= 0) ::close(descriptor);
+            ::unlink(file.c_str());
+        }
+    }
+}
+
+TEST(UnixSocket, for_datagrams_is_refused_without_the_others_process) {
+    const testing_support::ScratchFolder folder;
+    const auto first = bind_unix_socket(folder / "joints", SOCK_DGRAM);
+    ASSERT_TRUE(first);
+    const auto second = bind_unix_socket(folder / "joints", SOCK_DGRAM);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().message, (folder / "joints").string() +
+                                          ": another octoskin has this socket; stop it, or name another one");
+    ::close(*first);
+}
+
+TEST(UnixSocket, is_never_made_over_something_else) {
+    const testing_support::ScratchFolder folder;
+    const auto file = folder.write("precious", "words");
+    const auto bound = bind_unix_socket(file, SOCK_DGRAM);
+    ASSERT_FALSE(bound);
+    EXPECT_EQ(testing_support::ScratchFolder::read(file), "words");
+    EXPECT_FALSE(bind_unix_socket(folder / "no/such/folder", SOCK_DGRAM));
+    EXPECT_FALSE(bind_unix_socket(folder.path() / std::string(200, 'x'), SOCK_DGRAM));
+}
+
+TEST(UnixSocket, refuses_at_once_the_place_of_one_that_lets_nobody_in) {
+    const testing_support::ScratchFolder folder;
+    testing_support::StoppedListener stopped(folder / "control");
+    stopped.fill();
+    const auto begun = std::chrono::steady_clock::now();
+    const auto second = bind_unix_socket(folder / "control", SOCK_STREAM);
+    ASSERT_FALSE(second);
+    EXPECT_LE(std::chrono::steady_clock::now() - begun, 2s);
+    EXPECT_NE(second.error().message.find("(it lets nobody in: is it stopped?) has this socket"),
+              std::string::npos)
+        << second.error().message;
+}
+
+}  // namespace
+}  // namespace octoskin
