@@ -55,7 +55,7 @@ HWY_INLINE void find_terms(const double* ranges_m, const HitModel& model, std::s
 /// The terms of a row, and a bit for each pixel whose next one ends elsewhere; both for whole words of 64
 /// pixels, of which those beyond the row mean nothing.
 void find_row_runs(const RowOfEnds& row, const HitModel& model, std::size_t width, float* terms,
-               std::uint64_t* run_ends) {
+                   std::uint64_t* run_ends) {
     const hn::CappedTag<std::uint32_t, 16> k;
     for (std::size_t word = 0; 64 * word < width; ++word) {
         run_ends[word] = 0;
