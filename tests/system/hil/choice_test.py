@@ -5,6 +5,7 @@ import tempfile
 import unittest
 
 import machine
+import machine_kinds
 
 
 def has_all():
@@ -86,7 +87,7 @@ class Folder(unittest.TestCase):
 
 class ExitCode(unittest.TestCase):
     def test_of_what_a_signal_ended_is_the_shells(self):
-        self.assertEqual([machine.as_a_shell_gives_it(code) for code in (0, 1, 77, -9, -15)], [0, 1, 77, 137, 143])
+        self.assertEqual([machine_kinds.as_a_shell_gives_it(code) for code in (0, 1, 77, -9, -15)], [0, 1, 77, 137, 143])
 
 
 if __name__ == "__main__":
