@@ -1,5 +1,6 @@
 #include "host/apps/evaluation/unknown_space.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +17,32 @@ double voxel_m3(const FusedMap& map) {
 /// No pocket is looked for, which would take longer.
 std::optional<UnknownPockets> count_unknown(const FusedMap& map, const PocketRegion& region) {
     return UnknownPockets::find(map, region, std::numeric_limits<std::size_t>::max());
+}
+
+/// Of a region that lies in the octree.
+UnknownColumns columns_of(const FusedMap& map, const PocketRegion& region) {
+    const double edge_m = map.resolution_m();
+    const auto low = map.key_of(region.centre.array() - region.radius_m);
+    const auto high = map.key_of(region.centre.array() + region.radius_m);
+    if (!low || !high) return {};
+    const auto side = static_cast<std::size_t>(std::max(high->x - low->x, high->y - low->y)) + 1;
+    const Eigen::Vector3d corner = map.centre_of(*low) - region.centre;
+    UnknownColumns columns{.edge_m = edge_m,
+                           .side = side,
+                           .low_x_m = corner.x() - 0.5 * edge_m,
+                           .low_y_m = corner.y() - 0.5 * edge_m,
+                           .unknown_m = std::vector<double>(side * side)};
+    VoxelKey key = *low;
+    for (std::size_t column = 0; column < columns.unknown_m.size(); ++column) {
+        key.x = static_cast<std::uint16_t>(low->x + column % side);
+        key.y = static_cast<std::uint16_t>(low->y + column / side);
+        for (unsigned z = low->z; z <= high->z; ++z) {
+            key.z = static_cast<std::uint16_t>(z);
+            if (is_within(region, map.centre_of(key)) && map.occupancy(key) == Occupancy::unknown)
+                columns.unknown_m[column] += edge_m;
+        }
+    }
+    return columns;
 }
 
 }  // namespace
@@ -47,6 +74,10 @@ UnknownSpace UnknownSpaceMeter::finish(const FusedMap* depth, const FusedMap& fu
     const auto voxels_min = static_cast<std::size_t>(std::ceil(kPocketMin_m3 / voxel_m3(fused)));
     if (const auto found = UnknownPockets::find(fused, space_.region, voxels_min))
         space_.pockets = found->pockets();
+    if (!space_.samples.empty()) {
+        space_.fused_columns = columns_of(fused, space_.region);
+        if (depth != nullptr) space_.depth_columns = columns_of(*depth, space_.region);
+    }
     return std::move(space_);
 }
 

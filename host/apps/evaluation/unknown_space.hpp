@@ -15,11 +15,23 @@ struct UnknownSample {
     double fused_m3 = 0.0;
 };
 
+/// A region seen from above, in columns of voxels.
+struct UnknownColumns {
+    double edge_m = 0.0;            ///< of a column
+    std::size_t side = 0;           ///< columns along x and along y
+    double low_x_m = 0.0;           ///< where the first one begins, from the region's centre
+    double low_y_m = 0.0;           ///< the same
+    std::vector<double> unknown_m;  ///< how much of each is unknown, x runs fastest; 0 beside the region
+};
+
 struct UnknownSpace {
     PocketRegion region;
     double region_m3 = 0.0;
     std::vector<UnknownSample> samples;  ///< by time
-    std::vector<UnknownPocket> pockets;  ///< of the fused map at the end, the largest first
+    // At the end:
+    std::vector<UnknownPocket> pockets;           ///< of the fused map, the largest first
+    std::optional<UnknownColumns> depth_columns;  ///< empty: no map of the camera alone
+    UnknownColumns fused_columns;
 };
 
 /// Samples maps on their way.

@@ -74,6 +74,14 @@ void Chart::text(ChartPoint at, double dx, double dy, std::string_view text, std
                           css_class, column(at.x) + dx, row(at.y) + dy, anchor, escaped(text));
 }
 
+void Chart::image(ChartPoint low, ChartPoint high, const Image& picture) {
+    marks_ += fmt::format(
+        "<image x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" preserveAspectRatio=\"none\" "
+        "style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>\n",
+        column(low.x), row(high.y), column(high.x) - column(low.x), row(low.y) - row(high.y),
+        base64(encode_png(picture)));
+}
+
 std::string Chart::axes() const {
     std::string svg;
     const auto x_ticks = round_ticks(x_.low, x_.high, x_.tick_count);

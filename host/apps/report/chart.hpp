@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "host/apps/report/image.hpp"
+
 namespace octoskin::report {
 
 /// Round numbers (1, 2 or 5 times a power of ten apart) within [low, high], about `count` of them.
@@ -41,6 +43,9 @@ class Chart {
     /// `dx`, `dy`: pixels right and down of the point; `anchor`: start, middle, end.
     void text(ChartPoint at, double dx, double dy, std::string_view text, std::string_view css_class,
               std::string_view anchor = "start");
+
+    /// A picture (PNG) over the area between two corners, its pixels as squares.
+    void image(ChartPoint low, ChartPoint high, const Image& picture);
 
     /// The whole <svg> element. `title` is read out to whoever cannot see it.
     [[nodiscard]] std::string svg(std::string_view title) const;

@@ -37,8 +37,12 @@ namespace octoskin::report {
 /// Unknown volume over time. There is a sample (asserted).
 [[nodiscard]] std::string unknown_curves_svg(const evaluation::UnknownSpace& space);
 
-/// Where the first `count` pockets are, seen from above, in metres from the robot's base: a dot's area grows
-/// with the pocket's volume. There is a pocket (asserted).
-[[nodiscard]] std::string pockets_svg(const evaluation::UnknownSpace& space, std::size_t count);
+/// The most that any column of any map has of the unknown, metres.
+[[nodiscard]] double unknown_column_max_m(const evaluation::UnknownSpace& space) noexcept;
+/// What is unknown at the end, seen from above, in metres from the robot's base: with the camera alone, if
+/// there is such a map (asserted), and fused, with the numbers of the first `count` pockets. The more of a
+/// column is unknown, the less transparent it is, up to `unknown_column_max_m`.
+[[nodiscard]] std::string depth_columns_svg(const evaluation::UnknownSpace& space);
+[[nodiscard]] std::string fused_columns_svg(const evaluation::UnknownSpace& space, std::size_t count);
 
 }  // namespace octoskin::report

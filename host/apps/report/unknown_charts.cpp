@@ -3,11 +3,61 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 
 #include "host/apps/report/chart.hpp"
 #include "host/apps/report/charts.hpp"
 
 namespace octoskin::report {
+namespace {
+
+// The style sheet's, of the light theme.
+constexpr std::uint32_t kDepth = 0x2b6cb0;
+constexpr std::uint32_t kFused = 0x4b7f2b;
+
+/// One scale along both axes.
+Chart chart_from_above(const evaluation::UnknownSpace& space) {
+    constexpr double kSide_px = 420.0;
+    const double radius_m = space.region.radius_m;
+    return {{.low = -radius_m, .high = radius_m, .label = "x from the base, m", .tick_count = 4},
+            {.low = -radius_m, .high = radius_m, .label = "y from the base, m", .tick_count = 4},
+            kSide_px + kChartMarginX_px,
+            kSide_px + kChartMarginY_px};
+}
+
+void paint(Chart& chart, const evaluation::UnknownColumns& columns, std::uint32_t rgb, double max_m) {
+    if (columns.side == 0 || !(max_m > 0.0)) return;
+    const auto side = static_cast<std::uint32_t>(columns.side);
+    Image image{.width = side, .height = side, .rgba = {}};
+    image.rgba.reserve(4 * columns.unknown_m.size());
+    for (std::size_t row = columns.side; row-- > 0;) {  // a picture's first row is its highest
+        for (std::size_t column = 0; column < columns.side; ++column) {
+            const double share = columns.unknown_m[row * columns.side + column] / max_m;
+            for (const unsigned shift : {16U, 8U, 0U})
+                image.rgba.push_back(static_cast<std::uint8_t>(rgb >> shift));
+            image.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0 * share)));
+        }
+    }
+    const double length_m = columns.edge_m * static_cast<double>(columns.side);
+    chart.image({columns.low_x_m, columns.low_y_m}, {columns.low_x_m + length_m, columns.low_y_m + length_m},
+                image);
+}
+
+/// With the region's edge and the base, over what is there.
+std::string finished(Chart& chart, std::string_view title, double radius_m) {
+    std::vector<ChartPoint> edge;
+    constexpr int kCorners = 72;
+    for (int i = 0; i <= kCorners; ++i) {
+        const double angle = 2.0 * M_PI * i / kCorners;
+        edge.push_back({radius_m * std::cos(angle), radius_m * std::sin(angle)});
+    }
+    chart.line(edge, "ideal");
+    chart.dot({0.0, 0.0}, 3.0, "other");
+    chart.text({0.0, 0.0}, 6.0, 5.0, "base", "value");
+    return chart.svg(title);
+}
+
+}  // namespace
 
 std::string unknown_curves_svg(const evaluation::UnknownSpace& space) {
     assert(!space.samples.empty());
@@ -25,32 +75,32 @@ std::string unknown_curves_svg(const evaluation::UnknownSpace& space) {
     return chart.svg("Unknown volume around the robot over time, with the camera alone and fused");
 }
 
-std::string pockets_svg(const evaluation::UnknownSpace& space, std::size_t count) {
-    assert(!space.pockets.empty());
-    const double radius_m = space.region.radius_m;
-    // One scale along both axes.
-    constexpr double kSide_px = 420.0;
-    Chart chart({.low = -radius_m, .high = radius_m, .label = "x from the base, m", .tick_count = 4},
-                {.low = -radius_m, .high = radius_m, .label = "y from the base, m", .tick_count = 4},
-                kSide_px + kChartMarginX_px, kSide_px + kChartMarginY_px);
-    std::vector<ChartPoint> edge;
-    constexpr int kCorners = 72;
-    for (int i = 0; i <= kCorners; ++i) {
-        const double angle = 2.0 * M_PI * i / kCorners;
-        edge.push_back({radius_m * std::cos(angle), radius_m * std::sin(angle)});
+double unknown_column_max_m(const evaluation::UnknownSpace& space) noexcept {
+    double max_m = 0.0;
+    for (const auto* columns :
+         {&space.fused_columns, space.depth_columns ? &*space.depth_columns : nullptr}) {
+        if (columns == nullptr || columns->unknown_m.empty()) continue;
+        max_m = std::max(max_m, *std::ranges::max_element(columns->unknown_m));
     }
-    chart.line(edge, "ideal");
-    chart.dot({0.0, 0.0}, 3.0, "other");
-    chart.text({0.0, 0.0}, 6.0, 4.0, "base", "tick");
+    return max_m;
+}
+
+std::string depth_columns_svg(const evaluation::UnknownSpace& space) {
+    assert(space.depth_columns);
+    Chart chart = chart_from_above(space);
+    paint(chart, *space.depth_columns, kDepth, unknown_column_max_m(space));
+    return finished(chart, "What is unknown with the camera alone, seen from above", space.region.radius_m);
+}
+
+std::string fused_columns_svg(const evaluation::UnknownSpace& space, std::size_t count) {
+    Chart chart = chart_from_above(space);
+    paint(chart, space.fused_columns, kFused, unknown_column_max_m(space));
     for (std::size_t i = 0; i < std::min(count, space.pockets.size()); ++i) {
-        const auto& pocket = space.pockets[i];
-        const Eigen::Vector3d at = pocket.centre - space.region.centre;
-        // As large as a ball of that volume.
-        const double ball_m = std::cbrt(0.75 / M_PI * pocket.volume_m3);
-        chart.dot({at.x(), at.y()}, std::max(2.5, kSide_px * ball_m / (2.0 * radius_m)), "fused");
-        chart.text({at.x(), at.y()}, 0.0, 4.0, fmt::format("{}", i + 1), "tick", "middle");
+        const Eigen::Vector3d at = space.pockets[i].centre - space.region.centre;
+        chart.text({at.x(), at.y()}, 0.0, 5.0, fmt::format("{}", i + 1), "value", "middle");
     }
-    return chart.svg("The largest unknown pockets, seen from above");
+    return finished(chart, "What is unknown with range sensors and camera, seen from above",
+                    space.region.radius_m);
 }
 
 }  // namespace octoskin::report

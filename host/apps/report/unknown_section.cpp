@@ -17,9 +17,15 @@ constexpr std::string_view kText =
 <ul class="legend">
 )";
 
+constexpr std::string_view kDepthText =
+    R"(<b>Depth camera only</b>, at the end, seen from above: how much of each column of that space is unknown,
+from nothing (no colour) to {} m (full colour).)";
+constexpr std::string_view kFusedText =
+    R"(<b>Fused</b>, at the end, seen from above: how much of each column of that space is unknown, from nothing
+(no colour) to {} m (full colour).)";
 constexpr std::string_view kPocketText =
-    R"(The largest unknown pockets that are left, as balls of their volume, seen from above. <code>octoskin query
---unknown</code> lists them with a posture of the arm that would look into each.)";
+    R"( The numbers are the largest pockets that are left, at their centres; <code>octoskin query --unknown</code>
+lists them with a posture of the arm that would look into each.)";
 
 std::string pocket_table(const evaluation::UnknownSpace& space) {
     std::string html =
@@ -53,9 +59,14 @@ std::string unknown_section(const ReportInput& input) {
                     escaped(input.main_configuration), input.picture_seed);
     if (space.samples.back().depth_m3) html += legend_entry("depth", "Depth camera only");
     html += legend_entry("fused", map_title("fused")) + "</ul>\n<div class=\"charts\">\n";
-    html += chart_figure(unknown_curves_svg(space), change_caption(space));
-    if (!space.pockets.empty()) html += chart_figure(pockets_svg(space, kPocketsShown), kPocketText);
-    html += "</div>\n";
+    html +=
+        chart_figure(unknown_curves_svg(space), change_caption(space)) + "</div>\n<div class=\"charts\">\n";
+    const std::string most = ratio_text(unknown_column_max_m(space), 1);
+    if (space.depth_columns)
+        html += chart_figure(depth_columns_svg(space), fmt::format(fmt::runtime(kDepthText), most));
+    std::string fused_text = fmt::format(fmt::runtime(kFusedText), most);
+    if (!space.pockets.empty()) fused_text += kPocketText;
+    html += chart_figure(fused_columns_svg(space, kPocketsShown), fused_text) + "</div>\n";
     if (!space.pockets.empty()) html += pocket_table(space);
     return html + "</section>\n";
 }

@@ -24,8 +24,7 @@ class Grid {
         for (std::size_t i = 0; i < cells_.size(); ++i) {
             if (is_edge(i)) continue;
             const VoxelKey key = key_of(i);
-            const Eigen::Vector3d centre = map.centre_of(key);
-            if ((centre - region.centre).norm() > region.radius_m || centre.z() < region.z_min_m) continue;
+            if (!is_within(region, map.centre_of(key))) continue;
             const Occupancy state = map.occupancy(key);
             cells_[i] = state == Occupancy::unknown ? Cell::unknown
                         : state == Occupancy::free  ? Cell::free

@@ -18,6 +18,11 @@ struct PocketRegion {
     double z_min_m = 0.0;
 };
 
+/// Of a point, map frame.
+[[nodiscard]] inline bool is_within(const PocketRegion& region, const Eigen::Vector3d& p_map) noexcept {
+    return (p_map - region.centre).norm() <= region.radius_m && p_map.z() >= region.z_min_m;
+}
+
 struct UnknownPocket {
     std::size_t voxels = 0;
     std::size_t border_voxels = 0;  ///< that have a free one beside a face

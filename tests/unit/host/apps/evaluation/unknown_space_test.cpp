@@ -59,9 +59,36 @@ TEST(UnknownSpace, has_the_pockets_that_are_left_and_needs_no_camera) {
     const UnknownSpace space = meter.finish(nullptr, fused);
     ASSERT_EQ(space.samples.size(), 2U);
     EXPECT_FALSE(space.samples[0].depth_m3);
+    EXPECT_FALSE(space.depth_columns);
     ASSERT_EQ(space.pockets.size(), 1U);
     EXPECT_GT(space.pockets[0].centre.x(), 0.2);
     EXPECT_NEAR(space.pockets[0].volume_m3, space.samples[1].fused_m3, 1e-9);
+}
+
+TEST(UnknownSpace, tells_of_each_column_how_much_of_it_is_left) {
+    FusedMap depth{MapConfig{}};
+    FusedMap fused{MapConfig{}};
+    const PocketRegion ball{{0.6, -0.4, 0.0}, 0.5, 0.0};
+    fused.apply(std::vector<VoxelUpdate>{{*fused.lattice().key_of({0.62, -0.38, 0.14}), -0.4F},
+                                         {*fused.lattice().key_of({0.62, -0.38, 0.22}), 2.0F},
+                                         {*fused.lattice().key_of({0.62, -0.38, -0.1}), 2.0F}});
+    UnknownSpaceMeter meter(ball);
+    meter.see(at(1.0), &depth, fused);
+    const UnknownSpace space = meter.finish(&depth, fused);
+    ASSERT_TRUE(space.depth_columns);
+    const UnknownColumns& columns = space.fused_columns;
+    ASSERT_EQ(columns.unknown_m.size(), columns.side * columns.side);
+    double sum_m = 0.0;
+    for (std::size_t i = 0; i < columns.unknown_m.size(); ++i) {
+        const double x = columns.low_x_m + (static_cast<double>(i % columns.side) + 0.5) * columns.edge_m;
+        const double y = columns.low_y_m + (static_cast<double>(i / columns.side) + 0.5) * columns.edge_m;
+        const double height_m = std::sqrt(std::max(0.0, 0.25 - x * x - y * y));
+        const bool is_seen = std::abs(x - 0.02) < 0.01 && std::abs(y - 0.02) < 0.01;
+        EXPECT_NEAR(space.depth_columns->unknown_m[i], height_m, 0.0201) << x << ' ' << y;
+        EXPECT_NEAR(columns.unknown_m[i], space.depth_columns->unknown_m[i] - (is_seen ? 0.08 : 0.0), 1e-9);
+        sum_m += columns.unknown_m[i];
+    }
+    EXPECT_NEAR(sum_m * 0.04 * 0.04, space.samples.back().fused_m3, 1e-9);
 }
 
 TEST(UnknownSpace, of_a_region_without_voxels_has_no_samples) {

@@ -25,6 +25,12 @@ evaluation::Run judged(std::string configuration, std::string map, std::uint64_t
     return run;
 }
 
+/// Two by two; all but one are known.
+evaluation::UnknownColumns columns(double unknown_m) {
+    return {
+        .edge_m = 0.5, .side = 2, .low_x_m = -0.5, .low_y_m = -0.5, .unknown_m = {0.0, unknown_m, 0.0, 0.0}};
+}
+
 ReportInput two_seeds() {
     const std::vector<evaluation::Run> runs = {
         judged("paper", "fused", 0, 1100, 0.12),  judged("robust", "depth", 0, 2000, 0.0),
@@ -45,7 +51,9 @@ ReportInput two_seeds() {
                                                 .border_voxels = 90,
                                                 .volume_m3 = 0.0576,
                                                 .centre = {0.52, -0.3, 0.4},
-                                                .nearest_border = {}}}};
+                                                .nearest_border = {}}},
+                                   .depth_columns = columns(0.9),
+                                   .fused_columns = columns(0.6)};
     input.hidden_objects = {"cone"};
     input.idealisations = {"Nothing moves."};
     input.reproduce = {"octoskin experiment --seeds 0 1"};
@@ -130,10 +138,29 @@ TEST(Report, shows_what_nobody_has_seen_and_where) {
     const std::string html = report_html(input);
     EXPECT_THAT(html, HasSubstr("At the end 0.75 m³ are unknown; the camera alone leaves 1.40 m³."));
     EXPECT_THAT(html, HasSubstr("<td>1</td><td>57.6</td><td>0.50</td><td>−0.30</td><td>0.40</td>"));
+    EXPECT_THAT(html, HasSubstr("<b>Depth camera only</b>, at the end, seen from above"));
+    EXPECT_THAT(html,
+                HasSubstr("unknown, from nothing\n(no colour) to 0.9 m (full colour). The numbers are"));
+    // The column at the lower right: in a picture the second row's second pixel. Two thirds of the camera's.
+    const auto picture = [](std::uint8_t red, std::uint8_t green, std::uint8_t blue, std::uint8_t opacity) {
+        Image image{2, 2, {}};
+        for (const int pixel : {0, 1, 2, 3}) {
+            const std::uint8_t own = pixel == 3 ? opacity : std::uint8_t{0};
+            image.rgba.insert(image.rgba.end(), {red, green, blue, own});
+        }
+        return base64(encode_png(image));
+    };
+    EXPECT_THAT(html, HasSubstr(picture(0x2b, 0x6c, 0xb0, 255)));
+    EXPECT_THAT(html, HasSubstr(picture(0x4b, 0x7f, 0x2b, 170)));
+    input.results.unknown_space->depth_columns.reset();
     input.results.unknown_space->pockets.clear();
     for (auto& sample : input.results.unknown_space->samples) sample.depth_m3.reset();
     const std::string alone = report_html(input);
     EXPECT_THAT(alone, HasSubstr("At the end 0.75 m³ are unknown."));
+    EXPECT_THAT(alone, HasSubstr("unknown, from nothing\n(no colour) to 0.6 m (full colour)."));
+    EXPECT_THAT(alone, HasSubstr(picture(0x4b, 0x7f, 0x2b, 255)));
+    EXPECT_THAT(alone,
+                Not(AllOf(HasSubstr("<b>Depth camera only</b>, at the end"), HasSubstr("The numbers are"))));
     EXPECT_EQ(first_unbalanced_tag(alone), "");
     input.results.unknown_space->samples.clear();
     EXPECT_THAT(report_html(input), Not(HasSubstr("<section id=\"unknown\"")));
