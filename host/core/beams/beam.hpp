@@ -33,4 +33,10 @@ struct Beam {
     Eigen::Matrix3d R_map_sensor = Eigen::Matrix3d::Identity();
 };
 
+/// From when a beam was measured; below 0 before that.
+[[nodiscard]] constexpr double seconds_since(const Beam& beam, HostTime now) noexcept {
+    constexpr double kSecond_ns = 1e9;
+    return static_cast<double>(now.ns - beam.captured.ns) / kSecond_ns;
+}
+
 }  // namespace octoskin

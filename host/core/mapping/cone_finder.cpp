@@ -119,7 +119,7 @@ bool ConeFinder::ends_about(const Beam& beam, VoxelKey key) const noexcept {
            std::atan2(std::max(0.0, aside_m - half_m), along_m) <= angle_rad;
 }
 
-Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam) {
+Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam, CapWidth width) {
     assert(beam.optics.is_cone());
     if (const auto fault = fault_of(beam)) return unexpected(*fault);
     const ConeModel& model = model_of(beam);
@@ -140,9 +140,10 @@ Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam) {
                        .tan_core = std::tan(core_rad),
                        .margin_m = model.core_margin_voxels * lattice_.resolution_m()});
     if (beam.range_m && length_m <= model.hit_range_max_m) {
+        const double cap_rad = model.cap_angle_share * beam.optics.half_angle_rad;
         find_cap(beam, {.range_m = length_m,
                         .half_thickness_m = cap_m,
-                        .angle_rad = model.cap_angle_share * beam.optics.half_angle_rad,
+                        .angle_rad = width == CapWidth::core ? std::min(cap_rad, core_rad) : cap_rad,
                         .middle_rad = config_.standing.angle_share * beam.optics.half_angle_rad});
         if (voxels_.cap.empty()) voxels_.cap.push_back({*end_key, 1.0F});
         if (voxels_.middle.empty()) voxels_.middle.push_back(*end_key);

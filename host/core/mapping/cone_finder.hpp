@@ -1,6 +1,8 @@
 // From one placed range of a sensor that sees a cone to the voxels of which it speaks.
 #pragma once
 
+#include <cstdint>
+
 #include "common/result.hpp"
 #include "host/core/beams/beam.hpp"
 #include "host/core/mapping/beam_rejection.hpp"
@@ -9,6 +11,12 @@
 #include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
+
+/// How far off the axis a range marks.
+enum class CapWidth : std::uint8_t {
+    whole,  ///< as the model says
+    core,   ///< and no further than where it would free space
+};
 
 /// The voxels of ranges, one after the other. Keeps its memory; not for two threads at once.
 class ConeFinder {
@@ -19,7 +27,8 @@ class ConeFinder {
     /// (`model_of`); valid until the next call. Without return:
     /// what is passed up to the smaller of `MappingConfig::no_return_clear_m` and the beam's limit. What lies
     /// outside the octree is left out. O(voxels); about 3 us at 1 m and 0.04 m. Throws std::bad_alloc.
-    [[nodiscard]] Result<const ConeVoxels*, BeamRejection> find(const Beam& beam);
+    [[nodiscard]] Result<const ConeVoxels*, BeamRejection> find(const Beam& beam,
+                                                                CapWidth width = CapWidth::whole);
     /// How far it reaches: its range, or how far it may free space without one.
     [[nodiscard]] double length_m(const Beam& beam) const noexcept;
     /// Whether a voxel touches the cap of a beam with a range, as far as a cube and a cap can be told apart

@@ -1,11 +1,18 @@
 // Which voxels a cone's range speaks of: the core that it has passed, and the cap in which its surface is.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
+
+/// Which voxels of a cap get its hits.
+enum class Blame : std::uint8_t {
+    all,       ///< each its share
+    occupied,  ///< those that are occupied and no others
+};
 
 /// A voxel of a cap: what the beam weighs there, 1 on its axis.
 struct CapVoxel {

@@ -57,6 +57,13 @@ class FusedMap::CountedBrick {
         return put(cell, {.hits = std::max((*hits_)[cell], enough), .misses = 0.0F});
     }
 
+    /// Of a voxel that they do not mark.
+    [[nodiscard]] Result<float, Refusal> forget_hits(std::size_t cell) noexcept {
+        if (!(hits_view_.at(cell) > 0.0F)) return 0.0F;
+        if (const auto is_open = open_counts(); !is_open) return unexpected(is_open.error());
+        return put(cell, {.hits = 0.0F, .misses = (*misses_)[cell]});
+    }
+
     /// Of a voxel that is free from now on, though it was occupied.
     [[nodiscard]] Result<float, Refusal> clear(std::size_t cell) noexcept {
         if (const auto is_open = open_counts(); !is_open) return unexpected(is_open.error());
@@ -186,7 +193,8 @@ ConeVoxels without(const ConeVoxels& cone, const std::vector<VoxelKey>& refused)
 
 }  // namespace
 
-void FusedMap::apply(const ConeVoxels& cone, const ConeModel& model, std::vector<VoxelUpdate>* changes) {
+void FusedMap::apply(const ConeVoxels& cone, const ConeModel& model, Blame blame,
+                     std::vector<VoxelUpdate>* changes) {
     std::vector<VoxelKey> refused;
     bool names_refused = true;
     CountedBrick brick(*this);
@@ -199,13 +207,17 @@ void FusedMap::apply(const ConeVoxels& cone, const ConeModel& model, std::vector
     };
     // A voxel comes once in a cap: its share is of what it was before, whoever got theirs first.
     const auto blame_of = [&](const CapVoxel& voxel) {
+        if (blame == Blame::occupied && occupancy(voxel.key) != Occupancy::occupied) return 0.0F;
         brick.go_to(voxel.key);
         return voxel.weight * brick.probability(cell_of(voxel.key));
     };
     float sum = 0.0F;
     for (const CapVoxel& voxel : cone.cap) sum += blame_of(voxel);
     if (sum > 0.0F) {
-        for (const CapVoxel& voxel : cone.cap) add(voxel.key, model.hit_mass * blame_of(voxel) / sum, 0.0F);
+        for (const CapVoxel& voxel : cone.cap) {
+            const float share = blame_of(voxel) / sum;
+            if (share > 0.0F) add(voxel.key, model.hit_mass * share, 0.0F);
+        }
     }
     for (const VoxelKey key : cone.passed) add(key, 0.0F, model.miss_mass);
     if (!confirmations_.has_begun() || !names_refused) return;
@@ -228,18 +240,31 @@ void FusedMap::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>
     }
 }
 
+void FusedMap::forget_weak_hits(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes) {
+    CountedBrick brick(*this);
+    for (const CapVoxel& voxel : cone.cap) {
+        if (occupancy(voxel.key) == Occupancy::occupied) continue;
+        brick.go_to(voxel.key);
+        const auto change = brick.forget_hits(cell_of(voxel.key));
+        ++(counters_.*(change ? &MapCounters::applied : change.error()));
+        if (changes != nullptr && change && *change != 0.0F) changes->push_back({voxel.key, *change});
+    }
+}
+
 void FusedMap::clear(const ConeVoxels& cone, const std::function<bool(VoxelKey)>& is_ranged,
                      std::vector<VoxelUpdate>* changes) {
     CountedBrick brick(*this);
     for (const VoxelKey key : cone.passed) {
-        if (occupancy(key) != Occupancy::occupied || is_seen_by_camera(key) || is_ranged(key)) continue;
+        if (occupancy(key) != Occupancy::occupied) continue;
+        if (is_seen_by_camera(confirmations_.find(brick_of(key)).at(cell_of(key))) || is_ranged(key))
+            continue;
         brick.go_to(key);
         take(key, brick.clear(cell_of(key)), changes);
     }
 }
 
-bool FusedMap::is_seen_by_camera(VoxelKey key) const noexcept {
-    const auto last = confirmation(key);
+bool FusedMap::is_seen_by_camera(std::uint16_t stamp) const noexcept {
+    const auto last = confirmations_.told_by(stamp);
     return last && last->kind == SensorKind::camera && last->age_s <= 1;
 }
 

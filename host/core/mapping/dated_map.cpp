@@ -121,15 +121,23 @@ void confirm_runs(const Voxels& voxels, const KeyOf& key_of, const Filter& filte
 
 }  // namespace
 
-/// Of a cap all but what is free, which a hit that is shared does not confirm. What is unknown and only
-/// counted has its time, too: counts that lead to nothing are forgotten like all else.
+/// Of what is passed all but what is occupied and the camera saw just now, which contradicts the cone: while
+/// both say what they say, the camera's word stays the newest. Of a cap all but what is free, which a hit
+/// that is shared does not confirm. What is unknown and only counted has its time, too: counts that lead to
+/// nothing are forgotten like all else.
 void FusedMap::confirm(const ConeVoxels& cone) noexcept {
     const auto confirm_brick = [&](MortonCode brick, const BrickMask& voxels) {
         confirm(brick, voxels, SensorKind::range);
     };
     confirm_runs(
         cone.passed, [](VoxelKey key) { return key; },
-        [](MortonCode) { return [](std::size_t) { return true; }; }, confirm_brick);
+        [&](MortonCode brick) {
+            return [this, view = tree_.find(brick), stamps = confirmations_.find(brick)](std::size_t cell) {
+                const bool is_occupied = view.at(cell) >= config_.log_odds_occupied;
+                return !is_occupied || !is_seen_by_camera(stamps.at(cell));
+            };
+        },
+        confirm_brick);
     confirm_runs(
         cone.cap, [](const CapVoxel& voxel) { return voxel.key; },
         [&](MortonCode brick) {

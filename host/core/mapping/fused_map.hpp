@@ -99,14 +99,20 @@ class FusedMap {
     /// of the sensor that the terms are of.
     void apply(std::span<const VoxelUpdate> updates, SensorKind kind = SensorKind::range);
     /// Counts a cone's range: each voxel of its cap gets its share of `model.hit_mass` hits, in proportion to
-    /// weight and probability before, so that what is known to be there takes the blame; each that was passed
-    /// `model.miss_mass` misses. Refused and counted as above, voxel by voxel. `changes`, if not null, is
-    /// told by how much the log-odds changed. Never throws but for `changes`. About 25 ns a voxel.
-    void apply(const ConeVoxels& cone, const ConeModel& model, std::vector<VoxelUpdate>* changes = nullptr);
+    /// weight and probability before, so that what is known to be there takes the blame, or only those that
+    /// are occupied do, if `blame` says so; each that was passed `model.miss_mass` misses. Refused and
+    /// counted as above, voxel by voxel. `changes`, if not null, is told by how much the log-odds changed.
+    /// Never throws but for `changes`. About 25 ns a voxel.
+    void apply(const ConeVoxels& cone, const ConeModel& model, Blame blame = Blame::all,
+               std::vector<VoxelUpdate>* changes = nullptr);
     /// Of a range that is believed (StandingRanges), after it was counted: if no voxel of its cap is
     /// occupied, which would explain it, those of its middle are from now on. They have no misses, and at
     /// least so many hits, and as many as that takes. Refused, counted and told as above.
     void mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes = nullptr);
+    /// Of a range that is believed no longer: what its cap has of hits that mark nothing is gone. From one
+    /// place they tell nothing of where in the cap it was, and with each thing that comes and goes there they
+    /// would grow. Refused and told as above.
+    void forget_weak_hits(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes = nullptr);
     /// Of a sensor that surely sees through (StandingSight), after it was counted: what was passed and is
     /// occupied is free from now on, has no hits and nothing that the camera once knew of it; but for what
     /// the camera confirmed in this second or the one before, and what `is_ranged` says of: others see it.
@@ -208,7 +214,8 @@ class FusedMap {
     [[nodiscard]] bool has_room_to_count(MortonCode brick) const noexcept;
     void apply_beside_counts(std::span<const VoxelUpdate> run) noexcept;
     void apply_beside_counts(const DepthTerms& terms, const BrickTerms& brick) noexcept;
-    [[nodiscard]] bool is_seen_by_camera(VoxelKey key) const noexcept;
+    /// In this second or the one before.
+    [[nodiscard]] bool is_seen_by_camera(std::uint16_t stamp) const noexcept;
     void take(VoxelKey key, const Result<float, Refusal>& change, std::vector<VoxelUpdate>* changes);
     /// Makes every voxel of a brick with counts what they and its other log-odds say.
     void fuse(MortonCode brick);

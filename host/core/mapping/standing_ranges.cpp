@@ -38,17 +38,47 @@ bool StandingRanges::are_of_one_place(const Beam& a, const Beam& b) {
            a.R_map_sensor.cwiseProduct(b.R_map_sensor).sum() >= trace_min;
 }
 
-std::span<const Beam> StandingRanges::take(const Beam& beam) {
+bool StandingRanges::stands(const Beam& beam) const {
+    const auto sensor = sensors_.find({beam.source.node_id, beam.source.sensor});
+    if (sensor == sensors_.end()) return false;
+    const auto zone = sensor->second.zones.find(beam.source.zone);
+    if (zone == sensor->second.zones.end()) return false;
+    const auto& newest = zone->second.newest;
+    return newest.size() >= model_.window() &&
+           are_of_one_place((newest.end() - static_cast<std::ptrdiff_t>(model_.window()))->beam, beam);
+}
+
+/// By the time between its two newest, so many in a row have not come; or it is too long ago.
+void StandingRanges::forget_silent(Sensor& sensor, HostTime now) {
+    for (auto& entry : sensor.zones) {
+        Zone& zone = entry.second;
+        if (zone.newest.empty()) continue;
+        const Beam& last = zone.newest.back().beam;
+        const double silent_s = seconds_since(last, now);
+        if (silent_s > model_.counts_for_s()) {
+            end(zone);
+            zone.newest.clear();
+        } else if (zone.believed && zone.newest.size() > 1) {
+            constexpr double kMissing = static_cast<double>(kBefore) + 0.5;
+            const double period_s = seconds_since((zone.newest.end() - 2)->beam, last.captured);
+            if (silent_s > kMissing * period_s) end(zone);
+        }
+    }
+}
+
+StandingRanges::Answer StandingRanges::take(const Beam& beam) {
     believed_.clear();
-    if (model_.readings == 0) return believed_;
+    ended_.clear();
+    if (model_.readings == 0) return {};
     Sensor& sensor = sensors_[{beam.source.node_id, beam.source.sensor}];
+    forget_silent(sensor, beam.captured);
     Zone& zone = sensor.zones[beam.source.zone];
     const std::size_t window = model_.window();
     zone.newest.reserve(window + kBefore);
     if (zone.newest.size() >= window + kBefore) zone.newest.erase(zone.newest.begin());
     zone.newest.push_back({beam, ++sensor.readings, false});
-    follow_believed(zone);
-    if (!beam.range_m) return believed_;
+    const bool is_told = follow_believed(zone);
+    if (!beam.range_m) return {{}, ended_, false};
 
     window_ = {{&zone, zone.newest.size() - std::min(zone.newest.size(), window)}};
     believe(beam, window_);
@@ -65,21 +95,29 @@ std::span<const Beam> StandingRanges::take(const Beam& beam) {
     }
     for (const Beam& believed : believed_) sensor.zones[believed.source.zone].believed = believed;
     add_what_stays(beam, sensor);
-    return believed_;
+    return {believed_, ended_, is_told};
 }
 
-/// What is believed may move slowly; it has gone if none of so many readings tells of it.
-void StandingRanges::follow_believed(Zone& zone) {
-    if (!zone.believed) return;
+/// What is believed may move slowly; it has gone if none of so many readings tells of it. The answer: the
+/// newest does.
+bool StandingRanges::follow_believed(Zone& zone) {
+    if (!zone.believed) return false;
     const Beam& newest = zone.newest.back().beam;
     if (goes_on(*zone.believed, newest)) {
         constexpr double kShare = 0.25;
         *zone.believed->range_m += kShare * (*newest.range_m - *zone.believed->range_m);
-        return;
+        return true;
     }
     const auto last = std::span(zone.newest).last(std::min(zone.newest.size(), kBefore));
     const auto tells = [&](const Reading& reading) { return goes_on(*zone.believed, reading.beam); };
-    if (std::ranges::none_of(last, tells)) zone.believed.reset();
+    if (std::ranges::none_of(last, tells)) end(zone);
+    return false;
+}
+
+void StandingRanges::end(Zone& zone) {
+    if (!zone.believed) return;
+    ended_.push_back(*zone.believed);
+    zone.believed.reset();
 }
 
 void StandingRanges::add_what_stays(const Beam& newest, const Sensor& sensor) {

@@ -33,14 +33,28 @@ class StandingRanges {
 
     explicit StandingRanges(const StandingModel& model) : model_(model) {}
 
-    /// Takes a beam that went into the map, in the order in which they do. The answer: which ranges are
-    /// believed now, one for each zone: the zone's newest beam, with the mean of the ranges that agree. None
-    /// as a rule; valid until the next call. A range is believed first while it is new: if none of the
-    /// `kBefore` readings of its zone before the window was of this place and as short. It stays believed,
-    /// with each reading of its zone that agrees with it, and with those of other zones that see further,
-    /// until `kBefore` in a row do not agree. O(zones of the sensor), below 1 us; 2 kB a zone. Throws
+    struct Answer {
+        /// Which ranges are believed now, one for each zone: the zone's newest beam, with the mean of the
+        /// ranges that agree. None as a rule; valid until the next call.
+        std::span<const Beam> believed;
+        /// Those that were, and are no more: what they left in their caps that marks nothing is to be taken
+        /// back (FusedMap::forget_weak_hits). Valid likewise.
+        std::span<const Beam> ended;
+        /// The beam says again what was believed before it: from one place no reading tells more of where in
+        /// its cap that is, however many there are. What is there takes its hits.
+        bool is_told = false;
+    };
+    /// Takes a beam that goes into the map, in the order in which they do. A range is believed first while it
+    /// is new: if none of the `kBefore` readings of its zone before the window was of this place and as
+    /// short. It stays believed, with each reading of its zone that agrees with it, and with those of other
+    /// zones that see further, until `kBefore` in a row do not agree or do not come. What is older than
+    /// `StandingModel::counts_for_s` is forgotten. O(zones of the sensor), below 1 us; 2 kB a zone. Throws
     /// std::bad_alloc.
-    [[nodiscard]] std::span<const Beam> take(const Beam& beam);
+    [[nodiscard]] Answer take(const Beam& beam);
+
+    /// Whether a beam that is not taken yet is of one place with the last `StandingModel::window()` of its
+    /// zone: then it marks only where it would free space, too.
+    [[nodiscard]] bool stands(const Beam& beam) const;
 
     [[nodiscard]] const StandingModel& model() const noexcept { return model_; }
     /// As if there had been no beam.
@@ -64,7 +78,9 @@ class StandingRanges {
     using Window = std::vector<std::pair<Zone*, std::size_t>>;
 
     void believe(const Beam& newest, const Window& window);
-    static void follow_believed(Zone& zone);
+    void forget_silent(Sensor& sensor, HostTime now);
+    [[nodiscard]] bool follow_believed(Zone& zone);
+    void end(Zone& zone);
     void add_what_stays(const Beam& newest, const Sensor& sensor);
 
     StandingModel model_;
@@ -72,6 +88,7 @@ class StandingRanges {
     Window window_;
     std::vector<Reading*> agreeing_;
     std::vector<Beam> believed_;
+    std::vector<Beam> ended_;
 };
 
 }  // namespace octoskin

@@ -6,7 +6,7 @@ namespace octoskin {
 
 bool StandingSight::lasts(const Readings& readings, std::size_t from) const {
     return readings.size() >= from + kReadingsMin &&
-           seconds_between(readings[from].beam, readings.back().beam.captured) >= model_.clears_after_s;
+           seconds_since(readings[from].beam, readings.back().beam.captured) >= model_.clears_after_s;
 }
 
 const Beam* StandingSight::take(const Beam& beam, double frees_m) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <iterator>
 #include <map>
 
 #include "host/core/beams/beam.hpp"
@@ -18,21 +19,25 @@ class StandingSight {
 
     explicit StandingSight(const StandingModel& model) : model_(model) {}
 
-    /// Takes a beam that went into the map, and how far that frees space. The answer: the shortest of the
-    /// zone's newest readings of this place (StandingRanges), as many as last `StandingModel::clears_after_s`
-    /// and no longer than twice that; null while there are not three, or not of so long; valid until the next
-    /// call. A beam that frees nothing is none. O(readings of so long), below 1 us; 0.2 kB each. Throws
-    /// std::bad_alloc.
+    /// Takes a beam, of a ray, too, that went into the map, and how far that frees space. The answer: the
+    /// shortest of the zone's newest readings of this place (StandingRanges), as many as last
+    /// `StandingModel::clears_after_s` and no longer than twice that; null while there are not three, or not
+    /// of so long; valid until the next call. A beam that frees nothing is none. O(readings of so long),
+    /// below 1 us; 0.2 kB each. Throws std::bad_alloc.
     [[nodiscard]] const Beam* take(const Beam& beam, double frees_m);
 
-    /// Whether `ends_there` says so of the newest reading of any zone, if that has a range and is no older
-    /// than `now` by as long as readings count. O(zones).
+    /// Whether `ends_there` says so of one of the two newest readings of any zone, for the newest may be
+    /// wrong, if that has a range and is no older than `now` by as long as readings count. O(zones).
     template <class EndsThere>
     [[nodiscard]] bool any_newest(HostTime now, const EndsThere& ends_there) const {
-        return std::ranges::any_of(zones_, [&](const auto& zone) {
-            if (zone.second.empty()) return false;
-            const Beam& beam = zone.second.back().beam;
+        const auto says_so = [&](const Reading& reading) {
+            const Beam& beam = reading.beam;
             return beam.range_m && counts(beam, now) && ends_there(beam);
+        };
+        return std::ranges::any_of(zones_, [&](const auto& zone) {
+            const Readings& readings = zone.second;
+            const auto newest = std::min<std::ptrdiff_t>(std::ssize(readings), 2);
+            return std::any_of(readings.end() - newest, readings.end(), says_so);
         });
     }
 
@@ -46,13 +51,9 @@ class StandingSight {
     };
     using Readings = std::deque<Reading>;  ///< of a zone, the newest last; none if there was no memory
 
-    [[nodiscard]] static double seconds_between(const Beam& before, HostTime now) {
-        constexpr double kNanoseconds = 1e9;
-        return static_cast<double>(now.ns - before.captured.ns) / kNanoseconds;
-    }
     /// What nobody heard of for longer may have come and gone.
     [[nodiscard]] bool counts(const Beam& before, HostTime now) const {
-        return seconds_between(before, now) <= 2.0 * model_.clears_after_s;
+        return seconds_since(before, now) <= model_.counts_for_s();
     }
     [[nodiscard]] bool lasts(const Readings& readings, std::size_t from) const;
 

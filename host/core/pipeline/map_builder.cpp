@@ -17,6 +17,15 @@ ReadingReason reason_of(BeamRejection rejection) {
                                                    : ReadingReason::beam_not_valid;
 }
 
+bool sees_any_cone(const HostRig& rig) {
+    const auto is_cone = [](const HostZone& zone) { return zone.optics.is_cone(); };
+    const auto has_cone = [&](const HostSensor& sensor) {
+        return std::ranges::any_of(sensor.zones, is_cone);
+    };
+    return std::ranges::any_of(
+        rig.nodes, [&](const HostNode& node) { return std::ranges::any_of(node.sensors, has_cone); });
+}
+
 /// An image's box may be large: what there is no memory for is refused like what is wrong.
 Result<DepthUpdates, DepthReason> updates_or_reason(DepthStage& stage, const DepthFrame& frame,
                                                     const RobotPose* robot) {
@@ -57,6 +66,7 @@ MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams
       cone_finder_(mapping),
       standing_(mapping.standing),
       sight_(mapping.standing),
+      has_cones_(mapping.range_update == RangeUpdate::cone && sees_any_cone(rig)),
       maps_(mapping.map, maps) {
     if (rig.camera) {
         depth_stage_.emplace(rig, mapping, depth_threads);
@@ -116,6 +126,9 @@ Status<ReadingReason> MapBuilder::add_ray(const RangeMeasurement& measurement, c
     }
     maps_.go_on(measurement.captured);
     maps_.add_proximity(*updates);
+    if (has_cones_) {
+        (void)sight_.take(beam, cone_finder_.length_m(beam));
+    }
     if (listener_ != nullptr) {
         listener_->on_reading(measurement, beam, *updates);
         listener_->on_maps(maps_);
@@ -124,25 +137,28 @@ Status<ReadingReason> MapBuilder::add_ray(const RangeMeasurement& measurement, c
 }
 
 Status<ReadingReason> MapBuilder::add_cone(const RangeMeasurement& measurement, const Beam& beam) {
-    const auto voxels = cone_finder_.find(beam);
+    const auto voxels = cone_finder_.find(beam, standing_.stands(beam) ? CapWidth::core : CapWidth::whole);
     if (!voxels) {
         return unexpected(reason_of(voxels.error()));
     }
     maps_.go_on(measurement.captured);
+    const StandingRanges::Answer standing = standing_.take(beam);
     const ConeModel& model = cone_finder_.model_of(beam);
+    const Blame blame = standing.is_told ? Blame::occupied : Blame::all;
     if (listener_ != nullptr) {
-        std::vector<VoxelUpdate> changes = maps_.changes_of_proximity(**voxels, model);
-        believe_standing(beam, &changes);
+        std::vector<VoxelUpdate> changes = maps_.changes_of_proximity(**voxels, model, blame);
+        believe_standing(beam, standing, &changes);
         listener_->on_reading(measurement, beam, changes);
         listener_->on_maps(maps_);
     } else {
-        maps_.add_proximity(**voxels, model);
-        believe_standing(beam, nullptr);
+        maps_.add_proximity(**voxels, model, blame);
+        believe_standing(beam, standing, nullptr);
     }
     return Done{};
 }
 
-void MapBuilder::believe_standing(const Beam& beam, std::vector<VoxelUpdate>* changes) {
+void MapBuilder::believe_standing(const Beam& beam, const StandingRanges::Answer& standing,
+                                  std::vector<VoxelUpdate>* changes) {
     std::vector<VoxelUpdate> more;
     std::vector<VoxelUpdate>* const told = changes != nullptr ? &more : nullptr;
     if (const Beam* const through = sight_.take(beam, cone_finder_.length_m(beam))) {
@@ -154,7 +170,12 @@ void MapBuilder::believe_standing(const Beam& beam, std::vector<VoxelUpdate>* ch
             maps_.clear(**voxels, is_ranged, told);
         }
     }
-    for (const Beam& believed : standing_.take(beam)) {
+    for (const Beam& ended : standing.ended) {
+        if (const auto voxels = cone_finder_.find(ended)) {
+            maps_.forget_weak_hits(**voxels, told);
+        }
+    }
+    for (const Beam& believed : standing.believed) {
         // As a rule what was marked once is still there, and nothing else need be found.
         if (maps_.is_marked(believed.p_map_sensor + *believed.range_m * believed.direction_map)) continue;
         const auto voxels = cone_finder_.find(believed);

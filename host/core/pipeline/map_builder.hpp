@@ -113,7 +113,8 @@ class MapBuilder {
     [[nodiscard]] Status<ReadingReason> add_ray(const RangeMeasurement& measurement, const Beam& beam);
     /// Marks and frees what a sensor that stands still is believed. `changes`: of the fused map, each voxel
     /// once; may be null.
-    void believe_standing(const Beam& beam, std::vector<VoxelUpdate>* changes);
+    void believe_standing(const Beam& beam, const StandingRanges::Answer& standing,
+                          std::vector<VoxelUpdate>* changes);
 
     RobotTracker robot_;
     BeamBuilder beams_;
@@ -121,6 +122,7 @@ class MapBuilder {
     ConeFinder cone_finder_;
     StandingRanges standing_;
     StandingSight sight_;
+    bool has_cones_ = false;  ///< then what rays end on is not to be freed by cones
     std::optional<DepthStage> depth_stage_;
     std::optional<SensorWitness> witness_;
     bool refuses_contradicting_ = false;

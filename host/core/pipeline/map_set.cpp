@@ -72,13 +72,14 @@ void MapSet::add_proximity(std::span<const VoxelUpdate> updates) {
     }
 }
 
-void MapSet::add_proximity(const ConeVoxels& cone, const ConeModel& model) {
-    count(cone, model, nullptr);
+void MapSet::add_proximity(const ConeVoxels& cone, const ConeModel& model, Blame blame) {
+    count(cone, model, blame, nullptr);
 }
 
-std::vector<VoxelUpdate> MapSet::changes_of_proximity(const ConeVoxels& cone, const ConeModel& model) {
+std::vector<VoxelUpdate> MapSet::changes_of_proximity(const ConeVoxels& cone, const ConeModel& model,
+                                                      Blame blame) {
     std::vector<VoxelUpdate> changes;
-    count(cone, model, &changes);
+    count(cone, model, blame, &changes);
     return changes;
 }
 
@@ -88,6 +89,15 @@ void MapSet::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* 
     }
     if (fused_) {
         fused_->mark(cone, hits, changes);
+    }
+}
+
+void MapSet::forget_weak_hits(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes) {
+    if (proximity_) {
+        proximity_->forget_weak_hits(cone);
+    }
+    if (fused_) {
+        fused_->forget_weak_hits(cone, changes);
     }
 }
 
@@ -110,12 +120,13 @@ void MapSet::clear(const ConeVoxels& cone, const std::function<bool(VoxelKey)>& 
     }
 }
 
-void MapSet::count(const ConeVoxels& cone, const ConeModel& model, std::vector<VoxelUpdate>* changes) {
+void MapSet::count(const ConeVoxels& cone, const ConeModel& model, Blame blame,
+                   std::vector<VoxelUpdate>* changes) {
     if (proximity_) {
-        proximity_->apply(cone, model);
+        proximity_->apply(cone, model, blame);
     }
     if (fused_) {
-        fused_->apply(cone, model, changes);
+        fused_->apply(cone, model, blame, changes);
     }
 }
 

@@ -41,15 +41,17 @@ class MapSet {
     void add_depth(const DepthTerms& terms);
     /// To `proximity` and `fused`.
     void add_proximity(std::span<const VoxelUpdate> updates);
-    void add_proximity(const ConeVoxels& cone, const ConeModel& model);
+    void add_proximity(const ConeVoxels& cone, const ConeModel& model, Blame blame);
     /// The same; the answer is by how much each log-odds of `fused`, if it was chosen, changed.
     [[nodiscard]] std::vector<VoxelUpdate> changes_of_proximity(const ConeVoxels& cone,
-                                                                const ConeModel& model);
+                                                                const ConeModel& model, Blame blame);
 
     /// FusedMap::mark. `changes`: of `fused`; may be null.
     void mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes);
     /// Whether a point is in an occupied voxel of each map that is marked.
     [[nodiscard]] bool is_marked(const Eigen::Vector3d& p_map) const noexcept;
+    /// FusedMap::forget_weak_hits, likewise.
+    void forget_weak_hits(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes);
     /// FusedMap::clear, likewise.
     void clear(const ConeVoxels& cone, const std::function<bool(VoxelKey)>& is_ranged,
                std::vector<VoxelUpdate>* changes);
@@ -60,7 +62,8 @@ class MapSet {
     [[nodiscard]] const FusedMap* fused() const noexcept { return fused_ ? &*fused_ : nullptr; }
 
   private:
-    void count(const ConeVoxels& cone, const ConeModel& model, std::vector<VoxelUpdate>* changes);
+    void count(const ConeVoxels& cone, const ConeModel& model, Blame blame,
+               std::vector<VoxelUpdate>* changes);
 
     std::optional<FusedMap> depth_;
     std::optional<FusedMap> proximity_;

@@ -250,7 +250,7 @@ TEST(CountingMap, tells_what_changed) {
     cone.cap = {{key_at(0), 1.0F}};
     cone.passed = {key_at(-1)};
     std::vector<VoxelUpdate> changes;
-    map.apply(cone, {.hit_mass = 1.0F, .miss_mass = 1.0F}, &changes);
+    map.apply(cone, {.hit_mass = 1.0F, .miss_mass = 1.0F}, Blame::all, &changes);
     ASSERT_EQ(changes.size(), 2U);
     EXPECT_EQ(changes[0], (VoxelUpdate{key_at(0), map.log_odds(key_at(0)).value()}));
     EXPECT_EQ(changes[1], (VoxelUpdate{key_at(-1), map.log_odds(key_at(-1)).value()}));
@@ -383,6 +383,61 @@ TEST(CountingMap, frees_at_once_what_is_surely_seen_through_however_sure_it_was)
             EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied) << "and may come again";
         }
     }
+}
+
+// As the pipeline does it: what is passed is counted first.
+TEST(CountingMap, takes_nothing_from_what_the_camera_sees_again_and_again) {
+    FusedMap map(map_config());
+    const std::vector<VoxelUpdate> surface{{key_at(0), 1.0F}};
+    ConeVoxels through;
+    through.passed = {key_at(0), key_at(1)};
+    for (int tenth = 0; tenth < 60; ++tenth) {
+        for (int reading = 0; reading < 3; ++reading) {
+            map.go_on(HostTime{(100 * tenth + 33 * reading) * 1'000'000LL});
+            if (reading == 1) map.apply(surface, SensorKind::camera);
+            map.apply(through, {});
+            map.clear(through, kNobodyRanges);
+            ASSERT_TRUE(tenth <= 2 || map.occupancy(key_at(0)) == Occupancy::occupied) << tenth;
+        }
+    }
+    EXPECT_EQ(map.confirmation(key_at(1)), (Confirmation{0, SensorKind::range}));
+    EXPECT_EQ(map.confirmation(key_at(0)), (Confirmation{0, SensorKind::camera}));
+    map.go_on(HostTime{8'000'000'000});
+    map.clear(through, kNobodyRanges);
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free) << "it no longer looks";
+}
+
+TEST(CountingMap, takes_back_hits_that_mark_nothing) {
+    FusedMap map(map_config());
+    map.mark(cap_of_three(), 2.0F);
+    ConeVoxels cap = cap_of_three();
+    cap.cap.push_back({key_at(3), 1.0F});
+    map.apply(std::vector<VoxelUpdate>{{key_at(2), -1.0F}});
+    const auto free_before = map.log_odds(key_at(2));
+    for (int event = 0; event < 100; ++event) {
+        map.apply(cap, {.hit_mass = 0.5F});
+        const auto before = map.copy();
+        std::vector<VoxelUpdate> changes;
+        map.forget_weak_hits(cap, &changes);
+        for (const VoxelUpdate& change : changes)
+            EXPECT_NEAR(*before.log_odds(change.key) + change.log_odds, *map.log_odds(change.key), 1e-5);
+        EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied);
+        EXPECT_EQ(map.occupancy(key_at(1)), Occupancy::unknown) << event;
+        EXPECT_NEAR(*map.log_odds(key_at(2)), *free_before, 1e-5) << event;
+        EXPECT_EQ(map.occupancy(key_at(3)), Occupancy::unknown) << event;
+    }
+}
+
+TEST(CountingMap, gives_hits_to_what_is_there_and_nothing_else_if_it_is_told_so) {
+    FusedMap map(map_config());
+    map.go_on(HostTime{1'000'000'000});
+    map.mark(cap_of_three(), 2.0F);
+    const auto before = map.copy();
+    map.go_on(HostTime{9'000'000'000});
+    map.apply(cap_of_three(), {}, Blame::occupied);
+    for (const int i : {1, 2, 3}) EXPECT_EQ(map.log_odds(key_at(i)), before.log_odds(key_at(i))) << i;
+    EXPECT_GT(*map.log_odds(key_at(0)), *before.log_odds(key_at(0)));
+    EXPECT_EQ(map.confirmation(key_at(0)), (Confirmation{0, SensorKind::range}));
 }
 
 TEST(CountingMap, frees_not_what_others_see_at_the_same_time) {

@@ -39,7 +39,7 @@ class StandingRangesTest : public testing::Test {
     std::vector<std::size_t> take(const std::vector<std::optional<double>>& ranges_m) {
         std::vector<std::size_t> counts;
         for (const auto& range_m : ranges_m) {
-            const auto believed = ranges_.take(beam_at(range_m));
+            const auto believed = ranges_.take(beam_at(range_m)).believed;
             counts.push_back(static_cast<std::size_t>(
                 std::ranges::count_if(believed, [](const Beam& beam) { return *beam.range_m < 0.9; })));
         }
@@ -52,7 +52,7 @@ class StandingRangesTest : public testing::Test {
 
 TEST_F(StandingRangesTest, believes_the_fourth_that_agrees_and_its_mean) {
     EXPECT_EQ(take({0.50, 0.52, 0.49}), Counts({0, 0, 0}));
-    const auto believed = ranges_.take(beam_at(0.53));
+    const auto believed = ranges_.take(beam_at(0.53)).believed;
     ASSERT_EQ(believed.size(), 1U);
     EXPECT_NEAR(*believed.front().range_m, 0.51, 1e-12);
     EXPECT_EQ(believed.front().source, (BeamSource{1, 2, 0}));
@@ -60,7 +60,7 @@ TEST_F(StandingRangesTest, believes_the_fourth_that_agrees_and_its_mean) {
 
 TEST_F(StandingRangesTest, believes_nothing_if_the_mapping_says_never) {
     StandingRanges never{StandingModel{}};
-    for (int i = 0; i < 20; ++i) EXPECT_TRUE(never.take(beam_at(0.5)).empty());
+    for (int i = 0; i < 20; ++i) EXPECT_TRUE(never.take(beam_at(0.5)).believed.empty());
 }
 
 TEST_F(StandingRangesTest, believes_no_wrong_reading_however_often_one_comes) {
@@ -80,7 +80,8 @@ TEST_F(StandingRangesTest, believes_what_was_new_as_long_as_it_stays) {
     StandingRanges ranges{StandingModel{.readings = 4}};
     const auto told = [&](const std::vector<std::optional<double>>& ranges_m) {
         std::vector<std::size_t> believed;
-        for (const auto& range_m : ranges_m) believed.push_back(ranges.take(beam_at(range_m)).size());
+        for (const auto& range_m : ranges_m)
+            believed.push_back(ranges.take(beam_at(range_m)).believed.size());
         return believed;
     };
     told({0.3, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
@@ -96,7 +97,7 @@ TEST_F(StandingRangesTest, follows_what_it_believes_as_it_moves_away) {
     take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
     take({0.5, 0.5, 0.5, 0.5});
     for (double range_m = 0.5; range_m < 0.9; range_m += 0.01) {
-        const auto believed = ranges_.take(beam_at(range_m));
+        const auto believed = ranges_.take(beam_at(range_m)).believed;
         ASSERT_EQ(believed.size(), 1U) << range_m;
         EXPECT_NEAR(*believed.front().range_m, range_m, 0.035);
     }
@@ -109,14 +110,14 @@ TEST_F(StandingRangesTest, takes_what_was_as_near_before_for_no_news) {
 }
 
 TEST_F(StandingRangesTest, believes_no_sensor_that_moves_or_turns_faster_than_it_may) {
-    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0034 * i)).empty());
+    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0034 * i)).believed.empty());
     ranges_.forget();
-    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0, 0.34 * i)).empty());
+    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0, 0.34 * i)).believed.empty());
 }
 
 TEST_F(StandingRangesTest, believes_a_sensor_that_moves_and_turns_slowly) {
     for (int i = 0; i < 30; ++i) {
-        const auto believed = ranges_.take(beam_at(0.5, 0, 0.0033 * i, 0.33 * i));
+        const auto believed = ranges_.take(beam_at(0.5, 0, 0.0033 * i, 0.33 * i)).believed;
         EXPECT_EQ(believed.size(), i < 3 ? 0U : 1U);
     }
 }
@@ -126,7 +127,8 @@ TEST_F(StandingRangesTest, hears_zones_that_are_ranged_in_turn) {
         for (std::uint8_t zone = 0; zone < 9; ++zone) (void)ranges_.take(beam_at(1.0, zone));
     // Something square before zones 4 to 8: what the fourth of them says makes all four believed.
     std::vector<std::size_t> counts;
-    for (std::uint8_t zone = 4; zone < 9; ++zone) counts.push_back(ranges_.take(beam_at(0.5, zone)).size());
+    for (std::uint8_t zone = 4; zone < 9; ++zone)
+        counts.push_back(ranges_.take(beam_at(0.5, zone)).believed.size());
     EXPECT_EQ(counts, Counts({0, 0, 0, 4, 1}));
 }
 
@@ -135,7 +137,7 @@ TEST_F(StandingRangesTest, hears_zones_of_what_comes_again_a_second_after_it_lef
         std::size_t believed = 0;
         for (int cycle = 0; cycle < cycles; ++cycle)
             for (std::uint8_t zone = 0; zone < 9; ++zone)
-                believed += ranges_.take(beam_at(range_m, zone)).size();
+                believed += ranges_.take(beam_at(range_m, zone)).believed.size();
         return believed;
     };
     (void)cycles_of(8, 1.0);
@@ -150,7 +152,7 @@ TEST_F(StandingRangesTest, hears_one_zone_by_its_own_readings) {
     for (int cycle = 0; cycle < 20; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone) {
             const bool is_there = zone == 4 && cycle >= 10;
-            const auto believed = ranges_.take(beam_at(is_there ? 0.5 : 1.0, zone));
+            const auto believed = ranges_.take(beam_at(is_there ? 0.5 : 1.0, zone)).believed;
             if (std::ranges::any_of(believed, [](const Beam& beam) { return *beam.range_m == 0.5; }))
                 cycles.push_back(cycle);
         }
@@ -164,15 +166,81 @@ TEST_F(StandingRangesTest, believes_no_zone_for_what_its_neighbours_have_always_
         for (std::uint8_t zone = 0; zone < 9; ++zone)
             (void)ranges_.take(beam_at(zone == 4 ? 1.0 : 0.5, zone));
     for (std::uint8_t zone = 0; zone < 9; ++zone)
-        for (const Beam& believed : ranges_.take(beam_at(0.5, zone)))
+        for (const Beam& believed : ranges_.take(beam_at(0.5, zone)).believed)
             EXPECT_NE(believed.source.zone, 4U) << "one reading does not change what it was believed";
+}
+
+TEST_F(StandingRangesTest, tells_what_only_says_again_what_is_believed) {
+    const auto told = [&](std::optional<double> range_m) { return ranges_.take(beam_at(range_m)).is_told; };
+    for (int i = 0; i < 4; ++i) EXPECT_FALSE(told(0.5)) << i << ": it is believed with the fourth";
+    for (int i = 0; i < 100; ++i) EXPECT_TRUE(told(0.5));
+    EXPECT_FALSE(told(1.0));
+    EXPECT_FALSE(told(kNothing));
+    EXPECT_TRUE(told(0.5));
+    for (int i = 0; i < 3; ++i) EXPECT_FALSE(told(1.0));
+    EXPECT_FALSE(told(0.5)) << "it was given up";
+}
+
+/// Two zones in turn, of which the first sees something before the wall.
+class SilentZone : public StandingRangesTest {
+  protected:
+    StandingRanges::Answer take_after(std::uint8_t zone, double range_m, double period_s) {
+        Beam beam = beam_at(range_m, zone);
+        captured_s_ += period_s;
+        beam.captured = HostTime{static_cast<std::int64_t>(std::llround(1e9 * captured_s_))};
+        return ranges_.take(beam);
+    }
+    bool believes_hand_after(std::uint8_t zone, double range_m, double period_s) {
+        return std::ranges::any_of(take_after(zone, range_m, period_s).believed,
+                                   [](const Beam& beam) { return *beam.range_m < 0.9; });
+    }
+    double captured_s_ = 1.0;
+};
+
+TEST_F(SilentZone, is_believed_until_three_of_its_readings_have_not_come) {
+    for (const double period_s : {0.016, 0.033, 0.15}) {
+        ranges_.forget();
+        for (int i = 0; i < 20; ++i)
+            for (const std::uint8_t zone : {std::uint8_t{0}, std::uint8_t{1}})
+                (void)take_after(zone, 1.0, period_s);
+        for (int i = 0; i < 8; ++i)
+            for (const std::uint8_t zone : {std::uint8_t{0}, std::uint8_t{1}})
+                (void)take_after(zone, zone == 0 ? 0.4 : 1.0, period_s);
+        // The first is due one period before each of these.
+        for (int i = 1; i <= 3; ++i)
+            EXPECT_TRUE(believes_hand_after(1, 1.0, 2.0 * period_s)) << i << ' ' << period_s;
+        const auto answer = take_after(1, 1.0, 2.0 * period_s);
+        ASSERT_EQ(answer.ended.size(), 1U);
+        EXPECT_NEAR(*answer.ended.front().range_m, 0.4, 1e-9);
+        EXPECT_FALSE(believes_hand_after(1, 1.0, 2.0 * period_s));
+    }
+}
+
+TEST_F(SilentZone, is_forgotten_with_all_that_it_said_once_that_is_too_old) {
+    for (int i = 0; i < 20; ++i) (void)take_after(0, 0.4, 0.033);
+    EXPECT_TRUE(believes_hand_after(0, 0.4, 0.1)) << "two are missing";
+    EXPECT_EQ(take_after(0, 0.4, 1.2).ended.size(), 1U);
+    EXPECT_FALSE(believes_hand_after(0, 0.4, 0.033));
+    EXPECT_FALSE(believes_hand_after(0, 0.4, 0.033));
+    EXPECT_TRUE(believes_hand_after(0, 0.4, 0.033)) << "the fourth after that";
+}
+
+TEST_F(StandingRangesTest, tells_what_is_believed_no_longer) {
+    const auto ended = [&](std::optional<double> range_m) {
+        return ranges_.take(beam_at(range_m)).ended.size();
+    };
+    for (int i = 0; i < 8; ++i) EXPECT_EQ(ended(0.5), 0U);
+    EXPECT_EQ(ended(1.0), 0U);
+    EXPECT_EQ(ended(1.0), 0U);
+    EXPECT_EQ(ended(kNothing), 1U);
+    EXPECT_EQ(ended(1.0), 0U);
 }
 
 TEST_F(StandingRangesTest, keeps_sensors_apart) {
     for (std::uint8_t i = 0; i < 12; ++i) {
         Beam beam = beam_at(0.5);
         beam.source = {static_cast<std::uint8_t>(i % 2), static_cast<std::uint8_t>(i / 2 % 2), 0};
-        EXPECT_TRUE(ranges_.take(beam).empty());
+        EXPECT_TRUE(ranges_.take(beam).believed.empty());
     }
 }
 

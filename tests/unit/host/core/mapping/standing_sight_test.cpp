@@ -106,7 +106,9 @@ TEST_F(StandingSightTest, knows_where_other_zones_ranges_end_as_long_as_they_are
     EXPECT_FALSE(sight_.any_newest(HostTime{1'110'000'000}, ends_at(0.5)));
     EXPECT_TRUE(sight_.any_newest(HostTime{1'110'000'000}, ends_at(1.0)));
     (void)sight_.take(beam(0.7, 0.0, 1), 0.7);
-    EXPECT_FALSE(sight_.any_newest(HostTime{600'000'000}, ends_at(0.5))) << "a newer one of the zone";
+    EXPECT_TRUE(sight_.any_newest(HostTime{600'000'000}, ends_at(0.5))) << "the newer one may be wrong";
+    (void)sight_.take(beam(0.7, 0.0, 1), 0.7);
+    EXPECT_FALSE(sight_.any_newest(HostTime{600'000'000}, ends_at(0.5))) << "two newer ones of the zone";
 }
 
 TEST_F(StandingSightTest, is_none_if_the_mapping_says_never_and_is_forgotten) {

@@ -118,6 +118,20 @@ TEST_F(StandingCone, has_what_comes_on_the_map_with_the_fourth_reading) {
     EXPECT_EQ(occupied(), 0U) << "and off it within a second of its having gone";
 }
 
+// However often it is said from one place, nothing tells where in the cap it is: its edge, which the cone's
+// core never passes, must not fill up.
+TEST_F(StandingCone, has_all_that_has_gone_off_the_map_however_long_it_stood) {
+    for (const double range_m : {0.3, 0.4, 0.5, 0.65}) {
+        for (const int times : {30, 200, 1000}) {
+            read(range_m + 0.8, 30);
+            read(range_m, times);
+            EXPECT_GE(occupied(), 1U);
+            read(range_m + 0.8, 20);
+            EXPECT_EQ(occupied(), 0U) << range_m << " m, " << times << " readings";
+        }
+    }
+}
+
 TEST_F(StandingCone, has_what_has_gone_off_the_map_with_the_third_reading_however_slow_they_come) {
     constexpr double kOfNineZones_s = 0.3;
     read(0.5, 30, kOfNineZones_s);
@@ -155,23 +169,24 @@ class StandingZones : public testing::Test {
         scene.mapping.standing = fast_mapping().standing;
         builder_.emplace(MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, {}).value());
     }
-    /// Both, one after the other.
-    void read(double first_m, double second_m) {
+    /// Both, one after the other; the first may be silent.
+    void read(std::optional<double> first_m, double second_m) {
         for (const std::uint8_t zone : {std::uint8_t{0}, std::uint8_t{1}}) {
             now_s_ += 0.15;
             for (const double beside_s : {-0.01, 0.01})
                 ASSERT_TRUE(builder_->add({host_at(now_s_ + beside_s), {M_PI / 2.0}}));
+            if (zone == 0 && !first_m) continue;
             ASSERT_TRUE(builder_->integrate(RangeMeasurement{
-                {kLeft, kGood, zone}, host_at(now_s_), zone == 0 ? first_m : second_m, 0.005}));
+                {kLeft, kGood, zone}, host_at(now_s_), zone == 0 ? *first_m : second_m, 0.005}));
         }
     }
     /// Well before the wall.
-    [[nodiscard]] bool has_hand() const {
+    [[nodiscard]] bool has_hand(double before_m = 0.6) const {
         bool is_any = false;
         const FusedMap& map = *builder_->maps().fused();
         map.for_each_known([&](VoxelKey key, float log_odds) {
-            is_any = is_any ||
-                     (map.occupancy_of(log_odds) == Occupancy::occupied && map.centre_of(key).norm() < 0.6);
+            is_any = is_any || (map.occupancy_of(log_odds) == Occupancy::occupied &&
+                                map.centre_of(key).norm() < before_m);
         });
         return is_any;
     }
@@ -185,6 +200,35 @@ TEST_F(StandingZones, keep_what_one_of_them_sees_and_the_other_looks_past) {
     for (int i = 0; i < 300; ++i) {
         EXPECT_TRUE(has_hand()) << i;
         read(0.4, 1.0);
+    }
+}
+
+// Behind it there is nothing in reach: readings without a range do not come this far.
+TEST_F(StandingZones, have_what_has_gone_off_the_map_though_the_one_that_saw_it_is_silent) {
+    for (int i = 0; i < 10; ++i) read(1.0, 1.0);
+    for (int i = 0; i < 8; ++i) read(0.4, 1.0);
+    ASSERT_TRUE(has_hand());
+    for (int i = 0; i < 20; ++i) read(std::nullopt, 1.0);
+    EXPECT_FALSE(has_hand());
+}
+
+TEST_F(StandingZones, have_all_that_has_gone_off_the_map_however_long_it_stood) {
+    for (int i = 0; i < 10; ++i) read(1.2, 1.2);
+    for (int i = 0; i < 60; ++i) read(0.4, 0.4);
+    ASSERT_TRUE(has_hand());
+    for (int i = 0; i < 4; ++i) read(1.2, 1.2);
+    EXPECT_FALSE(has_hand());
+}
+
+// Before the wall's voxels most of the cap is free: its few others, at the edge, would take all of the blame.
+TEST_F(StandingZones, mark_nothing_that_they_could_not_free) {
+    for (const double range_m : {0.4, 0.8, 1.0, 1.2}) {
+        for (int i = 0; i < 20; ++i) read(range_m + 0.8, range_m + 0.8);
+        EXPECT_FALSE(has_hand(range_m + 0.4));
+        for (int i = 0; i < 20; ++i) read(range_m, range_m);
+        EXPECT_TRUE(has_hand(range_m + 0.4));
+        for (int i = 0; i < 5; ++i) read(range_m + 0.8, range_m + 0.8);
+        EXPECT_FALSE(has_hand(range_m + 0.4)) << range_m;
     }
 }
 
