@@ -154,7 +154,8 @@ Status<AppError> Daemon::Parts::take_sockets() {
     control = std::move(opened).value();
     control->answer_later(
         [this](const std::string& line, std::uint64_t ticket) {
-            return queries.take(line, ticket, pipeline, inputs.bus_now(monotonic_now()));
+            const HostTime now = monotonic_now();
+            return queries.take(line, ticket, pipeline, {inputs.bus_now(now), inputs.reckoned_bus_now(now)});
         },
         [this](std::uint64_t ticket) { queries.forget(ticket); });
     return inputs.take_sockets(settings.host.rig);

@@ -71,6 +71,8 @@ class Inputs {
     [[nodiscard]] std::optional<HostTime> foreign_sync() const noexcept { return foreign_sync_; }
     /// What time it is on the bus, on the clock that SYNC tells; empty while nobody knows.
     [[nodiscard]] std::optional<HostTime> bus_now(HostTime now) const { return bus_time_.at(now); }
+    /// Where that is empty: by this machine's clock since it was last known.
+    [[nodiscard]] HostTime reckoned_bus_now(HostTime now) const { return bus_time_.reckoned_at(now); }
     /// Nodes of the rig spoke, and do no more.
     [[nodiscard]] bool has_bus_fallen_silent(HostTime now) const { return bus_time_.has_fallen_silent(now); }
     /// Of the host that sends SYNC, while this one only listens.

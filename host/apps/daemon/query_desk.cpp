@@ -43,14 +43,14 @@ void QueryDesk::change_robot(const HostSetup& setup) {
 }
 
 bool QueryDesk::take(const std::string& line, std::uint64_t ticket, const Pipeline& pipeline,
-                     std::optional<HostTime> now) {
+                     const Asked& asked) {
     if (!is_query(line)) return false;
     Question question{line,
                       ticket,
                       setup_,
                       pipeline.maps().fused()->copy(),
-                      present_joints(pipeline, setup_->robot.joint_count(), now),
-                      now};
+                      present_joints(pipeline, setup_->robot.joint_count(), asked.known),
+                      asked.reckoned};
     {
         const std::scoped_lock lock(mutex_);
         waiting_.push_back(std::move(question));
@@ -110,7 +110,7 @@ void QueryDesk::tell(std::uint64_t ticket, std::string line) {
 std::string QueryDesk::answer(Question question) {
     nlohmann::ordered_json json;
     try {
-        if (question.now) question.map.go_on(*question.now);  // nothing may have been measured for long
+        question.map.go_on(question.asked);  // nothing may have been measured for long, or ever
         const auto request = read_query(question.line);
         json = request ? answer_query(*request,
                                       {&question.setup->rig, &question.setup->robot, std::move(question.map),

@@ -40,10 +40,15 @@ class QueryDesk {
     /// What is asked from now on is asked of this robot.
     void change_robot(const HostSetup& setup);
 
+    /// When a question came, on the clock of what the map was told. A time in doubt must not make the map
+    /// younger: by `reckoned` it ages all the same.
+    struct Asked {
+        std::optional<HostTime> known;  ///< empty: the time is unknown or in doubt
+        HostTime reckoned;              ///< the newest known time, gone on by this machine's clock
+    };
     /// False if the line is no query. The arm stands as the newest joint sample says, if that is at most
-    /// `kPresentMax` old at `now`.
-    bool take(const std::string& line, std::uint64_t ticket, const Pipeline& pipeline,
-              std::optional<HostTime> now);
+    /// `kPresentMax` old and the time is known.
+    bool take(const std::string& line, std::uint64_t ticket, const Pipeline& pipeline, const Asked& asked);
     static constexpr Nanoseconds kPresentMax{500'000'000};
     /// Nobody waits for this answer any more: it is not sought, or not to its end.
     void forget(std::uint64_t ticket);
@@ -59,7 +64,7 @@ class QueryDesk {
         std::shared_ptr<const HostSetup> setup;
         FusedMap map;
         std::vector<double> present;
-        std::optional<HostTime> now;  ///< when it was asked; empty: nobody knows
+        HostTime asked;  ///< as reckoned
     };
     void run();
     void wait_for_questions(std::unique_lock<std::mutex>& lock);

@@ -27,8 +27,12 @@ class BusTime {
     /// speak and their time is unknown or in doubt: how old anything is nobody can tell then.
     [[nodiscard]] std::optional<HostTime> at(HostTime now) const noexcept {
         const bool is_in_doubt = read_ && !is_known_ && !has_fallen_silent(now);
-        return is_in_doubt ? std::nullopt : std::optional(now + ahead_);
+        return is_in_doubt ? std::nullopt : std::optional(reckoned_at(now));
     }
+
+    /// The same, but in doubt, too: the newest that was known, gone on by this machine's clock. Enough for
+    /// how long ago something was; not for where the bus's clock stands.
+    [[nodiscard]] HostTime reckoned_at(HostTime now) const noexcept { return now + ahead_; }
 
     /// Nodes spoke, and do no more.
     [[nodiscard]] bool has_fallen_silent(HostTime now) const noexcept {

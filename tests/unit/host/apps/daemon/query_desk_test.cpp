@@ -20,6 +20,9 @@ using Json = nlohmann::ordered_json;
 
 class QueryDeskTest : public testing::Test {
   protected:
+    static constexpr HostTime kNow{1'000'000'000'000};
+    static constexpr Nanoseconds kSecond{1'000'000'000};
+
     static FusedMap free_about_base(const MapConfig& config) {
         FusedMap map(config);
         for (int i = 0; i < 8; ++i) {
@@ -28,6 +31,15 @@ class QueryDeskTest : public testing::Test {
             };
             EXPECT_TRUE(map.set_cube({{along(0), along(1), along(2)}, 5}, -1.0F));
         }
+        return map;
+    }
+    /// The same, just seen.
+    [[nodiscard]] FusedMap confirmed_about_base() const {
+        FusedMap map = free_about_base(scene_.mapping.map);
+        map.go_on(kNow);
+        std::vector<VoxelUpdate> seen;
+        map.for_each_known([&](VoxelKey key, float) { seen.push_back({key, -0.1F}); });
+        map.apply(seen, SensorKind::camera);
         return map;
     }
     void SetUp() override { pipeline_.begin_with(free_about_base(scene_.mapping.map)); }
@@ -44,7 +56,13 @@ class QueryDeskTest : public testing::Test {
     }
     void ask(const QueryRequest& request, std::uint64_t ticket) { ask(desk_, request, ticket); }
     void ask(QueryDesk& desk, const QueryRequest& request, std::uint64_t ticket) {
-        ASSERT_TRUE(desk.take(to_line(request), ticket, pipeline_, std::nullopt));
+        ASSERT_TRUE(desk.take(to_line(request), ticket, pipeline_, {kNow, kNow}));
+    }
+    /// The state that the daemon answers of where the arm has free space about it, while the time is in
+    /// doubt.
+    std::string state_in_doubt(HostTime reckoned) {
+        EXPECT_TRUE(desk_.take(to_line(path({{0.0}})), 1, pipeline_, {std::nullopt, reckoned}));
+        return answers(1)[1].at("state");
     }
     std::map<std::uint64_t, Json> answers(std::size_t count) { return answers(desk_, count); }
     /// All of them; fewer if they take too long.
@@ -64,7 +82,13 @@ class QueryDeskTest : public testing::Test {
         return request;
     }
 
-    Scene scene_ = good_scene();
+    static constexpr std::uint32_t kStaleAfter_s = 60;
+    static Scene scene_that_ages() {
+        Scene scene = good_scene();
+        scene.mapping.map.age.stale_after_s = kStaleAfter_s;
+        return scene;
+    }
+    Scene scene_ = scene_that_ages();
     Pipeline pipeline_ = make_pipeline(scene_);
     HostSetup setup_{scene_.rig, one_joint_robot(), {}};
     QueryDesk desk_{setup_};
@@ -81,6 +105,19 @@ TEST_F(QueryDeskTest, keeps_a_field_for_long_paths_and_none_for_a_posture) {
     touched.reach_m = 0.0;
     ask(touched, 4);
     EXPECT_TRUE(answers(1)[4].at("distances").is_null());
+}
+
+TEST_F(QueryDeskTest, a_saved_map_is_stale_though_nodes_speak_and_nobody_knows_the_time) {
+    EXPECT_EQ(state_in_doubt(kNow), "stale");
+    EXPECT_EQ(state_in_doubt(kNow + 3 * kSecond), "stale");
+}
+
+TEST_F(QueryDeskTest, a_map_grows_older_while_the_time_is_in_doubt) {
+    pipeline_.begin_with(confirmed_about_base());
+    constexpr Nanoseconds kStaleAfter = kStaleAfter_s * kSecond;
+    EXPECT_EQ(state_in_doubt(kNow), "free");
+    EXPECT_EQ(state_in_doubt(kNow + kStaleAfter - 2 * kSecond), "free");
+    EXPECT_EQ(state_in_doubt(kNow + kStaleAfter + 2 * kSecond), "stale");
 }
 
 TEST_F(QueryDeskTest, lets_go_of_the_field_when_nobody_asks) {
@@ -141,7 +178,9 @@ TEST_F(QueryDeskTest, answers_of_the_map_as_it_was_when_the_question_came) {
             mark(random);
             const QueryRequest request = path({{turn(random)}, {turn(random)}, {turn(random)}});
             ask(request, ticket);
-            wanted[ticket] = answer_query(request, {&setup_.rig, &setup_.robot, map().copy(), {}});
+            FusedMap then = map().copy();
+            then.go_on(kNow);
+            wanted[ticket] = answer_query(request, {&setup_.rig, &setup_.robot, std::move(then), {}});
         }
         for (auto& [ticket, answer] : answers(8)) {
             by_field += answer.at("distances") == "field" ? 1U : 0U;

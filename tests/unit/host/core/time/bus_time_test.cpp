@@ -35,6 +35,19 @@ TEST(BusTime, is_unknown_while_nodes_speak_and_nobody_tells_the_time) {
     EXPECT_EQ(time.at(ms(8'001)), ms(161'001)) << "of a host that was set a minute ahead";
 }
 
+TEST(BusTime, is_reckoned_from_the_newest_that_was_known_while_it_is_in_doubt) {
+    BusTime time;
+    EXPECT_EQ(time.reckoned_at(ms(5'000)), ms(5'000)) << "nobody ever spoke";
+    time.on_frame(ms(5'500), std::nullopt);
+    EXPECT_EQ(time.reckoned_at(ms(5'600)), ms(5'600)) << "it was never known";
+    time.on_frame(ms(6'000), ms(100'000));
+    EXPECT_EQ(time.reckoned_at(ms(6'100)), time.at(ms(6'100)));
+    time.on_frame(ms(7'000), std::nullopt);
+    time.on_frame(ms(96'000), std::nullopt);
+    EXPECT_EQ(time.at(ms(96'000)), std::nullopt);
+    EXPECT_EQ(time.reckoned_at(ms(96'000)), ms(190'000));
+}
+
 TEST(BusTime, has_fallen_silent_350_ms_after_the_last_frame_and_not_before_the_first) {
     BusTime time;
     EXPECT_FALSE(time.has_fallen_silent(ms(60'000)));
