@@ -38,7 +38,7 @@ struct Explanation {
                                                     const ReplayReport& report = {});
 
 /// In one sentence: "occupied, mainly by sensor forearm_3 between 4.100 and 4.600 s, 12 hits; the camera
-/// never saw it free".
+/// saw it free in 3 frames, and never occupied".
 [[nodiscard]] std::string conclusion_of(const Explanation& explanation);
 /// For a person: the voxel, each source's share, the newest contributions, the conclusion.
 [[nodiscard]] std::string to_text(const Explanation& explanation);

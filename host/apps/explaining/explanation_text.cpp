@@ -48,10 +48,12 @@ std::string about_camera(const Explanation& explanation) {
     const auto found = explanation.witness.shares().find(kCamera);
     if (found == explanation.witness.shares().end()) return "the camera never saw it";
     const SourceShare& share = found->second;
-    if (share.misses == 0) return "the camera never saw it free";
-    if (share.hits == 0) return "the camera never saw it occupied";
-    return fmt::format("the camera saw it occupied in {} and free in {}",
-                       plural(share.hits, "frame", "frames"), plural(share.misses, "frame", "frames"));
+    const std::string occupied = plural(share.hits, "frame", "frames");
+    const std::string free = plural(share.misses, "frame", "frames");
+    // At a clamp a frame changes nothing, and yet it is evidence: it is told, how many there were.
+    if (share.misses == 0) return fmt::format("the camera saw it occupied in {}, and never free", occupied);
+    if (share.hits == 0) return fmt::format("the camera saw it free in {}, and never occupied", free);
+    return fmt::format("the camera saw it occupied in {} and free in {}", occupied, free);
 }
 
 /// The one that did most in the direction in which the voxel went.

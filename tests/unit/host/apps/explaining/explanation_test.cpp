@@ -173,8 +173,22 @@ TEST(Explanation, concludes_in_one_sentence) {
     ghost.on_depth({{4'700'000'000}, 0, 0, {}}, terms_of(miss));
     EXPECT_EQ(
         conclusion_of(explanation_of(ghost, Occupancy::occupied)),
-        "occupied, mainly by sensor forearm_3 between 4.100 and 4.600 s, 2 hits; the camera never saw it "
-        "occupied");
+        "occupied, mainly by sensor forearm_3 between 4.100 and 4.600 s, 2 hits; the camera saw it free in "
+        "1 frame, and never occupied");
+    VoxelWitness clamped(key, MapConfig{}, kKept);
+    for (int i = 0; i < 9; ++i) clamped.on_reading(reading_at(4.1), Beam{}, miss);
+    for (int i = 0; i < 61; ++i) clamped.on_depth({{4'200'000'000}, 0, 0, {}}, terms_of(miss));
+    EXPECT_EQ(conclusion_of(explanation_of(clamped, Occupancy::free)),
+              "free, mainly by sensor forearm_3 at 4.100 s, 9 misses; the camera saw it free in 61 frames, "
+              "and never occupied")
+        << "though at the clamp that changed nothing";
+    VoxelWitness marked(key, MapConfig{}, kKept);
+    for (int i = 0; i < 2; ++i) marked.on_reading(reading_at(4.1), Beam{}, hit);
+    marked.on_depth({{4'200'000'000}, 0, 0, {}}, terms_of(hit));
+    EXPECT_EQ(
+        conclusion_of(explanation_of(marked, Occupancy::occupied)),
+        "occupied, mainly by sensor forearm_3 at 4.100 s, 2 hits; the camera saw it occupied in 1 frame, "
+        "and never free");
     VoxelWitness freed(key, MapConfig{}, kKept);
     freed.on_depth({{4'700'000'000}, 0, 0, {}}, terms_of(miss));
     EXPECT_EQ(conclusion_of(explanation_of(freed, Occupancy::free)),
@@ -200,7 +214,8 @@ TEST(Explanation, weighs_what_was_there_before_as_a_line_of_its_own_and_the_sum_
               "  forearm_3                     1       0   +0.7500      4.100     4.100\n"
               "  camera                        0       1   -0.5000      4.200     4.200\n");
     EXPECT_EQ(conclusion_of(explanation_of(witness, Occupancy::occupied)),
-              "occupied, mainly by what was there before the recording; the camera never saw it occupied");
+              "occupied, mainly by what was there before the recording; the camera saw it free in 1 frame, "
+              "and never occupied");
     VoxelWitness weaker = witness_from(key, 0.5F);
     weaker.on_reading(reading_at(4.1), Beam{}, hit);
     EXPECT_EQ(conclusion_of(explanation_of(weaker, Occupancy::occupied)),
