@@ -127,7 +127,10 @@ constexpr std::array kStatusMeanings = {
             "its readings stay out of the map (contradicts_camera): it contradicts the camera, and no fewer "
             "others agree with it"},
     Meaning{"nodes.sensors.camera", "compared", "ranges for which the camera predicted a surface"},
-    Meaning{"nodes.sensors.camera", "fitted", "those of them that were what it predicted"},
+    Meaning{"nodes.sensors.camera", "fitted",
+            "those of them that were about what it predicted; a few centimetres off still are, and up to 12 "
+            "cm before a surface that the camera sees from behind: a sensor that contradicts it may fit all "
+            "the same"},
     Meaning{"nodes.sensors.camera", "agreed",
             "comparisons in which it saw a surface where the camera sees one"},
     Meaning{"nodes.sensors.camera", "in_free_space",
