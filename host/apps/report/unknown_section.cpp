@@ -25,12 +25,13 @@ constexpr std::string_view kFusedText =
 (no colour) to {} m (full colour).)";
 constexpr std::string_view kPocketText =
     R"( The numbers are the largest pockets that are left, at their centres; <code>octoskin query --unknown</code>
-lists them with a posture of the arm that would look into each.)";
+lists them, in the map’s frame, with a posture of the arm that would look into each. The table has them from
+the robot’s base.)";
 
 std::string pocket_table(const evaluation::UnknownSpace& space) {
     std::string html =
-        "<table>\n<thead><tr><th>Pocket</th><th>Volume, l</th><th>x, m</th><th>y, m</th><th>z, "
-        "m</th></tr></thead>\n"
+        "<table>\n<thead><tr><th>Pocket</th><th>Volume, l</th><th>x from the base, m</th>"
+        "<th>y, m</th><th>z, m</th></tr></thead>\n"
         "<tbody>\n";
     for (std::size_t i = 0; i < std::min(kPocketsShown, space.pockets.size()); ++i) {
         const auto& pocket = space.pockets[i];
