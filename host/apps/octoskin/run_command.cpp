@@ -60,9 +60,10 @@ void add_run_command(CLI::App& app) {
         ->add_option("--configuration", request->configuration,
                      configuration_help("How measurements become voxels"))
         ->capture_default_str();
-    auto* const camera =
-        command->add_option("--camera", request->camera_uri,
-                            "OpenNI2 device, or an .oni file to play (default: the first camera there is)");
+    auto* const camera = command->add_option(
+        "--camera", request->camera_uri,
+        "OpenNI2 device, or an .oni file to play over and over, not in step with a bus (default: "
+        "the first camera there is)");
     command
         ->add_flag_callback(
             "--no-camera", [request] { request->has_camera = false; }, "Do without the rig's camera")
