@@ -245,10 +245,18 @@ void Inputs::feed(const wire::CanFrame& frame, WallTime stamp) {
     const std::uint64_t used_before = pipeline_.accounts().readings.used();
     recordings_.on_can(frame, stamp);
     pipeline_.on_can(frame, stamp);
+    note_host_frame(frame, stamp);
     const std::uint64_t used = pipeline_.accounts().readings.used() - used_before;
     if (used == 0) return;
     const Nanoseconds took{wall_now().ns - stamp.ns};
     for (std::uint64_t i = 0; i < used; ++i) latency_.add(took);
+}
+
+/// The pipeline's "now" is at this frame only if it took it: one that it refused must not hold the time up.
+void Inputs::note_host_frame(const wire::CanFrame& frame, WallTime stamp) {
+    const bool is_taken = pipeline_.intake().host_clock().newest_stamp() == stamp;
+    if (is_taken && wire::node_of(frame.can_id) == wire::kHostId)
+        bus_time_.on_host_frame(monotonic_now(), pipeline_.now());
 }
 
 void Inputs::collect_joints(int& datagrams_left) {

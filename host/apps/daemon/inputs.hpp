@@ -91,6 +91,7 @@ class Inputs {
     void answer_sync(const socketcan::Received& received, HostTime at);
     void hear_host(const socketcan::Received& received, HostTime at);
     void feed(const wire::CanFrame& frame, WallTime stamp);
+    void note_host_frame(const wire::CanFrame& frame, WallTime stamp);
     void collect_joints(int& datagrams_left);
     [[nodiscard]] bool has_lost_its_place(const JointSample& sample) const;
     void note_displaced(HostTime now);

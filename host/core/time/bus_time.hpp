@@ -23,6 +23,12 @@ class BusTime {
         if (bus) ahead_ = *bus - read;
     }
 
+    /// One of the host that tells the time, likewise. It tells nothing of who speaks; but where a clock was
+    /// set the map is on the new one from that frame on, and where no node speaks nobody else tells it.
+    void on_host_frame(HostTime read, std::optional<HostTime> bus) noexcept {
+        if (bus) ahead_ = *bus - read;
+    }
+
     /// On the clock that SYNC tells, which is taken for this machine's until it is known. Empty while nodes
     /// speak and their time is unknown or in doubt: how old anything is nobody can tell then.
     [[nodiscard]] std::optional<HostTime> at(HostTime now) const noexcept {

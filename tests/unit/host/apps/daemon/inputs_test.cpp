@@ -8,6 +8,8 @@
 #include <chrono>
 #include <thread>
 
+#include "common/wire/codec.hpp"
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "tests/unit/host/apps/daemon/daemon_view_fixture.hpp"
 
@@ -45,6 +47,28 @@ TEST_F(InputsTest, joint_states_from_before_a_reload_that_come_to_light_after_it
     inputs->catch_up();
     EXPECT_EQ(frames_in(), 0U);
     EXPECT_EQ(inputs->joints_displaced(), 5U);
+}
+
+// The camera's images are on that host's clock, too: by this machine's they would never grow old.
+TEST_F(InputsTest, the_time_is_that_of_another_host_where_no_node_speaks) {
+    constexpr std::int64_t kAheadNs = 900'000'000'000'000;
+    for (std::uint8_t sequence = 1; sequence <= 3; ++sequence) {
+        const HostTime heard = say_sync(sequence);
+        const auto us = static_cast<std::uint64_t>((heard.ns + kAheadNs) / 1'000);
+        say(wire::encode(wire::FollowUp{sequence, us}, wire::kHostId));
+    }
+    const HostTime now = monotonic_now();
+    ASSERT_TRUE(inputs_->bus_now(now));
+    const auto ahead_s = [&] {
+        return static_cast<double>((inputs_->reckoned_bus_now(now) - now).count()) * 1e-9;
+    };
+    EXPECT_NEAR(ahead_s(), 900'000.0, 1.0);
+    std::this_thread::sleep_for(50ms);
+    wire::CanFrame broken = wire::encode(wire::Sync{9}, wire::kHostId);
+    broken.payload_len = 0;
+    const double before = ahead_s();
+    say(broken);
+    EXPECT_EQ(ahead_s(), before) << "it tells nothing";
 }
 
 }  // namespace

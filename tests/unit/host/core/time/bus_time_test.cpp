@@ -48,6 +48,25 @@ TEST(BusTime, is_reckoned_from_the_newest_that_was_known_while_it_is_in_doubt) {
     EXPECT_EQ(time.reckoned_at(ms(96'000)), ms(190'000));
 }
 
+TEST(BusTime, is_reckoned_on_the_clock_that_was_set_from_the_frame_on_that_tells_it) {
+    BusTime time;
+    time.on_frame(ms(6'000), ms(100'000));
+    time.on_frame(ms(7'000), std::nullopt);
+    time.on_host_frame(ms(7'010), ms(3'700'000));
+    EXPECT_EQ(time.reckoned_at(ms(7'020)), ms(3'700'010));
+    EXPECT_EQ(time.at(ms(7'020)), std::nullopt) << "that is told by the next frame of a node";
+    EXPECT_EQ(time.at(ms(7'351)), ms(3'700'341)) << "or by none: they fell silent";
+    time.on_host_frame(ms(7'400), std::nullopt);
+    EXPECT_EQ(time.reckoned_at(ms(7'400)), ms(3'700'390)) << "in doubt: as it was";
+}
+
+TEST(BusTime, is_that_of_the_host_that_tells_it_where_no_node_ever_spoke) {
+    BusTime time;
+    time.on_host_frame(ms(7'000), ms(3'700'000));
+    EXPECT_EQ(time.at(ms(8'000)), ms(3'701'000));
+    EXPECT_FALSE(time.has_fallen_silent(ms(8'000)));
+}
+
 TEST(BusTime, has_fallen_silent_350_ms_after_the_last_frame_and_not_before_the_first) {
     BusTime time;
     EXPECT_FALSE(time.has_fallen_silent(ms(60'000)));
