@@ -32,6 +32,20 @@ class QueryTest : public DaemonTest {
         EXPECT_TRUE(answer) << answer.error().message;
         return answer ? Json::parse(*answer) : Json();
     }
+    /// A saved map in which all about the arm is free.
+    void save_free_map() const {
+        std::filesystem::create_directories(folder_ / "maps");
+        FusedMap map{MapConfig{.resolution_m = 0.04}};
+        constexpr std::array<std::uint16_t, 2> kSides{32704, 32768};
+        for (const auto x : kSides)
+            for (const auto y : kSides)
+                for (const auto z : kSides) ASSERT_TRUE(map.set_cube({{x, y, z}, 6}, -2.0F));
+        ASSERT_TRUE(save_map(map, folder_ / "maps" / "fused.ot"));
+    }
+    /// Upright, and out of the way of all that ranges.
+    [[nodiscard]] std::string upright() const {
+        return "query --joints 0,0,0,-0.1,0,1.6,0 --socket " + socket();
+    }
     void start_and_range() {
         start();
         ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
@@ -139,19 +153,12 @@ TEST_F(QueryTest, is_not_kept_waiting_by_who_has_gone) {
 
 /// What nobody has seen since the daemon began, however free it was before.
 TEST_F(QueryTest, tells_a_script_and_a_person_that_what_was_free_is_stale) {
-    std::filesystem::create_directories(folder_ / "maps");
-    FusedMap before{MapConfig{.resolution_m = 0.04}};
-    constexpr std::array<std::uint16_t, 2> kSides{32704, 32768};
-    for (const auto x : kSides)
-        for (const auto y : kSides)
-            for (const auto z : kSides) ASSERT_TRUE(before.set_cube({{x, y, z}, 6}, -2.0F));
-    ASSERT_TRUE(save_map(before, folder_ / "maps" / "fused.ot"));
+    save_free_map();
     const auto mapping =
         folder_.write("mapping.yaml", "base: fast\nage: {stale_after_s: 1, unknown_after_s: 0}\n");
     start({"--no-camera", "--configuration", mapping.string()});
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
-    // Upright, and out of the way of all that ranges.
-    const std::string asked = "query --joints 0,0,0,-0.1,0,1.6,0 --socket " + socket();
+    const std::string asked = upright();
     const Said stale = octoskin(asked);
     EXPECT_EQ(stale.exit_code, 2) << stale.output;
     EXPECT_EQ(stale.output.rfind("stale: panda_", 0), 0U) << stale.output;
@@ -163,6 +170,17 @@ TEST_F(QueryTest, tells_a_script_and_a_person_that_what_was_free_is_stale) {
         << daemon_->status();
     const Said free = octoskin(asked);
     EXPECT_EQ(free.exit_code, 0) << "nothing is ever stale: " << free.output;
+}
+
+TEST_F(QueryTest, tells_that_a_saved_map_is_stale_while_nodes_speak_and_nobody_tells_the_time) {
+    save_free_map();
+    start({"--no-camera", "--listen-only"});
+    const auto is_heard = [](const Json& now) { return now["nodes"][0]["verdict"] == "usable"; };
+    ASSERT_TRUE(daemon_->wait_until(is_heard, 15s)) << daemon_->status()["nodes"].dump(1);
+    ASSERT_FALSE(daemon_->status()["clock"]["known"].get<bool>());
+    const Said stale = octoskin(upright());
+    EXPECT_EQ(stale.exit_code, 2) << stale.output;
+    EXPECT_EQ(stale.output.rfind("stale: panda_", 0), 0U) << stale.output;
 }
 
 TEST_F(QueryTest, says_that_nobody_knows_how_the_arm_stands) {
