@@ -148,7 +148,7 @@ TEST(VoxelWitness, says_what_the_map_says_where_sensors_that_see_a_cone_have_cou
             witness.on_depth({{1'000'000 * i}, 0, 0, {}}, terms);
         } else {
             std::vector<VoxelUpdate> changes;
-            map.apply(i / 5 % 2 == 0 ? at : through, model, &changes);
+            map.apply(i / 5 % 2 == 0 ? at : through, model, Blame::all, &changes);
             witness.on_reading(reading_at(1e-3 * i), Beam{}, changes);
         }
         witness.on_fused(map);
