@@ -27,6 +27,14 @@ bool has_gone(int descriptor) {
     return ::poll(&client, 1, 0) > 0 && (client.revents & (POLLHUP | POLLERR)) != 0;
 }
 
+/// What is left unread when a connection is closed breaks it for who is about to read its end.
+void forget_the_rest(int descriptor) {
+    std::array<char, 4096> bytes{};
+    constexpr int kReadsMax = 16;  // who sends without end has a broken connection
+    for (int i = 0; i<kReadsMax&& ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT)> 0; ++i) {
+    }
+}
+
 bool has_sent_something(int descriptor) {
     pollfd client{descriptor, POLLIN, 0};
     return ::poll(&client, 1, 0) > 0;
@@ -133,6 +141,7 @@ bool ControlSocket::serve(Client& client) {
                            kRequestMax),
                ExitCode::usage);
     }
+    if (client.is_refused && is_whole) forget_the_rest(client.descriptor);
     if (client.is_refused) return !is_whole;
     if (!is_whole) return true;
     client.asked = monotonic_now();
