@@ -303,7 +303,8 @@ void add_posture_options(CLI::App& command, QueryOptions& options) {
         ->excludes(joints);
     command
         .add_option("--step", options.request.step,
-                    "No joint moves further between two postures asked about, rad (m)")
+                    "Of a path: no joint moves further between two postures asked about, rad (m); no link "
+                    "moves further than half a voxel whatever the step")
         ->check(from_to(kStepMin, 10.0))
         ->capture_default_str();
     command.add_option("--padding", options.request.padding_m, "Added to the radius of each capsule, m")

@@ -112,6 +112,7 @@ class Asking {
                     "how the arm stands: " + text_of(*fault, *ground_.rig, *ground_.robot, ground_.present));
     }
 
+    /// And makes its legs.
     Status<AppError> check_path() {
         double postures = 0.0;
         for (std::size_t i = 0; i < request_.path.size(); ++i) {
@@ -122,21 +123,24 @@ class Asking {
                             fmt::format("configuration {}: {}", i + 1,
                                         text_of(*fault, *ground_.rig, *ground_.robot, position)));
             }
-            postures += static_cast<double>(leg_to(i).postures());
-        }
-        if (postures > static_cast<double>(kPosturesMax)) {
-            return fail(ExitCode::usage,
-                        fmt::format("the path has {:.0f} postures at a step of {}; at most {} can be asked "
-                                    "about at once: make the step larger, or ask about parts of the path",
-                                    postures, request_.step, kPosturesMax));
+            // From the configuration before; to the first from itself.
+            const auto& before = request_.path[i > 0 ? i - 1 : 0];
+            postures += static_cast<double>(
+                legs_.emplace_back(*robot_, ground_.map, before, position, request_.step).postures());
+            if (postures > static_cast<double>(kPosturesMax)) {
+                return fail(ExitCode::usage, too_long(i + 1, postures));
+            }
         }
         return Done{};
     }
 
-    /// From the configuration before; to the first from itself.
-    [[nodiscard]] Leg leg_to(std::size_t configuration) const {
-        return {request_.path[configuration > 0 ? configuration - 1 : 0], request_.path[configuration],
-                request_.step};
+    [[nodiscard]] std::string too_long(std::size_t configurations, double postures) const {
+        return fmt::format(
+            "the path has {:.0f} postures up to configuration {}, so that from one to the next no link moves "
+            "by more than half a voxel of {} m and no joint by more than a step of {}; at most {} can be "
+            "asked about at once: ask about parts of the path (a larger step helps only where the voxels do "
+            "not want as many)",
+            postures, configurations, ground_.map.resolution_m(), request_.step, kPosturesMax);
     }
 
     /// Null: distances are not asked for, or better searched for.
@@ -144,13 +148,10 @@ class Asking {
         if (ground_.field == nullptr || !(request_.reach_m > 0.0)) return nullptr;
         AskedSpace asked;
         asked.reach_m = request_.reach_m;
-        std::vector<double> position(ground_.robot->joint_count());
-        for (std::size_t i = 0; i < request_.path.size(); ++i) {
-            const Leg leg = leg_to(i);
+        for (const Leg& leg : legs_) {
             for (std::size_t posture = 0; posture < leg.postures(); ++posture) {
                 if (is_ending_()) return nullptr;
-                leg.position(posture, position);
-                const auto capsules = robot_->pose(position);
+                const auto capsules = leg.pose(*robot_, posture);
                 if (!capsules) return nullptr;  // whoever asks finds it out
                 asked.include(*capsules);
             }
@@ -173,9 +174,9 @@ class Asking {
         Json legs = Json::array();
         PostureState worst = PostureState::free;
         std::size_t postures = 0;
-        const LegConfig config{request_.step, request_.reach_m, field_for_path(), is_ending_};
-        for (std::size_t i = 0; i < request_.path.size(); ++i) {
-            const auto answer = ask(*robot_, ground_.map, leg_to(i), config);
+        const LegConfig config{request_.reach_m, field_for_path(), is_ending_};
+        for (std::size_t i = 0; i < legs_.size(); ++i) {
+            const auto answer = ask(*robot_, ground_.map, legs_[i], config);
             if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the path was asked about");
             if (!answer) {
                 return fail(ExitCode::usage,
@@ -288,10 +289,9 @@ class Asking {
                      {"border_m", point_json(ground_.map.centre_of(pocket.nearest_border))},
                      {"view", nullptr}};
         if (!view) return json;
-        const Leg way(request_.path.front(), view->position, request_.step);
+        const Leg way(*robot_, ground_.map, request_.path.front(), view->position, request_.step);
         const auto answer =
-            ask(*robot_, ground_.map, way,
-                {.step = request_.step, .reach_m = 0.0, .field = nullptr, .is_ending = is_ending_});
+            ask(*robot_, ground_.map, way, {.reach_m = 0.0, .field = nullptr, .is_ending = is_ending_});
         json["view"] = {{"joints", view->position},
                         {"state", name(view->state)},
                         {"sensor", view->sensor},
@@ -304,6 +304,7 @@ class Asking {
     QueryGround ground_;
     const std::function<bool()>& is_ending_;
     std::optional<RobotQuery> robot_;
+    std::vector<Leg> legs_;  ///< one for each configuration of the path
     std::optional<std::size_t> refused_;
 };
 

@@ -24,7 +24,7 @@ struct QueryRequest {
     std::vector<std::vector<double>> path;
     double padding_m = 0.0;
     double reach_m = 0.5;  ///< up to here clearances are told; 0: none are
-    double step = 0.05;    ///< of a joint between two postures of a path
+    double step = 0.05;    ///< of a joint between two postures of a path, at most
     std::vector<std::string> links_ignored;
     bool asks_unmoved_links = false;
     /// What lies within the arm as it stands, and what is unknown so near to it, counts as free; empty: not.

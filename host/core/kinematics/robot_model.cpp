@@ -198,6 +198,22 @@ void RobotModel::forward(std::span<const double> position,
     }
 }
 
+std::vector<double> RobotModel::levers_m(std::span<const double> farthest) const {
+    const auto& links = impl_->links;
+    assert(farthest.size() == joint_count());
+    std::vector<double> levers_m(links.size(), 0.0);
+    std::vector<bool> are_moved(links.size(), false);
+    for (std::size_t i = 1; i < links.size(); ++i) {
+        const Link& link = links[i];
+        // What lies below the first joint is no part of any lever.
+        if (are_moved[link.parent]) levers_m[i] = levers_m[link.parent] + link.T_parent_axis.p.Norm();
+        are_moved[i] = are_moved[link.parent] || link.joint != kNoJoint;
+        if (link.axis_to_link.getJoint().getType() == KDL::Joint::TransZ)
+            levers_m[i] += farthest[link.joint];
+    }
+    return levers_m;
+}
+
 const char* describe(RobotModelError error) noexcept {
     switch (error) {
         case RobotModelError::unknown_joint:

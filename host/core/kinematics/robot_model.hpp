@@ -80,6 +80,11 @@ class RobotModel {
     /// allocation; about 1 us for a 7-joint arm.
     void forward(std::span<const double> position, std::span<Eigen::Isometry3d> T_base_link) const noexcept;
 
+    /// By LinkId, metres: wherever the joints are, no origin of a link is further from the axis of any joint
+    /// that turns it. Of a prismatic joint only as long as it is no further from its 0 than `farthest`
+    /// (joint_count() long) says. It is the sum of the lengths between the joints, not the least there is.
+    [[nodiscard]] std::vector<double> levers_m(std::span<const double> farthest) const;
+
   private:
     struct Impl;
     explicit RobotModel(std::unique_ptr<Impl> impl) noexcept;

@@ -3,18 +3,76 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace octoskin {
 namespace {
 
-std::size_t postures_of(std::span<const double> from, std::span<const double> to, double step) {
-    assert(from.size() == to.size() && step > 0.0);
+/// Of a map's voxel: what a part of a leg moves a point by at the most.
+constexpr double kMotionEdges = 0.5;
+
+double longest_of(std::span<const double> from, std::span<const double> to) {
     double longest = 0.0;
     for (std::size_t i = 0; i < from.size(); ++i) longest = std::max(longest, std::abs(to[i] - from[i]));
+    return longest;
+}
+
+double sum_of(std::span<const double> from, std::span<const double> to) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < from.size(); ++i) sum += std::abs(to[i] - from[i]);
+    return sum;
+}
+
+/// From `from`, at share 0, to `to`.
+void go_to(double share, std::span<const double> from, std::span<const double> to,
+           std::span<double> position) {
+    for (std::size_t i = 0; i < to.size(); ++i) position[i] = from[i] + share * (to[i] - from[i]);
+}
+
+double farther_of(const PosedCapsule& a, const PosedCapsule& b) {
+    return std::max((a.p_a - b.p_a).norm(), (a.p_b - b.p_b).norm());
+}
+
+/// No point of a capsule's axis is accelerated by more on the way, in m per way squared, the way being
+/// travelled evenly. Joint i turns the velocity that a joint j further out gives a point, which is at most
+/// |dq_j| times the lever, and the lever is at most lever_m(); a prismatic joint's is |dq_j| itself, lever 1.
+/// Summed over all pairs of joints, that is the square of what all of them move by, times the longer lever.
+double acceleration_of(const RobotQuery& robot, std::span<const double> from, std::span<const double> to) {
+    std::vector<double> farthest(from.size());
+    for (std::size_t i = 0; i < from.size(); ++i) farthest[i] = std::max(std::abs(from[i]), std::abs(to[i]));
+    const double moved = sum_of(from, to);
+    return moved * moved * std::max(robot.lever_m(farthest), 1.0);
+}
+
+/// What no point of each capsule's axis is faster than anywhere on the way, in m per way. Between two looks
+/// it is as fast, on the mean, as they are apart, and its speed differs from that by what it is accelerated
+/// in half the time. A point between the ends of an axis is no faster than the faster of them.
+std::vector<double> speeds_of(const RobotQuery& robot, std::span<const double> from,
+                              std::span<const double> to) {
+    constexpr double kLook = 0.05;  // of all joints together: costs less than a tenth of a speed, of an arm
+    constexpr double kLooksMax = 500.0;
+    const double looks = std::clamp(std::ceil(sum_of(from, to) / kLook), 1.0, kLooksMax);
+    std::vector<double> speeds(robot.capsule_count(), 0.0);
+    std::vector<double> position(from.begin(), from.end());
+    auto before = robot.posed(position);
+    for (double look = 1.0; look <= looks; look += 1.0) {
+        go_to(look / looks, from, to, position);
+        auto now = robot.posed(position);
+        for (std::size_t i = 0; i < speeds.size(); ++i)
+            speeds[i] = std::max(speeds[i], farther_of(before[i], now[i]) * looks);
+        before = std::move(now);
+    }
+    const double change = acceleration_of(robot, from, to) * 0.5 / looks;
+    for (double& speed : speeds) speed += change;
+    return speeds;
+}
+
+std::size_t parts_of(double longest, double step, double fastest, double motion_max_m) {
     // Rounding must not make one more of a way that is a whole number of steps.
     constexpr double kRounding = 1e-9;
     constexpr double kMost = 1e15;  // more would not fit a number; nobody asks about so many
-    return static_cast<std::size_t>(std::clamp(std::ceil(longest / step - kRounding), 1.0, kMost));
+    const double parts = std::max(std::ceil(longest / step - kRounding), std::ceil(fastest / motion_max_m));
+    return static_cast<std::size_t>(std::clamp(parts, 1.0, kMost));
 }
 
 bool is_blocked(const LegAnswer& answer, double reach_m) {
@@ -44,23 +102,38 @@ bool take_posture(const FusedMap& map, std::span<const PosedCapsule> capsules, d
 
 }  // namespace
 
-Leg::Leg(std::span<const double> from, std::span<const double> to, double step)
-    : from_(from.begin(), from.end()), to_(to.begin(), to.end()), postures_(postures_of(from, to, step)) {}
+Leg::Leg(const RobotQuery& robot, const FusedMap& map, std::span<const double> from,
+         std::span<const double> to, double step)
+    : from_(from.begin(), from.end()), to_(to.begin(), to.end()), margins_m_(robot.capsule_count(), 0.0) {
+    assert(from.size() == robot.robot().joint_count() && to.size() == from.size() && step > 0.0);
+    const double longest = longest_of(from, to);
+    if (!(longest > 0.0)) return;
+    margins_m_ = speeds_of(robot, from, to);
+    parts_ = parts_of(longest, step, std::ranges::max(margins_m_), kMotionEdges * map.resolution_m());
+    for (double& margin_m : margins_m_) margin_m *= 0.5 / static_cast<double>(parts_);
+}
 
 void Leg::position(std::size_t index, std::span<double> position) const noexcept {
-    const double part = share(index);
-    for (std::size_t i = 0; i < to_.size(); ++i) position[i] = from_[i] + part * (to_[i] - from_[i]);
-    if (index + 1 == postures_) std::ranges::copy(to_, position.begin());
+    if (index < parts_) return go_to(share(index), from_, to_, position);
+    std::ranges::copy(to_, position.begin());
+}
+
+Result<std::vector<PosedCapsule>, PostureFault> Leg::pose(const RobotQuery& robot, std::size_t index) const {
+    assert(robot.capsule_count() == margins_m_.size());
+    std::vector<double> at(to_.size());
+    position(index, at);
+    auto capsules = robot.pose(at);
+    if (!capsules || index >= parts_) return capsules;
+    for (std::size_t i = 0; i < margins_m_.size(); ++i) (*capsules)[i].radius_m += margins_m_[i];
+    return capsules;
 }
 
 Result<LegAnswer, PostureFault> ask(const RobotQuery& robot, const FusedMap& map, const Leg& leg,
                                     const LegConfig& config) {
     LegAnswer answer;
-    std::vector<double> position(robot.robot().joint_count());
     for (std::size_t i = 0; i < leg.postures() && !is_blocked(answer, config.reach_m); ++i) {
         if (config.is_ending && config.is_ending()) break;
-        leg.position(i, position);
-        const auto capsules = robot.pose(position);
+        const auto capsules = leg.pose(robot, i);
         if (!capsules) return unexpected(capsules.error());
         if (!take_posture(map, *capsules, leg.share(i), config, answer))
             return unexpected(PostureFault{PostureError::too_far, 0});

@@ -114,6 +114,10 @@ std::optional<PostureFault> RobotQuery::fault_of(std::span<const double> positio
 
 Result<std::vector<PosedCapsule>, PostureFault> RobotQuery::pose(std::span<const double> position) const {
     if (const auto fault = fault_of(position)) return unexpected(*fault);
+    return posed(position);
+}
+
+std::vector<PosedCapsule> RobotQuery::posed(std::span<const double> position) const {
     std::vector<Eigen::Isometry3d> T_base_link(robot_.link_count());
     robot_.forward(position, T_base_link);
     std::vector<PosedCapsule> posed;
@@ -124,6 +128,23 @@ Result<std::vector<PosedCapsule>, PostureFault> RobotQuery::pose(std::span<const
         capsule.radius_m += padding_m_;
     }
     return posed;
+}
+
+double RobotQuery::lever_m(std::span<const double> farthest) const {
+    // How far from its link's origin an end is, is the same in every posture.
+    const std::vector<double> zero(robot_.joint_count(), 0.0);
+    std::vector<Eigen::Isometry3d> T_base_link(robot_.link_count());
+    robot_.forward(zero, T_base_link);
+    std::vector<PosedCapsule> posed;
+    body_.pose(T_base_link, posed);
+    const std::vector<double> levers_m = robot_.levers_m(farthest);
+    double lever_m = 0.0;
+    for (const PosedCapsule& capsule : posed) {
+        const Eigen::Vector3d p_base_link = T_base_link[capsule.link].translation();
+        lever_m = std::max({lever_m, levers_m[capsule.link] + (capsule.p_a - p_base_link).norm(),
+                            levers_m[capsule.link] + (capsule.p_b - p_base_link).norm()});
+    }
+    return lever_m;
 }
 
 Result<PostureAnswer, RefusedCapsule> worst_of(const FusedMap& map,

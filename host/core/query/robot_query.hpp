@@ -87,6 +87,11 @@ class RobotQuery {
     [[nodiscard]] Result<std::vector<PosedCapsule>, PostureFault> pose(
         std::span<const double> position) const;
     [[nodiscard]] std::optional<PostureFault> fault_of(std::span<const double> position) const noexcept;
+    /// The same of a position that is no fault, or only by its limits.
+    [[nodiscard]] std::vector<PosedCapsule> posed(std::span<const double> position) const;
+    /// No end of a capsule's axis is ever further from the axis of a joint that turns it: see
+    /// RobotModel::levers_m.
+    [[nodiscard]] double lever_m(std::span<const double> farthest) const;
 
     [[nodiscard]] const RobotModel& robot() const noexcept { return robot_; }
     [[nodiscard]] std::size_t capsule_count() const noexcept { return capsules_; }

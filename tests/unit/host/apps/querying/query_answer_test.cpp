@@ -252,10 +252,13 @@ TEST_F(QueryAnswer, of_a_daemon_that_does_not_know_how_the_arm_stands_takes_noth
     EXPECT_THAT(answer.at("error").get<std::string>(), HasSubstr("nobody knows how the arm stands"));
 }
 
-TEST(Leg, has_no_more_postures_than_fit_a_number_and_one_at_least) {
+TEST_F(QueryAnswer, of_a_leg_that_never_ends_counts_no_more_postures_than_fit_a_number) {
+    const auto robot = RobotQuery::build(arm_.rig, arm_.robot);
+    ASSERT_TRUE(robot);
     const std::array from{0.0, 0.0};
-    EXPECT_EQ(Leg(from, std::array{1e20, 0.0}, 0.05).postures(), std::size_t{1'000'000'000'000'000});
-    EXPECT_EQ(Leg(from, from, 0.05).postures(), 1U);
+    const Leg endless(*robot, map_, from, std::array{1e20, 0.0});
+    EXPECT_EQ(endless.postures(), std::size_t{1'000'000'000'000'001});
+    EXPECT_EQ(Leg(*robot, map_, from, from).postures(), 1U);
 }
 
 TEST_F(QueryAnswer, ends_between_two_postures_of_a_leg) {

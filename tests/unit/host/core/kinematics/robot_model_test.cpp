@@ -65,6 +65,18 @@ RobotModel built(const std::vector<JointDescription>& joints) {
     return std::move(model).value();
 }
 
+/// Of what lies between the first joint and a link, and of how far a prismatic one is out: nothing below.
+TEST(RobotModel, tells_how_long_the_lever_of_a_link_is_at_most) {
+    const RobotModel model = built(tree());
+    const auto levers_m = model.levers_m(std::array{0.4, 2.0, 3.0});
+    const auto of = [&](const char* link) { return levers_m.at(*model.find_link(link)); };
+    EXPECT_EQ(of("base"), 0.0);
+    EXPECT_EQ(of("arm"), 0.0);
+    EXPECT_NEAR(of("hand"), 0.2 + 0.4, 1e-12);
+    EXPECT_NEAR(of("tool"), 0.2 + 0.4 + 0.1, 1e-12);
+    EXPECT_NEAR(of("side"), 0.3, 1e-12);
+}
+
 TEST(RobotModel, every_kind_of_joint_and_axis_equals_the_product_of_transforms) {
     const RobotModel model = built(tree());
     const auto joints = tree();

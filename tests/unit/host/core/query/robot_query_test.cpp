@@ -124,26 +124,29 @@ TEST(PathQuery, meets_what_lies_between_two_free_configurations) {
     const std::array to{0.5 * M_PI, 0.0};
     EXPECT_EQ(worst_at(query, map, from).state, PostureState::free);
     EXPECT_EQ(worst_at(query, map, to).state, PostureState::free);
-    const auto answer = ask(query, map, Leg(from, to, 0.05), {.reach_m = 0.3});
+    const Leg leg(query, map, from, to);
+    const auto answer = ask(query, map, leg, {.reach_m = 0.3});
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->worst.state, PostureState::occupied);
     EXPECT_EQ(link_name(arm, answer->worst.link), "hand");
     EXPECT_GT(answer->share, 0.3);
     EXPECT_LT(answer->share, 0.5);
     EXPECT_EQ(answer->clearance.occupied_m, 0.0);
-    EXPECT_LT(answer->postures, Leg(from, to, 0.05).postures()) << "it went on";
+    EXPECT_LT(answer->postures, leg.postures()) << "it went on";
 }
 
 TEST(PathQuery, tells_the_least_distance_on_a_free_way) {
     const TwoJointArm arm;
     FusedMap map = free_about_origin();
     mark(map, {0.5, 0.5, 0.30});  // from x, y = 0.48; the hand passes at 0.44
-    const auto answer = ask(query_of(arm), map, Leg(std::array{0.0, 0.0}, std::array{0.5 * M_PI, 0.0}, 0.01),
-                            {.reach_m = 0.5});
+    const RobotQuery query = query_of(arm);
+    const Leg leg(query, map, std::array{0.0, 0.0}, std::array{0.5 * M_PI, 0.0}, 0.01);
+    const auto answer = ask(query, map, leg, {.reach_m = 0.5});
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->worst.state, PostureState::free);
-    EXPECT_NEAR(answer->clearance.occupied_m.value(), std::sqrt(2.0) * 0.48 - 0.44, 1e-3);
-    EXPECT_EQ(answer->postures, 158U);
+    EXPECT_NEAR(answer->clearance.occupied_m.value(), std::sqrt(2.0) * 0.48 - 0.44 - 0.0021, 2e-4)
+        << "less by what the hand moves in half a step";
+    EXPECT_EQ(answer->postures, 159U);
 }
 
 /// What is further than the nearest so far is not looked for, in a map or in a field.
@@ -159,16 +162,14 @@ TEST(PathQuery, tells_the_least_of_what_each_posture_is_from_with_and_without_a_
     for (unsigned i = 0; i < testing_support::cases(30); ++i) {
         mark(map, {along(random), along(random), along(random)}, i % 3 == 0 ? 1.0F : -1.0F);
         (void)field.update(map);
-        const Leg leg(std::array{turn(random), 0.0}, std::array{turn(random), 0.2}, 0.1);
+        const Leg leg(query, map, std::array{turn(random), 0.0}, std::array{turn(random), 0.2});
         const double reach_m = i % 2 == 0 ? 0.3 : 0.5;  // the field tells as far as 0.38
         const auto searched = ask(query, map, leg, {.reach_m = reach_m});
         const auto told = ask(query, map, leg, {.reach_m = reach_m, .field = &field});
         ASSERT_TRUE(searched && told);
         PostureClearance least;
-        std::vector<double> position(2);
         for (std::size_t posture = 0; posture < searched->postures; ++posture) {
-            leg.position(posture, position);
-            const auto capsules = query.pose(position);
+            const auto capsules = leg.pose(query, posture);
             for (const PosedCapsule& capsule : *capsules) {
                 const auto found = clearance(map, capsule, reach_m);
                 const auto take = [](std::optional<double>& nearest_m, const std::optional<double>& found_m) {
@@ -187,17 +188,64 @@ TEST(PathQuery, tells_the_least_of_what_each_posture_is_from_with_and_without_a_
     }
 }
 
-TEST(PathQuery, ends_each_leg_exactly_where_it_was_asked_to) {
-    const Leg leg(std::array{0.1, 0.0}, std::array{0.7, 0.2}, 0.25);
-    EXPECT_EQ(leg.postures(), 3U);
+TEST(PathQuery, goes_in_equal_parts_and_ends_exactly_where_it_was_asked_to) {
+    const TwoJointArm arm;
+    const RobotQuery query = query_of(arm);
+    MapConfig coarse{.resolution_m = 1.0};
+    const FusedMap map{coarse};  // half a metre a part: the steps are shorter
+    const Leg leg(query, map, std::array{0.1, 0.0}, std::array{0.7, 0.15}, 0.25);
+    ASSERT_EQ(leg.postures(), 4U) << "three parts of 0.2, and the end";
     std::array<double, 2> position{};
     leg.position(0, position);
-    EXPECT_NEAR(position[0], 0.3, 1e-12);
+    EXPECT_NEAR(position[0], 0.2, 1e-12);
+    EXPECT_NEAR(position[1], 0.025, 1e-12);
     leg.position(2, position);
+    EXPECT_NEAR(position[0], 0.6, 1e-12);
+    leg.position(3, position);
     EXPECT_EQ(position[0], 0.7);
-    EXPECT_EQ(position[1], 0.2);
-    EXPECT_EQ(Leg(position, position, 0.25).postures(), 1U);
-    EXPECT_EQ(Leg(std::array{0.0}, std::array{0.5}, 0.1).postures(), 5U) << "rounding made one more";
+    EXPECT_EQ(position[1], 0.15);
+    EXPECT_EQ(leg.share(3), 1.0);
+    EXPECT_EQ(Leg(query, map, std::array{0.0, 0.0}, std::array{0.5, 0.0}, 0.1).postures(), 6U)
+        << "rounding made one more";
+}
+
+TEST(PathQuery, makes_capsules_larger_between_the_configurations_and_nowhere_else) {
+    const TwoJointArm arm;
+    const RobotQuery query = query_of(arm, {.padding_m = 0.01});
+    const FusedMap map{MapConfig{.resolution_m = 0.04}};
+    const Leg leg(query, map, std::array{0.0, 0.0}, std::array{1.0, 0.0});
+    // The hand goes 0.4 m, in parts of 0.02 at most: more for what it turns between two looks.
+    EXPECT_GE(leg.postures(), 21U);
+    EXPECT_LE(leg.postures(), 24U);
+    const auto between = leg.pose(query, 0);
+    ASSERT_TRUE(between);
+    EXPECT_GE((*between)[1].radius_m, 0.05 + 0.2 / static_cast<double>(leg.postures()));
+    EXPECT_LE((*between)[1].radius_m, 0.06);
+    EXPECT_LT((*between)[0].radius_m, (*between)[1].radius_m) << "the upper arm's end is nearer to the post";
+    EXPECT_EQ((*leg.pose(query, leg.postures() - 1))[1].radius_m, 0.05);
+    const Leg staying(query, map, std::array{1.0, 0.0}, std::array{1.0, 0.0});
+    ASSERT_EQ(staying.postures(), 1U);
+    EXPECT_EQ((*staying.pose(query, 0))[1].radius_m, 0.05);
+}
+
+/// A hand that slides out of an arm that turns is thrown sideways: its speed changes on the way.
+TEST(PathQuery, makes_them_as_much_larger_as_a_hand_that_slides_out_of_a_turning_arm_goes) {
+    const TwoJointArm arm;
+    const RobotQuery query = query_of(arm);
+    const FusedMap map{MapConfig{.resolution_m = 0.3}};
+    const std::array from{-2.0, 0.0};
+    const std::array to{2.0, 0.2};
+    const Leg leg(query, map, from, to, 10.0);
+    const auto parts = static_cast<double>(leg.postures() - 1);
+    for (int i = 0; i < 1000; ++i) {
+        const double share = 0.001 * i;
+        const auto on_way = query.pose(std::array{-2.0 + 4.0 * share, 0.2 * share});
+        const auto asked = leg.pose(query, static_cast<std::size_t>(share * parts));
+        ASSERT_TRUE(on_way && asked);
+        const double apart_m = ((*on_way)[1].p_a - (*asked)[1].p_a).norm();
+        EXPECT_LE(apart_m, (*asked)[1].radius_m - 0.04 + 1e-12) << share;
+        EXPECT_LE((*asked)[1].radius_m, 0.04 + 0.25 * 0.3 + 1e-12);
+    }
 }
 
 TEST(OwnSpace, is_free_where_the_arm_is_and_where_it_was_unknown_about_it) {
