@@ -15,7 +15,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kWord = "query ";
+constexpr std::string_view kWord = "query";
+constexpr const char* kExpectedLine = "expected: query {\"path\": [[JOINTS], ...], ...}";
+constexpr std::string_view kKeys =
+    "path, padding_m, reach_m, step, links_ignored, asks_unmoved_links, own_space_m, pockets, and with "
+    "pockets "
+    "radius_m, z_min_m, pocket_min_m3, pockets_max, views_tried";
 constexpr double kPaddingMax_m = 1.0;
 
 bool is_within(double value, double min, double max) {
@@ -82,10 +87,11 @@ void take(Json& json, const char* key, std::optional<T>& value) {
 Unexpected<AppError> fail_at(std::string_view text, std::size_t byte) {
     constexpr std::size_t kShown = 20;
     const std::size_t at = std::min(byte > 0 ? byte - 1 : 0, text.size());
-    return fail(ExitCode::usage,
-                fmt::format("query: no JSON from its byte {} on ({}); expected: query {{\"path\": [[JOINTS], "
-                            "...], ...}}, with finite numbers: JSON has no NaN and no Infinity",
-                            at, at < text.size() ? shown(text.substr(at, kShown)) : "its end"));
+    return fail(
+        ExitCode::usage,
+        fmt::format("query: no JSON from its byte {} on ({}); {}, with finite numbers: JSON has no NaN "
+                    "and no Infinity",
+                    at, at < text.size() ? shown(text.substr(at, kShown)) : "its end", kExpectedLine));
 }
 
 /// Whoever sends what is not looked at expects another answer.
@@ -113,6 +119,24 @@ Json parse_once(std::string_view text) {
     });
 }
 
+/// A serializer writes null for a number that is none: of a long path it is told where.
+void check_path(const Json& path) {
+    const auto expected = kExpected<std::vector<std::vector<double>>>;
+    if (!path.is_array()) return;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const Json& configuration = path[i];
+        if (!configuration.is_array())
+            throw std::invalid_argument(fmt::format("query: configuration {} of path is {}; expected {}",
+                                                    i + 1, shown(configuration), expected));
+        for (std::size_t joint = 0; joint < configuration.size(); ++joint) {
+            if (configuration[joint].is_number()) continue;
+            throw std::invalid_argument(
+                fmt::format("query: number {} of configuration {} of path is {}; expected {}", joint + 1,
+                            i + 1, shown(configuration[joint]), expected));
+        }
+    }
+}
+
 QueryRequest from_json(Json& json) {
     QueryRequest request;
     bool asks_pockets = false;
@@ -120,6 +144,7 @@ QueryRequest from_json(Json& json) {
     request.kind = asks_pockets ? QueryKind::pockets : QueryKind::postures;
     refuse_unasked(json, asks_pockets);
     const bool has_path = json.contains("path");
+    if (has_path) check_path(json["path"]);
     take(json, "path", request.path);
     if (has_path && request.path.empty())
         throw std::invalid_argument("query: path is empty; leave it out to ask about the arm as it stands");
@@ -140,7 +165,7 @@ QueryRequest from_json(Json& json) {
 }  // namespace
 
 bool is_query(std::string_view line) noexcept {
-    return line.starts_with(kWord);
+    return line == kWord || (line.starts_with(kWord) && line[kWord.size()] == ' ');
 }
 
 std::string to_line(const QueryRequest& request) {
@@ -160,18 +185,22 @@ std::string to_line(const QueryRequest& request) {
         json["pockets_max"] = request.pockets_max;
         json["views_tried"] = request.views_tried;
     }
-    return std::string(kWord) + json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return std::string(kWord) + " " + json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 Result<QueryRequest, AppError> read_query(std::string_view line) {
-    const std::string_view text = line.substr(std::min(kWord.size(), line.size()));
+    const std::string_view text = line.substr(std::min(kWord.size() + 1, line.size()));
+    if (text.find_first_not_of(' ') == std::string_view::npos)
+        return fail(ExitCode::usage, fmt::format("query wants an object: query {{}} asks about the arm as it "
+                                                 "stands; in it there may be {}",
+                                                 kKeys));
     try {
         Json json = parse_once(text);
-        if (!json.is_object())
-            return fail(ExitCode::usage, "expected: query {\"path\": [[JOINTS], ...], ...}");
+        if (!json.is_object()) return fail(ExitCode::usage, kExpectedLine);
         QueryRequest request = from_json(json);
         if (!json.empty())
-            return fail(ExitCode::usage, fmt::format("query: unknown key '{}'", json.begin().key()));
+            return fail(ExitCode::usage, fmt::format("query: unknown key {}; there are {}",
+                                                     shown(Json(json.begin().key())), kKeys));
         if (const std::string fault = fault_of(request); !fault.empty()) return fail(ExitCode::usage, fault);
         return request;
     } catch (const Json::parse_error& error) {

@@ -56,9 +56,7 @@ std::string postures_text(const Json& answer) {
                               answer.at("postures").get<std::size_t>());
 }
 
-std::string view_text(const Json& view, const Json& why_not_tried) {
-    if (!why_not_tried.is_null())
-        return fmt::format("       no view was tried: {}\n", why_not_tried.get<std::string>());
+std::string view_text(const Json& view) {
     if (view.is_null()) return "       no view found\n";
     std::string joints;
     for (const Json& joint : view.at("joints"))
@@ -81,13 +79,16 @@ std::string pockets_text(const Json& answer) {
         "{} unknown, {} pockets with free space beside them\n",
         unknown_share(answer.at("unknown_m3").get<double>(), answer.at("region_m3").get<double>()),
         answer.at("pockets_found").get<std::size_t>());
+    const Json& why_not_tried = answer.at("views_not_tried");
     std::size_t number = 0;
     for (const Json& pocket : answer.at("pockets")) {
         text += fmt::format("{:>4}  {:.2f} l about {}, open at {}\n", ++number,
                             1000.0 * pocket.at("volume_m3").get<double>(), point(pocket.at("centre_m")),
                             point(pocket.at("border_m")));
-        text += view_text(pocket.at("view"), answer.at("views_not_tried"));
+        if (why_not_tried.is_null()) text += view_text(pocket.at("view"));
     }
+    if (number > 0 && !why_not_tried.is_null())
+        text += fmt::format("no view was tried: {}\n", why_not_tried.get<std::string>());
     return text;
 }
 

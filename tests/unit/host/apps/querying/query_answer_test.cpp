@@ -207,15 +207,15 @@ TEST_F(QueryAnswer, says_of_a_pocket_without_a_view_whether_any_was_tried) {
     EXPECT_THAT(told(ask(few, holed)), HasSubstr("       no view found\n"));
     QueryRequest none = request;
     none.views_tried = 0;
-    EXPECT_THAT(told(ask(none, holed)), HasSubstr("       no view was tried: no posture was to be tried\n"));
+    EXPECT_THAT(told(ask(none, holed)), HasSubstr("\nno view was tried: no posture was to be tried\n"));
     request.path.clear();
     EXPECT_THAT(told(ask(request, holed)),
-                HasSubstr("       no view was tried: nobody says how the arm stands: give it as --stands\n"));
+                HasSubstr("\nno view was tried: nobody says how the arm stands: give it as --stands\n"));
     HostRig blind = arm_.rig;
     for (HostNode& node : blind.nodes) node.sensors.clear();
     request.path = {{0.5, 0.0}};
     EXPECT_THAT(told(answer_query(request, {&blind, &arm_.robot, holed.copy(), {}})),
-                HasSubstr("       no view was tried: the rig has no range sensor\n"));
+                HasSubstr("\nno view was tried: the rig has no range sensor\n"));
 }
 
 TEST_F(QueryAnswer, takes_own_space_for_free_whatever_range_sensors_counted_there) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace octoskin {
 namespace {
@@ -59,11 +60,13 @@ TEST(QueryRequest, is_refused_by_name_of_what_is_wrong_with_it) {
         return read ? std::string("taken") : read.error().message;
     };
     EXPECT_EQ(fault("query {}"), "taken");
-    EXPECT_THAT(fault("query "), HasSubstr("no JSON from its byte 0 on (its end); expected: query {"));
+    for (const char* bare : {"query", "query ", "query   "})
+        EXPECT_THAT(fault(bare), HasSubstr("query wants an object: query {} asks about the arm")) << bare;
+    EXPECT_THAT(fault("query {"), HasSubstr("no JSON from its byte 1 on (its end); expected: query {"));
     EXPECT_THAT(fault("query [1]"), HasSubstr("expected: query {"));
-    EXPECT_THAT(fault("query {\"paht\": []}"), HasSubstr("unknown key 'paht'"));
+    EXPECT_THAT(fault("query {\"paht\": []}"), HasSubstr("unknown key \"paht\"; there are path, padding_m,"));
     EXPECT_EQ(fault("query {\"path\": [0, 1]}"),
-              "query: path is a list of something else; expected a list of joint configurations, each a list "
+              "query: configuration 1 of path is 0; expected a list of joint configurations, each a list "
               "of finite numbers, "
               "such as [[0, -0.785, 1.5]]");
     EXPECT_EQ(fault("query {\"step\": \"0.1\"}"), "query: step is \"0.1\"; expected a number");
@@ -103,6 +106,26 @@ TEST(QueryRequest, with_what_would_not_be_looked_at_is_refused_by_name) {
     EXPECT_THAT(fault(R"({"step": {"a": 1}})"), HasSubstr("step is an object; expected a number"));
 }
 
+TEST(QueryRequest, with_an_unknown_key_is_told_every_key_there_is) {
+    const std::string keys = read_query("query {\"x\": 1}").error().message;
+    QueryRequest request;
+    request.own_space_m = 0.1;
+    request.path = {{0.0}};
+    for (const QueryKind kind : {QueryKind::postures, QueryKind::pockets}) {
+        request.kind = kind;
+        request.z_min_m = 0.0;
+        const auto sent = nlohmann::json::parse(to_line(request).substr(6));
+        for (const auto& [key, value] : sent.items()) EXPECT_THAT(keys, HasSubstr(key));
+    }
+}
+
+TEST(QueryRequest, is_what_begins_with_the_word_and_no_other) {
+    EXPECT_TRUE(is_query("query"));
+    EXPECT_TRUE(is_query("query {}"));
+    EXPECT_FALSE(is_query("queryall"));
+    EXPECT_FALSE(is_query("quer"));
+}
+
 // Written out it would take as many calls as it has bytes.
 TEST(QueryRequest, with_lists_within_lists_is_refused_in_a_few_words) {
     constexpr std::size_t kDeep = 20'000;
@@ -118,7 +141,8 @@ TEST(QueryRequest, with_a_number_that_is_none_is_refused_in_our_words) {
         const auto read = read_query("query {\"path\": [[" + number + "]]}");
         return read ? std::string("taken") : read.error().message;
     };
-    EXPECT_THAT(fault("null"), HasSubstr("path is a list of something else; expected a list of joint"));
+    EXPECT_THAT(fault("null"), HasSubstr("number 1 of configuration 1 of path is null; expected a list of"));
+    EXPECT_THAT(fault("0, 1], [2, 3], [4, null"), HasSubstr("number 2 of configuration 3 of path is null"));
     EXPECT_THAT(fault("NaN"), HasSubstr("no JSON from its byte 11 on (\"NaN]]}\")"));
     EXPECT_THAT(fault("-Infinity"), HasSubstr("JSON has no NaN and no Infinity"));
     EXPECT_THAT(fault("1e999"), HasSubstr("a number is too large"));
