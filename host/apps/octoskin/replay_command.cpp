@@ -129,6 +129,17 @@ void replay_onto_bus(const ReplayOptions& options) {
     }
 }
 
+/// For whoever asks the map: what nobody could see is about the arm as it stood at the end.
+void tell_last_posture(const Playback& playback) {
+    std::string joints;
+    playback.pipeline.builder().for_each_joint_sample([&](const JointMeasurement& sample) {
+        joints.clear();
+        for (std::size_t i = 0; i < playback.rig.joints.joints.size(); ++i)
+            joints += fmt::format("{}{:.6f}", joints.empty() ? "" : ",", sample.position_rad.at(i));
+    });
+    if (!joints.empty()) print("the arm's last known posture, for `octoskin query`: --stands={}\n", joints);
+}
+
 void replay_recording(const ReplayOptions& options) {
     const bool wants_all = !options.is_fused_only;
     PlaybackRequest request = playback_request(options.playback);
@@ -151,6 +162,7 @@ void replay_recording(const ReplayOptions& options) {
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     refuse_failed(*playback);
     save(*playback, *folder, options.out);
+    tell_last_posture(*playback);
     if (playback->is_unlike_daemons) {
         throw CommandFailure({ExitCode::failed, options.playback.recording.string() +
                                                     ": replayed, but not into the daemon's own map; the "

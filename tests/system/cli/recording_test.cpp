@@ -108,6 +108,8 @@ TEST_F(Recording, plays_at_the_speed_asked_for_and_step_by_step) {
 TEST_F(Recording, prints_an_account_that_balances_for_every_kind_of_input) {
     record_short("rec");
     const Said said = octoskin("replay " + path("rec"));
+    EXPECT_THAT(said.output, testing::ContainsRegex("the arm's last known posture, for `octoskin query`: "
+                                                    "--stands=-?[0-9.]+(,-?[0-9.]+){6}\n"));
     ASSERT_EQ(said.exit_code, 0);
     const auto frames = content(path("rec/can.log"));
     const auto lines = std::count(frames.begin(), frames.end(), '\n');
