@@ -208,8 +208,7 @@ std::vector<double> RobotModel::levers_m(std::span<const double> farthest) const
         // What lies below the first joint is no part of any lever.
         if (are_moved[link.parent]) levers_m[i] = levers_m[link.parent] + link.T_parent_axis.p.Norm();
         are_moved[i] = are_moved[link.parent] || link.joint != kNoJoint;
-        if (link.axis_to_link.getJoint().getType() == KDL::Joint::TransZ)
-            levers_m[i] += farthest[link.joint];
+        if (link.axis_to_link.getJoint().getType() == KDL::Joint::TransZ) levers_m[i] += farthest[link.joint];
     }
     return levers_m;
 }
