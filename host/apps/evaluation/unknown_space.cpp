@@ -34,6 +34,7 @@ UnknownColumns columns_of(const FusedMap& map, const PocketRegion& region) {
                            .unknown_m = std::vector<double>(side * side)};
     VoxelKey key = *low;
     for (std::size_t column = 0; column < columns.unknown_m.size(); ++column) {
+        if (low->x + column % side > high->x || low->y + column / side > high->y) continue;
         key.x = static_cast<std::uint16_t>(low->x + column % side);
         key.y = static_cast<std::uint16_t>(low->y + column / side);
         for (unsigned z = low->z; z <= high->z; ++z) {

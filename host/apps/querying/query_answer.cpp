@@ -290,13 +290,17 @@ class Asking {
                      {"view", nullptr}};
         if (!view) return json;
         const Leg way(*robot_, ground_.map, request_.path.front(), view->position, request_.step);
-        const auto answer =
-            ask(*robot_, ground_.map, way, {.reach_m = 0.0, .field = nullptr, .is_ending = is_ending_});
+        Json state = nullptr;  // of a joint without limits a way may have no end
+        if (way.postures() <= kPosturesMax) {
+            const auto answer =
+                ask(*robot_, ground_.map, way, {.reach_m = 0.0, .field = nullptr, .is_ending = is_ending_});
+            if (answer) state = name(answer->worst.state);
+        }
         json["view"] = {{"joints", view->position},
                         {"state", name(view->state)},
                         {"sensor", view->sensor},
                         {"range_m", rounded(view->range_m)},
-                        {"way", answer ? Json(name(answer->worst.state)) : Json(nullptr)}};
+                        {"way", state}};
         return json;
     }
 

@@ -140,12 +140,19 @@ Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam, CapW
                        .tan_core = std::tan(core_rad),
                        .margin_m = model.core_margin_voxels * lattice_.resolution_m()});
     if (beam.range_m && length_m <= model.hit_range_max_m) {
+        const double marks_rad = width == CapWidth::core ? core_rad : beam.optics.half_angle_rad;
         const double cap_rad = model.cap_angle_share * beam.optics.half_angle_rad;
         find_cap(beam, {.range_m = length_m,
                         .half_thickness_m = cap_m,
-                        .angle_rad = width == CapWidth::core ? std::min(cap_rad, core_rad) : cap_rad,
-                        .middle_rad = config_.standing.angle_share * beam.optics.half_angle_rad});
-        if (voxels_.cap.empty()) voxels_.cap.push_back({*end_key, 1.0F});
+                        .angle_rad = cap_rad,
+                        .middle_rad =
+                            std::min(config_.standing.angle_share * beam.optics.half_angle_rad, marks_rad),
+                        .marks_rad = marks_rad});
+        const auto has_weight = [](const CapVoxel& voxel) { return voxel.weight > 0.0F; };
+        if (std::ranges::none_of(voxels_.cap, has_weight)) {
+            std::erase(voxels_.cap, CapVoxel{*end_key, 0.0F});
+            voxels_.cap.push_back({*end_key, 1.0F});
+        }
         if (voxels_.middle.empty()) voxels_.middle.push_back(*end_key);
     }
     return &voxels_;
@@ -194,7 +201,7 @@ void ConeFinder::find_passed(const Beam& beam, const Passed& passed) {
 }
 
 void ConeFinder::find_cap(const Beam& beam, const Cap& cap) {
-    const auto [range_m, half_thickness_m, angle_rad, middle_rad] = cap;
+    const auto [range_m, half_thickness_m, angle_rad, middle_rad, marks_rad] = cap;
     const double resolution_m = lattice_.resolution_m();
     const double nearest_m = std::max(0.0, range_m - half_thickness_m);
     const double furthest_m = range_m + half_thickness_m;
@@ -220,7 +227,8 @@ void ConeFinder::find_cap(const Beam& beam, const Cap& cap) {
                 if (depth < cos * distance || distance == 0.0) continue;
                 const double off_axis = std::acos(std::min(1.0, depth / distance));
                 const VoxelKey key = key_at({x, y, z});
-                voxels_.cap.push_back({key, static_cast<float>(std::exp(scale * off_axis * off_axis))});
+                const double weight = off_axis <= marks_rad ? std::exp(scale * off_axis * off_axis) : 0.0;
+                voxels_.cap.push_back({key, static_cast<float>(weight)});
                 if (off_axis <= middle_rad && std::fabs(distance - range_m) <= 0.5 * resolution_m)
                     voxels_.middle.push_back(key);
             }

@@ -15,7 +15,7 @@ namespace octoskin {
 /// How far off the axis a range marks.
 enum class CapWidth : std::uint8_t {
     whole,  ///< as the model says
-    core,   ///< and no further than where it would free space
+    core,   ///< and no further than where it would free space: beyond, voxels of the cap have no weight
 };
 
 /// The voxels of ranges, one after the other. Keeps its memory; not for two threads at once.
@@ -51,6 +51,7 @@ class ConeFinder {
         double half_thickness_m = 0.0;
         double angle_rad = 0.0;
         double middle_rad = 0.0;
+        double marks_rad = 0.0;  ///< beyond, they have no weight
     };
     [[nodiscard]] double cap_half_m(const Beam& beam) const noexcept;
     void find_passed(const Beam& beam, const Passed& passed);

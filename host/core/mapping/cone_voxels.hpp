@@ -11,10 +11,10 @@ namespace octoskin {
 /// Which voxels of a cap get its hits.
 enum class Blame : std::uint8_t {
     all,       ///< each its share
-    occupied,  ///< those that are occupied and no others
+    occupied,  ///< those that are occupied and no others, if any is
 };
 
-/// A voxel of a cap: what the beam weighs there, 1 on its axis.
+/// A voxel of a cap: what the beam weighs there, 1 on its axis. Without weight it is seen, and gets no hits.
 struct CapVoxel {
     VoxelKey key;
     float weight = 0.0F;

@@ -57,9 +57,9 @@ class FusedMap::CountedBrick {
         return put(cell, {.hits = std::max((*hits_)[cell], enough), .misses = 0.0F});
     }
 
+    [[nodiscard]] bool has_hits(std::size_t cell) const noexcept { return hits_view_.at(cell) > 0.0F; }
     /// Of a voxel that they do not mark.
     [[nodiscard]] Result<float, Refusal> forget_hits(std::size_t cell) noexcept {
-        if (!(hits_view_.at(cell) > 0.0F)) return 0.0F;
         if (const auto is_open = open_counts(); !is_open) return unexpected(is_open.error());
         return put(cell, {.hits = 0.0F, .misses = (*misses_)[cell]});
     }
@@ -211,8 +211,16 @@ void FusedMap::apply(const ConeVoxels& cone, const ConeModel& model, Blame blame
         brick.go_to(voxel.key);
         return voxel.weight * brick.probability(cell_of(voxel.key));
     };
-    float sum = 0.0F;
-    for (const CapVoxel& voxel : cone.cap) sum += blame_of(voxel);
+    const auto blame_of_all = [&] {
+        float sum = 0.0F;
+        for (const CapVoxel& voxel : cone.cap) sum += blame_of(voxel);
+        return sum;
+    };
+    float sum = blame_of_all();
+    if (sum == 0.0F && blame == Blame::occupied) {
+        blame = Blame::all;
+        sum = blame_of_all();
+    }
     if (sum > 0.0F) {
         for (const CapVoxel& voxel : cone.cap) {
             const float share = blame_of(voxel) / sum;
@@ -230,7 +238,7 @@ void FusedMap::apply(const ConeVoxels& cone, const ConeModel& model, Blame blame
 
 void FusedMap::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes) {
     const auto is_occupied = [this](const CapVoxel& voxel) {
-        return occupancy(voxel.key) == Occupancy::occupied;
+        return voxel.weight > 0.0F && occupancy(voxel.key) == Occupancy::occupied;
     };
     if (std::ranges::any_of(cone.cap, is_occupied)) return;
     CountedBrick brick(*this);
@@ -245,6 +253,7 @@ void FusedMap::forget_weak_hits(const ConeVoxels& cone, std::vector<VoxelUpdate>
     for (const CapVoxel& voxel : cone.cap) {
         if (occupancy(voxel.key) == Occupancy::occupied) continue;
         brick.go_to(voxel.key);
+        if (!brick.has_hits(cell_of(voxel.key))) continue;
         const auto change = brick.forget_hits(cell_of(voxel.key));
         ++(counters_.*(change ? &MapCounters::applied : change.error()));
         if (changes != nullptr && change && *change != 0.0F) changes->push_back({voxel.key, *change});

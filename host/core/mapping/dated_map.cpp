@@ -110,10 +110,9 @@ void confirm_runs(const Voxels& voxels, const KeyOf& key_of, const Filter& filte
         BrickMask mask{};
         bool has_any = false;
         for (; next < voxels.size() && are_of_one_brick(key_of(voxels[next]), first); ++next) {
-            const std::size_t cell = cell_of(key_of(voxels[next]));
-            if (!is_meant(cell)) continue;
+            if (!is_meant(voxels[next])) continue;
             has_any = true;
-            put_in(mask, cell);
+            put_in(mask, cell_of(key_of(voxels[next])));
         }
         if (has_any) confirm(brick_of(first), mask);
     }
@@ -121,10 +120,10 @@ void confirm_runs(const Voxels& voxels, const KeyOf& key_of, const Filter& filte
 
 }  // namespace
 
-/// Of what is passed all but what is occupied and the camera saw just now, which contradicts the cone: while
-/// both say what they say, the camera's word stays the newest. Of a cap all but what is free, which a hit
-/// that is shared does not confirm. What is unknown and only counted has its time, too: counts that lead to
-/// nothing are forgotten like all else.
+/// Not what is occupied and the camera saw just now: while it looks, its word stays the newest, and what
+/// passes there contradicts it. Of a cap not what is free either, which a hit that is shared does not
+/// confirm. What is unknown and was given a hit has its time, too: counts that lead to nothing are forgotten
+/// like all else.
 void FusedMap::confirm(const ConeVoxels& cone) noexcept {
     const auto confirm_brick = [&](MortonCode brick, const BrickMask& voxels) {
         confirm(brick, voxels, SensorKind::range);
@@ -132,7 +131,8 @@ void FusedMap::confirm(const ConeVoxels& cone) noexcept {
     confirm_runs(
         cone.passed, [](VoxelKey key) { return key; },
         [&](MortonCode brick) {
-            return [this, view = tree_.find(brick), stamps = confirmations_.find(brick)](std::size_t cell) {
+            return [this, view = tree_.find(brick), stamps = confirmations_.find(brick)](VoxelKey key) {
+                const std::size_t cell = cell_of(key);
                 const bool is_occupied = view.at(cell) >= config_.log_odds_occupied;
                 return !is_occupied || !is_seen_by_camera(stamps.at(cell));
             };
@@ -141,10 +141,13 @@ void FusedMap::confirm(const ConeVoxels& cone) noexcept {
     confirm_runs(
         cone.cap, [](const CapVoxel& voxel) { return voxel.key; },
         [&](MortonCode brick) {
-            return [view = tree_.find(brick), occupied = config_.log_odds_occupied](std::size_t cell) {
-                const bool is_free = view.at(cell) < occupied;
-                return !is_free;
-            };
+            return
+                [this, view = tree_.find(brick), stamps = confirmations_.find(brick)](const CapVoxel& voxel) {
+                    const std::size_t cell = cell_of(voxel.key);
+                    const float log_odds = view.at(cell);
+                    if (std::isnan(log_odds)) return voxel.weight > 0.0F;
+                    return log_odds >= config_.log_odds_occupied && !is_seen_by_camera(stamps.at(cell));
+                };
         },
         confirm_brick);
 }

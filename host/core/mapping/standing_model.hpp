@@ -19,11 +19,6 @@ struct StandingModel {
 
     /// Some may be wrong or fail, and what has come is still on the map after 0.2 s at 30 readings a second.
     [[nodiscard]] constexpr std::uint32_t window() const noexcept { return readings + 3; }
-    /// A reading older than this no longer says what is there now.
-    [[nodiscard]] constexpr double counts_for_s() const noexcept {
-        constexpr double kDefault_s = 1.1;
-        return clears_after_s > 0.0 ? 2.0 * clears_after_s : kDefault_s;
-    }
     friend constexpr bool operator==(const StandingModel&, const StandingModel&) = default;
 };
 

@@ -38,31 +38,28 @@ bool StandingRanges::are_of_one_place(const Beam& a, const Beam& b) {
            a.R_map_sensor.cwiseProduct(b.R_map_sensor).sum() >= trace_min;
 }
 
-bool StandingRanges::stands(const Beam& beam) const {
-    const auto sensor = sensors_.find({beam.source.node_id, beam.source.sensor});
-    if (sensor == sensors_.end()) return false;
-    const auto zone = sensor->second.zones.find(beam.source.zone);
-    if (zone == sensor->second.zones.end()) return false;
-    const auto& newest = zone->second.newest;
-    return newest.size() >= model_.window() &&
-           are_of_one_place((newest.end() - static_cast<std::ptrdiff_t>(model_.window()))->beam, beam);
+bool StandingRanges::stands(const Zone& zone) const {
+    const std::span<const Reading> all(zone.newest);
+    const std::size_t window = model_.window();
+    return all.size() > window && std::ranges::all_of(all.last(window + 1), [&](const Reading& reading) {
+               return are_of_one_place(reading.beam, all.back().beam);
+           });
 }
 
-/// By the time between its two newest, so many in a row have not come; or it is too long ago.
-void StandingRanges::forget_silent(Sensor& sensor, HostTime now) {
+/// By the mean time between its readings so many in a row have not come. All that it said is forgotten: what
+/// is there when it speaks again is new.
+void StandingRanges::forget_silent(Sensor& sensor, const Beam& beam) {
     for (auto& entry : sensor.zones) {
         Zone& zone = entry.second;
         if (zone.newest.empty()) continue;
-        const Beam& last = zone.newest.back().beam;
-        const double silent_s = seconds_since(last, now);
-        if (silent_s > model_.counts_for_s()) {
-            end(zone);
-            zone.newest.clear();
-        } else if (zone.believed && zone.newest.size() > 1) {
-            constexpr double kMissing = static_cast<double>(kBefore) + 0.5;
-            const double period_s = seconds_since((zone.newest.end() - 2)->beam, last.captured);
-            if (silent_s > kMissing * period_s) end(zone);
-        }
+        constexpr double kMissing = static_cast<double>(kBefore) + 0.5;
+        constexpr double kLoneFor_s = 10.0;  // of one reading nobody knows how often they come
+        const auto intervals = static_cast<double>(zone.newest.size() - 1);
+        const double lasted_s = seconds_since(zone.newest.front().beam, zone.newest.back().beam.captured);
+        const double silent_max_s = intervals > 0.0 ? kMissing * lasted_s / intervals : kLoneFor_s;
+        if (seconds_since(zone.newest.back().beam, beam.captured) <= silent_max_s) continue;
+        end(zone, beam);
+        zone.newest.clear();
     }
 }
 
@@ -71,14 +68,14 @@ StandingRanges::Answer StandingRanges::take(const Beam& beam) {
     ended_.clear();
     if (model_.readings == 0) return {};
     Sensor& sensor = sensors_[{beam.source.node_id, beam.source.sensor}];
-    forget_silent(sensor, beam.captured);
+    forget_silent(sensor, beam);
     Zone& zone = sensor.zones[beam.source.zone];
     const std::size_t window = model_.window();
     zone.newest.reserve(window + kBefore);
     if (zone.newest.size() >= window + kBefore) zone.newest.erase(zone.newest.begin());
     zone.newest.push_back({beam, ++sensor.readings, false});
     const bool is_told = follow_believed(zone);
-    if (!beam.range_m) return {{}, ended_, false};
+    if (!beam.range_m) return {{}, ended_, false, stands(zone)};
 
     window_ = {{&zone, zone.newest.size() - std::min(zone.newest.size(), window)}};
     believe(beam, window_);
@@ -93,9 +90,13 @@ StandingRanges::Answer StandingRanges::take(const Beam& beam) {
         }
         believe(beam, window_);
     }
-    for (const Beam& believed : believed_) sensor.zones[believed.source.zone].believed = believed;
+    for (const Beam& believed : believed_) {
+        Zone& of = sensor.zones[believed.source.zone];
+        if (of.believed && !goes_on(*of.believed, believed)) end(of, beam);
+        of.believed = believed;
+    }
     add_what_stays(beam, sensor);
-    return {believed_, ended_, is_told};
+    return {believed_, ended_, is_told, stands(zone)};
 }
 
 /// What is believed may move slowly; it has gone if none of so many readings tells of it. The answer: the
@@ -110,13 +111,14 @@ bool StandingRanges::follow_believed(Zone& zone) {
     }
     const auto last = std::span(zone.newest).last(std::min(zone.newest.size(), kBefore));
     const auto tells = [&](const Reading& reading) { return goes_on(*zone.believed, reading.beam); };
-    if (std::ranges::none_of(last, tells)) end(zone);
+    if (std::ranges::none_of(last, tells)) end(zone, newest);
     return false;
 }
 
-void StandingRanges::end(Zone& zone) {
+/// `now`: the sensor's newest beam. What a sensor that has moved on counted it did not count from one place.
+void StandingRanges::end(Zone& zone, const Beam& now) {
     if (!zone.believed) return;
-    ended_.push_back(*zone.believed);
+    if (are_of_one_place(*zone.believed, now)) ended_.push_back(*zone.believed);
     zone.believed.reset();
 }
 

@@ -37,24 +37,22 @@ class StandingRanges {
         /// Which ranges are believed now, one for each zone: the zone's newest beam, with the mean of the
         /// ranges that agree. None as a rule; valid until the next call.
         std::span<const Beam> believed;
-        /// Those that were, and are no more: what they left in their caps that marks nothing is to be taken
-        /// back (FusedMap::forget_weak_hits). Valid likewise.
+        /// Those that were, and are no more though the sensor is where it was: what they left in their caps
+        /// that marks nothing is to be taken back (FusedMap::forget_weak_hits). Valid likewise.
         std::span<const Beam> ended;
         /// The beam says again what was believed before it: from one place no reading tells more of where in
         /// its cap that is, however many there are. What is there takes its hits.
         bool is_told = false;
+        /// The beam is of one place with the last `StandingModel::window()` before it of its zone: then it
+        /// marks only where it would free space, too.
+        bool stands = false;
     };
     /// Takes a beam that goes into the map, in the order in which they do. A range is believed first while it
     /// is new: if none of the `kBefore` readings of its zone before the window was of this place and as
     /// short. It stays believed, with each reading of its zone that agrees with it, and with those of other
-    /// zones that see further, until `kBefore` in a row do not agree or do not come. What is older than
-    /// `StandingModel::counts_for_s` is forgotten. O(zones of the sensor), below 1 us; 2 kB a zone. Throws
-    /// std::bad_alloc.
+    /// zones that see further, until `kBefore` in a row do not agree; or do not come: then all that the zone
+    /// said is forgotten. O(zones of the sensor), below 1 us; 2 kB a zone. Throws std::bad_alloc.
     [[nodiscard]] Answer take(const Beam& beam);
-
-    /// Whether a beam that is not taken yet is of one place with the last `StandingModel::window()` of its
-    /// zone: then it marks only where it would free space, too.
-    [[nodiscard]] bool stands(const Beam& beam) const;
 
     [[nodiscard]] const StandingModel& model() const noexcept { return model_; }
     /// As if there had been no beam.
@@ -78,9 +76,10 @@ class StandingRanges {
     using Window = std::vector<std::pair<Zone*, std::size_t>>;
 
     void believe(const Beam& newest, const Window& window);
-    void forget_silent(Sensor& sensor, HostTime now);
+    [[nodiscard]] bool stands(const Zone& zone) const;
+    void forget_silent(Sensor& sensor, const Beam& beam);
     [[nodiscard]] bool follow_believed(Zone& zone);
-    void end(Zone& zone);
+    void end(Zone& zone, const Beam& now);
     void add_what_stays(const Beam& newest, const Sensor& sensor);
 
     StandingModel model_;

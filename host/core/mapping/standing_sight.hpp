@@ -53,7 +53,7 @@ class StandingSight {
 
     /// What nobody heard of for longer may have come and gone.
     [[nodiscard]] bool counts(const Beam& before, HostTime now) const {
-        return seconds_since(before, now) <= model_.counts_for_s();
+        return seconds_since(before, now) <= 2.0 * model_.clears_after_s;
     }
     [[nodiscard]] bool lasts(const Readings& readings, std::size_t from) const;
 

@@ -137,12 +137,13 @@ Status<ReadingReason> MapBuilder::add_ray(const RangeMeasurement& measurement, c
 }
 
 Status<ReadingReason> MapBuilder::add_cone(const RangeMeasurement& measurement, const Beam& beam) {
-    const auto voxels = cone_finder_.find(beam, standing_.stands(beam) ? CapWidth::core : CapWidth::whole);
+    const StandingRanges::Answer standing = standing_.take(beam);
+    const CapWidth width = standing.stands ? CapWidth::core : CapWidth::whole;
+    const auto voxels = cone_finder_.find(beam, width);
     if (!voxels) {
         return unexpected(reason_of(voxels.error()));
     }
     maps_.go_on(measurement.captured);
-    const StandingRanges::Answer standing = standing_.take(beam);
     const ConeModel& model = cone_finder_.model_of(beam);
     const Blame blame = standing.is_told ? Blame::occupied : Blame::all;
     if (listener_ != nullptr) {
@@ -177,10 +178,12 @@ void MapBuilder::believe_standing(const Beam& beam, const StandingRanges::Answer
     }
     for (const Beam& believed : standing.believed) {
         // As a rule what was marked once is still there, and nothing else need be found.
-        if (maps_.is_marked(believed.p_map_sensor + *believed.range_m * believed.direction_map)) continue;
-        const auto voxels = cone_finder_.find(believed);
-        if (voxels) {  // so near to the edge of the octree a mean of ranges may lie beyond it
-            maps_.mark(**voxels, standing_.model().hits, told);
+        const Eigen::Vector3d p_map = believed.p_map_sensor + *believed.range_m * believed.direction_map;
+        if (maps_.is_marked(p_map)) continue;
+        // So near to the edge of the octree a mean of ranges may lie beyond it.
+        if (const auto voxels =
+                cone_finder_.find(believed, standing.stands ? CapWidth::core : CapWidth::whole)) {
+            maps_.mark(**voxels, p_map, standing_.model().hits, told);
         }
     }
     for (const VoxelUpdate& update : more) {

@@ -83,13 +83,28 @@ std::vector<VoxelUpdate> MapSet::changes_of_proximity(const ConeVoxels& cone, co
     return changes;
 }
 
-void MapSet::mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes) {
-    if (proximity_) {
+namespace {
+
+/// Of a map that there is.
+bool is_occupied_at(const std::optional<FusedMap>& map, const Eigen::Vector3d& p_map) noexcept {
+    const auto key = map->key_of(p_map);
+    return key && map->occupancy(*key) == Occupancy::occupied;
+}
+
+}  // namespace
+
+void MapSet::mark(const ConeVoxels& cone, const Eigen::Vector3d& p_map, float hits,
+                  std::vector<VoxelUpdate>* changes) {
+    if (proximity_ && !is_occupied_at(proximity_, p_map)) {
         proximity_->mark(cone, hits);
     }
-    if (fused_) {
+    if (fused_ && !is_occupied_at(fused_, p_map)) {
         fused_->mark(cone, hits, changes);
     }
+}
+
+bool MapSet::is_marked(const Eigen::Vector3d& p_map) const noexcept {
+    return (!proximity_ || is_occupied_at(proximity_, p_map)) && (!fused_ || is_occupied_at(fused_, p_map));
 }
 
 void MapSet::forget_weak_hits(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes) {
@@ -99,15 +114,6 @@ void MapSet::forget_weak_hits(const ConeVoxels& cone, std::vector<VoxelUpdate>* 
     if (fused_) {
         fused_->forget_weak_hits(cone, changes);
     }
-}
-
-bool MapSet::is_marked(const Eigen::Vector3d& p_map) const noexcept {
-    const auto is_in = [&](const std::optional<FusedMap>& map) {
-        if (!map) return true;
-        const auto key = map->key_of(p_map);
-        return key && map->occupancy(*key) == Occupancy::occupied;
-    };
-    return is_in(proximity_) && is_in(fused_);
 }
 
 void MapSet::clear(const ConeVoxels& cone, const std::function<bool(VoxelKey)>& is_ranged,

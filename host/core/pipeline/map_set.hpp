@@ -46,9 +46,11 @@ class MapSet {
     [[nodiscard]] std::vector<VoxelUpdate> changes_of_proximity(const ConeVoxels& cone,
                                                                 const ConeModel& model, Blame blame);
 
-    /// FusedMap::mark. `changes`: of `fused`; may be null.
-    void mark(const ConeVoxels& cone, float hits, std::vector<VoxelUpdate>* changes);
-    /// Whether a point is in an occupied voxel of each map that is marked.
+    /// FusedMap::mark in each map in which the voxel of the range's end, `p_map`, is not occupied: where it
+    /// is, it explains the range. `changes`: of `fused`; may be null.
+    void mark(const ConeVoxels& cone, const Eigen::Vector3d& p_map, float hits,
+              std::vector<VoxelUpdate>* changes);
+    /// Whether that would do nothing.
     [[nodiscard]] bool is_marked(const Eigen::Vector3d& p_map) const noexcept;
     /// FusedMap::forget_weak_hits, likewise.
     void forget_weak_hits(const ConeVoxels& cone, std::vector<VoxelUpdate>* changes);

@@ -407,6 +407,33 @@ TEST(CountingMap, takes_nothing_from_what_the_camera_sees_again_and_again) {
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free) << "it no longer looks";
 }
 
+TEST(CountingMap, gives_hits_to_all_where_nothing_is_that_could_take_them) {
+    FusedMap told(map_config());
+    FusedMap untold(map_config());
+    told.apply(cap_of_three(), {}, Blame::occupied);
+    untold.apply(cap_of_three(), {}, Blame::all);
+    for (const int i : {0, 1, 2}) EXPECT_EQ(told.log_odds(key_at(i)), untold.log_odds(key_at(i)));
+    for (int reading = 0; reading < 20; ++reading) told.apply(cap_of_three(), {}, Blame::occupied);
+    EXPECT_EQ(told.occupancy(key_at(0)), Occupancy::occupied);
+}
+
+TEST(CountingMap, sees_what_has_no_weight_and_gives_it_nothing) {
+    FusedMap map(map_config());
+    map.go_on(HostTime{1'000'000'000});
+    map.apply(std::vector<VoxelUpdate>{{key_at(1), 2.0F}});
+    const auto before = map.copy();
+    ConeVoxels cone = cap_of_three();
+    cone.cap[1].weight = 0.0F;
+    cone.cap[2].weight = 0.0F;
+    map.go_on(HostTime{9'000'000'000});
+    map.apply(cone, {.hit_mass = 10.0F});
+    EXPECT_EQ(map.log_odds(key_at(1)), before.log_odds(key_at(1)));
+    EXPECT_EQ(map.confirmation(key_at(1)), (Confirmation{0, SensorKind::range})) << "it is there, as it says";
+    EXPECT_FALSE(map.confirmation(key_at(2)));
+    map.mark(cone, 2.0F);
+    EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied) << "what has no weight explains nothing";
+}
+
 TEST(CountingMap, takes_back_hits_that_mark_nothing) {
     FusedMap map(map_config());
     map.mark(cap_of_three(), 2.0F);

@@ -206,14 +206,38 @@ TEST_F(SilentZone, is_believed_until_three_of_its_readings_have_not_come) {
         for (int i = 0; i < 8; ++i)
             for (const std::uint8_t zone : {std::uint8_t{0}, std::uint8_t{1}})
                 (void)take_after(zone, zone == 0 ? 0.4 : 1.0, period_s);
-        // The first is due one period before each of these.
+        // The first zone is due about one period before each of these.
         for (int i = 1; i <= 3; ++i)
-            EXPECT_TRUE(believes_hand_after(1, 1.0, 2.0 * period_s)) << i << ' ' << period_s;
-        const auto answer = take_after(1, 1.0, 2.0 * period_s);
+            EXPECT_TRUE(believes_hand_after(1, 1.0, 1.9 * period_s)) << i << ' ' << period_s;
+        const auto answer = take_after(1, 1.0, 1.9 * period_s);
         ASSERT_EQ(answer.ended.size(), 1U);
         EXPECT_NEAR(*answer.ended.front().range_m, 0.4, 1e-9);
-        EXPECT_FALSE(believes_hand_after(1, 1.0, 2.0 * period_s));
+        EXPECT_FALSE(believes_hand_after(1, 1.0, 1.9 * period_s));
     }
+}
+
+TEST_F(SilentZone, is_believed_again_with_its_fourth_reading_after_a_gap) {
+    for (int i = 0; i < 20; ++i) (void)take_after(0, 1.0, 0.033);
+    for (int i = 0; i < 20; ++i) (void)take_after(0, 0.4, 0.033);
+    for (const double gap_s : {0.2, 0.9, 5.0}) {
+        EXPECT_FALSE(believes_hand_after(0, 0.4, gap_s));
+        EXPECT_FALSE(believes_hand_after(0, 0.4, 0.033));
+        EXPECT_FALSE(believes_hand_after(0, 0.4, 0.033));
+        for (int i = 0; i < 20; ++i) EXPECT_TRUE(believes_hand_after(0, 0.4, 0.033)) << gap_s;
+    }
+}
+
+// Nine in turn, each ranged every 1.3 s.
+TEST_F(SilentZone, is_none_however_slow_it_is) {
+    for (int cycle = 0; cycle < 20; ++cycle)
+        for (std::uint8_t zone = 0; zone < 9; ++zone) (void)take_after(zone, 1.0, 0.14);
+    std::vector<bool> believed;
+    for (int cycle = 0; cycle < 6; ++cycle)
+        for (std::uint8_t zone = 0; zone < 9; ++zone) {
+            const bool is_believed = believes_hand_after(zone, zone == 4 ? 0.4 : 1.0, 0.14);
+            if (zone == 4) believed.push_back(is_believed);
+        }
+    EXPECT_EQ(believed, (std::vector<bool>{false, false, false, true, true, true}));
 }
 
 TEST_F(SilentZone, is_forgotten_with_all_that_it_said_once_that_is_too_old) {
@@ -234,6 +258,19 @@ TEST_F(StandingRangesTest, tells_what_is_believed_no_longer) {
     EXPECT_EQ(ended(1.0), 0U);
     EXPECT_EQ(ended(kNothing), 1U);
     EXPECT_EQ(ended(1.0), 0U);
+}
+
+TEST_F(StandingRangesTest, tells_not_what_a_sensor_leaves_behind_that_moves_on) {
+    for (int i = 0; i < 8; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5)).ended.empty());
+    for (int i = 1; i < 20; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.02 * i)).ended.empty()) << i;
+}
+
+TEST_F(StandingRangesTest, knows_who_has_stood_for_a_window) {
+    for (int i = 0; i < 30; ++i) EXPECT_EQ(ranges_.take(beam_at(0.5)).stands, i >= 7) << i;
+    ranges_.forget();
+    // To and fro.
+    for (int i = 0; i < 60; ++i)
+        EXPECT_FALSE(ranges_.take(beam_at(0.5, 0, i % 7 == 0 ? 0.02 : 0.0)).stands) << i;
 }
 
 TEST_F(StandingRangesTest, keeps_sensors_apart) {

@@ -132,6 +132,26 @@ TEST_F(StandingCone, has_all_that_has_gone_off_the_map_however_long_it_stood) {
     }
 }
 
+// A table's edge, say, in the cap but not in the core.
+TEST_F(StandingCone, has_what_comes_on_the_map_beside_what_it_never_passes) {
+    read(1.3, 10);
+    read(0.5, 30);
+    const std::size_t hand = occupied();
+    read(1.3, 30);
+    ASSERT_EQ(occupied(), 0U);
+    Scene scene = scene_of(RangeUpdate::cone, kCone);
+    scene.mapping.standing = fast_mapping().standing;
+    builder_.emplace(MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, {}).value());
+    FusedMap with_edge(scene.mapping.map);
+    const Eigen::Vector3d p_edge(0.13, 0.6, 0.02);
+    with_edge.apply(std::vector<VoxelUpdate>{{*with_edge.key_of(p_edge), 3.0F}});
+    builder_->begin_with(std::move(with_edge));
+    read(1.3, 30);
+    ASSERT_EQ(occupied(), 1U);
+    read(0.5, 6);
+    EXPECT_EQ(occupied(), 1U + hand);
+}
+
 TEST_F(StandingCone, has_what_has_gone_off_the_map_with_the_third_reading_however_slow_they_come) {
     constexpr double kOfNineZones_s = 0.3;
     read(0.5, 30, kOfNineZones_s);
