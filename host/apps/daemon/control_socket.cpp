@@ -30,9 +30,10 @@ bool has_gone(int descriptor) {
 /// What is left unread when a connection is closed breaks it for who is about to read its end.
 void forget_the_rest(int descriptor) {
     std::array<char, 4096> bytes{};
+    ssize_t count = 1;
     constexpr int kReadsMax = 16;  // who sends without end has a broken connection
-    for (int i = 0; i<kReadsMax&& ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT)> 0; ++i) {
-    }
+    for (int i = 0; i < kReadsMax && count > 0; ++i)
+        count = ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
 }
 
 bool has_sent_something(int descriptor) {
@@ -141,8 +142,10 @@ bool ControlSocket::serve(Client& client) {
                            kRequestMax),
                ExitCode::usage);
     }
-    if (client.is_refused && is_whole) forget_the_rest(client.descriptor);
-    if (client.is_refused) return !is_whole;
+    if (client.is_refused) {
+        if (is_whole) forget_the_rest(client.descriptor);
+        return !is_whole;
+    }
     if (!is_whole) return true;
     client.asked = monotonic_now();
     client.has_asked = true;

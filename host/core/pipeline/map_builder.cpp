@@ -17,6 +17,10 @@ ReadingReason reason_of(BeamRejection rejection) {
                                                    : ReadingReason::beam_not_valid;
 }
 
+CapWidth width_of(const StandingRanges::Answer& standing) {
+    return standing.stands ? CapWidth::core : CapWidth::whole;
+}
+
 bool sees_any_cone(const HostRig& rig) {
     const auto is_cone = [](const HostZone& zone) { return zone.optics.is_cone(); };
     const auto has_cone = [&](const HostSensor& sensor) {
@@ -138,8 +142,7 @@ Status<ReadingReason> MapBuilder::add_ray(const RangeMeasurement& measurement, c
 
 Status<ReadingReason> MapBuilder::add_cone(const RangeMeasurement& measurement, const Beam& beam) {
     const StandingRanges::Answer standing = standing_.take(beam);
-    const CapWidth width = standing.stands ? CapWidth::core : CapWidth::whole;
-    const auto voxels = cone_finder_.find(beam, width);
+    const auto voxels = cone_finder_.find(beam, width_of(standing));
     if (!voxels) {
         return unexpected(reason_of(voxels.error()));
     }
@@ -181,8 +184,7 @@ void MapBuilder::believe_standing(const Beam& beam, const StandingRanges::Answer
         const Eigen::Vector3d p_map = believed.p_map_sensor + *believed.range_m * believed.direction_map;
         if (maps_.is_marked(p_map)) continue;
         // So near to the edge of the octree a mean of ranges may lie beyond it.
-        if (const auto voxels =
-                cone_finder_.find(believed, standing.stands ? CapWidth::core : CapWidth::whole)) {
+        if (const auto voxels = cone_finder_.find(believed, width_of(standing))) {
             maps_.mark(**voxels, p_map, standing_.model().hits, told);
         }
     }
