@@ -1,0 +1,111 @@
+#include "host/io/folder/file_place.hpp"
+
+#include <fcntl.h>
+
+#include <cerrno>
+#include <mutex>
+#include <utility>
+
+namespace octoskin {
+
+namespace fs = std::filesystem;
+
+struct NamedFolder::State {
+    fs::path shown;
+    FolderAccess access;
+    std::mutex mutex;
+    std::optional<OpenFolder> opened;
+};
+
+NamedFolder::NamedFolder(fs::path typed, FolderAccess access)
+    : state_(new State{std::move(typed), access, {}, std::nullopt}) {}
+
+NamedFolder::NamedFolder(OpenFolder opened)
+    : state_(new State{opened.shown(), opened.access(), {}, std::move(opened)}) {}
+
+const fs::path& NamedFolder::shown() const noexcept {
+    return state_->shown;
+}
+
+Result<OpenFolder, FolderError> NamedFolder::open() const {
+    const std::lock_guard lock(state_->mutex);
+    if (!state_->opened) {
+        auto opened = OpenFolder::open(state_->shown, state_->access);
+        if (!opened) return opened;
+        state_->opened.emplace(std::move(*opened));
+    }
+    return *state_->opened;
+}
+
+EntryKind FilePlace::kind() const {
+    if (folder_) {
+        const auto folder = folder_->open();
+        if (folder) return folder->kind_of(name_);
+        const FolderFault fault = folder.error().fault;
+        const bool is_absent = fault == FolderFault::absent || fault == FolderFault::not_a_folder;
+        return is_absent ? EntryKind::absent : EntryKind::other;
+    }
+    std::error_code error;
+    const auto status = fs::status(name_, error);
+    switch (status.type()) {
+        case fs::file_type::not_found:
+            return EntryKind::absent;
+        case fs::file_type::regular:
+            return EntryKind::file;
+        case fs::file_type::directory:
+            return EntryKind::folder;
+        case fs::file_type::none:  // it cannot be looked at: a name too long is as absent as any
+            return error == std::errc::permission_denied ? EntryKind::other : EntryKind::absent;
+        case fs::file_type::symlink:
+        case fs::file_type::block:
+        case fs::file_type::character:
+        case fs::file_type::fifo:
+        case fs::file_type::socket:
+        case fs::file_type::unknown:
+            break;
+    }
+    return EntryKind::other;
+}
+
+Result<OpenFile, FolderError> FilePlace::open() const {
+    if (folder_) {
+        const auto folder = folder_->open();
+        return folder ? folder->open_file(name_) : unexpected(folder.error());
+    }
+    const Descriptor path(::open(name_.c_str(), O_PATH | O_CLOEXEC));
+    if (!path) return unexpected(folder_error_of(errno, name_));
+    return open_ordinary(path, name_);
+}
+
+FilePlace FilePlace::beside(const fs::path& other) const {
+    FilePlace place(*this);
+    // An absolute one replaces the whole: a typed file may name it, and a folder's file cannot open it.
+    place.name_ = name_.parent_path() / other;
+    return place;
+}
+
+Result<OpenFolder, FolderError> FilePlace::parent_to_write() const {
+    const fs::path parent = name_.parent_path();
+    if (!folder_) return OpenFolder::open(parent, FolderAccess::write);
+    auto folder = folder_->open();
+    if (!folder || parent.empty()) return folder;
+    return folder->open_folder(parent);
+}
+
+Result<OpenFile, FolderError> FilePlace::create_new(unsigned mode) const {
+    const auto folder = parent_to_write();
+    if (!folder) return unexpected(folder.error());
+    return folder->create_new(filename(), mode);
+}
+
+Result<OpenFile, FolderError> FilePlace::create_anew() const {
+    const auto folder = parent_to_write();
+    if (!folder) return unexpected(folder.error());
+    const EntryKind there = folder->kind_of(filename());
+    if (there == EntryKind::file || there == EntryKind::link) {
+        if (const auto removed = folder->remove(filename()); !removed) return unexpected(removed.error());
+    }
+    return folder->create_new(filename());
+}
+
+}  // namespace octoskin

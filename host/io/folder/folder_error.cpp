@@ -1,0 +1,41 @@
+#include "host/io/folder/folder_error.hpp"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+namespace octoskin {
+
+std::string FolderError::reason() const {
+    switch (fault) {
+        case FolderFault::absent:
+            return "no such file or folder";
+        case FolderFault::link:
+            return "is a symbolic link; none is followed below the folder that you name: put the file or "
+                   "folder "
+                   "itself there, or remove the link";
+        case FolderFault::outside:
+            return "leads out of the folder; only what is in it is used";
+        case FolderFault::foreign_owner:
+            return fmt::format(
+                "belongs to {}: octoskin writes only to folders that are yours or root's; give "
+                "another folder",
+                what);
+        case FolderFault::not_a_file:
+            return fmt::format("is {}, not an ordinary file", what);
+        case FolderFault::not_a_folder:
+            return "is no folder";
+        case FolderFault::is_there:
+            return "is there already; move it away";
+        case FolderFault::not_permitted:
+        case FolderFault::system:
+            break;
+    }
+    return std::generic_category().message(error_number);
+}
+
+std::string FolderError::message() const {
+    return path.string() + ": " + reason();
+}
+
+}  // namespace octoskin

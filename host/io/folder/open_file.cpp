@@ -1,0 +1,67 @@
+#include "host/io/folder/open_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+
+namespace octoskin {
+
+std::string other_kind_of(unsigned mode) {
+    switch (mode & S_IFMT) {
+        case S_IFREG:
+            return {};
+        case S_IFDIR:
+            return "a folder";
+        case S_IFIFO:
+            return "a named pipe";
+        case S_IFSOCK:
+            return "a socket";
+        case S_IFLNK:
+            return "a symbolic link";
+        default:
+            return "a device";
+    }
+}
+
+std::filesystem::path path_of_descriptor(int descriptor) {
+    return fmt::format("/proc/self/fd/{}", descriptor);
+}
+
+std::filesystem::path OpenFile::path_for_libraries() const {
+    return path_of_descriptor(descriptor_.get());
+}
+
+std::filesystem::path OpenFile::path_for_helpers() const {
+    return fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_.get());
+}
+
+Result<std::string, FolderError> OpenFile::read(std::size_t bytes_max) const {
+    constexpr std::size_t kPiece = 65'536;
+    std::string bytes;
+    while (bytes.size() <= bytes_max) {
+        const std::size_t begin = bytes.size();
+        const std::size_t piece = std::min(kPiece, bytes_max + 1 - begin);
+        bytes.resize(begin + piece);
+        ssize_t count = ::pread(descriptor_.get(), bytes.data() + begin, piece, static_cast<off_t>(begin));
+        const int error = errno;
+        bytes.resize(begin + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+        if (count < 0 && error != EINTR) return unexpected(folder_error_of(error, shown_));
+        if (count == 0) break;
+    }
+    return bytes;
+}
+
+Result<OpenFile, FolderError> open_ordinary(const Descriptor& path, const std::filesystem::path& shown) {
+    struct stat status {};
+    if (::fstat(path.get(), &status) != 0) return unexpected(folder_error_of(errno, shown));
+    if (std::string kind = other_kind_of(status.st_mode); !kind.empty())
+        return unexpected(FolderError{FolderFault::not_a_file, shown, 0, std::move(kind)});
+    Descriptor opened(::open(path_of_descriptor(path.get()).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (!opened) return unexpected(folder_error_of(errno, shown));
+    return OpenFile(std::move(opened), shown);
+}
+
+}  // namespace octoskin
