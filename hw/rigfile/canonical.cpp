@@ -81,6 +81,8 @@ void write_robot(Writer& out, const Rig& rig, const std::string& urdf) {
                  quoted(capsule.name), quoted(capsule.link), list(capsule.p_link_a), list(capsule.p_link_b),
                  number(capsule.radius_m), number(capsule.padding_m));
     }
+    if (!rig.links_without_body.empty()) out.line("  links_without_body:");
+    for (const auto& link : rig.links_without_body) out.line("    - {}", quoted(link));
     if (!rig.links_ignored_by_sensors.empty()) out.line("  links_ignored_by_sensors:");
     for (const auto& link : rig.links_ignored_by_sensors) out.line("    - {}", quoted(link));
     out.line("  depth_self_margin_m: {}", number(rig.depth_self_margin_m));

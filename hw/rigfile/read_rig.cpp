@@ -99,6 +99,37 @@ void read_attached_capsules(const Table& robot, const UrdfDocument& document, Ri
     }
 }
 
+/// What gives the link a body; empty if nothing does.
+std::string body_of(const std::string& link, const UrdfDocument& robot, const Rig& rig) {
+    const auto found = robot.model().links_.find(link);
+    if (found != robot.model().links_.end() && !found->second->collision_array.empty())
+        return "a <collision> in " + robot.file().filename().string();
+    for (const AttachedCapsule& capsule : rig.attached_capsules) {
+        if (capsule.link == link) return fmt::format("the attached capsule '{}'", capsule.name);
+    }
+    return "";
+}
+
+void read_links_without_body(const Table& robot, const UrdfDocument& document, Rig& rig) {
+    const Value* const list = robot.find("links_without_body");
+    if (list == nullptr) return;
+    const std::string path = robot.path_of("links_without_body");
+    for (const Value& item : read_list(*list, path)) {
+        auto link = read_name(item, path);
+        require_link(item, path, link, document);
+        if (!document.is_below(rig.base_link, link))
+            fail(item, path, fmt::format("expected a link at or below {}, found '{}'", rig.base_link, link));
+        if (const std::string body = body_of(link, document, rig); !body.empty()) {
+            fail(item, path,
+                 fmt::format("expected a link without a body, found '{}', which has {}: remove it here", link,
+                             body));
+        }
+        if (std::ranges::find(rig.links_without_body, link) != rig.links_without_body.end())
+            fail(item, path, fmt::format("expected each link once, found '{}' again", link));
+        rig.links_without_body.push_back(std::move(link));
+    }
+}
+
 std::uint32_t read_bitrate(const Table& bus, std::string_view key,
                            std::initializer_list<std::int64_t> rates) {
     const auto bitrate = bus.integer<std::int64_t>(key, {1, 8'000'000});
@@ -219,13 +250,15 @@ Rig read_checked(const std::filesystem::path& file, const std::filesystem::path&
                     {"name", "robot", "T_map_base", "bus", "range_limits", "joints", "camera",
                      "sensor_defaults", "nodes", "extends"});
     rig.name = top.folder_name("name");
-    const Table robot(top.require("robot"), "robot",
-                      {"urdf", "base_link", "link_padding_m", "fits_capsules", "attached_capsules",
-                       "links_ignored_by_sensors", "depth_self_margin_m", "range_self_margin_m"});
+    const Table robot(
+        top.require("robot"), "robot",
+        {"urdf", "base_link", "link_padding_m", "fits_capsules", "attached_capsules", "links_without_body",
+         "links_ignored_by_sensors", "depth_self_margin_m", "range_self_margin_m"});
     const UrdfDocument urdf = read_robot(robot, urdf_instead);
     rig.urdf = urdf.file();
     read_self_filter(robot, urdf, rig);
     read_attached_capsules(robot, urdf, rig);
+    read_links_without_body(robot, urdf, rig);
     if (const Value* pose = top.find("T_map_base")) {
         rig.T_map_base = read_pose(*pose, "T_map_base", {.reach_m = kRoomReachM});
     }

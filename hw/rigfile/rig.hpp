@@ -109,6 +109,8 @@ struct Rig {
     std::map<std::string, double> link_padding_m;  ///< added to the capsules of a link
     bool fits_capsules = false;                    ///< a box of the URDF is the capsule around it
     std::vector<AttachedCapsule> attached_capsules;
+    /// Links that have no body on purpose: an answer about the robot says nothing of them.
+    std::vector<std::string> links_without_body;
     /// Links left out when a sensor on them predicts where its beam meets the robot (its own mount).
     std::vector<std::string> links_ignored_by_sensors;
     double depth_self_margin_m = 0.09;  ///< depth points this close to a capsule's surface are the robot

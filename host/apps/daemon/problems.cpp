@@ -26,6 +26,22 @@ void add_link(const DaemonView& view, Problems& problems) {
     }
 }
 
+/// Of those that the rig lists there is nothing to say: they are meant to be so.
+void add_links_without_body(const DaemonView& view, Problems& problems) {
+    std::string names;
+    for (const LinkWithoutBody& link : view.rig->links_without_body) {
+        if (!link.is_listed) names += (names.empty() ? "" : ", ") + link.link;
+    }
+    if (names.empty()) return;
+    problems.push_back(
+        {"links without body",
+         fmt::format(
+             "robot: {}: without a body (links_unknown): what the sensors see of it comes into the map, "
+             "and a query answers unknown instead of free; give it capsules, or list it in "
+             "robot.links_without_body of the rig",
+             names)});
+}
+
 /// Where no node is, our own SYNC tells a time from each to the next, and then looks like a jump: that is no
 /// time that anybody shares, and coming and going it would fill the log.
 bool is_time_shared(const DaemonView& view) {
@@ -368,6 +384,7 @@ std::vector<Problem> problems(const DaemonView& view) {
     Problems problems;
     add_link(view, problems);
     add_other_hosts(view, problems);
+    add_links_without_body(view, problems);
     if (!view.is_settling()) {
         add_clock(view, problems);
         add_nodes(view, problems);

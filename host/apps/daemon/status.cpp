@@ -19,6 +19,14 @@ Json age_s(const std::optional<HostTime>& since, const std::optional<HostTime>& 
     return since && now ? Json(seconds_of(*now - *since)) : Json(nullptr);
 }
 
+/// Links without a body: all of them, or those that the rig does not list.
+Json links_json(const HostRig& rig, bool leaves_out_listed) {
+    Json names = Json::array();
+    for (const LinkWithoutBody& link : rig.links_without_body)
+        if (!leaves_out_listed || !link.is_listed) names.push_back(link.link);
+    return names;
+}
+
 Json can_json(const DaemonView& view) {
     const CanLink::Counts counts = view.inputs->can().counts();
     return {{"interface", *view.interface},
@@ -203,6 +211,8 @@ Json status_json(const DaemonView& view) {
     return {{"octoskin", program_version()},
             {"uptime_s", seconds_of(view.now - view.started)},
             {"rig", view.rig->name},
+            {"links_without_body", links_json(*view.rig, false)},
+            {"links_unknown", links_json(*view.rig, true)},
             {"problems", std::move(sentences)},
             {"can", can_json(view)},
             {"clock", clock_json(view)},

@@ -10,6 +10,13 @@ constexpr std::array kStatusMeanings = {
     Meaning{"", "octoskin", "program, version and commit"},
     Meaning{"", "uptime_s", "seconds since the daemon began"},
     Meaning{"", "rig", "the name of the rig"},
+    Meaning{
+        "", "links_without_body",
+        "links of the robot that move and have a <visual>, but no body, nor a link fixed to them that has "
+        "one: nothing of them is taken out of images and ranges"},
+    Meaning{"", "links_unknown",
+            "those of links_without_body that the rig's robot.links_without_body does not list: as long as "
+            "there is one, a query answers unknown instead of free"},
     Meaning{"", "problems",
             "what is wrong, a sentence each, the most fundamental first: an empty map has its reason there"},
     Meaning{"", "can", "the interface, below"},

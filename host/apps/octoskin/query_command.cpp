@@ -38,11 +38,11 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kFooter =
     "Exit codes: 0 all of it is free (or, with --unknown, pockets are listed); 1 something occupied is in "
     "the\n"
-    "way; 2 nothing is, but something unknown or stale; 64 command line, joints beyond their limits; 65 a "
-    "map or\n"
-    "path that cannot be used, not the answer of a daemon of this version; 66 no such file; 69 no daemon, "
-    "or\n"
-    "nobody knows how the arm stands; 74 the daemon does not answer; 78 the rig.\n"
+    "way; 2 nothing is, but something is unknown or stale, or a link of the arm has no body; 64 command "
+    "line,\n"
+    "joints beyond their limits; 65 a map or path that cannot be used, not the answer of a daemon of this\n"
+    "version; 66 no such file; 69 no daemon, or nobody knows how the arm stands; 74 the daemon does not\n"
+    "answer; 78 the rig.\n"
     "An answer tells links, voxels and distances: docs/planner.md.";
 
 struct QueryOptions {
@@ -239,7 +239,7 @@ std::string hint(const QueryOptions& options, const Json& answer) {
         "(No sensor sees where the arm itself stands, and all of that is unknown: with "
         "--own-space M{}, what is unknown or stale within M metres of the arm counts as free.)\n",
         options.map ? " and --stands JOINTS, how it stands" : "");
-    if (options.own_space_m) return {};
+    if (options.own_space_m || !answer.at("links_unknown").empty()) return {};
     if (!answer.contains("pockets")) {
         const Json& state = answer.at("state");
         return state == "unknown" || state == "stale" ? hint : std::string();

@@ -57,6 +57,10 @@ void describe(const rig::Rig& rig, const HostSetup& host) {
     print("rig {}: hash {:08x}, robot {}: {} links at or below {}, {} capsules\n", rig.name,
           rig::rig_hash(rig), rig.urdf.filename().string(), host.robot.link_count(), rig.base_link,
           host.rig.body.size());
+    for (const LinkWithoutBody& link : host.rig.links_without_body) {
+        print("  link {}: no body{}\n", link.link,
+              link.is_listed ? ", as the rig lists" : ": a query answers unknown instead of free");
+    }
     for (const rig::Node& node : rig.nodes) {
         print("  node {} '{}': {} sensors, node_hash {:08x}\n", node.config.node_id, node.name,
               node.sensors.size(), node_hash(node.config));

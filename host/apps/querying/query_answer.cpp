@@ -145,7 +145,8 @@ class Asking {
 
     /// Null: distances are not asked for, or better searched for.
     [[nodiscard]] const DistanceField* field_for_path() const {
-        if (ground_.field == nullptr || !(request_.reach_m > 0.0)) return nullptr;
+        if (ground_.field == nullptr || !(request_.reach_m > 0.0) || robot_->capsule_count() == 0)
+            return nullptr;
         AskedSpace asked;
         asked.reach_m = request_.reach_m;
         for (const Leg& leg : legs_) {
@@ -193,12 +194,27 @@ class Asking {
                     {"own_space_m", own_space_json()},
                     {"distances", request_.reach_m > 0.0 ? Json(config.field != nullptr ? "field" : "search")
                                                          : Json(nullptr)},
+                    {"links", names_of(robot_->links())},
+                    {"links_without_body", links_without_body()},
+                    {"links_unknown", names_of(robot_->unknown_links())},
                     {"legs", std::move(legs)}};
     }
 
     /// Null: nothing was taken for the arm's own space.
     [[nodiscard]] Json own_space_json() const {
         return request_.own_space_m ? Json(*request_.own_space_m) : Json(nullptr);
+    }
+
+    [[nodiscard]] Json names_of(std::span<const LinkId> links) const {
+        Json names = Json::array();
+        for (const LinkId link : links) names.push_back(ground_.robot->link_names()[link]);
+        return names;
+    }
+    /// Those that the rig lists, too.
+    [[nodiscard]] Json links_without_body() const {
+        Json names = Json::array();
+        for (const LinkWithoutBody& link : ground_.rig->links_without_body) names.push_back(link.link);
+        return names;
     }
 
     [[nodiscard]] Json link_json(const std::optional<LinkId>& link) const {
@@ -265,6 +281,9 @@ class Asking {
                     {"region_m3", rounded(static_cast<double>(found->region_voxels()) * voxel_m3)},
                     {"unknown_m3", rounded(static_cast<double>(found->unknown_voxels()) * voxel_m3)},
                     {"pockets_found", found->pockets().size()},
+                    {"links", names_of(robot_->links())},
+                    {"links_without_body", links_without_body()},
+                    {"links_unknown", names_of(robot_->unknown_links())},
                     {"views_not_tried", why_no_views},
                     {"pockets", std::move(pockets)}};
     }

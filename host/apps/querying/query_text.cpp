@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "host/apps/querying/query_answer.hpp"
 
@@ -14,11 +17,40 @@ std::string point(const Json& json) {
                        json.at(2).get<double>());
 }
 
-std::string clearance(const Json& leg, const std::string& kind, const std::string& what) {
+/// `bound`: what a distance is beside links that are unknown, which may be nearer.
+std::string clearance(const Json& leg, const std::string& kind, const std::string& what,
+                      const std::string& bound) {
     const Json& gap = leg.at(kind + "_m");
     if (gap.is_null()) return {};
-    return fmt::format("  nearest {} voxel: {:.3f} m from {}\n", what, gap.get<double>(),
+    return fmt::format("  nearest {} voxel: {}{:.3f} m from {}\n", what, bound, gap.get<double>(),
                        leg.at(kind + "_link").get<std::string>());
+}
+
+std::string listed(const Json& names) {
+    std::string text;
+    for (const Json& name : names) text += (text.empty() ? "" : ", ") + name.get<std::string>();
+    return text;
+}
+
+bool has(const Json& names, const Json& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// What was not asked about, as there is no body to ask about; of a robot that has all of it, nothing.
+std::string links_text(const Json& answer) {
+    const Json& unknown = answer.at("links_unknown");
+    Json on_purpose = Json::array();
+    for (const Json& link : answer.at("links_without_body"))
+        if (!has(unknown, link)) on_purpose.push_back(link);
+    std::string text;
+    if (!unknown.empty())
+        text += fmt::format(
+            "not asked about: {}: without a body, so that nothing is called free (give {} capsules, or list "
+            "{} in robot.links_without_body of the rig)\n",
+            listed(unknown), unknown.size() == 1 ? "it" : "them", unknown.size() == 1 ? "it" : "them");
+    if (!on_purpose.empty())
+        text += fmt::format("not asked about: {}: without a body, as the rig lists\n", listed(on_purpose));
+    return text;
 }
 
 /// Of a map that tells no ages, nothing.
@@ -35,25 +67,33 @@ std::string evidence(const Json& leg) {
         point(evidence.at("voxel_m")), evidence.at("is_stale").get<bool>() ? ": stale" : "");
 }
 
-std::string leg_text(const Json& leg, std::size_t number, bool is_path) {
+std::string leg_text(const Json& answer, std::size_t index) {
+    const Json& leg = answer.at("legs").at(index);
+    const Json& unknown_links = answer.at("links_unknown");
+    const bool is_path = answer.at("legs").size() > 1;
+    const std::size_t number = index + 1;
+    const std::string bound = unknown_links.empty() ? "" : "at most ";
     std::string text = is_path ? fmt::format("{:>4}  ", number) : std::string();
     text += leg.at("state").get<std::string>();
-    if (is_path && number > 1 && leg.at("state") != "free")
+    const bool is_link_unknown = has(unknown_links, leg.at("link"));
+    if (is_path && number > 1 && leg.at("state") != "free" && !is_link_unknown)
         text += fmt::format(" from {:.0f} % of the way", 100.0 * leg.at("share").get<double>());
     if (!leg.at("link").is_null()) text += ": " + leg.at("link").get<std::string>();
+    if (is_link_unknown) text += " has no body";
     if (!leg.at("voxel_m").is_null()) text += " at " + point(leg.at("voxel_m"));
-    return text + "\n" + clearance(leg, "occupied", "occupied") + clearance(leg, "not_free", "not free") +
-           evidence(leg);
+    return text + "\n" + clearance(leg, "occupied", "occupied", bound) +
+           clearance(leg, "not_free", "not free", bound) + evidence(leg);
 }
 
 std::string postures_text(const Json& answer) {
     const Json& legs = answer.at("legs");
-    if (legs.size() == 1) return leg_text(legs.at(0), 1, false);
     std::string text;
-    for (std::size_t i = 0; i < legs.size(); ++i) text += leg_text(legs.at(i), i + 1, true);
-    return text + fmt::format("the path is {}: {} configurations, {} postures\n",
-                              answer.at("state").get<std::string>(), legs.size(),
-                              answer.at("postures").get<std::size_t>());
+    for (std::size_t i = 0; i < legs.size(); ++i) text += leg_text(answer, i);
+    if (legs.size() > 1)
+        text += fmt::format("the path is {}: {} configurations, {} postures\n",
+                            answer.at("state").get<std::string>(), legs.size(),
+                            answer.at("postures").get<std::size_t>());
+    return text + links_text(answer);
 }
 
 std::string view_text(const Json& view) {
@@ -89,7 +129,7 @@ std::string pockets_text(const Json& answer) {
     }
     if (number > 0 && !why_not_tried.is_null())
         text += fmt::format("no view was tried: {}\n", why_not_tried.get<std::string>());
-    return text;
+    return text + links_text(answer);
 }
 
 }  // namespace

@@ -81,9 +81,9 @@ bool is_blocked(const LegAnswer& answer, double reach_m) {
 }
 
 /// False if a capsule is refused.
-bool take_posture(const FusedMap& map, std::span<const PosedCapsule> capsules, double share,
-                  const LegConfig& config, LegAnswer& answer) {
-    const auto worst = worst_of(map, capsules);
+bool take_posture(const RobotQuery& robot, const FusedMap& map, std::span<const PosedCapsule> capsules,
+                  double share, const LegConfig& config, LegAnswer& answer) {
+    const auto worst = worst_of(robot, map, capsules);
     if (!worst) return false;
     if (worst->state > answer.worst.state) {
         answer.worst = *worst;
@@ -109,7 +109,9 @@ Leg::Leg(const RobotQuery& robot, const FusedMap& map, std::span<const double> f
     const double longest = longest_of(from, to);
     if (!(longest > 0.0)) return;
     margins_m_ = speeds_of(robot, from, to);
-    parts_ = parts_of(longest, step, std::ranges::max(margins_m_), kMotionEdges * map.resolution_m());
+    // A robot of which all that moves is unknown has no capsule.
+    const double fastest = margins_m_.empty() ? 0.0 : std::ranges::max(margins_m_);
+    parts_ = parts_of(longest, step, fastest, kMotionEdges * map.resolution_m());
     for (double& margin_m : margins_m_) margin_m *= 0.5 / static_cast<double>(parts_);
 }
 
@@ -135,7 +137,7 @@ Result<LegAnswer, PostureFault> ask(const RobotQuery& robot, const FusedMap& map
         if (config.is_ending && config.is_ending()) break;
         const auto capsules = leg.pose(robot, i);
         if (!capsules) return unexpected(capsules.error());
-        if (!take_posture(map, *capsules, leg.share(i), config, answer))
+        if (!take_posture(robot, map, *capsules, leg.share(i), config, answer))
             return unexpected(PostureFault{PostureError::too_far, 0});
     }
     return answer;

@@ -54,7 +54,7 @@ class Leg {
 
 struct LegAnswer {
     /// Of all its postures; of equals the first. Free is free all the way; what is not may lie beside the
-    /// way, by a quarter of a voxel's edge at most.
+    /// way, by a quarter of a voxel's edge at most. Never free for a robot with unknown links.
     PostureAnswer worst;
     double share = 1.0;  ///< of the way, where that is
     /// The least on the way, or up to a quarter of a voxel's edge less; of nothing if the reach is 0.

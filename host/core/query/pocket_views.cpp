@@ -86,7 +86,7 @@ class Postures {
 PostureState state_of(const RobotQuery& robot, const FusedMap& map, std::span<const double> position) {
     const auto capsules = robot.pose(position);
     if (!capsules) return PostureState::occupied;
-    const auto answer = worst_of(map, *capsules);
+    const auto answer = worst_of(robot, map, *capsules);
     return answer ? answer->state : PostureState::occupied;
 }
 

@@ -33,6 +33,17 @@ std::vector<bool> moved_by_joints(const RobotModel& robot, const RobotBody& body
     return moved;
 }
 
+/// Those that the rig does not list; a fault if the robot has no such link.
+Result<std::vector<LinkId>, RobotQueryFault> unknown_links_of(const HostRig& rig, const RobotModel& robot) {
+    std::vector<LinkId> links;
+    for (const LinkWithoutBody& without : rig.links_without_body) {
+        const auto link = robot.find_link(without.link);
+        if (!link) return unexpected(RobotQueryFault{RobotQueryError::unknown_link, without.link});
+        if (!without.is_listed) links.push_back(*link);
+    }
+    return links;
+}
+
 bool is_worse(const CapsuleAnswer& answer, double depth_m, const PostureAnswer& worst, double deepest_m) {
     const auto state = answer.state == Occupancy::occupied ? PostureState::occupied : PostureState::unknown;
     if (state != worst.state) return state > worst.state;
@@ -86,16 +97,20 @@ Result<RobotQuery, RobotQueryFault> RobotQuery::build(const HostRig& rig, const 
         if (std::ranges::find(config.links_ignored, capsule.link) == config.links_ignored.end())
             asked.push_back(capsule);
     }
-    if (asked.empty()) return unexpected(RobotQueryFault{RobotQueryError::no_body, {}});
+    auto unknown = unknown_links_of(rig, robot);
+    if (!unknown) return unexpected(unknown.error());
+    if (asked.empty() && unknown->empty()) return unexpected(RobotQueryFault{RobotQueryError::no_body, {}});
     auto body = RobotBody::build(asked, robot);
     if (!body) return unexpected(RobotQueryFault{RobotQueryError::unknown_link, body.error().element});
-    return RobotQuery(robot, std::move(body).value(), rig.T_map_base, asked.size(), config.padding_m);
+    return RobotQuery(robot, std::move(body).value(), std::move(unknown).value(), rig.T_map_base,
+                      asked.size(), config.padding_m);
 }
 
-RobotQuery::RobotQuery(const RobotModel& robot, RobotBody body, const Eigen::Isometry3d& T_map_base,
-                       std::size_t capsules, double padding_m)
+RobotQuery::RobotQuery(const RobotModel& robot, RobotBody body, std::vector<LinkId> unknown_links,
+                       const Eigen::Isometry3d& T_map_base, std::size_t capsules, double padding_m)
     : robot_(robot),
       body_(std::move(body)),
+      unknown_links_(std::move(unknown_links)),
       T_map_base_(T_map_base),
       capsules_(capsules),
       padding_m_(padding_m) {}
@@ -130,6 +145,18 @@ std::vector<PosedCapsule> RobotQuery::posed(std::span<const double> position) co
     return posed;
 }
 
+std::vector<LinkId> RobotQuery::links() const {
+    const std::vector<Eigen::Isometry3d> anywhere(robot_.link_count(), Eigen::Isometry3d::Identity());
+    std::vector<PosedCapsule> posed;
+    body_.pose(anywhere, posed);
+    std::vector<LinkId> links;
+    for (const PosedCapsule& capsule : posed) links.push_back(capsule.link);
+    std::ranges::sort(links);
+    const auto repeated = std::ranges::unique(links);
+    links.erase(repeated.begin(), repeated.end());
+    return links;
+}
+
 double RobotQuery::lever_m(std::span<const double> farthest) const {
     // How far from its link's origin an end is, is the same in every posture.
     const std::vector<double> zero(robot_.joint_count(), 0.0);
@@ -147,7 +174,7 @@ double RobotQuery::lever_m(std::span<const double> farthest) const {
     return lever_m;
 }
 
-Result<PostureAnswer, RefusedCapsule> worst_of(const FusedMap& map,
+Result<PostureAnswer, RefusedCapsule> worst_of(const RobotQuery& robot, const FusedMap& map,
                                                std::span<const PosedCapsule> capsules) noexcept {
     PostureAnswer worst;
     double deepest_m = 0.0;
@@ -162,6 +189,8 @@ Result<PostureAnswer, RefusedCapsule> worst_of(const FusedMap& map,
                  capsules[i].link, answer->voxel};
     }
     if (worst.state != PostureState::free) return worst;
+    if (!robot.unknown_links().empty())
+        return PostureAnswer{PostureState::unknown, robot.unknown_links().front(), std::nullopt};
     const auto evidence = weakest_of(map, capsules);
     if (evidence && evidence->weakest.is_stale)
         worst = {PostureState::stale, evidence->link, evidence->weakest.voxel};

@@ -34,11 +34,12 @@ struct PostureAnswer {
     /// Of the links in that state the one that reaches furthest into it; empty for free.
     std::optional<LinkId> link;
     /// The voxel that is nearest to the axis of that link's body, if it is stale the one with the weakest
-    /// evidence; empty for free, and outside the octree.
+    /// evidence; empty for free, outside the octree, and if that link has no body.
     std::optional<VoxelKey> voxel;
 };
 
-/// How far the robot's surface, padding included, is from the nearest voxel; 0 if it touches one.
+/// How far the robot's surface, padding included, is from the nearest voxel; 0 if it touches one. Of the
+/// bodies that are asked about: links without a body may be nearer, and then it is an upper bound.
 struct PostureClearance {
     std::optional<double> occupied_m;  ///< empty: beyond the reach
     std::optional<double> not_free_m;
@@ -58,7 +59,7 @@ struct RobotQueryConfig {
 enum class RobotQueryError : std::uint8_t {
     unknown_link,  ///< `links_ignored` names, or the rig has a body on, a link that the robot does not have
     bad_padding,
-    no_body,  ///< nothing is left to ask about: every answer would be "free"
+    no_body,  ///< nothing is left to ask about, and no link is unknown: every answer would be "free"
 };
 struct RobotQueryFault {
     RobotQueryError error = RobotQueryError::unknown_link;
@@ -94,15 +95,23 @@ class RobotQuery {
     [[nodiscard]] double lever_m(std::span<const double> farthest) const;
 
     [[nodiscard]] const RobotModel& robot() const noexcept { return robot_; }
+    /// May be 0, if the robot has links that are unknown.
     [[nodiscard]] std::size_t capsule_count() const noexcept { return capsules_; }
+    /// The links whose bodies are asked about, each once, by LinkId.
+    [[nodiscard]] std::vector<LinkId> links() const;
+    /// Links that a joint moves, that have a <visual> and no body, and that the rig does not list as such on
+    /// purpose: where they are is not known, so that no posture of this robot is free. Which bodies a
+    /// question leaves out changes nothing about it.
+    [[nodiscard]] std::span<const LinkId> unknown_links() const noexcept { return unknown_links_; }
     [[nodiscard]] const Eigen::Isometry3d& T_map_base() const noexcept { return T_map_base_; }
 
   private:
-    RobotQuery(const RobotModel& robot, RobotBody body, const Eigen::Isometry3d& T_map_base,
-               std::size_t capsules, double padding_m);
+    RobotQuery(const RobotModel& robot, RobotBody body, std::vector<LinkId> unknown_links,
+               const Eigen::Isometry3d& T_map_base, std::size_t capsules, double padding_m);
 
     RobotModel robot_;
     RobotBody body_;
+    std::vector<LinkId> unknown_links_;
     Eigen::Isometry3d T_map_base_;
     std::size_t capsules_;
     double padding_m_;
@@ -120,9 +129,10 @@ struct PostureEvidence {
                                                         std::span<const PosedCapsule> capsules,
                                                         std::optional<PostureEvidence> than = {}) noexcept;
 
-/// Of capsules that RobotQuery posed; too large a robot is refused. An occupied voxel is occupied however old
-/// its evidence is. About 4 us a capsule at 0.04 m.
-[[nodiscard]] Result<PostureAnswer, RefusedCapsule> worst_of(const FusedMap& map,
+/// Of capsules that `robot` posed; too large a robot is refused. An occupied voxel is occupied however old
+/// its evidence is. Unknown at best if the robot has a link that is unknown: that is then the answer's, if
+/// none of the capsules touches anything unknown or occupied. About 4 us a capsule at 0.04 m.
+[[nodiscard]] Result<PostureAnswer, RefusedCapsule> worst_of(const RobotQuery& robot, const FusedMap& map,
                                                              std::span<const PosedCapsule> capsules) noexcept;
 /// Up to `reach_m` from the surface of each capsule. `than`: of other postures; the answer is the least of
 /// all, and what is further away is not looked for.

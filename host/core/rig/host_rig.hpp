@@ -69,6 +69,13 @@ struct LinkCapsule {
     double radius_m = 0.0;
 };
 
+/// A link that a joint moves and that has a <visual>, but no body, nor has a link that is rigidly attached to
+/// it. Nothing of it is taken out of images and ranges, and no answer about the robot's body tells of it.
+struct LinkWithoutBody {
+    std::string link;
+    bool is_listed = false;  ///< the rig says that it is so on purpose (`links_without_body`)
+};
+
 /// The limits that acceptance applies to every range.
 struct HostRangeLimits {
     double min_m = 0.04;
@@ -86,6 +93,7 @@ struct HostRig {
     HostJointSource joints;
     std::optional<HostCamera> camera;
     std::vector<LinkCapsule> body;
+    std::vector<LinkWithoutBody> links_without_body;  ///< by name
     /// Links left out when a sensor predicts where its own beam meets the robot: its mount.
     std::vector<std::string> links_ignored_by_sensors;
     double depth_self_margin_m = 0.09;  ///< depth points this close to a capsule's surface are the robot

@@ -7,6 +7,8 @@
 
 #include "host/io/rig/zone_optics.hpp"
 #include "host/io/urdf/urdf_robot.hpp"
+#include "hw/rigfile/joined.hpp"
+#include "hw/rigfile/links_without_body.hpp"
 #include "hw/rigfile/reflex.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/rigfile/zone.hpp"
@@ -66,6 +68,19 @@ HostRig to_host(const rig::Rig& rig) {
     return host;
 }
 
+/// Of those that the rig does not list; empty if it lists all that there are.
+std::string warning_of(const std::vector<LinkWithoutBody>& links) {
+    std::vector<std::string> names;
+    for (const LinkWithoutBody& link : links) {
+        if (!link.is_listed) names.push_back(link.link);
+    }
+    if (names.empty()) return {};
+    return rig::joined(names) + (names.size() == 1 ? ": this link moves, has" : ": these links move, have") +
+           " a <visual> and no body, and no link fixed to it has one: it comes into the map as the world "
+           "does, and a query answers unknown instead of free. Give it capsules (docs/robot.md), or list it "
+           "in robot.links_without_body of the rig";
+}
+
 }  // namespace
 
 HostCamera host_camera(const rig::Camera& camera) {
@@ -93,11 +108,20 @@ Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
         }
         host.body.push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
     }
+    const auto without_body = rig::links_without_body(rig, *capsules);
+    if (!without_body) return unexpected(without_body.error());
+    for (const std::string& link : *without_body) {
+        const bool is_listed =
+            std::ranges::find(rig.links_without_body, link) != rig.links_without_body.end();
+        host.links_without_body.push_back({link, is_listed});
+    }
     std::vector<std::string> warnings = rig::reflex_warnings(rig);
     if (host.body.empty()) {
         warnings.push_back("no link at or below " + rig.base_link +
                            " has a <collision>: nothing of the robot is taken out of images and ranges");
     }
+    if (auto warning = warning_of(host.links_without_body); !warning.empty())
+        warnings.push_back(std::move(warning));
     return HostSetup{std::move(host), std::move(robot).value(), std::move(warnings)};
 }
 

@@ -29,6 +29,7 @@ robot:
   attached_capsules:
     - {name: gripper, link: arm, from_m: [0, 0, 0.125], to_m: [0, 0.0625, 0.25], radius_m: 0.03, padding_m: 0.02}
     - {name: ball, link: arm, from_m: [0.5, 0, 0], radius_m: 0.04}
+  links_without_body: [base]
   links_ignored_by_sensors: [arm]
   depth_self_margin_m: 0.0875
   range_self_margin_m: 0.125
@@ -146,6 +147,7 @@ TEST_F(RigText, every_value_of_a_full_rig_arrives) {
     EXPECT_EQ(rig.attached_capsules[0].radius_m, 0.03);
     EXPECT_EQ(rig.attached_capsules[0].padding_m, 0.02);
     EXPECT_EQ(rig.attached_capsules[1].p_link_b, Eigen::Vector3d(0.5, 0, 0));
+    EXPECT_EQ(rig.links_without_body, std::vector<std::string>{"base"});
     EXPECT_EQ(rig.range_limits.sigma_max_m, 0.15);
     EXPECT_EQ(rig.range_limits.time_uncertainty_max_ms, 2.5);
     EXPECT_EQ(rig.camera->fy, 60.5);
@@ -306,6 +308,7 @@ const Change kChanges[] = {
     {"padding_m: 0.02}", "padding_m: 0.03}", false},
     {"radius_m: 0.04", "radius_m: 0.05", false},
     {"name: ball", "name: bail", false},
+    {"links_without_body: [base]", "links_without_body: []", false},
     {"links_ignored_by_sensors: [arm]", "links_ignored_by_sensors: []", false},
     {"depth_self_margin_m: 0.0875", "depth_self_margin_m: 0.09", false},
     {"range_self_margin_m: 0.125", "range_self_margin_m: 0.12", false},

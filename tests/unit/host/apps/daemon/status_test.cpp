@@ -42,6 +42,19 @@ TEST_F(StatusTest, has_who_it_is_how_long_it_runs_and_what_is_wrong) {
                     "the newest reload was refused, and the old settings hold: no rig"}));
 }
 
+TEST_F(StatusTest, names_links_without_a_body_and_is_content_with_those_that_the_rig_lists) {
+    EXPECT_EQ(status()["links_without_body"], Json::array());
+    scene_.rig.links_without_body = {{"elbow", true}, {"wrist", false}};
+    EXPECT_EQ(status()["links_without_body"], Json({"elbow", "wrist"}));
+    EXPECT_EQ(status()["links_unknown"], Json({"wrist"}));
+    EXPECT_EQ(told("links without body").rfind("robot: wrist: without a body", 0), 0U);
+    EXPECT_EQ(status()["problems"].size(), 1U);
+    view_.reloaded = view_.now;
+    EXPECT_EQ(status()["problems"].size(), 1U) << "nothing to be learnt anew";
+    scene_.rig.links_without_body = {{"elbow", true}};
+    EXPECT_EQ(status()["problems"], Json::array());
+}
+
 TEST_F(StatusTest, has_what_came_over_the_bus_and_how_long_that_kept_it_busy) {
     // Eight bytes in classical format: 135 bits, at 1 Mbit/s.
     for (int i = 0; i < 2; ++i) say({.can_id = 5, .payload_len = 8});

@@ -91,6 +91,97 @@ TEST(QueryRefused, is_read_back_and_no_other_answer_is_one) {
     EXPECT_FALSE(refusal_of(Json::array()));
 }
 
+/// The arm without its upper arm's body, which has a <visual>.
+void take_body_of_upper(HostRig& rig, bool is_listed) {
+    rig.body.erase(rig.body.begin() + 1);
+    rig.links_without_body = {{"upper", is_listed}};
+}
+
+TEST_F(QueryAnswer, tells_which_links_were_asked_about) {
+    const Json whole = ask(path({{0.0, 0.0}}), map_);
+    EXPECT_EQ(whole.at("links"), Json({"upper", "hand"}));
+    EXPECT_EQ(whole.at("links_without_body"), Json::array());
+    EXPECT_EQ(whole.at("links_unknown"), Json::array());
+    QueryRequest request = path({{0.0, 0.0}});
+    request.links_ignored = {"hand"};
+    EXPECT_EQ(ask(request, map_).at("links"), Json({"upper"}));
+    request.links_ignored.clear();
+    request.asks_unmoved_links = true;
+    EXPECT_EQ(ask(request, map_).at("links"), Json({"post", "upper", "hand"}));
+}
+
+TEST_F(QueryAnswer, of_a_link_without_a_body_is_unknown_where_it_would_be_free) {
+    take_body_of_upper(arm_.rig, false);
+    const Json answer = ask(path({{0.0, 0.0}, {0.5, 0.0}}), map_);
+    EXPECT_EQ(answer.at("state"), "unknown");
+    EXPECT_EQ(answer.at("legs").at(1).at("state"), "unknown");
+    EXPECT_EQ(answer.at("legs").at(1).at("link"), "upper");
+    EXPECT_TRUE(answer.at("legs").at(1).at("voxel_m").is_null());
+    EXPECT_EQ(answer.at("links"), Json({"hand"}));
+    EXPECT_EQ(answer.at("links_without_body"), Json({"upper"}));
+    EXPECT_EQ(answer.at("links_unknown"), Json({"upper"}));
+    EXPECT_THAT(query_text(answer), HasSubstr("   2  unknown: upper has no body\n"));
+    EXPECT_THAT(query_text(answer), HasSubstr("not asked about: upper: "));
+    mark(map_, {0.42, 0.02, 0.30});
+    const Json blocked = ask(path({{0.0, 0.0}}), map_);
+    EXPECT_EQ(blocked.at("state"), "occupied");
+    EXPECT_EQ(blocked.at("links_unknown"), Json({"upper"}));
+    EXPECT_THAT(query_text(blocked), HasSubstr("not asked about: upper: "));
+    EXPECT_THAT(query_text(ask(path({{0.5, 0.0}}), map_)), HasSubstr("nearest occupied voxel: at most 0."));
+}
+
+TEST_F(QueryAnswer, of_a_link_without_a_body_is_unknown_whatever_the_question_leaves_out) {
+    take_body_of_upper(arm_.rig, false);
+    QueryRequest request = path({{0.0, 0.0}});
+    request.links_ignored = {"upper"};
+    EXPECT_EQ(ask(request, map_).at("state"), "unknown") << "what has no body is said in the rig";
+    request.links_ignored = {"hand"};
+    const Json nothing_asked = ask(request, map_);
+    EXPECT_EQ(nothing_asked.at("state"), "unknown");
+    EXPECT_EQ(nothing_asked.at("links"), Json::array());
+    request.links_ignored.clear();
+    request.own_space_m = 0.1;
+    EXPECT_EQ(ask(request, map_).at("state"), "unknown") << "its own space is not known";
+}
+
+TEST_F(QueryAnswer, of_a_link_that_the_rig_lists_as_without_a_body_may_be_free) {
+    take_body_of_upper(arm_.rig, true);
+    const Json answer = ask(path({{0.0, 0.0}}), map_);
+    EXPECT_EQ(answer.at("state"), "free");
+    EXPECT_EQ(answer.at("links_without_body"), Json({"upper"}));
+    EXPECT_EQ(answer.at("links_unknown"), Json::array());
+    EXPECT_EQ(query_text(answer).rfind("free\nnot asked about: upper: ", 0), 0U) << query_text(answer);
+}
+
+TEST_F(QueryAnswer, of_an_arm_none_of_whose_links_has_a_body_is_unknown) {
+    arm_.rig.body.clear();
+    arm_.rig.links_without_body = {{"hand", false}, {"upper", false}};
+    KeptField field;
+    const Json answer =
+        answer_query(path({{0.0, 0.0}, {0.5, 0.0}}), {&arm_.rig, &arm_.robot, map_.copy(), {}, &field});
+    ASSERT_EQ(answer.at("ok"), true) << answer;
+    EXPECT_EQ(answer.at("state"), "unknown");
+    EXPECT_EQ(answer.at("links"), Json::array());
+    EXPECT_EQ(answer.at("links_unknown"), Json({"hand", "upper"}));
+    EXPECT_EQ(answer.at("legs").at(0).at("occupied_m"), nullptr);
+}
+
+TEST_F(QueryAnswer, of_a_view_into_a_pocket_calls_neither_it_nor_its_way_free) {
+    const FusedMap holed = without(map_, {0.7, -0.1, 0.2}, {0.9, 0.1, 0.4});
+    QueryRequest request = path({{0.0, 0.0}});
+    request.kind = QueryKind::pockets;
+    request.z_min_m = -1.0;
+    const auto view = [&] { return ask(request, holed).at("pockets").at(0).at("view"); };
+    ASSERT_FALSE(view().is_null());
+    EXPECT_EQ(view().at("state"), "free");
+    EXPECT_EQ(view().at("way"), "free");
+    take_body_of_upper(arm_.rig, false);
+    EXPECT_EQ(view().at("state"), "unknown");
+    EXPECT_EQ(view().at("way"), "unknown");
+    EXPECT_EQ(ask(request, holed).at("links_unknown"), Json({"upper"}));
+    EXPECT_THAT(query_text(ask(request, holed)), HasSubstr("not asked about: upper: "));
+}
+
 TEST_F(QueryAnswer, takes_the_arms_own_space_for_free_if_it_is_told_to) {
     const FusedMap holed = without(map_, {-0.1, -0.12, 0.2}, {0.5, 0.12, 0.4});
     QueryRequest request = path({{0.0, 0.0}});

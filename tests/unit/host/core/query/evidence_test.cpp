@@ -77,11 +77,11 @@ TEST(Evidence, makes_a_free_posture_stale_but_an_occupied_one_is_occupied) {
     const auto query = RobotQuery::build(arm.rig, arm.robot).value();
     FusedMap map = free_about_origin(10);
     confirm_about_origin(map, at_second(0));
-    const auto state = [&] { return worst_of(map, *query.pose(std::vector{0.0, 0.0}))->state; };
+    const auto state = [&] { return worst_of(query, map, *query.pose(std::vector{0.0, 0.0}))->state; };
     EXPECT_EQ(state(), PostureState::free);
     map.go_on(at_second(10));
     EXPECT_EQ(state(), PostureState::stale);
-    const auto stale = worst_of(map, *query.pose(std::vector{0.0, 0.0})).value();
+    const auto stale = worst_of(query, map, *query.pose(std::vector{0.0, 0.0})).value();
     EXPECT_TRUE(stale.link && stale.voxel && map.is_stale(*stale.voxel));
     map.apply(std::vector<VoxelUpdate>{{map.key_of({0.4, 0, 0.3}).value(), 3.5F}});
     map.go_on(at_second(100));

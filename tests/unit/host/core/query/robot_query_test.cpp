@@ -28,7 +28,7 @@ std::string link_name(const TwoJointArm& arm, const std::optional<LinkId>& link)
 PostureAnswer worst_at(const RobotQuery& query, const FusedMap& map, const std::array<double, 2>& position) {
     const auto capsules = query.pose(position);
     EXPECT_TRUE(capsules);
-    return worst_of(map, *capsules).value();
+    return worst_of(query, map, *capsules).value();
 }
 
 TEST(RobotQuery, asks_about_what_a_joint_moves_and_about_nothing_else) {
@@ -54,6 +54,58 @@ TEST(RobotQuery, is_not_built_to_say_free_whatever_there_is) {
     EXPECT_EQ(fault({.links_ignored = {"uper"}}).element, "uper");
     for (const double padding_m : {-0.01, 1.5, std::nan("")})
         EXPECT_EQ(fault({.padding_m = padding_m}).error, RobotQueryError::bad_padding);
+}
+
+TEST(RobotQuery, of_a_link_without_a_body_is_never_free) {
+    TwoJointArm arm;
+    arm.rig.body.erase(arm.rig.body.begin() + 1);  // the upper arm's
+    arm.rig.links_without_body = {{"upper", false}};
+    const RobotQuery query = query_of(arm);
+    EXPECT_EQ(query.links(), std::vector<LinkId>{*arm.robot.find_link("hand")});
+    ASSERT_EQ(query.unknown_links().size(), 1U);
+    FusedMap map = free_about_origin();
+    const PostureAnswer unknown = worst_at(query, map, {0.0, 0.0});
+    EXPECT_EQ(unknown.state, PostureState::unknown);
+    EXPECT_EQ(link_name(arm, unknown.link), "upper");
+    EXPECT_FALSE(unknown.voxel);
+    const auto leg =
+        octoskin::ask(query, map, Leg(query, map, std::array{0.0, 0.0}, std::array{0.5, 0.0}), {});
+    EXPECT_EQ(leg->worst.state, PostureState::unknown);
+    mark(map, {0.42, 0.02, 0.30});
+    EXPECT_EQ(worst_at(query, map, {0.0, 0.0}).state, PostureState::occupied);
+    EXPECT_EQ(link_name(arm, worst_at(query, map, {0.0, 0.0}).link), "hand");
+    EXPECT_EQ(worst_at(query, map, {1.0, 0.0}).state, PostureState::unknown) << "past the obstacle";
+    const FusedMap nothing{MapConfig{}};
+    EXPECT_EQ(link_name(arm, worst_at(query, nothing, {0.0, 0.0}).link), "hand") << "a voxel says more";
+    const auto clearance = clearance_of(map, *query.pose(std::array{1.0, 0.0}), 1.0);
+    EXPECT_TRUE(clearance->occupied_m) << "an upper bound: of the links that have a body";
+}
+
+TEST(RobotQuery, of_a_link_that_the_rig_lists_as_without_a_body_may_be_free) {
+    TwoJointArm arm;
+    arm.rig.body.erase(arm.rig.body.begin() + 1);
+    arm.rig.links_without_body = {{"upper", true}};
+    const RobotQuery query = query_of(arm);
+    EXPECT_TRUE(query.unknown_links().empty());
+    EXPECT_EQ(worst_at(query, free_about_origin(), {0.0, 0.0}).state, PostureState::free);
+}
+
+TEST(RobotQuery, of_an_arm_without_any_body_is_unknown_and_not_refused) {
+    TwoJointArm arm;
+    arm.rig.body.clear();
+    arm.rig.links_without_body = {{"hand", false}, {"upper", true}};
+    const RobotQuery query = query_of(arm);
+    EXPECT_EQ(query.capsule_count(), 0U);
+    const FusedMap map = free_about_origin();
+    EXPECT_EQ(link_name(arm, worst_at(query, map, {0.0, 0.0}).link), "hand");
+    const auto leg =
+        octoskin::ask(query, map, Leg(query, map, std::array{0.0, 0.0}, std::array{0.5, 0.0}), {});
+    EXPECT_EQ(leg->worst.state, PostureState::unknown);
+    EXPECT_FALSE(leg->clearance.occupied_m);
+    arm.rig.links_without_body = {{"hand", true}, {"upper", true}};
+    EXPECT_EQ(RobotQuery::build(arm.rig, arm.robot).error().error, RobotQueryError::no_body);
+    arm.rig.links_without_body = {{"elbow", false}};
+    EXPECT_EQ(RobotQuery::build(arm.rig, arm.robot).error().error, RobotQueryError::unknown_link);
 }
 
 TEST(RobotQuery, poses_the_body_in_the_map_with_its_padding) {
@@ -254,20 +306,21 @@ TEST(OwnSpace, is_free_where_the_arm_is_and_where_it_was_unknown_about_it) {
     FusedMap map = without(free_about_origin(), {-0.1, -0.2, 0.2}, {0.6, 0.2, 0.4});
     mark(map, {0.2, 0.02, 0.3});
     const auto capsules = query.pose(std::array{0.0, 0.0});
-    EXPECT_EQ(worst_of(map, *capsules)->state, PostureState::occupied);
+    EXPECT_EQ(worst_of(query, map, *capsules)->state, PostureState::occupied);
     FusedMap copy = map.copy();
     EXPECT_GT(free_own_space(copy, *capsules, 0.04), 0U);
-    EXPECT_EQ(worst_of(copy, *capsules)->state, PostureState::free);
+    EXPECT_EQ(worst_of(query, copy, *capsules)->state, PostureState::free);
     EXPECT_EQ(copy.occupancy(*copy.key_of({0.2, 0.16, 0.3})), Occupancy::unknown) << "beyond the margin";
-    EXPECT_EQ(worst_of(map, *capsules)->state, PostureState::occupied) << "the map itself was changed";
+    EXPECT_EQ(worst_of(query, map, *capsules)->state, PostureState::occupied) << "the map itself was changed";
 }
 
 TEST(OwnSpace, leaves_occupied_what_is_outside_the_arm) {
     FusedMap map = free_about_origin();
     mark(map, {0.2, 0.06, 0.3});  // its centre is 0.06 m from the axis, the arm 0.04 m thick
-    const auto capsules = query_of(TwoJointArm()).pose(std::array{0.0, 0.0});
+    const RobotQuery query = query_of(TwoJointArm());
+    const auto capsules = query.pose(std::array{0.0, 0.0});
     EXPECT_EQ(free_own_space(map, *capsules, 0.1), 0U);
-    EXPECT_EQ(worst_of(map, *capsules)->state, PostureState::occupied);
+    EXPECT_EQ(worst_of(query, map, *capsules)->state, PostureState::occupied);
 }
 
 }  // namespace

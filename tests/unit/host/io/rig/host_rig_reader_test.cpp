@@ -173,5 +173,27 @@ TEST(HostRigReader, warns_of_a_robot_without_a_body) {
                                        "robot is taken out of images and ranges"});
 }
 
+HostSetup partial(const std::string& file) {
+    const auto rig = rig::read_rig(kSource / "tests/data/partial_body" / file);
+    EXPECT_TRUE(rig) << rig.error().message();
+    auto setup = make_host_setup(*rig);
+    EXPECT_TRUE(setup) << setup.error().message();
+    return std::move(setup).value();
+}
+
+TEST(HostRigReader, names_a_link_that_moves_and_has_no_body_unless_the_rig_lists_it) {
+    const HostSetup unlisted = partial("rig.yaml");
+    ASSERT_EQ(unlisted.rig.links_without_body.size(), 1U);
+    EXPECT_EQ(unlisted.rig.links_without_body[0].link, "upper");
+    EXPECT_FALSE(unlisted.rig.links_without_body[0].is_listed);
+    ASSERT_EQ(unlisted.warnings.size(), 1U);
+    EXPECT_EQ(unlisted.warnings[0].rfind("upper: this link moves", 0), 0U) << unlisted.warnings[0];
+    const HostSetup listed = partial("listed.yaml");
+    ASSERT_EQ(listed.rig.links_without_body.size(), 1U);
+    EXPECT_TRUE(listed.rig.links_without_body[0].is_listed);
+    EXPECT_EQ(listed.warnings, std::vector<std::string>());
+    EXPECT_NE(listed.rig.rig_hash, unlisted.rig.rig_hash);
+}
+
 }  // namespace
 }  // namespace octoskin
