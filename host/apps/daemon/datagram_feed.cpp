@@ -4,8 +4,10 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstddef>
 #include <new>
 #include <span>
 #include <system_error>
@@ -16,6 +18,15 @@
 #include "host/io/socketcan/stamped_datagram.hpp"
 
 namespace octoskin {
+namespace {
+
+/// Addresses of a program that can be seen say nothing more of it: it cannot flood under many names.
+SenderKey key_of(const socketcan::StampedDatagram& received, const std::string& address) {
+    const pid_t pid = received.sender ? received.sender->pid : 0;
+    return {pid, pid > 0 ? std::string() : address};
+}
+
+}  // namespace
 
 DatagramFeed::DatagramFeed(int socket, std::size_t bytes_max)
     : socket_(socket),
@@ -42,7 +53,9 @@ DatagramFeed::~DatagramFeed() {
 }
 
 std::optional<Datagram> DatagramFeed::take() {
+    ++takers_;
     const std::lock_guard lock(mutex_);
+    --takers_;
     if (waiting_.empty()) return receive();
     Datagram oldest = std::move(waiting_.front());
     waiting_.pop_front();
@@ -56,12 +69,18 @@ std::uint64_t DatagramFeed::displaced() const {
     return displaced_;
 }
 
+std::uint64_t DatagramFeed::surplus() const {
+    const std::lock_guard lock(mutex_);
+    return surplus_;
+}
+
 void DatagramFeed::work() {
     std::array<pollfd, 2> watched{pollfd{socket_, POLLIN, 0}, pollfd{end_, POLLIN, 0}};
     while (true) {
         (void)::poll(watched.data(), watched.size(), -1);
         if (watched[1].revents != 0) return;
-        // Not all that is there under one lock: whoever takes has a turn between two of a flood.
+        // In a flood this thread would have the lock again before anybody who waits for it wakes up.
+        while (takers_ > 0) std::this_thread::yield();
         try {
             put_next();
         } catch (const std::bad_alloc&) {
@@ -79,22 +98,52 @@ void DatagramFeed::put_next() {
     waiting_.push_back(std::move(*datagram));
     const std::uint64_t one = 1;
     if (waiting_.size() == 1) (void)!::write(event_, &one, sizeof(one));
-    if (waiting_.size() <= kWaitingMax) return;
-    waiting_.pop_front();
+    if (waiting_.size() > kWaitingMax) displace();
+}
+
+/// One that sends more than others has more waiting, and gives way before them. O(kWaitingMax), and as rare
+/// as shares are small.
+void DatagramFeed::displace() {
+    std::vector<std::pair<SenderKey, std::size_t>> counts;  // of a few senders: each has a share
+    for (const Datagram& datagram : waiting_) {
+        const auto found =
+            std::ranges::find(counts, datagram.from, &std::pair<SenderKey, std::size_t>::first);
+        if (found == counts.end()) {
+            counts.emplace_back(datagram.from, 1);
+        } else {
+            ++found->second;
+        }
+    }
+    const SenderKey most =
+        std::ranges::max_element(counts, {}, &std::pair<SenderKey, std::size_t>::second)->first;
+    waiting_.erase(
+        std::ranges::find_if(waiting_, [&most](const Datagram& datagram) { return datagram.from == most; }));
     ++displaced_;
 }
 
-/// Under the lock: what is received by two at once would be put in disorder.
+/// Under the lock: what is received by two at once would be put in disorder. Empty, too, in the middle of a
+/// flood: what is beyond its sender's share is not looked for without end.
 std::optional<Datagram> DatagramFeed::receive() {
-    const auto received = socketcan::receive_stamped(socket_, std::as_writable_bytes(std::span(room_)));
-    if (received.count < 0) return std::nullopt;
-    Datagram datagram;
-    datagram.bytes.assign(room_.data(), static_cast<std::size_t>(received.count));
-    // It may have waited: it came when the kernel says.
-    datagram.came = received.stamp.value_or(wall_now());
-    datagram.came_at = monotonic_of(datagram.came);
-    datagram.read = monotonic_now();
-    return datagram;
+    constexpr int kSurplusAtOnce = 64;
+    for (int i = 0; i < kSurplusAtOnce; ++i) {
+        std::string address;
+        const auto received =
+            socketcan::receive_stamped(socket_, std::as_writable_bytes(std::span(room_)), &address);
+        if (received.count < 0) return std::nullopt;
+        Datagram datagram;
+        datagram.from = key_of(received, address);
+        if (!shares_.take(datagram.from, monotonic_now())) {
+            ++surplus_;
+            continue;
+        }
+        datagram.bytes.assign(room_.data(), static_cast<std::size_t>(received.count));
+        // It may have waited: it came when the kernel says.
+        datagram.came = received.stamp.value_or(wall_now());
+        datagram.came_at = monotonic_of(datagram.came);
+        datagram.read = monotonic_now();
+        return datagram;
+    }
+    return std::nullopt;
 }
 
 }  // namespace octoskin

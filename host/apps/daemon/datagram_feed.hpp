@@ -2,6 +2,7 @@
 // they come. A Unix socket alone keeps but a few (net.unix.max_dgram_qlen).
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <mutex>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "common/time.hpp"
+#include "host/apps/daemon/sender_shares.hpp"
 
 namespace octoskin {
 
@@ -19,11 +21,13 @@ struct Datagram {
     WallTime came;                    ///< when the kernel had it
     std::optional<HostTime> came_at;  ///< the same on the clock that never steps, if that can be told
     HostTime read;
+    SenderKey from;
 };
 
 class DatagramFeed {
   public:
-    /// Datagrams that wait; beyond, the oldest gives way. A second of an arm that tells 1000 samples.
+    /// Datagrams that wait; beyond, the oldest of the program that has most waiting gives way. A second of an
+    /// arm that tells 1000 samples.
     static constexpr std::size_t kWaitingMax = 1024;
 
     /// `socket` is one that does not block and stamps what it receives (socketcan::want_stamps); it is closed
@@ -42,11 +46,14 @@ class DatagramFeed {
     [[nodiscard]] std::optional<Datagram> take();
     /// So many gave way untaken.
     [[nodiscard]] std::uint64_t displaced() const;
+    /// So many were beyond what one program may send (SenderShares), and are dropped as they come.
+    [[nodiscard]] std::uint64_t surplus() const;
 
   private:
     void work();
     void put_next();
     [[nodiscard]] std::optional<Datagram> receive();
+    void displace();
 
     int socket_;
     std::vector<char> room_;  ///< for one
@@ -55,6 +62,9 @@ class DatagramFeed {
     mutable std::mutex mutex_;
     std::deque<Datagram> waiting_;
     std::uint64_t displaced_ = 0;
+    std::uint64_t surplus_ = 0;
+    SenderShares shares_;
+    std::atomic<int> takers_ = 0;  ///< that want the lock: the thread lets them have it first
     std::thread thread_;
 };
 

@@ -160,7 +160,7 @@ std::uint64_t Inputs::joints_displaced() const {
 }
 
 void Inputs::note_displaced(HostTime now) {
-    const std::uint64_t displaced = joints_displaced();
+    const std::uint64_t displaced = joints_displaced() + (joints_ ? joints_->surplus() : 0);
     if (displaced > displaced_noted_) displaced_at_ = now;
     displaced_noted_ = displaced;
 }

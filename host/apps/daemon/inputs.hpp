@@ -60,7 +60,7 @@ class Inputs {
     [[nodiscard]] std::uint64_t joints_thinned() const noexcept { return joints_thinned_; }
     /// Datagrams of the socket that gave way to newer ones: the loop was held up, or they are a flood.
     [[nodiscard]] std::uint64_t joints_displaced() const;
-    /// Some have within the last 2 s.
+    /// Some have within the last 2 s, or were beyond what one program may send.
     [[nodiscard]] bool is_flooded(HostTime now) const;
     /// Frames of the rig's joint node on the bus, while the socket is the source.
     [[nodiscard]] std::uint64_t joint_node_ignored() const noexcept { return joint_node_ignored_; }
@@ -114,7 +114,7 @@ class Inputs {
     std::uint64_t joints_late_ = 0;  ///< left out: later frames are in the pipeline, or another rig holds
     std::optional<WallTime> rig_changed_;  ///< by a reload
     std::uint64_t displaced_noted_ = 0;
-    std::optional<HostTime> displaced_at_;  ///< when it was noted last that some had given way
+    std::optional<HostTime> displaced_at_;  ///< when it was noted last that some were too many
     std::optional<WallTime> newest_stamp_;  ///< of the bus's frames in the pipeline
     std::unique_ptr<CameraFeed> camera_;
     std::optional<openni2::CameraMode> camera_mode_;  ///< wanted; empty: no camera is

@@ -87,6 +87,7 @@ Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& fil
     const auto descriptor = bind_unix_socket(file, SOCK_DGRAM, "--joints");
     if (!descriptor) return unexpected(descriptor.error());
     (void)socketcan::want_stamps(*descriptor);
+    (void)socketcan::want_senders(*descriptor);
     try {
         return JointSocket(file, std::make_unique<DatagramFeed>(*descriptor, kJointTextMax + 1), joint_count);
     } catch (const std::system_error& error) {

@@ -77,6 +77,8 @@ class JointSocket {
     [[nodiscard]] const std::array<std::uint64_t, 5>& faults() const noexcept { return faults_; }
     /// Datagrams that gave way to newer ones, as nobody received for too long.
     [[nodiscard]] std::uint64_t displaced() const { return feed_->displaced(); }
+    /// Datagrams beyond what one program may send.
+    [[nodiscard]] std::uint64_t surplus() const { return feed_->surplus(); }
 
   private:
     JointSocket(std::filesystem::path file, std::unique_ptr<DatagramFeed> feed, std::size_t joint_count)

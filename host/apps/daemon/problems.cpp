@@ -228,8 +228,11 @@ void add_joints(const DaemonView& view, Problems& problems) {
             {"joints flood",
              fmt::format(
                  "joint states come, or came, through the socket quicker than they can be taken: {} gave "
-                 "way to newer ones (displaced); the rig has {} Hz, more is of no use",
-                 view.inputs->joints_displaced(), view.rig->joints.rate_hz)});
+                 "way to newer ones (displaced), {} were more than one program may send (surplus); the rig "
+                 "has "
+                 "{} Hz, more is of no use",
+                 view.inputs->joints_displaced(), view.inputs->joints()->surplus(),
+                 view.rig->joints.rate_hz)});
     }
     if (joints.rejected(JointReason::too_frequent) > kFirstSamples) {
         problems.push_back(

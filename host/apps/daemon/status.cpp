@@ -140,6 +140,7 @@ Json joints_json(const DaemonView& view) {
     if (joints == nullptr) return nullptr;
     Json json = {{"samples", joints->samples()},
                  {"displaced", view.inputs->joints_displaced()},
+                 {"surplus", joints->surplus()},
                  {"thinned", view.inputs->joints_thinned()},
                  {"joint_node_ignored", view.inputs->joint_node_ignored()}};
     for (std::size_t i = 0; i < joints->faults().size(); ++i)

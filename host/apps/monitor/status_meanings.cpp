@@ -148,6 +148,9 @@ constexpr std::array kStatusMeanings = {
     Meaning{"joints_socket", "displaced",
             "datagrams that gave way to newer ones: the daemon was held up while 1024 waited, or they come "
             "quicker than it takes them beside the bus"},
+    Meaning{"joints_socket", "surplus",
+            "datagrams dropped as they came, beyond 2048 a second of one program, or of a ninth program: what "
+            "the others send is taken all the same"},
     Meaning{"joints_socket", "thinned",
             "samples left out, as they came sooner after the one before than the rig's rate has it: usual "
             "for a quick driver"},

@@ -1,9 +1,12 @@
 #include "host/io/socketcan/stamped_datagram.hpp"
 
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstring>
 #include <ctime>
 
@@ -27,6 +30,23 @@ void close_descriptors(const cmsghdr* part) {
     }
 }
 
+StampedDatagram::Sender sender_of(const cmsghdr* part) {
+    const auto credentials = value_of<ucred>(part);
+    return {credentials.pid, credentials.uid};
+}
+
+/// `length`: as recvmsg(2) tells it. An abstract address begins with a zero byte and needs no end.
+std::string name_of(const sockaddr_un& address, socklen_t length) {
+    if (length <= offsetof(sockaddr_un, sun_path)) return {};
+    std::string name(address.sun_path, length - offsetof(sockaddr_un, sun_path));
+    const bool is_abstract = name.front() == '\0';
+    if (is_abstract) name.front() = '@';
+    if (!is_abstract) name.resize(std::min(name.find('\0'), name.size()));
+    std::ranges::replace_if(
+        name, [](char c) { return c < ' ' || c > '~'; }, '?');
+    return name;
+}
+
 WallTime wall_time(const timespec& time) {
     return {std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec};
 }
@@ -38,7 +58,12 @@ bool want_stamps(int descriptor) {
     return ::setsockopt(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof(yes)) == 0;
 }
 
-StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes) {
+bool want_senders(int descriptor) {
+    const int yes = 1;
+    return ::setsockopt(descriptor, SOL_SOCKET, SO_PASSCRED, &yes, sizeof(yes)) == 0;
+}
+
+StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes, std::string* address) {
     alignas(cmsghdr) std::array<char, 128> control{};
     iovec part{bytes.data(), bytes.size()};
     msghdr message{};
@@ -46,15 +71,22 @@ StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes) {
     message.msg_iovlen = 1;
     message.msg_control = control.data();
     message.msg_controllen = control.size();
+    sockaddr_un from{};
+    if (address != nullptr) {
+        message.msg_name = &from;
+        message.msg_namelen = sizeof(from);
+    }
     StampedDatagram datagram;
     datagram.count = ::recvmsg(descriptor, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
     if (datagram.count < 0) return datagram;
     datagram.flags = message.msg_flags;
+    if (address != nullptr) *address = name_of(from, message.msg_namelen);
     for (cmsghdr* beside = CMSG_FIRSTHDR(&message); beside != nullptr;
          beside = CMSG_NXTHDR(&message, beside)) {
         if (beside->cmsg_level != SOL_SOCKET) continue;
         if (beside->cmsg_type == SO_TIMESTAMPNS) datagram.stamp = wall_time(value_of<timespec>(beside));
         if (beside->cmsg_type == SCM_RIGHTS) close_descriptors(beside);
+        if (beside->cmsg_type == SCM_CREDENTIALS) datagram.sender = sender_of(beside);
         if (beside->cmsg_type == SO_RXQ_OVFL) datagram.dropped = value_of<std::uint32_t>(beside);
     }
     return datagram;

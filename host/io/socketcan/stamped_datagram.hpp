@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "common/time.hpp"
 
@@ -17,12 +18,24 @@ struct StampedDatagram {
     int flags = 0;      ///< MSG_...
     std::optional<WallTime> stamp;
     std::optional<std::uint32_t> dropped;  ///< SO_RXQ_OVFL: since the socket was opened, modulo 2^32
+    /// SCM_CREDENTIALS, if they are wanted: what the kernel vouches for. 0: a process that it cannot name
+    /// here.
+    struct Sender {
+        pid_t pid = 0;
+        uid_t uid = 0;
+    };
+    std::optional<Sender> sender;
 };
 
 /// From now on datagrams are stamped, if the kernel does that for this kind of socket.
 bool want_stamps(int descriptor);
 
-/// Takes one datagram, if one is here; never waits.
-[[nodiscard]] StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes);
+/// From now on datagrams of a Unix socket tell the process that sent them.
+bool want_senders(int descriptor);
+
+/// Takes one datagram, if one is here; never waits. `address`: of a Unix socket, what the sender's is bound
+/// to, its own characters where they are printable and '?' elsewhere; empty: to nothing. May be null.
+[[nodiscard]] StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes,
+                                              std::string* address = nullptr);
 
 }  // namespace octoskin::socketcan

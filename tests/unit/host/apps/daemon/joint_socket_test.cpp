@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/time.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -233,6 +234,51 @@ TEST_F(JointSocketTest, keeps_the_newest_of_a_flood_that_nobody_takes_and_counts
     EXPECT_FALSE(socket_.receive(sample));
     EXPECT_EQ(socket_.samples(), DatagramFeed::kWaitingMax);
     EXPECT_EQ(socket_.displaced(), kBeyond);
+}
+
+/// A program of its own that sends so many without a pause, and ends.
+class FloodingProgram {
+  public:
+    FloodingProgram(const std::filesystem::path& file, int count)
+        : socket_(connect_unix_socket(file, SOCK_DGRAM).value()), process_(::fork()) {
+        if (process_ != 0) return;
+        constexpr std::string_view kText = "9 9 9";  // no sample: too large
+        for (int i = 0; i < count; ++i) (void)!::send(socket_, kText.data(), kText.size(), MSG_NOSIGNAL);
+        ::_exit(0);
+    }
+    ~FloodingProgram() {
+        ::waitpid(process_, nullptr, 0);
+        ::close(socket_);
+    }
+    FloodingProgram(const FloodingProgram&) = delete;
+    FloodingProgram& operator=(const FloodingProgram&) = delete;
+
+  private:
+    int socket_;
+    pid_t process_;
+};
+
+TEST_F(JointSocketTest, loses_none_of_a_driver_to_another_programs_flood_that_nobody_takes) {
+    constexpr int kFlood = 5'000;
+    constexpr int kSamples = 10;
+    const Teller driver(file_);
+    for (int i = 0; i < kSamples / 2; ++i) ASSERT_TRUE(driver.tell(i));
+    { const FloodingProgram flood(file_, kFlood); }
+    for (int i = kSamples / 2; i < kSamples; ++i) ASSERT_TRUE(driver.tell(i));
+    std::vector<int> numbers;
+    std::optional<JointSample> sample;
+    // Some may be on their way through the kernel still.
+    for (const HostTime end = monotonic_now() + Nanoseconds(20s);
+         monotonic_now() < end && numbers.size() < kSamples;)
+        while (socket_.receive(sample))
+            if (sample) numbers.push_back(number_of(*sample));
+    std::vector<int> all(kSamples);
+    std::iota(all.begin(), all.end(), 0);
+    EXPECT_EQ(numbers, all);
+    EXPECT_EQ(socket_.samples(), kSamples);
+    EXPECT_GE(socket_.displaced(), 1'000U) << "1024 of 2048 have room";
+    EXPECT_GE(socket_.surplus(), 1U);
+    EXPECT_EQ(faults(socket_, JointTextFault::too_large) + socket_.displaced() + socket_.surplus(), kFlood);
 }
 
 // Takes part of what the thread has read, part of what it has not: none is lost, twice here, or out of turn.

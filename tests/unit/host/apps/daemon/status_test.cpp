@@ -243,7 +243,7 @@ TEST_F(StatusTest, has_what_came_through_the_joint_socket_or_null_without_one) {
     view_.inputs = with_socket.get();
     EXPECT_EQ(status()["joints_socket"],
               Json::parse(
-                  R"({"samples": 2, "displaced": 0, "thinned": 1, "joint_node_ignored": 0, "not_a_number": 1,
+                  R"({"samples": 2, "displaced": 0, "surplus": 0, "thinned": 1, "joint_node_ignored": 0, "not_a_number": 1,
                   "wrong_count": 1, "time_off": 0, "too_large": 0, "too_long": 0})"));
 }
 

@@ -1,0 +1,44 @@
+// What each program may send to a socket: one that floods it leaves room for the others.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "common/time.hpp"
+
+namespace octoskin {
+
+/// A program, as far as it can be told from others.
+struct SenderKey {
+    pid_t pid = 0;        ///< 0: cannot be seen
+    std::string address;  ///< of one that cannot be seen: what its socket is bound to; empty: to nothing
+    friend bool operator==(const SenderKey&, const SenderKey&) = default;
+};
+
+class SenderShares {
+  public:
+    /// Twice what the quickest driver has to say: the rig's joints.rate_hz is 1000 at the most.
+    static constexpr double kPerSecond = 2048.0;
+    /// At once: what a program may have sent while nobody received for a second.
+    static constexpr double kAtOnce = 2048.0;
+    /// Of a flood of programs as many have a share; those that came first keep theirs.
+    static constexpr std::size_t kSendersMax = 8;
+
+    /// One datagram of this program came at `now`; false: it is beyond what may be taken. O(kSendersMax).
+    [[nodiscard]] bool take(const SenderKey& sender, HostTime now);
+
+  private:
+    struct Share {
+        SenderKey sender;
+        double left = kAtOnce;
+        HostTime newest;
+    };
+    [[nodiscard]] Share* share_of(const SenderKey& sender, HostTime now);
+
+    std::vector<Share> shares_;
+};
+
+}  // namespace octoskin
