@@ -131,7 +131,8 @@ void Inputs::attend() {
         });
     }
     if (!request_.is_listen_only) {
-        if (!bus_time_.at(now)) sync_.hasten();  // nodes speak: what they say waits for nothing else
+        const bool is_time_unknown = !bus_time_.at(now);  // nodes speak: what they say waits for nothing else
+        if (is_time_unknown || pipeline_.intake().wants_exchange()) sync_.hasten();
         if (const auto due = sync_.poll(now)) (void)can_.send(wire::encode(*due, wire::kHostId));
     }
     attend_camera();

@@ -117,6 +117,39 @@ std::string node_subject(wire::NodeId node) {
     return "node " + std::to_string(node);
 }
 
+/// Two senders under one sensor's name: what was counted of them, and what becomes of its readings.
+void add_senders(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {
+    const SenderWatch& senders =
+        view.pipeline->intake().ranges().senders(node.node_id, static_cast<std::uint8_t>(index));
+    if (!view.bus_now || !senders.is_named(*view.bus_now)) return;
+    const std::string who = sensor_text(node, index);
+    const bool is_disputed = senders.is_disputed(*view.bus_now);
+    problems.push_back(
+        {who + " senders",
+         fmt::format("{}: another sender's readings come under its name (contradictions {}, strays {}): {}. "
+                     "Which board has the node id twice, or who forges it?",
+                     who, senders.contradictions(), senders.strays(),
+                     is_disputed ? "its readings stay out of the map until a second after the last of them"
+                                 : "they are told from its own and refused"),
+         {},
+         node_subject(node.node_id)});
+}
+
+/// What it loses is not its sensors' fault.
+void add_losses(const DaemonView& view, const HostNode& node, Problems& problems) {
+    if (!view.bus_now) return;
+    const auto loss = view.pipeline->intake().losses(node.node_id, *view.bus_now);
+    if (!loss) return;
+    const std::string on = node_subject(node.node_id);
+    problems.push_back(
+        {on + " loses",
+         fmt::format("{} '{}': {:.0f} % of its readings within the last second were refused, most as {}", on,
+                     node.name, 100.0 * loss->share,
+                     names_of(ReadingReason{})[static_cast<std::size_t>(loss->most)]),
+         {},
+         on});
+}
+
 void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {
     const SensorRecord& sensor =
         view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
@@ -151,7 +184,11 @@ void add_nodes(const DaemonView& view, Problems& problems) {
             problems.push_back({text, text, node_subject(node.node_id)});
             continue;
         }
-        for (std::size_t i = 0; i < node.sensors.size(); ++i) add_sensor(view, node, i, problems);
+        add_losses(view, node, problems);
+        for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+            add_senders(view, node, i, problems);
+            add_sensor(view, node, i, problems);
+        }
     }
 }
 

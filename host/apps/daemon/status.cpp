@@ -78,6 +78,12 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
         record.newest_rejected
             ? Json(names_of(ReadingReason{})[static_cast<std::size_t>(*record.newest_rejected)])
             : Json(nullptr);
+    const SenderWatch& senders =
+        view.pipeline->intake().ranges().senders(node.node_id, static_cast<std::uint8_t>(index));
+    json["contradictions"] = senders.contradictions();
+    json["strays"] = senders.strays();
+    json["second_sender"] = view.bus_now && senders.is_named(*view.bus_now);
+    json["disputed"] = view.bus_now && senders.is_disputed(*view.bus_now);
     json["reflexes"] = record.reflexes;
     json["reflex_below_m"] = node.sensors[index].reflex_below_m;
     json["reflex_m"] = record.reflex ? Json(record.reflex->range_mm * 1e-3) : Json(nullptr);
@@ -118,6 +124,10 @@ Json node_json(const DaemonView& view, const HostNode& node) {
         {"clock_known", is_clock_known},
         {"clock_ppm", drift ? Json(*drift * 1e6) : Json(nullptr)},
         {"clock_error_ms", clock_error ? Json(milliseconds(*clock_error)) : Json(nullptr)}};
+    const auto loss = view.bus_now ? intake.losses(node.node_id, *view.bus_now) : std::nullopt;
+    json["refused_share"] = loss ? Json(loss->share) : Json(nullptr);
+    json["refused_most"] =
+        loss ? Json(names_of(ReadingReason{})[static_cast<std::size_t>(loss->most)]) : Json(nullptr);
     Json sensors = Json::array();
     for (std::size_t i = 0; i < node.sensors.size(); ++i) sensors.push_back(sensor_json(view, node, i));
     json["sensors"] = std::move(sensors);

@@ -62,12 +62,18 @@ constexpr std::array kCounterMeanings = {
             "fewer than two SYNC exchanges with the node yet: usual in its first seconds"},
     Meaning{"readings", "clock_in_doubt",
             "the newest exchange with the node contradicts those before: its clock jumped, or one of them is "
-            "wrong"},
+            "wrong. Or other readings of the node have times that cannot be, and this one's does not follow "
+            "those of its sensor by its period"},
     Meaning{"readings", "clock_silent", "no exchange with the node for too long"},
     Meaning{"readings", "time_uncertain",
             "the capture time may be further off than time_uncertainty_max_ms of the rig allows, or the node "
             "has not told how far"},
     Meaning{"readings", "duplicate", "a reading that was here already"},
+    Meaning{"readings", "contradicts_reading",
+            "another of its sensor has its number and other contents, or a later number and an earlier time: "
+            "a damaged frame or a second sender. Where the other still waited, it is counted here too"},
+    Meaning{"readings", "sensor_disputed",
+            "two senders speak under its sensor's name: refused until a second after the last sign of it"},
     Meaning{"readings", "out_of_window",
             "older than the last 32 of its sensor, or its number does not fit its time"},
     Meaning{"readings", "too_soon", "its ranging window overlaps that of another reading of the sensor"},

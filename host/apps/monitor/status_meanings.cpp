@@ -98,6 +98,10 @@ constexpr std::array kStatusMeanings = {
             "is fast. Over 250 either way its readings are refused as clock_in_doubt; null: not known"},
     Meaning{"nodes", "clock_error_ms",
             "bound on the error of its time now; it grows with silence; null: not known"},
+    Meaning{"nodes", "refused_share",
+            "of its readings within the last second, those that were refused for their time, their number or "
+            "their sender; null: no more than 0.05"},
+    Meaning{"nodes", "refused_most", "why most of these were, a name of account.md; null: no more than that"},
     Meaning{"nodes", "sensors", "a list, one object for each sensor, below"},
     Meaning{"nodes.sensors", "index", "its number on the node"},
     Meaning{"nodes.sensors", "name", "its name in the rig"},
@@ -120,6 +124,18 @@ constexpr std::array kStatusMeanings = {
     Meaning{"nodes.sensors", "zone", "which of its zones it looked through; not there before the first"},
     Meaning{"nodes.sensors", "rejected",
             "why the newest reading was not used, a name of account.md; null: it was, or waits"},
+    Meaning{"nodes.sensors", "contradictions",
+            "readings that cannot be of the sender of those before: their number was here with other "
+            "contents, or goes back while their time does not (contradicts_reading). One may be a damaged "
+            "frame"},
+    Meaning{"nodes.sensors", "strays",
+            "readings refused for their time or number that came between two of the sensor's own that lack "
+            "none: damaged frames, or another sender's"},
+    Meaning{"nodes.sensors", "second_sender",
+            "another sender speaks under its name: it is disputed, or two strays came within 2.5 s"},
+    Meaning{"nodes.sensors", "disputed",
+            "its readings stay out of the map (sensor_disputed): two contradictions came within a second, or "
+            "over a quarter as many strays as it has readings, and the last is no second ago"},
     Meaning{"nodes.sensors", "reflexes",
             "how often it sent REFLEX: something came closer than reflex_below_m"},
     Meaning{"nodes.sensors", "reflex_below_m", "its limit in the rig; 0: none"},

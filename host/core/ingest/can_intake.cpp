@@ -1,5 +1,6 @@
 #include "host/core/ingest/can_intake.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 
@@ -47,11 +48,12 @@ Reason clock_reason(ClockFault fault) {
     return Reason::clock_in_doubt;
 }
 
-/// Times that no sensor can produce: the node's clock has jumped since the last exchange. A jump shows at the
-/// next reading unless it shifts readings by less than their distance less three quarters of a budget.
+/// Times that no sensor can produce: the node's clock has jumped since the last exchange, or the reading is
+/// not the node's. A jump shows at the next reading unless it shifts readings by less than their distance
+/// less the least that the gate allows.
 bool contradicts_clock(ReadingReason reason) {
     return reason == ReadingReason::too_soon || reason == ReadingReason::too_young ||
-           reason == ReadingReason::out_of_window;
+           reason == ReadingReason::out_of_window || reason == ReadingReason::clock_in_doubt;
 }
 
 FrameReason reason_of(SyncFault fault) {
@@ -69,6 +71,8 @@ CanIntake::CanIntake(const HostRig& rig, const IntakeConfig& config)
       joints_(rig.joints.rate_hz) {
     for (const auto& [node, record] : nodes_.records()) {
         clocks_.emplace(node, ClockMap(config.clock));
+        questions_.try_emplace(node);
+        losses_.try_emplace(node);
     }
 }
 
@@ -135,16 +139,57 @@ Result<MappedTime, ReadingReason> CanIntake::capture_time(wire::NodeId node,
     return *captured;
 }
 
-Result<RangeMeasurement, ReadingReason> CanIntake::accept(wire::NodeId node,
-                                                          const wire::RangeReading& reading) {
+void CanIntake::accept(wire::NodeId node, const wire::RangeReading& reading, FrameOutcome& outcome) {
     if (!ranges_.knows(node, reading.sensor)) {
-        return unexpected(ReadingReason::unknown_sensor);
+        outcome.readings.push_back(unexpected(ReadingReason::unknown_sensor));
+        return;
     }
     ranges_.on_arrival(node, reading, now());
     nodes_.on_reading(node, reading, steady_now());
     auto measurement = measure(node, reading);
-    ranges_.on_fate(node, reading.sensor, measurement ? std::nullopt : std::optional(measurement.error()));
-    return measurement;
+    note_fate(node, reading, measurement);
+    if (!measurement) {
+        give_up_held(node, reading, measurement.error(), outcome);
+    } else if (const auto until = ranges_.held_until(*measurement, *now())) {
+        if (held_.put(*measurement, reading.sequence, *until)) {
+            ++outcome.readings_held;
+            return;
+        }
+        measurement = unexpected(ReadingReason::contradicts_reading);
+    }
+    outcome.readings.push_back(measurement);
+}
+
+void CanIntake::note_fate(wire::NodeId node, const wire::RangeReading& reading,
+                          const Result<RangeMeasurement, ReadingReason>& measurement) {
+    const auto rejected = measurement ? std::nullopt : std::optional(measurement.error());
+    ranges_.on_fate(node, reading.sensor, rejected);
+    const auto now_known = now();
+    if (!now_known || rejected == ReadingReason::duplicate) {
+        return;
+    }
+    losses_.at(node).on_reading(*now_known);
+    if (rejected) {
+        losses_.at(node).on_refused(*now_known, *rejected);
+    }
+}
+
+/// One that says something else under its number is its twin's fault, or its twin its own. Where numbers go
+/// back none of the sensor's can be told from a second sender's, nor where that is sure.
+void CanIntake::give_up_held(wire::NodeId node, const wire::RangeReading& reading, ReadingReason reason,
+                             FrameOutcome& outcome) {
+    if (reason != ReadingReason::contradicts_reading) {
+        return;
+    }
+    const std::size_t twins = held_.drop(node, reading.sensor, reading.sequence);
+    const bool are_all_doubtful = twins == 0 || ranges_.senders(node, reading.sensor).is_disputed(*now());
+    const std::size_t others = are_all_doubtful ? held_.drop(node, reading.sensor) : 0;
+    outcome.readings_given_up.insert(outcome.readings_given_up.end(), twins,
+                                     ReadingReason::contradicts_reading);
+    outcome.readings_given_up.insert(outcome.readings_given_up.end(), others, ReadingReason::sensor_disputed);
+    for (const ReadingReason given_up : outcome.readings_given_up) {
+        losses_.at(node).on_refused(*now(), given_up);
+    }
 }
 
 Result<RangeMeasurement, ReadingReason> CanIntake::measure(wire::NodeId node,
@@ -154,22 +199,29 @@ Result<RangeMeasurement, ReadingReason> CanIntake::measure(wire::NodeId node,
         ranges_.skip(node, reading.sensor);
         return unexpected(captured.error());
     }
-    auto measurement = ranges_.check(node, reading, *captured, *now());
+    ClockQuestion& question = questions_.at(node);
+    auto measurement = ranges_.check(node, reading, *captured, *now(), question.is_open());
     if (!measurement && contradicts_clock(measurement.error())) {
-        clocks_.at(node).doubt();
+        question.on_impossible(reading.sensor);
+    } else if (measurement) {
+        question.on_possible(reading.sensor);
     }
     return measurement;
 }
 
+bool CanIntake::wants_exchange() const {
+    return std::ranges::any_of(questions_, [](const auto& entry) { return entry.second.wants_exchange(); });
+}
+
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Range& message, FrameOutcome& outcome) {
-    outcome.readings.push_back(accept(node, message.reading));
+    accept(node, message.reading, outcome);
     return std::nullopt;
 }
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::RangeFd& message, FrameOutcome& outcome) {
     for (std::size_t i = 0; i < message.count; ++i) {
         const wire::RangeFd::Entry& entry = message.entries[i];
-        outcome.readings.push_back(accept(node, entry.reading));
+        accept(node, entry.reading, outcome);
         if (ranges_.knows(node, entry.reading.sensor)) {
             ranges_.on_signal(node, entry.reading.sensor, entry.signal);
         }
@@ -186,8 +238,10 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::RangeAux& mess
 }
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Heartbeat& message, FrameOutcome&) {
+    ranges_.on_rate(node, message.is_rate_overridden);
     if (nodes_.on_heartbeat(node, message, now()) == NodeRegistry::Life::restarted) {
         clocks_.at(node).forget();
+        questions_.at(node).answer();
         ranges_.forget(node);
     }
     return std::nullopt;
@@ -206,9 +260,17 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::SensorHealth& 
 }
 
 void CanIntake::add_exchange(wire::NodeId node) {
-    if (const auto sample = exchange_.take_sample(node)) {
-        clocks_.at(node).add(*sample);
+    const auto sample = exchange_.take_sample(node);
+    if (!sample) {
+        return;
     }
+    const SampleVerdict verdict = clocks_.at(node).add(*sample);
+    if (verdict == SampleVerdict::contradicts) {
+        ranges_.on_clock_contradicted(node);
+        return;
+    }
+    questions_.at(node).answer();
+    ranges_.on_clock_confirmed(node);
 }
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::SyncReport& message, FrameOutcome&) {

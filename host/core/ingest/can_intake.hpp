@@ -10,9 +10,12 @@
 #include "common/time.hpp"
 #include "common/wire/can_frame.hpp"
 #include "common/wire/messages.hpp"
+#include "host/core/ingest/clock_question.hpp"
 #include "host/core/ingest/joint_assembler.hpp"
+#include "host/core/ingest/node_losses.hpp"
 #include "host/core/ingest/node_registry.hpp"
 #include "host/core/ingest/range_gate.hpp"
+#include "host/core/ingest/reading_hold.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/core/rig/host_rig.hpp"
 #include "host/core/time/clock_map.hpp"
@@ -39,7 +42,10 @@ struct JointMeasurement {
 /// What one frame brought: either a reason why it was not used, or any of the rest.
 struct FrameOutcome {
     std::optional<FrameReason> rejected;
-    std::vector<Result<RangeMeasurement, ReadingReason>> readings;  ///< one for each reading in the frame
+    /// One for each reading in the frame that need not wait.
+    std::vector<Result<RangeMeasurement, ReadingReason>> readings;
+    std::uint64_t readings_held = 0;               ///< those that do: CanIntake::take_due
+    std::vector<ReadingReason> readings_given_up;  ///< of those that waited
     std::uint64_t joint_samples_begun = 0;
     std::vector<Result<JointMeasurement, JointReason>> joint_samples;  ///< those that this frame ended
     std::optional<wire::Mark> mark;
@@ -51,6 +57,20 @@ class CanIntake {
 
     /// Frames in the order of arrival. `stamp`: when it was received. About 1 us.
     [[nodiscard]] FrameOutcome on_frame(const wire::CanFrame& frame, WallTime stamp);
+
+    /// Readings that waited whether a second sender would contradict them, and are good now.
+    [[nodiscard]] std::vector<RangeMeasurement> take_due(HostTime now) { return held_.take_due(now); }
+    /// All that wait: no frame comes that could contradict them.
+    [[nodiscard]] std::vector<RangeMeasurement> take_held() { return held_.take_all(); }
+    [[nodiscard]] std::size_t readings_held() const noexcept { return held_.size(); }
+
+    /// A node's readings have times that cannot be: an exchange would tell whether its clock goes on. False
+    /// again after it.
+    [[nodiscard]] bool wants_exchange() const;
+    /// Of a node of the rig: what it loses at `now`, if that is worth a word.
+    [[nodiscard]] std::optional<NodeLosses::Loss> losses(wire::NodeId node, HostTime now) const {
+        return losses_.at(node).worth_a_word(now);
+    }
 
     /// What became in the map of a reading that was accepted here; empty: it was used.
     void on_fate_in_map(const BeamSource& source, std::optional<ReadingReason> rejected) {
@@ -90,8 +110,12 @@ class CanIntake {
     /// In host time, if the node is usable and its clock known.
     [[nodiscard]] Result<MappedTime, ReadingReason> capture_time(wire::NodeId node,
                                                                  const wire::TimeResidue& capture) const;
-    [[nodiscard]] Result<RangeMeasurement, ReadingReason> accept(wire::NodeId node,
-                                                                 const wire::RangeReading& reading);
+    void accept(wire::NodeId node, const wire::RangeReading& reading, FrameOutcome& outcome);
+    void note_fate(wire::NodeId node, const wire::RangeReading& reading,
+                   const Result<RangeMeasurement, ReadingReason>& measurement);
+    /// Of those that wait: what this reading shows to be nobody's.
+    void give_up_held(wire::NodeId node, const wire::RangeReading& reading, ReadingReason reason,
+                      FrameOutcome& outcome);
     [[nodiscard]] Result<RangeMeasurement, ReadingReason> measure(wire::NodeId node,
                                                                   const wire::RangeReading& reading);
     [[nodiscard]] Result<JointMeasurement, JointReason> place(const JointReading& reading,
@@ -106,6 +130,9 @@ class CanIntake {
     HostClockEstimate host_clock_;
     SyncExchange exchange_;
     std::map<wire::NodeId, ClockMap> clocks_;
+    std::map<wire::NodeId, ClockQuestion> questions_;  ///< of the same nodes
+    std::map<wire::NodeId, NodeLosses> losses_;        ///< likewise
+    ReadingHold held_;
     NodeRegistry nodes_;
     RangeGate ranges_;
     JointAssembler joints_;

@@ -14,6 +14,8 @@ bool is_well(ReadingReason reason) noexcept {
 }  // namespace
 
 bool is_of_sensor(ReadingReason reason) noexcept {
+    if (reason == ReadingReason::contradicts_reading || reason == ReadingReason::sensor_disputed)
+        return false;
     const bool is_at_gate =
         reason >= ReadingReason::time_uncertain && reason <= ReadingReason::sigma_above_max;
     const bool is_in_map = reason > ReadingReason::self_hit && reason != ReadingReason::contradicts_camera;

@@ -10,8 +10,8 @@
 namespace octoskin {
 
 /// True for what only the sensor, its place or its settings can be blamed for. What its node, a clock or the
-/// joints lack stops every sensor, and has a name of its own, as has what the camera says of it; to see
-/// nothing, or the robot itself, is no fault.
+/// joints lack stops every sensor, and has a name of its own, as have what the camera says of it and a second
+/// sender under its name; to see nothing, or the robot itself, is no fault.
 [[nodiscard]] bool is_of_sensor(ReadingReason reason) noexcept;
 
 class FateHistory {

@@ -1,20 +1,24 @@
 #include "host/core/ingest/node_traffic.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "common/wire/bus_load.hpp"
 
 namespace octoskin {
 namespace {
 
-std::uint32_t readings_per_s(const HostNode& node) {
+std::uint32_t readings_per_s(const HostSensor& sensor) {
     constexpr std::int64_t kSecondUs = 1'000'000;
+    const std::int64_t period_us = std::max<std::int64_t>(sensor.period.count(), 1);
+    return static_cast<std::uint32_t>((kSecondUs + period_us - 1) / period_us);
+}
+
+std::uint32_t readings_per_s(const HostNode& node) {
     std::uint32_t readings = 0;
-    for (const HostSensor& sensor : node.sensors) {
-        const std::int64_t period_us = std::max<std::int64_t>(sensor.period.count(), 1);
-        readings += static_cast<std::uint32_t>((kSecondUs + period_us - 1) / period_us);
-    }
+    for (const HostSensor& sensor : node.sensors) readings += readings_per_s(sensor);
     return readings;
 }
 
@@ -36,17 +40,14 @@ std::size_t frames_per_s(const HostNode& node, double joint_rate_hz) {
     return static_cast<std::size_t>(std::ceil(frames));
 }
 
-std::size_t repeated_max(const HostNode& node) {
-    return (readings_per_s(node) + 1) / 2 + node.sensors.size();
-}
-
 }  // namespace
+
+NodeTraffic::Numbers::Numbers(const HostSensor& sensor) : repeated((readings_per_s(sensor) + 1) / 2 + 1) {}
 
 NodeTraffic::NodeTraffic(const HostNode& node, double joint_rate_hz)
     : frames_max_(2 * frames_per_s(node, joint_rate_hz) + kHeldBack),
       frames_(frames_max_),
-      repeated_(std::max<std::size_t>(repeated_max(node), 1)),
-      sequence_(node.sensors.size()) {}
+      numbers_(node.sensors.begin(), node.sensors.end()) {}
 
 bool NodeTraffic::keeps_with_frame(std::optional<HostTime> now) {
     return !now || frames_.keeps_with_event(*now);
@@ -54,12 +55,22 @@ bool NodeTraffic::keeps_with_frame(std::optional<HostTime> now) {
 
 bool NodeTraffic::keeps_with_reading(const wire::RangeReading& reading, std::optional<HostTime> now) {
     constexpr unsigned kBehind = wire::kSequenceCount / 2;
-    auto& before = sequence_.at(reading.sensor);
+    Numbers& numbers = numbers_.at(reading.sensor);
+    const auto before = std::exchange(numbers.newest, reading.sequence);
     const unsigned ahead =
         before ? (reading.sequence + 0U + wire::kSequenceCount - *before) % wire::kSequenceCount : 1;
-    before = reading.sequence;
     const bool is_new = ahead != 0 && ahead <= kBehind;
-    return is_new || !now || repeated_.keeps_with_event(*now);
+    if (is_new || !now || numbers.repeated.keeps_with_event(*now)) return true;
+    numbers.doubled = now;
+    return !are_most_doubled(*now);
+}
+
+bool NodeTraffic::are_most_doubled(HostTime now) const {
+    constexpr Nanoseconds kSecond{1'000'000'000};
+    const auto doubled = std::ranges::count_if(numbers_, [&](const Numbers& numbers) {
+        return numbers.doubled && std::chrono::abs(now - *numbers.doubled) < kSecond;
+    });
+    return 2 * static_cast<std::size_t>(doubled) > numbers_.size();
 }
 
 }  // namespace octoskin

@@ -28,10 +28,11 @@ class NodeTraffic {
     /// A frame of this node that passed the checks of its format. False: over `frames_max` came within a
     /// second. `now`: empty while nothing is to be counted.
     [[nodiscard]] bool keeps_with_frame(std::optional<HostTime> now);
-    /// A reading of a sensor that it has. False: of the readings of a second, more were numbered as the one
-    /// of their sensor before them, or lower, than half of what the rig has in a second and one for each
-    /// sensor. Of two senders' readings at least every second one is; a bus that repeats and delays
-    /// makes fewer, and so does a node that begins anew.
+    /// A reading of a sensor that it has. False: the readings of more than half of its sensors are doubled.
+    /// Those of one are where more of a second's were numbered as the one before, or lower, than half of what
+    /// the rig has of it in a second, and one. Of two senders' readings at least every second one is; a bus
+    /// that repeats and delays makes fewer, and so does a node that begins anew. Of fewer sensors the node is
+    /// not to blame: SenderWatch.
     [[nodiscard]] bool keeps_with_reading(const wire::RangeReading& reading, std::optional<HostTime> now);
 
     /// Twice what the rig has the node send in a second, and `kHeldBack`.
@@ -44,8 +45,14 @@ class NodeTraffic {
   private:
     std::size_t frames_max_;
     RateLimit frames_;
-    RateLimit repeated_;
-    std::vector<std::optional<std::uint8_t>> sequence_;  ///< of each sensor's newest reading
+    struct Numbers {
+        explicit Numbers(const HostSensor& sensor);
+        RateLimit repeated;
+        std::optional<std::uint8_t> newest;
+        std::optional<HostTime> doubled;  ///< the newest that was one too many
+    };
+    [[nodiscard]] bool are_most_doubled(HostTime now) const;
+    std::vector<Numbers> numbers_;  ///< of each sensor
 };
 
 }  // namespace octoskin

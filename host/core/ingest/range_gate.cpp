@@ -1,5 +1,7 @@
 #include "host/core/ingest/range_gate.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "common/range_status.hpp"
@@ -30,6 +32,8 @@ ReadingReason reason_of(SequenceFault fault) {
             return ReadingReason::out_of_window;
         case SequenceFault::too_soon:
             return ReadingReason::too_soon;
+        case SequenceFault::behind:
+            return ReadingReason::contradicts_reading;
     }
     return ReadingReason::out_of_window;
 }
@@ -41,13 +45,27 @@ bool is_misconfigured(const SensorRecord& record) {
            record.health->fault == wire::SensorFault::config_mismatch;
 }
 
+/// Its age makes no capture time possible; empty: it may be true.
+std::optional<ReadingReason> age_fault(Nanoseconds age, Nanoseconds half_window) {
+    if (age < half_window - kNowEarlyMax) {
+        return ReadingReason::too_young;
+    }
+    if (age > half_window + kTransportMax) {
+        return ReadingReason::too_old;
+    }
+    return std::nullopt;
+}
+
 }  // namespace
+
+RangeGate::Sensor::Sensor(const HostSensor& sensor)
+    : expected(sensor), cadence(Nanoseconds{sensor.period}), senders(Nanoseconds{sensor.period}) {}
 
 RangeGate::RangeGate(const HostRig& rig, bool uses_no_return)
     : limits_(rig.range_limits), uses_no_return_(uses_no_return) {
     for (const HostNode& node : rig.nodes) {
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
-            sensors_[{node.node_id, static_cast<std::uint8_t>(i)}].expected = node.sensors[i];
+            sensors_.emplace(SensorKey{node.node_id, static_cast<std::uint8_t>(i)}, Sensor(node.sensors[i]));
         }
     }
 }
@@ -80,24 +98,78 @@ bool RangeGate::is_certain(const Sensor& sensor, const MappedTime& captured) con
     return told && captured.error_bound + *told <= limits_.time_uncertainty_max;
 }
 
-std::optional<ReadingReason> RangeGate::place_fault(Sensor& sensor, const wire::RangeReading& reading,
-                                                    HostTime captured, HostTime now) const {
-    // Ranging windows of one sensor do not overlap. The sensor's oscillator may be 7 % fast, and each time
-    // carries an error: three quarters of the nominal window leave room for both.
-    const Nanoseconds spacing_min = Nanoseconds{sensor.expected.timing_budget} * 3 / 4;
-    const auto place = sensor.record.sequence.observe(reading.sequence, captured, spacing_min);
-    if (!place) {
-        sensor.record.received -= place.error() == SequenceFault::duplicate ? 1U : 0U;
-        return reason_of(place.error());
-    }
-    const Nanoseconds half_window = Nanoseconds{sensor.expected.timing_budget} / 2;
-    if (now - captured < half_window - kNowEarlyMax) {
-        return ReadingReason::too_young;
-    }
-    if (now - captured > half_window + kTransportMax) {
-        return ReadingReason::too_old;
+/// Ranging windows of one sensor do not overlap. The sensor's oscillator may be 7 % fast, and each time
+/// carries an error: three quarters of the nominal window leave room for both. A sensor that keeps to its
+/// period is never twice as quick: of a slow one no second sender's readings fit between.
+Nanoseconds RangeGate::spacing_min(const Sensor& sensor, wire::NodeId node) const {
+    const auto rate = is_rate_overridden_.find(node);
+    const bool is_as_configured = rate == is_rate_overridden_.end() || !rate->second;
+    const Nanoseconds window = Nanoseconds{sensor.expected.timing_budget} * 3 / 4;
+    return is_as_configured ? std::max(window, Nanoseconds{sensor.expected.period} / 2) : window;
+}
+
+void RangeGate::on_contradiction(Sensor& sensor, const Arrival& arrival) {
+    sensor.senders.on_contradiction(arrival.now);
+    contradicted_[arrival.node] = arrival.now;
+}
+
+/// What a frame says beside its time: whether its number was here before.
+std::optional<ReadingReason> RangeGate::number_fault(Sensor& sensor, const Arrival& arrival) {
+    constexpr Nanoseconds kDelayMax{250'000'000};  // of one frame against another: transport, a held bus
+    const Nanoseconds turn_min = spacing_min(sensor, arrival.node) * wire::kSequenceCount - kDelayMax;
+    switch (sensor.said.compare(arrival.reading, arrival.now, turn_min)) {
+        case SaidNumbers::Fate::is_new:
+            return std::nullopt;
+        case SaidNumbers::Fate::same:
+            --sensor.record.received;
+            return ReadingReason::duplicate;
+        case SaidNumbers::Fate::other:
+            --sensor.record.received;
+            on_contradiction(sensor, arrival);
+            return ReadingReason::contradicts_reading;
     }
     return std::nullopt;
+}
+
+/// A reading takes its number only with a time that can be true: the one that has the number may come yet.
+std::optional<ReadingReason> RangeGate::place_fault(Sensor& sensor, const Arrival& arrival) {
+    if (const auto fault = number_fault(sensor, arrival)) {
+        return fault;
+    }
+    const Nanoseconds half_window = Nanoseconds{sensor.expected.timing_budget} / 2;
+    if (const auto fault = age_fault(arrival.now - arrival.captured, half_window)) {
+        if (*fault == ReadingReason::too_young) sensor.senders.on_refused();
+        return fault;
+    }
+    const std::uint8_t sequence = arrival.reading.sequence;
+    const auto place =
+        sensor.record.sequence.place(sequence, arrival.captured, spacing_min(sensor, arrival.node));
+    if (!place) {
+        note_misplaced(sensor, arrival, place.error());
+        return reason_of(place.error());
+    }
+    if (arrival.is_clock_questioned && !sensor.cadence.fits(sequence, arrival.captured)) {
+        sensor.record.sequence.skip();
+        return ReadingReason::clock_in_doubt;
+    }
+    sensor.record.sequence.take(sequence, arrival.captured, *place);
+    sensor.said.take(arrival.reading, arrival.now);
+    if (place->is_newest) {
+        const auto left_out = place->is_counted ? std::optional(place->left_out) : std::nullopt;
+        sensor.cadence.on_accepted(sequence, arrival.captured);
+        sensor.senders.on_taken(left_out, arrival.now);
+    }
+    return std::nullopt;
+}
+
+void RangeGate::note_misplaced(Sensor& sensor, const Arrival& arrival, SequenceFault fault) {
+    if (fault == SequenceFault::duplicate) {
+        --sensor.record.received;
+    } else if (fault == SequenceFault::behind) {
+        on_contradiction(sensor, arrival);
+    } else {
+        sensor.senders.on_refused();
+    }
 }
 
 std::optional<ReadingReason> RangeGate::figure_fault(double range_m, double sigma_m) const {
@@ -117,16 +189,20 @@ std::optional<ReadingReason> RangeGate::figure_fault(double range_m, double sigm
 }
 
 Result<RangeMeasurement, ReadingReason> RangeGate::check(wire::NodeId node, const wire::RangeReading& reading,
-                                                         const MappedTime& captured, HostTime now) {
+                                                         const MappedTime& captured, HostTime now,
+                                                         bool is_clock_questioned) {
     Sensor& sensor = sensors_.at({node, reading.sensor});
     if (!is_certain(sensor, captured)) {
         sensor.record.sequence.skip();  // such a time is no evidence of what came before what
         return unexpected(ReadingReason::time_uncertain);
     }
-    if (const auto fault = place_fault(sensor, reading, captured.time, now)) {
+    if (const auto fault = place_fault(sensor, {node, reading, captured.time, now, is_clock_questioned})) {
         return unexpected(*fault);
     }
     ++sensor.record.device_status[reading.device_status];
+    if (sensor.senders.is_disputed(now)) {
+        return unexpected(ReadingReason::sensor_disputed);
+    }
     if (is_misconfigured(sensor.record)) {
         return unexpected(ReadingReason::sensor_misconfigured);
     }
@@ -155,6 +231,22 @@ Result<RangeMeasurement, ReadingReason> RangeGate::check(wire::NodeId node, cons
         measurement.range_m = range_m;
     }
     return measurement;
+}
+
+/// Its twin comes within the age limit if both have one time; if not, half a period after it at the latest,
+/// and 60 ms for the node and the bus.
+std::optional<HostTime> RangeGate::held_until(const RangeMeasurement& measurement, HostTime now) const {
+    constexpr Nanoseconds kPeriodMax{250'000'000};  // of what docs/reliability.md promises for
+    constexpr Nanoseconds kOnItsWay{60'000'000};
+    const auto contradicted = contradicted_.find(measurement.source.node_id);
+    if (contradicted == contradicted_.end() || std::chrono::abs(now - contradicted->second) >= kSuspicion) {
+        return std::nullopt;
+    }
+    const HostSensor& sensor = sensors_.at({measurement.source.node_id, measurement.source.sensor}).expected;
+    const Nanoseconds half_period = std::min(Nanoseconds{sensor.period}, kPeriodMax) / 2;
+    const Nanoseconds wait =
+        Nanoseconds{sensor.timing_budget} / 2 + std::max(kTransportMax, half_period + kOnItsWay);
+    return measurement.captured + std::min(wait, kHeldMax);
 }
 
 void RangeGate::on_health(wire::NodeId node, const wire::SensorHealth& health) {
@@ -196,6 +288,25 @@ void RangeGate::forget_order(wire::NodeId node) {
     for (auto& [key, sensor] : sensors_) {
         if (key.first == node) {
             sensor.record.sequence.restart();
+            sensor.said.restart();
+            sensor.cadence.restart();
+            sensor.senders.forget_refused();
+        }
+    }
+}
+
+void RangeGate::on_clock_confirmed(wire::NodeId node) {
+    for (auto& [key, sensor] : sensors_) {
+        if (key.first == node) {
+            sensor.cadence.confirm();
+        }
+    }
+}
+
+void RangeGate::on_clock_contradicted(wire::NodeId node) {
+    for (auto& [key, sensor] : sensors_) {
+        if (key.first == node) {
+            sensor.senders.forget_refused();
         }
     }
 }

@@ -12,8 +12,11 @@
 #include "common/time.hpp"
 #include "common/wire/messages.hpp"
 #include "host/core/beams/range_measurement.hpp"
+#include "host/core/ingest/cadence.hpp"
 #include "host/core/ingest/fate_history.hpp"
 #include "host/core/ingest/reasons.hpp"
+#include "host/core/ingest/said_numbers.hpp"
+#include "host/core/ingest/sender_watch.hpp"
 #include "host/core/ingest/sequence_tracker.hpp"
 #include "host/core/rig/host_rig.hpp"
 #include "host/core/time/clock_map.hpp"
@@ -59,9 +62,20 @@ class RangeGate {
     /// What became of a reading that was accepted here.
     void on_fate_in_map(wire::NodeId node, std::uint8_t sensor, std::optional<ReadingReason> rejected);
     /// After `on_arrival`, for a reading whose node is usable and whose time is known.
+    /// `is_clock_questioned`: others of its node have impossible times, so that it must show by its own that
+    /// the clock goes on.
     [[nodiscard]] Result<RangeMeasurement, ReadingReason> check(wire::NodeId node,
                                                                 const wire::RangeReading& reading,
-                                                                const MappedTime& captured, HostTime now);
+                                                                const MappedTime& captured, HostTime now,
+                                                                bool is_clock_questioned = false);
+
+    /// Until when a reading that was accepted has to wait, because a second sender may speak under its node's
+    /// name: until its true twin would have come. Empty: not at all.
+    [[nodiscard]] std::optional<HostTime> held_until(const RangeMeasurement& measurement, HostTime now) const;
+    /// For so long after a contradiction the readings of its node wait.
+    static constexpr Nanoseconds kSuspicion{60'000'000'000};
+    /// No reading waits longer after its capture: less than a map in the order of capture waits for it.
+    static constexpr Nanoseconds kHeldMax{240'000'000};
 
     /// After `on_arrival`, for a reading that cannot be checked: its node is not usable, or its time not
     /// known.
@@ -75,24 +89,50 @@ class RangeGate {
     void forget(wire::NodeId node);
     /// The times of the newest readings were wrong: their order says nothing.
     void forget_order(wire::NodeId node);
+    /// An exchange with the node agrees with those before: its clock goes on.
+    void on_clock_confirmed(wire::NodeId node);
+    /// One does not: what was refused for its time was no second sender's.
+    void on_clock_contradicted(wire::NodeId node);
+    /// A node's sensors range at another period than configured, or as configured again.
+    void on_rate(wire::NodeId node, bool is_overridden) { is_rate_overridden_[node] = is_overridden; }
 
     [[nodiscard]] const SensorRecord& record(wire::NodeId node, std::uint8_t sensor) const {
         return sensors_.at({node, sensor}).record;
     }
+    [[nodiscard]] const SenderWatch& senders(wire::NodeId node, std::uint8_t sensor) const {
+        return sensors_.at({node, sensor}).senders;
+    }
 
   private:
     struct Sensor {
+        explicit Sensor(const HostSensor& sensor);
         HostSensor expected;
         SensorRecord record;
+        SaidNumbers said;
+        Cadence cadence;
+        SenderWatch senders;
+    };
+    /// One reading, with all that its place depends on.
+    struct Arrival {
+        wire::NodeId node = 0;
+        const wire::RangeReading& reading;
+        HostTime captured;
+        HostTime now;
+        bool is_clock_questioned = false;
     };
     [[nodiscard]] bool is_certain(const Sensor& sensor, const MappedTime& captured) const;
-    [[nodiscard]] std::optional<ReadingReason> place_fault(Sensor& sensor, const wire::RangeReading& reading,
-                                                           HostTime captured, HostTime now) const;
+    [[nodiscard]] Nanoseconds spacing_min(const Sensor& sensor, wire::NodeId node) const;
+    [[nodiscard]] std::optional<ReadingReason> place_fault(Sensor& sensor, const Arrival& arrival);
+    [[nodiscard]] std::optional<ReadingReason> number_fault(Sensor& sensor, const Arrival& arrival);
+    void note_misplaced(Sensor& sensor, const Arrival& arrival, SequenceFault fault);
+    void on_contradiction(Sensor& sensor, const Arrival& arrival);
     [[nodiscard]] std::optional<ReadingReason> figure_fault(double range_m, double sigma_m) const;
 
     HostRangeLimits limits_;
     bool uses_no_return_;
     std::map<SensorKey, Sensor> sensors_;
+    std::map<wire::NodeId, bool> is_rate_overridden_;
+    std::map<wire::NodeId, HostTime> contradicted_;  ///< the newest contradiction of any of its sensors
 };
 
 }  // namespace octoskin

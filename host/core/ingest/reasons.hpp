@@ -61,15 +61,18 @@ enum class ReadingReason : std::uint8_t {
     // Its time.
     no_host_time,     ///< "now" is unknown
     clock_not_ready,  ///< ClockFault
-    clock_in_doubt,
+    clock_in_doubt,   ///< ClockFault, or a time that does not show whether the clock goes on, while others
+                      ///< contradict it
     clock_silent,
     time_uncertain,  ///< it may be further off than the rig allows, or its node has not told how far
     // Its place among the sensor's readings.
     duplicate,
-    out_of_window,  ///< older than the last 32 of its sensor, or its number does not fit its time
-    too_soon,       ///< its ranging window overlaps that of another reading of the sensor
-    too_young,      ///< arrived before its ranging window can have ended
-    too_old,        ///< arrived later than budget / 2 + 100 ms after its capture
+    contradicts_reading,  ///< another of its sensor has its number, or an earlier time and a later number
+    sensor_disputed,      ///< two senders speak under its sensor's name, or did within the last second
+    out_of_window,        ///< older than the last 32 of its sensor, or its number does not fit its time
+    too_soon,             ///< its ranging window overlaps that of another reading of the sensor
+    too_young,            ///< arrived before its ranging window can have ended
+    too_old,              ///< arrived later than budget / 2 + 100 ms after its capture
     // What it says.
     sensor_misconfigured,  ///< its node says that the sensor's registers are not as configured
     no_return,             ///< no target, and the map leaves such beams alone
@@ -90,7 +93,7 @@ enum class ReadingReason : std::uint8_t {
     outside_map,         ///< beyond the octree
     contradicts_camera,  ///< its sensor does: it is off, turned, exchanged with another, or stuck
 };
-[[nodiscard]] constexpr std::array<const char*, 37> names_of(ReadingReason) {
+[[nodiscard]] constexpr std::array<const char*, 39> names_of(ReadingReason) {
     return {"node_absent",
             "node_lost",
             "node_version",
@@ -107,6 +110,8 @@ enum class ReadingReason : std::uint8_t {
             "clock_silent",
             "time_uncertain",
             "duplicate",
+            "contradicts_reading",
+            "sensor_disputed",
             "out_of_window",
             "too_soon",
             "too_young",

@@ -134,6 +134,9 @@ Nanoseconds Pipeline::passed_between(const Told& before, const Told& now) {
 }
 
 void Pipeline::settle_waiting() {
+    for (const RangeMeasurement& measurement : intake_.take_held()) {
+        queue(measurement);
+    }
     release_joints(kEndOfTime);
     if (in_work_) {
         finish_depth();
@@ -181,7 +184,10 @@ void Pipeline::queue(const FrameOutcome& outcome) {
     for (const auto& joints : outcome.joint_samples) {
         joints ? queue(*joints) : accounts_.joint_samples.reject(joints.error());
     }
-    accounts_.readings.take_in(outcome.readings.size());
+    accounts_.readings.take_in(outcome.readings.size() + outcome.readings_held);
+    for (const ReadingReason reason : outcome.readings_given_up) {
+        accounts_.readings.reject(reason);
+    }
     for (const auto& reading : outcome.readings) {
         reading ? queue(*reading) : accounts_.readings.reject(reading.error());
     }
@@ -258,6 +264,9 @@ void Pipeline::on_depth(DepthFrame frame) {
 }
 
 void Pipeline::advance(HostTime now) {
+    for (const RangeMeasurement& measurement : intake_.take_due(now)) {
+        queue(measurement);
+    }
     // The samples that surround an instant may be as far apart as the history allows.
     const bool is_live = config_.release == Release::once_placed;
     release_joints(is_live ? kEndOfTime : now - (config_.lag - config_.joints.bracket_max));
@@ -369,7 +378,7 @@ bool Pipeline::is_camera_stale() const {
 std::vector<AccountTable> Pipeline::account_tables() const {
     const std::uint64_t samples_open = is_finished_ ? 0 : intake_.joint_samples_pending();
     return {tabulate("CAN frames", accounts_.frames, marks_.waiting()),
-            tabulate("readings", accounts_.readings, readings_waiting_.size()),
+            tabulate("readings", accounts_.readings, readings_waiting_.size() + intake_.readings_held()),
             tabulate("joint samples", accounts_.joint_samples, joints_waiting_.size() + samples_open),
             tabulate("depth frames", accounts_.depth_frames, depth_waiting_.size() + (in_work_ ? 1U : 0U))};
 }

@@ -87,7 +87,6 @@ ClockMap::Line ClockMap::line(std::size_t count) const {
 void ClockMap::forget() {
     points_.clear();
     suspect_.reset();
-    is_doubted_ = false;
 }
 
 bool ClockMap::is_plausible_step(const SyncSample& from, const SyncSample& to) const {
@@ -133,7 +132,6 @@ SampleVerdict ClockMap::add(const SyncSample& sample) {
     points_.push_back({node_us, sample.host});
     heard_last_ = sample.heard;
     suspect_.reset();
-    is_doubted_ = false;
     if (points_.size() > config_.window + kPointsSettling) {
         points_.erase(points_.begin());
     }
@@ -141,7 +139,7 @@ SampleVerdict ClockMap::add(const SyncSample& sample) {
 }
 
 std::optional<ClockFault> ClockMap::fault(HostTime now) const {
-    if (suspect_ || is_doubted_) {
+    if (suspect_) {
         return ClockFault::in_doubt;
     }
     if (points_.size() < 2) {

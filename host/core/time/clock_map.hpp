@@ -60,8 +60,6 @@ class ClockMap {
     SampleVerdict add(const SyncSample& sample);
     /// The node restarted: whatever was known of its clock is void.
     void forget();
-    /// A time that the node sent cannot be true: nothing is trusted until the next exchange that fits.
-    void doubt() noexcept { is_doubted_ = true; }
 
     /// The newest instant not after `now` (plus slack) whose node clock reads `residue` modulo its span, on
     /// the host's clock: least squares over the last `window` exchanges that have settled by then.
@@ -95,7 +93,6 @@ class ClockMap {
     std::vector<Point> points_;  ///< ascending; the last few of the current run without contradiction
     NodeTime heard_last_;        ///< the counter at points_.back()
     std::optional<SyncSample> suspect_;
-    bool is_doubted_ = false;
     std::uint64_t relocks_ = 0;
 };
 

@@ -197,6 +197,51 @@ TEST_F(ProblemsTest, have_a_sensor_whose_readings_are_nearly_all_rejected_until_
     EXPECT_EQ(with_readings(32, 2), "");
 }
 
+TEST_F(ProblemsTest, have_two_senders_under_one_sensor_s_name_until_a_second_after_the_last_sign) {
+    const auto with_forged = [&](int forged, double until_s) {
+        play_changed(
+            [&](Scene& scene) {
+                for (int k = 0; k < 20; ++k) {
+                    wire::RangeReading reading =
+                        scene.bus.range(4.0 + 0.035 * k, kLeft, good_reading(kSpare));
+                    reading.range_mm = 200;
+                    if (k < forged) scene.bus.send(4.016 + 0.035 * k, wire::Range{reading}, kLeft);
+                }
+            },
+            until_s);
+        return told("node 1 'node 1' sensor 5 'good' senders");
+    };
+    EXPECT_EQ(with_forged(1, 4.2), "") << "one may be a damaged frame";
+    EXPECT_EQ(with_forged(2, 4.2),
+              "node 1 'node 1' sensor 5 'good': another sender's readings come under its name "
+              "(contradictions 2, strays 0): its readings stay out of the map until a second after the last "
+              "of them. Which board has the node id twice, or who forges it?");
+    EXPECT_NE(with_forged(2, 5.04), "");
+    EXPECT_EQ(with_forged(2, 5.06), "");
+}
+
+TEST_F(ProblemsTest, have_a_node_that_loses_over_a_twentieth_of_a_second_s_readings_and_why) {
+    const auto with_forged = [&](int each) {
+        play_changed(
+            [&](Scene& scene) {
+                for (int k = 0; k < 28; ++k) {
+                    wire::RangeReading reading =
+                        scene.bus.range(4.0 + 0.035 * k, kLeft, good_reading(kSpare));
+                    reading.sequence = static_cast<std::uint8_t>((reading.sequence + 1) % 64);
+                    const NodeTime now = scene.bus.node_time(kLeft, 4.016 + 0.035 * k);
+                    reading.capture = wire::classical_residue(now);  // no window of 20 ms has ended then
+                    if (k % each == 0) scene.bus.send(4.016 + 0.035 * k, wire::Range{reading}, kLeft);
+                }
+            },
+            4.99);
+        return told("node 1 loses");
+    };
+    EXPECT_EQ(with_forged(28), "") << "one of 29";
+    EXPECT_EQ(with_forged(7),
+              "node 1 'node 1': 12 % of its readings within the last second were refused, most as too_young")
+        << "four of 32";
+}
+
 TEST_F(ProblemsTest, have_a_sensor_that_contradicts_the_camera_from_when_that_is_decided) {
     int told_after = 0;
     let_camera_contradict([&] {

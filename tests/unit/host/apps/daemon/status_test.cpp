@@ -116,11 +116,13 @@ TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
     node.erase("sensors");
     EXPECT_EQ(node,
               Json::parse(R"({"id": 44, "name": "far", "verdict": "absent", "reason": null, "state": null,
-        "age_s": null, "degraded_sensors": null, "clock_known": false, "clock_ppm": null, "clock_error_ms": null})"));
+        "age_s": null, "degraded_sensors": null, "clock_known": false, "clock_ppm": null, "clock_error_ms": null,
+        "refused_share": null, "refused_most": null})"));
     EXPECT_EQ(
         sensor(0),
         Json::parse(R"({"index": 0, "name": "good", "state": null, "fault": null, "received": 0, "lost": 0,
-        "age_s": null, "rejected": null, "reflexes": 0, "reflex_below_m": 0.0, "reflex_m": null,
+        "age_s": null, "rejected": null, "contradictions": 0, "strays": 0, "second_sender": false,
+        "disputed": false, "reflexes": 0, "reflex_below_m": 0.0, "reflex_m": null,
         "camera": {"contradicts": false, "fault": null, "refused": false, "compared": 0, "fitted": 0,
                    "agreed": 0, "in_free_space": 0, "behind_surface": 0}})"));
 }
@@ -140,6 +142,26 @@ TEST_F(StatusTest, has_why_a_node_is_refused_and_what_it_says_of_its_sensors) {
     EXPECT_EQ(node["reason"], "low half of node_hash 0000ee01, the rig has 00005678");
     EXPECT_EQ(node["state"], "stopped");
     EXPECT_EQ(node["degraded_sensors"], 3);
+}
+
+TEST_F(StatusTest, has_two_senders_under_one_sensor_s_name_and_what_that_costs_its_node) {
+    Scene scene = daemon_scene();
+    for (int k = 0; k < 4; ++k) {
+        wire::RangeReading reading = scene.bus.range(4.3 + 0.035 * k, kLeft, good_reading(kSpare));
+        reading.range_mm = 200;
+        scene.bus.send(4.3 + 0.035 * k + 0.016, wire::Range{reading}, kLeft);
+    }
+    play(scene, kAllWell);
+    EXPECT_EQ(sensor(kSpare)["contradictions"], 4);
+    EXPECT_EQ(sensor(kSpare)["strays"], 0);
+    EXPECT_EQ(sensor(kSpare)["second_sender"], true);
+    EXPECT_EQ(sensor(kSpare)["disputed"], true);
+    EXPECT_EQ(sensor(kGood)["second_sender"], false);
+    const Json node = status()["nodes"][0];
+    // Of the last second's seven good ones and these eight four contradict and two are disputed; the second
+    // one's twin waited, and is out, too.
+    EXPECT_DOUBLE_EQ(node["refused_share"], 7.0 / 15.0);
+    EXPECT_EQ(node["refused_most"], "contradicts_reading");
 }
 
 TEST_F(StatusTest, has_each_sensors_newest_range_in_metres) {

@@ -88,6 +88,30 @@ TEST(SequenceTracker, refuses_readings_whose_windows_would_overlap) {
     EXPECT_TRUE(tracker.observe(2, {170'000'000}, kSpacing).has_value());
 }
 
+TEST(SequenceTracker, refuses_a_number_farther_ahead_than_the_time_since_allows) {
+    for (unsigned ahead = 1; ahead <= 64; ++ahead) {
+        SequenceTracker tracker;
+        ASSERT_TRUE(tracker.observe(10, {1'000'000'000}, kSpacing).has_value());
+        const auto sequence = static_cast<std::uint8_t>((10 + ahead) % 64);
+        const HostTime due = HostTime{1'000'000'000} + kSpacing * ahead;
+        const auto early = tracker.observe(sequence, due - Nanoseconds{1}, kSpacing);
+        ASSERT_FALSE(early.has_value()) << ahead;
+        EXPECT_EQ(early.error(), ahead > 32 ? SequenceFault::behind : SequenceFault::too_soon) << ahead;
+        const auto in_time = tracker.observe(sequence, due, kSpacing);
+        ASSERT_TRUE(in_time.has_value()) << ahead;
+        EXPECT_EQ(in_time->left_out, ahead - 1);
+    }
+}
+
+TEST(SequenceTracker, gives_a_refused_reading_no_number) {
+    SequenceTracker tracker;
+    ASSERT_TRUE(tracker.observe(0, {100'000'000}, kSpacing).has_value());
+    ASSERT_FALSE(tracker.observe(1, {108'000'000}, kSpacing).has_value());
+    ASSERT_FALSE(tracker.observe(20, {110'000'000}, kSpacing).has_value());
+    EXPECT_TRUE(tracker.observe(1, {133'000'000}, kSpacing).has_value());
+    EXPECT_EQ(tracker.gaps(), 0U);
+}
+
 TEST(SequenceTracker, counts_no_gap_over_readings_that_came_without_a_known_time) {
     SequenceTracker tracker;
     EXPECT_TRUE(is_fresh(tracker, 0));

@@ -160,6 +160,13 @@ const std::vector<ReadingCase>& cases() {
                  }
              }
          }},
+        {R::contradicts_reading,
+         [](Scene& s) {  // the first once more, 10 cm further
+             wire::RangeReading reading = good_reading();
+             reading.range_mm = 620;
+             reading.capture = wire::classical_residue(s.bus.node_time(kLeft, 3.505));
+             s.bus.send(3.53, wire::Range{reading}, kLeft);
+         }},
         {R::out_of_window,
          [](Scene& s) {  // captured before the last good reading, numbered eleven after it
              wire::RangeReading reading = good_reading();
@@ -245,11 +252,37 @@ INSTANTIATE_TEST_SUITE_P(Each, ReadingReasons, testing::ValuesIn(cases()), name_
 
 TEST(ReadingReasonsAll, have_a_case_each) {
     std::set<ReadingReason> seen = {ReadingReason::queue_overflow,       // below
+                                    ReadingReason::sensor_disputed,      // below
                                     ReadingReason::contradicts_camera};  // witness_wiring_test
     for (const ReadingCase& given : cases()) {
         EXPECT_TRUE(seen.insert(given.reason).second);
     }
     EXPECT_EQ(seen.size(), names_of(ReadingReason{}).size());
+}
+
+TEST(ReadingReasonsAll, keep_a_sensor_out_that_two_senders_have_until_a_second_after_the_last_sign) {
+    Scene good = good_scene();
+    Scene bad = good;
+    std::uint8_t sequence = 0;
+    // Twice as quick as the rig says they would be the one before: each 33 ms.
+    for (double t = 5.0; t < 7.0; t += 0.033) {
+        wire::RangeReading reading = good_reading(kSpare);
+        reading.sequence = sequence++ % 64;
+        reading.capture = wire::classical_residue(bad.bus.node_time(kLeft, t));
+        bad.bus.send(t + 0.015, wire::Range{reading}, kLeft);
+        if (t > 5.2) continue;  // of seven the number comes with other contents, too
+        reading.range_mm += 100;
+        bad.bus.send(t + 0.016, wire::Range{reading}, kLeft);
+    }
+    const auto& before = run(good).accounts.readings;
+    const RunResult result = run(bad);
+    const auto& readings = result.accounts.readings;
+    EXPECT_EQ(readings.in() - before.in(), 61U + 7U) << result.account_text;
+    // Seven, and the second one's twin, which waited.
+    EXPECT_EQ(readings.rejected(ReadingReason::contradicts_reading), 7U + 1U) << result.account_text;
+    // Between 5.049 s and 6.214 s.
+    EXPECT_EQ(readings.rejected(ReadingReason::sensor_disputed), 35U) << result.account_text;
+    EXPECT_EQ(readings.used() - before.used(), 61U - 1U - 35U) << result.account_text;
 }
 
 TEST(ReadingReasonsAll, drop_the_oldest_where_too_many_wait) {

@@ -253,17 +253,6 @@ TEST(ClockMap, starts_anew_after_a_minute_without_exchange) {
     EXPECT_EQ(map.fault(at_s(66)), ClockFault::not_ready);
 }
 
-TEST(ClockMap, trusts_nothing_between_a_doubt_and_the_next_exchange_that_fits) {
-    const NodeClock clock{.start_us = 0};
-    ClockMap map = locked_map(clock, 5);
-    map.doubt();
-    EXPECT_EQ(map.fault(at_s(5.5)), ClockFault::in_doubt);
-    EXPECT_EQ(map.add({at_s(6), clock.at(at_s(6.02))}), SampleVerdict::contradicts);
-    EXPECT_EQ(map.fault(at_s(6.5)), ClockFault::in_doubt);
-    EXPECT_EQ(map.add({at_s(7), clock.at(at_s(7))}), SampleVerdict::used);
-    EXPECT_FALSE(map.fault(at_s(7.5)).has_value());
-}
-
 TEST(ClockMap, forgets_a_node_that_restarted) {
     const NodeClock clock{.start_us = 0};
     ClockMap map = locked_map(clock, 5);
