@@ -269,8 +269,10 @@ void Inputs::collect_joints(int& datagrams_left) {
             has_joints_left_ = false;
             return;
         }
-        if (!sample) continue;  // counted by the socket
-        if (has_lost_its_place(*sample)) {
+        if (!sample) continue;        // counted by the socket
+        if (sample->is_of_several) {  // which of them is the arm's nobody can tell
+            ++joints_of_several_;
+        } else if (has_lost_its_place(*sample)) {
             ++joints_late_;
         } else {
             joints_waiting_.push_back(std::move(*sample));

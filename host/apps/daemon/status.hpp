@@ -26,6 +26,8 @@ class LastUsed {
     void note(const Pipeline& pipeline, HostTime now);
 
     std::optional<HostTime> joint_sample;
+    std::optional<HostTime> joint_jump;     ///< one was rejected for it
+    std::optional<HostTime> joint_senders;  ///< two contradicted each other, or one was withheld for it
     std::optional<HostTime> reading;
     std::optional<HostTime> depth_frame;
     std::optional<HostTime> time_back;             ///< the bus's time went back
@@ -34,7 +36,7 @@ class LastUsed {
     std::optional<HostTime> depth_left_out_since;  ///< ... again and again, at least once a second
 
   private:
-    std::array<std::uint64_t, 6> counts_{};
+    std::array<std::uint64_t, 8> counts_{};
 };
 
 struct ReloadCounts {
@@ -78,6 +80,11 @@ struct DaemonView {
 [[nodiscard]] std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz, HostTime now);
 /// Empty if it is in no mode that is known, or in one of about the rig's rate.
 [[nodiscard]] std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double rate_hz);
+
+/// Two senders of joint states are heard, and neither is used.
+[[nodiscard]] bool are_joints_withheld(const DaemonView& view);
+/// More comes through the joint socket than the rig's rate: what is left out is of no use.
+[[nodiscard]] bool are_joints_above_rate(const DaemonView& view);
 
 [[nodiscard]] nlohmann::ordered_json status_json(const DaemonView& view);
 

@@ -170,8 +170,14 @@ class Screen {
             return at(at(at(status, "account"), "joint samples"), "used");
         };
         add("joint samples " + rate(used(before_), used(now_), passed_) + " used", Emphasis::title);
-        add_nonzero("joints_socket", {"samples", "displaced", "thinned", "joint_node_ignored", "not_a_number",
-                                      "wrong_count", "time_off", "too_large", "too_long"});
+        add_nonzero("joints_socket",
+                    {"samples", "displaced", "thinned", "second_sender", "joint_node_ignored", "not_a_number",
+                     "wrong_count", "time_off", "too_large", "too_long"});
+        const Json& socket = at(now_, "joints_socket");
+        if (at(socket, "above_rate") == true)
+            add(fmt::format(
+                "     {:.0f} Hz through the socket: the rig has less, and the surplus is left out",
+                number(at(socket, "rate_hz"))));
     }
     void add_camera() {
         const Json& camera = at(now_, "camera");

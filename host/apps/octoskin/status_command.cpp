@@ -27,6 +27,11 @@ void print_for_people(const nlohmann::ordered_json& status) {
               node.at("verdict").get<std::string>());
     }
     print("map: {} known voxels\n", status.at("map").at("known_voxels").get<std::uint64_t>());
+    if (const auto& socket = status.at("joints_socket");
+        !socket.is_null() && socket.at("above_rate").get<bool>())
+        print(
+            "joint states: {:.0f} Hz through the socket, more than the rig's rate: the surplus is left out\n",
+            socket.at("rate_hz").get<double>());
     if (status.at("problems").empty()) print("no problems\n");
     for (const auto& problem : status.at("problems")) print("! {}\n", problem.get<std::string>());
 }

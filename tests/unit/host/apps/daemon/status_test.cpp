@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 #include <set>
@@ -10,6 +11,7 @@
 
 #include "common/wire/codec.hpp"
 #include "common/wire/crc.hpp"
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
 #include "host/apps/version/version.hpp"
 #include "tests/unit/host/apps/daemon/daemon_view_fixture.hpp"
@@ -263,9 +265,18 @@ TEST_F(StatusTest, has_what_came_through_the_joint_socket_or_null_without_one) {
     send_joints("1 2 3");
     with_socket->catch_up();
     view_.inputs = with_socket.get();
-    EXPECT_EQ(status()["joints_socket"],
-              Json::parse(
-                  R"({"samples": 2, "displaced": 0, "surplus": 0, "thinned": 1, "joint_node_ignored": 0, "not_a_number": 1,
+    view_.now = monotonic_now();
+    Json told = status()["joints_socket"];
+    ASSERT_EQ(told["senders"].size(), 1U);
+    EXPECT_EQ(told["senders"][0]["pid"], ::getpid());
+    EXPECT_EQ(told["senders"][0]["uid"], ::getuid());
+    EXPECT_EQ(told["senders"][0]["address"], "");
+    EXPECT_EQ(told["senders"][0]["samples"], 2);
+    EXPECT_LT(told["senders"][0]["age_s"].get<double>(), 1.0);
+    told.erase("senders");
+    EXPECT_EQ(told,
+              Json::parse(R"({"samples": 2, "displaced": 0, "surplus": 0, "thinned": 1, "second_sender": 0,
+                  "rate_hz": 0.0, "above_rate": false, "joint_node_ignored": 0, "not_a_number": 1,
                   "wrong_count": 1, "time_off": 0, "too_large": 0, "too_long": 0})"));
 }
 
@@ -388,6 +399,9 @@ void add_keys(const Json& value, const std::string& group, std::set<std::string>
 
 TEST_F(StatusTest, has_every_key_with_a_meaning_and_no_other) {
     const auto with_socket = inputs_with_joint_socket();
+    send_joints("0.5");
+    with_socket->catch_up();
+    view_.now = monotonic_now();
     view_.inputs = with_socket.get();
     const Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, host_at(4.3));
     view_.recorder = &recorder;
@@ -412,8 +426,9 @@ TEST_F(StatusTest, knows_when_each_kind_of_measurement_was_used_last) {
                  view_.used.time_back);
     play(daemon_scene(), 6.0);
     EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.joint_sample->ns), 5.99, 0.012);
-    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.reading->ns), 3.817, 0.012);
-    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.depth_frame->ns), 4.5, 0.012);
+    // The joint state behind each is certain once the next one is here, and 12.5 ms have passed.
+    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.reading->ns), 3.830, 0.012);
+    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.depth_frame->ns), 4.520, 0.012);
     EXPECT_FALSE(view_.used.time_back);
     // The host begins anew: what it says and how the frames are stamped no longer fit.
     Scene anew = good_scene();
