@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -28,6 +29,9 @@ std::string_view xml_kind(std::string_view text) {
     if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
     const auto begin = text.find_first_not_of(" \t\r\n");
     if (begin == std::string_view::npos || text[begin] != '<') return {};
+    // "<<:" is YAML's merge key, which is no XML.
+    const char next = begin + 1 < text.size() ? text[begin + 1] : ' ';
+    if (next != '?' && next != '!' && std::isalpha(static_cast<unsigned char>(next)) == 0) return {};
     if (text.find("<robot") != std::string_view::npos) return "XML that looks like a robot (URDF)";
     if (text.find("<sdf") != std::string_view::npos) return "XML that looks like a world (SDF)";
     return "XML";

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "host/core/text/printable.hpp"
+
 namespace octoskin {
 
 void ProblemLog::tell(std::vector<Problem> problems, HostTime now, bool is_settling) {
@@ -18,7 +20,8 @@ void ProblemLog::tell(std::vector<Problem> problems, HostTime now, bool is_settl
     log(problems, now);
     log_over(now);
     if (newest_ == problems) return;
-    const std::string state = problems.empty() ? "STATUS=all is well" : "STATUS=" + problems.front().text;
+    const std::string state =
+        problems.empty() ? "STATUS=all is well" : "STATUS=" + printable(problems.front().text);
     (void)sd_notify(0, state.c_str());
     newest_ = std::move(problems);
 }

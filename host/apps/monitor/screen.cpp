@@ -9,6 +9,7 @@
 
 #include "host/apps/monitor/counter_meanings.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
+#include "host/core/text/printable.hpp"
 
 namespace octoskin {
 namespace {
@@ -65,8 +66,8 @@ class Screen {
     }
 
   private:
-    void add(std::string line, Emphasis emphasis = Emphasis::none) {
-        lines_.push_back({std::move(line), emphasis});
+    void add(const std::string& line, Emphasis emphasis = Emphasis::none) {
+        lines_.push_back({printable(line), emphasis});
     }
     void add_head() {
         add(fmt::format("{}   rig '{}', {:.0f} s", text(at(now_, "octoskin")), text(at(now_, "rig")),
@@ -247,14 +248,9 @@ std::size_t bytes_of(std::string_view text, std::size_t characters) {
     return text.size();
 }
 
-/// So many characters of UTF-8; a control character, which a name might hold, becomes a question mark.
+/// So many characters of UTF-8.
 std::string cut(const std::string& line, std::size_t columns) {
-    std::string shown = line.substr(0, bytes_of(line, columns));
-    for (char& letter : shown) {
-        const auto byte = static_cast<unsigned char>(letter);
-        if (byte < 0x20U || byte == 0x7FU) letter = '?';
-    }
-    return shown;
+    return line.substr(0, bytes_of(line, columns));
 }
 
 /// What the next lines of a broken one begin with.

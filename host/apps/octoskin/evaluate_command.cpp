@@ -206,7 +206,7 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
 void evaluate_input(const EvaluateOptions& options) {
     const evaluation::Results results =
         std::filesystem::is_directory(options.input) ? judge_recording(options) : judge_map(options);
-    print("{}", evaluation::metrics_table(results));
+    print_text(evaluation::metrics_table(results));
     if (options.json.empty()) return;
     std::error_code error;
     if (options.json.extension() != ".json" && std::filesystem::is_regular_file(options.json, error)) {

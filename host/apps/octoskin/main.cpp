@@ -10,6 +10,7 @@
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/log_format.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/version/version.hpp"
 
@@ -23,11 +24,19 @@ constexpr const char* kFooter =
     "78 rig, robot, scenario or mapping file; 130, 143 interrupted by Ctrl-C, SIGTERM: what simulate,\n"
     "replay and experiment had not finished is removed.";
 
+/// What is wrong with the command line, in which files of others may be named, on one line; then CLI11's own.
+std::string harmless_message(const CLI::App* app, const CLI::Error& error) {
+    const std::string what = error.what();
+    const std::string whole = CLI::FailureMessage::simple(app, error);
+    return octoskin::printable(what) + (whole.starts_with(what) ? whole.substr(what.size()) : "\n");
+}
+
 int run(int argc, char** argv) {
     using namespace octoskin;
     CLI::App app{"One map of what a depth camera and the range sensors on a robot arm see."};
     app.set_version_flag("--version", program_version());
     app.require_subcommand(1);
+    app.failure_message(harmless_message);
     app.footer(kFooter);
     app::add_simulate_command(app);
     app::add_replay_command(app);
@@ -82,7 +91,7 @@ int main(int argc, char** argv) {
     // A reader that goes away (`| head`) must not end the program in the middle of a file.
     std::signal(SIGPIPE, SIG_IGN);
     spdlog::set_default_logger(spdlog::stderr_color_mt("octoskin"));
-    spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
+    octoskin::app::set_log_format();
     try {
         return checked(run(argc, argv));
     } catch (const std::exception& error) {

@@ -35,7 +35,7 @@ struct ReplayOptions {
 
 /// Shows what comes next, and waits for the enter key. Nobody steps on after the end of the input.
 void wait_for_enter(const std::string& what) {
-    print("{}", what);
+    print_text(what);
     static_cast<void>(std::fflush(stdout));  // its failure is told at the end
     std::string line;
     if (std::getline(std::cin, line)) {
@@ -155,8 +155,8 @@ void replay_recording(const ReplayOptions& options) {
         request, [&](const ReplayProgress& progress) { report_progress(progress, unit, seconds); });
     if (!playback) throw CommandFailure(playback.error());
 
-    for (const AccountTable& table : playback->accounts) print("{}", to_text(table));
-    if (!playback->nodes.empty()) print("{}", to_text(std::span<const NodeSummary>(playback->nodes)));
+    for (const AccountTable& table : playback->accounts) print_text(to_text(table));
+    if (!playback->nodes.empty()) print_text(to_text(std::span<const NodeSummary>(playback->nodes)));
     for (const std::string& note : playback->notes) print("{}\n", note);
     static_cast<void>(flush_standard_output());  // its failure is told at the end
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);

@@ -1,7 +1,4 @@
 // octoskin run: the daemon beside a robot.
-#include <spdlog/formatter.h>
-#include <spdlog/spdlog.h>
-
 #include <cstdlib>
 #include <memory>
 
@@ -10,29 +7,14 @@
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/log_format.hpp"
 
 namespace octoskin::app {
 namespace {
 
-/// The journal has its own clock, and reads a level from "<4>" at the begin of a line (sd-daemon(3)).
-class JournalFormatter final : public spdlog::formatter {
-  public:
-    void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
-        constexpr std::array<char, 7> kPriority{'7', '7', '6', '4', '3', '2', '6'};  // by spdlog's level
-        line.push_back('<');
-        line.push_back(kPriority.at(static_cast<std::size_t>(message.level)));
-        line.push_back('>');
-        line.append(message.payload.begin(), message.payload.end());
-        line.push_back('\n');
-    }
-    [[nodiscard]] std::unique_ptr<spdlog::formatter> clone() const override {
-        return std::make_unique<JournalFormatter>();
-    }
-};
-
 void run_daemon(DaemonRequest& request) {
     request.can_descriptor = descriptor_of(request.interface);
-    if (std::getenv("JOURNAL_STREAM") != nullptr) spdlog::set_formatter(std::make_unique<JournalFormatter>());
+    if (std::getenv("JOURNAL_STREAM") != nullptr) set_journal_format();
     auto daemon = Daemon::build(request);
     if (!daemon) throw CommandFailure(daemon.error());
     const ExitCode outcome = (*daemon)->run();

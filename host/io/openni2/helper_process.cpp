@@ -83,6 +83,19 @@ LeftBehind& left_behind() {
     return processes;
 }
 
+/// In words; empty: it exited with 0.
+std::optional<std::string> end_of(int status) {
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
+        return "it needs more than " + std::to_string(kHelperProcessorSecondsPerFrame) +
+               " s of processor time for a frame";
+    }
+    if (WIFSIGNALED(status)) return "signal " + std::to_string(WTERMSIG(status));
+    if (WEXITSTATUS(status) == kOutOfMemory)
+        return "it needs more than " + std::to_string(kHelperMemoryMib) + " MiB of memory";
+    if (WEXITSTATUS(status) != 0) return "exit code " + std::to_string(WEXITSTATUS(status));
+    return std::nullopt;
+}
+
 }  // namespace
 
 Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::path& program,
@@ -161,9 +174,7 @@ std::optional<std::string> HelperProcess::wait(std::chrono::milliseconds patienc
         const pid_t ended = ::waitpid(process_, &status, WNOHANG);
         if (ended == process_) {
             process_ = -1;
-            if (WIFSIGNALED(status)) return "signal " + std::to_string(WTERMSIG(status));
-            if (WEXITSTATUS(status) != 0) return "exit code " + std::to_string(WEXITSTATUS(status));
-            return std::nullopt;
+            return end_of(status);
         }
         if (ended < 0) return std::string("no such process");
         if (waited >= patience) {

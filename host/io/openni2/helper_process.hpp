@@ -20,6 +20,12 @@ enum class HelperComplaints : std::uint8_t {
     kept,  ///< for `complaint`; what is too much for a pipe is lost
 };
 
+/// What a helper allows itself (helper_limits.hpp), and how it ends when that is not enough: with this exit
+/// code, or by SIGXCPU.
+inline constexpr unsigned kHelperMemoryMib = 2048;
+inline constexpr unsigned kHelperProcessorSecondsPerFrame = 5;
+inline constexpr int kOutOfMemory = 70;
+
 class HelperProcess {
   public:
     /// Starts `program` with `arguments`, with no signal blocked or ignored. The message says what failed.
@@ -36,7 +42,7 @@ class HelperProcess {
     /// Our end: an input helper then sees its end of file.
     void close_pipe();
     /// Waits for the helper's own end. Empty: it exited with 0; else how it ended, in words ("exit code 1",
-    /// "signal 11", "did not end in time": it is killed then).
+    /// "signal 11", "did not end in time": it is killed then; the limit that it reached).
     [[nodiscard]] std::optional<std::string> wait(std::chrono::milliseconds patience);
 
     /// The last line of its complaints so far, if they are kept; empty if there is none. Takes what was read.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 
+#include "host/core/text/printable.hpp"
 #include "host/io/openni2/helpers/depth_stream.hpp"
 #include "host/io/openni2/helpers/oni_outline.hpp"
 #include "host/io/openni2/helpers/oni_salvage.hpp"
@@ -52,7 +53,7 @@ Input input_of(const std::filesystem::path& file) {
     const std::string path = "/proc/self/fd/" + std::to_string(copy);
     if (copy >= 0 && salvage(file, path)) return {path, true};
     std::fprintf(stderr, "%s: %s: cut off, and there is no copying its %u whole frames to %s\n", kProgram,
-                 file.c_str(), outline.frames, folder.c_str());
+                 printable(file.string()).c_str(), outline.frames, folder.c_str());
     return {file.string()};
 }
 
@@ -60,7 +61,7 @@ int read_recording(DepthStream& depth, const std::filesystem::path& file, int de
     const Input input = input_of(file);
     if (!depth.open(input.path.c_str()) || !depth.is_file()) {
         std::fprintf(stderr, "%s: %s: not an .oni recording, or a damaged or cut off one\n", kProgram,
-                     file.c_str());
+                     printable(file.string()).c_str());
         return 1;
     }
     openni::PlaybackControl* const playback = depth.playback();

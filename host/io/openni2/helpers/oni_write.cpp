@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "host/core/text/printable.hpp"
 #include "host/io/openni2/frame_pipe.hpp"
 #include "host/io/openni2/helpers/helper_limits.hpp"
 #include "host/io/openni2/helpers/oni_recorder.hpp"
@@ -93,7 +94,10 @@ int main(int argc, char** argv) {
     // OpenNI2 changes the working directory while it loads its drivers.
     const auto file = std::filesystem::absolute(argv[1]);
     const std::string what = octoskin::openni2::record(file);
-    if (!what.empty()) std::fprintf(stderr, "octoskin-oni-write: %s: %s\n", file.c_str(), what.c_str());
+    if (!what.empty()) {
+        std::fprintf(stderr, "octoskin-oni-write: %s\n",
+                     octoskin::printable(file.string() + ": " + what).c_str());
+    }
     // No clean-up: the file is closed, and OpenNI2's shutdown sometimes waits 3 s for a thread that it forgot
     // to end.
     std::_Exit(what.empty() ? 0 : 1);
