@@ -10,6 +10,7 @@
 #include "firmware/app/linux_node/board.hpp"
 #include "firmware/app/linux_node/configuration.hpp"
 #include "firmware/app/linux_node/journal.hpp"
+#include "firmware/port/linux/service_manager.hpp"
 #include "firmware/port/linux/unique_id.hpp"
 
 namespace octoskin::linux_node {
@@ -46,14 +47,16 @@ Result<Done, StartFailure> run(const Arguments& arguments) {
     const int stop = take_signals();
     node::KeptMemory kept{};
     Journal journal;
+    auto manager = linux_port::ServiceManager::from_environment();
     while (true) {
         auto board = Board::open(arguments, *config, *identity, kept);
         if (!board) return unexpected(board.error());
         journal.started(*config, arguments.can, OCTOSKIN_BUILD_ID);
-        if ((*board)->run(stop, journal) == Board::Ending::stopped) break;
+        if ((*board)->run(stop, journal, manager) == Board::Ending::stopped) break;
         say("reset, as the host has ordered");
         identity->reset_cause = wire::ResetCause::software;
     }
+    manager.stopping();
     say("stopped: all sensors are in reset");
     return Done{};
 }
