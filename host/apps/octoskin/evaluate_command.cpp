@@ -71,7 +71,7 @@ evaluation::Truth build(const Scene& scene, const rig::Rig& rig, double resoluti
 bool is_papers(const rig::Rig& rig, const Scene& scene) {
     std::error_code error;
     const auto& world = scene.world_file.file;
-    const bool is_own_world = std::filesystem::equivalent(world, scene.scenario.world, error);
+    const bool is_own_world = std::filesystem::equivalent(world, scene.scenario.world.shown(), error);
     return is_papers_experiment(rig, scene.scenario_file.file, is_own_world ? std::filesystem::path() : world,
                                 shipped_file("hw/worlds/experiment.scenario.yaml"));
 }

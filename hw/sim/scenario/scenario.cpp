@@ -40,7 +40,7 @@ Eigen::VectorXd joint_positions(const Table& table, std::string_view key) {
 
 void note_place(const Table& table, std::string_view key, Scenario& scenario) {
     const Value& value = table.require(key);
-    scenario.places[table.path_of(key)] = {*value.file, value.line};
+    scenario.places[table.path_of(key)] = {value.file->shown(), value.line};
 }
 
 CircleMotion read_circle(const Value& value, const std::string& path, Scenario& scenario) {
@@ -130,20 +130,22 @@ void read_judgement(const Table& top, Scenario& scenario) {
 }
 
 /// `what`: it holds, for a person.
-std::filesystem::path read_path(const Table& top, std::string_view key, const std::string& what) {
+FilePlace read_path(const Table& top, std::string_view key, const std::string& what) {
     const Value& value = top.require(key);
-    auto file = std::filesystem::absolute(value.file->parent_path() / value.text).lexically_normal();
-    std::error_code error;  // a name too long, for one, is as absent as any
-    if (value.kind != Value::Kind::scalar || !std::filesystem::is_regular_file(file, error)) {
-        top.fail(key, "expected the path of " + what + ", relative to this file; there is none at " +
-                          file.string());
-    }
-    return file;
+    FilePlace file = value.file->beside(value.text);
+    if (file.folder() == nullptr) file = std::filesystem::absolute(file.name()).lexically_normal();
+    const bool is_scalar = value.kind == Value::Kind::scalar;
+    const auto opened = file.open();
+    if (opened && is_scalar) return file;
+    const std::string expected = "expected the path of " + what + ", relative to this file; ";
+    if (is_scalar && file.folder() != nullptr && opened.error().fault != FolderFault::absent)
+        top.fail(key, expected + "'" + value.text + "' " + opened.error().reason());
+    top.fail(key, expected + "there is none at " + file.shown().string());
 }
 
-Scenario read_checked(const std::filesystem::path& file) {
+Scenario read_checked(const FilePlace& file) {
     Scenario scenario;
-    scenario.file = file;
+    scenario.file = file.shown();
     const Value document = rig::load_with_extends(file, &scenario.extended_files);
     const Table top(document, "",
                     {"name", "world", "world_motion", "motion", "depth", "ranges", "slow_clocks", "seeds",
@@ -178,7 +180,7 @@ rig::RigError Scenario::error(std::string_view key, std::string what) const {
     return {place->second.file, place->second.line, std::string(key), std::move(what)};
 }
 
-Result<Scenario, rig::RigError> read_scenario(const std::filesystem::path& file) {
+Result<Scenario, rig::RigError> read_scenario(const FilePlace& file) {
     try {
         return read_checked(file);
     } catch (const rig::Fault& fault) {

@@ -36,9 +36,14 @@ TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     EXPECT_THAT(meta,
                 AllOf(HasSubstr("world: " + kitchen()), HasSubstr("world_crc32: 0x"),
                       HasSubstr("scenario_crc32: 0x"), HasSubstr("rig_crc32: 0x"), HasSubstr("commit ")));
-    const Said own = octoskin("evaluate " + path("rec") + " --json " + path("figures.json"));
+    const Said unnamed = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(unnamed.exit_code, 66) << "a recording does not choose what is opened outside of it";
+    EXPECT_THAT(unnamed.output,
+                AllOf(HasSubstr("recorded in " + kitchen()), HasSubstr("give --world " + kitchen())));
+    const Said own =
+        octoskin("evaluate " + path("rec") + " --world " + kitchen() + " --json " + path("figures.json"));
     ASSERT_EQ(own.exit_code, 0) << own.output;
-    EXPECT_THAT(own.output, HasSubstr("judging in " + kitchen()));
+    EXPECT_THAT(own.output, AllOf(HasSubstr("judging in " + kitchen()), Not(HasSubstr("recorded in"))));
     EXPECT_THAT(content(path("figures.json")),
                 AllOf(HasSubstr("kitchen.sdf, CRC-32 0x"), HasSubstr("commit ")));
 
@@ -58,10 +63,26 @@ TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     EXPECT_EQ(table_of(moved), table_of(own));
 
     write(kitchen(), content(path("worlds/moved.sdf")) + "<!-- edited -->\n");
+    std::filesystem::copy(path("worlds/meshes"), path("rec/meshes"));
+    std::filesystem::copy(path("worlds/moved.sdf"), path("rec/kitchen.sdf"));
+    const Said within = octoskin("evaluate " + path("rec"));
+    ASSERT_EQ(within.exit_code, 0) << within.output;
+    EXPECT_EQ(table_of(within), table_of(own));
+    std::filesystem::remove_all(path("rec/meshes"));
+    std::filesystem::create_directory_symlink(path("worlds/meshes"), path("rec/meshes"));
+    const Said linked = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(linked.exit_code, 65) << linked.output;
+    EXPECT_THAT(linked.output, AllOf(HasSubstr("rec/kitchen.sdf: "), HasSubstr("is a symbolic link")));
+    write(path("rec/kitchen.sdf"), content(kitchen()));
     const Said changed = octoskin("evaluate " + path("rec"));
     EXPECT_EQ(changed.exit_code, 65) << changed.output;
     EXPECT_THAT(changed.output,
                 AllOf(HasSubstr("recorded in kitchen.sdf (CRC-32 0x"), HasSubstr("give --world")));
+    std::filesystem::remove(path("rec/kitchen.sdf"));
+    std::filesystem::create_symlink(kitchen(), path("rec/kitchen.sdf"));
+    const Said link = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(link.exit_code, 65) << link.output;
+    EXPECT_THAT(link.output, AllOf(HasSubstr("rec/kitchen.sdf: "), HasSubstr("is a symbolic link")));
 }
 
 TEST_F(SceneOfARecording, has_the_scenario_too_with_what_that_extends) {
@@ -71,9 +92,16 @@ TEST_F(SceneOfARecording, has_the_scenario_too_with_what_that_extends) {
                                " --scenario " + path("mine.yaml"));
     ASSERT_EQ(made.exit_code, 0) << made.output;
     write(path("base.yaml"), content(path("base.yaml")) + "depth: {sigma_m: 0.01}\n");
-    const Said changed = octoskin("evaluate " + path("rec"));
-    EXPECT_EQ(changed.exit_code, 65) << changed.output;
-    EXPECT_THAT(changed.output, AllOf(HasSubstr("mine.yaml"), HasSubstr("give --scenario")));
+    const Said unnamed = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(unnamed.exit_code, 66) << unnamed.output;
+    EXPECT_THAT(unnamed.output, AllOf(HasSubstr("mine.yaml"), HasSubstr("give --scenario")));
+    const Said changed = octoskin("evaluate " + path("rec") + " --scenario " + path("mine.yaml"));
+    EXPECT_EQ(changed.exit_code, 0) << changed.output;
+    EXPECT_THAT(changed.output, HasSubstr("recorded in mine.yaml (CRC-32 0x"));
+    std::filesystem::copy(path("mine.yaml"), path("rec/mine.yaml"));
+    std::filesystem::create_symlink(path("base.yaml"), path("rec/base.yaml"));
+    const Said within = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(within.exit_code, 65) << "its scenario extends what is behind a link\n" << within.output;
 }
 
 TEST_F(SceneOfARecording, of_a_robot_has_to_be_given) {
