@@ -2,8 +2,11 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <exception>
+#include <string>
 #include <variant>
 
 #include "firmware/app/linux_node/arguments.hpp"
@@ -23,10 +26,11 @@ using linux_port::StartFailure;
 int take_signals() {
     sigset_t signals{};
     ::sigemptyset(&signals);
-    ::sigaddset(&signals, SIGTERM);
-    ::sigaddset(&signals, SIGINT);
-    ::sigprocmask(SIG_BLOCK, &signals, nullptr);
-    return ::signalfd(-1, &signals, SFD_CLOEXEC);
+    for (const int signal : {SIGTERM, SIGINT, SIGQUIT}) ::sigaddset(&signals, signal);
+    // First the descriptor: signals that nobody could take would be blocked for ever.
+    const int descriptor = ::signalfd(-1, &signals, SFD_CLOEXEC);
+    if (descriptor >= 0) ::sigprocmask(SIG_BLOCK, &signals, nullptr);
+    return descriptor;
 }
 
 Result<node::Identity, StartFailure> identity_of(const Arguments& arguments) {
@@ -44,6 +48,9 @@ Result<Done, StartFailure> run(const Arguments& arguments) {
     auto identity = identity_of(arguments);
     if (!identity) return unexpected(identity.error());
     const int stop = take_signals();
+    if (stop < 0)
+        return refuse(ExitCode::unavailable,
+                      std::string("cannot take signals: ") + std::strerror(errno) + " (`ulimit -n`)");
     node::KeptMemory kept{};
     Journal journal;
     while (true) {
