@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/wall_time.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/depth_thread.hpp"
@@ -21,8 +22,10 @@
 #include "host/apps/daemon/problem_log.hpp"
 #include "host/apps/daemon/query_desk.hpp"
 #include "host/apps/daemon/record_requests.hpp"
+#include "host/apps/daemon/reload_pace.hpp"
 #include "host/apps/daemon/status.hpp"
 #include "host/apps/querying/query_answer.hpp"
+#include "host/apps/recording/shortage.hpp"
 #include "host/io/mapfile/map_file.hpp"
 
 namespace octoskin {
@@ -46,6 +49,34 @@ void tell_end(Nanoseconds patience) {
     const auto all = std::chrono::duration_cast<std::chrono::microseconds>(patience + kMargin);
     (void)sd_notifyf(0, "STOPPING=1\nEXTEND_TIMEOUT_USEC=%lld\nWATCHDOG_USEC=%lld",
                      static_cast<long long>(all.count()), static_cast<long long>(all.count()));
+}
+
+constexpr int kInternal = 70;
+
+/// The exit code for it.
+int tell_why_it_ends(const std::exception& thrown) {
+    const auto shortage = shortage_in(thrown);
+    if (!shortage) {
+        spdlog::critical("a defect of octoskin, please report it: {}; it saves the map and ends",
+                         thrown.what());
+        return kInternal;
+    }
+    spdlog::critical("{}; it saves the map and ends", shortage->message);
+    return static_cast<int>(shortage->code);
+}
+
+/// Those that would end the process without a save, and that are no fault of its own: they mean nothing here.
+/// One that somebody has taken already, as a profiler, is left alone.
+void ignore_stray_signals() {
+    const auto ignore = [](int signal) {
+        struct sigaction found {};
+        if (::sigaction(signal, nullptr, &found) == 0 && found.sa_handler == SIG_DFL)
+            std::signal(signal, SIG_IGN);
+    };
+    for (const int signal :
+         {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT, SIGPIPE})
+        ignore(signal);
+    for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) ignore(signal);
 }
 
 void tell_warnings(const Settings& settings) {
@@ -76,11 +107,15 @@ struct Daemon::Parts {
         Pipeline pipeline;
     };
     [[nodiscard]] std::string why_map_ends(const Settings& next) const;
-    [[nodiscard]] Result<Next, AppError> read_next() const;
+    /// Empty: the files say what holds already.
+    [[nodiscard]] Result<std::optional<Next>, AppError> read_next() const;
     void keep_within(const MapConfig& next);
     [[nodiscard]] bool take_limits(const MapConfig& next);
     [[nodiscard]] bool go_on_with(Next& next);
+    void ask_reload();
     void reload();
+    /// Whether anything changed.
+    [[nodiscard]] bool take_next();
     [[nodiscard]] DaemonView view() const;
     std::string answer(const std::string& line);
 
@@ -99,6 +134,7 @@ struct Daemon::Parts {
     std::string reload_error;
     ReloadCounts reloads;
     std::optional<HostTime> reloaded;
+    ReloadPace reload_pace;
     ProblemLog problem_log;
     LastUsed last_used;
 
@@ -125,13 +161,11 @@ ExitCode Daemon::run() {
     (void)sd_notify(0, "READY=1");
     spdlog::info("running: rig '{}', {}{}", parts_->settings.host.rig.name, parts_->request.interface,
                  parts_->request.is_listen_only ? ", listening only" : "");
-    constexpr int kInternal = 70;
     int outcome = kInternal;
     try {
         outcome = parts_->loop.run();
     } catch (const std::exception& error) {
-        spdlog::critical("a defect of octoskin, please report it: {}; it saves the map and ends",
-                         error.what());
+        outcome = tell_why_it_ends(error);
     }
     const Nanoseconds patience = end_patience(parts_->pipeline.maps().fused()->memory_bytes());
     tell_end(patience);
@@ -178,9 +212,14 @@ Status<AppError> Daemon::Parts::take_folder() {
 }
 
 void Daemon::Parts::watch() {
-    for (const int signal : {SIGTERM, SIGINT})
+    ignore_stray_signals();
+    for (const int signal : {SIGTERM, SIGINT, SIGQUIT})
         sources.push_back(loop.on_signal(signal, [this] { loop.stop(0); }));
-    sources.push_back(loop.on_signal(SIGHUP, [this] { reload(); }));
+    sources.push_back(loop.on_signal(SIGXCPU, [this] {
+        spdlog::error("the processor time that this process may use is over (ulimit -t): raise the limit");
+        loop.stop(static_cast<int>(ExitCode::no_resources));
+    }));
+    sources.push_back(loop.on_signal(SIGHUP, [this] { ask_reload(); }));
     pipeline.work_beside(&depth_thread);
     sources.push_back(loop.on_readable(depth_thread.descriptor(), [this] {
         depth_thread.acknowledge();
@@ -198,6 +237,7 @@ void Daemon::Parts::attend() {
     inputs.attend();
     recordings.attend(monotonic_now());
     last_used.note(pipeline, monotonic_now());
+    if (reload_pace.is_due(monotonic_now())) reload();
     const DaemonView now = view();
     problem_log.tell(problems(now), now.now, now.is_settling());
 }
@@ -239,15 +279,16 @@ std::string Daemon::Parts::why_map_ends(const Settings& next) const {
 }
 
 /// All that may speak against a reload, before anything has changed.
-Result<Daemon::Parts::Next, AppError> Daemon::Parts::read_next() const {
+Result<std::optional<Daemon::Parts::Next>, AppError> Daemon::Parts::read_next() const {
     try {
         auto read = read_settings(request);
         if (!read) return unexpected(read.error());
+        if (read->recorded == settings.recorded) return std::optional<Next>{};
         const std::string why = why_map_ends(*read);
         if (!why.empty()) return fail(ExitCode::bad_config, why);
         auto made = make_pipeline(request, *read);
         if (!made) return unexpected(made.error());
-        return Next{std::move(read).value(), std::move(made).value()};
+        return std::optional(Next{std::move(read).value(), std::move(made).value()});
     } catch (const std::bad_alloc&) {
         return fail(ExitCode::bad_config, "no memory for what the files say");
     }
@@ -296,13 +337,34 @@ bool Daemon::Parts::go_on_with(Next& next) {
     return true;
 }
 
+void Daemon::Parts::ask_reload() {
+    const HostTime now = monotonic_now();
+    const bool is_first = reload_pace.ask();
+    if (reload_pace.is_due(now)) return reload();
+    if (is_first)
+        spdlog::info("SIGHUP: the files are read in {:.1f} s, as they were a moment ago",
+                     seconds_of(reload_pace.wait(now)));
+}
+
 void Daemon::Parts::reload() {
     (void)sd_notify(0, "RELOADING=1");
+    const bool has_changed = take_next();
+    reload_pace.obeyed(monotonic_now(), has_changed);
+    (void)sd_notify(0, "READY=1");
+}
+
+bool Daemon::Parts::take_next() {
     auto next = read_next();
     if (!next) reload_error = next.error().message;
-    if (!next || !go_on_with(*next))
-        spdlog::error("not reloaded");  // why, the next look at the problems tells
-    (void)sd_notify(0, "READY=1");
+    if (next && !next->has_value()) {
+        ++reloads.unchanged;
+        reload_error.clear();
+        spdlog::info("SIGHUP: rig, robot and mapping say what holds already; nothing changes");
+        return false;
+    }
+    if (next && go_on_with(**next)) return true;
+    spdlog::error("not reloaded");  // why, the next look at the problems tells
+    return next.has_value();
 }
 
 DaemonView Daemon::Parts::view() const {
@@ -313,6 +375,7 @@ DaemonView Daemon::Parts::view() const {
             .rig = &settings.host.rig,
             .pipeline = &pipeline,
             .inputs = &inputs,
+            .is_wall_clock_right = tells_time(wall_now()),
             .interface = &request.interface,
             .is_listen_only = request.is_listen_only,
             .camera = inputs.camera(),

@@ -11,6 +11,15 @@ namespace {
 
 using Problems = std::vector<Problem>;
 
+/// Each frame's stamp is this clock's: while it shows nonsense no frame has a time.
+void add_wall_clock(const DaemonView& view, Problems& problems) {
+    if (view.is_wall_clock_right) return;
+    problems.push_back({"wall clock",
+                        "this machine's clock shows a time before 1970 or after 2199, and frames get their "
+                        "stamps from it: set it (`sudo timedatectl set-time '2026-01-31 12:00:00'`, or "
+                        "`set-ntp true`)"});
+}
+
 void add_link(const DaemonView& view, Problems& problems) {
     if (view.inputs->can().state() != LinkState::up) {
         const std::string text = fmt::format(
@@ -422,6 +431,7 @@ std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double ra
 
 std::vector<Problem> problems(const DaemonView& view) {
     Problems problems;
+    add_wall_clock(view, problems);
     add_link(view, problems);
     add_other_hosts(view, problems);
     add_links_without_body(view, problems);

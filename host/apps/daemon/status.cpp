@@ -233,7 +233,10 @@ Json status_json(const DaemonView& view) {
             {"camera", camera_json(view)},
             {"latency", latency_json(view.inputs->latency())},
             {"map", map_json(view)},
-            {"reloads", {{"count", view.reloads.count}, {"dropped", view.reloads.dropped}}},
+            {"reloads",
+             {{"count", view.reloads.count},
+              {"unchanged", view.reloads.unchanged},
+              {"dropped", view.reloads.dropped}}},
             {"account", account_json(*view.pipeline)}};
 }
 

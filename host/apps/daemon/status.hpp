@@ -39,7 +39,8 @@ class LastUsed {
 
 struct ReloadCounts {
     std::uint64_t count = 0;
-    std::uint64_t dropped = 0;  ///< readings, joint samples, depth frames that waited and could not be used
+    std::uint64_t unchanged = 0;  ///< times that the files said what held already
+    std::uint64_t dropped = 0;    ///< readings, joint samples, depth frames that waited and could not be used
 };
 
 /// All that there is to tell. What it points to must be there.
@@ -52,6 +53,7 @@ struct DaemonView {
     const HostRig* rig = nullptr;
     const Pipeline* pipeline = nullptr;
     const Inputs* inputs = nullptr;
+    bool is_wall_clock_right = true;  ///< this machine's shows a time that a stamp can have (tells_time)
     const std::string* interface = nullptr;
     bool is_listen_only = false;
     std::optional<CameraRecord> camera;  ///< empty without a camera
@@ -61,7 +63,7 @@ struct DaemonView {
     std::string recording_refusal;       ///< why the newest one could not begin; empty if it could
     std::string reload_error;            ///< of the newest SIGHUP; empty if it went well
     ReloadCounts reloads;
-    std::optional<HostTime> reloaded;  ///< when SIGHUP was obeyed last
+    std::optional<HostTime> reloaded;  ///< when SIGHUP changed something last
 
     /// The time, the nodes and what they tell are learnt anew: whether they are missing nobody can say yet.
     /// Two exchanges of SYNC a second apart, the readings after them, and a camera that is opened again.

@@ -3,14 +3,20 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/shortage.hpp"
 #include "host/apps/version/version.hpp"
 
 namespace {
@@ -18,9 +24,11 @@ namespace {
 constexpr const char* kFooter =
     "Exit codes: 0 done; 1 done, with a bad result; 2 done, and nobody knows (query); 64 command line;\n"
     "65 unusable data;\n"
-    "66 no such file; 69 a program or device is missing; 70 a defect of octoskin; 73 cannot write;\n"
+    "66 no such file; 69 a program or device is missing; 70 a defect of octoskin; 71 too little memory,\n"
+    "descriptors or threads (ulimit); 73 cannot write;\n"
     "74 a device, standard input or output failed; 77 no permission;\n"
-    "78 rig, robot, scenario or mapping file; 130, 143 interrupted by Ctrl-C, SIGTERM: what simulate,\n"
+    "78 rig, robot, scenario or mapping file; 129, 130, 143 interrupted by SIGHUP, Ctrl-C, SIGTERM: what "
+    "simulate,\n"
     "replay and experiment had not finished is removed.";
 
 int run(int argc, char** argv) {
@@ -74,19 +82,51 @@ int checked(int exit_code) {
     return exit_code == 0 ? static_cast<int>(failure->code) : exit_code;
 }
 
+/// Less stack than this ends a command with a fault that nothing can catch. Empty: there is enough.
+std::optional<octoskin::AppError> too_little_stack() {
+    constexpr rlim_t kLeast = rlim_t{1} << 20U;
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= kLeast) return std::nullopt;
+    return octoskin::AppError{
+        octoskin::ExitCode::no_resources,
+        fmt::format("this process may have {} KiB of stack, and needs {}: raise that limit (ulimit -s)",
+                    limit.rlim_cur >> 10U, kLeast >> 10U)};
+}
+
+/// What was thrown, and the exit code for it. There may be no memory to say it in.
+int tell(const std::exception& thrown) noexcept {
+    constexpr int kInternal = 70;
+    try {
+        const auto shortage = octoskin::shortage_in(thrown);
+        if (shortage) {
+            spdlog::error("{}", shortage->message);
+            return static_cast<int>(shortage->code);
+        }
+        spdlog::critical("a defect of octoskin, please report it: {}", thrown.what());
+        return kInternal;
+    } catch (...) {
+        constexpr std::string_view kWords = "octoskin: no memory (ulimit -v)\n";
+        (void)!::write(STDERR_FILENO, kWords.data(), kWords.size());
+        return static_cast<int>(octoskin::ExitCode::no_resources);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     octoskin::app::reserve_standard_descriptors();
-    constexpr int kInternal = 70;
-    // A reader that goes away (`| head`) must not end the program in the middle of a file.
-    std::signal(SIGPIPE, SIG_IGN);
-    spdlog::set_default_logger(spdlog::stderr_color_mt("octoskin"));
-    spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
+    // A reader that goes away (`| head`) must not end the program in the middle of a file, nor must the limit
+    // of a file's size (ulimit -f): both are errors of the write, which is told.
+    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
     try {
+        spdlog::set_default_logger(spdlog::stderr_color_mt("octoskin"));
+        spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
+        if (const auto shortage = too_little_stack()) {
+            spdlog::error("{}", shortage->message);
+            return static_cast<int>(shortage->code);
+        }
         return checked(run(argc, argv));
     } catch (const std::exception& error) {
-        spdlog::critical("a defect of octoskin, please report it: {}", error.what());
-        return kInternal;
+        return tell(error);
     }
 }

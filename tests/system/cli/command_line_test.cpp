@@ -80,6 +80,8 @@ TEST_F(CommandLine, answers_64_to_what_can_be_no_interface_and_no_socket) {
     expect(daemon + "fd:0 < " + source("README.md"), "fd:0 is no socket");
     expect(daemon + "a_name_too_long_",
            "'a_name_too_long_': an interface's name has 1 to 15 characters, this one 16");
+    expect(daemon + "'a b'", "printable ASCII");
+    expect(daemon + "fd:0000000000000", "1 to 15 characters");
     const std::string long_path = path(std::string(120, 's'));
     expect(daemon + "can0 --socket " + long_path, "1 to 107 bytes");
     expect("status --socket " + long_path, "1 to 107 bytes");

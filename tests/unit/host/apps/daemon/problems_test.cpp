@@ -38,6 +38,17 @@ TEST_F(ProblemsTest, are_none_where_all_is_well) {
     EXPECT_THAT(all_told(), IsEmpty());
 }
 
+// No frame has a stamp then, whatever else may be said of the time.
+TEST_F(ProblemsTest, begin_with_a_clock_of_this_machine_that_shows_nonsense) {
+    view_.is_wall_clock_right = false;
+    other_end_.reset();
+    inputs_->catch_up();
+    const auto told = problems(view_);
+    ASSERT_GE(told.size(), 2U);
+    EXPECT_EQ(told[0].about, "wall clock");
+    EXPECT_EQ(told[1].subject, "CAN");
+}
+
 TEST_F(ProblemsTest, come_the_most_fundamental_first) {
     play_changed([](Scene& scene) { scene.bus = ScriptedBus{}, scene.depth.clear(); });
     other_end_.reset();

@@ -340,8 +340,8 @@ TEST_F(StatusTest, names_nothing_that_is_learnt_anew_for_three_seconds_after_a_r
 
 TEST_F(StatusTest, has_the_recording_or_null_and_the_reloads) {
     EXPECT_EQ(status()["recording"], nullptr);
-    view_.reloads = {.count = 2, .dropped = 7};
-    EXPECT_EQ(status()["reloads"], Json::parse(R"({"count": 2, "dropped": 7})"));
+    view_.reloads = {.count = 2, .unchanged = 3, .dropped = 7};
+    EXPECT_EQ(status()["reloads"], Json::parse(R"({"count": 2, "unchanged": 3, "dropped": 7})"));
     Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, host_at(4.3));
     view_.recorder = &recorder;
     const Json recording = status()["recording"];
