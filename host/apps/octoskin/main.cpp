@@ -82,15 +82,21 @@ int checked(int exit_code) {
     return exit_code == 0 ? static_cast<int>(failure->code) : exit_code;
 }
 
-/// Less stack than this ends a command with a fault that nothing can catch. Empty: there is enough.
-std::optional<octoskin::AppError> too_little_stack() {
-    constexpr rlim_t kLeast = rlim_t{1} << 20U;
+/// With less a command fails somewhere in its midst: of the stack with a fault that nothing can catch, of
+/// descriptors with a file that it calls unreadable. Empty: there is enough to begin with.
+std::optional<std::string> too_little() {
+    constexpr rlim_t kStackLeast = rlim_t{1} << 20U;
+    constexpr rlim_t kDescriptorsLeast = 16;
     rlimit limit{};
-    if (::getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= kLeast) return std::nullopt;
-    return octoskin::AppError{
-        octoskin::ExitCode::no_resources,
-        fmt::format("this process may have {} KiB of stack, and needs {}: raise that limit (ulimit -s)",
-                    limit.rlim_cur >> 10U, kLeast >> 10U)};
+    if (::getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur < kStackLeast)
+        return fmt::format(
+            "this process may have {} KiB of stack, and needs {}: raise that limit (ulimit -s)",
+            limit.rlim_cur >> 10U, kStackLeast >> 10U);
+    if (::getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < kDescriptorsLeast)
+        return fmt::format(
+            "this process may have {} descriptors open at once, and needs {}: raise that limit (ulimit -n)",
+            limit.rlim_cur, kDescriptorsLeast);
+    return std::nullopt;
 }
 
 /// What was thrown, and the exit code for it. There may be no memory to say it in.
@@ -121,9 +127,9 @@ int main(int argc, char** argv) {
     try {
         spdlog::set_default_logger(spdlog::stderr_color_mt("octoskin"));
         spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
-        if (const auto shortage = too_little_stack()) {
-            spdlog::error("{}", shortage->message);
-            return static_cast<int>(shortage->code);
+        if (const auto shortage = too_little()) {
+            spdlog::error("{}", *shortage);
+            return static_cast<int>(octoskin::ExitCode::no_resources);
         }
         return checked(run(argc, argv));
     } catch (const std::exception& error) {
