@@ -7,12 +7,9 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <sstream>
 #include <utility>
 
-#include "hw/rigfile/bounded_text.hpp"
-#include "hw/rigfile/file_kind.hpp"
 #include "hw/rigfile/syntax_hint.hpp"
 
 namespace octoskin::rig {
@@ -33,14 +30,20 @@ std::string_view xml_kind(std::string_view text) {
     return "XML";
 }
 
-std::string read_text(const std::filesystem::path& file) {
-    if (const auto kind = other_than_a_file(file); !kind.empty())
-        throw Fault{{file, 0, "", fmt::format("is {}: give the path of an ordinary YAML file", kind)}};
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) {
-        throw Fault{{file, 0, "", "cannot be opened: give the path of an existing, readable YAML file"}};
-    }
-    std::string text = read_bounded(stream, kFileBytesMax);
+std::string reason_of(const FolderError& error) {
+    if (error.fault == FolderFault::not_a_file)
+        return fmt::format("is {}: give the path of an ordinary YAML file", error.what);
+    if (error.fault == FolderFault::link || error.fault == FolderFault::outside) return error.reason();
+    return "cannot be opened: give the path of an existing, readable YAML file";
+}
+
+std::string read_text(const FilePlace& place) {
+    const std::filesystem::path file = place.shown();
+    const auto opened = place.open();
+    if (!opened) throw Fault{{opened.error().path, 0, "", reason_of(opened.error())}};
+    auto bytes = opened->read(kFileBytesMax);
+    if (!bytes) throw Fault{{file, 0, "", "cannot be read: " + bytes.error().reason()}};
+    std::string text = std::move(*bytes);
     if (const std::string_view what = xml_kind(text); !what.empty()) {
         throw Fault{{file, 0, "",
                      fmt::format("expected YAML, found {}: is it given in another file's place?", what)}};
@@ -205,8 +208,9 @@ const Value* Value::find(std::string_view wanted) const noexcept {
     return kind == Kind::table && found != items.end() ? &*found : nullptr;
 }
 
-Value load_document(const std::filesystem::path& file) {
-    const std::string text = read_text(file);
+Value load_document(const FilePlace& place) {
+    const std::string text = read_text(place);
+    const std::filesystem::path file = place.shown();
     std::istringstream stream(text);
     TreeBuilder builder(std::make_shared<const std::filesystem::path>(file));
     try {
@@ -251,13 +255,13 @@ Value merge(Value base, const Value& overlay) {
     return base;
 }
 
-Value load_with_extends(const std::filesystem::path& file, std::vector<std::filesystem::path>* extended) {
+Value load_with_extends(const FilePlace& file, std::vector<std::filesystem::path>* extended) {
     std::vector<Value> layers = {load_document(file)};
     for (auto next = take_extends(layers.back()); !next.empty(); next = take_extends(layers.back())) {
         if (extended != nullptr) extended->push_back(next);
         if (layers.size() == kExtendsMax) {
             throw Fault{
-                {file, 0, "extends",
+                {file.shown(), 0, "extends",
                  fmt::format("expected at most {} files one upon the other, found more: is it a circle?",
                              kExtendsMax)}};
         }

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/io/folder/file_place.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin::rig {
@@ -36,7 +37,7 @@ struct Value {
 
 /// Reads one YAML file whose top is a table. Throws Fault: unreadable, over 1 MiB, not YAML, a key twice in
 /// one table, an anchor, alias or tag, more than one document, nested deeper than 16.
-[[nodiscard]] Value load_document(const std::filesystem::path& file);
+[[nodiscard]] Value load_document(const FilePlace& file);
 
 /// The file that a scalar names, relative to the file it is written in. Throws Fault, at the scalar, unless
 /// that is an existing file.
@@ -49,7 +50,7 @@ struct Value {
 /// load_document(), then every file that `extends:` names, each relative to the file that names it, laid one
 /// over the other. Throws Fault also for a circle and for more than 8 files. `extended` is told those files,
 /// the nearest first.
-[[nodiscard]] Value load_with_extends(const std::filesystem::path& file,
+[[nodiscard]] Value load_with_extends(const FilePlace& file,
                                       std::vector<std::filesystem::path>* extended = nullptr);
 
 }  // namespace octoskin::rig

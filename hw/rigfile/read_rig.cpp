@@ -242,7 +242,7 @@ void refuse_overloaded_bus(const Table& top, const Rig& rig) {
                     100.0 * wire::kBusLoadLimit, 100.0 * load));
 }
 
-Rig read_checked(const std::filesystem::path& file, const std::filesystem::path& urdf_instead) {
+Rig read_checked(const FilePlace& file, const std::filesystem::path& urdf_instead) {
     Rig rig;
     const Value document = load_with_extends(file, &rig.extended_files);
     // `extends` is gone by now; it is named for the hint beside an unknown key.
@@ -281,7 +281,7 @@ std::string RigError::message() const {
     return key.empty() ? fmt::format("{}: {}", place, what) : fmt::format("{}: {}: {}", place, key, what);
 }
 
-Result<Rig, RigError> read_rig(const std::filesystem::path& file, const std::filesystem::path& urdf_instead) {
+Result<Rig, RigError> read_rig(const FilePlace& file, const std::filesystem::path& urdf_instead) {
     try {
         return read_checked(file, urdf_instead);
     } catch (const Fault& fault) {

@@ -13,6 +13,7 @@
 #include "common/config/node_config.hpp"
 #include "common/lens/lens_distortion.hpp"
 #include "common/result.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "hw/rigfile/data_set_depth.hpp"
 
 namespace octoskin::rig {
@@ -137,7 +138,7 @@ struct RigError {
 /// top-level `extends: other.yaml` takes that file first and lays this one's keys over it. `urdf_instead`: a
 /// robot to use in place of the one the rig names. Not to be called from two threads at once (urdfdom's log
 /// is global).
-[[nodiscard]] Result<Rig, RigError> read_rig(const std::filesystem::path& file,
+[[nodiscard]] Result<Rig, RigError> read_rig(const FilePlace& file,
                                              const std::filesystem::path& urdf_instead = {});
 
 /// The canonical YAML text of a rig: reading it gives an equal rig, and equal rigs give equal text. `urdf` is

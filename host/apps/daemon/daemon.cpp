@@ -166,7 +166,7 @@ Status<AppError> Daemon::Parts::take_folder() {
     auto taken = FolderLock::take(request.map_folder);
     if (!taken) return unexpected(taken.error());
     folder.emplace(std::move(taken).value());
-    keeper.emplace(request.map_folder);
+    keeper.emplace(NamedFolder(folder->folder()));
     auto saved = keeper->load(settings.mapping.map);
     if (!saved) {
         return fail(saved.error().code, saved.error().message + "; move it away to begin with an empty map");

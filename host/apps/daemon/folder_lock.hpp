@@ -2,25 +2,29 @@
 #pragma once
 
 #include <filesystem>
+#include <utility>
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
+#include "host/io/folder/open_folder.hpp"
 
 namespace octoskin {
 
 /// Holds the folder until it is destroyed, or the process ends in any way.
 class FolderLock {
   public:
-    /// Makes the folder if it is not there. Refuses, naming its process, if somebody else holds it, and if
-    /// nothing can be written there.
+    /// Makes the folder if it is not there. Refuses, naming its process, if somebody else holds it, if
+    /// nothing can be written there, if the folder is somebody else's, and if its file "lock" is a link or no
+    /// file. One with several names is replaced, not written to.
     [[nodiscard]] static Result<FolderLock, AppError> take(const std::filesystem::path& folder);
-    FolderLock(FolderLock&& other) noexcept;
-    FolderLock& operator=(FolderLock&& other) noexcept;
-    ~FolderLock();
+
+    /// The folder that is held: what takes its name later is another one.
+    [[nodiscard]] const OpenFolder& folder() const noexcept { return folder_; }
 
   private:
-    explicit FolderLock(int descriptor) : descriptor_(descriptor) {}
-    int descriptor_ = -1;
+    FolderLock(OpenFolder folder, OpenFile file) : folder_(std::move(folder)), file_(std::move(file)) {}
+    OpenFolder folder_;
+    OpenFile file_;
 };
 
 }  // namespace octoskin

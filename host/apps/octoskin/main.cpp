@@ -47,6 +47,7 @@ int run(int argc, char** argv) {
     app::add_black_box_command(app);
     app::add_calibrate_command(app);
     app::add_command_command(app);
+    app::add_repair_command(app);
     try {
         app::check_command_name(app, argc, argv);
         app.parse(argc, argv);

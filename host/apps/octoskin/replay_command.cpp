@@ -147,7 +147,8 @@ void replay_recording(const ReplayOptions& options) {
     request.pace = pace_of(options);
     if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
     // Before the work: of two that write there, the second would else find out after it.
-    auto folder = MapFolder::open(options.out);
+    auto folder = MapFolder::open(options.out.empty() ? request.recording.file(kMapsOfRecording)
+                                                      : FilePlace(options.out));
     if (!folder) throw CommandFailure(folder.error());
     ProgressSeconds seconds;
     const char* const unit = is_played_in_order(request) ? "commits" : "CAN frames";
@@ -161,7 +162,8 @@ void replay_recording(const ReplayOptions& options) {
     static_cast<void>(flush_standard_output());  // its failure is told at the end
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     refuse_failed(*playback);
-    save(*playback, *folder, options.out);
+    save(*playback, *folder,
+         options.out.empty() ? options.playback.recording / kMapsOfRecording : options.out);
     tell_last_posture(*playback);
     if (playback->is_unlike_daemons) {
         throw CommandFailure({ExitCode::failed, options.playback.recording.string() +
@@ -200,7 +202,6 @@ void add_replay_command(CLI::App& app) {
             "image of a data set, and wait for the enter key")
         ->excludes(speed);
     command->callback([options] {
-        if (options->out.empty()) options->out = options->playback.recording / "maps";
         const Interruption interruption;
         options->onto.empty() ? replay_recording(*options) : replay_onto_bus(*options);
     });

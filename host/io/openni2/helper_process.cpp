@@ -87,7 +87,8 @@ LeftBehind& left_behind() {
 
 Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::path& program,
                                                         const std::vector<std::string>& arguments,
-                                                        HelperPipe pipe, HelperComplaints complaints) {
+                                                        HelperPipe pipe, HelperComplaints complaints,
+                                                        int inherited) {
     left_behind().reap();
     std::array<int, 2> ends{-1, -1};
     // Sockets rather than a pipe: a write to a helper that is stuck must not block, and one to a helper that
@@ -102,6 +103,8 @@ Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::p
     Spawning spawning;
     spawning.connect(theirs, pipe == HelperPipe::its_input ? STDIN_FILENO : STDOUT_FILENO);
     if (words[1] >= 0) spawning.connect(words[1], STDERR_FILENO);
+    // Last: it may take the number of one of those above, which are copied by then.
+    if (inherited >= 0) spawning.connect(inherited, kInherited);
     pid_t process = -1;
     const int failed = spawning.spawn(process, program.string(), arguments);
     ::close(theirs);

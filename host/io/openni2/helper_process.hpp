@@ -22,10 +22,14 @@ enum class HelperComplaints : std::uint8_t {
 
 class HelperProcess {
   public:
+    static constexpr int kInherited = 3;
+
     /// Starts `program` with `arguments`, with no signal blocked or ignored. The message says what failed.
+    /// `inherited`: a file or folder of ours that the helper has, too, as its descriptor kInherited, for as
+    /// long as it lives; -1: none.
     [[nodiscard]] static Result<HelperProcess, std::string> start(
         const std::filesystem::path& program, const std::vector<std::string>& arguments, HelperPipe pipe,
-        HelperComplaints complaints = HelperComplaints::on_our_standard_error);
+        HelperComplaints complaints = HelperComplaints::on_our_standard_error, int inherited = -1);
     HelperProcess(HelperProcess&& other) noexcept;
     HelperProcess& operator=(HelperProcess&& other) noexcept;
     /// Ends a helper that still runs. One that the kernel does not let go of within a second is left
