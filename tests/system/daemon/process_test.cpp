@@ -40,6 +40,11 @@ TEST_F(DaemonTest, warns_of_a_robot_without_a_body) {
     ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
     EXPECT_NE(daemon_->log().find("no link at or below panda_link0 has a <collision>"), std::string::npos)
         << daemon_->log();
+    EXPECT_NE(daemon_->log().find("panda_link2, panda_link3"), std::string::npos) << daemon_->log();
+    const Json status = daemon_->status();
+    EXPECT_EQ(status["links_unknown"], status["links_without_body"]);
+    EXPECT_EQ(status["links_unknown"].size(), 7U) << "neither the base, nor the frame of link 5";
+    EXPECT_TRUE(has_problem(status, "robot: panda_link1, ")) << status["problems"].dump();
 }
 
 TEST_F(DaemonTest, reloads_all_or_nothing) {
