@@ -21,6 +21,7 @@
 #include "host/apps/daemon/problem_log.hpp"
 #include "host/apps/daemon/query_desk.hpp"
 #include "host/apps/daemon/record_requests.hpp"
+#include "host/apps/daemon/register_log.hpp"
 #include "host/apps/daemon/status.hpp"
 #include "host/apps/querying/query_answer.hpp"
 #include "host/io/mapfile/map_file.hpp"
@@ -100,6 +101,7 @@ struct Daemon::Parts {
     ReloadCounts reloads;
     std::optional<HostTime> reloaded;
     ProblemLog problem_log;
+    RegisterLog register_log;
     LastUsed last_used;
 
     std::vector<EventSource> sources;
@@ -200,6 +202,7 @@ void Daemon::Parts::attend() {
     last_used.note(pipeline, monotonic_now());
     const DaemonView now = view();
     problem_log.tell(problems(now), now.now, now.is_settling());
+    for (const std::string& line : register_log.news(pipeline.intake().nodes())) spdlog::info("{}", line);
 }
 
 void Daemon::Parts::save_map() {

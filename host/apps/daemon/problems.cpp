@@ -150,6 +150,16 @@ void add_losses(const DaemonView& view, const HostNode& node, Problems& problems
          on});
 }
 
+/// Which register the sensor is withheld for, and how to have it left out; empty if its node named none.
+std::string register_text(const DaemonView& view, const HostNode& node, std::size_t index) {
+    const auto sensor = static_cast<std::uint8_t>(index);
+    const auto& health = view.pipeline->intake().ranges().record(node.node_id, sensor).health;
+    const NodeRecord& record = view.pipeline->intake().nodes().records().at(node.node_id);
+    const auto& report = record.registers.of_sensor(sensor);
+    if (!report || health->fault != wire::SensorFault::config_mismatch) return {};
+    return ": " + text_of(*report) + "; if that is how this part is, " + leave_out_text(*report, node.name);
+}
+
 void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {
     const SensorRecord& sensor =
         view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
@@ -159,7 +169,7 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
     if (sensor.health && !is_ranging && sensor.health->state != wire::SensorState::starting) {
         const std::string text = fmt::format("{}: {}, {}", who, wire::name(sensor.health->state),
                                              wire::name(sensor.health->fault));
-        problems.push_back({text, text, who, on});
+        problems.push_back({text, text + register_text(view, node, index), who, on});
     } else if (const auto streak = sensor.fates.streak()) {
         problems.push_back(
             {who + " streak",

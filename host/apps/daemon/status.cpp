@@ -104,6 +104,30 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
     return json;
 }
 
+Json register_json(const wire::RegisterReport& report, bool is_alike) {
+    return {{"register", report.index},
+            {"written", report.written},
+            {"read", report.read},
+            {"alike", is_alike},
+            {"sensor", is_alike ? Json(nullptr) : Json(report.subject)},
+            {"sensors", is_alike ? report.subject : 1}};
+}
+
+/// Those of sensors that are well by now are over.
+Json registers_json(const DaemonView& view, const HostNode& node, const NodeRecord& record) {
+    Json registers = Json::array();
+    for (const wire::RegisterReport& report : record.registers.alike())
+        registers.push_back(register_json(report, true));
+    for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+        const auto sensor = static_cast<std::uint8_t>(i);
+        const auto& health = view.pipeline->intake().ranges().record(node.node_id, sensor).health;
+        const auto& report = record.registers.of_sensor(sensor);
+        if (report && health && health->fault == wire::SensorFault::config_mismatch)
+            registers.push_back(register_json(*report, false));
+    }
+    return registers;
+}
+
 Json node_json(const DaemonView& view, const HostNode& node) {
     const CanIntake& intake = view.pipeline->intake();
     const NodeRecord& record = intake.nodes().records().at(node.node_id);
@@ -128,6 +152,7 @@ Json node_json(const DaemonView& view, const HostNode& node) {
     json["refused_share"] = loss ? Json(loss->share) : Json(nullptr);
     json["refused_most"] =
         loss ? Json(names_of(ReadingReason{})[static_cast<std::size_t>(loss->most)]) : Json(nullptr);
+    json["registers"] = registers_json(view, node, record);
     Json sensors = Json::array();
     for (std::size_t i = 0; i < node.sensors.size(); ++i) sensors.push_back(sensor_json(view, node, i));
     json["sensors"] = std::move(sensors);

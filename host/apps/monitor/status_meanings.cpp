@@ -102,7 +102,19 @@ constexpr std::array kStatusMeanings = {
             "of its readings within the last second, those that were refused for their time, their number or "
             "their sender; null: no more than 0.05"},
     Meaning{"nodes", "refused_most", "why most of these were, a name of account.md; null: no more than that"},
+    Meaning{"nodes", "registers",
+            "a list, one object for each register that reads otherwise than it is written, below; empty if "
+            "none does"},
     Meaning{"nodes", "sensors", "a list, one object for each sensor, below"},
+    Meaning{"nodes.registers", "register", "its index, 0 to 255"},
+    Meaning{"nodes.registers", "written", "what was written to it"},
+    Meaning{"nodes.registers", "read", "what it reads"},
+    Meaning{"nodes.registers", "alike",
+            "three or more sensors of the node read it so: this type of part is so, and nothing is withheld "
+            "for it"},
+    Meaning{"nodes.registers", "sensor",
+            "the one that reads it so, by its number on the node; null if it is alike"},
+    Meaning{"nodes.registers", "sensors", "how many had shown it when it was told"},
     Meaning{"nodes.sensors", "index", "its number on the node"},
     Meaning{"nodes.sensors", "name", "its name in the rig"},
     Meaning{"nodes.sensors", "state", "its node's word in the newest SENSOR_HEALTH; null before the first"},

@@ -100,6 +100,40 @@ SlowClockSpread read_slow_clocks(const Table& top) {
     return spread;
 }
 
+TraitsOf read_traits(const Value& value, const std::string& path) {
+    constexpr rig::Range<std::int64_t> kTimeUs{0, 20'000};
+    const Table table(value, path,
+                      {"node_id", "sensor", "register", "reads", "mask", "range_spread_us", "range_step_us",
+                       "boot_load_us"});
+    TraitsOf of;
+    if (table.find("node_id") != nullptr) of.node_id = table.integer<std::uint8_t>("node_id", {1, 61});
+    if (table.find("sensor") != nullptr)
+        of.sensor = table.integer<std::uint8_t>("sensor", {0, kNodeSensorsMax - 1});
+    if (table.find("register") != nullptr) {
+        of.traits.misread.push_back({.index = table.integer<std::uint16_t>("register", {0, 0x1FF}),
+                                     .value = table.integer<std::uint8_t>("reads", {0, 255}),
+                                     .mask = table.integer<std::uint8_t>("mask", {0, 255}, 255)});
+    } else if (table.find("reads") != nullptr || table.find("mask") != nullptr) {
+        table.fail(table.find("reads") != nullptr ? "reads" : "mask", "expected a register with it");
+    }
+    const auto time = [&](std::string_view key) {
+        return Microseconds{table.integer<std::int64_t>(key, kTimeUs, std::int64_t{0})};
+    };
+    of.traits.range_spread = time("range_spread_us");
+    of.traits.range_step = time("range_step_us");
+    of.traits.boot_load = time("boot_load_us");
+    return of;
+}
+
+/// `sensor_traits: [{register: 0x47, reads: 0x0c}]`: of all sensors, unless `node_id` and `sensor` say which.
+void read_sensor_traits(const Table& top, Scenario& scenario) {
+    const Value* list = top.find("sensor_traits");
+    if (list == nullptr) return;
+    const auto& items = rig::read_list(*list, "sensor_traits");
+    for (std::size_t i = 0; i < items.size(); ++i)
+        scenario.sensor_traits.push_back(read_traits(items[i], "sensor_traits[" + std::to_string(i) + "]"));
+}
+
 void read_seeds(const Table& top, Scenario& scenario) {
     const Table seeds(top.require("seeds"), "seeds", {"map_shift_m", "further_map_shift_max_m"});
     const auto& shifts = rig::read_list(seeds.require("map_shift_m"), seeds.path_of("map_shift_m"));
@@ -146,8 +180,8 @@ Scenario read_checked(const std::filesystem::path& file) {
     scenario.file = file;
     const Value document = rig::load_with_extends(file, &scenario.extended_files);
     const Table top(document, "",
-                    {"name", "world", "world_motion", "motion", "depth", "ranges", "slow_clocks", "seeds",
-                     "hidden_models", "region"});
+                    {"name", "world", "world_motion", "motion", "depth", "ranges", "slow_clocks",
+                     "sensor_traits", "seeds", "hidden_models", "region"});
     scenario.name = top.name("name");
     scenario.world = read_path(top, "world", "an SDF file");
     if (top.find("world_motion") != nullptr) {
@@ -157,6 +191,7 @@ Scenario read_checked(const std::filesystem::path& file) {
     read_motion(top, scenario);
     read_sensing(top, scenario);
     scenario.slow_clocks = read_slow_clocks(top);
+    read_sensor_traits(top, scenario);
     read_seeds(top, scenario);
     read_judgement(top, scenario);
     return scenario;

@@ -51,7 +51,8 @@ struct Scenario {
     CircleMotion motion;
     double depth_sigma_m = 0.0;
     RangeOptics ranges;
-    SlowClockSpread slow_clocks;  ///< of the sensors
+    SlowClockSpread slow_clocks;          ///< of the sensors
+    std::vector<TraitsOf> sensor_traits;  ///< likewise
     /// Translation of T_map_base, one per seed: where world, camera and robot together stand in the map's
     /// grid.
     std::vector<Eigen::Vector3d> map_shifts_m;

@@ -175,6 +175,26 @@ TEST_F(ProblemsTest, have_a_sensor_that_does_not_range_but_for_its_start_until_i
     EXPECT_THAT(all_told(), IsEmpty());
 }
 
+TEST_F(ProblemsTest, have_the_register_that_a_sensor_is_withheld_for_and_the_key_that_leaves_it_out) {
+    const auto say_fault = [](Scene& scene, double at_s, wire::FaultKind kind) {
+        const wire::RegisterReport report{kGood, 0x47, 0x0B, 0x0C};
+        scene.bus.send(at_s, wire::InfoFault{.kind = kind, .where = report.where()}, kLeft);
+    };
+    const std::string about = "node 1 'node 1' sensor 0 'good': degraded, config_mismatch";
+    play_changed([&](Scene& scene) {
+        set_health(scene, 4.4, wire::SensorState::degraded, wire::SensorFault::config_mismatch);
+        say_fault(scene, 4.5, wire::FaultKind::register_fixed);
+    });
+    EXPECT_THAT(told(about), AllOf(HasSubstr("0x47"), HasSubstr("0x0B"), HasSubstr("0x0C"),
+                                   HasSubstr("verification: {leave_out: [0x47]}")));
+    play_changed([&](Scene& scene) {
+        set_health(scene, 4.4, wire::SensorState::degraded, wire::SensorFault::config_mismatch);
+    });
+    EXPECT_EQ(told(about), about) << "its node has not named it yet";
+    play_changed([&](Scene& scene) { say_fault(scene, 4.5, wire::FaultKind::register_alike); });
+    EXPECT_THAT(all_told(), IsEmpty()) << "how this type of part is is no problem";
+}
+
 TEST_F(ProblemsTest, have_a_sensor_whose_readings_are_nearly_all_rejected_until_two_are_used) {
     const auto with_readings = [&](int bad, int good) {
         play_changed(

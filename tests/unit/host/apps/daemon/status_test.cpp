@@ -117,7 +117,7 @@ TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
     EXPECT_EQ(node,
               Json::parse(R"({"id": 44, "name": "far", "verdict": "absent", "reason": null, "state": null,
         "age_s": null, "degraded_sensors": null, "clock_known": false, "clock_ppm": null, "clock_error_ms": null,
-        "refused_share": null, "refused_most": null})"));
+        "refused_share": null, "refused_most": null, "registers": []})"));
     EXPECT_EQ(
         sensor(0),
         Json::parse(R"({"index": 0, "name": "good", "state": null, "fault": null, "received": 0, "lost": 0,
@@ -125,6 +125,32 @@ TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
         "disputed": false, "reflexes": 0, "reflex_below_m": 0.0, "reflex_m": null,
         "camera": {"contradicts": false, "fault": null, "refused": false, "compared": 0, "fitted": 0,
                    "agreed": 0, "in_free_space": 0, "behind_surface": 0}})"));
+}
+
+TEST_F(StatusTest, has_registers_that_read_otherwise_alike_and_of_a_sensor_as_long_as_it_is_not_well) {
+    EXPECT_EQ(status()["nodes"][0]["registers"], Json::array());
+    const auto say_fault = [this](double at_s, wire::FaultKind kind, const wire::RegisterReport& report) {
+        ScriptedBus bus;
+        bus.send(at_s, wire::InfoFault{.kind = kind, .where = report.where()}, kLeft);
+        play_on(bus.frames(), at_s + 0.001);
+    };
+    const auto say_health = [this](double at_s, wire::SensorState state, wire::SensorFault fault) {
+        ScriptedBus bus;
+        bus.send(at_s, wire::SensorHealth{.sensor = kGood, .state = state, .fault = fault}, kLeft);
+        play_on(bus.frames(), at_s + 0.001);
+    };
+    say_fault(4.56, wire::FaultKind::register_alike, {3, 0x7C, 0x00, 0x01});
+    say_fault(4.57, wire::FaultKind::register_fixed, {kGood, 0x47, 0x0B, 0x0C});
+    const Json alike = Json::parse(
+        R"({"register": 124, "written": 0, "read": 1, "alike": true, "sensor": null, "sensors": 3})");
+    EXPECT_EQ(status()["nodes"][0]["registers"], Json::array({alike}));
+    say_health(4.58, wire::SensorState::degraded, wire::SensorFault::config_mismatch);
+    Json own = Json::parse(
+        R"({"register": 71, "written": 11, "read": 12, "alike": false, "sensor": 0, "sensors": 1})");
+    own["sensor"] = kGood;
+    EXPECT_EQ(status()["nodes"][0]["registers"], Json::array({alike, own}));
+    say_health(4.59, wire::SensorState::ranging, wire::SensorFault::none);
+    EXPECT_EQ(status()["nodes"][0]["registers"], Json::array({alike}));
 }
 
 TEST_F(StatusTest, has_why_a_node_is_refused_and_what_it_says_of_its_sensors) {
@@ -391,6 +417,13 @@ TEST_F(StatusTest, has_every_key_with_a_meaning_and_no_other) {
     view_.inputs = with_socket.get();
     const Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, host_at(4.3));
     view_.recorder = &recorder;
+    // A list has its keys only where it has anything in it.
+    ScriptedBus bus;
+    bus.send(4.6,
+             wire::InfoFault{.kind = wire::FaultKind::register_alike,
+                             .where = wire::RegisterReport{3, 0x47, 0x0B, 0x0C}.where()},
+             kLeft);
+    play_on(bus.frames(), 4.65);
     std::set<std::string> told;
     add_keys(status(), "", told);
     std::set<std::string> known;
