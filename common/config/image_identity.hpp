@@ -7,8 +7,8 @@
 
 namespace octoskin {
 
-/// The layout of the configuration block: node_config.hpp.
-inline constexpr std::uint16_t kNodeConfigLayout = 4;
+/// The newest layout of the configuration block: node_config.hpp. Whoever reads it reads the one before, too.
+inline constexpr std::uint16_t kNodeConfigLayout = 5;
 
 /// "OSKI", the layout, and the layout's complement (16 bits each), little-endian.
 inline constexpr std::array<std::uint8_t, 4> kImageIdentityMagic{'O', 'S', 'K', 'I'};

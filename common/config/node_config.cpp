@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "common/config/image_identity.hpp"
+#include "common/config/verified_registers.hpp"
 #include "common/wire/crc.hpp"
 
 namespace octoskin {
@@ -13,6 +14,9 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::uint32_t kMagic = 0x434B534F;  // "OSKC" in memory
+/// Without what came with layout 5.
+constexpr std::uint16_t kPlainLayout = 4;
+static_assert(kNodeConfigLayout == kPlainLayout + 1);
 constexpr std::size_t kHeaderBytes = 8;
 constexpr std::size_t kCrcBytes = 4;
 
@@ -144,6 +148,23 @@ void walk(Walker& walker, Of<Walker, NodeConfig>& config) {
     }
 }
 
+/// What came with layout 5.
+template <class Walker>
+void walk_newer(Walker& walker, Of<Walker, NodeConfig>& config) {
+    walker.flag(config.verifies_registers);
+    walker.number(config.ready_jitter_us);
+    walker.flag(config.refuses_commands);
+    walker.count(config.left_out_count, kRegistersLeftOutMax);
+    for (std::size_t i = 0; i < config.left_out_count; ++i) {
+        walker.number(config.left_out[i]);
+    }
+}
+
+bool is_plain(const NodeConfig& config) {
+    return config.verifies_registers && config.ready_jitter_us == kReadyJitterMinUs &&
+           !config.refuses_commands && config.left_out_count == 0;
+}
+
 template <class T>
 constexpr bool is_within(T value, T least, T most) {
     return value >= least && value <= most;
@@ -195,6 +216,30 @@ bool are_sensors_valid(std::span<const SensorConfig> sensors) {
     return true;
 }
 
+bool are_left_out_valid(const NodeConfig& config) {
+    if (config.left_out_count > kRegistersLeftOutMax) {
+        return false;
+    }
+    for (std::size_t i = 0; i < config.left_out_count; ++i) {
+        const bool is_ascending = i == 0 || config.left_out[i - 1] < config.left_out[i];
+        if (!is_ascending || !is_verified(config.left_out[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool is_jitter_valid(const NodeConfig& config) {
+    const std::uint16_t most = config.holds_phases ? kReadyJitterOfPhasesMaxUs : kReadyJitterMaxUs;
+    bool holds = is_within(config.ready_jitter_us, kReadyJitterMinUs, most);
+    for (std::size_t i = 0; holds && i < config.sensor_count; ++i) {
+        const std::uint32_t period_us = 1000U * config.sensors[i].inter_measurement_ms;
+        holds = config.ready_jitter_us * kReadyJittersPerPeriodMin <= period_us ||
+                config.ready_jitter_us == kReadyJitterMinUs;
+    }
+    return holds;
+}
+
 std::uint32_t u32_at(Bytes bytes, std::size_t at) {
     ByteReader reader(bytes.subspan(at));
     std::uint32_t value = 0;
@@ -212,16 +257,20 @@ bool is_valid(const NodeConfig& config) noexcept {
     holds &= is_within(config.stream_gate, StreamGate::off, StreamGate::advanced);
     holds &= config.data_ready_buses < 1U << kNodeBusesMax;
     holds &= config.sensor_count <= kNodeSensorsMax;
+    holds = holds && is_jitter_valid(config) && are_left_out_valid(config);
     return holds && are_sensors_valid(sensors_of(config));
 }
 
 Bytes encode(const NodeConfig& config, std::span<std::uint8_t, kNodeConfigBytesMax> out) noexcept {
     ByteWriter fields(out.subspan(kHeaderBytes));
     walk(fields, config);
+    if (!is_plain(config)) {
+        walk_newer(fields, config);
+    }
     const std::size_t covered = kHeaderBytes + fields.used();
     ByteWriter header(out.first(kHeaderBytes));
     header.number(kMagic);
-    header.number(kNodeConfigLayout);
+    header.number(is_plain(config) ? kPlainLayout : kNodeConfigLayout);
     header.number(static_cast<std::uint16_t>(covered + kCrcBytes));
     ByteWriter end(out.subspan(covered));
     end.number(crc32(out.first(covered)));
@@ -246,13 +295,19 @@ Result<NodeConfig, NodeConfigError> decode_node_config(Bytes memory) noexcept {
     if (u32_at(memory, covered) != crc32(memory.first(covered))) {
         return unexpected(NodeConfigError::wrong_crc);
     }
-    if ((u32_at(memory, 4) & 0xFFFFU) != kNodeConfigLayout) {
+    const std::uint32_t layout = u32_at(memory, 4) & 0xFFFFU;
+    if (layout != kPlainLayout && layout != kNodeConfigLayout) {
         return unexpected(NodeConfigError::wrong_version);
     }
     ByteReader reader(memory.subspan(kHeaderBytes, covered - kHeaderBytes));
     NodeConfig config;
     walk(reader, config);
-    if (reader.has_failed() || !reader.is_at_end() || !is_valid(config)) {
+    if (layout == kNodeConfigLayout) {
+        walk_newer(reader, config);
+    }
+    // A block that could have been of the layout before is not canonical.
+    const bool is_layout_needed = is_plain(config) == (layout == kPlainLayout);
+    if (reader.has_failed() || !reader.is_at_end() || !is_layout_needed || !is_valid(config)) {
         return unexpected(NodeConfigError::invalid_field);
     }
     return config;

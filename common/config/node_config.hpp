@@ -16,6 +16,15 @@ inline constexpr std::size_t kNodeBusesMax = 4;
 inline constexpr std::size_t kSensorZonesMax = 9;
 inline constexpr std::uint16_t kReflexLimitMaxMm = 4'000;  ///< the sensor sees no farther
 inline constexpr std::uint8_t kNodeXshutLinesMax = 48;     ///< five 74HC595 and eight pins
+inline constexpr std::size_t kRegistersLeftOutMax = 32;    ///< a node that needs more verifies nothing
+/// A sensor's timer alone strays by less than the first.
+inline constexpr std::uint16_t kReadyJitterMinUs = 30;
+inline constexpr std::uint16_t kReadyJitterMaxUs = 2'000;
+/// At most this share of a sensor's period: with more its period would never be known well enough to be
+/// trimmed.
+inline constexpr std::uint32_t kReadyJittersPerPeriodMin = 20;
+/// With more a ready time says nothing about a sensor's phase.
+inline constexpr std::uint16_t kReadyJitterOfPhasesMaxUs = 100;
 
 enum class DistanceMode : std::uint8_t { short_range = 1, medium_range = 2, long_range = 3 };
 enum class StreamGate : std::uint8_t { off = 0, differs = 1, advanced = 2 };
@@ -64,6 +73,14 @@ struct NodeConfig {
     std::uint8_t data_ready_buses = 0;   ///< bit b: bus b has a data-ready line; below 2^kNodeBusesMax
     std::uint8_t sensor_count = 0;
     std::array<SensorConfig, kNodeSensorsMax> sensors{};
+    bool verifies_registers = true;  ///< what is written to a sensor is read back, and must agree
+    /// By how much ranges may differ in length, so that their ends stray from an even rhythm:
+    /// kReadyJitterMinUs, of ranges that do not differ, to kReadyJitterMaxUs.
+    std::uint16_t ready_jitter_us = kReadyJitterMinUs;
+    bool refuses_commands = false;  ///< each COMMAND is refused; SYNC is answered all the same
+    std::uint8_t left_out_count = 0;
+    /// Registers that may read as they like: each `is_verified`, in ascending order.
+    std::array<std::uint8_t, kRegistersLeftOutMax> left_out{};
     friend constexpr bool operator==(const NodeConfig&, const NodeConfig&) = default;
 };
 
@@ -79,8 +96,8 @@ inline constexpr std::uint8_t kUnconfiguredNodeId = 62;
 }
 
 /// Whether every field is within what a board can do: counts, indices, addresses (8..119, never 0x29), bit
-/// rates, ROI sizes, offsets of 13 bits; two sensors share neither an XSHUT line nor an address on one bus.
-/// Whether a sensor accepts a budget in a mode is the driver's to say.
+/// rates, ROI sizes, offsets of 13 bits, jitter, registers left out; two sensors share neither an XSHUT line
+/// nor an address on one bus. Whether a sensor accepts a budget in a mode is the driver's to say.
 [[nodiscard]] bool is_valid(const NodeConfig& config) noexcept;
 
 /// In the order of the checks.
@@ -95,11 +112,14 @@ enum class NodeConfigError : std::uint8_t {
 inline constexpr std::size_t kNodeConfigBytesMax = 2048;
 
 /// Canonical binary form: "OSKC", version and length (16 bits each), fields little-endian, CRC-32 of all
-/// before. Only sensors and zones within their counts are in it. Returns the bytes used in `out`. More
-/// sensors or zones than the arrays have is a programmer's mistake.
+/// before. Only sensors, zones and registers within their counts are in it. What came with layout 5 (the
+/// verification, the jitter, the refusal of commands) is there only if any of it is not the default; else the
+/// block is one of layout 4, with the hash that it always had. Returns the bytes used in `out`. More sensors,
+/// zones or registers than the arrays have is a programmer's mistake.
 [[nodiscard]] std::span<const std::uint8_t> encode(const NodeConfig& config,
                                                    std::span<std::uint8_t, kNodeConfigBytesMax> out) noexcept;
-/// The block at the start of `memory`, which may be longer than the block: a flash page is.
+/// The block at the start of `memory`, which may be longer than the block: a flash page is. Of the layouts 4
+/// and 5.
 [[nodiscard]] Result<NodeConfig, NodeConfigError> decode_node_config(
     std::span<const std::uint8_t> memory) noexcept;
 /// The node_hash: the CRC-32 that ends the canonical form.

@@ -191,15 +191,45 @@ enum class FaultKind : std::uint8_t {
     clock_fault = 6,   ///< the crystal failed
     xshut_stuck = 7,   ///< now, no reset: where is the XSHUT line that does not put its sensor in reset
     stray_sensor = 8,  ///< now, no reset: where is the I2C bus on which somebody answered at 0x29 unasked
-    /// Now, no reset: a sensor's register will not take its value. where: sensor in bits 31:24, register
-    /// index in 23:8, the value found in 7:0.
+    /// Now, no reset: a sensor's register will not take its value. where: RegisterReport, whose subject is
+    /// the sensor.
     register_fixed = 9,
     /// Now, no reset: the data-ready line of I2C bus `where` fell too often for nothing and is not listened
     /// to. Its sensors are read all the same.
     data_ready_ignored = 10,
+    /// Now, no reset: a register reads otherwise than it is written on three or more of the node's sensors,
+    /// alike: it is how this type of part is, and nothing is withheld for it. where: RegisterReport, whose
+    /// subject is how many sensors had shown it when it was learnt.
+    register_alike = 11,
+    /// Now, no reset: sensor `where` had not said that its boot was over when it was given its address.
+    boot_late = 12,
+    /// Now, no reset: a COMMAND was refused because the rig has the node refuse them (`refuses_commands`).
+    /// where: its code.
+    commands_refused = 13,
     unknown = 15,
 };
-struct InfoFault {  ///< what is wrong with the node now, else its last recorded fault; else all zero
+/// What of a sensor's register is told in `InfoFault::where`: subject in bits 31:24, register in 23:16, the
+/// value written in 15:8 and the one read in 7:0.
+struct RegisterReport {
+    std::uint8_t subject = 0;
+    std::uint8_t index = 0;
+    std::uint8_t written = 0;
+    std::uint8_t read = 0;
+    [[nodiscard]] constexpr std::uint32_t where() const noexcept {
+        return std::uint32_t{subject} << 24U | std::uint32_t{index} << 16U | std::uint32_t{written} << 8U |
+               read;
+    }
+    [[nodiscard]] static constexpr RegisterReport of(std::uint32_t where) noexcept {
+        return {.subject = static_cast<std::uint8_t>(where >> 24U),
+                .index = static_cast<std::uint8_t>(where >> 16U & 0xFFU),
+                .written = static_cast<std::uint8_t>(where >> 8U & 0xFFU),
+                .read = static_cast<std::uint8_t>(where & 0xFFU)};
+    }
+    friend constexpr bool operator==(const RegisterReport&, const RegisterReport&) = default;
+};
+/// What is wrong with the node now: one of it, by turns, its last recorded fault among them; if nothing is,
+/// that one; else all zero.
+struct InfoFault {
     FaultKind kind = FaultKind::none;
     std::uint8_t count = 0;     ///< resets that nobody ordered, since the last one that was; saturates at 15
     std::uint32_t where = 0;    ///< by kind

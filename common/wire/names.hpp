@@ -47,6 +47,9 @@ inline constexpr auto kFaultKind = std::to_array<Named<FaultKind>>({
     {FaultKind::stray_sensor, "stray_sensor"},
     {FaultKind::register_fixed, "register_fixed"},
     {FaultKind::data_ready_ignored, "data_ready_ignored"},
+    {FaultKind::register_alike, "register_alike"},
+    {FaultKind::boot_late, "boot_late"},
+    {FaultKind::commands_refused, "commands_refused"},
     {FaultKind::unknown, "unknown"},
 });
 inline constexpr auto kInfoPage = std::to_array<Named<InfoPage>>({

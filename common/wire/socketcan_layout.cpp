@@ -13,10 +13,12 @@ std::optional<CanFrame> from_socketcan(std::span<const std::byte> bytes) noexcep
 
     CanFrame frame;
     frame.is_fd = bytes.size() == CANFD_MTU;
-    frame.is_extended = (raw.can_id & CAN_EFF_FLAG) != 0;
     frame.is_remote = (raw.can_id & CAN_RTR_FLAG) != 0;
     frame.is_error = (raw.can_id & CAN_ERR_FLAG) != 0;
-    // An error frame's identifier is its class: as wide as an extended one.
+    if ((frame.is_fd || frame.is_error) && frame.is_remote) return std::nullopt;
+    if (frame.is_fd && frame.is_error) return std::nullopt;
+    // An error frame's identifier is its class: as wide as an extended one, which it is not.
+    frame.is_extended = (raw.can_id & CAN_EFF_FLAG) != 0 && !frame.is_error;
     frame.can_id = raw.can_id & (frame.is_extended || frame.is_error ? CAN_EFF_MASK : CAN_SFF_MASK);
     frame.has_bit_rate_switch = frame.is_fd && (raw.flags & CANFD_BRS) != 0;
     const bool is_length = frame.is_fd ? is_fd_length(raw.len) : raw.len <= kClassicalPayloadMax;
@@ -28,6 +30,7 @@ std::optional<CanFrame> from_socketcan(std::span<const std::byte> bytes) noexcep
 
 SocketCanBytes to_socketcan(const CanFrame& frame) noexcept {
     assert(frame.is_fd ? is_fd_length(frame.payload_len) : frame.payload_len <= kClassicalPayloadMax);
+    assert(!(frame.is_fd && frame.is_remote));
     SocketCanBytes bytes;
     bytes.size = frame.is_fd ? CANFD_MTU : CAN_MTU;
     bytes.frame.can_id = frame.can_id | (frame.is_extended ? CAN_EFF_FLAG : 0U) |

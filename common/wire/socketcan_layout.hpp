@@ -13,7 +13,9 @@
 namespace octoskin::wire {
 
 /// The frame in `bytes`, as one `read` of a raw CAN socket returned them; empty if that is neither a
-/// classical nor an FD frame: another size, or a length that its format does not have.
+/// classical nor an FD frame: another size, a length that its format does not have, a remote frame in FD
+/// format, which CAN does not have, or an error frame that is remote or in FD format, which no kernel makes.
+/// So each that is returned can be sent and written down, and is the same again when it is read.
 [[nodiscard]] std::optional<CanFrame> from_socketcan(std::span<const std::byte> bytes) noexcept;
 
 struct SocketCanBytes {

@@ -33,9 +33,9 @@ constexpr Microseconds kReadLateMax{100'000};
 constexpr std::int64_t kStreamCycle = 128;
 
 /// A range begins up to `kRangeOverheadMax` before its window, and how long before is not known.
-TimeBracket begin_of(const TimeBracket& ready, Microseconds budget) noexcept {
+TimeBracket begin_of(const TimeBracket& ready, Microseconds budget, Microseconds length_spread) noexcept {
     const TimeBracket window = shifted(ready, -budget);
-    return {window.earliest - kRangeOverheadMax, window.latest};
+    return {window.earliest - kRangeOverheadMax - length_spread, window.latest};
 }
 
 }  // namespace
@@ -109,14 +109,16 @@ Verdict Acceptance::judge(const ResultSeen& seen, const ZoneCycle& zones) noexce
     results_refused_ = 0;
     was_stale_ = false;
 
-    reading_ = {.zone = zones.in_force(begin_of(ready, budget_)),
+    // What a range is longer than its budget may lie before its light or after it.
+    const Microseconds spread = policy_.length_spread();
+    reading_ = {.zone = zones.in_force(begin_of(ready, budget_, spread)),
                 .device_status = status_on_wire(measurement),
                 .range_mm = measurement.range_mm,
                 .sigma_quarter_mm = measurement.sigma_quarter_mm,
                 .peak_signal = measurement.peak_signal,
                 .ambient = measurement.ambient,
-                .capture = ready.middle() - budget_ / 2,
-                .capture_bound = ready.half_width()};
+                .capture = ready.middle() - budget_ / 2 - spread / 2,
+                .capture_bound = ready.half_width() + (spread + Microseconds{1}) / 2};
     const bool is_dated = reading_.capture_bound <= policy_.capture_bound_max &&
                           elapsed(ready.latest, seen.read_end) <= kReadLateMax;
     return is_dated && reading_.zone != wire::kZoneUnknown ? Verdict::accepted : Verdict::undated;
@@ -200,18 +202,18 @@ bool Acceptance::is_read_of(const TimeBracket& polled, const std::optional<TimeB
 }
 
 bool Acceptance::is_lone_poll_believed(const std::optional<TimeBracket>& predicted) const noexcept {
-    return predicted && predicted->width() <= policy_.lone_poll_believed;
+    return predicted && known_width(*predicted) <= policy_.lone_poll_believed;
 }
 
 bool Acceptance::must_poll_punctually() const noexcept {
     const auto predicted = next_ready();
-    return !predicted || predicted->width() > policy_.punctual_above;
+    return !predicted || known_width(*predicted) > policy_.punctual_above;
 }
 
 bool Acceptance::wants_poll_confirmed() const noexcept {
     const auto predicted = next_ready();
     // Where polls are far apart anyway, one more for each of them would cost more than it tells.
-    const bool is_near = predicted && predicted->width() <= 3 * policy_.lone_poll_believed;
+    const bool is_near = predicted && known_width(*predicted) <= 3 * policy_.lone_poll_believed;
     return is_near && !is_lone_poll_believed(predicted) && is_after(not_ready_at_, predicted->earliest) &&
            elapsed(not_ready_before_, not_ready_at_) > policy_.lone_poll_believed;
 }
@@ -219,7 +221,7 @@ bool Acceptance::wants_poll_confirmed() const noexcept {
 bool Acceptance::wants_ready_confirmed() const noexcept {
     const auto predicted = next_ready();
     // The wider the bracket, the further off is what one altered poll says, and the period that it tells.
-    return !has_accepted() || !predicted || predicted->width() > policy_.lone_poll_believed ||
+    return !has_accepted() || !predicted || known_width(*predicted) > policy_.lone_poll_believed ||
            is_after(not_ready_at_, predicted->latest);
 }
 
@@ -230,7 +232,12 @@ std::optional<TimeBracket> Acceptance::next_ready() const noexcept {
 std::optional<NodeTime> Acceptance::next_range_begin() const noexcept {
     const auto next = next_ready();
     if (!next) return std::nullopt;
-    return begin_of(*next, budget_).earliest;
+    return begin_of(*next, budget_, policy_.length_spread()).earliest;
+}
+
+/// How badly the sensor's grid is known: what its ranges stray from it comes on top.
+Microseconds Acceptance::known_width(const TimeBracket& predicted) const noexcept {
+    return predicted.width() - policy_.width_of_jitter();
 }
 
 bool Acceptance::is_silent(NodeTime now) const noexcept {

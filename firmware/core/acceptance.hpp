@@ -85,6 +85,7 @@ class Acceptance {
                                   NodeTime read_end, bool is_counted_next) const noexcept;
     [[nodiscard]] bool is_lone_poll_believed(const std::optional<TimeBracket>& predicted) const noexcept;
     [[nodiscard]] bool is_count_in_doubt(std::optional<std::uint8_t> steps, NodeTime read_end) const noexcept;
+    [[nodiscard]] Microseconds known_width(const TimeBracket& predicted) const noexcept;
     [[nodiscard]] bool has_seen_not_ready() const noexcept { return not_ready_polls_ > 0; }
     [[nodiscard]] bool has_count_come_round(std::optional<std::uint8_t> steps,
                                             NodeTime read_end) const noexcept;

@@ -1,6 +1,7 @@
 #include "firmware/core/bring_up.hpp"
 
 #include <cassert>
+#include <utility>
 
 #include "firmware/core/sensor_fault.hpp"
 
@@ -45,6 +46,7 @@ std::optional<NodeTime> BringUp::due() const noexcept {
         case Step::parking:
         case Step::checking_parked:
         case Step::booting:
+        case Step::awaiting_boot:
         case Step::identifying:
         case Step::addressing:
         case Step::confirming_silence:
@@ -71,7 +73,7 @@ BusUse BringUp::advance(NodeTime now) {
         default_address_.hold(this);
         start_step(Step::checking_silence, now);
     } else if (step_ == Step::booting) {
-        start_step(Step::identifying, now);
+        start_step(Step::awaiting_boot, now);
     }
 
     vl53l1x::Device& device = active_device();
@@ -117,6 +119,9 @@ void BringUp::start_step(Step step, NodeTime now) {
             xshut_.set(config_.xshut_line, true);
             step_due_ = now + policy_.xshut_boot;
             break;
+        case Step::awaiting_boot:
+            device_.begin_await_boot_at_default(was_boot_late_);
+            break;
         case Step::identifying:
             device_.begin_probe(vl53l1x::kDefaultAddress);
             break;
@@ -153,6 +158,9 @@ void BringUp::on_step_done(NodeTime now) {
         case Step::parking:
             start_step(parked_from_, now);
             break;
+        case Step::awaiting_boot:
+            start_step(Step::identifying, now);
+            break;
         case Step::identifying:
             has_answered_ = true;
             is_known_stuck_ = false;
@@ -172,6 +180,7 @@ void BringUp::on_step_done(NodeTime now) {
         case Step::configuring:
             run_ = 0;
             is_mismatched_ = false;
+            is_verified_anew_ = false;
             start_step(Step::verifying, now);
             break;
         case Step::verifying:
@@ -188,6 +197,9 @@ void BringUp::on_step_failed(vl53l1x::Error error, NodeTime now) {
     if (step_ == Step::verifying && error == vl53l1x::Error::config_mismatch) {
         is_mismatched_ = true;
         on_run_verified(now);
+    } else if (step_ == Step::awaiting_boot && error == vl53l1x::Error::boot_timeout) {
+        was_boot_late_ = true;
+        start_step(Step::identifying, now);
     } else if (step_ == Step::identifying && error == vl53l1x::Error::no_answer) {
         on_nobody_came();
     } else if (error == vl53l1x::Error::bus_error || !(is_watching() || step_ == Step::parking)) {
@@ -205,7 +217,11 @@ void BringUp::on_step_failed(vl53l1x::Error error, NodeTime now) {
 /// A run of registers at a time, so that the others on the bus need not wait for all of them; and all of
 /// them, whatever the first one says, so that every register that differs is seen at each attempt.
 void BringUp::on_run_verified(NodeTime now) {
-    if (++run_ < vl53l1x::kRegisterRuns.size()) {
+    if (std::exchange(is_verified_anew_, false)) {
+        run_ = 0;
+        is_mismatched_ = false;
+        start_step(Step::verifying, now);
+    } else if (++run_ < vl53l1x::kRegisterRuns.size()) {
         start_step(Step::verifying, now);
     } else if (is_mismatched_) {
         fail(wire::SensorFault::config_mismatch);
@@ -254,6 +270,7 @@ void BringUp::on_silence(NodeTime now) {
         case Step::held_low:
         case Step::parking:
         case Step::booting:
+        case Step::awaiting_boot:
         case Step::identifying:
         case Step::addressing:
         case Step::initialising:

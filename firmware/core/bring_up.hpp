@@ -1,8 +1,8 @@
 // Brings one sensor from reset to configured. Sensors of a bus pass the default address one after the other
 // and do all the rest side by side, so that the 100 ms of the first range are waited for once:
 //
-//   XSHUT low >= 1 ms | 0x29 and its own address must be silent | XSHUT high, 2 ms | identify |
-//   new address, verified | 0x29 must be silent again ||
+//   XSHUT low >= 1 ms | 0x29 and its own address must be silent | XSHUT high, 2 ms | boot, 5 ms at most |
+//   identify | new address, verified | 0x29 must be silent again ||
 //   boot, default configuration, first range | collect it | settings | all of it read back
 //
 // Whoever answers where all should be silent is parked (default_address.hpp), and the bring-up goes on. If
@@ -37,6 +37,9 @@ class BringUp {
     /// Puts the sensor in reset and leaves it there.
     void hold_in_reset();
 
+    /// The verification overlooks more than before: what is being verified is verified from the beginning.
+    void on_overlooking_more() noexcept { is_verified_anew_ = step_ == Step::verifying; }
+
     /// When the bus is wanted; empty while another sensor is at the default address, or nothing is under way.
     [[nodiscard]] std::optional<NodeTime> due() const noexcept;
     /// One step, with the bus free or taken by this sensor's own transfer.
@@ -45,6 +48,9 @@ class BringUp {
     [[nodiscard]] Outcome outcome() const noexcept { return outcome_; }
     /// After `failed`.
     [[nodiscard]] wire::SensorFault fault() const noexcept { return fault_; }
+    /// Whether its boot was not over, by its own word, when it was given its address, at any attempt. The
+    /// next ones wait for it for longer, since its end may take the address back.
+    [[nodiscard]] bool was_boot_late() const noexcept { return was_boot_late_; }
     /// Whether the sensor identified itself in this attempt.
     [[nodiscard]] bool has_answered() const noexcept { return has_answered_; }
 
@@ -57,6 +63,7 @@ class BringUp {
         parking,
         checking_parked,
         booting,
+        awaiting_boot,
         identifying,
         addressing,
         confirming_silence,
@@ -88,8 +95,10 @@ class BringUp {
     Outcome outcome_ = Outcome::under_way;
     wire::SensorFault fault_ = wire::SensorFault::none;
     bool has_answered_ = false;
+    bool was_boot_late_ = false;
     std::size_t run_ = 0;  ///< of the registers, being read back
     bool is_mismatched_ = false;
+    bool is_verified_anew_ = false;
 
     Step parked_from_ = Step::idle;  ///< the check that found somebody
     std::uint8_t parkings_ = 0;      ///< in this attempt

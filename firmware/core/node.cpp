@@ -1,6 +1,7 @@
 #include "firmware/core/node.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/wire/crc.hpp"
 #include "firmware/core/frame_budget.hpp"
@@ -30,8 +31,24 @@ bool is_usable(const NodeConfig& config, std::size_t bus_count, std::uint8_t boa
                        [=](const SensorConfig& sensor) { return is_usable(sensor, bus_count); });
 }
 
-vl53l1x::Options device_options(const NodeConfig& config, const Policy& policy) noexcept {
+Policy with_jitter(Policy policy, const NodeConfig& config) noexcept {
+    const Microseconds spread{config.ready_jitter_us - kReadyJitterMinUs};
+    policy.ready_jitter = policy.timer_jitter + (spread + Microseconds{1}) / 2;
+    return policy;
+}
+
+vl53l1x::Verification verification_of(const NodeConfig& config) noexcept {
+    vl53l1x::Verification verification;
+    if (!config.verifies_registers) verification.switch_off();
+    for (const std::uint8_t index : std::span(config.left_out).first(config.left_out_count))
+        verification.leave_out(index);
+    return verification;
+}
+
+vl53l1x::Options device_options(const NodeConfig& config, const vl53l1x::Verification& verification,
+                                const Policy& policy) noexcept {
     vl53l1x::Options options;
+    options.verification = &verification;
     options.is_io_2v8 = config.is_io_2v8;
     options.reads_twice = config.reads_twice;
     options.i2c_hz = config.i2c_hz;
@@ -50,7 +67,7 @@ Node::Node(const NodeConfig& config, const Identity& identity, const Ports& port
     : config_(config),
       identity_(identity),
       ports_(ports),
-      policy_(policy),
+      policy_(with_jitter(policy, config)),
       is_config_usable_(is_usable(config, ports.buses.size(), identity.board_type)),
       node_hash_(is_config_usable_ ? node_hash(config) : 0),
       uid_crc_(crc16(identity.uid)),
@@ -73,9 +90,10 @@ void Node::create_sensors(NodeTime now) {
                              .i2c_hz = config_.i2c_hz,
                              .holds_phases = config_.holds_phases};
     sensor_count_ = config_.sensor_count;
+    verification_ = verification_of(config_);
     for (std::size_t i = 0; i < sensor_count_; ++i) {
         const SensorConfig& sensor = config_.sensors[i];
-        const vl53l1x::Options options = device_options(config_, policy_);
+        const vl53l1x::Options options = device_options(config_, verification_, policy_);
         auto& recorder = recorders_[sensor.bus];
         if (!recorder) recorder.emplace(*ports_.buses[sensor.bus]);
         BusRecorder& bus = *recorder;
@@ -150,7 +168,12 @@ void Node::note_health_changes(NodeTime now) {
     is_health_look_due_ = since.count() >= 0 && since < policy_.health_look_interval;
     if (is_health_look_due_) return;
     health_looked_at_ = now;
-    note_fault_change();
+    // In turns: both at once would hold up a slow core for longer than a reading may wait.
+    if (std::exchange(looks_at_faults_, !looks_at_faults_)) {
+        learn_what_is_alike(now);
+        note_fault_change();
+        return;
+    }
     for (std::uint8_t i = 0; i < sensor_count_; ++i) {
         if (sensors_[i]->take_failure()) black_box_.on_fault(config_.sensors[i].bus, now);
         const Told& told = told_[i];
@@ -162,11 +185,9 @@ void Node::note_health_changes(NodeTime now) {
     }
 }
 
-void Node::note_fault_change() {
-    const wire::InfoFault fault = fault_to_tell();
-    if (fault == told_fault_) return;
-    told_fault_ = fault;
-    announcer_.request_info(wire::InfoPage::fault);
+void Node::learn_what_is_alike(NodeTime now) {
+    if (!alike_.update()) return;
+    for (std::uint8_t i = 0; i < sensor_count_; ++i) sensors_[i]->on_overlooking_more(now);
 }
 
 void Node::end_what_has_expired(NodeTime now) {
@@ -174,6 +195,9 @@ void Node::end_what_has_expired(NodeTime now) {
     black_box_.update(now);
     if (last_command_ && elapsed(last_command_->received, now) >= policy_.command_repeat) {
         last_command_.reset();
+    }
+    if (refused_command_ && elapsed(refused_command_->received, now) >= policy_.refusal_told) {
+        refused_command_.reset();
     }
     if (own_id_heard_ && elapsed(*own_id_heard_, now) >= policy_.id_conflict_clear) {
         own_id_heard_.reset();
@@ -254,6 +278,7 @@ NodeCounts Node::counts() const noexcept {
         counts.withheld += own.withheld;
         counts.suspect += own.suspect;
         counts.sensor_restarts += own.restarts;
+        counts.boots_late += sensor->was_boot_late() ? 1U : 0U;
     }
     return counts;
 }

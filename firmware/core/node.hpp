@@ -12,6 +12,7 @@
 #include "common/time.hpp"
 #include "common/wire/can_frame.hpp"
 #include "common/wire/messages.hpp"
+#include "firmware/core/alike_differences.hpp"
 #include "firmware/core/announcer.hpp"
 #include "firmware/core/black_box.hpp"
 #include "firmware/core/bus_off_recovery.hpp"
@@ -47,6 +48,7 @@ struct NodeCounts {
     std::uint32_t accepted = 0;         ///< readings: sent, displaced, late, given up, or still waiting
     std::uint32_t frames_sent = 0;      ///< handed to the controller
     std::uint32_t rx_rejected = 0;      ///< frames for us that failed a check, and commands that were refused
+    std::uint32_t boots_late = 0;       ///< sensors that were given their address before their boot was over
     std::uint32_t spurious_hints = 0;   ///< falls of data-ready lines that no data answered to
 };
 
@@ -83,6 +85,10 @@ class Node {
     /// Bit b: the data-ready line of bus b brought too many falls that meant nothing, and is not listened to
     /// before the next start. Its sensors are read all the same.
     [[nodiscard]] std::uint8_t ignored_data_ready() const noexcept;
+
+    /// What several sensors read back alike, otherwise than it was written, in the order in which it was
+    /// learnt.
+    [[nodiscard]] std::span<const AlikeDifferences::Told> alike() const noexcept { return alike_.learnt(); }
 
     /// The host asked for a reset: the application performs it.
     [[nodiscard]] bool is_reset_requested() const noexcept { return is_reset_requested_; }
@@ -121,6 +127,7 @@ class Node {
     void collect_calibration();
     void watch_reflex(std::uint8_t sensor, const Reading& reading, NodeTime now);
     void note_health_changes(NodeTime now);
+    void learn_what_is_alike(NodeTime now);
     void end_what_has_expired(NodeTime now);
     void blink(NodeTime now);
 
@@ -139,6 +146,7 @@ class Node {
     void on_own_id_heard(NodeTime now);
     void apply_order_to_range(NodeTime now);
     void on_command(const wire::Command& command, NodeTime now);
+    void refuse(const wire::Command& command, NodeTime now);
     [[nodiscard]] bool perform_in_safe_mode(const wire::Command& command, NodeTime now);
     [[nodiscard]] bool perform(const wire::Command& command, NodeTime now);
     [[nodiscard]] bool calibrate(const wire::Command& command, NodeTime now);
@@ -158,7 +166,11 @@ class Node {
     [[nodiscard]] wire::NodeInfo info(wire::InfoPage page) const noexcept;
     [[nodiscard]] wire::InfoFault fault_to_tell() const noexcept;
     void note_fault_change();
-    [[nodiscard]] std::optional<wire::InfoFault> present_fault() const noexcept;
+    void tell_faults_on();
+    void note_fault_told() noexcept;
+    template <class Visitor>
+    void visit_present_faults(Visitor visit) const;
+    [[nodiscard]] std::uint32_t fault_count() const noexcept;
     [[nodiscard]] wire::SensorHealth health(std::uint8_t sensor) const noexcept;
     [[nodiscard]] Microseconds bound_to_tell(std::uint8_t sensor) const noexcept;
     [[nodiscard]] std::uint8_t bound_on_wire(Microseconds bound) const noexcept;
@@ -176,7 +188,9 @@ class Node {
     PhaseClock phase_clock_;
     BusRecorders recorders_{};
     std::array<std::optional<BusWorker>, kNodeBusesMax> buses_{};
+    vl53l1x::Verification verification_;
     std::array<std::optional<Sensor>, kNodeSensorsMax> sensors_{};
+    AlikeDifferences alike_{verification_, sensors_};
     std::array<Told, kNodeSensorsMax> told_{};
     std::array<std::optional<Reflex>, kNodeSensorsMax> reflexes_{};
     struct ReflexEvent {
@@ -186,7 +200,11 @@ class Node {
     std::array<ReflexEvent, kNodeSensorsMax> reflex_events_{};
     std::uint64_t reflex_due_ = 0;  ///< bit i: `reflex_events_[i]` is to be sent
     std::uint8_t reflex_sequence_ = 0;
-    wire::InfoFault told_fault_;
+    std::uint32_t faults_seen_ = 0;    ///< what there was at the last look, mixed
+    std::uint32_t fault_turn_ = 0;     ///< which of them is told next
+    std::uint32_t faults_untold_ = 0;  ///< since they changed
+    bool is_refusal_untold_ = false;   ///< a command was refused since the last turn of `tell_faults_on`
+    bool is_refusal_due_ = false;      ///< the next fault page tells that
     ReadingQueue queue_;
     Announcer announcer_;
     TokenBucket tokens_;
@@ -203,6 +221,7 @@ class Node {
     bool is_reset_requested_ = false;
     bool is_health_look_due_ = false;
     NodeTime health_looked_at_;
+    bool looks_at_faults_ = false;  ///< at the next look
     std::uint32_t frames_sent_ = 0;
     std::uint32_t given_up_ = 0;
     std::uint32_t others_given_up_ = 0;
@@ -211,7 +230,8 @@ class Node {
     std::uint32_t rx_rejected_ = 0;
     std::optional<wire::SyncReport> sync_report_;
     std::optional<ReceivedCommand> last_command_;
-    std::uint64_t commanded_to_range_ = 0;  ///< bit i: sensor i
+    std::optional<ReceivedCommand> refused_command_;  ///< the first of late, with the time of the last
+    std::uint64_t commanded_to_range_ = 0;            ///< bit i: sensor i
     std::optional<NodeTime> own_id_heard_;
     std::optional<NodeTime> identify_until_;
     NodeTime blink_at_;

@@ -69,8 +69,24 @@ void Node::apply_order_to_range(NodeTime now) {
 void Node::on_command(const wire::Command& command, NodeTime now) {
     if (last_command_ && last_command_->command == command) return;  // the same frame once more
     last_command_ = {.command = command, .received = now};
+    if (config_.refuses_commands) return refuse(command, now);
     const bool is_done = is_safe() ? perform_in_safe_mode(command, now) : perform(command, now);
     if (!is_done) ++rx_rejected_;
+}
+
+/// The rig has it so: whoever can send on the bus must not be able to stop a sensor. It says so in NODE_INFO,
+/// and to a calibration as to any that it does not begin. However many come, ten a second are answered.
+void Node::refuse(const wire::Command& command, NodeTime now) {
+    ++rx_rejected_;
+    if (refused_command_) {
+        refused_command_->received = now;
+    } else {
+        refused_command_ = {.command = command, .received = now};
+    }
+    is_refusal_untold_ = true;
+    const bool is_calibration = command.code == wire::CommandCode::calibrate_offset ||
+                                command.code == wire::CommandCode::calibrate_crosstalk;
+    if (is_calibration && command.sensor != wire::kAllSensors) calibration_.refuse(command);
 }
 
 /// What a node does that keeps still: it can be woken, found, asked and reset.

@@ -102,6 +102,7 @@ bool Node::send_most_urgent(NodeTime now) {
     } else if (const auto page = announcer_.info_page_due()) {
         if (!send(info(*page))) return false;
         announcer_.info_sent(*page);
+        if (*page == wire::InfoPage::fault) note_fault_told();
     } else if (queue_.aux()) {
         if (!send(*queue_.aux())) return false;
         queue_.pop_aux();
@@ -194,41 +195,6 @@ wire::NodeInfo Node::info(wire::InfoPage page) const noexcept {
             return fault_to_tell();
     }
     return fault_to_tell();
-}
-
-wire::InfoFault Node::fault_to_tell() const noexcept {
-    if (const auto present = present_fault()) return *present;
-    return {.kind = run_.fault,
-            .count = saturated<std::uint8_t>(run_.resets),
-            .where = run_.where,
-            .uptime_s = saturated<std::uint8_t>(run_.fault_uptime_ms / 1'000)};
-}
-
-std::optional<wire::InfoFault> Node::present_fault() const noexcept {
-    const auto count = saturated<std::uint8_t>(run_.resets);
-    for (std::uint8_t i = 0; i < sensor_count_; ++i) {
-        const Sensor& sensor = *sensors_[i];
-        const bool is_ranging = sensor.state() == wire::SensorState::ranging;
-        if (is_ranging || sensor.fault() != wire::SensorFault::xshut_stuck) continue;
-        return wire::InfoFault{
-            .kind = wire::FaultKind::xshut_stuck, .count = count, .where = config_.sensors[i].xshut_line};
-    }
-    for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
-        if (!buses_[bus] || !buses_[bus]->has_parked()) continue;
-        return wire::InfoFault{.kind = wire::FaultKind::stray_sensor, .count = count, .where = bus};
-    }
-    for (std::uint8_t i = 0; i < sensor_count_; ++i) {
-        const auto& fixed = sensors_[i]->read_back().fixed_register();
-        if (!fixed) continue;
-        const std::uint32_t where =
-            std::uint32_t{i} << 24U | std::uint32_t{fixed->index} << 8U | fixed->found;
-        return wire::InfoFault{.kind = wire::FaultKind::register_fixed, .count = count, .where = where};
-    }
-    for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
-        if (!buses_[bus] || !buses_[bus]->hint().is_ignored()) continue;
-        return wire::InfoFault{.kind = wire::FaultKind::data_ready_ignored, .count = count, .where = bus};
-    }
-    return std::nullopt;
 }
 
 wire::SensorHealth Node::health(std::uint8_t sensor) const noexcept {

@@ -31,8 +31,16 @@ struct Policy {
     Microseconds first_starts{250'000};
 
     // --- reading
-    /// How much one ready time may stray from the sensor's even grid.
+    /// How far one ready time may stray from the sensor's even grid, either way: the timer's share, and half
+    /// of what its ranges differ by in length.
     Microseconds ready_jitter{30};
+    Microseconds timer_jitter{30};
+    /// What ranges differ by. Where in them the light was is not known any better.
+    [[nodiscard]] Microseconds length_spread() const noexcept { return 2 * (ready_jitter - timer_jitter); }
+    /// Where ranges differ in length no more is ever known of the next ready time than this: of the grid,
+    /// from ready times that stray from it, and of the next one, which does so again. What a bracket's width
+    /// decides is decided by what it is wider than that.
+    [[nodiscard]] Microseconds width_of_jitter() const noexcept { return 2 * length_spread(); }
     /// A poll is read once: one that was altered on its way says "not ready" of data that was. Alone it is
     /// believed only where the rhythm tells the ready time to within this, which bounds what it can spoil.
     Microseconds lone_poll_believed{1'000};
@@ -115,7 +123,8 @@ struct Policy {
     Microseconds heartbeat_period{100'000};
     Microseconds status_period{1'000'000};  ///< NODE_INFO's pages and every sensor's health, once each
 
-    Microseconds health_look_interval{1'000};  ///< between two looks at everybody's health
+    /// Between two looks, in turns at the sensors' health and at what is wrong with the node.
+    Microseconds health_look_interval{500};
 
     Microseconds black_box_period{50'000};     ///< between two pieces of it
     Microseconds black_box_pause{60'000'000};  ///< between two dumps of a bus for faults
@@ -138,6 +147,8 @@ struct Policy {
     // --- frames in
     Microseconds command_repeat{500'000};  ///< the same command within this time is a duplicate frame
     Microseconds id_conflict_clear{5'000'000};
+    /// NODE_INFO says for so long after the last one that commands are refused.
+    Microseconds refusal_told{2'000'000};
 };
 
 }  // namespace octoskin::node

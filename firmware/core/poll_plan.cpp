@@ -78,8 +78,9 @@ NodeTime PollPlan::repoll(const TimeBracket& predicted, Microseconds period, Nod
                              : std::clamp(distance / 2, policy_.repoll_min, shortest_gap(period)));
 }
 
+/// Where ranges differ in length, when one ended says where its light was no better than that.
 Microseconds PollPlan::shortest_gap(Microseconds period) const noexcept {
-    return std::max(policy_.repoll_min, period / kShortestGapsPerPeriod);
+    return std::max({policy_.repoll_min, period / kShortestGapsPerPeriod, policy_.length_spread() / 4});
 }
 
 /// From poll to poll, at the closest.

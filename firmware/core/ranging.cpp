@@ -11,10 +11,6 @@ namespace {
 
 using wire::SensorFault;
 
-// ROI_CONFIG__USER_ROI_CENTRE_SPAD, followed by the size: VL53L1X full API, register map.
-constexpr std::uint16_t kRoiRegister = 0x007F;
-constexpr std::uint8_t kRoiBytes = 2;
-
 // One poll that finds no result of a range that was under way at the stop may have been altered.
 constexpr std::uint8_t kLooksForLastResult = 2;
 
@@ -154,7 +150,7 @@ void Ranging::start_step(Step step, NodeTime now) {
             device_.begin_set_zone(config_.zones[zones_.next()]);
             break;
         case Step::checking_zone:
-            device_.begin_read_register(kRoiRegister, kRoiBytes);
+            device_.begin_verify_zone();
             break;
         case Step::checking_steering:
             device_.begin_verify(checks_.group());
@@ -192,7 +188,6 @@ Ranging::Event Ranging::on_step_done(NodeTime now) {
             start_step(Step::checking_zone, now);
             break;
         case Step::checking_zone:
-            if (!is_zone_as_written()) return fail(SensorFault::config_mismatch);
             check_or_await(now);
             break;
         case Step::checking_steering:
@@ -434,10 +429,9 @@ void Ranging::note_announcement() noexcept {
 /// more than that the sensor keeps its rhythm: enough of that now and then. A line tells when data is ready,
 /// so there one poll is enough until the bracket, which grows from range to range, has become too wide.
 NodeTime Ranging::next_poll(const TimeBracket& predicted) const noexcept {
-    if (acceptance_.has_refused() || predicted.width() > policy_.known_width_max)
-        return polls_.first_poll(predicted);
-    if (was_announced_ && predicted.width() <= policy_.hinted_width_max)
-        return polls_.poll_after_hint(predicted);
+    const Microseconds width = predicted.width() - policy_.width_of_jitter();
+    if (acceptance_.has_refused() || width > policy_.known_width_max) return polls_.first_poll(predicted);
+    if (was_announced_ && width <= policy_.hinted_width_max) return polls_.poll_after_hint(predicted);
     const bool is_proven = was_announced_ || acceptance_.is_rhythm_proven();
     return is_proven ? polls_.poll_within(predicted, acceptance_.period()) : polls_.first_poll(predicted);
 }
@@ -456,13 +450,6 @@ bool Ranging::is_between_ranges(NodeTime now) const noexcept {
 NodeTime Ranging::stop_time(NodeTime now) const noexcept {
     const bool is_delayed = rules_.holds_phases && is_trim_due_ && !is_between_ranges(now);
     return is_delayed ? now + policy_.phase_stop_delay : now;
-}
-
-bool Ranging::is_zone_as_written() const {
-    const Roi& roi = config_.zones[zones_.current()];
-    const auto bytes = device_.register_bytes();
-    const auto size = static_cast<std::uint8_t>(((roi.height - 1U) << 4U) | (roi.width - 1U));
-    return bytes[0] == roi.centre_spad && bytes[1] == size;
 }
 
 bool Ranging::can_restart() const noexcept {

@@ -156,7 +156,6 @@ class Ranging {
     void note_announcement() noexcept;
     [[nodiscard]] NodeTime next_poll(const TimeBracket& predicted) const noexcept;
     [[nodiscard]] bool is_zone_write_due(NodeTime now) const noexcept;
-    [[nodiscard]] bool is_zone_as_written() const;
     [[nodiscard]] NodeTime next_phase(NodeTime now) const noexcept;
     [[nodiscard]] Microseconds budget() const noexcept;
 

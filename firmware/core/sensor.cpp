@@ -1,5 +1,6 @@
 #include "firmware/core/sensor.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/range_status.hpp"
@@ -69,6 +70,18 @@ void Sensor::order_stop(NodeTime now) {
 void Sensor::order_reinitialise(NodeTime now) {
     // Both end with a bring-up anyway.
     if (mode_ != Mode::bringing_up && mode_ != Mode::calibrating) reinitialise_ordered_ = now;
+}
+
+void Sensor::on_overlooking_more(NodeTime now) {
+    device_.forget_overlooked();
+    bring_up_.on_overlooking_more();
+    if (fault_ != SensorFault::config_mismatch || device_.read_back().is_distrusted()) return;
+    recovery_.reset();
+    fault_ = SensorFault::none;
+    mismatches_in_row_ = 0;
+    if (mode_ != Mode::awaiting_recovery) return;
+    state_ = SensorState::starting;
+    plan_ = {.step = RecoveryStep::xshut_cycle, .at = now};
 }
 
 bool Sensor::order_calibration(const CalibrationOrder& order, NodeTime now) {
@@ -272,6 +285,7 @@ void Sensor::on_reading() {
         refused_in_row_ = 0;
         recovery_.on_proven_reading();
     }
+    if (ranging_.is_proven() && !recovery_.is_under_way()) mismatches_in_row_ = 0;
     // A sensor that froze gives one first result after each restart: only the second proves anything.
     if (ranging_.is_proven() || state_ == SensorState::starting) state_ = SensorState::ranging;
 }
@@ -316,6 +330,9 @@ void Sensor::on_failure(wire::SensorFault fault, bool can_restart, NodeTime now)
     is_settled_ = true;
     is_bus_suspect_ = fault == SensorFault::bus_error;
     ++counts_.restarts;
+    const bool is_mismatch = fault == SensorFault::config_mismatch;
+    const int mismatches = is_mismatch ? mismatches_in_row_ + 1 : 0;
+    mismatches_in_row_ = static_cast<std::uint8_t>(std::min(mismatches, 255));
     if (!recovery_.is_under_way()) has_failed_ = true;
     plan_ = recovery_.on_failure(can_restart, now);
     // Whoever may be at the default address unasked waits in reset.
@@ -360,6 +377,13 @@ bool Sensor::is_degraded() const noexcept {
     if (read_back.exempt_count() > 0 || read_back.is_distrusted()) return true;
     return state_ != SensorState::ranging && state_ != SensorState::stopped &&
            state_ != SensorState::starting;
+}
+
+std::optional<vl53l1x::RegisterDifference> Sensor::register_to_tell() const noexcept {
+    const vl53l1x::ReadBack& read_back = device_.read_back();
+    if (const auto fixed = read_back.fixed_register()) return fixed;
+    if (mismatches_in_row_ >= vl53l1x::ReadBack::kSightingsUntilFixed) return read_back.last_difference();
+    return std::nullopt;
 }
 
 std::optional<CalibrationResult> Sensor::take_calibration() noexcept {

@@ -54,6 +54,9 @@ class Sensor {
     void order_start(NodeTime now);
     void order_stop(NodeTime now);
     void order_reinitialise(NodeTime now);
+    /// The verification of the node's sensors overlooks more than before: one that failed or was withheld for
+    /// no other reason is brought up, or ranges, at once.
+    void on_overlooking_more(NodeTime now);
     /// Brings it up anew, calibrates it, and brings it up once more, as configured: nothing of it stays.
     /// Returns whether it is going to; not for a target that the driver refuses, nor while one is under way.
     [[nodiscard]] bool order_calibration(const CalibrationOrder& order, NodeTime now);
@@ -124,6 +127,21 @@ class Sensor {
     [[nodiscard]] std::int32_t period_error_permille() const noexcept {
         return ranging_.period_error_permille();
     }
+    /// A register that is not as written, and what there is to do about it: one that will not take its value,
+    /// or the newest that differed in three or more attempts in a row, alike or not. Empty if there is none.
+    [[nodiscard]] std::optional<vl53l1x::RegisterDifference> register_to_tell() const noexcept;
+    /// What a person at the node is told of a sensor that is degraded.
+    struct Trouble {
+        wire::SensorFault fault = wire::SensorFault::none;
+        std::optional<vl53l1x::RegisterDifference> difference;
+        friend constexpr bool operator==(const Trouble&, const Trouble&) = default;
+    };
+    [[nodiscard]] std::optional<Trouble> trouble() const noexcept {
+        if (!is_degraded()) return std::nullopt;
+        return Trouble{.fault = fault_, .difference = register_to_tell()};
+    }
+    /// Whether it was ever given its address before its boot was over.
+    [[nodiscard]] bool was_boot_late() const noexcept { return bring_up_.was_boot_late(); }
     [[nodiscard]] const SensorCounts& counts() const noexcept { return counts_; }
     [[nodiscard]] const vl53l1x::ReadBack& read_back() const noexcept { return device_.read_back(); }
     [[nodiscard]] std::uint16_t i2c_error_count() const noexcept { return device_.i2c_error_count(); }
@@ -178,6 +196,7 @@ class Sensor {
     std::uint8_t refused_in_row_ = 0;
     std::uint8_t hardware_fails_in_row_ = 0;
     std::uint8_t undated_in_row_ = 0;
+    std::uint8_t mismatches_in_row_ = 0;  ///< attempts that ended with a register that differed
     SensorCounts counts_;
     std::optional<Reading> reading_;
 };

@@ -172,6 +172,16 @@ void write_sensor(Writer& out, const Sensor& sensor, const SensorConfig& config)
     }
 }
 
+/// Left out where it is the default, as all of these: rigs keep the hash that they had before these keys.
+void write_verification(Writer& out, const NodeConfig& config) {
+    if (config.verifies_registers && config.left_out_count == 0) return;
+    out.line("    verification:");
+    out.line("      enabled: {}", config.verifies_registers);
+    if (config.left_out_count > 0) out.line("      leave_out:");
+    for (std::size_t i = 0; i < config.left_out_count; ++i)
+        out.line("        - 0x{:02x}", config.left_out[i]);
+}
+
 void write_node(Writer& out, const Node& node) {
     out.line("  - name: {}", quoted(node.name));
     out.line("    node_id: {}", node.config.node_id);
@@ -187,6 +197,10 @@ void write_node(Writer& out, const Node& node) {
     for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
         if ((node.config.data_ready_buses >> bus & 1U) != 0) out.line("      - {}", bus);
     }
+    if (node.config.ready_jitter_us != kReadyJitterMinUs)
+        out.line("    ready_jitter_us: {}", node.config.ready_jitter_us);
+    write_verification(out, node.config);
+    if (node.config.refuses_commands) out.line("    refuses_commands: true");
     if (node.pinned_build_id) out.line("    pinned_build_id: 0x{:08x}", *node.pinned_build_id);
     out.line("    sensors:");
     for (std::size_t i = 0; i < node.sensors.size(); ++i) {

@@ -7,12 +7,10 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
+#include <cctype>
 #include <sstream>
 #include <utility>
 
-#include "hw/rigfile/bounded_text.hpp"
-#include "hw/rigfile/file_kind.hpp"
 #include "hw/rigfile/syntax_hint.hpp"
 
 namespace octoskin::rig {
@@ -28,19 +26,28 @@ std::string_view xml_kind(std::string_view text) {
     if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
     const auto begin = text.find_first_not_of(" \t\r\n");
     if (begin == std::string_view::npos || text[begin] != '<') return {};
+    // "<<:" is YAML's merge key, which is no XML.
+    const char next = begin + 1 < text.size() ? text[begin + 1] : ' ';
+    if (next != '?' && next != '!' && std::isalpha(static_cast<unsigned char>(next)) == 0) return {};
     if (text.find("<robot") != std::string_view::npos) return "XML that looks like a robot (URDF)";
     if (text.find("<sdf") != std::string_view::npos) return "XML that looks like a world (SDF)";
     return "XML";
 }
 
-std::string read_text(const std::filesystem::path& file) {
-    if (const auto kind = other_than_a_file(file); !kind.empty())
-        throw Fault{{file, 0, "", fmt::format("is {}: give the path of an ordinary YAML file", kind)}};
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) {
-        throw Fault{{file, 0, "", "cannot be opened: give the path of an existing, readable YAML file"}};
-    }
-    std::string text = read_bounded(stream, kFileBytesMax);
+std::string reason_of(const FolderError& error) {
+    if (error.fault == FolderFault::not_a_file)
+        return fmt::format("is {}: give the path of an ordinary YAML file", error.what);
+    if (error.fault == FolderFault::link || error.fault == FolderFault::outside) return error.reason();
+    return "cannot be opened: give the path of an existing, readable YAML file";
+}
+
+std::string read_text(const FilePlace& place) {
+    const std::filesystem::path file = place.shown();
+    const auto opened = place.open();
+    if (!opened) throw Fault{{opened.error().path, 0, "", reason_of(opened.error())}};
+    auto bytes = opened->read(kFileBytesMax);
+    if (!bytes) throw Fault{{file, 0, "", "cannot be read: " + bytes.error().reason()}};
+    std::string text = std::move(*bytes);
     if (const std::string_view what = xml_kind(text); !what.empty()) {
         throw Fault{{file, 0, "",
                      fmt::format("expected YAML, found {}: is it given in another file's place?", what)}};
@@ -56,7 +63,7 @@ std::string read_text(const std::filesystem::path& file) {
 /// file, and expand aliases without a bound.
 class TreeBuilder final : public YAML::EventHandler {
   public:
-    explicit TreeBuilder(std::shared_ptr<const std::filesystem::path> file) : file_(std::move(file)) {}
+    explicit TreeBuilder(std::shared_ptr<const FilePlace> file) : file_(std::move(file)) {}
 
     [[nodiscard]] Value take_root() { return std::move(root_); }
 
@@ -93,7 +100,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   private:
     [[noreturn]] void fail(const YAML::Mark& mark, std::string what) const {
-        throw Fault{{*file_, mark.line + 1, "", std::move(what)}};
+        throw Fault{{file_->shown(), mark.line + 1, "", std::move(what)}};
     }
     void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
         if (anchor != YAML::NullAnchor) fail(mark, "anchors (&name) are not used here: remove it");
@@ -116,7 +123,7 @@ class TreeBuilder final : public YAML::EventHandler {
     }
     void start_entry(const YAML::Mark& mark, const std::string& key) {
         if (const Value* first = open_.back().find(key)) {
-            throw Fault{{*file_, mark.line + 1, key,
+            throw Fault{{file_->shown(), mark.line + 1, key,
                          fmt::format("expected each key once, found it again (first at line {}): remove one",
                                      first->line)}};
         }
@@ -149,7 +156,7 @@ class TreeBuilder final : public YAML::EventHandler {
         (open_.empty() ? root_ : open_.back().items.emplace_back()) = std::move(value);
     }
 
-    std::shared_ptr<const std::filesystem::path> file_;
+    std::shared_ptr<const FilePlace> file_;
     std::vector<Value> open_;  ///< tables and lists begun and not ended, outermost first
     std::string pending_key_;
     int pending_key_line_ = 0;
@@ -188,8 +195,8 @@ void merge_item(Value& base, const Value& item) {
     }
 }
 
-/// The file that `extends:` names, or an empty path; the key itself is taken out.
-std::filesystem::path take_extends(Value& document) {
+/// The file that `extends:` names, or none; the key itself is taken out.
+FilePlace take_extends(Value& document) {
     const Value* extends = document.find("extends");
     if (!extends) return {};
     auto path = existing_file(*extends, "extends");
@@ -205,10 +212,11 @@ const Value* Value::find(std::string_view wanted) const noexcept {
     return kind == Kind::table && found != items.end() ? &*found : nullptr;
 }
 
-Value load_document(const std::filesystem::path& file) {
-    const std::string text = read_text(file);
+Value load_document(const FilePlace& place) {
+    const std::string text = read_text(place);
+    const std::filesystem::path file = place.shown();
     std::istringstream stream(text);
-    TreeBuilder builder(std::make_shared<const std::filesystem::path>(file));
+    TreeBuilder builder(std::make_shared<const FilePlace>(place));
     try {
         YAML::Parser parser(stream);
         parser.HandleNextDocument(builder);
@@ -228,18 +236,24 @@ Value load_document(const std::filesystem::path& file) {
     }
 }
 
-std::filesystem::path existing_file(const Value& value, const std::string& key_path) {
-    auto path = value.file->parent_path() / value.text;
-    std::error_code error;  // a name too long, for one, is as absent as any
-    const bool is_file = value.kind == Value::Kind::scalar && std::filesystem::is_regular_file(path, error);
-    if (error == std::errc::permission_denied)
-        throw Fault{{path, 0, "", "cannot be opened (Permission denied)"}};
-    if (!is_file) {
-        throw Fault{{*value.file, value.line, key_path,
-                     fmt::format("expected the path of a file, relative to this one, found none at '{}'",
-                                 std::filesystem::absolute(path, error).lexically_normal().string())}};
+FilePlace existing_file(const Value& value, const std::string& key_path) {
+    FilePlace place = value.file->beside(value.text);
+    const auto opened = place.open();
+    const bool is_scalar = value.kind == Value::Kind::scalar;
+    if (opened && is_scalar) return place;
+    const auto refused = [&](std::string what) {
+        return Fault{{value.file->shown(), value.line, key_path, std::move(what)}};
+    };
+    if (!opened && opened.error().fault == FolderFault::not_permitted)
+        throw Fault{{place.shown(), 0, "", "cannot be opened (Permission denied)"}};
+    const NamedFolder* const folder = value.file->folder();
+    if (folder != nullptr && !opened && is_scalar && opened.error().fault != FolderFault::absent) {
+        throw refused(fmt::format("expected a file of {}, found '{}', which {}: put the file itself there",
+                                  folder->shown().string(), value.text, opened.error().reason()));
     }
-    return path;
+    std::error_code error;
+    throw refused(fmt::format("expected the path of a file, relative to this one, found none at '{}'",
+                              std::filesystem::absolute(place.shown(), error).lexically_normal().string()));
 }
 
 Value merge(Value base, const Value& overlay) {
@@ -251,13 +265,13 @@ Value merge(Value base, const Value& overlay) {
     return base;
 }
 
-Value load_with_extends(const std::filesystem::path& file, std::vector<std::filesystem::path>* extended) {
+Value load_with_extends(const FilePlace& file, std::vector<std::filesystem::path>* extended) {
     std::vector<Value> layers = {load_document(file)};
     for (auto next = take_extends(layers.back()); !next.empty(); next = take_extends(layers.back())) {
-        if (extended != nullptr) extended->push_back(next);
+        if (extended != nullptr) extended->push_back(next.shown());
         if (layers.size() == kExtendsMax) {
             throw Fault{
-                {file, 0, "extends",
+                {file.shown(), 0, "extends",
                  fmt::format("expected at most {} files one upon the other, found more: is it a circle?",
                              kExtendsMax)}};
         }

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/io/folder/file_place.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin::rig {
@@ -26,7 +27,7 @@ struct Value {
     std::string text;        ///< of a scalar
     bool is_quoted = false;  ///< a quoted scalar is a string, whatever it looks like
     std::vector<Value> items;
-    std::shared_ptr<const std::filesystem::path> file;
+    std::shared_ptr<const FilePlace> file;
     int line = 0;                     ///< 1-based
     bool replaces_inherited = false;  ///< it is, or lies in, a list that took the place of an inherited one
 
@@ -36,11 +37,12 @@ struct Value {
 
 /// Reads one YAML file whose top is a table. Throws Fault: unreadable, over 1 MiB, not YAML, a key twice in
 /// one table, an anchor, alias or tag, more than one document, nested deeper than 16.
-[[nodiscard]] Value load_document(const std::filesystem::path& file);
+[[nodiscard]] Value load_document(const FilePlace& file);
 
 /// The file that a scalar names, relative to the file it is written in. Throws Fault, at the scalar, unless
-/// that is an existing file.
-[[nodiscard]] std::filesystem::path existing_file(const Value& value, const std::string& key_path);
+/// that is an existing file; and, where the file it is written in lies below a folder that was named (a
+/// recording), unless that is an ordinary file of this folder, behind no link.
+[[nodiscard]] FilePlace existing_file(const Value& value, const std::string& key_path);
 
 /// Lays `overlay` over `base`: tables are merged key by key, everything else replaces, and a null removes the
 /// key. An orientation replaces the other file's orientation even if it is written another way.
@@ -49,7 +51,7 @@ struct Value {
 /// load_document(), then every file that `extends:` names, each relative to the file that names it, laid one
 /// over the other. Throws Fault also for a circle and for more than 8 files. `extended` is told those files,
 /// the nearest first.
-[[nodiscard]] Value load_with_extends(const std::filesystem::path& file,
+[[nodiscard]] Value load_with_extends(const FilePlace& file,
                                       std::vector<std::filesystem::path>* extended = nullptr);
 
 }  // namespace octoskin::rig

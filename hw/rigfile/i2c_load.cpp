@@ -1,6 +1,7 @@
 #include "hw/rigfile/i2c_load.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/range_pause.hpp"
 
@@ -25,9 +26,25 @@ constexpr unsigned kReadBackBits = read_bits(1);  ///< one register of the confi
 constexpr unsigned kZoneBits = write_bits(1);
 static_assert(kPollBits + 2 * kResultBits + kClearBits + kReadBackBits == 518);
 
+/// Microseconds by which ranges may differ in length.
+unsigned length_spread_us(const NodeConfig& node) {
+    return node.ready_jitter_us - kReadyJitterMinUs;
+}
+
+/// Where ranges differ in length a sensor is asked over and over until it is ready: a quarter of what they
+/// differ by from one poll's end to the next one's begin, over twice as much time; on average over half of
+/// that, and a little more where periods are only just being learnt.
+unsigned further_polls(const NodeConfig& node) {
+    const double spread_us = length_spread_us(node);
+    const double poll_us = 1e6 * kPollBits / node.i2c_hz;
+    if (spread_us <= 0.0) return 0;
+    constexpr double kLearning = 1.0;
+    return static_cast<unsigned>(std::ceil(kLearning + spread_us / (poll_us + spread_us / 4.0)));
+}
+
 unsigned bits_of_reading(const NodeConfig& node, const SensorConfig& sensor) {
-    return kPollBits + (node.reads_twice ? 2 : 1) * kResultBits + kClearBits + kReadBackBits +
-           (sensor.zone_count > 1 ? kZoneBits : 0);
+    return kPollBits * (1 + further_polls(node)) + (node.reads_twice ? 2 : 1) * kResultBits + kClearBits +
+           kReadBackBits + (sensor.zone_count > 1 ? kZoneBits : 0);
 }
 
 }  // namespace
@@ -40,7 +57,10 @@ Microseconds zone_pause(const NodeConfig& node, const SensorConfig& sensor) {
     constexpr std::int64_t kPeriodOffPermille = 5;  // the node trims periods that are further off
     const auto reading = Microseconds{static_cast<std::int64_t>(1e6 * reading_s(node, sensor))};
     const Microseconds period_off{sensor.inter_measurement_ms * kPeriodOffPermille};
-    return kRangeOverheadMax + Microseconds{node.zone_guard_us} + kZoneWriteMax + reading + period_off;
+    // One range may end late, and the next begin early; and so may what is known of either.
+    const Microseconds jitter{3 * length_spread_us(node)};
+    return jitter + kRangeOverheadMax + Microseconds{node.zone_guard_us} + kZoneWriteMax + reading +
+           period_off;
 }
 
 double i2c_load(const NodeConfig& node, std::uint8_t bus) {

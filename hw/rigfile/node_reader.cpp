@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 
+#include "common/config/verified_registers.hpp"
 #include "common/wire/messages.hpp"
 #include "hw/rigfile/i2c_load.hpp"
 #include "hw/rigfile/sensor_reader.hpp"
@@ -33,6 +34,45 @@ class Taken {
     std::map<std::string, std::string> first_;
 };
 
+/// `verification: {enabled: true, leave_out: [0x47]}`: registers that may read otherwise than they are
+/// written.
+void read_verification(const Table& node, NodeConfig& config) {
+    const Value* value = node.find("verification");
+    if (value == nullptr) return;
+    const Table table(*value, node.path_of("verification"), {"enabled", "leave_out"});
+    config.verifies_registers = table.flag("enabled", config.verifies_registers);
+    const Value* list = table.find("leave_out");
+    if (list == nullptr) return;
+    const std::string path = table.path_of("leave_out");
+    std::set<std::uint8_t> left_out;
+    for (const Value& item : read_list(*list, path)) {
+        const auto index = static_cast<std::uint8_t>(read_integer(item, path, {0, kVerifiedRegisterMax}));
+        if (!is_verified(index)) {
+            fail(item, path,
+                 fmt::format("expected a register that is read back, found 0x{:02X}: it is not", index));
+        }
+        if (!left_out.insert(index).second)
+            fail(item, path, fmt::format("expected each register once, found 0x{:02X} again", index));
+    }
+    if (left_out.size() > kRegistersLeftOutMax) {
+        fail(*list, path,
+             fmt::format("expected at most {} registers, found {}: `enabled: false` leaves all of them out",
+                         kRegistersLeftOutMax, left_out.size()));
+    }
+    config.left_out_count = static_cast<std::uint8_t>(left_out.size());
+    std::ranges::copy(left_out, config.left_out.begin());
+}
+
+void read_ready_jitter(const Table& table, NodeConfig& config) {
+    config.ready_jitter_us = table.integer<std::uint16_t>(
+        "ready_jitter_us", {kReadyJitterMinUs, kReadyJitterMaxUs}, config.ready_jitter_us);
+    if (!config.holds_phases || config.ready_jitter_us <= kReadyJitterOfPhasesMaxUs) return;
+    table.fail("ready_jitter_us",
+               fmt::format("expected at most {} with holds_phases, found {}: where ranges differ more in "
+                           "length nobody sees what a sensor's phase is; use one of the two",
+                           kReadyJitterOfPhasesMaxUs, config.ready_jitter_us));
+}
+
 NodeConfig read_node_settings(const Table& table, const NodeContext& context, const Board& board) {
     NodeConfig config;
     config.node_id = table.integer<std::uint8_t>("node_id", {1, kUnconfiguredNodeId - 1});
@@ -50,6 +90,9 @@ NodeConfig read_node_settings(const Table& table, const NodeContext& context, co
     config.aux_every = table.integer<std::uint8_t>("aux_every", {0, 255}, config.aux_every);
     config.zone_guard_us = table.integer<std::uint16_t>("zone_guard_us", {0, 20'000}, config.zone_guard_us);
     config.holds_phases = table.flag("holds_phases", config.holds_phases);
+    config.refuses_commands = table.flag("refuses_commands", config.refuses_commands);
+    read_ready_jitter(table, config);
+    read_verification(table, config);
     if (config.uses_can_fd && !board.supports_can_fd) {
         table.fail("board",
                    fmt::format("expected a board with CAN FD, as `bus` asks for; {} has classical CAN only",
@@ -134,6 +177,17 @@ void read_data_ready_buses(const Table& table, Node& node) {
     }
 }
 
+void refuse_jitter_of_whole_periods(const Table& table, const Node& node) {
+    const auto sensors = std::span(node.config.sensors).first(node.config.sensor_count);
+    const auto shortest = std::ranges::min_element(sensors, {}, &SensorConfig::inter_measurement_ms);
+    const std::uint32_t most_us = 1000U * shortest->inter_measurement_ms / kReadyJittersPerPeriodMin;
+    if (node.config.ready_jitter_us == kReadyJitterMinUs || node.config.ready_jitter_us <= most_us) return;
+    table.fail("ready_jitter_us",
+               fmt::format("expected at most {} with an inter_measurement_ms of {}, found {}: nobody could "
+                           "tell what the sensor's period is; use a longer one",
+                           most_us, shortest->inter_measurement_ms, node.config.ready_jitter_us));
+}
+
 void refuse_overloaded_i2c(const Table& table, const Node& node) {
     for (std::uint8_t bus = 0; bus < node.board.i2c_bus_count; ++bus) {
         const double load = i2c_load(node.config, bus);
@@ -157,6 +211,7 @@ Node read_node(const Table& table, const NodeContext& context) {
     }
     read_sensors(table, context, node);
     read_data_ready_buses(table, node);
+    refuse_jitter_of_whole_periods(table, node);
     refuse_overloaded_i2c(table, node);
     return node;
 }
@@ -193,7 +248,8 @@ std::vector<Node> read_nodes(const Value& value, const std::string& path, const 
         const Table table(
             items[i], fmt::format("{}[{}]", path, i),
             {"name", "node_id", "board", "i2c_hz", "io_level", "reads_twice", "stream_gate", "aux_every",
-             "zone_guard_us", "holds_phases", "data_ready_buses", "pinned_build_id", "sensors"});
+             "zone_guard_us", "holds_phases", "data_ready_buses", "ready_jitter_us", "verification",
+             "refuses_commands", "pinned_build_id", "sensors"});
         nodes.push_back(read_node(table, context));
         taken.take(table, "name", fmt::format("name '{}'", nodes.back().name));
         taken.take(table, "node_id", fmt::format("node_id {}", nodes.back().config.node_id));

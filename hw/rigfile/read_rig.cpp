@@ -22,8 +22,12 @@ namespace {
 
 UrdfDocument read_robot(const Table& robot, const std::filesystem::path& urdf_instead) {
     const Value& named = robot.require("urdf");
-    const auto file = urdf_instead.empty() ? existing_file(named, robot.path_of("urdf")) : urdf_instead;
-    auto document = UrdfDocument::read(std::filesystem::absolute(file).lexically_normal());
+    const FilePlace file =
+        urdf_instead.empty() ? existing_file(named, robot.path_of("urdf")) : FilePlace(urdf_instead);
+    // A typed path stays right if this process changes its folder.
+    auto document = UrdfDocument::read(
+        file.folder() == nullptr ? FilePlace(std::filesystem::absolute(file.name()).lexically_normal())
+                                 : file);
     if (!document) throw Fault{document.error()};
     return std::move(document).value();
 }
@@ -242,7 +246,7 @@ void refuse_overloaded_bus(const Table& top, const Rig& rig) {
                     100.0 * wire::kBusLoadLimit, 100.0 * load));
 }
 
-Rig read_checked(const std::filesystem::path& file, const std::filesystem::path& urdf_instead) {
+Rig read_checked(const FilePlace& file, const std::filesystem::path& urdf_instead) {
     Rig rig;
     const Value document = load_with_extends(file, &rig.extended_files);
     // `extends` is gone by now; it is named for the hint beside an unknown key.
@@ -281,7 +285,7 @@ std::string RigError::message() const {
     return key.empty() ? fmt::format("{}: {}", place, what) : fmt::format("{}: {}: {}", place, key, what);
 }
 
-Result<Rig, RigError> read_rig(const std::filesystem::path& file, const std::filesystem::path& urdf_instead) {
+Result<Rig, RigError> read_rig(const FilePlace& file, const std::filesystem::path& urdf_instead) {
     try {
         return read_checked(file, urdf_instead);
     } catch (const Fault& fault) {

@@ -13,6 +13,7 @@
 #include "common/config/node_config.hpp"
 #include "common/lens/lens_distortion.hpp"
 #include "common/result.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "hw/rigfile/data_set_depth.hpp"
 
 namespace octoskin::rig {
@@ -135,9 +136,10 @@ struct RigError {
 /// Reads and checks a rig: unknown keys, types, units, ranges, references, unique ids and addresses, I2C
 /// capacity, and the computed CAN load (refused above 70 %). Paths in it are relative to the file. A
 /// top-level `extends: other.yaml` takes that file first and lays this one's keys over it. `urdf_instead`: a
-/// robot to use in place of the one the rig names. Not to be called from two threads at once (urdfdom's log
-/// is global).
-[[nodiscard]] Result<Rig, RigError> read_rig(const std::filesystem::path& file,
+/// robot to use in place of the one the rig names. A rig below a folder that was named, a recording, refers
+/// to files of that folder alone, behind no link. Not to be called from two threads at once (urdfdom's log is
+/// global).
+[[nodiscard]] Result<Rig, RigError> read_rig(const FilePlace& file,
                                              const std::filesystem::path& urdf_instead = {});
 
 /// The canonical YAML text of a rig: reading it gives an equal rig, and equal rigs give equal text. `urdf` is

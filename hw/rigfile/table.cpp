@@ -109,7 +109,8 @@ bool is_plain_scalar(const Value& value) {
 }  // namespace
 
 void fail(const Value& value, const std::string& path, std::string what) {
-    throw Fault{{value.file ? *value.file : std::filesystem::path{}, value.line, path, std::move(what)}};
+    throw Fault{
+        {value.file ? value.file->shown() : std::filesystem::path{}, value.line, path, std::move(what)}};
 }
 
 std::string describe(const Value& value) {

@@ -7,11 +7,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <cmath>
-#include <fstream>
 #include <utility>
-
-#include "hw/rigfile/bounded_text.hpp"
-#include "hw/rigfile/file_kind.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -37,22 +33,24 @@ class CapturedLog final : public console_bridge::OutputHandler {
     std::string errors_;
 };
 
-Result<std::string, RigError> read_text(const std::filesystem::path& file) {
-    if (const auto kind = other_than_a_file(file); !kind.empty()) {
-        return unexpected(
-            RigError{file, 0, "", fmt::format("is {}: give the path of an ordinary URDF file", kind)});
-    }
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) {
-        return unexpected(
-            RigError{file, 0, "", "cannot be opened: give the path of an existing, readable URDF file"});
-    }
-    std::string text = read_bounded(stream, kFileBytesMax);
-    if (text.size() > kFileBytesMax) {
-        return unexpected(
-            RigError{file, 0, "", fmt::format("expected at most {} bytes, found more", kFileBytesMax)});
-    }
-    return text;
+std::string reason_of(const FolderError& error) {
+    if (error.fault == FolderFault::not_a_file)
+        return fmt::format("is {}: give the path of an ordinary URDF file", error.what);
+    if (error.fault == FolderFault::link || error.fault == FolderFault::outside) return error.reason();
+    return "cannot be opened: give the path of an existing, readable URDF file";
+}
+
+Result<std::string, RigError> read_text(const FilePlace& file) {
+    const auto failed = [&file](std::string what) {
+        return unexpected(RigError{file.shown(), 0, "", std::move(what)});
+    };
+    const auto opened = file.open();
+    if (!opened) return failed(reason_of(opened.error()));
+    auto text = opened->read(kFileBytesMax);
+    if (!text) return failed("cannot be read: " + text.error().reason());
+    if (text->size() > kFileBytesMax)
+        return failed(fmt::format("expected at most {} bytes, found more", kFileBytesMax));
+    return std::move(*text);
 }
 
 /// The model, or urdfdom's words for why there is none.
@@ -102,8 +100,9 @@ std::string unit_fault(const urdf::Joint& joint) {
 
 }  // namespace
 
-Result<UrdfDocument, RigError> UrdfDocument::read(const std::filesystem::path& file) {
-    const auto text = read_text(file);
+Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
+    const auto text = read_text(place);
+    const std::filesystem::path file = place.shown();
     if (!text) return unexpected(text.error());
     auto outline = UrdfOutline::read(file, *text);
     if (!outline) return unexpected(outline.error());

@@ -25,7 +25,7 @@ class UrdfDocument {
     /// its link, two roots, a repeated name), and what gives away millimetres (an origin or a sliding limit
     /// beyond 10 m) or degrees (a limit beyond two turns); the message carries urdfdom's own words. urdfdom
     /// prints nothing. Not to be called from two threads at once: urdfdom's log is global.
-    [[nodiscard]] static Result<UrdfDocument, RigError> read(const std::filesystem::path& file);
+    [[nodiscard]] static Result<UrdfDocument, RigError> read(const FilePlace& file);
 
     [[nodiscard]] const urdf::ModelInterface& model() const noexcept { return *model_; }
     [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }

@@ -17,7 +17,7 @@ bool is_same(const SourceFile& a, const SourceFile& b) {
 void check(const RecordingPaths& recording) {
     const auto meta = read_meta(recording);
     if (!meta) {
-        assert(!meta.error().what.empty() && meta.error().file == recording.meta());
+        assert(!meta.error().what.empty() && meta.error().file == recording.meta().shown());
         return;
     }
     assert(write_meta(recording, *meta));

@@ -25,7 +25,7 @@ class ScenarioInput {
             assert(!scenario.error().what.empty() && !scenario.error().file.empty());
             return;
         }
-        assert(std::filesystem::is_regular_file(scenario->world));
+        assert(scenario->world.is_file());
         const CircleMotion& motion = scenario->motion;
         assert(!motion.link.empty() && motion.ticks() > 0 && motion.tick_rate_hz > 0.0);
         assert(motion.start_position.allFinite() && motion.p_base_centre.allFinite());

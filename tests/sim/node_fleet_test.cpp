@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "hw/rigfile/i2c_load.hpp"
 #include "tests/sim/capture_oracle.hpp"
 #include "tests/support/node_rig.hpp"
 
@@ -85,6 +86,17 @@ class FleetRun {
         run(kDuration - Microseconds{kSettledUs}, loop);
         judge_all();
     }
+    /// The same with parts of these traits.
+    FleetRun(const NodeConfig& config, const sim::SensorTraits& traits)
+        : config_(config),
+          rig_(config, with_traits(spread_fleet(config.sensor_count), traits),
+               sim::NodeClock{{0xFFFFFFFFU - 5'000'000U}, 100.0}) {
+        run(Microseconds{kSettledUs}, Microseconds{0});
+        polls_settled_ = polls();
+        accepted_settled_ = rig_.node().counts().accepted;
+        run(kDuration - Microseconds{kSettledUs}, Microseconds{0});
+        judge_all();
+    }
     FleetRun(const NodeConfig& config, ChatterFrom chatter)
         : config_(config),
           rig_(config, spread_fleet(config.sensor_count), sim::NodeClock{{0xFFFFFFFFU - 5'000'000U}, 100.0}) {
@@ -124,6 +136,11 @@ class FleetRun {
     }
 
   private:
+    static std::vector<SensorSetup> with_traits(std::vector<SensorSetup> setups,
+                                                const sim::SensorTraits& traits) {
+        for (SensorSetup& setup : setups) setup.part.traits = traits;
+        return setups;
+    }
     void run(Microseconds duration, Microseconds loop) {
         if (loop.count() > 0) {
             rig_.run_in_steps_for(duration, loop);
@@ -289,6 +306,63 @@ TEST(NodeFleet, loses_no_reading_in_a_main_loop_of_a_hundred_microseconds) {
         FleetRun run(config, Microseconds{100});
         run.report("17, loop of 100 us");
         expect_whole(run);
+    }
+}
+
+// --- parts that are not as the public documents say
+
+NodeConfig with_jitter(NodeConfig config, std::uint16_t ready_jitter_us) {
+    config.ready_jitter_us = ready_jitter_us;
+    return config;
+}
+
+TEST(NodeFleet, loses_no_reading_of_ranges_that_differ_in_length_by_what_the_rig_says) {
+    for (const NodeConfig& ideal : {at_30_hz(17, 4), at_50_hz(17, 4), at_30_hz(34, 4)}) {
+        const NodeConfig config = with_jitter(ideal, 1'000);
+        for (const sim::SensorTraits& traits :
+             {sim::SensorTraits{}, sim::SensorTraits{.range_spread = Microseconds{1'000}},
+              sim::SensorTraits{.range_spread = Microseconds{700}, .range_step = Microseconds{300}}}) {
+            FleetRun run(config, traits);
+            run.report("ranges of any length, 1 ms");
+            std::printf("polls per reading %.2f, planned load of bus 0 %.1f %%\n", run.polls_per_reading(),
+                        100.0 * rig::i2c_load(config, 0) * 283.0 / 400.0);
+            EXPECT_EQ(run.outcome().lost, 0);
+            EXPECT_EQ(run.outcome().twice, 0);
+            EXPECT_EQ(run.outcome().never_measured, 0);
+            EXPECT_EQ(run.outcome().beyond_bound, 0);
+            EXPECT_EQ(run.rig().node().counts().rejected, 0U);
+            // The rig's estimate is for the slowest clock that the bus may have; this one has its 400 kHz.
+            EXPECT_LE(run.bus_use(), rig::i2c_load(config, 0) * 283.0 / 400.0);
+        }
+    }
+}
+
+// One register of every part: what decides the range is learnt as any other, and nobody is withheld.
+TEST(NodeFleet, ranges_with_17_parts_that_read_a_register_otherwise_than_it_is_written) {
+    for (const auto& misread : {sim::MisreadRegister{.index = 0x47, .value = 0x0C},
+                                sim::MisreadRegister{.index = 0x7C, .value = 0x01},
+                                sim::MisreadRegister{.index = 0x0B, .value = 0x80, .mask = 0x80},
+                                sim::MisreadRegister{.index = 0x33, .value = 0x03}}) {
+        FleetRun run(at_30_hz(17, 4), sim::SensorTraits{.misread = {misread}});
+        run.report("one register reads otherwise");
+        EXPECT_EQ(run.outcome().lost, 0) << misread.index;
+        EXPECT_EQ(run.outcome().beyond_bound, 0) << misread.index;
+        EXPECT_LE(run.outcome().first_us, 1'200'000) << misread.index;
+        const NodeCounts counts = run.rig().node().counts();
+        EXPECT_EQ(counts.withheld + counts.suspect + counts.rejected, 0U) << misread.index;
+        EXPECT_EQ(run.rig().said_of<wire::Heartbeat>().back().degraded_sensors, 0) << misread.index;
+    }
+}
+
+// The address is written once the part says that its boot is over: the register file that its boot loads then
+// does not take it back.
+TEST(NodeFleet, comes_up_with_parts_whose_boot_loads_all_registers_late) {
+    for (const Microseconds load : {Microseconds{500}, Microseconds{3'000}, Microseconds{5'000}}) {
+        FleetRun run(at_30_hz(17, 4), sim::SensorTraits{.boot_load = load});
+        run.report("boots late");
+        expect_whole(run);
+        EXPECT_EQ(run.rig().node().counts().boots_late, 0U);
+        EXPECT_EQ(run.rig().node().counts().i2c_errors, 0U);
     }
 }
 

@@ -86,12 +86,15 @@ node::Ports Board::ports(node::KeptMemory& kept) {
             .kept = &kept};
 }
 
-Board::Ending Board::run(int stop, Journal& journal) {
+Board::Ending Board::run(int stop, Journal& journal, linux_port::ServiceManager& manager) {
+    const Microseconds sleep_max = std::min(kSleepMax, manager.sleep_max().value_or(kSleepMax));
+    manager.started();
     while (true) {
         turn();
+        manager.turned(node_now());
         journal.update(node_, can_, devices_.xshut);
         if (node_.is_reset_requested()) return Ending::reset;
-        if (!wait(stop)) return Ending::stopped;
+        if (!wait(stop, sleep_max)) return Ending::stopped;
     }
 }
 
@@ -105,7 +108,7 @@ void Board::turn() {
     node_.poll(node_now());
 }
 
-bool Board::wait(int stop) {
+bool Board::wait(int stop, Microseconds sleep_max) {
     constexpr std::size_t kOthers = 3;
     std::array<pollfd, kOthers + kNodeBusesMax> waits{};
     waits[0] = {.fd = stop, .events = POLLIN, .revents = 0};
@@ -114,7 +117,7 @@ bool Board::wait(int stop) {
     for (std::size_t bus = 0; bus < kNodeBusesMax; ++bus)
         waits.at(kOthers + bus) = {.fd = devices_.data_ready.descriptor(bus), .events = POLLIN, .revents = 0};
     const NodeTime now = node_now();
-    const auto left = std::clamp(elapsed(now, wake_time(now)), Microseconds{0}, kSleepMax);
+    const auto left = std::clamp(elapsed(now, wake_time(now)), Microseconds{0}, sleep_max);
     const timespec patience{.tv_sec = left.count() / 1'000'000, .tv_nsec = left.count() % 1'000'000 * 1'000};
     if (::ppoll(waits.data(), waits.size(), &patience, nullptr) <= 0) return true;
     eventfd_t ended = 0;

@@ -16,6 +16,7 @@
 #include "firmware/port/linux/gpio_lines.hpp"
 #include "firmware/port/linux/i2c_adapter.hpp"
 #include "firmware/port/linux/i2c_thread_bus.hpp"
+#include "firmware/port/linux/service_manager.hpp"
 
 namespace octoskin::linux_node {
 
@@ -35,8 +36,8 @@ class Board {
     Board(const Board&) = delete;
     Board& operator=(const Board&) = delete;
 
-    /// Until `stop`, a descriptor, is readable.
-    [[nodiscard]] Ending run(int stop, Journal& journal);
+    /// Until `stop`, a descriptor, is readable. `manager` is told of each turn that has ended.
+    [[nodiscard]] Ending run(int stop, Journal& journal, linux_port::ServiceManager& manager);
 
   private:
     struct Devices {
@@ -48,7 +49,7 @@ class Board {
           node::KeptMemory& kept, Devices devices);
     [[nodiscard]] node::Ports ports(node::KeptMemory& kept);
     /// False: stop.
-    [[nodiscard]] bool wait(int stop);
+    [[nodiscard]] bool wait(int stop, Microseconds sleep_max);
     void turn();
     [[nodiscard]] NodeTime wake_time(NodeTime now) const;
 

@@ -14,6 +14,14 @@ std::string hex(std::uint32_t number) {
     return digits.data();
 }
 
+std::string text_of(const vl53l1x::RegisterDifference& difference) {
+    std::array<char, 64> text{};
+    (void)std::snprintf(text.data(), text.size(), "register %02x written %02x, reads %02x",
+                        unsigned{difference.index}, unsigned{difference.expected},
+                        unsigned{difference.found});
+    return text.data();
+}
+
 const char* words(node::CanState state) {
     switch (state) {
         case node::CanState::active:
@@ -74,12 +82,16 @@ void Journal::say_troubles(const node::Node& node) {
     const auto sensors = node.sensors();
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const node::Sensor& sensor = *sensors[i];
-        const auto trouble = sensor.is_degraded() ? std::optional(sensor.fault()) : std::nullopt;
+        const auto trouble = sensor.trouble();
         if (trouble == troubles_[i]) continue;
         troubles_[i] = trouble;
         say("sensor " + std::to_string(i) + ": " + wire::name(sensor.state()) +
-            (trouble ? std::string(", ") + wire::name(*trouble) : ""));
+            (trouble ? std::string(", ") + wire::name(trouble->fault) : "") +
+            (trouble && trouble->difference ? ", " + text_of(*trouble->difference) : ""));
     }
+    for (const auto& told : node.alike().subspan(alike_told_))
+        say(text_of(told.difference) + ", alike on several sensors: nothing is withheld for it");
+    alike_told_ = node.alike().size();
 }
 
 }  // namespace octoskin::linux_node

@@ -28,7 +28,8 @@ class Journal {
     void say_troubles(const node::Node& node);
 
     std::optional<wire::NodeState> state_;
-    std::array<std::optional<wire::SensorFault>, kNodeSensorsMax> troubles_{};  ///< told, by sensor
+    std::size_t alike_told_ = 0;
+    std::array<std::optional<node::Sensor::Trouble>, kNodeSensorsMax> troubles_{};  ///< told, by sensor
     std::string trouble_;
     node::CanState can_state_ = node::CanState::active;
     std::uint8_t ignored_data_ready_ = 0;

@@ -2,14 +2,18 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <exception>
+#include <string>
 #include <variant>
 
 #include "firmware/app/linux_node/arguments.hpp"
 #include "firmware/app/linux_node/board.hpp"
 #include "firmware/app/linux_node/configuration.hpp"
 #include "firmware/app/linux_node/journal.hpp"
+#include "firmware/port/linux/service_manager.hpp"
 #include "firmware/port/linux/unique_id.hpp"
 
 namespace octoskin::linux_node {
@@ -23,10 +27,11 @@ using linux_port::StartFailure;
 int take_signals() {
     sigset_t signals{};
     ::sigemptyset(&signals);
-    ::sigaddset(&signals, SIGTERM);
-    ::sigaddset(&signals, SIGINT);
-    ::sigprocmask(SIG_BLOCK, &signals, nullptr);
-    return ::signalfd(-1, &signals, SFD_CLOEXEC);
+    for (const int signal : {SIGTERM, SIGINT, SIGQUIT}) ::sigaddset(&signals, signal);
+    // First the descriptor: signals that nobody could take would be blocked for ever.
+    const int descriptor = ::signalfd(-1, &signals, SFD_CLOEXEC);
+    if (descriptor >= 0) ::sigprocmask(SIG_BLOCK, &signals, nullptr);
+    return descriptor;
 }
 
 Result<node::Identity, StartFailure> identity_of(const Arguments& arguments) {
@@ -44,16 +49,21 @@ Result<Done, StartFailure> run(const Arguments& arguments) {
     auto identity = identity_of(arguments);
     if (!identity) return unexpected(identity.error());
     const int stop = take_signals();
+    if (stop < 0)
+        return refuse(ExitCode::unavailable,
+                      std::string("cannot take signals: ") + std::strerror(errno) + " (`ulimit -n`)");
     node::KeptMemory kept{};
     Journal journal;
+    auto manager = linux_port::ServiceManager::from_environment();
     while (true) {
         auto board = Board::open(arguments, *config, *identity, kept);
         if (!board) return unexpected(board.error());
         journal.started(*config, arguments.can, OCTOSKIN_BUILD_ID);
-        if ((*board)->run(stop, journal) == Board::Ending::stopped) break;
+        if ((*board)->run(stop, journal, manager) == Board::Ending::stopped) break;
         say("reset, as the host has ordered");
         identity->reset_cause = wire::ResetCause::software;
     }
+    manager.stopping();
     say("stopped: all sensors are in reset");
     return Done{};
 }

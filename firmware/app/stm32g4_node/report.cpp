@@ -43,6 +43,12 @@ std::string_view words(NodeConfigError error) {
     return "?";
 }
 
+/// "register 47 written 0B, reads 0C"
+void add(TextLine& line, const vl53l1x::RegisterDifference& difference) {
+    line.text("register ").hex(difference.index, 2).text(" written ").hex(difference.expected, 2);
+    line.text(", reads ").hex(difference.found, 2);
+}
+
 }  // namespace
 
 void Report::started(std::uint32_t build_id, wire::ResetCause cause, const Clocks& clocks) {
@@ -134,7 +140,7 @@ void Report::tell_sensors(const node::Node& node, NodeTime now) {
     has_trouble_ = false;
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const node::Sensor& sensor = *sensors[i];
-        const auto trouble = sensor.is_degraded() ? std::optional(sensor.fault()) : std::nullopt;
+        const auto trouble = sensor.trouble();
         has_trouble_ = has_trouble_ || trouble;
         if (has_told || trouble == troubles_[i]) continue;
         troubles_[i] = trouble;
@@ -142,9 +148,20 @@ void Report::tell_sensors(const node::Node& node, NodeTime now) {
         TextLine line;
         line.text("sensor ").number(static_cast<std::uint32_t>(i)).text(": ");
         line.text(wire::name(sensor.state()));
-        if (trouble) line.text(", ").text(wire::name(*trouble));
+        if (trouble) line.text(", ").text(wire::name(trouble->fault));
+        if (trouble && trouble->difference) add(line.text(", "), *trouble->difference);
         serial_.say(line.view());
     }
+    if (!has_told) tell_alike(node);
+}
+
+/// One a look, likewise.
+void Report::tell_alike(const node::Node& node) {
+    const auto alike = node.alike();
+    if (alike_told_ >= alike.size()) return;
+    TextLine line;
+    add(line, alike[alike_told_++].difference);
+    serial_.say(line.text(", alike on several sensors: nothing is withheld for it").view());
 }
 
 /// With nobody to acknowledge there are some every second: a line now and then is enough.

@@ -41,6 +41,7 @@ class Report {
   private:
     void tell_losses(const CanCounts& counts, NodeTime now);
     void tell_sensors(const node::Node& node, NodeTime now);
+    void tell_alike(const node::Node& node);
     void show(wire::NodeState state, bool is_can_started);
 
     SerialPort& serial_;
@@ -52,7 +53,8 @@ class Report {
     std::uint32_t can_failed_ = 0;
     CanCounts told_;
     node::Pause losses_pause_;
-    std::array<std::optional<wire::SensorFault>, kNodeSensorsMax> troubles_{};  ///< told, by sensor
+    std::array<std::optional<node::Sensor::Trouble>, kNodeSensorsMax> troubles_{};  ///< told, by sensor
+    std::size_t alike_told_ = 0;
     bool has_trouble_ = false;  ///< any of them, at the last look
     node::Pause sensors_pause_;
 };

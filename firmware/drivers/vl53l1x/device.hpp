@@ -32,7 +32,8 @@ enum class Progress : std::uint8_t { idle, busy, done, failed };
 class Device {
   public:
     /// `bus` must outlive the device.
-    Device(i2c::Bus& bus, const Options& options) noexcept : bus_(bus), options_(options) {}
+    Device(i2c::Bus& bus, const Options& options) noexcept
+        : bus_(bus), options_(options), read_back_(*options.verification) {}
     // Transfers in flight point into the device.
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
@@ -45,6 +46,9 @@ class Device {
     /// Resets the part without XSHUT: it forgets everything, its address too, and is back at 0x29 with
     /// `probe`'s check passed. Nobody else may be at 0x29. <= 500 ms, about 3 ms.
     void begin_soft_reset();
+    /// Waits at 0x29 for the firmware's boot, <= 5 ms, or if `is_patient` <= 100 ms: `boot_timeout` if it is
+    /// not over by then. `done` also if nobody answers there: that is for whoever probes to say.
+    void begin_await_boot_at_default(bool is_patient);
     /// Waits for the firmware's boot, <= 500 ms: bit 0 of the status, since real parts answer 0x02 first.
     void begin_await_boot();
     /// Writes the default configuration and starts the first range, without waiting for boot. <= 10 ms in
@@ -114,8 +118,10 @@ class Device {
     /// Reads one of `kRegisterRuns` back and compares it with what was written since the configuration was
     /// loaded, and with the factory's offset; what else was not written it learns. A difference is read
     /// again; if it is still there, the end is `config_mismatch`: initialise the sensor. Also while ranging.
-    /// One transfer, two if it differs: <= 3 ms.
+    /// One transfer, two if it differs, none if the verification is switched off: <= 3 ms.
     void begin_verify(std::size_t run);
+    /// The same of what the last `begin_set_zone` wrote.
+    void begin_verify_zone();
 
     // --- progress
     /// Advances the operation. `done` and `failed` are told once, then `idle`.
@@ -144,6 +150,8 @@ class Device {
     [[nodiscard]] std::optional<NodeTime> not_ready_seen() const noexcept { return reading_.not_ready_seen; }
     /// What the sensor's registers should hold, and which were found to differ.
     [[nodiscard]] const ReadBack& read_back() const noexcept { return read_back_; }
+    /// The verification overlooks more than before.
+    void forget_overlooked() noexcept { read_back_.forget_overlooked(); }
     /// What the last `begin_read_register` read.
     [[nodiscard]] std::span<const std::uint8_t> register_bytes() const noexcept {
         return std::span(register_bytes_).first(register_count_);
@@ -273,7 +281,9 @@ class Device {
     ResultBlock block_{};
     NodeTime ready_seen_{};
     bool has_read_again_ = false;
-    std::uint8_t run_ = 0;  ///< of `kRegisterRuns`
+    RegisterRun run_;               ///< being verified
+    bool is_run_of_write_ = false;  ///< just made
+    bool is_run_steering_ = false;  ///< one of the steering groups, whole
 
     // Results.
     bool has_measurement_ = false;

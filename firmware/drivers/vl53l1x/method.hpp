@@ -65,6 +65,14 @@ struct Device::Method {
                    .on_refused = [](Device&, NodeTime) { return Verdict::repeat_stage; }});
     }
 
+    /// Who is not there is not waited for.
+    static void ask_boot_state_of_somebody(Device& d) {
+        d.line_up({.index = reg::FIRMWARE_SYSTEM_STATUS,
+                   .count = 1,
+                   .judge = judge_boot_state,
+                   .on_refused = [](Device&, NodeTime) { return Verdict::end; }});
+    }
+
     // The part listens at its new address from the next START on.
     static void write_address(Device& d) {
         d.write8(reg::I2C_SLAVE_DEVICE_ADDRESS, d.new_address_, [](Device& device, NodeTime) {
@@ -383,14 +391,15 @@ struct Device::Method {
     // --- supervision
 
     static void verify_run(Device& d) {
-        const RegisterRun& run = kRegisterRuns[d.run_];
+        if (!d.options_.verification->is_on()) return;
+        const RegisterRun& run = d.run_;
         d.read(run.first, run.count, judge_run);
     }
     static Verdict judge_run(Device& d, NodeTime) {
-        const RegisterRun& run = kRegisterRuns[d.run_];
+        const RegisterRun& run = d.run_;
         if (d.read_back_.agrees(run, d.answer_)) {
             d.read_back_.learn(run, d.answer_);
-            if (d.run_ < kSteeringGroups) d.read_back_.on_clean_check();
+            if (d.is_run_steering_) d.read_back_.on_clean_check();
         } else {
             d.read(run.first, run.count, judge_run_again);
         }
@@ -398,10 +407,11 @@ struct Device::Method {
     }
     /// A bit may have flipped on its way to us.
     static Verdict judge_run_again(Device& d, NodeTime) {
-        const RegisterRun& run = kRegisterRuns[d.run_];
+        const RegisterRun& run = d.run_;
         if (d.read_back_.agrees(run, d.answer_)) {
             d.count_i2c_error();
-        } else if (d.read_back_.record(run, d.answer_)) {
+        } else if (d.is_run_of_write_ ? d.read_back_.record_of_write(run, d.answer_)
+                                      : d.read_back_.record(run, d.answer_)) {
             return d.fail(Error::config_mismatch);
         }
         return Verdict::proceed;
@@ -425,6 +435,12 @@ struct Device::Method {
                                         {leave_soft_reset},
                                         {ask_boot_state_patiently, 1'000, 500'000, Error::boot_timeout},
                                         {ask_identity}};
+    // Real parts were seen to answer before bit 0 was there, and to have it a few milliseconds later (ST
+    // community: facts of 0xE5). What is written to such a part may be overwritten once it has booted.
+    static constexpr Stage kAwaitBootAtDefault[]{
+        {ask_boot_state_of_somebody, 500, 5'000, Error::boot_timeout}};
+    static constexpr Stage kAwaitBootAtDefaultPatiently[]{
+        {ask_boot_state_of_somebody, 500, 100'000, Error::boot_timeout}};  // as long as Linux's driver
     static constexpr Stage kAwaitBootOnly[]{kAwaitBoot};
     static constexpr Stage kLoadConfiguration[]{
         {forget_registers}, {write_default_configuration}, {choose_timed}, {clear_before_start}, {start}};

@@ -21,6 +21,11 @@ void Device::begin_soft_reset() {
     begin(Method::kSoftReset);
 }
 
+void Device::begin_await_boot_at_default(bool is_patient) {
+    begin(is_patient ? Method::kAwaitBootAtDefaultPatiently : Method::kAwaitBootAtDefault);
+    live_address_ = kDefaultAddress;
+}
+
 void Device::begin_await_boot() {
     begin(Method::kAwaitBootOnly);
 }
@@ -150,7 +155,16 @@ void Device::begin_update_temperature() {
 void Device::begin_verify(std::size_t run) {
     assert(run < kRegisterRuns.size());
     begin(Method::kVerify);
-    run_ = static_cast<std::uint8_t>(run);
+    run_ = kRegisterRuns[run];
+    is_run_steering_ = run < kSteeringGroups;
+    is_run_of_write_ = false;
+}
+
+void Device::begin_verify_zone() {
+    begin(Method::kVerify);
+    run_ = kZoneRun;
+    is_run_steering_ = false;
+    is_run_of_write_ = true;
 }
 
 void Device::begin_read_register(reg::Index index, std::uint8_t count) {

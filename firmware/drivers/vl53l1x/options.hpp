@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "firmware/drivers/vl53l1x/verification.hpp"
+
 namespace octoskin::vl53l1x {
 
 enum class Error : std::uint8_t {
@@ -32,6 +34,8 @@ struct Options {
     bool rereads_settings = false;          ///< mode and budget are read back before they are built on
     std::uint32_t i2c_hz = 400'000;         ///< for the deadline of a transfer: 3 x nominal time + lateness
     std::uint32_t i2c_lateness_us = 1'000;  ///< so late a port may come to know of a transfer's end
+    /// What a read-back overlooks; outlives the devices.
+    const Verification* verification = &kWholeVerification;
     [[nodiscard]] static constexpr Options as_st_uld() noexcept {
         return {.is_io_2v8 = false,
                 .is_interrupt_active_low = false,
@@ -43,7 +47,8 @@ struct Options {
                 .verifies_address = false,
                 .rereads_settings = true,
                 .i2c_hz = 400'000,
-                .i2c_lateness_us = 1'000};
+                .i2c_lateness_us = 1'000,
+                .verification = &kWholeVerification};
     }
 };
 

@@ -42,8 +42,29 @@ void ReadBack::learn(const RegisterRun& run, std::span<const std::uint8_t> bytes
     }
 }
 
+void LastingDifferences::note(const RegisterDifference& difference) noexcept {
+    const auto known = std::span(all_).first(count_);
+    const auto place = std::find_if(known.begin(), known.end(), [&](const RegisterDifference& other) {
+        return other.index == difference.index;
+    });
+    if (place != known.end()) {
+        *place = difference;
+    } else if (!is_full()) {
+        all_[count_++] = difference;
+    }
+}
+
+void LastingDifferences::forget_overlooked(const Verification& verification) noexcept {
+    const auto known = std::span(all_).first(count_);
+    const auto rest = std::remove_if(known.begin(), known.end(), [&](const RegisterDifference& difference) {
+        return verification.overlooks(difference);
+    });
+    count_ = static_cast<std::uint8_t>(rest - known.begin());
+}
+
 bool ReadBack::differs(std::size_t slot, reg::Index index, std::uint8_t found) const noexcept {
-    return is_known_[slot] && ((expected_[slot] ^ found) & compared_bits(index)) != 0;
+    if (!is_known_[slot] || ((expected_[slot] ^ found) & compared_bits(index)) == 0) return false;
+    return !verification_.overlooks({.index = index, .expected = expected_[slot], .found = found});
 }
 
 bool ReadBack::agrees(const RegisterRun& run, std::span<const std::uint8_t> bytes) const noexcept {
@@ -63,16 +84,53 @@ bool ReadBack::record(const RegisterRun& run, std::span<const std::uint8_t> byte
         const auto slot = slot_of(index);
         if (is_exempt_[*slot] || !differs(*slot, index, bytes[i])) continue;
         last_ = {.index = index, .expected = expected_[*slot], .found = bytes[i]};
-        const bool is_fixed = is_third_sighting(*last_);
-        if (is_fixed && !decides_range(index) && is_exempt_.count() < kExemptMax) {
-            is_exempt_.set(*slot);
-            last_exempt_ = last_;
-            continue;
-        }
-        if (is_fixed && decides_range(index)) distrusted_ = last_;
+        const bool is_lasting = is_third_sighting(*last_);
+        if (is_lasting && is_exempted(*slot, *last_)) continue;
         counts = true;
     }
     return counts;
+}
+
+bool ReadBack::record_of_write(const RegisterRun& run, std::span<const std::uint8_t> bytes) noexcept {
+    bool counts = false;
+    for (std::size_t i = 0; i < run.count; ++i) {
+        const auto index = static_cast<reg::Index>(run.first + i);
+        const auto slot = slot_of(index);
+        if (is_exempt_[*slot] || !differs(*slot, index, bytes[i])) continue;
+        last_ = {.index = index, .expected = expected_[*slot], .found = bytes[i]};
+        counts = true;
+    }
+    return counts;
+}
+
+/// Of a difference that is there to stay.
+bool ReadBack::is_exempted(std::size_t slot, const RegisterDifference& difference) noexcept {
+    if (decides_range(difference.index)) {
+        deciding_.note(difference);
+        ++lasting_count_;
+        return false;
+    }
+    if (exempt_.is_full()) return false;
+    exempt_.note(difference);
+    ++lasting_count_;
+    is_exempt_.set(slot);
+    return true;
+}
+
+void ReadBack::forget_overlooked() noexcept {
+    deciding_.forget_overlooked(verification_);
+    exempt_.forget_overlooked(verification_);
+    is_exempt_.reset();
+    for (const RegisterDifference& difference : exempt_.all()) is_exempt_.set(*slot_of(difference.index));
+    for (Sighting& sighting : sightings_) {
+        if (sighting.count != 0 && verification_.overlooks(sighting.difference)) sighting = {};
+    }
+}
+
+std::optional<RegisterDifference> ReadBack::fixed_register() const noexcept {
+    if (!deciding_.all().empty()) return deciding_.all().front();
+    if (!exempt_.all().empty()) return exempt_.all().back();
+    return std::nullopt;
 }
 
 /// A difference that finds no free place is not counted, only acted on: others leave theirs in time.
@@ -98,7 +156,7 @@ void ReadBack::on_clean_check() noexcept {
     if (++clean_checks_ < kCleanChecksUntilForgotten) return;
     clean_checks_ = 0;
     sightings_.fill({});
-    distrusted_.reset();
+    deciding_.clear();
 }
 
 }  // namespace octoskin::vl53l1x

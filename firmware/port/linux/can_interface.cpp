@@ -13,6 +13,7 @@
 #include <fstream>
 #include <utility>
 
+#include "common/wall_time.hpp"
 #include "common/wire/frame_type.hpp"
 #include "common/wire/socketcan_layout.hpp"
 #include "firmware/port/linux/can_errors.hpp"
@@ -49,7 +50,7 @@ Datagram receive_datagram(int socket, std::span<std::byte> bytes) {
         if (beside->cmsg_level != SOL_SOCKET || beside->cmsg_type != SO_TIMESTAMPNS) continue;
         timespec time{};
         std::memcpy(&time, CMSG_DATA(beside), sizeof(time));
-        datagram.stamp = WallTime{std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec};
+        datagram.stamp = wall_time(time.tv_sec, time.tv_nsec);
     }
     return datagram;
 }
@@ -176,7 +177,10 @@ node::CanState CanInterface::state() const {
 }
 
 std::optional<CanInterface::Received> CanInterface::receive() {
-    while (socket_ >= 0) {  // each turn takes one datagram, or the socket's error, out of it
+    // Each turn takes one datagram, or the socket's error, out of it. What is no frame for the node must not
+    // hold it up: empty after so many, and the descriptor stays readable.
+    constexpr int kDatagramsMax = 64;
+    for (int i = 0; i < kDatagramsMax && socket_ >= 0; ++i) {
         std::array<std::byte, CANFD_MTU> bytes{};
         const Datagram datagram = receive_datagram(socket_, bytes);
         if (datagram.count < 0) {

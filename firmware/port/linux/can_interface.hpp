@@ -43,7 +43,8 @@ class CanInterface final : public node::CanTransmitter {
     // --- the program's side
     /// To wait for; -1 while there is no socket.
     [[nodiscard]] int descriptor() const noexcept { return socket_; }
-    /// The next frame of somebody else. Confirmations and error frames are taken in on the way.
+    /// The next frame of somebody else. Confirmations and error frames are taken in on the way; if many are
+    /// there, it is empty, and the descriptor still readable.
     [[nodiscard]] std::optional<Received> receive();
     /// Looks after an interface that is not on the bus, and after frames that were never confirmed.
     void poll(NodeTime now);

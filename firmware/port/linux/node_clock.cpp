@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "common/wall_time.hpp"
+
 namespace octoskin::linux_port {
 namespace {
 
@@ -9,6 +11,12 @@ std::int64_t read_ns(clockid_t clock) noexcept {
     timespec time{};
     ::clock_gettime(clock, &time);
     return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+WallTime wall_now() noexcept {
+    timespec time{};
+    ::clock_gettime(CLOCK_REALTIME, &time);
+    return wall_time(time.tv_sec, time.tv_nsec);
 }
 
 NodeTime node_time(std::int64_t monotonic_ns) noexcept {
@@ -27,11 +35,11 @@ ClockPair read_clocks() noexcept {
     std::int64_t best_width_ns = std::numeric_limits<std::int64_t>::max();
     for (int i = 0; i < kTries; ++i) {
         const std::int64_t before_ns = read_ns(CLOCK_MONOTONIC);
-        const std::int64_t wall_ns = read_ns(CLOCK_REALTIME);
+        const WallTime wall = wall_now();
         const std::int64_t width_ns = read_ns(CLOCK_MONOTONIC) - before_ns;
         if (width_ns >= best_width_ns) continue;
         best_width_ns = width_ns;
-        best = {.node = node_time(before_ns + width_ns / 2), .wall = {wall_ns}};
+        best = {.node = node_time(before_ns + width_ns / 2), .wall = wall};
     }
     return best;
 }

@@ -23,9 +23,8 @@ constexpr int kAsksMax = 3;
 const char* explanation(CalibrationOutcome outcome) {
     switch (outcome) {
         case CalibrationOutcome::refused:
-            return "the node refuses: another calibration is under way on it, or it does not range (safe "
-                   "mode, no "
-                   "valid configuration)";
+            return "the node refuses: another calibration is under way on it, it does not range (safe mode, "
+                   "no valid configuration), or its rig has it refuse all commands (refuses_commands)";
         case CalibrationOutcome::not_brought_up:
             return "the sensor could not be initialised: its SENSOR_HEALTH says why";
         case CalibrationOutcome::device_failed:
@@ -71,6 +70,10 @@ void Dialogue::on_frame(const wire::CanFrame& frame, HostTime now) {
         on_heartbeat(*heartbeat, now);
     } else if (const auto* said = std::get_if<wire::Calibration>(&decoded->message)) {
         on_calibration(*said, now);
+    } else if (const auto* page = std::get_if<wire::NodeInfo>(&decoded->message)) {
+        const auto* fault = std::get_if<wire::InfoFault>(page);
+        if (fault != nullptr && fault->kind == wire::FaultKind::commands_refused)
+            give_up(ExitCode::failed, kCommandsRefused);
     }
 }
 

@@ -39,4 +39,11 @@ Result<NamedMapping, AppError> named_mapping(const std::string& name_or_file) {
     return NamedMapping{name, *mapping, is_built_in && name == "paper_noise_free_robot_seen"};
 }
 
+Result<NamedMapping, AppError> mapping_of_file(const FilePlace& file) {
+    if (auto refused = refused_to_read(file)) return unexpected(std::move(*refused));
+    auto mapping = read_mapping_file(file);
+    if (!mapping) return unexpected(reading_error(ExitCode::bad_config, mapping.error()));
+    return NamedMapping{std::filesystem::path(file.filename()).stem().string(), std::move(*mapping), false};
+}
+
 }  // namespace octoskin

@@ -7,6 +7,7 @@
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
 #include "host/core/mapping/mapping_config.hpp"
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin {
 
@@ -23,5 +24,7 @@ struct NamedMapping {
 /// name that was meant, if one is like it); a file with a mistake (bad_config); a file
 /// called as metrics.json calls something else (usage).
 [[nodiscard]] Result<NamedMapping, AppError> named_mapping(const std::string& name_or_file);
+/// A file, as a recording has one, named after it.
+[[nodiscard]] Result<NamedMapping, AppError> mapping_of_file(const FilePlace& file);
 
 }  // namespace octoskin

@@ -48,6 +48,9 @@ void Dialogue::on_frame(const wire::CanFrame& frame, HostTime now) {
     const bool is_command = std::holds_alternative<wire::Command>(decoded->message);
     if (is_command || decoded->node_id != order_.node_id) return;
     take(decoded->message);
+    const auto& fault = view_.info.fault;
+    if (fault && fault->kind == wire::FaultKind::commands_refused)
+        return give_up(ExitCode::failed, kCommandsRefused);
     advance(now);
 }
 

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "common/wire/names.hpp"
+#include "host/core/ingest/register_reports.hpp"
 
 namespace octoskin::commanding {
 namespace {
@@ -46,6 +47,10 @@ std::string hex(const wire::InfoUidLow& low, const wire::InfoUidHigh& high) {
 
 std::string fault_text(const wire::InfoFault& fault) {
     if (fault.kind == wire::FaultKind::none) return "fault none";
+    const auto report = wire::RegisterReport::of(fault.where);
+    if (fault.kind == wire::FaultKind::register_fixed)
+        return fmt::format("fault register_fixed: sensor {}: {}", report.subject, text_of(report));
+    if (fault.kind == wire::FaultKind::register_alike) return "fault register_alike: " + alike_text(report);
     return fmt::format("fault {} (where: 0x{:08x}); resets that nobody ordered: {}, the last after {} s",
                        wire::name(fault.kind), fault.where, fault.count, fault.uptime_s);
 }

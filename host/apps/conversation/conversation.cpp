@@ -18,8 +18,8 @@ AppError app_error(const socketcan::SocketFault& fault) {
 /// What waits in the socket was said before anything was asked. A fault shows again at the next call.
 void forget_what_waits(socketcan::CanSocket& socket) {
     constexpr int kFramesMax = 100'000;
-    for (int i = 0; i < kFramesMax; ++i) {
-        const auto received = socket.receive();
+    for (int frames_left = kFramesMax; frames_left > 0;) {
+        const auto received = socket.receive(frames_left);
         if (!received || !*received) return;
     }
 }

@@ -25,9 +25,9 @@ bool CanLink::attend(HostTime now) {
     return true;
 }
 
-std::optional<Received> CanLink::receive() {
-    while (socket_) {  // each round takes one frame out of the socket
-        auto received = socket_->receive();
+std::optional<Received> CanLink::receive(int& datagrams_left) {
+    while (socket_ && datagrams_left > 0) {
+        auto received = socket_->receive(datagrams_left);
         if (!received) {
             on_fault(received.error());
             return std::nullopt;

@@ -54,9 +54,18 @@ class CanLink {
     /// -1 while closed.
     [[nodiscard]] int descriptor() const noexcept { return socket_ ? socket_->descriptor() : -1; }
 
-    /// The next frame of the bus or echo of ours; error frames are taken note of here. Empty if none is
-    /// here, or the link is not up.
-    [[nodiscard]] std::optional<socketcan::Received> receive();
+    /// The next frame of the bus or echo of ours; error frames are taken note of here. Takes at most so many
+    /// datagrams for it, which it counts down, whatever they are. Empty if none is here, or the link is not
+    /// up; with none left: there may be more.
+    [[nodiscard]] std::optional<socketcan::Received> receive(int& datagrams_left);
+    [[nodiscard]] std::optional<socketcan::Received> receive() {
+        int datagrams_left = socketcan::CanSocket::kDatagramsMax;
+        return receive(datagrams_left);
+    }
+    /// When the newest that was taken out of the socket had come, whatever it was; empty before the first.
+    [[nodiscard]] std::optional<WallTime> newest() const noexcept {
+        return socket_ ? socket_->newest() : std::nullopt;
+    }
     /// False if it could not be sent now; it will not be sent later.
     bool send(const wire::CanFrame& frame);
 

@@ -2,13 +2,15 @@
 
 #include <ctime>
 
+#include "common/wall_time.hpp"
+
 namespace octoskin {
 namespace {
 
-std::int64_t now_ns(clockid_t clock) {
+timespec now_of(clockid_t clock) {
     timespec now{};
     ::clock_gettime(clock, &now);
-    return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
+    return now;
 }
 
 ClockPair read_once(const ClockReaders& readers) {
@@ -21,11 +23,13 @@ ClockPair read_once(const ClockReaders& readers) {
 }  // namespace
 
 HostTime monotonic_now() {
-    return {now_ns(CLOCK_MONOTONIC)};
+    const timespec now = now_of(CLOCK_MONOTONIC);
+    return {std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec};
 }
 
 WallTime wall_now() {
-    return {now_ns(CLOCK_REALTIME)};
+    const timespec now = now_of(CLOCK_REALTIME);
+    return wall_time(now.tv_sec, now.tv_nsec);
 }
 
 ClockPair read_clocks(const ClockReaders& readers) {

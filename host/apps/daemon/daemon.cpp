@@ -11,24 +11,29 @@
 #include <utility>
 #include <vector>
 
+#include "common/wall_time.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/depth_thread.hpp"
 #include "host/apps/daemon/event_loop.hpp"
-#include "host/apps/daemon/folder_lock.hpp"
 #include "host/apps/daemon/inputs.hpp"
+#include "host/apps/daemon/map_home.hpp"
 #include "host/apps/daemon/map_keeper.hpp"
 #include "host/apps/daemon/problem_log.hpp"
 #include "host/apps/daemon/query_desk.hpp"
 #include "host/apps/daemon/record_requests.hpp"
+#include "host/apps/daemon/register_log.hpp"
+#include "host/apps/daemon/reload_pace.hpp"
 #include "host/apps/daemon/status.hpp"
 #include "host/apps/querying/query_answer.hpp"
+#include "host/apps/recording/shortage.hpp"
 #include "host/io/mapfile/map_file.hpp"
 
 namespace octoskin {
 namespace {
 
 constexpr std::chrono::milliseconds kAttendPeriod{50};
+constexpr std::chrono::milliseconds kHomePeriod{500};
 /// For what is being saved when the end comes, the last save, and what is being recorded. The camera may take
 /// another second, what is left behind 0.2 s: 5 s in all. A large map has as long as a disk with 50 MB/s
 /// takes to write it twice, as a save may just have begun. A file of dense space is 1.4 times the memory.
@@ -46,6 +51,34 @@ void tell_end(Nanoseconds patience) {
     const auto all = std::chrono::duration_cast<std::chrono::microseconds>(patience + kMargin);
     (void)sd_notifyf(0, "STOPPING=1\nEXTEND_TIMEOUT_USEC=%lld\nWATCHDOG_USEC=%lld",
                      static_cast<long long>(all.count()), static_cast<long long>(all.count()));
+}
+
+constexpr int kInternal = 70;
+
+/// The exit code for it.
+int tell_why_it_ends(const std::exception& thrown) {
+    const auto shortage = shortage_in(thrown);
+    if (!shortage) {
+        spdlog::critical("a defect of octoskin, please report it: {}; it saves the map and ends",
+                         thrown.what());
+        return kInternal;
+    }
+    spdlog::critical("{}; it saves the map and ends", shortage->message);
+    return static_cast<int>(shortage->code);
+}
+
+/// Those that would end the process without a save, and that are no fault of its own: they mean nothing here.
+/// One that somebody has taken already, as a profiler, is left alone.
+void ignore_stray_signals() {
+    const auto ignore = [](int signal) {
+        struct sigaction found {};
+        if (::sigaction(signal, nullptr, &found) == 0 && found.sa_handler == SIG_DFL)
+            std::signal(signal, SIG_IGN);
+    };
+    for (const int signal :
+         {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT, SIGPIPE})
+        ignore(signal);
+    for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) ignore(signal);
 }
 
 void tell_warnings(const Settings& settings) {
@@ -68,6 +101,7 @@ struct Daemon::Parts {
     Status<AppError> take_folder();
     void watch();
     void attend();
+    void look_at_home();
     void save_map();
     std::string save_last_map(HostTime end);
     std::uint64_t settle_pipeline();
@@ -76,11 +110,15 @@ struct Daemon::Parts {
         Pipeline pipeline;
     };
     [[nodiscard]] std::string why_map_ends(const Settings& next) const;
-    [[nodiscard]] Result<Next, AppError> read_next() const;
+    /// Empty: the files say what holds already.
+    [[nodiscard]] Result<std::optional<Next>, AppError> read_next() const;
     void keep_within(const MapConfig& next);
     [[nodiscard]] bool take_limits(const MapConfig& next);
     [[nodiscard]] bool go_on_with(Next& next);
+    void ask_reload();
     void reload();
+    /// Whether anything changed.
+    [[nodiscard]] bool take_next();
     [[nodiscard]] DaemonView view() const;
     std::string answer(const std::string& line);
 
@@ -91,7 +129,7 @@ struct Daemon::Parts {
     DepthThread depth_thread;   ///< goes before the pipeline that it works for
     RecordRequests recordings;  ///< lets go of the pipeline before that goes
     Inputs inputs;
-    std::optional<FolderLock> folder;
+    std::optional<MapHome> home;
     std::optional<MapKeeper> keeper;
     std::unique_ptr<ControlSocket> control;
     QueryDesk queries;
@@ -99,7 +137,9 @@ struct Daemon::Parts {
     std::string reload_error;
     ReloadCounts reloads;
     std::optional<HostTime> reloaded;
+    ReloadPace reload_pace;
     ProblemLog problem_log;
+    RegisterLog register_log;
     LastUsed last_used;
 
     std::vector<EventSource> sources;
@@ -125,13 +165,11 @@ ExitCode Daemon::run() {
     (void)sd_notify(0, "READY=1");
     spdlog::info("running: rig '{}', {}{}", parts_->settings.host.rig.name, parts_->request.interface,
                  parts_->request.is_listen_only ? ", listening only" : "");
-    constexpr int kInternal = 70;
     int outcome = kInternal;
     try {
         outcome = parts_->loop.run();
     } catch (const std::exception& error) {
-        spdlog::critical("a defect of octoskin, please report it: {}; it saves the map and ends",
-                         error.what());
+        outcome = tell_why_it_ends(error);
     }
     const Nanoseconds patience = end_patience(parts_->pipeline.maps().fused()->memory_bytes());
     tell_end(patience);
@@ -163,10 +201,10 @@ Status<AppError> Daemon::Parts::take_sockets() {
 
 /// After the sockets: nothing in the folder is touched by a daemon that is one too many.
 Status<AppError> Daemon::Parts::take_folder() {
-    auto taken = FolderLock::take(request.map_folder);
+    auto taken = MapHome::take(request.map_folder);
     if (!taken) return unexpected(taken.error());
-    folder.emplace(std::move(taken).value());
-    keeper.emplace(request.map_folder);
+    home.emplace(std::move(taken).value());
+    keeper.emplace(NamedFolder(home->folder()));
     auto saved = keeper->load(settings.mapping.map);
     if (!saved) {
         return fail(saved.error().code, saved.error().message + "; move it away to begin with an empty map");
@@ -178,9 +216,14 @@ Status<AppError> Daemon::Parts::take_folder() {
 }
 
 void Daemon::Parts::watch() {
-    for (const int signal : {SIGTERM, SIGINT})
+    ignore_stray_signals();
+    for (const int signal : {SIGTERM, SIGINT, SIGQUIT})
         sources.push_back(loop.on_signal(signal, [this] { loop.stop(0); }));
-    sources.push_back(loop.on_signal(SIGHUP, [this] { reload(); }));
+    sources.push_back(loop.on_signal(SIGXCPU, [this] {
+        spdlog::error("the processor time that this process may use is over (ulimit -t): raise the limit");
+        loop.stop(static_cast<int>(ExitCode::no_resources));
+    }));
+    sources.push_back(loop.on_signal(SIGHUP, [this] { ask_reload(); }));
     pipeline.work_beside(&depth_thread);
     sources.push_back(loop.on_readable(depth_thread.descriptor(), [this] {
         depth_thread.acknowledge();
@@ -190,6 +233,7 @@ void Daemon::Parts::watch() {
         for (const auto& [ticket, line] : queries.take_answers()) control->reply(ticket, line);
     }));
     sources.push_back(loop.every(kAttendPeriod, [this] { attend(); }));
+    sources.push_back(loop.every(kHomePeriod, [this] { look_at_home(); }));
     sources.push_back(loop.every(request.save_period, [this] { save_map(); }));
     inputs.watch(settings.host.rig);
 }
@@ -198,16 +242,28 @@ void Daemon::Parts::attend() {
     inputs.attend();
     recordings.attend(monotonic_now());
     last_used.note(pipeline, monotonic_now());
+    if (reload_pace.is_due(monotonic_now())) reload();
     const DaemonView now = view();
     problem_log.tell(problems(now), now.now, now.is_settling());
+    for (const std::string& line : register_log.news(pipeline.intake().nodes())) spdlog::info("{}", line);
+}
+
+/// Whether maps still go where a person looks for them.
+void Daemon::Parts::look_at_home() {
+    if (!home->look()) return;
+    keeper->move_to(NamedFolder(home->folder()));
+    spdlog::warn("{}: the maps' folder was removed and made anew: the map goes on being saved there",
+                 request.map_folder.string());
 }
 
 void Daemon::Parts::save_map() {
+    look_at_home();
     (void)keeper->save(*pipeline.maps().fused());  // counted if one is at work still; the next is not far
 }
 
 /// Why it could not be saved by `end`; empty: it is saved.
 std::string Daemon::Parts::save_last_map(HostTime end) {
+    look_at_home();
     if (!keeper->finish(end - monotonic_now())) return "the disk took too long for the save before";
     keeper->save_last(pipeline.take_fused());
     if (!keeper->finish(end - monotonic_now())) return "the disk took too long";
@@ -239,15 +295,16 @@ std::string Daemon::Parts::why_map_ends(const Settings& next) const {
 }
 
 /// All that may speak against a reload, before anything has changed.
-Result<Daemon::Parts::Next, AppError> Daemon::Parts::read_next() const {
+Result<std::optional<Daemon::Parts::Next>, AppError> Daemon::Parts::read_next() const {
     try {
         auto read = read_settings(request);
         if (!read) return unexpected(read.error());
+        if (read->recorded == settings.recorded) return std::optional<Next>{};
         const std::string why = why_map_ends(*read);
         if (!why.empty()) return fail(ExitCode::bad_config, why);
         auto made = make_pipeline(request, *read);
         if (!made) return unexpected(made.error());
-        return Next{std::move(read).value(), std::move(made).value()};
+        return std::optional(Next{std::move(read).value(), std::move(made).value()});
     } catch (const std::bad_alloc&) {
         return fail(ExitCode::bad_config, "no memory for what the files say");
     }
@@ -296,13 +353,34 @@ bool Daemon::Parts::go_on_with(Next& next) {
     return true;
 }
 
+void Daemon::Parts::ask_reload() {
+    const HostTime now = monotonic_now();
+    const bool is_first = reload_pace.ask();
+    if (reload_pace.is_due(now)) return reload();
+    if (is_first)
+        spdlog::info("SIGHUP: the files are read in {:.1f} s, as they were a moment ago",
+                     seconds_of(reload_pace.wait(now)));
+}
+
 void Daemon::Parts::reload() {
     (void)sd_notify(0, "RELOADING=1");
+    const bool has_changed = take_next();
+    reload_pace.obeyed(monotonic_now(), has_changed);
+    (void)sd_notify(0, "READY=1");
+}
+
+bool Daemon::Parts::take_next() {
     auto next = read_next();
     if (!next) reload_error = next.error().message;
-    if (!next || !go_on_with(*next))
-        spdlog::error("not reloaded");  // why, the next look at the problems tells
-    (void)sd_notify(0, "READY=1");
+    if (next && !next->has_value()) {
+        ++reloads.unchanged;
+        reload_error.clear();
+        spdlog::info("SIGHUP: rig, robot and mapping say what holds already; nothing changes");
+        return false;
+    }
+    if (next && go_on_with(**next)) return true;
+    spdlog::error("not reloaded");  // why, the next look at the problems tells
+    return next.has_value();
 }
 
 DaemonView Daemon::Parts::view() const {
@@ -313,11 +391,13 @@ DaemonView Daemon::Parts::view() const {
             .rig = &settings.host.rig,
             .pipeline = &pipeline,
             .inputs = &inputs,
+            .is_wall_clock_right = tells_time(wall_now()),
             .interface = &request.interface,
             .is_listen_only = request.is_listen_only,
             .camera = inputs.camera(),
             .used = last_used,
             .saves = keeper->record(),
+            .maps_problem = home->problem(),
             .recorder = recordings.recorder(),
             .recording_refusal = recordings.refusal(),
             .reload_error = reload_error,

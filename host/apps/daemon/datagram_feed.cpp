@@ -26,6 +26,11 @@ SenderKey key_of(const socketcan::StampedDatagram& received, const std::string& 
     return {pid, pid > 0 ? std::string() : address};
 }
 
+JointSender sender_of(const socketcan::StampedDatagram& received, std::string address) {
+    const auto seen = received.sender.value_or(socketcan::StampedDatagram::Sender{});
+    return {seen.pid, seen.pid > 0 ? seen.uid : 0, std::move(address)};
+}
+
 }  // namespace
 
 DatagramFeed::DatagramFeed(int socket, std::size_t bytes_max)
@@ -136,6 +141,7 @@ std::optional<Datagram> DatagramFeed::receive() {
             ++surplus_;
             continue;
         }
+        datagram.sender = sender_of(received, std::move(address));
         datagram.bytes.assign(room_.data(), static_cast<std::size_t>(received.count));
         // It may have waited: it came when the kernel says.
         datagram.came = received.stamp.value_or(wall_now());

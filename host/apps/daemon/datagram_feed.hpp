@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/time.hpp"
+#include "host/apps/daemon/joint_senders.hpp"
 #include "host/apps/daemon/sender_shares.hpp"
 
 namespace octoskin {
@@ -22,6 +23,7 @@ struct Datagram {
     std::optional<HostTime> came_at;  ///< the same on the clock that never steps, if that can be told
     HostTime read;
     SenderKey from;
+    JointSender sender;  ///< the same, and whose it is
 };
 
 class DatagramFeed {

@@ -24,15 +24,14 @@ std::size_t bytes_of(const DepthFrame& frame) {
 /// What the thread needs, for as long as it needs it: it may outlive the recorder.
 class DepthRecorder::Work {
   public:
-    Work(std::filesystem::path oni, std::filesystem::path epoch)
-        : oni_(std::move(oni)), epoch_(std::move(epoch)) {}
+    Work(FilePlace oni, FilePlace epoch) : oni_(std::move(oni)), epoch_(std::move(epoch)) {}
 
     void run() {
         std::string error;
         try {
             error = record();
         } catch (const std::exception& thrown) {  // no memory, no thread
-            error = oni_.string() + ": " + thrown.what();
+            error = oni_.shown().string() + ": " + thrown.what();
         }
         const std::lock_guard lock(mutex_);
         error_ = std::move(error);
@@ -92,8 +91,8 @@ class DepthRecorder::Work {
         return closed ? std::string() : closed.error().what;
     }
 
-    std::filesystem::path oni_;
-    std::filesystem::path epoch_;
+    FilePlace oni_;
+    FilePlace epoch_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<DepthFrame> waiting_;
@@ -104,7 +103,7 @@ class DepthRecorder::Work {
     std::string error_;
 };
 
-DepthRecorder::DepthRecorder(std::filesystem::path oni, std::filesystem::path epoch)
+DepthRecorder::DepthRecorder(FilePlace oni, FilePlace epoch)
     : work_(std::make_shared<Work>(std::move(oni), std::move(epoch))),
       thread_([shared = work_] { shared->run(); }) {}
 

@@ -8,6 +8,7 @@
 
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/core/depth/depth_frame.hpp"
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin {
 
@@ -17,7 +18,7 @@ class DepthRecorder {
     static constexpr std::size_t kWaitingMax = std::size_t{128} << 20U;
 
     /// Touches nothing until `begin`; then makes the file with the first frame.
-    DepthRecorder(std::filesystem::path oni, std::filesystem::path epoch);
+    DepthRecorder(FilePlace oni, FilePlace epoch);
     /// Drops what waits, unless `finish` was called and has ended. Within 0.1 s: a write that hangs is left
     /// behind.
     ~DepthRecorder();

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -16,6 +17,8 @@ namespace octoskin {
 namespace {
 
 constexpr const char* kLockFile = "lock";
+constexpr unsigned kMode = 0640;
+constexpr int kTries = 10;
 
 /// Who holds it wrote its process id there; empty if it could not.
 std::string holder_of(int descriptor) {
@@ -25,39 +28,65 @@ std::string holder_of(int descriptor) {
                      : std::string();
 }
 
+Result<OpenFile, FolderError> open_or_create(const OpenFolder& folder) {
+    auto opened = folder.open_file(kLockFile);
+    if (opened || opened.error().fault != FolderFault::absent) return opened;
+    auto created = folder.create_new(kLockFile, kMode);
+    if (created || created.error().fault != FolderFault::is_there) return created;
+    return folder.open_file(kLockFile);  // another process was quicker
+}
+
+/// Of a file that has no other name: what is written there is written nowhere else.
+void write_process_id(const OpenFile& file) {
+    const std::string own = std::to_string(::getpid());
+    const Descriptor to_write(::open(file.path_for_libraries().c_str(), O_WRONLY | O_CLOEXEC));
+    if (!to_write) return;
+    // On a full disk it goes without: who holds the lock counts, not what is in it.
+    (void)!::ftruncate(to_write.get(), 0);
+    (void)!::pwrite(to_write.get(), own.data(), own.size(), 0);
+}
+
 }  // namespace
 
-Result<FolderLock, AppError> FolderLock::take(const std::filesystem::path& folder) {
-    std::error_code made;
-    std::filesystem::create_directories(folder, made);
-    const std::string file = (folder / kLockFile).string();
-    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640);
-    if (descriptor < 0) {
-        const std::error_code why = made ? made : std::error_code(errno, std::generic_category());
-        return cannot_create(folder, "no maps can be saved there (" + why.message() + "): " + remedy_of(why) +
-                                         "; --maps names the folder");
-    }
-    FolderLock lock(descriptor);
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-        return cannot_create(folder, "another octoskin" + holder_of(descriptor) +
-                                         " keeps its map there; stop it, or name another folder");
-    }
-    const std::string own = std::to_string(::getpid());
-    // On a full disk it goes without: who holds the lock counts, not what is in it.
-    (void)!::ftruncate(descriptor, 0);
-    (void)!::pwrite(descriptor, own.data(), own.size(), 0);
-    return lock;
+AppError FolderLock::cannot_save(const std::filesystem::path& folder, const FolderError& error) {
+    if (error.fault == FolderFault::link || error.fault == FolderFault::not_a_file)
+        return cannot_create(error.path, error.reason()).error;
+    const std::string remedy = error.fault == FolderFault::foreign_owner
+                                   ? std::string()
+                                   : ": " + remedy_of({error.error_number, std::generic_category()});
+    return cannot_create(folder, "no maps can be saved there (" + error.reason() + ")" + remedy +
+                                     "; --maps names the folder")
+        .error;
 }
 
-FolderLock::FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
+Result<FolderLock, AppError> FolderLock::take(const std::filesystem::path& named) {
+    const auto made = make_open_folder(named);
+    if (!made) return unexpected(cannot_save(named, made.error()));
+    return take(made->folder, named);
 }
 
-FolderLock::~FolderLock() {
-    if (descriptor_ >= 0) ::close(descriptor_);
+Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const std::filesystem::path& named) {
+    for (int tries = 0; tries < kTries; ++tries) {
+        auto file = open_or_create(folder);
+        if (!file) return unexpected(cannot_save(named, file.error()));
+        if (::flock(file->descriptor(), LOCK_EX | LOCK_NB) != 0) {
+            return cannot_create(named, "another octoskin" + holder_of(file->descriptor()) +
+                                            " keeps its map there; stop it, or name another folder");
+        }
+        struct stat status {};
+        if (::fstat(file->descriptor(), &status) != 0)
+            return unexpected(cannot_save(named, folder_error_of(errno, named)));
+        if (status.st_nlink == 1) {
+            write_process_id(*file);
+            return FolderLock(folder, std::move(*file));
+        }
+        // Several names, or none any more: that file is left as it is, and a new one takes its place.
+        if (status.st_nlink > 1) {
+            if (const auto removed = folder.remove(kLockFile); !removed)
+                return unexpected(cannot_save(named, removed.error()));
+        }
+    }
+    return cannot_create(named, "its lock file is replaced again and again; what else works in this folder?");
 }
 
 }  // namespace octoskin

@@ -1,6 +1,5 @@
 #include "host/apps/daemon/growing_file.hpp"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -17,11 +16,12 @@ Unexpected<std::string> GrowingFile::failure() const {
     return unexpected(file_.string() + ": " + std::generic_category().message(errno));
 }
 
-Status<std::string> GrowingFile::create(const std::filesystem::path& file) {
-    constexpr int kMode = 0644;
-    file_ = file;
-    descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, kMode);
-    if (descriptor_ < 0) return failure();
+Status<std::string> GrowingFile::create(const FilePlace& file) {
+    constexpr unsigned kReadableByAll = 0644;
+    file_ = file.shown();
+    auto created = file.create_new(kReadableByAll);
+    if (!created) return unexpected(created.error().message());
+    descriptor_ = created->release();
     return Done{};
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/result.hpp"
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin {
 
@@ -16,7 +17,7 @@ class GrowingFile {
     GrowingFile& operator=(const GrowingFile&) = delete;
     ~GrowingFile();
     /// Refuses one that is there already.
-    [[nodiscard]] Status<std::string> create(const std::filesystem::path& file);
+    [[nodiscard]] Status<std::string> create(const FilePlace& file);
     [[nodiscard]] Status<std::string> append(const std::string& text);
     /// To the disk, and closed.
     [[nodiscard]] Status<std::string> finish();

@@ -12,7 +12,7 @@ namespace octoskin {
 namespace {
 
 constexpr std::chrono::milliseconds kCameraSilenceMax{2'000};
-/// Frames taken in one go before others have a turn.
+/// Frames, and what is none, taken in one go before others have a turn.
 constexpr int kFramesPerTurn = 256;
 // As many as wait for a loop that was held up. A flood does not keep the bus waiting for more.
 constexpr int kDatagramsPerTurn = DatagramFeed::kWaitingMax;
@@ -173,16 +173,19 @@ bool Inputs::is_flooded(HostTime now) const {
 
 void Inputs::catch_up() {
     constexpr int kTurnsMax = 64;  // as much as the receive buffer holds
+    const WallTime begun = wall_now();
     int datagrams_left = kDatagramsPerTurn;
     for (int i = 0; i < kTurnsMax && !drain_can(datagrams_left); ++i) {
+        if (can_.newest() > begun) return;  // the rest came meanwhile: of a flood there is always more
     }
 }
 
 /// The bus's time is told by the order of stamps: what comes through the socket takes its place in it.
 bool Inputs::drain_can(int& datagrams_left) {
-    for (int i = 0; i < kFramesPerTurn; ++i) {
+    for (int frames_left = kFramesPerTurn; frames_left > 0;) {
         collect_joints(datagrams_left);  // first: what it does not find comes later than the frame
-        const auto received = can_.receive();
+        const auto received = can_.receive(frames_left);
+        if (!received && frames_left <= 0) return false;
         feed_joints(received ? std::optional(received->entry.stamp) : std::nullopt);
         if (!received) return true;
         take_frame(*received);
@@ -269,8 +272,10 @@ void Inputs::collect_joints(int& datagrams_left) {
             has_joints_left_ = false;
             return;
         }
-        if (!sample) continue;  // counted by the socket
-        if (has_lost_its_place(*sample)) {
+        if (!sample) continue;        // counted by the socket
+        if (sample->is_of_several) {  // which of them is the arm's nobody can tell
+            ++joints_of_several_;
+        } else if (has_lost_its_place(*sample)) {
             ++joints_late_;
         } else {
             joints_waiting_.push_back(std::move(*sample));

@@ -58,6 +58,8 @@ class Inputs {
     [[nodiscard]] const JointSocket* joints() const noexcept { return joints_ ? &*joints_ : nullptr; }
     /// Samples of the socket that came too soon after the one before.
     [[nodiscard]] std::uint64_t joints_thinned() const noexcept { return joints_thinned_; }
+    /// Samples of the socket that came while several programs sent some.
+    [[nodiscard]] std::uint64_t joints_of_several() const noexcept { return joints_of_several_; }
     /// Datagrams of the socket that gave way to newer ones: the loop was held up, or they are a flood.
     [[nodiscard]] std::uint64_t joints_displaced() const;
     /// Some have within the last 2 s, or were beyond what one program may send.
@@ -126,6 +128,7 @@ class Inputs {
     wire::BitRates bit_rates_;
     Nanoseconds bus_busy_{0};
     std::uint64_t joints_thinned_ = 0;
+    std::uint64_t joints_of_several_ = 0;
     std::uint64_t joint_node_ignored_ = 0;
     HostTime told_;  ///< when the newest frame that tells the pipeline the time was here
     std::optional<HostTime> foreign_sync_;

@@ -101,7 +101,11 @@ JointSocket& JointSocket::operator=(JointSocket&& other) noexcept {
     std::swap(file_, other.file_);
     std::swap(feed_, other.feed_);
     joint_count_ = other.joint_count_;
+    senders_ = std::move(other.senders_);
     samples_ = other.samples_;
+    second_begun_ = other.second_begun_;
+    second_samples_ = other.second_samples_;
+    rate_hz_ = other.rate_hz_;
     faults_ = other.faults_;
     return *this;
 }
@@ -120,10 +124,31 @@ bool JointSocket::receive(std::optional<JointSample>& sample) {
         ++samples_;
         sample = std::move(parsed).value();
         sample->came = datagram->came;
+        const HostTime at = datagram->came_at.value_or(datagram->read);
+        count_rate(at);
+        senders_.hear(datagram->sender, at);
+        sample->is_of_several = senders_.are_several(at);
     } else {
         ++faults_.at(static_cast<std::size_t>(parsed.error()));
     }
     return true;
+}
+
+void JointSocket::count_rate(HostTime at) {
+    constexpr Nanoseconds kSecond{1'000'000'000};
+    const Nanoseconds passed = at - second_begun_;
+    if (passed >= kSecond) {
+        rate_hz_ =
+            passed < 2 * kSecond ? static_cast<double>(second_samples_) / seconds_at({passed.count()}) : 0.0;
+        second_begun_ = at;
+        second_samples_ = 0;
+    }
+    ++second_samples_;
+}
+
+double JointSocket::rate_hz(HostTime now) const {
+    constexpr Nanoseconds kOver{2'000'000'000};
+    return now - second_begun_ < kOver ? rate_hz_ : 0.0;
 }
 
 }  // namespace octoskin

@@ -18,6 +18,7 @@
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "host/apps/daemon/datagram_feed.hpp"
+#include "host/apps/daemon/joint_senders.hpp"
 #include "host/apps/recording/app_error.hpp"
 
 namespace octoskin {
@@ -25,7 +26,8 @@ namespace octoskin {
 struct JointSample {
     HostTime sampled;
     std::vector<double> position;
-    WallTime came;  ///< through a socket
+    WallTime came;               ///< through a socket
+    bool is_of_several = false;  ///< another sender is heard beside its own
 };
 
 enum class JointTextFault : std::uint8_t {
@@ -74,6 +76,9 @@ class JointSocket {
     [[nodiscard]] bool receive(std::optional<JointSample>& sample);
 
     [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
+    [[nodiscard]] const JointSenders& senders() const noexcept { return senders_; }
+    /// Samples that came in the newest whole second; those of several senders together.
+    [[nodiscard]] double rate_hz(HostTime now) const;
     [[nodiscard]] const std::array<std::uint64_t, 5>& faults() const noexcept { return faults_; }
     /// Datagrams that gave way to newer ones, as nobody received for too long.
     [[nodiscard]] std::uint64_t displaced() const { return feed_->displaced(); }
@@ -87,7 +92,13 @@ class JointSocket {
     std::filesystem::path file_;
     std::unique_ptr<DatagramFeed> feed_;
     std::size_t joint_count_ = 0;
+    void count_rate(HostTime at);
+
+    JointSenders senders_;
     std::uint64_t samples_ = 0;
+    HostTime second_begun_;             ///< of the one that is counted
+    std::uint64_t second_samples_ = 0;  ///< in it, so far
+    double rate_hz_ = 0.0;              ///< of the one before
     std::array<std::uint64_t, 5> faults_{};
 };
 

@@ -31,11 +31,11 @@ std::string why_no_room(const FusedMap& map, const MapConfig& next) {
         needed_mib, next.memory_max_mib, needed_mib);
 }
 
-MapKeeper::MapKeeper(std::filesystem::path folder, Writer writer, Copier copier)
-    : copier_(std::move(copier)), work_(std::make_shared<Work>()) {
-    work_->folder = std::move(folder);
-    work_->writer = std::move(writer);
-    remove_leftovers(work_->folder);
+MapKeeper::MapKeeper(NamedFolder folder, Writer writer, Copier copier)
+    : copier_(std::move(copier)), work_(std::make_shared<Work>(std::move(folder), std::move(writer))) {
+    if (const auto opened = work_->folder.open()) {
+        if (const auto to_write = opened->to_write()) remove_leftovers(*to_write);
+    }
     thread_ = start_without_signals([shared = work_] { work(*shared); });
 }
 
@@ -51,19 +51,20 @@ MapKeeper::~MapKeeper() {
 }
 
 Result<std::optional<FusedMap>, AppError> MapKeeper::load(const MapConfig& config) const {
-    const auto file = work_->folder / kMapFile;
-    std::error_code error;
-    const bool is_there = std::filesystem::exists(file, error);
+    const FilePlace file(work_->folder, kMapFile);
     // What cannot be seen may be there: beginning anew would overwrite it.
-    if (error)
-        return unexpected(reading_error(file, {ExitCode::no_input, file.string() + ": " + error.message()}));
-    if (!is_there) return std::optional<FusedMap>{};
+    if (!file.is_there()) return std::optional<FusedMap>{};
     auto map = load_map_of(config, file);
     if (!map) {
         const char* const remedy = map.error().is_of_other_voxels ? ": say map.resolution_m as it was" : "";
         return unexpected(reading_error(file, {ExitCode::bad_data, map.error().message + remedy}));
     }
     return std::optional(std::move(map).value());
+}
+
+void MapKeeper::move_to(NamedFolder folder) {
+    const std::lock_guard lock(work_->mutex);
+    work_->folder = std::move(folder);
 }
 
 bool MapKeeper::save(const FusedMap& map) {
@@ -113,12 +114,13 @@ void MapKeeper::work(Work& shared) {
         shared.changed.wait(lock, [&shared] { return shared.waiting || shared.is_ending; });
         if (shared.is_ending) return;
         std::optional<FusedMap> map = std::exchange(shared.waiting, std::nullopt);
+        const NamedFolder folder = shared.folder;
         lock.unlock();
         std::string error;
         try {
-            error = shared.writer(*map, shared.folder);
+            error = shared.writer(*map, folder);
         } catch (const std::exception& thrown) {  // no memory for the file's text
-            error = fmt::format("{}: {}", shared.folder.string(), thrown.what());
+            error = fmt::format("{}: {}", folder.shown().string(), thrown.what());
         }
         map.reset();
         end_save(shared, std::move(error));
@@ -137,9 +139,9 @@ void MapKeeper::end_save(Work& shared, std::string error) {
     shared.changed.notify_all();
 }
 
-std::string MapKeeper::write_map(const FusedMap& map, const std::filesystem::path& folder) {
+std::string MapKeeper::write_map(const FusedMap& map, const NamedFolder& folder) {
     for (const char* file : {kMapFile, kSmallMapFile}) {
-        if (const auto saved = save_map(map, folder / file); !saved) return saved.error().message;
+        if (const auto saved = save_map(map, {folder, file}); !saved) return saved.error().message;
     }
     return {};
 }

@@ -3,18 +3,19 @@
 
 #include <condition_variable>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "host/apps/recording/app_error.hpp"
 #include "host/core/mapping/fused_map.hpp"
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin {
 
@@ -33,14 +34,13 @@ struct SaveRecord {
 class MapKeeper {
   public:
     /// What writes a map into the folder; the answer is empty, or why it could not.
-    using Writer = std::function<std::string(const FusedMap& map, const std::filesystem::path& folder)>;
+    using Writer = std::function<std::string(const FusedMap& map, const NamedFolder& folder)>;
 
     using Copier = std::function<FusedMap(const FusedMap& map)>;
 
     /// `folder` gets fused.ot and fused.bt; it must be this process's own (FolderLock). What a dead process
     /// left of a save there is removed.
-    explicit MapKeeper(std::filesystem::path folder, Writer writer = write_map,
-                       Copier copier = &FusedMap::copy);
+    explicit MapKeeper(NamedFolder folder, Writer writer = write_map, Copier copier = &FusedMap::copy);
     /// A save that the disk does not let go of is left behind: `finish` first.
     ~MapKeeper();
     MapKeeper(const MapKeeper&) = delete;
@@ -50,6 +50,10 @@ class MapKeeper {
     /// file, what is wrong with it and what to do. Any map that a keeper with this memory_max_mib saved has
     /// room.
     [[nodiscard]] Result<std::optional<FusedMap>, AppError> load(const MapConfig& config) const;
+
+    /// From the next save on maps go into this folder; it must be this process's own. One that is being
+    /// written goes where it was to go.
+    void move_to(NamedFolder folder);
 
     /// Copies the map and has the copy saved, never waiting for the disk. While one is being saved nothing is
     /// copied, and false is the answer: there is one copy at a time. False, too, if there is no memory for
@@ -62,12 +66,14 @@ class MapKeeper {
 
     [[nodiscard]] SaveRecord record() const;
 
-    static std::string write_map(const FusedMap& map, const std::filesystem::path& folder);
+    static std::string write_map(const FusedMap& map, const NamedFolder& folder);
 
   private:
     /// What the thread needs, for as long as it needs it: it may outlive the keeper.
     struct Work {
-        std::filesystem::path folder;
+        Work(NamedFolder folder_in, Writer writer_in)
+            : folder(std::move(folder_in)), writer(std::move(writer_in)) {}
+        NamedFolder folder;
         Writer writer;
         std::mutex mutex;
         std::condition_variable changed;

@@ -1,10 +1,13 @@
 #include "host/apps/daemon/problem_log.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 
 #include <algorithm>
 #include <utility>
+
+#include "host/core/text/printable.hpp"
 
 namespace octoskin {
 
@@ -18,7 +21,8 @@ void ProblemLog::tell(std::vector<Problem> problems, HostTime now, bool is_settl
     log(problems, now);
     log_over(now);
     if (newest_ == problems) return;
-    const std::string state = problems.empty() ? "STATUS=all is well" : "STATUS=" + problems.front().text;
+    const std::string state =
+        problems.empty() ? "STATUS=all is well" : "STATUS=" + printable(problems.front().text);
     (void)sd_notify(0, state.c_str());
     newest_ = std::move(problems);
 }
@@ -29,24 +33,54 @@ void ProblemLog::log(const std::vector<Problem>& problems, HostTime now) {
             told_, problem.about, [](const Told& each) -> const std::string& { return each.problem.about; });
         if (told == told_.end()) {
             spdlog::warn("{}", problem.text);
-            told_.push_back({problem, now});
+            told_.push_back({problem, now, returns_of_gone(problem)});
         } else {
-            *told = {problem, now};
+            const bool was_away = now - told->seen >= kOver;
+            *told = {problem, now, told->returns + (was_away ? 1U : 0U)};
         }
     }
 }
 
 /// A sentence that another of the same subject has replaced is no more, and nothing is over.
 void ProblemLog::log_over(HostTime now) {
-    const auto is_over = [now](const Told& told) { return now - told.seen >= kOver; };
+    const auto is_over = [now](const Told& told) { return now - told.seen >= told.over_after(); };
     for (const Told& told : told_) {
         const bool is_replaced = std::ranges::any_of(told_, [&](const Told& other) {
             return !is_over(other) && !other.problem.subject.empty() &&
                    other.problem.subject == told.problem.subject;
         });
-        if (is_over(told) && !is_replaced) spdlog::info("over: {}", told.problem.text);
+        if (!is_over(told)) continue;
+        if (!is_replaced) {
+            const std::string often = told.returns > kFreeReturns
+                                          ? fmt::format(" (it came and went {} times)", told.returns + 1)
+                                          : "";
+            spdlog::info("over: {}{}", told.problem.text, often);
+        }
+        gone_.push_back(told);
     }
     std::erase_if(told_, is_over);
+    forget_old(now);
+}
+
+/// How often one that comes has come back by now. It is gone no more.
+unsigned ProblemLog::returns_of_gone(const Problem& problem) {
+    const auto gone = std::ranges::find(
+        gone_, problem.about, [](const Told& each) -> const std::string& { return each.problem.about; });
+    if (gone == gone_.end()) return 0;
+    const unsigned returns = gone->returns + 1;
+    gone_.erase(gone);
+    return returns;
+}
+
+void ProblemLog::forget_old(HostTime now) {
+    std::erase_if(gone_, [now](const Told& gone) { return now - gone.seen >= kForgotten; });
+    if (gone_.size() > kGoneMax) gone_.erase(gone_.begin(), gone_.end() - kGoneMax);
+}
+
+Nanoseconds ProblemLog::Told::over_after() const {
+    constexpr unsigned kDoublingsMax = 8;  // 2 s to over kOverMax
+    const unsigned doublings = std::min(returns - std::min(returns, kFreeReturns), kDoublingsMax);
+    return std::min(kOver * (1 << doublings), kOverMax);
 }
 
 }  // namespace octoskin

@@ -24,6 +24,12 @@ class ProblemLog {
   public:
     /// A problem is over in the log when it was not there for so long: one that comes and goes is one.
     static constexpr Nanoseconds kOver{2'000'000'000};
+    /// One that comes back so often must then be away for twice as long each time, up to kOverMax: a line for
+    /// each of its turns would hide the others. Once it is over, the log says how often it came and went.
+    static constexpr unsigned kFreeReturns = 2;
+    static constexpr Nanoseconds kOverMax{300'000'000'000};
+    /// After so long without it, it is one that never was.
+    static constexpr Nanoseconds kForgotten{600'000'000'000};
 
     /// All that there are now; while `is_settling` some cannot be judged, and none that was told is over.
     void tell(std::vector<Problem> problems, HostTime now, bool is_settling = false);
@@ -31,12 +37,19 @@ class ProblemLog {
   private:
     struct Told {
         Problem problem;
-        HostTime seen;  ///< the newest time that it was there
+        HostTime seen;         ///< the newest time that it was there
+        unsigned returns = 0;  ///< after it was away for kOver
+        [[nodiscard]] Nanoseconds over_after() const;
     };
     void log(const std::vector<Problem>& problems, HostTime now);
     void log_over(HostTime now);
 
+    [[nodiscard]] unsigned returns_of_gone(const Problem& problem);
+    void forget_old(HostTime now);
+
+    static constexpr std::size_t kGoneMax = 256;
     std::vector<Told> told_;
+    std::vector<Told> gone_;  ///< in the order of their ends
     std::vector<Problem> newest_;
 };
 

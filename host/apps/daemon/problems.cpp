@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/wire/names.hpp"
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/status.hpp"
 #include "host/core/rig/sensor_text.hpp"
 
@@ -10,6 +11,15 @@ namespace octoskin {
 namespace {
 
 using Problems = std::vector<Problem>;
+
+/// Each frame's stamp is this clock's: while it shows nonsense no frame has a time.
+void add_wall_clock(const DaemonView& view, Problems& problems) {
+    if (view.is_wall_clock_right) return;
+    problems.push_back({"wall clock",
+                        "this machine's clock shows a time before 1970 or after 2199, and frames get their "
+                        "stamps from it: set it (`sudo timedatectl set-time '2026-01-31 12:00:00'`, or "
+                        "`set-ntp true`)"});
+}
 
 void add_link(const DaemonView& view, Problems& problems) {
     if (view.inputs->can().state() != LinkState::up) {
@@ -150,6 +160,16 @@ void add_losses(const DaemonView& view, const HostNode& node, Problems& problems
          on});
 }
 
+/// Which register the sensor is withheld for, and how to have it left out; empty if its node named none.
+std::string register_text(const DaemonView& view, const HostNode& node, std::size_t index) {
+    const auto sensor = static_cast<std::uint8_t>(index);
+    const auto& health = view.pipeline->intake().ranges().record(node.node_id, sensor).health;
+    const NodeRecord& record = view.pipeline->intake().nodes().records().at(node.node_id);
+    const auto& report = record.registers.of_sensor(sensor);
+    if (!report || health->fault != wire::SensorFault::config_mismatch) return {};
+    return ": " + text_of(*report) + "; if that is how this part is, " + leave_out_text(*report, node.name);
+}
+
 void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {
     const SensorRecord& sensor =
         view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
@@ -159,7 +179,7 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
     if (sensor.health && !is_ranging && sensor.health->state != wire::SensorState::starting) {
         const std::string text = fmt::format("{}: {}, {}", who, wire::name(sensor.health->state),
                                              wire::name(sensor.health->fault));
-        problems.push_back({text, text, who, on});
+        problems.push_back({text, text + register_text(view, node, index), who, on});
     } else if (const auto streak = sensor.fates.streak()) {
         problems.push_back(
             {who + " streak",
@@ -227,6 +247,12 @@ std::string why_no_joints(const DaemonView& view) {
     if (const std::string refused = refused_lines(*socket); !refused.empty())
         return fmt::format("no joint states: what comes through the socket is refused ({}); wanted: {}",
                            refused, kJointTextWanted);
+    if (view.inputs->joints_of_several() > 0) {
+        return fmt::format(
+            "no joint states: those that come through the socket are of more than one program "
+            "(second_sender, {})",
+            view.inputs->joints_of_several());
+    }
     if (view.pipeline->accounts().frames.rejected(FrameReason::joint_no_host_time) > 0) {
         return "no joint states: those that come through the socket have no time on the bus's clock "
                "(joint_no_host_time): nobody sends SYNC and FOLLOW_UP on it";
@@ -248,9 +274,64 @@ std::string see_counters(const char* unit, const Account<Reject>& account) {
                       : fmt::format("{} (most often {}, {} of {})", where, kNames[most], count, account.in());
 }
 
+/// "process 4711 (python3, user 1000) and process 4712 (octoskin, user 1000)".
+std::string names_of_senders(const std::vector<JointSenders::Heard>& senders) {
+    std::string text;
+    for (const JointSenders::Heard& heard : senders)
+        text += (text.empty() ? "" : " and ") + describe(heard.sender, heard.program);
+    return text;
+}
+
+bool is_recent(const std::optional<HostTime>& at, HostTime now) {
+    constexpr Nanoseconds kTold{3'000'000'000};  // longer than a person's look, or a script's, takes
+    return at && now - *at < kTold;
+}
+
+void add_joint_jump(const DaemonView& view, Problems& problems) {
+    const auto& jumped = view.pipeline->joint_jump().newest();
+    if (!jumped || !is_recent(view.used.joint_jump, view.now)) return;
+    problems.push_back(
+        {"joint jump",
+         fmt::format("joint states jump: {} went from {:.3f} to {:.3f} in {:.0f} ms, where the robot "
+                     "description lets it move by {:.3f} at most (joint_jump, {}): another program tells "
+                     "joint states too, or the velocity of its <limit> is too low",
+                     view.rig->joints.joints.at(jumped->joint), jumped->from, jumped->to,
+                     1e3 * seconds_of(jumped->passed), jumped->step_max,
+                     view.pipeline->accounts().joint_samples.rejected(JointReason::joint_jump))});
+}
+
+/// Whose word does not count while another's is heard, by what tells the two apart.
+void add_joint_senders(const DaemonView& view, Problems& problems) {
+    add_joint_jump(view, problems);
+    const JointSocket* const socket = view.inputs->joints();
+    if (socket != nullptr && is_recent(socket->senders().several_at(), view.now)) {
+        problems.push_back(
+            {"joint senders",
+             fmt::format("joint states come through the socket from more than one program, and none is used "
+                         "until all but one were silent for a second (second_sender, {}): {}",
+                         view.inputs->joints_of_several(),
+                         names_of_senders(socket->senders().newest_several()))});
+        return;
+    }
+    if (!is_recent(view.used.joint_senders, view.now)) return;
+    const std::uint64_t withheld =
+        view.pipeline->accounts().joint_samples.rejected(JointReason::second_sender);
+    problems.push_back(
+        {"joint senders",
+         socket != nullptr
+             ? fmt::format("joint states of two arms come through the socket by turns, and neither is used "
+                           "until that was over for a second (second_sender, {})",
+                           withheld)
+             : fmt::format("two senders tell joint states under node {}, and neither is used until they have "
+                           "not contradicted each other for a second (second_sender, {}): the joint node and "
+                           "another board of that id, or `octoskin joints --can` beside it",
+                           view.rig->joints.node_id, withheld)});
+}
+
 void add_joints(const DaemonView& view, Problems& problems) {
     constexpr std::uint64_t kFirstSamples = 5;  // of a source: nothing is known of it yet
     const auto& joints = view.pipeline->accounts().joint_samples;
+    add_joint_senders(view, problems);
     if (joints.in() == 0) {
         problems.push_back({"no joints", why_no_joints(view), "joints"});
     } else if (!view.used.joint_sample) {
@@ -363,6 +444,7 @@ void add_map(const DaemonView& view, Problems& problems) {
                                         "or give the service more",
                                         map.counters().no_memory)});
     }
+    if (!view.maps_problem.empty()) problems.push_back({"maps folder", view.maps_problem, "maps"});
     if (!view.saves.error.empty())
         problems.push_back({"map not saved", "the map is not saved: " + view.saves.error});
     if (view.recorder != nullptr && !view.recorder->error().empty()) {
@@ -422,6 +504,7 @@ std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double ra
 
 std::vector<Problem> problems(const DaemonView& view) {
     Problems problems;
+    add_wall_clock(view, problems);
     add_link(view, problems);
     add_other_hosts(view, problems);
     add_links_without_body(view, problems);

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "host/apps/daemon/clocks.hpp"
+#include "host/core/text/printable.hpp"
 
 namespace octoskin {
 namespace {
@@ -22,28 +23,18 @@ constexpr double kSecondsMax = 1e6;
 /// For a disk to take a folder, or to refuse it: a reading may wait so long.
 constexpr Nanoseconds kFolderPatience{100'000'000};
 
-bool is_control(char c) {
-    constexpr unsigned char kDelete = 0x7F;
-    return static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) == kDelete;
-}
-
-/// With its control characters as "\\x0a".
-std::string in_one_line(const std::string& name) {
-    std::string line;
-    for (const char c : name) line += is_control(c) ? fmt::format("\\x{:02x}", c) : std::string(1, c);
-    return line;
-}
-
 }  // namespace
 
 std::string fault_of_folder(const std::filesystem::path& folder) {
     const std::string name = folder.string();
-    if (std::ranges::any_of(name, is_control)) {
-        return fmt::format(
-            "'{}': a recording's folder may have no control characters in its name; give another one",
-            in_one_line(name));
-    }
-    return folder.is_absolute() ? std::string() : fmt::format("'{}' is no absolute path", name);
+    const std::string shown = printable(name);
+    if (!folder.is_absolute()) return fmt::format("'{}' is no absolute path", shown);
+    if (shown == name) return {};
+    // It goes to logs, to the status, and to whoever replays it.
+    return fmt::format(
+        "'{}': a recording's folder may have no control characters in its name, and must be UTF-8; give "
+        "another one",
+        shown);
 }
 
 std::filesystem::path plain(const std::filesystem::path& folder) {

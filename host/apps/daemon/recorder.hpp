@@ -25,6 +25,7 @@ struct RecordedSettings {
     std::uint32_t rig_hash = 0;
     std::size_t joints = 0;
     std::string interface;
+    friend bool operator==(const RecordedSettings&, const RecordedSettings&) = default;
 };
 
 class Recorder final : public CommitListener {

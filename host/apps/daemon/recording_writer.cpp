@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds kWritePeriod{100};
 constexpr Nanoseconds kDropPatience{100'000'000};
 
-Status<std::string> write_file(const fs::path& file, const std::string& text) {
+Status<std::string> write_file(const FilePlace& file, const std::string& text) {
     GrowingFile stream;
     if (const auto created = stream.create(file); !created) return created;
     if (const auto written = stream.append(text); !written) return written;
@@ -29,17 +29,22 @@ Status<std::string> write_file(const fs::path& file, const std::string& text) {
 }
 
 /// Not its parents: where a disk is not mounted, hours of a recording would go to another one.
-Status<std::string> make_folder(const fs::path& folder) {
+Result<OpenFolder, std::string> make_folder(const RecordingPaths& paths) {
+    const fs::path& folder = paths.directory;
     std::error_code error;
     if (!fs::exists(folder.parent_path(), error) && !error)
         return unexpected(folder.string() + ": there is no " + folder.parent_path().string() +
                           "; make it, or mount what should be there");
     fs::create_directory(folder, error);
     if (error) return unexpected(folder.string() + ": " + error.message());
-    const bool is_empty = fs::is_empty(folder, error);
-    if (error) return unexpected(folder.string() + ": " + error.message());
-    if (!is_empty) return unexpected(folder.string() + ": is not empty; give another directory");
-    return Done{};
+    const auto opened = paths.folder.open();
+    if (!opened) return unexpected(opened.error().message());
+    auto to_write = opened->to_write();
+    if (!to_write) return unexpected(to_write.error().message());
+    const auto names = to_write->names();
+    if (!names) return unexpected(names.error().message());
+    if (!names->empty()) return unexpected(folder.string() + ": is not empty; give another directory");
+    return std::move(*to_write);
 }
 
 }  // namespace
@@ -74,7 +79,7 @@ class RecordingWriter::Work {
     [[nodiscard]] Step end(RecordingEnd end);
     /// Saves the map and gives its checksum; an empty one has neither file nor checksum.
     [[nodiscard]] Result<std::optional<std::uint32_t>, std::string> keep_map(const FusedMap& map,
-                                                                             const fs::path& file) const;
+                                                                             const FilePlace& file) const;
 
     RecordingBegin begin_;
     MapWriter map_writer_;
@@ -181,9 +186,10 @@ void RecordingWriter::Work::run() {
 }
 
 Status<std::string> RecordingWriter::Work::record() {
-    if (const Step made = make_folder(begin_.paths.directory); !made) return made;
+    const auto made = make_folder(begin_.paths);
+    if (!made) return unexpected(made.error());
     // Whoever else writes recordings or maps there takes the same lock.
-    const auto lock = FileLock::take(begin_.paths.directory, FileLock::Kind::exclusive);
+    const auto lock = FileLock::take(*made, FileLock::Kind::exclusive);
     if (!lock) return unexpected(begin_.paths.directory.string() + ": another octoskin is writing here");
     {
         const std::lock_guard guard(mutex_);
@@ -204,17 +210,17 @@ Status<std::string> RecordingWriter::Work::record() {
 }
 
 Result<std::optional<std::uint32_t>, std::string> RecordingWriter::Work::keep_map(
-    const FusedMap& map, const fs::path& file) const {
+    const FusedMap& map, const FilePlace& file) const {
     if (map.known_voxels() == 0) return std::optional<std::uint32_t>{};
     if (const auto saved = map_writer_(map, file); !saved) return unexpected(saved.error().message);
     const auto crc32 = crc32_of(file);
-    if (!crc32) return unexpected(file.string() + ": cannot be read again");
+    if (!crc32) return unexpected(file.shown().string() + ": cannot be read again");
     return crc32;
 }
 
 Status<std::string> RecordingWriter::Work::begin() {
     const RecordingPaths& paths = begin_.paths;
-    const std::pair<fs::path, const std::string&> texts[] = {
+    const std::pair<FilePlace, const std::string&> texts[] = {
         {paths.rig(), begin_.rig}, {paths.robot(), begin_.robot}, {paths.mapping(), begin_.mapping}};
     for (const auto& [file, text] : texts) {
         if (const Step written = write_file(file, text); !written) return written;

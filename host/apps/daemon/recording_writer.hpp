@@ -42,8 +42,7 @@ class RecordingWriter {
     /// What may wait of each text: seconds of a full bus.
     static constexpr std::size_t kTextMax = std::size_t{8} << 20U;
     /// Saves a map under that name.
-    using MapWriter =
-        std::function<Status<MapFileError>(const FusedMap& map, const std::filesystem::path& file)>;
+    using MapWriter = std::function<Status<MapFileError>(const FusedMap& map, const FilePlace& file)>;
 
     /// Throws std::system_error if there is no thread to be had.
     explicit RecordingWriter(RecordingBegin begin, MapWriter map_writer = save_map);

@@ -55,6 +55,7 @@ Result<Pipeline, AppError> make_pipeline(const DaemonRequest& request, const Set
     config.maps = {.depth = false, .proximity = false, .fused = true};
     config.depth_threads = request.depth_threads;
     config.release = Release::once_placed;
+    config.intake.has_local_joints = !request.joint_socket.empty();
     auto pipeline = Pipeline::build(settings.host.rig, settings.host.robot, settings.mapping, config);
     if (pipeline) return std::move(pipeline).value();
     return fail(ExitCode::bad_config, request.rig.string() + ": the robot has no '" +

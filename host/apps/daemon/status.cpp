@@ -104,6 +104,30 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
     return json;
 }
 
+Json register_json(const wire::RegisterReport& report, bool is_alike) {
+    return {{"register", report.index},
+            {"written", report.written},
+            {"read", report.read},
+            {"alike", is_alike},
+            {"sensor", is_alike ? Json(nullptr) : Json(report.subject)},
+            {"sensors", is_alike ? report.subject : 1}};
+}
+
+/// Those of sensors that are well by now are over.
+Json registers_json(const DaemonView& view, const HostNode& node, const NodeRecord& record) {
+    Json registers = Json::array();
+    for (const wire::RegisterReport& report : record.registers.alike())
+        registers.push_back(register_json(report, true));
+    for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+        const auto sensor = static_cast<std::uint8_t>(i);
+        const auto& health = view.pipeline->intake().ranges().record(node.node_id, sensor).health;
+        const auto& report = record.registers.of_sensor(sensor);
+        if (report && health && health->fault == wire::SensorFault::config_mismatch)
+            registers.push_back(register_json(*report, false));
+    }
+    return registers;
+}
+
 Json node_json(const DaemonView& view, const HostNode& node) {
     const CanIntake& intake = view.pipeline->intake();
     const NodeRecord& record = intake.nodes().records().at(node.node_id);
@@ -128,6 +152,7 @@ Json node_json(const DaemonView& view, const HostNode& node) {
     json["refused_share"] = loss ? Json(loss->share) : Json(nullptr);
     json["refused_most"] =
         loss ? Json(names_of(ReadingReason{})[static_cast<std::size_t>(loss->most)]) : Json(nullptr);
+    json["registers"] = registers_json(view, node, record);
     Json sensors = Json::array();
     for (std::size_t i = 0; i < node.sensors.size(); ++i) sensors.push_back(sensor_json(view, node, i));
     json["sensors"] = std::move(sensors);
@@ -145,6 +170,28 @@ Json camera_json(const DaemonView& view) {
             {"age_s", age_s(view.camera->newest, view.now)}};
 }
 
+Json joint_states_json(const DaemonView& view) {
+    const JointSenderCheck& senders = view.pipeline->intake().joint_senders();
+    const auto& jumped = view.pipeline->joint_jump().newest();
+    return {{"second_sender", are_joints_withheld(view)},
+            {"contradictions", senders.contradictions()},
+            {"jumped", jumped ? Json(view.rig->joints.joints.at(jumped->joint)) : Json(nullptr)},
+            {"jump_age_s", age_s(view.used.joint_jump, view.now)}};
+}
+
+Json senders_json(const JointSenders& senders, HostTime now) {
+    Json all = Json::array();
+    for (const JointSenders::Heard& heard : senders.heard(now)) {
+        all.push_back({{"pid", heard.sender.pid},
+                       {"uid", heard.sender.uid},
+                       {"program", heard.program},
+                       {"address", heard.sender.address},
+                       {"samples", heard.samples},
+                       {"age_s", seconds_of(now - heard.newest)}});
+    }
+    return all;
+}
+
 Json joints_json(const DaemonView& view) {
     const JointSocket* const joints = view.inputs->joints();
     if (joints == nullptr) return nullptr;
@@ -152,9 +199,13 @@ Json joints_json(const DaemonView& view) {
                  {"displaced", view.inputs->joints_displaced()},
                  {"surplus", joints->surplus()},
                  {"thinned", view.inputs->joints_thinned()},
+                 {"second_sender", view.inputs->joints_of_several()},
+                 {"rate_hz", joints->rate_hz(view.now)},
+                 {"above_rate", are_joints_above_rate(view)},
                  {"joint_node_ignored", view.inputs->joint_node_ignored()}};
     for (std::size_t i = 0; i < joints->faults().size(); ++i)
         json[names_of(JointTextFault{}).at(i)] = joints->faults().at(i);
+    json["senders"] = senders_json(joints->senders(), view.now);
     return json;
 }
 
@@ -197,6 +248,19 @@ Json account_json(const Pipeline& pipeline) {
 
 }  // namespace
 
+bool are_joints_withheld(const DaemonView& view) {
+    constexpr Nanoseconds kHold = JointSenders::kHeardFor;
+    const auto is_new = [&](const std::optional<HostTime>& at) { return at && view.now - *at < kHold; };
+    const JointSocket* const socket = view.inputs->joints();
+    return is_new(view.used.joint_senders) || (socket != nullptr && is_new(socket->senders().several_at()));
+}
+
+bool are_joints_above_rate(const DaemonView& view) {
+    constexpr double kAbout = 1.3;
+    const JointSocket* const socket = view.inputs->joints();
+    return socket != nullptr && socket->rate_hz(view.now) > kAbout * view.rig->joints.rate_hz;
+}
+
 void LastUsed::note(const Pipeline& pipeline, HostTime now) {
     const PipelineAccounts& accounts = pipeline.accounts();
     const auto note_one = [now](std::uint64_t count, std::uint64_t& before, std::optional<HostTime>& last) {
@@ -206,6 +270,10 @@ void LastUsed::note(const Pipeline& pipeline, HostTime now) {
     note_one(accounts.joint_samples.used(), counts_[0], joint_sample);
     note_one(accounts.readings.used(), counts_[1], reading);
     note_one(accounts.depth_frames.used(), counts_[2], depth_frame);
+    note_one(accounts.joint_samples.rejected(JointReason::joint_jump), counts_[6], joint_jump);
+    note_one(accounts.joint_samples.rejected(JointReason::second_sender) +
+                 pipeline.intake().joint_senders().contradictions(),
+             counts_[7], joint_senders);
     note_one(pipeline.times_back(), counts_[3], time_back);
     note_one(pipeline.times_ahead(), counts_[5], time_ahead);
     constexpr Nanoseconds kAgain{1'000'000'000};
@@ -228,12 +296,16 @@ Json status_json(const DaemonView& view) {
             {"can", can_json(view)},
             {"clock", clock_json(view)},
             {"nodes", std::move(nodes)},
+            {"joint_states", joint_states_json(view)},
             {"joints_socket", joints_json(view)},
             {"recording", view.recorder != nullptr ? view.recorder->to_json(view.now) : Json(nullptr)},
             {"camera", camera_json(view)},
             {"latency", latency_json(view.inputs->latency())},
             {"map", map_json(view)},
-            {"reloads", {{"count", view.reloads.count}, {"dropped", view.reloads.dropped}}},
+            {"reloads",
+             {{"count", view.reloads.count},
+              {"unchanged", view.reloads.unchanged},
+              {"dropped", view.reloads.dropped}}},
             {"account", account_json(*view.pipeline)}};
 }
 

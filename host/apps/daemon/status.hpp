@@ -26,6 +26,8 @@ class LastUsed {
     void note(const Pipeline& pipeline, HostTime now);
 
     std::optional<HostTime> joint_sample;
+    std::optional<HostTime> joint_jump;     ///< one was rejected for it
+    std::optional<HostTime> joint_senders;  ///< two contradicted each other, or one was withheld for it
     std::optional<HostTime> reading;
     std::optional<HostTime> depth_frame;
     std::optional<HostTime> time_back;             ///< the bus's time went back
@@ -34,12 +36,13 @@ class LastUsed {
     std::optional<HostTime> depth_left_out_since;  ///< ... again and again, at least once a second
 
   private:
-    std::array<std::uint64_t, 6> counts_{};
+    std::array<std::uint64_t, 8> counts_{};
 };
 
 struct ReloadCounts {
     std::uint64_t count = 0;
-    std::uint64_t dropped = 0;  ///< readings, joint samples, depth frames that waited and could not be used
+    std::uint64_t unchanged = 0;  ///< times that the files said what held already
+    std::uint64_t dropped = 0;    ///< readings, joint samples, depth frames that waited and could not be used
 };
 
 /// All that there is to tell. What it points to must be there.
@@ -52,16 +55,18 @@ struct DaemonView {
     const HostRig* rig = nullptr;
     const Pipeline* pipeline = nullptr;
     const Inputs* inputs = nullptr;
+    bool is_wall_clock_right = true;  ///< this machine's shows a time that a stamp can have (tells_time)
     const std::string* interface = nullptr;
     bool is_listen_only = false;
     std::optional<CameraRecord> camera;  ///< empty without a camera
     LastUsed used;
     SaveRecord saves;
+    std::string maps_problem;            ///< what has become of the maps' folder; empty: it is there
     const Recorder* recorder = nullptr;  ///< at work, or the last one; null if there was none
     std::string recording_refusal;       ///< why the newest one could not begin; empty if it could
     std::string reload_error;            ///< of the newest SIGHUP; empty if it went well
     ReloadCounts reloads;
-    std::optional<HostTime> reloaded;  ///< when SIGHUP was obeyed last
+    std::optional<HostTime> reloaded;  ///< when SIGHUP changed something last
 
     /// The time, the nodes and what they tell are learnt anew: whether they are missing nobody can say yet.
     /// Two exchanges of SYNC a second apart, the readings after them, and a camera that is opened again.
@@ -78,6 +83,11 @@ struct DaemonView {
 [[nodiscard]] std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz, HostTime now);
 /// Empty if it is in no mode that is known, or in one of about the rig's rate.
 [[nodiscard]] std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double rate_hz);
+
+/// Two senders of joint states are heard, and neither is used.
+[[nodiscard]] bool are_joints_withheld(const DaemonView& view);
+/// More comes through the joint socket than the rig's rate: what is left out is of no use.
+[[nodiscard]] bool are_joints_above_rate(const DaemonView& view);
 
 [[nodiscard]] nlohmann::ordered_json status_json(const DaemonView& view);
 

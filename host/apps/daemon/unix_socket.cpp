@@ -88,11 +88,12 @@ std::optional<std::string> find_listener(const sockaddr_un& address, int type) {
 std::optional<FileLock> lock_folder_of(const std::filesystem::path& file) {
     constexpr int kTries = 400;
     constexpr std::chrono::milliseconds kPause{5};
-    const auto folder = folder_of(file);
-    auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
+    const auto folder = OpenFolder::open(folder_of(file), FolderAccess::read);
+    if (!folder) return FileLock::of_nothing();  // what is done there next says what is wrong with it
+    auto lock = FileLock::take(*folder, FileLock::Kind::exclusive);
     for (int i = 0; i < kTries && !lock; ++i) {
         std::this_thread::sleep_for(kPause);
-        auto again = FileLock::take(folder, FileLock::Kind::exclusive);
+        auto again = FileLock::take(*folder, FileLock::Kind::exclusive);
         if (again) return again;
     }
     return lock;

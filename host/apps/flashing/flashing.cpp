@@ -53,8 +53,9 @@ Result<Done, AppError> write_files(const Order& order, const image::FlashContent
                     fmt::format("{}: cannot be made ({}): choose another folder with --out",
                                 order.folder.string(), error.message()));
     }
-    if (auto done = write_text(order.folder / kHexFile, image::intel_hex(contents)); !done) return done;
-    return write_text(order.folder / kScriptFile,
+    if (auto done = write_text({NamedFolder(order.folder), kHexFile}, image::intel_hex(contents)); !done)
+        return done;
+    return write_text({NamedFolder(order.folder), kScriptFile},
                       openocd_script({.openocd_board = order.board.openocd_board,
                                       .device_id = order.board.device_id,
                                       .adapter_serial = order.adapter_serial,
@@ -64,7 +65,7 @@ Result<Done, AppError> write_files(const Order& order, const image::FlashContent
 Result<OpenocdRun, AppError> run(const Order& order, std::vector<std::string> arguments,
                                  std::chrono::seconds patience) {
     const OpenocdRun run = run_openocd(order.folder, std::move(arguments), patience);
-    if (auto done = write_text(order.folder / "openocd.log", run.output); !done)
+    if (auto done = write_text({NamedFolder(order.folder), "openocd.log"}, run.output); !done)
         return unexpected(done.error());
     return run;
 }

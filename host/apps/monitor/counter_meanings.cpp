@@ -122,6 +122,12 @@ constexpr std::array kCounterMeanings = {
     Meaning{"joint samples", "too_frequent",
             "the source is over 1.6 times as quick as joints.rate_hz of the rig says: its samples cannot be "
             "told apart with certainty. Its first five, if its clock is known by then"},
+    Meaning{"joint samples", "second_sender",
+            "two senders of joint states are heard, or were within the last second, and which of them is "
+            "true nobody can tell: neither is used"},
+    Meaning{"joint samples", "joint_jump",
+            "further from the sample before it than 1.5 times the velocity of the robot description's "
+            "<limit> lets the arm move in that time"},
     Meaning{"depth frames", "no_camera", "the rig has no camera"},
     Meaning{"depth frames", "wrong_size", "not the camera's width and height in the rig"},
     Meaning{"depth frames", "out_of_order", "not later than the frame before it"},

@@ -9,6 +9,7 @@
 
 #include "host/apps/monitor/counter_meanings.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
+#include "host/core/text/printable.hpp"
 
 namespace octoskin {
 namespace {
@@ -65,8 +66,8 @@ class Screen {
     }
 
   private:
-    void add(std::string line, Emphasis emphasis = Emphasis::none) {
-        lines_.push_back({std::move(line), emphasis});
+    void add(const std::string& line, Emphasis emphasis = Emphasis::none) {
+        lines_.push_back({printable(line), emphasis});
     }
     void add_head() {
         add(fmt::format("{}   rig '{}', {:.0f} s", text(at(now_, "octoskin")), text(at(now_, "rig")),
@@ -170,8 +171,14 @@ class Screen {
             return at(at(at(status, "account"), "joint samples"), "used");
         };
         add("joint samples " + rate(used(before_), used(now_), passed_) + " used", Emphasis::title);
-        add_nonzero("joints_socket", {"samples", "displaced", "thinned", "joint_node_ignored", "not_a_number",
-                                      "wrong_count", "time_off", "too_large", "too_long"});
+        add_nonzero("joints_socket",
+                    {"samples", "displaced", "thinned", "second_sender", "joint_node_ignored", "not_a_number",
+                     "wrong_count", "time_off", "too_large", "too_long"});
+        const Json& socket = at(now_, "joints_socket");
+        if (at(socket, "above_rate") == true)
+            add(fmt::format(
+                "     {:.0f} Hz through the socket: the rig has less, and the surplus is left out",
+                number(at(socket, "rate_hz"))));
     }
     void add_camera() {
         const Json& camera = at(now_, "camera");
@@ -247,14 +254,9 @@ std::size_t bytes_of(std::string_view text, std::size_t characters) {
     return text.size();
 }
 
-/// So many characters of UTF-8; a control character, which a name might hold, becomes a question mark.
+/// So many characters of UTF-8.
 std::string cut(const std::string& line, std::size_t columns) {
-    std::string shown = line.substr(0, bytes_of(line, columns));
-    for (char& letter : shown) {
-        const auto byte = static_cast<unsigned char>(letter);
-        if (byte < 0x20U || byte == 0x7FU) letter = '?';
-    }
-    return shown;
+    return line.substr(0, bytes_of(line, columns));
 }
 
 /// What the next lines of a broken one begin with.

@@ -22,12 +22,13 @@ constexpr std::array kStatusMeanings = {
     Meaning{"", "can", "the interface, below"},
     Meaning{"", "clock", "the bus's time, below"},
     Meaning{"", "nodes", "a list, one object for each node of the rig, below"},
+    Meaning{"", "joint_states", "whether joint states come from one sender, below"},
     Meaning{"", "joints_socket", "joint states from this machine, below; null without --joints"},
     Meaning{"", "recording", "the recording that is made, or the last one, below; null without"},
     Meaning{"", "camera", "the depth camera, below; null without one"},
     Meaning{"", "latency",
-            "from the kernel's stamp of the frame that completed a reading (its own, or the joint state "
-            "behind it) to the map, below"},
+            "from the kernel's stamp of the frame that completed a reading (its own, the joint state behind "
+            "it, or one that made that certain) to the map, below"},
     Meaning{"", "map", "the fused map, below"},
     Meaning{"", "reloads", "rig, robot and mapping read again, below"},
     Meaning{"", "account",
@@ -102,7 +103,19 @@ constexpr std::array kStatusMeanings = {
             "of its readings within the last second, those that were refused for their time, their number or "
             "their sender; null: no more than 0.05"},
     Meaning{"nodes", "refused_most", "why most of these were, a name of account.md; null: no more than that"},
+    Meaning{"nodes", "registers",
+            "a list, one object for each register that reads otherwise than it is written, below; empty if "
+            "none does"},
     Meaning{"nodes", "sensors", "a list, one object for each sensor, below"},
+    Meaning{"nodes.registers", "register", "its index, 0 to 255"},
+    Meaning{"nodes.registers", "written", "what was written to it"},
+    Meaning{"nodes.registers", "read", "what it reads"},
+    Meaning{"nodes.registers", "alike",
+            "three or more sensors of the node read it so: this type of part is so, and nothing is withheld "
+            "for it"},
+    Meaning{"nodes.registers", "sensor",
+            "the one that reads it so, by its number on the node; null if it is alike"},
+    Meaning{"nodes.registers", "sensors", "how many had shown it when it was told"},
     Meaning{"nodes.sensors", "index", "its number on the node"},
     Meaning{"nodes.sensors", "name", "its name in the rig"},
     Meaning{"nodes.sensors", "state", "its node's word in the newest SENSOR_HEALTH; null before the first"},
@@ -160,16 +173,30 @@ constexpr std::array kStatusMeanings = {
             "comparisons in which it saw a surface where the camera sees through"},
     Meaning{"nodes.sensors.camera", "behind_surface",
             "comparisons in which it saw free space through a surface that the camera sees"},
+    Meaning{"joint_states", "second_sender",
+            "two senders are heard, or were within the last second: neither is used"},
+    Meaning{"joint_states", "contradictions",
+            "how often two senders under the joint node of the bus contradicted each other"},
+    Meaning{"joint_states", "jumped",
+            "the joint that was last further from the sample before it than the arm moves in that time; "
+            "null: none was"},
+    Meaning{"joint_states", "jump_age_s", "since such a sample was rejected; null: none was"},
     Meaning{"joints_socket", "samples", "samples that came, of the right form"},
     Meaning{"joints_socket", "displaced",
             "datagrams that gave way to newer ones: the daemon was held up while 1024 waited, or they come "
             "quicker than it takes them beside the bus"},
-    Meaning{"joints_socket", "surplus",
-            "datagrams dropped as they came, beyond 2048 a second of one program, or of a ninth program: what "
-            "the others send is taken all the same"},
+    Meaning{
+        "joints_socket", "surplus",
+        "datagrams dropped as they came, beyond 2048 a second of one program, or of a ninth program: what "
+        "the others send is taken all the same"},
     Meaning{"joints_socket", "thinned",
             "samples left out, as they came sooner after the one before than the rig's rate has it: usual "
             "for a quick driver"},
+    Meaning{"joints_socket", "second_sender",
+            "samples left out, as more than one program sends some, or did within the last second"},
+    Meaning{"joints_socket", "rate_hz", "samples that came within the newest second"},
+    Meaning{"joints_socket", "above_rate",
+            "that is over 1.3 times joints.rate_hz of the rig: what is beyond it is thinned, and of no use"},
     Meaning{"joints_socket", "joint_node_ignored",
             "frames of the rig's joint node on the bus, which is not the source with --joints"},
     Meaning{"joints_socket", "not_a_number",
@@ -182,6 +209,17 @@ constexpr std::array kStatusMeanings = {
     Meaning{"joints_socket", "too_large",
             "refused: a position beyond +-8.38 rad (or m); degrees are what mostly came"},
     Meaning{"joints_socket", "too_long", "refused: over 1024 bytes"},
+    Meaning{"joints_socket", "senders",
+            "a list, one object for each program heard within the last second, below; more than one: none is "
+            "used"},
+    Meaning{"joints_socket.senders", "pid",
+            "its process; 0: one that cannot be seen from here, as in another container, and all of those "
+            "count as one"},
+    Meaning{"joints_socket.senders", "uid", "its user; 0 where the process cannot be seen"},
+    Meaning{"joints_socket.senders", "program", "its name; empty: not known"},
+    Meaning{"joints_socket.senders", "address", "that its socket is bound to; empty: to none"},
+    Meaning{"joints_socket.senders", "samples", "samples that came of it"},
+    Meaning{"joints_socket.senders", "age_s", "since the newest of them"},
     Meaning{"recording", "state", "recording, finishing, ended or failed"},
     Meaning{"recording", "folder", "where it is written"},
     Meaning{"recording", "error", "why it failed; empty if it has not"},
@@ -232,7 +270,8 @@ constexpr std::array kStatusMeanings = {
     Meaning{"map", "saves_failed", "saves that failed; problems has why"},
     Meaning{"map", "saves_skipped", "saves left out, as the one before was still being written: a slow disk"},
     Meaning{"map", "saved_age_s", "since the newest good save; null: none yet"},
-    Meaning{"reloads", "count", "how often SIGHUP was obeyed"},
+    Meaning{"reloads", "count", "how often SIGHUP brought new settings"},
+    Meaning{"reloads", "unchanged", "how often SIGHUP found the files as they were: nothing changed then"},
     Meaning{
         "reloads", "dropped",
         "readings, joint samples and depth frames that waited at a reload and could not be used any more"},

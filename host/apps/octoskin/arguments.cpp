@@ -5,6 +5,7 @@
 #include <net/if.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <string_view>
@@ -39,10 +40,19 @@ std::string is_seed(std::string& text) {
 
 void check_interface_name(const std::string& interface) {
     constexpr std::size_t kLengthMax = IFNAMSIZ - 1;
-    if (!interface.empty() && interface.size() <= kLengthMax) return;
-    throw CommandFailure({ExitCode::usage, fmt::format("'{}': an interface's name has 1 to {} characters, "
-                                                       "this one {}",
-                                                       interface, kLengthMax, interface.size())});
+    if (interface.empty() || interface.size() > kLengthMax) {
+        throw CommandFailure(
+            {ExitCode::usage, fmt::format("'{}': an interface's name has 1 to {} characters, "
+                                          "this one {}",
+                                          interface, kLengthMax, interface.size())});
+    }
+    // A line of a recording's log has it between two blanks.
+    const auto is_printable = [](char c) { return c > ' ' && c <= '~'; };
+    if (std::ranges::all_of(interface, is_printable)) return;
+    throw CommandFailure(
+        {ExitCode::usage, fmt::format("'{}': an interface's name here has printable ASCII characters "
+                                      "alone, no blanks: rename it (`ip link set OLD name NEW`)",
+                                      interface)});
 }
 
 void check_frame_socket(const std::string& interface, int descriptor) {
@@ -109,10 +119,8 @@ void check_command_name(const CLI::App& app, int argc, const char* const* argv) 
 
 std::optional<int> descriptor_of(const std::string& interface) {
     constexpr std::string_view kPrefix = "fd:";
-    if (!interface.starts_with(kPrefix)) {
-        check_interface_name(interface);
-        return std::nullopt;
-    }
+    check_interface_name(interface);
+    if (!interface.starts_with(kPrefix)) return std::nullopt;
     int descriptor = -1;
     const char* const last = interface.data() + interface.size();
     const auto [end, error] = std::from_chars(interface.data() + kPrefix.size(), last, descriptor);

@@ -24,7 +24,7 @@ struct Pieces {
     void take(const Dump& dump) {
         ++dumps;
         incomplete += dump.is_complete ? 0U : 1U;
-        print("{}\n", transfer_script(dump));
+        print_text(transfer_script(dump) + "\n");
     }
     void take(const wire::CanFrame& frame) {
         const auto decoded = wire::decode(frame);

@@ -29,9 +29,10 @@ struct CalibrateOptions {
 };
 
 wire::Calibration calibrate(const calibrating::Question& question, const std::string& interface) {
-    const std::array<socketcan::IdFilter, 2> filters{
+    const std::array<socketcan::IdFilter, 3> filters{
         {{wire::can_id(wire::FrameType::heartbeat, question.node_id), wire::kStandardIdMax},
-         {wire::can_id(wire::FrameType::calibration, question.node_id), wire::kStandardIdMax}}};
+         {wire::can_id(wire::FrameType::calibration, question.node_id), wire::kStandardIdMax},
+         {wire::can_id(wire::FrameType::node_info, question.node_id), wire::kStandardIdMax}}};
     socketcan::CanSocket socket = open_can(interface, {.filters = filters, .wants_error_frames = false});
     const Outside outside = this_machine();
     calibrating::Dialogue dialogue(question, outside.now());

@@ -47,6 +47,7 @@ void add_flash_command(CLI::App& app);
 void add_black_box_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_command_command(CLI::App& app);
+void add_repair_command(CLI::App& app);
 
 /// A file that ships with octoskin: under share/octoskin beside the installed program, or in the source tree
 /// it was built from.

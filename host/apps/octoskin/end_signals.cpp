@@ -10,10 +10,10 @@
 
 namespace octoskin::app {
 
-EndSignals::EndSignals() {
+EndSignals::EndSignals(std::initializer_list<int> wanted) {
     sigset_t signals;
     sigemptyset(&signals);
-    for (const int signal : {SIGINT, SIGTERM}) {
+    for (const int signal : wanted) {
         // What a shell lets a command in the background ignore would come here all the same.
         struct sigaction found {};
         sigaction(signal, nullptr, &found);

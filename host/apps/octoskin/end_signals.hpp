@@ -3,14 +3,17 @@
 #pragma once
 
 #include <chrono>
+#include <csignal>
+#include <initializer_list>
 #include <optional>
 
 namespace octoskin::app {
 
 class EndSignals {
   public:
-    /// From now on they are kept for this. Throws std::system_error if there is no descriptor to be had.
-    EndSignals();
+    /// From now on those that are `wanted` are kept for this. Throws std::system_error if there is no
+    /// descriptor to be had.
+    explicit EndSignals(std::initializer_list<int> wanted = {SIGINT, SIGTERM});
     ~EndSignals();
     EndSignals(const EndSignals&) = delete;
     EndSignals& operator=(const EndSignals&) = delete;

@@ -71,14 +71,14 @@ evaluation::Truth build(const Scene& scene, const rig::Rig& rig, double resoluti
 bool is_papers(const rig::Rig& rig, const Scene& scene) {
     std::error_code error;
     const auto& world = scene.world_file.file;
-    const bool is_own_world = std::filesystem::equivalent(world, scene.scenario.world, error);
+    const bool is_own_world = std::filesystem::equivalent(world, scene.scenario.world.shown(), error);
     return is_papers_experiment(rig, scene.scenario_file.file, is_own_world ? std::filesystem::path() : world,
                                 shipped_file("hw/worlds/experiment.scenario.yaml"));
 }
 
 /// The figures with all that they depend on.
 evaluation::Results results_of(const std::vector<evaluation::Run>& runs, const rig::Rig& rig,
-                               const Scene& scene, const std::filesystem::path& rig_file) {
+                               const Scene& scene, const FilePlace& rig_file) {
     auto results =
         evaluation::collect(runs, {}, provenance_of(scene, source_file(rig_file, rig.extended_files)));
     results.is_papers_experiment = is_papers(rig, scene);
@@ -118,7 +118,8 @@ evaluation::Results judge_recording(const EvaluateOptions& options) {
         runs.insert(runs.begin(), {name, "depth", seed, evaluation::evaluate(*maps.depth(), truth)});
         runs.push_back({name, "fused", seed, evaluation::evaluate(*maps.fused(), truth)});
     }
-    return results_of(runs, playback->rig, scene, options.rig.empty() ? recording.rig() : options.rig);
+    return results_of(runs, playback->rig, scene,
+                      options.rig.empty() ? recording.rig() : FilePlace(options.rig));
 }
 
 /// Says so if `rig` is most likely not the one that the map was made with.
@@ -140,18 +141,17 @@ void doubt_rig(const EvaluateOptions& options, const rig::Rig& rig, const MapPro
         spdlog::warn(
             "{} is another rig than {}, of the recording beside the map; unless the map was made with it, "
             "the figures are wrong",
-            options.rig.string(), own.string());
+            options.rig.string(), own.shown().string());
     }
 }
 
 /// The one to give for a map: what it was made with, if it is still there.
 std::string rig_to_give(const MapProvenance& provenance) {
-    std::error_code error;
-    std::vector<std::filesystem::path> candidates;
-    if (provenance.origin) candidates.push_back(provenance.origin->rig);
+    std::vector<FilePlace> candidates;
+    if (provenance.origin) candidates.emplace_back(provenance.origin->rig);
     if (provenance.recording) candidates.push_back(RecordingPaths(*provenance.recording).rig());
     for (const auto& file : candidates)
-        if (std::filesystem::is_regular_file(file, error)) return file.string();
+        if (file.is_file()) return file.shown().string();
     return "RECORDING/rig.yaml";
 }
 
@@ -206,7 +206,7 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
 void evaluate_input(const EvaluateOptions& options) {
     const evaluation::Results results =
         std::filesystem::is_directory(options.input) ? judge_recording(options) : judge_map(options);
-    print("{}", evaluation::metrics_table(results));
+    print_text(evaluation::metrics_table(results));
     if (options.json.empty()) return;
     std::error_code error;
     if (options.json.extension() != ".json" && std::filesystem::is_regular_file(options.json, error)) {

@@ -22,7 +22,7 @@ void run_experiment(const StudyRequest& request) {
     const auto results = run_study(request, [](const std::string& line) { spdlog::info("{}", line); });
     if (!results) throw CommandFailure(results.error());
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    print("{}\n", evaluation::metrics_table(*results));
+    print_text(evaluation::metrics_table(*results) + "\n");
     print(
         "Two yardsticks: occupied to lost count voxels against what a careful camera would have mapped, "
         "precision to\n"

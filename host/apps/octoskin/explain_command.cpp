@@ -33,9 +33,11 @@ void explain_voxel(const ExplainOptions& options) {
     if (!explanation) throw CommandFailure(explanation.error());
     for (const std::string& warning : explanation->warnings) spdlog::warn("{}", warning);
     if (options.is_json) {
-        print("{}\n", to_json(*explanation).dump(2));
+        print_exactly(
+            to_json(*explanation).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
+            "\n");
     } else {
-        print("{}", to_text(*explanation));
+        print_text(to_text(*explanation));
     }
 }
 

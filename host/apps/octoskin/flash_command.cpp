@@ -70,8 +70,8 @@ flashing::Order make_order(const FlashOptions& options) {
 
 void write_record(const flashing::Order& order, const flashing::Prepared& prepared,
                   const std::optional<flashing::Programmed>& programmed) {
-    (void)value_or_fail(
-        write_text(order.folder / flashing::kRecordFile, flashing::record(order, prepared, programmed)));
+    (void)value_or_fail(write_text({NamedFolder(order.folder), flashing::kRecordFile},
+                                   flashing::record(order, prepared, programmed)));
 }
 
 void describe(const flashing::Order& order, const flashing::Prepared& prepared) {

@@ -9,10 +9,10 @@ namespace octoskin::app {
 
 class Interruption {
   public:
-    /// While it lives SIGINT and SIGTERM remove what is unfinished (host/apps/recording/unfinished.hpp), say
-    /// so and end the process with 128 and the signal's number, wherever it is: 130, 143. A second one ends
-    /// it at once. To be made before other threads. Throws std::system_error without a descriptor or a
-    /// thread.
+    /// While it lives SIGINT, SIGTERM and SIGHUP (a terminal that was closed) remove what is unfinished
+    /// (host/apps/recording/unfinished.hpp), say so and end the process with 128 and the signal's number,
+    /// wherever it is: 130, 143, 129. A second one ends it at once. To be made before other threads. Throws
+    /// std::system_error without a descriptor or a thread.
     Interruption();
     ~Interruption();
     Interruption(const Interruption&) = delete;
@@ -21,7 +21,7 @@ class Interruption {
   private:
     void watch() const;
 
-    EndSignals signals_;
+    EndSignals signals_{SIGINT, SIGTERM, SIGHUP};
     int ended_;  ///< readable once there is nothing more to watch over
     std::thread watcher_;
 };

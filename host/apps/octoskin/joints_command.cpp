@@ -127,7 +127,10 @@ class CanOutput final : public JointOutput {
     }
     void attend() override {
         (void)link_.attend(monotonic_now());
-        while (const auto received = link_.receive()) {  // each round takes one frame out of the socket
+        constexpr int kDatagramsPerTurn = 256;  // then standard input has its turn
+        for (int left = kDatagramsPerTurn; left > 0;) {
+            const auto received = link_.receive(left);
+            if (!received) return;
             const auto decoded = wire::decode(received->entry.frame);
             const auto* const sync = decoded ? std::get_if<wire::Sync>(&decoded->message) : nullptr;
             const auto ended = monotonic_of(received->entry.stamp);

@@ -3,14 +3,21 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <exception>
 #include <iostream>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/log_format.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/shortage.hpp"
 #include "host/apps/version/version.hpp"
 
 namespace {
@@ -18,16 +25,26 @@ namespace {
 constexpr const char* kFooter =
     "Exit codes: 0 done; 1 done, with a bad result; 2 done, and nobody knows (query); 64 command line;\n"
     "65 unusable data;\n"
-    "66 no such file; 69 a program or device is missing; 70 a defect of octoskin; 73 cannot write;\n"
+    "66 no such file; 69 a program or device is missing; 70 a defect of octoskin; 71 too little memory,\n"
+    "descriptors or threads (ulimit); 73 cannot write;\n"
     "74 a device, standard input or output failed; 77 no permission;\n"
-    "78 rig, robot, scenario or mapping file; 130, 143 interrupted by Ctrl-C, SIGTERM: what simulate,\n"
+    "78 rig, robot, scenario or mapping file; 129, 130, 143 interrupted by SIGHUP, Ctrl-C, SIGTERM: what "
+    "simulate,\n"
     "replay and experiment had not finished is removed.";
+
+/// What is wrong with the command line, in which files of others may be named, on one line; then CLI11's own.
+std::string harmless_message(const CLI::App* app, const CLI::Error& error) {
+    const std::string what = error.what();
+    const std::string whole = CLI::FailureMessage::simple(app, error);
+    return octoskin::printable(what) + (whole.starts_with(what) ? whole.substr(what.size()) : "\n");
+}
 
 int run(int argc, char** argv) {
     using namespace octoskin;
     CLI::App app{"One map of what a depth camera and the range sensors on a robot arm see."};
     app.set_version_flag("--version", program_version());
     app.require_subcommand(1);
+    app.failure_message(harmless_message);
     app.footer(kFooter);
     app::add_simulate_command(app);
     app::add_replay_command(app);
@@ -47,6 +64,7 @@ int run(int argc, char** argv) {
     app::add_black_box_command(app);
     app::add_calibrate_command(app);
     app::add_command_command(app);
+    app::add_repair_command(app);
     try {
         app::check_command_name(app, argc, argv);
         app.parse(argc, argv);
@@ -74,19 +92,57 @@ int checked(int exit_code) {
     return exit_code == 0 ? static_cast<int>(failure->code) : exit_code;
 }
 
+/// With less a command fails somewhere in its midst: of the stack with a fault that nothing can catch, of
+/// descriptors with a file that it calls unreadable. Empty: there is enough to begin with.
+std::optional<std::string> too_little() {
+    constexpr rlim_t kStackLeast = rlim_t{1} << 20U;
+    constexpr rlim_t kDescriptorsLeast = 16;
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur < kStackLeast)
+        return fmt::format(
+            "this process may have {} KiB of stack, and needs {}: raise that limit (ulimit -s)",
+            limit.rlim_cur >> 10U, kStackLeast >> 10U);
+    if (::getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < kDescriptorsLeast)
+        return fmt::format(
+            "this process may have {} descriptors open at once, and needs {}: raise that limit (ulimit -n)",
+            limit.rlim_cur, kDescriptorsLeast);
+    return std::nullopt;
+}
+
+/// What was thrown, and the exit code for it. There may be no memory to say it in.
+int tell(const std::exception& thrown) noexcept {
+    constexpr int kInternal = 70;
+    try {
+        const auto shortage = octoskin::shortage_in(thrown);
+        if (shortage) {
+            spdlog::error("{}", shortage->message);
+            return static_cast<int>(shortage->code);
+        }
+        spdlog::critical("a defect of octoskin, please report it: {}", thrown.what());
+        return kInternal;
+    } catch (...) {
+        constexpr std::string_view kWords = "octoskin: no memory (ulimit -v)\n";
+        (void)!::write(STDERR_FILENO, kWords.data(), kWords.size());
+        return static_cast<int>(octoskin::ExitCode::no_resources);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     octoskin::app::reserve_standard_descriptors();
-    constexpr int kInternal = 70;
-    // A reader that goes away (`| head`) must not end the program in the middle of a file.
-    std::signal(SIGPIPE, SIG_IGN);
-    spdlog::set_default_logger(spdlog::stderr_color_mt("octoskin"));
-    spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
+    // A reader that goes away (`| head`) must not end the program in the middle of a file, nor must the limit
+    // of a file's size (ulimit -f): both are errors of the write, which is told.
+    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
     try {
+        spdlog::set_default_logger(spdlog::stderr_color_mt("octoskin"));
+        octoskin::app::set_log_format();
+        if (const auto shortage = too_little()) {
+            spdlog::error("{}", *shortage);
+            return static_cast<int>(octoskin::ExitCode::no_resources);
+        }
         return checked(run(argc, argv));
     } catch (const std::exception& error) {
-        spdlog::critical("a defect of octoskin, please report it: {}", error.what());
-        return kInternal;
+        return tell(error);
     }
 }

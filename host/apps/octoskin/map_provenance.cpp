@@ -38,7 +38,7 @@ bool is_of_data_set(const MapOrigin& origin) {
 }
 
 Result<std::optional<MapOrigin>, AppError> origin_of_map(const fs::path& map) {
-    auto origin = read_map_origin(fs::absolute(map).parent_path());
+    auto origin = read_map_origin(NamedFolder(fs::absolute(map).parent_path()));
     if (!origin || !*origin || !(*origin)->maps.contains(map.filename().string())) {
         return origin ? std::optional<MapOrigin>{} : std::move(origin);
     }

@@ -18,7 +18,7 @@ void add_mapping_command(CLI::App& app) {
     command->callback([name] {
         const auto configuration = named_mapping(*name);
         if (!configuration) throw CommandFailure(configuration.error());
-        print("{}", mapping_text(configuration->mapping));
+        print_text(mapping_text(configuration->mapping));
     });
 }
 

@@ -15,11 +15,11 @@ namespace {
 
 /// What --configuration says; else the recording's own mapping.yaml, as the daemon wrote it; else the
 /// default.
-std::string configuration_of(const std::string& asked_for, const RecordingPaths& recording) {
-    if (!asked_for.empty()) return asked_for;
-    std::error_code error;
-    return std::filesystem::exists(recording.mapping(), error) ? recording.mapping().string()
-                                                               : kDefaultMapping;
+Result<NamedMapping, AppError> configuration_of(const std::string& asked_for,
+                                                const RecordingPaths& recording) {
+    if (!asked_for.empty()) return named_mapping(asked_for);
+    const FilePlace own = recording.mapping();
+    return own.is_there() ? mapping_of_file(own) : named_mapping(kDefaultMapping);
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ PlaybackRequest playback_request(const PlaybackOptions& options) {
                                             "in its rig: leave --camera out"
                                       : ": the camera is --rig's: give one of them")});
     }
-    auto configuration = named_mapping(configuration_of(options.configuration, recording));
+    auto configuration = configuration_of(options.configuration, recording);
     if (!configuration) throw CommandFailure(configuration.error());
     return {.recording = recording,
             .mapping = configuration->mapping,

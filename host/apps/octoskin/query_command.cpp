@@ -258,7 +258,11 @@ ExitCode answered(const QueryOptions& options) {
     try {
         if (!answer.at("ok").get<bool>()) throw refusal(options, question, answer);
         const ExitCode outcome = outcome_of(answer);
-        print("{}", options.is_json ? answer.dump(2) + "\n" : query_text(answer) + hint(options, answer));
+        if (options.is_json) {
+            print_exactly(answer.dump(2) + "\n");
+        } else {
+            print_text(query_text(answer) + hint(options, answer));
+        }
         return outcome;
     } catch (const Json::exception&) {
         throw CommandFailure(foreign_answer(options.socket));
@@ -269,7 +273,7 @@ ExitCode answered(const QueryOptions& options) {
 void print_refusal(const CommandFailure& failure, std::size_t configuration) {
     Json refused = query_refused({failure.code(), failure.what()});
     if (configuration > 0) refused["configuration"] = configuration;
-    print("{}\n", refused.dump(2, ' ', false, Json::error_handler_t::replace));
+    print_exactly(refused.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void ask(const CLI::App& command, const QueryOptions& options) {

@@ -58,12 +58,11 @@ bool is_going_on(const Json& recording) {
 }
 
 /// Within the 5 s in which a daemon ends.
-bool comes(const std::filesystem::path& file) {
+bool comes(const FilePlace& file) {
     constexpr int kTries = 50;
-    std::error_code error;
-    for (int i = 0; i < kTries && !std::filesystem::exists(file, error); ++i)
+    for (int i = 0; i < kTries && !file.is_file(); ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    return std::filesystem::exists(file, error);
+    return file.is_file();
 }
 
 /// Says where a recording is whose daemon is gone, and whether it is whole. meta.yaml comes last.

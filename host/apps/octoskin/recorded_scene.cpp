@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Checksum = std::function<std::optional<std::uint32_t>(const fs::path&)>;
+using Checksum = std::function<std::optional<std::uint32_t>(const FilePlace&)>;
 
 /// A kind of file that a recording is judged with.
 struct Part {
@@ -21,22 +21,17 @@ struct Part {
     Checksum checksum_of;  ///< as it was made when recording
 };
 
-bool is_file(const fs::path& path) {
-    std::error_code error;
-    return fs::is_regular_file(path, error);
-}
-
 std::string describe(const fs::path& file, const std::optional<std::uint32_t>& crc32) {
     return file.filename().string() + (crc32 ? " (CRC-32 " + crc_text(*crc32) + ")" : "");
 }
 
 /// Whether `file` is what was recorded: by its content, or by its name where meta.yaml has no more.
-bool is_recorded(const Part& part, const fs::path& file) {
+bool is_recorded(const Part& part, const FilePlace& file) {
     if (part.recorded.crc32) return part.checksum_of(file) == part.recorded.crc32;
-    return file.filename() == part.recorded.file.filename();
+    return file.filename() == part.recorded.file.filename().string();
 }
 
-fs::path take_given(const Part& part, std::vector<std::string>& warnings) {
+FilePlace take_given(const Part& part, std::vector<std::string>& warnings) {
     if (!part.recorded.file.empty() && !is_recorded(part, part.given)) {
         warnings.push_back("recorded in " + describe(part.recorded.file, part.recorded.crc32) +
                            ", judging in " + describe(part.given, part.checksum_of(part.given)) + ", as --" +
@@ -45,51 +40,55 @@ fs::path take_given(const Part& part, std::vector<std::string>& warnings) {
     return part.given;
 }
 
-Result<fs::path, AppError> find(const Part& part, const RecordingPaths& recording,
-                                std::vector<std::string>& warnings) {
+Result<FilePlace, AppError> find(const Part& part, const RecordingPaths& recording,
+                                 std::vector<std::string>& warnings) {
     if (!part.given.empty()) return take_given(part, warnings);
     const std::string remedy = ": give --" + part.kind;
     if (part.recorded.file.empty()) {
         return unexpected(
-            AppError{ExitCode::usage, recording.meta().string() + " names no " + part.kind + remedy});
+            AppError{ExitCode::usage, recording.meta().shown().string() + " names no " + part.kind + remedy});
     }
     const fs::path name = part.recorded.file.filename();
-    std::optional<fs::path> other;
-    for (const fs::path& candidate :
-         {part.recorded.file, recording.directory / name, shipped_file("hw/worlds/" + name.string())}) {
-        if (!candidate.is_absolute() && candidate == part.recorded.file) continue;  // a bare name of old
-        if (!is_file(candidate)) continue;
+    std::optional<FilePlace> other;
+    // Never by the path that meta.yaml has: a recording of somebody else's would choose what is opened.
+    for (const FilePlace& candidate :
+         {FilePlace(recording.folder, name), FilePlace(shipped_file("hw/worlds/" + name.string()))}) {
+        if (!candidate.is_there()) continue;
+        if (const auto opened = candidate.open(); !opened)
+            return unexpected(AppError{ExitCode::bad_data, opened.error().message()});
         if (is_recorded(part, candidate)) return candidate;
         if (!other) other = candidate;
     }
     if (!other) {
         return unexpected(AppError{ExitCode::no_input, recording.directory.string() + ": recorded in " +
                                                            part.recorded.file.string() +
-                                                           ", which is not there" + remedy});
+                                                           ", and no file of that name is in it or shipped" +
+                                                           remedy + " " + part.recorded.file.string() +
+                                                           ", if that is yours"});
     }
-    return unexpected(AppError{ExitCode::bad_data, recording.directory.string() + ": recorded in " +
-                                                       describe(part.recorded.file, part.recorded.crc32) +
-                                                       ", judging in " + other->string() + " (CRC-32 " +
-                                                       crc_text(part.checksum_of(*other).value_or(0)) +
-                                                       "), which is another" + remedy});
+    return unexpected(AppError{
+        ExitCode::bad_data,
+        recording.directory.string() + ": recorded in " + describe(part.recorded.file, part.recorded.crc32) +
+            ", judging in " + other->shown().string() + " (CRC-32 " +
+            crc_text(part.checksum_of(*other).value_or(0)) + "), which is another" + remedy});
 }
 
-std::optional<std::uint32_t> scenario_checksum(const fs::path& file) {
+std::optional<std::uint32_t> scenario_checksum(const FilePlace& file) {
     const auto scenario = sim::read_scenario(file);
     if (!scenario) return std::nullopt;
     return source_file(file, scenario->extended_files).crc32;
 }
 
 /// The world; empty: the scenario's own, which only the recording of a robot may mean, and with a warning.
-Result<fs::path, AppError> find_world(const RecordingMeta& meta, const GivenScene& given,
-                                      const RecordingPaths& recording, const fs::path& scenario,
-                                      std::vector<std::string>& warnings) {
+Result<FilePlace, AppError> find_world(const RecordingMeta& meta, const GivenScene& given,
+                                       const RecordingPaths& recording, const FilePlace& scenario,
+                                       std::vector<std::string>& warnings) {
     if (meta.world.file.empty() && given.world.empty() && !meta.is_simulated()) {
-        warnings.push_back(recording.meta().string() + " names no world: judging in the one that " +
-                           scenario.string() + " names; --world gives another");
-        return fs::path();
+        warnings.push_back(recording.meta().shown().string() + " names no world: judging in the one that " +
+                           scenario.shown().string() + " names; --world gives another");
+        return FilePlace();
     }
-    return find({"world", meta.world, given.world, [](const fs::path& file) { return crc32_of(file); }},
+    return find({"world", meta.world, given.world, [](const FilePlace& file) { return crc32_of(file); }},
                 recording, warnings);
 }
 
@@ -116,7 +115,7 @@ RecordingBeside recording_beside(const fs::path& map) {
     RecordingBeside found;
     for (const fs::path& candidate : {folder / "recording", folder.parent_path(), folder}) {
         const RecordingPaths recording(candidate);
-        if (!fs::exists(recording.meta(), error)) continue;
+        if (!recording.meta().is_there()) continue;
         const auto meta = read_meta(recording);
         if (meta) {
             found.directory = candidate;

@@ -24,10 +24,10 @@ struct RecordedScene {
     std::vector<std::string> warnings;  ///< where what was given is not what meta.yaml names
 };
 
-/// The recording's scenario and world, found where they were, in the recording itself, or among the shipped
-/// worlds, by the CRC-32 that its meta.yaml has of them. What is given goes first, with a warning if it is
-/// something else. Refuses what is not there, what has changed, and what meta.yaml does not name; but a
-/// robot's recording names no world: then the scenario's is taken, with a warning.
+/// The recording's scenario and world, found in the recording itself or among the shipped worlds, and nowhere
+/// else that the recording names, by the CRC-32 that its meta.yaml has of them. What is given goes first,
+/// with a warning if it is something else. Refuses what is not there, what has changed, and what meta.yaml
+/// does not name; but a robot's recording names no world: then the scenario's is taken, with a warning.
 [[nodiscard]] Result<RecordedScene, AppError> read_recorded_scene(const std::filesystem::path& recording,
                                                                   const GivenScene& given);
 

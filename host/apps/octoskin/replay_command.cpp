@@ -35,7 +35,7 @@ struct ReplayOptions {
 
 /// Shows what comes next, and waits for the enter key. Nobody steps on after the end of the input.
 void wait_for_enter(const std::string& what) {
-    print("{}", what);
+    print_text(what);
     static_cast<void>(std::fflush(stdout));  // its failure is told at the end
     std::string line;
     if (std::getline(std::cin, line)) {
@@ -147,7 +147,8 @@ void replay_recording(const ReplayOptions& options) {
     request.pace = pace_of(options);
     if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
     // Before the work: of two that write there, the second would else find out after it.
-    auto folder = MapFolder::open(options.out);
+    auto folder = MapFolder::open(options.out.empty() ? request.recording.file(kMapsOfRecording)
+                                                      : FilePlace(options.out));
     if (!folder) throw CommandFailure(folder.error());
     ProgressSeconds seconds;
     const char* const unit = is_played_in_order(request) ? "commits" : "CAN frames";
@@ -155,13 +156,14 @@ void replay_recording(const ReplayOptions& options) {
         request, [&](const ReplayProgress& progress) { report_progress(progress, unit, seconds); });
     if (!playback) throw CommandFailure(playback.error());
 
-    for (const AccountTable& table : playback->accounts) print("{}", to_text(table));
-    if (!playback->nodes.empty()) print("{}", to_text(std::span<const NodeSummary>(playback->nodes)));
+    for (const AccountTable& table : playback->accounts) print_text(to_text(table));
+    if (!playback->nodes.empty()) print_text(to_text(std::span<const NodeSummary>(playback->nodes)));
     for (const std::string& note : playback->notes) print("{}\n", note);
     static_cast<void>(flush_standard_output());  // its failure is told at the end
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     refuse_failed(*playback);
-    save(*playback, *folder, options.out);
+    save(*playback, *folder,
+         options.out.empty() ? options.playback.recording / kMapsOfRecording : options.out);
     tell_last_posture(*playback);
     if (playback->is_unlike_daemons) {
         throw CommandFailure({ExitCode::failed, options.playback.recording.string() +
@@ -200,7 +202,6 @@ void add_replay_command(CLI::App& app) {
             "image of a data set, and wait for the enter key")
         ->excludes(speed);
     command->callback([options] {
-        if (options->out.empty()) options->out = options->playback.recording / "maps";
         const Interruption interruption;
         options->onto.empty() ? replay_recording(*options) : replay_onto_bus(*options);
     });

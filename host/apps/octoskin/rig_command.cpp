@@ -99,7 +99,7 @@ void run(const RigOptions& options) {
     if (!options.block.empty()) {
         write_block(rig, options);
     } else if (options.prints_canonical) {
-        print("{}", rig::canonical_text(rig, rig.urdf.string()));
+        print_exactly(rig::canonical_text(rig, rig.urdf.string()));
     } else {
         describe(rig, *host);
     }

@@ -1,38 +1,22 @@
 // octoskin run: the daemon beside a robot.
-#include <spdlog/formatter.h>
-#include <spdlog/spdlog.h>
-
 #include <cstdlib>
 #include <memory>
 
 #include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/daemon/daemon.hpp"
+#include "host/apps/daemon/log_limit.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/log_format.hpp"
 
 namespace octoskin::app {
 namespace {
 
-/// The journal has its own clock, and reads a level from "<4>" at the begin of a line (sd-daemon(3)).
-class JournalFormatter final : public spdlog::formatter {
-  public:
-    void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
-        constexpr std::array<char, 7> kPriority{'7', '7', '6', '4', '3', '2', '6'};  // by spdlog's level
-        line.push_back('<');
-        line.push_back(kPriority.at(static_cast<std::size_t>(message.level)));
-        line.push_back('>');
-        line.append(message.payload.begin(), message.payload.end());
-        line.push_back('\n');
-    }
-    [[nodiscard]] std::unique_ptr<spdlog::formatter> clone() const override {
-        return std::make_unique<JournalFormatter>();
-    }
-};
-
 void run_daemon(DaemonRequest& request) {
     request.can_descriptor = descriptor_of(request.interface);
-    if (std::getenv("JOURNAL_STREAM") != nullptr) spdlog::set_formatter(std::make_unique<JournalFormatter>());
+    if (std::getenv("JOURNAL_STREAM") != nullptr) set_journal_format();
+    limit_log();
     auto daemon = Daemon::build(request);
     if (!daemon) throw CommandFailure(daemon.error());
     const ExitCode outcome = (*daemon)->run();
@@ -83,9 +67,11 @@ void add_run_command(CLI::App& app) {
     command->add_option("--socket", request->control_socket, "Where `octoskin status` asks")
         ->capture_default_str();
     command->footer(
-        "SIGTERM, SIGINT: save the map and end. SIGHUP: read rig, robot and mapping again, all or none.\n"
+        "SIGTERM, SIGINT, SIGQUIT: save the map and end. SIGHUP: read rig, robot and mapping again, all or\n"
+        "none; at most once a second, the last one obeyed. SIGUSR1 and the like are ignored.\n"
         "Exit codes: 0 ended by a signal, the map saved; 64 command line; 65 the saved map is damaged;\n"
-        "66 no such file; 69 a socket's folder is not there; 73 another daemon has the socket or the maps, "
+        "66 no such file; 69 a socket's folder is not there; 71 too little memory, descriptors or threads\n"
+        "(ulimit); 73 another daemon has the socket or the maps, "
         "or\n"
         "the map cannot be saved; 77 no permission; 78 rig, robot or mapping file.");
     command->callback([request] { run_daemon(*request); });

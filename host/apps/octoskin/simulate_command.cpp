@@ -15,6 +15,7 @@ namespace {
 
 struct SimulateOptions {
     SimulationRequest request;
+    std::filesystem::path out;
     std::string board = "core";
     std::filesystem::path image;
     std::uint32_t cycles_per_instruction = 1;
@@ -61,7 +62,7 @@ void simulate(const SimulationRequest& request, bool allows_violations) {
         "{}: {:.1f} s, {} CAN frames, {} depth frames; first range after {:.2f} s, CAN bus {:.1f} % busy, "
         "busiest I2C bus "
         "{:.1f} %\n",
-        request.out.string(), summary->duration_s, summary->can_frames, summary->depth_frames,
+        request.out.shown().string(), summary->duration_s, summary->can_frames, summary->depth_frames,
         summary->first_range_s, 100.0 * summary->can_busy_fraction,
         100.0 * *std::max_element(summary->i2c_busy_fraction.begin(), summary->i2c_busy_fraction.end()));
     if (summary->violations.empty() || allows_violations) return;
@@ -79,7 +80,7 @@ void add_simulate_command(CLI::App& app) {
     request->scenario = shipped_file("hw/worlds/experiment.scenario.yaml");
     CLI::App* command =
         app.add_subcommand("simulate", "Simulate the rig down to its sensors' registers; write a recording");
-    command->add_option("out", request->out, "Directory of the recording")->required();
+    command->add_option("out", options->out, "Directory of the recording")->required();
     command->add_option("--rig", request->rig, "Rig (YAML)")->capture_default_str()->check(existing_file());
     command->add_option("--robot", request->robot, "Robot (URDF) in place of the rig's")
         ->check(existing_file());
@@ -115,6 +116,7 @@ void add_simulate_command(CLI::App& app) {
     command->add_flag("--allow-violations", options->allows_violations,
                       "Exit code 0 although the image does what the chip's manuals forbid");
     command->callback([options] {
+        options->request.out = options->out;
         if (options->board == "emulated") options->request.emulated = emulated_boards(*options);
         simulate(options->request, options->allows_violations);
     });

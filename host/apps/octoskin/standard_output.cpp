@@ -28,9 +28,13 @@ void reserve_standard_descriptors() {
     }
 }
 
-void print_text(std::string_view text) {
+void print_exactly(std::string_view text) {
     errno = 0;
     note(std::fwrite(text.data(), 1, text.size(), stdout) == text.size());
+}
+
+void print_text(std::string_view text) {
+    print_exactly(printable_lines(text));
 }
 
 std::optional<AppError> flush_standard_output() {

@@ -27,6 +27,11 @@ void print_for_people(const nlohmann::ordered_json& status) {
               node.at("verdict").get<std::string>());
     }
     print("map: {} known voxels\n", status.at("map").at("known_voxels").get<std::uint64_t>());
+    if (const auto socket = status.find("joints_socket");
+        socket != status.end() && !socket->is_null() && socket->at("above_rate").get<bool>())
+        print(
+            "joint states: {:.0f} Hz through the socket, more than the rig's rate: the surplus is left out\n",
+            socket->at("rate_hz").get<double>());
     if (status.at("problems").empty()) print("no problems\n");
     for (const auto& problem : status.at("problems")) print("! {}\n", problem.get<std::string>());
 }
@@ -37,7 +42,7 @@ void show_status(const StatusOptions& options) {
     const auto status = nlohmann::ordered_json::parse(*answer, nullptr, false);
     if (!status.is_object()) throw CommandFailure(foreign_answer(options.socket));
     if (const auto refused = refusal_of(status)) throw CommandFailure(*refused);
-    if (options.is_json) return print("{}\n", status.dump(2));
+    if (options.is_json) return print_exactly(status.dump(2) + "\n");
     try {
         print_for_people(status);
     } catch (const nlohmann::ordered_json::exception&) {

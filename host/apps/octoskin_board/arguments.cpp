@@ -116,6 +116,12 @@ void describe(CLI::App& app, Arguments& arguments) {
         ->capture_default_str();
     app.add_option("--slow-clock-max", arguments.slow_clocks.factor_max, "And at most")
         ->capture_default_str();
+    app.add_option("--sensor-traits", arguments.sensor_traits,
+                   "[sensor=3,][register=71,reads=12[,mask=255],][range_spread_us=1000,][range_step_us=300,]"
+                   "[boot_load_us=3000]: of that sensor or of all; may be repeated")
+        ->check([](const std::string& text) {
+            return sim::parse_traits(text) ? std::string() : "'" + text + "' is not key=number,...";
+        });
     app.add_flag("--allow-violations", arguments.allows_violations, "Exit code 0 in spite of violations");
     app.add_flag(
         "--serial", arguments.shows_serial,

@@ -32,6 +32,7 @@ struct Arguments {
     std::vector<std::string> i2c_faults;
     std::uint64_t seed = 1;
     sim::SlowClockSpread slow_clocks{};
+    std::vector<std::string> sensor_traits;
     bool allows_violations = false;
     bool shows_serial = false;
     int socket = -1;  ///< open file descriptor of the parent's socket; negative: alone

@@ -71,7 +71,11 @@ Result<std::unique_ptr<Bench>, AppError> Bench::build(const Arguments& arguments
     if (!config) return unexpected(config.error());
     const auto image = ElfImage::load(arguments.elf);
     if (!image) return unexpected(reading_error(arguments.elf, {ExitCode::bad_data, image.error().what}));
-    const sim::BoardParts parts = sim::draw_board_parts({arguments.seed, arguments.slow_clocks}, *config);
+    sim::PartsReel reel{.seed = arguments.seed, .slow_clocks = arguments.slow_clocks};
+    for (const std::string& text : arguments.sensor_traits) {
+        if (auto traits = sim::parse_traits(text)) reel.traits.push_back(std::move(*traits));
+    }
+    const sim::BoardParts parts = sim::draw_board_parts(reel, *config);
     auto bench = std::make_unique<Bench>();
     bench->config_ = *config;
     std::array<std::uint8_t, kNodeConfigBytesMax> block{};

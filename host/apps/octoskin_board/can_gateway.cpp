@@ -27,8 +27,8 @@ void CanGateway::note(const socketcan::SocketFault& fault) {
 }
 
 Status<AppError> CanGateway::poll() {
-    for (int i = 0; i < kFramesPerPoll; ++i) {
-        const auto received = socket_.receive();
+    for (int frames_left = kFramesPerPoll; frames_left > 0;) {
+        const auto received = socket_.receive(frames_left);
         if (!received) {
             note(received.error());
             break;

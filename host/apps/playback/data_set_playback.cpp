@@ -89,7 +89,8 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, const r
 
 Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig::Rig& rig,
                                       const tum::DataSetReader& reader) {
-    const auto crc32 = crc32_of(reader.files());
+    const auto named = reader.files();
+    const auto crc32 = crc32_of(std::vector<FilePlace>(named.begin(), named.end()));
     if (!crc32) {
         const auto missing = reader.missing_image();
         const bool is_refused = std::ranges::any_of(
@@ -133,9 +134,8 @@ std::vector<std::string> warnings_of(const PlaybackRequest& request, const tum::
 }  // namespace
 
 bool is_data_set(const RecordingPaths& recording) {
-    std::error_code error;
-    return fs::is_regular_file(recording.directory / "depth.txt", error) &&
-           !fs::exists(recording.can_log(), error);
+    const EntryKind kind = recording.file("depth.txt").kind();
+    return (kind == EntryKind::file || kind == EntryKind::link) && !recording.can_log().is_there();
 }
 
 Status<AppError> check_data_set(const PlaybackRequest& request) {

@@ -13,15 +13,15 @@ struct OtherMaps {
     std::vector<fs::path> retired;
 };
 
-OtherMaps look_at_others(const fs::path& folder, const MapOrigin& origin) {
-    const auto former = read_map_origin(folder);
+OtherMaps look_at_others(const OpenFolder& folder, const MapOrigin& origin) {
+    const auto former = read_map_origin(NamedFolder(folder));
     OtherMaps others;
     for (const std::string& name : map_file_names()) {
-        std::error_code error;
-        if (origin.maps.contains(name) || !fs::exists(folder / name, error)) continue;
+        const FilePlace map(folder, name);
+        if (origin.maps.contains(name) || !map.is_there()) continue;
         // Only what is, byte for byte, what a replay left here.
         const bool is_ours =
-            former && *former && (*former)->maps.contains(name) && !fault_of_map(folder / name, **former);
+            former && *former && (*former)->maps.contains(name) && !fault_of_map(map, **former);
         (is_ours ? others.told.removed : others.told.foreign).push_back(name);
         if (is_ours) others.retired.emplace_back(name);
     }
@@ -41,7 +41,7 @@ NamedMaps named_maps(const Playback& playback) {
     return named;
 }
 
-Result<MapFolder, AppError> MapFolder::open(const fs::path& folder) {
+Result<MapFolder, AppError> MapFolder::open(const FilePlace& folder) {
     auto files = FileSet::begin(folder);
     if (!files) return unexpected(files.error());
     return MapFolder(std::move(*files));
@@ -51,16 +51,16 @@ Result<SavedMaps, AppError> MapFolder::save(const NamedMaps& maps, MapOrigin ori
     std::vector<fs::path> files;
     for (const auto& [name, map] : maps) {
         for (const char* extension : {".ot", ".bt", ".ply"}) {
-            const fs::path& file = files.emplace_back(name + extension);
-            if (const auto saved = save_map(*map, files_.draft() / file); !saved)
+            const FilePlace file(files_.draft(), files.emplace_back(name + extension));
+            if (const auto saved = save_map(*map, file); !saved)
                 return unexpected(AppError{ExitCode::cannot_create, saved.error().message});
-            const auto crc = crc32_of(files_.draft() / file);
-            if (!crc) return cannot_create(file, "cannot be read back");
-            origin.maps[file.string()] = *crc;
+            const auto crc = crc32_of(file);
+            if (!crc) return cannot_create(file.shown(), "cannot be read back");
+            origin.maps[file.filename()] = *crc;
         }
     }
     const OtherMaps others = look_at_others(files_.folder(), origin);
-    if (const auto written = write_map_origin(files_.draft() / kMapOriginFile, origin); !written)
+    if (const auto written = write_map_origin({files_.draft(), kMapOriginFile}, origin); !written)
         return unexpected(written.error());
     files.emplace_back(kMapOriginFile);
     if (const auto committed = files_.commit(files, others.retired); !committed)

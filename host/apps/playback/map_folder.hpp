@@ -33,11 +33,13 @@ struct SavedMaps {
 class MapFolder {
   public:
     /// Makes the folder if it is not there, and locks it: see FileSet::begin().
-    [[nodiscard]] static Result<MapFolder, AppError> open(const std::filesystem::path& folder);
+    [[nodiscard]] static Result<MapFolder, AppError> open(const FilePlace& folder);
 
     /// Writes each map as .ot, .bt and .ply, and maps.yaml; once. On an error those before are as they were.
     /// `origin`: what the maps were made from; their checksums are filled in.
     [[nodiscard]] Result<SavedMaps, AppError> save(const NamedMaps& maps, MapOrigin origin);
+
+    [[nodiscard]] const OpenFolder& folder() const noexcept { return files_.folder(); }
 
   private:
     explicit MapFolder(FileSet files) : files_(std::move(files)) {}

@@ -26,7 +26,7 @@ std::map<std::string, std::uint32_t> read_maps(const rig::Table& top) {
     return maps;
 }
 
-MapOrigin read_checked(const fs::path& file) {
+MapOrigin read_checked(const FilePlace& file) {
     const rig::Value document = rig::load_document(file);
     const rig::Table table(document, "",
                            {"schema", "made_by", "recording", "recording_crc32", "rig", "rig_hash", "robot",
@@ -58,16 +58,15 @@ std::vector<std::string> map_file_names() {
 }
 
 std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording) {
-    std::vector<fs::path> files = {recording.can_log()};
-    std::error_code error;
-    for (const fs::path& file :
+    std::vector<FilePlace> files = {recording.can_log()};
+    for (const FilePlace& file :
          {recording.depth(), recording.depth_epoch(), recording.order(), recording.first_map()}) {
-        if (fs::exists(file, error)) files.push_back(file);
+        if (file.is_there()) files.push_back(file);
     }
     return crc32_of(files);
 }
 
-Status<AppError> write_map_origin(const fs::path& file, const MapOrigin& origin) {
+Status<AppError> write_map_origin(const FilePlace& file, const MapOrigin& origin) {
     YAML::Emitter out;
     out << YAML::BeginMap;
     const auto put = [&out](const char* key, const std::string& value) {
@@ -89,25 +88,25 @@ Status<AppError> write_map_origin(const fs::path& file, const MapOrigin& origin)
     return write_text(file, std::string(out.c_str()) + '\n');
 }
 
-Result<std::optional<MapOrigin>, AppError> read_map_origin(const fs::path& folder) {
-    std::error_code error;
-    if (!fs::exists(folder / kMapOriginFile, error)) return std::optional<MapOrigin>{};
+Result<std::optional<MapOrigin>, AppError> read_map_origin(const NamedFolder& folder) {
+    const FilePlace file(folder, kMapOriginFile);
+    if (!file.is_there()) return std::optional<MapOrigin>{};
     try {
-        return std::optional(read_checked(folder / kMapOriginFile));
+        return std::optional(read_checked(file));
     } catch (const rig::Fault& fault) {
         return fail(ExitCode::bad_data,
                     fault.error.message() + " (replay the recording again, or move this file away)");
     }
 }
 
-std::optional<AppError> fault_of_map(const fs::path& map, const MapOrigin& origin) {
-    const auto described = origin.maps.find(map.filename().string());
+std::optional<AppError> fault_of_map(const FilePlace& map, const MapOrigin& origin) {
+    const auto described = origin.maps.find(map.filename());
     if (described == origin.maps.end()) return std::nullopt;
     const auto found = crc32_of(map);
     if (found == described->second) return std::nullopt;
     return AppError{
         ExitCode::bad_data,
-        map.string() + ": is not the map that " + kMapOriginFile + " beside it describes (CRC-32 " +
+        map.shown().string() + ": is not the map that " + kMapOriginFile + " beside it describes (CRC-32 " +
             (found ? crc_text(*found) : "cannot be had") + ", described is " + crc_text(described->second) +
             "): it was changed, or is of another replay. Replay " + origin.recording.string() +
             " again, or move " + kMapOriginFile + " away to judge the map without knowing its origin"};

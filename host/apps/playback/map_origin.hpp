@@ -35,13 +35,13 @@ struct MapOrigin {
 /// robot have their own. Empty if one cannot be read.
 [[nodiscard]] std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording);
 
-[[nodiscard]] Status<AppError> write_map_origin(const std::filesystem::path& file, const MapOrigin& origin);
+[[nodiscard]] Status<AppError> write_map_origin(const FilePlace& file, const MapOrigin& origin);
 
 /// That of the maps in `folder`; empty if nothing says so. Read as strictly as a rig (bad_data).
-[[nodiscard]] Result<std::optional<MapOrigin>, AppError> read_map_origin(const std::filesystem::path& folder);
+[[nodiscard]] Result<std::optional<MapOrigin>, AppError> read_map_origin(const NamedFolder& folder);
 
 /// Why `map` cannot be what `origin` describes (bad_data): its bytes are others. Empty, too, if the origin
 /// does not speak of it.
-[[nodiscard]] std::optional<AppError> fault_of_map(const std::filesystem::path& map, const MapOrigin& origin);
+[[nodiscard]] std::optional<AppError> fault_of_map(const FilePlace& map, const MapOrigin& origin);
 
 }  // namespace octoskin

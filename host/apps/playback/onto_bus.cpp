@@ -38,8 +38,8 @@ std::string text_of(const candump::LogEntry& entry) {
 
 }  // namespace
 
-Result<OntoBus, AppError> play_onto(const std::filesystem::path& can_log, socketcan::CanSocket& socket,
-                                    Pace pace, const OntoReport& report) {
+Result<OntoBus, AppError> play_onto(const FilePlace& can_log, socketcan::CanSocket& socket, Pace pace,
+                                    const OntoReport& report) {
     auto reader = candump::LogReader::open(can_log);
     if (!reader) return unexpected(reading_error(ExitCode::no_input, reader.error()));
     OntoBus played;
@@ -63,7 +63,7 @@ Result<OntoBus, AppError> play_onto(const std::filesystem::path& can_log, socket
     }
     played.lines_refused = reader->account().rejected();
     if (played.interface.empty())
-        return fail(ExitCode::bad_data, can_log.string() + ": no line of it is a frame");
+        return fail(ExitCode::bad_data, can_log.shown().string() + ": no line of it is a frame");
     return played;
 }
 

@@ -10,6 +10,7 @@
 #include "common/time.hpp"
 #include "host/apps/playback/pace.hpp"
 #include "host/apps/recording/app_error.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "host/io/socketcan/can_socket.hpp"
 
 namespace octoskin {
@@ -29,8 +30,7 @@ using OntoReport = std::function<void(const OntoBus& so_far, Nanoseconds into_lo
 
 /// Sends every frame of `can_log`, classical as classical and FD as FD, at the pace given. Errors: a log that
 /// cannot be read, or has no frame; an interface that fails, or that has had no room for 2 s.
-[[nodiscard]] Result<OntoBus, AppError> play_onto(const std::filesystem::path& can_log,
-                                                  socketcan::CanSocket& socket, Pace pace,
-                                                  const OntoReport& report = {});
+[[nodiscard]] Result<OntoBus, AppError> play_onto(const FilePlace& can_log, socketcan::CanSocket& socket,
+                                                  Pace pace, const OntoReport& report = {});
 
 }  // namespace octoskin

@@ -32,7 +32,8 @@ std::uint32_t crc32_of_map(const FusedMap& map) {
 Result<FusedMap, AppError> read_first_map(const PlaybackRequest& request, std::uint32_t crc) {
     const auto file = request.recording.first_map();
     if (crc32_of(file) != crc)
-        return fail(ExitCode::bad_data, file.string() + ": is not the map that this recording began with");
+        return fail(ExitCode::bad_data,
+                    file.shown().string() + ": is not the map that this recording began with");
     auto map = load_map_of(request.mapping.map, file);
     if (map) return std::move(map).value();
     const bool is_of_other_mapping = map.error().is_of_other_voxels || map.error().is_too_large;
@@ -89,8 +90,7 @@ void judge(const PlaybackRequest& request, const rig::Rig& rig, const orderlog::
 }  // namespace
 
 bool is_played_in_order(const PlaybackRequest& request) {
-    std::error_code error;
-    return !request.is_by_capture_time && std::filesystem::exists(request.recording.order(), error);
+    return !request.is_by_capture_time && request.recording.order().is_there();
 }
 
 Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, const rig::Rig& rig,
@@ -100,7 +100,7 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
     if (!order) return fail(ExitCode::bad_data, order.error().what);
     if (order->header().joints != rig.joints.joints.size()) {
         return fail(ExitCode::bad_config,
-                    fmt::format("{}: has {} joints, the rig {}", request.recording.order().string(),
+                    fmt::format("{}: has {} joints, the rig {}", request.recording.order().shown().string(),
                                 order->header().joints, rig.joints.joints.size()));
     }
     if (order->header().first_map) {

@@ -30,9 +30,8 @@ struct Setup {
 
 Result<Setup, AppError> read_setup(const PlaybackRequest& request) {
     const auto lock = lock_reading();
-    std::error_code error;
-    const bool is_robot_absent = request.rig.empty() && request.robot.empty() &&
-                                 !std::filesystem::exists(request.recording.robot(), error);
+    const bool is_robot_absent =
+        request.rig.empty() && request.robot.empty() && !request.recording.robot().is_there();
     auto rig = read_given_rig(request.rig.empty() ? request.recording.rig() : request.rig, request.robot,
                               is_robot_absent ? ExitCode::no_input : ExitCode::bad_config);
     if (!rig) return unexpected(rig.error());
@@ -79,8 +78,7 @@ struct DepthInput {
 };
 
 DepthInput open_depth(const RecordingPaths& recording) {
-    std::error_code error;
-    if (!std::filesystem::exists(recording.depth(), error)) return {};
+    if (!recording.depth().is_there()) return {};
     auto reader = openni2::OniReader::open(recording.depth(), recording.depth_epoch());
     if (!reader) return {std::nullopt, reader.error()};
     return {std::move(*reader), std::nullopt};
@@ -118,7 +116,7 @@ Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig:
     return MapOrigin{.made_by = program_version(),
                      .recording = absolute(request.recording.directory),
                      .recording_crc32 = *crc32,
-                     .rig = absolute(request.rig.empty() ? request.recording.rig() : request.rig),
+                     .rig = absolute(request.rig.empty() ? request.recording.rig().shown() : request.rig),
                      .rig_hash = rig::rig_hash(rig),
                      .robot = absolute(rig.urdf),
                      .robot_crc32 = crc32_of(rig.urdf),
@@ -202,7 +200,7 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, Setup& 
     config.begin = begin;
     auto pipeline = Pipeline::build(setup.host.rig, std::move(setup.host.robot), request.mapping, config);
     if (!pipeline) {
-        return fail(ExitCode::bad_config, request.recording.rig().string() + ": the robot has no '" +
+        return fail(ExitCode::bad_config, request.recording.rig().shown().string() + ": the robot has no '" +
                                               pipeline.error().element + "' that the rig speaks of");
     }
     pipeline->tell(request.listener);
@@ -287,9 +285,6 @@ std::optional<AppError> failure_of(const Playback& playback, std::string_view wh
 
 Status<AppError> check_playable(const PlaybackRequest& request) {
     if (is_data_set(request.recording)) return check_data_set(request);
-    // First: a recording whose last file is still to be put in place has no meta.yaml.
-    if (const auto settled = settle_file_set(request.recording.directory); !settled)
-        return unexpected(settled.error());
     if (const auto checked = check_recording(request.recording, !request.rig.empty()); !checked)
         return unexpected(reading_error(ExitCode::no_input, checked.error()));
     const RecordingPaths& recording = request.recording;

@@ -64,8 +64,8 @@ struct Playback {
     const Playback& playback,
     std::string_view where_the_account_is = "`octoskin replay` shows the account that says why");
 
-/// That the recording has its files, after settle_file_set(): cheap, for those who have something to prepare
-/// before they play it.
+/// That the recording has its files, as check_recording() says: cheap, for those who have something to
+/// prepare before they play it.
 [[nodiscard]] Status<AppError> check_playable(const PlaybackRequest& request);
 
 /// Opens a recording and plays it to its end: in a daemon's own order, if it has one. A data set in the TUM

@@ -12,12 +12,14 @@ namespace octoskin {
 /// After sysexits.h, so that a script or a service manager can tell what went wrong.
 enum class ExitCode : int {
     ok = 0,
-    failed = 1,          ///< the work was done and its result is bad
-    uncertain = 2,       ///< the work was done, and its result is that nobody knows
-    usage = 64,          ///< the command line
-    bad_data = 65,       ///< a recording, map or world that cannot be used
-    no_input = 66,       ///< a file that is not there
-    unavailable = 69,    ///< a program or a device that is not there
+    failed = 1,        ///< the work was done and its result is bad
+    uncertain = 2,     ///< the work was done, and its result is that nobody knows
+    usage = 64,        ///< the command line
+    bad_data = 65,     ///< a recording, map or world that cannot be used
+    no_input = 66,     ///< a file that is not there
+    unavailable = 69,  ///< a program or a device that is not there
+    no_resources =
+        71,  ///< the system or a limit of this process (ulimit) has too little memory, descriptors, threads
     cannot_create = 73,  ///< an output file
     io_failed = 74,      ///< a device that was there, or the standard output, failed in its work
     no_permission = 77,  ///< to use a device, or to read a file

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <utility>
@@ -11,37 +10,44 @@
 namespace octoskin {
 namespace {
 
-/// Whether the path still leads to what was opened: it may have been replaced before it was locked.
-bool is_still_at(const std::filesystem::path& path, int descriptor) {
-    struct stat opened {};
-    struct stat there {};
-    return ::fstat(descriptor, &opened) == 0 && ::stat(path.c_str(), &there) == 0 &&
-           opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
+constexpr int kTries = 10;
+
+bool is_same_file(int one, int other) {
+    struct stat first {};
+    struct stat second {};
+    return ::fstat(one, &first) == 0 && ::fstat(other, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
 }
 
 }  // namespace
 
-std::optional<FileLock> FileLock::take(const std::filesystem::path& path, Kind kind) {
-    constexpr int kTries = 10;
+std::optional<FileLock> FileLock::lock(Descriptor descriptor, Kind kind) {
+    const int operation = kind == Kind::shared ? LOCK_SH : LOCK_EX;
+    int failed = ::flock(descriptor.get(), operation | LOCK_NB);
+    while (failed != 0 && errno == EINTR) failed = ::flock(descriptor.get(), operation | LOCK_NB);
+    if (failed != 0 && errno == EWOULDBLOCK) return std::nullopt;
+    if (failed != 0) return of_nothing();
+    return FileLock(std::move(descriptor));
+}
+
+std::optional<FileLock> FileLock::take(const FilePlace& file, Kind kind) {
     for (int tries = 0; tries < kTries; ++tries) {
-        // Without blocking: it may be a named pipe.
-        const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-        if (descriptor < 0) return FileLock(-1);
-        FileLock lock(descriptor);
-        const int operation = kind == Kind::shared ? LOCK_SH : LOCK_EX;
-        int failed = ::flock(descriptor, operation | LOCK_NB);
-        while (failed != 0 && errno == EINTR) failed = ::flock(descriptor, operation | LOCK_NB);
-        if (failed != 0 && errno == EWOULDBLOCK) return std::nullopt;
-        if (failed != 0) return FileLock(-1);
-        if (is_still_at(path, descriptor)) return lock;
+        auto opened = file.open();
+        if (!opened) return of_nothing();
+        auto locked = lock(Descriptor(opened->release()), kind);
+        if (!locked || !locked->descriptor_) return locked;
+        // It may have been replaced before it was locked.
+        const auto again = file.open();
+        if (again && is_same_file(again->descriptor(), locked->descriptor_.get())) return locked;
     }
     return std::nullopt;
 }
 
-FileLock::FileLock(FileLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-FileLock::~FileLock() {
-    if (descriptor_ >= 0) ::close(descriptor_);
+std::optional<FileLock> FileLock::take(const OpenFolder& folder, Kind kind) {
+    // Opened anew: a lock belongs to one opening, and the folder's own has copies.
+    Descriptor again(::openat(folder.descriptor(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!again) return of_nothing();
+    return lock(std::move(again), kind);
 }
 
 }  // namespace octoskin

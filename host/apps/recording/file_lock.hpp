@@ -2,8 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
+
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin {
 
@@ -13,16 +14,16 @@ class FileLock {
   public:
     enum class Kind : std::uint8_t { shared, exclusive };
 
-    /// Never waits. Empty if another holds the lock. A file system without locks, and a path that cannot be
+    /// Never waits. Empty if another holds the lock. A file system without locks, and what cannot be
     /// opened, give a lock that locks nothing: whatever is done there next says what is wrong with it.
-    [[nodiscard]] static std::optional<FileLock> take(const std::filesystem::path& path, Kind kind);
-    FileLock(FileLock&& other) noexcept;
-    FileLock& operator=(FileLock&&) = delete;
-    ~FileLock();
+    [[nodiscard]] static std::optional<FileLock> take(const FilePlace& file, Kind kind);
+    [[nodiscard]] static std::optional<FileLock> take(const OpenFolder& folder, Kind kind);
+    [[nodiscard]] static FileLock of_nothing() { return FileLock(Descriptor()); }
 
   private:
-    explicit FileLock(int descriptor) : descriptor_(descriptor) {}
-    int descriptor_;  ///< -1: locks nothing
+    explicit FileLock(Descriptor descriptor) : descriptor_(std::move(descriptor)) {}
+    [[nodiscard]] static std::optional<FileLock> lock(Descriptor descriptor, Kind kind);
+    Descriptor descriptor_;  ///< none: locks nothing
 };
 
 }  // namespace octoskin

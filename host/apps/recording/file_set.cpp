@@ -1,13 +1,13 @@
 #include "host/apps/recording/file_set.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cerrno>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -18,24 +18,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kReadyFolder = ".octoskin-ready";
+constexpr const char* kReady = FileSet::kReadyFolder;
 constexpr const char* kBeforeFolder = ".before";  ///< in the ready folder: what the new files replace
 constexpr const char* kJournal = ".journal";      ///< in the ready folder: what is to be done
 constexpr const char* kJournalHead = "octoskin-file-set/1";
+constexpr std::size_t kJournalBytesMax = 4096;  ///< each name once, dropped and put, takes less
 
-Unexpected<AppError> busy(const fs::path& folder) {
+constexpr std::array<std::string_view, 6> kRecordingFiles{"can.log",  "depth.oni",  "depth.epoch.yaml",
+                                                          "rig.yaml", "robot.urdf", "meta.yaml"};
+constexpr std::array<std::string_view, 10> kMapFiles{
+    "depth.ot",      "depth.bt", "depth.ply", "proximity.ot", "proximity.bt",
+    "proximity.ply", "fused.ot", "fused.bt",  "fused.ply",    "maps.yaml"};
+
+Unexpected<AppError> busy(const OpenFolder& folder) {
     return cannot_create(
-        folder, "another octoskin is writing here; wait until it has ended, or give another directory");
+        folder.shown(),
+        "another octoskin is writing here; wait until it has ended, or give another directory");
 }
 
-Unexpected<AppError> cannot_write(const fs::path& folder, const std::error_code& error) {
-    return cannot_create(folder,
-                         "nothing can be written there (" + error.message() + "): " + remedy_of(error));
+Unexpected<AppError> cannot_write(const FolderError& error) {
+    if (error.fault == FolderFault::foreign_owner || error.fault == FolderFault::link)
+        return cannot_create(error.path, error.reason());
+    return cannot_create(error.path, "nothing can be written there (" + error.reason() +
+                                         "): " + remedy_of({error.error_number, std::generic_category()}));
 }
 
-bool is_there(const fs::path& path) {
-    std::error_code error;
-    return fs::exists(fs::symlink_status(path, error));
+Unexpected<AppError> failed(const FolderError& error) {
+    return cannot_create(error.path, error.reason());
+}
+
+bool is_there(const OpenFolder& folder, const fs::path& name) {
+    return folder.kind_of(name) != EntryKind::absent;
 }
 
 /// What to do, in the order in which it is done; `put` ends with the file that vouches for all.
@@ -44,64 +57,71 @@ struct Journal {
     std::vector<fs::path> put;
 };
 
-/// Stays in the folder, and is one of ours to touch.
-bool is_within(const fs::path& name) {
-    return !name.empty() && name.is_relative() &&
-           std::none_of(name.begin(), name.end(), [](const fs::path& part) { return part == ".."; });
-}
-
-Status<AppError> write_journal(const fs::path& file, const Journal& journal) {
-    std::ofstream out(file, std::ios::binary);
+Status<AppError> write_journal(const OpenFolder& draft, const Journal& journal) {
+    const auto created = draft.create_new(kJournal);
+    if (!created) return failed(created.error());
+    std::ofstream out(created->path_for_libraries(), std::ios::binary);
     out << kJournalHead << '\n';
     for (const fs::path& name : journal.drop) out << "drop " << name.string() << '\n';
     for (const fs::path& name : journal.put) out << "put " << name.string() << '\n';
     out.close();
-    if (!out) return cannot_create(file, "cannot write; is the disk full?");
+    if (!out) return cannot_create(created->shown(), "cannot write; is the disk full?");
     return Done{};
 }
 
-Result<Journal, AppError> read_journal(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
+/// The journal's text is of whoever made the folder: it is obeyed for the names that octoskin writes, and for
+/// no other.
+Result<Journal, AppError> read_journal(const OpenFolder& ready) {
+    const auto file = ready.open_file(kJournal);
+    const auto text = file ? file->read(kJournalBytesMax) : unexpected(file.error());
+    std::istringstream in(text ? *text : std::string());
     Journal journal;
     std::string line;
-    bool is_sound = std::getline(in, line) && line == kJournalHead;
+    bool is_sound =
+        text && text->size() <= kJournalBytesMax && std::getline(in, line) && line == kJournalHead;
     while (is_sound && std::getline(in, line)) {
         const auto space = line.find(' ');
         const fs::path name = space == std::string::npos ? "" : line.substr(space + 1);
         const std::string verb = line.substr(0, space);
-        is_sound = is_within(name) && (verb == "put" || verb == "drop");
+        is_sound = is_file_of_set(name) && (verb == "put" || verb == "drop");
         (verb == "put" ? journal.put : journal.drop).push_back(name);
     }
     if (!is_sound || journal.put.empty()) {
-        return cannot_create(file, "is not what octoskin writes; remove " + file.parent_path().string() +
-                                       " and make the files beside it again");
+        return cannot_create(ready.shown(kJournal), "is not what octoskin writes; remove " +
+                                                        ready.shown().string() +
+                                                        " and make the files beside it again");
     }
     return journal;
 }
 
-/// A file or a folder, to the disk.
-Status<AppError> flush(const fs::path& path) {
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    const bool is_flushed = descriptor >= 0 && ::fsync(descriptor) == 0;
-    const std::string reason = std::generic_category().message(errno);
-    if (descriptor >= 0) ::close(descriptor);
-    if (!is_flushed) return cannot_create(path, "cannot be flushed to the disk (" + reason + ")");
+Status<AppError> flush(const OpenFolder& folder) {
+    if (const auto flushed = folder.flush(); !flushed)
+        return cannot_create(flushed.error().path,
+                             "cannot be flushed to the disk (" + flushed.error().reason() + ")");
     return Done{};
 }
 
-Status<AppError> move(const fs::path& from, const fs::path& to) {
-    std::error_code error;
-    fs::rename(from, to, error);
-    if (error) return cannot_create(to, error.message());
+Status<AppError> flush(const OpenFolder& folder, const fs::path& name) {
+    if (const auto flushed = folder.flush(name); !flushed)
+        return cannot_create(flushed.error().path,
+                             "cannot be flushed to the disk (" + flushed.error().reason() + ")");
+    return Done{};
+}
+
+Status<AppError> move(const OpenFolder& folder, const fs::path& from, const fs::path& to) {
+    if (const auto moved = folder.move(from, to); !moved) return failed(moved.error());
     return Done{};
 }
 
 /// That a place is free, or taken by a file that can be replaced.
-Status<AppError> check_place(const fs::path& place) {
-    std::error_code error;
-    const auto status = fs::status(place, error);
-    if (!fs::exists(status) || fs::is_regular_file(status)) return Done{};
-    return cannot_create(place,
+Status<AppError> check_place(const OpenFolder& folder, const fs::path& name) {
+    const EntryKind kind = folder.kind_of(name);
+    if (kind == EntryKind::absent || kind == EntryKind::file) return Done{};
+    if (kind == EntryKind::link) {
+        const auto opened = folder.open_file(name);
+        if (!opened) return failed(opened.error());
+    }
+    return cannot_create(folder.shown(name),
                          "is no file, and one of this name is to be put there or removed; move it away");
 }
 
@@ -109,10 +129,15 @@ Status<AppError> check_place(const fs::path& place) {
 /// again after any of them.
 class Move {
   public:
-    Move(fs::path folder, Journal journal)
-        : folder_(std::move(folder)), ready_(folder_ / kReadyFolder), journal_(std::move(journal)) {}
+    Move(OpenFolder folder, Journal journal) : folder_(std::move(folder)), journal_(std::move(journal)) {}
 
     Status<AppError> forward() {
+        // Before anything moves: a link, a pipe or a folder in any place stops all of it.
+        for (const auto& names : {journal_.drop, journal_.put}) {
+            for (const fs::path& name : names) {
+                if (const auto checked = check_both(name); !checked) return checked;
+            }
+        }
         // The decision reaches the disk before anything that follows from it.
         if (const auto flushed = flush(folder_); !flushed) return flushed;
         // The former set loses its voucher first.
@@ -121,9 +146,9 @@ class Move {
             if (const auto kept = keep(name, Keep::moved); !kept) return kept;
         }
         for (const fs::path& name : journal_.put) {
-            if (!is_there(ready_ / name)) continue;
+            if (!is_there(folder_, ready(name))) continue;
             if (const auto kept = keep(name, Keep::linked); !kept) return kept;
-            if (const auto moved = move(ready_ / name, folder_ / name); !moved) return moved;
+            if (const auto moved = move(folder_, ready(name), name); !moved) return moved;
         }
         return flush(folder_);
     }
@@ -132,15 +157,14 @@ class Move {
     /// first and come last.
     Status<AppError> back() {
         for (auto name = journal_.put.rbegin(); name != journal_.put.rend(); ++name) {
-            if (is_there(ready_ / *name)) continue;
-            if (const auto moved = move(folder_ / *name, ready_ / *name); !moved) return moved;
+            if (is_there(folder_, ready(*name)) || !is_there(folder_, *name)) continue;
+            if (const auto moved = move(folder_, *name, ready(*name)); !moved) return moved;
         }
         std::vector<fs::path> all = journal_.drop;
         all.insert(all.end(), journal_.put.begin(), journal_.put.end());
         for (const fs::path& name : all) {
-            const fs::path former = ready_ / kBeforeFolder / name;
-            if (!is_there(former)) continue;
-            if (const auto moved = move(former, folder_ / name); !moved) return moved;
+            if (!is_there(folder_, former(name))) continue;
+            if (const auto moved = move(folder_, former(name), name); !moved) return moved;
         }
         return Done{};
     }
@@ -148,7 +172,7 @@ class Move {
     /// Some new file is in its place, or some former one is not.
     [[nodiscard]] bool has_moved() const {
         const auto is_away = [this](const fs::path& name) {
-            return is_there(ready_ / kBeforeFolder / name) || (is_put(name) && !is_there(ready_ / name));
+            return is_there(folder_, former(name)) || (is_put(name) && !is_there(folder_, ready(name)));
         };
         return std::any_of(journal_.drop.begin(), journal_.drop.end(), is_away) ||
                std::any_of(journal_.put.begin(), journal_.put.end(), is_away);
@@ -156,37 +180,52 @@ class Move {
 
     void remove_ready() const {
         // The name goes first: half of a ready folder must not look like a whole one.
-        const fs::path draft = folder_ / FileSet::kDraftFolder;
-        std::error_code ignored;
-        fs::remove_all(draft, ignored);
-        fs::rename(ready_, draft, ignored);
-        fs::remove_all(draft, ignored);
+        static_cast<void>(folder_.remove_all(FileSet::kDraftFolder));
+        static_cast<void>(folder_.move(kReady, FileSet::kDraftFolder));
+        static_cast<void>(folder_.remove_all(FileSet::kDraftFolder));
     }
 
   private:
     enum class Keep : std::uint8_t { moved, linked };
 
+    [[nodiscard]] static fs::path ready(const fs::path& name) { return fs::path(kReady) / name; }
+    [[nodiscard]] static fs::path former(const fs::path& name) {
+        return fs::path(kReady) / kBeforeFolder / name;
+    }
+    [[nodiscard]] Status<AppError> check_both(const fs::path& name) const {
+        for (const fs::path& place : {name, ready(name), former(name)}) {
+            if (const auto checked = check_place(folder_, place); !checked) return checked;
+        }
+        return Done{};
+    }
+
     /// Keeps the file that is in the place of `name`, so that it can be had back. A link leaves it there
     /// until the new one takes its place; where links are not to be had, it is moved away a moment before.
     Status<AppError> keep(const fs::path& name, Keep how) {
-        const fs::path former = ready_ / kBeforeFolder / name;
         // A new file that is in place already is none to keep.
-        const bool is_done = is_there(former) || (is_put(name) && !is_there(ready_ / name));
-        if (is_done || !is_there(folder_ / name)) return Done{};
-        if (const auto checked = check_place(folder_ / name); !checked) return checked;
-        std::error_code error;
-        fs::create_directories(former.parent_path(), error);
-        if (error) return cannot_create(former.parent_path(), error.message());
-        if (how == Keep::linked && ::link((folder_ / name).c_str(), former.c_str()) == 0) return Done{};
-        return move(folder_ / name, former);
+        const bool is_done =
+            is_there(folder_, former(name)) || (is_put(name) && !is_there(folder_, ready(name)));
+        if (is_done || !is_there(folder_, name)) return Done{};
+        if (const auto made = make_former_folders(name); !made) return made;
+        if (how == Keep::linked && folder_.link(name, former(name))) return Done{};
+        return move(folder_, name, former(name));
+    }
+
+    Status<AppError> make_former_folders(const fs::path& name) const {
+        fs::path folder = fs::path(kReady) / kBeforeFolder;
+        for (const fs::path& part : name) {
+            const auto made = folder_.make_folder(folder);
+            if (!made && made.error().fault != FolderFault::is_there) return failed(made.error());
+            folder /= part;
+        }
+        return Done{};
     }
 
     bool is_put(const fs::path& name) const {
         return std::find(journal_.put.begin(), journal_.put.end(), name) != journal_.put.end();
     }
 
-    fs::path folder_;
-    fs::path ready_;
+    OpenFolder folder_;
     Journal journal_;
 };
 
@@ -205,32 +244,34 @@ Status<AppError> carry_out(Move& moving) {
     return moved;
 }
 
-Status<AppError> finish_interrupted(const fs::path& folder) {
-    const fs::path ready = folder / kReadyFolder;
-    if (!is_there(ready)) return Done{};
-    const auto journal = read_journal(ready / kJournal);
+/// True if there was something to finish.
+Result<bool, AppError> finish_interrupted(const OpenFolder& folder) {
+    if (!is_there(folder, kReady)) return false;
+    const auto ready = folder.open_folder(kReady);  // of the caller or of root, as the folder itself
+    if (!ready) return failed(ready.error());
+    const auto journal = read_journal(*ready);
     if (!journal) return unexpected(journal.error());
     Move moving(folder, *journal);
     if (const auto moved = carry_out(moving); !moved) {
-        return fail(ExitCode::cannot_create, moved.error().message +
-                                                 "; the files of a run that was killed wait in " +
-                                                 ready.string() + ": try again after that, or remove them");
+        return fail(ExitCode::cannot_create,
+                    moved.error().message + "; the files of a run that was killed wait in " +
+                        ready->shown().string() + ": try again after that, or remove them");
     }
-    return Done{};
+    return true;
 }
 
 }  // namespace
 
-FileSet::FileSet(fs::path folder, bool is_new, FileLock lock)
+FileSet::FileSet(OpenFolder folder, OpenFolder draft, bool is_new, Unfinished unfinished, FileLock lock)
     : folder_(std::move(folder)),
-      draft_(folder_ / kDraftFolder),
+      draft_(std::move(draft)),
       is_new_(is_new),
-      unfinished_(draft_, is_new ? folder_ : fs::path()),
+      unfinished_(std::move(unfinished)),
       lock_(std::move(lock)) {}
 
 FileSet::FileSet(FileSet&& other) noexcept
-    : folder_(std::move(other.folder_)),
-      draft_(std::move(other.draft_)),
+    : folder_(other.folder_),
+      draft_(other.draft_),
       is_new_(other.is_new_),
       is_open_(std::exchange(other.is_open_, false)),
       unfinished_(std::move(other.unfinished_)),
@@ -238,42 +279,49 @@ FileSet::FileSet(FileSet&& other) noexcept
 
 FileSet::~FileSet() {
     if (!is_open_) return;
-    std::error_code ignored;
-    fs::remove_all(draft_, ignored);
-    if (is_new_) fs::remove(folder_, ignored);  // only if it is empty
+    static_cast<void>(folder_.remove_all(kDraftFolder));
+    if (is_new_) remove_made_folder(folder_);
 }
 
-Result<FileSet, AppError> FileSet::begin(const fs::path& folder) {
-    std::error_code error;
-    const bool is_new = fs::create_directories(folder, error);
-    if (error) return cannot_write(folder, error);
+Result<FileSet, AppError> FileSet::begin(const FilePlace& named) {
+    const auto made = named.make_folder();
+    if (!made) return cannot_write(made.error());
+    const OpenFolder& folder = made->folder;
+    const auto give_up = [&made](Unexpected<AppError> error) {
+        if (made->is_new) remove_made_folder(made->folder);
+        return error;
+    };
     auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     if (!lock) return busy(folder);
     if (const auto finished = finish_interrupted(folder); !finished) return unexpected(finished.error());
-    FileSet set(folder, is_new, std::move(*lock));
-    fs::remove_all(set.draft_, error);  // of a process that was killed
-    fs::create_directory(set.draft_, error);
-    if (error) return cannot_write(folder, error);
-    return set;
+    Unfinished unfinished(folder, kDraftFolder, made->is_new);
+    // What is there is of a process that was killed.
+    if (const auto removed = folder.remove_all(kDraftFolder); !removed)
+        return give_up(cannot_write(removed.error()));
+    if (const auto created = folder.make_folder(kDraftFolder); !created)
+        return give_up(cannot_write(created.error()));
+    auto draft = folder.open_folder(kDraftFolder);
+    if (!draft) return give_up(cannot_write(draft.error()));
+    return FileSet(folder, std::move(*draft), made->is_new, std::move(unfinished), std::move(*lock));
 }
 
 Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::vector<fs::path>& retired) {
-    assert(!files.empty() && std::all_of(retired.begin(), retired.end(), is_within));
+    assert(!files.empty() && std::all_of(files.begin(), files.end(), is_file_of_set) &&
+           std::all_of(retired.begin(), retired.end(), is_file_of_set));
     for (const auto& names : {files, retired}) {
         for (const fs::path& name : names) {
-            if (const auto checked = check_place(folder_ / name); !checked) return checked;
+            if (const auto checked = check_place(folder_, name); !checked) return checked;
         }
     }
     const Journal journal{retired, files};
-    if (const auto written = write_journal(draft_ / kJournal, journal); !written) return written;
+    if (const auto written = write_journal(draft_, journal); !written) return written;
     for (const fs::path& file : files) {
-        if (const auto flushed = flush(draft_ / file); !flushed) return flushed;
+        if (const auto flushed = flush(draft_, file); !flushed) return flushed;
     }
-    for (const fs::path& last : {draft_ / kJournal, draft_}) {
-        if (const auto flushed = flush(last); !flushed) return flushed;
-    }
+    if (const auto flushed = flush(draft_, kJournal); !flushed) return flushed;
+    if (const auto flushed = flush(draft_); !flushed) return flushed;
     const auto whole = unfinished_.finish();
-    if (const auto decided = move(draft_, folder_ / kReadyFolder); !decided) return decided;
+    if (const auto decided = move(folder_, kDraftFolder, kReady); !decided) return decided;
     is_open_ = false;
     Move moving(folder_, journal);
     auto moved = carry_out(moving);
@@ -281,8 +329,18 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     return moved;
 }
 
-Status<AppError> settle_file_set(const fs::path& folder) {
-    if (!is_there(folder / kReadyFolder)) return Done{};
+bool is_file_of_set(const fs::path& name) {
+    const std::string text = name.string();
+    const auto is_in = [](const auto& list, std::string_view one) {
+        return std::find(list.begin(), list.end(), one) != list.end();
+    };
+    constexpr std::string_view kMaps = "maps/";
+    return is_in(kRecordingFiles, text) || is_in(kMapFiles, text) ||
+           (text.starts_with(kMaps) && is_in(kMapFiles, std::string_view(text).substr(kMaps.size())));
+}
+
+Result<bool, AppError> settle_file_set(const OpenFolder& folder) {
+    if (!is_there(folder, kReady)) return false;
     const auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     if (!lock) return busy(folder);
     return finish_interrupted(folder);

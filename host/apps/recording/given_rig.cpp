@@ -6,8 +6,8 @@
 
 namespace octoskin {
 
-Result<rig::Rig, AppError> read_given_rig(const std::filesystem::path& file,
-                                          const std::filesystem::path& robot, ExitCode otherwise) {
+Result<rig::Rig, AppError> read_given_rig(const FilePlace& file, const std::filesystem::path& robot,
+                                          ExitCode otherwise) {
     auto rig = rig::read_rig(file, robot);
     if (!rig) return unexpected(reading_error(otherwise, rig.error()));
     return std::move(rig).value();

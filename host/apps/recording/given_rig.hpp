@@ -10,7 +10,7 @@
 namespace octoskin {
 
 /// rig::read_rig(), its error with an exit code: one that may not be read (no_permission), or `otherwise`.
-[[nodiscard]] Result<rig::Rig, AppError> read_given_rig(const std::filesystem::path& file,
+[[nodiscard]] Result<rig::Rig, AppError> read_given_rig(const FilePlace& file,
                                                         const std::filesystem::path& robot = {},
                                                         ExitCode otherwise = ExitCode::bad_config);
 

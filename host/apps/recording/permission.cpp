@@ -8,16 +8,22 @@
 
 namespace octoskin {
 
-std::optional<AppError> refused_to_read(const std::filesystem::path& file) {
-    if (::faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) == 0) return std::nullopt;
-    const int error = errno;
+std::optional<AppError> refused_to_read(const FilePlace& file) {
+    int error = 0;
+    if (file.folder() != nullptr) {
+        const auto opened = file.open();
+        if (!opened && opened.error().fault == FolderFault::not_permitted)
+            error = opened.error().error_number;
+    } else if (::faccessat(AT_FDCWD, file.name().c_str(), R_OK, AT_EACCESS) != 0) {
+        error = errno;
+    }
     if (error != EACCES && error != EPERM) return std::nullopt;
     return AppError{ExitCode::no_permission,
-                    file.string() + ": cannot be read (" + std::generic_category().message(error) +
+                    file.shown().string() + ": cannot be read (" + std::generic_category().message(error) +
                         "): its owner can let you (chmod, chgrp; its folders, too), or ask as one who may"};
 }
 
-AppError reading_error(const std::filesystem::path& file, AppError otherwise) {
+AppError reading_error(const FilePlace& file, AppError otherwise) {
     if (auto refused = refused_to_read(file)) return std::move(*refused);
     return otherwise;
 }

@@ -7,15 +7,16 @@
 #include <utility>
 
 #include "host/apps/recording/app_error.hpp"
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin {
 
 /// ExitCode::no_permission if this process may not read the file or directory, or not look for it; empty if
 /// it may, or if nothing is there.
-[[nodiscard]] std::optional<AppError> refused_to_read(const std::filesystem::path& file);
+[[nodiscard]] std::optional<AppError> refused_to_read(const FilePlace& file);
 
 /// Why reading `file` failed: that it may not be read, else what `otherwise` says.
-[[nodiscard]] AppError reading_error(const std::filesystem::path& file, AppError otherwise);
+[[nodiscard]] AppError reading_error(const FilePlace& file, AppError otherwise);
 
 /// The same of an error of a reader, which knows its file.
 template <class Error>

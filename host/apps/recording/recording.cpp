@@ -5,6 +5,7 @@
 #include <fstream>
 #include <utility>
 
+#include "host/apps/recording/file_set.hpp"
 #include "hw/rigfile/table.hpp"
 
 namespace octoskin {
@@ -23,6 +24,40 @@ Unexpected<RecordingError> failure(const std::filesystem::path& file, std::strin
     return unexpected(RecordingError{file, std::move(what), 0, ""});
 }
 
+/// That it is a folder, and whole.
+Status<RecordingError> check_folder(const RecordingPaths& recording) {
+    const auto folder = recording.folder.open();
+    if (folder) {
+        if (folder->kind_of(FileSet::kReadyFolder) == EntryKind::absent) return Done{};
+        return failure(
+            recording.directory,
+            "an octoskin was killed while it put new files in their places here: `octoskin repair " +
+                recording.directory.string() + "` finishes that");
+    }
+    if (folder.error().fault == FolderFault::not_a_folder) {
+        return failure(recording.directory,
+                       "is a file; give the recording's directory, " +
+                           std::filesystem::absolute(recording.directory).parent_path().string());
+    }
+    if (folder.error().fault == FolderFault::absent) return failure(recording.directory, kDirectoryMissing);
+    return failure(recording.directory, folder.error().reason());
+}
+
+/// That nothing but files lies in the places of files.
+Status<RecordingError> check_kinds(const RecordingPaths& recording) {
+    for (const FilePlace& file : {recording.can_log(), recording.depth(), recording.depth_epoch(),
+                                  recording.rig(), recording.robot(), recording.order(), recording.mapping(),
+                                  recording.first_map(), recording.last_map(), recording.meta()}) {
+        const EntryKind kind = file.kind();
+        if (kind == EntryKind::absent || kind == EntryKind::file) continue;
+        const auto opened = file.open();
+        if (!opened && opened.error().fault == FolderFault::link)
+            return failure(opened.error().path, opened.error().reason());
+        return failure(file.shown(), "is no ordinary file; move it away, or put the recorded one there");
+    }
+    return Done{};
+}
+
 void write_source(YAML::Emitter& out, const std::string& key, const SourceFile& source) {
     if (source.file.empty()) return;
     out << YAML::Key << key << YAML::Value << source.file.string();
@@ -37,7 +72,7 @@ SourceFile read_source(const rig::Table& table, const std::string& key) {
     return source;
 }
 
-RecordingMeta read_checked(const std::filesystem::path& file) {
+RecordingMeta read_checked(const FilePlace& file) {
     const rig::Value document = rig::load_document(file);
     const rig::Table table(
         document, "",
@@ -81,54 +116,46 @@ Status<RecordingError> write_meta(const RecordingPaths& recording, const Recordi
     out << YAML::Key << "depth_frames" << YAML::Value << meta.depth_frames;
     out << YAML::Key << "duration_s" << YAML::Value << meta.duration_s;
     out << YAML::EndMap;
-    std::ofstream file(recording.meta());
+    const auto created = recording.meta().create_anew();
+    if (!created) return failure(created.error().path, created.error().reason());
+    std::ofstream file(created->path_for_libraries());
     file << out.c_str() << '\n';
     file.close();
-    if (!file) return failure(recording.meta(), "cannot write; is the disk full, is the folder yours?");
+    if (!file)
+        return failure(recording.meta().shown(), "cannot write; is the disk full, is the folder yours?");
     return Done{};
 }
 
 Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording) {
-    const auto path = recording.meta();
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) return failure(path, kMetaMissing);
+    const FilePlace place = recording.meta();
+    if (!place.is_there()) return failure(place.shown(), kMetaMissing);
     try {
-        return read_checked(path);
+        return read_checked(place);
     } catch (const rig::Fault& fault) {
-        return unexpected(RecordingError{path, fault.error.what, fault.error.line, fault.error.key});
+        return unexpected(
+            RecordingError{fault.error.file, fault.error.what, fault.error.line, fault.error.key});
     }
 }
 
 Status<RecordingError> check_recording(const RecordingPaths& recording, bool is_rig_given) {
-    std::error_code error;
-    if (std::filesystem::is_regular_file(recording.directory, error)) {
-        return failure(recording.directory,
-                       "is a file; give the recording's directory, " +
-                           std::filesystem::absolute(recording.directory).parent_path().string());
-    }
-    if (!std::filesystem::is_directory(recording.directory, error)) {
-        return failure(recording.directory, kDirectoryMissing);
-    }
-    const std::pair<std::filesystem::path, const char*> needed[] = {
+    if (const auto checked = check_folder(recording); !checked) return checked;
+    if (const auto checked = check_kinds(recording); !checked) return checked;
+    const std::pair<FilePlace, const char*> needed[] = {
         {recording.can_log(), kLogMissing},
         {recording.rig(), "no such file; put the rig there, or give --rig"},
         {recording.meta(), kMetaMissing}};
     for (const auto& [file, what] : needed) {
         if (is_rig_given && file == recording.rig()) continue;
-        if (!std::filesystem::is_regular_file(file, error)) return failure(file, what);
+        if (!file.is_there()) return failure(file.shown(), what);
     }
-    for (const auto& file : {recording.depth(), recording.depth_epoch()}) {
-        const auto status = std::filesystem::status(file, error);
-        if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-            return failure(file, "is no ordinary file; move it away, or put the recorded one there");
-    }
-    const bool has_depth = std::filesystem::exists(recording.depth(), error);
-    if (has_depth != std::filesystem::exists(recording.depth_epoch(), error)) {
+    const bool has_depth = recording.depth().is_there();
+    if (has_depth != recording.depth_epoch().is_there()) {
         const auto missing = has_depth ? recording.depth_epoch() : recording.depth();
         const auto lonely = has_depth ? recording.depth() : recording.depth_epoch();
-        return failure(missing, "no such file, but " + lonely.filename().string() +
-                                    " is there: put it there, too, or move the other one away to map the "
-                                    "ranges alone");
+        return failure(missing.shown(),
+                       "no such file, but " + lonely.filename() +
+                           " is there: put it there, too, or move the other one away to map the "
+                           "ranges alone");
     }
     return Done{};
 }

@@ -8,30 +8,39 @@
 
 #include "common/result.hpp"
 #include "host/apps/recording/source_file.hpp"
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin {
 
 /// Beside maps: what they were made from (host/apps/playback/map_origin.hpp).
 inline constexpr const char* kMapOriginFile = "maps.yaml";
+/// In a recording: where its maps go if nothing else is said.
+inline constexpr const char* kMapsOfRecording = "maps";
 
-/// Where the files of a recording are.
+/// Where the files of a recording are: below a folder that is opened once, and behind no link there.
 struct RecordingPaths {
-    explicit RecordingPaths(std::filesystem::path directory_in) : directory(std::move(directory_in)) {}
+    /// A folder that was named, to read from; opened when a file of it is first needed.
+    explicit RecordingPaths(const FilePlace& place) : directory(place.shown()), folder(place) {}
+    /// An open one, to read from or, if it was opened so, to write to.
+    explicit RecordingPaths(OpenFolder opened) : directory(opened.shown()), folder(std::move(opened)) {}
 
-    [[nodiscard]] std::filesystem::path can_log() const { return directory / "can.log"; }
-    [[nodiscard]] std::filesystem::path depth() const { return directory / "depth.oni"; }
-    [[nodiscard]] std::filesystem::path depth_epoch() const { return directory / "depth.epoch.yaml"; }
-    [[nodiscard]] std::filesystem::path rig() const { return directory / "rig.yaml"; }
-    [[nodiscard]] std::filesystem::path robot() const { return directory / "robot.urdf"; }
+    [[nodiscard]] FilePlace can_log() const { return file("can.log"); }
+    [[nodiscard]] FilePlace depth() const { return file("depth.oni"); }
+    [[nodiscard]] FilePlace depth_epoch() const { return file("depth.epoch.yaml"); }
+    [[nodiscard]] FilePlace rig() const { return file("rig.yaml"); }
+    [[nodiscard]] FilePlace robot() const { return file("robot.urdf"); }
     /// Of a recording that the daemon made: the order in which its map was made, how measurements became
     /// voxels, and its map before and after.
-    [[nodiscard]] std::filesystem::path order() const { return directory / "order.log"; }
-    [[nodiscard]] std::filesystem::path mapping() const { return directory / "mapping.yaml"; }
-    [[nodiscard]] std::filesystem::path first_map() const { return directory / "first.ot"; }
-    [[nodiscard]] std::filesystem::path last_map() const { return directory / "last.ot"; }
-    [[nodiscard]] std::filesystem::path meta() const { return directory / "meta.yaml"; }
+    [[nodiscard]] FilePlace order() const { return file("order.log"); }
+    [[nodiscard]] FilePlace mapping() const { return file("mapping.yaml"); }
+    [[nodiscard]] FilePlace first_map() const { return file("first.ot"); }
+    [[nodiscard]] FilePlace last_map() const { return file("last.ot"); }
+    [[nodiscard]] FilePlace meta() const { return file("meta.yaml"); }
 
-    std::filesystem::path directory;
+    [[nodiscard]] FilePlace file(const char* name) const { return {folder, name}; }
+
+    std::filesystem::path directory;  ///< as it was named: for messages and for provenance
+    NamedFolder folder;
 };
 
 /// Where a recording comes from: for people and for provenance, never for the map.
@@ -66,7 +75,9 @@ struct RecordingError {
 
 /// That `directory` holds every file a recording must have (docs/recording.md); names the one that is
 /// missing, and what to put there. rig.yaml may be missing if another one `is_rig_given`; a recording without
-/// a camera has neither depth.oni nor its sidecar. The robot is not looked for: the rig names it.
+/// a camera has neither depth.oni nor its sidecar. The robot is not looked for: the rig names it. Refuses a
+/// link, pipe, folder or device in the place of any file that a recording may have, and a recording that a
+/// killed process left half moved, with what finishes it. Writes nothing.
 [[nodiscard]] Status<RecordingError> check_recording(const RecordingPaths& recording,
                                                      bool is_rig_given = false);
 

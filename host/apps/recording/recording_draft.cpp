@@ -11,26 +11,21 @@ namespace {
 namespace fs = std::filesystem;
 
 /// meta.yaml last.
-std::vector<fs::path> files_of(const RecordingPaths& paths) {
+std::vector<FilePlace> files_of(const RecordingPaths& paths) {
     return {paths.can_log(), paths.depth(), paths.depth_epoch(), paths.rig(), paths.robot(), paths.meta()};
 }
 
-bool is_occupied(const fs::path& directory) {
-    std::error_code error;
-    const fs::directory_iterator entries(directory, error);
-    return !error && std::any_of(begin(entries), end(entries), [](const auto& entry) {
-        return entry.path().filename() != FileSet::kDraftFolder;
-    });
+bool is_occupied(const OpenFolder& folder) {
+    const auto names = folder.names();
+    return names && std::any_of(names->begin(), names->end(),
+                                [](const std::string& name) { return name != FileSet::kDraftFolder; });
 }
 
 Status<AppError> check_replaceable(const RecordingPaths& paths) {
     const auto files = files_of(paths);
-    const auto is_there = [](const fs::path& file) {
-        std::error_code error;
-        return fs::exists(file, error);
-    };
+    const auto is_there = [](const FilePlace& file) { return file.is_there(); };
     const auto first = std::find_if(files.begin(), files.end(), is_there);
-    if (first == files.end() && is_there(paths.directory / "depth.txt")) {
+    if (first == files.end() && is_there(paths.file("depth.txt"))) {
         return cannot_create(paths.directory,
                              "is a data set (depth.txt), which a recording in its place would hide; give "
                              "another directory");
@@ -38,7 +33,7 @@ Status<AppError> check_replaceable(const RecordingPaths& paths) {
     if (first == files.end()) return Done{};
     const auto meta = read_meta(paths);
     if (meta && meta->is_simulated()) return Done{};
-    return cannot_create(paths.directory, "has a " + first->filename().string() +
+    return cannot_create(paths.directory, "has a " + first->filename() +
                                               ", and no meta.yaml that says 'source: simulation': it is not "
                                               "overwritten; give another directory, or remove it yourself");
 }
@@ -59,12 +54,13 @@ std::vector<fs::path> maps_of_recording() {
 RecordingDraft::RecordingDraft(FileSet files, std::optional<FileLock> former)
     : final_(files.folder()), draft_(files.draft()), files_(std::move(files)), former_(std::move(former)) {}
 
-Result<RecordingDraft, AppError> RecordingDraft::create(const fs::path& directory, bool may_replace) {
-    auto files = FileSet::begin(directory);
+Result<RecordingDraft, AppError> RecordingDraft::create(const FilePlace& named, bool may_replace) {
+    const fs::path directory = named.shown();
+    auto files = FileSet::begin(named);
     if (!files) return unexpected(files.error());
-    const RecordingPaths paths(directory);
+    const RecordingPaths paths(files->folder());
     std::optional<FileLock> former;
-    if (is_occupied(directory)) {
+    if (is_occupied(files->folder())) {
         if (!may_replace) {
             return cannot_create(
                 directory,
@@ -84,21 +80,19 @@ Result<RecordingDraft, AppError> RecordingDraft::create(const fs::path& director
 }
 
 Status<AppError> RecordingDraft::commit() {
-    std::error_code error;
     std::vector<fs::path> files;
     std::vector<fs::path> retired;
-    for (const fs::path& file : files_of(draft_)) {
-        (fs::exists(file, error) ? files : retired).push_back(file.filename());
-    }
+    for (const FilePlace& file : files_of(draft_))
+        (file.is_there() ? files : retired).push_back(file.filename());
     // create() made sure that a recording here is a simulated one; without one, its maps are somebody's.
-    const bool replaces_recording = fs::exists(final_.meta(), error);
+    const bool replaces_recording = final_.meta().is_there();
     if (replaces_recording) {
         const auto maps = maps_of_recording();
         retired.insert(retired.end(), maps.begin(), maps.end());
     }
     if (const auto committed = files_.commit(files, retired); !committed) return committed;
-    const fs::path maps = final_.directory / "maps";
-    if (replaces_recording && fs::is_empty(maps, error) && !error) fs::remove(maps, error);
+    // Only an empty one goes.
+    if (replaces_recording) static_cast<void>(files_.folder().remove_empty("maps"));
     return Done{};
 }
 

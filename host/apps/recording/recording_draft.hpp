@@ -14,11 +14,10 @@ namespace octoskin {
 
 class RecordingDraft {
   public:
-    /// Makes `directory`, locks it, and makes in it a hidden folder to write into. Refuses a directory that
-    /// is not empty unless it `may_replace` what is there; always one whose recording is not known to be
-    /// simulated: nobody can make that again; and one that another octoskin writes or reads.
-    [[nodiscard]] static Result<RecordingDraft, AppError> create(const std::filesystem::path& directory,
-                                                                 bool may_replace);
+    /// Makes the directory that is `named`, locks it, and makes in it a hidden folder to write into. Refuses
+    /// a directory that is not empty unless it `may_replace` what is there; always one whose recording is not
+    /// known to be simulated: nobody can make that again; and one that another octoskin writes or reads.
+    [[nodiscard]] static Result<RecordingDraft, AppError> create(const FilePlace& named, bool may_replace);
 
     /// Where to write until then. What is not committed leaves nothing.
     [[nodiscard]] const RecordingPaths& paths() const noexcept { return draft_; }

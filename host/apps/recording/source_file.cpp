@@ -10,14 +10,13 @@
 
 namespace octoskin {
 
-std::optional<std::uint32_t> crc32_of(std::span<const std::filesystem::path> files) {
+std::optional<std::uint32_t> crc32_of(std::span<const FilePlace> files) {
     std::uint32_t crc = 0;
     std::array<char, 65'536> buffer{};
     for (const auto& file : files) {
-        std::error_code error;
-        // Before it is opened: a named pipe would wait for ever.
-        if (!std::filesystem::is_regular_file(file, error)) return std::nullopt;
-        std::ifstream stream(file, std::ios::binary);
+        const auto opened = file.open();
+        if (!opened) return std::nullopt;
+        std::ifstream stream(opened->path_for_libraries(), std::ios::binary);
         if (!stream) return std::nullopt;
         while (stream.read(buffer.data(), buffer.size()), stream.gcount() > 0) {
             const auto* bytes = reinterpret_cast<const std::uint8_t*>(buffer.data());
@@ -28,14 +27,14 @@ std::optional<std::uint32_t> crc32_of(std::span<const std::filesystem::path> fil
     return crc;
 }
 
-std::optional<std::uint32_t> crc32_of(const std::filesystem::path& file) {
+std::optional<std::uint32_t> crc32_of(const FilePlace& file) {
     return crc32_of(std::span(&file, 1));
 }
 
-SourceFile source_file(const std::filesystem::path& file, std::span<const std::filesystem::path> further) {
-    std::vector<std::filesystem::path> all{file};
+SourceFile source_file(const FilePlace& file, std::span<const std::filesystem::path> further) {
+    std::vector<FilePlace> all{file};
     all.insert(all.end(), further.begin(), further.end());
-    return {std::filesystem::absolute(file).lexically_normal(), crc32_of(all)};
+    return {std::filesystem::absolute(file.shown()).lexically_normal(), crc32_of(all)};
 }
 
 std::string crc_text(std::uint32_t crc) {

@@ -7,6 +7,8 @@
 #include <span>
 #include <string>
 
+#include "host/io/folder/file_place.hpp"
+
 namespace octoskin {
 
 struct SourceFile {
@@ -15,11 +17,11 @@ struct SourceFile {
 };
 
 /// CRC-32 (zlib's) of the files' bytes, one after the other; empty if one cannot be read.
-[[nodiscard]] std::optional<std::uint32_t> crc32_of(std::span<const std::filesystem::path> files);
-[[nodiscard]] std::optional<std::uint32_t> crc32_of(const std::filesystem::path& file);
+[[nodiscard]] std::optional<std::uint32_t> crc32_of(std::span<const FilePlace> files);
+[[nodiscard]] std::optional<std::uint32_t> crc32_of(const FilePlace& file);
 
 /// `file` made absolute, with its CRC-32, and that of the `further` files that it brings in.
-[[nodiscard]] SourceFile source_file(const std::filesystem::path& file,
+[[nodiscard]] SourceFile source_file(const FilePlace& file,
                                      std::span<const std::filesystem::path> further = {});
 
 /// "0x0123abcd".

@@ -1,19 +1,26 @@
 #include "host/apps/recording/unfinished.hpp"
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <map>
-#include <set>
-#include <system_error>
 #include <utility>
+#include <vector>
 
 namespace octoskin {
 namespace {
 
-namespace fs = std::filesystem;
+struct Entry {
+    OpenFolder parent;
+    std::string name;
+    bool is_parent_new;
+};
 
 /// The whole process has one: a signal is told to all of it.
 struct Registry {
     std::mutex mutex;
-    std::multimap<fs::path, fs::path> folders;  ///< with what was made for them
+    std::map<std::uint64_t, Entry> entries;
+    std::uint64_t newest = 0;
 };
 
 Registry& registry() {
@@ -21,53 +28,51 @@ Registry& registry() {
     return one;
 }
 
-void forget(const fs::path& folder) {
-    auto& folders = registry().folders;
-    if (const auto found = folders.find(folder); found != folders.end()) folders.erase(found);
-}
-
 /// A thread that is still at work may add a file between two looks.
-void clear_away(const fs::path& folder) {
+void clear_away(const Entry& entry) {
     constexpr int kTries = 10;
-    std::error_code error;
-    for (int i = 0; i < kTries && fs::exists(fs::symlink_status(folder, error)); ++i)
-        fs::remove_all(folder, error);
+    for (int i = 0; i < kTries && entry.parent.kind_of(entry.name) != EntryKind::absent; ++i)
+        static_cast<void>(entry.parent.remove_all(entry.name));
 }
 
 }  // namespace
 
-Unfinished::Unfinished(fs::path folder, fs::path made_for_it)
-    : folder_(std::move(folder)), made_for_it_(std::move(made_for_it)) {
+Unfinished::Unfinished(OpenFolder parent, std::string name, bool is_parent_new) {
     const std::lock_guard lock(registry().mutex);
-    registry().folders.emplace(folder_, made_for_it_);
+    number_ = ++registry().newest;
+    registry().entries.emplace(number_, Entry{std::move(parent), std::move(name), is_parent_new});
 }
 
-Unfinished::Unfinished(Unfinished&& other) noexcept
-    : folder_(std::exchange(other.folder_, {})), made_for_it_(std::exchange(other.made_for_it_, {})) {}
+Unfinished::Unfinished(Unfinished&& other) noexcept : number_(std::exchange(other.number_, 0)) {}
 
 Unfinished::~Unfinished() {
-    if (!folder_.empty()) (void)finish();
+    if (number_ != 0) (void)finish();
 }
 
 std::unique_lock<std::mutex> Unfinished::finish() {
     std::unique_lock lock(registry().mutex);
-    if (!folder_.empty()) forget(std::exchange(folder_, {}));
+    registry().entries.erase(std::exchange(number_, 0));
     return lock;
 }
 
 RemovedUnfinished remove_unfinished() {
     RemovedUnfinished removed{.is_any = false, .lock = std::unique_lock(registry().mutex)};
-    const auto& folders = registry().folders;
-    removed.is_any = !folders.empty();
-    std::set<fs::path> made;
-    for (const auto& [folder, made_for_it] : folders) {
-        clear_away(folder);
-        if (!made_for_it.empty()) made.insert(made_for_it);
+    const auto& entries = registry().entries;
+    removed.is_any = !entries.empty();
+    std::vector<OpenFolder> made;
+    for (const auto& [number, entry] : entries) {
+        clear_away(entry);
+        if (entry.is_parent_new) made.push_back(entry.parent);
     }
-    std::error_code ignored;
-    // What lies in another comes after it: only an empty one goes.
-    for (auto folder = made.rbegin(); folder != made.rend(); ++folder) fs::remove(*folder, ignored);
+    // What lies in another comes before it: only an empty one goes.
+    std::sort(made.begin(), made.end(),
+              [](const OpenFolder& one, const OpenFolder& other) { return one.shown() > other.shown(); });
+    for (const OpenFolder& folder : made) remove_made_folder(folder);
     return removed;
+}
+
+void remove_made_folder(const OpenFolder& folder) {
+    if (folder.is_still_there()) ::rmdir(folder.shown().c_str());
 }
 
 }  // namespace octoskin

@@ -1,8 +1,11 @@
 // Folders in the making, so that they can be taken away where the process is told to end in the midst of it.
 #pragma once
 
-#include <filesystem>
+#include <cstdint>
 #include <mutex>
+#include <string>
+
+#include "host/io/folder/open_folder.hpp"
 
 namespace octoskin {
 
@@ -10,8 +13,9 @@ namespace octoskin {
 /// thread may have some.
 class Unfinished {
   public:
-    /// `made_for_it`: a folder that was made for it, and goes, too, if nothing else is in it; empty: none.
-    explicit Unfinished(std::filesystem::path folder, std::filesystem::path made_for_it = {});
+    /// `name`: of the folder, in `parent`. `is_parent_new`: `parent` was made for it, and goes, too, if
+    /// nothing else is in it.
+    Unfinished(OpenFolder parent, std::string name, bool is_parent_new = false);
     Unfinished(Unfinished&& other) noexcept;
     Unfinished& operator=(Unfinished&&) = delete;
     ~Unfinished();
@@ -21,8 +25,7 @@ class Unfinished {
     [[nodiscard]] std::unique_lock<std::mutex> finish();
 
   private:
-    std::filesystem::path folder_;  ///< empty: finished
-    std::filesystem::path made_for_it_;
+    std::uint64_t number_;  ///< 0: finished
 };
 
 struct RemovedUnfinished {
@@ -33,5 +36,8 @@ struct RemovedUnfinished {
 /// Removes whatever is unfinished, for a process that ends while it holds the lock. Waits for what must not
 /// be done by halves.
 [[nodiscard]] RemovedUnfinished remove_unfinished();
+
+/// Removes a folder that was made, if nothing is in it and its name still leads to it.
+void remove_made_folder(const OpenFolder& folder);
 
 }  // namespace octoskin

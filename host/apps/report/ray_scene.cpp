@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <limits>
+#include <new>
 
 namespace octoskin::report {
 namespace {
@@ -35,7 +36,7 @@ EmbreeGeometry polygons(RTCDevice device, RTCGeometryType type, const std::vecto
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, kCorners == 4 ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
         kCorners * sizeof(std::uint32_t), list.size()));
-    assert(vertices != nullptr && indices != nullptr);
+    if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();  // all else is as it must be
     for (std::size_t i = 0; i < count; ++i) {
         put(vertices + 3 * i, list[i / kCorners].corners[i % kCorners]);
         indices[i] = static_cast<std::uint32_t>(i);
@@ -50,7 +51,7 @@ EmbreeGeometry rods(RTCDevice device, const std::vector<Rod>& list) {
         geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 2 * list.size()));
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(std::uint32_t), list.size()));
-    assert(vertices != nullptr && indices != nullptr);
+    if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();  // all else is as it must be
     for (std::size_t i = 0; i < list.size(); ++i) {
         put(vertices + 8 * i, list[i].a);
         put(vertices + 8 * i + 4, list[i].b);
@@ -87,7 +88,7 @@ struct RayScene::Impl {
 
 RayScene::RayScene(const Geometry& geometry) : impl_(std::make_unique<Impl>()) {
     RTCDevice device = impl_->device.get();
-    assert(device != nullptr);
+    if (device == nullptr) throw std::bad_alloc();
     const auto make_rods = [device](const auto& list) { return rods(device, list); };
     impl_->add(Shape::face, geometry.faces,
                [device](const auto& list) { return polygons(device, RTC_GEOMETRY_TYPE_QUAD, list); });

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "host/core/text/utf8.hpp"
+
 namespace octoskin::report {
 namespace {
 
@@ -13,31 +15,6 @@ constexpr std::string_view kNarrowSpace = "\u202f";
 constexpr std::string_view kNoBreakSpace = "\u00a0";
 constexpr std::string_view kReplacement = "\ufffd";
 constexpr std::string_view kUndefined = "\u2013";
-
-/// Bytes of the UTF-8 sequence that `text` begins with, or 0 if it begins with none (RFC 3629: no overlong
-/// forms, no surrogates, nothing above U+10FFFF).
-std::size_t utf8_length(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const auto continues = [&](std::size_t i, unsigned low = 0x80, unsigned high = 0xBF) {
-        return i < text.size() && byte(i) >= low && byte(i) <= high;
-    };
-    const unsigned lead = byte(0);
-    if (lead < 0x80) {
-        return 1;
-    }
-    if (lead >= 0xC2 && lead <= 0xDF) {
-        return continues(1) ? 2 : 0;
-    }
-    if (lead >= 0xE0 && lead <= 0xEF) {
-        const bool is_second = continues(1, lead == 0xE0 ? 0xA0 : 0x80, lead == 0xED ? 0x9F : 0xBF);
-        return is_second && continues(2) ? 3 : 0;
-    }
-    if (lead >= 0xF0 && lead <= 0xF4) {
-        const bool is_second = continues(1, lead == 0xF0 ? 0x90 : 0x80, lead == 0xF4 ? 0x8F : 0xBF);
-        return is_second && continues(2) && continues(3) ? 4 : 0;
-    }
-    return 0;
-}
 
 /// XML knows no control characters but these three.
 bool is_printable(unsigned char byte) {

@@ -6,16 +6,15 @@
 
 namespace octoskin {
 
-Result<Scene, AppError> read_scene(const std::filesystem::path& scenario_file,
-                                   const std::filesystem::path& world_instead) {
+Result<Scene, AppError> read_scene(const FilePlace& scenario_file, const FilePlace& world_instead) {
     auto scenario = sim::read_scenario(scenario_file);
     if (!scenario) return unexpected(reading_error(ExitCode::bad_config, scenario.error()));
-    const auto world_file = world_instead.empty() ? scenario->world : world_instead;
+    const FilePlace world_file = world_instead.empty() ? scenario->world : world_instead;
     auto world = sim::World::read(world_file);
     if (!world) return unexpected(reading_error(ExitCode::bad_data, world.error()));
     if (const auto checked = sim::check_hidden_models(*scenario, *world); !checked) {
-        return unexpected(
-            AppError{ExitCode::bad_config, checked.error().message() + " (" + world_file.string() + ")"});
+        return unexpected(AppError{ExitCode::bad_config,
+                                   checked.error().message() + " (" + world_file.shown().string() + ")"});
     }
     std::vector<sim::ModelMotion> motions;
     if (!scenario->world_motion.empty()) {

@@ -26,7 +26,6 @@ struct Scene {
 
 /// Reads both, and checks that one fits the other. `world_instead`: in place of the scenario's; empty: the
 /// scenario's. Under lock_reading(), if other threads may read.
-[[nodiscard]] Result<Scene, AppError> read_scene(const std::filesystem::path& scenario,
-                                                 const std::filesystem::path& world_instead);
+[[nodiscard]] Result<Scene, AppError> read_scene(const FilePlace& scenario, const FilePlace& world_instead);
 
 }  // namespace octoskin

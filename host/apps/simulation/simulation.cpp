@@ -18,8 +18,6 @@
 namespace octoskin {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Everything that is read before anything is simulated.
 struct Inputs {
     Scene scene;
@@ -51,10 +49,9 @@ std::string describe(const sim::ExperimentError& error, const sim::Scenario& sce
 class Recorder {
   public:
     static Result<Recorder, AppError> create(const RecordingPaths& paths, const rig::Rig& rig) {
-        std::error_code error;
-        fs::copy_file(rig.urdf, paths.robot(), fs::copy_options::overwrite_existing, error);
-        if (error) return cannot_create(paths.robot(), error.message());
-        const std::string rig_text = rig::canonical_text(rig, paths.robot().filename().string());
+        if (const auto copied = copy_file(rig.urdf, paths.robot()); !copied)
+            return unexpected(copied.error());
+        const std::string rig_text = rig::canonical_text(rig, paths.robot().filename());
         if (const auto written = write_text(paths.rig(), rig_text); !written)
             return unexpected(written.error());
         auto log = candump::LogWriter::create(paths.can_log());

@@ -10,6 +10,7 @@
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "hw/sim/experiment/experiment.hpp"
 
 namespace octoskin {
@@ -23,7 +24,7 @@ struct SimulationRequest {
     bool is_depth_noise_free = false;
     std::optional<sim::EmulatedBoards> emulated{};  ///< boards run the flashed image
     std::vector<sim::BoardStart> board_starts{};    ///< of boards in this process; see there
-    std::filesystem::path out;                      ///< made if it is not there
+    FilePlace out{};                                ///< made if it is not there
     bool may_replace = false;                       ///< what is in `out`, if that is a simulated recording
 };
 

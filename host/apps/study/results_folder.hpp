@@ -1,11 +1,11 @@
 // Where an experiment's results go: what an experiment left there may be replaced, anything else may not.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
+#include "host/io/folder/open_folder.hpp"
 
 namespace octoskin {
 
@@ -13,10 +13,10 @@ namespace octoskin {
 /// byte for byte as they were left, and beside them what no experiment writes. To be called while the folder
 /// is locked (MapFolder). Error: cannot_create, which names what would be lost. Reads all that would be
 /// replaced.
-[[nodiscard]] Status<AppError> check_results_folder(const std::filesystem::path& folder);
+[[nodiscard]] Status<AppError> check_results_folder(const OpenFolder& folder);
 
 /// Notes in `folder` that its `name`, metrics.json, report.html or the directory recording, is there as this
 /// experiment made it. The maps have notes of their own (MapOrigin). Error: cannot_create.
-[[nodiscard]] Status<AppError> note_result(const std::filesystem::path& folder, const std::string& name);
+[[nodiscard]] Status<AppError> note_result(const OpenFolder& folder, const std::string& name);
 
 }  // namespace octoskin

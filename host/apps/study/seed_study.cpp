@@ -13,7 +13,6 @@ namespace octoskin {
 namespace {
 
 using Say = std::function<void(const std::string&)>;
-namespace fs = std::filesystem;
 
 /// Says how far a long part is, every quarter.
 class Quarters {
@@ -43,9 +42,9 @@ Status<AppError> simulate(const SeedRequest& request, bool is_noise_free, const 
     const auto summary = simulate_recording(simulation, [&](double fraction) { quarters.reach(fraction); });
     if (!summary) return unexpected(summary.error());
     if (request.keeps_recording && !is_noise_free) {
-        const fs::path& kept = request.recording;
-        if (const auto noted = note_result(kept.parent_path(), kept.filename().string()); !noted)
-            return noted;
+        const auto results = request.recording.parent_to_write();
+        if (!results) return fail(ExitCode::cannot_create, results.error().message());
+        if (const auto noted = note_result(*results, request.recording.filename()); !noted) return noted;
     }
     outcome.times.push_back(timer.stop());
     say(
@@ -136,6 +135,12 @@ Result<evaluation::Truth, AppError> make_truth(const StudyGround& ground, const 
     return truth;
 }
 
+/// What is left over goes with the work folder.
+void remove(const FilePlace& folder) {
+    if (const auto parent = folder.parent_to_write())
+        static_cast<void>(parent->remove_all(folder.filename()));
+}
+
 }  // namespace
 
 Result<SeedOutcome, AppError> study_seed(const SeedRequest& request, const StudyGround& ground,
@@ -178,9 +183,8 @@ Result<SeedOutcome, AppError> study_seed(const SeedRequest& request, const Study
             }
         }
     }
-    std::error_code ignored;
-    std::filesystem::remove_all(request.scratch, ignored);
-    if (!request.keeps_recording) std::filesystem::remove_all(request.recording, ignored);
+    remove(request.scratch);
+    if (!request.keeps_recording) remove(request.recording);
     return outcome;
 }
 

@@ -30,8 +30,8 @@ struct StudyGround {
 struct SeedRequest {
     SimulationRequest simulation;  ///< `seed` set; `out` and the noise are chosen here
     std::vector<NamedMapping> configurations;
-    std::filesystem::path recording;  ///< where the noisy recording goes
-    std::filesystem::path scratch;    ///< for the noise-free one; removed afterwards
+    FilePlace recording;  ///< where the noisy recording goes
+    FilePlace scratch;    ///< for the noise-free one; removed afterwards
     bool keeps_recording = false;
     std::string main_configuration;  ///< whose maps are handed back
     bool keeps_maps = false;

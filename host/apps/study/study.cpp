@@ -103,8 +103,13 @@ class SeedWorkers {
   public:
     /// What is not kept is made, and removed, in `work`.
     SeedWorkers(const StudyRequest& request, const std::vector<NamedMapping>& configurations,
-                const StudyGround& ground, const fs::path& work, const Say& say)
-        : request_(request), work_(work), configurations_(configurations), ground_(ground), say_(say) {}
+                const StudyGround& ground, const OpenFolder& results, const OpenFolder& work, const Say& say)
+        : request_(request),
+          results_(results),
+          work_(work),
+          configurations_(configurations),
+          ground_(ground),
+          say_(say) {}
 
     Result<std::vector<SeedOutcome>, AppError> run() {
         return work_in_parallel<SeedOutcome, AppError>(
@@ -123,8 +128,8 @@ class SeedWorkers {
         SeedRequest seed_request{
             .simulation = request_.inputs,
             .configurations = configurations_,
-            .recording = is_first ? request_.out / "recording" : work_ / ("seed-" + seed),
-            .scratch = work_ / ("noise-free-seed-" + seed),
+            .recording = is_first ? FilePlace(results_, "recording") : FilePlace(work_, "seed-" + seed),
+            .scratch = FilePlace(work_, "noise-free-seed-" + seed),
             .keeps_recording = is_first,
             .main_configuration = main_of(configurations_).name,
             .keeps_maps = is_first};
@@ -133,7 +138,8 @@ class SeedWorkers {
     }
 
     const StudyRequest& request_;
-    const fs::path work_;
+    const OpenFolder results_;
+    const OpenFolder work_;
     const std::vector<NamedMapping>& configurations_;
     const StudyGround& ground_;
     const Say& say_;
@@ -164,7 +170,7 @@ report::Account report_account(const AccountTable& table) {
     return account;
 }
 
-Status<AppError> write_report(const StudyRequest& request, const StudyWorld& world,
+Status<AppError> write_report(const StudyRequest& request, const OpenFolder& folder, const StudyWorld& world,
                               const evaluation::Results& results, const SeedOutcome& first,
                               const NamedMapping& main_configuration) {
     const Playback& main = *first.main;
@@ -183,7 +189,7 @@ Status<AppError> write_report(const StudyRequest& request, const StudyWorld& wor
     for (const AccountTable& table : main.accounts) {
         if (table.in > 0) input.accounts.push_back(report_account(table));
     }
-    return write_text(request.out / "report.html", report::report_html(input));
+    return write_text({folder, "report.html"}, report::report_html(input));
 }
 
 std::string with_crc(const SourceFile& source) {
@@ -232,7 +238,8 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     if (!world) return unexpected(world.error());
     auto folder = MapFolder::open(request.out);
     if (!folder) return unexpected(folder.error());
-    if (const auto checked = check_results_folder(request.out); !checked) return unexpected(checked.error());
+    if (const auto checked = check_results_folder(folder->folder()); !checked)
+        return unexpected(checked.error());
 
     say("ground truth: a noise-free camera goes round the scene");
     const PartTimer survey_timer("ground truth survey");
@@ -241,9 +248,10 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     const evaluation::PartTime survey_time = survey_timer.stop();
     const StudyGround ground{world->scene.world, world->scene.scenario, survey, world->truth};
 
-    const auto work = WorkFolder::create(request.out);
+    const auto work = WorkFolder::create(folder->folder());
     if (!work) return unexpected(work.error());
-    auto outcomes = SeedWorkers(request, *configurations, ground, work->path(), say).run();
+    auto outcomes =
+        SeedWorkers(request, *configurations, ground, folder->folder(), work->folder(), say).run();
     if (!outcomes) return unexpected(outcomes.error());
     std::vector<evaluation::Run> runs;
     for (const SeedOutcome& outcome : *outcomes)
@@ -260,15 +268,19 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     say(fmt::format("seed {}: saving maps", first.seed));
     if (const auto saved = folder->save(named_maps(*first.main), first.main->origin); !saved)
         return unexpected(saved.error());
-    if (const auto written = write_text(request.out / "metrics.json", evaluation::metrics_json(results));
+    if (const auto written =
+            write_text({folder->folder(), "metrics.json"}, evaluation::metrics_json(results));
         !written) {
         return unexpected(written.error());
     }
-    if (const auto noted = note_result(request.out, "metrics.json"); !noted) return unexpected(noted.error());
+    if (const auto noted = note_result(folder->folder(), "metrics.json"); !noted)
+        return unexpected(noted.error());
     say(fmt::format("seed {}: drawing the report", first.seed));
-    const auto reported = write_report(request, *world, results, first, main_of(*configurations));
+    const auto reported =
+        write_report(request, folder->folder(), *world, results, first, main_of(*configurations));
     if (!reported) return unexpected(reported.error());
-    if (const auto noted = note_result(request.out, "report.html"); !noted) return unexpected(noted.error());
+    if (const auto noted = note_result(folder->folder(), "report.html"); !noted)
+        return unexpected(noted.error());
     return results;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -10,25 +11,32 @@
 
 namespace octoskin {
 
-Result<WorkFolder, AppError> WorkFolder::create(const std::filesystem::path& parent) {
-    std::string name = (parent / ".octoskin-work-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-        const std::error_code error(errno, std::generic_category());
-        return cannot_create(parent,
+Result<WorkFolder, AppError> WorkFolder::create(const OpenFolder& parent) {
+    const auto failed = [&parent](int error_number) {
+        const std::error_code error(error_number, std::generic_category());
+        return cannot_create(parent.shown(),
                              "nothing can be written there (" + error.message() + "): " + remedy_of(error));
-    }
-    return WorkFolder(name);
+    };
+    std::string name = (parent.path_for_libraries() / ".octoskin-work-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) return failed(errno);
+    auto folder = parent.open_folder(std::filesystem::path(name).filename());
+    if (!folder) return failed(folder.error().error_number);
+    return WorkFolder(parent, std::move(*folder));
 }
 
-WorkFolder::WorkFolder(std::filesystem::path path) : path_(std::move(path)), unfinished_(path_) {}
+WorkFolder::WorkFolder(OpenFolder parent, OpenFolder folder)
+    : parent_(std::move(parent)),
+      folder_(std::move(folder)),
+      unfinished_(parent_, folder_.shown().filename().string()) {}
 
 WorkFolder::WorkFolder(WorkFolder&& other) noexcept
-    : path_(std::exchange(other.path_, {})), unfinished_(std::move(other.unfinished_)) {}
+    : parent_(other.parent_),
+      folder_(other.folder_),
+      is_moved_from_(std::exchange(other.is_moved_from_, true)),
+      unfinished_(std::move(other.unfinished_)) {}
 
 WorkFolder::~WorkFolder() {
-    if (path_.empty()) return;
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
+    if (!is_moved_from_) static_cast<void>(parent_.remove_all(folder_.shown().filename()));
 }
 
 }  // namespace octoskin

@@ -68,7 +68,8 @@ CanIntake::CanIntake(const HostRig& rig, const IntakeConfig& config)
       host_clock_(config.host_clock),
       nodes_(rig),
       ranges_(rig, config.uses_no_return),
-      joints_(rig.joints.rate_hz) {
+      joints_(rig.joints.rate_hz),
+      joint_senders_(rig.joints.rate_hz, !config.has_local_joints) {
     for (const auto& [node, record] : nodes_.records()) {
         clocks_.emplace(node, ClockMap(config.clock));
         questions_.try_emplace(node);
@@ -101,12 +102,24 @@ FrameOutcome CanIntake::on_frame(const wire::CanFrame& frame, WallTime stamp) {
     host_clock_.observe(stamp);
     nodes_.on_running(host_clock_.running());
     note_time();
+    end_joint_samples(outcome);
     if (is_from_node) {
         nodes_.on_frame(node, steady_now());
     }
     outcome.rejected =
         std::visit([&](const auto& message) { return on(node, message, outcome); }, decoded->message);
+    end_joint_samples(outcome);
     return outcome;
+}
+
+void CanIntake::end_joint_samples(FrameOutcome& outcome) {
+    const auto now_known = now();
+    if (!now_known) return;
+    const bool has_relocked =
+        std::exchange(relocks_, host_clock_.relocks()) != host_clock_.relocks();  // "now" may be as before
+    if (has_relocked) joint_senders_.settle(outcome.joint_samples_of_before);
+    joint_senders_.settle_if_back(*now_known, outcome.joint_samples_of_before);
+    joint_senders_.advance(*now_known, outcome.joint_samples);
 }
 
 void CanIntake::note_time() {
@@ -347,8 +360,19 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::JointState& me
         outcome.joint_samples.push_back(unexpected(reason));
     }
     outcome.joint_samples_begun += assembled.opened ? 1U : 0U;
+    if (assembled.is_contradiction) {
+        const std::uint8_t sequence = std::visit([](const auto& part) { return part.sequence; }, message);
+        joint_senders_.on_contradiction(sequence, assembled.is_of_one_round, *now_known,
+                                        outcome.joint_samples);
+    }
     if (assembled.complete) {
-        outcome.joint_samples.push_back(place(*assembled.complete, *now_known));
+        const auto placed = place(*assembled.complete, *now_known);
+        if (placed) {
+            joint_senders_.on_sample(assembled.complete->sequence, *placed, *now_known,
+                                     outcome.joint_samples);
+        } else {
+            outcome.joint_samples.push_back(placed);
+        }
     }
     return assembled.is_repeated ? Rejection(FrameReason::joint_repeated) : std::nullopt;
 }
@@ -370,7 +394,7 @@ Result<JointMeasurement, JointReason> CanIntake::place(const JointReading& readi
     if (!reading.has_pace) {  // last: a source's first samples come before its clock is known
         return unexpected(JointReason::too_frequent);
     }
-    return JointMeasurement{sampled->time, reading.position_rad};
+    return JointMeasurement{sampled->time, reading.position_rad, host_clock_.relocks()};
 }
 
 }  // namespace octoskin

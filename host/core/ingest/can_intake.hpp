@@ -12,6 +12,8 @@
 #include "common/wire/messages.hpp"
 #include "host/core/ingest/clock_question.hpp"
 #include "host/core/ingest/joint_assembler.hpp"
+#include "host/core/ingest/joint_measurement.hpp"
+#include "host/core/ingest/joint_sender_check.hpp"
 #include "host/core/ingest/node_losses.hpp"
 #include "host/core/ingest/node_registry.hpp"
 #include "host/core/ingest/range_gate.hpp"
@@ -31,12 +33,9 @@ struct IntakeConfig {
     /// A joint sample that arrives later than this after it was sampled is not used. Less than what a
     /// stepping wall clock needs to make a range's time field ambiguous: host/core/time/README.md.
     Nanoseconds joint_age_max{50'000'000};
-};
-
-/// One joint sample in host time.
-struct JointMeasurement {
-    HostTime sampled;
-    std::array<double, wire::kJointsPerSample> position_rad{};
+    /// Joint states come from this machine and from nowhere else: who sends them is checked before they
+    /// become frames.
+    bool has_local_joints = false;
 };
 
 /// What one frame brought: either a reason why it was not used, or any of the rest.
@@ -48,6 +47,8 @@ struct FrameOutcome {
     std::vector<ReadingReason> readings_given_up;  ///< of those that waited
     std::uint64_t joint_samples_begun = 0;
     std::vector<Result<JointMeasurement, JointReason>> joint_samples;  ///< those that this frame ended
+    /// Those that waited when "now" went back, or was told anew: their times are of before.
+    std::vector<Result<JointMeasurement, JointReason>> joint_samples_of_before;
     std::optional<wire::Mark> mark;
 };
 
@@ -80,7 +81,22 @@ class CanIntake {
     /// The host's clock at the newest stamp; empty while unknown.
     [[nodiscard]] std::optional<HostTime> now() const { return host_clock_.now(); }
     /// Joint samples begun and not ended.
-    [[nodiscard]] std::uint64_t joint_samples_pending() const { return joints_.pending(); }
+    [[nodiscard]] std::uint64_t joint_samples_pending() const {
+        return joints_.pending() + joint_senders_.waiting();
+    }
+    /// No frame comes for now, and it is `now`: whole samples that need not wait any longer.
+    [[nodiscard]] JointSenderCheck::Ended joints_due(HostTime now) {
+        JointSenderCheck::Ended ended;
+        joint_senders_.advance(now, ended);
+        return ended;
+    }
+    /// Whole samples that wait, as if nothing more would come.
+    [[nodiscard]] JointSenderCheck::Ended settle_joints() {
+        JointSenderCheck::Ended ended;
+        joint_senders_.settle(ended);
+        return ended;
+    }
+    [[nodiscard]] const JointSenderCheck& joint_senders() const noexcept { return joint_senders_; }
 
     [[nodiscard]] const NodeRegistry& nodes() const noexcept { return nodes_; }
     [[nodiscard]] const RangeGate& ranges() const noexcept { return ranges_; }
@@ -121,6 +137,7 @@ class CanIntake {
     [[nodiscard]] Result<JointMeasurement, JointReason> place(const JointReading& reading,
                                                               HostTime now) const;
     void add_exchange(wire::NodeId node);
+    void end_joint_samples(FrameOutcome& outcome);
     void note_time();
     /// "Now", once the stamps have not jumped for a second: before, what was held back may still come.
     [[nodiscard]] std::optional<HostTime> steady_now() const;
@@ -136,6 +153,8 @@ class CanIntake {
     NodeRegistry nodes_;
     RangeGate ranges_;
     JointAssembler joints_;
+    JointSenderCheck joint_senders_;
+    std::uint64_t relocks_ = 0;            ///< of the host's clock, at the newest frame
     WallTime stamp_;                       ///< of the frame at hand
     std::uint64_t jumps_ = 0;              ///< of the stamps, so far
     bool is_time_known_ = false;           ///< "now", at the newest frame

@@ -59,12 +59,22 @@ void JointAssembler::begin_round(std::uint8_t sequence, Outcome& outcome) {
     sample.reset();
 }
 
+bool JointAssembler::are_of_one_round(const wire::JointState& a, const wire::JointState& b) const {
+    const auto* const one = std::get_if<wire::JointLast>(&a);
+    const auto* const other = std::get_if<wire::JointLast>(&b);
+    if (one == nullptr || other == nullptr) return false;
+    const std::uint32_t span_us = one->sampled.span_us;
+    const std::uint32_t after_us = (other->sampled.value_us + span_us - one->sampled.value_us) % span_us;
+    return Nanoseconds{1'000LL * std::min(after_us, span_us - after_us)} < patience_;
+}
+
 JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, HostTime now) {
     Outcome outcome;
     give_up_stale(now, outcome);
     begin_round(sequence_of(frame), outcome);
     auto& sample = samples_[sequence_of(frame)];
     const std::uint8_t part = part_of(frame);
+    bool is_contested = false;
     if (sample && sample->parts[part]) {
         const bool is_equal = *sample->parts[part] == frame;
         // Equal, but not to the frame before: the next round's, of a sample that is never complete.
@@ -72,13 +82,16 @@ JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, 
             outcome.is_repeated = true;
             return outcome;
         }
+        outcome.is_contradiction = !is_equal;
+        outcome.is_of_one_round = !is_equal && are_of_one_round(*sample->parts[part], frame);
         if (!sample->is_complete) {
             outcome.given_up.push_back(is_equal ? JointReason::incomplete : JointReason::contradictory);
+            is_contested = !is_equal;
         }
         sample.reset();
     }
     if (!sample) {
-        sample = Sample{.opened = now, .parts = {}};
+        sample = Sample{.opened = now, .is_contested = is_contested, .parts = {}};
         outcome.opened = true;
     } else {
         sample->is_in_order = sample->is_in_order && part > sample->newest_part;
@@ -88,7 +101,12 @@ JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, 
     const auto is_here = [](const auto& entry) { return entry.has_value(); };
     if (std::ranges::all_of(sample->parts, is_here)) {
         sample->is_complete = true;
+        if (sample->is_contested) {
+            outcome.given_up.push_back(JointReason::contradictory);
+            return outcome;
+        }
         outcome.complete = join(sample->parts);
+        outcome.complete->sequence = sequence_of(frame);
         outcome.complete->begun = sample->opened;
         outcome.complete->is_in_order = sample->is_in_order;
         pace_.observe(sequence_of(frame), outcome.complete->sampled);

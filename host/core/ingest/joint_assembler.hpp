@@ -15,6 +15,7 @@ namespace octoskin {
 
 /// A whole sample, not yet placed in time.
 struct JointReading {
+    std::uint8_t sequence = 0;
     std::array<double, wire::kJointsPerSample> position_rad{};
     wire::TimeResidue sampled;
     HostTime begun;           ///< arrival of its first frame
@@ -27,7 +28,8 @@ struct JointReading {
 /// next round; it then came before that sample was taken, which `JointReading::begun` shows. One whose first
 /// frames are lost can meet the first frame of the next round instead, which then came a round after it was
 /// taken, and behind later ones: `JointReading::is_in_order`. Of a source that
-/// is quicker than the rig says, frames of several rounds may meet: `JointReading::has_pace`.
+/// is quicker than the rig says, frames of several rounds may meet: `JointReading::has_pace`. What follows a
+/// contradiction within one sample may have frames of both of its versions, and is given up as well.
 class JointAssembler {
   public:
     explicit JointAssembler(double rate_hz);
@@ -35,6 +37,11 @@ class JointAssembler {
     struct Outcome {
         bool opened = false;       ///< the frame was the first of a sample
         bool is_repeated = false;  ///< the sample has this frame already, with the same content
+        /// The sample has this frame already, with another content: one of them is of another round, or of
+        /// another sender.
+        bool is_contradiction = false;
+        /// And both tell when the sample was taken, less than half a round apart: they are of one round.
+        bool is_of_one_round = false;
         std::optional<JointReading> complete;
         std::vector<JointReason> given_up;  ///< one for each sample that ended without being complete
     };
@@ -50,13 +57,15 @@ class JointAssembler {
     static constexpr std::uint8_t kParts = 4;
     struct Sample {
         HostTime opened;
-        bool is_complete = false;  ///< kept, so that a repeated frame does not open it again
+        bool is_complete = false;   ///< kept, so that a repeated frame does not open it again
+        bool is_contested = false;  ///< follows one that contradicted itself: it may have frames of both
         std::uint8_t newest_part = 0;
         bool is_in_order = true;
         std::array<std::optional<wire::JointState>, kParts> parts;
     };
     void give_up_stale(HostTime now, Outcome& outcome);
     void begin_round(std::uint8_t sequence, Outcome& outcome);
+    [[nodiscard]] bool are_of_one_round(const wire::JointState& a, const wire::JointState& b) const;
 
     Nanoseconds patience_;
     JointPace pace_;

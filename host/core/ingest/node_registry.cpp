@@ -32,6 +32,7 @@ void note_second_board(NodeRecord& record, std::optional<HostTime> now) {
     record.is_in_conflict = true;
     record.conflict = now;
     record.pages = {};  // of which of the two they are, nobody knows
+    record.registers = {};
 }
 
 }  // namespace
@@ -144,6 +145,7 @@ NodeRegistry::Life NodeRegistry::on_heartbeat(wire::NodeId node, const wire::Hea
     }
     if (is_other_board || is_back_at_start) {
         record.pages = {};
+        record.registers = {};
     }
     record.heartbeat = heartbeat;
     record.heard = now ? now : record.heard;
@@ -158,6 +160,7 @@ void NodeRegistry::on_other_version(wire::NodeId node, std::uint8_t version, std
     record.is_other_version = true;
     record.other_version = now;
     record.pages = {};
+    record.registers = {};
 }
 
 bool NodeRegistry::on_info(wire::NodeId node, const wire::NodeInfo& info, std::optional<HostTime> now) {
@@ -168,6 +171,7 @@ bool NodeRegistry::on_info(wire::NodeId node, const wire::NodeInfo& info, std::o
     record.is_in_conflict = false;
     record.is_other_version = false;
     record.pages[info.index()] = info;
+    if (const auto* fault = std::get_if<wire::InfoFault>(&info)) record.registers.take(*fault);
     return true;
 }
 

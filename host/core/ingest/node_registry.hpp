@@ -12,6 +12,7 @@
 #include "common/time.hpp"
 #include "common/wire/messages.hpp"
 #include "host/core/ingest/node_traffic.hpp"
+#include "host/core/ingest/register_reports.hpp"
 #include "host/core/rig/host_rig.hpp"
 
 namespace octoskin {
@@ -61,6 +62,7 @@ struct NodeRecord {
     bool is_heard_since = false;    ///< another one came, and "now" is unknown
     Nanoseconds heard_running{0};   ///< the newest heartbeat, as HostClockEstimate::running counts
     std::array<std::optional<wire::NodeInfo>, wire::kInfoPages> pages;
+    RegisterReports registers;         ///< since it started
     std::optional<HostTime> conflict;  ///< the newest sign of a second board
     bool is_in_conflict = false;
     std::optional<HostTime> babbled;        ///< the newest frame that was one too many

@@ -20,6 +20,18 @@ std::optional<NodeSummary::Readings> readings_of(const RangeGate& ranges, const 
     return sum;
 }
 
+std::vector<std::string> registers_of(const NodeRecord& record) {
+    std::vector<std::string> texts;
+    for (const wire::RegisterReport& report : record.registers.alike()) texts.push_back(alike_text(report));
+    for (std::size_t i = 0; i < record.expected.sensors.size(); ++i) {
+        const auto& report = record.registers.of_sensor(static_cast<std::uint8_t>(i));
+        if (!report) continue;
+        texts.push_back("sensor " + std::to_string(i) + " '" + record.expected.sensors[i].name +
+                        "': " + text_of(*report));
+    }
+    return texts;
+}
+
 }  // namespace
 
 std::vector<NodeSummary> summarise(const CanIntake& intake) {
@@ -31,7 +43,8 @@ std::vector<NodeSummary> summarise(const CanIntake& intake) {
                          .clock_relocks = intake.clock(id).relocks(),
                          .verdict = intake.nodes().verdict(id, intake.now()),
                          .has_time = intake.now().has_value(),
-                         .reason = intake.nodes().reason(id, intake.now())});
+                         .reason = intake.nodes().reason(id, intake.now()),
+                         .registers = registers_of(record)});
     }
     return nodes;
 }
@@ -57,6 +70,7 @@ std::string to_text(std::span<const NodeSummary> nodes) {
              << (lacks_time ? "no SYNC in the log"
                             : names_of(NodeVerdict{})[static_cast<std::size_t>(node.verdict)]);
         text << (node.reason ? ": " + node.reason->text() : "") << "\n";
+        for (const std::string& about : node.registers) text << "      " << about << "\n";
     }
     return text.str();
 }

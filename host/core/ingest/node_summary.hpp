@@ -24,7 +24,8 @@ struct NodeSummary {
     std::uint64_t clock_relocks = 0;
     NodeVerdict verdict = NodeVerdict::absent;
     bool has_time = true;  ///< false: no SYNC told the host any; then nothing of the node is usable
-    std::optional<NodeMismatch> reason;  ///< what it told and what it should have told
+    std::optional<NodeMismatch> reason;    ///< what it told and what it should have told
+    std::vector<std::string> registers{};  ///< what it told of registers that read otherwise than written
 };
 
 /// Of every node of the rig, the source of joints included, by node id.
@@ -34,6 +35,8 @@ struct NodeSummary {
 ///
 ///     node                  readings      lost      gaps  re-locks  verdict
 ///       1 rear_rings            2218         0         0         0  usable
+///
+/// and one for each register that reads otherwise than written, under its node's.
 [[nodiscard]] std::string to_text(std::span<const NodeSummary> nodes);
 
 }  // namespace octoskin

@@ -145,11 +145,14 @@ enum class JointReason : std::uint8_t {
     out_of_limits,  ///< a joint beyond its limits
     out_of_order,   ///< not later than the sample before it
     queue_overflow,
-    too_frequent,  ///< the source is quicker than the rig says, so that samples cannot be told apart
+    too_frequent,   ///< the source is quicker than the rig says, so that samples cannot be told apart
+    second_sender,  ///< two senders are heard, and which of them is true nobody can tell
+    joint_jump,     ///< further from the sample before it than the arm moves in that time
 };
-[[nodiscard]] constexpr std::array<const char*, 10> names_of(JointReason) {
-    return {"incomplete", "contradictory", "clock_not_ready", "clock_in_doubt", "clock_silent",
-            "too_old",    "out_of_limits", "out_of_order",    "queue_overflow", "too_frequent"};
+[[nodiscard]] constexpr std::array<const char*, 12> names_of(JointReason) {
+    return {"incomplete",     "contradictory", "clock_not_ready", "clock_in_doubt",
+            "clock_silent",   "too_old",       "out_of_limits",   "out_of_order",
+            "queue_overflow", "too_frequent",  "second_sender",   "joint_jump"};
 }
 
 enum class DepthReason : std::uint8_t {

@@ -127,8 +127,16 @@ struct RobotModel::Impl {
         links.push_back(make_link(description, parent, joint));
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
         if (description.kind == JointKind::fixed) return;
-        limits[joint] = description.kind == JointKind::continuous ? JointLimits{-kInfinity, kInfinity}
-                                                                  : description.limits;
+        limits[joint] = description.limits;
+        if (description.kind == JointKind::continuous) {
+            limits[joint].min = -kInfinity;
+            limits[joint].max = kInfinity;
+        }
+        const double told = description.limits.velocity_max;
+        const bool is_told = std::isfinite(told) && told > 0.0;
+        const double usual =
+            description.kind == JointKind::prismatic ? kPrismaticVelocity : kRevoluteVelocity;
+        limits[joint].velocity_max = is_told ? told : usual;
     }
 };
 

@@ -22,6 +22,7 @@ enum class JointKind : std::uint8_t { fixed, revolute, continuous, prismatic };
 struct JointLimits {
     double min = 0.0;
     double max = 0.0;
+    double velocity_max = 0.0;  ///< per second; 0 in a description: it does not say
     /// Or it is beyond them by no more than `tolerance`; false for a NaN.
     [[nodiscard]] bool hold(double position, double tolerance) const noexcept {
         return position >= min - tolerance && position <= max + tolerance;
@@ -56,6 +57,9 @@ struct RobotModelFault {
 
 class RobotModel {
   public:
+    static constexpr double kRevoluteVelocity = 4.0;   ///< rad/s
+    static constexpr double kPrismaticVelocity = 1.0;  ///< m/s
+
     /// `joints` in any order; `moved`: the joints that get positions, in the order of every joint vector. All
     /// links must hang below `base_link`. Links are numbered so that parents come first; the base is link 0.
     [[nodiscard]] static Result<RobotModel, RobotModelFault> build(const std::string& base_link,
@@ -72,7 +76,8 @@ class RobotModel {
     /// By LinkId.
     [[nodiscard]] std::span<const std::string> link_names() const noexcept;
     [[nodiscard]] std::optional<LinkId> find_link(std::string_view name) const noexcept;
-    /// Of the moved joints, in their order; infinite for a continuous joint.
+    /// Of the moved joints, in their order; min and max are infinite for a continuous joint. `velocity_max`
+    /// is never 0: kRevoluteVelocity or kPrismaticVelocity where the description does not say.
     [[nodiscard]] std::span<const JointLimits> limits() const noexcept;
 
     /// T_base_link of every link, by LinkId. `position`: joint_count() radians or metres, finite;

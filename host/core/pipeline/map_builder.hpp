@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/result.hpp"
@@ -87,6 +88,10 @@ class MapBuilder {
     [[nodiscard]] bool depth_needs_robot() const noexcept { return depth_stage_->needs_robot(); }
     /// Whether the joint samples about `instant` are here, or will never come.
     [[nodiscard]] bool is_settled(HostTime instant) const noexcept { return robot_.is_settled(instant); }
+    /// Of the joints that a sample has, in its order.
+    [[nodiscard]] std::span<const JointLimits> joint_limits() const noexcept {
+        return robot_.robot().limits();
+    }
     /// Every joint sample that poses are still interpolated from, the oldest first.
     void for_each_joint_sample(const std::function<void(const JointMeasurement&)>& visit) const {
         robot_.for_each_sample(visit);

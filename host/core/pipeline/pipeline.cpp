@@ -56,7 +56,8 @@ Pipeline::Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& 
       joints_waiting_(config.joint_samples_waiting_max),
       readings_waiting_(config.readings_waiting_max),
       depth_waiting_(config.depth_frames_waiting_max),
-      builder_(std::move(builder)) {
+      builder_(std::move(builder)),
+      joint_jump_(builder_.joint_limits()) {
     if (rig.camera) {
         camera_patience_ = Nanoseconds{std::llround(3e9 / rig.camera->rate_hz)};
     }
@@ -76,6 +77,7 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     accounts_.frames.take_in();
     told_beside_.reset();
     FrameOutcome outcome = intake_.on_frame(frame, stamp);
+    queue(outcome.joint_samples_of_before);
     if (const auto now_known = now()) {
         notice_time_leap(*now_known);
     }
@@ -117,6 +119,7 @@ void Pipeline::notice_time_leap(HostTime now) {
 void Pipeline::go_on_after(Nanoseconds leapt) {
     settle_waiting();
     builder_.forget_motion(leapt);
+    joint_jump_.forget();
     integrated_.reset();
     used_.clear();
     depth_newest_.reset();
@@ -134,9 +137,11 @@ Nanoseconds Pipeline::passed_between(const Told& before, const Told& now) {
 }
 
 void Pipeline::settle_waiting() {
+    queue(intake_.settle_joints());
     for (const RangeMeasurement& measurement : intake_.take_held()) {
         queue(measurement);
     }
+    queue(intake_.settle_joints());
     release_joints(kEndOfTime);
     if (in_work_) {
         finish_depth();
@@ -181,9 +186,7 @@ void Pipeline::settle_marks(HostTime now) {
 
 void Pipeline::queue(const FrameOutcome& outcome) {
     accounts_.joint_samples.take_in(outcome.joint_samples_begun);
-    for (const auto& joints : outcome.joint_samples) {
-        joints ? queue(*joints) : accounts_.joint_samples.reject(joints.error());
-    }
+    queue(outcome.joint_samples);
     accounts_.readings.take_in(outcome.readings.size() + outcome.readings_held);
     for (const ReadingReason reason : outcome.readings_given_up) {
         accounts_.readings.reject(reason);
@@ -208,6 +211,12 @@ bool Pipeline::is_repeated(const ReleaseKey& key) const {
     const auto used = used_.find(key.source);
     return (used != used_.end() && key.captured - used->second < kSameReading) ||
            readings_waiting_.has_near(key, kSameReading);
+}
+
+void Pipeline::queue(const JointSenderCheck::Ended& joint_samples) {
+    for (const auto& joints : joint_samples) {
+        joints ? queue(*joints) : accounts_.joint_samples.reject(joints.error());
+    }
 }
 
 void Pipeline::queue(const JointMeasurement& joints) {
@@ -283,8 +292,22 @@ bool Pipeline::is_placed(const ReleaseKey& key) const {
 
 void Pipeline::release_joints(HostTime until) {
     while (joints_waiting_.size() > 0 && joints_waiting_.front()->captured <= until) {
-        accounts_.joint_samples.settle(builder_.add(joints_waiting_.pop()));
+        accounts_.joint_samples.settle(add(joints_waiting_.pop()));
     }
+}
+
+/// What is beyond the limits is nowhere that the arm could have moved to or from.
+Status<JointReason> Pipeline::add(const JointMeasurement& joints) {
+    const std::span<const JointLimits> limits = builder_.joint_limits();
+    const auto position = std::span(joints.position_rad).first(limits.size());
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        if (!limits[i].hold(position[i], config_.joints.limit_tolerance))
+            return unexpected(JointReason::out_of_limits);
+    }
+    const JointJump::Verdict verdict = joint_jump_.judge(joints.sampled, position, joints.relocks);
+    if (verdict == JointJump::Verdict::jumped) return unexpected(JointReason::joint_jump);
+    if (verdict == JointJump::Verdict::withheld) return unexpected(JointReason::second_sender);
+    return builder_.add(joints);
 }
 
 void Pipeline::release_measurements(HostTime until) {
@@ -348,10 +371,12 @@ Status<DepthReason> Pipeline::begin_depth(DepthFrame frame) {
 void Pipeline::on_silence(HostTime now) {
     has_can_time_ = false;
     told_beside_ = now;
+    queue(intake_.joints_due(now));
     advance(now);
 }
 
 void Pipeline::finish_can() {
+    queue(intake_.settle_joints());
     release_joints(kEndOfTime);
     has_can_time_ = false;
 }

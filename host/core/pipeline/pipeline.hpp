@@ -16,6 +16,7 @@
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/can_intake.hpp"
 #include "host/core/ingest/reasons.hpp"
+#include "host/core/kinematics/joint_jump.hpp"
 #include "host/core/kinematics/robot_model.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/pipeline/depth_stage.hpp"
@@ -125,6 +126,8 @@ class Pipeline {
     /// True if "now" is known and three periods have passed without a depth frame that the rig promises.
     [[nodiscard]] bool is_camera_stale() const;
     [[nodiscard]] const CanIntake& intake() const noexcept { return intake_; }
+    /// Which joint samples the arm cannot have moved to.
+    [[nodiscard]] const JointJump& joint_jump() const noexcept { return joint_jump_; }
     /// Null if the rig has no camera.
     [[nodiscard]] const DepthStage* depth_stage() const noexcept { return builder_.depth_stage(); }
     /// What turns measurements into maps: whoever starts to record needs its joint samples.
@@ -144,11 +147,13 @@ class Pipeline {
     void queue(const FrameOutcome& outcome);
     void queue(const RangeMeasurement& measurement);
     void queue(const JointMeasurement& joints);
+    void queue(const JointSenderCheck::Ended& joint_samples);
     [[nodiscard]] std::optional<DepthReason> fault_on_arrival(const DepthFrame& frame) const;
 
     /// Integrates what need not wait any longer.
     void advance(HostTime now);
     void release_joints(HostTime until);
+    [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
     /// Those captured until then, and those that are placed if that is enough.
     void release_measurements(HostTime until);
     [[nodiscard]] bool is_placed(const ReleaseKey& key) const;
@@ -171,6 +176,7 @@ class Pipeline {
     ReorderBuffer<RangeMeasurement> readings_waiting_;
     ReorderBuffer<DepthFrame> depth_waiting_;
     MapBuilder builder_;
+    JointJump joint_jump_;
 
     DepthWorker* worker_ = nullptr;
     std::unique_ptr<MapBuilder::DepthWork> in_work_;  ///< what the worker is at, or has done

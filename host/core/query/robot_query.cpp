@@ -152,8 +152,7 @@ std::vector<LinkId> RobotQuery::links() const {
     std::vector<LinkId> links;
     for (const PosedCapsule& capsule : posed) links.push_back(capsule.link);
     std::ranges::sort(links);
-    const auto repeated = std::ranges::unique(links);
-    links.erase(repeated.begin(), repeated.end());
+    links.erase(std::unique(links.begin(), links.end()), links.end());
     return links;
 }
 

@@ -2,28 +2,29 @@
 
 #include <cerrno>
 #include <cstring>
-#include <streambuf>
 #include <utility>
 
 namespace octoskin::candump {
+namespace {
 
-Result<LogReader, LogError> LogReader::open(const std::filesystem::path& file) {
-    // Opening a named pipe waits for ever, a device may have no end, and a directory fails only when it is
-    // read.
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    if (std::filesystem::is_directory(status)) {
-        return unexpected(LogError{file, "is a directory; give the log file itself"});
-    }
-    if (std::filesystem::is_other(status)) {
-        return unexpected(LogError{file, "is a pipe or a device; write the log into an ordinary file first"});
-    }
-    errno = 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) {
-        return unexpected(LogError{file, std::string("cannot open: ") + std::strerror(errno)});
-    }
-    return LogReader(file, std::move(stream));
+std::string reason_of(const FolderError& error) {
+    if (error.fault == FolderFault::not_a_file && error.what == "a folder")
+        return "is a directory; give the log file itself";
+    if (error.fault == FolderFault::not_a_file)
+        return "is a pipe or a device; write the log into an ordinary file first";
+    if (error.fault == FolderFault::link) return error.message();
+    return std::string("cannot open: ") + std::strerror(error.error_number);
+}
+
+}  // namespace
+
+Result<LogReader, LogError> LogReader::open(const FilePlace& file) {
+    const auto opened = file.open();
+    if (!opened) return unexpected(LogError{file.shown(), reason_of(opened.error())});
+    std::ifstream stream(opened->path_for_libraries(), std::ios::binary);
+    if (!stream)
+        return unexpected(LogError{file.shown(), std::string("cannot open: ") + std::strerror(errno)});
+    return LogReader(file.shown(), std::move(stream));
 }
 
 LogReader::LineEnd LogReader::read_line() {

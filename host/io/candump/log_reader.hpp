@@ -11,6 +11,7 @@
 #include "common/result.hpp"
 #include "host/core/account/account.hpp"
 #include "host/io/candump/log_line.hpp"
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin::candump {
 
@@ -24,7 +25,7 @@ struct LogError {
 /// Holds one line at a time, whatever the file's size. About 2 million lines a second.
 class LogReader {
   public:
-    [[nodiscard]] static Result<LogReader, LogError> open(const std::filesystem::path& file);
+    [[nodiscard]] static Result<LogReader, LogError> open(const FilePlace& file);
 
     /// The next line that is a frame; empty at the end of the file, and then for ever. An error means that
     /// the file could not be read on: what came before it stays valid.

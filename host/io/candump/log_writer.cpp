@@ -6,13 +6,14 @@
 
 namespace octoskin::candump {
 
-Result<LogWriter, LogError> LogWriter::create(const std::filesystem::path& file, std::string interface) {
+Result<LogWriter, LogError> LogWriter::create(const FilePlace& file, std::string interface) {
+    const auto created = file.create_anew();
+    if (!created) return unexpected(LogError{file.shown(), "cannot create: " + created.error().reason()});
     errno = 0;
-    std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-    if (!stream) {
-        return unexpected(LogError{file, std::string("cannot create: ") + std::strerror(errno)});
-    }
-    return LogWriter(file, std::move(stream), std::move(interface));
+    std::ofstream stream(created->path_for_libraries(), std::ios::binary);
+    if (!stream)
+        return unexpected(LogError{file.shown(), std::string("cannot create: ") + std::strerror(errno)});
+    return LogWriter(file.shown(), std::move(stream), std::move(interface));
 }
 
 Status<LogError> LogWriter::write(WallTime stamp, const wire::CanFrame& frame) {

@@ -8,13 +8,15 @@
 #include "common/result.hpp"
 #include "host/io/candump/log_line.hpp"
 #include "host/io/candump/log_reader.hpp"
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin::candump {
 
 class LogWriter {
   public:
-    /// Creates or empties `file`. `interface`: the name on every line, 1 to 15 characters without blanks.
-    [[nodiscard]] static Result<LogWriter, LogError> create(const std::filesystem::path& file,
+    /// Makes `file` anew, in place of one that is there. `interface`: the name on every line, 1 to 15
+    /// characters without blanks.
+    [[nodiscard]] static Result<LogWriter, LogError> create(const FilePlace& file,
                                                             std::string interface = "can0");
 
     /// Appends one line. Buffered: a full disk may show only in `close()`. Asserts as `format_line()` does.

@@ -12,16 +12,17 @@ namespace fs = std::filesystem;
 
 struct NamedFolder::State {
     fs::path shown;
-    FolderAccess access;
+    FilePlace place;  ///< as it is opened, if it is not open yet
     std::mutex mutex;
     std::optional<OpenFolder> opened;
 };
 
-NamedFolder::NamedFolder(fs::path typed, FolderAccess access)
-    : state_(new State{std::move(typed), access, {}, std::nullopt}) {}
+NamedFolder::NamedFolder(fs::path typed) : NamedFolder(FilePlace(std::move(typed))) {}
 
-NamedFolder::NamedFolder(OpenFolder opened)
-    : state_(new State{opened.shown(), opened.access(), {}, std::move(opened)}) {}
+NamedFolder::NamedFolder(OpenFolder opened) : state_(new State{opened.shown(), {}, {}, std::move(opened)}) {}
+
+NamedFolder::NamedFolder(FilePlace place)
+    : state_(new State{place.shown(), std::move(place), {}, std::nullopt}) {}
 
 const fs::path& NamedFolder::shown() const noexcept {
     return state_->shown;
@@ -30,7 +31,7 @@ const fs::path& NamedFolder::shown() const noexcept {
 Result<OpenFolder, FolderError> NamedFolder::open() const {
     const std::lock_guard lock(state_->mutex);
     if (!state_->opened) {
-        auto opened = OpenFolder::open(state_->shown, state_->access);
+        auto opened = state_->place.open_folder();
         if (!opened) return opened;
         state_->opened.emplace(std::move(*opened));
     }
@@ -84,10 +85,29 @@ FilePlace FilePlace::beside(const fs::path& other) const {
     return place;
 }
 
+Result<OpenFolder, FolderError> FilePlace::open_folder() const {
+    if (!folder_) return OpenFolder::open(name_, FolderAccess::read);
+    const auto folder = folder_->open();
+    return folder ? folder->open_folder(name_) : folder;
+}
+
+Result<MadeFolder, FolderError> FilePlace::make_folder() const {
+    if (!folder_) return make_open_folder(name_);
+    const auto parent = parent_to_write();
+    if (!parent) return unexpected(parent.error());
+    const auto made = parent->make_folder(filename());
+    if (!made && made.error().fault != FolderFault::is_there) return unexpected(made.error());
+    auto folder = parent->open_folder(filename());
+    if (!folder) return unexpected(folder.error());
+    return MadeFolder{std::move(*folder), made.has_value()};
+}
+
 Result<OpenFolder, FolderError> FilePlace::parent_to_write() const {
     const fs::path parent = name_.parent_path();
     if (!folder_) return OpenFolder::open(parent, FolderAccess::write);
-    auto folder = folder_->open();
+    const auto opened = folder_->open();
+    if (!opened) return unexpected(opened.error());
+    auto folder = opened->to_write();
     if (!folder || parent.empty()) return folder;
     return folder->open_folder(parent);
 }
@@ -99,6 +119,12 @@ Result<OpenFile, FolderError> FilePlace::create_new(unsigned mode) const {
 }
 
 Result<OpenFile, FolderError> FilePlace::create_anew() const {
+    if (!folder_ &&
+        kind() == EntryKind::other) {  // a device or a pipe takes what is written, if it was typed
+        Descriptor opened(::open(name_.c_str(), O_WRONLY | O_CLOEXEC));
+        if (!opened) return unexpected(folder_error_of(errno, name_));
+        return OpenFile(std::move(opened), name_);
+    }
     const auto folder = parent_to_write();
     if (!folder) return unexpected(folder.error());
     const EntryKind there = folder->kind_of(filename());

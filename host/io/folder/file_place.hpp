@@ -1,4 +1,4 @@
-// Where a file is: a path that a user typed, or a name below a folder that a user named.
+// Where a file or folder is: a path that a user typed, or a name below a folder that a user named.
 #pragma once
 
 #include <filesystem>
@@ -14,12 +14,16 @@
 
 namespace octoskin {
 
+class FilePlace;
+
 /// A folder that a user named, opened when it is first needed, and once: what is found below it is of one
 /// folder, whatever becomes of its name. Copies share it; threads may.
 class NamedFolder {
   public:
-    explicit NamedFolder(std::filesystem::path typed, FolderAccess access = FolderAccess::read);
+    NamedFolder(std::filesystem::path typed);
     explicit NamedFolder(OpenFolder opened);
+    /// A folder in a named one.
+    explicit NamedFolder(FilePlace place);
 
     /// As the user named it: for messages and for provenance, never to be opened.
     [[nodiscard]] const std::filesystem::path& shown() const noexcept;
@@ -64,12 +68,18 @@ class FilePlace {
     /// named folder it stays there, or cannot be opened (outside).
     [[nodiscard]] FilePlace beside(const std::filesystem::path& other) const;
 
+    /// If it is a folder: for reading. Errors: as OpenFolder::open.
+    [[nodiscard]] Result<OpenFolder, FolderError> open_folder() const;
+    /// A folder to write to, made if nothing is there: of a typed path with its parents. Errors: as
+    /// OpenFolder::open, and link.
+    [[nodiscard]] Result<MadeFolder, FolderError> make_folder() const;
+
     /// Its folder, to write to. Errors: as OpenFolder::open.
     [[nodiscard]] Result<OpenFolder, FolderError> parent_to_write() const;
 
     /// A new file to write to, in place of the file or link that is there, which is removed: a link is not
     /// followed, and of a file with several names the others stay as they are. Errors: is_there (a folder, a
-    /// device); as parent_to_write.
+    /// device; a typed one takes what is written); as parent_to_write.
     [[nodiscard]] Result<OpenFile, FolderError> create_anew() const;
     /// A new file; refuses whatever is there.
     [[nodiscard]] Result<OpenFile, FolderError> create_new(unsigned mode = 0666) const;

@@ -8,8 +8,6 @@ namespace octoskin {
 
 std::string FolderError::reason() const {
     switch (fault) {
-        case FolderFault::absent:
-            return "no such file or folder";
         case FolderFault::link:
             return "is a symbolic link; none is followed below the folder that you name: put the file or "
                    "folder "
@@ -27,6 +25,7 @@ std::string FolderError::reason() const {
             return "is no folder";
         case FolderFault::is_there:
             return "is there already; move it away";
+        case FolderFault::absent:
         case FolderFault::not_permitted:
         case FolderFault::system:
             break;

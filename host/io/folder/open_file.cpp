@@ -14,7 +14,7 @@ std::string other_kind_of(unsigned mode) {
         case S_IFREG:
             return {};
         case S_IFDIR:
-            return "a folder";
+            return "a directory";
         case S_IFIFO:
             return "a named pipe";
         case S_IFSOCK:

@@ -41,7 +41,7 @@ class OpenFile {
 [[nodiscard]] Result<OpenFile, FolderError> open_ordinary(const Descriptor& path,
                                                           const std::filesystem::path& shown);
 
-/// "a named pipe", "a folder", ...; empty: an ordinary file. `mode` as in stat.
+/// "a named pipe", "a directory", ...; empty: an ordinary file. `mode` as in stat.
 [[nodiscard]] std::string other_kind_of(unsigned mode);
 
 /// "/proc/self/fd/N".

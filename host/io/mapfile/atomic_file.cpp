@@ -18,7 +18,9 @@ constexpr std::string_view kPartialSuffix = ".octoskin-part";
 class PosixFileOperations final : public FileOperations {
   public:
     int create(const char* path) override {
-        return ::open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
+        // A link that somebody laid there, symbolic or hard, goes; what it leads to stays as it is.
+        if (::unlink(path) != 0 && errno != ENOENT) return -1;
+        return ::open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0644);
     }
     int open_directory(const char* path) override { return ::open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC); }
     int copy_attributes(const char* path, int descriptor) override {
@@ -37,8 +39,8 @@ class PosixFileOperations final : public FileOperations {
     int remove(const char* path) override { return ::unlink(path); }
 };
 
-std::filesystem::path partial_path_of(const std::filesystem::path& file) {
-    return file.parent_path() / fmt::format(".{}{}", file.filename().string(), kPartialSuffix);
+std::string partial_name_of(const std::string& file) {
+    return fmt::format(".{}{}", file, kPartialSuffix);
 }
 
 const char* name_of(SaveStep step) {
@@ -66,8 +68,13 @@ const char* name_of(SaveStep step) {
 /// The steps of one save. Each returns what it failed at; errno says why.
 class Save {
   public:
-    Save(FileOperations& operations, const std::filesystem::path& file, Attributes attributes)
-        : operations_(operations), file_(file), partial_(partial_path_of(file)), attributes_(attributes) {}
+    Save(FileOperations& operations, const OpenFolder& folder, const FilePlace& file, Attributes attributes)
+        : operations_(operations),
+          shown_(file.shown()),
+          folder_(folder.path_for_libraries()),
+          file_(folder_ / file.filename()),
+          partial_(folder_ / partial_name_of(file.filename())),
+          attributes_(attributes) {}
 
     std::optional<SaveError> run(const ByteSource& content) {
         if (auto error = write_partial_or_remove(content)) return error;
@@ -80,7 +87,7 @@ class Save {
     }
 
   private:
-    SaveError failed(SaveStep step) const { return {step, errno, file_}; }
+    SaveError failed(SaveStep step) const { return {step, errno, shown_}; }
 
     std::optional<SaveError> write_partial_or_remove(const ByteSource& content) {
         const int descriptor = operations_.create(partial_.c_str());
@@ -129,8 +136,7 @@ class Save {
 
     /// Makes the rename itself durable.
     std::optional<SaveError> sync_directory() {
-        const auto folder = file_.has_parent_path() ? file_.parent_path() : std::filesystem::path(".");
-        const int descriptor = operations_.open_directory(folder.c_str());
+        const int descriptor = operations_.open_directory(folder_.c_str());
         if (descriptor < 0) return failed(SaveStep::sync_directory);
         std::optional<SaveError> error;
         if (operations_.sync(descriptor) != 0) error = failed(SaveStep::sync_directory);
@@ -139,6 +145,8 @@ class Save {
     }
 
     FileOperations& operations_;
+    std::filesystem::path shown_;
+    std::filesystem::path folder_;  ///< this and the next two by the folder's descriptor
     std::filesystem::path file_;
     std::filesystem::path partial_;
     Attributes attributes_;
@@ -160,31 +168,32 @@ std::string SaveError::message() const {
     return fmt::format("{}: {} failed ({}); {}", file.string(), name_of(step), reason, outcome);
 }
 
-Status<SaveError> save_atomically(const std::filesystem::path& file, const ByteSource& content,
+Status<SaveError> save_atomically(const FilePlace& named, const ByteSource& content,
                                   FileOperations& operations, Attributes attributes) {
-    if (!file.has_filename() || file.filename() == "." || file.filename() == "..") {
-        return unexpected(SaveError{SaveStep::name, 0, file});
-    }
-    if (auto error = Save(operations, file, attributes).run(content)) return unexpected(std::move(*error));
+    const std::string name = named.filename();
+    if (name.empty() || name == "." || name == "..")
+        return unexpected(SaveError{SaveStep::name, 0, named.shown()});
+    const auto folder = named.parent_to_write();
+    if (!folder) return unexpected(SaveError{SaveStep::create, folder.error().error_number, named.shown()});
+    if (auto error = Save(operations, *folder, named, attributes).run(content))
+        return unexpected(std::move(*error));
     return Done{};
 }
 
-Status<SaveError> save_atomically(const std::filesystem::path& file, std::string_view bytes,
-                                  FileOperations& operations, Attributes attributes) {
+Status<SaveError> save_atomically(const FilePlace& file, std::string_view bytes, FileOperations& operations,
+                                  Attributes attributes) {
     return save_atomically(
         file, [bytes](const ByteSink& sink) { (void)sink(bytes); }, operations, attributes);
 }
 
-std::size_t remove_leftovers(const std::filesystem::path& directory) {
+std::size_t remove_leftovers(const OpenFolder& folder) {
     std::size_t removed = 0;
-    std::error_code error;
-    for (std::filesystem::directory_iterator entry(directory, error), end; !error && entry != end;
-         entry.increment(error)) {
-        const std::string name = entry->path().filename().string();
-        std::error_code not_removed;
-        const bool is_leftover =
-            name.starts_with('.') && name.ends_with(kPartialSuffix) && entry->is_regular_file(not_removed);
-        if (is_leftover && std::filesystem::remove(entry->path(), not_removed)) ++removed;
+    const auto names = folder.names();
+    if (!names) return removed;
+    for (const std::string& name : *names) {
+        const bool is_leftover = name.starts_with('.') && name.ends_with(kPartialSuffix) &&
+                                 folder.kind_of(name) == EntryKind::file;
+        if (is_leftover && folder.remove(name)) ++removed;
     }
     return removed;
 }

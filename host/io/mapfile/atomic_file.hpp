@@ -11,6 +11,7 @@
 #include <sys/types.h>
 
 #include "common/result.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "host/io/mapfile/byte_sink.hpp"
 
 namespace octoskin {
@@ -20,7 +21,7 @@ namespace octoskin {
 class FileOperations {
   public:
     virtual ~FileOperations() = default;
-    /// For writing, made or emptied; never through a symbolic link.
+    /// A new file to write to; what a killed process left under this name is removed first, never written to.
     virtual int create(const char* path) = 0;
     virtual int open_directory(const char* path) = 0;
     /// Gives the open file the mode of the one at `path`, and its owner where that is permitted; 0 if there
@@ -52,17 +53,18 @@ enum class Attributes : std::uint8_t { of_a_new_file, of_the_old_file };
 /// Saves what `content` gives as `file`; it is asked for once. On an error before `sync_directory` the old
 /// file is as it was and nothing is left behind; on that one the new file is in place, but may be lost if
 /// power fails now. Blocks for as long as the disk takes. Two writers of one file at once are not supported.
-/// What `content` throws passes through, as after an error.
-[[nodiscard]] Status<SaveError> save_atomically(const std::filesystem::path& file, const ByteSource& content,
+/// What `content` throws passes through, as after an error. Of a file with several names only this one
+/// changes, and a link in the file's place is replaced, not followed.
+[[nodiscard]] Status<SaveError> save_atomically(const FilePlace& file, const ByteSource& content,
                                                 FileOperations& operations = posix_file_operations(),
                                                 Attributes attributes = Attributes::of_a_new_file);
 /// The same with all of its bytes.
-[[nodiscard]] Status<SaveError> save_atomically(const std::filesystem::path& file, std::string_view bytes,
+[[nodiscard]] Status<SaveError> save_atomically(const FilePlace& file, std::string_view bytes,
                                                 FileOperations& operations = posix_file_operations(),
                                                 Attributes attributes = Attributes::of_a_new_file);
 
-/// Removes what a process left in `directory` when it died while saving; returns how many. To be called at
+/// Removes what a process left in `folder` when it died while saving; returns how many. To be called at
 /// start, before any save.
-std::size_t remove_leftovers(const std::filesystem::path& directory);
+std::size_t remove_leftovers(const OpenFolder& folder);
 
 }  // namespace octoskin

@@ -7,6 +7,7 @@
 
 #include "common/result.hpp"
 #include "host/core/mapping/fused_map.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "host/io/mapfile/octomap_reader.hpp"
 
 namespace octoskin {
@@ -24,18 +25,16 @@ struct MapFileError {
 
 /// Writes the map, in the format that the extension names (.ot, .bt or .ply). At every instant the file is
 /// the old one or the new one, whole. Equal maps give equal bytes.
-[[nodiscard]] Status<MapFileError> save_map(const FusedMap& map, const std::filesystem::path& file);
+[[nodiscard]] Status<MapFileError> save_map(const FusedMap& map, const FilePlace& file);
 
 /// Reads a .ot or .bt (told apart by the first line, not by name), checked as octomap_reader.hpp says.
 /// Refuses what is no regular file and what is larger than `file_bytes_max`.
-[[nodiscard]] Result<FusedMap, MapFileError> load_map(const std::filesystem::path& file,
-                                                      const MapReadLimits& limits = {},
+[[nodiscard]] Result<FusedMap, MapFileError> load_map(const FilePlace& file, const MapReadLimits& limits = {},
                                                       std::uint64_t file_bytes_max = 512ULL << 20U);
 
 /// A map to go on with, as it was saved from one of this resolution and `memory_max_mib`: any such map has
 /// room, also a full one. Whatever it was clamped to, it is clamped as `config` says from now on. Further
 /// errors: it needs more memory than that, or has voxels of another size.
-[[nodiscard]] Result<FusedMap, MapFileError> load_map_of(const MapConfig& config,
-                                                         const std::filesystem::path& file);
+[[nodiscard]] Result<FusedMap, MapFileError> load_map_of(const MapConfig& config, const FilePlace& file);
 
 }  // namespace octoskin

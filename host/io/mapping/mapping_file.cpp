@@ -214,7 +214,7 @@ void read_hit_part(const Table& top, std::string_view key, HitModel& hit) {
     read_part(top, key, kHitKeys, hit, read_hit);
 }
 
-MappingConfig read_checked(const std::string& file) {
+MappingConfig read_checked(const FilePlace& file) {
     const rig::Value document = rig::load_document(file);
     for (const std::string_view key : {"nodes", "robot", "sensor_defaults", "extends"}) {
         if (const rig::Value* found = document.find(key)) {
@@ -286,8 +286,12 @@ Result<MappingConfig, MappingFileError> read_mapping(const std::string& name_or_
         mapping.removes_robot_from_depth = false;
         return mapping;
     }
+    return read_mapping_file(name_or_file);
+}
+
+Result<MappingConfig, MappingFileError> read_mapping_file(const FilePlace& file) {
     try {
-        return read_checked(name_or_file);
+        return read_checked(file);
     } catch (const rig::Fault& fault) {
         return unexpected(fault.error);
     }

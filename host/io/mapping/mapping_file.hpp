@@ -7,6 +7,7 @@
 
 #include "common/result.hpp"
 #include "host/core/mapping/mapping_config.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin {
@@ -29,6 +30,9 @@ inline constexpr const char* kDefaultMapping = "fast";
 /// overrides what it mentions; host/config/ has them written out in full. An unknown key, a value of the
 /// wrong type or out of range is an error.
 [[nodiscard]] Result<MappingConfig, MappingFileError> read_mapping(const std::string& name_or_file);
+
+/// The same of a file, whatever it is called.
+[[nodiscard]] Result<MappingConfig, MappingFileError> read_mapping_file(const FilePlace& file);
 
 /// The configuration in full as YAML. Reading it back gives an equal one, and equal ones give equal text.
 [[nodiscard]] std::string mapping_text(const MappingConfig& config);

@@ -15,7 +15,7 @@ Unexpected<DepthSourceError> failure(const std::filesystem::path& file, const st
     return unexpected(DepthSourceError{file.string() + ": " + what});
 }
 
-DepthEpoch read_checked(const std::filesystem::path& file) {
+DepthEpoch read_checked(const FilePlace& file) {
     const rig::Value document = rig::load_document(file);
     const rig::Table table(document, "", {"schema", "first_frame_us", "frames"});
     static_cast<void>(table.choice<bool>("schema", {{kSchema, true}}));
@@ -27,23 +27,23 @@ DepthEpoch read_checked(const std::filesystem::path& file) {
 
 }  // namespace
 
-Status<DepthSourceError> write_epoch(const std::filesystem::path& file, const DepthEpoch& epoch) {
-    std::ofstream out(file);
+Status<DepthSourceError> write_epoch(const FilePlace& file, const DepthEpoch& epoch) {
+    const auto created = file.create_anew();
+    if (!created) return unexpected(DepthSourceError{created.error().message()});
+    std::ofstream out(created->path_for_libraries());
     out << "# depth.oni counts its time from its first frame; this is when that was, on the host's monotonic "
            "clock.\n"
         << "schema: " << kSchema << '\n'
         << "first_frame_us: " << epoch.first_frame.ns / 1000 << '\n'
         << "frames: " << epoch.frames << '\n';
     out.close();
-    if (!out) return failure(file, "cannot write; is the disk full?");
+    if (!out) return failure(file.shown(), "cannot write; is the disk full?");
     return Done{};
 }
 
-Result<DepthEpoch, DepthSourceError> read_epoch(const std::filesystem::path& file) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) {
-        return failure(file, "no such file; without it the depth frames have no time");
-    }
+Result<DepthEpoch, DepthSourceError> read_epoch(const FilePlace& file) {
+    if (const EntryKind kind = file.kind(); kind != EntryKind::file && kind != EntryKind::link)
+        return failure(file.shown(), "no such file; without it the depth frames have no time");
     try {
         return read_checked(file);
     } catch (const rig::Fault& fault) {

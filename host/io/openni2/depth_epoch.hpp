@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "host/core/depth/depth_source.hpp"
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin::openni2 {
 
@@ -16,8 +16,7 @@ struct DepthEpoch {
     std::uint64_t frames = 0;  ///< how many the recording must have
 };
 
-[[nodiscard]] Status<DepthSourceError> write_epoch(const std::filesystem::path& file,
-                                                   const DepthEpoch& epoch);
-[[nodiscard]] Result<DepthEpoch, DepthSourceError> read_epoch(const std::filesystem::path& file);
+[[nodiscard]] Status<DepthSourceError> write_epoch(const FilePlace& file, const DepthEpoch& epoch);
+[[nodiscard]] Result<DepthEpoch, DepthSourceError> read_epoch(const FilePlace& file);
 
 }  // namespace octoskin::openni2

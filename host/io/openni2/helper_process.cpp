@@ -83,11 +83,25 @@ LeftBehind& left_behind() {
     return processes;
 }
 
+/// In words; empty: it exited with 0.
+std::optional<std::string> end_of(int status) {
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
+        return "it needs more than " + std::to_string(kHelperProcessorSecondsPerFrame) +
+               " s of processor time for a frame";
+    }
+    if (WIFSIGNALED(status)) return "signal " + std::to_string(WTERMSIG(status));
+    if (WEXITSTATUS(status) == kOutOfMemory)
+        return "it needs more than " + std::to_string(kHelperMemoryMib) + " MiB of memory";
+    if (WEXITSTATUS(status) != 0) return "exit code " + std::to_string(WEXITSTATUS(status));
+    return std::nullopt;
+}
+
 }  // namespace
 
 Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::path& program,
                                                         const std::vector<std::string>& arguments,
-                                                        HelperPipe pipe, HelperComplaints complaints) {
+                                                        HelperPipe pipe, HelperComplaints complaints,
+                                                        int inherited) {
     left_behind().reap();
     std::array<int, 2> ends{-1, -1};
     // Sockets rather than a pipe: a write to a helper that is stuck must not block, and one to a helper that
@@ -102,6 +116,8 @@ Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::p
     Spawning spawning;
     spawning.connect(theirs, pipe == HelperPipe::its_input ? STDIN_FILENO : STDOUT_FILENO);
     if (words[1] >= 0) spawning.connect(words[1], STDERR_FILENO);
+    // Last: it may take the number of one of those above, which are copied by then.
+    if (inherited >= 0) spawning.connect(inherited, kInherited);
     pid_t process = -1;
     const int failed = spawning.spawn(process, program.string(), arguments);
     ::close(theirs);
@@ -161,9 +177,7 @@ std::optional<std::string> HelperProcess::wait(std::chrono::milliseconds patienc
         const pid_t ended = ::waitpid(process_, &status, WNOHANG);
         if (ended == process_) {
             process_ = -1;
-            if (WIFSIGNALED(status)) return "signal " + std::to_string(WTERMSIG(status));
-            if (WEXITSTATUS(status) != 0) return "exit code " + std::to_string(WEXITSTATUS(status));
-            return std::nullopt;
+            return end_of(status);
         }
         if (ended < 0) return std::string("no such process");
         if (waited >= patience) {

@@ -20,12 +20,22 @@ enum class HelperComplaints : std::uint8_t {
     kept,  ///< for `complaint`; what is too much for a pipe is lost
 };
 
+/// What a helper allows itself (helper_limits.hpp), and how it ends when that is not enough: with this exit
+/// code, or by SIGXCPU.
+inline constexpr unsigned kHelperMemoryMib = 2048;
+inline constexpr unsigned kHelperProcessorSecondsPerFrame = 5;
+inline constexpr int kOutOfMemory = 70;
+
 class HelperProcess {
   public:
+    static constexpr int kInherited = 3;
+
     /// Starts `program` with `arguments`, with no signal blocked or ignored. The message says what failed.
+    /// `inherited`: a file or folder of ours that the helper has, too, as its descriptor kInherited, for as
+    /// long as it lives; -1: none.
     [[nodiscard]] static Result<HelperProcess, std::string> start(
         const std::filesystem::path& program, const std::vector<std::string>& arguments, HelperPipe pipe,
-        HelperComplaints complaints = HelperComplaints::on_our_standard_error);
+        HelperComplaints complaints = HelperComplaints::on_our_standard_error, int inherited = -1);
     HelperProcess(HelperProcess&& other) noexcept;
     HelperProcess& operator=(HelperProcess&& other) noexcept;
     /// Ends a helper that still runs. One that the kernel does not let go of within a second is left
@@ -36,7 +46,7 @@ class HelperProcess {
     /// Our end: an input helper then sees its end of file.
     void close_pipe();
     /// Waits for the helper's own end. Empty: it exited with 0; else how it ended, in words ("exit code 1",
-    /// "signal 11", "did not end in time": it is killed then).
+    /// "signal 11", "did not end in time": it is killed then; the limit that it reached).
     [[nodiscard]] std::optional<std::string> wait(std::chrono::milliseconds patience);
 
     /// The last line of its complaints so far, if they are kept; empty if there is none. Takes what was read.

@@ -17,26 +17,30 @@ std::string with_end(std::string what, const std::optional<std::string>& how_it_
 
 }  // namespace
 
-Result<OniReader, DepthSourceError> OniReader::open(const std::filesystem::path& oni,
-                                                    const std::filesystem::path& epoch_file,
+Result<OniReader, DepthSourceError> OniReader::open(const FilePlace& oni, const FilePlace& epoch_file,
                                                     std::optional<std::filesystem::path> helper) {
     const auto failure = [&oni](const std::string& what) {
-        return unexpected(DepthSourceError{oni.string() + ": " + what});
+        return unexpected(DepthSourceError{oni.shown().string() + ": " + what});
     };
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(oni, error)) return failure("no such file, or not an ordinary one");
+    const auto opened = oni.open();
+    if (!opened) {
+        const bool is_link = opened.error().fault == FolderFault::link;
+        return failure(is_link ? opened.error().reason() : "no such file, or not an ordinary one");
+    }
     const auto epoch = read_epoch(epoch_file);
     if (!epoch) return unexpected(epoch.error());
     const auto program = find_helper(kReadHelper, helper);
     if (!program) return failure(program.error());
-    auto process = HelperProcess::start(*program, {oni.string()}, HelperPipe::its_output);
+    auto process = HelperProcess::start(
+        *program, {path_of_descriptor(HelperProcess::kInherited).string(), oni.shown().string()},
+        HelperPipe::its_output, HelperComplaints::on_our_standard_error, opened->descriptor());
     if (!process) return failure(process.error());
     const auto header = FramePipe(process->descriptor(), kReadPatience).read_header();
     if (!header) {
         return failure(
             with_end("not a recording with depth that OpenNI2 can read", process->wait(kEndPatience)));
     }
-    return OniReader(oni, *epoch, std::move(*process), *header);
+    return OniReader(oni.shown(), *epoch, std::move(*process), *header);
 }
 
 Unexpected<DepthSourceError> OniReader::fail(const std::string& what) {

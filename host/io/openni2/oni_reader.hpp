@@ -8,6 +8,7 @@
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_source.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "host/io/openni2/depth_epoch.hpp"
 #include "host/io/openni2/frame_pipe.hpp"
 #include "host/io/openni2/helper_process.hpp"
@@ -19,7 +20,7 @@ class OniReader final : public DepthSource {
     /// Opens `oni` with its sidecar `epoch`. Errors name the file: missing, not a recording, cut off.
     /// `helper`: the program to use instead of the installed octoskin-oni-read.
     [[nodiscard]] static Result<OniReader, DepthSourceError> open(
-        const std::filesystem::path& oni, const std::filesystem::path& epoch,
+        const FilePlace& oni, const FilePlace& epoch,
         std::optional<std::filesystem::path> helper = std::nullopt);
 
     /// Waits at most 15 s for a frame. A recording with fewer frames than its sidecar says ends with an error

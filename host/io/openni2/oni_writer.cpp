@@ -15,14 +15,14 @@ constexpr const char* kWriteHelper = "octoskin-oni-write";
 }  // namespace
 
 Unexpected<DepthSourceError> OniWriter::failure(const std::string& what) const {
-    return unexpected(DepthSourceError{oni_.string() + ": " + what});
+    return unexpected(DepthSourceError{oni_.shown().string() + ": " + what});
 }
 
-Result<OniWriter, DepthSourceError> OniWriter::create(const std::filesystem::path& oni,
-                                                      const std::filesystem::path& epoch, FrameSize size,
+Result<OniWriter, DepthSourceError> OniWriter::create(const FilePlace& oni, const FilePlace& epoch,
+                                                      FrameSize size,
                                                       std::optional<std::filesystem::path> helper) {
     const auto failure = [&oni](const std::string& what) {
-        return unexpected(DepthSourceError{oni.string() + ": " + what});
+        return unexpected(DepthSourceError{oni.shown().string() + ": " + what});
     };
     if (size.pixels() == 0 || size.pixels() > kPixelsMax || size.width > kSideMax || size.height > kSideMax) {
         return failure("OpenNI2 cannot record pictures of " + std::to_string(size.width) + " x " +
@@ -31,10 +31,18 @@ Result<OniWriter, DepthSourceError> OniWriter::create(const std::filesystem::pat
     const auto program = find_helper(kWriteHelper, helper);
     if (!program) return failure(program.error());
     // An old sidecar must not vouch for a recording that is not finished.
-    std::error_code ignored;
-    for (const auto& stale : {oni, epoch}) std::filesystem::remove(stale, ignored);
-    auto process =
-        HelperProcess::start(*program, {oni.string()}, HelperPipe::its_input, HelperComplaints::kept);
+    const auto sidecar = epoch.parent_to_write();
+    if (!sidecar) return failure(sidecar.error().message());
+    if (const auto removed = sidecar->remove(epoch.filename()); !removed)
+        return failure(removed.error().message());
+    if (const auto created = oni.create_anew(); !created) return failure(created.error().reason());
+    // The helper finds the file in the folder that was opened, whatever becomes of the folder's name, and
+    // goes on with it if this process is killed.
+    const auto folder = oni.parent_to_write();
+    if (!folder) return failure(folder.error().message());
+    const auto file = path_of_descriptor(HelperProcess::kInherited) / oni.filename();
+    auto process = HelperProcess::start(*program, {file.string(), oni.shown().string()},
+                                        HelperPipe::its_input, HelperComplaints::kept, folder->descriptor());
     if (!process) return failure(process.error());
     if (const auto written = FramePipe(process->descriptor(), kWritePatience).write_header({.size = size});
         !written) {

@@ -9,6 +9,7 @@
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "host/core/depth/depth_source.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "host/io/openni2/depth_epoch.hpp"
 #include "host/io/openni2/frame_pipe.hpp"
 #include "host/io/openni2/helper_process.hpp"
@@ -24,7 +25,7 @@ class OniWriter {
     /// not there, pictures of more than 1600 x 1200 pixels. `helper`: the program to use instead of the
     /// installed octoskin-oni-write.
     [[nodiscard]] static Result<OniWriter, DepthSourceError> create(
-        const std::filesystem::path& oni, const std::filesystem::path& epoch, FrameSize size,
+        const FilePlace& oni, const FilePlace& epoch, FrameSize size,
         std::optional<std::filesystem::path> helper = std::nullopt);
     /// Frames in the order of their time. Asserts the size.
     [[nodiscard]] Status<DepthSourceError> write(HostTime captured, std::span<const std::uint16_t> depth_mm);
@@ -34,13 +35,13 @@ class OniWriter {
     [[nodiscard]] Status<DepthSourceError> close();
 
   private:
-    OniWriter(std::filesystem::path oni, std::filesystem::path epoch, FrameSize size, HelperProcess helper)
+    OniWriter(FilePlace oni, FilePlace epoch, FrameSize size, HelperProcess helper)
         : oni_(std::move(oni)), epoch_file_(std::move(epoch)), size_(size), helper_(std::move(helper)) {}
     [[nodiscard]] Unexpected<DepthSourceError> failure(const std::string& what) const;
     [[nodiscard]] std::string why(const std::string& how);
 
-    std::filesystem::path oni_;
-    std::filesystem::path epoch_file_;
+    FilePlace oni_;
+    FilePlace epoch_file_;
     FrameSize size_;
     HelperProcess helper_;
     DepthEpoch epoch_;

@@ -2,14 +2,12 @@
 
 namespace octoskin::orderlog {
 
-Result<OrderReader, CommitSourceError> OrderReader::open(const std::filesystem::path& file) {
-    // Before it is opened: a named pipe would wait for ever.
-    std::error_code error;
-    if (std::filesystem::is_other(std::filesystem::status(file, error)))
-        return unexpected(CommitSourceError{file.string() + ": is a pipe or a device, not an ordinary file"});
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return unexpected(CommitSourceError{file.string() + ": cannot be opened"});
-    OrderReader reader(file, std::move(stream));
+Result<OrderReader, CommitSourceError> OrderReader::open(const FilePlace& file) {
+    const auto opened = file.open();
+    if (!opened) return unexpected(CommitSourceError{opened.error().message()});
+    std::ifstream stream(opened->path_for_libraries(), std::ios::binary);
+    if (!stream) return unexpected(CommitSourceError{file.shown().string() + ": cannot be opened"});
+    OrderReader reader(file.shown(), std::move(stream));
     const auto header = reader.read_line() ? parse_header(reader.line_) : std::nullopt;
     if (!header) {
         return reader.failure(

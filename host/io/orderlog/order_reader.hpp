@@ -10,6 +10,7 @@
 
 #include "common/result.hpp"
 #include "host/core/pipeline/ordered_replay.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "host/io/orderlog/order_line.hpp"
 
 namespace octoskin::orderlog {
@@ -17,7 +18,7 @@ namespace octoskin::orderlog {
 class OrderReader final : public CommitSource {
   public:
     /// Errors name the file: missing, or not begun as an order.log of this version.
-    [[nodiscard]] static Result<OrderReader, CommitSourceError> open(const std::filesystem::path& file);
+    [[nodiscard]] static Result<OrderReader, CommitSourceError> open(const FilePlace& file);
 
     /// An error names file and line: no commit, a line behind the end, or fewer commits than its end says. A
     /// file without an end, as a daemon leaves it that was killed, ends with its last whole line.

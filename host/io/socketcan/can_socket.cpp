@@ -3,7 +3,10 @@
 #include <fcntl.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
+#include <linux/sockios.h>
 #include <net/if.h>
+#include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -13,6 +16,7 @@
 #include <ctime>
 #include <vector>
 
+#include "common/wall_time.hpp"
 #include "common/wire/socketcan_layout.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
 
@@ -22,7 +26,16 @@ namespace {
 WallTime wall_now() {
     timespec now{};
     ::clock_gettime(CLOCK_REALTIME, &now);
-    return {std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec};
+    return wall_time(now.tv_sec, now.tv_nsec);
+}
+
+/// The other end sends nothing any more. An empty packet reads like that end: what tells them apart is that
+/// the other end has hung up, and that nothing with a byte in it waits.
+bool has_ended(int descriptor) {
+    pollfd entry{descriptor, POLLRDHUP, 0};
+    if (::poll(&entry, 1, 0) <= 0 || (entry.revents & (POLLRDHUP | POLLHUP)) == 0) return false;
+    int waiting = 0;
+    return ::ioctl(descriptor, SIOCINQ, &waiting) != 0 || waiting == 0;
 }
 
 std::string remedy(int error_number) {
@@ -119,6 +132,7 @@ CanSocket::~CanSocket() {
 CanSocket::CanSocket(CanSocket&& other) noexcept
     : interface_(std::move(other.interface_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
+      newest_(other.newest_),
       dropped_(other.dropped_),
       dropped_raw_(other.dropped_raw_),
       malformed_(other.malformed_),
@@ -128,6 +142,7 @@ CanSocket::CanSocket(CanSocket&& other) noexcept
 CanSocket& CanSocket::operator=(CanSocket&& other) noexcept {
     std::swap(interface_, other.interface_);
     std::swap(descriptor_, other.descriptor_);
+    newest_ = other.newest_;
     dropped_ = other.dropped_;
     dropped_raw_ = other.dropped_raw_;
     malformed_ = other.malformed_;
@@ -136,46 +151,53 @@ CanSocket& CanSocket::operator=(CanSocket&& other) noexcept {
     return *this;
 }
 
-Result<std::optional<Received>, SocketFault> CanSocket::receive() {
-    if (waiting_.empty()) return read_frame();
-    Received oldest = std::move(waiting_.front());
-    waiting_.pop_front();
-    return std::optional(std::move(oldest));
-}
-
-Result<std::optional<Received>, SocketFault> CanSocket::read_frame() {
-    while (true) {  // each round takes one datagram out of the socket
-        const std::uint64_t malformed_before = malformed_;
-        auto received = read_one();
-        if (malformed_ == malformed_before) return received;
+Result<std::optional<Received>, SocketFault> CanSocket::receive(int& datagrams_left) {
+    if (!waiting_.empty()) {
+        if (datagrams_left-- <= 0) return std::optional<Received>{};
+        Received oldest = std::move(waiting_.front());
+        waiting_.pop_front();
+        return std::optional(std::move(oldest));
     }
+    for (; datagrams_left > 0; --datagrams_left) {
+        auto taken = take_one();
+        if (!taken) return unexpected(taken.error());
+        if (!taken->has_value()) return std::optional<Received>{};
+        if (!(*taken)->received) continue;
+        --datagrams_left;
+        return std::move((*taken)->received);
+    }
+    return std::optional<Received>{};
 }
 
-/// What came before a frame of ours goes before its echo. A fault shows again when it is this socket's turn.
+/// What came before a frame of ours goes before its echo; what comes meanwhile has its place behind, and a
+/// flood of it holds nothing up. A fault shows again when it is this socket's turn.
 void CanSocket::take_what_came() {
-    while (waiting_.size() < kWaitingMax) {
-        auto received = read_frame();
-        if (!received || !received->has_value()) return;
-        waiting_.push_back(std::move(**received));
+    const WallTime begun = wall_now();
+    for (std::size_t i = 0; i < kWaitingMax && waiting_.size() < kWaitingMax; ++i) {
+        auto taken = take_one();
+        if (!taken || !taken->has_value()) return;
+        if ((*taken)->received) waiting_.push_back(std::move(*(*taken)->received));
+        if (newest_ > begun) return;
     }
 }
 
-Result<std::optional<Received>, SocketFault> CanSocket::read_one() {
+Result<std::optional<CanSocket::Taken>, SocketFault> CanSocket::take_one() {
     std::array<std::byte, CANFD_MTU + 1> bytes{};
     const StampedDatagram datagram = receive_stamped(descriptor_, bytes);
     if (datagram.count < 0) {
-        if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return std::optional<Received>{};
+        if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return std::optional<Taken>{};
         return unexpected(fault(errno, "cannot receive"));
     }
-    if (datagram.count == 0) return unexpected(fault(ENODEV, "closed"));
+    if (datagram.count == 0 && has_ended(descriptor_)) return unexpected(fault(ENODEV, "closed"));
+    newest_ = datagram.stamp ? *datagram.stamp : wall_now();
     if (datagram.dropped) dropped_ += *datagram.dropped - std::exchange(dropped_raw_, *datagram.dropped);
     const auto frame = wire::from_socketcan(std::span(bytes).first(static_cast<std::size_t>(datagram.count)));
     if (!frame) {
         ++malformed_;
-        return std::optional<Received>{};
+        return std::optional(Taken{});
     }
-    return std::optional(Received{.entry = {datagram.stamp ? *datagram.stamp : wall_now(), *frame},
-                                  .is_own = (datagram.flags & MSG_CONFIRM) != 0});
+    const bool is_own = (datagram.flags & MSG_CONFIRM) != 0;
+    return std::optional(Taken{Received{.entry = {*newest_, *frame}, .is_own = is_own}});
 }
 
 Result<bool, SocketFault> CanSocket::send(const wire::CanFrame& frame) {

@@ -66,8 +66,16 @@ class CanSocket {
     /// stays, and no frame is missed in between. False if the descriptor takes no filters.
     [[nodiscard]] bool set_filters(std::span<const IdFilter> filters);
 
-    /// The next frame, if one is here.
-    [[nodiscard]] Result<std::optional<Received>, SocketFault> receive();
+    /// So many datagrams `receive` takes at most if it is not told otherwise.
+    static constexpr int kDatagramsMax = 256;
+
+    /// The next frame, if one is here; takes at most so many datagrams for it, which it counts down: what is
+    /// no frame counts too, so that a flood of that holds nobody up. Empty with none left: there may be more.
+    [[nodiscard]] Result<std::optional<Received>, SocketFault> receive(int& datagrams_left);
+    [[nodiscard]] Result<std::optional<Received>, SocketFault> receive() {
+        int datagrams_left = kDatagramsMax;
+        return receive(datagrams_left);
+    }
     /// False if there is no room now: the frame was not sent.
     [[nodiscard]] Result<bool, SocketFault> send(const wire::CanFrame& frame);
 
@@ -75,18 +83,23 @@ class CanSocket {
     [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
     /// What was read and was no frame.
     [[nodiscard]] std::uint64_t malformed() const noexcept { return malformed_; }
+    /// When the newest datagram that was taken had come, frame or not; empty before the first.
+    [[nodiscard]] std::optional<WallTime> newest() const noexcept { return newest_; }
 
     /// In words, with what to do: `doing` failed with `error_number`.
     [[nodiscard]] SocketFault fault(int error_number, const std::string& doing) const;
 
   private:
-    /// The next frame out of the descriptor; empty if none is there.
-    [[nodiscard]] Result<std::optional<Received>, SocketFault> read_frame();
-    /// The same for one datagram, which may be none.
-    [[nodiscard]] Result<std::optional<Received>, SocketFault> read_one();
+    /// One datagram out of the descriptor.
+    struct Taken {
+        std::optional<Received> received;  ///< empty: it is malformed, and counted
+    };
+    /// Empty if none is there.
+    [[nodiscard]] Result<std::optional<Taken>, SocketFault> take_one();
 
     std::string interface_;
     int descriptor_ = -1;
+    std::optional<WallTime> newest_;
     std::uint64_t dropped_ = 0;
     std::uint32_t dropped_raw_ = 0;  ///< as the kernel counts, modulo 2^32
     std::uint64_t malformed_ = 0;

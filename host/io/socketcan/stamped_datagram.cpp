@@ -10,6 +10,8 @@
 #include <cstring>
 #include <ctime>
 
+#include "common/wall_time.hpp"
+
 namespace octoskin::socketcan {
 namespace {
 
@@ -47,8 +49,9 @@ std::string name_of(const sockaddr_un& address, socklen_t length) {
     return name;
 }
 
-WallTime wall_time(const timespec& time) {
-    return {std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec};
+WallTime stamp_of(const cmsghdr* part) {
+    const auto time = value_of<timespec>(part);
+    return wall_time(time.tv_sec, time.tv_nsec);
 }
 
 }  // namespace
@@ -84,7 +87,7 @@ StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes, std:
     for (cmsghdr* beside = CMSG_FIRSTHDR(&message); beside != nullptr;
          beside = CMSG_NXTHDR(&message, beside)) {
         if (beside->cmsg_level != SOL_SOCKET) continue;
-        if (beside->cmsg_type == SO_TIMESTAMPNS) datagram.stamp = wall_time(value_of<timespec>(beside));
+        if (beside->cmsg_type == SO_TIMESTAMPNS) datagram.stamp = stamp_of(beside);
         if (beside->cmsg_type == SCM_RIGHTS) close_descriptors(beside);
         if (beside->cmsg_type == SCM_CREDENTIALS) datagram.sender = sender_of(beside);
         if (beside->cmsg_type == SO_RXQ_OVFL) datagram.dropped = value_of<std::uint32_t>(beside);

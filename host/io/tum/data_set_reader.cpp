@@ -12,6 +12,19 @@
 #include "host/io/tum/line_file.hpp"
 
 namespace octoskin::tum {
+namespace {
+
+/// Why a file is none of the data set's: its name leads out of the folder, or to a link. Whether it is there,
+/// and an image, shows later.
+std::optional<std::string> elsewhere_fault(const FilePlace& image) {
+    const auto opened = image.open();
+    if (opened) return std::nullopt;
+    const FolderFault fault = opened.error().fault;
+    if (fault != FolderFault::link && fault != FolderFault::outside) return std::nullopt;
+    return opened.error().reason();
+}
+
+}  // namespace
 
 std::vector<std::uint16_t> depth_mm_table(const rig::DataSetDepth& scale) {
     assert(scale.units_per_m > 0.0);
@@ -27,20 +40,22 @@ std::vector<std::uint16_t> depth_mm_table(const rig::DataSetDepth& scale) {
 
 Result<DataSetReader, DepthSourceError> DataSetReader::open(const std::filesystem::path& folder,
                                                             const rig::DataSetDepth& scale) {
-    Paths paths{folder};
-    auto trajectory = Trajectory::read(paths.poses());
+    const NamedFolder opened(folder);
+    auto trajectory = Trajectory::read({opened, "groundtruth.txt"});
     if (!trajectory) return unexpected(trajectory.error());
-    DataSetReader reader(std::move(paths), std::move(*trajectory), scale);
+    DataSetReader reader(Paths{folder}, opened, std::move(*trajectory), scale);
     std::vector<Image>& images = reader.images_;
-    const auto take = [&images](std::uint64_t number, std::string_view line) -> Status<std::string> {
+    const auto take = [&images, &opened](std::uint64_t number, std::string_view line) -> Status<std::string> {
         auto image = parse_image_line(line);
         if (!image) return unexpected(image.error());
         if (!images.empty() && image->captured < images.back().named.captured)
             return unexpected(std::string("its time is before that of the image above it"));
+        if (auto elsewhere = elsewhere_fault({opened, image->file}))
+            return unexpected(image->file + ": " + *elsewhere);
         images.push_back({number, std::move(*image)});
         return Done{};
     };
-    if (const auto done = read_lines(reader.paths_.images(), take); !done) return unexpected(done.error());
+    if (const auto done = read_lines({opened, "depth.txt"}, take); !done) return unexpected(done.error());
     if (images.empty()) {
         return unexpected(DepthSourceError{reader.paths_.images().string() +
                                            ": names no image: expected lines of TIME FILE"});
@@ -56,7 +71,7 @@ Result<std::optional<DepthFrame>, DepthSourceError> DataSetReader::next() {
             ++images_without_pose_;
             continue;
         }
-        const auto image = read_depth_png(paths_.folder / named.file);
+        const auto image = read_depth_png({folder_, named.file});
         if (!image) return unexpected(line_error(paths_.images(), line, named.file + ": " + image.error()));
         ++next_;
         ++images_read_;

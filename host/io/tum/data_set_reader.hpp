@@ -8,6 +8,7 @@
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_source.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "host/io/tum/trajectory.hpp"
 #include "hw/rigfile/data_set_depth.hpp"
 
@@ -25,8 +26,9 @@ class DataSetReader final : public DepthSource {
         [[nodiscard]] std::filesystem::path poses() const { return folder / "groundtruth.txt"; }
     };
 
-    /// Reads both lists; `scale`: of the images. Errors name file and line: no list, or an image before its
-    /// predecessor.
+    /// Reads both lists; `scale`: of the images. The folder is opened once: lists and images are files below
+    /// it, behind no link. Errors name file and line: no list, an image before its predecessor, an image
+    /// whose name leads elsewhere.
     [[nodiscard]] static Result<DataSetReader, DepthSourceError> open(const std::filesystem::path& folder,
                                                                       const rig::DataSetDepth& scale = {});
 
@@ -53,10 +55,14 @@ class DataSetReader final : public DepthSource {
         std::uint64_t line = 0;
         ImageLine named;
     };
-    DataSetReader(Paths paths, Trajectory trajectory, const rig::DataSetDepth& scale)
-        : paths_(std::move(paths)), trajectory_(std::move(trajectory)), depth_mm_(depth_mm_table(scale)) {}
+    DataSetReader(Paths paths, NamedFolder folder, Trajectory trajectory, const rig::DataSetDepth& scale)
+        : paths_(std::move(paths)),
+          folder_(std::move(folder)),
+          trajectory_(std::move(trajectory)),
+          depth_mm_(depth_mm_table(scale)) {}
 
-    Paths paths_;
+    Paths paths_;         ///< for messages and for provenance
+    NamedFolder folder_;  ///< that all is read from
     Trajectory trajectory_;
     std::vector<std::uint16_t> depth_mm_;  ///< of each value of a pixel
     std::vector<Image> images_;

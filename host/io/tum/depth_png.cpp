@@ -64,13 +64,17 @@ void make_room(Decoding& decoding) {
 
 }  // namespace
 
-Result<DepthPng, std::string> read_depth_png(const std::filesystem::path& file) {
-    // Before it is opened: a named pipe would wait for ever.
-    std::error_code error;
-    if (std::filesystem::is_other(std::filesystem::status(file, error)))
-        return unexpected(std::string("is a pipe or a device, not an ordinary file"));
+Result<DepthPng, std::string> read_depth_png(const FilePlace& file) {
+    const auto opened = file.open();
+    if (!opened) {
+        const FolderError& error = opened.error();
+        if (error.fault == FolderFault::not_a_file)
+            return unexpected(std::string("is a pipe or a device, not an ordinary file"));
+        const bool is_elsewhere = error.fault == FolderFault::link || error.fault == FolderFault::outside;
+        return unexpected(is_elsewhere ? error.reason() : std::string("cannot be opened"));
+    }
     Decoding decoding;
-    decoding.file.reset(std::fopen(file.c_str(), "rb"));
+    decoding.file.reset(std::fopen(opened->path_for_libraries().c_str(), "rb"));
     if (!decoding.file) return unexpected(std::string("cannot be opened"));
     decoding.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &decoding, keep_error, ignore_warning);
     if (decoding.png != nullptr) decoding.info = png_create_info_struct(decoding.png);

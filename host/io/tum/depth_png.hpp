@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "common/result.hpp"
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin::tum {
 
@@ -18,6 +18,6 @@ struct DepthPng {
 
 /// Errors say what is wrong, without the name: not to be opened, no PNG, cut off or damaged, not grey with 16
 /// bits, over 4096 x 4096. About 4 ms for 640 x 480.
-[[nodiscard]] Result<DepthPng, std::string> read_depth_png(const std::filesystem::path& file);
+[[nodiscard]] Result<DepthPng, std::string> read_depth_png(const FilePlace& file);
 
 }  // namespace octoskin::tum

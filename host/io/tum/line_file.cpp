@@ -21,22 +21,37 @@ bool is_content(std::string_view line) {
     return begin != std::string_view::npos && line[begin] != '#';
 }
 
+/// Why a list is not opened.
+std::string reason_of(const FolderError& error) {
+    switch (error.fault) {
+        case FolderFault::not_a_file:
+            return "is a pipe or a device, not an ordinary file";
+        case FolderFault::absent:
+            return "no such file: a data set has depth.txt and groundtruth.txt; unpack it anew";
+        case FolderFault::link:
+        case FolderFault::outside:
+            return error.reason();
+        case FolderFault::foreign_owner:
+        case FolderFault::not_a_folder:
+        case FolderFault::is_there:
+        case FolderFault::not_permitted:
+        case FolderFault::system:
+            break;
+    }
+    return "cannot be opened";
+}
+
 }  // namespace
 
 DepthSourceError line_error(const std::filesystem::path& file, std::uint64_t line, const std::string& what) {
     return {file.string() + ":" + std::to_string(line) + ": " + what};
 }
 
-Status<DepthSourceError> read_lines(const std::filesystem::path& file, const TakeLine& take) {
-    // Before it is opened: a named pipe would wait for ever, and a device may have no end.
-    std::error_code error;
-    if (std::filesystem::is_other(std::filesystem::status(file, error)))
-        return unexpected(DepthSourceError{file.string() + ": is a pipe or a device, not an ordinary file"});
-    if (!std::filesystem::exists(file, error)) {
-        return unexpected(DepthSourceError{
-            file.string() + ": no such file: a data set has depth.txt and groundtruth.txt; unpack it anew"});
-    }
-    std::ifstream stream(file, std::ios::binary);
+Status<DepthSourceError> read_lines(const FilePlace& place, const TakeLine& take) {
+    const std::filesystem::path file = place.shown();
+    const auto opened = place.open();
+    if (!opened) return unexpected(DepthSourceError{file.string() + ": " + reason_of(opened.error())});
+    std::ifstream stream(opened->path_for_libraries(), std::ios::binary);
     if (!stream) return unexpected(DepthSourceError{file.string() + ": cannot be opened"});
     std::string line;
     for (std::uint64_t number = 1; read_line(stream, line); ++number) {

@@ -9,6 +9,7 @@
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_source.hpp"
+#include "host/io/folder/file_place.hpp"
 
 namespace octoskin::tum {
 
@@ -21,6 +22,6 @@ using TakeLine = std::function<Status<std::string>(std::uint64_t number, std::st
 
 /// Gives every line that is neither blank nor a comment to `take`, until it refuses one. Errors name the file
 /// and the line: not to be opened, a line over 4096 bytes, refused.
-[[nodiscard]] Status<DepthSourceError> read_lines(const std::filesystem::path& file, const TakeLine& take);
+[[nodiscard]] Status<DepthSourceError> read_lines(const FilePlace& file, const TakeLine& take);
 
 }  // namespace octoskin::tum

@@ -21,7 +21,7 @@ Eigen::Isometry3d between(const PoseLine& before, const PoseLine& after, HostTim
 
 }  // namespace
 
-Result<Trajectory, DepthSourceError> Trajectory::read(const std::filesystem::path& file) {
+Result<Trajectory, DepthSourceError> Trajectory::read(const FilePlace& file) {
     Trajectory trajectory;
     std::vector<PoseLine>& poses = trajectory.poses_;
     const auto take = [&trajectory, &poses](std::uint64_t, std::string_view line) -> Status<std::string> {

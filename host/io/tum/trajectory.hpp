@@ -8,6 +8,7 @@
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_source.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "host/io/tum/data_set_lines.hpp"
 
 namespace octoskin::tum {
@@ -20,7 +21,7 @@ class Trajectory {
   public:
     /// Errors name file and line: no pose, or one before its predecessor. Of two with one time the first
     /// counts, see `repeated`.
-    [[nodiscard]] static Result<Trajectory, DepthSourceError> read(const std::filesystem::path& file);
+    [[nodiscard]] static Result<Trajectory, DepthSourceError> read(const FilePlace& file);
 
     /// T_map_camera: position linear, orientation along the shorter arc. Empty before the first pose, after
     /// the last, and where the poses about `instant` are over kPoseGapMax apart. O(log poses).

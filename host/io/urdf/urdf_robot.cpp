@@ -78,7 +78,7 @@ JointDescription to_description(const urdf::Joint& joint) {
     description.T_parent_joint.linear() = rotation.toRotationMatrix();
     description.T_parent_joint.translation() << origin.position.x, origin.position.y, origin.position.z;
     description.axis << joint.axis.x, joint.axis.y, joint.axis.z;
-    if (joint.limits) description.limits = {joint.limits->lower, joint.limits->upper};
+    if (joint.limits) description.limits = {joint.limits->lower, joint.limits->upper, joint.limits->velocity};
     return description;
 }
 

@@ -27,8 +27,10 @@ SensorPart draw_part(std::mt19937_64& random, const SlowClockSpread& slow_clocks
 BoardParts draw_board_parts(const PartsReel& reel, const NodeConfig& config) {
     std::mt19937_64 random(reel.seed * 64 + config.node_id);
     BoardParts parts;
-    for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor)
+    for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) {
         parts.sensors.push_back(draw_part(random, reel.slow_clocks));
+        parts.sensors.back().traits = traits_of(reel.traits, config.node_id, sensor);
+    }
     for (std::uint8_t& byte : parts.unique_id) byte = static_cast<std::uint8_t>(random() & 0xFFU);
     return parts;
 }

@@ -20,6 +20,7 @@ struct BoardParts {
 struct PartsReel {
     std::uint64_t seed = 0;
     SlowClockSpread slow_clocks{};
+    std::vector<TraitsOf> traits{};
 };
 [[nodiscard]] BoardParts draw_board_parts(const PartsReel& reel, const NodeConfig& config);
 

@@ -29,18 +29,23 @@ std::string text_of(double value) {
 }
 
 std::vector<std::string> arguments_of(const EmulatedBoards& emulated, const std::filesystem::path& block,
-                                      double drift_ppm, const PartsReel& reel) {
-    return {"--elf",
-            emulated.image.string(),
-            "--config",
-            block.string(),
-            "--drift-ppm=" + std::to_string(drift_ppm),
-            "--seed",
-            std::to_string(reel.seed),
-            "--slow-clock-min=" + text_of(reel.slow_clocks.factor_min),
-            "--slow-clock-max=" + text_of(reel.slow_clocks.factor_max),
-            "--cycles-per-instruction",
-            std::to_string(emulated.cycles_per_instruction)};
+                                      double drift_ppm, const PartsReel& reel, std::uint8_t node_id) {
+    std::vector<std::string> arguments{"--elf",
+                                       emulated.image.string(),
+                                       "--config",
+                                       block.string(),
+                                       "--drift-ppm=" + std::to_string(drift_ppm),
+                                       "--seed",
+                                       std::to_string(reel.seed),
+                                       "--slow-clock-min=" + text_of(reel.slow_clocks.factor_min),
+                                       "--slow-clock-max=" + text_of(reel.slow_clocks.factor_max),
+                                       "--cycles-per-instruction",
+                                       std::to_string(emulated.cycles_per_instruction)};
+    for (const TraitsOf& traits : reel.traits) {
+        if (traits.node_id.value_or(node_id) == node_id)
+            arguments.push_back("--sensor-traits=" + to_text(traits));
+    }
+    return arguments;
 }
 
 }  // namespace
@@ -50,7 +55,7 @@ EmulatedBoard::EmulatedBoard(const EmulatedBoards& emulated, const NodeConfig& c
     : drift_ppm_(drift_ppm), block_(write_block(config)) {
     for (std::uint8_t sensor = 0; sensor < config.sensor_count; ++sensor) scenes_.push_back(scene(sensor));
     process_ = std::make_unique<BoardProcess>(
-        emulated.program, arguments_of(emulated, block_, drift_ppm, reel),
+        emulated.program, arguments_of(emulated, block_, drift_ppm, reel, config.node_id),
         [this](const WhatIsSeen& question) {
             return scenes_.at(question.sensor)(question.ranging_index, question.window_middle, question.roi);
         });

@@ -135,7 +135,7 @@ class RigInOneProcess {
 
     std::unique_ptr<RigBoard> make_board(const ExperimentInput& input, const NodeConfig& config,
                                          NodeClock clock, const SceneOfSensor& scene) {
-        const PartsReel reel{input.seed, input.scenario.slow_clocks};
+        const PartsReel reel{input.seed, input.scenario.slow_clocks, input.scenario.sensor_traits};
         if (input.emulated) {
             return std::make_unique<EmulatedBoard>(*input.emulated, config, clock.drift_ppm(), reel, bus_,
                                                    scene);

@@ -49,8 +49,7 @@ ModelMotion read_model(const rig::Value& value, const std::string& path, const s
     return motion;
 }
 
-std::vector<ModelMotion> read_checked_motion(const std::filesystem::path& file,
-                                             const std::vector<Solid>& solids) {
+std::vector<ModelMotion> read_checked_motion(const FilePlace& file, const std::vector<Solid>& solids) {
     const rig::Value document = rig::load_document(file);
     const rig::Table top(document, "", {"models"});
     const auto& models = rig::read_list(top.require("models"), "models");
@@ -66,7 +65,7 @@ std::vector<ModelMotion> read_checked_motion(const std::filesystem::path& file,
 
 }  // namespace
 
-Result<std::vector<ModelMotion>, rig::RigError> read_motion(const std::filesystem::path& file,
+Result<std::vector<ModelMotion>, rig::RigError> read_motion(const FilePlace& file,
                                                             const std::vector<Solid>& solids) {
     try {
         return read_checked_motion(file, solids);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/sim/world/moving_world.hpp"
 
@@ -21,7 +22,7 @@ namespace octoskin::sim {
 /// As strictly as read_scenario(): an unknown key, a time that is not later than the one before, a model that
 /// is mentioned twice or not one of `solids` is an error, with its line. Seconds count from where the arm
 /// starts, and may be negative down to -600.
-[[nodiscard]] Result<std::vector<ModelMotion>, rig::RigError> read_motion(const std::filesystem::path& file,
+[[nodiscard]] Result<std::vector<ModelMotion>, rig::RigError> read_motion(const FilePlace& file,
                                                                           const std::vector<Solid>& solids);
 
 }  // namespace octoskin::sim

@@ -40,7 +40,7 @@ Eigen::VectorXd joint_positions(const Table& table, std::string_view key) {
 
 void note_place(const Table& table, std::string_view key, Scenario& scenario) {
     const Value& value = table.require(key);
-    scenario.places[table.path_of(key)] = {*value.file, value.line};
+    scenario.places[table.path_of(key)] = {value.file->shown(), value.line};
 }
 
 CircleMotion read_circle(const Value& value, const std::string& path, Scenario& scenario) {
@@ -100,6 +100,40 @@ SlowClockSpread read_slow_clocks(const Table& top) {
     return spread;
 }
 
+TraitsOf read_traits(const Value& value, const std::string& path) {
+    constexpr rig::Range<std::int64_t> kTimeUs{0, 20'000};
+    const Table table(value, path,
+                      {"node_id", "sensor", "register", "reads", "mask", "range_spread_us", "range_step_us",
+                       "boot_load_us"});
+    TraitsOf of;
+    if (table.find("node_id") != nullptr) of.node_id = table.integer<std::uint8_t>("node_id", {1, 61});
+    if (table.find("sensor") != nullptr)
+        of.sensor = table.integer<std::uint8_t>("sensor", {0, kNodeSensorsMax - 1});
+    if (table.find("register") != nullptr) {
+        of.traits.misread.push_back({.index = table.integer<std::uint16_t>("register", {0, 0x1FF}),
+                                     .value = table.integer<std::uint8_t>("reads", {0, 255}),
+                                     .mask = table.integer<std::uint8_t>("mask", {0, 255}, 255)});
+    } else if (table.find("reads") != nullptr || table.find("mask") != nullptr) {
+        table.fail(table.find("reads") != nullptr ? "reads" : "mask", "expected a register with it");
+    }
+    const auto time = [&](std::string_view key) {
+        return Microseconds{table.integer<std::int64_t>(key, kTimeUs, std::int64_t{0})};
+    };
+    of.traits.range_spread = time("range_spread_us");
+    of.traits.range_step = time("range_step_us");
+    of.traits.boot_load = time("boot_load_us");
+    return of;
+}
+
+/// `sensor_traits: [{register: 0x47, reads: 0x0c}]`: of all sensors, unless `node_id` and `sensor` say which.
+void read_sensor_traits(const Table& top, Scenario& scenario) {
+    const Value* list = top.find("sensor_traits");
+    if (list == nullptr) return;
+    const auto& items = rig::read_list(*list, "sensor_traits");
+    for (std::size_t i = 0; i < items.size(); ++i)
+        scenario.sensor_traits.push_back(read_traits(items[i], "sensor_traits[" + std::to_string(i) + "]"));
+}
+
 void read_seeds(const Table& top, Scenario& scenario) {
     const Table seeds(top.require("seeds"), "seeds", {"map_shift_m", "further_map_shift_max_m"});
     const auto& shifts = rig::read_list(seeds.require("map_shift_m"), seeds.path_of("map_shift_m"));
@@ -130,24 +164,26 @@ void read_judgement(const Table& top, Scenario& scenario) {
 }
 
 /// `what`: it holds, for a person.
-std::filesystem::path read_path(const Table& top, std::string_view key, const std::string& what) {
+FilePlace read_path(const Table& top, std::string_view key, const std::string& what) {
     const Value& value = top.require(key);
-    auto file = std::filesystem::absolute(value.file->parent_path() / value.text).lexically_normal();
-    std::error_code error;  // a name too long, for one, is as absent as any
-    if (value.kind != Value::Kind::scalar || !std::filesystem::is_regular_file(file, error)) {
-        top.fail(key, "expected the path of " + what + ", relative to this file; there is none at " +
-                          file.string());
-    }
-    return file;
+    FilePlace file = value.file->beside(value.text);
+    if (file.folder() == nullptr) file = std::filesystem::absolute(file.name()).lexically_normal();
+    const bool is_scalar = value.kind == Value::Kind::scalar;
+    const auto opened = file.open();
+    if (opened && is_scalar) return file;
+    const std::string expected = "expected the path of " + what + ", relative to this file; ";
+    if (is_scalar && file.folder() != nullptr && opened.error().fault != FolderFault::absent)
+        top.fail(key, expected + "'" + value.text + "' " + opened.error().reason());
+    top.fail(key, expected + "there is none at " + file.shown().string());
 }
 
-Scenario read_checked(const std::filesystem::path& file) {
+Scenario read_checked(const FilePlace& file) {
     Scenario scenario;
-    scenario.file = file;
+    scenario.file = file.shown();
     const Value document = rig::load_with_extends(file, &scenario.extended_files);
     const Table top(document, "",
-                    {"name", "world", "world_motion", "motion", "depth", "ranges", "slow_clocks", "seeds",
-                     "hidden_models", "region"});
+                    {"name", "world", "world_motion", "motion", "depth", "ranges", "slow_clocks",
+                     "sensor_traits", "seeds", "hidden_models", "region"});
     scenario.name = top.name("name");
     scenario.world = read_path(top, "world", "an SDF file");
     if (top.find("world_motion") != nullptr) {
@@ -157,6 +193,7 @@ Scenario read_checked(const std::filesystem::path& file) {
     read_motion(top, scenario);
     read_sensing(top, scenario);
     scenario.slow_clocks = read_slow_clocks(top);
+    read_sensor_traits(top, scenario);
     read_seeds(top, scenario);
     read_judgement(top, scenario);
     return scenario;
@@ -178,7 +215,7 @@ rig::RigError Scenario::error(std::string_view key, std::string what) const {
     return {place->second.file, place->second.line, std::string(key), std::move(what)};
 }
 
-Result<Scenario, rig::RigError> read_scenario(const std::filesystem::path& file) {
+Result<Scenario, rig::RigError> read_scenario(const FilePlace& file) {
     try {
         return read_checked(file);
     } catch (const rig::Fault& fault) {

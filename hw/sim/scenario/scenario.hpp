@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/sim/arm/trajectory.hpp"
 #include "hw/sim/vl53l1x/ranging_timing.hpp"
@@ -44,14 +45,15 @@ struct Scenario {
     std::filesystem::path file;                         ///< that it was read from
     std::vector<std::filesystem::path> extended_files;  ///< that this file extends
     std::string name;
-    std::filesystem::path world;  ///< absolute
-    /// What moves in it and when (motion.hpp), absolute; empty: nothing does.
-    std::filesystem::path world_motion;
+    FilePlace world;  ///< absolute, or below the folder of a recording
+    /// What moves in it and when (motion.hpp), as `world`; empty: nothing does.
+    FilePlace world_motion;
     double rest_s = 0.0;  ///< at rest from the start of the recording to the START mark
     CircleMotion motion;
     double depth_sigma_m = 0.0;
     RangeOptics ranges;
-    SlowClockSpread slow_clocks;  ///< of the sensors
+    SlowClockSpread slow_clocks;          ///< of the sensors
+    std::vector<TraitsOf> sensor_traits;  ///< likewise
     /// Translation of T_map_base, one per seed: where world, camera and robot together stand in the map's
     /// grid.
     std::vector<Eigen::Vector3d> map_shifts_m;
@@ -68,7 +70,8 @@ struct Scenario {
 };
 
 /// Reads and checks a scenario, as strictly as read_rig(): unknown keys, types, units, ranges; `extends:`
-/// works too. Paths in it are relative to the file.
-[[nodiscard]] Result<Scenario, rig::RigError> read_scenario(const std::filesystem::path& file);
+/// works too. Paths in it are relative to the file. A scenario below a folder that was named, a recording,
+/// refers to files of that folder alone, behind no link.
+[[nodiscard]] Result<Scenario, rig::RigError> read_scenario(const FilePlace& file);
 
 }  // namespace octoskin::sim

@@ -3,6 +3,7 @@
 
 #include "common/time.hpp"
 #include "hw/sim/vl53l1x/register_map.hpp"
+#include "hw/sim/vl53l1x/sensor_traits.hpp"
 
 namespace octoskin::sim {
 
@@ -30,6 +31,7 @@ struct SensorPart {
     /// Whether a start in the mode that it is in begins its period anew; nothing public says. ST's full API
     /// writes one with every clear.
     bool is_restarted_by_start = true;
+    SensorTraits traits{};
 };
 
 /// How fast the slow oscillators of a reel of parts are: of each somewhere between these.

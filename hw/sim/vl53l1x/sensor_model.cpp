@@ -22,6 +22,13 @@ double wander(std::uint32_t ranging_index) {
     return static_cast<double>(mixed >> 16U) / 32'768.0 - 1.0;
 }
 
+/// From 0 to 1, another one every range: no rhythm that a driver could follow.
+double length_of(std::uint32_t ranging_index) {
+    std::uint32_t mixed = (ranging_index + 1) * 2'654'435'769U;
+    mixed = (mixed ^ (mixed >> 15U)) * 2'246'822'519U;  // xxHash's second prime
+    return static_cast<double>((mixed ^ (mixed >> 13U)) >> 8U) / 16'777'216.0;
+}
+
 }  // namespace
 
 SensorModel::SensorModel(const SensorPart& part, RangingScene scene)
@@ -44,28 +51,39 @@ void SensorModel::brown_out(SimTime time) {
 }
 
 void SensorModel::boot(SimTime time) {
+    load_registers();
+    power_ = Power::booting;
+    booted_at_ = {time.us + part_.boot_time.count()};
+    is_loaded_ = false;
+    index_bytes_ = 0;
+}
+
+void SensorModel::load_registers() {
     registers_ = reset_registers();
     write16(registers_, reg::kOscCalibrate, part_.osc_calibrate);
     registers_.at(reg::kRoiModeCentre) = part_.optical_centre_spad;
     if (faults_.has_wrong_id) registers_.at(reg::kModelId) = 0xEB;
-    power_ = Power::booting;
-    booted_at_ = {time.us + part_.boot_time.count()};
     mode_ = Mode::idle;
     ranging_.reset();
     ranging_index_ = 0;
     stream_count_ = 0;
     is_interrupt_asserted_ = false;
     is_held_ = false;
-    index_bytes_ = 0;
 }
 
 void SensorModel::advance(SimTime time) {
     if (power_ == Power::booting && time >= booted_at_ && !faults_.never_boots) power_ = Power::running;
     if (power_ != Power::running) return;
-    const bool shows_two = time.us < booted_at_.us + faults_.status_two_for.count();
+    if (!is_loaded_ && time >= loaded_at()) {
+        if (part_.traits.boot_load.count() > 0) load_registers();
+        is_loaded_ = true;
+    }
+    const bool shows_two = !is_loaded_ || time.us < booted_at_.us + faults_.status_two_for.count();
     registers_.at(reg::kSystemStatus) = shows_two ? 0x02 : 0x03;
     while (ranging_ && time >= ranging_->start) {
         if (!ranging_->is_latched) latch_ranging();
+        if (time < ranging_->window_end()) break;
+        if (!ranging_->seen) look();
         if (time < ranging_->end()) break;
         finish_ranging();
     }
@@ -74,6 +92,7 @@ void SensorModel::advance(SimTime time) {
 std::optional<SimTime> SensorModel::next_event(SimTime now) const {
     std::optional<SimTime> event;
     if (power_ == Power::booting) event = booted_at_;
+    if (power_ == Power::running && !is_loaded_) return loaded_at();
     if (power_ == Power::running && ranging_)
         event = ranging_->is_latched ? ranging_->end() : ranging_->start;
     return event && *event > now ? event : std::nullopt;
@@ -114,7 +133,10 @@ std::uint8_t SensorModel::on_read(SimTime) {
     registers_.at(reg::kGpioStatus) =
         static_cast<std::uint8_t>((registers_.at(reg::kGpioStatus) & 0xFEU) | (pin_level() ? 1U : 0U));
     if (index_ == reg::kGpioStatus) ++poll_count_;
-    const std::uint8_t byte = index_ < registers_.size() ? registers_.at(index_) : std::uint8_t{0};
+    std::uint8_t byte = index_ < registers_.size() ? registers_.at(index_) : std::uint8_t{0};
+    for (const MisreadRegister& misread : part_.traits.misread) {
+        if (misread.index == index_) byte = misread.read(byte);
+    }
     ++index_;
     return byte;
 }
@@ -241,15 +263,25 @@ void SensorModel::latch_ranging() {
     ranging_->config = ranging_config(registers_, part_.crosstalk_kcps);
 }
 
+/// Its window is over: what it saw decides how much longer it takes.
+void SensorModel::look() {
+    if (is_held_) return;
+    Ranging& ranging = *ranging_;
+    ranging.seen = scene_(ranging_index_, ranging.window_middle(), ranging.config.roi);
+    const auto spread_us = static_cast<double>(part_.traits.range_spread.count());
+    ranging.extra = Microseconds{std::llround(spread_us * length_of(ranging_index_))};
+    if (ranging.seen->range_m) ranging.extra += part_.traits.range_step;
+}
+
 void SensorModel::finish_ranging() {
     const Ranging ranging = *ranging_;
-    if (is_held_) {
+    if (!ranging.seen) {
         schedule_next(ranging);
         return;
     }
-    const SimTime middle{ranging.window().us + ranging.timing.budget.count() / 2};
+    const SimTime middle = ranging.window_middle();
     const SimTime ready = ranging.end();
-    const RangingReturn seen = scene_(ranging_index_, middle, ranging.config.roi);
+    const RangingReturn& seen = *ranging.seen;
     step_stream_count();
     const RangingResult result{
         .range_status = faults_.device_status.value_or(device_status(ranging.config, seen)),
@@ -271,7 +303,10 @@ void SensorModel::schedule_next(const Ranging& finished) {
     } else if (mode_ == Mode::timed) {
         const double rate = 1.0 + part_.slow_clock_wander * wander(ranging_index_);
         const auto period = static_cast<double>(finished.timing.period.count()) / rate;
-        ranging_ = Ranging{.start = {finished.start.us + std::llround(period)}};
+        SimTime start{finished.start.us + std::llround(period)};
+        // A slot that comes too early is missed.
+        while (start < finished.end()) start.us += finished.timing.slot.count();
+        ranging_ = Ranging{.start = start};
     } else {
         mode_ = Mode::waiting_for_clear;
     }

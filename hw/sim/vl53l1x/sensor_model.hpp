@@ -90,16 +90,23 @@ class SensorModel final : public I2cTarget {
         bool is_latched = false;  ///< has begun: what follows is what the registers said then
         RangingTiming timing{};
         RangingConfig config{};
+        std::optional<RangingReturn> seen{};  ///< once its window is over
+        Microseconds extra{0};                ///< known then: what it takes beyond its window
         [[nodiscard]] SimTime window() const { return {start.us + timing.overhead.count()}; }
-        [[nodiscard]] SimTime end() const { return {window().us + timing.budget.count()}; }
+        [[nodiscard]] SimTime window_end() const { return {window().us + timing.budget.count()}; }
+        [[nodiscard]] SimTime window_middle() const { return {window().us + timing.budget.count() / 2}; }
+        [[nodiscard]] SimTime end() const { return {window_end().us + extra.count()}; }
     };
 
     void boot(SimTime time);
+    void load_registers();
+    [[nodiscard]] SimTime loaded_at() const { return {booted_at_.us + part_.traits.boot_load.count()}; }
     void write_register(std::uint16_t index, std::uint8_t value, SimTime time);
     void write_soft_reset(std::uint8_t value, SimTime time);
     void write_interrupt_clear(std::uint8_t value, SimTime time);
     void start_mode(std::uint8_t value, SimTime time);
     void latch_ranging();
+    void look();
     void finish_ranging();
     void schedule_next(const Ranging& finished);
     void step_stream_count();
@@ -111,6 +118,7 @@ class SensorModel final : public I2cTarget {
     Registers registers_{};
     Power power_ = Power::shut_down;
     SimTime booted_at_{};
+    bool is_loaded_ = false;
     Mode mode_ = Mode::idle;
     bool stops_after_this_ = false;
     std::optional<Ranging> ranging_;

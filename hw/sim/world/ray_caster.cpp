@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <new>
 
 namespace octoskin::sim {
 namespace {
@@ -26,15 +27,22 @@ Plane plane_of(const Solid& solid, const Eigen::Vector3i& triangle) {
     return {normal, normal.dot(a)};
 }
 
+/// Embree gives nothing where there is no memory: all else that it is asked for here it has.
+template <class Pointer>
+Pointer made(Pointer pointer) {
+    if (pointer == nullptr) throw std::bad_alloc();
+    return pointer;
+}
+
 RTCGeometry make_geometry(RTCDevice device, const Solid& solid) {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), solid.vertices.size()));
+    RTCGeometry geometry = made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+    auto* vertices = static_cast<float*>(made(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), solid.vertices.size())));
     for (const auto& vertex : solid.vertices) {
         vertices = std::copy_n(vertex.cast<float>().eval().data(), 3, vertices);
     }
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), solid.triangles.size()));
+    auto* indices = static_cast<unsigned*>(made(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), solid.triangles.size())));
     for (const auto& triangle : solid.triangles) {
         indices = std::copy_n(triangle.cast<unsigned>().eval().data(), 3, indices);
     }
@@ -43,7 +51,7 @@ RTCGeometry make_geometry(RTCDevice device, const Solid& solid) {
 }
 
 RTCScene make_scene(RTCDevice device) {
-    RTCScene scene = rtcNewScene(device);
+    RTCScene scene = made(rtcNewScene(device));
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     return scene;
 }
@@ -137,7 +145,7 @@ struct RayCaster::Impl {
 
 RayCaster::RayCaster(const std::vector<Solid>& solids) : impl_(std::make_unique<Impl>()) {
     // One thread: the scenes are small, and a library that starts threads of its own would surprise its user.
-    impl_->device = rtcNewDevice("threads=1");
+    impl_->device = made(rtcNewDevice("threads=1"));
     impl_->all = make_scene(impl_->device);
     for (std::uint32_t i = 0; i < solids.size(); ++i) {
         RTCGeometry geometry = make_geometry(impl_->device, solids[i]);
@@ -154,7 +162,9 @@ RayCaster::RayCaster(const std::vector<Solid>& solids) : impl_(std::make_unique<
         }
     }
     rtcCommitScene(impl_->all);
-    assert(rtcGetDeviceError(impl_->device) == RTC_ERROR_NONE);
+    const RTCError error = rtcGetDeviceError(impl_->device);
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    assert(error == RTC_ERROR_NONE);
 }
 
 RayCaster::RayCaster(RayCaster&&) noexcept = default;

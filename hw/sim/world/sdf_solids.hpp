@@ -1,10 +1,11 @@
 // Reads the solids of an SDF file.
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "common/result.hpp"
+#include "host/io/folder/file_place.hpp"
+#include "hw/sim/world/reader_process.hpp"
 #include "hw/sim/world/solid.hpp"
 #include "hw/sim/world/world_error.hpp"
 
@@ -13,7 +14,11 @@ namespace octoskin::sim {
 /// Every visual of every model, nested ones included, in file order, in world coordinates (metres). The file
 /// holds a world or one model. Shapes: box, cylinder, sphere, capsule, ellipsoid, plane, mesh (path relative
 /// to the file). Errors: whatever sdformat finds, elements it does not know included; any other shape; a mesh
-/// that cannot be read; a size that is not positive and finite; no visual at all; sdformat cannot be loaded.
-[[nodiscard]] Result<std::vector<Solid>, WorldError> read_solids(const std::filesystem::path& sdf);
+/// that cannot be read; a size that is not positive and finite; no visual at all; a limit that is reached.
+///
+/// Read in a process of its own (some 50 ms), which may take what `limits` say. A file below a folder that
+/// was named, a recording, refers to files of that folder alone.
+[[nodiscard]] Result<std::vector<Solid>, WorldError> read_solids(const FilePlace& sdf,
+                                                                 const ReadLimits& limits = {});
 
 }  // namespace octoskin::sim

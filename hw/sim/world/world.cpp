@@ -97,7 +97,7 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
-Result<World, WorldError> World::read(const std::filesystem::path& sdf) {
+Result<World, WorldError> World::read(const FilePlace& sdf) {
     auto solids = read_solids(sdf);
     if (!solids) {
         return unexpected(solids.error());

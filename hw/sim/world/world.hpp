@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "host/io/folder/file_place.hpp"
 #include "hw/sim/world/solid.hpp"
 #include "hw/sim/world/world_error.hpp"
 
@@ -26,9 +26,9 @@ struct RayHit {
 
 class World {
   public:
-    /// The visuals of an SDF file; see read_solids() for shapes and errors. Not from two threads at once: the
-    /// libraries' logs are global.
-    [[nodiscard]] static Result<World, WorldError> read(const std::filesystem::path& sdf);
+    /// The visuals of an SDF file; see read_solids() for shapes, errors, limits, and which files it may refer
+    /// to.
+    [[nodiscard]] static Result<World, WorldError> read(const FilePlace& sdf);
     explicit World(std::vector<Solid> solids);
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "common/wire/codec.hpp"
+#include "host/io/mapfile/octomap_writer.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
 
 namespace octoskin::test {
@@ -80,6 +81,14 @@ std::vector<SensorSetup> parts_of(const BusSetup& setup) {
     return parts;
 }
 
+Pipeline make_pipeline(const BusSetup& setup) {
+    PipelineConfig config;
+    config.release = setup.release;
+    auto built = Pipeline::build(rig_of(setup), one_joint_robot(), plain_mapping(), config);
+    EXPECT_TRUE(built.has_value());
+    return std::move(built).value();
+}
+
 }  // namespace
 
 wire::CanFrame range_frame(wire::NodeId node, const wire::RangeReading& reading) {
@@ -94,11 +103,7 @@ AttackedBus::AttackedBus(const BusSetup& setup)
                                                   sim::NodeClock{{0U - 6'000'000U}, 40.0 - 90.0 * n}));
         heard_.push_back(0);
     }
-    PipelineConfig config;
-    config.release = setup_.release;
-    auto built = Pipeline::build(rig_of(setup_), one_joint_robot(), plain_mapping(), config);
-    EXPECT_TRUE(built.has_value());
-    pipeline_ = std::make_unique<Pipeline>(std::move(built).value());
+    pipeline_ = std::make_unique<Pipeline>(make_pipeline(setup_));
     pipeline_->tell(this);
     run();
 }
@@ -238,12 +243,30 @@ bool AttackedBus::is_true(const RangeMeasurement& measurement) const {
 
 void AttackedBus::on_reading(const RangeMeasurement& measurement, const Beam&,
                              std::span<const VoxelUpdate> updates) {
+    commits_.emplace_back(measurement);
     if (!is_true(measurement)) {
         if (++untrue_ == 1)
             for (const VoxelUpdate& update : updates) untrue_voxels_.insert(update.key);
     } else if (is_counted(measurement.captured)) {
         ++counts_[{measurement.source.node_id, measurement.source.sensor}].used;
     }
+}
+
+std::string AttackedBus::map() const {
+    return encode_ot(*pipeline_->maps().fused());
+}
+
+std::string AttackedBus::replayed_map() const {
+    Pipeline replayed = make_pipeline(setup_);
+    MapBuilder& builder = replayed.builder();
+    for (const Commit& commit : commits_) {
+        if (const auto* joints = std::get_if<JointMeasurement>(&commit)) {
+            EXPECT_TRUE(builder.add(*joints).has_value());
+        } else {
+            EXPECT_TRUE(builder.integrate(std::get<RangeMeasurement>(commit)).has_value());
+        }
+    }
+    return encode_ot(*replayed.maps().fused());
 }
 
 std::uint64_t AttackedBus::wrong_voxels(const AttackedBus& clean) const {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <random>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -77,6 +78,9 @@ class AttackedBus final : private CommitListener {
     [[nodiscard]] const std::map<wire::NodeId, NodeVerdict>& refused() const noexcept { return refused_; }
     /// Voxels that differ from those of a bus without attacker, but for those of one untrue reading.
     [[nodiscard]] std::uint64_t wrong_voxels(const AttackedBus& clean) const;
+    /// The map that a replay of what went into this one, in its order, makes: byte for byte as a file.
+    [[nodiscard]] std::string replayed_map() const;
+    [[nodiscard]] std::string map() const;
     [[nodiscard]] const Pipeline& pipeline() const noexcept { return *pipeline_; }
     [[nodiscard]] std::uint64_t syncs() const noexcept { return syncs_; }
 
@@ -93,7 +97,7 @@ class AttackedBus final : private CommitListener {
     [[nodiscard]] double now_s() const { return 1e-6 * static_cast<double>(now_us_); }
     [[nodiscard]] bool is_counted(HostTime captured) const;
     [[nodiscard]] bool is_true(const RangeMeasurement& measurement) const;
-    void on_joints(const JointMeasurement&) override {}
+    void on_joints(const JointMeasurement& joints) override { commits_.emplace_back(joints); }
     void on_depth(const DepthFrame&, const DepthTerms&) override {}
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
@@ -110,6 +114,7 @@ class AttackedBus final : private CommitListener {
     std::int64_t joints_due_us_ = 500'000;
     std::uint64_t syncs_ = 0;
     std::uint64_t untrue_ = 0;
+    std::vector<Commit> commits_;
     std::set<VoxelKey> untrue_voxels_;  ///< of the first untrue reading
     std::map<SensorKey, SensorCount> counts_;
     std::map<SensorKey, double> named_;

@@ -53,7 +53,8 @@ TEST(BlackBox, of_a_sensor_with_a_wrong_id_makes_a_script_on_which_the_driver_fa
     const auto scripts = scripts_of(rig);
     ASSERT_EQ(scripts.size(), 1U) << "the first failure, and no more within a minute";
 
-    // The node asks whether anybody is at 0x29, then at the sensor's own address, then who it is.
+    // The node asks whether anything is at 0x29, then at the sensor's own address, waits for the boot at
+    // 0x29, and reads the identification.
     ScriptedI2cBus bus(scripts[0]);
     vl53l1x::Device device(bus, {});
     device.begin_probe(0x29);
@@ -62,6 +63,8 @@ TEST(BlackBox, of_a_sensor_with_a_wrong_id_makes_a_script_on_which_the_driver_fa
     device.begin_probe(0x30);
     EXPECT_EQ(run(device), vl53l1x::Progress::failed);
     EXPECT_EQ(device.error(), vl53l1x::Error::no_answer);
+    device.begin_await_boot_at_default(false);
+    EXPECT_EQ(run(device), vl53l1x::Progress::done);
     device.begin_probe(0x29);
     EXPECT_EQ(run(device), vl53l1x::Progress::failed);
     EXPECT_EQ(device.error(), vl53l1x::Error::wrong_id);

@@ -173,6 +173,7 @@ TEST_P(SecondSender, marks_one_reading_at_most_is_named_and_costs_nobody_else_an
     EXPECT_EQ(clean.untrue(), 0U);
     EXPECT_LE(bus.untrue(), 1U) << bus.pipeline().account_text();
     EXPECT_EQ(bus.wrong_voxels(clean), 0U);
+    EXPECT_TRUE(bus.replayed_map() == bus.map());
     expect_others_whole(clean, {});
     expect_others_whole(bus, scenario.sensors);
     EXPECT_FALSE(bus.losing_s().contains(kOther));

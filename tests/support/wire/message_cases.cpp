@@ -294,7 +294,7 @@ void add_info_cases(std::vector<MessageCase>& cases) {
                                plain("rx_rejected", 48, 8, &InfoTraffic::rx_rejected)}));
     cases.push_back(info_case(
         "NODE_INFO fault", InfoFault{FaultKind::hard_fault, 6, 0x0800'1234, 77},
-        {valid_if([](std::uint64_t raw) { return raw <= 10 || raw == 15; },
+        {valid_if([](std::uint64_t raw) { return raw <= 13 || raw == 15; },
                   plain("fault_kind", 8, 4, &InfoFault::kind)),
          plain("fault_count", 12, 4, &InfoFault::count), plain("fault_where", 16, 32, &InfoFault::where),
          plain("fault_uptime", 48, 8, &InfoFault::uptime_s)}));

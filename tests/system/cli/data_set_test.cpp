@@ -34,9 +34,10 @@ void record(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
     write(folder / "can.log", "");
     write(folder / "meta.yaml", "schema: octoskin-recording/1\nsource: robot\n");
-    write(folder / "rig.yaml", "extends: " + source("tests/data/short/rig.yaml") +
-                                   "\ncamera: {pose: {xyz_m: [0.1, 0.2, 0.8], looking_at_m: ~, "
-                                   "rotation_rows: [[0, 0, 1], [-1, 0, 0], [0, -1, 0]]}}\n");
+    // Beside the recording: a rig inside of it could not extend a file outside.
+    write(folder.string() + ".yaml", "extends: " + source("tests/data/short/rig.yaml") +
+                                         "\ncamera: {pose: {xyz_m: [0.1, 0.2, 0.8], looking_at_m: ~, "
+                                         "rotation_rows: [[0, 0, 1], [-1, 0, 0], [0, -1, 0]]}}\n");
     auto writer =
         openni2::OniWriter::create(folder / "depth.oni", folder / "depth.epoch.yaml", {kWidth, kHeight});
     ASSERT_TRUE(writer) << writer.error().what;
@@ -65,14 +66,15 @@ TEST_F(DataSet, gives_the_map_of_a_recording_with_the_same_images) {
     record(path("recording"));
     write_data_set(path("set"));
     const std::string mapping = " --configuration " + path("mapping.yaml");
-    const Said recording = octoskin("replay " + path("recording") + mapping);
+    const Said recording =
+        octoskin("replay " + path("recording") + mapping + " --rig " + path("recording.yaml"));
     ASSERT_EQ(recording.exit_code, 0) << recording.output;
-    const Said set = octoskin("replay " + path("set") + mapping + " --rig " + path("recording/rig.yaml"));
+    const Said set = octoskin("replay " + path("set") + mapping + " --rig " + path("recording.yaml"));
     ASSERT_EQ(set.exit_code, 0) << set.output;
     EXPECT_GT(content(path("set/maps/depth.ot")).size(), 1'000U);
     for (const char* map : {"depth.ot", "fused.ot", "fused.bt", "fused.ply"})
         EXPECT_EQ(content(path("set/maps/") + map), content(path("recording/maps/") + map)) << map;
-    const Said again = octoskin("replay " + path("set") + " --rig " + path("recording/rig.yaml"));
+    const Said again = octoskin("replay " + path("set") + " --rig " + path("recording.yaml"));
     EXPECT_EQ(again.exit_code, 0) << again.output;  // over the maps of the replay before
     EXPECT_FALSE(std::filesystem::exists(path("set/maps/proximity.ot"))) << "nothing measured proximity";
 }

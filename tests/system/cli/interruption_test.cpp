@@ -46,6 +46,11 @@ TEST_F(Interrupted, replay_leaves_the_maps_of_the_one_before_and_nothing_else) {
     EXPECT_THAT(first.output, HasSubstr(kRemoved));
     EXPECT_FALSE(std::filesystem::exists(path("new")));
 
+    // Whoever closes the terminal.
+    const Said hung_up = interrupt(replay + path("new") + " --speed 0.01", "new/.octoskin-part", SIGHUP);
+    EXPECT_EQ(hung_up.exit_code, 129) << hung_up.output;
+    EXPECT_FALSE(std::filesystem::exists(path("new")));
+
     ASSERT_EQ(octoskin(replay + path("maps")).exit_code, 0);
     const std::string map = content(path("maps/fused.ot"));
     const Said second = interrupt(replay + path("maps") + " --speed 0.01", "maps/.octoskin-part", SIGTERM);

@@ -15,8 +15,9 @@ class PermissionTest : public ProgramTest {
     void SetUp() override {
         record_short("rec");
         ASSERT_EQ(octoskin("replay " + path("rec") + " --out " + path("maps")).exit_code, 0);
-        for (const char* const file : {"hw/robots/panda.urdf", "tests/data/short/scenario.yaml"})
-            std::filesystem::copy(source(file), path(std::filesystem::path(file).filename()));
+        std::filesystem::copy(source("hw/robots/panda.urdf"), path("panda.urdf"));
+        std::filesystem::copy(source("hw/worlds"), path("worlds"), std::filesystem::copy_options::recursive);
+        write(path("scenario.yaml"), "extends: worlds/experiment.scenario.yaml\nname: mine\n");
         write(path("mapping.yaml"), "base: robust\n");
         write(path("rig.yaml"), "extends: rec/rig.yaml\nname: mine\n");
         ASSERT_EQ(
@@ -67,8 +68,9 @@ TEST_F(PermissionTest, of_files_that_others_speak_of) {
     for (const std::string file : {"rec/rig.yaml", "rec/robot.urdf", "rec/can.log", "rec/meta.yaml",
                                    "rec/depth.oni", "rec/depth.epoch.yaml"}) {
         ASSERT_TRUE(std::filesystem::exists(path(file))) << file;
-        expect_refused(file, {"replay" + at("rec") + " --out" + at("out"),
-                              "explain 0 0 1 --recording" + at("rec"), "evaluate" + at("rec")});
+        expect_refused(file,
+                       {"replay" + at("rec") + " --out" + at("out"), "explain 0 0 1 --recording" + at("rec"),
+                        "evaluate" + at("rec") + " --scenario" + at("scenario.yaml")});
     }
 }
 

@@ -188,9 +188,10 @@ TEST_F(Recording, the_experiment_leaves_maps_metrics_a_recording_and_a_report) {
     EXPECT_FALSE(std::filesystem::exists(path("out/recording-seed-1")));
     ASSERT_EQ(octoskin("replay " + path("out/recording")).exit_code, 0);
     EXPECT_EQ(content(path("out/recording/maps/fused.ot")), content(path("out/fused.ot")));
-    EXPECT_EQ(
-        octoskin("evaluate " + path("out/fused.ot") + " --rig " + path("out/recording/rig.yaml")).exit_code,
-        0);
+    EXPECT_EQ(octoskin("evaluate " + path("out/fused.ot") + " --rig " + path("out/recording/rig.yaml") +
+                       " --scenario " + source("tests/data/short/scenario.yaml"))
+                  .exit_code,
+              0);
 }
 
 }  // namespace

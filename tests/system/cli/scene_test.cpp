@@ -36,32 +36,54 @@ TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     EXPECT_THAT(meta,
                 AllOf(HasSubstr("world: " + kitchen()), HasSubstr("world_crc32: 0x"),
                       HasSubstr("scenario_crc32: 0x"), HasSubstr("rig_crc32: 0x"), HasSubstr("commit ")));
-    const Said own = octoskin("evaluate " + path("rec") + " --json " + path("figures.json"));
+    const std::string evaluate =
+        "evaluate " + path("rec") + " --scenario " + source("tests/data/short/scenario.yaml");
+    const Said unnamed = octoskin(evaluate);
+    EXPECT_EQ(unnamed.exit_code, 66) << "a recording does not choose what is opened outside of it";
+    EXPECT_THAT(unnamed.output,
+                AllOf(HasSubstr("recorded in " + kitchen()), HasSubstr("give --world " + kitchen())));
+    const Said own = octoskin(evaluate + " --world " + kitchen() + " --json " + path("figures.json"));
     ASSERT_EQ(own.exit_code, 0) << own.output;
-    EXPECT_THAT(own.output, HasSubstr("judging in " + kitchen()));
+    EXPECT_THAT(own.output, AllOf(HasSubstr("judging in " + kitchen()), Not(HasSubstr("recorded in"))));
     EXPECT_THAT(content(path("figures.json")),
                 AllOf(HasSubstr("kitchen.sdf, CRC-32 0x"), HasSubstr("commit ")));
 
-    const Said other = octoskin("evaluate " + path("rec") + " --world " + source("hw/worlds/experiment.sdf"));
+    const Said other = octoskin(evaluate + " --world " + source("hw/worlds/experiment.sdf"));
     ASSERT_EQ(other.exit_code, 0) << other.output;
     EXPECT_THAT(other.output,
                 AllOf(HasSubstr("recorded in kitchen.sdf"), HasSubstr("judging in experiment.sdf")));
     EXPECT_NE(table_of(own), table_of(other));
 
     std::filesystem::rename(kitchen(), path("worlds/moved.sdf"));
-    const Said absent = octoskin("evaluate " + path("rec"));
+    const Said absent = octoskin(evaluate);
     EXPECT_EQ(absent.exit_code, 66) << absent.output;
     EXPECT_THAT(absent.output, AllOf(HasSubstr("recorded in " + kitchen()), HasSubstr("give --world")));
-    const Said moved = octoskin("evaluate " + path("rec") + " --world " + path("worlds/moved.sdf"));
+    const Said moved = octoskin(evaluate + " --world " + path("worlds/moved.sdf"));
     ASSERT_EQ(moved.exit_code, 0) << moved.output;
     EXPECT_THAT(moved.output, Not(HasSubstr("recorded in kitchen.sdf")));
     EXPECT_EQ(table_of(moved), table_of(own));
 
     write(kitchen(), content(path("worlds/moved.sdf")) + "<!-- edited -->\n");
-    const Said changed = octoskin("evaluate " + path("rec"));
+    std::filesystem::copy(path("worlds/meshes"), path("rec/meshes"));
+    std::filesystem::copy(path("worlds/moved.sdf"), path("rec/kitchen.sdf"));
+    const Said within = octoskin(evaluate);
+    ASSERT_EQ(within.exit_code, 0) << within.output;
+    EXPECT_EQ(table_of(within), table_of(own));
+    std::filesystem::remove_all(path("rec/meshes"));
+    std::filesystem::create_directory_symlink(path("worlds/meshes"), path("rec/meshes"));
+    const Said linked = octoskin(evaluate);
+    EXPECT_EQ(linked.exit_code, 65) << linked.output;
+    EXPECT_THAT(linked.output, AllOf(HasSubstr("rec/kitchen.sdf: "), HasSubstr("is a symbolic link")));
+    write(path("rec/kitchen.sdf"), content(kitchen()));
+    const Said changed = octoskin(evaluate);
     EXPECT_EQ(changed.exit_code, 65) << changed.output;
     EXPECT_THAT(changed.output,
                 AllOf(HasSubstr("recorded in kitchen.sdf (CRC-32 0x"), HasSubstr("give --world")));
+    std::filesystem::remove(path("rec/kitchen.sdf"));
+    std::filesystem::create_symlink(kitchen(), path("rec/kitchen.sdf"));
+    const Said link = octoskin(evaluate);
+    EXPECT_EQ(link.exit_code, 65) << link.output;
+    EXPECT_THAT(link.output, AllOf(HasSubstr("rec/kitchen.sdf: "), HasSubstr("is a symbolic link")));
 }
 
 TEST_F(SceneOfARecording, has_the_scenario_too_with_what_that_extends) {
@@ -71,9 +93,16 @@ TEST_F(SceneOfARecording, has_the_scenario_too_with_what_that_extends) {
                                " --scenario " + path("mine.yaml"));
     ASSERT_EQ(made.exit_code, 0) << made.output;
     write(path("base.yaml"), content(path("base.yaml")) + "depth: {sigma_m: 0.01}\n");
-    const Said changed = octoskin("evaluate " + path("rec"));
-    EXPECT_EQ(changed.exit_code, 65) << changed.output;
-    EXPECT_THAT(changed.output, AllOf(HasSubstr("mine.yaml"), HasSubstr("give --scenario")));
+    const Said unnamed = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(unnamed.exit_code, 66) << unnamed.output;
+    EXPECT_THAT(unnamed.output, AllOf(HasSubstr("mine.yaml"), HasSubstr("give --scenario")));
+    const Said changed = octoskin("evaluate " + path("rec") + " --scenario " + path("mine.yaml"));
+    EXPECT_EQ(changed.exit_code, 0) << changed.output;
+    EXPECT_THAT(changed.output, HasSubstr("recorded in mine.yaml (CRC-32 0x"));
+    std::filesystem::copy(path("mine.yaml"), path("rec/mine.yaml"));
+    std::filesystem::create_symlink(path("base.yaml"), path("rec/base.yaml"));
+    const Said within = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(within.exit_code, 65) << "its scenario extends what is behind a link\n" << within.output;
 }
 
 TEST_F(SceneOfARecording, of_a_robot_has_to_be_given) {
@@ -87,10 +116,10 @@ TEST_F(SceneOfARecording, of_a_robot_has_to_be_given) {
 TEST_F(SceneOfARecording, that_names_no_world_is_not_guessed) {
     record_short("rec");
     ASSERT_EQ(run("sed -i '/^world/d' " + path("rec/meta.yaml")).exit_code, 0);
-    const Said said = octoskin("evaluate " + path("rec"));
+    const std::string scenario = " --scenario " + source("tests/data/short/scenario.yaml");
+    const Said said = octoskin("evaluate " + path("rec") + scenario);
     EXPECT_EQ(said.exit_code, 64) << said.output;
     EXPECT_THAT(said.output, AllOf(HasSubstr("meta.yaml names no world"), HasSubstr("give --world")));
-    const std::string scenario = " --scenario " + source("tests/data/short/scenario.yaml");
     write(path("rec/meta.yaml"), "schema: octoskin-recording/1\nsource: robot\n");
     const Said robot = octoskin("evaluate " + path("rec") + scenario);
     EXPECT_EQ(robot.exit_code, 0) << robot.output;
@@ -124,20 +153,23 @@ TEST_F(SceneOfARecording, serves_the_maps_beside_it) {
     record_short("rec", "--seed 1");
     ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
     const std::string map = path("rec/maps/fused.ot");
+    const std::string scenario = " --scenario " + source("tests/data/short/scenario.yaml");
     const Said no_rig = octoskin("evaluate " + map);
     EXPECT_EQ(no_rig.exit_code, 64);
     EXPECT_THAT(no_rig.output, HasSubstr("give --rig " + path("rec/rig.yaml")));
-    const Said own = octoskin("evaluate " + map + " --rig " + path("rec/rig.yaml"));
+    const Said own = octoskin("evaluate " + map + scenario + " --rig " + path("rec/rig.yaml"));
     ASSERT_EQ(own.exit_code, 0) << own.output;
     EXPECT_THAT(own.output, Not(HasSubstr("is another rig")));
-    const Said other = octoskin("evaluate " + map + " --rig " + source("tests/data/short/rig.yaml"));
+    const Said other =
+        octoskin("evaluate " + map + scenario + " --rig " + source("tests/data/short/rig.yaml"));
     EXPECT_EQ(other.exit_code, 0) << other.output;
     EXPECT_THAT(other.output, AllOf(HasSubstr("is another rig than " + path("rec/rig.yaml")),
                                     HasSubstr("figures are wrong")));
     EXPECT_NE(table_of(other), table_of(own));
 
     std::filesystem::copy(path("rec/maps"), path("copies"));
-    const Said copy = octoskin("evaluate " + path("copies/fused.ot") + " --rig " + path("rec/rig.yaml"));
+    const Said copy =
+        octoskin("evaluate " + path("copies/fused.ot") + scenario + " --rig " + path("rec/rig.yaml"));
     EXPECT_EQ(copy.exit_code, 0) << copy.output;  // maps.yaml says where the recording is
     EXPECT_EQ(table_of(copy), table_of(own));
 
@@ -244,7 +276,7 @@ TEST_F(MovingWorld, is_what_camera_and_sensors_see) {
 TEST_F(MovingWorld, is_not_judged) {
     write(path("floor.motion.yaml"), "models: [{model: floor, places: [{at_s: 0.5, is_there: false}]}]\n");
     record("gone", "world_motion: floor.motion.yaml\n");
-    const Said judged = octoskin("evaluate " + path("gone"));
+    const Said judged = octoskin("evaluate " + path("gone") + " --scenario " + path("gone.yaml"));
     EXPECT_EQ(judged.exit_code, 78) << judged.output;
     EXPECT_THAT(judged.output, HasSubstr("gone.yaml:5: world_motion: what moves has no one place"));
     const Said studied = octoskin("experiment --rig " + source("tests/data/short/rig.yaml") + " --scenario " +

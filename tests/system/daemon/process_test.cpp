@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -21,6 +22,14 @@ namespace {
 
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
+
+std::string rig_named(const std::string& name) {
+    return "extends: " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml\nname: " + name + "\n";
+}
+
+std::size_t lines_of(const std::string& text) {
+    return static_cast<std::size_t>(std::ranges::count(text, '\n'));
+}
 
 TEST_F(DaemonTest, refuses_a_rig_with_a_mistake_with_exit_code_78) {
     ::close(our_end_);
@@ -40,16 +49,55 @@ TEST_F(DaemonTest, warns_of_a_robot_without_a_body) {
     ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
     EXPECT_NE(daemon_->log().find("no link at or below panda_link0 has a <collision>"), std::string::npos)
         << daemon_->log();
+    EXPECT_NE(daemon_->log().find("panda_link2, panda_link3"), std::string::npos) << daemon_->log();
+    const Json status = daemon_->status();
+    EXPECT_EQ(status["links_unknown"], status["links_without_body"]);
+    EXPECT_EQ(status["links_unknown"].size(), 7U) << "neither the base, nor the frame of link 5";
+    EXPECT_TRUE(has_problem(status, "robot: panda_link1, ")) << status["problems"].dump();
+}
+
+/// Never into a folder that is not locked, and never over another map.
+TEST_F(DaemonTest, saves_in_the_folder_that_it_holds_whatever_becomes_of_its_name) {
+    start({"--no-camera", "--save-every", "1"});
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    const auto saved_beyond = [this](int saves) {
+        return daemon_->wait_until(
+            [saves](const Json& now) { return now["map"]["saved"].get<int>() > saves; }, 10s);
+    };
+    ASSERT_TRUE(saved_beyond(0)) << daemon_->log();
+    std::filesystem::remove_all(daemon_->maps());
+    ASSERT_TRUE(daemon_->wait_until([](const Json& now) { return has_problem(now, "was removed"); }, 5s))
+        << daemon_->status()["problems"].dump();
+    // Made at once with a map in it: a folder that is empty for a moment would be taken.
+    std::filesystem::create_directory(folder_ / "other");
+    folder_.write("other/fused.ot", "another map");
+    std::filesystem::rename(folder_ / "other", daemon_->maps());
+    ASSERT_TRUE(
+        daemon_->wait_until([](const Json& now) { return has_problem(now, "is not overwritten"); }, 5s))
+        << daemon_->status()["problems"].dump();
+    std::this_thread::sleep_for(1500ms);
+    EXPECT_EQ(testing_support::ScratchFolder::read(daemon_->maps() / "fused.ot"), "another map");
+    EXPECT_FALSE(std::filesystem::exists(daemon_->maps() / "fused.bt"));
+    std::filesystem::remove(daemon_->maps() / "fused.ot");
+    const int saves = daemon_->status()["map"]["saved"].get<int>();
+    ASSERT_TRUE(saved_beyond(saves)) << daemon_->status()["problems"].dump();
+    EXPECT_TRUE(load_map(daemon_->maps() / "fused.ot")) << "saved in the folder that was made anew";
+    EXPECT_EQ(daemon_->status()["problems"], Json::array());
+    const SilentBus other_bus;
+    RunningDaemon second(folder_, other_bus.end_of_daemon(),
+                         {"--no-camera", "--socket", (folder_ / "second").string()});
+    EXPECT_EQ(second.wait(5s), 73) << "it is locked: " << second.log();
+    daemon_->signal(SIGTERM);
+    EXPECT_EQ(daemon_->wait(5s), 0) << daemon_->log();
 }
 
 TEST_F(DaemonTest, reloads_all_or_nothing) {
-    const auto rig_file =
-        folder_.write("rig.yaml", "extends: " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml\nname: first\n");
+    const auto rig_file = folder_.write("rig.yaml", rig_named("first"));
     start({"--no-camera"}, rig_file);
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
     EXPECT_EQ(daemon_->status()["rig"], "first");
     const auto voxels = daemon_->status()["map"]["known_voxels"].get<int>();
-    folder_.write("rig.yaml", "extends: " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml\nname: second\n");
+    folder_.write("rig.yaml", rig_named("second"));
     EXPECT_EQ(daemon_->status()["reloads"]["count"], 0);
     daemon_->signal(SIGHUP);
     ASSERT_TRUE(daemon_->wait_until([](const Json& status) { return status["rig"] == "second"; }, 5s))
@@ -61,7 +109,7 @@ TEST_F(DaemonTest, reloads_all_or_nothing) {
     folder_.write("rig.yaml", "extends: nowhere.yaml\nname: third\n");
     daemon_->signal(SIGHUP);
     ASSERT_TRUE(daemon_->wait_until(
-        [](const Json& status) { return has_problem(status, "the old settings hold"); }, 5s))
+        [](const Json& status) { return has_problem(status, "the old settings hold"); }, 10s))
         << daemon_->log();
     EXPECT_EQ(daemon_->status()["rig"], "second");
     EXPECT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
@@ -73,7 +121,8 @@ TEST_F(DaemonTest, reloads_all_or_nothing) {
 
 /// What the nodes and the clock told is learnt anew, which takes a while: nothing is wrong meanwhile.
 TEST_F(DaemonTest, names_nothing_as_missing_because_it_was_reloaded) {
-    start();
+    const auto rig_file = folder_.write("rig.yaml", rig_named("first"));
+    start({"--no-camera"}, rig_file);
     const auto is_well = [](const Json& now) { return is_ranging(now) && now["problems"].empty(); };
     ASSERT_TRUE(daemon_->wait_until(is_well, 15s)) << daemon_->log();
     std::this_thread::sleep_for(2500ms);  // what was missing at the start is over
@@ -84,6 +133,7 @@ TEST_F(DaemonTest, names_nothing_as_missing_because_it_was_reloaded) {
     };
     ASSERT_TRUE(daemon_->wait_until(misses_only_that_node, 15s)) << daemon_->log();
     const auto before = daemon_->log().size();
+    folder_.write("rig.yaml", rig_named("second"));
     daemon_->signal(SIGHUP);
     ASSERT_TRUE(daemon_->wait_until([](const Json& now) { return now["reloads"]["count"] == 1; }, 5s));
     std::this_thread::sleep_for(6s);
@@ -92,6 +142,58 @@ TEST_F(DaemonTest, names_nothing_as_missing_because_it_was_reloaded) {
     for (const std::string untrue : {"node 2", "node 3", "joint states", "readings", "the time", "over: "})
         EXPECT_EQ(log.find(untrue), std::string::npos) << untrue << ":\n" << log;
     EXPECT_TRUE(has_problem(daemon_->status(), "node 1 ")) << daemon_->status()["problems"].dump(1);
+}
+
+/// Some 800 a second for 4 s, while the file says what it says, and once more as soon as it says something
+/// else.
+TEST_F(DaemonTest, maps_on_in_a_storm_of_sighup_and_obeys_the_last) {
+    const auto rig_file = folder_.write("rig.yaml", rig_named("first"));
+    start({"--no-camera"}, rig_file);
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    const Json before = daemon_->status();
+    const auto log_before = daemon_->log().size();
+    const auto storm = [this](std::chrono::milliseconds duration) {
+        const auto end = std::chrono::steady_clock::now() + duration;
+        for (; std::chrono::steady_clock::now() < end; std::this_thread::sleep_for(1ms))
+            daemon_->signal(SIGHUP);
+    };
+    storm(4s);
+    const Json after = daemon_->status();
+    ASSERT_TRUE(after.is_object()) << "no answer";
+    EXPECT_LE(after["reloads"]["unchanged"].get<int>(), 6);
+    EXPECT_GE(after["reloads"]["unchanged"].get<int>(), 1);
+    EXPECT_EQ(after["reloads"]["count"], 0);
+    // 68 sensors of this rig at 30 Hz, of which many hit something: 4 s have thousands.
+    const auto in_of = [](const Json& now) { return now["account"]["readings"]["in"].get<int>(); };
+    const int came = in_of(after) - in_of(before);
+    EXPECT_GT(came, 500);
+    EXPECT_GT(readings_used(after) - readings_used(before), 0.2 * came) << after["account"]["readings"];
+    folder_.write("rig.yaml", rig_named("second"));
+    storm(100ms);
+    EXPECT_TRUE(daemon_->wait_until([](const Json& now) { return now["rig"] == "second"; }, 10s));
+    EXPECT_LE(lines_of(daemon_->log().substr(log_before)), 20U) << daemon_->log();
+}
+
+TEST_F(DaemonTest, is_not_ended_by_signals_that_mean_nothing_to_it) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
+    for (const int signal : {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT, SIGPIPE,
+                             SIGXFSZ, SIGRTMIN, SIGRTMAX}) {
+        daemon_->signal(signal);
+        EXPECT_FALSE(daemon_->wait(20ms)) << signal;
+    }
+    EXPECT_TRUE(daemon_->status().is_object());
+    daemon_->signal(SIGQUIT);
+    EXPECT_EQ(daemon_->wait(5s), 0) << daemon_->log();
+    EXPECT_TRUE(std::filesystem::exists(daemon_->maps() / "fused.ot")) << "ended without a save";
+}
+
+TEST_F(DaemonTest, saves_its_map_when_its_processor_time_is_over_and_says_so) {
+    start();
+    ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
+    daemon_->signal(SIGXCPU);
+    EXPECT_EQ(daemon_->wait(5s), 71) << daemon_->log();
+    EXPECT_TRUE(std::filesystem::exists(daemon_->maps() / "fused.ot"));
 }
 
 TEST_F(DaemonTest, goes_on_with_its_map_when_a_reload_gives_it_more_memory) {

@@ -207,11 +207,16 @@ TEST_F(DaemonRecording, is_told_by_its_command_when_the_daemon_ends_in_the_middl
     EXPECT_NE(ran.output.find("the daemon ended"), std::string::npos) << ran.output;
 }
 
-TEST_F(DaemonRecording, ends_whole_when_the_rig_is_read_again) {
-    start();
+TEST_F(DaemonRecording, ends_whole_when_another_rig_is_read_and_goes_on_while_it_is_the_same) {
+    const std::string extends = "extends: " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml\nname: ";
+    start({"--no-camera"}, folder_.write("rig.yaml", extends + "first\n"));
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
     ASSERT_TRUE(ask("record start 0 " + out())["ok"].get<bool>());
+    daemon_->signal(SIGHUP);
+    ASSERT_TRUE(daemon_->wait_until([](const Json& now) { return now["reloads"]["unchanged"] == 1; }, 5s));
     std::this_thread::sleep_for(1s);
+    ASSERT_EQ(state_of_recording(daemon_->status()), "recording");
+    folder_.write("rig.yaml", extends + "second\n");
     daemon_->signal(SIGHUP);
     ASSERT_TRUE(
         daemon_->wait_until([](const Json& status) { return state_of_recording(status) == "ended"; }, 5s))

@@ -13,7 +13,8 @@ for name in octoskin octoskin-node; do
 done
 "$folder/prefix/bin/octoskin" rig "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml" > /dev/null
 "$folder/prefix/bin/octoskin" simulate --help | grep -qF "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml"
-# A world is read by a module, so that nothing else waits for the libraries behind it; without the module that is said.
+# A world is read by a helper, in a process of its own, and that by a module, so that a file which is no world at all waits for no
+# library; without either that is said.
 ldd "$folder/prefix/bin/octoskin" > "$folder/libraries"
 if grep -q sdformat "$folder/libraries"; then exit 1; fi
 simulate() {

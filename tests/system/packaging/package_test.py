@@ -11,14 +11,14 @@ import unittest
 SOURCE = pathlib.Path(__file__).resolve().parents[3]
 HELPERS = "usr/libexec/octoskin"
 PROGRAMS = {"usr/bin/octoskin", "usr/bin/octoskin-node", f"{HELPERS}/octoskin-camera",
-            f"{HELPERS}/octoskin-oni-read", f"{HELPERS}/octoskin-oni-write"}
+            f"{HELPERS}/octoskin-oni-read", f"{HELPERS}/octoskin-oni-write", f"{HELPERS}/octoskin-world-read"}
 LINKS = {"usr/share/doc/octoskin/hw", f"{HELPERS}/openni2/libOpenNI2.so.0", f"{HELPERS}/openni2/OpenNI2/Drivers/libOniFile.so.0"}
 SETTINGS = {"etc/default/octoskin", "etc/default/octoskin-node"}
 OTHERS = {f"{HELPERS}/octoskin-sdf.so", f"{HELPERS}/openni2/OpenNI2/Drivers/libOctoskinVirtual.so.0",
           "usr/lib/systemd/system/octoskin.service", "usr/lib/systemd/system/octoskin-node.service",
           "usr/lib/sysusers.d/octoskin.conf", "usr/lib/udev/rules.d/60-octoskin-node.rules",
           "usr/share/man/man1/octoskin.1.gz", "usr/share/man/man1/octoskin-node.1.gz",
-          "usr/share/doc/octoskin/README.md", "usr/share/doc/octoskin/packaging/README.md",
+          "usr/share/doc/octoskin/README.md", "usr/share/doc/octoskin/SECURITY.md", "usr/share/doc/octoskin/packaging/README.md",
           "usr/share/doc/octoskin/copyright",
           "usr/share/doc/octoskin/changelog.gz", "usr/share/octoskin/hw/octoskin.dbc"}
 FOLDERS = {"docs": "usr/share/doc/octoskin/docs", "host/config": "usr/share/octoskin/config"} | {

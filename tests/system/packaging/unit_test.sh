@@ -15,5 +15,12 @@ if ! sed -n '/^\[Unit\]/,/^\[Service\]/p' "$2" | grep -q '^StartLimitIntervalSec
     echo "$name: a service that fails five times in ten seconds would be given up for good"
     exit 1
 fi
+# A loop that hangs is found: the service says that it is ready, and then that it goes on.
+for line in Type=notify NotifyAccess=main WatchdogSec=10; do
+    if ! grep -qx "$line" "$2"; then
+        echo "$name: no $line"
+        exit 1
+    fi
+done
 sed "s|^ProtectHome=|ProtectHomes=|" "$folder/$name" > "$folder/wrong.service"
 "$1" verify --man=no "$folder/wrong.service" 2>&1 | grep -q ProtectHomes

@@ -129,6 +129,9 @@ TEST(Names, are_those_of_the_protocol) {
                              {8, "stray_sensor"},
                              {9, "register_fixed"},
                              {10, "data_ready_ignored"},
+                             {11, "register_alike"},
+                             {12, "boot_late"},
+                             {13, "commands_refused"},
                              {15, "unknown"}});
     expect_names<InfoPage>({{0, "uid_low"},
                             {1, "uid_high"},

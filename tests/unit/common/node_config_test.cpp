@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -94,6 +95,80 @@ TEST(NodeConfig, canonical_form_is_these_bytes) {
     EXPECT_EQ(hash, crc32(std::span(block).first(block.size() - 4)));
 }
 
+/// The same with all that came with layout 5.
+NodeConfig newer_config(std::uint8_t sensors) {
+    NodeConfig config = node_config(sensors);
+    config.verifies_registers = false;
+    config.ready_jitter_us = 0x0061;
+    config.refuses_commands = true;
+    config.left_out_count = 3;
+    config.left_out[0] = 0x08;
+    config.left_out[1] = 0x47;
+    config.left_out[2] = 0x85;
+    return config;
+}
+
+TEST(NodeConfig, what_is_newer_follows_the_sensors_in_a_block_of_layout_5) {
+    const Block plain = block_of(node_config(1));
+    const Block newer = block_of(newer_config(1));
+    ASSERT_EQ(newer.size(), plain.size() + 8);
+    Block expected(plain.begin(), plain.end() - 4);
+    expected[4] = 5;
+    expected[6] = static_cast<std::uint8_t>(newer.size());
+    expected.insert(expected.end(), {0, 0x61, 0x00, 1, 3, 0x08, 0x47, 0x85, 0, 0, 0, 0});
+    EXPECT_EQ(newer, signed_again(expected));
+    ASSERT_TRUE(decode_node_config(newer));
+    EXPECT_EQ(*decode_node_config(newer), newer_config(1));
+}
+
+// Recordings and boards of rigs without the newer keys keep the hash that they had.
+TEST(NodeConfig, without_anything_newer_the_block_is_one_of_layout_4) {
+    EXPECT_EQ(block_of(node_config(2))[4], 4);
+    const auto layout_with = [](auto change) {
+        NodeConfig config = node_config(2);
+        change(config);
+        return block_of(config)[4];
+    };
+    EXPECT_EQ(layout_with([](NodeConfig& c) { c.verifies_registers = false; }), 5);
+    EXPECT_EQ(layout_with([](NodeConfig& c) { c.ready_jitter_us = 31; }), 5);
+    EXPECT_EQ(layout_with([](NodeConfig& c) { c.refuses_commands = true; }), 5);
+    EXPECT_EQ(layout_with([](NodeConfig& c) { c.left_out_count = 1, c.left_out[0] = 0x47; }), 5);
+    EXPECT_EQ(layout_with([](NodeConfig& c) { c.left_out[0] = 0x47; }), 4) << "beyond the count";
+}
+
+TEST(NodeConfig, a_block_of_layout_5_that_needs_none_is_refused) {
+    Block block = block_of(node_config(1));
+    block[4] = 5;
+    EXPECT_EQ(error_of(signed_again(block)), NodeConfigError::invalid_field) << "cut short";
+    block.resize(block.size() - 4);
+    block.insert(block.end(), {1, 30, 0, 0, 0, 0, 0, 0, 0});
+    block[6] = static_cast<std::uint8_t>(block.size());
+    EXPECT_EQ(error_of(signed_again(block)), NodeConfigError::invalid_field)
+        << "one hash for one configuration";
+}
+
+TEST(NodeConfig, registers_left_out_are_read_back_and_in_ascending_order) {
+    const auto is_good = [](std::vector<std::uint8_t> left_out) {
+        NodeConfig config = node_config(1);
+        config.left_out_count = static_cast<std::uint8_t>(left_out.size());
+        std::ranges::copy(left_out, config.left_out.begin());
+        return is_valid(config);
+    };
+    EXPECT_TRUE(is_good({}));
+    EXPECT_TRUE(is_good({0x08}));
+    EXPECT_TRUE(is_good({0x47, 0x7C, 0x85}));
+    EXPECT_FALSE(is_good({0x7C, 0x47}));
+    EXPECT_FALSE(is_good({0x47, 0x47}));
+    for (const std::uint8_t index : std::to_array<std::uint8_t>({0x00, 0x07, 0x0C, 0x31, 0x32, 0x86, 0xFF}))
+        EXPECT_FALSE(is_good({index}));
+    std::vector<std::uint8_t> most;
+    for (std::uint8_t index = 0x43; index < 0x43 + 32; ++index) most.push_back(index);
+    EXPECT_TRUE(is_good(most));
+    NodeConfig config = node_config(1);
+    config.left_out_count = 33;
+    EXPECT_FALSE(is_valid(config));
+}
+
 TEST(NodeConfig, every_number_of_sensors_survives_its_block) {
     for (std::uint8_t sensors = 0; sensors <= kNodeSensorsMax; ++sensors) {
         const auto decoded = decode_node_config(block_of(node_config(sensors)));
@@ -108,6 +183,10 @@ TEST(NodeConfig, the_largest_one_fits_its_block) {
         sensor.zone_count = kSensorZonesMax;
     }
     EXPECT_EQ(block_of(config).size(), 1736U);  // of 2048
+    config.left_out_count = kRegistersLeftOutMax;
+    for (std::uint8_t i = 0; i < kRegistersLeftOutMax; ++i)
+        config.left_out[i] = static_cast<std::uint8_t>(0x43 + i);
+    EXPECT_EQ(block_of(config).size(), 1773U);
     EXPECT_EQ(*decode_node_config(block_of(config)), config);
 }
 
@@ -232,6 +311,22 @@ std::vector<FieldRange> field_ranges() {
         {"stream_gate", [](N& c, int v) { c.stream_gate = static_cast<StreamGate>(v); }, {0, 1, 2}, {3, 255}},
         {"aux_every", [=](N& c, int v) { c.aux_every = u8(v); }, {0, 255}, {}},
         {"zone_guard_us", [=](N& c, int v) { c.zone_guard_us = u16(v); }, {0, 65'535}, {}},
+        {"ready_jitter",
+         [=](N& c, int v) { c.holds_phases = false, c.ready_jitter_us = u16(v); },
+         {30, 2'000},
+         {0, 29, 2'001, 65'535}},
+        {"ready_jitter of a period",
+         [=](N& c, int v) {
+             c.holds_phases = false, c.sensors[1].timing_budget_ms = 15, c.sensors[1].phase_us = 0,
+             c.sensors[1].inter_measurement_ms = 33, c.ready_jitter_us = u16(v);
+         },
+         {30, 1'650},
+         {1'651, 2'000}},
+        {"ready_jitter with phases",
+         [=](N& c, int v) { c.ready_jitter_us = u16(v); },
+         {30, 100},
+         {101, 2'000}},
+        {"left_out", [=](N& c, int v) { c.left_out_count = 1, c.left_out[0] = u8(v); }, {0x08, 0x85}, {0x31}},
         {"data_ready_buses", [=](N& c, int v) { c.data_ready_buses = u8(v); }, {0, 15}, {16, 255}},
         {"bus", [=](N& c, int v) { c.sensors[1].bus = u8(v); }, {0, 3}, {4, 255}},
         {"xshut_line", [=](N& c, int v) { c.sensors[1].xshut_line = u8(v); }, {0, 38, 40, 47}, {48, 255}},
@@ -313,6 +408,8 @@ TEST(NodeConfig, every_field_is_compared_and_hashed) {
     fields.push_back(flag("is_io_2v8", [](NodeConfig& c) -> bool& { return c.is_io_2v8; }));
     fields.push_back(flag("reads_twice", [](NodeConfig& c) -> bool& { return c.reads_twice; }));
     fields.push_back(flag("holds_phases", [](NodeConfig& c) -> bool& { return c.holds_phases; }));
+    fields.push_back(flag("verifies", [](NodeConfig& c) -> bool& { return c.verifies_registers; }));
+    fields.push_back(flag("refuses_commands", [](NodeConfig& c) -> bool& { return c.refuses_commands; }));
     fields.push_back(flag("has_offset", [](NodeConfig& c) -> bool& { return c.sensors[1].has_offset; }));
     fields.push_back(flag("gain", [](NodeConfig& c) -> bool& { return c.sensors[1].applies_gain_factor; }));
     for (const FieldRange& field : fields) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "host/core/text/printable.hpp"
+#include "host/io/openni2/helper_process.hpp"
 #include "host/io/openni2/helpers/frame_pixels.hpp"
 #include "host/io/openni2/helpers/helper_limits.hpp"
 #include "host/io/openni2/one_line.hpp"
@@ -14,13 +16,12 @@ namespace octoskin::openni2 {
 namespace {
 
 constexpr int kFrameTimeoutMs = 2'000;  // the end of a file shows only as silence
-constexpr unsigned kProcessorSecondsPerFrame = 5;
 
 }  // namespace
 
 std::optional<int> begin_helper(const char* program) {
     limit_this_process();
-    allow_processor_seconds(kProcessorSecondsPerFrame);
+    allow_processor_seconds(kHelperProcessorSecondsPerFrame);
     const int output = take_standard_output();
     if (openni::OpenNI::initialize() == openni::STATUS_OK) return output;
     (void)DepthStream(program).complain("cannot start OpenNI2");
@@ -34,7 +35,8 @@ void end_helper(int exit_code) {
 
 int DepthStream::complain(const std::string& what) const {
     const std::string why = one_line(openni::OpenNI::getExtendedError());
-    std::fprintf(stderr, "%s: %s%s%s\n", program_, what.c_str(), why.empty() ? "" : ": ", why.c_str());
+    const std::string said = printable(what + (why.empty() ? "" : ": ") + why);
+    std::fprintf(stderr, "%s: %s\n", program_, said.c_str());
     return 1;
 }
 
@@ -78,7 +80,7 @@ bool DepthStream::start(const std::optional<CameraMode>& wanted) {
 }
 
 bool DepthStream::wait_for_frame() {
-    allow_processor_seconds(kProcessorSecondsPerFrame);
+    allow_processor_seconds(kHelperProcessorSecondsPerFrame);
     openni::VideoStream* streams[] = {&stream_};
     int ready = -1;
     return openni::OpenNI::waitForAnyStream(streams, 1, &ready, kFrameTimeoutMs) == openni::STATUS_OK &&

@@ -6,6 +6,9 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <new>
+
+#include "host/io/openni2/helper_process.hpp"
 
 namespace octoskin::openni2 {
 namespace {
@@ -16,7 +19,7 @@ constexpr bool kLimitsMemory = false;
 #else
 constexpr bool kLimitsMemory = true;
 #endif
-constexpr rlim_t kMemoryMax = rlim_t{2} << 30U;
+constexpr rlim_t kMemoryMax = rlim_t{kHelperMemoryMib} << 20U;
 
 }  // namespace
 
@@ -27,6 +30,7 @@ void limit_this_process(Orphan orphan) {
     ::setrlimit(RLIMIT_CORE, &no_core);
     const rlimit memory{kMemoryMax, kMemoryMax};
     if (kLimitsMemory) ::setrlimit(RLIMIT_AS, &memory);
+    std::set_new_handler([] { ::_exit(kOutOfMemory); });
 }
 
 void allow_processor_seconds(unsigned seconds) {

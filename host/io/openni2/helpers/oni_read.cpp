@@ -1,5 +1,5 @@
-// octoskin-oni-read FILE.oni: the depth frames of a recording to standard output (frame_pipe.hpp). OpenNI2
-// may crash or hang on a damaged file: that is why this is a process of its own, with limits.
+// octoskin-oni-read FILE.oni [NAME]: the depth frames of a recording to standard output (frame_pipe.hpp).
+// OpenNI2 may crash or hang on a damaged file: that is why this is a process of its own, with limits.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 
+#include "host/core/text/printable.hpp"
 #include "host/io/openni2/helpers/depth_stream.hpp"
 #include "host/io/openni2/helpers/oni_outline.hpp"
 #include "host/io/openni2/helpers/oni_salvage.hpp"
@@ -42,7 +43,7 @@ struct Input {
     bool is_salvaged = false;
 };
 
-Input input_of(const std::filesystem::path& file) {
+Input input_of(const std::filesystem::path& file, const char* shown) {
     const OniOutline outline = outline_of(file);
     if (outline.length || outline.frames == 0) return {file.string()};
     std::error_code error;
@@ -52,15 +53,16 @@ Input input_of(const std::filesystem::path& file) {
     const std::string path = "/proc/self/fd/" + std::to_string(copy);
     if (copy >= 0 && salvage(file, path)) return {path, true};
     std::fprintf(stderr, "%s: %s: cut off, and there is no copying its %u whole frames to %s\n", kProgram,
-                 file.c_str(), outline.frames, folder.c_str());
+                 printable(shown).c_str(), outline.frames, folder.c_str());
     return {file.string()};
 }
 
-int read_recording(DepthStream& depth, const std::filesystem::path& file, int descriptor) {
-    const Input input = input_of(file);
+/// `shown`: what messages call the file.
+int read_recording(DepthStream& depth, const std::filesystem::path& file, const char* shown, int descriptor) {
+    const Input input = input_of(file, shown);
     if (!depth.open(input.path.c_str()) || !depth.is_file()) {
         std::fprintf(stderr, "%s: %s: not an .oni recording, or a damaged or cut off one\n", kProgram,
-                     file.c_str());
+                     printable(shown).c_str());
         return 1;
     }
     openni::PlaybackControl* const playback = depth.playback();
@@ -75,9 +77,10 @@ int read_recording(DepthStream& depth, const std::filesystem::path& file, int de
 
 int main(int argc, char** argv) {
     using namespace octoskin::openni2;
-    if (argc != 2) {
+    if (argc != 2 && argc != 3) {
         std::fputs(
-            "usage: octoskin-oni-read FILE.oni > frames\nA helper of octoskin; `octoskin replay` runs it.\n",
+            "usage: octoskin-oni-read FILE.oni [NAME] > frames\nA helper of octoskin; `octoskin replay` runs "
+            "it.\n",
             stderr);
         return 2;
     }
@@ -86,5 +89,5 @@ int main(int argc, char** argv) {
     const auto output = begin_helper(kProgram);
     if (!output) return 1;
     DepthStream depth(kProgram);
-    end_helper(read_recording(depth, file, *output));
+    end_helper(read_recording(depth, file, argv[argc - 1], *output));
 }

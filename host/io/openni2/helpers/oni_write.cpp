@@ -1,5 +1,5 @@
-// octoskin-oni-write FILE.oni: depth frames from standard input (frame_pipe.hpp) into a recording by
-// OpenNI2's recorder.
+// octoskin-oni-write FILE.oni [NAME]: depth frames from standard input (frame_pipe.hpp) into a recording by
+// OpenNI2's recorder. NAME is what messages call the file.
 #include <unistd.h>
 
 #include <csignal>
@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "host/core/text/printable.hpp"
 #include "host/io/openni2/frame_pipe.hpp"
 #include "host/io/openni2/helpers/helper_limits.hpp"
 #include "host/io/openni2/helpers/oni_recorder.hpp"
@@ -80,9 +81,10 @@ std::string record(const std::filesystem::path& file) {
 }  // namespace octoskin::openni2
 
 int main(int argc, char** argv) {
-    if (argc != 2) {
+    if (argc != 2 && argc != 3) {
         std::fputs(
-            "usage: octoskin-oni-write FILE.oni < frames\nA helper of octoskin; `octoskin simulate` runs "
+            "usage: octoskin-oni-write FILE.oni [NAME] < frames\nA helper of octoskin; `octoskin simulate` "
+            "runs "
             "it.\n",
             stderr);
         return 2;
@@ -93,7 +95,10 @@ int main(int argc, char** argv) {
     // OpenNI2 changes the working directory while it loads its drivers.
     const auto file = std::filesystem::absolute(argv[1]);
     const std::string what = octoskin::openni2::record(file);
-    if (!what.empty()) std::fprintf(stderr, "octoskin-oni-write: %s: %s\n", file.c_str(), what.c_str());
+    if (!what.empty()) {
+        std::fprintf(stderr, "octoskin-oni-write: %s\n",
+                     octoskin::printable(std::string(argv[argc - 1]) + ": " + what).c_str());
+    }
     // No clean-up: the file is closed, and OpenNI2's shutdown sometimes waits 3 s for a thread that it forgot
     // to end.
     std::_Exit(what.empty() ? 0 : 1);

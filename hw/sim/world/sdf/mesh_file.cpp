@@ -1,9 +1,11 @@
 #include "hw/sim/world/sdf/mesh_file.hpp"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
+#include <string_view>
 
 #include "hw/rigfile/file_kind.hpp"
 
@@ -27,12 +29,33 @@ void append(const aiMesh& part, TriangleMesh& mesh) {
     }
 }
 
+/// Opens what may be opened, for reading, by the paths of checked descriptors.
+class CheckedFiles final : public Assimp::DefaultIOSystem {
+  public:
+    explicit CheckedFiles(const WorldFiles& files) : files_(files) {}
+
+    bool Exists(const char* file) const override { return files_.openable(file).has_value(); }
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        const auto path = files_.openable(file);
+        return path && std::string_view(mode).starts_with('r') ? DefaultIOSystem::Open(path->c_str(), mode)
+                                                               : nullptr;
+    }
+
+  private:
+    const WorldFiles& files_;
+};
+
 }  // namespace
 
-Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file) {
+Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, const WorldFiles* files) {
+    if (files != nullptr) {
+        if (const auto path = files->openable(file); !path)
+            return unexpected("mesh " + file.string() + ": " + path.error());
+    }
     if (const auto kind = rig::other_than_a_file(file); !kind.empty())
         return unexpected("mesh " + file.string() + " is " + std::string(kind) + ", not an ordinary file");
     Assimp::Importer importer;
+    if (files != nullptr) importer.SetIOHandler(new CheckedFiles(*files));  // the importer's from here on
     const aiScene* scene =
         importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
     if (scene == nullptr) {

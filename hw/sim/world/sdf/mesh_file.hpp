@@ -5,12 +5,15 @@
 #include <string>
 
 #include "common/result.hpp"
+#include "hw/sim/world/sdf/world_files.hpp"
 #include "hw/sim/world/solid.hpp"
 
 namespace octoskin::sim {
 
 /// All triangles of the file in the file's own coordinates, node transforms applied. The error says what
-/// assimp says, or that there is no triangle or a coordinate that is not finite.
-[[nodiscard]] Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file);
+/// assimp says, or that there is no triangle or a coordinate that is not finite. `files`: that it and what it
+/// refers to (materials, buffers) must be among; nullptr: any.
+[[nodiscard]] Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file,
+                                                          const WorldFiles* files = nullptr);
 
 }  // namespace octoskin::sim

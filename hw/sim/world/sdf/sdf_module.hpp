@@ -2,21 +2,23 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
-#include "common/result.hpp"
-#include "hw/sim/world/solid.hpp"
-#include "hw/sim/world/world_error.hpp"
+#include "hw/sim/world/sdf/world_files.hpp"
+#include "hw/sim/world/solids_bytes.hpp"
 
 namespace octoskin::sim {
 
-using SolidsOrError = Result<std::vector<Solid>, WorldError>;
+struct SdfInput {
+    std::filesystem::path file;         ///< as it was named: meshes lie beside it
+    std::filesystem::path path;         ///< to open it by
+    const WorldFiles* files = nullptr;  ///< what it may refer to; nullptr: anything
+};
 
 /// The module's file name; it lies where the loader looks for libraries of the running program.
 inline constexpr const char* kSdfModule = "octoskin-sdf.so";
 /// The module's one symbol, and its type. Module and program are of one build, so that they may hand each
 /// other C++ objects.
-inline constexpr const char* kReadSolidsSymbol = "octoskin_read_solids_v1";
-using ReadSolids = void (*)(const std::filesystem::path& sdf, SolidsOrError* result);
+inline constexpr const char* kReadSolidsSymbol = "octoskin_read_solids_v2";
+using ReadSolids = void (*)(const SdfInput& sdf, SolidsOrError* result);
 
 }  // namespace octoskin::sim

@@ -58,7 +58,7 @@ class Silence {
 /// Walks one file; the first error stops it.
 class Reader {
   public:
-    explicit Reader(std::filesystem::path file) : file_(std::move(file)) {}
+    explicit Reader(const SdfInput& input) : input_(input), file_(input.file) {}
 
     SolidsOrError read() {
         sdf::Root root;
@@ -76,13 +76,15 @@ class Reader {
         const Silence silence;
         sdf::ParserConfig config;
         config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::ERR);
+        // Only where a world may include others: who may not refer to any file is refused an <include>
+        // before.
         config.SetFindCallback([directory = file_.parent_path()](const std::string& uri) {
             const auto beside = directory / uri;
             return std::filesystem::exists(beside) ? beside.string() : std::string();
         });
         try {
-            const sdf::Errors errors = root.Load(file_.string(), config);
-            return errors.empty() || fail("", text_of(errors, file_));
+            const sdf::Errors errors = root.Load(input_.path.string(), config);
+            return errors.empty() || fail("", text_of(errors, input_.path));
         } catch (const std::exception& exception) {
             return fail("", std::string("the SDF parser gave up: ") + exception.what());
         }
@@ -150,7 +152,7 @@ class Reader {
 
     bool add_solid(const sdf::Visual& visual, const Eigen::Isometry3d& T_world_visual,
                    const std::string& name, const std::string& element) {
-        const auto shape = mesh_of(*visual.Geom());
+        const auto shape = mesh_of(*visual.Geom(), input_);
         if (!shape) {
             return fail(element, shape.error());
         }
@@ -168,7 +170,7 @@ class Reader {
         ignition::math::Pose3d resolved;
         const sdf::Errors errors = pose.Resolve(resolved);
         if (!errors.empty()) {
-            fail(element, text_of(errors, file_));
+            fail(element, text_of(errors, input_.path));
             return std::nullopt;
         }
         if (!resolved.IsFinite()) {
@@ -183,6 +185,7 @@ class Reader {
         return false;
     }
 
+    const SdfInput& input_;
     std::filesystem::path file_;
     std::vector<Solid> solids_;
     std::optional<WorldError> error_;
@@ -190,7 +193,7 @@ class Reader {
 
 }  // namespace
 
-SolidsOrError parse_solids(const std::filesystem::path& sdf) {
+SolidsOrError parse_solids(const SdfInput& sdf) {
     return Reader(sdf).read();
 }
 

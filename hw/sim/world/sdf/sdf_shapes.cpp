@@ -48,7 +48,7 @@ MeshOrError ellipsoid_of(const sdf::Ellipsoid& ellipsoid) {
     return checked(is_size(radii.x()) && is_size(radii.y()) && is_size(radii.z()), ellipsoid_mesh(radii));
 }
 
-MeshOrError mesh_file_of(const sdf::Mesh& mesh) {
+MeshOrError mesh_file_of(const sdf::Mesh& mesh, const SdfInput& world) {
     if (!mesh.Submesh().empty()) {
         return unexpected("submesh '" + mesh.Submesh() +
                           "' is not supported; give it a mesh file of its own");
@@ -61,7 +61,10 @@ MeshOrError mesh_file_of(const sdf::Mesh& mesh) {
         return unexpected("mesh uri '" + uri +
                           "' is not supported; expected a path relative to the SDF file");
     }
-    auto read = read_mesh(std::filesystem::path(mesh.FilePath()).parent_path() / uri);
+    // Without an <include> all of it is in the one file, which a checked descriptor's path does not say.
+    const std::filesystem::path file =
+        world.files == nullptr ? std::filesystem::path(mesh.FilePath()) : world.file;
+    auto read = read_mesh(file.parent_path() / uri, world.files);
     if (!read) {
         return read;
     }
@@ -77,7 +80,7 @@ MeshOrError mesh_file_of(const sdf::Mesh& mesh) {
 
 }  // namespace
 
-Result<TriangleMesh, std::string> mesh_of(const sdf::Geometry& geometry) {
+Result<TriangleMesh, std::string> mesh_of(const sdf::Geometry& geometry, const SdfInput& world) {
     switch (geometry.Type()) {
         case sdf::GeometryType::BOX:
             return box_of(*geometry.BoxShape());
@@ -100,7 +103,7 @@ Result<TriangleMesh, std::string> mesh_of(const sdf::Geometry& geometry) {
         case sdf::GeometryType::PLANE:
             return plane_of(*geometry.PlaneShape());
         case sdf::GeometryType::MESH:
-            return mesh_file_of(*geometry.MeshShape());
+            return mesh_file_of(*geometry.MeshShape(), world);
         case sdf::GeometryType::HEIGHTMAP:
         case sdf::GeometryType::EMPTY:
             break;

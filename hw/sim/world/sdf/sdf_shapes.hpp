@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/result.hpp"
+#include "hw/sim/world/sdf/sdf_module.hpp"
 #include "hw/sim/world/solid.hpp"
 
 namespace octoskin::sim {
@@ -14,7 +15,7 @@ inline constexpr const char* kSdfShapes =
     "box, cylinder, sphere, capsule, ellipsoid, plane, mesh (a cone is a mesh)";
 
 /// The shape in its own coordinates, metres. The error says what is wrong: another shape, a size that is not
-/// positive and finite, a mesh that cannot be read.
-[[nodiscard]] Result<TriangleMesh, std::string> mesh_of(const sdf::Geometry& geometry);
+/// positive and finite, a mesh that cannot be read, or that `world` may not refer to.
+[[nodiscard]] Result<TriangleMesh, std::string> mesh_of(const sdf::Geometry& geometry, const SdfInput& world);
 
 }  // namespace octoskin::sim

@@ -21,6 +21,8 @@ const std::string kSilence30 = "ADDRESS 30 | R 010F 2 ! nack_address | R 010F 2 
 const std::string kSilence77 = "ADDRESS 77 | R 010F 2 ! nack_address | R 010F 2 ! nack_address | ";
 const std::string kAnswer29 = "ADDRESS 29 | R 010F 2 -> EA CC | ";
 const std::string kAnswer30 = "ADDRESS 30 | R 010F 2 -> EA CC | ";
+const std::string kBooted = "ADDRESS 29 | R 00E5 1 -> 03 | ";
+const std::string kNobodyBoots = "ADDRESS 29 | R 00E5 1 ! nack_address | ";
 const std::string kParked29 = "ADDRESS 29 | W 0001 77 | ADDRESS 77 | R 010F 2 -> EA CC | ";
 const std::string kParked30 = "ADDRESS 30 | W 0001 77 | ADDRESS 77 | R 010F 2 -> EA CC | ";
 
@@ -82,9 +84,9 @@ TEST_F(BringUpTest, is_due_neither_before_it_begins_nor_while_another_has_the_de
 }
 
 TEST_F(BringUpTest, somebody_who_comes_to_0x29_meanwhile_is_a_conflict) {
-    EXPECT_EQ(
-        fault_on(kSilence29 + kSilence30 + kAnswer29 + "ADDRESS 29 | W 0001 30 | " + kAnswer30 + kAnswer29),
-        SensorFault::address_conflict);
+    EXPECT_EQ(fault_on(kSilence29 + kSilence30 + kBooted + kAnswer29 + "ADDRESS 29 | W 0001 30 | " +
+                       kAnswer30 + kAnswer29),
+              SensorFault::address_conflict);
 }
 
 TEST_F(BringUpTest, two_strays_are_parked_and_a_third_is_a_conflict) {
@@ -114,9 +116,9 @@ TEST_F(BringUpTest, a_bus_that_fails_while_parking_or_watching_is_a_bus_error) {
 // distortedly, nobody comes when XSHUT rises.
 TEST_F(BringUpTest, a_part_parked_from_its_own_address_that_does_not_come_is_stuck) {
     const std::string until_sought = kSilence29 + kAnswer30 + kParked30 + kSilence30;
-    EXPECT_EQ(fault_on(until_sought + "ADDRESS 77 | R 010F 2 -> EA CC | " + kSilence29),
+    EXPECT_EQ(fault_on(until_sought + "ADDRESS 77 | R 010F 2 -> EA CC | " + kNobodyBoots + kSilence29),
               SensorFault::xshut_stuck);
-    EXPECT_EQ(fault_on(until_sought + "ADDRESS 77 | R 010F 2 -> EE AC | " + kSilence29),
+    EXPECT_EQ(fault_on(until_sought + "ADDRESS 77 | R 010F 2 -> EE AC | " + kNobodyBoots + kSilence29),
               SensorFault::xshut_stuck);
 }
 
@@ -124,17 +126,47 @@ TEST_F(BringUpTest, a_stray_is_taken_for_a_part_that_does_not_come_unless_that_p
     const std::string stray_is_parked = kAnswer29 + kParked29 + kSilence29 + kSilence30;
     const std::string stray_is_there = kSilence29 + kSilence30 + "ADDRESS 77 | R 010F 2 -> EA CC | ";
     const std::string parked_answers = "ADDRESS 77 | R 010F 2 -> EA CC | ";
-    EXPECT_EQ(fault_on(stray_is_parked + parked_answers + kSilence29), SensorFault::xshut_stuck);
-    EXPECT_EQ(fault_on(stray_is_there + kAnswer29 + "ADDRESS 29 | W 0001 30 ! timeout | W 0001 30 ! timeout"),
+    EXPECT_EQ(fault_on(stray_is_parked + parked_answers + kNobodyBoots + kSilence29),
+              SensorFault::xshut_stuck);
+    EXPECT_EQ(fault_on(stray_is_there + kBooted + kAnswer29 +
+                       "ADDRESS 29 | W 0001 30 ! timeout | W 0001 30 ! timeout"),
               SensorFault::bus_error);
     EXPECT_TRUE(bring_up_.has_answered());
-    EXPECT_EQ(fault_on(stray_is_there + kSilence29), SensorFault::no_answer);
+    EXPECT_EQ(fault_on(stray_is_there + kNobodyBoots + kSilence29), SensorFault::no_answer);
     EXPECT_FALSE(bring_up_.has_answered());
 }
 
 TEST_F(BringUpTest, a_part_that_is_no_longer_where_it_was_parked_and_does_not_come_is_absent) {
-    EXPECT_EQ(fault_on(kSilence29 + kAnswer30 + kParked30 + kSilence30 + kSilence77 + kSilence29),
-              SensorFault::no_answer);
+    EXPECT_EQ(
+        fault_on(kSilence29 + kAnswer30 + kParked30 + kSilence30 + kSilence77 + kNobodyBoots + kSilence29),
+        SensorFault::no_answer);
+}
+
+std::string polls(int count, const std::string& answer) {
+    std::string script;
+    for (int i = 0; i < count; ++i) script += "R 00E5 1 -> " + answer + " | ";
+    return script;
+}
+constexpr int kPollsIn5Ms = 11;  // every 0.5 ms, and what the transfers take
+constexpr int kPollsIn100Ms = 198;
+
+// From bit 0 on, not from any answer: real parts say 0x02 first.
+TEST_F(BringUpTest, no_address_is_written_before_the_boot_is_over) {
+    const std::string until_boot = kSilence29 + kSilence30 + "ADDRESS 29 | ";
+    EXPECT_EQ(fault_on(until_boot + polls(4, "02") + polls(1, "03") + kAnswer29 +
+                       "ADDRESS 29 | W 0001 30 ! timeout | W 0001 30 ! timeout"),
+              SensorFault::bus_error);
+    EXPECT_FALSE(bring_up_.was_boot_late());
+}
+
+TEST_F(BringUpTest, a_boot_that_is_not_over_after_5_ms_is_told_and_waited_for_longer_the_next_time) {
+    const std::string until_boot = kSilence29 + kSilence30 + "ADDRESS 29 | ";
+    const std::string fails = kAnswer29 + "ADDRESS 29 | W 0001 30 ! timeout | W 0001 30 ! timeout";
+    EXPECT_EQ(fault_on(until_boot + polls(kPollsIn5Ms, "02") + fails), SensorFault::bus_error);
+    EXPECT_TRUE(bring_up_.was_boot_late());
+    EXPECT_EQ(fault_on(until_boot + polls(30, "02") + polls(1, "03") + fails), SensorFault::bus_error);
+    EXPECT_TRUE(bring_up_.was_boot_late()) << "for good";
+    EXPECT_EQ(fault_on(until_boot + polls(kPollsIn100Ms, "00") + fails), SensorFault::bus_error);
 }
 
 }  // namespace

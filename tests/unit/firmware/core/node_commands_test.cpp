@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <variant>
+
+#include "common/wire/names.hpp"
 
 #include "tests/support/idle_ports.hpp"
 #include "tests/support/node_rig.hpp"
@@ -344,6 +347,75 @@ TEST_F(NodeCommandsTest, stays_stopped_by_command_after_an_id_conflict_is_over) 
     rig_.run_for(6'000 * kMillisecond);
     EXPECT_EQ(readings_in(1, 500 * kMillisecond), 0U);
     EXPECT_GE(readings_in(0, 500 * kMillisecond), 14U);
+}
+
+// --- a node whose rig has it refuse commands
+
+std::vector<wire::InfoFault> faults_of(const NodeRig& rig) {
+    std::vector<wire::InfoFault> faults;
+    for (const wire::NodeInfo& page : rig.said_of<wire::NodeInfo>()) {
+        if (const auto* fault = std::get_if<wire::InfoFault>(&page)) faults.push_back(*fault);
+    }
+    return faults;
+}
+
+class NodeRefusingCommandsTest : public testing::Test {
+  protected:
+    NodeRefusingCommandsTest() : rig_(config(), std::vector<SensorSetup>(4)) {
+        rig_.run_for(1'500 * kMillisecond);
+    }
+    static NodeConfig config() {
+        NodeConfig config = fleet_config(4, 2);
+        config.refuses_commands = true;
+        config.sensors[0].reflex_below_mm = 4'000;
+        return config;
+    }
+    NodeRig rig_;
+};
+
+TEST_F(NodeRefusingCommandsTest, refuses_each_of_them_and_says_so_within_a_tenth_of_a_second) {
+    std::uint8_t sequence = 0;
+    for (const auto& named : wire::values_of(CommandCode{})) {
+        for (const wire::NodeId id : {kOwnId, wire::kBroadcastId}) {
+            const std::uint32_t refused = rig_.node().counts().rx_rejected;
+            const sim::SimTime sent = rig_.now();
+            rig_.send_from_host(
+                Command{.code = named.value, .sensor = 1, .argument = 140, .sequence = sequence++}, id);
+            rig_.run_for(100 * kMillisecond);
+            EXPECT_EQ(rig_.node().counts().rx_rejected, refused + 1) << named.name;
+            const auto& said = rig_.said();
+            EXPECT_TRUE(std::ranges::any_of(said, [&](const auto& item) {
+                const auto* info = std::get_if<wire::NodeInfo>(&item.message);
+                const auto* fault = info != nullptr ? std::get_if<wire::InfoFault>(info) : nullptr;
+                return fault != nullptr && item.end >= sent &&
+                       *fault == wire::InfoFault{.kind = wire::FaultKind::commands_refused,
+                                                 .where = static_cast<std::uint32_t>(named.value)};
+            })) << named.name;
+            rig_.run_for(2'500 * kMillisecond);  // until it is over
+            EXPECT_EQ(faults_of(rig_).back().kind, wire::FaultKind::none) << named.name;
+        }
+    }
+    EXPECT_FALSE(rig_.node().is_reset_requested());
+    EXPECT_TRUE(rig_.lit().empty()) << "identify";
+    EXPECT_TRUE(rig_.said_of<wire::BlackBox>().empty());
+    EXPECT_EQ(rig_.node().counts().sensor_restarts, 0U);
+    for (const wire::Calibration& answer : rig_.said_of<wire::Calibration>())
+        EXPECT_EQ(answer.outcome, wire::CalibrationOutcome::refused);
+    EXPECT_EQ(rig_.said_of<wire::Calibration>().size(), 4U) << "two codes, two ids";
+}
+
+TEST_F(NodeRefusingCommandsTest, answers_sync_and_sends_reflex_and_ranges_whatever_is_commanded) {
+    const std::size_t before = rig_.readings_of(1).size();
+    for (std::uint8_t i = 0; i < 100; ++i) {
+        rig_.send_from_host(Command{.code = CommandCode::stop, .sequence = i}, kOwnId);
+        rig_.send_from_host(wire::Sync{.sequence = static_cast<std::uint8_t>(i % 32)}, wire::kHostId);
+        rig_.run_for(30 * kMillisecond);
+    }
+    EXPECT_EQ(rig_.said_of<wire::SyncReport>().size(), 100U);
+    EXPECT_GE(rig_.readings_of(1).size() - before, 88U);
+    EXPECT_FALSE(rig_.said_of<wire::Reflex>().empty());
+    // 3 s of the flood, and 4.5 s at one a second.
+    EXPECT_LE(faults_of(rig_).size(), 3U * 10 + 8) << "a flood of commands is answered ten times a second";
 }
 
 }  // namespace

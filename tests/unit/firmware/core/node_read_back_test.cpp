@@ -178,7 +178,7 @@ TEST(NodeReadBack, a_register_that_never_takes_its_value_is_tried_three_times_th
     EXPECT_EQ(rig.node().counts().withheld, 0U) << "it does not decide the range";
     EXPECT_EQ(rig.node().counts().suspect, rig.node().counts().accepted) << "but nobody knows what it does";
     EXPECT_EQ(last_fault(rig).kind, wire::FaultKind::register_fixed);
-    EXPECT_EQ(last_fault(rig).where, 0x00'004C'20U) << "sensor 0, 0x4C holds 0x20";
+    EXPECT_EQ(last_fault(rig).where, 0x00'4C'21'20U) << "sensor 0, 0x4C was written 0x21 and reads 0x20";
 }
 
 // One of each group of steering registers, the crosstalk, and what lies outside the groups: offset, budget,
@@ -199,7 +199,11 @@ TEST(NodeReadBack, no_reading_is_sent_on_a_register_that_decides_the_range_and_w
         EXPECT_EQ(rig.last_health(0)->fault, SensorFault::config_mismatch) << index;
         EXPECT_EQ(rig.said_of<wire::Heartbeat>().back().degraded_sensors, 1);
         EXPECT_EQ(last_fault(rig).kind, wire::FaultKind::register_fixed) << index;
-        EXPECT_EQ(last_fault(rig).where, (std::uint32_t{index} << 8U | 0x2AU));
+        const auto told = wire::RegisterReport::of(last_fault(rig).where);
+        EXPECT_EQ(told.subject, 0);
+        EXPECT_EQ(told.index, index);
+        EXPECT_NE(told.written, 0x2A) << index;
+        EXPECT_EQ(told.read, 0x2A) << index;
         // At once, then after 0.1, 0.2, ... 6.4 s.
         EXPECT_LE(rig.node().counts().sensor_restarts, 9U) << index;
     }

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing_support::ScratchFolder;
 
-const std::vector<fs::path> kFiles = {"a", "b", "voucher"};
+const std::vector<fs::path> kFiles = {"can.log", "depth.oni", "meta.yaml"};
 
 void write(const fs::path& file, const std::string& text) {
     std::ofstream(file, std::ios::binary) << text;
@@ -40,19 +40,23 @@ std::string told(const fs::path& folder) {
     return text;
 }
 
-constexpr const char* kOld = "a=old gone=old voucher=old";
-constexpr const char* kNew = "a=new b=new voucher=new";
+constexpr const char* kOld = "can.log=old meta.yaml=old robot.urdf=old";
+constexpr const char* kNew = "can.log=new depth.oni=new meta.yaml=new";
 
-/// The old set; `b` is to be new, `gone` to go.
+/// The old set; depth.oni is to be new, robot.urdf to go.
 void fill_old(const fs::path& folder) {
-    for (const char* name : {"a", "gone", "voucher"}) write(folder / name, "old");
+    for (const char* name : {"can.log", "robot.urdf", "meta.yaml"}) write(folder / name, "old");
 }
 
 Status<AppError> replace_by_new(const fs::path& folder) {
     auto set = FileSet::begin(folder);
     if (!set) return unexpected(set.error());
-    for (const fs::path& file : kFiles) write(set->draft() / file, "new");
-    return set->commit(kFiles, {"gone", "maps/absent"});
+    for (const fs::path& file : kFiles) write(set->draft().shown() / file, "new");
+    return set->commit(kFiles, {"robot.urdf", "maps/fused.ot"});
+}
+
+Result<bool, AppError> settle(const fs::path& folder) {
+    return settle_file_set(OpenFolder::open(folder, FolderAccess::write).value());
 }
 
 TEST(FileSetTest, puts_all_files_in_place_and_takes_the_retired_away) {
@@ -69,9 +73,9 @@ TEST(FileSetTest, leaves_the_folder_as_it_was_if_it_is_given_up) {
     {
         auto set = FileSet::begin(folder.path());
         ASSERT_TRUE(set);
-        write(set->draft() / "a", "new");
+        write(set->draft().shown() / "can.log", "new");
         const FileSet moved = std::move(*set);
-        EXPECT_EQ(moved.folder(), folder.path());
+        EXPECT_EQ(moved.folder().shown(), folder.path());
     }
     EXPECT_EQ(told(folder.path()), kOld);
     { ASSERT_TRUE(FileSet::begin(folder / "made/for/it")); }
@@ -82,14 +86,14 @@ TEST(FileSetTest, of_two_at_once_the_second_is_refused_with_the_directory_and_a_
     const ScratchFolder folder;
     const auto first = FileSet::begin(folder.path());
     ASSERT_TRUE(first);
-    write(first->draft() / "a", "new");
+    write(first->draft().shown() / "can.log", "new");
     const auto second = FileSet::begin(folder.path());
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, ExitCode::cannot_create);
     EXPECT_THAT(second.error().message,
                 testing::AllOf(HasSubstr(folder.path().string() + ": another octoskin"), HasSubstr("wait"),
                                HasSubstr("another directory")));
-    EXPECT_EQ(ScratchFolder::read(first->draft() / "a"), "new");
+    EXPECT_EQ(ScratchFolder::read(first->draft().shown() / "can.log"), "new");
 }
 
 TEST(FileSetTest, the_lock_goes_with_its_process) {
@@ -106,7 +110,7 @@ TEST(FileSetTest, the_lock_goes_with_its_process) {
 }
 
 TEST(FileSetTest, a_directory_in_the_way_is_named_and_changes_nothing) {
-    for (const char* in_the_way : {"a", "b", "gone", "voucher"}) {
+    for (const char* in_the_way : {"can.log", "depth.oni", "robot.urdf", "meta.yaml"}) {
         const ScratchFolder folder;
         fill_old(folder.path());
         fs::remove(folder / in_the_way);
@@ -124,8 +128,9 @@ void lay_out_half_done(const fs::path& folder, std::size_t moved, bool is_vouche
     fill_old(folder);
     const fs::path ready = folder / ".octoskin-ready";
     fs::create_directory(ready);
-    write(ready / ".journal", "octoskin-file-set/1\ndrop gone\nput a\nput b\nput voucher\n");
-    if (is_voucher_gone) fs::remove(folder / "voucher");
+    write(ready / ".journal",
+          "octoskin-file-set/1\ndrop robot.urdf\nput can.log\nput depth.oni\nput meta.yaml\n");
+    if (is_voucher_gone) fs::remove(folder / "meta.yaml");
     for (std::size_t i = 0; i < kFiles.size(); ++i) write((i < moved ? folder : ready) / kFiles[i], "new");
 }
 
@@ -133,50 +138,99 @@ TEST(FileSetTest, what_was_killed_after_any_step_is_brought_to_its_end_by_the_ne
     for (std::size_t moved = 0; moved <= kFiles.size(); ++moved) {
         const ScratchFolder folder;
         lay_out_half_done(folder.path(), moved, moved > 0);
-        ASSERT_TRUE(settle_file_set(folder.path())) << moved;
+        const auto settled = settle(folder.path());
+        ASSERT_TRUE(settled) << moved;
+        EXPECT_TRUE(*settled) << moved;
         EXPECT_EQ(told(folder.path()), kNew) << moved;
-        ASSERT_TRUE(settle_file_set(folder.path()));
+        const auto again = settle(folder.path());
+        ASSERT_TRUE(again);
+        EXPECT_FALSE(*again) << "there was nothing left";
     }
 }
 
 TEST(FileSetTest, an_error_while_it_moves_takes_all_of_it_back_until_it_can_be_done) {
     const std::pair<const char*, const char*> obstacles[] = {
-        {"gone", ".octoskin-ready a=old gone voucher=old"},
-        {"a", ".octoskin-ready a gone=old voucher=old"},
-        {"b", ".octoskin-ready a=old b gone=old voucher=old"},
-        {"voucher", ".octoskin-ready a=old gone=old voucher"}};
+        {"robot.urdf", ".octoskin-ready can.log=old meta.yaml=old robot.urdf"},
+        {"can.log", ".octoskin-ready can.log meta.yaml=old robot.urdf=old"},
+        {"depth.oni", ".octoskin-ready can.log=old depth.oni meta.yaml=old robot.urdf=old"},
+        {"meta.yaml", ".octoskin-ready can.log=old meta.yaml robot.urdf=old"}};
     for (const auto& [obstacle, expected] : obstacles) {
         const ScratchFolder folder;
         lay_out_half_done(folder.path(), 0, false);
         // It came into the way after the places were looked at.
         fs::remove(folder / obstacle);
         fs::create_directory(folder / obstacle);
-        const auto settled = settle_file_set(folder.path());
+        const auto settled = settle(folder.path());
         ASSERT_FALSE(settled) << obstacle;
         EXPECT_THAT(settled.error().message,
                     testing::AllOf(HasSubstr((folder / obstacle).string() + ": is no file"),
                                    HasSubstr("wait in " + (folder / ".octoskin-ready").string())));
         EXPECT_EQ(told(folder.path()), expected);
         fs::remove(folder / obstacle);
-        ASSERT_TRUE(settle_file_set(folder.path())) << obstacle;
+        ASSERT_TRUE(settle(folder.path())) << obstacle;
         EXPECT_EQ(told(folder.path()), kNew);
     }
 }
 
 TEST(FileSetTest, follows_no_journal_out_of_its_folder) {
     for (const char* line :
-         {"put ../escaped", "drop /etc/passwd", "put a/../../escaped", "burn a", "put", ""}) {
+         {"put ../escaped", "drop /etc/passwd", "put can.log/../../escaped", "burn can.log", "put", "",
+          "put notes", "drop .bashrc", "put maps/../can.log", "put ./can.log", "drop recording/can.log"}) {
         const ScratchFolder folder;
         fs::create_directories(folder / "in/.octoskin-ready");
         folder.write("escaped", "mine");
         folder.write("in/.octoskin-ready/.journal",
-                     std::string("octoskin-file-set/1\nput a\n") + line + "\n");
-        folder.write("in/.octoskin-ready/a", "new");
-        const auto settled = settle_file_set(folder / "in");
+                     std::string("octoskin-file-set/1\nput can.log\n") + line + "\n");
+        folder.write("in/.octoskin-ready/can.log", "new");
+        const auto settled = settle(folder / "in");
         ASSERT_FALSE(settled) << line;
         EXPECT_THAT(settled.error().message, HasSubstr("remove " + (folder / "in/.octoskin-ready").string()));
         EXPECT_EQ(ScratchFolder::read(folder / "escaped"), "mine");
-        EXPECT_FALSE(fs::exists(folder / "in/a"));
+        EXPECT_FALSE(fs::exists(folder / "in/can.log"));
+    }
+}
+
+/// Folders of others, unpacked by a program that makes the links that are in an archive.
+TEST(FileSetTest, follows_no_link_out_of_its_folder) {
+    struct Trap {
+        const char* link;  ///< in the folder, to the victim's folder or file
+        const char* target;
+        const char* line;
+    };
+    const Trap traps[] = {{"in/maps", "../victim", "put maps/fused.ot"},
+                          {"in/maps", "../victim", "drop maps/fused.ot"},
+                          {"in/can.log", "../victim/fused.ot", "drop can.log"},
+                          {"in/.octoskin-ready/maps", "../../victim", "put maps/fused.ot"},
+                          {"in/.octoskin-ready/.before", "../../victim", "drop robot.urdf"}};
+    for (const Trap& trap : traps) {
+        const ScratchFolder folder;
+        for (const char* made : {"victim", "in/.octoskin-ready"}) fs::create_directories(folder / made);
+        folder.write("victim/fused.ot", "mine");
+        folder.write("in/robot.urdf", "old");
+        folder.write("in/.octoskin-ready/meta.yaml", "new");
+        fs::create_symlink(trap.target, folder / trap.link);
+        folder.write("in/.octoskin-ready/.journal",
+                     std::string("octoskin-file-set/1\n") + trap.line + "\nput meta.yaml\n");
+        const auto settled = settle(folder / "in");
+        ASSERT_FALSE(settled) << trap.line;
+        EXPECT_THAT(settled.error().message,
+                    HasSubstr((folder / trap.link).string() + ": is a symbolic link"));
+        EXPECT_EQ(told(folder / "victim"), "fused.ot=mine") << trap.line;
+        EXPECT_EQ(ScratchFolder::read(folder / "in/robot.urdf"), "old") << trap.line;
+        EXPECT_FALSE(fs::exists(folder / "in/meta.yaml")) << trap.line;
+    }
+}
+
+TEST(FileSetTest, the_hidden_folders_themselves_are_no_links) {
+    for (const char* name : {FileSet::kDraftFolder, FileSet::kReadyFolder}) {
+        const ScratchFolder folder;
+        for (const char* made : {"victim", "in"}) fs::create_directories(folder / made);
+        folder.write("victim/can.log", "mine");
+        folder.write("victim/.journal", "octoskin-file-set/1\nput can.log\n");
+        fs::create_directory_symlink("../victim", folder / "in" / name);
+        const auto begun = FileSet::begin(folder / "in");
+        EXPECT_EQ(begun.has_value(), name == std::string(FileSet::kDraftFolder)) << "a draft is cleared away";
+        EXPECT_EQ(told(folder / "victim"), ".journal=octoskin-file-set/1\nput can.log\n can.log=mine");
     }
 }
 
@@ -224,7 +278,7 @@ TEST(FileSetTest, leaves_nothing_unfinished_of_a_process_that_is_told_to_end) {
     {
         auto set = FileSet::begin(folder);
         ASSERT_TRUE(set);
-        write(set->draft() / "a", "new");
+        write(set->draft().shown() / "can.log", "new");
         const auto within = FileSet::begin(folder / "recording");
         ASSERT_TRUE(within);
         EXPECT_TRUE(remove_unfinished().is_any);
@@ -233,8 +287,8 @@ TEST(FileSetTest, leaves_nothing_unfinished_of_a_process_that_is_told_to_end) {
     fill_old(folder.parent_path());
     auto set = FileSet::begin(parent.path());
     ASSERT_TRUE(set);
-    for (const fs::path& file : kFiles) write(set->draft() / file, "new");
-    ASSERT_TRUE(set->commit(kFiles, {"gone"}));
+    for (const fs::path& file : kFiles) write(set->draft().shown() / file, "new");
+    ASSERT_TRUE(set->commit(kFiles, {"robot.urdf"}));
     EXPECT_FALSE(remove_unfinished().is_any) << "it is whole";
     EXPECT_EQ(told(parent.path()), kNew);
 }

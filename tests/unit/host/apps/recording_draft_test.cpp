@@ -14,8 +14,8 @@ using testing_support::ScratchFolder;
 constexpr const char* kSimulated = "schema: octoskin-recording/1\nsource: simulation\n";
 constexpr const char* kRobot = "schema: octoskin-recording/1\nsource: robot\n";
 
-void write(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream(file) << text;
+void write(const FilePlace& file, const std::string& text) {
+    std::ofstream(file.shown()) << text;
 }
 
 /// Writes a whole recording without a camera into the draft.
@@ -31,9 +31,9 @@ TEST(RecordingDraftTest, appears_whole_when_committed) {
     auto draft = RecordingDraft::create(recording.directory, false);
     ASSERT_TRUE(draft) << draft.error().message;
     fill(*draft, "log");
-    EXPECT_FALSE(std::filesystem::exists(recording.can_log()));
+    EXPECT_FALSE(std::filesystem::exists(recording.can_log().shown()));
     ASSERT_TRUE(draft->commit());
-    EXPECT_EQ(ScratchFolder::read(recording.can_log()), "log");
+    EXPECT_EQ(ScratchFolder::read(recording.can_log().shown()), "log");
     EXPECT_TRUE(check_recording(recording));
     EXPECT_FALSE(std::filesystem::exists(draft->paths().directory));
 }

@@ -22,9 +22,7 @@ class RecordingTest : public testing::Test {
     }
     ~RecordingTest() override { std::filesystem::remove_all(recording_.directory); }
 
-    static void write(const std::filesystem::path& file, const std::string& text) {
-        std::ofstream(file) << text;
-    }
+    static void write(const FilePlace& file, const std::string& text) { std::ofstream(file.shown()) << text; }
 
     RecordingPaths recording_;
 };
@@ -133,7 +131,7 @@ TEST(SourceFileTest, checksum_is_that_of_all_bytes_in_order) {
     const auto digits = folder.write("digits", "123456789");
     EXPECT_EQ(crc32_of(digits), 0xCBF43926U);  // the check value of CRC-32/ISO-HDLC
     const std::vector<std::filesystem::path> parts{folder.write("a", "1234"), folder.write("b", "56789")};
-    EXPECT_EQ(crc32_of(parts), 0xCBF43926U);
+    EXPECT_EQ(crc32_of(std::vector<FilePlace>(parts.begin(), parts.end())), 0xCBF43926U);
     const auto large = folder.write("large", std::string(200'001, 'x'));
     EXPECT_EQ(crc32_of(large), crc32(std::vector<std::uint8_t>(200'001, 'x')));
     EXPECT_EQ(crc32_of(folder / "absent"), std::nullopt);
@@ -151,14 +149,48 @@ TEST_F(RecordingTest, each_missing_file_is_named) {
     for (const auto& file : {recording_.can_log(), recording_.rig(), recording_.meta()}) {
         const auto checked = check_recording(recording_);
         ASSERT_FALSE(checked);
-        EXPECT_EQ(checked.error().file, file);
+        EXPECT_EQ(checked.error().file, file.shown());
         write(file, "x");
     }
     EXPECT_TRUE(check_recording(recording_));
     write(recording_.depth(), "x");
-    EXPECT_EQ(check_recording(recording_).error().file, recording_.depth_epoch());
+    EXPECT_EQ(check_recording(recording_).error().file, recording_.depth_epoch().shown());
     write(recording_.depth_epoch(), "x");
     EXPECT_TRUE(check_recording(recording_));
+}
+
+TEST_F(RecordingTest, what_lies_in_a_files_place_and_is_none_is_refused_by_name) {
+    for (const auto& file : {recording_.can_log(), recording_.rig(), recording_.meta()}) write(file, "x");
+    ASSERT_TRUE(check_recording(recording_));
+    std::ofstream(recording_.directory / "elsewhere") << "x";
+    for (const char* name : {"can.log", "rig.yaml", "meta.yaml", "robot.urdf", "depth.oni",
+                             "depth.epoch.yaml", "order.log", "mapping.yaml", "first.ot", "last.ot"}) {
+        const auto file = recording_.directory / name;
+        const auto kept = recording_.directory / "kept";
+        const bool is_there = std::filesystem::exists(file);
+        if (is_there) std::filesystem::rename(file, kept);
+        std::filesystem::create_symlink("elsewhere", file);
+        const auto checked = check_recording(recording_);
+        ASSERT_FALSE(checked) << name;
+        EXPECT_EQ(checked.error().file, file);
+        EXPECT_THAT(checked.error().what, testing::HasSubstr("is a symbolic link"));
+        std::filesystem::remove(file);
+        ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+        EXPECT_EQ(check_recording(recording_).error().file, file);
+        std::filesystem::remove(file);
+        if (is_there) std::filesystem::rename(kept, file);
+    }
+    EXPECT_TRUE(check_recording(recording_));
+}
+
+TEST_F(RecordingTest, one_that_was_left_half_moved_is_refused_with_what_finishes_it) {
+    for (const auto& file : {recording_.can_log(), recording_.rig(), recording_.meta()}) write(file, "x");
+    std::filesystem::create_directory(recording_.directory / ".octoskin-ready");
+    const auto checked = check_recording(recording_);
+    ASSERT_FALSE(checked);
+    EXPECT_EQ(checked.error().file, recording_.directory);
+    EXPECT_THAT(checked.error().what, testing::HasSubstr("octoskin repair " + recording_.directory.string()));
+    EXPECT_TRUE(std::filesystem::exists(recording_.directory / ".octoskin-ready"));
 }
 
 }  // namespace

@@ -39,5 +39,38 @@ TEST(TextFile, says_why_not_and_what_to_do) {
               ": cannot be written (Is a directory): it is a folder: name a file, or move the folder away");
 }
 
+TEST(TextFile, leaves_the_other_names_of_a_file_what_they_have) {
+    const ScratchFolder folder;
+    const auto victim = folder.write("victim", "precious");
+    std::filesystem::create_hard_link(victim, folder / "out");
+    EXPECT_TRUE(write_text(folder / "out", "new"));
+    EXPECT_EQ(ScratchFolder::read(folder / "out"), "new");
+    EXPECT_EQ(ScratchFolder::read(victim), "precious");
+    std::filesystem::create_symlink("out", folder / "link");
+    EXPECT_TRUE(write_text(folder / "link", "by the link that was typed"));
+    EXPECT_EQ(ScratchFolder::read(folder / "out"), "by the link that was typed");
+}
+
+TEST(TextFile, below_a_named_folder_replaces_a_link_and_follows_none) {
+    const ScratchFolder folder;
+    const auto victim = folder.write("victim", "precious");
+    std::filesystem::create_directory(folder / "named");
+    const NamedFolder named(folder / "named");
+    for (const bool is_hard : {false, true}) {
+        std::filesystem::remove(folder / "named/out");
+        is_hard ? std::filesystem::create_hard_link(victim, folder / "named/out")
+                : std::filesystem::create_symlink("../victim", folder / "named/out");
+        EXPECT_TRUE(write_text({named, "out"}, "new"));
+        EXPECT_EQ(ScratchFolder::read(folder / "named/out"), "new");
+        EXPECT_EQ(ScratchFolder::read(victim), "precious");
+    }
+    std::filesystem::create_symlink("..", folder / "named/up");
+    const auto refused = write_text({named, "up/victim"}, "new");
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find((folder / "named/up").string() + ": is a symbolic link"),
+              std::string::npos);
+    EXPECT_EQ(ScratchFolder::read(victim), "precious");
+}
+
 }  // namespace
 }  // namespace octoskin

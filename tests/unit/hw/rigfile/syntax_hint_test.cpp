@@ -47,6 +47,13 @@ TEST(YamlSyntax, mistakes_are_placed_and_explained) {
     }
 }
 
+TEST(YamlSyntax, a_merge_key_is_no_xml) {
+    EXPECT_EQ(yaml_error("<<: {a: 1}\n"), "no error");
+    EXPECT_THAT(yaml_error("<<: *base\n"), HasSubstr("rig.yaml:1:5: not YAML: "));
+    for (const char* text : {"<robot/>", "<?xml version='1.0'?>", "<!-- a -->", " \n<sdf>"})
+        EXPECT_THAT(yaml_error(text), HasSubstr("expected YAML, found XML")) << text;
+}
+
 TEST(XmlSyntax, mistakes_are_placed_and_explained) {
     const Mistake mistakes[] = {
         {"<robot>\n <link name=\"a\">\n <link name=\"b\"/>\n</robot>\n",

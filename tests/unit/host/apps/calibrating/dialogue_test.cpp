@@ -70,6 +70,17 @@ TEST(CalibrationDialogue, asks_once_after_a_heartbeat_with_the_rigs_hash) {
     EXPECT_EQ(dialogue.outcome(), std::nullopt);
 }
 
+TEST(CalibrationDialogue, names_the_rigs_key_where_a_node_refuses_all_commands) {
+    Dialogue dialogue = asked();
+    dialogue.on_frame(wire::encode(wire::NodeInfo{wire::InfoFault{.kind = wire::FaultKind::watchdog}}, 7),
+                      after_ms(12));
+    EXPECT_EQ(dialogue.outcome(), std::nullopt);
+    dialogue.on_frame(
+        wire::encode(wire::NodeInfo{wire::InfoFault{.kind = wire::FaultKind::commands_refused}}, 7),
+        after_ms(15));
+    EXPECT_NE(failure(dialogue).find("refuses_commands"), std::string::npos);
+}
+
 TEST(CalibrationDialogue, ends_with_what_the_node_found) {
     Dialogue dialogue = asked();
     dialogue.on_frame(frame_of(said(CalibrationOutcome::under_way)), after_ms(20));

@@ -21,8 +21,9 @@ using wire::CommandCode;
 
 class Commanding : public testing::Test {
   protected:
-    explicit Commanding(const std::vector<SensorSetup>& setups = std::vector<SensorSetup>(4))
-        : bus_(fleet_config(4, 2), setups) {}
+    explicit Commanding(const std::vector<SensorSetup>& setups = std::vector<SensorSetup>(4),
+                        const NodeConfig& config = fleet_config(4, 2))
+        : bus_(config, setups) {}
 
     Order order(CommandCode code, std::uint16_t argument = 0, std::uint8_t sensor = wire::kAllSensors) {
         sequence_ = static_cast<std::uint8_t>(sequence_ + 16);
@@ -183,6 +184,26 @@ TEST_F(Commanding, refusals_of_before_are_not_this_commands) {
             5);
     bus_.rig().run_for(Microseconds{100'000});
     EXPECT_THAT(perform(CommandCode::stop), HasSubstr("4 stopped"));
+}
+
+class CommandingRefused : public Commanding {
+  protected:
+    static NodeConfig config() {
+        NodeConfig config = fleet_config(4, 2);
+        config.refuses_commands = true;
+        return config;
+    }
+    CommandingRefused() : Commanding(std::vector<SensorSetup>(4), config()) {}
+};
+
+TEST_F(CommandingRefused, the_rigs_key_is_named_whatever_the_command_is) {
+    bus_.rig().run_for(Microseconds{3'000'000});
+    for (const CommandCode code : {CommandCode::stop, CommandCode::send_info, CommandCode::reset,
+                                   CommandCode::identify, CommandCode::set_rate}) {
+        EXPECT_THAT(perform(code), AllOf(HasSubstr("1 node 5"), HasSubstr("refuses_commands")))
+            << wire::name(code);
+    }
+    EXPECT_EQ(bus_.rig().node().state(), wire::NodeState::ranging);
 }
 
 class CommandingWithAbsent : public Commanding {

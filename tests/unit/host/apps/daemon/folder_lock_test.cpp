@@ -1,6 +1,7 @@
 #include "host/apps/daemon/folder_lock.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <optional>
@@ -36,6 +37,40 @@ TEST(FolderLock, says_why_nothing_can_be_written_there) {
     ASSERT_FALSE(lock);
     EXPECT_NE(lock.error().message.find("file"), std::string::npos);
     EXPECT_EQ(testing_support::ScratchFolder::read(scratch / "file"), "in the way");
+}
+
+TEST(FolderLock, writes_through_no_link_to_a_file_of_others) {
+    const testing_support::ScratchFolder scratch;
+    const auto victim = scratch.write("victim", "precious");
+    std::filesystem::create_directory(scratch / "maps");
+    std::filesystem::create_symlink("../victim", scratch / "maps/lock");
+    const auto refused = FolderLock::take(scratch / "maps");
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find((scratch / "maps/lock").string() + ": is a symbolic link"),
+              std::string::npos)
+        << refused.error().message;
+    std::filesystem::remove(scratch / "maps/lock");
+    std::filesystem::create_hard_link(victim, scratch / "maps/lock");
+    {
+        const auto taken = FolderLock::take(scratch / "maps");
+        ASSERT_TRUE(taken) << taken.error().message;
+        EXPECT_EQ(testing_support::ScratchFolder::read(scratch / "maps/lock"), std::to_string(::getpid()));
+        EXPECT_FALSE(FolderLock::take(scratch / "maps"));
+    }
+    std::filesystem::remove(scratch / "maps/lock");
+    ASSERT_EQ(::mkfifo((scratch / "maps/lock").c_str(), 0600), 0);
+    EXPECT_FALSE(FolderLock::take(scratch / "maps")) << "and waits for nobody";
+    EXPECT_EQ(testing_support::ScratchFolder::read(victim), "precious");
+}
+
+TEST(FolderLock, holds_the_folder_that_was_opened) {
+    const testing_support::ScratchFolder scratch;
+    const auto taken = FolderLock::take(scratch / "maps");
+    ASSERT_TRUE(taken);
+    std::filesystem::rename(scratch / "maps", scratch / "away");
+    EXPECT_FALSE(taken->folder().is_still_there());
+    EXPECT_TRUE(taken->folder().create_new("fused.ot"));
+    EXPECT_TRUE(std::filesystem::exists(scratch / "away/fused.ot"));
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 // What the daemon names as wrong with joint states and with the camera, likewise.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -99,6 +102,79 @@ TEST_F(JointProblemsTest, have_joint_states_that_come_quicker_than_the_rig_says)
         at_rate_of_rig(55.0),
         testing::MatchesRegex("joint states come, or came, quicker than the 55 Hz of the rig, and were "
                               "refused \\(too_frequent, [0-9]+\\): put the true rate into joints.rate_hz"));
+}
+
+/// From `begin_s` to `end_s` every second sample once more, 6 ms before, with the first joint `off` the
+/// truth.
+void add_second_sender(Scene& scene, double begin_s, double end_s, double off) {
+    ScriptedBus other;
+    other.set_clock(kJoints, 123'456'789, -60e-6);
+    for (double t = begin_s; t < end_s; t += 0.02) {
+        const double position = angle_at(t) + off;
+        other.joints(t - 0.006, kJoints, {&position, 1});
+    }
+    for (const StampedFrame& entry : other.frames())
+        scene.bus.send(1e-9 * static_cast<double>(entry.stamp.ns - kWallOffsetNs), entry.frame);
+}
+
+TEST_F(JointProblemsTest, have_two_senders_under_the_joint_node_from_the_first_contradiction_on) {
+    const auto with_second = [&](double end_s, double now_s) {
+        play_changed([&](Scene& scene) { add_second_sender(scene, 4.3, end_s, 0.05); }, now_s);
+        return told("joint senders");
+    };
+    EXPECT_EQ(with_second(4.9, 4.29), "");
+    EXPECT_THAT(with_second(4.9, 4.4),
+                testing::MatchesRegex(
+                    "two senders tell joint states under node 10, and neither is used until they have not "
+                    "contradicted each other for a second \\(second_sender, [0-9]+\\): the joint node and "
+                    "another board of that id, or `octoskin joints --can` beside it"));
+    EXPECT_EQ(problems(view_).front().about, "joint senders");
+    EXPECT_NE(with_second(4.4, 6.5), "") << "for three seconds after the last that was withheld";
+    EXPECT_EQ(with_second(4.4, 8.5), "");
+}
+
+TEST_F(JointProblemsTest, have_a_joint_that_jumps_and_by_how_much) {
+    play_changed(
+        [](Scene& scene) {
+            for (const auto& [at_s, position] : {std::pair{9.05, 0.0}, std::pair{9.06, angle_at(9.0)}})
+                scene.bus.joints(at_s, kJoints, {&position, 1});
+            scene.bus.exchange(9.1, {kLeft, kRight, kJoints});
+            for (int k = 0; k < 20; ++k) scene.bus.heartbeat(9.0 + 0.02 * k, scene.rig.nodes.front());
+        },
+        9.3);
+    EXPECT_EQ(told("joint jump"),
+              "joint states jump: shoulder went from 2.371 to 0.000 in 50 ms, where the robot description "
+              "lets it move by 0.850 at most (joint_jump, 1): another program tells joint states too, or the "
+              "velocity of its <limit> is too low");
+    EXPECT_EQ(told("joint senders"), "") << "one alone is nobody";
+}
+
+TEST_F(JointProblemsTest, have_every_program_that_sends_to_the_socket_where_there_are_several) {
+    const auto with_socket = inputs_with_joint_socket();
+    view_.inputs = with_socket.get();
+    send_joints("0.5");
+    with_socket->catch_up();
+    view_.now = monotonic_now();
+    EXPECT_EQ(told("joint senders"), "");
+    const pid_t child = ::fork();
+    if (child == 0) {
+        send_joints("0.7");
+        ::_exit(0);
+    }
+    ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+    with_socket->catch_up();
+    view_.now = monotonic_now();
+    EXPECT_THAT(told("joint senders"),
+                testing::MatchesRegex(fmt::format(
+                    "joint states come through the socket from more than one program, and none is used until "
+                    "all but one were silent for a second \\(second_sender, 1\\): process {} \\(.*, user "
+                    "{}\\) and process {} \\(.*user {}\\)",
+                    ::getpid(), ::getuid(), child, ::getuid())));
+    EXPECT_TRUE(are_joints_withheld(view_));
+    view_.now = view_.now + Nanoseconds{1'000'000'000};
+    EXPECT_FALSE(are_joints_withheld(view_));
+    view_.now = view_.now + Nanoseconds{2'000'000'000};
+    EXPECT_EQ(told("joint senders"), "");
 }
 
 class CameraProblemsTest : public DaemonViewTest {};

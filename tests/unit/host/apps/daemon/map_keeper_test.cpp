@@ -113,7 +113,7 @@ TEST(MapKeeper, refuses_a_damaged_map_and_one_of_another_resolution_by_name) {
 class SlowDisk {
   public:
     [[nodiscard]] MapKeeper::Writer writer() {
-        return [this](const FusedMap& map, const std::filesystem::path&) {
+        return [this](const FusedMap& map, const NamedFolder&) {
             std::unique_lock lock(mutex_);
             ++begun_;
             changed_.notify_all();
@@ -183,7 +183,7 @@ TEST(MapKeeper, goes_on_after_what_there_was_no_memory_for) {
     const auto need_memory = [&has_memory] {
         if (!has_memory) throw std::bad_alloc();
     };
-    const MapKeeper::Writer write = [&](const FusedMap&, const std::filesystem::path&) {
+    const MapKeeper::Writer write = [&](const FusedMap&, const NamedFolder&) {
         need_memory();
         return std::string();
     };

@@ -4,6 +4,8 @@
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <chrono>
 #include <memory>
 #include <sstream>
 
@@ -69,6 +71,43 @@ TEST_F(ProblemLogTest, tells_one_that_comes_and_goes_once) {
     EXPECT_EQ(told({}, ProblemLog::kOver - 3 * kTurn), "");
     EXPECT_EQ(told({}, 3 * kTurn), "info over: no frame\n");
     EXPECT_EQ(told({{"silent", "no frame"}}, kTurn), "warning no frame\n");
+}
+
+/// A clock in doubt for 2 s of each 4.5 s.
+std::vector<Problem> doubtful(Nanoseconds at) {
+    const bool is_there = at % Nanoseconds{4'500'000'000} < Nanoseconds{2'000'000'000};
+    return is_there ? std::vector<Problem>{{"clock", "the time is in doubt"}} : std::vector<Problem>{};
+}
+
+TEST_F(ProblemLogTest, tells_one_that_flaps_for_17_minutes_in_few_lines_and_how_often_it_did) {
+    constexpr Nanoseconds kTurn{50'000'000};
+    std::string all;
+    for (Nanoseconds at{0}; at < std::chrono::minutes(17); at += kTurn) all += told(doubtful(at), kTurn);
+    EXPECT_EQ(all,
+              "warning the time is in doubt\ninfo over: the time is in doubt\n"
+              "warning the time is in doubt\ninfo over: the time is in doubt\n"
+              "warning the time is in doubt\ninfo over: the time is in doubt\n"
+              "warning the time is in doubt\n")
+        << "from the fourth time on it must be away for 4 s";
+    std::string end;
+    for (Nanoseconds at{0}; at < std::chrono::seconds(600); at += kTurn) end += told({}, kTurn);
+    EXPECT_EQ(end, "info over: the time is in doubt (it came and went 227 times)\n");
+    EXPECT_EQ(told({{"clock", "the time is in doubt"}}, kTurn), "warning the time is in doubt\n");
+    EXPECT_EQ(told({}, ProblemLog::kOver), "info over: the time is in doubt\n") << "that was long ago";
+}
+
+/// Away each time for as long as it must be: the worst that one can do.
+TEST_F(ProblemLogTest, tells_one_that_flaps_as_the_log_would_have_it_less_and_less_often) {
+    int lines = 0;
+    const HostTime begun = now_;
+    while (now_ - begun < std::chrono::hours(24)) {
+        const std::string text = told(
+            lines % 2 == 0 ? std::vector<Problem>{{"clock", "the time is in doubt"}} : std::vector<Problem>{},
+            Nanoseconds{500'000'000});
+        lines += static_cast<int>(std::ranges::count(text, '\n'));
+    }
+    EXPECT_LE(lines, 2 * 24 * 12 + 30) << "one turn in five minutes";
+    EXPECT_GE(lines, 2 * 24 * 11);
 }
 
 TEST_F(ProblemLogTest, takes_a_sentence_that_another_replaced_for_no_problem_that_is_over) {

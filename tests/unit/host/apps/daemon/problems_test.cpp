@@ -38,6 +38,17 @@ TEST_F(ProblemsTest, are_none_where_all_is_well) {
     EXPECT_THAT(all_told(), IsEmpty());
 }
 
+// No frame has a stamp then, whatever else may be said of the time.
+TEST_F(ProblemsTest, begin_with_a_clock_of_this_machine_that_shows_nonsense) {
+    view_.is_wall_clock_right = false;
+    other_end_.reset();
+    inputs_->catch_up();
+    const auto told = problems(view_);
+    ASSERT_GE(told.size(), 2U);
+    EXPECT_EQ(told[0].about, "wall clock");
+    EXPECT_EQ(told[1].subject, "CAN");
+}
+
 TEST_F(ProblemsTest, come_the_most_fundamental_first) {
     play_changed([](Scene& scene) { scene.bus = ScriptedBus{}, scene.depth.clear(); });
     other_end_.reset();
@@ -173,6 +184,26 @@ TEST_F(ProblemsTest, have_a_sensor_that_does_not_range_but_for_its_start_until_i
         set_health(scene, 4.5, ranging, wire::SensorFault::bus_error);
     });
     EXPECT_THAT(all_told(), IsEmpty());
+}
+
+TEST_F(ProblemsTest, have_the_register_that_a_sensor_is_withheld_for_and_the_key_that_leaves_it_out) {
+    const auto say_fault = [](Scene& scene, double at_s, wire::FaultKind kind) {
+        const wire::RegisterReport report{kGood, 0x47, 0x0B, 0x0C};
+        scene.bus.send(at_s, wire::InfoFault{.kind = kind, .where = report.where()}, kLeft);
+    };
+    const std::string about = "node 1 'node 1' sensor 0 'good': degraded, config_mismatch";
+    play_changed([&](Scene& scene) {
+        set_health(scene, 4.4, wire::SensorState::degraded, wire::SensorFault::config_mismatch);
+        say_fault(scene, 4.5, wire::FaultKind::register_fixed);
+    });
+    EXPECT_THAT(told(about), AllOf(HasSubstr("0x47"), HasSubstr("0x0B"), HasSubstr("0x0C"),
+                                   HasSubstr("verification: {leave_out: [0x47]}")));
+    play_changed([&](Scene& scene) {
+        set_health(scene, 4.4, wire::SensorState::degraded, wire::SensorFault::config_mismatch);
+    });
+    EXPECT_EQ(told(about), about) << "its node has not named it yet";
+    play_changed([&](Scene& scene) { say_fault(scene, 4.5, wire::FaultKind::register_alike); });
+    EXPECT_THAT(all_told(), IsEmpty()) << "how this type of part is is no problem";
 }
 
 TEST_F(ProblemsTest, have_a_sensor_whose_readings_are_nearly_all_rejected_until_two_are_used) {

@@ -54,7 +54,8 @@ TEST_F(RecordRequestsTest, refuses_what_is_no_request_and_begins_nothing) {
     for (const char* const line :
          {"record ", "record start", "record stopped", "record  status", "record STOP"})
         expect_refused(line, "unknown request");
-    for (const char* const folder : {"/tmp/a\tb", "/tmp/\x1b[31mred", "/tmp/a\r"}) {
+    for (const char* const folder :
+         {"/tmp/a\tb", "/tmp/\x1b[31mred", "/tmp/a\r", "/tmp/\u009b31m", "/tmp/\u202etxt", "/tmp/\xff"}) {
         for (const char* const request : {"record start 0 ", "record stop "})
             expect_refused(request + std::string(folder), "may have no control characters");
     }

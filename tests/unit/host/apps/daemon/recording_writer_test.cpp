@@ -130,7 +130,7 @@ TEST_F(RecordingWriterTest, takes_nothing_that_has_no_room_and_never_waits) {
 class HungDisk {
   public:
     [[nodiscard]] RecordingWriter::MapWriter writer() {
-        return [this](const FusedMap&, const std::filesystem::path&) -> Status<MapFileError> {
+        return [this](const FusedMap&, const FilePlace&) -> Status<MapFileError> {
             std::unique_lock lock(mutex_);
             is_writing_ = true;
             changed_.notify_all();
@@ -173,10 +173,8 @@ TEST_F(RecordingWriterTest, is_left_behind_by_its_end_when_the_disk_hangs) {
 }
 
 TEST_F(RecordingWriterTest, names_what_was_thrown_while_it_wrote) {
-    RecordingWriter writer(begin(),
-                           [](const FusedMap&, const std::filesystem::path&) -> Status<MapFileError> {
-                               throw std::bad_alloc();
-                           });
+    RecordingWriter writer(
+        begin(), [](const FusedMap&, const FilePlace&) -> Status<MapFileError> { throw std::bad_alloc(); });
     writer.finish(end(0));
     ASSERT_TRUE(writer.wait(kPatience));
     EXPECT_NE(writer.error().find("bad_alloc"), std::string::npos) << writer.error();

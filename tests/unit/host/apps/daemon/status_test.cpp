@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 #include <set>
@@ -10,6 +11,7 @@
 
 #include "common/wire/codec.hpp"
 #include "common/wire/crc.hpp"
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
 #include "host/apps/version/version.hpp"
 #include "tests/unit/host/apps/daemon/daemon_view_fixture.hpp"
@@ -117,7 +119,7 @@ TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
     EXPECT_EQ(node,
               Json::parse(R"({"id": 44, "name": "far", "verdict": "absent", "reason": null, "state": null,
         "age_s": null, "degraded_sensors": null, "clock_known": false, "clock_ppm": null, "clock_error_ms": null,
-        "refused_share": null, "refused_most": null})"));
+        "refused_share": null, "refused_most": null, "registers": []})"));
     EXPECT_EQ(
         sensor(0),
         Json::parse(R"({"index": 0, "name": "good", "state": null, "fault": null, "received": 0, "lost": 0,
@@ -125,6 +127,32 @@ TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
         "disputed": false, "reflexes": 0, "reflex_below_m": 0.0, "reflex_m": null,
         "camera": {"contradicts": false, "fault": null, "refused": false, "compared": 0, "fitted": 0,
                    "agreed": 0, "in_free_space": 0, "behind_surface": 0}})"));
+}
+
+TEST_F(StatusTest, has_registers_that_read_otherwise_alike_and_of_a_sensor_as_long_as_it_is_not_well) {
+    EXPECT_EQ(status()["nodes"][0]["registers"], Json::array());
+    const auto say_fault = [this](double at_s, wire::FaultKind kind, const wire::RegisterReport& report) {
+        ScriptedBus bus;
+        bus.send(at_s, wire::InfoFault{.kind = kind, .where = report.where()}, kLeft);
+        play_on(bus.frames(), at_s + 0.001);
+    };
+    const auto say_health = [this](double at_s, wire::SensorState state, wire::SensorFault fault) {
+        ScriptedBus bus;
+        bus.send(at_s, wire::SensorHealth{.sensor = kGood, .state = state, .fault = fault}, kLeft);
+        play_on(bus.frames(), at_s + 0.001);
+    };
+    say_fault(4.56, wire::FaultKind::register_alike, {3, 0x7C, 0x00, 0x01});
+    say_fault(4.57, wire::FaultKind::register_fixed, {kGood, 0x47, 0x0B, 0x0C});
+    const Json alike = Json::parse(
+        R"({"register": 124, "written": 0, "read": 1, "alike": true, "sensor": null, "sensors": 3})");
+    EXPECT_EQ(status()["nodes"][0]["registers"], Json::array({alike}));
+    say_health(4.58, wire::SensorState::degraded, wire::SensorFault::config_mismatch);
+    Json own = Json::parse(
+        R"({"register": 71, "written": 11, "read": 12, "alike": false, "sensor": 0, "sensors": 1})");
+    own["sensor"] = kGood;
+    EXPECT_EQ(status()["nodes"][0]["registers"], Json::array({alike, own}));
+    say_health(4.59, wire::SensorState::ranging, wire::SensorFault::none);
+    EXPECT_EQ(status()["nodes"][0]["registers"], Json::array({alike}));
 }
 
 TEST_F(StatusTest, has_why_a_node_is_refused_and_what_it_says_of_its_sensors) {
@@ -263,9 +291,18 @@ TEST_F(StatusTest, has_what_came_through_the_joint_socket_or_null_without_one) {
     send_joints("1 2 3");
     with_socket->catch_up();
     view_.inputs = with_socket.get();
-    EXPECT_EQ(status()["joints_socket"],
-              Json::parse(
-                  R"({"samples": 2, "displaced": 0, "surplus": 0, "thinned": 1, "joint_node_ignored": 0, "not_a_number": 1,
+    view_.now = monotonic_now();
+    Json told = status()["joints_socket"];
+    ASSERT_EQ(told["senders"].size(), 1U);
+    EXPECT_EQ(told["senders"][0]["pid"], ::getpid());
+    EXPECT_EQ(told["senders"][0]["uid"], ::getuid());
+    EXPECT_EQ(told["senders"][0]["address"], "");
+    EXPECT_EQ(told["senders"][0]["samples"], 2);
+    EXPECT_LT(told["senders"][0]["age_s"].get<double>(), 1.0);
+    told.erase("senders");
+    EXPECT_EQ(told,
+              Json::parse(R"({"samples": 2, "displaced": 0, "surplus": 0, "thinned": 1, "second_sender": 0,
+                  "rate_hz": 0.0, "above_rate": false, "joint_node_ignored": 0, "not_a_number": 1,
                   "wrong_count": 1, "time_off": 0, "too_large": 0, "too_long": 0})"));
 }
 
@@ -340,8 +377,8 @@ TEST_F(StatusTest, names_nothing_that_is_learnt_anew_for_three_seconds_after_a_r
 
 TEST_F(StatusTest, has_the_recording_or_null_and_the_reloads) {
     EXPECT_EQ(status()["recording"], nullptr);
-    view_.reloads = {.count = 2, .dropped = 7};
-    EXPECT_EQ(status()["reloads"], Json::parse(R"({"count": 2, "dropped": 7})"));
+    view_.reloads = {.count = 2, .unchanged = 3, .dropped = 7};
+    EXPECT_EQ(status()["reloads"], Json::parse(R"({"count": 2, "unchanged": 3, "dropped": 7})"));
     Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, host_at(4.3));
     view_.recorder = &recorder;
     const Json recording = status()["recording"];
@@ -388,9 +425,19 @@ void add_keys(const Json& value, const std::string& group, std::set<std::string>
 
 TEST_F(StatusTest, has_every_key_with_a_meaning_and_no_other) {
     const auto with_socket = inputs_with_joint_socket();
+    send_joints("0.5");
+    with_socket->catch_up();
+    view_.now = monotonic_now();
     view_.inputs = with_socket.get();
     const Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, host_at(4.3));
     view_.recorder = &recorder;
+    // A list has its keys only where it has anything in it.
+    ScriptedBus bus;
+    bus.send(4.6,
+             wire::InfoFault{.kind = wire::FaultKind::register_alike,
+                             .where = wire::RegisterReport{3, 0x47, 0x0B, 0x0C}.where()},
+             kLeft);
+    play_on(bus.frames(), 4.65);
     std::set<std::string> told;
     add_keys(status(), "", told);
     std::set<std::string> known;
@@ -412,8 +459,9 @@ TEST_F(StatusTest, knows_when_each_kind_of_measurement_was_used_last) {
                  view_.used.time_back);
     play(daemon_scene(), 6.0);
     EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.joint_sample->ns), 5.99, 0.012);
-    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.reading->ns), 3.817, 0.012);
-    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.depth_frame->ns), 4.5, 0.012);
+    // The joint state behind each is certain once the next one is here, and 12.5 ms have passed.
+    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.reading->ns), 3.830, 0.012);
+    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.depth_frame->ns), 4.520, 0.012);
     EXPECT_FALSE(view_.used.time_back);
     // The host begins anew: what it says and how the frames are stamped no longer fit.
     Scene anew = good_scene();

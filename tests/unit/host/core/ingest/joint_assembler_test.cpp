@@ -180,6 +180,40 @@ TEST(JointAssembler, gives_up_a_sample_that_contradicts_itself) {
     EXPECT_TRUE(outcome.opened);
 }
 
+// What comes after it may be of both.
+TEST(JointAssembler, completes_no_sample_that_has_contradicted_itself) {
+    JointAssembler assembler(kRate);
+    wire::JointPair other = std::get<wire::JointPair>(part(1, 0));
+    other.position_urad[0] += 1;
+    (void)assembler.on_frame(part(1, 0), ms(10));
+    EXPECT_TRUE(assembler.on_frame(other, ms(10)).is_contradiction);
+    for (int index = 1; index < 4; ++index) {
+        const auto outcome = assembler.on_frame(part(1, index), ms(10));
+        EXPECT_FALSE(outcome.complete);
+        EXPECT_EQ(outcome.given_up.size(), index == 3 ? 1U : 0U);
+    }
+    EXPECT_EQ(assembler.pending(), 0U);
+    bool is_complete = false;
+    for (int index = 0; index < 4; ++index)
+        is_complete = assembler.on_frame(part(2, index), ms(20)).complete.has_value();
+    EXPECT_TRUE(is_complete);
+}
+
+TEST(JointAssembler, knows_two_times_of_one_round_from_those_of_two) {
+    for (const auto& [apart_us, is_of_one_round] :
+         {std::pair{0U, true}, std::pair{39'999U, true}, std::pair{40'000U, false}, std::pair{80'000U, false},
+          std::pair{wire::kFdTimeSpanUs - 7'000U, true}}) {
+        JointAssembler assembler(kRate);
+        const std::uint32_t first_us = 3'000;
+        (void)assembler.on_frame(wire::JointLast{1, 0, {first_us, wire::kFdTimeSpanUs}}, ms(10));
+        const auto outcome = assembler.on_frame(
+            wire::JointLast{1, 1, {(first_us + apart_us) % wire::kFdTimeSpanUs, wire::kFdTimeSpanUs}},
+            ms(10));
+        EXPECT_TRUE(outcome.is_contradiction);
+        EXPECT_EQ(outcome.is_of_one_round, is_of_one_round) << apart_us;
+    }
+}
+
 TEST(JointAssembler, begins_anew_when_time_goes_back) {
     JointAssembler assembler(kRate);
     EXPECT_TRUE(assembler.on_frame(part(0, 0), ms(1000)).opened);

@@ -114,20 +114,23 @@ TEST(NodeSummary, is_a_table_of_one_line_a_node) {
                                   .readings = NodeSummary::Readings{.received = 2218, .lost = 12, .gaps = 7},
                                   .clock_relocks = 1,
                                   .verdict = NodeVerdict::usable,
-                                  .reason = {}},
+                                  .reason = {},
+                                  .registers = {}},
                                  {.node_id = 62,
                                   .name = "joints",
                                   .readings = {},
                                   .clock_relocks = 0,
                                   .verdict = NodeVerdict::other_version,
-                                  .reason = NodeMismatch{"version", 2, 1, "this host speaks"}},
+                                  .reason = NodeMismatch{"version", 2, 1, "this host speaks"},
+                                  .registers = {}},
                                  {.node_id = 63,
                                   .name = "untimed",
                                   .readings = {},
                                   .clock_relocks = 0,
                                   .verdict = NodeVerdict::usable,
                                   .has_time = false,
-                                  .reason = {}}};
+                                  .reason = {},
+                                  .registers = {}}};
     EXPECT_EQ(to_text(nodes),
               "node                  readings      lost      gaps  re-locks  verdict\n"
               "  1 rear_rings            2218        12         7         1  usable\n"

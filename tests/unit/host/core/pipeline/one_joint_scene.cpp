@@ -80,7 +80,7 @@ RobotModel one_joint_robot() {
                                                    .kind = JointKind::revolute,
                                                    .T_parent_joint = Eigen::Isometry3d::Identity(),
                                                    .axis = Eigen::Vector3d::UnitZ(),
-                                                   .limits = {-3.2, 3.2}}};
+                                                   .limits = {-3.2, 3.2, 8.0}}};
     const std::vector<std::string> moved = {"shoulder"};
     return RobotModel::build("base", joints, moved).value();
 }

@@ -173,6 +173,7 @@ const std::vector<Case<JointReason>>& joint_cases() {
              s.bus.send(9.2, last_part(s, 9.149), kJoints);
          }},
         {R::out_of_limits, joints(9.2, 3.3)},
+        {R::joint_jump, joints(9.05, 0.0)},  // 2.37 rad in 50 ms
         {R::out_of_order,
          [](Scene& s) {
              const double position = 0.0;
@@ -201,8 +202,10 @@ TEST_P(JointReasons, are_counted_once_and_leave_the_maps_alone) {
 }
 INSTANTIATE_TEST_SUITE_P(Each, JointReasons, testing::ValuesIn(joint_cases()), name_of_case<JointReason>);
 TEST(JointReasonsAll, have_a_case_each) {
-    // A source that is too quick has many rejected at once: can_intake_test.
-    expect_one_each(joint_cases(), {JointReason::queue_overflow, JointReason::too_frequent});
+    // A source that is too quick has many rejected at once: can_intake_test. So has a second sender:
+    // second_joint_sender_test.
+    expect_one_each(joint_cases(),
+                    {JointReason::queue_overflow, JointReason::too_frequent, JointReason::second_sender});
 }
 TEST(JointReasonsAll, drop_the_oldest_where_too_many_wait) {
     Scene crowded = good_scene();

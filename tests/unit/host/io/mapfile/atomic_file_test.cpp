@@ -200,12 +200,30 @@ TEST(AtomicFile, says_which_step_failed_and_why) {
     EXPECT_EQ(save_atomically(folder.path() / "..", "x").error().step, SaveStep::name);
 }
 
-TEST(AtomicFile, writes_through_no_symbolic_link_that_waits_at_its_partial_name) {
+TEST(AtomicFile, writes_through_no_link_that_waits_at_its_partial_name) {
     const ScratchFolder folder;
     const auto victim = folder.write("victim", "precious");
     std::filesystem::create_symlink(victim, folder / ".map.ot.octoskin-part");
-    EXPECT_FALSE(save_atomically(folder / "map.ot", "x").has_value());
+    EXPECT_TRUE(save_atomically(folder / "map.ot", "x").has_value());
     EXPECT_EQ(ScratchFolder::read(victim), "precious");
+    std::filesystem::create_hard_link(victim, folder / ".map.ot.octoskin-part");
+    EXPECT_TRUE(save_atomically(folder / "map.ot", "y").has_value());
+    EXPECT_EQ(ScratchFolder::read(victim), "precious");
+    EXPECT_EQ(ScratchFolder::read(folder / "map.ot"), "y");
+    EXPECT_EQ(folder.entries(), 2);
+}
+
+TEST(AtomicFile, replaces_a_link_in_the_files_place_and_no_other_name_of_the_file) {
+    const ScratchFolder folder;
+    const auto victim = folder.write("victim", "precious");
+    for (const bool is_hard : {false, true}) {
+        std::filesystem::remove(folder / "map.ot");
+        is_hard ? std::filesystem::create_hard_link(victim, folder / "map.ot")
+                : std::filesystem::create_symlink(victim, folder / "map.ot");
+        EXPECT_TRUE(save_atomically(folder / "map.ot", "x").has_value());
+        EXPECT_EQ(ScratchFolder::read(victim), "precious");
+        EXPECT_EQ(ScratchFolder::read(folder / "map.ot"), "x");
+    }
 }
 
 TEST(AtomicFile, removes_leftovers_of_a_dead_process_and_nothing_else) {
@@ -215,9 +233,8 @@ TEST(AtomicFile, removes_leftovers_of_a_dead_process_and_nothing_else) {
     folder.write(".other.octoskin-part", "half");
     folder.write("visible.octoskin-part", "kept");
     folder.write(".hidden", "kept");
-    EXPECT_EQ(remove_leftovers(folder.path()), 2U);
+    EXPECT_EQ(remove_leftovers(OpenFolder::open(folder.path(), FolderAccess::write).value()), 2U);
     EXPECT_EQ(folder.entries(), 3);
-    EXPECT_EQ(remove_leftovers(folder / "no such folder"), 0U);
 }
 
 }  // namespace

@@ -94,6 +94,11 @@ TEST_F(HelperProcessTest, tells_exit_codes_and_signals) {
     EXPECT_EQ(start("kill -SEGV $$")->wait(5s), "signal 11");
 }
 
+TEST_F(HelperProcessTest, names_the_limit_that_was_reached) {
+    EXPECT_EQ(start("kill -XCPU $$")->wait(5s), "it needs more than 5 s of processor time for a frame");
+    EXPECT_EQ(start("exit 70")->wait(5s), "it needs more than 2048 MiB of memory");
+}
+
 TEST_F(HelperProcessTest, is_killed_when_it_does_not_end_in_time) {
     auto helper = start("exec sleep 100");
     ASSERT_TRUE(helper) << helper.error();

@@ -142,9 +142,9 @@ TEST_F(OrderFile, with_a_mistake_is_named_with_its_line) {
     EXPECT_TRUE(read("").starts_with(file + ":1: does not begin as an order"));
     EXPECT_TRUE(read(std::string(100'000, 'x')).starts_with(file + ":1: does not begin as an order"));
     std::filesystem::remove(file);
-    EXPECT_EQ(OrderReader::open(file).error().what, file + ": cannot be opened");
+    EXPECT_EQ(OrderReader::open(file).error().what, file + ": No such file or directory");
     ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
-    EXPECT_EQ(OrderReader::open(file).error().what, file + ": is a pipe or a device, not an ordinary file");
+    EXPECT_EQ(OrderReader::open(file).error().what, file + ": is a named pipe, not an ordinary file");
 }
 
 }  // namespace

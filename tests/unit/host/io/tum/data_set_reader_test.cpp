@@ -126,6 +126,34 @@ TEST_F(DataSetReaderTest, a_fault_in_the_list_names_file_and_line) {
     EXPECT_EQ(backwards.error().what, file + ":5: its time is before that of the image above it");
 }
 
+TEST_F(DataSetReaderTest, an_image_whose_name_leads_elsewhere_is_named_before_any_is_read) {
+    const auto outside = scratch_.write("outside.png", "a secret");
+    std::filesystem::create_symlink(outside, written_.folder() / "link.png");
+    std::filesystem::create_directory_symlink(scratch_.path(), written_.folder() / "up");
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    const std::pair<std::string, const char*> images[] = {{outside.string(), "leads out"},
+                                                          {"../outside.png", "leads out"},
+                                                          {"link.png", "is a symbolic link"},
+                                                          {"up/outside.png", "is a symbolic link"}};
+    for (const auto& [image, what] : images) {
+        ScratchFolder again;
+        std::filesystem::copy(
+            written_.folder(), again / "set",
+            std::filesystem::copy_options::recursive | std::filesystem::copy_options::copy_symlinks);
+        std::ofstream(again / "set/depth.txt") << "100 " << image << '\n';
+        const auto read = DataSetReader::open(again / "set");
+        ASSERT_FALSE(read) << image;
+        EXPECT_THAT(read.error().what, AllOf(HasSubstr("depth.txt:1: " + image + ": "), HasSubstr(what)));
+    }
+}
+
+TEST_F(DataSetReaderTest, a_list_behind_a_link_is_not_read) {
+    std::filesystem::rename(written_.folder() / "groundtruth.txt", scratch_ / "poses.txt");
+    std::filesystem::create_symlink(scratch_ / "poses.txt", written_.folder() / "groundtruth.txt");
+    EXPECT_THAT(DataSetReader::open(written_.folder()).error().what,
+                AllOf(HasSubstr("groundtruth.txt: "), HasSubstr("is a symbolic link")));
+}
+
 TEST_F(DataSetReaderTest, a_list_that_is_not_there_is_named) {
     std::filesystem::remove(written_.folder() / "groundtruth.txt");
     EXPECT_THAT(DataSetReader::open(written_.folder()).error().what,

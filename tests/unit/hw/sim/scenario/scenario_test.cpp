@@ -92,6 +92,29 @@ TEST_F(ScenarioFile, takes_other_values_laid_over_it) {
     EXPECT_EQ(dark->ranges.reflectivity, 0.17);
 }
 
+TEST_F(ScenarioFile, says_how_sensors_are_that_nothing_is_wrong_with) {
+    const auto scenario = read_with(
+        "sensor_traits:\n  - {register: 0x47, reads: 0x0c}\n"
+        "  - {node_id: 2, sensor: 16, register: 0x7C, reads: 1, mask: 1}\n"
+        "  - {range_spread_us: 1000, range_step_us: 300, boot_load_us: 3000}");
+    ASSERT_TRUE(scenario) << scenario.error().message();
+    const std::vector<TraitsOf> expected{
+        {.traits = {.misread = {{.index = 0x47, .value = 12}}}},
+        {.node_id = 2, .sensor = 16, .traits = {.misread = {{.index = 0x7C, .value = 1, .mask = 1}}}},
+        {.traits = {.range_spread = Microseconds{1'000},
+                    .range_step = Microseconds{300},
+                    .boot_load = Microseconds{3'000}}}};
+    EXPECT_EQ(scenario->sensor_traits, expected);
+    EXPECT_TRUE(read_with("name: plain")->sensor_traits.empty());
+    EXPECT_THAT(error_of("sensor_traits: [{reads: 3}]"), HasSubstr("sensor_traits[0].reads"));
+    EXPECT_THAT(error_of("sensor_traits: [{register: 0x47}]"), HasSubstr("sensor_traits[0].reads"));
+    EXPECT_THAT(error_of("sensor_traits: [{register: 0x200, reads: 1}]"),
+                HasSubstr("sensor_traits[0].register"));
+    EXPECT_THAT(error_of("sensor_traits: [{sensor: 34}]"), HasSubstr("sensor_traits[0].sensor"));
+    EXPECT_THAT(error_of("sensor_traits: [{}, {range_spread_us: 20001}]"),
+                HasSubstr("sensor_traits[1].range_spread_us"));
+}
+
 TEST_F(ScenarioFile, with_an_unknown_key_is_refused_with_file_line_and_key) {
     EXPECT_THAT(error_of("depth:\n  sigma_mm: 30"),
                 AllOf(HasSubstr("changed.yaml:3"), HasSubstr("sigma_mm"), HasSubstr("sigma_m")));

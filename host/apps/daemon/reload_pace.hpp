@@ -1,0 +1,40 @@
+// When a SIGHUP is obeyed: at once, unless one was a moment ago. However many come, the daemon goes on to map
+// and the files are read once more after the last.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "common/time.hpp"
+
+namespace octoskin {
+
+class ReloadPace {
+  public:
+    /// How long the next waits after one that was refused, or found nothing new.
+    static constexpr Nanoseconds kAfterNothing{1'000'000'000};
+    /// After one that changed something: readings are used again after 1.5 s, and what is wrong is judged
+    /// again after 3 s.
+    static constexpr Nanoseconds kAfterChange{4'000'000'000};
+
+    /// A SIGHUP came. True if it is the first that waits.
+    bool ask() noexcept { return !std::exchange(is_asked_, true); }
+    /// One that came is to be obeyed now.
+    [[nodiscard]] bool is_due(HostTime now) const noexcept { return is_asked_ && wait(now).count() == 0; }
+    /// So long one that comes now waits.
+    [[nodiscard]] Nanoseconds wait(HostTime now) const noexcept {
+        return next_ ? std::max(*next_ - now, Nanoseconds{0}) : Nanoseconds{0};
+    }
+    /// All that came before `now` are obeyed, and that changed something or did not.
+    void obeyed(HostTime now, bool has_changed) noexcept {
+        is_asked_ = false;
+        next_ = now + (has_changed ? kAfterChange : kAfterNothing);
+    }
+
+  private:
+    bool is_asked_ = false;
+    std::optional<HostTime> next_;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,55 @@
+// octoskin repair: ends what an octoskin left half moved that was killed while it put files in their places.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/file_set.hpp"
+#include "host/io/folder/open_folder.hpp"
+
+namespace octoskin::app {
+namespace {
+
+/// In a recording its maps, in an experiment its recording.
+constexpr const char* kFoldersWithin[] = {"maps", "recording", "recording/maps"};
+
+AppError error_of(const FolderError& error) {
+    ExitCode code = ExitCode::cannot_create;
+    if (error.fault == FolderFault::absent || error.fault == FolderFault::not_a_folder)
+        code = ExitCode::no_input;
+    if (error.fault == FolderFault::not_permitted) code = ExitCode::no_permission;
+    return {code, error.message()};
+}
+
+bool is_finished(const OpenFolder& folder) {
+    if (!value_or_fail(settle_file_set(folder))) return false;
+    print("{}: the files that were left half moved are in their places\n", folder.shown().string());
+    return true;
+}
+
+void repair(const std::filesystem::path& named) {
+    const auto folder = OpenFolder::open(named, FolderAccess::write);
+    if (!folder) throw CommandFailure(error_of(folder.error()));
+    bool is_any = is_finished(*folder);
+    for (const char* const name : kFoldersWithin) {
+        if (folder->kind_of(name) != EntryKind::folder) continue;
+        const auto within = folder->open_folder(name);
+        if (!within) throw CommandFailure(error_of(within.error()));
+        is_any = is_finished(*within) || is_any;
+    }
+    if (!is_any) print("{}: nothing is half moved there\n", named.string());
+}
+
+}  // namespace
+
+void add_repair_command(CLI::App& app) {
+    auto folder = std::make_shared<std::filesystem::path>();
+    CLI::App* command = app.add_subcommand(
+        "repair",
+        "Finish what a killed octoskin left half moved in a recording, a maps folder or an experiment");
+    command->add_option("folder", *folder, "The folder, which is yours or root's")->required();
+    command->callback([folder] { repair(*folder); });
+}
+
+}  // namespace octoskin::app

@@ -1,0 +1,31 @@
+// The files of a folder, opened beneath its descriptor, for libraries that want a path.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "common/result.hpp"
+#include "host/io/folder/open_folder.hpp"
+#include "hw/sim/world/sdf/world_files.hpp"
+
+namespace octoskin::sim {
+
+class FolderFiles final : public WorldFiles {
+  public:
+    [[nodiscard]] static Result<std::unique_ptr<FolderFiles>, std::string> open(
+        const std::filesystem::path& folder);
+
+    /// `file`: relative to the folder. What was opened stays open.
+    [[nodiscard]] Result<std::filesystem::path, std::string> openable(
+        const std::filesystem::path& file) const override;
+
+  private:
+    explicit FolderFiles(OpenFolder folder) : folder_(std::move(folder)) {}
+
+    OpenFolder folder_;
+    mutable std::map<std::filesystem::path, OpenFile> opened_;
+};
+
+}  // namespace octoskin::sim

@@ -1,0 +1,24 @@
+// What octoskin-world-read hands to the program that started it: solids, or what is wrong with the file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/result.hpp"
+#include "hw/sim/world/solid.hpp"
+#include "hw/sim/world/world_error.hpp"
+
+namespace octoskin::sim {
+
+using SolidsOrError = Result<std::vector<Solid>, WorldError>;
+
+/// Both ends are of one build and one machine: numbers as they lie in memory, every bit kept.
+[[nodiscard]] std::string to_bytes(const SolidsOrError& solids);
+
+/// The same again. Empty unless the bytes are whole, nothing follows them, and each corner of a triangle is
+/// one of its solid's vertices. The error's file is empty: the caller knows it.
+[[nodiscard]] std::optional<SolidsOrError> from_bytes(std::string_view bytes);
+
+}  // namespace octoskin::sim

@@ -1,0 +1,369 @@
+// Folders of others: whatever lies in a recording, nothing outside of it is written, made, removed or
+// touched.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include "tests/system/cli/program.hpp"
+
+namespace octoskin {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AnyOf;
+using testing::Eq;
+using testing::HasSubstr;
+
+constexpr const char* kFileNames[] = {"can.log",
+                                      "depth.oni",
+                                      "depth.epoch.yaml",
+                                      "rig.yaml",
+                                      "robot.urdf",
+                                      "meta.yaml",
+                                      "order.log",
+                                      "mapping.yaml",
+                                      "first.ot",
+                                      "last.ot",
+                                      "lock",
+                                      "fused.ot",
+                                      "fused.bt",
+                                      "fused.ply",
+                                      "maps.yaml",
+                                      ".journal",
+                                      "report.html",
+                                      "metrics.json",
+                                      ".fused.ot.octoskin-part"};
+
+/// What is at a path: kind, mode, owner, time of the last change, bytes. Not how many names it has: the one
+/// in the recording may go.
+std::string state_of(const fs::path& path) {
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) != 0) return "absent";
+    std::ostringstream text;
+    text << status.st_mode << ' ' << status.st_uid << ' ' << status.st_mtim.tv_sec << '.'
+         << status.st_mtim.tv_nsec << ' ';
+    if (S_ISREG(status.st_mode)) text << content(path);
+    return text.str();
+}
+
+std::map<std::string, std::string> states_in(const fs::path& folder) {
+    std::map<std::string, std::string> states{{".", state_of(folder)}};
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        states[entry.path().lexically_relative(folder).string()] = state_of(entry.path());
+    return states;
+}
+
+/// One way to lay a trap in a place of the recording.
+enum class Trap : std::uint8_t {
+    link_to_file,
+    link_to_folder,
+    link_to_nothing,  ///< that is not there yet, in the victim's folder
+    absolute_link,
+    hard_link,
+    pipe,
+    device,
+    folder,
+};
+
+constexpr Trap kTraps[] = {Trap::link_to_file,  Trap::link_to_folder, Trap::link_to_nothing,
+                           Trap::absolute_link, Trap::hard_link,      Trap::pipe,
+                           Trap::device,        Trap::folder};
+
+class FolderWalk : public ProgramTest {
+  protected:
+    FolderWalk() {
+        fs::create_directory(directory_ / "outside");
+        for (const char* within : {"victim", "victim/maps", "victim/recording"}) {
+            fs::create_directories(directory_ / "outside" / within);
+            for (const char* name : kFileNames)
+                write(directory_ / "outside" / within / name, std::string("the victim's ") + name);
+        }
+        write(directory_ / "outside/victim/.journal", "octoskin-file-set/1\nput can.log\n");
+    }
+
+    /// A recording of ranges alone, so short that a replay takes no time.
+    void make_template() {
+        record_short("made");
+        fs::create_directory(directory_ / "template");
+        for (const char* name : {"rig.yaml", "robot.urdf", "meta.yaml"})
+            fs::copy_file(directory_ / "made" / name, directory_ / "template" / name);
+        std::istringstream lines(content(directory_ / "made/can.log"));
+        std::string log;
+        std::string line;
+        for (int i = 0; i < 1500 && std::getline(lines, line); ++i) log += line + "\n";
+        write(directory_ / "template/can.log", log);
+        fs::remove_all(directory_ / "made");
+    }
+
+    /// A recording with a trap in one place; false: such a trap cannot be laid.
+    bool lay(Trap trap, const std::string& place) {
+        fs::remove_all(directory_ / "rec");
+        fs::copy(directory_ / "template", directory_ / "rec", fs::copy_options::recursive);
+        const fs::path at = directory_ / "rec" / place;
+        fs::create_directories(at.parent_path());
+        fs::remove_all(at);
+        fs::path victim("../outside/victim");
+        for (fs::path up = fs::path(place).parent_path(); !up.empty(); up = up.parent_path())
+            victim = ".." / victim;
+        const fs::path file = directory_ / "outside/victim" / name_like(place);
+        std::error_code error;
+        switch (trap) {
+            case Trap::link_to_file:
+                fs::create_symlink(victim / name_like(place), at, error);
+                break;
+            case Trap::link_to_folder:
+                fs::create_symlink(victim, at, error);
+                break;
+            case Trap::link_to_nothing:
+                fs::create_symlink(victim / "new", at, error);
+                break;
+            case Trap::absolute_link:
+                fs::create_symlink(file, at, error);
+                break;
+            case Trap::hard_link:
+                fs::create_hard_link(file, at, error);
+                break;
+            case Trap::pipe:
+                return ::mkfifo(at.c_str(), 0600) == 0;
+            case Trap::device:
+                return ::mknod(at.c_str(), S_IFCHR | 0600, makedev(1, 5)) == 0;  // /dev/zero
+            case Trap::folder:
+                fs::create_directory(at, error);
+                break;
+        }
+        return !error;
+    }
+
+    /// The victim's file of this name, or its can.log for a place that no file has.
+    static std::string name_like(const std::string& place) {
+        const std::string name = fs::path(place).filename().string();
+        const auto* const end = std::end(kFileNames);
+        return std::find(std::begin(kFileNames), end, name) == end ? "can.log" : name;
+    }
+
+    [[nodiscard]] std::vector<std::string> commands() const {
+        const std::string rec = path("rec");
+        return {"replay " + rec, "explain 0 0 1 --recording " + rec, "evaluate " + rec,
+                "simulate " + rec + " --force --rig " + source("tests/data/partial_body/rig.yaml") +
+                    " --scenario " + source("tests/data/short/scenario.yaml"),
+                "repair " + rec};
+    }
+
+    /// Runs it, and looks at the world outside, of which the recording's own names are no part.
+    Said expect_harmless(const std::string& command, const std::string& case_name) const {
+        const auto before = states_in(directory_ / "outside");
+        const Said said = run("timeout 20 " OCTOSKIN_PROGRAM " " + command + " < /dev/null");
+        EXPECT_EQ(states_in(directory_ / "outside"), before) << case_name << ": " << command << said.output;
+        EXPECT_NE(said.exit_code, 124) << case_name << " hangs: " << command;
+        EXPECT_THAT(said.exit_code,
+                    AnyOf(Eq(0), Eq(1), Eq(2), Eq(64), Eq(65), Eq(66), Eq(73), Eq(77), Eq(78)))
+            << case_name << ": " << command << ": " << said.output;
+        return said;
+    }
+
+    /// A recording with the journal of a killed octoskin that is none.
+    void lay_journal(const std::string& line) {
+        fs::remove_all(directory_ / "rec");
+        fs::copy(directory_ / "template", directory_ / "rec", fs::copy_options::recursive);
+        fs::create_directories(directory_ / "rec/.octoskin-ready/link");
+        fs::create_directory_symlink("../outside/victim", directory_ / "rec/link");
+        fs::create_directory_symlink("../outside/victim", directory_ / "rec/maps");
+        for (const char* name : {"link/can.log", "can.log", "maps.yaml"})
+            write(directory_ / "rec/.octoskin-ready" / name, "the attacker's");
+        write(directory_ / "rec/.octoskin-ready/.journal",
+              "octoskin-file-set/1\n" + line + "\nput maps.yaml\n");
+    }
+};
+
+class FolderTrap : public FolderWalk, public testing::WithParamInterface<Trap> {};
+
+TEST_P(FolderTrap, changes_nothing_outside_in_whatever_place_of_a_recording_it_lies) {
+    make_template();
+    constexpr const char* kPlaces[] = {"can.log",
+                                       "depth.oni",
+                                       "depth.epoch.yaml",
+                                       "rig.yaml",
+                                       "robot.urdf",
+                                       "meta.yaml",
+                                       "order.log",
+                                       "mapping.yaml",
+                                       "first.ot",
+                                       "maps",
+                                       "lock",
+                                       ".octoskin-part",
+                                       ".octoskin-ready",
+                                       ".octoskin-ready/.journal",
+                                       "maps/fused.ot",
+                                       "maps/maps.yaml",
+                                       "maps/.octoskin-part",
+                                       "maps/.octoskin-ready"};
+    const auto trap = GetParam();
+    auto turn = static_cast<std::size_t>(trap);
+    for (const std::string place : kPlaces) {
+        const auto all = commands();
+        // Maps are written last and by replay alone; the others take turns.
+        for (const std::string& command : {all.front(), all[1 + turn++ % (all.size() - 1)]}) {
+            // Each command finds the trap as it was laid.
+            if (!lay(trap, place))
+                GTEST_SKIP() << "this user may not make it: trap " << static_cast<int>(trap);
+            expect_harmless(command, place + ", trap " + std::to_string(static_cast<int>(trap)));
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, FolderTrap, testing::ValuesIn(kTraps));
+
+TEST_F(FolderWalk, no_journal_moves_or_removes_what_is_outside) {
+    make_template();
+    for (const char* line :
+         {"put link/can.log", "drop link/can.log", "drop maps/fused.ot", "put maps/fused.ot",
+          "put ../outside/victim/can.log", "drop ../outside/victim/can.log", "drop /etc/hostname"}) {
+        for (const std::string& command : commands()) {
+            lay_journal(line);
+            const auto before = states_in(directory_ / "rec");
+            const Said said = expect_harmless(command, line);
+            EXPECT_NE(said.exit_code, 0) << line << command << said.output;
+            const bool only_reads = command.starts_with("replay") || command.starts_with("explain") ||
+                                    command.starts_with("evaluate");
+            if (!only_reads) continue;
+            EXPECT_EQ(states_in(directory_ / "rec"), before) << command << " wrote, and was to read";
+            EXPECT_THAT(said.output, HasSubstr("octoskin repair " + path("rec"))) << command;
+        }
+    }
+}
+
+TEST_F(FolderWalk, what_reads_writes_nothing_and_replay_only_its_maps) {
+    make_template();
+    fs::copy(directory_ / "template", directory_ / "rec", fs::copy_options::recursive);
+    const auto before = states_in(directory_ / "rec");
+    for (const std::string& command :
+         {"explain 0 0 1 --recording " + path("rec"), "evaluate " + path("rec"),
+          "black-box " + path("rec/can.log"), "replay " + path("rec") + " --out " + path("elsewhere")}) {
+        expect_harmless(command, "whole");
+        EXPECT_EQ(states_in(directory_ / "rec"), before) << command;
+    }
+    const Said replayed = expect_harmless("replay " + path("rec"), "whole");
+    ASSERT_EQ(replayed.exit_code, 0) << replayed.output;
+    auto after = states_in(directory_ / "rec");
+    EXPECT_TRUE(after.contains("maps/maps.yaml"));
+    std::erase_if(after, [](const auto& entry) { return entry.first.starts_with("maps"); });
+    after["."] = before.at(".");  // it has one folder more
+    EXPECT_EQ(after, before);
+}
+
+TEST_F(FolderWalk, one_that_was_left_half_moved_is_repaired_on_demand_or_by_what_writes_there) {
+    make_template();
+    for (const std::string& remedy :
+         {"repair " + path("rec"), "simulate " + path("rec") + " --force --rig " +
+                                       source("tests/data/short/rig.yaml") + " --scenario " +
+                                       source("tests/data/short/scenario.yaml")}) {
+        fs::remove_all(directory_ / "rec");
+        fs::copy(directory_ / "template", directory_ / "rec", fs::copy_options::recursive);
+        fs::create_directory(directory_ / "rec/.octoskin-ready");
+        fs::rename(directory_ / "rec/meta.yaml", directory_ / "rec/.octoskin-ready/meta.yaml");
+        write(directory_ / "rec/.octoskin-ready/.journal",
+              "octoskin-file-set/1\nput can.log\nput meta.yaml\n");
+        const Said refused = expect_harmless("replay " + path("rec"), "half moved");
+        EXPECT_EQ(refused.exit_code, 66) << refused.output;
+        EXPECT_THAT(refused.output, HasSubstr("octoskin repair " + path("rec")));
+        EXPECT_EQ(expect_harmless(remedy, "half moved").exit_code, 0) << remedy;
+        EXPECT_FALSE(fs::exists(directory_ / "rec/.octoskin-ready"));
+        EXPECT_EQ(expect_harmless("replay " + path("rec"), "repaired").exit_code, 0) << remedy;
+    }
+    const Said again = octoskin("repair " + path("rec"));
+    EXPECT_EQ(again.exit_code, 0);
+    EXPECT_THAT(again.output, HasSubstr("nothing is half moved"));
+    EXPECT_EQ(octoskin("repair " + path("absent")).exit_code, 66);
+}
+
+TEST_F(FolderWalk, a_link_in_the_path_that_was_typed_is_followed) {
+    make_template();
+    fs::create_directory_symlink("template", directory_ / "rec");
+    EXPECT_EQ(expect_harmless("replay " + path("rec"), "typed link").exit_code, 0);
+    EXPECT_TRUE(fs::exists(directory_ / "template/maps/fused.ot"));
+}
+
+/// Ends a daemon after a second, so that it saves its map.
+TEST_F(FolderWalk, a_daemons_maps_folder_leads_nowhere_else) {
+    int ends[2] = {-1, -1};
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends), 0);
+    const int bus = ::fcntl(ends[1], F_DUPFD, 50);  // inherited
+    for (const char* place : {"lock", "fused.ot", "fused.bt", ".fused.ot.octoskin-part"}) {
+        for (const Trap trap : {Trap::link_to_file, Trap::hard_link}) {
+            fs::create_directories(directory_ / "template");
+            ASSERT_TRUE(lay(trap, place));
+            const auto before = states_in(directory_ / "outside");
+            const Said said =
+                run("timeout -s TERM 1 " OCTOSKIN_PROGRAM " run --no-camera --rig " +
+                    source("tests/data/short/rig.yaml") + " --can fd:" + std::to_string(bus) + " --maps " +
+                    path("rec") + " --socket " + path("s") + " --joints " + path("j"));
+            EXPECT_EQ(states_in(directory_ / "outside"), before) << place << said.output;
+        }
+    }
+    for (const int end : {ends[0], ends[1], bus}) ::close(end);
+}
+
+TEST_F(FolderWalk, writes_only_into_folders_of_the_caller_or_of_root_and_reads_any) {
+    if (::geteuid() != 0) GTEST_SKIP() << "needs root, to be other users";
+    make_template();
+    fs::permissions(directory_, fs::perms::all);
+    const std::string as_another = "setpriv --reuid 12345 --regid 12345 --clear-groups ";
+    if (run(as_another + OCTOSKIN_PROGRAM " --version").exit_code != 0)
+        GTEST_SKIP() << "another user may not run " << OCTOSKIN_PROGRAM;
+    ASSERT_TRUE(lay(Trap::folder, "maps"));
+    for (const char* open : {"rec", "rec/maps"}) fs::permissions(directory_ / open, fs::perms::all);
+    const auto own = [this](const char* name, uid_t user) {
+        ASSERT_EQ(::lchown(path(name).c_str(), user, user), 0);
+    };
+    const auto said_of = [&](const std::string& arguments) {
+        return run(as_another + OCTOSKIN_PROGRAM " " + arguments);
+    };
+    own("rec", 12'346);
+    const Said in_anothers = said_of("replay " + path("rec"));
+    EXPECT_EQ(in_anothers.exit_code, 73) << in_anothers.output;
+    EXPECT_THAT(in_anothers.output, HasSubstr("belongs to uid 12346"));
+    EXPECT_EQ(said_of("replay " + path("rec") + " --out " + path("own")).exit_code, 0) << "reads any";
+    own("rec", 12'345);
+    own("rec/maps", 12'346);
+    EXPECT_EQ(said_of("replay " + path("rec")).exit_code, 73) << "the maps' folder is another's";
+    own("rec/maps", 0);
+    EXPECT_EQ(said_of("replay " + path("rec")).exit_code, 0) << "root's, and open to all";
+    own("rec", 12'346);
+    own("rec/maps", 12'346);
+    EXPECT_EQ(octoskin("replay " + path("rec")).exit_code, 0) << "root writes into any";
+}
+
+/// What makes, moves or removes files without host/io/folder, each for a reason that is told there.
+TEST(FolderRule, nothing_else_in_the_host_makes_moves_or_removes_files_by_path) {
+    const std::regex by_path(
+        R"((ofstream( \w+)?\((?!created->)|create_director(y|ies)\(|(fs|filesystem)::(rename|remove|remove_all|copy|copy_file|resize_file)\(|O_CREAT|\b(fopen|mkdtemp|mkstemp|creat)\())");
+    std::set<std::string> found;
+    for (const char* room : {"host", "hw"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(source(room))) {
+            const std::string name = entry.path().lexically_relative(source("")).string();
+            if (entry.path().extension() != ".cpp" || name.starts_with("host/io/folder/")) continue;
+            if (std::regex_search(content(entry.path()), by_path)) found.insert(name);
+        }
+    }
+    EXPECT_THAT(found, testing::ElementsAre(
+                           "host/apps/daemon/recording_writer.cpp",  // the folder that a user names
+                           "host/apps/flashing/flashing.cpp",        // the same
+                           "host/apps/recording/text_file.cpp",      // a file that a user types
+                           "host/apps/study/work_folder.cpp",        // in an open folder, by its descriptor
+                           "host/io/mapfile/atomic_file.cpp",        // the same
+                           "host/io/openni2/helpers/oni_recorder.cpp",  // of a file that octoskin has made
+                           "host/io/openni2/helpers/oni_write.cpp",     // the same
+                           "host/io/tum/depth_png.cpp",                 // to read
+                           "hw/sim/experiment/emulated_board.cpp"));    // temporary, its own
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,78 @@
+// Commands that the system gives too little: each says what there is too little of, or is done.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+
+#include "tests/system/cli/program.hpp"
+
+namespace octoskin {
+namespace {
+
+class Limits : public ProgramTest {
+  protected:
+    /// With `ulimit` so set, in a shell of its own. `run` is told to end after 3 s.
+    [[nodiscard]] static Said limited(const std::string& limit, const std::string& arguments) {
+        return run("( ulimit " + limit + " && exec timeout -s TERM 3 " OCTOSKIN_PROGRAM " " + arguments +
+                   " ) < /dev/null");
+    }
+    [[nodiscard]] std::string daemon() const {
+        return "run --no-camera --can nocan0 --rig " + source("hw/rigs/experiment.yaml") + " --maps " +
+               path("maps") + " --socket " + path("socket");
+    }
+    [[nodiscard]] std::string simulate() const {
+        return "simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") + " --scenario " +
+               source("tests/data/short/scenario.yaml");
+    }
+};
+
+// 124: it ran until it was told to end.
+TEST_F(Limits, of_descriptors_are_named) {
+#ifdef OCTOSKIN_SANITIZED  // whose checks open files of their own
+    constexpr int kFewest = 12;
+#else
+    constexpr int kFewest = 5;
+#endif
+    std::set<int> codes;
+    for (const int most : {kFewest, kFewest + 3, 15, 16, 64}) {
+        const Said said = limited("-n " + std::to_string(most), daemon());
+        codes.insert(said.exit_code);
+        EXPECT_TRUE(said.exit_code == 124 || said.exit_code == 71) << most << ": " << said.output;
+        if (said.exit_code == 71) {
+            EXPECT_NE(said.output.find("ulimit -n"), std::string::npos) << said.output;
+            EXPECT_NE(said.output.find("may have " + std::to_string(most)), std::string::npos) << said.output;
+        }
+    }
+    EXPECT_EQ(codes, (std::set<int>{71, 124})) << "few are too few, and 64 are enough";
+}
+
+#ifndef OCTOSKIN_SANITIZED  // its own memory comes first
+TEST_F(Limits, of_memory_are_named) {
+    std::set<int> codes;
+    for (const int mib : {160, 190, 220}) {
+        const Said said = limited("-v " + std::to_string(mib * 1024), simulate());
+        codes.insert(said.exit_code);
+        EXPECT_TRUE(said.exit_code == 0 || said.exit_code == 71) << mib << ": " << said.output;
+        if (said.exit_code == 71) {
+            EXPECT_NE(said.output.find(std::to_string(mib) + " MiB"), std::string::npos) << said.output;
+        }
+        std::filesystem::remove_all(path("rec"));
+    }
+    EXPECT_TRUE(codes.contains(71));
+}
+#endif
+
+TEST_F(Limits, of_the_stack_are_named) {
+    const Said said = limited("-s 64", simulate());
+    EXPECT_EQ(said.exit_code, 71) << said.output;
+    EXPECT_NE(said.output.find("ulimit -s"), std::string::npos) << said.output;
+}
+
+TEST_F(Limits, of_a_files_size_are_an_error_of_the_write) {
+    const Said said = limited("-f 0", simulate());
+    EXPECT_EQ(said.exit_code, 73) << said.output;
+    EXPECT_NE(said.output.find("File too large"), std::string::npos) << said.output;
+}
+
+}  // namespace
+}  // namespace octoskin

@@ -1,0 +1,190 @@
+// A world is read in a process with limits: a limit that is reached is a refusal that names it, and what the
+// file refers to stays in its folder where that is asked for. The hostile files are made here.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <utility>
+
+#include "hw/sim/world/sdf_solids.hpp"
+#include "hw/sim/world/solids_bytes.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin::sim {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+const fs::path kShipped = fs::path(OCTOSKIN_SOURCE_DIR) / "hw/worlds";
+
+class ReaderProcessTest : public testing::Test {
+  protected:
+    /// A program in the reader's place.
+    fs::path program(const std::string& commands) const {
+        const auto file = scratch_.write("reader", "#!/bin/sh\n" + commands + "\n");
+        fs::permissions(file, fs::perms::owner_all);
+        return file;
+    }
+    std::string error_of(const std::string& commands, const ReadLimits& limits = {}) const {
+        const auto read = read_in_process("x.sdf", limits, program(commands));
+        return read ? "it was accepted" : read.error();
+    }
+    static std::string error_of_world(const FilePlace& sdf, const ReadLimits& limits = {}) {
+        const auto read = read_solids(sdf, limits);
+        return read ? "it was accepted" : read.error().message();
+    }
+    /// Of the folder "in".
+    FilePlace in_folder(const std::string& name) const {
+        return {OpenFolder::open(in(), FolderAccess::read).value(), name};
+    }
+    /// So many boxes, each a model of its own.
+    fs::path many_models(int count) const {
+        std::string text = "<sdf version='1.9'><world name='w'>\n";
+        for (int i = 0; i < count; ++i) {
+            const std::string name = std::to_string(i);
+            text += "<model name='m" + name +
+                    "'><link name='l'><visual name='v'><geometry><box><size>1 1 "
+                    "1</size></box></geometry></visual>"
+                    "</link></model>\n";
+        }
+        return scratch_.write("many.sdf", text + "</world></sdf>\n");
+    }
+    /// Makes a world in the folder "in" with one visual, of this mesh.
+    void make_world_with(const std::string& mesh) const {
+        fs::create_directories(scratch_ / "in");
+        scratch_.write("in/w.sdf",
+                       "<sdf version='1.9'><model name='m'><link name='l'><visual name='v'>"
+                       "<geometry><mesh><uri>" +
+                           mesh + "</uri></mesh></geometry></visual></link></model></sdf>\n");
+    }
+    fs::path in() const { return scratch_ / "in"; }
+
+    static constexpr const char* kTetrahedron =
+        "mtllib it.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    const testing_support::ScratchFolder scratch_;
+};
+
+TEST_F(ReaderProcessTest, that_reaches_a_limit_is_refused_by_its_name) {
+    EXPECT_THAT(error_of("kill -XCPU $$", {.processor_s = 7}),
+                HasSubstr("needs more than 7 s of processor time"));
+    EXPECT_THAT(error_of("exit 70", {.memory_mib = 77}), HasSubstr("needs more than 77 MiB of memory"));
+    EXPECT_THAT(error_of("exec yes", {.result_mib = 3}),
+                HasSubstr("needs more than 3 MiB for its triangles"));
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_THAT(error_of("exec sleep 30", {.patience = std::chrono::seconds(1)}),
+                HasSubstr("needs more than 1 s to be read"));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+}
+
+TEST_F(ReaderProcessTest, that_ends_otherwise_is_told_how) {
+    EXPECT_THAT(error_of("kill -SEGV $$"), HasSubstr("ended by signal 11"));
+    EXPECT_THAT(error_of("exit 3"), HasSubstr("exit code 3"));
+    EXPECT_THAT(read_in_process("x.sdf", {}, scratch_ / "none").error(), HasSubstr("cannot be started"));
+}
+
+TEST_F(ReaderProcessTest, leaves_no_process_behind) {
+    (void)error_of("exec yes", {.result_mib = 1});
+    (void)error_of("exec sleep 30", {.patience = std::chrono::seconds(1)});
+    EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is still there";
+}
+
+TEST_F(ReaderProcessTest, refuses_a_world_of_twenty_thousand_models) {
+    const auto sdf = many_models(20'000);
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_THAT(
+        error_of_world(sdf, {.processor_s = 1}),
+        AllOf(HasSubstr("many.sdf: needs more than 1 s of processor time"), HasSubstr("fewer models")));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+    EXPECT_EQ(error_of_world(many_models(20)), "it was accepted");
+}
+
+#ifndef OCTOSKIN_SANITIZED  // which reserves terabytes of addresses
+TEST_F(ReaderProcessTest, refuses_a_world_that_needs_too_much_memory) {
+    EXPECT_THAT(error_of_world(many_models(2'000), {.memory_mib = 160}),
+                HasSubstr("many.sdf: needs more than 160 MiB of memory"));
+}
+#endif
+
+TEST_F(ReaderProcessTest, writes_nothing_not_even_a_librarys_log) {
+    const char* const before = std::getenv("HOME");
+    const std::string home = before == nullptr ? "" : before;
+    ::setenv("HOME", scratch_.path().c_str(), 1);
+    EXPECT_EQ(error_of_world(kShipped / "experiment.sdf"), "it was accepted");
+    before == nullptr ? ::unsetenv("HOME") : ::setenv("HOME", home.c_str(), 1);
+    EXPECT_EQ(scratch_.entries(), 0);
+}
+
+TEST_F(ReaderProcessTest, reads_in_its_folder_what_it_reads_anywhere) {
+    fs::copy(kShipped, scratch_ / "in", fs::copy_options::recursive);
+    const auto anywhere = read_solids(in() / "experiment.sdf");  // with a mesh
+    const auto beneath = read_solids(in_folder("experiment.sdf"));
+    ASSERT_TRUE(anywhere && beneath) << (beneath ? "" : beneath.error().message());
+    EXPECT_EQ(to_bytes(*anywhere), to_bytes(*beneath));
+    fs::create_directory(in() / "deeper");
+    fs::rename(in() / "experiment.sdf", in() / "deeper/experiment.sdf");
+    EXPECT_THAT(error_of_world(in_folder("deeper/experiment.sdf")), HasSubstr("deeper/meshes/cone.obj"));
+    fs::rename(in() / "meshes", in() / "deeper/meshes");
+    EXPECT_EQ(error_of_world(in_folder("deeper/experiment.sdf")), "it was accepted");
+}
+
+TEST_F(ReaderProcessTest, reads_no_mesh_outside_of_its_folder) {
+    const auto outside = scratch_.write("cone.obj", kTetrahedron);
+    make_world_with("../cone.obj");
+    EXPECT_EQ(error_of_world(in() / "w.sdf"), "it was accepted") << "the user named it";
+    EXPECT_THAT(error_of_world(in_folder("w.sdf")),
+                AllOf(HasSubstr("in/w.sdf: model 'm', link 'l', visual 'v'"), HasSubstr("cone.obj"),
+                      HasSubstr("leads out")));
+    fs::create_symlink(outside, in() / "link.obj");
+    fs::create_directory_symlink(scratch_.path(), in() / "up");
+    ASSERT_EQ(::mkfifo((in() / "pipe.obj").c_str(), 0600), 0);
+    const std::pair<std::string, const char*> meshes[] = {{outside.string(), "leads out"},
+                                                          {"file://" + outside.string(), "leads out"},
+                                                          {"deeper/../../cone.obj", "leads out"},
+                                                          {"link.obj", "is a symbolic link"},
+                                                          {"up/cone.obj", "is a symbolic link"},
+                                                          {"pipe.obj", "is a named pipe"},
+                                                          {"none.obj", "No such file"}};
+    for (const auto& [mesh, what] : meshes) {
+        make_world_with(mesh);
+        EXPECT_THAT(error_of_world(in_folder("w.sdf")),
+                    AllOf(HasSubstr(mesh.substr(mesh.rfind('/') + 1)), HasSubstr(what)));
+    }
+}
+
+TEST_F(ReaderProcessTest, opens_no_material_outside_of_its_folder) {
+    make_world_with("it.obj");
+    scratch_.write("in/it.obj", kTetrahedron);
+    // A pipe would be waited for: whether it is opened shows.
+    ASSERT_EQ(::mkfifo((scratch_ / "it.mtl").c_str(), 0600), 0);
+    fs::create_symlink("../it.mtl", in() / "it.mtl");
+    EXPECT_EQ(error_of_world(in_folder("w.sdf"), {.patience = std::chrono::seconds(20)}), "it was accepted");
+}
+
+TEST_F(ReaderProcessTest, includes_nothing_in_a_world_of_a_folder) {
+    make_world_with("");
+    scratch_.write(
+        "in/w.sdf",
+        "<sdf version='1.9'>\n<world name='w'>\n<include><uri>/etc/passwd</uri></include></world></sdf>");
+    EXPECT_THAT(error_of_world(in_folder("w.sdf")),
+                AllOf(HasSubstr("w.sdf: line 3"), HasSubstr("<include>")));
+}
+
+TEST_F(ReaderProcessTest, reads_no_world_outside_of_its_folder) {
+    make_world_with("");
+    const auto outside = scratch_.write("w.sdf", "<sdf version='1.9'/>");
+    EXPECT_THAT(error_of_world(in_folder("../w.sdf")), HasSubstr("leads out"));
+    EXPECT_THAT(error_of_world(in_folder(outside.string())), HasSubstr("leads out"));
+    fs::create_symlink(outside, in() / "link.sdf");
+    EXPECT_THAT(error_of_world(in_folder("link.sdf")), HasSubstr("is a symbolic link"));
+    ASSERT_EQ(::mkfifo((in() / "pipe.sdf").c_str(), 0600), 0);
+    EXPECT_THAT(error_of_world(in_folder("pipe.sdf")), HasSubstr("is a named pipe"));
+}
+
+}  // namespace
+}  // namespace octoskin::sim

@@ -1,0 +1,97 @@
+// A rig below a folder that was named, a recording, refers to files of that folder alone; one that the user
+// names to any.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "hw/rigfile/rig.hpp"
+#include "hw/rigfile/urdf_document.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin::rig {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A recording's folder with a rig and a robot, and beside it a folder that it must not reach.
+class RecordedRig : public testing::Test {
+  protected:
+    RecordedRig() {
+        const auto shipped = read_rig(fs::path(OCTOSKIN_SOURCE_DIR) / "hw/rigs/bench_one_board.yaml");
+        EXPECT_TRUE(shipped);
+        hash_ = rig_hash(*shipped);
+        fs::create_directories(scratch_ / "rec");
+        fs::create_directories(scratch_ / "outside");
+        for (const char* folder : {"rec", "outside"}) {
+            fs::copy_file(fs::path(OCTOSKIN_SOURCE_DIR) / "hw/robots/panda.urdf",
+                          scratch_ / folder / "robot.urdf");
+            scratch_.write(std::string(folder) + "/base.yaml", canonical_text(*shipped, "robot.urdf"));
+        }
+        fs::create_symlink("../outside/robot.urdf", scratch_ / "rec/link.urdf");
+        fs::create_symlink("../outside/base.yaml", scratch_ / "rec/link.yaml");
+        fs::create_directory_symlink("../outside", scratch_ / "rec/up");
+        EXPECT_EQ(::mkfifo((scratch_ / "rec/pipe").c_str(), 0600), 0);
+    }
+    FilePlace recorded(const std::string& text) const {
+        scratch_.write("rec/rig.yaml", text);
+        return {OpenFolder::open(scratch_ / "rec", FolderAccess::read).value(), "rig.yaml"};
+    }
+    static std::string error_of(const FilePlace& file) {
+        const auto rig = read_rig(file);
+        return rig ? "it was accepted" : rig.error().message();
+    }
+
+    const testing_support::ScratchFolder scratch_;
+    std::uint32_t hash_ = 0;
+};
+
+TEST_F(RecordedRig, refers_to_files_of_its_recording) {
+    const auto rig = read_rig(recorded("extends: base.yaml\nrobot: {urdf: ./robot.urdf}\n"));
+    ASSERT_TRUE(rig) << rig.error().message();
+    EXPECT_EQ(rig_hash(*rig), hash_);
+}
+
+TEST_F(RecordedRig, refers_to_nothing_outside_of_it) {
+    const std::string outside = (scratch_ / "outside").string();
+    const std::pair<std::string, const char*> places[] = {{outside + "/", "leads out"},
+                                                          {"../outside/", "leads out"},
+                                                          {"x/../../outside/", "leads out"},
+                                                          {"up/", "is a symbolic link"}};
+    for (const auto& [place, what] : places) {
+        EXPECT_THAT(error_of(recorded("name: a\nextends: " + place + "base.yaml\n")),
+                    AllOf(HasSubstr("rec/rig.yaml:2: extends: "), HasSubstr("'" + place + "base.yaml'"),
+                          HasSubstr(what)));
+        EXPECT_THAT(error_of(recorded("extends: base.yaml\nrobot: {urdf: " + place + "robot.urdf}\n")),
+                    AllOf(HasSubstr("rec/rig.yaml:2: robot.urdf: "), HasSubstr(what)));
+        EXPECT_THAT(
+            error_of(recorded("extends: base.yaml\nnodes: [{name: a, board: " + place + "base.yaml}]\n")),
+            AllOf(HasSubstr("rec/rig.yaml:2: nodes[0].board: "), HasSubstr(what)));
+    }
+    EXPECT_THAT(error_of(recorded("extends: link.yaml\n")), HasSubstr("is a symbolic link"));
+    EXPECT_THAT(error_of(recorded("extends: base.yaml\nrobot: {urdf: link.urdf}\n")),
+                HasSubstr("is a symbolic link"));
+    EXPECT_THAT(error_of(recorded("extends: pipe\n")), HasSubstr("is a named pipe"));
+    EXPECT_THAT(error_of(recorded("extends: none.yaml\n")), HasSubstr("found none at"));
+}
+
+TEST_F(RecordedRig, is_free_to_where_the_user_names_it) {
+    scratch_.write("rec/rig.yaml", "extends: ../outside/base.yaml\nrobot: {urdf: " +
+                                       (scratch_ / "rec/link.urdf").string() + "}\n");
+    EXPECT_EQ(error_of(scratch_ / "rec/rig.yaml"), "it was accepted");
+}
+
+TEST_F(RecordedRig, s_robot_is_no_link_and_no_pipe) {
+    const auto folder = OpenFolder::open(scratch_ / "rec", FolderAccess::read).value();
+    EXPECT_THAT(UrdfDocument::read({folder, "link.urdf"}).error().message(), HasSubstr("is a symbolic link"));
+    EXPECT_THAT(UrdfDocument::read({folder, "pipe"}).error().message(), HasSubstr("is a named pipe"));
+    EXPECT_TRUE(UrdfDocument::read({folder, "robot.urdf"}));
+}
+
+}  // namespace
+}  // namespace octoskin::rig
