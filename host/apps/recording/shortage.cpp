@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <new>
+#include <string>
 #include <system_error>
 
 namespace octoskin {
@@ -73,11 +74,6 @@ std::optional<AppError> shortage_in(const std::exception& thrown) {
     const std::string what = words(failed->code().value());
     if (what.empty()) return std::nullopt;
     return AppError{ExitCode::no_resources, what + " (" + failed->what() + ")"};
-}
-
-std::string shortage_remedy(int error_number) {
-    const std::string what = error_number == EAGAIN ? std::string() : words(error_number);
-    return what.empty() ? what : " (" + what + ")";
 }
 
 }  // namespace octoskin

@@ -4,7 +4,6 @@
 
 #include <exception>
 #include <optional>
-#include <string>
 
 #include "host/apps/recording/app_error.hpp"
 
@@ -13,8 +12,5 @@ namespace octoskin {
 /// What there is too little of, with its limit and what to do (`no_resources`); empty: it was thrown for
 /// another reason. Memory, descriptors, threads, the size of a file.
 [[nodiscard]] std::optional<AppError> shortage_in(const std::exception& thrown);
-
-/// Of an error number of the system likewise, as words for after a message; empty: it is no such reason.
-[[nodiscard]] std::string shortage_remedy(int error_number);
 
 }  // namespace octoskin
