@@ -22,12 +22,19 @@ constexpr std::int64_t kAnswerBits = 10;
 constexpr std::int64_t kLongestGapsPerPeriod = 128;
 constexpr std::int64_t kShortestGapsPerPeriod = 2048;
 
-/// Reckoned from `from`, not from the last poll: how long a poll took decides nothing. A place that was
-/// missed by less than `late_max` is taken at once: without it the next one would come twice as late.
-NodeTime next_on_grid(NodeTime from, Microseconds gap, NodeTime now, Microseconds late_max = {}) noexcept {
-    const Microseconds since = elapsed(from, now) - late_max;
+/// Reckoned from `from`, not from the last poll: how long a poll took decides nothing.
+NodeTime next_on_grid(NodeTime from, Microseconds gap, NodeTime now) noexcept {
+    const Microseconds since = elapsed(from, now);
     if (since.count() < 0) return from;
     return from + gap * (since / gap + 1);
+}
+
+/// The last place that passed during the poll of `asked` is taken at once, however late it is: the next one
+/// would be later still, and the gap up to twice as wide.
+NodeTime next_or_missed(NodeTime from, Microseconds gap, const TimeBracket& asked) noexcept {
+    const NodeTime next = next_on_grid(from, gap, asked.latest);
+    const bool is_last_missed = next != from && !is_reached(next - gap, asked.earliest);
+    return is_last_missed ? next - gap : next;
 }
 
 }  // namespace
@@ -59,11 +66,12 @@ NodeTime PollPlan::first_poll_after_start(NodeTime started, Microseconds timing_
 }
 
 NodeTime PollPlan::poll_after_start(NodeTime from, const TimeBracket& expected, Microseconds period,
-                                    NodeTime now) const noexcept {
+                                    const TimeBracket& asked) const noexcept {
+    const NodeTime now = asked.latest;
     if (!is_reached(expected.earliest, now))
         return earlier_of(blind_poll(from, period, now), expected.earliest);
     if (is_reached(expected.latest, now)) return blind_poll(expected.latest, period, now);
-    return next_on_grid(expected.earliest, spacing(period), now, poll_duration_ / 4);
+    return next_or_missed(expected.earliest, spacing(period), asked);
 }
 
 NodeTime PollPlan::blind_poll(NodeTime from, Microseconds period, NodeTime now) const noexcept {

@@ -27,10 +27,11 @@ class PollPlan {
     /// up.
     [[nodiscard]] NodeTime first_poll_after_start(NodeTime started,
                                                   Microseconds timing_budget) const noexcept;
-    /// The next poll after `now` for the first data of a run, which is there no sooner than `from` and most
-    /// likely becomes ready within `expected`, where one poll follows the other.
+    /// The poll after the one of `asked`, from its begin to its end, for the first data of a run, which is
+    /// there no sooner than `from` and most likely becomes ready within `expected`, where one poll follows
+    /// the other.
     [[nodiscard]] NodeTime poll_after_start(NodeTime from, const TimeBracket& expected, Microseconds period,
-                                            NodeTime now) const noexcept;
+                                            const TimeBracket& asked) const noexcept;
     /// The next poll after `now` while nothing is known, for data that is there no sooner than `from`.
     [[nodiscard]] NodeTime blind_poll(NodeTime from, Microseconds period, NodeTime now) const noexcept;
     /// The next poll when the one that ended at `now` found nothing. Data that is overdue is asked for ever

@@ -340,7 +340,8 @@ NodeTime Ranging::repoll(NodeTime now) const noexcept {
     if (acceptance_.wants_poll_confirmed()) return now;
     const auto predicted = acceptance_.next_ready();
     return predicted ? polls_.repoll(*predicted, acceptance_.period(), now)
-                     : polls_.poll_after_start(ready_from_, first_expected_, acceptance_.period(), now);
+                     : polls_.poll_after_start(ready_from_, first_expected_, acceptance_.period(),
+                                               {step_began_, now});
 }
 
 Ranging::Event Ranging::refuse(SensorFault fault, NodeTime now) {

@@ -67,16 +67,29 @@ TEST(PollPlan, asks_every_millisecond_while_nothing_is_known_however_long_the_po
 TEST(PollPlan, asks_again_and_again_where_the_first_data_of_a_run_is_expected) {
     const PollPlan plan{400'000, kPolicy};
     const TimeBracket expected{{30'360}, {35'640}};
-    const auto next = [&](std::uint32_t now) {
-        return plan.poll_after_start({18'000}, expected, kPeriod, {now});
+    const auto next = [&](const TimeBracket& asked) {
+        return plan.poll_after_start({18'000}, expected, kPeriod, asked);
     };
-    EXPECT_EQ(next(5'000), NodeTime{18'000});
-    EXPECT_EQ(next(18'001), NodeTime{19'000});
-    EXPECT_EQ(next(30'100), NodeTime{30'360});
-    for (const std::uint32_t now : {30'397U, 30'450U, 30'566U}) EXPECT_EQ(next(now), NodeTime{30'530}) << now;
-    EXPECT_EQ(next(30'396), NodeTime{30'360}) << "late by less than a quarter of a poll: at once";
-    EXPECT_EQ(next(35'000), NodeTime{35'120});
-    EXPECT_EQ(next(35'640), NodeTime{36'640});
+    EXPECT_EQ(next({{4'900}, {5'000}}), NodeTime{18'000});
+    EXPECT_EQ(next({{17'900}, {18'001}}), NodeTime{19'000});
+    EXPECT_EQ(next({{30'000}, {30'100}}), NodeTime{30'360});
+    for (const std::uint32_t now : {30'397U, 30'450U, 30'529U})
+        EXPECT_EQ(next({{30'360}, {now}}), NodeTime{30'530}) << now;
+    EXPECT_EQ(next({{34'950}, {35'072}}), NodeTime{35'120});
+    EXPECT_EQ(next({{35'460}, {35'640}}), NodeTime{36'640});
+}
+
+TEST(PollPlan, asks_at_once_for_each_place_that_it_missed_however_late_it_is) {
+    const PollPlan plan{400'000, kPolicy};
+    const auto next = [&](const TimeBracket& asked) {
+        return plan.poll_after_start({18'000}, {{30'360}, {35'640}}, kPeriod, asked);
+    };
+    for (const std::uint32_t now : {30'360U, 30'396U, 30'397U, 30'529U})
+        EXPECT_EQ(next({{30'359}, {now}}), NodeTime{30'360}) << now;
+    EXPECT_EQ(next({{30'360}, {30'530}}), NodeTime{30'530}) << "missed by nothing";
+    EXPECT_EQ(next({{30'360}, {30'699}}), NodeTime{30'530});
+    EXPECT_EQ(next({{30'360}, {31'000}}), NodeTime{30'870}) << "the last of several";
+    EXPECT_EQ(next({{30'600}, {30'699}}), NodeTime{30'700}) << "that one was asked, late";
 }
 
 TEST(PollPlan, expects_nothing_after_a_start_before_most_of_the_budget_is_used) {
