@@ -59,13 +59,15 @@ void Node::note_fault_change() {
     constexpr std::uint32_t kOffset = 2'166'136'261U;  // FNV-1a
     constexpr std::uint32_t kPrime = 16'777'619U;
     std::uint32_t seen = kOffset;
+    std::uint32_t count = 0;
     visit_present_faults([&](const wire::InfoFault& fault) {
         seen = (seen ^ static_cast<std::uint32_t>(fault.kind)) * kPrime;
         seen = (seen ^ fault.where) * kPrime;
+        ++count;
     });
     if (seen == faults_seen_) return;
     faults_seen_ = seen;
-    faults_untold_ = fault_count();
+    faults_untold_ = count;
     announcer_.request_info(wire::InfoPage::fault);
 }
 
