@@ -20,7 +20,7 @@ enum class HelperComplaints : std::uint8_t {
     kept,  ///< for `complaint`; what is too much for a pipe is lost
 };
 
-/// What a helper allows itself (helper_limits.hpp), and how it ends when that is not enough: with this exit
+/// What a helper allows itself (host/io/helper_limits), and how it ends when that is not enough: with this exit
 /// code, or by SIGXCPU.
 inline constexpr unsigned kHelperMemoryMib = 2048;
 inline constexpr unsigned kHelperProcessorSecondsPerFrame = 5;

@@ -7,9 +7,9 @@
 #include <cstdio>
 
 #include "host/core/text/printable.hpp"
+#include "host/io/helper_limits/helper_limits.hpp"
 #include "host/io/openni2/helper_process.hpp"
 #include "host/io/openni2/helpers/frame_pixels.hpp"
-#include "host/io/openni2/helpers/helper_limits.hpp"
 #include "host/io/openni2/one_line.hpp"
 
 namespace octoskin::openni2 {
@@ -20,7 +20,7 @@ constexpr int kFrameTimeoutMs = 2'000;  // the end of a file shows only as silen
 }  // namespace
 
 std::optional<int> begin_helper(const char* program) {
-    limit_this_process();
+    limit_this_process({.memory_mib = kHelperMemoryMib, .exit_without_memory = kOutOfMemory});
     allow_processor_seconds(kHelperProcessorSecondsPerFrame);
     const int output = take_standard_output();
     if (openni::OpenNI::initialize() == openni::STATUS_OK) return output;

@@ -12,8 +12,9 @@
 #include <string>
 
 #include "host/core/text/printable.hpp"
+#include "host/io/helper_limits/helper_limits.hpp"
 #include "host/io/openni2/frame_pipe.hpp"
-#include "host/io/openni2/helpers/helper_limits.hpp"
+#include "host/io/openni2/helper_process.hpp"
 #include "host/io/openni2/helpers/oni_recorder.hpp"
 
 namespace octoskin::openni2 {
@@ -90,7 +91,9 @@ int main(int argc, char** argv) {
         return 2;
     }
     // The frames of a daemon that was killed are here, and nowhere else: they go to the file yet.
-    octoskin::openni2::limit_this_process(octoskin::openni2::Orphan::goes_on);
+    octoskin::limit_this_process({.memory_mib = octoskin::openni2::kHelperMemoryMib,
+                                  .exit_without_memory = octoskin::openni2::kOutOfMemory,
+                                  .orphan = octoskin::Orphan::goes_on});
     std::signal(SIGTERM, SIG_IGN);
     // OpenNI2 changes the working directory while it loads its drivers.
     const auto file = std::filesystem::absolute(argv[1]);

@@ -1,4 +1,4 @@
-#include "host/io/openni2/helpers/helper_limits.hpp"
+#include "host/io/helper_limits/helper_limits.hpp"
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -8,9 +8,7 @@
 #include <csignal>
 #include <new>
 
-#include "host/io/openni2/helper_process.hpp"
-
-namespace octoskin::openni2 {
+namespace octoskin {
 namespace {
 
 // The sanitizers reserve terabytes of addresses, which no limit would let them.
@@ -19,18 +17,28 @@ constexpr bool kLimitsMemory = false;
 #else
 constexpr bool kLimitsMemory = true;
 #endif
-constexpr rlim_t kMemoryMax = rlim_t{kHelperMemoryMib} << 20U;
+
+int exit_without_memory = 0;  // a new-handler has no argument
+
+void limit(int resource, rlim_t most) {
+    const rlimit both{most, most};
+    ::setrlimit(resource, &both);
+}
 
 }  // namespace
 
-void limit_this_process(Orphan orphan) {
+void limit_this_process(const HelperLimits& limits) {
     std::signal(SIGPIPE, SIG_IGN);
-    if (orphan == Orphan::is_killed) ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    const rlimit no_core{0, 0};
-    ::setrlimit(RLIMIT_CORE, &no_core);
-    const rlimit memory{kMemoryMax, kMemoryMax};
-    if (kLimitsMemory) ::setrlimit(RLIMIT_AS, &memory);
-    std::set_new_handler([] { ::_exit(kOutOfMemory); });
+    if (limits.orphan == Orphan::is_killed) ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    limit(RLIMIT_CORE, 0);
+    if (kLimitsMemory) limit(RLIMIT_AS, rlim_t{limits.memory_mib} << 20U);
+    exit_without_memory = limits.exit_without_memory;
+    std::set_new_handler([] { ::_exit(exit_without_memory); });
+}
+
+void limit_processor_seconds(std::uint64_t seconds) {
+    const rlimit processor{seconds, seconds + 1};
+    ::setrlimit(RLIMIT_CPU, &processor);
 }
 
 void allow_processor_seconds(unsigned seconds) {
@@ -48,4 +56,4 @@ int take_standard_output() {
     return output;
 }
 
-}  // namespace octoskin::openni2
+}  // namespace octoskin
