@@ -23,7 +23,7 @@
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/rigfile/robot_description.hpp"
-#include "hw/sim/experiment/experiment.hpp"
+#include "tests/support/experiment_log/experiment_log.hpp"
 
 namespace octoskin::test {
 namespace {
@@ -38,29 +38,8 @@ struct Recorded {
 const Recorded& recorded() {
     static const Recorded one = [] {
         rig::Rig rig = rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml").value();
-        sim::Scenario scenario =
-            sim::read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value();
-        const auto world = sim::World::read(scenario.world).value();
-        const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints).value();
-        const auto capsules = rig::read_capsules(rig.urdf, {}).value();
         rig.camera.reset();
-        scenario.rest_s = 2.0;
-        Recorded made{make_host_setup(rig).value(), {}};
-        const sim::ExperimentInput input{.rig = rig,
-                                         .capsules = capsules,
-                                         .world = world,
-                                         .arm = arm,
-                                         .scenario = scenario,
-                                         .seed = 5,
-                                         .is_depth_noise_free = true};
-        const sim::ExperimentOutput output{.on_frame =
-                                               [&](const wire::CanFrame& frame, WallTime stamp) {
-                                                   made.frames.push_back({stamp, frame});
-                                               },
-                                           .on_depth = {},
-                                           .on_progress = {}};
-        EXPECT_TRUE(sim::run_experiment(input, output));
-        return made;
+        return Recorded{make_host_setup(rig).value(), experiment_log(rig, 5)};
     }();
     return one;
 }

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 
+#include <algorithm>
 #include <map>
 #include <regex>
 #include <set>
@@ -22,25 +23,24 @@ using testing::AnyOf;
 using testing::Eq;
 using testing::HasSubstr;
 
-constexpr const char* kFileNames[] = {"can.log",
-                                      "depth.oni",
-                                      "depth.epoch.yaml",
-                                      "rig.yaml",
-                                      "robot.urdf",
-                                      "meta.yaml",
-                                      "order.log",
-                                      "mapping.yaml",
-                                      "first.ot",
-                                      "last.ot",
-                                      "lock",
-                                      "fused.ot",
-                                      "fused.bt",
-                                      "fused.ply",
-                                      "maps.yaml",
-                                      ".journal",
-                                      "report.html",
-                                      "metrics.json",
-                                      ".fused.ot.octoskin-part"};
+using Names = std::vector<std::string>;
+
+/// What may lie in a recording itself, and these names more.
+Names recording_and(const Names& more) {
+    Names names{"can.log",   "depth.oni",    "depth.epoch.yaml", "rig.yaml", "robot.urdf", "meta.yaml",
+                "order.log", "mapping.yaml", "first.ot",         "last.ot",  "lock"};
+    names.insert(names.end(), more.begin(), more.end());
+    return names;
+}
+
+/// What an octoskin writes, whatever the folder.
+const Names kFileNames = recording_and({"fused.ot", "fused.bt", "fused.ply", "maps.yaml", ".journal",
+                                        "report.html", "metrics.json", ".fused.ot.octoskin-part"});
+
+/// Where a trap may lie in a recording.
+const Names kPlaces =
+    recording_and({"maps", ".octoskin-part", ".octoskin-ready", ".octoskin-ready/.journal", "maps/fused.ot",
+                   "maps/maps.yaml", "maps/.octoskin-part", "maps/.octoskin-ready"});
 
 /// What is at a path: kind, mode, owner, time of the last change, bytes. Not how many names it has: the one
 /// in the recording may go.
@@ -83,8 +83,8 @@ class FolderWalk : public ProgramTest {
         fs::create_directory(directory_ / "outside");
         for (const char* within : {"victim", "victim/maps", "victim/recording"}) {
             fs::create_directories(directory_ / "outside" / within);
-            for (const char* name : kFileNames)
-                write(directory_ / "outside" / within / name, std::string("the victim's ") + name);
+            for (const std::string& name : kFileNames)
+                write(directory_ / "outside" / within / name, "the victim's " + name);
         }
         write(directory_ / "outside/victim/.journal", "octoskin-file-set/1\nput can.log\n");
     }
@@ -145,8 +145,7 @@ class FolderWalk : public ProgramTest {
     /// The victim's file of this name, or its can.log for a place that no file has.
     static std::string name_like(const std::string& place) {
         const std::string name = fs::path(place).filename().string();
-        const auto* const end = std::end(kFileNames);
-        return std::find(std::begin(kFileNames), end, name) == end ? "can.log" : name;
+        return std::ranges::find(kFileNames, name) == kFileNames.end() ? "can.log" : name;
     }
 
     [[nodiscard]] std::vector<std::string> commands() const {
@@ -187,27 +186,9 @@ class FolderTrap : public FolderWalk, public testing::WithParamInterface<Trap> {
 
 TEST_P(FolderTrap, changes_nothing_outside_in_whatever_place_of_a_recording_it_lies) {
     make_template();
-    constexpr const char* kPlaces[] = {"can.log",
-                                       "depth.oni",
-                                       "depth.epoch.yaml",
-                                       "rig.yaml",
-                                       "robot.urdf",
-                                       "meta.yaml",
-                                       "order.log",
-                                       "mapping.yaml",
-                                       "first.ot",
-                                       "maps",
-                                       "lock",
-                                       ".octoskin-part",
-                                       ".octoskin-ready",
-                                       ".octoskin-ready/.journal",
-                                       "maps/fused.ot",
-                                       "maps/maps.yaml",
-                                       "maps/.octoskin-part",
-                                       "maps/.octoskin-ready"};
     const auto trap = GetParam();
     auto turn = static_cast<std::size_t>(trap);
-    for (const std::string place : kPlaces) {
+    for (const std::string& place : kPlaces) {
         const auto all = commands();
         // Maps are written last and by replay alone; the others take turns.
         for (const std::string& command : {all.front(), all[1 + turn++ % (all.size() - 1)]}) {

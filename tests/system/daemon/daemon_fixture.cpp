@@ -6,36 +6,15 @@
 #include <array>
 #include <csignal>
 #include <thread>
+#include <utility>
 
 #include "host/io/openni2/oni_writer.hpp"
-#include "hw/sim/experiment/experiment.hpp"
+#include "tests/support/experiment_log/experiment_log.hpp"
 
 namespace octoskin::test {
 
 std::vector<StampedFrame> make_log(rig::Rig rig) {
-    sim::Scenario scenario =
-        sim::read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value();
-    const auto world = sim::World::read(scenario.world).value();
-    const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints).value();
-    const auto capsules = rig::read_capsules(rig.urdf, {}).value();
-    rig.camera.reset();
-    scenario.rest_s = 2.0;
-    std::vector<StampedFrame> log;
-    const sim::ExperimentInput input{.rig = rig,
-                                     .capsules = capsules,
-                                     .world = world,
-                                     .arm = arm,
-                                     .scenario = scenario,
-                                     .seed = 3,
-                                     .is_depth_noise_free = true};
-    const sim::ExperimentOutput output{.on_frame =
-                                           [&](const wire::CanFrame& frame, WallTime stamp) {
-                                               log.push_back({stamp, frame});
-                                           },
-                                       .on_depth = {},
-                                       .on_progress = {}};
-    EXPECT_TRUE(sim::run_experiment(input, output));
-    return log;
+    return experiment_log(std::move(rig), 3);
 }
 
 const std::vector<StampedFrame>& log_of_experiment() {
