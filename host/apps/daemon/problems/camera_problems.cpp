@@ -1,0 +1,106 @@
+#include "host/apps/daemon/problems/problem_groups.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/problems/unused_input.hpp"
+
+namespace octoskin {
+namespace {
+
+/// For two seconds and still: a machine that is busy for a moment is not worth a word.
+bool is_left_behind(const DaemonView& view) {
+    constexpr Nanoseconds kLong{2'000'000'000};
+    constexpr Nanoseconds kStill{1'000'000'000};
+    const auto& last = view.used.depth_left_out;
+    if (!last) return false;
+    const Nanoseconds ago = view.now - *last;
+    const Nanoseconds lasted = *last - *view.used.depth_left_out_since;
+    return ago < kStill && lasted > kLong;
+}
+
+}  // namespace
+
+std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz, HostTime now) {
+    constexpr Nanoseconds kFirstFrame{5'000'000'000};
+    // Before "not open": one that is opened again and again for nothing is both, by turns.
+    if (!camera.newest && now - camera.begun > kFirstFrame) {
+        const std::string since =
+            camera.frames > 0
+                ? fmt::format("{} frames came, none with a time that could be told", camera.frames)
+                : "no frame has ever come";
+        return Problem{"camera never",
+                       "camera: " + since + (camera.is_open ? ", and it is open" : ": " + camera.why)};
+    }
+    if (!camera.is_open) return Problem{"camera: " + camera.why, "camera: " + camera.why};
+    const double true_rate_hz = camera.rate_hz > 0.0 ? camera.rate_hz : rate_hz;
+    const Nanoseconds period{static_cast<std::int64_t>(1e9 / true_rate_hz)};
+    if (camera.newest && now - *camera.newest > 3 * period) {
+        if (camera.newest_untimed && now - *camera.newest_untimed <= 3 * period) {
+            return Problem{
+                "camera untimed",
+                "camera: frames come, none for three periods with a time that could be told: they come "
+                "late; is this machine too busy?"};
+        }
+        return Problem{"camera silent", "camera: no frame for three periods"};
+    }
+    return std::nullopt;
+}
+
+std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double rate_hz) {
+    constexpr double kAbout = 1.5;  // 30 Hz where 25 are wanted is nothing to write of
+    const bool is_other = camera.rate_hz > kAbout * rate_hz || camera.rate_hz * kAbout < rate_hz;
+    if (camera.rate_hz <= 0.0 || !is_other) return std::nullopt;
+    return Problem{"camera rate",
+                   fmt::format("camera: its mode of the rig's size has {} frames a second, the rig {}: "
+                               "`octoskin cameras` lists its modes, camera.rate_hz of the rig is to be one's",
+                               camera.rate_hz, rate_hz)};
+}
+
+void add_camera(const DaemonView& view, Problems& problems) {
+    if (!view.camera || !view.rig->camera) return;
+    const double rate_hz = view.rig->camera->rate_hz;
+    const auto& frames = view.pipeline->accounts().depth_frames;
+    const bool is_used = view.used.depth_frame && !has_stopped(view.used.depth_frame, view.now);
+    const std::size_t others = problems.size();
+    if (auto problem = camera_problem(*view.camera, rate_hz, view.now)) {
+        problems.push_back(std::move(*problem));
+    } else if (frames.in() > 0 && !is_used && view.inputs->has_bus_fallen_silent(view.now)) {
+        problems.push_back({"depth beside silent bus",
+                            "camera: its frames are not used, because the bus is silent: no node tells "
+                            "where the robot is (joints_missing)"});
+    } else if (view.is_listen_only && !view.inputs->foreign_clock().ahead(view.now)) {
+        problems.push_back({"camera untimed",
+                            "camera: its frames have no time: the clock of the host that sends SYNC is not "
+                            "known, or in doubt "
+                            "(three FOLLOW_UPs must agree)"});
+    } else if (frames.in() > 0 && frames.rejected(DepthReason::wrong_size) == frames.in()) {
+        const CameraIntrinsics& wanted = view.rig->camera->intrinsics;
+        problems.push_back(
+            {"depth of another size",
+             fmt::format("camera: none of its images is {} x {}, as the rig has them (wrong_size): "
+                         "`octoskin cameras` lists its modes, camera.width_px and camera.height_px of "
+                         "the rig must be one's",
+                         wanted.width, wanted.height)});
+    } else if (frames.in() > 0 && !view.used.depth_frame) {
+        problems.push_back(
+            {"depth unused", "no depth frame could be used yet: " + see_counters("depth frames", frames)});
+    } else if (has_stopped(view.used.depth_frame, view.now)) {
+        problems.push_back({"depth stopped", "depth frames come onto the map no more: " +
+                                                 see_counters("depth frames", frames)});
+    }
+    if (problems.size() > others) problems.back().subject = "camera";
+    if (is_left_behind(view)) {
+        problems.push_back(
+            {"depth left out",
+             "camera: its images come quicker than this machine can work on them, and some are left out "
+             "(queue_overflow): a coarser resolution_m, or a mode with a lower rate or fewer pixels",
+             "camera"});
+    }
+    if (auto problem = camera_rate_problem(*view.camera, rate_hz)) problems.push_back(std::move(*problem));
+}
+
+}  // namespace octoskin

@@ -1,0 +1,135 @@
+#include "host/apps/daemon/problems/problem_groups.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/problems/unused_input.hpp"
+
+namespace octoskin {
+namespace {
+
+/// "wrong_count 5, time_off 1"; empty if nothing was refused.
+std::string refused_lines(const JointSocket& socket) {
+    constexpr auto kNames = names_of(JointTextFault{});
+    std::string text;
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+        const std::uint64_t count = socket.faults().at(i);
+        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kNames.at(i), count);
+    }
+    return text;
+}
+
+std::string why_no_joints(const DaemonView& view) {
+    const JointSocket* const socket = view.inputs->joints();
+    if (socket == nullptr) {
+        return fmt::format("no joint states: none from node {} on the bus (and no --joints)",
+                           view.rig->joints.node_id);
+    }
+    if (const std::string refused = refused_lines(*socket); !refused.empty())
+        return fmt::format("no joint states: what comes through the socket is refused ({}); wanted: {}",
+                           refused, kJointTextWanted);
+    if (view.inputs->joints_of_several() > 0) {
+        return fmt::format(
+            "no joint states: those that come through the socket are of more than one program "
+            "(second_sender, {})",
+            view.inputs->joints_of_several());
+    }
+    if (view.pipeline->accounts().frames.rejected(FrameReason::joint_no_host_time) > 0) {
+        return "no joint states: those that come through the socket have no time on the bus's clock "
+               "(joint_no_host_time): nobody sends SYNC and FOLLOW_UP on it";
+    }
+    return "no joint states: none comes through the socket (`octoskin joints`)";
+}
+
+/// "process 4711 (python3, user 1000) and process 4712 (octoskin, user 1000)".
+std::string names_of_senders(const std::vector<JointSenders::Heard>& senders) {
+    std::string text;
+    for (const JointSenders::Heard& heard : senders)
+        text += (text.empty() ? "" : " and ") + describe(heard.sender, heard.program);
+    return text;
+}
+
+bool is_recent(const std::optional<HostTime>& at, HostTime now) {
+    constexpr Nanoseconds kTold{3'000'000'000};  // longer than a person's look, or a script's, takes
+    return at && now - *at < kTold;
+}
+
+void add_joint_jump(const DaemonView& view, Problems& problems) {
+    const auto& jumped = view.pipeline->joint_jump().newest();
+    if (!jumped || !is_recent(view.used.joint_jump, view.now)) return;
+    problems.push_back(
+        {"joint jump",
+         fmt::format("joint states jump: {} went from {:.3f} to {:.3f} in {:.0f} ms, where the robot "
+                     "description lets it move by {:.3f} at most (joint_jump, {}): another program tells "
+                     "joint states too, or the velocity of its <limit> is too low",
+                     view.rig->joints.joints.at(jumped->joint), jumped->from, jumped->to,
+                     1e3 * seconds_of(jumped->passed), jumped->step_max,
+                     view.pipeline->accounts().joint_samples.rejected(JointReason::joint_jump))});
+}
+
+/// Whose word does not count while another's is heard, by what tells the two apart.
+void add_joint_senders(const DaemonView& view, Problems& problems) {
+    add_joint_jump(view, problems);
+    const JointSocket* const socket = view.inputs->joints();
+    if (socket != nullptr && is_recent(socket->senders().several_at(), view.now)) {
+        problems.push_back(
+            {"joint senders",
+             fmt::format("joint states come through the socket from more than one program, and none is used "
+                         "until all but one were silent for a second (second_sender, {}): {}",
+                         view.inputs->joints_of_several(),
+                         names_of_senders(socket->senders().newest_several()))});
+        return;
+    }
+    if (!is_recent(view.used.joint_senders, view.now)) return;
+    const std::uint64_t withheld =
+        view.pipeline->accounts().joint_samples.rejected(JointReason::second_sender);
+    problems.push_back(
+        {"joint senders",
+         socket != nullptr
+             ? fmt::format("joint states of two arms come through the socket by turns, and neither is used "
+                           "until that was over for a second (second_sender, {})",
+                           withheld)
+             : fmt::format("two senders tell joint states under node {}, and neither is used until they have "
+                           "not contradicted each other for a second (second_sender, {}): the joint node and "
+                           "another board of that id, or `octoskin joints --can` beside it",
+                           view.rig->joints.node_id, withheld)});
+}
+
+}  // namespace
+
+void add_joints(const DaemonView& view, Problems& problems) {
+    constexpr std::uint64_t kFirstSamples = 5;  // of a source: nothing is known of it yet
+    const auto& joints = view.pipeline->accounts().joint_samples;
+    add_joint_senders(view, problems);
+    if (joints.in() == 0) {
+        problems.push_back({"no joints", why_no_joints(view), "joints"});
+    } else if (!view.used.joint_sample) {
+        problems.push_back({"joints unused",
+                            "no joint state could be used: " + see_counters("joint samples", joints),
+                            "joints"});
+    } else if (has_stopped(view.used.joint_sample, view.now)) {
+        problems.push_back({"joints stopped", "joint states have stopped: readings have no pose", "joints"});
+    }
+    if (view.inputs->is_flooded(view.now)) {
+        problems.push_back(
+            {"joints flood",
+             fmt::format(
+                 "joint states come, or came, through the socket quicker than they can be taken: {} gave "
+                 "way to newer ones (displaced), {} were more than one program may send (surplus); the rig "
+                 "has "
+                 "{} Hz, more is of no use",
+                 view.inputs->joints_displaced(), view.inputs->joints()->surplus(),
+                 view.rig->joints.rate_hz)});
+    }
+    if (joints.rejected(JointReason::too_frequent) > kFirstSamples) {
+        problems.push_back(
+            {"joints too frequent",
+             fmt::format("joint states come, or came, quicker than the {} Hz of the rig, and were refused "
+                         "(too_frequent, {}): put the true rate into joints.rate_hz",
+                         view.rig->joints.rate_hz, joints.rejected(JointReason::too_frequent))});
+    }
+}
+
+}  // namespace octoskin

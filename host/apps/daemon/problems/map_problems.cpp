@@ -1,0 +1,43 @@
+#include "host/apps/daemon/problems/problem_groups.hpp"
+
+#include <fmt/format.h>
+
+namespace octoskin {
+
+void add_map(const DaemonView& view, Problems& problems) {
+    const FusedMap& map = *view.pipeline->maps().fused();
+    if (map.counters().no_room > 0) {
+        problems.push_back(
+            {"map full",
+             fmt::format("the map is full ({} MiB): it takes no new space, {} updates found no room "
+                         "(no_room); raise map.memory_max_mib in the mapping file",
+                         map.config().memory_max_mib, map.counters().no_room)});
+    }
+    if (map.counters().no_memory > 0) {
+        problems.push_back({"map without memory",
+                            fmt::format("the system had no memory for new space of the map: {} updates were "
+                                        "refused (no_memory); lower map.memory_max_mib in the mapping file, "
+                                        "or give the service more",
+                                        map.counters().no_memory)});
+    }
+    if (!view.maps_problem.empty()) problems.push_back({"maps folder", view.maps_problem, "maps"});
+    if (!view.saves.error.empty())
+        problems.push_back({"map not saved", "the map is not saved: " + view.saves.error});
+    if (view.recorder != nullptr && !view.recorder->error().empty()) {
+        problems.push_back({"recording failed", "the recording has failed: " + view.recorder->error()});
+    } else if (view.recorder != nullptr && !view.recorder->is_complete()) {
+        problems.push_back({"recording incomplete",
+                            "the recording lacks something, and its replay gives another map: "
+                            "recording.lost_commits and lost_depth (the disk was too slow, there was no "
+                            "memory, or depth lay beyond 32.767 m)"});
+    }
+    if (!view.recording_refusal.empty())
+        problems.push_back(
+            {"recording refused", "the newest recording did not begin: " + view.recording_refusal});
+    if (!view.reload_error.empty())
+        problems.push_back({"reload " + view.reload_error,
+                            "the newest reload was refused, and the old settings hold: " + view.reload_error,
+                            "reload"});
+}
+
+}  // namespace octoskin

@@ -1,0 +1,128 @@
+#include "host/apps/daemon/problems/problem_groups.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "common/wire/names.hpp"
+#include "host/apps/daemon/problems/unused_input.hpp"
+#include "host/core/rig/sensor_text.hpp"
+
+namespace octoskin {
+namespace {
+
+std::string node_subject(wire::NodeId node) {
+    return "node " + std::to_string(node);
+}
+
+/// Two senders under one sensor's name: what was counted of them, and what becomes of its readings.
+void add_senders(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {
+    const SenderWatch& senders =
+        view.pipeline->intake().ranges().senders(node.node_id, static_cast<std::uint8_t>(index));
+    if (!view.bus_now || !senders.is_named(*view.bus_now)) return;
+    const std::string who = sensor_text(node, index);
+    const bool is_disputed = senders.is_disputed(*view.bus_now);
+    problems.push_back(
+        {who + " senders",
+         fmt::format("{}: another sender's readings come under its name (contradictions {}, strays {}): {}. "
+                     "Which board has the node id twice, or who forges it?",
+                     who, senders.contradictions(), senders.strays(),
+                     is_disputed ? "its readings stay out of the map until a second after the last of them"
+                                 : "they are told from its own and refused"),
+         {},
+         node_subject(node.node_id)});
+}
+
+/// What it loses is not its sensors' fault.
+void add_losses(const DaemonView& view, const HostNode& node, Problems& problems) {
+    if (!view.bus_now) return;
+    const auto loss = view.pipeline->intake().losses(node.node_id, *view.bus_now);
+    if (!loss) return;
+    const std::string on = node_subject(node.node_id);
+    problems.push_back(
+        {on + " loses",
+         fmt::format("{} '{}': {:.0f} % of its readings within the last second were refused, most as {}", on,
+                     node.name, 100.0 * loss->share,
+                     names_of(ReadingReason{})[static_cast<std::size_t>(loss->most)]),
+         {},
+         on});
+}
+
+/// Which register the sensor is withheld for, and how to have it left out; empty if its node named none.
+std::string register_text(const DaemonView& view, const HostNode& node, std::size_t index) {
+    const auto sensor = static_cast<std::uint8_t>(index);
+    const auto& health = view.pipeline->intake().ranges().record(node.node_id, sensor).health;
+    const NodeRecord& record = view.pipeline->intake().nodes().records().at(node.node_id);
+    const auto& report = record.registers.of_sensor(sensor);
+    if (!report || health->fault != wire::SensorFault::config_mismatch) return {};
+    return ": " + text_of(*report) + "; if that is how this part is, " + leave_out_text(*report, node.name);
+}
+
+void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {
+    const SensorRecord& sensor =
+        view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
+    const std::string who = sensor_text(node, index);
+    const std::string on = node_subject(node.node_id);
+    const bool is_ranging = sensor.health && sensor.health->state == wire::SensorState::ranging;
+    if (sensor.health && !is_ranging && sensor.health->state != wire::SensorState::starting) {
+        const std::string text = fmt::format("{}: {}, {}", who, wire::name(sensor.health->state),
+                                             wire::name(sensor.health->fault));
+        problems.push_back({text, text + register_text(view, node, index), who, on});
+    } else if (const auto streak = sensor.fates.streak()) {
+        problems.push_back(
+            {who + " streak",
+             fmt::format("{}: (nearly) all of its last {} readings were rejected, most as {}", who,
+                         FateHistory::kKept, names_of(ReadingReason{})[static_cast<std::size_t>(*streak)]),
+             {},
+             on});
+    }
+    const SensorWitness* const witness = view.pipeline->builder().witness();
+    if (witness == nullptr) return;
+    const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(index));
+    if (evidence.contradicts())
+        problems.push_back({who + " camera", fmt::format("{}: {}", who, describe(evidence)), {}, on});
+}
+
+}  // namespace
+
+void add_nodes(const DaemonView& view, Problems& problems) {
+    const NodeRegistry& nodes = view.pipeline->intake().nodes();
+    for (const HostNode& node : view.rig->nodes) {
+        const NodeVerdict verdict = nodes.verdict(node.node_id, view.bus_now);
+        if (verdict != NodeVerdict::usable) {
+            const std::string text = nodes.describe(node.node_id, view.bus_now);
+            problems.push_back({text, text, node_subject(node.node_id)});
+            continue;
+        }
+        add_losses(view, node, problems);
+        for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+            add_senders(view, node, i, problems);
+            add_sensor(view, node, i, problems);
+        }
+    }
+}
+
+/// Why the joint states of the bus are refused, where their node is none of those that have sensors.
+void add_joint_node(const DaemonView& view, Problems& problems) {
+    const wire::NodeId source = view.rig->joints.node_id;
+    const NodeRegistry& nodes = view.pipeline->intake().nodes();
+    if (!nodes.knows(source) || nodes.records().at(source).has_block) return;
+    if (!is_refused_for_joints(nodes.verdict(source, view.bus_now))) return;
+    const std::string text = nodes.describe(source, view.bus_now);
+    problems.push_back({text, text, node_subject(source)});
+}
+
+void add_readings(const DaemonView& view, Problems& problems) {
+    const auto& readings = view.pipeline->accounts().readings;
+    if (readings.in() > 0 && !view.used.reading) {
+        problems.push_back({"readings unused",
+                            "no reading could be used yet: " + see_counters("readings", readings),
+                            "readings"});
+    } else if (has_stopped(view.used.reading, view.now)) {
+        problems.push_back({"readings stopped",
+                            "readings come onto the map no more: " + see_counters("readings", readings),
+                            "readings"});
+    }
+}
+
+}  // namespace octoskin

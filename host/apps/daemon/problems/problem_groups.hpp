@@ -1,0 +1,36 @@
+// The groups of problems, each in the file of its name. The order of the whole is problems.cpp's.
+#pragma once
+
+#include <vector>
+
+#include "host/apps/daemon/problem_log.hpp"
+#include "host/apps/daemon/status.hpp"
+
+namespace octoskin {
+
+using Problems = std::vector<Problem>;
+
+// --- bus_problems.cpp: the CAN link, and the time that is shared on it
+void add_wall_clock(const DaemonView& view, Problems& problems);
+void add_link(const DaemonView& view, Problems& problems);
+void add_other_hosts(const DaemonView& view, Problems& problems);
+void add_clock(const DaemonView& view, Problems& problems);
+
+// --- robot_problems.cpp
+void add_links_without_body(const DaemonView& view, Problems& problems);
+
+// --- node_problems.cpp: nodes, their sensors and registers, and what becomes of the readings
+void add_nodes(const DaemonView& view, Problems& problems);
+void add_joint_node(const DaemonView& view, Problems& problems);
+void add_readings(const DaemonView& view, Problems& problems);
+
+// --- joint_problems.cpp: joint states and those that send them
+void add_joints(const DaemonView& view, Problems& problems);
+
+// --- camera_problems.cpp
+void add_camera(const DaemonView& view, Problems& problems);
+
+// --- map_problems.cpp: the map, its folder, the recording, the newest reload
+void add_map(const DaemonView& view, Problems& problems);
+
+}  // namespace octoskin
