@@ -243,17 +243,19 @@ void Inputs::answer_sync(const socketcan::Received& received, HostTime at) {
         (void)can_.send(wire::encode(*follow_up, wire::kHostId));
 }
 
-/// Into the pipeline, and how long that took since the frame was here.
+/// Into the pipeline, how long that took since the frame was here, and how old the readings are by then.
 void Inputs::feed(const wire::CanFrame& frame, WallTime stamp) {
     if (is_of_node(frame)) told_ = monotonic_now();
-    const std::uint64_t used_before = pipeline_.accounts().readings.used();
     recordings_.on_can(frame, stamp);
     pipeline_.on_can(frame, stamp);
     note_host_frame(frame, stamp);
-    const std::uint64_t used = pipeline_.accounts().readings.used() - used_before;
-    if (used == 0) return;
+    const auto here = pipeline_.now();
+    if (pipeline_.just_used().empty() || !here) return;
     const Nanoseconds took{wall_now().ns - stamp.ns};
-    for (std::uint64_t i = 0; i < used; ++i) latency_.add(took);
+    for (const HostTime captured : pipeline_.just_used()) {
+        latency_.add(took);
+        age_.add(*here - captured + took);
+    }
 }
 
 /// The pipeline's "now" is at this frame only if it took it: one that it refused must not hold the time up.

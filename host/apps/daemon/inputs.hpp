@@ -68,7 +68,10 @@ class Inputs {
     [[nodiscard]] std::uint64_t joint_node_ignored() const noexcept { return joint_node_ignored_; }
     /// Empty without a camera. Its `untimed` has those that came while another host's clock was not known.
     [[nodiscard]] std::optional<CameraRecord> camera() const;
+    /// Of readings that came onto the map with a frame: since that frame was here.
     [[nodiscard]] const LatencyHistogram& latency() const noexcept { return latency_; }
+    /// Of the same: since they were captured.
+    [[nodiscard]] const LatencyHistogram& age() const noexcept { return age_; }
     /// Another host's newest SYNC, on this machine's clock.
     [[nodiscard]] std::optional<HostTime> foreign_sync() const noexcept { return foreign_sync_; }
     /// What time it is on the bus, on the clock that SYNC tells; empty while nobody knows.
@@ -125,6 +128,7 @@ class Inputs {
     std::optional<HostTime> camera_tried_;  ///< last, in the mode that is wanted
     EventSource camera_ready_;
     LatencyHistogram latency_;
+    LatencyHistogram age_;
     wire::BitRates bit_rates_;
     Nanoseconds bus_busy_{0};
     std::uint64_t joints_thinned_ = 0;

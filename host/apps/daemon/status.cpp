@@ -209,11 +209,14 @@ Json joints_json(const DaemonView& view) {
     return json;
 }
 
-Json latency_json(const LatencyHistogram& latency) {
+Json latency_json(const LatencyHistogram& latency, const LatencyHistogram& age) {
     return {{"readings", latency.count()},
             {"median_ms", milliseconds(latency.within(0.5))},
             {"p99_ms", milliseconds(latency.within(0.99))},
-            {"max_ms", milliseconds(latency.longest())}};
+            {"max_ms", milliseconds(latency.longest())},
+            {"age_median_ms", milliseconds(age.within(0.5))},
+            {"age_p99_ms", milliseconds(age.within(0.99))},
+            {"age_max_ms", milliseconds(age.longest())}};
 }
 
 Json map_json(const DaemonView& view) {
@@ -300,7 +303,7 @@ Json status_json(const DaemonView& view) {
             {"joints_socket", joints_json(view)},
             {"recording", view.recorder != nullptr ? view.recorder->to_json(view.now) : Json(nullptr)},
             {"camera", camera_json(view)},
-            {"latency", latency_json(view.inputs->latency())},
+            {"latency", latency_json(view.inputs->latency(), view.inputs->age())},
             {"map", map_json(view)},
             {"reloads",
              {{"count", view.reloads.count},

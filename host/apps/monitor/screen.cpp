@@ -109,6 +109,8 @@ class Screen {
         };
         add(fmt::format("  from frame to map: {} median, {} 99 %, {} longest", figure("median_ms"),
                         figure("p99_ms"), figure("max_ms")));
+        add(fmt::format("  from capture to map: {} median, {} 99 %, {} longest", figure("age_median_ms"),
+                        figure("age_p99_ms"), figure("age_max_ms")));
     }
     void add_node(std::size_t index) {
         const Json& node = item(at(now_, "nodes"), index);

@@ -27,8 +27,8 @@ constexpr std::array kStatusMeanings = {
     Meaning{"", "recording", "the recording that is made, or the last one, below; null without"},
     Meaning{"", "camera", "the depth camera, below; null without one"},
     Meaning{"", "latency",
-            "from the kernel's stamp of the frame that completed a reading (its own, the joint state behind "
-            "it, or one that made that certain) to the map, below"},
+            "how late readings come onto the map: since the frame that completed them, and since they were "
+            "taken, below"},
     Meaning{"", "map", "the fused map, below"},
     Meaning{"", "reloads", "rig, robot and mapping read again, below"},
     Meaning{"", "account",
@@ -250,9 +250,16 @@ constexpr std::array kStatusMeanings = {
             "how often it was opened; over once: it was gone, fell silent, or all its frames came late"},
     Meaning{"camera", "age_s", "since its newest frame came; null: none yet"},
     Meaning{"latency", "readings", "how many the figures are of"},
-    Meaning{"latency", "median_ms", "half of them were as quick"},
+    Meaning{"latency", "median_ms",
+            "from the kernel's stamp of the frame that completed a reading (its own, the joint state behind "
+            "it, or one that made that certain) to the map: half of them were as quick"},
     Meaning{"latency", "p99_ms", "99 of 100 were as quick"},
     Meaning{"latency", "max_ms", "the slowest"},
+    Meaning{"latency", "age_median_ms",
+            "from the middle of the time in which a reading was taken to the map, whatever it waited for: "
+            "half of them were as young"},
+    Meaning{"latency", "age_p99_ms", "99 of 100 were as young"},
+    Meaning{"latency", "age_max_ms", "the oldest"},
     Meaning{"map", "known_voxels", "voxels that are free or occupied"},
     Meaning{"map", "resolution_m", "the edge of a voxel"},
     Meaning{"map", "memory_mib", "what they take in memory"},

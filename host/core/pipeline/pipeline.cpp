@@ -76,6 +76,7 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     assert(!is_finished_);
     accounts_.frames.take_in();
     told_beside_.reset();
+    just_used_.clear();
     FrameOutcome outcome = intake_.on_frame(frame, stamp);
     queue(outcome.joint_samples_of_before);
     if (const auto now_known = now()) {
@@ -122,6 +123,7 @@ void Pipeline::go_on_after(Nanoseconds leapt) {
     joint_jump_.forget();
     integrated_.reset();
     used_.clear();
+    just_used_.clear();  // told by the time before: their age is not known
     depth_newest_.reset();
     told_newest_.reset();
 }
@@ -248,6 +250,7 @@ std::optional<DepthReason> Pipeline::fault_on_arrival(const DepthFrame& frame) c
 void Pipeline::on_depth(DepthFrame frame) {
     assert(!is_finished_);
     accounts_.depth_frames.take_in();
+    just_used_.clear();
     if (const auto reason = fault_on_arrival(frame)) {
         accounts_.depth_frames.reject(*reason);
         return;
@@ -334,6 +337,7 @@ Status<ReadingReason> Pipeline::integrate(const RangeMeasurement& measurement) {
     intake_.on_fate_in_map(measurement.source, integrated ? std::nullopt : std::optional(integrated.error()));
     if (integrated) {
         used_[measurement.source] = measurement.captured;
+        just_used_.push_back(measurement.captured);
     }
     return integrated;
 }
@@ -371,6 +375,7 @@ Status<DepthReason> Pipeline::begin_depth(DepthFrame frame) {
 void Pipeline::on_silence(HostTime now) {
     has_can_time_ = false;
     told_beside_ = now;
+    just_used_.clear();
     queue(intake_.joints_due(now));
     advance(now);
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -123,6 +124,8 @@ class Pipeline {
     /// How often it went ahead by over a second more than passed: another host sends SYNC, or its clock was
     /// set. The same is done, and the maps stay as old as they were.
     [[nodiscard]] std::uint64_t times_ahead() const noexcept { return times_ahead_; }
+    /// When the readings were captured that the last `on_can`, `on_depth` or `on_silence` put into the maps.
+    [[nodiscard]] std::span<const HostTime> just_used() const noexcept { return just_used_; }
     /// True if "now" is known and three periods have passed without a depth frame that the rig promises.
     [[nodiscard]] bool is_camera_stale() const;
     [[nodiscard]] const CanIntake& intake() const noexcept { return intake_; }
@@ -184,6 +187,7 @@ class Pipeline {
 
     PipelineAccounts accounts_;
     std::optional<ReleaseKey> integrated_;        ///< the newest measurement in the maps
+    std::vector<HostTime> just_used_;             ///< by the call under way, or the last one
     std::map<BeamSource, HostTime> used_;         ///< the newest reading of each source in the maps
     std::optional<Nanoseconds> camera_patience_;  ///< three periods; empty without a camera
     std::optional<HostTime> depth_newest_;        ///< capture time of the newest depth frame

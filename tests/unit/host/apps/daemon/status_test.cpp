@@ -450,7 +450,8 @@ TEST_F(StatusTest, has_every_key_with_a_meaning_and_no_other) {
 
 TEST_F(StatusTest, has_no_latency_where_no_reading_came_over_the_bus) {
     EXPECT_EQ(status()["latency"],
-              Json::parse(R"({"readings": 0, "median_ms": 0.0, "p99_ms": 0.0, "max_ms": 0.0})"));
+              Json::parse(R"({"readings": 0, "median_ms": 0.0, "p99_ms": 0.0, "max_ms": 0.0,
+                              "age_median_ms": 0.0, "age_p99_ms": 0.0, "age_max_ms": 0.0})"));
 }
 
 TEST_F(StatusTest, knows_when_each_kind_of_measurement_was_used_last) {

@@ -33,7 +33,8 @@ Json status() {
             {"index": 1, "name": "elbow", "state": "lost", "fault": "no_answer", "received": 7,
              "age_s": null, "rejected": "self_hit"}]}],
         "joints_socket": null, "camera": null,
-        "latency": {"readings": 7, "median_ms": 0.2, "p99_ms": 0.5, "max_ms": 3.0},
+        "latency": {"readings": 7, "median_ms": 0.2, "p99_ms": 0.5, "max_ms": 3.0,
+                    "age_median_ms": 31.25, "age_p99_ms": 44.0, "age_max_ms": 51.5},
         "map": {"known_voxels": 1234, "resolution_m": 0.04, "memory_mib": 3.2, "memory_max_mib": 800,
                 "saved_age_s": 4.0, "no_room": 0},
         "account": {"readings": {"in": 130, "used": 100, "rejected": {"self_hit": 30}, "balanced": true},
@@ -104,6 +105,9 @@ TEST(Monitor, shows_no_latency_before_the_first_reading) {
     Json now = status();
     now["latency"] = {{"readings", 0}, {"median_ms", 0.0}, {"p99_ms", 0.0}, {"max_ms", 0.0}};
     EXPECT_TRUE(has(shown(now, now), "from frame to map: - median, - 99 %, - longest"));
+    EXPECT_TRUE(has(shown(now, now), "from capture to map: - median, - 99 %, - longest"));
+    EXPECT_TRUE(has(shown(status(), status()),
+                    "from capture to map: 31.25 ms median, 44.00 ms 99 %, 51.50 ms longest"));
 }
 
 TEST(Monitor, shows_no_range_of_a_sensor_that_saw_nothing) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "host/core/pipeline/pipeline.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
@@ -87,6 +88,30 @@ TEST(LiveRelease, takes_a_reading_with_the_first_joint_sample_after_it_where_nob
 // Its successor comes 10 ms later, and the next frame after 12.5 ms is that one's.
 TEST(LiveRelease, takes_a_reading_once_no_second_sender_of_its_joint_sample_has_come) {
     EXPECT_LE(longest_wait(live_scene()), std::chrono::milliseconds(10 + 20 - 15 + 20 + 1));
+}
+
+/// How old each reading was as it came onto the map, in that order.
+std::vector<Nanoseconds> ages_on_the_map(Scene scene) {
+    scene.depth.clear();
+    std::vector<Nanoseconds> ages;
+    play(scene, with_late_joints(scene.bus.frames()), [&](const Pipeline& pipeline) {
+        for (const HostTime captured : pipeline.just_used()) ages.push_back(*pipeline.now() - captured);
+    });
+    EXPECT_EQ(ages.size(), 10U);
+    return ages;
+}
+
+TEST(LiveRelease, tells_which_readings_each_frame_put_onto_the_map_whatever_they_waited_for) {
+    Scene local = live_scene();
+    local.config.intake.has_local_joints = true;
+    const auto at_once = ages_on_the_map(local);
+    const auto certain = ages_on_the_map(live_scene());
+    for (std::size_t i = 0; i < std::min(at_once.size(), certain.size()); ++i) {
+        EXPECT_GE(at_once[i], std::chrono::milliseconds(15)) << i;
+        EXPECT_LE(at_once[i], std::chrono::milliseconds(10 + 20 + 1)) << i;
+        EXPECT_GE(certain[i] - at_once[i], std::chrono::microseconds(12'500)) << i;
+        EXPECT_LE(certain[i] - at_once[i], std::chrono::milliseconds(20 + 1)) << i;
+    }
 }
 
 TEST(LiveRelease, builds_the_map_that_the_order_of_capture_builds_where_the_order_is_the_same) {
