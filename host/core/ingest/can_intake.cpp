@@ -362,8 +362,11 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::JointState& me
     outcome.joint_samples_begun += assembled.opened ? 1U : 0U;
     if (assembled.is_contradiction) {
         const std::uint8_t sequence = std::visit([](const auto& part) { return part.sequence; }, message);
-        joint_senders_.on_contradiction(sequence, assembled.is_of_one_round, *now_known,
-                                        outcome.joint_samples);
+        joint_senders_.on_contradiction(sequence,
+                                        assembled.is_of_one_round  ? JointSenderCheck::Rounds::one
+                                        : assembled.is_of_no_round ? JointSenderCheck::Rounds::none
+                                                                   : JointSenderCheck::Rounds::any,
+                                        *now_known, outcome.joint_samples);
     }
     if (assembled.complete) {
         const auto placed = place(*assembled.complete, *now_known);

@@ -32,7 +32,9 @@ JointReading join(const std::array<std::optional<wire::JointState>, 4>& parts) {
 }  // namespace
 
 JointAssembler::JointAssembler(double rate_hz)
-    : patience_(std::llround(1e9 * wire::kJointSequenceCount / 2 / rate_hz)), pace_(rate_hz) {
+    : patience_(std::llround(1e9 * wire::kJointSequenceCount / 2 / rate_hz)),
+      pace_(rate_hz),
+      rounds_(Nanoseconds{std::llround(1e9 / rate_hz)}) {
     assert(rate_hz > 0.0);
 }
 
@@ -70,6 +72,7 @@ bool JointAssembler::are_of_one_round(const wire::JointState& a, const wire::Joi
 
 JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, HostTime now) {
     Outcome outcome;
+    const bool is_of_no_round = rounds_.is_of_no_round(frame, now);
     give_up_stale(now, outcome);
     begin_round(sequence_of(frame), outcome);
     auto& sample = samples_[sequence_of(frame)];
@@ -83,6 +86,7 @@ JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, 
             return outcome;
         }
         outcome.is_contradiction = !is_equal;
+        outcome.is_of_no_round = !is_equal && is_of_no_round;
         outcome.is_of_one_round = !is_equal && are_of_one_round(*sample->parts[part], frame);
         if (!sample->is_complete) {
             outcome.given_up.push_back(is_equal ? JointReason::incomplete : JointReason::contradictory);

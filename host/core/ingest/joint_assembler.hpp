@@ -9,6 +9,7 @@
 #include "common/time.hpp"
 #include "common/wire/messages.hpp"
 #include "host/core/ingest/joint_pace.hpp"
+#include "host/core/ingest/joint_rounds.hpp"
 #include "host/core/ingest/reasons.hpp"
 
 namespace octoskin {
@@ -42,6 +43,8 @@ class JointAssembler {
         bool is_contradiction = false;
         /// And both tell when the sample was taken, less than half a round apart: they are of one round.
         bool is_of_one_round = false;
+        /// Or each frame of the round before was here in its time: it is of none, but another sender's.
+        bool is_of_no_round = false;
         std::optional<JointReading> complete;
         std::vector<JointReason> given_up;  ///< one for each sample that ended without being complete
     };
@@ -69,6 +72,7 @@ class JointAssembler {
 
     Nanoseconds patience_;
     JointPace pace_;
+    JointRounds rounds_;
     std::uint8_t newest_ = 0;  ///< sequence number of the newest sample begun
     std::array<std::optional<Sample>, wire::kJointSequenceCount> samples_;
 };

@@ -61,12 +61,13 @@ void JointSenderCheck::on_sample(std::uint8_t sequence, const JointMeasurement& 
     }
 }
 
-void JointSenderCheck::on_contradiction(std::uint8_t sequence, bool is_of_one_round, HostTime now,
-                                        Ended& ended) {
+void JointSenderCheck::on_contradiction(std::uint8_t sequence, Rounds rounds, HostTime now, Ended& ended) {
     if (!waits_) return;
     const bool is_waiting =
         std::ranges::any_of(waiting_, [&](const Sample& sample) { return sample.sequence == sequence; });
-    if (is_waiting || is_of_one_round || !late_.keeps_with_event(now)) find_two(now, ended);
+    const bool are_too_many_late = !late_.keeps_with_event(now);
+    const bool are_two_foreign = rounds == Rounds::none && !foreign_.keeps_with_event(now);
+    if (is_waiting || rounds == Rounds::one || are_too_many_late || are_two_foreign) find_two(now, ended);
 }
 
 void JointSenderCheck::advance(HostTime now, Ended& ended) {

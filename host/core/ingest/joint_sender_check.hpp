@@ -31,11 +31,17 @@ class JointSenderCheck {
 
     /// A whole sample whose time is known and whose source keeps the rig's rate, in the order of arrival.
     void on_sample(std::uint8_t sequence, const JointMeasurement& joints, HostTime now, Ended& ended);
-    /// A frame came that differs from one of the same number. If that one's sample waits, or both tell their
-    /// time and are of one round, it is of another sender. If it is not whole, the frame may as well be late
-    /// by most of a round, as no sound bus has it: more of them within a second than a quarter of the rig's
-    /// samples are.
-    void on_contradiction(std::uint8_t sequence, bool is_of_one_round, HostTime now, Ended& ended);
+    /// Of which rounds two frames of one number are that contradict each other.
+    enum class Rounds : std::uint8_t {
+        any,   ///< nobody knows
+        none,  ///< one of them is of no round that the number's sender has sent
+        one,   ///< both tell their time
+    };
+    /// A frame came that differs from one of the same number. If that one's sample waits, or both are of one
+    /// round, it is of another sender. If it is not whole, the frame may as well be late by most of a round,
+    /// as no sound bus has it: more of them within a second than a quarter of the rig's samples are of
+    /// another sender, and two of those that are of no round: one may have been altered on its way.
+    void on_contradiction(std::uint8_t sequence, Rounds rounds, HostTime now, Ended& ended);
     /// It is `now`: what has waited long enough has ended.
     void advance(HostTime now, Ended& ended);
     /// It is `now`: if that is before what waits came, the time went back, and what waits is used.
@@ -66,6 +72,7 @@ class JointSenderCheck {
     std::deque<Sample> waiting_;  ///< in the order of arrival; a round at most
     std::deque<Sample> recent_;   ///< of the last round, in the order of arrival
     RateLimit late_;
+    RateLimit foreign_{1};
     std::optional<HostTime> found_;  ///< the newest contradiction
     std::uint64_t contradictions_ = 0;
 };

@@ -79,6 +79,7 @@ struct Attack {
     double before_s = 0.003;         ///< it comes before the node's own sample, at a time of 4 ms before
     std::optional<int> one_frame{};  ///< of the forged sample that frame alone
     bool is_within = false;          ///< it comes between the frames of the node's own sample
+    bool repeats_time = false;       ///< its time is the node's own, to the microsecond
 };
 
 struct Forged {
@@ -101,10 +102,11 @@ Forged forge(const Attack& attack) {
         if (at_s < due_s || at_s > kAttackEndS) continue;
         due_s += 1.0 / attack.hz;
         auto position = sample.position_urad;
-        position[0] += static_cast<std::int32_t>(std::lround(1e6 * attack.posture_rad));
-        const auto dated_us =
-            static_cast<std::uint32_t>(sample.sampled_us + wire::kFdTimeSpanUs -
-                                       static_cast<std::uint32_t>(1e6 * (attack.before_s + 0.004)));
+        for (const std::size_t joint : {0U, 2U, 4U, 6U})  // one in each frame
+            position.at(joint) += static_cast<std::int32_t>(std::lround(1e6 * attack.posture_rad));
+        const double dated_before_s = attack.repeats_time ? 0.0 : attack.before_s + 0.004;
+        const auto dated_us = static_cast<std::uint32_t>(sample.sampled_us + wire::kFdTimeSpanUs -
+                                                         static_cast<std::uint32_t>(1e6 * dated_before_s));
         const auto number = static_cast<std::uint8_t>((sample.sequence + attack.number_ahead) % 8);
         const auto frames =
             wire::joint_frames(node, number, position, {dated_us % wire::kFdTimeSpanUs, wire::kFdTimeSpanUs});
@@ -306,17 +308,19 @@ TEST(SecondJointSender, under_the_joint_node_moves_no_voxel_and_is_named_within_
 }
 
 // A frame alone voids the node's own sample: the poses are interpolated across twice the period then.
-TEST(SecondJointSender, whose_single_frames_come_among_the_nodes_own_mixes_no_sample) {
+TEST(SecondJointSender, whose_single_frames_come_among_the_nodes_own_mixes_no_sample_and_is_named) {
     const Played& expected = clean(Release::once_placed);
     for (const bool is_within : {false, true}) {
         for (int frame = 0; frame < 4; ++frame) {
             for (const double hz : {2.0, 10.0, 50.0}) {
                 SCOPED_TRACE(std::to_string(frame) + (is_within ? " within, " : " before, ") +
                              std::to_string(hz));
-                const Forged forged =
-                    forge({.name = "", .hz = hz, .one_frame = frame, .is_within = is_within});
+                const Forged forged = forge(
+                    {.name = "", .hz = hz, .one_frame = frame, .is_within = is_within, .repeats_time = true});
                 const Played played = play(forged.frames, Release::once_placed);
                 expect_no_wrong_place(played, expected, forged, 1e-4);
+                ASSERT_TRUE(played.named);
+                EXPECT_LE(seconds_between(forged.begin, *played.named), 1.0);
             }
         }
     }

@@ -214,6 +214,38 @@ TEST(JointAssembler, knows_two_times_of_one_round_from_those_of_two) {
     }
 }
 
+/// Sample 1, and in the next round sample 9, into whose frame `index` comes what no sender of both would say.
+JointAssembler::Outcome contradicted(JointAssembler& assembler, int lost, int index, std::int64_t after_ms) {
+    for (int i = 0; i < 4; ++i)
+        if (i != lost) (void)assembler.on_frame(part(1, i), ms(10));
+    for (int i = 0; i <= index; ++i) (void)assembler.on_frame(part(9, i), ms(90));
+    return assembler.on_frame(part(17, index), ms(90 + after_ms));
+}
+
+TEST(JointAssembler, knows_a_frame_of_no_round_where_the_round_before_was_whole) {
+    for (int index = 0; index < 4; ++index) {
+        JointAssembler whole(kRate);
+        const auto outcome = contradicted(whole, -1, index, 1);
+        EXPECT_TRUE(outcome.is_contradiction && outcome.is_of_no_round) << index;
+        for (int lost = 0; lost < 4; ++lost) {
+            JointAssembler one_late(kRate);
+            EXPECT_FALSE(contradicted(one_late, lost, index, 1).is_of_no_round) << index << ", lost " << lost;
+        }
+        JointAssembler late(kRate);
+        EXPECT_FALSE(contradicted(late, -1, index, 6).is_of_no_round) << "half a period later";
+    }
+}
+
+TEST(JointAssembler, takes_no_frame_of_a_burst_of_several_rounds_for_one_of_none) {
+    JointAssembler assembler(kRate);
+    for (int n = 0; n < 8; ++n)
+        for (int i = 0; i < 4; ++i) (void)assembler.on_frame(part(n, i), ms(10 * n));
+    for (int n = 8; n < 24; ++n)  // held up, and all here at once
+        for (int i = 0; i < 4; ++i) {
+            EXPECT_FALSE(assembler.on_frame(part(n, i), ms(150)).is_of_no_round) << n;
+        }
+}
+
 TEST(JointAssembler, begins_anew_when_time_goes_back) {
     JointAssembler assembler(kRate);
     EXPECT_TRUE(assembler.on_frame(part(0, 0), ms(1000)).opened);

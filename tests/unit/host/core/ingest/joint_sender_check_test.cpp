@@ -8,6 +8,8 @@
 namespace octoskin {
 namespace {
 
+using Rounds = JointSenderCheck::Rounds;
+
 constexpr double kRateHz = 100.0;
 
 HostTime at_us(std::int64_t us) {
@@ -108,27 +110,35 @@ TEST_F(JointSenderCheckTest, hears_the_second_one_until_a_second_after_its_last_
 TEST_F(JointSenderCheckTest, takes_a_frame_that_contradicts_a_sample_that_waits_for_a_second_senders) {
     put_honest(0, 10);
     EXPECT_EQ(check_.waiting(), 2U);
-    check_.on_contradiction(2, false, at_us(92'000), ended_);
+    check_.on_contradiction(2, Rounds::any, at_us(92'000), ended_);
     EXPECT_EQ(check_.contradictions(), 0U) << "of one that was used, or is not whole";
-    check_.on_contradiction(1, false, at_us(92'000), ended_);
+    check_.on_contradiction(1, Rounds::any, at_us(92'000), ended_);
     EXPECT_EQ(check_.contradictions(), 1U) << "of number 9";
     EXPECT_EQ(check_.waiting(), 0U);
     EXPECT_EQ(withheld(), 2U);
-    check_.on_contradiction(2, true, at_us(93'000), ended_);
+    check_.on_contradiction(2, Rounds::one, at_us(93'000), ended_);
     EXPECT_EQ(check_.contradictions(), 2U) << "two times of one round";
 }
 
 TEST_F(JointSenderCheckTest,
        takes_a_quarter_of_its_samples_in_contradictions_within_a_second_for_a_second_sender) {
-    for (int k = 0; k < 100; ++k) check_.on_contradiction(2, false, at_us(40'000 * k), ended_);
+    for (int k = 0; k < 100; ++k) check_.on_contradiction(2, Rounds::any, at_us(40'000 * k), ended_);
     EXPECT_EQ(check_.contradictions(), 0U);
-    for (int k = 0; k < 26; ++k) check_.on_contradiction(2, false, at_us(20'000'000 + 39'000 * k), ended_);
+    for (int k = 0; k < 26; ++k)
+        check_.on_contradiction(2, Rounds::any, at_us(20'000'000 + 39'000 * k), ended_);
+    EXPECT_EQ(check_.contradictions(), 1U);
+}
+
+TEST_F(JointSenderCheckTest, takes_two_frames_of_no_round_within_a_second_for_a_second_senders) {
+    for (int k = 0; k < 10; ++k) check_.on_contradiction(2, Rounds::none, at_us(1'001'000 * k), ended_);
+    EXPECT_EQ(check_.contradictions(), 0U);
+    check_.on_contradiction(5, Rounds::none, at_us(9'900'000), ended_);
     EXPECT_EQ(check_.contradictions(), 1U);
 }
 
 TEST_F(JointSenderCheckTest, is_over_where_time_goes_back) {
     put_honest(0, 10);
-    check_.on_contradiction(1, false, at_us(95'000), ended_);
+    check_.on_contradiction(1, Rounds::any, at_us(95'000), ended_);
     EXPECT_TRUE(check_.hears_two(at_us(94'000)));
     EXPECT_FALSE(check_.hears_two(at_us(-3'600'000'000)));
 }
