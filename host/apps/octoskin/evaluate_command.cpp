@@ -203,17 +203,22 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
     return results_of(runs, rig, scene, options.rig);
 }
 
+/// Before any work.
+void check_output(const std::filesystem::path& json) {
+    std::error_code error;
+    if (json.extension() != ".json" && std::filesystem::is_regular_file(json, error)) {
+        throw CommandFailure({ExitCode::cannot_create,
+                              json.string() + ": is there, and is no .json file; it is not overwritten"});
+    }
+    if (const auto checked = check_text_place(json); !checked) throw CommandFailure(checked.error());
+}
+
 void evaluate_input(const EvaluateOptions& options) {
+    if (!options.json.empty()) check_output(options.json);
     const evaluation::Results results =
         std::filesystem::is_directory(options.input) ? judge_recording(options) : judge_map(options);
     print_text(evaluation::metrics_table(results));
     if (options.json.empty()) return;
-    std::error_code error;
-    if (options.json.extension() != ".json" && std::filesystem::is_regular_file(options.json, error)) {
-        throw CommandFailure(
-            {ExitCode::cannot_create,
-             options.json.string() + ": is there, and is no .json file; it is not overwritten"});
-    }
     if (const auto written = write_text(options.json, evaluation::metrics_json(results)); !written)
         throw CommandFailure(written.error());
 }

@@ -356,7 +356,6 @@ TEST(FolderRule, nothing_else_in_the_host_makes_moves_or_removes_files_by_path) 
     EXPECT_THAT(found, testing::ElementsAre(
                            "host/apps/daemon/recording_writer.cpp",  // the folder that a user names
                            "host/apps/flashing/flashing.cpp",        // the same
-                           "host/apps/recording/text_file.cpp",      // a file that a user types
                            "host/apps/study/work_folder.cpp",        // in an open folder, by its descriptor
                            "host/io/mapfile/atomic_file.cpp",        // the same
                            "host/io/openni2/helpers/oni_recorder.cpp",  // of a file that octoskin has made
