@@ -131,13 +131,17 @@ class Move {
   public:
     Move(OpenFolder folder, Journal journal) : folder_(std::move(folder)), journal_(std::move(journal)) {}
 
-    Status<AppError> forward() {
-        // Before anything moves: a link, a pipe or a folder in any place stops all of it.
+    /// Before anything moves: a link, a pipe or a folder in any place stops all of it.
+    [[nodiscard]] Status<AppError> check() const {
         for (const auto& names : {journal_.drop, journal_.put}) {
             for (const fs::path& name : names) {
                 if (const auto checked = check_both(name); !checked) return checked;
             }
         }
+        return Done{};
+    }
+
+    Status<AppError> forward() {
         // The decision reaches the disk before anything that follows from it.
         if (const auto flushed = flush(folder_); !flushed) return flushed;
         // The former set loses its voucher first.
@@ -232,12 +236,13 @@ class Move {
 /// From a ready folder to files in their places; or, with an error, to the folder as it was, with the ready
 /// folder still in it.
 Status<AppError> carry_out(Move& moving) {
+    if (const auto checked = moving.check(); !checked) return checked;
     auto moved = moving.forward();
     if (moved) {
         moving.remove_ready();
         return Done{};
     }
-    if (const auto undone = moving.back(); !undone)
+    if (const auto undone = moving.back(); !undone && undone.error().message != moved.error().message)
         return fail(
             ExitCode::cannot_create,
             undone.error().message + ": taking back what was moved failed, after " + moved.error().message);
@@ -309,9 +314,7 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     assert(!files.empty() && std::all_of(files.begin(), files.end(), is_file_of_set) &&
            std::all_of(retired.begin(), retired.end(), is_file_of_set));
     for (const auto& names : {files, retired}) {
-        for (const fs::path& name : names) {
-            if (const auto checked = check_place(folder_, name); !checked) return checked;
-        }
+        if (const auto checked = check_places(folder_, names); !checked) return checked;
     }
     const Journal journal{retired, files};
     if (const auto written = write_journal(draft_, journal); !written) return written;
@@ -327,6 +330,13 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     auto moved = carry_out(moving);
     if (!moved && !moving.has_moved()) moving.remove_ready();
     return moved;
+}
+
+Status<AppError> FileSet::check_places(const OpenFolder& folder, const std::vector<fs::path>& names) {
+    for (const fs::path& name : names) {
+        if (const auto checked = check_place(folder, name); !checked) return checked;
+    }
+    return Done{};
 }
 
 bool is_file_of_set(const fs::path& name) {

@@ -45,9 +45,7 @@ Status<RecordingError> check_folder(const RecordingPaths& recording) {
 
 /// That nothing but files lies in the places of files.
 Status<RecordingError> check_kinds(const RecordingPaths& recording) {
-    for (const FilePlace& file : {recording.can_log(), recording.depth(), recording.depth_epoch(),
-                                  recording.rig(), recording.robot(), recording.order(), recording.mapping(),
-                                  recording.first_map(), recording.last_map(), recording.meta()}) {
+    for (const FilePlace& file : recording.files()) {
         const EntryKind kind = file.kind();
         if (kind == EntryKind::absent || kind == EntryKind::file) continue;
         const auto opened = file.open();
@@ -96,6 +94,11 @@ RecordingMeta read_checked(const FilePlace& file) {
 }
 
 }  // namespace
+
+std::vector<FilePlace> RecordingPaths::files() const {
+    return {can_log(), depth(),   depth_epoch(), rig(),      robot(),
+            order(),   mapping(), first_map(),   last_map(), meta()};
+}
 
 std::string RecordingError::message() const {
     return rig::RigError{file, line, key, what}.message();

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/result.hpp"
 #include "host/apps/recording/source_file.hpp"
@@ -37,7 +38,10 @@ struct RecordingPaths {
     [[nodiscard]] FilePlace last_map() const { return file("last.ot"); }
     [[nodiscard]] FilePlace meta() const { return file("meta.yaml"); }
 
-    [[nodiscard]] FilePlace file(const char* name) const { return {folder, name}; }
+    /// In the place of each file that a recording may have.
+    [[nodiscard]] std::vector<FilePlace> files() const;
+
+    [[nodiscard]] FilePlace file(const std::string& name) const { return {folder, name}; }
 
     std::filesystem::path directory;  ///< as it was named: for messages and for provenance
     NamedFolder folder;
