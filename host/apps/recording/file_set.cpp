@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "host/apps/recording/text_file.hpp"
+#include "hw/sim/world/world_copy.hpp"
 
 namespace octoskin {
 namespace {
@@ -22,10 +23,11 @@ constexpr const char* kReady = FileSet::kReadyFolder;
 constexpr const char* kBeforeFolder = ".before";  ///< in the ready folder: what the new files replace
 constexpr const char* kJournal = ".journal";      ///< in the ready folder: what is to be done
 constexpr const char* kJournalHead = "octoskin-file-set/1";
-constexpr std::size_t kJournalBytesMax = 4096;  ///< each name once, dropped and put, takes less
+constexpr std::size_t kJournalBytesMax = 16'384;  ///< each name once, dropped and put, takes less
 
-constexpr std::array<std::string_view, 6> kRecordingFiles{"can.log",  "depth.oni",  "depth.epoch.yaml",
-                                                          "rig.yaml", "robot.urdf", "meta.yaml"};
+constexpr std::array<std::string_view, 9> kRecordingFiles{"can.log",   "depth.oni",   "depth.epoch.yaml",
+                                                          "rig.yaml",  "robot.urdf",  "scenario.yaml",
+                                                          "world.sdf", "motion.yaml", "meta.yaml"};
 constexpr std::array<std::string_view, 10> kMapFiles{
     "depth.ot",      "depth.bt", "depth.ply", "proximity.ot", "proximity.bt",
     "proximity.ply", "fused.ot", "fused.bt",  "fused.ply",    "maps.yaml"};
@@ -345,7 +347,7 @@ bool is_file_of_set(const fs::path& name) {
         return std::find(list.begin(), list.end(), one) != list.end();
     };
     constexpr std::string_view kMaps = "maps/";
-    return is_in(kRecordingFiles, text) || is_in(kMapFiles, text) ||
+    return is_in(kRecordingFiles, text) || sim::is_mesh_copy(text) || is_in(kMapFiles, text) ||
            (text.starts_with(kMaps) && is_in(kMapFiles, std::string_view(text).substr(kMaps.size())));
 }
 

@@ -36,6 +36,12 @@ struct RecordingPaths {
     [[nodiscard]] FilePlace mapping() const { return file("mapping.yaml"); }
     [[nodiscard]] FilePlace first_map() const { return file("first.ot"); }
     [[nodiscard]] FilePlace last_map() const { return file("last.ot"); }
+    /// Of a simulation: what it happened in. Neither refers to a file outside of the recording.
+    [[nodiscard]] FilePlace scenario() const { return file("scenario.yaml"); }
+    [[nodiscard]] FilePlace world() const { return file("world.sdf"); }
+    [[nodiscard]] FilePlace motion() const { return file("motion.yaml"); }
+    /// Of that world, those that are there, by name: mesh_01.stl and the like.
+    [[nodiscard]] std::vector<FilePlace> meshes() const;
     [[nodiscard]] FilePlace meta() const { return file("meta.yaml"); }
 
     /// In the place of each file that a recording may have.
@@ -56,6 +62,7 @@ struct RecordingMeta {
     SourceFile rig;                     ///< as it was given: the recording's own has the seed's shift
     std::optional<std::uint64_t> seed;  ///< of the simulation
     bool is_depth_noise_free = false;
+    std::optional<std::uint32_t> scene_crc32 = {};  ///< of the scene's files in it; empty: it has none
     std::uint64_t can_frames = 0;
     std::uint64_t depth_frames = 0;
     double duration_s = 0.0;

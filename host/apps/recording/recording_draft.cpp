@@ -12,7 +12,11 @@ namespace fs = std::filesystem;
 
 /// meta.yaml last.
 std::vector<FilePlace> files_of(const RecordingPaths& paths) {
-    return {paths.can_log(), paths.depth(), paths.depth_epoch(), paths.rig(), paths.robot(), paths.meta()};
+    std::vector<FilePlace> files{paths.can_log(), paths.depth(),    paths.depth_epoch(), paths.rig(),
+                                 paths.robot(),   paths.scenario(), paths.world(),       paths.motion()};
+    for (FilePlace& mesh : paths.meshes()) files.push_back(std::move(mesh));
+    files.push_back(paths.meta());
+    return files;
 }
 
 bool is_occupied(const OpenFolder& folder) {
@@ -89,6 +93,8 @@ Status<AppError> RecordingDraft::check(const FilePlace& named, bool may_replace)
     auto folder = named.open_folder();
     if (folder) folder = folder->to_write();
     if (!folder) return cannot_create(folder.error().path, folder.error().reason());
+    // What a killed octoskin left half moved is brought to its end first.
+    if (folder->kind_of(FileSet::kReadyFolder) != EntryKind::absent) return Done{};
     const auto former = check_former(*folder, may_replace);
     if (!former) return unexpected(former.error());
     return Done{};
@@ -107,6 +113,9 @@ Status<AppError> RecordingDraft::commit() {
     std::vector<fs::path> retired;
     for (const FilePlace& file : files_of(draft_))
         (file.is_there() ? files : retired).push_back(file.filename());
+    for (const FilePlace& mesh : final_.meshes()) {  // of another world
+        if (std::find(files.begin(), files.end(), mesh.name()) == files.end()) retired.push_back(mesh.name());
+    }
     // create() made sure that a recording here is a simulated one; without one, its maps are somebody's.
     const bool replaces_recording = final_.meta().is_there();
     if (replaces_recording) {

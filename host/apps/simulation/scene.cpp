@@ -7,7 +7,8 @@
 namespace octoskin {
 
 Result<Scene, AppError> read_scene(const FilePlace& scenario_file, const FilePlace& world_instead) {
-    auto scenario = sim::read_scenario(scenario_file);
+    const auto world_of = world_instead.empty() ? sim::WorldOf::scenario : sim::WorldOf::others;
+    auto scenario = sim::read_scenario(scenario_file, world_of);
     if (!scenario) return unexpected(reading_error(ExitCode::bad_config, scenario.error()));
     const FilePlace world_file = world_instead.empty() ? scenario->world : world_instead;
     auto world = sim::World::read(world_file);
@@ -23,8 +24,8 @@ Result<Scene, AppError> read_scene(const FilePlace& scenario_file, const FilePla
         motions = std::move(*read);
     }
     SourceFile scenario_source = source_file(scenario_file, scenario->extended_files);
-    return Scene{std::move(*scenario), std::move(*world), std::move(motions), std::move(scenario_source),
-                 source_file(world_file)};
+    return Scene{std::move(*scenario), std::move(*world),          std::move(motions),
+                 world_file,           std::move(scenario_source), source_file(world_file)};
 }
 
 Status<AppError> check_stands_still(const Scene& scene) {

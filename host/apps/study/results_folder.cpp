@@ -17,6 +17,7 @@
 #include "host/apps/recording/recording_draft.hpp"
 #include "host/apps/recording/source_file.hpp"
 #include "host/apps/recording/text_file.hpp"
+#include "hw/sim/world/world_copy.hpp"
 
 namespace octoskin {
 namespace {
@@ -57,7 +58,9 @@ Notes read_notes(const OpenFolder& folder) {
     while (std::getline(in, line)) {
         const auto space = line.find(' ');
         const std::string name = space == std::string::npos ? "" : line.substr(space + 1);
-        if (std::find(known.begin(), known.end(), name) == known.end()) return {};
+        const bool is_mesh =
+            name.starts_with("recording/") && sim::is_mesh_copy(name.substr(sizeof "recording/" - 1));
+        if (!is_mesh && std::find(known.begin(), known.end(), name) == known.end()) return {};
         if (!notes.emplace(name, line.substr(0, space)).second) return {};
     }
     return notes;

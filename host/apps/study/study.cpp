@@ -242,9 +242,9 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     if (const auto checked = check_seeds(request.seeds); !checked) return unexpected(checked.error());
     const auto configurations = find_configurations(request.configurations);
     if (!configurations) return unexpected(configurations.error());
+    if (const auto checked = check_before_locked(request.out); !checked) return unexpected(checked.error());
     const auto world = read_world(request.inputs, configurations->front().mapping.map.resolution_m);
     if (!world) return unexpected(world.error());
-    if (const auto checked = check_before_locked(request.out); !checked) return unexpected(checked.error());
     auto folder = MapFolder::open(request.out);
     if (!folder) return unexpected(folder.error());
     if (const auto checked = check_results_folder(folder->folder()); !checked)
