@@ -183,44 +183,6 @@ class FolderWalk : public ProgramTest {
     }
 };
 
-class FolderTrap : public FolderWalk, public testing::WithParamInterface<Trap> {};
-
-TEST_P(FolderTrap, changes_nothing_outside_in_whatever_place_of_a_recording_it_lies) {
-    make_template();
-    constexpr const char* kPlaces[] = {"can.log",
-                                       "depth.oni",
-                                       "depth.epoch.yaml",
-                                       "rig.yaml",
-                                       "robot.urdf",
-                                       "meta.yaml",
-                                       "order.log",
-                                       "mapping.yaml",
-                                       "first.ot",
-                                       "maps",
-                                       "lock",
-                                       ".octoskin-part",
-                                       ".octoskin-ready",
-                                       ".octoskin-ready/.journal",
-                                       "maps/fused.ot",
-                                       "maps/maps.yaml",
-                                       "maps/.octoskin-part",
-                                       "maps/.octoskin-ready"};
-    const auto trap = GetParam();
-    auto turn = static_cast<std::size_t>(trap);
-    for (const std::string place : kPlaces) {
-        const auto all = commands();
-        // Maps are written last and by replay alone; the others take turns.
-        for (const std::string& command : {all.front(), all[1 + turn++ % (all.size() - 1)]}) {
-            // Each command finds the trap as it was laid.
-            if (!lay(trap, place))
-                GTEST_SKIP() << "this user may not make it: trap " << static_cast<int>(trap);
-            expect_harmless(command, place + ", trap " + std::to_string(static_cast<int>(trap)));
-        }
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Each, FolderTrap, testing::ValuesIn(kTraps));
-
 TEST_F(FolderWalk, no_journal_moves_or_removes_what_is_outside) {
     make_template();
     for (const char* line :
