@@ -209,7 +209,9 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
 /// Before any work.
 void check_output(const std::filesystem::path& json) {
     std::error_code error;
-    if (json.extension() != ".json" && std::filesystem::is_regular_file(json, error)) {
+    // A link, as /dev/stdout is, is no file that would be overwritten.
+    const bool is_file = std::filesystem::is_regular_file(std::filesystem::symlink_status(json, error));
+    if (json.extension() != ".json" && is_file) {
         throw CommandFailure({ExitCode::cannot_create,
                               json.string() + ": is there, and is no .json file; it is not overwritten"});
     }

@@ -74,7 +74,8 @@ Unexpected<AppError> cannot_write(const FilePlace& file, const FolderError& erro
     const bool is_of_folder = error.fault == FolderFault::link || error.fault == FolderFault::foreign_owner ||
                               error.fault == FolderFault::outside;
     if (is_of_folder) return cannot_create(error.path, error.reason());
-    if (error.fault == FolderFault::is_there && error.path != file.shown())
+    const bool is_typed_itself = file.folder() == nullptr && error.path == file.shown();
+    if (error.fault == FolderFault::is_there && !is_typed_itself)
         return cannot_create(error.path, error.reason());
     return cannot_write(file, error.error_number);
 }

@@ -1,5 +1,6 @@
 #include "host/apps/simulation/scene.hpp"
 #include "host/apps/recording/permission.hpp"
+#include "host/io/folder/confined.hpp"
 
 #include "hw/sim/scenario/hidden_models.hpp"
 #include "hw/sim/scenario/motion.hpp"
@@ -10,7 +11,8 @@ Result<Scene, AppError> read_scene(const FilePlace& scenario_file, const FilePla
     const auto world_of = world_instead.empty() ? sim::WorldOf::scenario : sim::WorldOf::others;
     auto scenario = sim::read_scenario(scenario_file, world_of);
     if (!scenario) return unexpected(reading_error(ExitCode::bad_config, scenario.error()));
-    const FilePlace world_file = world_instead.empty() ? scenario->world : world_instead;
+    const FilePlace world_file =
+        confined_to_recording(world_instead.empty() ? scenario->world : world_instead);
     auto world = sim::World::read(world_file);
     if (!world) return unexpected(reading_error(ExitCode::bad_data, world.error()));
     if (const auto checked = sim::check_hidden_models(*scenario, *world); !checked) {

@@ -1,5 +1,7 @@
 #include "host/apps/simulation/scene_files.hpp"
 
+#include <iterator>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -48,6 +50,20 @@ Status<AppError> remove_files(const RecordingPaths& recording, const sim::WorldC
     return Done{};
 }
 
+/// A recording of somebody else may have a file that has no end: nothing is read beyond what simulate writes.
+std::optional<std::string> read_bounded(const FilePlace& file) {
+    const std::size_t bytes_max =
+        sim::is_mesh_copy(file.filename()) ? sim::kMeshBytesMax : sim::kWorldBytesMax;
+    const auto opened = file.open();
+    auto bytes = opened ? opened->read(bytes_max) : unexpected(opened.error());
+    if (!bytes || bytes->size() > bytes_max) return std::nullopt;
+    return std::move(*bytes);
+}
+
+std::span<const std::uint8_t> as_bytes(const std::string& text) {
+    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
 }  // namespace
 
 Result<SceneGap, AppError> write_scene(const Scene& scene, const RecordingPaths& recording) {
@@ -65,13 +81,17 @@ std::optional<std::uint32_t> crc32_of_scene(const RecordingPaths& recording) {
     if (!recording.scenario().is_there() || !recording.world().is_there()) return std::nullopt;
     std::vector<FilePlace> files{recording.scenario(), recording.world()};
     if (recording.motion().is_there()) files.push_back(recording.motion());
-    for (FilePlace& mesh : recording.meshes()) files.push_back(std::move(mesh));
+    std::vector<FilePlace> meshes = recording.meshes();
+    if (meshes.size() > sim::kMeshesMax) return std::nullopt;
+    std::move(meshes.begin(), meshes.end(), std::back_inserter(files));
+    std::size_t bytes_left = sim::kMeshesBytesMax + 3 * sim::kWorldBytesMax;
     std::uint32_t crc = 0;
     for (const FilePlace& file : files) {
-        const auto bytes = crc32_of(file);
-        if (!bytes) return std::nullopt;
-        const std::string entry = file.filename() + " " + crc_text(*bytes) + "\n";
-        crc = crc32({reinterpret_cast<const std::uint8_t*>(entry.data()), entry.size()}, crc);
+        const auto bytes = read_bounded(file);
+        if (!bytes || bytes->size() > bytes_left) return std::nullopt;
+        bytes_left -= bytes->size();
+        const std::string entry = file.filename() + " " + crc_text(crc32(as_bytes(*bytes))) + "\n";
+        crc = crc32(as_bytes(entry), crc);
     }
     return crc;
 }

@@ -21,7 +21,8 @@ using SceneGap = std::optional<std::string>;
 [[nodiscard]] Result<SceneGap, AppError> write_scene(const Scene& scene, const RecordingPaths& recording);
 
 /// CRC-32 of the scene's files in the recording, one after the other, each with its name; empty if scenario
-/// or world is missing, or one cannot be read.
+/// or world is missing, or one cannot be read or
+/// is larger than write_scene() makes it.
 [[nodiscard]] std::optional<std::uint32_t> crc32_of_scene(const RecordingPaths& recording);
 
 }  // namespace octoskin

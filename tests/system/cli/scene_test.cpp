@@ -53,6 +53,11 @@ TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     const Said own = octoskin(evaluate + " --world " + kitchen() + " --json " + path("figures.json"));
     ASSERT_EQ(own.exit_code, 0) << own.output;
     EXPECT_THAT(own.output, AllOf(HasSubstr("judging in " + kitchen()), Not(HasSubstr("recorded in"))));
+    const Said to_output = run(OCTOSKIN_PROGRAM " " + evaluate + " --world " + kitchen() +
+                               " --json /dev/stdout > " + path("both"));
+    EXPECT_EQ(to_output.exit_code, 0) << to_output.output;
+    EXPECT_THAT(content(path("both")),
+                AllOf(HasSubstr("Voxels against"), HasSubstr("kitchen.sdf, CRC-32 0x")));
     EXPECT_THAT(content(path("figures.json")),
                 AllOf(HasSubstr("kitchen.sdf, CRC-32 0x"), HasSubstr("commit ")));
 
@@ -160,6 +165,11 @@ TEST_F(SceneOfARecording, made_with_ones_own_scenario_and_world_is_in_it) {
         write(file, whole);
     }
     EXPECT_EQ(octoskin("evaluate " + rec).exit_code, 0);
+    const std::string sdf = content(rec + "/world.sdf");
+    std::filesystem::resize_file(rec + "/world.sdf", std::uintmax_t{1} << 40U);
+    EXPECT_EQ(run("timeout 20 " OCTOSKIN_PROGRAM " evaluate " + rec).exit_code, 65)
+        << "without reading all of it";
+    write(rec + "/world.sdf", sdf);
     // A map of it, beside it and elsewhere.
     ASSERT_EQ(octoskin("replay " + rec).exit_code, 0);
     const std::string rig = " --rig " + rec + "/rig.yaml";
