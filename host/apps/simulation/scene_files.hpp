@@ -1,4 +1,4 @@
-// The scene of a simulation as files of its recording: who judges the recording needs nothing else.
+// The scene of a simulation as files of its recording, which is judged with them alone.
 #pragma once
 
 #include <cstdint>

@@ -78,7 +78,7 @@ std::set<std::string> names_in(const NamedFolder& named) {
     return visible;
 }
 
-/// A map, or the file that speaks of maps, that was not left there by the octoskin that wrote that file.
+/// A map that is not what the maps.yaml beside it describes, or a maps.yaml that cannot be read.
 std::optional<std::string> foreign_map(const NamedFolder& folder) {
     const auto origin = read_map_origin(folder);
     const bool is_told = origin && *origin;

@@ -28,7 +28,7 @@ struct WorldCopy {
 
 /// Reads the world's file and those of its meshes, each once. The error says why there can be no such copy:
 /// it includes models, a mesh cannot be read, has no ordinary ending, or all of it is too large. What the
-/// meshes refer to in their turn is left out: whoever needs the same world compares what is read from both.
+/// meshes refer to in their turn is left out: what is read from the copy has to be compared with the world.
 [[nodiscard]] Result<WorldCopy, std::string> copy_of_world(const FilePlace& sdf);
 
 /// A name that a copy gives to a mesh.

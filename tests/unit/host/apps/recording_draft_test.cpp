@@ -178,8 +178,7 @@ TEST(RecordingDraftTest, is_not_begun_where_it_could_not_come_into_its_place) {
         std::filesystem::create_directories(folder / place);
         for (const bool is_checked_only : {true, false}) {
             const auto refused =
-                is_checked_only ? RecordingDraft::check(folder.path(), true)
-                                : [&]() -> Status<AppError> {
+                is_checked_only ? RecordingDraft::check(folder.path(), true) : [&]() -> Status<AppError> {
                 auto draft = RecordingDraft::create(folder.path(), true);
                 if (!draft) return unexpected(draft.error());
                 return Done{};
