@@ -1,6 +1,8 @@
 #include "hw/rigfile/document.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/emitter.h>
+#include <yaml-cpp/emittermanip.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
@@ -11,6 +13,7 @@
 #include <sstream>
 #include <utility>
 
+#include "host/io/folder/confined.hpp"
 #include "hw/rigfile/syntax_hint.hpp"
 
 namespace octoskin::rig {
@@ -63,7 +66,8 @@ std::string read_text(const FilePlace& place) {
 /// file, and expand aliases without a bound.
 class TreeBuilder final : public YAML::EventHandler {
   public:
-    explicit TreeBuilder(std::shared_ptr<const FilePlace> file) : file_(std::move(file)) {}
+    TreeBuilder(std::shared_ptr<const FilePlace> file, Quotes quotes)
+        : file_(std::move(file)), quotes_(quotes) {}
 
     [[nodiscard]] Value take_root() { return std::move(root_); }
 
@@ -108,7 +112,8 @@ class TreeBuilder final : public YAML::EventHandler {
     void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
         // yaml-cpp's own marks: "?" for a plain value, "!" for a quoted one.
         if (!tag.empty() && tag != "?" && tag != "!") {
-            fail(mark, fmt::format("tags are not used here: remove '{}'", tag));
+            fail(mark, quotes_ == Quotes::shown ? fmt::format("tags are not used here: remove '{}'", tag)
+                                                : std::string("tags are not used here: remove it"));
         }
     }
     [[nodiscard]] Value make(const YAML::Mark& mark, Value::Kind kind) const {
@@ -116,6 +121,7 @@ class TreeBuilder final : public YAML::EventHandler {
         value.kind = kind;
         value.file = file_;
         value.line = mark.line + 1;
+        value.is_quotable = quotes_ == Quotes::shown;
         return value;
     }
     [[nodiscard]] bool is_key_next() const {
@@ -123,7 +129,7 @@ class TreeBuilder final : public YAML::EventHandler {
     }
     void start_entry(const YAML::Mark& mark, const std::string& key) {
         if (const Value* first = open_.back().find(key)) {
-            throw Fault{{file_->shown(), mark.line + 1, key,
+            throw Fault{{file_->shown(), mark.line + 1, quotes_ == Quotes::shown ? key : std::string(),
                          fmt::format("expected each key once, found it again (first at line {}): remove one",
                                      first->line)}};
         }
@@ -157,6 +163,7 @@ class TreeBuilder final : public YAML::EventHandler {
     }
 
     std::shared_ptr<const FilePlace> file_;
+    Quotes quotes_;
     std::vector<Value> open_;  ///< tables and lists begun and not ended, outermost first
     std::string pending_key_;
     int pending_key_line_ = 0;
@@ -204,6 +211,31 @@ FilePlace take_extends(Value& document) {
     return path;
 }
 
+void emit(YAML::Emitter& out, const Value& value) {  // no deeper than kDepthMax
+    switch (value.kind) {
+        case Value::Kind::null:
+            out << YAML::Null;
+            break;
+        case Value::Kind::scalar:
+            if (value.is_quoted) out << YAML::DoubleQuoted;
+            out << value.text;
+            break;
+        case Value::Kind::list:
+            out << YAML::BeginSeq;
+            for (const Value& item : value.items) emit(out, item);
+            out << YAML::EndSeq;
+            break;
+        case Value::Kind::table:
+            out << YAML::BeginMap;
+            for (const Value& item : value.items) {
+                out << YAML::Key << item.key << YAML::Value;
+                emit(out, item);
+            }
+            out << YAML::EndMap;
+            break;
+    }
+}
+
 }  // namespace
 
 const Value* Value::find(std::string_view wanted) const noexcept {
@@ -212,11 +244,11 @@ const Value* Value::find(std::string_view wanted) const noexcept {
     return kind == Kind::table && found != items.end() ? &*found : nullptr;
 }
 
-Value load_document(const FilePlace& place) {
+Value load_document(const FilePlace& place, Quotes quotes) {
     const std::string text = read_text(place);
     const std::filesystem::path file = place.shown();
     std::istringstream stream(text);
-    TreeBuilder builder(std::make_shared<const FilePlace>(place));
+    TreeBuilder builder(std::make_shared<const FilePlace>(place), quotes);
     try {
         YAML::Parser parser(stream);
         parser.HandleNextDocument(builder);
@@ -237,7 +269,8 @@ Value load_document(const FilePlace& place) {
 }
 
 FilePlace existing_file(const Value& value, const std::string& key_path) {
-    FilePlace place = value.file->beside(value.text);
+    // A recording of somebody else chooses no file outside of it, also where one's own rig names its rig.
+    FilePlace place = confined_to_recording(value.file->beside(value.text));
     const auto opened = place.open();
     const bool is_scalar = value.kind == Value::Kind::scalar;
     if (opened && is_scalar) return place;
@@ -265,21 +298,27 @@ Value merge(Value base, const Value& overlay) {
     return base;
 }
 
-Value load_with_extends(const FilePlace& file, std::vector<std::filesystem::path>* extended) {
+Value load_with_extends(const FilePlace& file, std::vector<FilePlace>* extended) {
     std::vector<Value> layers = {load_document(file)};
     for (auto next = take_extends(layers.back()); !next.empty(); next = take_extends(layers.back())) {
-        if (extended != nullptr) extended->push_back(next.shown());
+        if (extended != nullptr) extended->push_back(next);
         if (layers.size() == kExtendsMax) {
             throw Fault{
                 {file.shown(), 0, "extends",
                  fmt::format("expected at most {} files one upon the other, found more: is it a circle?",
                              kExtendsMax)}};
         }
-        layers.push_back(load_document(next));
+        layers.push_back(load_document(next, Quotes::withheld));
     }
     Value merged = std::move(layers.back());
     for (std::size_t i = layers.size() - 1; i-- > 0;) merged = merge(std::move(merged), layers[i]);
     return merged;
+}
+
+std::string document_text(const Value& root) {
+    YAML::Emitter out;
+    emit(out, root);
+    return std::string(out.c_str()) + "\n";
 }
 
 }  // namespace octoskin::rig

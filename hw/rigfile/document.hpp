@@ -3,6 +3,7 @@
 // name.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -29,15 +30,20 @@ struct Value {
     std::vector<Value> items;
     std::shared_ptr<const FilePlace> file;
     int line = 0;                     ///< 1-based
+    bool is_quotable = true;          ///< false: of a file that another one names, see Quotes
     bool replaces_inherited = false;  ///< it is, or lies in, a list that took the place of an inherited one
 
     /// The item of a table with this key; nullptr if there is none.
     [[nodiscard]] const Value* find(std::string_view wanted) const noexcept;
 };
 
+/// Whether a message about a file's writing may show what is written: not of a file that another one names,
+/// which may be no YAML of ours at all.
+enum class Quotes : std::uint8_t { shown, withheld };
+
 /// Reads one YAML file whose top is a table. Throws Fault: unreadable, over 1 MiB, not YAML, a key twice in
 /// one table, an anchor, alias or tag, more than one document, nested deeper than 16.
-[[nodiscard]] Value load_document(const FilePlace& file);
+[[nodiscard]] Value load_document(const FilePlace& file, Quotes quotes = Quotes::shown);
 
 /// The file that a scalar names, relative to the file it is written in. Throws Fault, at the scalar, unless
 /// that is an existing file; and, where the file it is written in lies below a folder that was named (a
@@ -51,7 +57,9 @@ struct Value {
 /// load_document(), then every file that `extends:` names, each relative to the file that names it, laid one
 /// over the other. Throws Fault also for a circle and for more than 8 files. `extended` is told those files,
 /// the nearest first.
-[[nodiscard]] Value load_with_extends(const FilePlace& file,
-                                      std::vector<std::filesystem::path>* extended = nullptr);
+[[nodiscard]] Value load_with_extends(const FilePlace& file, std::vector<FilePlace>* extended = nullptr);
+
+/// YAML that load_document() reads as this tree again, but for its lines.
+[[nodiscard]] std::string document_text(const Value& root);
 
 }  // namespace octoskin::rig

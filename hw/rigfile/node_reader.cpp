@@ -220,7 +220,7 @@ Node read_node(const Table& table, const NodeContext& context) {
 
 Board read_board(const Value& value, const std::string& path) {
     if (value.kind == Value::Kind::scalar) {
-        return read_board(load_document(existing_file(value, path)), "");
+        return read_board(load_document(existing_file(value, path), Quotes::withheld), "");
     }
     const Table table(value, path,
                       {"name", "board_type", "i2c_bus_count", "xshut_line_count", "sensors_max",

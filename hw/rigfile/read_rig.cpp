@@ -8,6 +8,7 @@
 
 #include "common/wire/bus_load.hpp"
 #include "common/wire/messages.hpp"
+#include "host/io/folder/confined.hpp"
 #include "hw/rigfile/camera_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
 #include "hw/rigfile/joined.hpp"
@@ -20,14 +21,14 @@
 namespace octoskin::rig {
 namespace {
 
-UrdfDocument read_robot(const Table& robot, const std::filesystem::path& urdf_instead) {
+UrdfDocument read_robot(const Table& robot, const std::filesystem::path& urdf_instead, Rig& rig) {
     const Value& named = robot.require("urdf");
-    const FilePlace file =
-        urdf_instead.empty() ? existing_file(named, robot.path_of("urdf")) : FilePlace(urdf_instead);
+    rig.urdf = urdf_instead.empty() ? existing_file(named, robot.path_of("urdf"))
+                                    : confined_to_recording(urdf_instead);
     // A typed path stays right if this process changes its folder.
-    auto document = UrdfDocument::read(
-        file.folder() == nullptr ? FilePlace(std::filesystem::absolute(file.name()).lexically_normal())
-                                 : file);
+    if (rig.urdf.folder() == nullptr)
+        rig.urdf = FilePlace(std::filesystem::absolute(rig.urdf.name()).lexically_normal());
+    auto document = UrdfDocument::read(rig.urdf);
     if (!document) throw Fault{document.error()};
     return std::move(document).value();
 }
@@ -258,8 +259,7 @@ Rig read_checked(const FilePlace& file, const std::filesystem::path& urdf_instea
         top.require("robot"), "robot",
         {"urdf", "base_link", "link_padding_m", "fits_capsules", "attached_capsules", "links_without_body",
          "links_ignored_by_sensors", "depth_self_margin_m", "range_self_margin_m"});
-    const UrdfDocument urdf = read_robot(robot, urdf_instead);
-    rig.urdf = urdf.file();
+    const UrdfDocument urdf = read_robot(robot, urdf_instead, rig);
     read_self_filter(robot, urdf, rig);
     read_attached_capsules(robot, urdf, rig);
     read_links_without_body(robot, urdf, rig);
@@ -287,7 +287,7 @@ std::string RigError::message() const {
 
 Result<Rig, RigError> read_rig(const FilePlace& file, const std::filesystem::path& urdf_instead) {
     try {
-        return read_checked(file, urdf_instead);
+        return read_checked(confined_to_recording(file), urdf_instead);
     } catch (const Fault& fault) {
         return unexpected(fault.error);
     }

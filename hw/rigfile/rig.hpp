@@ -102,9 +102,9 @@ struct RangeLimits {
 };
 
 struct Rig {
-    std::vector<std::filesystem::path> extended_files;  ///< that its file extends, the nearest first
+    std::vector<FilePlace> extended_files;  ///< that its file extends, the nearest first
     std::string name;
-    std::filesystem::path urdf;  ///< absolute
+    FilePlace urdf;  ///< absolute, or below the folder of a recording
     std::string base_link;
     Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
     std::map<std::string, double> link_padding_m;  ///< added to the capsules of a link
@@ -136,9 +136,9 @@ struct RigError {
 /// Reads and checks a rig: unknown keys, types, units, ranges, references, unique ids and addresses, I2C
 /// capacity, and the computed CAN load (refused above 70 %). Paths in it are relative to the file. A
 /// top-level `extends: other.yaml` takes that file first and lays this one's keys over it. `urdf_instead`: a
-/// robot to use in place of the one the rig names. A rig below a folder that was named, a recording, refers
-/// to files of that folder alone, behind no link. Not to be called from two threads at once (urdfdom's log is
-/// global).
+/// robot to use in place of the one the rig names. A rig below a folder that was named, or in a recording
+/// however it was named (confined_to_recording()), refers to files of that folder alone, behind no link. Not
+/// to be called from two threads at once (urdfdom's log is global).
 [[nodiscard]] Result<Rig, RigError> read_rig(const FilePlace& file,
                                              const std::filesystem::path& urdf_instead = {});
 

@@ -149,7 +149,7 @@ Result<std::vector<Capsule>, RigError> padded_body(const Rig& rig) {
     return body;
 }
 
-Result<std::vector<Capsule>, RigError> read_capsules(const std::filesystem::path& urdf,
+Result<std::vector<Capsule>, RigError> read_capsules(const FilePlace& urdf,
                                                      const std::map<std::string, double>& link_padding_m,
                                                      BoxRule boxes) {
     auto document = UrdfDocument::read(urdf);

@@ -32,7 +32,7 @@ enum class BoxRule : std::uint8_t {
 /// of its radius at each end on one link is one; a lone cylinder is padded to one, a lone sphere is a point
 /// with a radius. Errors name file and link.
 [[nodiscard]] Result<std::vector<Capsule>, RigError> read_capsules(
-    const std::filesystem::path& urdf, const std::map<std::string, double>& link_padding_m,
+    const FilePlace& urdf, const std::map<std::string, double>& link_padding_m,
     BoxRule boxes = BoxRule::refused);
 
 /// The robot as it is, by its URDF and what the rig attaches to it: without padding. For a simulation.

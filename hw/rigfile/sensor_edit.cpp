@@ -3,9 +3,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 #include <vector>
+
+#include "host/io/folder/confined.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -67,11 +67,12 @@ Unexpected<RigError> failed(const std::filesystem::path& file, std::string what)
     return unexpected(RigError{.file = file, .line = 0, .key = {}, .what = std::move(what)});
 }
 
-std::string content_of(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
+/// Empty if it cannot be read: then no sensor is in it.
+std::string content_of(const FilePlace& file) {
+    constexpr std::size_t kBytesMax = std::size_t{16} << 20U;
+    const auto opened = file.open();
+    auto text = opened ? opened->read(kBytesMax) : unexpected(opened.error());
+    return text && text->size() <= kBytesMax ? std::move(*text) : std::string();
 }
 
 /// A file that is extended may have sensors that the rig has no more.
@@ -113,21 +114,21 @@ Result<std::filesystem::path, RigError> edit_sensor(const std::filesystem::path&
     if (!before) return unexpected(before.error());
     if (!has_sensor(*before, edit))
         return failed(file, "has no sensor '" + edit.sensor + "' of a node '" + edit.node + "'");
-    std::vector<std::filesystem::path> files{file};
+    std::vector<FilePlace> files{confined_to_recording(file)};
     files.insert(files.end(), before->extended_files.begin(), before->extended_files.end());
     for (const auto& candidate : files) {
         const std::string text = content_of(candidate);
         const auto changed = edited(text, edit);
         if (!changed) continue;
-        if (const auto why = save(candidate, *changed)) return failed(candidate, *why);
+        if (const auto why = save(candidate, *changed)) return failed(candidate.shown(), *why);
         const auto after = read_rig(file);
         const bool is_as_meant =
             after && rig_hash(with_sensor_of(*after, *before, edit)) == rig_hash(*before);
-        if (is_as_meant) return candidate;
+        if (is_as_meant) return candidate.shown();
         if (const auto why = save(candidate, text))
-            return failed(candidate, "was changed and cannot be put back: " + *why);
-        return after ? failed(candidate, "its sensor cannot be changed by a program: set " + edit.key + ": " +
-                                             edit.value + " by hand")
+            return failed(candidate.shown(), "was changed and cannot be put back: " + *why);
+        return after ? failed(candidate.shown(), "its sensor cannot be changed by a program: set " +
+                                                     edit.key + ": " + edit.value + " by hand")
                      : unexpected(after.error());
     }
     return failed(file, "no sensor '" + edit.sensor + "' of node '" + edit.node + "' is written in it");

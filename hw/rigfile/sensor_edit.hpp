@@ -22,8 +22,7 @@ struct SensorEdit {
 [[nodiscard]] std::optional<std::string> edited(const std::string& text, const SensorEdit& edit);
 
 /// Puts `text` in the place of all that the file holds, whole or not at all; else says why not.
-using SaveText =
-    std::function<std::optional<std::string>(const std::filesystem::path& file, const std::string& text)>;
+using SaveText = std::function<std::optional<std::string>(const FilePlace& file, const std::string& text)>;
 
 /// Edits the rig's file, or the one it extends in which the sensor stands; returns which. The rig is read
 /// again afterwards and must be what it was but for that one value, else the file is put back as it was.

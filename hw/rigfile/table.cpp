@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/key_hint.hpp"
 
 namespace octoskin::rig {
@@ -191,8 +192,20 @@ Table::Table(const Value& value, std::string path, std::initializer_list<std::st
     if (value.kind != Value::Kind::table) {
         rig::fail(value, path_, fmt::format("expected a table of keys, found {}", describe(value)));
     }
+    const auto is_known = [&known_keys](const Value& item) {
+        return std::find(known_keys.begin(), known_keys.end(), item.key) != known_keys.end();
+    };
     for (const Value& item : value.items) {
-        if (std::find(known_keys.begin(), known_keys.end(), item.key) != known_keys.end()) continue;
+        if (is_known(item)) continue;
+        // Another file altogether, which a foreign `extends` may have named: what is in it is not shown.
+        const bool is_of_another_kind =
+            std::none_of(value.items.begin(), value.items.end(),
+                         [&](const Value& other) { return other.file == item.file && is_known(other); });
+        if (path_.empty() && !item.is_quotable && is_of_another_kind) {
+            throw Fault{{item.file->shown(), item.line, "",
+                         "expected a known key, found none in this file: known here are " +
+                             joined(known_keys) + "; is it a file of another kind?"}};
+        }
         // Between braces a comma ends a value: {a: 0,02} has the keys a and 02.
         const bool is_fraction = item.kind == Value::Kind::null && is_number_of_digits(item.key);
         std::string hint = is_fraction ? fmt::format(

@@ -104,6 +104,9 @@ Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
     const auto text = read_text(place);
     const std::filesystem::path file = place.shown();
     if (!text) return unexpected(text.error());
+    // What is no robot at all may be any file that a foreign rig names: nothing of it is shown.
+    if (text->find("<robot") == std::string::npos)
+        return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
     auto outline = UrdfOutline::read(file, *text);
     if (!outline) return unexpected(outline.error());
     UrdfDocument document;

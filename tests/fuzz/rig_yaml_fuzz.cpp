@@ -22,10 +22,10 @@ class RigInput {
             assert(!rig.error().what.empty() && !rig.error().file.empty());
             return;
         }
-        const std::string canonical = canonical_text(*rig, rig->urdf.string());
+        const std::string canonical = canonical_text(*rig, rig->urdf.shown().string());
         const auto again = read_rig(directory_.write("canonical.yaml", canonical));
         assert(again);
-        assert(canonical_text(*again, again->urdf.string()) == canonical);
+        assert(canonical_text(*again, again->urdf.shown().string()) == canonical);
         assert(rig_hash(*again) == rig_hash(*rig));
     }
 

@@ -53,10 +53,10 @@ rig::SensorEdit edit_of(const Question& question, const wire::Calibration& found
 
 Result<std::filesystem::path, AppError> write_into_rig(const std::filesystem::path& rig,
                                                        const rig::SensorEdit& edit) {
-    const auto save = [](const std::filesystem::path& file,
-                         const std::string& text) -> std::optional<std::string> {
+    const auto save = [](const FilePlace& file, const std::string& text) -> std::optional<std::string> {
         std::error_code error;
-        const auto itself = std::filesystem::canonical(file, error);
+        FilePlace itself = file;  // in a recording, behind no link
+        if (file.folder() == nullptr) itself = std::filesystem::canonical(file.name(), error);
         if (error) return error.message();
         const auto saved =
             save_atomically(itself, text, posix_file_operations(), Attributes::of_the_old_file);

@@ -17,16 +17,18 @@ namespace {
 /// The same as text, for recordings.
 Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const MappingConfig& mapping,
                                                      const std::string& interface) {
-    std::ifstream robot(rig.urdf, std::ios::binary);
+    constexpr std::size_t kRobotBytesMax = std::size_t{16} << 20U;  // the largest that is read
+    const auto opened = rig.urdf.open();
+    auto robot = opened ? opened->read(kRobotBytesMax) : unexpected(opened.error());
+    if (!robot)
+        return unexpected(
+            reading_error(rig.urdf, {ExitCode::bad_config, rig.urdf.shown().string() + ": cannot be read"}));
     RecordedSettings recorded{.rig = rig::canonical_text(rig, "robot.urdf"),
-                              .robot = {std::istreambuf_iterator<char>(robot), {}},
+                              .robot = std::move(*robot),
                               .mapping = mapping_text(mapping),
                               .rig_hash = rig::rig_hash(rig),
                               .joints = rig.joints.joints.size(),
                               .interface = interface};
-    if (!robot)
-        return unexpected(
-            reading_error(rig.urdf, {ExitCode::bad_config, rig.urdf.string() + ": cannot be read"}));
     return recorded;
 }
 

@@ -4,6 +4,7 @@
 
 #include "common/wire/crc.hpp"
 #include "host/apps/flashing/openocd_script.hpp"
+#include "host/apps/flashing/record.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "hw/image/image_check.hpp"
@@ -11,6 +12,7 @@
 namespace octoskin::flashing {
 namespace {
 
+constexpr const char* kLogFile = "openocd.log";
 constexpr std::chrono::seconds kPatience{60};
 constexpr std::chrono::seconds kRehearsalPatience{20};
 
@@ -53,6 +55,10 @@ Result<Done, AppError> write_files(const Order& order, const image::FlashContent
                     fmt::format("{}: cannot be made ({}): choose another folder with --out",
                                 order.folder.string(), error.message()));
     }
+    // All of them before the first: a board must not be programmed and then have no record.
+    for (const char* const name : {kHexFile, kScriptFile, kLogFile, kRecordFile}) {
+        if (auto checked = check_text_place({NamedFolder(order.folder), name}); !checked) return checked;
+    }
     if (auto done = write_text({NamedFolder(order.folder), kHexFile}, image::intel_hex(contents)); !done)
         return done;
     return write_text({NamedFolder(order.folder), kScriptFile},
@@ -65,7 +71,7 @@ Result<Done, AppError> write_files(const Order& order, const image::FlashContent
 Result<OpenocdRun, AppError> run(const Order& order, std::vector<std::string> arguments,
                                  std::chrono::seconds patience) {
     const OpenocdRun run = run_openocd(order.folder, std::move(arguments), patience);
-    if (auto done = write_text({NamedFolder(order.folder), "openocd.log"}, run.output); !done)
+    if (auto done = write_text({NamedFolder(order.folder), kLogFile}, run.output); !done)
         return unexpected(done.error());
     return run;
 }

@@ -33,6 +33,7 @@ struct EvaluateOptions {
     std::filesystem::path scenario;
     std::filesystem::path world;
     std::filesystem::path json;
+    std::filesystem::path recording;
     std::string configuration = kDefaultMapping;
 };
 
@@ -49,7 +50,7 @@ Scene judged(Scene scene) {
 }
 
 /// The scene of `recording`, with whatever is given in its place.
-Scene recorded_scene(const std::filesystem::path& recording, const EvaluateOptions& options) {
+Scene recorded_scene(const FilePlace& recording, const EvaluateOptions& options) {
     auto found = read_recorded_scene(recording, {options.scenario, options.world});
     if (!found) throw CommandFailure(found.error());
     for (const std::string& warning : found->warnings) spdlog::warn("{}", warning);
@@ -145,13 +146,14 @@ void doubt_rig(const EvaluateOptions& options, const rig::Rig& rig, const MapPro
     }
 }
 
-/// The one to give for a map: what it was made with, if it is still there.
+/// The one to give for a map: what it says that it was made with, else the recording's.
 std::string rig_to_give(const MapProvenance& provenance) {
-    std::vector<FilePlace> candidates;
-    if (provenance.origin) candidates.emplace_back(provenance.origin->rig);
-    if (provenance.recording) candidates.push_back(RecordingPaths(*provenance.recording).rig());
-    for (const auto& file : candidates)
-        if (file.is_file()) return file.shown().string();
+    // Not looked for: a map of somebody else would choose where.
+    if (provenance.origin) return provenance.origin->rig.string();
+    if (provenance.recording) {
+        const FilePlace own = RecordingPaths(*provenance.recording).rig();
+        if (own.is_file()) return own.shown().string();
+    }
     return "RECORDING/rig.yaml";
 }
 
@@ -168,14 +170,15 @@ rig::Rig rig_of_map(const EvaluateOptions& options, const MapProvenance& provena
     return rig;
 }
 
-Scene scene_of_map(const EvaluateOptions& options, const std::optional<std::filesystem::path>& recording) {
+Scene scene_of_map(const EvaluateOptions& options, const std::optional<FilePlace>& recording) {
     if (recording) return recorded_scene(*recording, options);
     if (options.scenario.empty()) {
         throw CommandFailure(
             {ExitCode::usage,
-             "no recording lies beside this map, and a map does not say in which world it was "
-             "made: give --scenario (shipped: " +
-                 shipped_file("hw/worlds/experiment.scenario.yaml").string() + ")"});
+             "no recording lies beside this map, and a map does not say in which world it was made: give "
+             "--scenario (shipped: " +
+                 shipped_file("hw/worlds/experiment.scenario.yaml").string() +
+                 "), or --recording, the one that it was made from"});
     }
     auto scene = read_scene(options.scenario, options.world);
     if (!scene) throw CommandFailure(scene.error());
@@ -190,7 +193,7 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
     limits.map.log_odds_max = 20.0F;
     const auto map = load_map(options.input, limits);
     if (!map) throw CommandFailure(reading_error(options.input, {ExitCode::bad_data, map.error().message}));
-    const auto provenance = provenance_of_map(options.input);
+    const auto provenance = provenance_of_map(options.input, options.recording);
     if (!provenance) throw CommandFailure(provenance.error());
     if (provenance->origin && is_of_data_set(*provenance->origin) && options.scenario.empty())
         refuse_data_set(provenance->origin->recording);
@@ -203,18 +206,30 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
     return results_of(runs, rig, scene, options.rig);
 }
 
+/// Before any work.
+void check_output(const std::filesystem::path& json) {
+    std::error_code error;
+    // A link, as /dev/stdout is, is no file that would be overwritten.
+    const bool is_file = std::filesystem::is_regular_file(std::filesystem::symlink_status(json, error));
+    if (json.extension() != ".json" && is_file) {
+        throw CommandFailure({ExitCode::cannot_create,
+                              json.string() + ": is there, and is no .json file; it is not overwritten"});
+    }
+    if (const auto checked = check_text_place(json); !checked) throw CommandFailure(checked.error());
+}
+
 void evaluate_input(const EvaluateOptions& options) {
-    const evaluation::Results results =
-        std::filesystem::is_directory(options.input) ? judge_recording(options) : judge_map(options);
+    const bool is_recording = std::filesystem::is_directory(options.input);
+    if (is_recording && !options.recording.empty()) {
+        throw CommandFailure({ExitCode::usage, "--recording is of a map, and " + options.input.string() +
+                                                   " is a recording: leave it out"});
+    }
+    if (!options.json.empty()) check_output(options.json);
+    const evaluation::Results results = is_recording ? judge_recording(options) : judge_map(options);
     print_text(evaluation::metrics_table(results));
     if (options.json.empty()) return;
-    std::error_code error;
-    if (options.json.extension() != ".json" && std::filesystem::is_regular_file(options.json, error)) {
-        throw CommandFailure(
-            {ExitCode::cannot_create,
-             options.json.string() + ": is there, and is no .json file; it is not overwritten"});
-    }
-    if (const auto written = write_text(options.json, evaluation::metrics_json(results)); !written)
+    if (const auto written = write_text(options.json, printable_json(evaluation::metrics_json(results)));
+        !written)
         throw CommandFailure(written.error());
 }
 
@@ -242,6 +257,10 @@ void add_evaluate_command(CLI::App& app) {
         ->check(existing_file());
     command->add_option("--robot", options->robot, "Robot (URDF) in place of the rig's")
         ->check(existing_file());
+    command->add_option(
+        "--recording", options->recording,
+        "For a map: the directory of the recording that it was made from; without it, the one "
+        "beside the map");
     command->add_option("--configuration", options->configuration, configuration_help("For a recording"))
         ->capture_default_str();
     command->add_option("--json", options->json, "Write every figure to this file too");

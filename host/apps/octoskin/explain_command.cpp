@@ -33,7 +33,7 @@ void explain_voxel(const ExplainOptions& options) {
     if (!explanation) throw CommandFailure(explanation.error());
     for (const std::string& warning : explanation->warnings) spdlog::warn("{}", warning);
     if (options.is_json) {
-        print_exactly(
+        print_json(
             to_json(*explanation).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
             "\n");
     } else {

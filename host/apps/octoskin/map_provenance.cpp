@@ -11,22 +11,32 @@ std::string describe(const std::optional<std::uint32_t>& crc32) {
     return crc32 ? "CRC-32 " + crc_text(*crc32) : "which cannot be read";
 }
 
-Status<AppError> check_beside(const fs::path& map, const MapOrigin& origin, const fs::path& recording) {
+Status<AppError> check_same(const fs::path& map, const MapOrigin& origin, const FilePlace& recording) {
     const auto found = crc32_of_recording(RecordingPaths(recording));
     if (found == origin.recording_crc32) return Done{};
     return fail(ExitCode::bad_data,
                 map.string() + ": was made from another recording (" + origin.recording.string() +
-                    ", CRC-32 " + crc_text(origin.recording_crc32) + ") than lies beside it (" +
-                    recording.string() + ", " + describe(found) + "); replay that one again");
+                    ", CRC-32 " + crc_text(origin.recording_crc32) + ") than " + recording.shown().string() +
+                    " (" + describe(found) + "); replay that one again");
 }
 
-/// The recording that the maps.yaml names, if it still is what it was.
-std::optional<fs::path> named_recording(const MapOrigin& origin, std::vector<std::string>& warnings) {
-    std::error_code error;
-    if (is_of_data_set(origin) || !fs::is_directory(origin.recording, error)) return std::nullopt;
-    const auto found = crc32_of_recording(RecordingPaths(origin.recording));
-    if (found == origin.recording_crc32) return origin.recording;
-    warnings.push_back(origin.recording.string() + ": the map was made from it, but it has changed since (" +
+/// The recording that the maps.yaml names, if that is below the map's folder and still what it was.
+std::optional<FilePlace> named_recording(const fs::path& map, const MapOrigin& origin,
+                                         std::vector<std::string>& warnings) {
+    if (is_of_data_set(origin)) return std::nullopt;
+    const FilePlace place(NamedFolder(fs::absolute(map).parent_path()), origin.recording);
+    const auto opened = place.open_folder();
+    if (!opened) {
+        warnings.push_back(map.string() + ": " + kMapOriginFile + " beside it names the recording " +
+                           origin.recording.string() +
+                           ", which is not opened, as it is not below the map's folder; if it is yours, "
+                           "give --recording " +
+                           origin.recording.string());
+        return std::nullopt;
+    }
+    const auto found = crc32_of_recording(RecordingPaths(place));
+    if (found == origin.recording_crc32) return place;
+    warnings.push_back(place.shown().string() + ": the map was made from it, but it has changed since (" +
                        describe(found) + "); it is not used");
     return std::nullopt;
 }
@@ -46,20 +56,25 @@ Result<std::optional<MapOrigin>, AppError> origin_of_map(const fs::path& map) {
     return origin;
 }
 
-Result<MapProvenance, AppError> provenance_of_map(const fs::path& map) {
+Result<MapProvenance, AppError> provenance_of_map(const fs::path& map, const fs::path& given) {
     auto origin = origin_of_map(map);
     if (!origin) return unexpected(origin.error());
-    RecordingBeside beside = recording_beside(map);
-    MapProvenance found{std::move(*origin), beside.directory, std::move(beside.warnings)};
+    RecordingBeside beside;
+    if (given.empty()) {
+        beside = recording_beside(map);
+    } else {
+        beside.place = given;
+    }
+    MapProvenance found{std::move(*origin), std::move(beside.place), std::move(beside.warnings)};
     if (found.origin && found.recording) {
-        if (const auto checked = check_beside(map, *found.origin, *found.recording); !checked)
+        if (const auto checked = check_same(map, *found.origin, *found.recording); !checked)
             return unexpected(checked.error());
     } else if (found.origin) {
-        found.recording = named_recording(*found.origin, found.warnings);
+        found.recording = named_recording(map, *found.origin, found.warnings);
     } else if (found.recording) {
         found.warnings.push_back(map.string() + ": no " + kMapOriginFile +
-                                 " beside it says that it was made from " + found.recording->string() +
-                                 ", which is taken for granted");
+                                 " beside it says that it was made from " +
+                                 found.recording->shown().string() + ", which is taken for granted");
     }
     return found;
 }

@@ -259,7 +259,7 @@ ExitCode answered(const QueryOptions& options) {
         if (!answer.at("ok").get<bool>()) throw refusal(options, question, answer);
         const ExitCode outcome = outcome_of(answer);
         if (options.is_json) {
-            print_exactly(answer.dump(2) + "\n");
+            print_json(answer.dump(2) + "\n");
         } else {
             print_text(query_text(answer) + hint(options, answer));
         }
@@ -273,7 +273,7 @@ ExitCode answered(const QueryOptions& options) {
 void print_refusal(const CommandFailure& failure, std::size_t configuration) {
     Json refused = query_refused({failure.code(), failure.what()});
     if (configuration > 0) refused["configuration"] = configuration;
-    print_exactly(refused.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    print_json(refused.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void ask(const CLI::App& command, const QueryOptions& options) {

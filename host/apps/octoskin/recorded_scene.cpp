@@ -1,23 +1,27 @@
 #include "host/apps/octoskin/recorded_scene.hpp"
 
 #include <functional>
+#include <utility>
 
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/recording.hpp"
+#include "host/apps/simulation/scene_files.hpp"
 
 namespace octoskin::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-using Checksum = std::function<std::optional<std::uint32_t>(const FilePlace&)>;
+/// Or why the file cannot be used.
+using Checksum = std::function<Result<std::uint32_t, std::string>(const FilePlace&)>;
 
 /// A kind of file that a recording is judged with.
 struct Part {
     std::string kind;      ///< "world"; with dashes before it, the option that gives another one
     SourceFile recorded;   ///< as meta.yaml has it
     fs::path given;        ///< as the command line has it; empty: not at all
+    FilePlace copy;        ///< that simulate put into the recording; empty: none that is whole
     Checksum checksum_of;  ///< as it was made when recording
 };
 
@@ -27,17 +31,33 @@ std::string describe(const fs::path& file, const std::optional<std::uint32_t>& c
 
 /// Whether `file` is what was recorded: by its content, or by its name where meta.yaml has no more.
 bool is_recorded(const Part& part, const FilePlace& file) {
-    if (part.recorded.crc32) return part.checksum_of(file) == part.recorded.crc32;
-    return file.filename() == part.recorded.file.filename().string();
+    if (!part.recorded.crc32) return file.filename() == part.recorded.file.filename().string();
+    const auto crc32 = part.checksum_of(file);
+    return crc32 && *crc32 == *part.recorded.crc32;
 }
 
 FilePlace take_given(const Part& part, std::vector<std::string>& warnings) {
     if (!part.recorded.file.empty() && !is_recorded(part, part.given)) {
+        const auto crc32 = part.checksum_of(part.given);
         warnings.push_back("recorded in " + describe(part.recorded.file, part.recorded.crc32) +
-                           ", judging in " + describe(part.given, part.checksum_of(part.given)) + ", as --" +
+                           ", judging in " +
+                           describe(part.given, crc32 ? std::optional(*crc32) : std::nullopt) + ", as --" +
                            part.kind + " says");
     }
     return part.given;
+}
+
+/// Why `file`, which has the recorded name, is not what was recorded.
+AppError other_file(const Part& part, const RecordingPaths& recording, const FilePlace& file) {
+    const auto crc32 = part.checksum_of(file);
+    const std::string begin = recording.directory.string() + ": recorded in " +
+                              describe(part.recorded.file, part.recorded.crc32) + ", ";
+    const std::string end = ": give --" + part.kind;
+    if (!crc32)
+        return {ExitCode::bad_data,
+                begin + "and what has its name cannot be used (" + crc32.error() + ")" + end};
+    return {ExitCode::bad_data, begin + "judging in " + file.shown().string() + " (CRC-32 " +
+                                    crc_text(*crc32) + "), which is another" + end};
 }
 
 Result<FilePlace, AppError> find(const Part& part, const RecordingPaths& recording,
@@ -49,38 +69,43 @@ Result<FilePlace, AppError> find(const Part& part, const RecordingPaths& recordi
             AppError{ExitCode::usage, recording.meta().shown().string() + " names no " + part.kind + remedy});
     }
     const fs::path name = part.recorded.file.filename();
-    std::optional<FilePlace> other;
     // Never by the path that meta.yaml has: a recording of somebody else's would choose what is opened.
-    for (const FilePlace& candidate :
-         {FilePlace(recording.folder, name), FilePlace(shipped_file("hw/worlds/" + name.string()))}) {
+    const FilePlace shipped(shipped_file("hw/worlds/" + name.string()));
+    if (shipped.is_there() && part.recorded.crc32 && is_recorded(part, shipped)) return shipped;
+    if (!part.copy.empty()) return part.copy;
+    std::optional<FilePlace> other;
+    for (const FilePlace& candidate : {FilePlace(recording.folder, name), shipped}) {
         if (!candidate.is_there()) continue;
         if (const auto opened = candidate.open(); !opened)
             return unexpected(AppError{ExitCode::bad_data, opened.error().message()});
         if (is_recorded(part, candidate)) return candidate;
         if (!other) other = candidate;
     }
-    if (!other) {
-        return unexpected(AppError{ExitCode::no_input, recording.directory.string() + ": recorded in " +
-                                                           part.recorded.file.string() +
-                                                           ", and no file of that name is in it or shipped" +
-                                                           remedy + " " + part.recorded.file.string() +
-                                                           ", if that is yours"});
-    }
-    return unexpected(AppError{
-        ExitCode::bad_data,
-        recording.directory.string() + ": recorded in " + describe(part.recorded.file, part.recorded.crc32) +
-            ", judging in " + other->shown().string() + " (CRC-32 " +
-            crc_text(part.checksum_of(*other).value_or(0)) + "), which is another" + remedy});
+    if (other) return unexpected(other_file(part, recording, *other));
+    return unexpected(AppError{ExitCode::no_input,
+                               recording.directory.string() + ": recorded in " + part.recorded.file.string() +
+                                   ", and no file of that name is in it or shipped" + remedy + " " +
+                                   part.recorded.file.string() + ", if that is yours"});
 }
 
-std::optional<std::uint32_t> scenario_checksum(const FilePlace& file) {
-    const auto scenario = sim::read_scenario(file);
-    if (!scenario) return std::nullopt;
-    return source_file(file, scenario->extended_files).crc32;
+Result<std::uint32_t, std::string> scenario_checksum(const FilePlace& file) {
+    // Its world is looked for by itself.
+    const auto scenario = sim::read_scenario(file, sim::WorldOf::others);
+    if (!scenario) return unexpected(scenario.error().message());
+    const auto crc32 = source_file(file, scenario->extended_files).crc32;
+    if (!crc32) return unexpected(file.shown().string() + " cannot be read");
+    return *crc32;
+}
+
+Result<std::uint32_t, std::string> world_checksum(const FilePlace& file) {
+    const auto crc32 = crc32_of(file);
+    if (crc32) return *crc32;
+    const auto opened = file.open();
+    return unexpected(opened ? file.shown().string() + " cannot be read" : opened.error().message());
 }
 
 /// The world; empty: the scenario's own, which only the recording of a robot may mean, and with a warning.
-Result<FilePlace, AppError> find_world(const RecordingMeta& meta, const GivenScene& given,
+Result<FilePlace, AppError> find_world(const RecordingMeta& meta, const GivenScene& given, FilePlace copy,
                                        const RecordingPaths& recording, const FilePlace& scenario,
                                        std::vector<std::string>& warnings) {
     if (meta.world.file.empty() && given.world.empty() && !meta.is_simulated()) {
@@ -88,22 +113,39 @@ Result<FilePlace, AppError> find_world(const RecordingMeta& meta, const GivenSce
                            scenario.shown().string() + " names; --world gives another");
         return FilePlace();
     }
-    return find({"world", meta.world, given.world, [](const FilePlace& file) { return crc32_of(file); }},
-                recording, warnings);
+    return find({"world", meta.world, given.world, std::move(copy), world_checksum}, recording, warnings);
+}
+
+/// Whether the recording has its scene; a scene that is not what simulate put there (bad_data) is none.
+Result<bool, AppError> has_scene(const RecordingMeta& meta, const RecordingPaths& recording) {
+    if (!meta.scene_crc32) return false;
+    const auto found = crc32_of_scene(recording);
+    if (found && *found == *meta.scene_crc32) return true;
+    return fail(ExitCode::bad_data,
+                recording.directory.string() +
+                    ": its scene (scenario.yaml, world.sdf and what they name) is " +
+                    (found ? "not what `octoskin simulate` put there (CRC-32 " + crc_text(*found) +
+                                 ", meta.yaml says " + crc_text(*meta.scene_crc32) + ")"
+                           : "missing, or cannot be read") +
+                    ": put it there again, or give --scenario and --world");
 }
 
 }  // namespace
 
-Result<RecordedScene, AppError> read_recorded_scene(const fs::path& directory, const GivenScene& given) {
+Result<RecordedScene, AppError> read_recorded_scene(const FilePlace& directory, const GivenScene& given) {
     const RecordingPaths recording(directory);
     const auto meta = read_meta(recording);
     if (!meta) return unexpected(reading_error(ExitCode::bad_data, meta.error()));
     std::vector<std::string> warnings;
-    const auto scenario =
-        find({"scenario", meta->scenario, given.scenario, scenario_checksum}, recording, warnings);
-    if (!scenario) return unexpected(scenario.error());
-    const auto world = find_world(*meta, given, recording, *scenario, warnings);
-    if (!world) return unexpected(world.error());
+    const auto scene_there = has_scene(*meta, recording);
+    const bool is_whole = scene_there && *scene_there;
+    const auto scenario = find({"scenario", meta->scenario, given.scenario,
+                                is_whole ? recording.scenario() : FilePlace(), scenario_checksum},
+                               recording, warnings);
+    if (!scenario) return unexpected(scene_there ? scenario.error() : scene_there.error());
+    const auto world =
+        find_world(*meta, given, is_whole ? recording.world() : FilePlace(), recording, *scenario, warnings);
+    if (!world) return unexpected(scene_there ? world.error() : scene_there.error());
     auto scene = read_scene(*scenario, *world);
     if (!scene) return unexpected(scene.error());
     return RecordedScene{std::move(*scene), std::move(warnings)};
@@ -113,12 +155,14 @@ RecordingBeside recording_beside(const fs::path& map) {
     std::error_code error;
     const auto folder = fs::absolute(map, error).lexically_normal().parent_path();
     RecordingBeside found;
-    for (const fs::path& candidate : {folder / "recording", folder.parent_path(), folder}) {
+    const NamedFolder opened(folder);
+    for (const FilePlace& candidate :
+         {FilePlace(opened, "recording"), FilePlace(folder.parent_path()), FilePlace(folder)}) {
         const RecordingPaths recording(candidate);
         if (!recording.meta().is_there()) continue;
         const auto meta = read_meta(recording);
         if (meta) {
-            found.directory = candidate;
+            found.place = candidate;
             return found;
         }
         found.warnings.push_back(meta.error().message() +

@@ -24,19 +24,21 @@ struct RecordedScene {
     std::vector<std::string> warnings;  ///< where what was given is not what meta.yaml names
 };
 
-/// The recording's scenario and world, found in the recording itself or among the shipped worlds, and nowhere
-/// else that the recording names, by the CRC-32 that its meta.yaml has of them. What is given goes first,
+/// The recording's scenario and world: the shipped ones, if they have the CRC-32 that its meta.yaml says;
+/// else those that simulate put into the recording, if they are as it put them; else what lies there under
+/// the recorded name; and nowhere else that the recording names. What is given goes first,
 /// with a warning if it is something else. Refuses what is not there, what has changed, and what meta.yaml
 /// does not name; but a robot's recording names no world: then the scenario's is taken, with a warning.
-[[nodiscard]] Result<RecordedScene, AppError> read_recorded_scene(const std::filesystem::path& recording,
+[[nodiscard]] Result<RecordedScene, AppError> read_recorded_scene(const FilePlace& recording,
                                                                   const GivenScene& given);
 
 struct RecordingBeside {
-    std::optional<std::filesystem::path> directory;
+    std::optional<FilePlace> place;
     std::vector<std::string> warnings;  ///< of what would be one, but for a meta.yaml that cannot be read
 };
 
-/// The recording beside a map, where `octoskin replay` and `octoskin experiment` put their maps.
+/// The recording beside a map, behind no link, where `octoskin replay` and `octoskin experiment` put their
+/// maps.
 [[nodiscard]] RecordingBeside recording_beside(const std::filesystem::path& map);
 
 }  // namespace octoskin::app

@@ -55,7 +55,7 @@ void describe_i2c(const rig::Node& node) {
 
 void describe(const rig::Rig& rig, const HostSetup& host) {
     print("rig {}: hash {:08x}, robot {}: {} links at or below {}, {} capsules\n", rig.name,
-          rig::rig_hash(rig), rig.urdf.filename().string(), host.robot.link_count(), rig.base_link,
+          rig::rig_hash(rig), rig.urdf.filename(), host.robot.link_count(), rig.base_link,
           host.rig.body.size());
     for (const LinkWithoutBody& link : host.rig.links_without_body) {
         print("  link {}: no body{}\n", link.link,
@@ -99,7 +99,7 @@ void run(const RigOptions& options) {
     if (!options.block.empty()) {
         write_block(rig, options);
     } else if (options.prints_canonical) {
-        print_exactly(rig::canonical_text(rig, rig.urdf.string()));
+        print_exactly(rig::canonical_text(rig, rig.urdf.shown().string()));
     } else {
         describe(rig, *host);
     }

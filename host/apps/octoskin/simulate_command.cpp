@@ -117,6 +117,12 @@ void add_simulate_command(CLI::App& app) {
                       "Exit code 0 although the image does what the chip's manuals forbid");
     command->callback([options] {
         options->request.out = options->out;
+        options->request.on_scene_gap = [](const std::string& why) {
+            spdlog::warn(
+                "the recording goes without its world, and evaluating it needs --scenario and "
+                "--world: {}",
+                why);
+        };
         if (options->board == "emulated") options->request.emulated = emulated_boards(*options);
         simulate(options->request, options->allows_violations);
     });

@@ -33,6 +33,10 @@ void print_exactly(std::string_view text) {
     note(std::fwrite(text.data(), 1, text.size(), stdout) == text.size());
 }
 
+void print_json(std::string_view json) {
+    print_exactly(printable_json(json));
+}
+
 void print_text(std::string_view text) {
     print_exactly(printable_lines(text));
 }

@@ -22,6 +22,9 @@ void reserve_standard_descriptors();
 /// on.
 void print_exactly(std::string_view text);
 
+/// JSON for a machine: every string is exact, and none orders a terminal about: printable_json().
+void print_json(std::string_view json);
+
 /// For a person, in lines of our own making: printable_lines().
 void print_text(std::string_view text);
 

@@ -42,7 +42,7 @@ void show_status(const StatusOptions& options) {
     const auto status = nlohmann::ordered_json::parse(*answer, nullptr, false);
     if (!status.is_object()) throw CommandFailure(foreign_answer(options.socket));
     if (const auto refused = refusal_of(status)) throw CommandFailure(*refused);
-    if (options.is_json) return print_exactly(status.dump(2) + "\n");
+    if (options.is_json) return print_json(status.dump(2) + "\n");
     try {
         print_for_people(status);
     } catch (const nlohmann::ordered_json::exception&) {

@@ -89,12 +89,11 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, const r
 
 Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig::Rig& rig,
                                       const tum::DataSetReader& reader) {
-    const auto named = reader.files();
-    const auto crc32 = crc32_of(std::vector<FilePlace>(named.begin(), named.end()));
+    const auto crc32 = crc32_of(reader.files());
     if (!crc32) {
         const auto missing = reader.missing_image();
         const bool is_refused = std::ranges::any_of(
-            reader.files(), [](const fs::path& file) { return refused_to_read(file).has_value(); });
+            reader.files(), [](const FilePlace& file) { return refused_to_read(file).has_value(); });
         return fail(
             is_refused ? ExitCode::no_permission : ExitCode::no_input,
             missing ? missing->what

@@ -41,9 +41,16 @@ NamedMaps named_maps(const Playback& playback) {
     return named;
 }
 
+Status<AppError> check_map_places(const OpenFolder& folder) {
+    std::vector<fs::path> names{kMapOriginFile};
+    for (const std::string& name : map_file_names()) names.emplace_back(name);
+    return FileSet::check_places(folder, names);
+}
+
 Result<MapFolder, AppError> MapFolder::open(const FilePlace& folder) {
     auto files = FileSet::begin(folder);
     if (!files) return unexpected(files.error());
+    if (const auto checked = check_map_places(files->folder()); !checked) return unexpected(checked.error());
     return MapFolder(std::move(*files));
 }
 

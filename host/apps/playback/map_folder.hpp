@@ -29,10 +29,14 @@ struct SavedMaps {
         foreign;  ///< maps beside that no octoskin put there, as far as is known: left alone
 };
 
+/// That nothing lies in the place of a map, or of maps.yaml, that save() could not replace.
+[[nodiscard]] Status<AppError> check_map_places(const OpenFolder& folder);
+
 /// A folder that is ours from the moment it is opened, so that a second octoskin is refused before its work.
 class MapFolder {
   public:
-    /// Makes the folder if it is not there, and locks it: see FileSet::begin().
+    /// Makes the folder if it is not there, and locks it: see FileSet::begin(). Refuses what
+    /// check_map_places() does.
     [[nodiscard]] static Result<MapFolder, AppError> open(const FilePlace& folder);
 
     /// Writes each map as .ot, .bt and .ply, and maps.yaml; once. On an error those before are as they were.

@@ -118,7 +118,7 @@ Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig:
                      .recording_crc32 = *crc32,
                      .rig = absolute(request.rig.empty() ? request.recording.rig().shown() : request.rig),
                      .rig_hash = rig::rig_hash(rig),
-                     .robot = absolute(rig.urdf),
+                     .robot = absolute(rig.urdf.shown()),
                      .robot_crc32 = crc32_of(rig.urdf),
                      .configuration = request.configuration,
                      .mapping = mapping_text(request.mapping),

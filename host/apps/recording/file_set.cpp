@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "host/apps/recording/text_file.hpp"
+#include "hw/sim/world/world_copy.hpp"
 
 namespace octoskin {
 namespace {
@@ -22,10 +23,11 @@ constexpr const char* kReady = FileSet::kReadyFolder;
 constexpr const char* kBeforeFolder = ".before";  ///< in the ready folder: what the new files replace
 constexpr const char* kJournal = ".journal";      ///< in the ready folder: what is to be done
 constexpr const char* kJournalHead = "octoskin-file-set/1";
-constexpr std::size_t kJournalBytesMax = 4096;  ///< each name once, dropped and put, takes less
+constexpr std::size_t kJournalBytesMax = 16'384;  ///< each name once, dropped and put, takes less
 
-constexpr std::array<std::string_view, 6> kRecordingFiles{"can.log",  "depth.oni",  "depth.epoch.yaml",
-                                                          "rig.yaml", "robot.urdf", "meta.yaml"};
+constexpr std::array<std::string_view, 9> kRecordingFiles{"can.log",   "depth.oni",   "depth.epoch.yaml",
+                                                          "rig.yaml",  "robot.urdf",  "scenario.yaml",
+                                                          "world.sdf", "motion.yaml", "meta.yaml"};
 constexpr std::array<std::string_view, 10> kMapFiles{
     "depth.ot",      "depth.bt", "depth.ply", "proximity.ot", "proximity.bt",
     "proximity.ply", "fused.ot", "fused.bt",  "fused.ply",    "maps.yaml"};
@@ -131,13 +133,17 @@ class Move {
   public:
     Move(OpenFolder folder, Journal journal) : folder_(std::move(folder)), journal_(std::move(journal)) {}
 
-    Status<AppError> forward() {
-        // Before anything moves: a link, a pipe or a folder in any place stops all of it.
+    /// Before anything moves: a link, a pipe or a folder in any place stops all of it.
+    [[nodiscard]] Status<AppError> check() const {
         for (const auto& names : {journal_.drop, journal_.put}) {
             for (const fs::path& name : names) {
                 if (const auto checked = check_both(name); !checked) return checked;
             }
         }
+        return Done{};
+    }
+
+    Status<AppError> forward() {
         // The decision reaches the disk before anything that follows from it.
         if (const auto flushed = flush(folder_); !flushed) return flushed;
         // The former set loses its voucher first.
@@ -232,12 +238,13 @@ class Move {
 /// From a ready folder to files in their places; or, with an error, to the folder as it was, with the ready
 /// folder still in it.
 Status<AppError> carry_out(Move& moving) {
+    if (const auto checked = moving.check(); !checked) return checked;
     auto moved = moving.forward();
     if (moved) {
         moving.remove_ready();
         return Done{};
     }
-    if (const auto undone = moving.back(); !undone)
+    if (const auto undone = moving.back(); !undone && undone.error().message != moved.error().message)
         return fail(
             ExitCode::cannot_create,
             undone.error().message + ": taking back what was moved failed, after " + moved.error().message);
@@ -309,9 +316,7 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     assert(!files.empty() && std::all_of(files.begin(), files.end(), is_file_of_set) &&
            std::all_of(retired.begin(), retired.end(), is_file_of_set));
     for (const auto& names : {files, retired}) {
-        for (const fs::path& name : names) {
-            if (const auto checked = check_place(folder_, name); !checked) return checked;
-        }
+        if (const auto checked = check_places(folder_, names); !checked) return checked;
     }
     const Journal journal{retired, files};
     if (const auto written = write_journal(draft_, journal); !written) return written;
@@ -329,13 +334,20 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     return moved;
 }
 
+Status<AppError> FileSet::check_places(const OpenFolder& folder, const std::vector<fs::path>& names) {
+    for (const fs::path& name : names) {
+        if (const auto checked = check_place(folder, name); !checked) return checked;
+    }
+    return Done{};
+}
+
 bool is_file_of_set(const fs::path& name) {
     const std::string text = name.string();
     const auto is_in = [](const auto& list, std::string_view one) {
         return std::find(list.begin(), list.end(), one) != list.end();
     };
     constexpr std::string_view kMaps = "maps/";
-    return is_in(kRecordingFiles, text) || is_in(kMapFiles, text) ||
+    return is_in(kRecordingFiles, text) || sim::is_mesh_copy(text) || is_in(kMapFiles, text) ||
            (text.starts_with(kMaps) && is_in(kMapFiles, std::string_view(text).substr(kMaps.size())));
 }
 

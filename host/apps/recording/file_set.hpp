@@ -41,6 +41,11 @@ class FileSet {
     [[nodiscard]] Status<AppError> commit(const std::vector<std::filesystem::path>& files,
                                           const std::vector<std::filesystem::path>& retired);
 
+    /// That commit() would find each of `names` free or taken by a file that it can replace. Error
+    /// (cannot_create): what is in the way.
+    [[nodiscard]] static Status<AppError> check_places(const OpenFolder& folder,
+                                                       const std::vector<std::filesystem::path>& names);
+
     /// The hidden folder's name: for those who ask whether a folder is empty.
     static constexpr const char* kDraftFolder = ".octoskin-part";
     /// The same once it is decided that its files come: where it is, a process was killed, or is at it.

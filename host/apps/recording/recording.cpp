@@ -7,11 +7,13 @@
 
 #include "host/apps/recording/file_set.hpp"
 #include "hw/rigfile/table.hpp"
+#include "hw/sim/world/world_copy.hpp"
 
 namespace octoskin {
 namespace {
 
 constexpr const char* kSchema = "octoskin-recording/1";
+constexpr std::int64_t kCrcMax = 0xFFFF'FFFF;
 constexpr const char* kMetaMissing =
     "no such file; the least that it can be is two lines, 'schema: octoskin-recording/1' and 'source: robot'";
 constexpr const char* kDirectoryMissing =
@@ -45,9 +47,7 @@ Status<RecordingError> check_folder(const RecordingPaths& recording) {
 
 /// That nothing but files lies in the places of files.
 Status<RecordingError> check_kinds(const RecordingPaths& recording) {
-    for (const FilePlace& file : {recording.can_log(), recording.depth(), recording.depth_epoch(),
-                                  recording.rig(), recording.robot(), recording.order(), recording.mapping(),
-                                  recording.first_map(), recording.last_map(), recording.meta()}) {
+    for (const FilePlace& file : recording.files()) {
         const EntryKind kind = file.kind();
         if (kind == EntryKind::absent || kind == EntryKind::file) continue;
         const auto opened = file.open();
@@ -66,7 +66,6 @@ void write_source(YAML::Emitter& out, const std::string& key, const SourceFile& 
 
 SourceFile read_source(const rig::Table& table, const std::string& key) {
     SourceFile source{table.text(key), std::nullopt};
-    constexpr std::int64_t kCrcMax = 0xFFFF'FFFF;
     const std::string crc = key + "_crc32";
     if (table.find(crc) != nullptr) source.crc32 = table.integer<std::uint32_t>(crc, {0, kCrcMax});
     return source;
@@ -74,10 +73,10 @@ SourceFile read_source(const rig::Table& table, const std::string& key) {
 
 RecordingMeta read_checked(const FilePlace& file) {
     const rig::Value document = rig::load_document(file);
-    const rig::Table table(
-        document, "",
-        {"schema", "made_by", "source", "world", "world_crc32", "scenario", "scenario_crc32", "rig",
-         "rig_crc32", "seed", "duration_s", "can_frames", "depth_frames", "is_depth_noise_free"});
+    const rig::Table table(document, "",
+                           {"schema", "made_by", "source", "world", "world_crc32", "scenario",
+                            "scenario_crc32", "rig", "rig_crc32", "scene_crc32", "seed", "duration_s",
+                            "can_frames", "depth_frames", "is_depth_noise_free"});
     static_cast<void>(table.choice<bool>("schema", {{kSchema, true}}));
     constexpr double kDurationMax_s = 1e9;
     RecordingMeta meta;
@@ -87,6 +86,8 @@ RecordingMeta read_checked(const FilePlace& file) {
     meta.world = read_source(table, "world");
     meta.scenario = read_source(table, "scenario");
     meta.rig = read_source(table, "rig");
+    if (table.find("scene_crc32") != nullptr)
+        meta.scene_crc32 = table.integer<std::uint32_t>("scene_crc32", {0, kCrcMax});
     if (table.find("seed") != nullptr) meta.seed = table.unsigned_integer("seed", 0);
     meta.is_depth_noise_free = table.flag("is_depth_noise_free", false);
     meta.can_frames = table.unsigned_integer("can_frames", 0);
@@ -96,6 +97,25 @@ RecordingMeta read_checked(const FilePlace& file) {
 }
 
 }  // namespace
+
+std::vector<FilePlace> RecordingPaths::files() const {
+    std::vector<FilePlace> files{can_log(), depth(),   depth_epoch(), rig(),      robot(),
+                                 order(),   mapping(), first_map(),   last_map(), scenario(),
+                                 world(),   motion(),  meta()};
+    for (FilePlace& mesh : meshes()) files.push_back(std::move(mesh));
+    return files;
+}
+
+std::vector<FilePlace> RecordingPaths::meshes() const {
+    const auto opened = folder.open();
+    const auto names = opened ? opened->names() : unexpected(opened.error());
+    std::vector<FilePlace> meshes;
+    if (!names) return meshes;
+    for (const std::string& name : *names) {
+        if (sim::is_mesh_copy(name)) meshes.push_back(file(name));
+    }
+    return meshes;
+}
 
 std::string RecordingError::message() const {
     return rig::RigError{file, line, key, what}.message();
@@ -110,6 +130,7 @@ Status<RecordingError> write_meta(const RecordingPaths& recording, const Recordi
     write_source(out, "world", meta.world);
     write_source(out, "scenario", meta.scenario);
     write_source(out, "rig", meta.rig);
+    if (meta.scene_crc32) out << YAML::Key << "scene_crc32" << YAML::Value << crc_text(*meta.scene_crc32);
     if (meta.seed) out << YAML::Key << "seed" << YAML::Value << *meta.seed;
     out << YAML::Key << "is_depth_noise_free" << YAML::Value << meta.is_depth_noise_free;
     out << YAML::Key << "can_frames" << YAML::Value << meta.can_frames;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/result.hpp"
 #include "host/apps/recording/source_file.hpp"
@@ -35,9 +36,18 @@ struct RecordingPaths {
     [[nodiscard]] FilePlace mapping() const { return file("mapping.yaml"); }
     [[nodiscard]] FilePlace first_map() const { return file("first.ot"); }
     [[nodiscard]] FilePlace last_map() const { return file("last.ot"); }
+    /// Of a simulation: what it happened in. Neither refers to a file outside of the recording.
+    [[nodiscard]] FilePlace scenario() const { return file("scenario.yaml"); }
+    [[nodiscard]] FilePlace world() const { return file("world.sdf"); }
+    [[nodiscard]] FilePlace motion() const { return file("motion.yaml"); }
+    /// Of that world, those that are there, by name: mesh_01.stl and the like.
+    [[nodiscard]] std::vector<FilePlace> meshes() const;
     [[nodiscard]] FilePlace meta() const { return file("meta.yaml"); }
 
-    [[nodiscard]] FilePlace file(const char* name) const { return {folder, name}; }
+    /// In the place of each file that a recording may have.
+    [[nodiscard]] std::vector<FilePlace> files() const;
+
+    [[nodiscard]] FilePlace file(const std::string& name) const { return {folder, name}; }
 
     std::filesystem::path directory;  ///< as it was named: for messages and for provenance
     NamedFolder folder;
@@ -52,6 +62,7 @@ struct RecordingMeta {
     SourceFile rig;                     ///< as it was given: the recording's own has the seed's shift
     std::optional<std::uint64_t> seed;  ///< of the simulation
     bool is_depth_noise_free = false;
+    std::optional<std::uint32_t> scene_crc32 = {};  ///< of the scene's files in it; empty: it has none
     std::uint64_t can_frames = 0;
     std::uint64_t depth_frames = 0;
     double duration_s = 0.0;

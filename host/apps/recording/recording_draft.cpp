@@ -12,7 +12,11 @@ namespace fs = std::filesystem;
 
 /// meta.yaml last.
 std::vector<FilePlace> files_of(const RecordingPaths& paths) {
-    return {paths.can_log(), paths.depth(), paths.depth_epoch(), paths.rig(), paths.robot(), paths.meta()};
+    std::vector<FilePlace> files{paths.can_log(), paths.depth(),    paths.depth_epoch(), paths.rig(),
+                                 paths.robot(),   paths.scenario(), paths.world(),       paths.motion()};
+    for (FilePlace& mesh : paths.meshes()) files.push_back(std::move(mesh));
+    files.push_back(paths.meta());
+    return files;
 }
 
 bool is_occupied(const OpenFolder& folder) {
@@ -49,34 +53,59 @@ std::vector<fs::path> maps_of_recording() {
     return maps;
 }
 
+/// All that commit() may put there or remove.
+std::vector<fs::path> places_of(const RecordingPaths& paths) {
+    std::vector<fs::path> places = maps_of_recording();
+    for (const FilePlace& file : files_of(paths)) places.push_back(file.name());
+    return places;
+}
+
+/// The lock on a former recording that may be replaced; none if there is no recording.
+Result<std::optional<FileLock>, AppError> check_former(const OpenFolder& folder, bool may_replace) {
+    if (!is_occupied(folder)) return std::optional<FileLock>();
+    const RecordingPaths paths(folder);
+    if (!may_replace) {
+        return cannot_create(
+            paths.directory,
+            "is not empty; give another directory, or --force to replace a simulated recording");
+    }
+    // Before any work: what is in the way at the end was in the way at the beginning.
+    if (const auto checked = FileSet::check_places(folder, places_of(paths)); !checked)
+        return unexpected(checked.error());
+    if (const auto checked = check_replaceable(paths); !checked) return unexpected(checked.error());
+    auto lock = FileLock::take(paths.meta(), FileLock::Kind::exclusive);
+    if (!lock) {
+        return cannot_create(
+            paths.directory,
+            "another octoskin reads this recording; wait until it has ended, or give another directory");
+    }
+    return std::optional(std::move(*lock));
+}
+
 }  // namespace
 
 RecordingDraft::RecordingDraft(FileSet files, std::optional<FileLock> former)
     : final_(files.folder()), draft_(files.draft()), files_(std::move(files)), former_(std::move(former)) {}
 
+Status<AppError> RecordingDraft::check(const FilePlace& named, bool may_replace) {
+    const EntryKind kind = named.kind();
+    if (kind == EntryKind::absent) return Done{};
+    auto folder = named.open_folder();
+    if (folder) folder = folder->to_write();
+    if (!folder) return cannot_create(folder.error().path, folder.error().reason());
+    // What a killed octoskin left half moved is brought to its end first.
+    if (folder->kind_of(FileSet::kReadyFolder) != EntryKind::absent) return Done{};
+    const auto former = check_former(*folder, may_replace);
+    if (!former) return unexpected(former.error());
+    return Done{};
+}
+
 Result<RecordingDraft, AppError> RecordingDraft::create(const FilePlace& named, bool may_replace) {
-    const fs::path directory = named.shown();
     auto files = FileSet::begin(named);
     if (!files) return unexpected(files.error());
-    const RecordingPaths paths(files->folder());
-    std::optional<FileLock> former;
-    if (is_occupied(files->folder())) {
-        if (!may_replace) {
-            return cannot_create(
-                directory,
-                "is not empty; give another directory, or --force to replace a simulated recording");
-        }
-        if (const auto checked = check_replaceable(paths); !checked) return unexpected(checked.error());
-        auto lock = FileLock::take(paths.meta(), FileLock::Kind::exclusive);
-        if (!lock) {
-            return cannot_create(
-                directory,
-                "another octoskin reads this recording; wait until it has ended, or give another "
-                "directory");
-        }
-        former.emplace(std::move(*lock));
-    }
-    return RecordingDraft(std::move(*files), std::move(former));
+    auto former = check_former(files->folder(), may_replace);
+    if (!former) return unexpected(former.error());
+    return RecordingDraft(std::move(*files), std::move(*former));
 }
 
 Status<AppError> RecordingDraft::commit() {
@@ -84,6 +113,9 @@ Status<AppError> RecordingDraft::commit() {
     std::vector<fs::path> retired;
     for (const FilePlace& file : files_of(draft_))
         (file.is_there() ? files : retired).push_back(file.filename());
+    for (const FilePlace& mesh : final_.meshes()) {  // of another world
+        if (std::find(files.begin(), files.end(), mesh.name()) == files.end()) retired.push_back(mesh.name());
+    }
     // create() made sure that a recording here is a simulated one; without one, its maps are somebody's.
     const bool replaces_recording = final_.meta().is_there();
     if (replaces_recording) {

@@ -19,6 +19,10 @@ class RecordingDraft {
     /// known to be simulated: nobody can make that again; and one that another octoskin writes or reads.
     [[nodiscard]] static Result<RecordingDraft, AppError> create(const FilePlace& named, bool may_replace);
 
+    /// That create() would not refuse, nor commit() find anything in the place of a file that it cannot
+    /// replace; but for what others do meanwhile. Changes nothing.
+    [[nodiscard]] static Status<AppError> check(const FilePlace& named, bool may_replace);
+
     /// Where to write until then. What is not committed leaves nothing.
     [[nodiscard]] const RecordingPaths& paths() const noexcept { return draft_; }
     /// Moves the files into `directory`, in place of a former recording's files and of the maps made of it:

@@ -31,7 +31,7 @@ std::optional<std::uint32_t> crc32_of(const FilePlace& file) {
     return crc32_of(std::span(&file, 1));
 }
 
-SourceFile source_file(const FilePlace& file, std::span<const std::filesystem::path> further) {
+SourceFile source_file(const FilePlace& file, std::span<const FilePlace> further) {
     std::vector<FilePlace> all{file};
     all.insert(all.end(), further.begin(), further.end());
     return {std::filesystem::absolute(file.shown()).lexically_normal(), crc32_of(all)};

@@ -21,8 +21,7 @@ struct SourceFile {
 [[nodiscard]] std::optional<std::uint32_t> crc32_of(const FilePlace& file);
 
 /// `file` made absolute, with its CRC-32, and that of the `further` files that it brings in.
-[[nodiscard]] SourceFile source_file(const FilePlace& file,
-                                     std::span<const std::filesystem::path> further = {});
+[[nodiscard]] SourceFile source_file(const FilePlace& file, std::span<const FilePlace> further = {});
 
 /// "0x0123abcd".
 [[nodiscard]] std::string crc_text(std::uint32_t crc);

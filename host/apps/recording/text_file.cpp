@@ -6,8 +6,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
+#include <cstdio>
 #include <filesystem>
+#include <string>
 #include <system_error>
+
+#include "host/io/folder/replacing_file.hpp"
 
 namespace octoskin {
 namespace {
@@ -23,31 +28,56 @@ int write_all(int descriptor, std::string_view text) {
     return 0;
 }
 
-/// What a path that was typed leads to, emptied; or 0 for success, else why not. EMLINK: a file with several
-/// names, which is left as it is.
-int open_typed(const std::filesystem::path& file, Descriptor& opened) {
-    opened = Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (opened) return 0;
-    // Not EEXIST alone: O_EXCL does not follow a link to something that is yet to be made.
-    opened = Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
-    if (!opened) return errno;
-    struct stat status {};
-    if (::fstat(opened.get(), &status) != 0) return errno;
-    if (!S_ISREG(status.st_mode)) return 0;
-    if (status.st_nlink > 1) return EMLINK;
-    return ::ftruncate(opened.get(), 0) == 0 ? 0 : errno;
-}
-
-FilePlace behind_links(const std::filesystem::path& typed) {
+/// The number of a descriptor of this process that a path names, as /dev/stdout does; -1: none.
+int descriptor_of(const std::filesystem::path& typed) {
     std::error_code error;
-    auto behind = std::filesystem::canonical(typed, error);
-    return error ? typed : behind;
+    const auto own = std::filesystem::canonical("/proc/self/fd", error);
+    const auto folder = std::filesystem::canonical(typed.parent_path(), error);
+    auto named = typed;
+    if (folder == "/dev" && std::filesystem::is_symlink(typed, error)) {  // stdout, stderr
+        named = std::filesystem::read_symlink(typed, error);
+        if (std::filesystem::canonical(named.parent_path(), error) != own) return -1;
+    } else if (own.empty() || folder != own) {
+        return -1;
+    }
+    int number = -1;
+    const std::string digits = named.filename().string();
+    const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    return parsed.ec == std::errc{} && parsed.ptr == digits.data() + digits.size() ? number : -1;
 }
 
-/// What no other place on the disk would help against.
-bool is_of_folder(FolderFault fault) {
-    return fault == FolderFault::link || fault == FolderFault::foreign_owner ||
-           fault == FolderFault::outside || fault == FolderFault::is_there;
+/// A device, a pipe or a descriptor that was typed takes what is written, and nothing is put in its place; a
+/// link to one is replaced.
+bool takes_what_is_written(const FilePlace& file) {
+    if (file.folder() != nullptr) return false;
+    if (descriptor_of(file.name()) >= 0) return true;
+    struct stat status {};
+    if (::lstat(file.name().c_str(), &status) != 0) return false;
+    return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISLNK(status.st_mode);
+}
+
+Descriptor open_as_it_is(const std::filesystem::path& typed) {
+    const int number = descriptor_of(typed);
+    if (number < 0) return Descriptor(::open(typed.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW));
+    static_cast<void>(std::fflush(stdout));  // what was printed before comes before it
+    return Descriptor(::fcntl(number, F_DUPFD_CLOEXEC, 0));
+}
+
+Unexpected<AppError> cannot_write(const FilePlace& file, int error) {
+    return fail(ExitCode::cannot_create, fmt::format("{}: cannot be written ({}): {}", file.shown().string(),
+                                                     std::generic_category().message(error),
+                                                     remedy_of({error, std::generic_category()})));
+}
+
+Unexpected<AppError> cannot_write(const FilePlace& file, const FolderError& error) {
+    // What no other place on the disk would help against.
+    const bool is_of_folder = error.fault == FolderFault::link || error.fault == FolderFault::foreign_owner ||
+                              error.fault == FolderFault::outside;
+    if (is_of_folder) return cannot_create(error.path, error.reason());
+    const bool is_typed_itself = file.folder() == nullptr && error.path == file.shown();
+    if (error.fault == FolderFault::is_there && !is_typed_itself)
+        return cannot_create(error.path, error.reason());
+    return cannot_write(file, error.error_number);
 }
 
 }  // namespace
@@ -66,6 +96,8 @@ std::string remedy_of(const std::error_code& error) {
         case ENOENT:
         case ENOTDIR:
             return "its folder is not there: make it, or write elsewhere";
+        case EEXIST:
+            return "it is no ordinary file: name another one, or move it away";
         case EISDIR:
             return "it is a folder: name a file, or move the folder away";
         default:
@@ -74,23 +106,25 @@ std::string remedy_of(const std::error_code& error) {
 }
 
 Status<AppError> write_text(const FilePlace& file, std::string_view text) {
-    Descriptor opened;
-    int error = 0;
-    if (file.folder() == nullptr) error = open_typed(file.name(), opened);
-    if (file.folder() != nullptr || error == EMLINK) {
-        auto created =
-            file.folder() != nullptr ? file.create_anew() : behind_links(file.name()).create_anew();
-        error = created ? 0 : created.error().error_number;
-        if (!created && is_of_folder(created.error().fault))
-            return cannot_create(created.error().path, created.error().reason());
-        if (created) opened = Descriptor(created->release());
+    if (takes_what_is_written(file)) {
+        Descriptor opened = open_as_it_is(file.name());
+        int error = opened ? write_all(opened.get(), text) : errno;
+        if (opened && ::close(opened.release()) != 0 && error == 0) error = errno;
+        if (error != 0) return cannot_write(file, error);
+        return Done{};
     }
-    if (error == 0) error = write_all(opened.get(), text);
-    if (opened && ::close(opened.release()) != 0 && error == 0) error = errno;
-    if (error == 0) return Done{};
-    return fail(ExitCode::cannot_create, fmt::format("{}: cannot be written ({}): {}", file.shown().string(),
-                                                     std::generic_category().message(error),
-                                                     remedy_of({error, std::generic_category()})));
+    auto replacing = ReplacingFile::begin(file);
+    if (!replacing) return cannot_write(file, replacing.error());
+    if (const int error = write_all(replacing->descriptor(), text); error != 0)
+        return cannot_write(file, error);
+    if (const auto committed = replacing->commit(); !committed) return cannot_write(file, committed.error());
+    return Done{};
+}
+
+Status<AppError> check_text_place(const FilePlace& file) {
+    if (takes_what_is_written(file)) return Done{};
+    if (const auto checked = ReplacingFile::check(file); !checked) return cannot_write(file, checked.error());
+    return Done{};
 }
 
 Status<AppError> copy_file(const FilePlace& from, const FilePlace& to) {

@@ -1,5 +1,6 @@
 #include "host/apps/simulation/scene.hpp"
 #include "host/apps/recording/permission.hpp"
+#include "host/io/folder/confined.hpp"
 
 #include "hw/sim/scenario/hidden_models.hpp"
 #include "hw/sim/scenario/motion.hpp"
@@ -7,9 +8,11 @@
 namespace octoskin {
 
 Result<Scene, AppError> read_scene(const FilePlace& scenario_file, const FilePlace& world_instead) {
-    auto scenario = sim::read_scenario(scenario_file);
+    const auto world_of = world_instead.empty() ? sim::WorldOf::scenario : sim::WorldOf::others;
+    auto scenario = sim::read_scenario(scenario_file, world_of);
     if (!scenario) return unexpected(reading_error(ExitCode::bad_config, scenario.error()));
-    const FilePlace world_file = world_instead.empty() ? scenario->world : world_instead;
+    const FilePlace world_file =
+        confined_to_recording(world_instead.empty() ? scenario->world : world_instead);
     auto world = sim::World::read(world_file);
     if (!world) return unexpected(reading_error(ExitCode::bad_data, world.error()));
     if (const auto checked = sim::check_hidden_models(*scenario, *world); !checked) {
@@ -23,8 +26,8 @@ Result<Scene, AppError> read_scene(const FilePlace& scenario_file, const FilePla
         motions = std::move(*read);
     }
     SourceFile scenario_source = source_file(scenario_file, scenario->extended_files);
-    return Scene{std::move(*scenario), std::move(*world), std::move(motions), std::move(scenario_source),
-                 source_file(world_file)};
+    return Scene{std::move(*scenario), std::move(*world),          std::move(motions),
+                 world_file,           std::move(scenario_source), source_file(world_file)};
 }
 
 Status<AppError> check_stands_still(const Scene& scene) {

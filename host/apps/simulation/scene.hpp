@@ -17,6 +17,7 @@ struct Scene {
     sim::Scenario scenario;
     sim::World world;
     std::vector<sim::ModelMotion> motions;  ///< of models of the world's; most often none
+    FilePlace world_place;                  ///< that it was read from
     SourceFile scenario_file;               ///< its CRC-32 is over the files that it extends, too
     SourceFile world_file;                  ///< its CRC-32 leaves out the files of meshes
 };

@@ -8,6 +8,7 @@
 #include "host/apps/recording/recording_draft.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "host/apps/simulation/scene.hpp"
+#include "host/apps/simulation/scene_files.hpp"
 #include "host/apps/version/version.hpp"
 #include "host/io/candump/log_writer.hpp"
 #include "host/io/openni2/oni_writer.hpp"
@@ -93,16 +94,31 @@ class Recorder {
     std::optional<std::string> error_;
 };
 
+/// The checksum of its files; empty: it cannot be had as files of a recording.
+Result<std::optional<std::uint32_t>, AppError> record_scene(const Scene& scene, const RecordingPaths& paths,
+                                                            const SimulationRequest& request) {
+    const auto lock = lock_reading();
+    const auto gap = write_scene(scene, paths);
+    if (!gap) return unexpected(gap.error());
+    if (!*gap) return crc32_of_scene(paths);
+    if (request.on_scene_gap) request.on_scene_gap(**gap);
+    return std::optional<std::uint32_t>();
+}
+
 }  // namespace
 
 Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequest& request,
                                                             const std::function<void(double)>& on_progress) {
+    if (const auto checked = RecordingDraft::check(request.out, request.may_replace); !checked)
+        return unexpected(checked.error());
     auto inputs = read_inputs(request);
     if (!inputs) return unexpected(inputs.error());
     auto draft = RecordingDraft::create(request.out, request.may_replace);
     if (!draft) return unexpected(draft.error());
     auto recorder = Recorder::create(draft->paths(), inputs->rig);
     if (!recorder) return unexpected(recorder.error());
+    const auto scene_crc32 = record_scene(inputs->scene, draft->paths(), request);
+    if (!scene_crc32) return unexpected(scene_crc32.error());
 
     const sim::ExperimentInput input{.rig = inputs->rig,
                                      .capsules = inputs->body,
@@ -131,6 +147,7 @@ Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequ
                              .rig = source_file(request.rig, inputs->rig.extended_files),
                              .seed = request.seed,
                              .is_depth_noise_free = request.is_depth_noise_free,
+                             .scene_crc32 = *scene_crc32,
                              .can_frames = summary->can_frames,
                              .depth_frames = summary->depth_frames,
                              .duration_s = summary->duration_s};

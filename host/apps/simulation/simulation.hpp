@@ -25,7 +25,9 @@ struct SimulationRequest {
     std::optional<sim::EmulatedBoards> emulated{};  ///< boards run the flashed image
     std::vector<sim::BoardStart> board_starts{};    ///< of boards in this process; see there
     FilePlace out{};                                ///< made if it is not there
-    bool may_replace = false;                       ///< what is in `out`, if that is a simulated recording
+    /// Is told why the recording goes without its scene, if it does.
+    std::function<void(const std::string& why)> on_scene_gap{};
+    bool may_replace = false;  ///< what is in `out`, if that is a simulated recording
 };
 
 /// Simulates and records; unless it succeeds, `out` stays as it was. The recording's rig has the seed's shift

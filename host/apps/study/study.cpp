@@ -192,6 +192,14 @@ Status<AppError> write_report(const StudyRequest& request, const OpenFolder& fol
     return write_text({folder, "report.html"}, report::report_html(input));
 }
 
+/// What is refused is refused as it was. What a killed octoskin left half moved is looked at once that has
+/// been ended.
+Status<AppError> check_before_locked(const fs::path& out) {
+    const auto there = OpenFolder::open(out, FolderAccess::write);
+    if (!there || there->kind_of(FileSet::kReadyFolder) != EntryKind::absent) return Done{};
+    return check_results_folder(*there);
+}
+
 std::string with_crc(const SourceFile& source) {
     return source.file.filename().string() + (source.crc32 ? ", CRC-32 " + crc_text(*source.crc32) : "");
 }
@@ -234,6 +242,7 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     if (const auto checked = check_seeds(request.seeds); !checked) return unexpected(checked.error());
     const auto configurations = find_configurations(request.configurations);
     if (!configurations) return unexpected(configurations.error());
+    if (const auto checked = check_before_locked(request.out); !checked) return unexpected(checked.error());
     const auto world = read_world(request.inputs, configurations->front().mapping.map.resolution_m);
     if (!world) return unexpected(world.error());
     auto folder = MapFolder::open(request.out);
@@ -268,6 +277,8 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     say(fmt::format("seed {}: saving maps", first.seed));
     if (const auto saved = folder->save(named_maps(*first.main), first.main->origin); !saved)
         return unexpected(saved.error());
+    if (const auto noted = note_result(folder->folder(), kMapOriginFile); !noted)
+        return unexpected(noted.error());
     if (const auto written =
             write_text({folder->folder(), "metrics.json"}, evaluation::metrics_json(results));
         !written) {

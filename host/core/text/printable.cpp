@@ -63,4 +63,24 @@ std::string printable_lines(std::string_view text) {
     return shown_of(text, true);
 }
 
+std::string printable_json(std::string_view json) {
+    std::string shown;
+    shown.reserve(json.size());
+    while (!json.empty()) {
+        const std::size_t length = utf8_length(json);
+        const std::string_view sequence = json.substr(0, length == 0 ? 1 : length);
+        json.remove_prefix(sequence.size());
+        const char32_t character = length == 0 ? 0 : utf8_character(sequence);
+        // Those below 0x20 are escaped already where they are part of a string.
+        const bool is_shown_by_number =
+            character >= 0x7F && (is_control(character) || is_turning_or_ending(character));
+        if (is_shown_by_number) {
+            append_number(shown, 'u', static_cast<unsigned>(character), 4);
+        } else {
+            shown += sequence;
+        }
+    }
+    return shown;
+}
+
 }  // namespace octoskin

@@ -15,4 +15,8 @@ namespace octoskin {
 /// The same for text of our own making in several lines: line ends and tabs stay.
 [[nodiscard]] std::string printable_lines(std::string_view text);
 
+/// JSON that reads as the same: what printable() shows by its number is written as JSON's escape ("\\u202e").
+/// Of JSON in UTF-8, as nlohmann writes it; line ends between values stay. O(bytes).
+[[nodiscard]] std::string printable_json(std::string_view json);
+
 }  // namespace octoskin

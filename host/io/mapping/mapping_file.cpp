@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/io/folder/confined.hpp"
 #include "hw/rigfile/table.hpp"
 
 namespace octoskin {
@@ -215,7 +216,7 @@ void read_hit_part(const Table& top, std::string_view key, HitModel& hit) {
 }
 
 MappingConfig read_checked(const FilePlace& file) {
-    const rig::Value document = rig::load_document(file);
+    const rig::Value document = rig::load_document(confined_to_recording(file));
     for (const std::string_view key : {"nodes", "robot", "sensor_defaults", "extends"}) {
         if (const rig::Value* found = document.find(key)) {
             rig::fail(*found, std::string(key),

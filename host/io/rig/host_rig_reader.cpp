@@ -102,7 +102,7 @@ Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
     for (const rig::Capsule& capsule : *capsules) {
         if (!robot->find_link(capsule.link)) {
             return unexpected(
-                rig::RigError{rig.urdf, 0, "link " + capsule.link,
+                rig::RigError{rig.urdf.shown(), 0, "link " + capsule.link,
                               "has a <collision> but does not hang below the rig's base link '" +
                                   rig.base_link + "': remove it, or use another base_link"});
         }

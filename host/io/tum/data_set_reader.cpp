@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <system_error>
@@ -89,22 +88,22 @@ std::optional<HostTime> DataSetReader::begin() const {
     return images_.front().named.captured;
 }
 
-std::vector<std::filesystem::path> DataSetReader::files() const {
-    std::vector<std::filesystem::path> files{paths_.images(), paths_.poses()};
-    for (const Image& image : images_) files.push_back(paths_.folder / image.named.file);
+std::vector<FilePlace> DataSetReader::files() const {
+    std::vector<FilePlace> files{{folder_, "depth.txt"}, {folder_, "groundtruth.txt"}};
+    for (const Image& image : images_) files.emplace_back(folder_, image.named.file);
     return files;
 }
 
 std::optional<DepthSourceError> DataSetReader::missing_image() const {
     for (const auto& [line, named] : images_) {
-        const std::filesystem::path file = paths_.folder / named.file;
-        std::error_code error;
-        const bool is_there = std::filesystem::is_regular_file(file, error);
-        if (is_there && std::ifstream(file)) continue;
-        return line_error(
-            paths_.images(), line,
-            named.file + (is_there ? ": may not be read: give yourself the right to"
-                                   : ": is not there: unpack the data set anew, or take out the line"));
+        const auto opened = FilePlace(folder_, named.file).open();
+        if (opened) continue;
+        const FolderFault fault = opened.error().fault;
+        std::string what = opened.error().reason();
+        if (fault == FolderFault::not_permitted) what = "may not be read: give yourself the right to";
+        if (fault == FolderFault::absent)
+            what = "is not there: unpack the data set anew, or take out the line";
+        return line_error(paths_.images(), line, named.file + ": " + what);
     }
     return std::nullopt;
 }

@@ -45,7 +45,7 @@ class DataSetReader final : public DepthSource {
     /// When the first image was made; empty if there is none.
     [[nodiscard]] std::optional<HostTime> begin() const;
     /// Both lists and every image of depth.txt: what the data set measured.
-    [[nodiscard]] std::vector<std::filesystem::path> files() const;
+    [[nodiscard]] std::vector<FilePlace> files() const;
     /// The first image of depth.txt, with its line and a remedy, that is not there or may not be read; empty
     /// if none is missing.
     [[nodiscard]] std::optional<DepthSourceError> missing_image() const;

@@ -101,8 +101,7 @@ Result<std::vector<JointDescription>, rig::RigError> joints_below(const rig::Urd
 
 }  // namespace
 
-Result<RobotModel, rig::RigError> read_robot_model(const std::filesystem::path& urdf,
-                                                   const std::string& base_link,
+Result<RobotModel, rig::RigError> read_robot_model(const FilePlace& urdf, const std::string& base_link,
                                                    std::span<const std::string> moved) {
     const auto document = rig::UrdfDocument::read(urdf);
     if (!document) return unexpected(document.error());

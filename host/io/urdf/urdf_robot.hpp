@@ -16,7 +16,7 @@ namespace octoskin {
 /// refuses (a joint without its link, a loop), an unknown base link or joint, a joint that moves but is not
 /// in `moved`, a kind of joint other than fixed, revolute, continuous and prismatic, a mimic joint, an axis
 /// whose length is not 1.
-[[nodiscard]] Result<RobotModel, rig::RigError> read_robot_model(const std::filesystem::path& urdf,
+[[nodiscard]] Result<RobotModel, rig::RigError> read_robot_model(const FilePlace& urdf,
                                                                  const std::string& base_link,
                                                                  std::span<const std::string> moved);
 

@@ -127,7 +127,7 @@ struct Arm::Builder {
     }
 };
 
-Result<Arm, rig::RigError> Arm::read(const std::filesystem::path& urdf, const std::string& base_link,
+Result<Arm, rig::RigError> Arm::read(const FilePlace& urdf, const std::string& base_link,
                                      const std::vector<std::string>& joints) {
     const auto document = rig::UrdfDocument::read(urdf);
     if (!document) {

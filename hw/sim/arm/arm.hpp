@@ -20,8 +20,7 @@ class Arm {
     /// joint vector. Errors name file and element: whatever makes the URDF unreadable; no such base link; a
     /// joint that is not there, is named twice, does not move, or moves in another way than turning about or
     /// sliding along one axis; a joint that moves but is not named.
-    [[nodiscard]] static Result<Arm, rig::RigError> read(const std::filesystem::path& urdf,
-                                                         const std::string& base_link,
+    [[nodiscard]] static Result<Arm, rig::RigError> read(const FilePlace& urdf, const std::string& base_link,
                                                          const std::vector<std::string>& joints);
 
     [[nodiscard]] std::size_t joint_count() const noexcept { return joints_.size(); }

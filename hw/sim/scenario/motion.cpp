@@ -50,7 +50,7 @@ ModelMotion read_model(const rig::Value& value, const std::string& path, const s
 }
 
 std::vector<ModelMotion> read_checked_motion(const FilePlace& file, const std::vector<Solid>& solids) {
-    const rig::Value document = rig::load_document(file);
+    const rig::Value document = rig::load_document(file, rig::Quotes::withheld);
     const rig::Table top(document, "", {"models"});
     const auto& models = rig::read_list(top.require("models"), "models");
     std::vector<ModelMotion> motions;

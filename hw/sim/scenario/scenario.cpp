@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "host/io/folder/confined.hpp"
 #include "hw/rigfile/pose.hpp"
 #include "hw/rigfile/table.hpp"
 #include "hw/sim/noise/noise.hpp"
@@ -166,7 +167,7 @@ void read_judgement(const Table& top, Scenario& scenario) {
 /// `what`: it holds, for a person.
 FilePlace read_path(const Table& top, std::string_view key, const std::string& what) {
     const Value& value = top.require(key);
-    FilePlace file = value.file->beside(value.text);
+    FilePlace file = confined_to_recording(value.file->beside(value.text));
     if (file.folder() == nullptr) file = std::filesystem::absolute(file.name()).lexically_normal();
     const bool is_scalar = value.kind == Value::Kind::scalar;
     const auto opened = file.open();
@@ -177,7 +178,17 @@ FilePlace read_path(const Table& top, std::string_view key, const std::string& w
     top.fail(key, expected + "there is none at " + file.shown().string());
 }
 
-Scenario read_checked(const FilePlace& file) {
+/// The document with other files in the place of those that it names.
+std::string standalone(Value document) {
+    for (Value& item : document.items) {
+        if (item.kind != Value::Kind::scalar) continue;
+        if (item.key == "world") item.text = kRecordedWorld;
+        if (item.key == "world_motion") item.text = kRecordedMotion;
+    }
+    return rig::document_text(document);
+}
+
+Scenario read_checked(const FilePlace& file, WorldOf world) {
     Scenario scenario;
     scenario.file = file.shown();
     const Value document = rig::load_with_extends(file, &scenario.extended_files);
@@ -185,7 +196,7 @@ Scenario read_checked(const FilePlace& file) {
                     {"name", "world", "world_motion", "motion", "depth", "ranges", "slow_clocks",
                      "sensor_traits", "seeds", "hidden_models", "region"});
     scenario.name = top.name("name");
-    scenario.world = read_path(top, "world", "an SDF file");
+    if (world == WorldOf::scenario) scenario.world = read_path(top, "world", "an SDF file");
     if (top.find("world_motion") != nullptr) {
         scenario.world_motion = read_path(top, "world_motion", "a file that says what moves in the world");
         note_place(top, "world_motion", scenario);
@@ -196,6 +207,7 @@ Scenario read_checked(const FilePlace& file) {
     read_sensor_traits(top, scenario);
     read_seeds(top, scenario);
     read_judgement(top, scenario);
+    scenario.standalone_text = standalone(document);
     return scenario;
 }
 
@@ -215,9 +227,9 @@ rig::RigError Scenario::error(std::string_view key, std::string what) const {
     return {place->second.file, place->second.line, std::string(key), std::move(what)};
 }
 
-Result<Scenario, rig::RigError> read_scenario(const FilePlace& file) {
+Result<Scenario, rig::RigError> read_scenario(const FilePlace& file, WorldOf world) {
     try {
-        return read_checked(file);
+        return read_checked(confined_to_recording(file), world);
     } catch (const rig::Fault& fault) {
         return unexpected(fault.error);
     }

@@ -42,8 +42,8 @@ struct ScenarioPlace {
 };
 
 struct Scenario {
-    std::filesystem::path file;                         ///< that it was read from
-    std::vector<std::filesystem::path> extended_files;  ///< that this file extends
+    std::filesystem::path file;             ///< that it was read from
+    std::vector<FilePlace> extended_files;  ///< that this file extends
     std::string name;
     FilePlace world;  ///< absolute, or below the folder of a recording
     /// What moves in it and when (motion.hpp), as `world`; empty: nothing does.
@@ -60,6 +60,9 @@ struct Scenario {
     double further_map_shift_max_m = 0.0;
     std::vector<std::string> hidden_models;  ///< SDF models that the camera is not supposed to see
     ScenarioRegion region;
+    /// The same scenario as one file, which names its world and what moves kRecordedWorld and
+    /// kRecordedMotion, beside it.
+    std::string standalone_text;
     /// Where what may turn out wrong only later is written, by its key: "motion.circle.link".
     std::map<std::string, ScenarioPlace, std::less<>> places;
 
@@ -69,9 +72,17 @@ struct Scenario {
     [[nodiscard]] rig::RigError error(std::string_view key, std::string what) const;
 };
 
+/// What standalone_text calls them.
+inline constexpr const char* kRecordedWorld = "world.sdf";
+inline constexpr const char* kRecordedMotion = "motion.yaml";
+
+/// Whose world is used: then that of the scenario need not be there.
+enum class WorldOf : std::uint8_t { scenario, others };
+
 /// Reads and checks a scenario, as strictly as read_rig(): unknown keys, types, units, ranges; `extends:`
 /// works too. Paths in it are relative to the file. A scenario below a folder that was named, a recording,
 /// refers to files of that folder alone, behind no link.
-[[nodiscard]] Result<Scenario, rig::RigError> read_scenario(const FilePlace& file);
+[[nodiscard]] Result<Scenario, rig::RigError> read_scenario(const FilePlace& file,
+                                                            WorldOf world = WorldOf::scenario);
 
 }  // namespace octoskin::sim

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host/io/folder/confined.hpp"
 #include "hw/sim/world/ray_caster.hpp"
 #include "hw/sim/world/sdf_solids.hpp"
 
@@ -98,7 +99,7 @@ World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
 Result<World, WorldError> World::read(const FilePlace& sdf) {
-    auto solids = read_solids(sdf);
+    auto solids = read_solids(confined_to_recording(sdf));
     if (!solids) {
         return unexpected(solids.error());
     }

@@ -217,7 +217,7 @@ TEST_F(OverwriteByExperiment, replaces_nothing_that_no_experiment_left) {
     std::filesystem::remove(path("out/thesis.txt"));
     record_short("out/recording", "--seed 5");
     const std::string log = content(path("out/recording/can.log"));
-    expect_refused_for("recording");
+    expect_refused_for("recording");  // without notes
     EXPECT_EQ(content(path("out/recording/can.log")), log);
 }
 
@@ -236,10 +236,27 @@ TEST_F(OverwriteByExperiment, replaces_its_own_results_again_and_again) {
         EXPECT_EQ(content(path("out/" + name)), "precious");
         write(path("out/" + name), ours);
     };
-    for (const char* name : {"fused.ot", "metrics.json", "report.html"}) expect_kept(name);
+    for (const char* name : {"fused.ot", "metrics.json", "report.html", "maps.yaml", "recording/rig.yaml"})
+        expect_kept(name);
+    // What says whose the results are is gone, or a link, or in the way: not even the recording is new.
+    const std::string log = content(path("out/recording/can.log"));
+    const std::string notes = path("out/.octoskin-experiment");
+    std::filesystem::rename(notes, path("notes"));
+    expect_refused_for("depth.bt");
+    std::filesystem::create_symlink(path("notes"), notes);
+    expect_refused_for(".octoskin-experiment");
+    std::filesystem::remove(notes);
+    std::filesystem::copy(path("notes"), notes);
+    std::filesystem::remove(path("out/report.html"));
+    std::filesystem::create_directory(path("out/report.html"));
+    const auto written = std::filesystem::last_write_time(path("out/recording/can.log"));
+    expect_refused_for("report.html");
+    EXPECT_EQ(content(path("out/recording/can.log")), log);
+    EXPECT_EQ(std::filesystem::last_write_time(path("out/recording/can.log")), written);
+    std::filesystem::remove(path("out/report.html"));
     std::filesystem::remove_all(path("out/recording"));
     record_short("out/recording", "--seed 5");
-    expect_refused_for("recording");
+    expect_refused_for("recording/can.log");
 }
 
 }  // namespace

@@ -22,6 +22,13 @@ class SceneOfARecording : public ProgramTest {
         write(path("worlds/kitchen.sdf"), world);
     }
     [[nodiscard]] std::string kitchen() const { return path("worlds/kitchen.sdf"); }
+    /// As a recording of before, or of a world that cannot be put into one.
+    void take_scene_out(const std::string& recording) const {
+        ASSERT_EQ(run("sed -i '/^scene_crc32/d' " + path(recording) + "/meta.yaml && rm " + path(recording) +
+                      "/scenario.yaml " + path(recording) + "/world.sdf")
+                      .exit_code,
+                  0);
+    }
 };
 
 /// The figures alone: every line of the table.
@@ -36,6 +43,7 @@ TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     EXPECT_THAT(meta,
                 AllOf(HasSubstr("world: " + kitchen()), HasSubstr("world_crc32: 0x"),
                       HasSubstr("scenario_crc32: 0x"), HasSubstr("rig_crc32: 0x"), HasSubstr("commit ")));
+    take_scene_out("rec");
     const std::string evaluate =
         "evaluate " + path("rec") + " --scenario " + source("tests/data/short/scenario.yaml");
     const Said unnamed = octoskin(evaluate);
@@ -45,6 +53,11 @@ TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     const Said own = octoskin(evaluate + " --world " + kitchen() + " --json " + path("figures.json"));
     ASSERT_EQ(own.exit_code, 0) << own.output;
     EXPECT_THAT(own.output, AllOf(HasSubstr("judging in " + kitchen()), Not(HasSubstr("recorded in"))));
+    const Said to_output = run(OCTOSKIN_PROGRAM " " + evaluate + " --world " + kitchen() +
+                               " --json /dev/stdout > " + path("both"));
+    EXPECT_EQ(to_output.exit_code, 0) << to_output.output;
+    EXPECT_THAT(content(path("both")),
+                AllOf(HasSubstr("Voxels against"), HasSubstr("kitchen.sdf, CRC-32 0x")));
     EXPECT_THAT(content(path("figures.json")),
                 AllOf(HasSubstr("kitchen.sdf, CRC-32 0x"), HasSubstr("commit ")));
 
@@ -92,6 +105,7 @@ TEST_F(SceneOfARecording, has_the_scenario_too_with_what_that_extends) {
     const Said made = octoskin("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
                                " --scenario " + path("mine.yaml"));
     ASSERT_EQ(made.exit_code, 0) << made.output;
+    take_scene_out("rec");
     write(path("base.yaml"), content(path("base.yaml")) + "depth: {sigma_m: 0.01}\n");
     const Said unnamed = octoskin("evaluate " + path("rec"));
     EXPECT_EQ(unnamed.exit_code, 66) << unnamed.output;
@@ -103,6 +117,102 @@ TEST_F(SceneOfARecording, has_the_scenario_too_with_what_that_extends) {
     std::filesystem::create_symlink(path("base.yaml"), path("rec/base.yaml"));
     const Said within = octoskin("evaluate " + path("rec"));
     EXPECT_EQ(within.exit_code, 65) << "its scenario extends what is behind a link\n" << within.output;
+}
+
+/// A scenario and a world of one's own, with a mesh and what that names: the recording has all of it.
+TEST_F(SceneOfARecording, made_with_ones_own_scenario_and_world_is_in_it) {
+    make_kitchen();
+    write(path("base.yaml"), "extends: " + source("tests/data/short/scenario.yaml") + "\n");
+    write(path("mine.yaml"), "extends: base.yaml\nname: mine\nworld: worlds/kitchen.sdf\n");
+    record_short("given", "--world " + kitchen());
+    const Said given = octoskin("evaluate " + path("given") + " --world " + kitchen());
+    ASSERT_EQ(given.exit_code, 0) << given.output;
+    const Said made = octoskin("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
+                               " --scenario " + path("mine.yaml"));
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+    EXPECT_THAT(made.output, Not(HasSubstr("goes without")));
+    EXPECT_EQ(run("ls -A " + path("rec")).output,
+              "can.log\ndepth.epoch.yaml\ndepth.oni\nmesh_01.obj\nmeta.yaml\nrig.yaml\nrobot.urdf\n"
+              "scenario.yaml\nworld.sdf\n");
+    EXPECT_EQ(content(path("rec/mesh_01.obj")), content(path("worlds/meshes/cone.obj")));
+    // Somewhere else, without anything that it was made of.
+    std::filesystem::create_directory(path("elsewhere"));
+    std::filesystem::rename(path("rec"), path("elsewhere/rec"));
+    std::filesystem::remove_all(path("worlds"));
+    for (const char* gone : {"base.yaml", "mine.yaml"}) std::filesystem::remove(path(gone));
+    const std::string rec = path("elsewhere/rec");
+    const Said own = octoskin("evaluate " + rec);
+    ASSERT_EQ(own.exit_code, 0) << own.output;
+    EXPECT_THAT(own.output, HasSubstr("judging in " + rec + "/world.sdf, " + rec + "/scenario.yaml"));
+    EXPECT_EQ(table_of(own), table_of(given));
+    // What is given goes first, and is said to be another.
+    const Said other = octoskin("evaluate " + rec + " --world " + source("hw/worlds/experiment.sdf"));
+    EXPECT_EQ(other.exit_code, 0) << other.output;
+    EXPECT_THAT(other.output, HasSubstr("recorded in kitchen.sdf"));
+    EXPECT_NE(table_of(other), table_of(own));
+    for (const char* name : {"world.sdf", "scenario.yaml", "mesh_01.obj"}) {
+        const std::string file = rec + "/" + name;
+        const std::string whole = content(file);
+        write(file, whole + "\n");
+        const Said changed = octoskin("evaluate " + rec);
+        EXPECT_EQ(changed.exit_code, 65) << name << changed.output;
+        EXPECT_THAT(changed.output, AllOf(HasSubstr("not what `octoskin simulate` put there"),
+                                          HasSubstr("give --scenario and --world")));
+        std::filesystem::remove(file);
+        std::filesystem::create_symlink("/etc/passwd", file);
+        EXPECT_EQ(octoskin("evaluate " + rec).exit_code, 66) << name;
+        std::filesystem::remove(file);
+        write(file, whole);
+    }
+    EXPECT_EQ(octoskin("evaluate " + rec).exit_code, 0);
+    const std::string sdf = content(rec + "/world.sdf");
+    std::filesystem::resize_file(rec + "/world.sdf", std::uintmax_t{1} << 40U);
+    EXPECT_EQ(run("timeout 20 " OCTOSKIN_PROGRAM " evaluate " + rec).exit_code, 65)
+        << "without reading all of it";
+    write(rec + "/world.sdf", sdf);
+    // A map of it, beside it and elsewhere.
+    ASSERT_EQ(octoskin("replay " + rec).exit_code, 0);
+    const std::string rig = " --rig " + rec + "/rig.yaml";
+    EXPECT_EQ(octoskin("evaluate " + rec + "/maps/fused.ot" + rig).exit_code, 0);
+    std::filesystem::copy(rec + "/maps", path("maps"));
+    const Said alone = octoskin("evaluate " + path("maps/fused.ot") + rig);
+    EXPECT_EQ(alone.exit_code, 64) << alone.output;
+    EXPECT_THAT(alone.output, HasSubstr("give --recording " + rec));
+    EXPECT_EQ(octoskin("evaluate " + path("maps/fused.ot") + rig + " --recording " + rec).exit_code, 0);
+    // Of another world nothing of this one stays.
+    const Said forced =
+        octoskin("simulate " + rec + " --force --rig " + source("tests/data/gantry/rig.yaml") +
+                 " --scenario " + source("tests/data/gantry/scenario.yaml"));
+    ASSERT_EQ(forced.exit_code, 0) << forced.output;
+    EXPECT_FALSE(std::filesystem::exists(rec + "/depth.oni"));
+    EXPECT_EQ(std::filesystem::exists(rec + "/mesh_01.obj"),
+              content(rec + "/world.sdf").find("mesh_01.obj") != std::string::npos);
+}
+
+TEST_F(SceneOfARecording, whose_world_is_missing_says_so_and_a_shipped_one_is_known_by_its_checksum) {
+    write(path("mine.yaml"), "extends: " + source("tests/data/short/scenario.yaml") + "\nname: mine\n");
+    const Said made = octoskin("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
+                               " --scenario " + path("mine.yaml"));
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+    // As a person puts it there: the scenario's text, its world nowhere beside it.
+    std::string alone = content(path("rec/scenario.yaml"));
+    take_scene_out("rec");
+    alone.replace(alone.find("world.sdf"), 9, "nowhere.sdf");
+    write(path("rec/mine.yaml"), alone);
+    ASSERT_EQ(run("sed -i '/^scenario_crc32/d' " + path("rec/meta.yaml")).exit_code, 0);
+    const Said shipped = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(shipped.exit_code, 0) << shipped.output;
+    EXPECT_THAT(shipped.output, HasSubstr("judging in " + source("hw/worlds/experiment.sdf")));
+    ASSERT_EQ(run("sed -i 's/^world_crc32.*/world_crc32: 0x00000001/; s/^scenario:/scenario_crc32: "
+                  "0x00000002\\nscenario:/' " +
+                  path("rec/meta.yaml"))
+                  .exit_code,
+              0);
+    write(path("rec/mine.yaml"), "extends: none.yaml\n");
+    const Said unusable = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(unusable.exit_code, 65) << unusable.output;
+    EXPECT_THAT(unusable.output, AllOf(HasSubstr("rec/mine.yaml:1: extends: "), HasSubstr("none.yaml"),
+                                       Not(HasSubstr("0x00000000"))));
 }
 
 TEST_F(SceneOfARecording, of_a_robot_has_to_be_given) {
@@ -170,7 +280,9 @@ TEST_F(SceneOfARecording, serves_the_maps_beside_it) {
     std::filesystem::copy(path("rec/maps"), path("copies"));
     const Said copy =
         octoskin("evaluate " + path("copies/fused.ot") + scenario + " --rig " + path("rec/rig.yaml"));
-    EXPECT_EQ(copy.exit_code, 0) << copy.output;  // maps.yaml says where the recording is
+    EXPECT_EQ(copy.exit_code, 0) << copy.output;
+    // maps.yaml says where the recording is, and does not choose what is opened.
+    EXPECT_THAT(copy.output, HasSubstr("give --recording " + path("rec")));
     EXPECT_EQ(table_of(copy), table_of(own));
 
     std::filesystem::copy(map, path("alone.ot"));
@@ -211,7 +323,15 @@ TEST_F(SceneOfARecording, and_its_maps_know_each_other) {
     std::filesystem::copy(path("rec/maps"), path("copies"));
     const Said elsewhere = octoskin("evaluate " + path("copies/fused.ot") + rig);
     EXPECT_EQ(elsewhere.exit_code, 64) << elsewhere.output;
-    EXPECT_THAT(elsewhere.output, AllOf(HasSubstr("has changed since"), HasSubstr("give --scenario")));
+    EXPECT_THAT(elsewhere.output, HasSubstr("give --recording"));
+    const Said named = octoskin("evaluate " + path("copies/fused.ot") + rig + " --recording " + path("rec"));
+    EXPECT_EQ(named.exit_code, 65) << named.output;
+    EXPECT_THAT(named.output, HasSubstr("was made from another recording"));
+    // Below the map's folder it may lie.
+    ASSERT_EQ(run("sed -i 's#^recording:.*#recording: below#' " + path("copies/maps.yaml")).exit_code, 0);
+    std::filesystem::copy(path("rec"), path("copies/below"), std::filesystem::copy_options::recursive);
+    const Said changed = octoskin("evaluate " + path("copies/fused.ot") + rig);
+    EXPECT_THAT(changed.output, AllOf(HasSubstr("copies/below"), HasSubstr("has changed since")));
 }
 
 TEST_F(SceneOfARecording, that_cannot_be_had_is_refused_at_the_line_that_asks_for_it) {

@@ -59,7 +59,7 @@ class DaemonFigures : public DaemonTest {
     /// Prints what was measured; the share of a core that the daemon took.
     double measure(const std::vector<std::string>& more_arguments, const char* what) {
         const rig::Rig rig = rig_at_50_hz();
-        const auto file = folder_.write("rig.yaml", rig::canonical_text(rig, rig.urdf.string()));
+        const auto file = folder_.write("rig.yaml", rig::canonical_text(rig, rig.urdf.shown().string()));
         start(more_arguments, file, make_log(rig::read_rig(file).value()));
         EXPECT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->status().dump(1) << daemon_->log();
         const Json before = daemon_->status();

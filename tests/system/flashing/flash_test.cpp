@@ -64,6 +64,18 @@ proc stm32l4x {command bank args} {
     [[nodiscard]] static bool has_openocd() { return std::filesystem::exists("/usr/bin/openocd"); }
 };
 
+TEST_F(FlashTest, programs_nothing_where_its_files_could_not_be_kept) {
+    put_openocd("touch " + path("was_run") + "\n");
+    for (const char* name : {"openocd.log", "record.yaml"}) {
+        std::filesystem::create_directories(path(std::string("out/") + name));
+        const Said said = flash();
+        EXPECT_EQ(said.exit_code, 73) << said.output;
+        EXPECT_THAT(said.output, HasSubstr(std::string("out/") + name));
+        EXPECT_FALSE(std::filesystem::exists(path("was_run"))) << name;
+        std::filesystem::remove_all(path("out"));
+    }
+}
+
 TEST_F(FlashTest, a_dry_run_does_everything_but_the_adapter) {
     if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
     const Said said = flash("--dry-run");

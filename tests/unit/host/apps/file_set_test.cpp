@@ -172,6 +172,21 @@ TEST(FileSetTest, an_error_while_it_moves_takes_all_of_it_back_until_it_can_be_d
     }
 }
 
+TEST(FileSetTest, what_cannot_be_finished_is_left_as_it_lies_and_said_once) {
+    const ScratchFolder folder;
+    fs::create_directories(folder / ".octoskin-ready");
+    write(folder / ".octoskin-ready/.journal", "octoskin-file-set/1\nput can.log\n");
+    fs::create_directory(folder / "can.log");
+    const auto refused = settle(folder.path());
+    ASSERT_FALSE(refused);
+    const std::string what = "can.log: is no file";
+    const auto first = refused.error().message.find(what);
+    EXPECT_NE(first, std::string::npos);
+    EXPECT_EQ(refused.error().message.find(what, first + 1), std::string::npos) << refused.error().message;
+    EXPECT_TRUE(fs::is_directory(folder / "can.log")) << "a folder that lies in the way is not moved";
+    EXPECT_EQ(told(folder / ".octoskin-ready"), ".journal=octoskin-file-set/1\nput can.log\n");
+}
+
 TEST(FileSetTest, follows_no_journal_out_of_its_folder) {
     for (const char* line :
          {"put ../escaped", "drop /etc/passwd", "put can.log/../../escaped", "burn can.log", "put", "",

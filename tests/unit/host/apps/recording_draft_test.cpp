@@ -160,15 +160,35 @@ TEST(RecordingDraftTest, a_directory_in_the_way_leaves_the_former_recording_whol
     const ScratchFolder folder;
     folder.write("meta.yaml", kSimulated);
     folder.write("can.log", "old");
-    std::filesystem::create_directory(folder / "robot.urdf");
     auto draft = RecordingDraft::create(folder.path(), true);
     ASSERT_TRUE(draft);
     fill(*draft, "new");
+    std::filesystem::create_directory(folder / "robot.urdf");
     const auto committed = draft->commit();
     ASSERT_FALSE(committed);
     EXPECT_THAT(committed.error().message, HasSubstr("robot.urdf: is no file"));
     EXPECT_EQ(ScratchFolder::read(folder / "can.log"), "old");
     EXPECT_TRUE(std::filesystem::exists(folder / "meta.yaml"));
+}
+
+TEST(RecordingDraftTest, is_not_begun_where_it_could_not_come_into_its_place) {
+    for (const std::string place : {"can.log", "depth.oni", "rig.yaml", "maps/fused.ot", "maps/maps.yaml"}) {
+        const ScratchFolder folder;
+        folder.write("meta.yaml", kSimulated);
+        std::filesystem::create_directories(folder / place);
+        for (const bool is_checked_only : {true, false}) {
+            const auto refused =
+                is_checked_only ? RecordingDraft::check(folder.path(), true) : [&]() -> Status<AppError> {
+                auto draft = RecordingDraft::create(folder.path(), true);
+                if (!draft) return unexpected(draft.error());
+                return Done{};
+            }();
+            ASSERT_FALSE(refused) << place;
+            EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+            EXPECT_THAT(refused.error().message, HasSubstr((folder / place).string() + ": is no file"));
+        }
+        EXPECT_EQ(folder.entries(), 2) << "nothing is left of it";
+    }
 }
 
 TEST(RecordingDraftTest, leaves_maps_that_belong_to_no_recording) {

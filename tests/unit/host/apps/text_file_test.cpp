@@ -1,7 +1,9 @@
 // A file written in one go, or the reason and the remedy.
 #include "host/apps/recording/text_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/scratch_folder.hpp"
 
@@ -46,9 +48,74 @@ TEST(TextFile, leaves_the_other_names_of_a_file_what_they_have) {
     EXPECT_TRUE(write_text(folder / "out", "new"));
     EXPECT_EQ(ScratchFolder::read(folder / "out"), "new");
     EXPECT_EQ(ScratchFolder::read(victim), "precious");
-    std::filesystem::create_symlink("out", folder / "link");
-    EXPECT_TRUE(write_text(folder / "link", "by the link that was typed"));
-    EXPECT_EQ(ScratchFolder::read(folder / "out"), "by the link that was typed");
+}
+
+TEST(TextFile, puts_itself_in_the_place_of_a_link_and_writes_through_none) {
+    const ScratchFolder folder;
+    const auto victim = folder.write("victim", "precious");
+    for (const char* target : {"victim", "nothing", "/dev/full", "/dev/stdout"}) {
+        std::filesystem::remove(folder / "out");
+        std::filesystem::create_symlink(target, folder / "out");
+        EXPECT_TRUE(check_text_place(folder / "out")) << target;
+        EXPECT_TRUE(write_text(folder / "out", "new")) << target;
+        EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(folder / "out")));
+        EXPECT_EQ(ScratchFolder::read(folder / "out"), "new");
+    }
+    EXPECT_EQ(ScratchFolder::read(victim), "precious");
+    EXPECT_FALSE(std::filesystem::exists(folder / "nothing"));
+    EXPECT_EQ(folder.entries(), 2) << "nothing is left beside it";
+}
+
+TEST(TextFile, goes_to_the_descriptor_that_is_named_at_its_place) {
+    const ScratchFolder folder;
+    const auto file = folder.write("log", "before");
+    const int opened = ::open(file.c_str(), O_WRONLY | O_APPEND);
+    ASSERT_GE(opened, 0);
+    for (const char* folder_of : {"/proc/self/fd/", "/dev/fd/"}) {
+        const std::string name = folder_of + std::to_string(opened);
+        EXPECT_TRUE(check_text_place(name)) << name;
+        EXPECT_TRUE(write_text(name, ", then")) << name;
+    }
+    ::close(opened);
+    EXPECT_EQ(ScratchFolder::read(file), "before, then, then");
+    EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(TextFile, that_fails_leaves_what_was_there_and_nothing_beside_it) {
+    const ScratchFolder folder;
+    const auto file = folder.write("out", "precious");
+    std::filesystem::create_directory(folder / ".out.octoskin-part");
+    const auto refused = write_text(file, "new");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().message,
+              (folder / ".out.octoskin-part").string() + ": is there already; move it away");
+    EXPECT_FALSE(check_text_place(file));
+    EXPECT_EQ(ScratchFolder::read(file), "precious");
+    std::filesystem::remove(folder / ".out.octoskin-part");
+    std::filesystem::create_symlink("out", folder / ".out.octoskin-part");
+    EXPECT_TRUE(write_text(file, "new"));
+    EXPECT_EQ(ScratchFolder::read(file), "new");
+    EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(TextFile, keeps_to_itself_what_its_owner_alone_may_read) {
+    const ScratchFolder folder;
+    const auto file = folder.write("out", "secret");
+    std::filesystem::permissions(file, std::filesystem::perms(0600));
+    EXPECT_TRUE(write_text(file, "new secret"));
+    EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0600));
+}
+
+TEST(TextFile, has_a_place_that_can_be_checked_before_the_work) {
+    const ScratchFolder folder;
+    EXPECT_TRUE(check_text_place(folder / "new"));
+    EXPECT_TRUE(check_text_place("/dev/null"));
+    EXPECT_FALSE(check_text_place(folder / "no/such"));
+    EXPECT_FALSE(check_text_place(folder.path()));
+    EXPECT_FALSE(check_text_place(folder.path().string() + "/"));
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_FALSE(check_text_place({NamedFolder(folder.path()), "pipe"})) << "it was not typed itself";
+    EXPECT_EQ(folder.entries(), 1);
 }
 
 TEST(TextFile, below_a_named_folder_replaces_a_link_and_follows_none) {

@@ -86,6 +86,47 @@ TEST_F(RecordedRig, is_free_to_where_the_user_names_it) {
     EXPECT_EQ(error_of(scratch_ / "rec/rig.yaml"), "it was accepted");
 }
 
+TEST_F(RecordedRig, is_no_freer_where_it_is_named_by_itself) {
+    for (const char* mark : {"can.log", "meta.yaml"}) {
+        scratch_.write(std::string("rec/") + mark, "");
+        scratch_.write("rec/rig.yaml", "extends: ../outside/base.yaml\n");
+        EXPECT_THAT(error_of(scratch_ / "rec/rig.yaml"),
+                    AllOf(HasSubstr("rec/rig.yaml:1: extends: "), HasSubstr("leads out")));
+        scratch_.write("rec/rig.yaml", "extends: base.yaml\nrobot: {urdf: link.urdf}\n");
+        EXPECT_THAT(error_of(scratch_ / "rec/rig.yaml"), HasSubstr("is a symbolic link"));
+        scratch_.write("rec/rig.yaml", "extends: base.yaml\n");
+        EXPECT_EQ(error_of(scratch_ / "rec/rig.yaml"), "it was accepted");
+        EXPECT_THAT(error_of(scratch_ / "rec/link.yaml"), HasSubstr("is a symbolic link"));
+        const auto robot = read_rig(scratch_ / "rec/rig.yaml", scratch_ / "rec/link.urdf");
+        ASSERT_FALSE(robot);
+        EXPECT_THAT(robot.error().message(), HasSubstr("is a symbolic link"));
+        fs::remove(scratch_ / "rec" / mark);
+    }
+}
+
+/// A rig of somebody else may name any file: its text is not the rig's to show.
+TEST_F(RecordedRig, shows_nothing_of_a_file_that_it_names_and_that_is_none) {
+    const auto shown = [this](const std::string& text) {
+        scratch_.write("outside/secret", text);
+        scratch_.write("rig.yaml", "name: a\nextends: outside/secret\n");
+        return error_of(scratch_ / "rig.yaml");
+    };
+    for (const std::string text :
+         {"hidden:*:20228:0:99999:7:::\ndaemon:*:20228:0:99999:7:::", "hidden phrase", "a: !hidden b",
+          "hidden: 1\nhidden: 2", "hidden: &hidden 1", "- hidden", "<hidden>", "hidden: [1, 2", "%hidden",
+          "\thidden: a", "hidden: {a: 1}", "hidden: *hidden"}) {
+        const std::string message = shown(text);
+        EXPECT_THAT(message, HasSubstr("outside/secret")) << text;
+        EXPECT_THAT(message, testing::Not(HasSubstr("hidden"))) << text;
+    }
+    scratch_.write("rig.yaml", "extends: outside/base.yaml\nrobot: {urdf: outside/secret}\n");
+    for (const char* text : {"hidden phrase", "<hidden><hidden2></hidden>", "<a hidden=1>", "<hidden/>"}) {
+        scratch_.write("outside/secret", text);
+        EXPECT_THAT(error_of(scratch_ / "rig.yaml"),
+                    AllOf(HasSubstr("outside/secret: expected a URDF"), testing::Not(HasSubstr("hidden"))));
+    }
+}
+
 TEST_F(RecordedRig, s_robot_is_no_link_and_no_pipe) {
     const auto folder = OpenFolder::open(scratch_ / "rec", FolderAccess::read).value();
     EXPECT_THAT(UrdfDocument::read({folder, "link.urdf"}).error().message(), HasSubstr("is a symbolic link"));

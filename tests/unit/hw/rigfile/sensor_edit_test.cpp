@@ -67,9 +67,9 @@ class ShippedRig : public testing::Test {
     /// As `edit_sensor` with a plain way to save.
     Result<std::filesystem::path, RigError> change(const std::filesystem::path& file,
                                                    const SensorEdit& edit) {
-        return edit_sensor(file, edit, [this](const std::filesystem::path& place, const std::string& text) {
+        return edit_sensor(file, edit, [this](const FilePlace& place, const std::string& text) {
             if (saves_left_-- <= 0) return std::optional<std::string>("no ink");
-            std::ofstream(place, std::ios::binary) << text;
+            std::ofstream(place.shown(), std::ios::binary) << text;
             return std::optional<std::string>();
         });
     }

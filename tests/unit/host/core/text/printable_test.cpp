@@ -64,6 +64,12 @@ TEST(Printable, lets_no_character_through_that_is_a_control_or_turns_the_writing
     }
 }
 
+TEST(Printable, of_json_reads_as_the_same_and_orders_no_terminal) {
+    EXPECT_EQ(printable_json("{\n  \"a\\u001b\": \"\xc3\xa9\"\n}"), "{\n  \"a\\u001b\": \"\xc3\xa9\"\n}");
+    EXPECT_EQ(printable_json("\"\x7f\xc2\x9b\xe2\x80\xae\xe2\x81\xa6\""), "\"\\u007f\\u009b\\u202e\\u2066\"");
+    EXPECT_EQ(printable_json("\"\xe2\x80\xa8\xd8\x9c\""), "\"\\u2028\\u061c\"");
+}
+
 TEST(Printable, of_lines_keeps_line_ends_and_tabs_alone) {
     EXPECT_EQ(printable_lines("a\tb\n\x1b[0m\r\n"), "a\tb\n\\x1b[0m\\x0d\n");
 }

@@ -159,7 +159,7 @@ TEST(HostRigReader, warns_of_a_robot_without_a_body) {
     ASSERT_TRUE(whole);
     EXPECT_EQ(whole->warnings, std::vector<std::string>());
     EXPECT_FALSE(whole->rig.body.empty());
-    std::string text = testing_support::ScratchFolder::read(rig.urdf);
+    std::string text = testing_support::ScratchFolder::read(rig.urdf.shown());
     for (std::size_t at = 0; (at = text.find("<collision", at)) != std::string::npos;) {
         constexpr std::string_view kEnd = "</collision>";
         text.erase(at, text.find(kEnd, at) + kEnd.size() - at);

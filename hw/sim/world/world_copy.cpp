@@ -1,0 +1,122 @@
+#include "hw/sim/world/world_copy.hpp"
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <utility>
+
+namespace octoskin::sim {
+namespace {
+
+constexpr std::string_view kMeshName = "mesh_";
+constexpr std::size_t kEndingMax = 8;
+
+bool is_ending_character(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+}
+
+Result<std::string, std::string> read_all(const FilePlace& file, std::size_t bytes_max) {
+    const auto opened = file.open();
+    if (!opened) return unexpected(opened.error().message());
+    auto bytes = opened->read(bytes_max);
+    if (!bytes) return unexpected(bytes.error().message());
+    if (bytes->size() > bytes_max)
+        return unexpected(fmt::format("{}: has more than {} MiB", file.shown().string(), bytes_max >> 20U));
+    return std::move(*bytes);
+}
+
+/// The next element in the order of the file, without recursion.
+tinyxml2::XMLElement* after(tinyxml2::XMLElement* element) {
+    if (auto* const child = element->FirstChildElement()) return child;
+    for (tinyxml2::XMLNode* at = element; at != nullptr; at = at->Parent()) {
+        if (auto* const next = at->NextSiblingElement()) return next;
+    }
+    return nullptr;
+}
+
+class Copier {
+  public:
+    explicit Copier(const FilePlace& sdf) : sdf_(sdf) {}
+
+    Result<WorldCopy, std::string> copy() {
+        const auto text = read_all(sdf_, kWorldBytesMax);
+        if (!text) return unexpected(text.error());
+        tinyxml2::XMLDocument document;
+        if (document.Parse(text->data(), text->size()) != tinyxml2::XML_SUCCESS)
+            return unexpected(sdf_.shown().string() + ": is not XML");
+        for (auto* at = document.FirstChildElement(); at != nullptr; at = after(at)) {
+            const std::string_view name = at->Name();
+            if (name == "include")
+                return unexpected(sdf_.shown().string() + ": includes other models, which lie elsewhere");
+            const auto* const parent = at->Parent()->ToElement();
+            const bool is_mesh =
+                name == "uri" && parent != nullptr && std::string_view(parent->Name()) == "mesh";
+            if (!is_mesh) continue;
+            const auto copied = copy_mesh(at->GetText() == nullptr ? "" : at->GetText());
+            if (!copied) return unexpected(copied.error());
+            at->SetText(copied->c_str());
+        }
+        if (copy_.meshes.empty()) {
+            copy_.sdf = *text;
+        } else {
+            tinyxml2::XMLPrinter printer;
+            document.Print(&printer);
+            copy_.sdf = printer.CStr();
+        }
+        return std::move(copy_);
+    }
+
+  private:
+    /// Its new name.
+    Result<std::string, std::string> copy_mesh(std::string uri) {
+        constexpr std::string_view kFileScheme = "file://";
+        const auto begin = uri.find_first_not_of(" \t\r\n");
+        uri =
+            begin == std::string::npos ? "" : uri.substr(begin, uri.find_last_not_of(" \t\r\n") + 1 - begin);
+        if (uri.starts_with(kFileScheme)) uri.erase(0, kFileScheme.size());
+        if (const auto known = names_.find(uri); known != names_.end()) return known->second;
+        const FilePlace mesh = sdf_.beside(uri);
+        std::string ending = mesh.name().extension().string();
+        std::transform(ending.begin(), ending.end(), ending.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        const std::string name = fmt::format("{}{:02}{}", kMeshName, copy_.meshes.size() + 1, ending);
+        if (copy_.meshes.size() == kMeshesMax)
+            return unexpected(fmt::format("{}: has more than {} meshes", sdf_.shown().string(), kMeshesMax));
+        if (!is_mesh_copy(name))
+            return unexpected(mesh.shown().string() + ": has no ending as a file of a mesh has");
+        auto bytes = read_all(mesh, kMeshBytesMax);
+        if (!bytes) return unexpected(bytes.error());
+        bytes_ += bytes->size();
+        if (bytes_ > kMeshesBytesMax)
+            return unexpected(fmt::format("{}: its meshes have more than {} MiB", sdf_.shown().string(),
+                                          kMeshesBytesMax >> 20U));
+        copy_.meshes.push_back({name, std::move(*bytes)});
+        names_[uri] = name;
+        return name;
+    }
+
+    const FilePlace& sdf_;
+    std::map<std::string, std::string> names_;
+    std::size_t bytes_ = 0;
+    WorldCopy copy_;
+};
+
+}  // namespace
+
+Result<WorldCopy, std::string> copy_of_world(const FilePlace& sdf) {
+    return Copier(sdf).copy();
+}
+
+bool is_mesh_copy(const std::string& name) {
+    constexpr std::size_t kStem = kMeshName.size() + 2;
+    if (!name.starts_with(kMeshName) || name.size() < kStem + 2 || name.size() > kStem + 1 + kEndingMax)
+        return false;
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    return is_digit(name[kStem - 2]) && is_digit(name[kStem - 1]) && name[kStem] == '.' &&
+           std::all_of(name.begin() + kStem + 1, name.end(), is_ending_character);
+}
+
+}  // namespace octoskin::sim
