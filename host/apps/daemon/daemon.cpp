@@ -83,6 +83,7 @@ void ignore_stray_signals() {
 
 void tell_warnings(const Settings& settings) {
     for (const std::string& warning : settings.host.warnings) spdlog::warn("{}", warning);
+    for (const std::string& note : settings.host.notes) spdlog::info("{}", note);
 }
 
 }  // namespace
