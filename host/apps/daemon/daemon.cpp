@@ -176,6 +176,7 @@ ExitCode Daemon::run() {
     tell_end(patience);
     parts_->recordings.stop(monotonic_now(), "the daemon ended");
     const HostTime end = monotonic_now() + patience;
+    parts_->control->close_clients();
     const std::string error = parts_->save_last_map(end);
     parts_->recordings.finish(end - monotonic_now());
     if (!error.empty()) {
@@ -411,9 +412,11 @@ std::string Daemon::Parts::answer(const std::string& line) {
         inputs.catch_up();  // the loop may have been busy with an image: what came meanwhile counts
         return status_json(view()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     }
+    if (line == "hello") return R"({"ok":true})";
     if (RecordRequests::is_one(line))
         return recordings.answer(line, settings.recorded, pipeline, monotonic_now());
-    return query_refused({ExitCode::usage, "unknown request; there are: status, record, query"}).dump();
+    return query_refused({ExitCode::usage, "unknown request; there are: hello, status, record, query"})
+        .dump();
 }
 
 }  // namespace octoskin
