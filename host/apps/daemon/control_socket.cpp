@@ -48,12 +48,9 @@ int process_of(int descriptor) {
     return ::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 ? peer.pid : 0;
 }
 
-std::size_t clients_of_each_kind() {
-    constexpr std::size_t kKinds = 3;
+std::uint64_t descriptor_limit() {
     rlimit limit{};
-    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return ControlSocket::kClientsMax;
-    const rlim_t left = limit.rlim_cur - std::min<rlim_t>(limit.rlim_cur, ControlSocket::kDescriptorsLeft);
-    return static_cast<std::size_t>(std::clamp<rlim_t>(left / kKinds, 1, ControlSocket::kClientsMax));
+    return ::getrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
 }
 static_assert(ControlSocket::kWaitingMax == ControlSocket::kClientsMax);
 static_assert(ControlSocket::kRefusedMax == ControlSocket::kClientsMax);
@@ -63,6 +60,12 @@ std::string refusal_line(const std::string& error, ExitCode code) {
 }
 
 }  // namespace
+
+std::size_t ControlSocket::clients_of_each_kind(std::uint64_t descriptors) noexcept {
+    constexpr std::uint64_t kKinds = 3;
+    const std::uint64_t left = descriptors - std::min<std::uint64_t>(descriptors, kDescriptorsLeft);
+    return static_cast<std::size_t>(std::clamp<std::uint64_t>(left / kKinds, 1, kClientsMax));
+}
 
 Result<std::unique_ptr<ControlSocket>, AppError> ControlSocket::open(const std::filesystem::path& file,
                                                                      EventLoop& loop, Answer answer,
@@ -80,7 +83,7 @@ ControlSocket::ControlSocket(std::filesystem::path file, int descriptor, EventLo
       loop_(loop),
       answer_(std::move(answer)),
       idle_max_(idle_max),
-      clients_max_(clients_of_each_kind()),
+      clients_max_(clients_of_each_kind(descriptor_limit())),
       idle_check_(loop.every(idle_max / 4, [this] { drop_idle(); })) {
     watch();
 }

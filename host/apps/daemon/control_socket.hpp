@@ -41,6 +41,7 @@ class ControlSocket {
     /// and its saves need them. Of the rest a third each is for clients that are served, wait and were
     /// refused, at most as above and at least one.
     static constexpr std::size_t kDescriptorsLeft = 40;
+    [[nodiscard]] static std::size_t clients_of_each_kind(std::uint64_t descriptors) noexcept;
     /// A longer request is answered with an error, once so much of it is here, and its client then dropped.
     static constexpr std::size_t kRequestMax = 48 << 10;
     /// What a client has not read yet; beyond, it is dropped.
