@@ -183,7 +183,7 @@ ExitCode Daemon::run() {
         spdlog::error("the map is not saved as it was at the end: {}", error);
         return ExitCode::cannot_create;
     }
-    spdlog::info("stopped; the map is saved in {}", parts_->request.map_folder.string());
+    spdlog::info("stopped; the map is saved in {}", parts_->home->where());
     return static_cast<ExitCode>(outcome);
 }
 
@@ -255,7 +255,7 @@ void Daemon::Parts::look_at_home() {
     if (!home->look()) return;
     keeper->move_to(NamedFolder(home->folder()));
     spdlog::warn("{}: the maps' folder was removed and made anew: the map goes on being saved there",
-                 request.map_folder.string());
+                 home->where());
 }
 
 void Daemon::Parts::save_map() {
