@@ -12,9 +12,11 @@
 #include "hw/rigfile/camera_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
 #include "hw/rigfile/joined.hpp"
+#include "hw/rigfile/links_without_body.hpp"
 #include "hw/rigfile/node_reader.hpp"
 #include "hw/rigfile/pose.hpp"
 #include "hw/rigfile/rig.hpp"
+#include "hw/rigfile/robot_description.hpp"
 #include "hw/rigfile/table.hpp"
 #include "hw/rigfile/urdf_document.hpp"
 
@@ -104,6 +106,15 @@ void read_attached_capsules(const Table& robot, const UrdfDocument& document, Ri
     }
 }
 
+/// Whether what the link has is too little for a body.
+bool is_without_body(const std::string& link, const Rig& rig) {
+    const auto body = padded_body(rig);
+    if (!body) throw Fault{body.error()};
+    const auto found = bodyless_links(rig, *body);
+    if (!found) throw Fault{found.error()};
+    return std::ranges::find(found->without_body, link) != found->without_body.end();
+}
+
 /// What gives the link a body; empty if nothing does.
 std::string body_of(const std::string& link, const UrdfDocument& robot, const Rig& rig) {
     const auto found = robot.model().links_.find(link);
@@ -124,7 +135,8 @@ void read_links_without_body(const Table& robot, const UrdfDocument& document, R
         require_link(item, path, link, document);
         if (!document.is_below(rig.base_link, link))
             fail(item, path, fmt::format("expected a link at or below {}, found '{}'", rig.base_link, link));
-        if (const std::string body = body_of(link, document, rig); !body.empty()) {
+        if (const std::string body = body_of(link, document, rig);
+            !body.empty() && !is_without_body(link, rig)) {
             fail(item, path,
                  fmt::format("expected a link without a body, found '{}', which has {}: remove it here", link,
                              body));

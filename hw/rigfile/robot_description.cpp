@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "hw/rigfile/urdf_document.hpp"
+#include "hw/rigfile/urdf_pose.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -17,15 +18,6 @@ constexpr double kSameM =
     1e-4;  ///< a sphere this close to a cylinder's end, and this close in radius, is its end
 constexpr double kRadiusMaxM = 5.0;
 constexpr std::size_t kCollisionsMax = 1000;  ///< of one link: each sphere is looked for at each cylinder
-
-Eigen::Isometry3d to_isometry(const urdf::Pose& pose) {
-    Eigen::Isometry3d T_link_body = Eigen::Isometry3d::Identity();
-    T_link_body.linear() =
-        Eigen::Quaterniond(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z)
-            .toRotationMatrix();
-    T_link_body.translation() << pose.position.x, pose.position.y, pose.position.z;
-    return T_link_body;
-}
 
 /// One link's collision elements, cylinders apart from spheres.
 struct Bodies {
@@ -67,7 +59,7 @@ Capsule around_box(const urdf::Vector3& size_m, const std::string& link,
 std::string add_body(const urdf::Collision& collision, const std::string& link, BoxRule boxes,
                      Bodies& bodies) {
     if (!collision.geometry) return fmt::format("{} has no geometry", name_of(collision));
-    const Eigen::Isometry3d T_link_body = to_isometry(collision.origin);
+    const Eigen::Isometry3d T_link_body = urdf_isometry(collision.origin);
     Capsule body{link, T_link_body.translation(), T_link_body.translation(), 0.0};
     double length_m = 0.0;
     if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(collision.geometry.get())) {

@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -15,6 +16,8 @@
 
 namespace octoskin {
 namespace {
+
+constexpr const char* kSignOfLife = R"({"ok":true})";
 
 /// Whether there is something to read before `end`.
 bool is_readable(int descriptor, HostTime end) {
@@ -33,8 +36,11 @@ Result<std::string, std::string> exchange_lines(int descriptor, const std::strin
     const ssize_t sent = ::send(descriptor, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent < 0 && errno != EPIPE)
         return unexpected(std::string("the daemon takes no request: ") + std::strerror(errno));
+    constexpr std::size_t kAnswerMax = std::size_t{64} << 20U;
     std::string answer;
     while (!answer.ends_with('\n')) {  // bounded by the end
+        if (answer.size() > kAnswerMax)
+            return unexpected(std::string("what listens there answers without end: is it a daemon?"));
         if (!is_readable(descriptor, end))
             return unexpected(std::string("the daemon did not answer in time"));
         std::array<char, 4096> bytes{};
@@ -57,10 +63,13 @@ Result<std::string, std::string> exchange_lines(int descriptor, const std::strin
 
 Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, const std::string& request,
                                          std::chrono::milliseconds patience) {
-    const HostTime end = monotonic_now() + patience;
-    const auto descriptor = connect_unix_socket(socket, SOCK_STREAM, patience);
+    const HostTime begun = monotonic_now();
+    const auto descriptor = connect_unix_socket(socket, SOCK_STREAM, std::min(patience, kLetInMax));
     if (!descriptor) return unexpected(descriptor.error());
-    auto answer = exchange_lines(*descriptor, request + '\n', end);
+    auto answer = patience > kLetInMax ? exchange_lines(*descriptor, "hello\n", begun + kLetInMax)
+                                       : Result<std::string, std::string>(kSignOfLife);
+    if (answer && *answer == kSignOfLife)
+        answer = exchange_lines(*descriptor, request + '\n', begun + patience);
     ::close(*descriptor);
     if (!answer) return fail(ExitCode::io_failed, socket.string() + ": " + answer.error());
     return std::move(answer).value();

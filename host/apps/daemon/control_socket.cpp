@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -41,7 +42,30 @@ bool has_sent_something(int descriptor) {
     return ::poll(&client, 1, 0) > 0;
 }
 
+int process_of(int descriptor) {
+    ucred peer{};
+    socklen_t size = sizeof(peer);
+    return ::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 ? peer.pid : 0;
+}
+
+std::uint64_t descriptor_limit() {
+    rlimit limit{};
+    return ::getrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
+}
+static_assert(ControlSocket::kWaitingMax == ControlSocket::kClientsMax);
+static_assert(ControlSocket::kRefusedMax == ControlSocket::kClientsMax);
+
+std::string refusal_line(const std::string& error, ExitCode code) {
+    return fmt::format(R"({{"ok":false,"error":"{}","code":{}}})", error, static_cast<int>(code));
+}
+
 }  // namespace
+
+std::size_t ControlSocket::clients_of_each_kind(std::uint64_t descriptors) noexcept {
+    constexpr std::uint64_t kKinds = 3;
+    const std::uint64_t left = descriptors - std::min<std::uint64_t>(descriptors, kDescriptorsLeft);
+    return static_cast<std::size_t>(std::clamp<std::uint64_t>(left / kKinds, 1, kClientsMax));
+}
 
 Result<std::unique_ptr<ControlSocket>, AppError> ControlSocket::open(const std::filesystem::path& file,
                                                                      EventLoop& loop, Answer answer,
@@ -59,14 +83,22 @@ ControlSocket::ControlSocket(std::filesystem::path file, int descriptor, EventLo
       loop_(loop),
       answer_(std::move(answer)),
       idle_max_(idle_max),
+      clients_max_(clients_of_each_kind(descriptor_limit())),
       idle_check_(loop.every(idle_max / 4, [this] { drop_idle(); })) {
     watch();
 }
 
 ControlSocket::~ControlSocket() {
-    for (const Client& client : clients_) ::close(client.descriptor);
+    close_clients();
     ::unlink(file_.c_str());  // while it still answers: nobody else has the name yet
     ::close(descriptor_);
+}
+
+void ControlSocket::close_clients() {
+    acceptable_ = EventSource();
+    idle_check_ = EventSource();
+    for (const Client& client : clients_) ::close(client.descriptor);
+    clients_.clear();
 }
 
 void ControlSocket::watch() {
@@ -89,33 +121,57 @@ void ControlSocket::accept() {
     ::setsockopt(descriptor, SOL_SOCKET, SO_SNDBUF, &room, sizeof(room));
     Client& client = clients_.emplace_back();
     client.descriptor = descriptor;
+    client.process = process_of(descriptor);
     client.asked = monotonic_now();
     watch(client);
     make_room();
 }
 
-/// One more than are served: the one that has been silent for longest is refused, which may be the new one,
-/// or else the new one. Of too many that were refused the one that came first goes.
+/// One more than are served: one of them is refused, which may be the new one. Of too many that were refused
+/// the one that came first goes.
 void ControlSocket::make_room() {
-    const auto refused = [this] { return std::ranges::count(clients_, true, &Client::is_refused); };
-    const auto served = std::ssize(clients_) - refused();
-    if (std::cmp_greater(served, kClientsMax)) {
-        Client* const silent = longest_silent();
-        refuse(silent != nullptr ? *silent : clients_.back(),
-               fmt::format("too many clients: {} are served at once; ask again later", kClientsMax),
+    if (served() > clients_max_) {
+        Client* const found = one_to_go();
+        refuse(found != nullptr ? *found : clients_.back(),
+               fmt::format("too many clients: {} are served at once; ask again later", clients_max_),
                ExitCode::unavailable);
     }
-    if (std::cmp_greater(refused(), kRefusedMax))
+    const auto refused = std::ranges::count(clients_, true, &Client::is_refused);
+    if (std::cmp_greater(refused, clients_max_))
         drop(std::ranges::find(clients_, true, &Client::is_refused)->descriptor);
 }
 
-/// Has never asked, and is not about to. Null: there is none.
-ControlSocket::Client* ControlSocket::longest_silent() {
-    const auto found = std::ranges::find_if(clients_, [](const Client& client) {  // in the order they came
-        return !client.has_asked && !client.is_refused && client.request.empty() &&
-               !has_sent_something(client.descriptor);
-    });
-    return found != clients_.end() ? &*found : nullptr;
+std::size_t ControlSocket::served() const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        clients_, [](const Client& client) { return !client.is_refused && client.ticket == 0; }));
+}
+
+/// Those that were refused apart.
+std::size_t ControlSocket::places_of(int process) const {
+    return static_cast<std::size_t>(std::ranges::count_if(clients_, [process](const Client& client) {
+        return client.process == process && !client.is_refused;
+    }));
+}
+
+/// For the newest client, which is there already, and of which nothing can be said yet. Null: there is none
+/// that may go for it.
+ControlSocket::Client* ControlSocket::one_to_go() {
+    const std::size_t places_of_new = places_of(clients_.back().process);
+    Client* found = nullptr;
+    std::pair<std::size_t, bool> found_rank{};
+    for (Client& client : clients_) {  // in the order they came
+        if (&client == &clients_.back()) break;
+        // Who has sent something that was not read yet is about to ask.
+        if (client.is_refused || client.ticket != 0 || has_sent_something(client.descriptor)) continue;
+        const bool is_half = !client.has_asked || !client.request.empty();
+        const std::size_t places = places_of(client.process);
+        if (!is_half && places <= places_of_new) continue;
+        const std::pair<std::size_t, bool> rank{places, is_half};
+        if (found != nullptr && rank <= found_rank) continue;
+        found = &client;
+        found_rank = rank;
+    }
+    return found;
 }
 
 void ControlSocket::watch(Client& client) {
@@ -152,7 +208,7 @@ bool ControlSocket::serve(Client& client) {
     // Who has given up waiting must not have a recording begun that it knows nothing of.
     if (has_gone(client.descriptor)) return false;
     const std::string request = std::exchange(client.request, {});
-    return is_taken(client, request) || send(client, answer_(request));
+    return answer(client, request);
 }
 
 /// At once, for it may have no end. A client that is still sending would not come to read the answer if the
@@ -161,14 +217,21 @@ void ControlSocket::refuse(Client& client, const std::string& error, ExitCode co
     ++dropped_;
     client.is_refused = true;
     client.request = {};
-    (void)send(client,
-               fmt::format(R"({{"ok":false,"error":"{}","code":{}}})", error, static_cast<int>(code)));
+    (void)send(client, refusal_line(error, code));
     ::shutdown(client.descriptor, SHUT_WR);
 }
 
-bool ControlSocket::is_taken(Client& client, const std::string& request) {
-    if (!later_ || !later_(request, tickets_ + 1)) return false;
-    client.ticket = ++tickets_;
+bool ControlSocket::answer(Client& client, const std::string& request) {
+    if (!later_ || !later_(request, tickets_ + 1)) return send(client, answer_(request));
+    ++tickets_;
+    const auto waiting = std::ranges::count_if(clients_, [](const Client& one) { return one.ticket != 0; });
+    if (std::cmp_greater_equal(waiting, clients_max_)) {
+        gone_(tickets_);
+        return send(client,
+                    refusal_line(fmt::format("too many questions: {} wait; ask again later", clients_max_),
+                                 ExitCode::unavailable));
+    }
+    client.ticket = tickets_;
     client.readable = EventSource();  // the one at work just now: nothing of it is used any more
     return true;
 }

@@ -26,11 +26,22 @@ class ControlSocket {
     /// thread. Until then nothing more is read of that client, which is not idle either.
     using Later = std::function<bool(const std::string& request, std::uint64_t ticket)>;
 
-    /// Who comes while so many are served takes the place of one that has asked nothing yet, or else is
-    /// itself refused: each with a line that says so. A question that waits is never given up for another.
+    /// So many are served at once, beside those whose question waits. Who comes beyond that takes the place
+    /// of one that has asked nothing, or has sent half a request and no more just now; or of one whose
+    /// question was answered, if that one's process has more places than the new one's. Else the new one is
+    /// refused. Of several the process with the most places gives one up, the one that came first. Each is
+    /// refused with a line that says so.
     static constexpr std::size_t kClientsMax = 16;
+    /// So many questions wait at once, each of another client; a further one is refused, and its client
+    /// served on. A question that waits is never given up for another.
+    static constexpr std::size_t kWaitingMax = 16;
     /// So many of those who were refused may still finish what they are sending before they are closed.
     static constexpr std::size_t kRefusedMax = 16;
+    /// Of the descriptors that this process may have, clients take none of so many: its files, its devices
+    /// and its saves need them. Of the rest a third each is for clients that are served, wait and were
+    /// refused, at most as above and at least one.
+    static constexpr std::size_t kDescriptorsLeft = 40;
+    [[nodiscard]] static std::size_t clients_of_each_kind(std::uint64_t descriptors) noexcept;
     /// A longer request is answered with an error, once so much of it is here, and its client then dropped.
     static constexpr std::size_t kRequestMax = 48 << 10;
     /// What a client has not read yet; beyond, it is dropped.
@@ -51,6 +62,10 @@ class ControlSocket {
     /// answer.
     using Gone = std::function<void(std::uint64_t ticket)>;
 
+    /// Closes all who are there, and lets nobody new in: what they hold is free for the last save. The name
+    /// stays until this goes.
+    void close_clients();
+
     /// From now on asked before `answer`, which gets what it does not take.
     void answer_later(Later later, Gone gone) {
         later_ = std::move(later);
@@ -66,6 +81,7 @@ class ControlSocket {
   private:
     struct Client {
         int descriptor = -1;
+        int process = 0;           ///< 0: cannot be seen, as one of another container
         std::string request;       ///< as much of it as is here
         HostTime asked;            ///< newest whole request
         std::uint64_t ticket = 0;  ///< of what it waits for; 0: nothing
@@ -80,9 +96,12 @@ class ControlSocket {
     /// False if the client is to be dropped.
     [[nodiscard]] bool serve(Client& client);
     void make_room();
-    [[nodiscard]] Client* longest_silent();
+    [[nodiscard]] std::size_t served() const;
+    [[nodiscard]] std::size_t places_of(int process) const;
+    [[nodiscard]] Client* one_to_go();
     void refuse(Client& client, const std::string& error, ExitCode code);
-    [[nodiscard]] bool is_taken(Client& client, const std::string& request);
+    /// Its answer, or nothing yet: false if the client is to be dropped.
+    [[nodiscard]] bool answer(Client& client, const std::string& request);
     [[nodiscard]] bool send(const Client& client, std::string line) const;
     void watch(Client& client);
     void drop(int descriptor);
@@ -99,6 +118,7 @@ class ControlSocket {
     Gone gone_;
     std::uint64_t tickets_ = 0;
     std::chrono::milliseconds idle_max_;
+    std::size_t clients_max_;  ///< of each kind: served, waiting and refused
     EventSource acceptable_;
     EventSource idle_check_;
     std::list<Client> clients_;

@@ -83,6 +83,7 @@ void ignore_stray_signals() {
 
 void tell_warnings(const Settings& settings) {
     for (const std::string& warning : settings.host.warnings) spdlog::warn("{}", warning);
+    for (const std::string& note : settings.host.notes) spdlog::info("{}", note);
 }
 
 }  // namespace
@@ -175,13 +176,14 @@ ExitCode Daemon::run() {
     tell_end(patience);
     parts_->recordings.stop(monotonic_now(), "the daemon ended");
     const HostTime end = monotonic_now() + patience;
+    parts_->control->close_clients();
     const std::string error = parts_->save_last_map(end);
     parts_->recordings.finish(end - monotonic_now());
     if (!error.empty()) {
         spdlog::error("the map is not saved as it was at the end: {}", error);
         return ExitCode::cannot_create;
     }
-    spdlog::info("stopped; the map is saved in {}", parts_->request.map_folder.string());
+    spdlog::info("stopped; the map is saved in {}", parts_->home->where());
     return static_cast<ExitCode>(outcome);
 }
 
@@ -253,7 +255,7 @@ void Daemon::Parts::look_at_home() {
     if (!home->look()) return;
     keeper->move_to(NamedFolder(home->folder()));
     spdlog::warn("{}: the maps' folder was removed and made anew: the map goes on being saved there",
-                 request.map_folder.string());
+                 home->where());
 }
 
 void Daemon::Parts::save_map() {
@@ -410,9 +412,11 @@ std::string Daemon::Parts::answer(const std::string& line) {
         inputs.catch_up();  // the loop may have been busy with an image: what came meanwhile counts
         return status_json(view()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     }
+    if (line == "hello") return R"({"ok":true})";
     if (RecordRequests::is_one(line))
         return recordings.answer(line, settings.recorded, pipeline, monotonic_now());
-    return query_refused({ExitCode::usage, "unknown request; there are: status, record, query"}).dump();
+    return query_refused({ExitCode::usage, "unknown request; there are: hello, status, record, query"})
+        .dump();
 }
 
 }  // namespace octoskin

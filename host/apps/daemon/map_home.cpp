@@ -20,11 +20,24 @@ bool has_name(const OpenFolder& folder) {
     return ::fstat(folder.descriptor(), &status) == 0 && status.st_nlink > 0;
 }
 
-std::string replaced(const std::string& why) {
-    return "the maps' folder was replaced while octoskin ran, and its map is not saved by that name: " + why;
+/// By the kernel's word: a name may lead elsewhere by now.
+std::filesystem::path path_of(const OpenFolder& folder) {
+    std::error_code error;
+    auto path = std::filesystem::read_symlink(folder.path_for_libraries(), error);
+    return error ? std::filesystem::absolute(folder.shown()).lexically_normal() : path;
+}
+
+/// What is at an absolute path, if no link lies on the way.
+Result<OpenFolder, FolderError> open_without_links(const std::filesystem::path& path) {
+    const auto root = OpenFolder::open("/", FolderAccess::write);
+    if (!root) return root;
+    return path.relative_path().empty() ? root : root->open_folder(path.relative_path());
 }
 
 }  // namespace
+
+MapHome::MapHome(std::filesystem::path named, FolderLock lock)
+    : named_(std::move(named)), lock_(std::move(lock)), place_(path_of(lock_.folder())) {}
 
 Result<MapHome, AppError> MapHome::take(const std::filesystem::path& named) {
     auto lock = FolderLock::take(named);
@@ -34,48 +47,68 @@ Result<MapHome, AppError> MapHome::take(const std::filesystem::path& named) {
 
 bool MapHome::look() {
     problem_.clear();
-    if (folder().is_still_there()) return false;
-    std::error_code error;
-    if (!std::filesystem::exists(named_, error)) {
+    if (is_in_its_place()) {
+        if (!folder().is_still_there() && std::filesystem::absolute(named_).lexically_normal() != place_)
+            problem_ = fmt::format("{}: leads elsewhere since octoskin began, and is not followed there; {}",
+                                   named_.string(), where_it_goes());
+        return false;
+    }
+    const auto there = open_without_links(place_);
+    if (!there && there.error().fault == FolderFault::absent) {
         problem_ = why_not_there();
         return false;
     }
-    const auto there = OpenFolder::open(named_, FolderAccess::write);
     if (!there) {
-        problem_ = replaced(FolderLock::cannot_save(named_, there.error()).message);
+        problem_ = fmt::format("the maps' folder was replaced while octoskin ran: {}; {}",
+                               FolderLock::cannot_save(place_, there.error()).message, where_it_goes());
         return false;
     }
     if (has_map(*there)) {  // not to be locked either: another daemon may be about to begin with it
         problem_ = fmt::format(
             "{}: this folder took the place of the maps' folder while octoskin ran, and has a map of its "
-            "own, "
-            "which is not overwritten: move fused.ot and fused.bt out of it, and this map is saved there; or "
-            "end octoskin and start it again to go on with that one",
-            named_.string());
+            "own, which is not overwritten: move fused.ot and fused.bt out of it, and this map is saved "
+            "there; or end octoskin and start it again to go on with that one; {}",
+            place_.string(), where_it_goes());
         return false;
     }
-    auto next = FolderLock::take(*there, named_);
+    auto next = FolderLock::take(*there, place_);
     if (!next) {
-        problem_ = replaced(next.error().message);
+        problem_ = fmt::format("the maps' folder was replaced while octoskin ran: {}; {}",
+                               next.error().message, where_it_goes());
         return false;
     }
     lock_ = std::move(next).value();
     return true;
 }
 
+bool MapHome::is_in_its_place() const {
+    const auto there = open_without_links(place_);
+    struct stat held {};
+    struct stat found {};
+    return there && ::fstat(folder().descriptor(), &held) == 0 && ::fstat(there->descriptor(), &found) == 0 &&
+           held.st_dev == found.st_dev && held.st_ino == found.st_ino;
+}
+
+std::string MapHome::where() const {
+    return has_name(folder()) ? path_of(folder()).string() : std::string();
+}
+
+std::string MapHome::where_it_goes() const {
+    const std::string now = where();
+    return now.empty() ? "the map is not saved" : "the map goes on being saved in " + now;
+}
+
 std::string MapHome::why_not_there() const {
     if (has_name(folder())) {
         return fmt::format(
-            "{}: the maps' folder was moved away while octoskin ran; maps go on being saved in it, where it "
-            "is "
-            "now: move it back, or make an empty folder in its place, and they are saved there",
-            named_.string());
+            "{}: the maps' folder was moved away while octoskin ran; {}: move it back, or make an empty "
+            "folder in its place, and it is saved there",
+            place_.string(), where_it_goes());
     }
     return fmt::format(
         "{}: the maps' folder was removed while octoskin ran, and the map is not saved: make an empty folder "
-        "in "
-        "its place, and it is saved there",
-        named_.string());
+        "in its place, and it is saved there",
+        place_.string());
 }
 
 }  // namespace octoskin

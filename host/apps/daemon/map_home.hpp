@@ -13,8 +13,9 @@
 namespace octoskin {
 
 /// A folder that is removed, moved or replaced while a daemon runs is another one than it holds. Nothing is
-/// ever saved by name: into the folder that is held, or into one that took its name, once that is locked, and
-/// only if it has no map of its own.
+/// ever saved by name: into the folder that is held, or into one that took its place, once that is locked,
+/// and only if it has no map of its own. Links in the name that was typed are followed once, at the start;
+/// from then on the place is where they led, and a link there, or on the way there, is not followed.
 class MapHome {
   public:
     /// Makes the folder if it is not there. Errors: as FolderLock::take.
@@ -22,19 +23,24 @@ class MapHome {
 
     [[nodiscard]] const OpenFolder& folder() const noexcept { return lock_.folder(); }
 
-    /// Looks whether the name still leads to the folder. If not, and a folder without a map has taken its
-    /// name, that one is held from now on: true.
+    /// Looks whether the folder is still in its place. If not, and a folder without a map has taken it, that
+    /// one is held from now on: true.
     [[nodiscard]] bool look();
+    /// Where the folder is now; empty if it was removed.
+    [[nodiscard]] std::string where() const;
     /// What was wrong at the last look, and what to do; empty: nothing.
     [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
   private:
-    MapHome(std::filesystem::path named, FolderLock lock)
-        : named_(std::move(named)), lock_(std::move(lock)) {}
+    MapHome(std::filesystem::path named, FolderLock lock);
+    [[nodiscard]] bool is_in_its_place() const;
     [[nodiscard]] std::string why_not_there() const;
+    /// What becomes of the map meanwhile.
+    [[nodiscard]] std::string where_it_goes() const;
 
     std::filesystem::path named_;
     FolderLock lock_;
+    std::filesystem::path place_;  ///< absolute, and without a link when the folder was taken
     std::string problem_;
 };
 

@@ -27,6 +27,12 @@ Json links_json(const HostRig& rig, bool leaves_out_listed) {
     return names;
 }
 
+Json borrowed_json(const HostRig& rig) {
+    Json lenders = Json::object();
+    for (const LinkWithBorrowedBody& link : rig.links_with_borrowed_body) lenders[link.link] = link.body_of;
+    return lenders;
+}
+
 Json can_json(const DaemonView& view) {
     const CanLink::Counts counts = view.inputs->can().counts();
     return {{"interface", *view.interface},
@@ -295,6 +301,7 @@ Json status_json(const DaemonView& view) {
             {"rig", view.rig->name},
             {"links_without_body", links_json(*view.rig, false)},
             {"links_unknown", links_json(*view.rig, true)},
+            {"links_with_borrowed_body", borrowed_json(*view.rig)},
             {"problems", std::move(sentences)},
             {"can", can_json(view)},
             {"clock", clock_json(view)},

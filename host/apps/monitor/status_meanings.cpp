@@ -12,11 +12,14 @@ constexpr std::array kStatusMeanings = {
     Meaning{"", "rig", "the name of the rig"},
     Meaning{
         "", "links_without_body",
-        "links of the robot that move and have a <visual>, but no body, nor a link fixed to them that has "
-        "one: nothing of them is taken out of images and ranges"},
+        "links of the robot that move and have a <visual>, but no body that covers them, nor a link fixed to "
+        "them that has one: nothing of them is taken out of images and ranges"},
     Meaning{"", "links_unknown",
             "those of links_without_body that the rig's robot.links_without_body does not list: as long as "
             "there is one, a query answers unknown instead of free"},
+    Meaning{"", "links_with_borrowed_body",
+            "an object, link to link: links that move and have a <visual>, but no body of their own, each "
+            "with the one that is fixed to it and whose body is taken for it"},
     Meaning{"", "problems",
             "what is wrong, a sentence each, the most fundamental first: an empty map has its reason there"},
     Meaning{"", "can", "the interface, below"},

@@ -61,6 +61,8 @@ void describe(const rig::Rig& rig, const HostSetup& host) {
         print("  link {}: no body{}\n", link.link,
               link.is_listed ? ", as the rig lists" : ": a query answers unknown instead of free");
     }
+    for (const LinkWithBorrowedBody& link : host.rig.links_with_borrowed_body)
+        print("  link {}: no body of its own: that of {}, which is fixed to it\n", link.link, link.body_of);
     for (const rig::Node& node : rig.nodes) {
         print("  node {} '{}': {} sensors, node_hash {:08x}\n", node.config.node_id, node.name,
               node.sensors.size(), node_hash(node.config));

@@ -1,4 +1,7 @@
 // octoskin run: the daemon beside a robot.
+#include <fmt/format.h>
+#include <sys/resource.h>
+
 #include <cstdlib>
 #include <memory>
 
@@ -13,7 +16,20 @@
 namespace octoskin::app {
 namespace {
 
+/// With fewer a save, a recording or the camera would lack one some day: what a client holds is not counted.
+void refuse_few_descriptors() {
+    constexpr rlim_t kLeast = 48;
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kLeast) return;
+    throw CommandFailure(
+        {ExitCode::no_resources,
+         fmt::format("this process may have {} descriptors open at once, and a daemon needs {}: raise that "
+                     "limit (ulimit -n)",
+                     limit.rlim_cur, kLeast)});
+}
+
 void run_daemon(DaemonRequest& request) {
+    refuse_few_descriptors();
     request.can_descriptor = descriptor_of(request.interface);
     if (std::getenv("JOURNAL_STREAM") != nullptr) set_journal_format();
     limit_log();

@@ -320,6 +320,7 @@ Result<Playback, AppError> play_robot(const PlaybackRequest& request, const Repl
         if (auto loss = depth.reader->loss()) playback->warnings.push_back(std::move(*loss));
     }
     playback->warnings.insert(playback->warnings.begin(), rig_warnings.begin(), rig_warnings.end());
+    playback->notes.insert(playback->notes.begin(), setup->host.notes.begin(), setup->host.notes.end());
     find_warnings(*meta, rig, depth, *playback);
     find_contradictions(rig, *playback);
     return playback;

@@ -46,7 +46,7 @@ struct Playback {
     ReplayOutcome outcome;
     std::vector<AccountTable> accounts;  ///< log lines, then the pipeline's, then the pixels
     std::vector<NodeSummary> nodes;      ///< how each stood at the end
-    /// How the host's clock fared, if there is something to tell.
+    /// Links with another's body; how the host's clock fared, if there is something to tell.
     std::vector<std::string> notes;
     std::vector<std::string> warnings;  ///< what a person should know about this recording
     bool is_map_incomplete = false;     ///< a map had no room for some of its voxels

@@ -197,6 +197,7 @@ class Asking {
                     {"links", names_of(robot_->links())},
                     {"links_without_body", links_without_body()},
                     {"links_unknown", names_of(robot_->unknown_links())},
+                    {"links_with_borrowed_body", links_with_borrowed_body()},
                     {"legs", std::move(legs)}};
     }
 
@@ -211,6 +212,12 @@ class Asking {
         return names;
     }
     /// Those that the rig lists, too.
+    [[nodiscard]] Json links_with_borrowed_body() const {
+        Json lenders = Json::object();
+        for (const LinkWithBorrowedBody& link : ground_.rig->links_with_borrowed_body)
+            lenders[link.link] = link.body_of;
+        return lenders;
+    }
     [[nodiscard]] Json links_without_body() const {
         Json names = Json::array();
         for (const LinkWithoutBody& link : ground_.rig->links_without_body) names.push_back(link.link);
@@ -284,6 +291,7 @@ class Asking {
                     {"links", names_of(robot_->links())},
                     {"links_without_body", links_without_body()},
                     {"links_unknown", names_of(robot_->unknown_links())},
+                    {"links_with_borrowed_body", links_with_borrowed_body()},
                     {"views_not_tried", why_no_views},
                     {"pockets", std::move(pockets)}};
     }

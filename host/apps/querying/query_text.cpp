@@ -50,6 +50,9 @@ std::string links_text(const Json& answer) {
             listed(unknown), unknown.size() == 1 ? "it" : "them", unknown.size() == 1 ? "it" : "them");
     if (!on_purpose.empty())
         text += fmt::format("not asked about: {}: without a body, as the rig lists\n", listed(on_purpose));
+    for (const auto& [link, lender] : answer.at("links_with_borrowed_body").items())
+        text += fmt::format("asked about with the body of {}, which is fixed to it: {}\n",
+                            lender.get<std::string>(), link);
     return text;
 }
 

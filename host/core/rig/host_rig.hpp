@@ -69,11 +69,19 @@ struct LinkCapsule {
     double radius_m = 0.0;
 };
 
-/// A link that a joint moves and that has a <visual>, but no body, nor has a link that is rigidly attached to
-/// it. Nothing of it is taken out of images and ranges, and no answer about the robot's body tells of it.
+/// A link that a joint moves and that has a <visual>, but no body that covers a useful part of it, nor has a
+/// link that is rigidly attached to it (`rig::bodyless_links`). Nothing of it is taken out of images and
+/// ranges, and no answer about the robot's body tells of it.
 struct LinkWithoutBody {
     std::string link;
     bool is_listed = false;  ///< the rig says that it is so on purpose (`links_without_body`)
+};
+
+/// A link that a joint moves and that has a <visual>, but no capsule of its own: the body of a link that is
+/// rigidly attached to it is taken for its body.
+struct LinkWithBorrowedBody {
+    std::string link;
+    std::string body_of;
 };
 
 /// The limits that acceptance applies to every range.
@@ -93,7 +101,8 @@ struct HostRig {
     HostJointSource joints;
     std::optional<HostCamera> camera;
     std::vector<LinkCapsule> body;
-    std::vector<LinkWithoutBody> links_without_body;  ///< by name
+    std::vector<LinkWithoutBody> links_without_body;             ///< by name
+    std::vector<LinkWithBorrowedBody> links_with_borrowed_body;  ///< by name
     /// Links left out when a sensor predicts where its own beam meets the robot: its mount.
     std::vector<std::string> links_ignored_by_sensors;
     double depth_self_margin_m = 0.09;  ///< depth points this close to a capsule's surface are the robot

@@ -76,9 +76,19 @@ std::string warning_of(const std::vector<LinkWithoutBody>& links) {
     }
     if (names.empty()) return {};
     return rig::joined(names) + (names.size() == 1 ? ": this link moves, has" : ": these links move, have") +
-           " a <visual> and no body, and no link fixed to it has one: it comes into the map as the world "
+           " a <visual> and no body that covers it, and no link fixed to it has one: it comes into the map "
+           "as the world "
            "does, and a query answers unknown instead of free. Give it capsules (docs/robot.md), or list it "
            "in robot.links_without_body of the rig";
+}
+
+std::vector<std::string> notes_of(const std::vector<LinkWithBorrowedBody>& links) {
+    std::vector<std::string> notes;
+    for (const LinkWithBorrowedBody& link : links) {
+        notes.push_back(link.link + ": this link moves, has a <visual> and no body of its own; that of " +
+                        link.body_of + ", which is fixed to it, is taken for it. See that it covers both");
+    }
+    return notes;
 }
 
 }  // namespace
@@ -108,13 +118,16 @@ Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
         }
         host.body.push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
     }
-    const auto without_body = rig::links_without_body(rig, *capsules);
-    if (!without_body) return unexpected(without_body.error());
-    for (const std::string& link : *without_body) {
+    const auto bodyless = rig::bodyless_links(rig, *capsules);
+    if (!bodyless) return unexpected(bodyless.error());
+    for (const std::string& link : bodyless->without_body) {
         const bool is_listed =
             std::ranges::find(rig.links_without_body, link) != rig.links_without_body.end();
         host.links_without_body.push_back({link, is_listed});
     }
+    for (const rig::BorrowedBody& borrowed : bodyless->borrowed)
+        host.links_with_borrowed_body.push_back({borrowed.link, borrowed.body_of});
+    std::vector<std::string> notes = notes_of(host.links_with_borrowed_body);
     std::vector<std::string> warnings = rig::reflex_warnings(rig);
     if (host.body.empty()) {
         warnings.push_back("no link at or below " + rig.base_link +
@@ -122,7 +135,7 @@ Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
     }
     if (auto warning = warning_of(host.links_without_body); !warning.empty())
         warnings.push_back(std::move(warning));
-    return HostSetup{std::move(host), std::move(robot).value(), std::move(warnings)};
+    return HostSetup{std::move(host), std::move(robot).value(), std::move(warnings), std::move(notes)};
 }
 
 }  // namespace octoskin

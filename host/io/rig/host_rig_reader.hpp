@@ -17,6 +17,8 @@ struct HostSetup {
     RobotModel robot;  ///< from rig.base_link; joint vectors in the order of rig.joints.joints
     /// What is allowed and hardly meant, a sentence each, for whoever started the program.
     std::vector<std::string> warnings;
+    /// What is as it may be, and worth a look, likewise.
+    std::vector<std::string> notes = {};
 };
 
 [[nodiscard]] HostCamera host_camera(const rig::Camera& camera);

@@ -34,10 +34,10 @@ TEST_F(Limits, of_descriptors_are_named) {
     constexpr int kFewest = 5;
 #endif
     std::set<int> codes;
-    for (const int most : {kFewest, kFewest + 3, 15, 16, 64}) {
+    for (const int most : {kFewest, kFewest + 3, 15, 16, 47, 48, 64}) {
         const Said said = limited("-n " + std::to_string(most), daemon());
         codes.insert(said.exit_code);
-        EXPECT_TRUE(said.exit_code == 124 || said.exit_code == 71) << most << ": " << said.output;
+        EXPECT_EQ(said.exit_code, most < 48 ? 71 : 124) << most << ": " << said.output;
         if (said.exit_code == 71) {
             EXPECT_NE(said.output.find("ulimit -n"), std::string::npos) << said.output;
             EXPECT_NE(said.output.find("may have " + std::to_string(most)), std::string::npos) << said.output;

@@ -57,6 +57,23 @@ TEST_F(PartialBodyTest, a_post_through_a_link_without_a_body_is_not_free) {
     EXPECT_THAT(text.output, Not(HasSubstr("--own-space"))) << "that would not help";
 }
 
+TEST_F(PartialBodyTest, a_speck_on_a_bolt_is_no_body_of_the_link_that_it_is_fixed_to) {
+    const std::string speck = "--rig " + rig("rig.yaml") + " --robot " + rig("speck.urdf");
+    const Said said = query(map(true), "--json " + speck);
+    EXPECT_EQ(said.exit_code, 2) << said.output;
+    const Json answer = Json::parse(said.output);
+    EXPECT_EQ(answer["state"], "unknown");
+    EXPECT_EQ(answer["links"], Json({"bolt", "tool"}));
+    EXPECT_EQ(answer["links_without_body"], Json({"upper"}));
+    EXPECT_EQ(answer["links_unknown"], Json({"upper"}));
+    EXPECT_EQ(answer["links_with_borrowed_body"], Json({{"fore", "tool"}}));
+    EXPECT_THAT(query(path("map.ot"), speck).output,
+                HasSubstr("asked about with the body of tool, which is fixed to it: fore\n"));
+    const Said checked = octoskin("rig " + rig("rig.yaml") + " --robot " + rig("speck.urdf"));
+    EXPECT_THAT(checked.output, HasSubstr("  link upper: no body: a query"));
+    EXPECT_THAT(checked.output, HasSubstr("  link fore: no body of its own: that of tool,"));
+}
+
 TEST_F(PartialBodyTest, a_post_through_the_same_link_with_a_body_is_occupied) {
     const std::string whole = "--json --rig " + rig("rig.yaml") + " --robot " + rig("arm_whole.urdf");
     const Said said = query(map(true), whole);
@@ -115,6 +132,25 @@ TEST_F(PartialBodyTest, replay_says_of_a_recording_what_was_said_of_its_rig) {
     const Said listed = replayed("listed");
     EXPECT_EQ(listed.exit_code, 0) << listed.output;
     EXPECT_THAT(listed.output, Not(HasSubstr("panda_link5")));
+}
+
+TEST_F(PartialBodyTest, replay_tells_whose_body_stands_for_a_link) {
+    std::string urdf = content(source("hw/robots/panda.urdf"));
+    const std::string end = "</robot>";
+    urdf.replace(urdf.find(end), end.size(),
+                 "<link name=\"mount\"><visual><geometry><box size=\"0.05 0.05 0.05\"/></geometry></visual>"
+                 "</link><joint name=\"mounts\" type=\"fixed\"><parent link=\"panda_link2\"/><child "
+                 "link=\"mount\"/></joint></robot>");
+    write(path("panda.urdf"), urdf);
+    write(path("mount.yaml"),
+          "extends: " + source("tests/data/short/rig.yaml") + "\nrobot: {urdf: panda.urdf}\n");
+    const Said simulated = octoskin("simulate " + path("mount") + " --rig " + path("mount.yaml") +
+                                    " --scenario " + source("tests/data/short/scenario.yaml"));
+    ASSERT_EQ(simulated.exit_code, 0) << simulated.output;
+    const Said replayed = octoskin("replay " + path("mount") + " --fused-only");
+    EXPECT_EQ(replayed.exit_code, 0) << replayed.output;
+    EXPECT_THAT(replayed.output, HasSubstr("mount: this link moves, has a <visual> and no body of its own; "
+                                           "that of panda_link2, "));
 }
 
 }  // namespace

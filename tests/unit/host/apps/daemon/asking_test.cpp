@@ -5,9 +5,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "tests/support/scratch_folder.hpp"
@@ -52,6 +54,42 @@ TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_let_us_in_and_is_silen
     EXPECT_GE(Clock::now() - begun, 190ms);
     EXPECT_LE(Clock::now() - begun, 1s);
     EXPECT_NE(answer.error().message.find("did not answer in time"), std::string::npos);
+}
+
+/// A question to the map may take a minute; that nobody is there to answer it shows before.
+TEST(AskDaemon, waits_no_longer_for_a_sign_of_life_however_long_the_answer_may_take) {
+    const testing_support::ScratchFolder folder;
+    StoppedListener stopped(folder / "control");
+    for (const char* says : {"did not answer in time", "lets nobody in (is it stopped?)"}) {
+        const auto begun = Clock::now();
+        const auto answer = ask_daemon(folder / "control", "query {}", 60s);
+        ASSERT_FALSE(answer);
+        EXPECT_GE(Clock::now() - begun, 4900ms);
+        EXPECT_LE(Clock::now() - begun, 6s);
+        EXPECT_EQ(answer.error().code, ExitCode::io_failed);
+        EXPECT_NE(answer.error().message.find(says), std::string::npos) << answer.error().message;
+        stopped.fill();
+    }
+}
+
+TEST(AskDaemon, asks_for_a_sign_of_life_before_what_may_take_long) {
+    const testing_support::ScratchFolder folder;
+    const StoppedListener daemon(folder / "control");
+    std::string heard;
+    std::thread answering([&] {
+        const int client = ::accept(daemon.descriptor(), nullptr, nullptr);
+        for (const std::string_view says : {"{\"ok\":true}\n", "an answer\n"}) {
+            std::array<char, 64> request{};
+            const ssize_t count = ::recv(client, request.data(), request.size(), 0);
+            heard.append(request.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+            (void)!::send(client, says.data(), says.size(), MSG_NOSIGNAL);
+        }
+        ::close(client);
+    });
+    const auto answer = ask_daemon(folder / "control", "query {}", 60s);
+    answering.join();
+    EXPECT_EQ(answer.value(), "an answer");
+    EXPECT_EQ(heard, "hello\nquery {}\n");
 }
 
 TEST(AskDaemon, says_when_the_daemon_closed_the_connection_and_does_not_wait_then) {

@@ -4,11 +4,13 @@
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <csignal>
 #include <ctime>
 #include <string_view>
 #include <thread>
@@ -248,6 +250,144 @@ TEST_F(ControlSocketTest, drops_the_one_that_was_silent_longest_for_a_new_one) {
         for (const int client : clients) ::close(client);
     });
     EXPECT_EQ(socket_->dropped(), 1U);
+}
+
+/// Another process that has so many connections on which it has sent this, and keeps them.
+class OtherProcess {
+  public:
+    /// To be made before `serve`: what it forks has one thread.
+    OtherProcess(const std::filesystem::path& file, int connections, std::string_view sends)
+        : process_(::fork()) {
+        if (process_ != 0) return;
+        for (int i = 0; i < connections; ++i) {
+            const auto connection = connect_unix_socket(file, SOCK_STREAM);
+            if (!connection || ::send(*connection, sends.data(), sends.size(), MSG_NOSIGNAL) < 0) ::_exit(1);
+        }
+        while (true) ::pause();
+    }
+    ~OtherProcess() {
+        ::kill(process_, SIGKILL);
+        ::waitpid(process_, nullptr, 0);
+    }
+    OtherProcess(const OtherProcess&) = delete;
+    OtherProcess& operator=(const OtherProcess&) = delete;
+
+  private:
+    pid_t process_;
+};
+
+TEST_F(ControlSocketTest, lets_in_who_comes_while_all_others_have_sent_half_a_request) {
+    serve([&] {
+        std::vector<int> clients;
+        for (std::size_t i = 0; i < ControlSocket::kClientsMax; ++i) {
+            clients.push_back(connect());
+            EXPECT_EQ(::send(clients.back(), "sta", 3, MSG_NOSIGNAL), 3);
+        }
+        std::this_thread::sleep_for(20ms);
+        const auto begun = std::chrono::steady_clock::now();
+        EXPECT_EQ(ask_daemon(file(), "status").value(), "you said status");
+        EXPECT_LT(std::chrono::steady_clock::now() - begun, 1s);
+        EXPECT_EQ(said_until_the_end(clients.front()), kTooMany) << "the one that came first";
+        for (std::size_t i = 1; i < clients.size(); ++i) {
+            EXPECT_EQ(::send(clients[i], "tus\n", 4, MSG_NOSIGNAL), 4);
+            std::array<char, 16> bytes{};
+            EXPECT_EQ(::recv(clients[i], bytes.data(), bytes.size(), 0), 16) << "one place was needed";
+        }
+        for (const int client : clients) ::close(client);
+    });
+    EXPECT_EQ(socket_->dropped(), 1U);
+}
+
+/// Whatever another one does that has hundreds of connections, one more than are let in at once.
+TEST_F(ControlSocketTest, keeps_a_slow_client_beside_a_process_that_takes_all_places) {
+    const int slow = connect();
+    EXPECT_EQ(::send(slow, "sta", 3, MSG_NOSIGNAL), 3);
+    const OtherProcess halves(file(), 300, "sta");
+    serve([&] {
+        auto slowest = std::chrono::steady_clock::duration::zero();
+        for (int i = 0; i < 50; ++i) {
+            const auto begun = std::chrono::steady_clock::now();
+            EXPECT_EQ(ask_daemon(file(), "status").value(), "you said status");
+            slowest = std::max(slowest, std::chrono::steady_clock::now() - begun);
+            std::this_thread::sleep_for(2ms);
+        }
+        EXPECT_LT(slowest, 1s);
+        EXPECT_EQ(::send(slow, "tus\n", 4, MSG_NOSIGNAL), 4);
+        std::array<char, 16> bytes{};
+        EXPECT_EQ(::recv(slow, bytes.data(), bytes.size(), 0), 16);
+    });
+    ::close(slow);
+    EXPECT_GE(socket_->dropped(), 300U - ControlSocket::kClientsMax);
+}
+
+TEST_F(ControlSocketTest, has_a_place_for_another_process_than_one_whose_questions_were_answered) {
+    const OtherProcess answered(file(), 16, "status\n");
+    serve([&] {
+        std::this_thread::sleep_for(100ms);
+        std::array<char, 16> bytes{};
+        std::array<int, 3> late{};
+        for (int& client : late) {
+            client = connect();
+            std::this_thread::sleep_for(10ms);  // let in before it says anything
+        }
+        for (const int client : late) {
+            EXPECT_EQ(::send(client, "status\n", 7, MSG_NOSIGNAL), 7);
+            EXPECT_EQ(::recv(client, bytes.data(), bytes.size(), 0), 16);
+            ::close(client);
+        }
+        EXPECT_EQ(ask_daemon(file(), "status").value(), "you said status");
+    });
+    EXPECT_EQ(socket_->dropped(), 3U) << "so many places were needed at once";
+}
+
+/// What the rest of the process needs is not for clients: of 64 descriptors 24 are.
+TEST_F(ControlSocketTest, takes_fewer_clients_of_fewer_descriptors) {
+#ifdef OCTOSKIN_SANITIZED
+    GTEST_SKIP() << "a sanitizer that looks at objects' types makes a pipe to do so";
+#endif
+    EXPECT_EQ(ControlSocket::clients_of_each_kind(0), 1U);
+    EXPECT_EQ(ControlSocket::clients_of_each_kind(48), 2U);
+    EXPECT_EQ(ControlSocket::clients_of_each_kind(64), 8U);
+    EXPECT_EQ(ControlSocket::clients_of_each_kind(88), 16U);
+    EXPECT_EQ(ControlSocket::clients_of_each_kind(RLIM_INFINITY), 16U);
+    const int next = connect();
+    ::close(next);
+    if (next > 40) GTEST_SKIP() << "the tests before it left " << next << " descriptors open";
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+    const rlimit few{64, before.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+    auto opened =
+        ControlSocket::open(folder_ / "few", loop_, [](const std::string&) { return std::string("yes"); });
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+    ASSERT_TRUE(opened);
+    serve([&] {
+        std::vector<int> clients;
+        std::array<char, 128> bytes{};
+        for (int i = 0; i < 9; ++i) {
+            clients.push_back(*connect_unix_socket(folder_ / "few", SOCK_STREAM));
+            EXPECT_EQ(::send(clients.back(), "a\n", 2, MSG_NOSIGNAL), 2);
+            const auto count = ::recv(clients.back(), bytes.data(), bytes.size(), 0);
+            const bool is_served = std::string_view(bytes.data(), static_cast<std::size_t>(count)) == "yes\n";
+            EXPECT_EQ(is_served, i < 8) << i;
+        }
+        for (const int client : clients) ::close(client);
+    });
+}
+
+/// The end of a daemon: what they hold is free, and nobody else has the name.
+TEST_F(ControlSocketTest, closes_its_clients_before_it_goes) {
+    std::vector<int> clients;
+    for (int i = 0; i < 4; ++i) clients.push_back(connect());
+    serve([&] { EXPECT_TRUE(ask_daemon(file(), "status")); });
+    socket_->close_clients();
+    for (const int client : clients) {
+        std::array<char, 8> bytes{};
+        EXPECT_EQ(::recv(client, bytes.data(), bytes.size(), MSG_DONTWAIT), 0);
+        ::close(client);
+    }
+    EXPECT_TRUE(std::filesystem::exists(file()));
+    EXPECT_FALSE(ControlSocket::open(file(), loop_, [](const std::string&) { return std::string(); }));
 }
 
 TEST_F(ControlSocketTest, drops_who_asks_nothing_and_keeps_who_does) {

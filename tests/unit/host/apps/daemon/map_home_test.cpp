@@ -83,14 +83,61 @@ TEST_F(MapHomeTest, is_no_folder_that_another_daemon_holds_and_no_file) {
     EXPECT_EQ(testing_support::ScratchFolder::read(maps_), "a file");
 }
 
-TEST_F(MapHomeTest, is_not_what_a_link_in_its_place_leads_to_if_that_has_a_map) {
+TEST_F(MapHomeTest, is_not_what_a_link_in_its_place_leads_to) {
     fs::create_directory(scratch_ / "victim");
-    scratch_.write("victim/fused.ot", "another map");
-    fs::remove_all(maps_);
+    fs::rename(maps_, scratch_ / "aside");
     fs::create_directory_symlink(scratch_ / "victim", maps_);
     EXPECT_FALSE(home_.look());
-    EXPECT_NE(home_.problem().find("not overwritten"), std::string::npos) << home_.problem();
-    EXPECT_EQ(testing_support::ScratchFolder::read(scratch_ / "victim/fused.ot"), "another map");
+    EXPECT_NE(home_.problem().find(maps_.string() + ": is a symbolic link"), std::string::npos)
+        << home_.problem();
+    EXPECT_NE(home_.problem().find("saved in " + (scratch_ / "aside").string()), std::string::npos)
+        << home_.problem();
+    EXPECT_EQ(home_.where(), scratch_ / "aside");
+    EXPECT_TRUE(fs::is_empty(scratch_ / "victim")) << "not even a lock file";
+    fs::remove_all(scratch_ / "aside");
+    EXPECT_FALSE(home_.look());
+    EXPECT_NE(home_.problem().find("the map is not saved"), std::string::npos) << home_.problem();
+    EXPECT_EQ(home_.where(), "");
+    fs::remove(maps_);
+    fs::create_directory(maps_);
+    EXPECT_TRUE(home_.look());
+    EXPECT_EQ(home_.problem(), "");
+    EXPECT_TRUE(is_held(home_.folder()));
+}
+
+TEST_F(MapHomeTest, is_not_reached_through_a_link_on_the_way_to_its_place) {
+    const fs::path deep = scratch_ / "a/b/maps";
+    fs::create_directories(deep.parent_path());
+    MapHome home = MapHome::take(deep).value();
+    fs::rename(scratch_ / "a/b", scratch_ / "aside");
+    fs::create_directories(scratch_ / "victim/maps");
+    fs::create_directory_symlink(scratch_ / "victim", scratch_ / "a/b");
+    EXPECT_FALSE(home.look());
+    EXPECT_NE(home.problem().find((scratch_ / "a/b").string() + ": is a symbolic link"), std::string::npos)
+        << home.problem();
+    EXPECT_EQ(home.where(), scratch_ / "aside/maps");
+    EXPECT_TRUE(fs::is_empty(scratch_ / "victim/maps"));
+}
+
+/// What was typed may be a link: where it led at the start is the place, whatever it leads to later.
+TEST_F(MapHomeTest, is_where_a_link_that_was_typed_led_at_the_start) {
+    const fs::path typed = scratch_ / "typed";
+    fs::create_directory(scratch_ / "disk");
+    fs::create_directory_symlink(scratch_ / "disk", typed);
+    MapHome home = MapHome::take(typed).value();
+    EXPECT_FALSE(home.look());
+    EXPECT_EQ(home.problem(), "");
+    fs::create_directory(scratch_ / "victim");
+    fs::remove(typed);
+    fs::create_directory_symlink(scratch_ / "victim", typed);
+    EXPECT_FALSE(home.look());
+    EXPECT_NE(home.problem().find("leads elsewhere"), std::string::npos) << home.problem();
+    EXPECT_EQ(home.where(), scratch_ / "disk");
+    EXPECT_TRUE(fs::is_empty(scratch_ / "victim"));
+    fs::remove_all(scratch_ / "disk");
+    fs::create_directory(scratch_ / "disk");
+    EXPECT_TRUE(home.look()) << "made anew in its place";
+    EXPECT_EQ(home.where(), scratch_ / "disk");
 }
 
 }  // namespace

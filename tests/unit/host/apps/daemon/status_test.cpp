@@ -55,6 +55,10 @@ TEST_F(StatusTest, names_links_without_a_body_and_is_content_with_those_that_the
     EXPECT_EQ(status()["problems"].size(), 1U) << "nothing to be learnt anew";
     scene_.rig.links_without_body = {{"elbow", true}};
     EXPECT_EQ(status()["problems"], Json::array());
+    EXPECT_EQ(status()["links_with_borrowed_body"], Json::object());
+    scene_.rig.links_with_borrowed_body = {{"bolt", "upper"}, {"mount", "wrist"}};
+    EXPECT_EQ(status()["links_with_borrowed_body"], Json({{"bolt", "upper"}, {"mount", "wrist"}}));
+    EXPECT_EQ(status()["problems"], Json::array()) << "as usual as a bolt";
 }
 
 TEST_F(StatusTest, has_what_came_over_the_bus_and_how_long_that_kept_it_busy) {

@@ -153,6 +153,16 @@ TEST_F(QueryAnswer, of_a_link_that_the_rig_lists_as_without_a_body_may_be_free) 
     EXPECT_EQ(query_text(answer).rfind("free\nnot asked about: upper: ", 0), 0U) << query_text(answer);
 }
 
+TEST_F(QueryAnswer, tells_whose_body_stands_for_a_link_without_its_own) {
+    EXPECT_EQ(ask(path({{0.0, 0.0}}), map_).at("links_with_borrowed_body"), Json::object());
+    arm_.rig.links_with_borrowed_body = {{"mount", "hand"}};
+    const Json answer = ask(path({{0.0, 0.0}}), map_);
+    EXPECT_EQ(answer.at("state"), "free");
+    EXPECT_EQ(answer.at("links_with_borrowed_body"), Json({{"mount", "hand"}}));
+    EXPECT_THAT(query_text(answer),
+                HasSubstr("asked about with the body of hand, which is fixed to it: mount\n"));
+}
+
 TEST_F(QueryAnswer, of_an_arm_none_of_whose_links_has_a_body_is_unknown) {
     arm_.rig.body.clear();
     arm_.rig.links_without_body = {{"hand", false}, {"upper", false}};

@@ -195,5 +195,14 @@ TEST(HostRigReader, names_a_link_that_moves_and_has_no_body_unless_the_rig_lists
     EXPECT_NE(listed.rig.rig_hash, unlisted.rig.rig_hash);
 }
 
+TEST(HostRigReader, notes_whose_body_stands_for_a_link_without_its_own) {
+    const HostSetup setup = partial("rig.yaml");
+    ASSERT_EQ(setup.rig.links_with_borrowed_body.size(), 1U);
+    EXPECT_EQ(setup.rig.links_with_borrowed_body[0].link, "fore");
+    EXPECT_EQ(setup.rig.links_with_borrowed_body[0].body_of, "tool");
+    ASSERT_EQ(setup.notes.size(), 1U);
+    EXPECT_EQ(setup.notes[0].rfind("fore: this link moves", 0), 0U) << setup.notes[0];
+}
+
 }  // namespace
 }  // namespace octoskin
