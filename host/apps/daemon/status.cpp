@@ -100,6 +100,7 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
             view.pipeline->builder().is_refused(node.node_id, static_cast<std::uint8_t>(index));
         json["camera"] = {{"contradicts", evidence.contradicts()},
                           {"fault", evidence.fault ? Json(name(*evidence.fault)) : Json(nullptr)},
+                          {"cannot_tell", evidence.cannot_tell},
                           {"refused", is_refused},
                           {"compared", evidence.compared},
                           {"fitted", evidence.fitted},
@@ -167,12 +168,21 @@ Json node_json(const DaemonView& view, const HostNode& node) {
 
 Json camera_json(const DaemonView& view) {
     if (!view.camera) return nullptr;
+    const SensorWitness* const witness = view.pipeline->builder().witness();
+    const CameraError* const error =
+        witness != nullptr && witness->camera().error() ? &*witness->camera().error() : nullptr;
+    const auto axes = [](const Eigen::Vector3d& of) { return Json{of.x(), of.y(), of.z()}; };
     return {{"open", view.camera->is_open},
             {"why", view.camera->why},
             {"frames", view.camera->frames},
             {"displaced", view.camera->displaced},
             {"untimed", view.camera->untimed},
             {"opened", view.camera->opened},
+            {"is_off", witness != nullptr ? Json(error != nullptr) : Json(nullptr)},
+            {"turned_deg", error != nullptr ? axes(error->turn_deg) : Json(nullptr)},
+            {"shifted_m", error != nullptr ? axes(error->shift_m) : Json(nullptr)},
+            {"depth_scale", error != nullptr ? Json(error->depth_scale) : Json(nullptr)},
+            {"explains_sensors", error != nullptr ? witness->camera().explained() : 0},
             {"age_s", age_s(view.camera->newest, view.now)}};
 }
 

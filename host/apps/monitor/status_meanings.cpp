@@ -159,12 +159,15 @@ constexpr std::array kStatusMeanings = {
     Meaning{"nodes.sensors", "camera", "what the camera says of it, below; null without a camera"},
     Meaning{"nodes.sensors.camera", "contradicts",
             "it contradicts the camera: swapped with another, stuck, or not where the rig has it"},
+    Meaning{
+        "nodes.sensors.camera", "cannot_tell",
+        "it contradicts the camera, but an error of the camera may explain it, or more than two sensors do"},
     Meaning{"nodes.sensors.camera", "fault",
             "what it ranges like: ranges_too_long, ranges_too_short, often_short, turned or exchanged; null: "
             "none of these"},
     Meaning{"nodes.sensors.camera", "refused",
-            "its readings stay out of the map (contradicts_camera): it contradicts the camera, and no fewer "
-            "others agree with it"},
+            "its readings stay out of the map (contradicts_camera): it contradicts the camera, no fewer "
+            "others agree with it, and the mapping refuses such sensors"},
     Meaning{"nodes.sensors.camera", "compared", "ranges for which the camera predicted a surface"},
     Meaning{"nodes.sensors.camera", "fitted",
             "those of them that were about what it predicted; a few centimetres off still are, and up to 12 "
@@ -251,6 +254,16 @@ constexpr std::array kStatusMeanings = {
             "agree on its clock, for 5 s at most"},
     Meaning{"camera", "opened",
             "how often it was opened; over once: it was gone, fell silent, or all its frames came late"},
+    Meaning{"camera", "is_off",
+            "one error of its pose or depth explains what several sensors contradict, and no sensor is named "
+            "meanwhile; null: its images are not compared with ranges"},
+    Meaning{
+        "camera", "turned_deg",
+        "then about how far it is turned against the rig, about its axes: x right, y down, z ahead; null: "
+        "it is not off"},
+    Meaning{"camera", "shifted_m", "or shifted along them; null: it is not off"},
+    Meaning{"camera", "depth_scale", "or the true depth by that of its image; null: it is not off"},
+    Meaning{"camera", "explains_sensors", "of how many sensors that explains the contradictions"},
     Meaning{"camera", "age_s", "since its newest frame came; null: none yet"},
     Meaning{"latency", "readings", "how many the figures are of"},
     Meaning{"latency", "median_ms",

@@ -17,7 +17,6 @@ MappingConfig paper_mapping() {
     MappingConfig config;
     config.depth_update = DepthUpdate::paper;
     config.depth_filter.is_enabled = false;
-    config.refuses_contradicting_sensors = false;
     return config;
 }
 

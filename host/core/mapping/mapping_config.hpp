@@ -45,8 +45,11 @@ struct MappingConfig {
     double depth_range_max_m = 0.0;
     bool removes_robot_from_depth = true;
     bool removes_robot_from_ranges = true;
-    /// Readings of a sensor that contradicts the camera stay out of the map (host/core/witness).
-    bool refuses_contradicting_sensors = true;
+    /// Each range is compared with the camera's image, and a sensor that contradicts it is named, or the
+    /// camera (host/core/witness).
+    bool reports_contradicting_sensors = true;
+    /// And the readings of one that is named stay out of the map. It takes the reports.
+    bool refuses_contradicting_sensors = false;
     /// A beam without return clears space up to here, and never beyond its own limit; 0 leaves the map alone.
     double no_return_clear_m = 0.0;
     /// The box around one image's rays may hold this many voxels (1 byte each with `paper`, 8 with

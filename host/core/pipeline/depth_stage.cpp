@@ -23,14 +23,18 @@ DepthReason reason_of(DepthRejection rejection) {
 
 }  // namespace
 
-DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads)
+DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads, bool finds_certain)
     : camera_(rig.camera.value()),
       config_(config),
       self_margin_m_(rig.depth_self_margin_m),
       T_map_base_(rig.T_map_base),
       T_map_camera_(rig.T_map_base * camera_.T_base_camera),
       filter_(config.depth_filter),
-      integrator_(config, camera_.intrinsics, threads) {}
+      integrator_(config, camera_.intrinsics, threads) {
+    if (finds_certain)
+        certain_.emplace(camera_.intrinsics, CertaintyConfig{.camera_sigma_m = config.depth_filter.sigma_m,
+                                                             .is_filtered = config.depth_filter.is_enabled});
+}
 
 std::uint64_t DepthStage::take_robot_out(DepthImage& image, const RobotPose& robot,
                                          const Eigen::Isometry3d& T_base_camera) {
@@ -53,20 +57,26 @@ Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, c
         return unexpected(DepthReason::wrong_size);
     }
     DepthImage image = std::move(converted).value();
+    if (certain_) {
+        raw_ = image;
+    }
     if (config_.depth_filter.is_enabled) {
         filter_.filter(image);
     }
     const Eigen::Isometry3d T_base_camera =
         frame.T_map_camera ? T_map_base_.inverse() * *frame.T_map_camera : camera_.T_base_camera;
-    if (needs_robot()) {
-        with_robot_ = image;
+    if (certain_) {
+        seen_.everything = image;
     }
     const std::uint64_t robot_pixels = needs_robot() ? take_robot_out(image, *robot, T_base_camera) : 0;
     Result<DepthUpdates, DepthRejection> updates = integrator_.integrate(image, T_map_camera_of(frame));
     if (!updates) {
         return unexpected(reason_of(updates.error()));
     }
-    without_robot_ = std::move(image);
+    if (certain_) {
+        certain_->find(raw_, seen_.everything, seen_.certainty);
+        seen_.world = std::move(image);
+    }
     robot_pixels_ += robot_pixels;
     pixels_ += updates->pixels;
     return std::move(updates).value();

@@ -1,6 +1,7 @@
 // From a depth frame to the terms of its voxels: convert, filter, take the robot out, integrate.
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,13 +13,17 @@
 #include "host/core/mapping/depth_integrator.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/rig/host_rig.hpp"
+#include "host/core/witness/certain_pixels.hpp"
+#include "host/core/witness/sensor_witness.hpp"
 
 namespace octoskin {
 
 class DepthStage {
   public:
     /// The rig must have a camera.
-    DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads = 1);
+    /// `finds_certain`: also which pixels leave no doubt, for the comparison with range sensors.
+    DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads = 1,
+               bool finds_certain = false);
 
     /// Whether a frame needs to know where the robot was.
     [[nodiscard]] bool needs_robot() const noexcept { return config_.removes_robot_from_depth; }
@@ -27,13 +32,9 @@ class DepthStage {
     [[nodiscard]] Result<DepthUpdates, DepthReason> updates(const DepthFrame& frame, const RobotPose* robot);
 
     [[nodiscard]] const HostCamera& camera() const noexcept { return camera_; }
-    /// Of the newest frame that gave updates, if the robot is taken out: filtered, as it came and without the
-    /// robot.
-    /// Given for two others, of which only the memory is used.
-    void swap_images(DepthImage& with_robot, DepthImage& without_robot) noexcept {
-        std::swap(with_robot_, with_robot);
-        std::swap(without_robot_, without_robot);
-    }
+    /// What range sensors are compared with, of the newest frame that gave updates; only if `finds_certain`.
+    /// Given for others, of which only the memory is used.
+    void swap_images(SeenImages& images) noexcept { std::swap(seen_, images); }
     /// Where a frame was seen from.
     [[nodiscard]] Eigen::Isometry3d T_map_camera_of(const DepthFrame& frame) const {
         return frame.T_map_camera.value_or(T_map_camera_);
@@ -65,8 +66,9 @@ class DepthStage {
     DepthFilter filter_;
     DepthIntegrator integrator_;
     std::vector<PosedCapsule> body_camera_;
-    DepthImage with_robot_;
-    DepthImage without_robot_;
+    std::optional<CertainPixels> certain_;
+    DepthImage raw_;
+    SeenImages seen_;
     std::uint64_t robot_pixels_ = 0;
     DepthPixelCounts pixels_;
     WrongSize wrong_size_;

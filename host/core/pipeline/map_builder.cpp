@@ -72,10 +72,12 @@ MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams
       sight_(mapping.standing),
       has_cones_(mapping.range_update == RangeUpdate::cone && sees_any_cone(rig)),
       maps_(mapping.map, maps) {
+    const bool compares =
+        rig.camera && mapping.removes_robot_from_depth && mapping.reports_contradicting_sensors;
     if (rig.camera) {
-        depth_stage_.emplace(rig, mapping, depth_threads);
+        depth_stage_.emplace(rig, mapping, depth_threads, compares);
     }
-    if (rig.camera && mapping.removes_robot_from_depth) {
+    if (compares) {
         witness_.emplace(rig, WitnessConfig{.camera_sigma_m = mapping.depth_filter.sigma_m,
                                             .is_filtered = mapping.depth_filter.is_enabled});
         refuses_contradicting_ = mapping.refuses_contradicting_sensors;
@@ -237,9 +239,8 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
     maps_.go_on(depth.frame.captured);
     maps_.add_depth(depth.updates->terms);
     if (witness_) {
-        depth_stage_->swap_images(with_robot_, without_robot_);
-        witness_->on_depth(with_robot_, without_robot_, depth_stage_->T_map_camera_of(depth.frame),
-                           depth.frame.captured);
+        depth_stage_->swap_images(seen_);
+        witness_->on_depth(seen_, depth_stage_->T_map_camera_of(depth.frame), depth.frame.captured);
     }
     if (listener_ != nullptr) {
         listener_->on_depth(depth.frame, depth.updates->terms);

@@ -102,8 +102,8 @@ class MapBuilder {
     [[nodiscard]] const DepthStage* depth_stage() const noexcept {
         return depth_stage_ ? &*depth_stage_ : nullptr;
     }
-    /// What the camera says of the range sensors; null without a camera, and where the robot stays in its
-    /// image.
+    /// What the camera says of the range sensors; null without a camera, where the robot stays in its image,
+    /// and where the mapping wants no reports.
     [[nodiscard]] const SensorWitness* witness() const noexcept { return witness_ ? &*witness_ : nullptr; }
     /// Whether the readings of a sensor of the rig stay out of the map, because it contradicts the camera.
     [[nodiscard]] bool is_refused(std::uint8_t node_id, std::uint8_t sensor) const {
@@ -131,8 +131,7 @@ class MapBuilder {
     std::optional<DepthStage> depth_stage_;
     std::optional<SensorWitness> witness_;
     bool refuses_contradicting_ = false;
-    DepthImage with_robot_;  ///< their memory goes to the depth stage and comes back
-    DepthImage without_robot_;
+    SeenImages seen_;  ///< their memory goes to the depth stage and comes back
     MapSet maps_;
     CommitListener* listener_ = nullptr;
 };

@@ -14,7 +14,8 @@ constexpr double kCrossingM = 0.12;
 /// Of a walk in steps of changing length: the part of the way to what is seen that a step takes.
 constexpr double kStepShare = 0.4;
 constexpr double kStepMinM = 0.02;
-constexpr double kStepMaxM = 0.2;
+/// What is doubtful is so for 3 cm about (CertainPixels): no ray steps over it.
+constexpr double kStepMaxM = 0.08;
 constexpr int kSamplesMax = 120;
 /// How far something that nobody has seen hides what is behind it, for the length of a step.
 constexpr double kUnknownM = 0.1;
@@ -22,6 +23,11 @@ constexpr double kUnknownM = 0.1;
 constexpr double kBesideM = 0.05;
 /// A ray that slides along a surface says nothing of where it meets it.
 constexpr double kDepthPerMMin = 0.25;
+/// Between the pixels of a plane, two to each side.
+constexpr double kPlaneStepRad = 0.006;
+constexpr int kPlaneSteps = 2;
+/// From a plane the pixels deviate by no more.
+constexpr double kPlaneSigmaMaxM = 0.1;
 
 }  // namespace
 
@@ -29,6 +35,7 @@ CameraView::CameraView(const WitnessImages& images, const CameraIntrinsics& came
                        const Eigen::Isometry3d& T_map_camera, double ray_slope_max)
     : everything_(images.everything),
       world_(images.world),
+      certainty_(images.certainty),
       camera_(camera),
       T_camera_map_(T_map_camera.inverse()),
       ray_slope_max_(ray_slope_max) {}
@@ -45,24 +52,63 @@ std::optional<std::size_t> CameraView::pixel_at(const Eigen::Vector3d& p_camera)
     return static_cast<std::size_t>(v) * camera_.width + static_cast<std::size_t>(u);
 }
 
-std::optional<CameraView::Seen> CameraView::seen_at(const Eigen::Vector3d& p_camera) const {
+std::optional<Look> CameraView::look_at_camera(const Eigen::Vector3d& p_camera) const {
     const auto pixel = pixel_at(p_camera);
     if (!pixel) return std::nullopt;
+    const Certainty certainty = certainty_[*pixel];
     const auto world_m = static_cast<double>(world_.depth_m[*pixel]);
-    if (std::isfinite(world_m)) return Seen{world_m - p_camera.z(), false};
+    if (std::isfinite(world_m)) return Look{world_m - p_camera.z(), false, certainty};
     const auto depth_m = static_cast<double>(everything_.depth_m[*pixel]);
     if (!std::isfinite(depth_m)) return std::nullopt;
-    return Seen{depth_m - p_camera.z(), true};
+    return Look{depth_m - p_camera.z(), true, certainty};
 }
 
-std::optional<double> CameraView::behind_m(const Eigen::Vector3d& p_map) const {
-    const auto seen = seen_at(T_camera_map_ * p_map);
-    return seen ? std::optional(seen->behind_m) : std::nullopt;
+std::optional<Look> CameraView::look_at(const Eigen::Vector3d& p_map) const {
+    return look_at_camera(T_camera_map_ * p_map);
 }
 
-std::optional<double> CameraView::world_behind_m(const Eigen::Vector3d& p_map) const {
-    const auto seen = seen_at(T_camera_map_ * p_map);
-    return seen && !seen->is_robot ? std::optional(seen->behind_m) : std::nullopt;
+/// The inverse depth of a plane is linear in the image.
+std::optional<SeenPlane> CameraView::plane_at(const Eigen::Vector3d& p_camera) const {
+    const auto pixel = pixel_at(p_camera);
+    if (!pixel || certainty_[*pixel] == Certainty::none) return std::nullopt;
+    const int step = std::max(1, static_cast<int>(std::lround(kPlaneStepRad * camera_.fx)));
+    const auto u = static_cast<int>(*pixel % camera_.width);
+    const auto v = static_cast<int>(*pixel / camera_.width);
+    const int reach = kPlaneSteps * step;
+    if (u < reach || v < reach || u + reach >= static_cast<int>(camera_.width) ||
+        v + reach >= static_cast<int>(camera_.height))
+        return std::nullopt;
+    double sum = 0.0;
+    double sum_u = 0.0;
+    double sum_v = 0.0;
+    double squares = 0.0;
+    for (int j = -kPlaneSteps; j <= kPlaneSteps; ++j) {
+        for (int i = -kPlaneSteps; i <= kPlaneSteps; ++i) {
+            const auto row = static_cast<std::size_t>(v + j * step);
+            const auto column = static_cast<std::size_t>(u + i * step);
+            const double inverse = 1.0 / static_cast<double>(world_.depth_m[row * camera_.width + column]);
+            sum += inverse;
+            sum_u += i * inverse;
+            sum_v += j * inverse;
+            squares += inverse * inverse;
+        }
+    }
+    if (!std::isfinite(sum)) return std::nullopt;
+    constexpr double kCount = 25.0;
+    constexpr double kSquaresOfSteps = 50.0;  // of i, and of j, over all pixels
+    const double middle = sum / kCount;
+    const double per_u = sum_u / kSquaresOfSteps;
+    const double per_v = sum_v / kSquaresOfSteps;
+    const double rest =
+        squares - kCount * middle * middle - kSquaresOfSteps * (per_u * per_u + per_v * per_v);
+    if (std::sqrt(std::max(0.0, rest) / (kCount - 3.0)) > kPlaneSigmaMaxM * middle * middle)
+        return std::nullopt;
+    const double x = p_camera.x() / p_camera.z();
+    const double y = p_camera.y() / p_camera.z();
+    const double per_x = per_u / step * camera_.fx;
+    const double per_y = per_v / step * camera_.fy;
+    const Eigen::Vector3d plane(per_x, per_y, middle - per_x * x - per_y * y);  // plane.p = 1
+    return SeenPlane{.normal = -plane.normalized(), .distance_m = 1.0 / plane.norm()};
 }
 
 bool CameraView::is_stopped(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range_m,
@@ -70,7 +116,9 @@ bool CameraView::is_stopped(const Eigen::Vector3d& origin, const Eigen::Vector3d
     std::optional<double> before;
     bool has_crossed = false;
     for (double along_m = kWalkBeginM; along_m <= range_m; along_m += kWalkStepM) {
-        const auto now = world_behind_m(origin + along_m * direction);
+        const auto look = look_at(origin + along_m * direction);
+        const auto now =
+            look && look->is_certain() && !look->is_robot ? std::optional(look->behind_m) : std::nullopt;
         const bool is_continuous = before && now && std::abs(*now - *before) <= kCrossingM;
         if (!is_continuous || *now >= 0.0) {
             has_crossed = false;
@@ -91,8 +139,8 @@ std::optional<CameraView::Crossing> CameraView::crossing_at(const Eigen::Vector3
     double sum = 0.0;
     double ends[2] = {};
     for (int i = -1; i <= 1; ++i) {
-        const auto seen = seen_at(p + (crossed_m + i * kBesideM) * d);
-        if (!seen || seen->is_robot) return std::nullopt;
+        const auto seen = look_at_camera(p + (crossed_m + i * kBesideM) * d);
+        if (!seen || seen->is_robot || (i == 0 && !seen->is_certain())) return std::nullopt;
         sum += seen->behind_m;
         if (i != 0) ends[(i + 1) / 2] = seen->behind_m;
     }
@@ -116,7 +164,7 @@ RayReach CameraView::reach(const Eigen::Vector3d& origin, const Eigen::Vector3d&
     double along_m = kWalkBeginM;
     for (int i = 0; i < kSamplesMax && along_m <= range_max_m; ++i) {
         // A pixel without a value hides as the robot does.
-        const Seen seen = seen_at(p + along_m * d).value_or(Seen{-kUnknownM, true});
+        const Look seen = look_at_camera(p + along_m * d).value_or(Look{-kUnknownM, true, Certainty::none});
         const bool is_hidden = seen.behind_m < 0.0;
         const bool was_hidden = before && before->behind_m < 0.0;
         if (before && is_hidden != was_hidden) {
@@ -139,8 +187,8 @@ RayReach CameraView::reach(const Eigen::Vector3d& origin, const Eigen::Vector3d&
             }
             // Else the ray passes an outline.
         }
-        if (is_hidden || was_hidden) reach.hidden_until_m = along_m;
-        if (!is_hidden) reach.clear_m = along_m;
+        if (is_hidden || was_hidden || !seen.is_clear()) reach.hidden_until_m = along_m;
+        if (!is_hidden && seen.is_clear()) reach.clear_m = along_m;
         before = Before{along_m, seen.behind_m, seen.is_robot};
         along_m += std::clamp(kStepShare * std::abs(seen.behind_m), kStepMinM, kStepMaxM);
     }

@@ -17,12 +17,19 @@ constexpr double kSpacingRad = 5.0 * kRadPerDeg;
 /// The first so many metres of range with this much of the most signal of any such are what is measured.
 constexpr double kPeakWidthM = 0.15;
 constexpr double kPeakShare = 0.3;
+/// How much that is differs from sensor to sensor and with what is seen: if the peak is another one within
+/// these, there is no prediction.
+constexpr double kPeakShareMin = 0.15;
+constexpr double kPeakShareMax = 0.5;
+constexpr double kSamePeakM = 0.03;
 /// If more of the signal may come from where the camera does not see, there is no prediction.
 constexpr double kUnseenShareMax = 0.1;
 /// Rays of a smaller part do not count for what is clear.
 constexpr double kWeightMin = 0.003;
 /// Of how far the peak's ranges are spread, and of how far the peak is from the mean of all.
 constexpr double kSpreadShare = 0.25;
+/// Of how far the ranges are spread of a ray and of those a degree beside it: what a mount may be off.
+constexpr double kRayShare = 0.5;
 
 /// `axis` moved by `angle` towards `turn` about it; turns are the same for every axis of one sensor.
 Eigen::Vector3d off_axis(const Eigen::Vector3d& axis, double angle, double turn) {
@@ -38,7 +45,7 @@ double turn_rad(std::size_t i) {
 
 RangePredictor::RangePredictor(const Eigen::Vector3d& direction_sensor, const BeamOptics& optics,
                                const PredictorConfig& config)
-    : config_(config) {
+    : config_(config), is_cone_(optics.is_cone()) {
     if (!direction_sensor.allFinite()) return;  // nor is any beam
     const double turned_by = kTurnDeg * kRadPerDeg;
     std::array<Eigen::Vector3d, kTurns> turned_axes;
@@ -57,12 +64,14 @@ RangePredictor::RangePredictor(const Eigen::Vector3d& direction_sensor, const Be
     }
     const double reach = optics.half_angle_rad + turned_by;
     const int rows = static_cast<int>(std::ceil(reach / (kSpacingRad * std::sqrt(0.75))));
+    rays_sensor_.push_back(off_axis(direction_sensor, 0.0, 0.0));
     for (int row = -rows; row <= rows; ++row) {
         const double y = row * kSpacingRad * std::sqrt(0.75);
         for (int column = -2 * rows; column <= 2 * rows; ++column) {
             const double x = (column + (row % 2 != 0 ? 0.5 : 0.0)) * kSpacingRad;
             const double angle = std::hypot(x, y);
-            if (angle <= reach) rays_sensor_.push_back(off_axis(direction_sensor, angle, std::atan2(y, x)));
+            if (angle > 0.0 && angle <= reach)
+                rays_sensor_.push_back(off_axis(direction_sensor, angle, std::atan2(y, x)));
         }
     }
     const auto bundle_about = [&](const Eigen::Vector3d& axis) {
@@ -81,6 +90,21 @@ RangePredictor::RangePredictor(const Eigen::Vector3d& direction_sensor, const Be
     for (std::size_t i = 0; i < kTurns; ++i) turned_[i] = bundle_about(turned_axes[i]);
 }
 
+/// Deviation of the ranges of a bundle's rays, of those that meet something.
+double RangePredictor::spread_of(const Bundle& bundle, const std::vector<RayReach>& reaches) {
+    double count = 0.0;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const Weighed& ray : bundle) {
+        if (!reaches[ray.ray].surface_m) continue;
+        count += 1.0;
+        sum += *reaches[ray.ray].surface_m;
+        squares += *reaches[ray.ray].surface_m * *reaches[ray.ray].surface_m;
+    }
+    if (count == 0.0) return 0.0;
+    return std::sqrt(std::max(0.0, squares / count - sum / count * (sum / count)));
+}
+
 RangePredictions RangePredictor::predict(const CameraView& view,
                                          const Eigen::Isometry3d& T_map_sensor) const {
     std::vector<RayReach> reaches;
@@ -89,22 +113,42 @@ RangePredictions RangePredictor::predict(const CameraView& view,
         reaches.push_back(
             view.reach(T_map_sensor.translation(), T_map_sensor.linear() * ray, config_.range_max_m));
     RangePredictions predictions;
-    predictions.mounted = prediction_of(mounted_, reaches);
-    for (std::size_t i = 0; i < kTurns; ++i) predictions.turned[i] = prediction_of(turned_[i], reaches);
+    Echoes echoes;
+    predictions.mounted = prediction_of(mounted_, reaches, echoes);
+    const auto add_hit = [&](std::size_t ray, double share) {
+        const Eigen::Vector3d direction_map = T_map_sensor.linear() * rays_sensor_[ray];
+        predictions.hits.push_back(
+            {.p_map = T_map_sensor.translation() + *reaches[ray].surface_m * direction_map,
+             .direction_map = direction_map,
+             .share = share});
+    };
+    if (is_cone_ && predictions.mounted.range_m) {
+        double peak = 0.0;
+        for (std::size_t i = echoes.peak_begin; i < echoes.peak_end; ++i) peak += echoes.all[i].signal;
+        for (std::size_t i = echoes.peak_begin; i < echoes.peak_end; ++i)
+            add_hit(echoes.all[i].ray, echoes.all[i].signal / peak);
+    }
+    // A single ray's range is its own; those beside it only say how sure that is.
+    if (!is_cone_ && predictions.mounted.range_m) {
+        const RayReach& axis = reaches.front();
+        if (axis.surface_m) {
+            predictions.mounted.range_m = axis.surface_m;
+            predictions.mounted.depth_per_m = axis.depth_per_m;
+            predictions.mounted.is_from_behind = axis.is_from_behind;
+            predictions.mounted.sigma_m = std::hypot(config_.camera_sigma_m / axis.depth_per_m,
+                                                     kRayShare * spread_of(mounted_, reaches));
+            add_hit(0, 1.0);
+        } else {
+            predictions.mounted.range_m.reset();
+        }
+    }
+    for (std::size_t i = 0; i < kTurns; ++i)
+        predictions.turned[i] = prediction_of(turned_[i], reaches, echoes);
     return predictions;
 }
 
-RangePrediction RangePredictor::prediction_of(const Bundle& bundle,
-                                              const std::vector<RayReach>& reaches) const {
-    struct Echo {
-        double range_m;
-        double signal;
-        double variance;
-        double depth_per_m;
-        bool is_from_behind;
-    };
-    std::array<Echo, 128> echoes;
-    std::size_t count = 0;
+RangePrediction RangePredictor::prediction_of(const Bundle& bundle, const std::vector<RayReach>& reaches,
+                                              Echoes& echoes) const {
     RangePrediction prediction{.range_m = {},
                                .sigma_m = 0.0,
                                .hidden_until_m = 0.0,
@@ -112,6 +156,7 @@ RangePrediction RangePredictor::prediction_of(const Bundle& bundle,
                                .depth_per_m = 0.0,
                                .is_from_behind = false};
     if (bundle.empty()) return {};
+    echoes.count = 0;
     double unseen_signal = 0.0;
     double signal = 0.0;
     for (const Weighed& ray : bundle) {
@@ -125,39 +170,29 @@ RangePrediction RangePredictor::prediction_of(const Bundle& bundle,
             unseen_signal += ray.weight / (clear_m * clear_m);
             continue;
         }
-        if (count == echoes.size()) break;
+        if (echoes.count == echoes.all.size()) break;
         const double sigma_m = config_.camera_sigma_m / reach.depth_per_m;
-        echoes[count++] = {*reach.surface_m, ray.weight / (clear_m * clear_m), sigma_m * sigma_m,
-                           reach.depth_per_m, reach.is_from_behind};
-        signal += echoes[count - 1].signal;
+        echoes.all[echoes.count++] = {ray.ray,           *reach.surface_m,  ray.weight / (clear_m * clear_m),
+                                      sigma_m * sigma_m, reach.depth_per_m, reach.is_from_behind};
+        signal += echoes.all[echoes.count - 1].signal;
     }
-    if (count == 0 || unseen_signal > kUnseenShareMax * (signal + unseen_signal)) return prediction;
-    const auto end = echoes.begin() + static_cast<std::ptrdiff_t>(count);
-    std::sort(echoes.begin(), end, [](const Echo& a, const Echo& b) { return a.range_m < b.range_m; });
-    std::array<double, 128> stretches;
-    double strongest = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-        stretches[i] = 0.0;
-        for (std::size_t j = i; j < count && echoes[j].range_m <= echoes[i].range_m + kPeakWidthM; ++j)
-            stretches[i] += echoes[j].signal;
-        strongest = std::max(strongest, stretches[i]);
-    }
-    std::size_t first = 0;
-    while (stretches[first] < kPeakShare * strongest) ++first;
+    if (echoes.count == 0 || unseen_signal > kUnseenShareMax * (signal + unseen_signal)) return prediction;
+    if (!find_peak(echoes)) return prediction;
     double moment = 0.0;
     double square = 0.0;
     double noise = 0.0;
     double peak = 0.0;
     double all = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-        all += echoes[i].signal * echoes[i].range_m;
-        if (i < first || echoes[i].range_m > echoes[first].range_m + kPeakWidthM) continue;
-        peak += echoes[i].signal;
-        prediction.depth_per_m += echoes[i].signal * echoes[i].depth_per_m;
-        prediction.is_from_behind |= echoes[i].is_from_behind;
-        moment += echoes[i].signal * echoes[i].range_m;
-        square += echoes[i].signal * echoes[i].range_m * echoes[i].range_m;
-        noise += echoes[i].signal * echoes[i].signal * echoes[i].variance;
+    for (std::size_t i = 0; i < echoes.count; ++i) {
+        const Echo& echo = echoes.all[i];
+        all += echo.signal * echo.range_m;
+        if (i < echoes.peak_begin || i >= echoes.peak_end) continue;
+        peak += echo.signal;
+        prediction.depth_per_m += echo.signal * echo.depth_per_m;
+        prediction.is_from_behind |= echo.is_from_behind;
+        moment += echo.signal * echo.range_m;
+        square += echo.signal * echo.range_m * echo.range_m;
+        noise += echo.signal * echo.signal * echo.variance;
     }
     const double range_m = moment / peak;
     const double spread_m = std::sqrt(std::max(0.0, square / peak - range_m * range_m));
@@ -167,6 +202,37 @@ RangePrediction RangePredictor::prediction_of(const Bundle& bundle,
     prediction.depth_per_m /= peak;
     prediction.sigma_m = std::sqrt(noise / (peak * peak) + share_m * share_m);
     return prediction;
+}
+
+/// The first stretch with enough signal. False: which one that is depends on how much is enough, for a cone
+/// that sees a little of something near.
+bool RangePredictor::find_peak(Echoes& echoes) const {
+    const auto begin = echoes.all.begin();
+    const auto end = begin + static_cast<std::ptrdiff_t>(echoes.count);
+    std::sort(begin, end, [](const Echo& a, const Echo& b) { return a.range_m < b.range_m; });
+    std::array<double, 128> stretches;
+    double strongest = 0.0;
+    for (std::size_t i = 0; i < echoes.count; ++i) {
+        stretches[i] = 0.0;
+        for (std::size_t j = i;
+             j < echoes.count && echoes.all[j].range_m <= echoes.all[i].range_m + kPeakWidthM; ++j)
+            stretches[i] += echoes.all[j].signal;
+        strongest = std::max(strongest, stretches[i]);
+    }
+    const auto first_with = [&](double share) {
+        std::size_t first = 0;
+        while (stretches[first] < share * strongest) ++first;
+        return first;
+    };
+    const auto range_at = [&](std::size_t i) { return echoes.all[i].range_m; };
+    if (is_cone_ && range_at(first_with(kPeakShareMax)) - range_at(first_with(kPeakShareMin)) > kSamePeakM)
+        return false;
+    echoes.peak_begin = first_with(kPeakShare);
+    echoes.peak_end = echoes.peak_begin;
+    while (echoes.peak_end < echoes.count &&
+           range_at(echoes.peak_end) <= range_at(echoes.peak_begin) + kPeakWidthM)
+        ++echoes.peak_end;
+    return true;
 }
 
 }  // namespace octoskin

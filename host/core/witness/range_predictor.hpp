@@ -24,7 +24,15 @@ struct RangePrediction {
 inline constexpr std::size_t kTurns = 8;
 inline constexpr double kTurnDeg = 10.0;
 
+/// Where one ray of a sensor meets what the camera sees.
+struct SurfaceHit {
+    Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
+    Eigen::Vector3d direction_map = Eigen::Vector3d::UnitZ();  ///< of the ray
+    double share = 1.0;                                        ///< of the signal that is ranged
+};
+
 struct RangePredictions {
+    std::vector<SurfaceHit> hits;                ///< that make the range as mounted, if there is one
     RangePrediction mounted;                     ///< as the rig has it
     std::array<RangePrediction, kTurns> turned;  ///< about the sensor's position by kTurnDeg
 };
@@ -52,11 +60,29 @@ class RangePredictor {
         double weight = 0.0;
     };
     using Bundle = std::vector<Weighed>;
+    struct Echo {
+        std::size_t ray = 0;
+        double range_m = 0.0;
+        double signal = 0.0;
+        double variance = 0.0;
+        double depth_per_m = 0.0;
+        bool is_from_behind = false;
+    };
+    /// In ascending order of range; the peak is some of them.
+    struct Echoes {
+        std::array<Echo, 128> all;
+        std::size_t count = 0;
+        std::size_t peak_begin = 0;
+        std::size_t peak_end = 0;
+    };
 
-    [[nodiscard]] RangePrediction prediction_of(const Bundle& bundle,
-                                                const std::vector<RayReach>& reaches) const;
+    [[nodiscard]] static double spread_of(const Bundle& bundle, const std::vector<RayReach>& reaches);
+    [[nodiscard]] RangePrediction prediction_of(const Bundle& bundle, const std::vector<RayReach>& reaches,
+                                                Echoes& echoes) const;
+    [[nodiscard]] bool find_peak(Echoes& echoes) const;
 
     PredictorConfig config_;
+    bool is_cone_ = false;
     std::vector<Eigen::Vector3d> rays_sensor_;
     Bundle mounted_;
     std::array<Bundle, kTurns> turned_;

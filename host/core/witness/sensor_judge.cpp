@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace octoskin {
 namespace {
@@ -14,6 +15,8 @@ constexpr double kPoseSigmaM = 0.01;
 constexpr double kMisfitMax = 4.0;
 /// The offset that is looked for.
 constexpr double kOffsetM = 0.06;
+/// What fits counts for a sensor until so much is together.
+constexpr double kCreditMax = 14.0;
 /// Each comparison that says anything takes this of the evidence.
 constexpr double kDoubt = 0.15;
 /// Where the camera does not see what is before a surface, a range that is shorter by this is of something
@@ -32,6 +35,15 @@ constexpr double kNotShortRatio = -0.4;
 /// No fault is named, but that of single ranges, while the newest dozen fit what the rig says this well.
 constexpr double kMisfitShare = 1.0 / 12.0;
 constexpr double kMisfitOfSoundMax = 0.35;
+/// Two that are exchanged both range like the other: no exchange, if the other denies it so much.
+constexpr double kDeniedFrom = -6.0;
+/// A comparison that says so much is for a fault or against it, until some 64 others are.
+constexpr double kSaysMuch = 0.5;
+constexpr float kForgotten = 1.0F - 1.0F / 64.0F;
+/// Evidence of a shorter time is of one view of one thing; and it takes the camera's so long.
+constexpr Nanoseconds kEvidenceTime{3'000'000'000};
+/// So many others may contradict the camera beside one that is named: of two that are exchanged both do.
+constexpr std::size_t kOthersMax = 1;
 
 /// Places in Sensor::faults; turns come after these.
 constexpr std::size_t kTooLong = 0;
@@ -54,13 +66,21 @@ SensorFault fault_at(std::size_t place) {
 
 }  // namespace
 
-void SensorJudge::Sum::add(double ratio) {
+void SensorJudge::Sum::count(double ratio) {
+    if (std::abs(ratio) < kSaysMuch) return;
+    fors = kForgotten * fors + (ratio > 0.0 ? 1.0F : 0.0F);
+    againsts = kForgotten * againsts + (ratio < 0.0 ? 1.0F : 0.0F);
+}
+
+void SensorJudge::Sum::add(double ratio, HostTime now) {
     if (ratio == 0.0) return;
-    for_it = std::clamp(for_it + ratio - kDoubt, 0.0, 2.0 * kNamedFrom);
+    if (for_it <= 0.0) since = now;
+    for_it = std::clamp(for_it + ratio - kDoubt, -kCreditMax, 2.0 * kNamedFrom);
     against_it = std::clamp(against_it - ratio - kDoubt, 0.0, 2.0 * kNamedFrom);
 }
 
-SensorJudge::SensorJudge(std::span<const std::size_t> sensors_of_nodes) {
+SensorJudge::SensorJudge(std::span<const std::size_t> sensors_of_nodes)
+    : camera_(std::accumulate(sensors_of_nodes.begin(), sensors_of_nodes.end(), std::size_t{0})) {
     for (const std::size_t count : sensors_of_nodes) {
         const std::size_t begin = sensors_.size();
         for (std::size_t i = 0; i < count; ++i) {
@@ -116,7 +136,7 @@ double SensorJudge::sigma_of(const Compared& compared, const Expected& a, const 
     return std::hypot(std::max(a.sigma_m, b.sigma_m), compared.beam.sigma_m, kPoseSigmaM);
 }
 
-void SensorJudge::judge(std::span<const Compared> compared) {
+void SensorJudge::judge(std::span<const Compared> compared, const CameraView& view) {
     std::vector<Expected> mounted;
     mounted.reserve(compared.size());
     looks_.assign(sensors_.size(), Look::nothing);
@@ -132,11 +152,42 @@ void SensorJudge::judge(std::span<const Compared> compared) {
                 weigh_exchange(compared[i], mounted[i], compared[j], mounted[j]);
         }
     }
+    for (const Compared& one : compared) ask_camera(one, view);
+    camera_.decide();
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
-        decide(sensors_[i]);
+        decide(static_cast<std::uint16_t>(i));
         sensors_[i].looks = {looks_[i], sensors_[i].looks[0]};
     }
     for (const Compared& one : compared) remember(one);
+}
+
+void SensorJudge::add(Sensor& sensor, Sum& sum, double ratio) {
+    sum.count(ratio);
+    sum.add(ratio, sensor.now);
+}
+
+void SensorJudge::ask_camera(const Compared& compared, const CameraView& view) {
+    const RangePrediction& at = compared.predictions.mounted;
+    const double range_m = *compared.beam.range_m;
+    if (!at.range_m || (!at.is_from_behind && range_m < at.hidden_until_m)) return;
+    camera_.compare(compared.sensor,
+                    {.off_m = range_m - *at.range_m,
+                     .sigma_m = std::hypot(compared.beam.sigma_m, at.sigma_m),
+                     .is_from_behind = at.is_from_behind},
+                    compared.predictions.hits, view);
+}
+
+bool SensorJudge::contradicts(const Sensor& sensor) const {
+    return sensor.verdict.fault || sensor.is_far_off || sensor.verdict.evidence >= kContradictsFrom;
+}
+
+bool SensorJudge::may_name(std::uint16_t number) const {
+    if (camera_.error() || camera_.is_suspect() || camera_.may_explain(number)) return false;
+    // Another test may have found one since the newest image was judged: they are counted anew.
+    const auto contradicting =
+        std::ranges::count_if(sensors_, [this](const Sensor& sensor) { return contradicts(sensor); });
+    const auto others = static_cast<std::size_t>(contradicting) - (contradicts(sensors_[number]) ? 1U : 0U);
+    return others <= kOthersMax;
 }
 
 void SensorJudge::weigh(const Compared& compared, const Expected& mounted) {
@@ -144,6 +195,7 @@ void SensorJudge::weigh(const Compared& compared, const Expected& mounted) {
     const double range_m = *compared.beam.range_m;
     const double sigma_m = sigma_of(compared, mounted, mounted);
     const auto sound = misfit(mounted, range_m, sigma_m);
+    sensor.now = compared.beam.captured;
     weigh_short(sensor, compared, mounted, sound.value_or(kMisfitMax));
     if (!sound) return;
     if (!mounted.at.range_m) return;
@@ -153,16 +205,16 @@ void SensorJudge::weigh(const Compared& compared, const Expected& mounted) {
         sensor.verdict.agreed += *sound <= kMisfitOfHiddenMax ? 1U : 0U;
     }
     if (const auto other = misfit(mounted, range_m - kOffsetM, sigma_m))
-        sensor.faults[kTooLong].add(*sound - *other);
+        add(sensor, sensor.faults[kTooLong], *sound - *other);
     if (const auto other = misfit(mounted, range_m + kOffsetM, sigma_m))
-        sensor.faults[kTooShort].add(*sound - *other);
+        add(sensor, sensor.faults[kTooShort], *sound - *other);
     for (std::size_t i = 0; i < kTurns; ++i) {
         if (!compared.predictions.turned[i].range_m) continue;
         const Expected turned = expected(compared, compared.predictions.turned[i]);
         const double sigma_both_m = sigma_of(compared, mounted, turned);
         const auto as_mounted = misfit(mounted, range_m, sigma_both_m);
         const auto as_turned = misfit(turned, range_m, sigma_both_m);
-        if (as_mounted && as_turned) sensor.faults[kTurned + i].add(*as_mounted - *as_turned);
+        if (as_mounted && as_turned) add(sensor, sensor.faults[kTurned + i], *as_mounted - *as_turned);
     }
 }
 
@@ -176,7 +228,7 @@ void SensorJudge::weigh_short(Sensor& sensor, const Compared& compared, const Ex
     Look& look = looks_[compared.sensor];
     Sum& sum = sensor.faults[kOftenShort];
     if (!at.is_from_behind && range_m > at.hidden_until_m + margin_m && range_m < at.clear_m - margin_m) {
-        sum.add(kShortRatio);
+        add(sensor, sum, kShortRatio);
         return;
     }
     if (!at.range_m || !mounted.has_lower_bound) return;
@@ -186,8 +238,8 @@ void SensorJudge::weigh_short(Sensor& sensor, const Compared& compared, const Ex
         look = Look::agrees;
         const bool agreed_before = sensor.looks[0] == Look::agrees;
         const bool was_short_between = sensor.looks[0] == Look::is_short && sensor.looks[1] == Look::agrees;
-        if (was_short_between) sum.add(kShortRatio);
-        if (agreed_before) sum.add(kNotShortRatio);
+        if (was_short_between) add(sensor, sum, kShortRatio);
+        if (agreed_before) add(sensor, sum, kNotShortRatio);
     }
 }
 
@@ -198,12 +250,23 @@ void SensorJudge::weigh_exchange(const Compared& of, const Expected& own, const 
     const double sigma_m = sigma_of(of, own, others);
     const auto sound = misfit(own, *of.beam.range_m, sigma_m);
     const auto exchanged = misfit(others, *of.beam.range_m, sigma_m);
-    if (sound && exchanged) sensor.exchanged[other.sensor - sensor.node_begin].add(*sound - *exchanged);
+    if (sound && exchanged)
+        add(sensor, sensor.exchanged[other.sensor - sensor.node_begin], *sound - *exchanged);
 }
 
-void SensorJudge::decide(Sensor& sensor) {
+/// Not what a few seconds say, nor what as many comparisons deny.
+bool SensorJudge::is_convincing(const Sensor& sensor, const Sum& sum) const {
+    if (sensor.now - sum.since < kEvidenceTime) return false;
+    const bool is_short = &sum == &sensor.faults[kOftenShort];
+    if (!is_short && sensor.misfit_mean < kMisfitOfSoundMax) return false;
+    return static_cast<double>(sum.fors) >= static_cast<double>(sum.againsts);
+}
+
+void SensorJudge::decide(std::uint16_t number) {
+    Sensor& sensor = sensors_[number];
     const auto by_evidence = [](const Sum& a, const Sum& b) { return a.for_it < b.for_it; };
-    if (sensor.named != nullptr && sensor.named->against_it >= kNamedFrom) {
+    const bool is_taken_back = sensor.named != nullptr && sensor.named->against_it >= kTakenBackFrom;
+    if (is_taken_back || camera_.error()) {
         sensor.named = nullptr;
         sensor.verdict.fault.reset();
         sensor.verdict.exchanged_with.reset();
@@ -215,23 +278,32 @@ void SensorJudge::decide(Sensor& sensor) {
     const bool is_exchange = exchange->for_it > fault->for_it;
     Sum& likeliest = is_exchange ? *exchange : *fault;
     sensor.verdict.evidence = likeliest.for_it;
-    if (sensor.named != nullptr || likeliest.for_it < kNamedFrom) return;
-    const bool is_short = &likeliest == &sensor.faults[kOftenShort];
-    if (!is_short && sensor.misfit_mean < kMisfitOfSoundMax) return;
+    sensor.verdict.cannot_tell = false;
+    if (sensor.named != nullptr) return;
+    const auto other = static_cast<std::size_t>(exchange - sensor.exchanged.begin());
+    const bool is_denied =
+        is_exchange &&
+        sensors_[sensor.node_begin + other].exchanged[number - sensor.node_begin].for_it < kDeniedFrom;
+    const double enough = is_exchange ? kExchangedFrom : kNamedFrom;
+    const bool is_enough = likeliest.for_it >= enough && !is_denied && is_convincing(sensor, likeliest);
+    if (!is_enough || !may_name(number)) {
+        sensor.verdict.cannot_tell = likeliest.for_it >= kContradictsFrom;
+        return;
+    }
     sensor.named = &likeliest;
     likeliest.against_it = 0.0;
     if (is_exchange) {
         sensor.verdict.fault = SensorFault::exchanged;
-        sensor.verdict.exchanged_with = static_cast<std::uint8_t>(exchange - sensor.exchanged.begin());
+        sensor.verdict.exchanged_with = static_cast<std::uint8_t>(other);
     } else {
         sensor.verdict.fault = fault_at(static_cast<std::size_t>(fault - sensor.faults.begin()));
     }
 }
 
-/// A lying sensor's word is not for others.
+/// What contradicts is not for others.
 void SensorJudge::remember(const Compared& compared) {
     const RangePrediction& at = compared.predictions.mounted;
-    if (sensors_[compared.sensor].verdict.fault || !at.range_m || !at.is_from_behind) return;
+    if (contradicts(sensors_[compared.sensor]) || !at.range_m || !at.is_from_behind) return;
     const double thickness_m = (*at.range_m - *compared.beam.range_m) * at.depth_per_m;
     if (thickness_m > -kWallNoiseM && thickness_m < kWallM)
         thickness_.add(compared.sensor,

@@ -1,5 +1,6 @@
 // Sequential tests of range sensors against what the camera predicts of them: whether each ranges as the rig
-// has it, or as one that is off, turned, exchanged with another, or short every now and then.
+// has it, or as one that is off, turned, exchanged with another, or short every now and then; or whether one
+// error of the camera explains as much.
 #pragma once
 
 #include <array>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "host/core/beams/beam.hpp"
+#include "host/core/witness/camera_judge.hpp"
 #include "host/core/witness/range_predictor.hpp"
 #include "host/core/witness/thickness_memory.hpp"
 
@@ -34,27 +36,46 @@ class SensorJudge {
     /// `sensors_of_nodes`: how many each node has.
     explicit SensorJudge(std::span<const std::size_t> sensors_of_nodes);
 
-    /// All that is compared with one image, at most one range a sensor. 0.1 ms for 34.
-    void judge(std::span<const Compared> compared);
+    /// All that is compared with one image, at most one range a sensor. 0.3 ms for 34.
+    void judge(std::span<const Compared> compared, const CameraView& view);
+    /// What another test has found of a sensor counts as its contradicting.
+    void set_far_off(std::uint16_t sensor, bool is_far_off) { sensors_[sensor].is_far_off = is_far_off; }
+
+    /// Whether a sensor that contradicts may be named. Not while the camera may be what is off: because an
+    /// error of it explains what several sensors contradict, or this one and others a little; or because
+    /// more than two sensors contradict at once.
+    [[nodiscard]] bool may_name(std::uint16_t sensor) const;
+    [[nodiscard]] const CameraJudge& camera() const noexcept { return camera_; }
 
     struct Verdict {
         std::optional<SensorFault> fault;
         std::optional<std::uint8_t> exchanged_with;  ///< local index on its node
+        bool cannot_tell = false;    ///< it contradicts, but not convincingly, or it may be the camera
         std::uint64_t agreed = 0;    ///< comparisons with a surface that fit what the rig says
         std::uint64_t compared = 0;  ///< and all of them
         double evidence = 0.0;       ///< for the likeliest fault: log-likelihood ratio to a sound sensor
     };
     [[nodiscard]] const Verdict& verdict(std::uint16_t sensor) const { return sensors_[sensor].verdict; }
 
-    /// With so much evidence a fault is named, and with so much against it, it is no more.
-    static constexpr double kNamedFrom = 14.0;
+    /// With so much evidence a fault is named.
+    static constexpr double kNamedFrom = 24.0;
+    /// With so much against it, it is no more.
+    static constexpr double kTakenBackFrom = 14.0;
+    /// An exchange takes more: it is the best of as many guesses as the node has sensors.
+    static constexpr double kExchangedFrom = 30.0;
+    /// With so much it counts as contradicting.
+    static constexpr double kContradictsFrom = 8.0;
 
   private:
     /// One fault that a sensor may have.
     struct Sum {
         double for_it = 0.0;  ///< log-likelihood ratio to a sound sensor, from the last time that it was 0
         double against_it = 0.0;  ///< the same the other way round
-        void add(double ratio);
+        float fors = 0.0F;        ///< of the newest comparisons that say much, about how many are for it
+        float againsts = 0.0F;    ///< and against it
+        HostTime since{};         ///< when the newest evidence for it began
+        void add(double ratio, HostTime now);
+        void count(double ratio);
     };
     static constexpr std::size_t kFaults = 3 + kTurns;
     enum class Look : std::uint8_t { nothing, agrees, is_short };
@@ -63,6 +84,8 @@ class SensorJudge {
         std::array<Sum, kFaults> faults{};
         std::vector<Sum> exchanged;   ///< by sensor of the node
         const Sum* named = nullptr;   ///< of those
+        HostTime now{};               ///< of what is weighed
+        bool is_far_off = false;      ///< by another test
         double misfit_mean = 0.0;     ///< of the newest ranges, to what the rig says
         std::array<Look, 2> looks{};  ///< of the two images before, the newest first
         Verdict verdict;
@@ -81,14 +104,19 @@ class SensorJudge {
     void weigh(const Compared& compared, const Expected& mounted);
     void weigh_short(Sensor& sensor, const Compared& compared, const Expected& mounted,
                      double misfit_mounted);
+    static void add(Sensor& sensor, Sum& sum, double ratio);
     void weigh_exchange(const Compared& of, const Expected& own, const Compared& other,
                         const Expected& others);
-    void decide(Sensor& sensor);
+    void ask_camera(const Compared& compared, const CameraView& view);
+    [[nodiscard]] bool contradicts(const Sensor& sensor) const;
+    [[nodiscard]] bool is_convincing(const Sensor& sensor, const Sum& sum) const;
+    void decide(std::uint16_t number);
     void remember(const Compared& compared);
 
     std::vector<Sensor> sensors_;
     std::vector<Look> looks_;  ///< of the image that is judged
     ThicknessMemory thickness_;
+    CameraJudge camera_;
 };
 
 }  // namespace octoskin

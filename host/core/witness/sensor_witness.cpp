@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace octoskin {
@@ -45,6 +46,9 @@ bool has_moved(const Beam& beam, const Beam& before) {
            beam.direction_map.dot(before.direction_map) <= kTurnedCos;
 }
 
+/// What contradicts for a shorter time, or at one place only, may be a thing that the camera does not show.
+constexpr Nanoseconds kContradictsForMin{8'000'000'000};
+constexpr double kElsewhereM = 0.12;
 /// The camera's filter takes about half of its noise.
 constexpr double kFiltered = 0.5;
 /// So many ranges that fit, and a sensor speaks for the camera.
@@ -110,6 +114,22 @@ std::string describe(const SensorEvidence& evidence) {
            " behind a surface that it sees)";
 }
 
+std::string describe(const CameraError& error, std::size_t sensors) {
+    const auto text = [](const char* format, double value) {
+        std::array<char, 64> buffer{};
+        std::snprintf(buffer.data(), buffer.size(), format, value);
+        return std::string(buffer.data());
+    };
+    std::string by;
+    if (error.turn_deg.norm() > 0.0) by = "turned by about " + text("%.0f deg", error.turn_deg.norm());
+    if (error.shift_m.norm() > 0.0) by = "shifted by about " + text("%.0f cm", 100.0 * error.shift_m.norm());
+    if (error.depth_scale != 1.0)
+        by = "its depth off by about " + text("%.1f %%", 100.0 * (error.depth_scale - 1.0));
+    return "not where the rig has it, or its scale is off: that explains what " + std::to_string(sensors) +
+           " sensors contradict (" + by +
+           "): measure its pose anew (docs/method.md, \"A sensor that contradicts the camera\")";
+}
+
 SensorWitness::SensorWitness(const HostRig& rig, const WitnessConfig& config)
     : config_(config),
       camera_(rig.camera.value().intrinsics),
@@ -139,16 +159,15 @@ void SensorWitness::on_beam(const Beam& beam, const Eigen::Isometry3d& T_map_sen
     compare_next();
 }
 
-void SensorWitness::on_depth(DepthImage& everything, DepthImage& world, const Eigen::Isometry3d& T_map_camera,
-                             HostTime captured) {
-    assert(world.depth_m.size() == std::size_t{camera_.width} * camera_.height);
-    assert(everything.depth_m.size() == world.depth_m.size());
+void SensorWitness::on_depth(SeenImages& images, const Eigen::Isometry3d& T_map_camera, HostTime captured) {
+    const std::size_t pixels = std::size_t{camera_.width} * camera_.height;
+    assert(images.world.depth_m.size() == pixels && images.everything.depth_m.size() == pixels &&
+           images.certainty.size() == pixels);
     if (next_ < sensors_.size()) judge();
-    std::swap(everything_, everything);
-    std::swap(world_, world);
+    std::swap(images_, images);
     T_map_camera_ = T_map_camera;
     // Not always the newest: of a sensor with a rhythm of its own, every third image would see the same.
-    const std::size_t wanted = images_++ % 3;
+    const std::size_t wanted = image_count_++ % 3;
     for (Sensor& sensor : sensors_) {
         sensor.waiting.reset();
         std::size_t age = wanted;
@@ -166,6 +185,11 @@ void SensorWitness::settle() {
     while (next_ < sensors_.size()) compare_next();
 }
 
+CameraView SensorWitness::view() const {
+    return CameraView({images_.everything, images_.world, images_.certainty}, camera_, T_map_camera_,
+                      ray_slope_max_);
+}
+
 void SensorWitness::go_to_waiting() {
     while (next_ < sensors_.size() && !sensors_[next_].waiting) ++next_;
 }
@@ -177,10 +201,10 @@ void SensorWitness::compare_next() {
         const auto placed = std::exchange(sensor.waiting, std::nullopt);
         const Beam& beam = placed->beam;
         const std::size_t zone = beam.source.zone;
-        const CameraView view({everything_, world_}, camera_, T_map_camera_, ray_slope_max_);
+        const CameraView view = this->view();
         const Finding finding = compare(beam, sensor.optics[zone], view);
         bool says_something = finding != Finding::nothing;
-        if (says_something) count(sensor, finding);
+        if (says_something) count(sensor, beam, finding);
         if (beam.range_m) {
             compared_.push_back({static_cast<std::uint16_t>(next_), beam,
                                  sensor.predictors[zone].predict(view, placed->T_map_sensor)});
@@ -195,17 +219,24 @@ void SensorWitness::compare_next() {
 /// Once for each image.
 void SensorWitness::judge() {
     next_ = sensors_.size();
-    judge_.judge(compared_);
+    judge_.judge(compared_, view());
     compared_.clear();
     contradicting_ = 0;
     agreeing_ = 0;
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
         const SensorJudge::Verdict& verdict = judge_.verdict(static_cast<std::uint16_t>(i));
         SensorEvidence& evidence = sensors_[i].evidence;
+        // Found, it counts for the others at once.
+        judge_.set_far_off(static_cast<std::uint16_t>(i), sensors_[i].found_far_off);
+        const bool may_name = judge_.may_name(static_cast<std::uint16_t>(i));
+        evidence.is_far_off =
+            sensors_[i].found_far_off && (evidence.is_far_off || may_name) && !judge_.camera().error();
+        evidence.cannot_tell = verdict.cannot_tell || (sensors_[i].found_far_off && !evidence.is_far_off);
         evidence.fault = verdict.fault;
         evidence.compared = verdict.compared;
         evidence.fitted = verdict.agreed;
         evidence.exchanged_with = verdict.exchanged_with;
+        evidence.evidence = verdict.evidence;
         sensors_[i].contradicted = evidence.contradicts();
         contradicting_ += evidence.contradicts() ? 1U : 0U;
         agreeing_ +=
@@ -224,14 +255,18 @@ SensorWitness::Finding SensorWitness::compare(const Beam& beam, const BeamOptics
     const auto cone =
         cone_about(beam.direction_map, optics.is_cone() ? optics.half_angle_rad : kInnerHalfAngle);
     const auto all_of_cone = [&cone](const auto& holds) { return std::ranges::all_of(cone, holds); };
+    const auto look_at_end = [&](const Eigen::Vector3d& ray) {
+        const auto look = view.look_at(beam.p_map_sensor + range_m * ray);
+        return look && look->is_certain() ? look : std::nullopt;
+    };
     const bool sees_through = beam.range_m && all_of_cone([&](const Eigen::Vector3d& ray) {
-                                  const auto behind_m = view.behind_m(beam.p_map_sensor + range_m * ray);
-                                  return behind_m && *behind_m > bound_m;
+                                  const auto look = look_at_end(ray);
+                                  return look && look->is_clear() && look->behind_m > bound_m;
                               });
     if (sees_through) return Finding::in_free_space;
     const bool sees_it = beam.range_m && all_of_cone([&](const Eigen::Vector3d& ray) {
-                             const auto behind_m = view.world_behind_m(beam.p_map_sensor + range_m * ray);
-                             return behind_m && std::abs(*behind_m) <= bound_m;
+                             const auto look = look_at_end(ray);
+                             return look && !look->is_robot && std::abs(look->behind_m) <= bound_m;
                          });
     if (sees_it) return Finding::agrees;
     const bool is_stopped = all_of_cone([&](const Eigen::Vector3d& ray) {
@@ -242,8 +277,9 @@ SensorWitness::Finding SensorWitness::compare(const Beam& beam, const BeamOptics
 
 /// Wald's sequential test, again and again: each one that ends flags the sensor or clears it. One test flags
 /// a sensor that is contradicted in at most `contradicted_sound` of its comparisons, independently, with a
-/// probability of at most false_alarm / (1 - missed) (Wald 1945).
-void SensorWitness::count(Sensor& sensor, Finding finding) const {
+/// probability of at most false_alarm / (1 - missed) (Wald 1945). Contradictions that flag a sensor are of
+/// some time and of more than one place.
+void SensorWitness::count(Sensor& sensor, const Beam& beam, Finding finding) const {
     SensorEvidence& evidence = sensor.evidence;
     const double sound = config_.contradicted_sound;
     const double faulty = config_.contradicted_faulty;
@@ -253,13 +289,27 @@ void SensorWitness::count(Sensor& sensor, Finding finding) const {
     evidence.behind_surface += finding == Finding::behind_surface ? 1 : 0;
     evidence.log_likelihood_ratio +=
         agrees ? std::log((1.0 - faulty) / (1.0 - sound)) : std::log(faulty / sound);
-    const bool is_faulty =
-        evidence.log_likelihood_ratio >= std::log((1.0 - config_.missed) / config_.false_alarm);
-    const bool is_sound =
-        evidence.log_likelihood_ratio <= std::log(config_.missed / (1.0 - config_.false_alarm));
-    if (!is_faulty && !is_sound) return;
-    evidence.is_far_off = is_faulty;
+    const double faulty_from = std::log((1.0 - config_.missed) / config_.false_alarm);
+    evidence.log_likelihood_ratio = std::min(evidence.log_likelihood_ratio, faulty_from);
+    if (!agrees) {
+        const Eigen::Vector3d p_map =
+            beam.p_map_sensor + beam.range_m.value_or(beam.clear_limit_m) * beam.direction_map;
+        if (!sensor.first_contradiction) sensor.first_contradiction = {beam.captured, p_map};
+        const Contradiction& first = *sensor.first_contradiction;
+        sensor.contradicts_elsewhere |= (p_map - first.p_map).norm() > kElsewhereM;
+        const bool is_faulty = evidence.log_likelihood_ratio >= faulty_from && sensor.contradicts_elsewhere &&
+                               beam.captured - first.captured >= kContradictsForMin;
+        if (!is_faulty) return;
+        sensor.found_far_off = true;
+    } else {
+        const bool is_sound =
+            evidence.log_likelihood_ratio <= std::log(config_.missed / (1.0 - config_.false_alarm));
+        if (!is_sound) return;
+        sensor.found_far_off = false;
+    }
     evidence.log_likelihood_ratio = 0.0;
+    sensor.first_contradiction.reset();
+    sensor.contradicts_elsewhere = false;
 }
 
 void SensorWitness::forget_beams() {

@@ -46,8 +46,22 @@ struct SensorEvidence {
     std::optional<std::uint8_t> exchanged_with = std::nullopt;  ///< local index on its node
     std::uint64_t compared = 0;
     std::uint64_t fitted = 0;
+    double evidence = 0.0;  ///< for the likeliest fault: log-likelihood ratio to a sound sensor
+
+    /// It would be named, but the camera or several sensors may be what is off.
+    bool cannot_tell = false;
 
     [[nodiscard]] bool contradicts() const noexcept { return is_far_off || fault.has_value(); }
+};
+
+/// "not where the rig has it: ..." with what to do, for a person.
+[[nodiscard]] std::string describe(const CameraError& error, std::size_t sensors);
+
+/// What the camera showed at one instant, all of its size. Their memory goes in and out.
+struct SeenImages {
+    DepthImage everything;             ///< filtered, with the robot in it
+    DepthImage world;                  ///< without the robot
+    std::vector<Certainty> certainty;  ///< by pixel
 };
 
 /// "contradicts the camera: ..." with what to do and the ranges that speak against it, for a person.
@@ -68,8 +82,7 @@ class SensorWitness {
     /// images of before. Each sensor's newest beam waits to be compared with them, if the two are of about
     /// the same time and the sensor has moved since it was last counted: what stands still says the same
     /// thing over and over. What has not been compared with the image before never will be. About 0.1 ms.
-    void on_depth(DepthImage& everything, DepthImage& world, const Eigen::Isometry3d& T_map_camera,
-                  HostTime captured);
+    void on_depth(SeenImages& images, const Eigen::Isometry3d& T_map_camera, HostTime captured);
 
     /// Compares all that still waits: up to 7 ms for 34 sensors.
     void settle();
@@ -80,6 +93,9 @@ class SensorWitness {
     /// Of a sensor of the rig (asserted).
     [[nodiscard]] const SensorEvidence& evidence(std::uint8_t node_id, std::uint8_t sensor) const;
 
+    /// How the camera is off, while that explains what several sensors contradict; then no sensor is named.
+    [[nodiscard]] const CameraJudge& camera() const noexcept { return judge_.camera(); }
+
     /// Whether its readings are to be kept from the map: it contradicts the camera, and no fewer other
     /// sensors agree with it. Else it may be the camera.
     [[nodiscard]] bool is_to_be_refused(std::uint8_t node_id, std::uint8_t sensor) const;
@@ -89,22 +105,30 @@ class SensorWitness {
         Beam beam;
         Eigen::Isometry3d T_map_sensor;
     };
+    struct Contradiction {
+        HostTime captured;
+        Eigen::Vector3d p_map;  ///< where the range ended
+    };
     struct Sensor {
         std::vector<RangePredictor> predictors;  ///< by zone
         std::vector<BeamOptics> optics;
         std::array<std::optional<Placed>, 3> newest;  ///< the newest first
         std::optional<Placed> waiting;
         std::optional<Beam> counted;
+        std::optional<Contradiction> first_contradiction;  ///< in the test that is not ended
+        bool contradicts_elsewhere = false;                ///< than at that
+        bool found_far_off = false;                        ///< by the test, whichever device may be off
         SensorEvidence evidence;
         bool contradicted = false;  ///< after the newest image
     };
     enum class Finding : std::uint8_t { nothing, agrees, in_free_space, behind_surface };
 
+    [[nodiscard]] CameraView view() const;
     void go_to_waiting();
     void compare_next();
     void judge();
     [[nodiscard]] Finding compare(const Beam& beam, const BeamOptics& optics, const CameraView& view) const;
-    void count(Sensor& sensor, Finding finding) const;
+    void count(Sensor& sensor, const Beam& beam, Finding finding) const;
     [[nodiscard]] std::size_t index_of(std::uint8_t node_id, std::uint8_t sensor) const;
 
     WitnessConfig config_;
@@ -113,10 +137,9 @@ class SensorWitness {
     std::map<std::pair<std::uint8_t, std::uint8_t>, std::size_t> places_;  ///< by node and local index
     std::vector<Sensor> sensors_;
     SensorJudge judge_;
-    DepthImage everything_;
-    DepthImage world_;
+    SeenImages images_;
     Eigen::Isometry3d T_map_camera_ = Eigen::Isometry3d::Identity();
-    std::uint64_t images_ = 0;
+    std::uint64_t image_count_ = 0;
     std::size_t next_ = 0;  ///< to be compared; sensors_.size(): none waits
     std::vector<Compared> compared_;
     std::size_t contradicting_ = 0;

@@ -7,7 +7,7 @@ namespace octoskin {
 namespace {
 
 constexpr std::size_t kCells = 2048;
-constexpr double kEdgeM = 1.2;
+constexpr double kEdgeM = 0.6;
 /// Others agree who are within this of each other.
 constexpr float kAgreementM = 0.04F;
 constexpr std::size_t kAgreeingMin = 2;

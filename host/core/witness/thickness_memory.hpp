@@ -9,7 +9,7 @@
 
 namespace octoskin {
 
-/// By cells of 1.2 m where the camera's side of the surface is. A sensor is never told its own word, nor that
+/// By cells of 0.6 m where the camera's side of the surface is. A sensor is never told its own word, nor that
 /// of only one other. 200 kB, whatever comes.
 class ThicknessMemory {
   public:

@@ -31,6 +31,7 @@ const Keys kTopKeys = {"base",
                        "counts",
                        "removes_robot_from_depth",
                        "removes_robot_from_ranges",
+                       "reports_contradicting_sensors",
                        "refuses_contradicting_sensors",
                        "depth_range_max_m",
                        "no_return_clear_m",
@@ -242,8 +243,14 @@ MappingConfig read_checked(const FilePlace& file) {
     config.removes_robot_from_depth = top.flag("removes_robot_from_depth", config.removes_robot_from_depth);
     config.removes_robot_from_ranges =
         top.flag("removes_robot_from_ranges", config.removes_robot_from_ranges);
+    config.reports_contradicting_sensors =
+        top.flag("reports_contradicting_sensors", config.reports_contradicting_sensors);
     config.refuses_contradicting_sensors =
         top.flag("refuses_contradicting_sensors", config.refuses_contradicting_sensors);
+    if (config.refuses_contradicting_sensors && !config.reports_contradicting_sensors)
+        top.fail(
+            "refuses_contradicting_sensors",
+            "expected false where reports_contradicting_sensors is: a sensor is refused once it is named");
     config.depth_range_max_m = top.number("depth_range_max_m", {0.0, 100.0}, config.depth_range_max_m);
     config.no_return_clear_m = top.number("no_return_clear_m", {0.0, 100.0}, config.no_return_clear_m);
     config.depth_box_voxels_max =
@@ -325,12 +332,12 @@ std::string mapping_text(const MappingConfig& config) {
     text += counts_text(map.counts);
     text += fmt::format(
         "removes_robot_from_depth: {}\nremoves_robot_from_ranges: {}\n"
-        "refuses_contradicting_sensors: {}\n"
+        "reports_contradicting_sensors: {}\nrefuses_contradicting_sensors: {}\n"
         "depth_range_max_m: {}\nno_return_clear_m: {}\n"
         "depth_box_voxels_max: {}\n",
         config.removes_robot_from_depth, config.removes_robot_from_ranges,
-        config.refuses_contradicting_sensors, config.depth_range_max_m, config.no_return_clear_m,
-        config.depth_box_voxels_max);
+        config.reports_contradicting_sensors, config.refuses_contradicting_sensors, config.depth_range_max_m,
+        config.no_return_clear_m, config.depth_box_voxels_max);
     return text;
 }
 

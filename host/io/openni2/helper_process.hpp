@@ -20,8 +20,8 @@ enum class HelperComplaints : std::uint8_t {
     kept,  ///< for `complaint`; what is too much for a pipe is lost
 };
 
-/// What a helper allows itself (host/io/helper_limits), and how it ends when that is not enough: with this exit
-/// code, or by SIGXCPU.
+/// What a helper allows itself (host/io/helper_limits), and how it ends when that is not enough: with this
+/// exit code, or by SIGXCPU.
 inline constexpr unsigned kHelperMemoryMib = 2048;
 inline constexpr unsigned kHelperProcessorSecondsPerFrame = 5;
 inline constexpr int kOutOfMemory = 70;

@@ -1,20 +1,24 @@
-// Single faults of single sensors on the experiment's arm: whom the camera finds out, how soon, and that it
-// wrongs nobody. The figures are in docs/results.md.
+// Single faults of single sensors on the experiment's arm: whether each that is demanded is found, and that
+// no other sensor is named for it. The figures are in docs/results.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "host/core/witness/sensor_judge.hpp"
+#include "tests/sim/witness/demanded_faults.hpp"
 #include "tests/sim/witness/recorded_arm.hpp"
 
 namespace octoskin {
 namespace {
 
+using testing_support::DemandedFault;
+using testing_support::FaultKind;
+using testing_support::kDemandedFaults;
 using testing_support::keep_runs;
 using testing_support::KeptRange;
 using testing_support::KeptReading;
@@ -24,15 +28,6 @@ using testing_support::SensorNumber;
 constexpr std::size_t kPerNode = 17;
 constexpr std::size_t kSensors = 2 * kPerNode;
 constexpr std::uint32_t kPixelDivisor = 2;
-/// OCTOSKIN_WITNESS_LONG_SEEDS: so many seeds for three revolutions instead of one.
-std::uint64_t long_seeds() {
-    const char* text = std::getenv("OCTOSKIN_WITNESS_LONG_SEEDS");
-    return text == nullptr ? 1 : std::strtoull(text, nullptr, 10);
-}
-
-/// Who must be found: whose fault says twice as much as names it when its ranges have no noise, which may
-/// take half.
-constexpr double kTellingFrom = 2.0 * SensorJudge::kNamedFrom;
 
 using Image = std::vector<KeptReading>;
 /// What a sensor says with an image; empty: nothing.
@@ -50,7 +45,8 @@ SensorJudge judge_of_rig() {
 struct Outcome {
     std::vector<std::optional<double>> named_s = std::vector<std::optional<double>>(kSensors);
     std::vector<double> evidence_max = std::vector<double>(kSensors);
-    std::uint64_t compared = 0;
+    double camera_evidence_max = 0.0;
+    bool is_camera_named = false;
 };
 
 Outcome outcome_of(const KeptRun& run, const Says& says) {
@@ -65,7 +61,9 @@ Outcome outcome_of(const KeptRun& run, const Says& says) {
             compared.push_back({static_cast<std::uint16_t>(i), image[i].beam, image[i].predictions});
             compared.back().beam.range_m = range->range_m;
         }
-        judge.judge(compared);
+        judge.judge(compared, run.camera->view(number));
+        outcome.camera_evidence_max = std::max(outcome.camera_evidence_max, judge.camera().evidence());
+        outcome.is_camera_named |= judge.camera().error().has_value();
         for (SensorNumber i = 0; i < kSensors; ++i) {
             const auto& verdict = judge.verdict(static_cast<std::uint16_t>(i));
             outcome.evidence_max[i] = std::max(outcome.evidence_max[i], verdict.evidence);
@@ -73,8 +71,6 @@ Outcome outcome_of(const KeptRun& run, const Says& says) {
                 outcome.named_s[i] = static_cast<double>(number) / run.images_hz;
         }
     }
-    for (SensorNumber i = 0; i < kSensors; ++i)
-        outcome.compared += judge.verdict(static_cast<std::uint16_t>(i)).compared;
     return outcome;
 }
 
@@ -132,98 +128,101 @@ Fault every_third_short() {
     }};
 }
 
-/// The same, but the sensor's own ranges have no noise.
-Says without_noise(const Says& says, SensorNumber faulty) {
-    return [=](const Image& image, std::size_t number, SensorNumber sensor) {
-        auto range = says(image, number, sensor);
-        if (range && sensor == faulty) range->range_m -= range->noise_m;
-        return range;
-    };
+Fault fault_of(const DemandedFault& demanded) {
+    switch (demanded.kind) {
+        case FaultKind::too_long:
+            return altered(0.06);
+        case FaultKind::too_short:
+            return altered(-0.06);
+        case FaultKind::every_third_short:
+            return every_third_short();
+        case FaultKind::turned:
+            return turned(demanded.which);
+        case FaultKind::exchanged:
+            return exchanged(demanded.which);
+    }
+    return altered(0.0);
 }
 
+const char* name(FaultKind kind) {
+    switch (kind) {
+        case FaultKind::too_long:
+            return "6 cm too long";
+        case FaultKind::too_short:
+            return "6 cm too short";
+        case FaultKind::every_third_short:
+            return "every third range half as long";
+        case FaultKind::turned:
+            return "turned by 10 degrees";
+        case FaultKind::exchanged:
+            return "exchanged";
+    }
+    return "";
+}
+
+/// Of those demanded (docs/results.md): fewer than nine of ten, for no sound sensor is to be named.
+const std::map<FaultKind, std::size_t> kFoundAtLeast = {{FaultKind::too_long, 13},
+                                                        {FaultKind::too_short, 7},
+                                                        {FaultKind::every_third_short, 4},
+                                                        {FaultKind::turned, 45},
+                                                        {FaultKind::exchanged, 19}};
+
 struct Row {
-    std::size_t telling = 0;  ///< sensors whose geometry tells
-    std::size_t found = 0;    ///< of those
-    std::size_t others = 0;   ///< of whose fault a little can be seen
-    std::size_t others_found = 0;
-    std::size_t wronged = 0;
+    std::size_t demanded = 0;
+    std::size_t found = 0;
     std::vector<double> after_s;
 };
 
-void inject(const KeptRun& run, const Fault& fault, Row& row) {
-    for (SensorNumber faulty = 0; faulty < kSensors; ++faulty) {
-        const Says says = fault.says(faulty);
-        const double expected = outcome_of(run, without_noise(says, faulty)).evidence_max[faulty];
-        const Outcome outcome = outcome_of(run, says);
-        for (SensorNumber i = 0; i < kSensors; ++i)
-            row.wronged += i != faulty && i != fault.partner(faulty) && outcome.named_s[i] ? 1U : 0U;
-        const auto& named_s = outcome.named_s[faulty];
-        if (expected < SensorJudge::kNamedFrom / 2.0) continue;
-        const bool tells = expected >= kTellingFrom;
-        (tells ? row.telling : row.others) += 1;
-        (tells ? row.found : row.others_found) += named_s ? 1U : 0U;
-        if (tells && named_s) row.after_s.push_back(*named_s);
-        if (tells && !named_s)
-            std::printf("  missed: sensor %zu, evidence of %.1f at the most\n", faulty,
-                        outcome.evidence_max[faulty]);
+/// Faults of one kind and rig, one sensor at a time.
+void inject(const KeptRun& run, const DemandedFault& demanded, Row& row) {
+    const Fault fault = fault_of(demanded);
+    for (const SensorNumber faulty : demanded.sensors) {
+        const Outcome outcome = outcome_of(run, fault.says(faulty));
+        for (SensorNumber i = 0; i < kSensors; ++i) {
+            const bool is_faulty = i == faulty || i == fault.partner(faulty);
+            EXPECT_FALSE(!is_faulty && outcome.named_s[i])
+                << demanded.rig << ", " << name(demanded.kind) << ' ' << demanded.which << " of sensor "
+                << faulty << ": sensor " << i << " is named";
+        }
+        EXPECT_FALSE(outcome.is_camera_named) << demanded.rig << ", sensor " << faulty;
+        ++row.demanded;
+        if (outcome.named_s[faulty]) {
+            ++row.found;
+            row.after_s.push_back(*outcome.named_s[faulty]);
+        } else {
+            std::printf("  not found: %s, %s %zu, sensor %zu, evidence of %.1f at the most, camera's %.1f\n",
+                        std::string(demanded.rig).c_str(), name(demanded.kind), demanded.which, faulty,
+                        outcome.evidence_max[faulty], outcome.camera_evidence_max);
+        }
     }
 }
 
-void print(const char* rig, const char* fault, Row& row) {
+void print(const std::string& what, Row& row) {
     std::ranges::sort(row.after_s);
-    std::printf(
-        "%s, %s: %zu of %zu that it should tell of, half of them within %.1f s; %zu of %zu others; %zu "
-        "wronged\n",
-        rig, fault, row.found, row.telling, row.after_s.empty() ? 0.0 : row.after_s[row.after_s.size() / 2],
-        row.others_found, row.others, row.wronged);
+    std::printf("%s: %zu of %zu, half of them within %.1f s\n", what.c_str(), row.found, row.demanded,
+                row.after_s.empty() ? 0.0 : row.after_s[row.after_s.size() / 2]);
 }
 
-TEST(WitnessFaults, are_found_in_thirty_seconds_where_the_geometry_tells_of_them) {
+TEST(WitnessFaults, of_each_kind_as_many_are_found_in_thirty_seconds_as_the_note_says) {
     const std::vector<std::string> rigs = {"experiment.yaml", "experiment_cone.yaml",
                                            "experiment_zones.yaml"};
-    // Who must be found is asked of the judge itself: so many it finds, told to or not, lest it become a
-    // worse one.
-    const std::size_t found_min[] = {105, 31, 35};
     const auto runs = keep_runs(rigs, kPixelDivisor, {.seed = 0, .revolutions = 3, .has_turned = true});
+    std::map<FaultKind, Row> all;
     for (std::size_t rig = 0; rig < rigs.size(); ++rig) {
-        std::vector<std::pair<const char*, std::vector<Fault>>> faults = {
-            {"6 cm too long", {altered(0.06)}},
-            {"6 cm too short", {altered(-0.06)}},
-            {"every third range half as long", {every_third_short()}},
-            {"turned by 10 degrees, 8 ways", {}},
-            {"exchanged with the neighbour", {exchanged(1)}},
-            {"exchanged with the other side", {exchanged(8)}}};
-        for (std::size_t turn = 0; turn < kTurns; ++turn) faults[3].second.push_back(turned(turn));
-        std::size_t found = 0;
-        for (const auto& [name, all] : faults) {
-            Row row;
-            for (const Fault& fault : all) inject(runs[rig], fault, row);
-            print(rigs[rig].c_str(), name, row);
-            EXPECT_GE(static_cast<double>(row.found), 0.9 * static_cast<double>(row.telling))
-                << rigs[rig] << ", " << name;
-            EXPECT_EQ(row.wronged, 0U) << rigs[rig] << ", " << name;
-            found += row.found + row.others_found;
+        std::map<FaultKind, Row> rows;
+        for (const DemandedFault& demanded : kDemandedFaults)
+            if (demanded.rig == rigs[rig]) inject(runs[rig], demanded, rows[demanded.kind]);
+        for (auto& [kind, row] : rows) {
+            print(rigs[rig] + ", " + name(kind), row);
+            all[kind].demanded += row.demanded;
+            all[kind].found += row.found;
+            all[kind].after_s.insert(all[kind].after_s.end(), row.after_s.begin(), row.after_s.end());
         }
-        EXPECT_GE(found, found_min[rig]) << rigs[rig];
     }
-}
-
-TEST(WitnessFaults, are_found_in_no_sound_sensor_over_sixteen_seeds) {
-    const std::vector<std::string> rigs = {"experiment.yaml", "experiment_cone.yaml",
-                                           "experiment_zones.yaml"};
-    for (std::uint64_t seed = 0; seed < 16; ++seed) {
-        const auto runs =
-            keep_runs(rigs, kPixelDivisor, {.seed = seed, .revolutions = seed < long_seeds() ? 3U : 1U});
-        for (std::size_t rig = 0; rig < rigs.size(); ++rig) {
-            const Outcome outcome = outcome_of(runs[rig], sound);
-            std::printf("%s, seed %lu: %lu compared, evidence of %.1f at the most, %.0f us a prediction\n",
-                        rigs[rig].c_str(), static_cast<unsigned long>(seed),
-                        static_cast<unsigned long>(outcome.compared),
-                        *std::ranges::max_element(outcome.evidence_max), runs[rig].predicted_us_mean);
-            for (SensorNumber i = 0; i < kSensors; ++i)
-                EXPECT_FALSE(outcome.named_s[i]) << rigs[rig] << ", seed " << seed << ", sensor " << i;
-            EXPECT_GT(outcome.compared, 20U) << rigs[rig] << ", seed " << seed << ": nothing was compared";
-        }
+    ASSERT_EQ(all.size(), 5U);
+    for (auto& [kind, row] : all) {
+        print(std::string("all rigs, ") + name(kind), row);
+        EXPECT_GE(row.found, kFoundAtLeast.at(kind)) << name(kind);
     }
 }
 

@@ -13,6 +13,7 @@
 #include "host/core/depth/pixel_rays.hpp"
 #include "host/core/pipeline/robot_tracker.hpp"
 #include "host/core/self_filter/robot_filter.hpp"
+#include "host/core/witness/certain_pixels.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/sim/camera/depth_camera.hpp"
@@ -38,8 +39,21 @@ auto needed(T result) {
     return std::move(*result);
 }
 
-rig::Rig read_rig_of(const std::string& name, std::uint32_t pixel_divisor) {
+/// z towards what it looks at, x level.
+Eigen::Isometry3d looking(const Eigen::Vector3d& from, const Eigen::Vector3d& at) {
+    Eigen::Isometry3d T_base_camera = Eigen::Isometry3d::Identity();
+    const Eigen::Vector3d ahead = (at - from).normalized();
+    const Eigen::Vector3d right = ahead.cross(Eigen::Vector3d::UnitZ()).normalized();
+    T_base_camera.linear() << right, ahead.cross(right), ahead;
+    T_base_camera.translation() = from;
+    return T_base_camera;
+}
+
+/// With the true camera.
+rig::Rig read_rig_of(const std::string& name, std::uint32_t pixel_divisor, const KeptChoice& choice) {
     rig::Rig rig = needed(rig::read_rig(kHw / "rigs" / name));
+    if (choice.camera_at_m)
+        rig.camera->T_base_camera = looking((*choice.camera_at_m)[0], (*choice.camera_at_m)[1]);
     rig::Camera& camera = *rig.camera;
     camera.width /= pixel_divisor;
     camera.height /= pixel_divisor;
@@ -57,7 +71,7 @@ struct Stage {
     Stage(const rig::Rig& rig, const KeptChoice& choice)
         : arm(needed(sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints))),
           capsules(needed(rig::read_capsules(rig.urdf, {}))),
-          scenario(needed(sim::read_scenario(kHw / "worlds/experiment.scenario.yaml"))),
+          scenario(needed(sim::read_scenario(kHw / ".." / choice.scenario))),
           world(needed(sim::World::read(scenario.world))),
           trajectory(revolutions_of(arm, scenario, choice.revolutions)),
           camera(world, *rig.camera, scenario.depth_sigma_m, choice.seed) {}
@@ -88,13 +102,26 @@ Eigen::Isometry3d turned_mount(const Eigen::Isometry3d& T_link_sensor, std::size
     return T_link_sensor * Eigen::AngleAxisd(kTurnDeg * std::numbers::pi / 180.0, about);
 }
 
+/// Where a rig has a camera that is off.
+Eigen::Isometry3d told(const Eigen::Isometry3d& T_base_camera, const CameraError& error) {
+    Eigen::Isometry3d T_told_true = Eigen::Isometry3d::Identity();
+    const double turn_rad = error.turn_deg.norm() * std::numbers::pi / 180.0;
+    if (turn_rad > 0.0)
+        T_told_true.linear() = Eigen::AngleAxisd(turn_rad, error.turn_deg.normalized()).toRotationMatrix();
+    T_told_true.translation() = error.shift_m;
+    return T_base_camera * T_told_true.inverse();
+}
+
 class Rig {
   public:
     Rig(const rig::Rig& rig, const Stage& stage, const KeptChoice& choice)
         : setup_(needed(make_host_setup(rig))),
           beams_(needed(BeamBuilder::build(setup_.rig, setup_.robot, {.sees_cones = true}))),
           tracker_(needed(RobotTracker::build(setup_.rig, std::move(setup_.robot), {}))),
-          has_turned_(choice.has_turned) {
+          has_turned_(choice.has_turned),
+          has_predictions_(choice.has_predictions) {
+        run.rig = setup_.rig;
+        run.rig.camera->T_base_camera = told(setup_.rig.camera->T_base_camera, choice.camera_error);
         std::uint32_t noise_id = 0;
         const auto scene_of = [&](const rig::Sensor& sensor, const Eigen::Isometry3d& T_link_sensor) {
             return sim::ranging_scene({stage.world, stage.arm, stage.trajectory, stage.capsules,
@@ -128,7 +155,7 @@ class Rig {
         }
     }
 
-    [[nodiscard]] const HostRig& host() const { return setup_.rig; }
+    [[nodiscard]] const HostRig& host() const { return run.rig; }
     [[nodiscard]] RobotPose robot_at(const Stage& stage, std::int64_t us) {
         add(stage, us);
         return *tracker_.at(HostTime{1'000 * us});
@@ -179,6 +206,8 @@ class Rig {
         kept.beam.direction_map =
             T_map_sensor.linear() *
             host().nodes[source.node_id - 1U].sensors[source.sensor].zones[zone].direction_sensor;
+        kept.T_map_sensor = T_map_sensor;
+        if (!has_predictions_) return kept;
         const auto began = std::chrono::steady_clock::now();
         kept.predictions = sensor.predictors[zone].predict(view, T_map_sensor);
         const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - began;
@@ -191,47 +220,67 @@ class Rig {
     BeamBuilder beams_;
     RobotTracker tracker_;
     bool has_turned_;
+    bool has_predictions_;
     std::vector<Sensor> sensors_;
     double predicted_ = 0.0;
 };
 
 }  // namespace
 
+CameraView KeptCamera::view(std::size_t image) const {
+    const SeenImages& seen = images[image];
+    return CameraView({seen.everything, seen.world, seen.certainty}, intrinsics, T_map_camera, ray_slope_max);
+}
+
 std::vector<KeptRun> keep_runs(const std::vector<std::string>& names, std::uint32_t pixel_divisor,
                                const KeptChoice& choice) {
-    const Stage stage(read_rig_of(names.at(0), pixel_divisor), choice);
+    const Stage stage(read_rig_of(names.at(0), pixel_divisor, choice), choice);
     std::vector<std::unique_ptr<Rig>> rigs;
     for (const std::string& name : names)
-        rigs.push_back(std::make_unique<Rig>(read_rig_of(name, pixel_divisor), stage, choice));
+        rigs.push_back(std::make_unique<Rig>(read_rig_of(name, pixel_divisor, choice), stage, choice));
     const HostRig& host = rigs.front()->host();
-    const PixelRays pixel_rays(host.camera->intrinsics);
-    const double ray_slope_max = LensInverse(host.camera->intrinsics.lens).radius();
-    const Eigen::Isometry3d T_map_camera = host.T_map_base * host.camera->T_base_camera;
+    const auto camera = std::make_shared<KeptCamera>();
+    camera->intrinsics = host.camera->intrinsics;
+    camera->ray_slope_max = LensInverse(host.camera->intrinsics.lens).radius();
+    camera->T_map_camera = host.T_map_base * host.camera->T_base_camera;
+    const PixelRays pixel_rays(camera->intrinsics);
     const Eigen::Isometry3d T_camera_base = host.camera->T_base_camera.inverse();
-    DepthFilter filter({.is_enabled = true, .window = 3, .sigma_m = kCameraSigmaM, .min_support = 3});
+    const bool is_full = pixel_divisor == 1;
+    DepthFilter filter({.is_enabled = true,
+                        .window = is_full ? 5U : 3U,
+                        .sigma_m = kCameraSigmaM,
+                        .min_support = is_full ? 5U : 3U});
+    CertainPixels certain(camera->intrinsics, {.camera_sigma_m = kCameraSigmaM});
     const auto images = static_cast<std::uint32_t>(100 * choice.revolutions);
     for (std::uint32_t image = 0; image < images; ++image) {
         const std::int64_t us = 100'000LL * image;
         const RobotPose robot = rigs.front()->robot_at(stage, us);
         DepthImage world = needed(to_depth_image(
-            {HostTime{1'000 * us}, host.camera->intrinsics.width, host.camera->intrinsics.height,
+            {HostTime{1'000 * us}, camera->intrinsics.width, camera->intrinsics.height,
              stage.camera.render(
                  sim::posed_body(stage.capsules, stage.arm.forward(stage.trajectory.at(sim::SimTime{us}))),
                  image)},
             {host.camera->depth_min_m, host.camera->depth_max_m}));
+        for (float& depth_m : world.depth_m) depth_m /= static_cast<float>(choice.camera_error.depth_scale);
+        SeenImages& seen = camera->images.emplace_back();
+        const DepthImage raw = world;
         filter.filter(world);
         std::vector<PosedCapsule> body_camera = robot.body_base;
         for (PosedCapsule& capsule : body_camera) {
             capsule.p_a = T_camera_base * capsule.p_a;
             capsule.p_b = T_camera_base * capsule.p_b;
         }
-        const DepthImage everything = world;
+        certain.find(raw, world, seen.certainty);
+        seen.everything = world;
         remove_robot(world, pixel_rays, body_camera, host.depth_self_margin_m);
-        const CameraView view({everything, world}, host.camera->intrinsics, T_map_camera, ray_slope_max);
-        for (const auto& rig : rigs) rig->keep(stage, view, image, us);
+        seen.world = std::move(world);
+        for (const auto& rig : rigs) rig->keep(stage, camera->view(image), image, us);
     }
     std::vector<KeptRun> runs;
-    for (const auto& rig : rigs) runs.push_back(std::move(rig->run));
+    for (const auto& rig : rigs) {
+        rig->run.camera = camera;
+        runs.push_back(std::move(rig->run));
+    }
     return runs;
 }
 

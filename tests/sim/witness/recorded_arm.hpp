@@ -1,4 +1,4 @@
-// Three revolutions of the experiment's arm without buses and boards, kept: what each sensor ranges with each
+// Some revolutions of an arm in a world without buses and boards, kept: what each sensor ranges with each
 // image, also if its mount is turned, and what the camera predicts of it. Faults are then injected into what
 // was kept, one sensor at a time, in milliseconds.
 #pragma once
@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "host/core/beams/beam.hpp"
+#include "host/core/witness/camera_judge.hpp"
 #include "host/core/witness/range_predictor.hpp"
+#include "host/core/witness/sensor_witness.hpp"
 
 namespace octoskin::testing_support {
 
@@ -27,12 +29,25 @@ struct KeptRange {
 /// One reading of one sensor.
 struct KeptReading {
     Beam beam;  ///< of the sound sensor, but for the range
-    RangePredictions predictions;
+    Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+    RangePredictions predictions;                         ///< if they are wanted
     std::optional<KeptRange> sound;                       ///< empty: it saw nothing, or the gate refuses it
     std::array<std::optional<KeptRange>, kTurns> turned;  ///< with its mount turned
 };
 
+/// What the camera showed, and where the rig has it: of all rigs the same.
+struct KeptCamera {
+    CameraIntrinsics intrinsics;
+    double ray_slope_max = 0.0;
+    Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+    std::vector<SeenImages> images;
+
+    [[nodiscard]] CameraView view(std::size_t image) const;
+};
+
 struct KeptRun {
+    HostRig rig;
+    std::shared_ptr<const KeptCamera> camera;
     std::vector<BeamSource> sources;               ///< by sensor number
     std::vector<std::vector<KeptReading>> images;  ///< by image, by sensor number
     double images_hz = 10.0;
@@ -44,10 +59,17 @@ struct KeptChoice {
     std::uint64_t seed = 0;
     std::uint32_t revolutions = 3;
     bool has_turned = false;  ///< whether `turned` is wanted: nine times the work
+    bool has_predictions = true;
+    /// Below the source folder.
+    std::string scenario = "hw/worlds/experiment.scenario.yaml";
+    /// Where the true camera is and what it looks at, base frame, metres; empty: as the rig has it.
+    std::optional<std::array<Eigen::Vector3d, 2>> camera_at_m = std::nullopt;
+    /// What the rig says is the true pose without this, and the image's depth is the true one without it.
+    CameraError camera_error = {};
 };
 
-/// Of each rig, with the same images. `pixel_divisor` as WitnessBench has it; the image is filtered with a
-/// window of 3 pixels, which are as large as the six of the true camera.
+/// Of each rig, of hw/rigs, with the same images. `pixel_divisor`: 1 is the rig's camera, 2 one of half as
+/// many pixels a side, and so on; the image is then filtered with a window of 3 pixels instead of 5.
 [[nodiscard]] std::vector<KeptRun> keep_runs(const std::vector<std::string>& rigs,
                                              std::uint32_t pixel_divisor, const KeptChoice& choice);
 

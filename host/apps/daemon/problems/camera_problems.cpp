@@ -60,7 +60,15 @@ std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double ra
                                camera.rate_hz, rate_hz)};
 }
 
+void add_camera_error(const DaemonView& view, Problems& problems) {
+    const SensorWitness* const witness = view.pipeline->builder().witness();
+    if (witness == nullptr || !witness->camera().error()) return;
+    const std::string text = describe(*witness->camera().error(), witness->camera().explained());
+    problems.push_back({"camera pose", "camera: " + text, {}});
+}
+
 void add_camera(const DaemonView& view, Problems& problems) {
+    add_camera_error(view, problems);
     if (!view.camera || !view.rig->camera) return;
     const double rate_hz = view.rig->camera->rate_hz;
     const auto& frames = view.pipeline->accounts().depth_frames;

@@ -70,8 +70,8 @@ void DaemonViewTest::let_camera_contradict(const std::function<void()>& look) {
     builder.forget_motion({});
     // What is compared is so with the next reading.
     for (int i = 0; i < 7; ++i) {
-        const double now_s = 5.0 + 0.1 * i;
-        EXPECT_TRUE(builder.add({host_at(now_s), {M_PI / 2.0 - 0.04 * i}}));
+        const double now_s = 5.0 + 1.7 * i;  // what lasts for eight seconds counts
+        EXPECT_TRUE(builder.add({host_at(now_s), {M_PI / 2.0 - 0.08 * i}}));
         EXPECT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, host_at(now_s), 0.52, 0.02}));
         EXPECT_TRUE(builder.integrate(flat_frame(now_s, 3'000)));
         if (look) look();

@@ -129,7 +129,7 @@ TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
         Json::parse(R"({"index": 0, "name": "good", "state": null, "fault": null, "received": 0, "lost": 0,
         "age_s": null, "rejected": null, "contradictions": 0, "strays": 0, "second_sender": false,
         "disputed": false, "reflexes": 0, "reflex_below_m": 0.0, "reflex_m": null,
-        "camera": {"contradicts": false, "fault": null, "refused": false, "compared": 0, "fitted": 0,
+        "camera": {"contradicts": false, "fault": null, "cannot_tell": false, "refused": false, "compared": 0, "fitted": 0,
                    "agreed": 0, "in_free_space": 0, "behind_surface": 0}})"));
 }
 
@@ -279,7 +279,8 @@ TEST_F(StatusTest, has_the_cameras_record_or_null) {
     camera.erase("age_s");
     EXPECT_EQ(camera,
               Json::parse(R"({"open": true, "why": "was gone", "frames": 60, "displaced": 3, "untimed": 2,
-        "opened": 4})"));
+        "opened": 4, "is_off": false, "turned_deg": null, "shifted_m": null, "depth_scale": null,
+        "explains_sensors": 0})"));
     view_.camera->newest.reset();
     EXPECT_EQ(status()["camera"]["age_s"], nullptr);
     view_.camera.reset();

@@ -95,7 +95,7 @@ TEST(MappingFile, reads_every_key) {
         "occupied_probability: 0.625, hits_min: 0.5, misses_min: 2.5, counts_max: 40, image_clears: 0.5, "
         "image_marks: 0.25, range_clears: 0.125, range_clears_from: 4.5}\n"
         "removes_robot_from_depth: false\nremoves_robot_from_ranges: false\n"
-        "refuses_contradicting_sensors: false\ndepth_range_max_m: "
+        "refuses_contradicting_sensors: true\ndepth_range_max_m: "
         "3.5\nno_return_clear_m: 1.25\n"
         "depth_box_voxels_max: 5000\n");
     ASSERT_TRUE(config.has_value()) << config.error().message();
@@ -153,7 +153,7 @@ TEST(MappingFile, reads_every_key) {
         .depth_range_max_m = 3.5,
         .removes_robot_from_depth = false,
         .removes_robot_from_ranges = false,
-        .refuses_contradicting_sensors = false,
+        .refuses_contradicting_sensors = true,
         .no_return_clear_m = 1.25,
         .depth_box_voxels_max = 5000};
     EXPECT_EQ(*config, expected);
@@ -195,6 +195,17 @@ TEST(MappingFile, refuses_ages_at_which_nothing_could_be_stale) {
     EXPECT_THAT(error_of("age: {stale_after_s: 1.5}\n"), HasSubstr("my.yaml:1: age.stale_after_s: "));
     EXPECT_EQ(error_of("age: {stale_after_s: 0, unknown_after_s: 1}\n"), "no error");
     EXPECT_EQ(error_of("age: {stale_after_s: 7200, unknown_after_s: 0}\n"), "no error");
+}
+
+TEST(MappingFile, refuses_sensors_only_where_they_are_reported) {
+    EXPECT_THAT(error_of("reports_contradicting_sensors: false\nrefuses_contradicting_sensors: true\n"),
+                HasSubstr("my.yaml:2: refuses_contradicting_sensors: expected false where "));
+    EXPECT_EQ(error_of("refuses_contradicting_sensors: true\n"), "no error");
+    EXPECT_EQ(error_of("reports_contradicting_sensors: false\n"), "no error");
+    for (const MappingConfig& config : {paper_mapping(), robust_mapping(), fast_mapping()}) {
+        EXPECT_TRUE(config.reports_contradicting_sensors);
+        EXPECT_FALSE(config.refuses_contradicting_sensors);
+    }
 }
 
 TEST(MappingFile, refuses_to_believe_one_reading_alone) {
@@ -298,7 +309,7 @@ TEST(MappingFile, has_each_key_with_its_range_and_default_in_its_document_and_no
         const bool is_same = paper.at(path) == value;
         keys[path] = {expected_of(path), is_same ? value : value + " (" + paper.at(path) + ")"};
     }
-    EXPECT_EQ(keys.size(), 65U);
+    EXPECT_EQ(keys.size(), 66U);
     EXPECT_EQ(documented_keys(), keys);
 }
 

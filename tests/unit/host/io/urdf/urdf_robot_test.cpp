@@ -158,9 +158,10 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenUrdf{"limits-reversed.urdf", "joint elbow", "limits the wrong way round", 4},
         BrokenUrdf{"nan-origin.urdf", "", "not a usable URDF", 0},
         BrokenUrdf{"nested-too-deep.urdf", "", "DEPTH", 1}, BrokenUrdf{"cut-off.urdf", "", "not XML", 5},
-        BrokenUrdf{"not-xml.urdf", "", "not XML", 1},
+        BrokenUrdf{"not-xml.urdf", "", "expected a URDF with a <robot>, found none", 0},
         BrokenUrdf{"not-a-robot.urdf", "", "expected a URDF with a <robot>", 0},
-        BrokenUrdf{"empty.urdf", "", "not XML", 0}, BrokenUrdf{"absent.urdf", "", "cannot be opened", 0}));
+        BrokenUrdf{"empty.urdf", "", "expected a URDF with a <robot>, found none", 0},
+        BrokenUrdf{"absent.urdf", "", "cannot be opened", 0}));
 
 }  // namespace
 }  // namespace octoskin
