@@ -214,9 +214,10 @@ TEST(CrossCheck, names_one_sensor_that_is_stuck_or_far_off) {
     for (const auto& [what, at_least, altered] : faults) {
         std::size_t found = 0;
         for (const SensorNumber faulty : tried) {
-            const Outcome outcome = outcome_of(run, [&](SensorNumber sensor, double range_m) {
-                return sensor == faulty ? altered(range_m) : range_m;
-            });
+            const Outcome outcome =
+                outcome_of(run, [faulty, &change = altered](SensorNumber sensor, double range_m) {
+                    return sensor == faulty ? change(range_m) : range_m;
+                });
             for (const SensorNumber named : outcome.numbers) {
                 EXPECT_EQ(named, faulty) << what;
                 found += named == faulty ? 1U : 0U;

@@ -370,7 +370,8 @@ TEST_F(FolderWalkOfAll, nothing_outside_is_changed_shown_or_waited_for) {
     for (const auto& [command, place, text] : kTexts) {
         for (const Walk& walk : walks) {
             if (walk.command != std::string_view(command)) continue;
-            steps.emplace_back([&](Walker& walker) { walker.go_text(walk, place, text); });
+            steps.emplace_back(
+                [&walk, place = place, text = text](Walker& walker) { walker.go_text(walk, place, text); });
         }
     }
     walk_all(steps);
