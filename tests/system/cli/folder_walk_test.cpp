@@ -331,8 +331,8 @@ class FolderWalkOfAll : public ProgramTest {
     }
 
     void walk_all(const std::vector<std::function<void(Walker&)>>& steps) {
-        std::vector<std::jthread> threads;
         std::atomic<std::size_t> next{0};
+        std::vector<std::jthread> threads;  // joined before what they use ends
         for (const char* half : {"a", "b"}) {
             threads.emplace_back([&, half] {
                 Walker walker(directory_ / "templates", directory_ / half);
