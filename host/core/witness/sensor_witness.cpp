@@ -115,18 +115,11 @@ std::string describe(const SensorEvidence& evidence) {
 }
 
 std::string describe(const CameraError& error, std::size_t sensors) {
-    const auto text = [](const char* format, double value) {
-        std::array<char, 64> buffer{};
-        std::snprintf(buffer.data(), buffer.size(), format, value);
-        return std::string(buffer.data());
-    };
-    std::string by;
-    if (error.turn_deg.norm() > 0.0) by = "turned by about " + text("%.0f deg", error.turn_deg.norm());
-    if (error.shift_m.norm() > 0.0) by = "shifted by about " + text("%.0f cm", 100.0 * error.shift_m.norm());
-    if (error.depth_scale != 1.0)
-        by = "its depth off by about " + text("%.1f %%", 100.0 * (error.depth_scale - 1.0));
+    std::array<char, 96> by{};
+    std::snprintf(by.data(), by.size(), "turned by %.1f deg, shifted by %.1f cm, its depth off by %.1f %%",
+                  error.turn_deg.norm(), 100.0 * error.shift_m.norm(), 100.0 * (error.depth_scale - 1.0));
     return "not where the rig has it, or its scale is off: that explains what " + std::to_string(sensors) +
-           " sensors contradict (" + by +
+           " sensors contradict (by an estimate " + by.data() +
            "): measure its pose anew (docs/method.md, \"A sensor that contradicts the camera\")";
 }
 

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+
+#include "host/core/witness/sensor_witness.hpp"
 
 namespace octoskin {
 namespace {
@@ -97,6 +100,13 @@ TEST_F(CornerScene, offsets_of_a_centimetre_that_each_sensor_has_are_not_the_cam
     look(4, Eigen::Isometry3d::Identity(), 0.01, 100);
     EXPECT_FALSE(judge_.error()) << judge_.evidence();
     EXPECT_FALSE(judge_.is_suspect());
+}
+
+TEST_F(CornerScene, the_error_is_described_with_its_turn_shift_and_scale) {
+    const std::string text = describe(
+        CameraError{.turn_deg = {0.0, 2.0, 0.0}, .shift_m = {0.03, 0.0, 0.0}, .depth_scale = 1.015}, 4);
+    EXPECT_NE(text.find("turned by 2.0 deg, shifted by 3.0 cm, its depth off by 1.5 %"), std::string::npos)
+        << text;
 }
 
 TEST_F(CornerScene, what_is_off_by_more_than_a_camera_is_says_nothing) {
