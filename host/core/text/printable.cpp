@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "host/core/text/utf8.hpp"
 
@@ -28,26 +29,34 @@ void append_number(std::string& shown, char kind, unsigned number, int digits) {
         shown += kDigits.at(number >> static_cast<unsigned>(4 * digit) & 0xFU);
 }
 
+/// The first character of a text, or a byte that is none.
+struct Sequence {
+    std::string_view bytes;
+    std::optional<char32_t> character;
+};
+
+/// Takes it from the text, which has one.
+Sequence take_sequence(std::string_view& text) {
+    const std::size_t length = utf8_length(text);
+    const std::string_view bytes = text.substr(0, length == 0 ? 1 : length);
+    text.remove_prefix(bytes.size());
+    return {bytes, length == 0 ? std::nullopt : std::optional(utf8_character(bytes))};
+}
+
 std::string shown_of(std::string_view text, bool keeps_lines) {
     std::string shown;
     shown.reserve(text.size());
     while (!text.empty()) {
-        const std::size_t length = utf8_length(text);
-        const std::string_view sequence = text.substr(0, length == 0 ? 1 : length);
-        text.remove_prefix(sequence.size());
-        const auto byte = static_cast<unsigned char>(sequence.front());
-        if (length == 0) {
-            append_number(shown, 'x', byte, 2);
-            continue;
-        }
-        const char32_t character = utf8_character(sequence);
+        const auto [bytes, character] = take_sequence(text);
         const bool is_kept = keeps_lines && (character == U'\n' || character == U'\t');
-        if (is_control(character) && !is_kept) {
-            append_number(shown, 'x', static_cast<unsigned>(character), 2);
-        } else if (is_turning_or_ending(character)) {
-            append_number(shown, 'u', static_cast<unsigned>(character), 4);
+        if (!character) {
+            append_number(shown, 'x', static_cast<unsigned char>(bytes.front()), 2);
+        } else if (is_control(*character) && !is_kept) {
+            append_number(shown, 'x', static_cast<unsigned>(*character), 2);
+        } else if (is_turning_or_ending(*character)) {
+            append_number(shown, 'u', static_cast<unsigned>(*character), 4);
         } else {
-            shown += sequence;
+            shown += bytes;
         }
     }
     return shown;
@@ -67,17 +76,14 @@ std::string printable_json(std::string_view json) {
     std::string shown;
     shown.reserve(json.size());
     while (!json.empty()) {
-        const std::size_t length = utf8_length(json);
-        const std::string_view sequence = json.substr(0, length == 0 ? 1 : length);
-        json.remove_prefix(sequence.size());
-        const char32_t character = length == 0 ? 0 : utf8_character(sequence);
+        const auto [bytes, character] = take_sequence(json);
         // Those below 0x20 are escaped already where they are part of a string.
         const bool is_shown_by_number =
-            character >= 0x7F && (is_control(character) || is_turning_or_ending(character));
+            character && *character >= 0x7F && (is_control(*character) || is_turning_or_ending(*character));
         if (is_shown_by_number) {
-            append_number(shown, 'u', static_cast<unsigned>(character), 4);
+            append_number(shown, 'u', static_cast<unsigned>(*character), 4);
         } else {
-            shown += sequence;
+            shown += bytes;
         }
     }
     return shown;

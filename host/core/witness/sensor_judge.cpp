@@ -66,14 +66,12 @@ SensorFault fault_at(std::size_t place) {
 
 }  // namespace
 
-void SensorJudge::Sum::count(double ratio) {
-    if (std::abs(ratio) < kSaysMuch) return;
-    fors = kForgotten * fors + (ratio > 0.0 ? 1.0F : 0.0F);
-    againsts = kForgotten * againsts + (ratio < 0.0 ? 1.0F : 0.0F);
-}
-
 void SensorJudge::Sum::add(double ratio, HostTime now) {
     if (ratio == 0.0) return;
+    if (std::abs(ratio) >= kSaysMuch) {
+        fors = kForgotten * fors + (ratio > 0.0 ? 1.0F : 0.0F);
+        againsts = kForgotten * againsts + (ratio < 0.0 ? 1.0F : 0.0F);
+    }
     if (for_it <= 0.0) since = now;
     for_it = std::clamp(for_it + ratio - kDoubt, -kCreditMax, 2.0 * kNamedFrom);
     against_it = std::clamp(against_it - ratio - kDoubt, 0.0, 2.0 * kNamedFrom);
@@ -161,11 +159,6 @@ void SensorJudge::judge(std::span<const Compared> compared, const CameraView& vi
     for (const Compared& one : compared) remember(one);
 }
 
-void SensorJudge::add(Sensor& sensor, Sum& sum, double ratio) {
-    sum.count(ratio);
-    sum.add(ratio, sensor.now);
-}
-
 void SensorJudge::ask_camera(const Compared& compared, const CameraView& view) {
     const RangePrediction& at = compared.predictions.mounted;
     const double range_m = *compared.beam.range_m;
@@ -205,16 +198,16 @@ void SensorJudge::weigh(const Compared& compared, const Expected& mounted) {
         sensor.verdict.agreed += *sound <= kMisfitOfHiddenMax ? 1U : 0U;
     }
     if (const auto other = misfit(mounted, range_m - kOffsetM, sigma_m))
-        add(sensor, sensor.faults[kTooLong], *sound - *other);
+        sensor.faults[kTooLong].add(*sound - *other, sensor.now);
     if (const auto other = misfit(mounted, range_m + kOffsetM, sigma_m))
-        add(sensor, sensor.faults[kTooShort], *sound - *other);
+        sensor.faults[kTooShort].add(*sound - *other, sensor.now);
     for (std::size_t i = 0; i < kTurns; ++i) {
         if (!compared.predictions.turned[i].range_m) continue;
         const Expected turned = expected(compared, compared.predictions.turned[i]);
         const double sigma_both_m = sigma_of(compared, mounted, turned);
         const auto as_mounted = misfit(mounted, range_m, sigma_both_m);
         const auto as_turned = misfit(turned, range_m, sigma_both_m);
-        if (as_mounted && as_turned) add(sensor, sensor.faults[kTurned + i], *as_mounted - *as_turned);
+        if (as_mounted && as_turned) sensor.faults[kTurned + i].add(*as_mounted - *as_turned, sensor.now);
     }
 }
 
@@ -228,7 +221,7 @@ void SensorJudge::weigh_short(Sensor& sensor, const Compared& compared, const Ex
     Look& look = looks_[compared.sensor];
     Sum& sum = sensor.faults[kOftenShort];
     if (!at.is_from_behind && range_m > at.hidden_until_m + margin_m && range_m < at.clear_m - margin_m) {
-        add(sensor, sum, kShortRatio);
+        sum.add(kShortRatio, sensor.now);
         return;
     }
     if (!at.range_m || !mounted.has_lower_bound) return;
@@ -238,8 +231,8 @@ void SensorJudge::weigh_short(Sensor& sensor, const Compared& compared, const Ex
         look = Look::agrees;
         const bool agreed_before = sensor.looks[0] == Look::agrees;
         const bool was_short_between = sensor.looks[0] == Look::is_short && sensor.looks[1] == Look::agrees;
-        if (was_short_between) add(sensor, sum, kShortRatio);
-        if (agreed_before) add(sensor, sum, kNotShortRatio);
+        if (was_short_between) sum.add(kShortRatio, sensor.now);
+        if (agreed_before) sum.add(kNotShortRatio, sensor.now);
     }
 }
 
@@ -251,7 +244,7 @@ void SensorJudge::weigh_exchange(const Compared& of, const Expected& own, const 
     const auto sound = misfit(own, *of.beam.range_m, sigma_m);
     const auto exchanged = misfit(others, *of.beam.range_m, sigma_m);
     if (sound && exchanged)
-        add(sensor, sensor.exchanged[other.sensor - sensor.node_begin], *sound - *exchanged);
+        sensor.exchanged[other.sensor - sensor.node_begin].add(*sound - *exchanged, sensor.now);
 }
 
 /// Not what a few seconds say, nor what as many comparisons deny.

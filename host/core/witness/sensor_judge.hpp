@@ -75,7 +75,6 @@ class SensorJudge {
         float againsts = 0.0F;    ///< and against it
         HostTime since{};         ///< when the newest evidence for it began
         void add(double ratio, HostTime now);
-        void count(double ratio);
     };
     static constexpr std::size_t kFaults = 3 + kTurns;
     enum class Look : std::uint8_t { nothing, agrees, is_short };
@@ -104,7 +103,6 @@ class SensorJudge {
     void weigh(const Compared& compared, const Expected& mounted);
     void weigh_short(Sensor& sensor, const Compared& compared, const Expected& mounted,
                      double misfit_mounted);
-    static void add(Sensor& sensor, Sum& sum, double ratio);
     void weigh_exchange(const Compared& of, const Expected& own, const Compared& other,
                         const Expected& others);
     void ask_camera(const Compared& compared, const CameraView& view);
