@@ -4,15 +4,15 @@
 #include <gmock/gmock.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/sysmacros.h>
 
 #include <algorithm>
-#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
 #include <vector>
 
+#include "tests/system/cli/folder_states.hpp"
+#include "tests/system/cli/folder_traps.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
@@ -25,57 +25,26 @@ using testing::HasSubstr;
 
 using Names = std::vector<std::string>;
 
-/// What may lie in a recording itself, and these names more.
-Names recording_and(const Names& more) {
-    Names names{"can.log",   "depth.oni",    "depth.epoch.yaml", "rig.yaml", "robot.urdf", "meta.yaml",
-                "order.log", "mapping.yaml", "first.ot",         "last.ot",  "lock"};
-    names.insert(names.end(), more.begin(), more.end());
-    return names;
-}
-
 /// What an octoskin writes, whatever the folder.
-const Names kFileNames = recording_and({"fused.ot", "fused.bt", "fused.ply", "maps.yaml", ".journal",
-                                        "report.html", "metrics.json", ".fused.ot.octoskin-part"});
-
-/// Where a trap may lie in a recording.
-const Names kPlaces =
-    recording_and({"maps", ".octoskin-part", ".octoskin-ready", ".octoskin-ready/.journal", "maps/fused.ot",
-                   "maps/maps.yaml", "maps/.octoskin-part", "maps/.octoskin-ready"});
-
-/// What is at a path: kind, mode, owner, time of the last change, bytes. Not how many names it has: the one
-/// in the recording may go.
-std::string state_of(const fs::path& path) {
-    struct stat status {};
-    if (::lstat(path.c_str(), &status) != 0) return "absent";
-    std::ostringstream text;
-    text << status.st_mode << ' ' << status.st_uid << ' ' << status.st_mtim.tv_sec << '.'
-         << status.st_mtim.tv_nsec << ' ';
-    if (S_ISREG(status.st_mode)) text << content(path);
-    return text.str();
-}
-
-std::map<std::string, std::string> states_in(const fs::path& folder) {
-    std::map<std::string, std::string> states{{".", state_of(folder)}};
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-        states[entry.path().lexically_relative(folder).string()] = state_of(entry.path());
-    return states;
-}
-
-/// One way to lay a trap in a place of the recording.
-enum class Trap : std::uint8_t {
-    link_to_file,
-    link_to_folder,
-    link_to_nothing,  ///< that is not there yet, in the victim's folder
-    absolute_link,
-    hard_link,
-    pipe,
-    device,
-    folder,
-};
-
-constexpr Trap kTraps[] = {Trap::link_to_file,  Trap::link_to_folder, Trap::link_to_nothing,
-                           Trap::absolute_link, Trap::hard_link,      Trap::pipe,
-                           Trap::device,        Trap::folder};
+const Names kFileNames = {"can.log",
+                          "depth.oni",
+                          "depth.epoch.yaml",
+                          "rig.yaml",
+                          "robot.urdf",
+                          "meta.yaml",
+                          "order.log",
+                          "mapping.yaml",
+                          "first.ot",
+                          "last.ot",
+                          "lock",
+                          "fused.ot",
+                          "fused.bt",
+                          "fused.ply",
+                          "maps.yaml",
+                          ".journal",
+                          "report.html",
+                          "metrics.json",
+                          ".fused.ot.octoskin-part"};
 
 class FolderWalk : public ProgramTest {
   protected:
@@ -104,42 +73,11 @@ class FolderWalk : public ProgramTest {
     }
 
     /// A recording with a trap in one place; false: such a trap cannot be laid.
-    bool lay(Trap trap, const std::string& place) {
+    bool lay_in_recording(Trap trap, const std::string& place) {
         fs::remove_all(directory_ / "rec");
         fs::copy(directory_ / "template", directory_ / "rec", fs::copy_options::recursive);
-        const fs::path at = directory_ / "rec" / place;
-        fs::create_directories(at.parent_path());
-        fs::remove_all(at);
-        fs::path victim("../outside/victim");
-        for (fs::path up = fs::path(place).parent_path(); !up.empty(); up = up.parent_path())
-            victim = ".." / victim;
-        const fs::path file = directory_ / "outside/victim" / name_like(place);
-        std::error_code error;
-        switch (trap) {
-            case Trap::link_to_file:
-                fs::create_symlink(victim / name_like(place), at, error);
-                break;
-            case Trap::link_to_folder:
-                fs::create_symlink(victim, at, error);
-                break;
-            case Trap::link_to_nothing:
-                fs::create_symlink(victim / "new", at, error);
-                break;
-            case Trap::absolute_link:
-                fs::create_symlink(file, at, error);
-                break;
-            case Trap::hard_link:
-                fs::create_hard_link(file, at, error);
-                break;
-            case Trap::pipe:
-                return ::mkfifo(at.c_str(), 0600) == 0;
-            case Trap::device:
-                return ::mknod(at.c_str(), S_IFCHR | 0600, makedev(1, 5)) == 0;  // /dev/zero
-            case Trap::folder:
-                fs::create_directory(at, error);
-                break;
-        }
-        return !error;
+        const fs::path victim = directory_ / "outside/victim";
+        return lay(trap, directory_ / "rec" / place, victim / name_like(place), victim);
     }
 
     /// The victim's file of this name, or its can.log for a place that no file has.
@@ -151,8 +89,8 @@ class FolderWalk : public ProgramTest {
     [[nodiscard]] std::vector<std::string> commands() const {
         const std::string rec = path("rec");
         return {"replay " + rec, "explain 0 0 1 --recording " + rec, "evaluate " + rec,
-                "simulate " + rec + " --force --rig " + source("tests/data/partial_body/rig.yaml") +
-                    " --scenario " + source("tests/data/short/scenario.yaml"),
+                "simulate " + rec + " --force --rig " + source("tests/data/short/rig.yaml") + " --scenario " +
+                    source("tests/data/short/scenario.yaml"),
                 "repair " + rec};
     }
 
@@ -260,7 +198,7 @@ TEST_F(FolderWalk, a_daemons_maps_folder_leads_nowhere_else) {
     for (const char* place : {"lock", "fused.ot", "fused.bt", ".fused.ot.octoskin-part"}) {
         for (const Trap trap : {Trap::link_to_file, Trap::hard_link}) {
             fs::create_directories(directory_ / "template");
-            ASSERT_TRUE(lay(trap, place));
+            ASSERT_TRUE(lay_in_recording(trap, place));
             const auto before = states_in(directory_ / "outside");
             const Said said =
                 run("timeout -s TERM 1 " OCTOSKIN_PROGRAM " run --no-camera --rig " +
@@ -279,7 +217,7 @@ TEST_F(FolderWalk, writes_only_into_folders_of_the_caller_or_of_root_and_reads_a
     const std::string as_another = "setpriv --reuid 12345 --regid 12345 --clear-groups ";
     if (run(as_another + OCTOSKIN_PROGRAM " --version").exit_code != 0)
         GTEST_SKIP() << "another user may not run " << OCTOSKIN_PROGRAM;
-    ASSERT_TRUE(lay(Trap::folder, "maps"));
+    ASSERT_TRUE(lay_in_recording(Trap::folder, "maps"));
     for (const char* open : {"rec", "rec/maps"}) fs::permissions(directory_ / open, fs::perms::all);
     const auto own = [this](const char* name, uid_t user) {
         ASSERT_EQ(::lchown(path(name).c_str(), user, user), 0);

@@ -1,8 +1,6 @@
 // Each command over a recording, a maps folder or an experiment of somebody else, with a trap in each place
 // that it touches: nothing outside changes, nothing of it is shown, and no command waits.
 #include <gmock/gmock.h>
-#include <sys/stat.h>
-#include <sys/sysmacros.h>
 
 #include <atomic>
 #include <functional>
@@ -10,11 +8,12 @@
 #include <mutex>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <thread>
 #include <vector>
 
 #include "host/apps/study/results_folder.hpp"
+#include "tests/system/cli/folder_states.hpp"
+#include "tests/system/cli/folder_traps.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
@@ -22,16 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How a trap is laid in a place.
-enum class Trap : std::uint8_t {
-    link_to_file,     ///< the very file that belongs there, but outside: following it would go well
-    absolute_link,    ///< the same by its absolute path
-    link_to_folder,   ///< of the victim
-    link_to_nothing,  ///< that is not there yet, in the victim's folder
-    pipe,
-    device,
-    folder,
-};
+/// Hard links have a walk of their own.
 constexpr Trap kTraps[] = {Trap::link_to_file,    Trap::absolute_link, Trap::link_to_folder,
                            Trap::link_to_nothing, Trap::pipe,          Trap::device,
                            Trap::folder};
@@ -130,56 +120,6 @@ constexpr Text kTexts[] = {
     {"evaluate {}/maps/fused.ot --rig {}/rig.yaml", "maps/maps.yaml", "extends: @/rec/secret\n"},
     {"mapping {}/mapping.yaml", "mapping.yaml", "extends: @/rec/secret\n"},
 };
-
-/// What is at a path: kind, mode, owner, size, time of the last change; and its bytes, where they are asked
-/// for.
-enum class Bytes : std::uint8_t { compared, trusted };
-std::string state_of(const fs::path& path, Bytes bytes) {
-    struct stat status {};
-    if (::lstat(path.c_str(), &status) != 0) return "absent";
-    std::ostringstream text;
-    text << status.st_mode << ' ' << status.st_uid << ' ' << status.st_mtim.tv_sec << '.'
-         << status.st_mtim.tv_nsec << ' ';
-    if (S_ISREG(status.st_mode)) text << status.st_size << ' ';
-    if (S_ISREG(status.st_mode) && bytes == Bytes::compared) text << std::hash<std::string>()(content(path));
-    return text.str();
-}
-
-std::map<std::string, std::string> states_in(const fs::path& folder, Bytes bytes) {
-    std::map<std::string, std::string> states{{".", state_of(folder, bytes)}};
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-        states[entry.path().lexically_relative(folder).string()] = state_of(entry.path(), bytes);
-    return states;
-}
-
-bool lay(Trap trap, const fs::path& at, const fs::path& twin, const fs::path& victim) {
-    std::error_code error;
-    fs::remove_all(at, error);
-    fs::create_directories(at.parent_path(), error);
-    const fs::path relative = twin.lexically_relative(at.parent_path());
-    switch (trap) {
-        case Trap::link_to_file:
-            fs::create_symlink(relative, at, error);
-            break;
-        case Trap::absolute_link:
-            fs::create_symlink(twin, at, error);
-            break;
-        case Trap::link_to_folder:
-            fs::create_symlink(victim, at, error);
-            break;
-        case Trap::link_to_nothing:
-            fs::create_symlink(victim / "new", at, error);
-            break;
-        case Trap::pipe:
-            return ::mkfifo(at.c_str(), 0600) == 0;
-        case Trap::device:
-            return ::mknod(at.c_str(), S_IFCHR | 0600, makedev(1, 5)) == 0;  // /dev/zero
-        case Trap::folder:
-            fs::create_directory(at, error);
-            break;
-    }
-    return !error;
-}
 
 /// One half of the walk, in a folder of its own, so that two go at once.
 class Walker {
