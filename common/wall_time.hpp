@@ -9,7 +9,7 @@
 namespace octoskin {
 
 /// The begin of the year 2200: no clock that is right shows more. Nanoseconds since 1970 end in 2262, and
-/// between the two whoever adds to a stamp has room.
+/// a sum of a stamp and a duration stays below that.
 inline constexpr WallTime kWallTimeMax{7'258'118'400'000'000'000};
 
 /// Of a clock that shows a time before 1970 or after kWallTimeMax, that border: such a clock does not tell

@@ -123,8 +123,9 @@ constexpr std::array kCounterMeanings = {
             "the source is over 1.6 times as quick as joints.rate_hz of the rig says: its samples cannot be "
             "told apart with certainty. Its first five, if its clock is known by then"},
     Meaning{"joint samples", "second_sender",
-            "two senders of joint states are heard, or were within the last second, and which of them is "
-            "true nobody can tell: neither is used"},
+            "two senders of joint states are heard, or were within the last second, and it cannot be decided "
+            "which of "
+            "them is true: neither is used"},
     Meaning{"joint samples", "joint_jump",
             "further from the sample before it than 1.5 times the velocity of the robot description's "
             "<limit> lets the arm move in that time"},

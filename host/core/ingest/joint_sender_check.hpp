@@ -17,9 +17,9 @@ namespace octoskin {
 
 /// Each sender counts its samples from 0 to 7, one a period. What a second one sends takes a number that the
 /// first one uses a moment later, for another time or posture, or it is out of step with the numbers about
-/// it. Which of the two is true nobody can tell, so that a sample is used only once its successor is here and
-/// nothing has contradicted it: a quarter of a period after the first sender's own sample of that number must
-/// have come. From the first contradiction on no sample is used until a second after the last one.
+/// it. Which of the two is true cannot be decided, so that a sample is used only once its successor is here
+/// and nothing has contradicted it: a quarter of a period after the first sender's own sample of that number
+/// must have come. From the first contradiction on no sample is used until a second after the last one.
 class JointSenderCheck {
   public:
     /// `waits`: false where joint states come from this machine alone, and nobody else can send under their

@@ -146,7 +146,7 @@ enum class JointReason : std::uint8_t {
     out_of_order,   ///< not later than the sample before it
     queue_overflow,
     too_frequent,   ///< the source is quicker than the rig says, so that samples cannot be told apart
-    second_sender,  ///< two senders are heard, and which of them is true nobody can tell
+    second_sender,  ///< two senders are heard, and it cannot be decided which is true
     joint_jump,     ///< further from the sample before it than the arm moves in that time
 };
 [[nodiscard]] constexpr std::array<const char*, 12> names_of(JointReason) {
