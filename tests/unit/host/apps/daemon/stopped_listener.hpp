@@ -1,6 +1,7 @@
 // Who listens at a Unix socket as a daemon does that is stopped: nobody is let in.
 #pragma once
 
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -24,6 +25,12 @@ class StoppedListener {
     StoppedListener(const StoppedListener&) = delete;
     StoppedListener& operator=(const StoppedListener&) = delete;
     [[nodiscard]] int descriptor() const { return descriptor_; }
+    /// The next client, once it is there; -1 after 5 s without one. The caller closes it.
+    [[nodiscard]] int accept() const {
+        pollfd knocking{descriptor_, POLLIN, 0};
+        (void)::poll(&knocking, 1, 5'000);
+        return ::accept(descriptor_, nullptr, nullptr);
+    }
     /// Until nobody else has room.
     void fill() {
         for (auto knocking = connect_unix_socket(file_, SOCK_STREAM, std::chrono::milliseconds{10}); knocking;
