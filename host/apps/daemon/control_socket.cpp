@@ -42,10 +42,13 @@ bool has_sent_something(int descriptor) {
     return ::poll(&client, 1, 0) > 0;
 }
 
-int process_of(int descriptor) {
+/// The process at the other end and its user: 0 and the overflow user, where they cannot be seen.
+ucred peer_of(int descriptor) {
+    constexpr uid_t kOverflow = 65534;
     ucred peer{};
     socklen_t size = sizeof(peer);
-    return ::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 ? peer.pid : 0;
+    const bool is_seen = ::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
+    return is_seen ? peer : ucred{0, kOverflow, kOverflow};
 }
 
 std::uint64_t descriptor_limit() {
@@ -121,7 +124,9 @@ void ControlSocket::accept() {
     ::setsockopt(descriptor, SOL_SOCKET, SO_SNDBUF, &room, sizeof(room));
     Client& client = clients_.emplace_back();
     client.descriptor = descriptor;
-    client.process = process_of(descriptor);
+    const ucred peer = peer_of(descriptor);
+    client.process = peer.pid;
+    client.user = peer.uid;
     client.asked = monotonic_now();
     watch(client);
     make_room();
@@ -225,11 +230,15 @@ bool ControlSocket::answer(Client& client, const std::string& request) {
     if (!later_ || !later_(request, tickets_ + 1)) return send(client, answer_(request));
     ++tickets_;
     const auto waiting = std::ranges::count_if(clients_, [](const Client& one) { return one.ticket != 0; });
-    if (std::cmp_greater_equal(waiting, clients_max_)) {
+    const auto of_user = std::ranges::count_if(
+        clients_, [&](const Client& one) { return one.ticket != 0 && one.user == client.user; });
+    const bool are_all_taken = std::cmp_greater_equal(waiting, clients_max_);
+    if (are_all_taken || std::cmp_greater_equal(of_user, kWaitingOfUserMax)) {
         gone_(tickets_);
-        return send(client,
-                    refusal_line(fmt::format("too many questions: {} wait; ask again later", clients_max_),
-                                 ExitCode::unavailable));
+        return send(client, refusal_line(fmt::format("too many questions: {} {}wait; ask again later",
+                                                     are_all_taken ? waiting : of_user,
+                                                     are_all_taken ? "" : "of this user "),
+                                         ExitCode::unavailable));
     }
     client.ticket = tickets_;
     client.readable = EventSource();  // the one at work just now: nothing of it is used any more

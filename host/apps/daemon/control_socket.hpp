@@ -1,6 +1,8 @@
 // How programs of this machine ask the daemon: a Unix socket, one line of request, one line of JSON back.
 #pragma once
 
+#include <sys/types.h>
+
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -35,6 +37,8 @@ class ControlSocket {
     /// So many questions wait at once, each of another client; a further one is refused, and its client
     /// served on. A question that waits is never given up for another.
     static constexpr std::size_t kWaitingMax = 16;
+    /// Of them so many of one user: the others are for other users' programs.
+    static constexpr std::size_t kWaitingOfUserMax = 4;
     /// So many of those who were refused may still finish what they are sending before they are closed.
     static constexpr std::size_t kRefusedMax = 16;
     /// Of the descriptors that this process may have, clients take none of so many: its files, its devices
@@ -82,6 +86,7 @@ class ControlSocket {
     struct Client {
         int descriptor = -1;
         int process = 0;           ///< 0: cannot be seen, as one of another container
+        uid_t user = 0;            ///< the overflow user, where it cannot be seen
         std::string request;       ///< as much of it as is here
         HostTime asked;            ///< newest whole request
         std::uint64_t ticket = 0;  ///< of what it waits for; 0: nothing

@@ -193,10 +193,7 @@ Status<AppError> Daemon::Parts::take_sockets() {
     if (!opened) return unexpected(opened.error());
     control = std::move(opened).value();
     control->answer_later(
-        [this](const std::string& line, std::uint64_t ticket) {
-            const HostTime now = monotonic_now();
-            return queries.take(line, ticket, pipeline, {inputs.bus_now(now), inputs.reckoned_bus_now(now)});
-        },
+        [this](const std::string& line, std::uint64_t ticket) { return queries.take(line, ticket); },
         [this](std::uint64_t ticket) { queries.forget(ticket); });
     return inputs.take_sockets(settings.host.rig);
 }
@@ -232,7 +229,9 @@ void Daemon::Parts::watch() {
         pipeline.on_worker_done();
     }));
     sources.push_back(loop.on_readable(queries.descriptor(), [this] {
-        for (const auto& [ticket, line] : queries.take_answers()) control->reply(ticket, line);
+        const HostTime now = monotonic_now();
+        const QueryDesk::Now of_map{inputs.bus_now(now), inputs.reckoned_bus_now(now), wall_now()};
+        for (const auto& [ticket, line] : queries.serve(pipeline, of_map)) control->reply(ticket, line);
     }));
     sources.push_back(loop.every(kAttendPeriod, [this] { attend(); }));
     sources.push_back(loop.every(kHomePeriod, [this] { look_at_home(); }));

@@ -42,18 +42,11 @@ void QueryDesk::change_robot(const HostSetup& setup) {
     setup_ = std::make_shared<const HostSetup>(setup);
 }
 
-bool QueryDesk::take(const std::string& line, std::uint64_t ticket, const Pipeline& pipeline,
-                     const Asked& asked) {
+bool QueryDesk::take(const std::string& line, std::uint64_t ticket) {
     if (!is_query(line)) return false;
-    Question question{line,
-                      ticket,
-                      setup_,
-                      pipeline.maps().fused()->copy(),
-                      present_joints(pipeline, setup_->robot.joint_count(), asked.known),
-                      asked.reckoned};
     {
         const std::scoped_lock lock(mutex_);
-        waiting_.push_back(std::move(question));
+        waiting_.push_back({line, ticket});
     }
     changed_.notify_all();
     return true;
@@ -65,10 +58,19 @@ void QueryDesk::forget(std::uint64_t ticket) {
     if (asked_ == ticket) is_forgotten_ = true;
 }
 
-std::vector<std::pair<std::uint64_t, std::string>> QueryDesk::take_answers() {
+std::vector<std::pair<std::uint64_t, std::string>> QueryDesk::serve(const Pipeline& pipeline,
+                                                                    const Now& now) {
     event_.clear();
-    const std::scoped_lock lock(mutex_);
-    return std::exchange(answers_, {});
+    std::unique_lock lock(mutex_);
+    auto answers = std::exchange(answers_, {});
+    if (wants_ground_) {
+        ground_.emplace(Ground{setup_, pipeline.maps().fused()->copy(),
+                               present_joints(pipeline, setup_->robot.joint_count(), now.known), now});
+        wants_ground_ = false;
+        lock.unlock();
+        changed_.notify_all();
+    }
+    return answers;
 }
 
 void QueryDesk::run() {
@@ -76,14 +78,17 @@ void QueryDesk::run() {
     while (true) {  // ends with the object
         wait_for_questions(lock);
         if (is_ending_) return;
-        Question question = std::move(waiting_.front());
+        Ground ground = std::move(*ground_);
+        ground_.reset();
+        if (waiting_.empty()) continue;  // forgotten meanwhile
+        const Question question = std::move(waiting_.front());
         waiting_.pop_front();
         asked_ = question.ticket;
         is_forgotten_ = false;
         lock.unlock();
         std::string line;
         try {
-            line = answer(std::move(question));
+            line = answer(question.line, std::move(ground));
         } catch (const std::exception&) {  // no memory to say so: an empty line, which is an answer, too
         }
         lock.lock();
@@ -91,6 +96,7 @@ void QueryDesk::run() {
     }
 }
 
+/// Until there is a question and what it is put to, or the end.
 void QueryDesk::wait_for_questions(std::unique_lock<std::mutex>& lock) {
     const auto has_work = [this] { return !waiting_.empty() || is_ending_; };
     if (field_.is_there() && !changed_.wait_for(lock, field_idle_max_, has_work)) {
@@ -99,6 +105,9 @@ void QueryDesk::wait_for_questions(std::unique_lock<std::mutex>& lock) {
         lock.lock();
     }
     changed_.wait(lock, has_work);
+    wants_ground_ = true;
+    event_.wake();
+    changed_.wait(lock, [this] { return ground_ || is_ending_; });
 }
 
 /// With the lock.
@@ -107,14 +116,14 @@ void QueryDesk::tell(std::uint64_t ticket, std::string line) {
     event_.wake();
 }
 
-std::string QueryDesk::answer(Question question) {
+std::string QueryDesk::answer(const std::string& question, Ground ground) {
     nlohmann::ordered_json json;
     try {
-        question.map.go_on(question.asked);  // nothing may have been measured for long, or ever
-        const auto request = read_query(question.line);
+        ground.map.go_on(ground.now.reckoned);  // nothing may have been measured for long, or ever
+        const auto request = read_query(question);
         json = request ? answer_query(*request,
-                                      {&question.setup->rig, &question.setup->robot, std::move(question.map),
-                                       std::move(question.present), &field_, true},
+                                      {&ground.setup->rig, &ground.setup->robot, std::move(ground.map),
+                                       std::move(ground.present), &field_, true, ground.now.wall},
                                       [this] { return is_ending_ || is_forgotten_; })
                        : query_refused(request.error());
     } catch (const std::exception& error) {  // no memory, most likely

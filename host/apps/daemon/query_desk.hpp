@@ -23,10 +23,10 @@
 
 namespace octoskin {
 
-/// Each question is put to a copy of the map as it was when it came: some microseconds of the loop's time.
-/// A distance field that long paths make for themselves follows from copy to copy, and goes when nobody has
-/// asked for `field_idle_max`. As many questions wait as the control socket has clients, at the most: each
-/// has one.
+/// Each question is put to a copy of the map as it is when its turn comes: some microseconds of the loop's
+/// time. There is one copy, however many questions wait. A distance field that long paths make for themselves
+/// follows from copy to copy, and goes when nothing was asked for `field_idle_max`. The loop calls `serve`
+/// whenever `descriptor` is readable. As many questions wait as the control socket lets, at the most.
 class QueryDesk {
   public:
     static constexpr std::chrono::milliseconds kFieldIdleMax{10'000};
@@ -40,36 +40,42 @@ class QueryDesk {
     /// What is asked from now on is asked of this robot.
     void change_robot(const HostSetup& setup);
 
-    /// When a question came, on the clock of what the map was told. A time in doubt must not make the map
-    /// younger: by `reckoned` it ages all the same.
-    struct Asked {
-        std::optional<HostTime> known;  ///< empty: the time is unknown or in doubt
-        HostTime reckoned;              ///< the newest known time, gone on by this machine's clock
-    };
-    /// False if the line is no query. The arm stands as the newest joint sample says, if that is at most
-    /// `kPresentMax` old and the time is known.
-    bool take(const std::string& line, std::uint64_t ticket, const Pipeline& pipeline, const Asked& asked);
-    static constexpr Nanoseconds kPresentMax{500'000'000};
-    /// Nobody waits for this answer any more: it is not sought, or not to its end.
+    /// False if the line is no query.
+    bool take(const std::string& line, std::uint64_t ticket);
+    /// This answer is no longer waited for: it is not sought, or not to its end.
     void forget(std::uint64_t ticket);
 
-    /// Readable when there are answers, until they are taken.
+    /// Now, on the clock of what the map was told. A time in doubt must not make the map younger: by
+    /// `reckoned` it ages all the same.
+    struct Now {
+        std::optional<HostTime> known;  ///< empty: the time is unknown or in doubt
+        HostTime reckoned;              ///< the newest known time, gone on by this machine's clock
+        WallTime wall;                  ///< which an answer states
+    };
+    /// Readable when there is something for `serve`, until then.
     [[nodiscard]] int descriptor() const noexcept { return event_.descriptor(); }
-    [[nodiscard]] std::vector<std::pair<std::uint64_t, std::string>> take_answers();
+    /// Gives the question whose turn it is the map as it is, and takes the answers that are there. The arm is
+    /// where the newest joint sample says, if that is at most `kPresentMax` old and the time is known.
+    [[nodiscard]] std::vector<std::pair<std::uint64_t, std::string>> serve(const Pipeline& pipeline,
+                                                                           const Now& now);
+    static constexpr Nanoseconds kPresentMax{500'000'000};
 
   private:
     struct Question {
         std::string line;
         std::uint64_t ticket = 0;
+    };
+    /// What one question is put to.
+    struct Ground {
         std::shared_ptr<const HostSetup> setup;
         FusedMap map;
         std::vector<double> present;
-        HostTime asked;  ///< as reckoned
+        Now now;
     };
     void run();
     void wait_for_questions(std::unique_lock<std::mutex>& lock);
     void tell(std::uint64_t ticket, std::string line);
-    [[nodiscard]] std::string answer(Question question);
+    [[nodiscard]] std::string answer(const std::string& question, Ground ground);
 
     const std::chrono::milliseconds field_idle_max_;
     WakeEvent event_;
@@ -77,6 +83,8 @@ class QueryDesk {
     std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Question> waiting_;
+    bool wants_ground_ = false;  ///< a question's turn has come
+    std::optional<Ground> ground_;
     std::vector<std::pair<std::uint64_t, std::string>> answers_;
     std::uint64_t asked_ = 0;  ///< ticket of the question that is at work, or was the last
     std::atomic<bool> is_ending_ = false;

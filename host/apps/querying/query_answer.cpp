@@ -64,6 +64,10 @@ Json rounded(const std::optional<double>& metres) {
     constexpr double kPerMetre = 1e6;
     return metres ? Json(std::round(*metres * kPerMetre) / kPerMetre + 0.0) : Json(nullptr);  // no "-0.0"
 }
+/// To a millisecond.
+Json seconds_json(const std::optional<WallTime>& time) {
+    return time ? Json(std::round(1e-6 * static_cast<double>(time->ns)) / 1e3) : Json(nullptr);
+}
 Json point_json(const Eigen::Vector3d& point) {
     return {rounded(point.x()), rounded(point.y()), rounded(point.z())};
 }
@@ -355,6 +359,7 @@ std::optional<AppError> refusal_of(const Json& answer) {
 
 Json answer_query(const QueryRequest& request, QueryGround ground, const std::function<bool()>& is_ending) {
     const auto begun = std::chrono::steady_clock::now();
+    const Json map_time = seconds_json(ground.map_time);
     Asking asking(request, std::move(ground), is_ending);
     auto answer = asking.run();
     if (!answer) {
@@ -363,6 +368,7 @@ Json answer_query(const QueryRequest& request, QueryGround ground, const std::fu
         return refused;
     }
     const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begun;
+    (*answer)["map_time_s"] = map_time;
     (*answer)["took_us"] = std::round(took.count());
     return std::move(answer).value();
 }

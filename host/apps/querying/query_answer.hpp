@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/time.hpp"
 #include "host/apps/querying/kept_field.hpp"
 #include "host/apps/querying/query_request.hpp"
 #include "host/core/kinematics/robot_model.hpp"
@@ -29,6 +30,8 @@ struct QueryGround {
     /// The arm stands somewhere now: without `present` nothing is its own space. Else it stands where the
     /// path begins; of a single posture the answer is then about what that frees itself.
     bool is_live = false;
+    /// When the map was as it is, by this machine's clock; empty: of a file, which does not say.
+    std::optional<WallTime> map_time = std::nullopt;
 };
 
 /// "ok": true, or false with "error" and "code", the exit code for it, and with "configuration" where the

@@ -1,6 +1,7 @@
 // Answers of the control socket that take their time.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
@@ -138,14 +139,15 @@ TEST_F(AnsweringLater, tells_it_in_time_though_nobody_else_comes) {
 
 TEST_F(AnsweringLater, is_not_given_up_for_others_however_many_come_and_keeps_nobody_out) {
     std::vector<int> waiting;
-    for (std::size_t i = 0; i < ControlSocket::kWaitingMax; ++i) {
+    for (std::size_t i = 0; i < ControlSocket::kWaitingOfUserMax; ++i) {
         waiting.push_back(connect());
         EXPECT_EQ(::send(waiting.back(), "slow\n", 5, MSG_NOSIGNAL), 5);
     }
     serve([&] {
         for (int i = 0; i < 40; ++i) EXPECT_EQ(ask_daemon(file(), "status").value(), "you said status");
-        EXPECT_EQ(ask_daemon(file(), "slow").value(),
-                  R"({"ok":false,"error":"too many questions: 16 wait; ask again later","code":69})");
+        EXPECT_EQ(
+            ask_daemon(file(), "slow").value(),
+            R"({"ok":false,"error":"too many questions: 4 of this user wait; ask again later","code":69})");
         may_answer_ = true;
         const std::string_view wanted = "at last\n";
         for (const int client : waiting) {
@@ -157,6 +159,41 @@ TEST_F(AnsweringLater, is_not_given_up_for_others_however_many_come_and_keeps_no
     });
     EXPECT_EQ(gone_.size(), 1U) << "the question too many";
     for (const int client : waiting) ::close(client);
+}
+
+/// Connects as another user, which only root can.
+int connect_as(uid_t user, const std::filesystem::path& file) {
+    int connected = -1;
+    std::thread thread([&] {  // the raw call is of this thread alone
+        if (::syscall(SYS_setresuid, -1, user, -1) != 0) return;
+        const auto descriptor = connect_unix_socket(file, SOCK_STREAM);
+        connected = descriptor ? *descriptor : -1;
+    });
+    thread.join();
+    return connected;
+}
+
+TEST_F(AnsweringLater, lets_four_of_each_user_wait_and_sixteen_in_all) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root connects as other users";
+    std::filesystem::permissions(folder_.path(), std::filesystem::perms::all);
+    std::filesystem::permissions(file(), std::filesystem::perms::all);
+    std::vector<int> clients;
+    std::string of_root;
+    serve([&] {
+        for (uid_t user = 3'000; user < 3'004; ++user) {
+            for (int i = 0; i < 5; ++i) {
+                clients.push_back(connect_as(user, file()));
+                EXPECT_EQ(::send(clients.back(), "slow\n", 5, MSG_NOSIGNAL), 5);
+                std::this_thread::sleep_for(20ms);
+            }
+        }
+        const auto told = ask_daemon(file(), "slow");
+        of_root = told ? *told : told.error().message;
+    });
+    EXPECT_EQ(gone_.size(), 5U) << "the fifth of each user, and the one of root";
+    EXPECT_EQ(tickets_.size(), 21U);
+    EXPECT_EQ(of_root, R"({"ok":false,"error":"too many questions: 16 wait; ask again later","code":69})");
+    for (const int client : clients) ::close(client);
 }
 
 TEST_F(AnsweringLater, takes_nobody_for_idle_who_waits) {

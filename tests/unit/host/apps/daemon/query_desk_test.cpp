@@ -1,5 +1,5 @@
 // Questions that come while the map goes on. The oracle is a search in a copy of the map as it was when the
-// question came.
+// question's turn came.
 #include "host/apps/daemon/query_desk.hpp"
 
 #include <gtest/gtest.h>
@@ -55,24 +55,28 @@ class QueryDeskTest : public testing::Test {
         pipeline_.begin_with(std::move(next));
     }
     void ask(const QueryRequest& request, std::uint64_t ticket) { ask(desk_, request, ticket); }
-    void ask(QueryDesk& desk, const QueryRequest& request, std::uint64_t ticket) {
-        ASSERT_TRUE(desk.take(to_line(request), ticket, pipeline_, {kNow, kNow}));
+    static void ask(QueryDesk& desk, const QueryRequest& request, std::uint64_t ticket) {
+        ASSERT_TRUE(desk.take(to_line(request), ticket));
     }
     /// The state that the daemon answers of where the arm has free space about it, while the time is in
     /// doubt.
     std::string state_in_doubt(HostTime reckoned) {
-        EXPECT_TRUE(desk_.take(to_line(path({{0.0}})), 1, pipeline_, {std::nullopt, reckoned}));
-        return answers(1)[1].at("state");
+        ask(path({{0.0}}), 1);
+        return answers(desk_, 1, {std::nullopt, reckoned, kWall})[1].at("state");
     }
     std::map<std::uint64_t, Json> answers(std::size_t count) { return answers(desk_, count); }
+    static constexpr WallTime kWall{1'750'000'000'250'000'000};
+    std::map<std::uint64_t, Json> answers(QueryDesk& desk, std::size_t count) {
+        return answers(desk, count, {kNow, kNow, kWall});
+    }
     /// All of them; fewer if they take too long.
-    static std::map<std::uint64_t, Json> answers(QueryDesk& desk, std::size_t count) {
+    std::map<std::uint64_t, Json> answers(QueryDesk& desk, std::size_t count, const QueryDesk::Now& now) {
         std::map<std::uint64_t, Json> answers;
         constexpr int kPatience_ms = 20'000;
         while (answers.size() < count) {
             pollfd readable{desk.descriptor(), POLLIN, 0};
             if (::poll(&readable, 1, kPatience_ms) != 1) return answers;
-            for (const auto& [ticket, line] : desk.take_answers()) answers[ticket] = Json::parse(line);
+            for (const auto& [ticket, line] : desk.serve(pipeline_, now)) answers[ticket] = Json::parse(line);
         }
         return answers;
     }
@@ -167,15 +171,33 @@ TEST_F(QueryDeskTest, answers_all_that_are_not_forgotten) {
     EXPECT_EQ(answers(40).size(), 40U);
 }
 
-TEST_F(QueryDeskTest, answers_of_the_map_as_it_was_when_the_question_came) {
+TEST_F(QueryDeskTest, states_when_the_map_was_as_it_answers) {
+    ask(path({{0.0}}), 1);
+    EXPECT_EQ(answers(1)[1].at("map_time_s").get<double>(), 1'750'000'000.25);
+}
+
+TEST_F(QueryDeskTest, a_question_that_waits_is_put_to_the_map_of_its_own_turn) {
+    ask(path({{0.0}}), 1);
+    ask(path({{0.0}}), 2);
+    pollfd readable{desk_.descriptor(), POLLIN, 0};
+    ASSERT_EQ(::poll(&readable, 1, 20'000), 1);
+    EXPECT_TRUE(desk_.serve(pipeline_, {kNow, kNow, kWall}).empty())
+        << "the first has its map, and no answer";
+    pipeline_.begin_with(confirmed_about_base());
+    auto told = answers(2);
+    EXPECT_EQ(told[1].at("state"), "stale");
+    EXPECT_EQ(told[2].at("state"), "free");
+}
+
+TEST_F(QueryDeskTest, answers_of_the_map_as_it_was_when_the_turn_came) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> turn(-1.5, 3.0);
     std::map<std::uint64_t, Json> wanted;
     std::size_t by_field = 0;
     for (std::uint64_t round = 0; round < 6; ++round) {
+        mark(random);
         for (std::uint64_t i = 0; i < 8; ++i) {
             const std::uint64_t ticket = 10 * round + i;
-            mark(random);
             const QueryRequest request = path({{turn(random)}, {turn(random)}, {turn(random)}});
             ask(request, ticket);
             FusedMap then = map().copy();
@@ -186,6 +208,7 @@ TEST_F(QueryDeskTest, answers_of_the_map_as_it_was_when_the_question_came) {
             by_field += answer.at("distances") == "field" ? 1U : 0U;
             for (Json* json : {&answer, &wanted[ticket]}) {
                 json->erase("took_us");
+                json->erase("map_time_s");
                 json->erase("distances");
             }
             EXPECT_EQ(answer, wanted[ticket]) << ticket;
