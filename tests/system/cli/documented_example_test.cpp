@@ -42,8 +42,8 @@ TEST_F(DocumentedExample, of_a_daemon_without_a_can_interface_makes_a_map) {
     EXPECT_GT(map->size(), 1'000U) << said.output;
 }
 
-/// octomap_msgs stands in for itself with the fields of its Octomap.msg. Its msgToMap makes a tree of that
-/// resolution and lets it read `data`, as is done here.
+/// octomap_msgs and moveit_msgs have stand-ins with the fields of their messages. Its msgToMap makes a tree
+/// of that resolution and lets it read `data`, as is done here.
 TEST_F(DocumentedExample, of_a_ros_message_gives_octomap_the_map_that_was_saved) {
     record_short("bench");
     ASSERT_EQ(octoskin("replay " + path("bench") + " --fused-only").exit_code, 0);
@@ -55,14 +55,27 @@ TEST_F(DocumentedExample, of_a_ros_message_gives_octomap_the_map_that_was_saved)
           "import types\nclass Octomap:\n    def __init__(self, binary, id, resolution):\n"
           "        self.binary, self.id, self.resolution = binary, id, resolution\n"
           "        self.header = types.SimpleNamespace()\n");
+    std::filesystem::create_directories(path("moveit_msgs"));
+    write(path("moveit_msgs/__init__.py"), "");
+    write(path("moveit_msgs/msg.py"),
+          "import types\nclass Fields:\n    def __getattr__(self, name):\n"
+          "        if name.startswith('__'): raise AttributeError(name)\n"
+          "        setattr(self, name, Fields())\n        return getattr(self, name)\n"
+          "class PlanningScene(Fields):\n    def __init__(self, is_diff=False):\n"
+          "        self.is_diff = is_diff\n");
     const Said said =
         python(program +
+               "scene = planning_scene_diff('bench/maps/fused.bt')\n"
+               "print(scene.is_diff, scene.robot_state.is_diff, scene.world.octomap.octomap.id, "
+               "sorted(vars(scene.world)))\n"
                "for name in ('fused.ot', 'fused.bt'):\n"
                "    message = octomap_message('bench/maps/' + name)\n"
                "    print(name, message.binary, message.id, message.resolution, message.header.frame_id)\n"
                "    open(name + '.data', 'wb').write(message.data.tobytes())\n");
     ASSERT_EQ(said.exit_code, 0) << said.output;
-    EXPECT_EQ(said.output, "fused.ot False OcTree 0.04 map\nfused.bt True OcTree 0.04 map\n");
+    EXPECT_EQ(said.output,
+              "True True OcTree ['octomap']\n"
+              "fused.ot False OcTree 0.04 map\nfused.bt True OcTree 0.04 map\n");
     const std::unique_ptr<octomap::AbstractOcTree> saved(
         octomap::AbstractOcTree::read(path("bench/maps/fused.ot")));
     const auto* const expected = dynamic_cast<const octomap::OcTree*>(saved.get());
