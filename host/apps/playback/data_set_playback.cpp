@@ -123,11 +123,17 @@ AccountTable image_table(const tum::DataSetReader& reader, const ReplayOutcome& 
             .is_balanced = true};
 }
 
-std::vector<std::string> warnings_of(const PlaybackRequest& request, const tum::DataSetReader& reader) {
-    if (reader.poses_repeated() == 0) return {};
+std::vector<std::string> warnings_of(const PlaybackRequest& request, const rig::Camera& camera,
+                                     const tum::DataSetReader& reader) {
+    std::vector<std::string> warnings;
     const tum::DataSetReader::Paths paths{request.recording.directory};
-    return {fmt::format("{}: {} poses have the time of the one above them, and were left out",
-                        paths.poses().string(), reader.poses_repeated())};
+    if (reader.poses_repeated() > 0) {
+        warnings.push_back(fmt::format("{}: {} poses have the time of the one above them, and were left out",
+                                       paths.poses().string(), reader.poses_repeated()));
+    }
+    if (const auto doubt = tum::doubt_units(reader.values(), camera.data_set, camera.depth_min_m))
+        warnings.push_back(request.recording.directory.string() + ": " + *doubt);
+    return warnings;
 }
 
 }  // namespace
@@ -181,7 +187,7 @@ Result<Playback, AppError> play_data_set(const PlaybackRequest& request_given, c
                     .accounts = std::move(accounts),
                     .nodes = {},
                     .notes = {},
-                    .warnings = warnings_of(request, *reader),
+                    .warnings = warnings_of(request, *camera, *reader),
                     .is_map_incomplete = false,
                     .origin = std::move(*origin)};
 }

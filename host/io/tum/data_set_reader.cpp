@@ -74,6 +74,7 @@ Result<std::optional<DepthFrame>, DepthSourceError> DataSetReader::next() {
         if (!image) return unexpected(line_error(paths_.images(), line, named.file + ": " + image.error()));
         ++next_;
         ++images_read_;
+        values_.add(image->values);
         DepthFrame frame{named.captured, image->width, image->height, {}, T_map_camera};
         frame.depth_mm.reserve(image->values.size());
         std::transform(image->values.begin(), image->values.end(), std::back_inserter(frame.depth_mm),

@@ -9,6 +9,7 @@
 #include "common/result.hpp"
 #include "host/core/depth/depth_source.hpp"
 #include "host/io/folder/file_place.hpp"
+#include "host/io/tum/depth_units.hpp"
 #include "host/io/tum/trajectory.hpp"
 #include "hw/rigfile/data_set_depth.hpp"
 
@@ -36,6 +37,8 @@ class DataSetReader final : public DepthSource {
     /// names the image and its line in depth.txt, and is the same for ever.
     [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override;
 
+    /// Of the images read.
+    [[nodiscard]] const PixelValues& values() const noexcept { return values_; }
     [[nodiscard]] std::uint64_t images_read() const noexcept { return images_read_; }
     [[nodiscard]] std::uint64_t images_without_pose() const noexcept { return images_without_pose_; }
     /// Lines of groundtruth.txt that were left out, as the pose above them has their time.
@@ -65,6 +68,7 @@ class DataSetReader final : public DepthSource {
     NamedFolder folder_;  ///< that all is read from
     Trajectory trajectory_;
     std::vector<std::uint16_t> depth_mm_;  ///< of each value of a pixel
+    PixelValues values_;
     std::vector<Image> images_;
     std::size_t next_ = 0;
     std::uint64_t images_read_ = 0;
