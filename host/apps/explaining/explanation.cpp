@@ -63,7 +63,8 @@ Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vect
                        .witness = std::move(witness),
                        .begin = played->outcome.progress.begin,
                        .names = names_of_sources(played->rig),
-                       .warnings = played->warnings};
+                       .warnings = played->warnings,
+                       .lost = loss_of(*played)};
 }
 
 }  // namespace octoskin

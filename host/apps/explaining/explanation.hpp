@@ -28,6 +28,7 @@ struct Explanation {
     std::optional<HostTime> begin;            ///< of the recording: times are told from here
     std::map<BeamSource, std::string> names;  ///< "camera", "forearm_3"; with its zone if there are several
     std::vector<std::string> warnings;        ///< of the replay
+    std::optional<AppError> lost = std::nullopt;  ///< most of the recording, though the explanation is there
 };
 
 /// Replays the recording, as `octoskin replay` would, and watches the voxel at `p_map` (metres, map frame) in

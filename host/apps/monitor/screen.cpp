@@ -7,8 +7,8 @@
 #include <optional>
 #include <string_view>
 
-#include "host/apps/monitor/counter_meanings.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
+#include "host/core/account/counter_meanings.hpp"
 #include "host/core/text/printable.hpp"
 
 namespace octoskin {
@@ -222,7 +222,8 @@ class Screen {
                 add("  the counters do not add up: a defect of octoskin", Emphasis::bad);
             for (const auto& [name, value] : at(account, "rejected").items()) {
                 const Json& was = at(at(at(at(before_, "account"), unit), "rejected"), name);
-                add_counter(name, was, value, find_meaning(counter_meanings(), unit, name));
+                const CounterMeaning* const meaning = find_counter(unit, name);
+                add_counter(name, was, value, meaning == nullptr ? std::string_view{} : meaning->text);
             }
         }
     }

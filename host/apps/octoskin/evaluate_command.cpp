@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <memory>
+#include <optional>
 
 #include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/evaluation/results.hpp"
@@ -86,7 +87,12 @@ evaluation::Results results_of(const std::vector<evaluation::Run>& runs, const r
     return results;
 }
 
-evaluation::Results judge_recording(const EvaluateOptions& options) {
+struct Judged {
+    evaluation::Results results;
+    std::optional<AppError> lost = std::nullopt;  ///< most of the recording, though the figures are there
+};
+
+Judged judge_recording(const EvaluateOptions& options) {
     const auto configuration = named_mapping(options.configuration);
     if (!configuration) throw CommandFailure(configuration.error());
     const MappingConfig& mapping = configuration->mapping;
@@ -119,8 +125,9 @@ evaluation::Results judge_recording(const EvaluateOptions& options) {
         runs.insert(runs.begin(), {name, "depth", seed, evaluation::evaluate(*maps.depth(), truth)});
         runs.push_back({name, "fused", seed, evaluation::evaluate(*maps.fused(), truth)});
     }
-    return results_of(runs, playback->rig, scene,
-                      options.rig.empty() ? recording.rig() : FilePlace(options.rig));
+    return {results_of(runs, playback->rig, scene,
+                       options.rig.empty() ? recording.rig() : FilePlace(options.rig)),
+            loss_of(*playback)};
 }
 
 /// Says so if `rig` is most likely not the one that the map was made with.
@@ -185,7 +192,7 @@ Scene scene_of_map(const EvaluateOptions& options, const std::optional<FilePlace
     return judged(std::move(*scene));
 }
 
-evaluation::Results judge_map(const EvaluateOptions& options) {
+Judged judge_map(const EvaluateOptions& options) {
     MapReadLimits limits;
     // Whoever made the map may have clamped wider than octoskin does (OctoMap's own defaults are -2
     // and 3.511).
@@ -203,7 +210,7 @@ evaluation::Results judge_map(const EvaluateOptions& options) {
     const evaluation::Truth truth = build(scene, rig, map->resolution_m());
     const std::vector<evaluation::Run> runs = {
         {"map", options.input.stem().string(), 0, evaluation::evaluate(*map, truth)}};
-    return results_of(runs, rig, scene, options.rig);
+    return {results_of(runs, rig, scene, options.rig)};
 }
 
 /// Before any work.
@@ -225,12 +232,14 @@ void evaluate_input(const EvaluateOptions& options) {
                                                    " is a recording: leave it out"});
     }
     if (!options.json.empty()) check_output(options.json);
-    const evaluation::Results results = is_recording ? judge_recording(options) : judge_map(options);
-    print_text(evaluation::metrics_table(results));
-    if (options.json.empty()) return;
-    if (const auto written = write_text(options.json, printable_json(evaluation::metrics_json(results)));
-        !written)
-        throw CommandFailure(written.error());
+    const Judged judged = is_recording ? judge_recording(options) : judge_map(options);
+    print_text(evaluation::metrics_table(judged.results));
+    if (!options.json.empty()) {
+        const auto written =
+            write_text(options.json, printable_json(evaluation::metrics_json(judged.results)));
+        if (!written) throw CommandFailure(written.error());
+    }
+    if (judged.lost) throw CommandFailure(*judged.lost);
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ void explain_voxel(const ExplainOptions& options) {
     } else {
         print_text(to_text(*explanation));
     }
+    if (explanation->lost) throw CommandFailure(*explanation->lost);
 }
 
 }  // namespace

@@ -165,6 +165,7 @@ void replay_recording(const ReplayOptions& options) {
     save(*playback, *folder,
          options.out.empty() ? options.playback.recording / kMapsOfRecording : options.out);
     tell_last_posture(*playback);
+    if (auto lost = loss_of(*playback)) throw CommandFailure(std::move(*lost));
     if (playback->is_unlike_daemons) {
         throw CommandFailure({ExitCode::failed, options.playback.recording.string() +
                                                     ": replayed, but not into the daemon's own map; the "

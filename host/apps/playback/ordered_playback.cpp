@@ -113,9 +113,9 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
     OrderedPlayback played{.outcome = replay_in_order(pipeline.builder(), paced, depth, report, begin)};
     played.has_daemons_mapping =
         order->header().mapping_crc32 == crc32_of_text(mapping_text(request.mapping));
-    played.accounts = {tabulate("readings", played.outcome.readings),
-                       tabulate("joint samples", played.outcome.joint_samples),
-                       tabulate("depth frames", played.outcome.depth_frames)};
+    played.accounts = {tabulate("readings", played.outcome.readings, 0, seconds_text),
+                       tabulate("joint samples", played.outcome.joint_samples, 0, seconds_text),
+                       tabulate("depth frames", played.outcome.depth_frames, 0, seconds_text)};
     judge(request, rig, *order, *pipeline.maps().fused(), played);
     return played;
 }

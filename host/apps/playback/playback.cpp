@@ -7,6 +7,7 @@
 
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/log_survey.hpp"
+#include "host/apps/playback/losses.hpp"
 #include "host/apps/playback/ordered_playback.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
@@ -86,6 +87,10 @@ DepthInput open_depth(const RecordingPaths& recording) {
 
 AccountTable line_table(const candump::LogSource& log) {
     AccountTable table = tabulate("log lines", log.reader().account());
+    for (std::size_t i = 0; i < table.rejected.size(); ++i) {
+        const std::uint64_t line = log.reader().first_line(static_cast<candump::LineFault>(i));
+        if (line > 0) table.rejected[i].first = "can.log:" + std::to_string(line);
+    }
     table.used -= log.other_interface();
     table.rejected.push_back({"other_interface", log.other_interface()});
     return table;
@@ -220,8 +225,14 @@ Result<Playback, AppError> play_log(const PlaybackRequest& request, Setup& setup
     if (!pipeline) return unexpected(pipeline.error());
     PacedCan paced(*log, request.pace);
     ReplayOutcome outcome = replay(*pipeline, paced, depth.reader ? &*depth.reader : nullptr, report);
-    Playback playback{std::move(setup.rig), std::move(*pipeline), std::move(outcome), {}, {}, {}, {}, false,
-                      std::move(origin)};
+    Playback playback{.rig = std::move(setup.rig),
+                      .pipeline = std::move(*pipeline),
+                      .outcome = std::move(outcome),
+                      .accounts = {},
+                      .nodes = {},
+                      .notes = {},
+                      .warnings = {},
+                      .origin = std::move(origin)};
     playback.accounts.push_back(line_table(*log));
     for (AccountTable& table : playback.pipeline.account_tables())
         playback.accounts.push_back(std::move(table));
@@ -256,17 +267,25 @@ Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& set
                           .can_error = std::nullopt,
                           .depth_error = order.depth_error};
     if (order.order_error) outcome.can_error = CanSourceError{order.order_error->what};
-    return Playback{std::move(setup.rig),
-                    std::move(*pipeline),
-                    std::move(outcome),
-                    std::move(played->accounts),
-                    {},
-                    std::move(played->notes),
-                    std::move(played->warnings),
-                    false,
-                    std::move(origin),
-                    played->has_daemons_mapping,
-                    played->is_unlike_daemons};
+    return Playback{.rig = std::move(setup.rig),
+                    .pipeline = std::move(*pipeline),
+                    .outcome = std::move(outcome),
+                    .accounts = std::move(played->accounts),
+                    .nodes = {},
+                    .notes = std::move(played->notes),
+                    .warnings = std::move(played->warnings),
+                    .origin = std::move(origin),
+                    .is_as_full_as_daemons = played->has_daemons_mapping,
+                    .is_unlike_daemons = played->is_unlike_daemons};
+}
+
+std::string why_nothing(const Playback& playback, std::string_view where_the_account_is) {
+    const AccountTable& first_table = playback.accounts.front();
+    if (first_table.unit == "log lines" && first_table.in == 0) return ": can.log is empty";
+    if (playback.losses.empty()) return "; " + std::string(where_the_account_is);
+    const Loss& first = playback.losses.front();
+    return ": " + std::to_string(first.rejected) + " of " + std::to_string(first.of) + " " + first.unit +
+           " are not used, most as " + first.reason + "; the warnings above say more";
 }
 
 }  // namespace
@@ -280,9 +299,17 @@ std::optional<AppError> failure_of(const Playback& playback, std::string_view wh
     if (!is_balanced) return AppError{ExitCode::failed, "the account does not balance"};
     if (playback.is_map_incomplete) return AppError{ExitCode::failed, "the map is not complete"};
     if (playback.pipeline.maps().fused()->known_voxels() == 0) {
-        return AppError{ExitCode::failed, "nothing came into the map; " + std::string(where_the_account_is)};
+        return AppError{ExitCode::failed,
+                        "nothing came into the map" + why_nothing(playback, where_the_account_is)};
     }
     return std::nullopt;
+}
+
+std::optional<AppError> loss_of(const Playback& playback) {
+    const auto lost = std::ranges::find_if(playback.losses, &Loss::is_mendable);
+    if (lost == playback.losses.end()) return std::nullopt;
+    return AppError{ExitCode::failed, "most of the " + lost->unit + " is lost (" + lost->reason +
+                                          "): the warning above says how to mend it"};
 }
 
 Status<AppError> check_playable(const PlaybackRequest& request) {
@@ -341,6 +368,7 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
         playback->accounts.push_back(pixel_table(*stage));
     find_wrong_sizes(*playback);
     find_full_maps(*playback);
+    find_losses(*playback);
     return playback;
 }
 

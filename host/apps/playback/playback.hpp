@@ -12,6 +12,7 @@
 #include "host/apps/recording/app_error.hpp"
 #include "host/apps/recording/recording.hpp"
 #include "host/core/account/account.hpp"
+#include "host/core/account/loss.hpp"
 #include "host/core/ingest/node_summary.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/pipeline/pipeline.hpp"
@@ -49,8 +50,10 @@ struct Playback {
     /// Links with another's body; how the host's clock fared, if there is something to tell.
     std::vector<std::string> notes;
     std::vector<std::string> warnings;  ///< what a person should know about this recording
-    bool is_map_incomplete = false;     ///< a map had no room for some of its voxels
-    MapOrigin origin;                   ///< of its maps, but for the maps' own checksums
+    /// Of what over half is rejected; those that a user can mend are among the warnings, the rest are notes.
+    std::vector<Loss> losses = {};
+    bool is_map_incomplete = false;  ///< a map had no room for some of its voxels
+    MapOrigin origin;                ///< of its maps, but for the maps' own checksums
     /// Played in a daemon's order and with its mapping: what had no room in `fused` had none there either.
     bool is_as_full_as_daemons = false;
     /// Played in a daemon's order, and `fused` is not its map, though nothing given explains that.
@@ -63,6 +66,10 @@ struct Playback {
 [[nodiscard]] std::optional<AppError> failure_of(
     const Playback& playback,
     std::string_view where_the_account_is = "`octoskin replay` shows the account that says why");
+
+/// That over half of what could have been used is lost for reasons that a user can mend: the maps are what
+/// came of the rest. Empty if not.
+[[nodiscard]] std::optional<AppError> loss_of(const Playback& playback);
 
 /// That the recording has its files, as check_recording() says: cheap, for those who have something to
 /// prepare before they play it.

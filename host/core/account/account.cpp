@@ -1,9 +1,18 @@
 #include "host/core/account/account.hpp"
 
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
 #include <iomanip>
 #include <sstream>
 
 namespace octoskin {
+
+std::string seconds_text(std::int64_t ns) {
+    const auto us = std::chrono::floor<std::chrono::microseconds>(std::chrono::nanoseconds(ns)).count();
+    return fmt::format("{}{}.{:06} s", us < 0 ? "-" : "", std::abs(us) / 1'000'000, std::abs(us) % 1'000'000);
+}
 
 std::string to_text(const AccountTable& table) {
     std::uint64_t rejected = 0;

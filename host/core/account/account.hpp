@@ -23,9 +23,13 @@ class Account {
 
     void take_in(std::uint64_t count = 1) noexcept { in_ += count; }
     void use() noexcept { ++used_; }
+    /// Where what is rejected from now on comes from: a number whose meaning is the caller's, such as a line
+    /// or a time in nanoseconds.
+    void now_at(std::int64_t place) noexcept { place_ = place; }
     void reject(Reject reason) noexcept {
-        assert(static_cast<std::size_t>(reason) < kReasons);
-        ++rejected_[static_cast<std::size_t>(reason)];
+        const auto index = static_cast<std::size_t>(reason);
+        assert(index < kReasons);
+        if (++rejected_[index] == 1) first_[index] = place_;
     }
     /// Uses or rejects one, as it turned out. True if it was used.
     bool settle(const Status<Reject>& outcome) noexcept {
@@ -37,6 +41,10 @@ class Account {
     [[nodiscard]] std::uint64_t used() const noexcept { return used_; }
     [[nodiscard]] std::uint64_t rejected(Reject reason) const noexcept {
         return rejected_[static_cast<std::size_t>(reason)];
+    }
+    /// Where the first one was rejected for this reason; of use only if there is one.
+    [[nodiscard]] std::int64_t first_place(Reject reason) const noexcept {
+        return first_[static_cast<std::size_t>(reason)];
     }
     [[nodiscard]] std::uint64_t rejected() const noexcept {
         std::uint64_t sum = 0;
@@ -54,13 +62,19 @@ class Account {
     std::uint64_t in_ = 0;
     std::uint64_t used_ = 0;
     std::array<std::uint64_t, kReasons> rejected_{};
+    std::array<std::int64_t, kReasons> first_{};
+    std::int64_t place_ = 0;
 };
+
+/// A place that is a time in nanoseconds: "1750000000.123456 s".
+[[nodiscard]] std::string seconds_text(std::int64_t ns);
 
 /// One account as rows of text and numbers, for printing and for JSON.
 struct AccountTable {
     struct Row {
         std::string name;
         std::uint64_t count = 0;
+        std::string first = {};  ///< where the first of them was, in words; empty: not known
     };
     std::string unit;  ///< what is counted: "frames", "readings"
     std::uint64_t in = 0;
@@ -82,6 +96,18 @@ template <class Reject>
     constexpr auto kNames = names_of(Reject{});
     for (std::size_t i = 0; i < kNames.size(); ++i) {
         table.rejected.push_back({kNames[i], account.rejected(static_cast<Reject>(i))});
+    }
+    return table;
+}
+
+/// The same, with the place of each first rejection, which `place` puts into words.
+template <class Reject, class Place>
+[[nodiscard]] AccountTable tabulate(std::string_view unit, const Account<Reject>& account,
+                                    std::uint64_t pending, const Place& place) {
+    AccountTable table = tabulate(unit, account, pending);
+    for (std::size_t i = 0; i < table.rejected.size(); ++i) {
+        if (table.rejected[i].count > 0)
+            table.rejected[i].first = place(account.first_place(static_cast<Reject>(i)));
     }
     return table;
 }

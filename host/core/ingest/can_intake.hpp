@@ -76,7 +76,12 @@ class CanIntake {
     /// What became in the map of a reading that was accepted here; empty: it was used.
     void on_fate_in_map(const BeamSource& source, std::optional<ReadingReason> rejected) {
         ranges_.on_fate_in_map(source.node_id, source.sensor, rejected);
+        losses_.at(source.node_id).on_fate(rejected);
     }
+    /// One that was accepted here is rejected on its way into the map; no sensor is to blame.
+    void on_lost(wire::NodeId node, ReadingReason reason) { losses_.at(node).on_fate(reason); }
+    /// Of all readings of a node of the rig; what waits is pending.
+    [[nodiscard]] AccountTable reading_table(wire::NodeId node) const { return losses_.at(node).table(); }
 
     /// The host's clock at the newest stamp; empty while unknown.
     [[nodiscard]] std::optional<HostTime> now() const { return host_clock_.now(); }

@@ -28,6 +28,7 @@ NodeLosses::Tenth& NodeLosses::tenth_of(HostTime now) {
 }
 
 void NodeLosses::on_refused(HostTime now, ReadingReason reason) {
+    all_.reject(reason);
     if (is_loss(reason)) tenth_of(now).refused[static_cast<std::size_t>(reason)] += 1;
 }
 

@@ -1,4 +1,4 @@
-// How many of a node's readings of the last second were refused, and why most of them.
+// What became of a node's readings: of the last second, and of all.
 #pragma once
 
 #include <array>
@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/time.hpp"
+#include "host/core/account/account.hpp"
 #include "host/core/ingest/reasons.hpp"
 
 namespace octoskin {
@@ -21,9 +22,20 @@ class NodeLosses {
     static constexpr double kShareMax = 0.05;
 
     /// A reading came while "now" was known; a bus that repeats one brings none.
-    void on_reading(HostTime now) { tenth_of(now).readings += 1; }
+    void on_reading(HostTime now) {
+        tenth_of(now).readings += 1;
+        all_.take_in();
+    }
     /// One was refused, maybe of an earlier moment.
     void on_refused(HostTime now, ReadingReason reason);
+    /// What became of one that was not refused; empty: it is in the map.
+    void on_fate(std::optional<ReadingReason> rejected) noexcept {
+        rejected ? all_.reject(*rejected) : all_.use();
+    }
+    /// Of all that came while "now" was known; those without a fate so far are pending.
+    [[nodiscard]] AccountTable table() const {
+        return tabulate("readings", all_, all_.in() - all_.used() - all_.rejected());
+    }
 
     struct Loss {
         double share = 0.0;  ///< of the readings of the last second
@@ -44,6 +56,7 @@ class NodeLosses {
     [[nodiscard]] Tenth& tenth_of(HostTime now);
 
     std::array<Tenth, kTenths> tenths_{};  ///< a ring
+    Account<ReadingReason> all_;
 };
 
 }  // namespace octoskin

@@ -20,6 +20,19 @@ std::optional<NodeSummary::Readings> readings_of(const RangeGate& ranges, const 
     return sum;
 }
 
+std::optional<Loss> mendable(std::optional<Loss> loss) {
+    return loss && loss->is_mendable ? loss : std::nullopt;
+}
+
+std::string verdict_text(const NodeSummary& node) {
+    if (node.verdict == NodeVerdict::usable && !node.has_time) return "no SYNC in the log";
+    if (node.verdict == NodeVerdict::usable && node.loss) {
+        return "loses " + std::to_string(node.loss->rejected) + " of " + std::to_string(node.loss->of) + " " +
+               node.loss->unit + ", most as " + node.loss->reason;
+    }
+    return names_of(NodeVerdict{})[static_cast<std::size_t>(node.verdict)];
+}
+
 std::vector<std::string> registers_of(const NodeRecord& record) {
     std::vector<std::string> texts;
     for (const wire::RegisterReport& report : record.registers.alike()) texts.push_back(alike_text(report));
@@ -44,6 +57,7 @@ std::vector<NodeSummary> summarise(const CanIntake& intake) {
                          .verdict = intake.nodes().verdict(id, intake.now()),
                          .has_time = intake.now().has_value(),
                          .reason = intake.nodes().reason(id, intake.now()),
+                         .loss = mendable(loss_of(intake.reading_table(id))),
                          .registers = registers_of(record)});
     }
     return nodes;
@@ -65,11 +79,7 @@ std::string to_text(std::span<const NodeSummary> nodes) {
         } else {
             row(name, "-", "-", "-", node.clock_relocks);
         }
-        const bool lacks_time = node.verdict == NodeVerdict::usable && !node.has_time;
-        text << "  "
-             << (lacks_time ? "no SYNC in the log"
-                            : names_of(NodeVerdict{})[static_cast<std::size_t>(node.verdict)]);
-        text << (node.reason ? ": " + node.reason->text() : "") << "\n";
+        text << "  " << verdict_text(node) << (node.reason ? ": " + node.reason->text() : "") << "\n";
         for (const std::string& about : node.registers) text << "      " << about << "\n";
     }
     return text.str();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/core/account/loss.hpp"
 #include "host/core/ingest/can_intake.hpp"
 
 namespace octoskin {
@@ -25,6 +26,7 @@ struct NodeSummary {
     NodeVerdict verdict = NodeVerdict::absent;
     bool has_time = true;  ///< false: no SYNC told the host any; then nothing of the node is usable
     std::optional<NodeMismatch> reason;    ///< what it told and what it should have told
+    std::optional<Loss> loss{};            ///< it works, and over half of what it sends is lost all the same
     std::vector<std::string> registers{};  ///< what it told of registers that read otherwise than written
 };
 

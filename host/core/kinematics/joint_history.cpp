@@ -50,6 +50,13 @@ Result<JointPosition, JointLookup> JointHistory::at(HostTime instant) const {
     return interpolate(left, right, instant);
 }
 
+std::optional<JointGap> JointHistory::gap_about(HostTime instant) const {
+    const auto position = at(instant);
+    if (position || position.error() != JointLookup::gap) return std::nullopt;
+    const std::size_t after = first_not_before(instant);
+    return JointGap{sample(after).sampled - sample(after - 1).sampled, instant};
+}
+
 const JointHistory::Sample& JointHistory::sample(std::size_t age_rank) const noexcept {
     return ring_[(oldest_ + age_rank) % ring_.size()];
 }

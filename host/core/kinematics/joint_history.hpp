@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,12 @@ struct JointHistoryConfig {
     std::size_t capacity = 1024;  ///< samples; the oldest gives way. 10 s at 100 Hz
 };
 
+/// Two samples that no position is given between.
+struct JointGap {
+    Nanoseconds between{0};
+    HostTime instant;  ///< that was asked for
+};
+
 class JointHistory {
   public:
     /// `limits`: one per joint, at most kJointsMax; `config.capacity` at least 2.
@@ -60,6 +67,9 @@ class JointHistory {
     /// The position at an instant: a sample's own, or interpolated linearly between the two about it.
     /// Equality with a limit of the configuration is within it. O(log capacity), no allocation.
     [[nodiscard]] Result<JointPosition, JointLookup> at(HostTime instant) const;
+
+    /// The samples about an instant for which `at` answers `gap`; empty for another one.
+    [[nodiscard]] std::optional<JointGap> gap_about(HostTime instant) const;
 
     /// Whether `at` gives its last word on this instant: a sample of that time or later is here. O(1).
     [[nodiscard]] bool is_settled(HostTime instant) const noexcept {

@@ -92,6 +92,10 @@ class MapBuilder {
     [[nodiscard]] std::span<const JointLimits> joint_limits() const noexcept {
         return robot_.robot().limits();
     }
+    /// The newest gap between joint samples that no pose could be found in; empty if there was none.
+    [[nodiscard]] const std::optional<JointGap>& newest_joint_gap() const noexcept {
+        return robot_.newest_gap();
+    }
     /// Every joint sample that poses are still interpolated from, the oldest first.
     void for_each_joint_sample(const std::function<void(const JointMeasurement&)>& visit) const {
         robot_.for_each_sample(visit);

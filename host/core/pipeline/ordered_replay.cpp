@@ -34,12 +34,14 @@ class Committer {
         : builder_(builder), depth_(depth, outcome), outcome_(outcome) {}
 
     HostTime operator()(const JointMeasurement& joints) {
+        outcome_.joint_samples.now_at(joints.sampled.ns);
         outcome_.joint_samples.take_in();
         outcome_.joint_samples.settle(builder_.add(joints));
         return joints.sampled;
     }
     HostTime operator()(const RangeMeasurement& reading) {
         const bool is_of_rig = builder_.has(reading.source);
+        outcome_.readings.now_at(reading.captured.ns);
         outcome_.readings.take_in();
         outcome_.readings.settle(is_of_rig ? builder_.integrate(reading)
                                            : unexpected(ReadingReason::unknown_sensor));
@@ -49,6 +51,7 @@ class Committer {
         auto frame = commit.index ? depth_.at(*commit.index) : std::nullopt;
         if (frame) {
             frame->captured = commit.captured;  // a recording of depth frames has whole microseconds
+            outcome_.depth_frames.now_at(commit.captured.ns);
             outcome_.depth_frames.take_in();
             outcome_.depth_frames.settle(builder_.integrate(std::move(*frame)));
         } else {

@@ -74,6 +74,7 @@ void Pipeline::go_on_from(Pipeline& ended) {
 
 void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     assert(!is_finished_);
+    accounts_.now_at(stamp.ns);
     accounts_.frames.take_in();
     told_beside_.reset();
     just_used_.clear();
@@ -200,13 +201,17 @@ void Pipeline::queue(const FrameOutcome& outcome) {
 
 void Pipeline::queue(const RangeMeasurement& measurement) {
     const ReleaseKey key{measurement.captured, measurement.source};
+    std::optional<ReadingReason> rejected;
     if (is_late(key)) {
-        accounts_.readings.reject(ReadingReason::late);
+        rejected = ReadingReason::late;
     } else if (is_repeated(key)) {
-        accounts_.readings.reject(ReadingReason::duplicate);
+        rejected = ReadingReason::duplicate;
     } else if (readings_waiting_.push(key, measurement) != ReorderBuffer<RangeMeasurement>::Pushed::waits) {
-        accounts_.readings.reject(ReadingReason::queue_overflow);
+        rejected = ReadingReason::queue_overflow;
     }
+    if (!rejected) return;
+    accounts_.readings.reject(*rejected);
+    intake_.on_lost(measurement.source.node_id, *rejected);
 }
 
 bool Pipeline::is_repeated(const ReleaseKey& key) const {
@@ -249,6 +254,7 @@ std::optional<DepthReason> Pipeline::fault_on_arrival(const DepthFrame& frame) c
 
 void Pipeline::on_depth(DepthFrame frame) {
     assert(!is_finished_);
+    if (!has_can_time_) accounts_.now_at(frame.captured.ns);
     accounts_.depth_frames.take_in();
     just_used_.clear();
     if (const auto reason = fault_on_arrival(frame)) {
@@ -304,8 +310,9 @@ Status<JointReason> Pipeline::add(const JointMeasurement& joints) {
     const std::span<const JointLimits> limits = builder_.joint_limits();
     const auto position = std::span(joints.position_rad).first(limits.size());
     for (std::size_t i = 0; i < limits.size(); ++i) {
-        if (!limits[i].hold(position[i], config_.joints.limit_tolerance))
-            return unexpected(JointReason::out_of_limits);
+        if (limits[i].hold(position[i], config_.joints.limit_tolerance)) continue;
+        joint_beyond_ = {i, position[i], limits[i], joints.sampled};
+        return unexpected(JointReason::out_of_limits);
     }
     const JointJump::Verdict verdict = joint_jump_.judge(joints.sampled, position, joints.relocks);
     if (verdict == JointJump::Verdict::jumped) return unexpected(JointReason::joint_jump);
@@ -331,6 +338,7 @@ void Pipeline::release_measurements(HostTime until) {
 
 Status<ReadingReason> Pipeline::integrate(const RangeMeasurement& measurement) {
     if (!marks_.contains(measurement.captured)) {
+        intake_.on_lost(measurement.source.node_id, ReadingReason::outside_marks);
         return unexpected(ReadingReason::outside_marks);
     }
     const auto integrated = builder_.integrate(measurement);
@@ -407,10 +415,13 @@ bool Pipeline::is_camera_stale() const {
 
 std::vector<AccountTable> Pipeline::account_tables() const {
     const std::uint64_t samples_open = is_finished_ ? 0 : intake_.joint_samples_pending();
-    return {tabulate("CAN frames", accounts_.frames, marks_.waiting()),
-            tabulate("readings", accounts_.readings, readings_waiting_.size() + intake_.readings_held()),
-            tabulate("joint samples", accounts_.joint_samples, joints_waiting_.size() + samples_open),
-            tabulate("depth frames", accounts_.depth_frames, depth_waiting_.size() + (in_work_ ? 1U : 0U))};
+    return {tabulate("CAN frames", accounts_.frames, marks_.waiting(), seconds_text),
+            tabulate("readings", accounts_.readings, readings_waiting_.size() + intake_.readings_held(),
+                     seconds_text),
+            tabulate("joint samples", accounts_.joint_samples, joints_waiting_.size() + samples_open,
+                     seconds_text),
+            tabulate("depth frames", accounts_.depth_frames, depth_waiting_.size() + (in_work_ ? 1U : 0U),
+                     seconds_text)};
 }
 
 bool Pipeline::is_balanced() const {

@@ -63,6 +63,21 @@ struct PipelineAccounts {
     Account<ReadingReason> readings;
     Account<JointReason> joint_samples;
     Account<DepthReason> depth_frames;
+    /// Nanoseconds: of the stamp or, without a bus, the capture that what is rejected from now on came with.
+    void now_at(std::int64_t ns) noexcept {
+        frames.now_at(ns);
+        readings.now_at(ns);
+        joint_samples.now_at(ns);
+        depth_frames.now_at(ns);
+    }
+};
+
+/// A joint sample that is beyond the limits of the robot description.
+struct JointBeyond {
+    std::size_t joint = 0;  ///< of HostJoints::joints
+    double position = 0.0;  ///< radians or metres
+    JointLimits limits;
+    HostTime sampled;
 };
 
 class Pipeline {
@@ -129,6 +144,8 @@ class Pipeline {
     /// True if "now" is known and three periods have passed without a depth frame that the rig promises.
     [[nodiscard]] bool is_camera_stale() const;
     [[nodiscard]] const CanIntake& intake() const noexcept { return intake_; }
+    /// The newest joint sample beyond its limits; empty if none was.
+    [[nodiscard]] const std::optional<JointBeyond>& joint_beyond() const noexcept { return joint_beyond_; }
     /// Which joint samples the arm cannot have moved to.
     [[nodiscard]] const JointJump& joint_jump() const noexcept { return joint_jump_; }
     /// Null if the rig has no camera.
@@ -180,6 +197,7 @@ class Pipeline {
     ReorderBuffer<DepthFrame> depth_waiting_;
     MapBuilder builder_;
     JointJump joint_jump_;
+    std::optional<JointBeyond> joint_beyond_;
 
     DepthWorker* worker_ = nullptr;
     std::unique_ptr<MapBuilder::DepthWork> in_work_;  ///< what the worker is at, or has done

@@ -33,6 +33,7 @@ Status<JointReason> RobotTracker::add(const JointMeasurement& joints) {
 const RobotPose* RobotTracker::at(HostTime instant) {
     const auto position = joints_.at(instant);
     if (!position) {
+        if (const auto gap = joints_.gap_about(instant)) newest_gap_ = gap;
         return nullptr;
     }
     robot_.forward(position->span(), pose_.T_base_link);

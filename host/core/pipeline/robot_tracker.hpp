@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "common/result.hpp"
@@ -34,6 +35,9 @@ class RobotTracker {
     /// About 2 us.
     [[nodiscard]] const RobotPose* at(HostTime instant);
 
+    /// The newest gap between samples that no pose could be found in; empty if there was none.
+    [[nodiscard]] const std::optional<JointGap>& newest_gap() const noexcept { return newest_gap_; }
+
     /// Every sample that is held, the oldest first.
     void for_each_sample(const std::function<void(const JointMeasurement&)>& visit) const;
 
@@ -45,6 +49,7 @@ class RobotTracker {
     RobotModel robot_;
     RobotBody body_;
     JointHistory joints_;
+    std::optional<JointGap> newest_gap_;
     RobotPose pose_;
 };
 

@@ -143,7 +143,7 @@ TEST_F(DataSet, says_below_the_account_which_size_its_images_have_and_which_is_e
     const Said said = octoskin("replay " + path("set"));
     EXPECT_EQ(said.exit_code, 1) << said.output;
     const auto size = said.output.find("6 depth images are 128 x 106, the camera's are 640 x 480");
-    const auto above = said.output.find("the account above says why");
+    const auto above = said.output.find("the warnings above say more");
     EXPECT_NE(size, std::string::npos) << said.output;
     EXPECT_NE(above, std::string::npos) << said.output;
     EXPECT_LT(said.output.find("wrong_size"), size) << said.output;

@@ -6,6 +6,7 @@
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/problems/unused_input.hpp"
+#include "host/core/pipeline/joint_text.hpp"
 
 namespace octoskin {
 namespace {
@@ -97,12 +98,27 @@ void add_joint_senders(const DaemonView& view, Problems& problems) {
                            view.rig->joints.node_id, withheld)});
 }
 
+void add_joints_beyond(const DaemonView& view, Problems& problems) {
+    const auto& beyond = view.pipeline->joint_beyond();
+    if (!beyond || !is_recent(beyond->sampled, view.now)) return;
+    problems.push_back({"joints beyond limits", beyond_text(*beyond, view.rig->joints.joints)});
+}
+
+/// Readings between samples that are too far apart have no pose.
+void add_joint_gap(const DaemonView& view, Problems& problems) {
+    const auto& gap = view.pipeline->builder().newest_joint_gap();
+    if (!gap || !is_recent(gap->instant, view.now)) return;
+    problems.push_back({"joint gap", "readings have no pose (joints_missing). " + gap_text(*gap)});
+}
+
 }  // namespace
 
 void add_joints(const DaemonView& view, Problems& problems) {
     constexpr std::uint64_t kFirstSamples = 5;  // of a source: nothing is known of it yet
     const auto& joints = view.pipeline->accounts().joint_samples;
     add_joint_senders(view, problems);
+    add_joints_beyond(view, problems);
+    add_joint_gap(view, problems);
     if (joints.in() == 0) {
         problems.push_back({"no joints", why_no_joints(view), "joints"});
     } else if (!view.used.joint_sample) {

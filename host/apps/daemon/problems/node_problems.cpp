@@ -33,6 +33,12 @@ void add_senders(const DaemonView& view, const HostNode& node, std::size_t index
          node_subject(node.node_id)});
 }
 
+/// "joints_missing. Send joint states ...": what is to be done about it.
+std::string with_remedy(ReadingReason reason) {
+    const char* const name = names_of(ReadingReason{})[static_cast<std::size_t>(reason)];
+    return fmt::format("{}.{}", name, remedy_sentence("readings", name));
+}
+
 /// What it loses is not its sensors' fault.
 void add_losses(const DaemonView& view, const HostNode& node, Problems& problems) {
     if (!view.bus_now) return;
@@ -42,8 +48,7 @@ void add_losses(const DaemonView& view, const HostNode& node, Problems& problems
     problems.push_back(
         {on + " loses",
          fmt::format("{} '{}': {:.0f} % of its readings within the last second were refused, most as {}", on,
-                     node.name, 100.0 * loss->share,
-                     names_of(ReadingReason{})[static_cast<std::size_t>(loss->most)]),
+                     node.name, 100.0 * loss->share, with_remedy(loss->most)),
          {},
          on});
 }
@@ -69,12 +74,11 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
                                              wire::name(sensor.health->fault));
         problems.push_back({text, text + register_text(view, node, index), who, on});
     } else if (const auto streak = sensor.fates.streak()) {
-        problems.push_back(
-            {who + " streak",
-             fmt::format("{}: (nearly) all of its last {} readings were rejected, most as {}", who,
-                         FateHistory::kKept, names_of(ReadingReason{})[static_cast<std::size_t>(*streak)]),
-             {},
-             on});
+        problems.push_back({who + " streak",
+                            fmt::format("{}: (nearly) all of its last {} readings were rejected, most as {}",
+                                        who, FateHistory::kKept, with_remedy(*streak)),
+                            {},
+                            on});
     }
     const SensorWitness* const witness = view.pipeline->builder().witness();
     if (witness == nullptr) return;

@@ -10,6 +10,7 @@
 
 #include "common/time.hpp"
 #include "host/core/account/account.hpp"
+#include "host/core/account/loss.hpp"
 
 namespace octoskin {
 
@@ -19,18 +20,11 @@ inline bool has_stopped(const std::optional<HostTime>& last, HostTime now) {
     return last && now - *last > kPatience;
 }
 
-/// Where to look, and the most frequent reason, which is why as often as not.
+/// The most frequent reason, what it means and what mends it, which is why as often as not.
 template <class Reject>
 std::string see_counters(const char* unit, const Account<Reject>& account) {
-    constexpr auto kNames = names_of(Reject{});
-    std::size_t most = 0;
-    for (std::size_t i = 1; i < kNames.size(); ++i) {
-        if (account.rejected(static_cast<Reject>(i)) > account.rejected(static_cast<Reject>(most))) most = i;
-    }
-    const std::uint64_t count = account.rejected(static_cast<Reject>(most));
-    const std::string where = fmt::format("see the counters of {}", unit);
-    return count == 0 ? where
-                      : fmt::format("{} (most often {}, {} of {})", where, kNames[most], count, account.in());
+    const auto loss = most_frequent(tabulate(unit, account));
+    return loss ? describe(*loss) : fmt::format("see the counters of {}", unit);
 }
 
 }  // namespace octoskin

@@ -77,9 +77,11 @@ TEST_F(JointProblemsTest, have_joint_states_that_are_not_there_or_of_no_use) {
     for (int k = 0; k < 100; ++k) scene.bus.joints(3.0 + 0.01 * k, kJoints, {&position, 1});
     play(scene, 4.05);
     EXPECT_EQ(told("no joints"), "");
-    EXPECT_EQ(told("joints unused"),
-              "no joint state could be used: see the counters of joint samples (most often clock_not_ready, "
-              "89 of 89)");
+    EXPECT_EQ(
+        told("joints unused"),
+        "no joint state could be used: joint samples: 89 of 89 are not used, most as clock_not_ready "
+        "(89): fewer than two SYNC exchanges with the node yet: usual in its first seconds. Give it some "
+        "seconds, with the SYNC of a host on the bus.");
     EXPECT_EQ(told("joints stopped"), "");
 }
 
@@ -198,8 +200,8 @@ TEST_F(CameraProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) 
     play_changed([](Scene& scene) { scene.rig.camera->T_base_camera.translation().x() = 2000.0; });
     view_.camera->newest = view_.now;
     EXPECT_EQ(told("depth unused"),
-              "no depth frame could be used yet: see the counters of depth frames (most often outside_map, 6 "
-              "of 6)");
+              "no depth frame could be used yet: depth frames: 6 of 6 are lost, most as outside_map (6): the "
+              "camera stands beyond the octree, or its pose is no number. Correct the camera's pose.");
     EXPECT_EQ(told("depth of another size"), "");
     play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
     view_.camera->newest = view_.now;

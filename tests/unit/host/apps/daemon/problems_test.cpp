@@ -221,7 +221,7 @@ TEST_F(ProblemsTest, have_a_sensor_whose_readings_are_nearly_all_rejected_until_
     };
     const std::string expected =
         "node 1 'node 1' sensor 5 'good': (nearly) all of its last 32 readings were rejected, most as "
-        "status_fault";
+        "status_fault. Look at the sensor, its cover and its light: bring-up.md.";
     EXPECT_EQ(with_readings(31, 0), "");
     EXPECT_EQ(with_readings(32, 0), expected);
     EXPECT_EQ(with_readings(32, 1), expected);
@@ -269,7 +269,8 @@ TEST_F(ProblemsTest, have_a_node_that_loses_over_a_twentieth_of_a_second_s_readi
     };
     EXPECT_EQ(with_forged(28), "") << "one of 29";
     EXPECT_EQ(with_forged(7),
-              "node 1 'node 1': 12 % of its readings within the last second were refused, most as too_young")
+              "node 1 'node 1': 12 % of its readings within the last second were refused, most as too_young. "
+              "Look for a second board with its node id, or frames that are recorded twice.")
         << "four of 32";
 }
 
@@ -337,9 +338,10 @@ TEST_F(ProblemsTest, have_readings_that_are_of_no_use_or_stopped) {
     EXPECT_EQ(told("readings unused") + told("readings stopped"), "") << "none has come";
     view_.used = {};
     play_changed([](Scene& scene) { scene.rig.range_limits.max_m = 0.1; });
-    EXPECT_EQ(
-        told("readings unused"),
-        "no reading could be used yet: see the counters of readings (most often above_range_max, 10 of 10)");
+    EXPECT_EQ(told("readings unused"),
+              "no reading could be used yet: readings: 10 of 10 are not used, most as above_range_max (10): "
+              "further "
+              "than range_limits.max_m.");
 }
 
 TEST_F(ProblemsTest, have_a_map_without_room) {

@@ -8,10 +8,10 @@
 #include <set>
 #include <sstream>
 
-#include "host/apps/monitor/counter_meanings.hpp"
 #include "host/apps/monitor/screen.hpp"
 #include "host/apps/monitor/scroll.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
+#include "host/core/account/counter_meanings.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/io/candump/log_line.hpp"
 
@@ -325,6 +325,20 @@ std::set<std::string> known(std::span<const Meaning> meanings) {
     return rows;
 }
 
+std::string word(Cause cause) {
+    switch (cause) {
+        case Cause::scene:
+            return "scene";
+        case Cause::outside:
+            return "outside";
+        case Cause::other_device:
+            return "others";
+        case Cause::mendable:
+            return "mendable";
+    }
+    return {};
+}
+
 TEST(Meanings, of_the_account_are_word_for_word_those_of_its_document) {
     std::set<std::string> rows;
     for (std::string row : documented("account.md")) {
@@ -332,7 +346,12 @@ TEST(Meanings, of_the_account_are_word_for_word_those_of_its_document) {
         if (!row.starts_with("CAN ")) row[0] = static_cast<char>(std::tolower(row[0]));
         rows.insert(row);
     }
-    EXPECT_EQ(rows, known(counter_meanings()));
+    std::set<std::string> known_rows;
+    for (const CounterMeaning& meaning : counter_meanings()) {
+        known_rows.insert(row_of({meaning.unit, meaning.name, meaning.text}) + " | " + word(meaning.cause) +
+                          " | " + std::string(meaning.remedy));
+    }
+    EXPECT_EQ(rows, known_rows);
 }
 
 TEST(Meanings, of_the_status_are_word_for_word_those_of_its_document) {
@@ -352,9 +371,9 @@ std::set<std::string> names(const std::string& unit) {
 }
 TEST(Meanings, are_there_for_every_counter_of_the_account_and_for_no_other) {
     std::set<std::string> there;
-    for (const Meaning& meaning : counter_meanings()) {
+    for (const CounterMeaning& meaning : counter_meanings()) {
         EXPECT_FALSE(meaning.text.empty()) << meaning.name;
-        there.insert(std::string(meaning.group) + " " + std::string(meaning.name));
+        there.insert(std::string(meaning.unit) + " " + std::string(meaning.name));
     }
     // Those of a replay alone, as octoskin::playback counts them.
     std::set<std::string> expected{"log lines other_interface", "depth images without_pose",
@@ -367,7 +386,8 @@ TEST(Meanings, are_there_for_every_counter_of_the_account_and_for_no_other) {
     expected.merge(names<JointReason>("joint samples"));
     expected.merge(names<DepthReason>("depth frames"));
     EXPECT_EQ(there, expected);
-    EXPECT_TRUE(find_meaning(counter_meanings(), "readings", "no_such_counter").empty());
+    EXPECT_EQ(find_counter("readings", "no_such_counter"), nullptr);
+    EXPECT_EQ(find_counter("readings", "out_of_limits"), nullptr) << "one of another unit";
     EXPECT_TRUE(find_meaning(status_meanings(), "clock", "not_sent").empty()) << "one of another group";
 }
 

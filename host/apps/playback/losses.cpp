@@ -1,0 +1,58 @@
+#include "host/apps/playback/losses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "host/core/pipeline/joint_text.hpp"
+
+namespace octoskin {
+namespace {
+
+/// What the account alone does not say.
+std::string detail(const Loss& loss, const Playback& playback) {
+    if (loss.reason != "joints_missing") return {};
+    const auto& gap = playback.pipeline.builder().newest_joint_gap();
+    return gap ? " " + gap_text(*gap) : std::string();
+}
+
+/// The node that sends the joint states works only as far as they are used.
+void note_joint_loss(const Loss& loss, Playback& playback) {
+    if (loss.unit != "joint samples" || !loss.is_mendable) return;
+    for (NodeSummary& node : playback.nodes) {
+        if (node.node_id == playback.rig.joints.node_id && !node.loss) node.loss = loss;
+    }
+}
+
+/// What the others follow from comes first: without joint states no reading has a pose.
+int rank_of(const Loss& loss) {
+    constexpr std::array<std::string_view, 6> kUnits{"log lines", "CAN frames",   "joint samples",
+                                                     "readings",  "depth images", "depth frames"};
+    const bool is_explained = !loss.is_mendable && loss.rejected < loss.of;
+    const auto unit = std::ranges::find(kUnits, loss.unit) - kUnits.begin();
+    return static_cast<int>(unit) + (is_explained ? 100 : 0);
+}
+
+}  // namespace
+
+void find_losses(Playback& playback) {
+    const bool is_empty = playback.pipeline.maps().fused()->known_voxels() == 0;
+    for (const AccountTable& table : playback.accounts) {
+        auto loss = octoskin::loss_of(table);
+        if (!loss && is_empty && table.used == 0) loss = most_frequent(table);
+        if (!loss) continue;
+        auto& said = loss->is_mendable || is_empty ? playback.warnings : playback.notes;
+        if (loss->reason != "wrong_size")  // which size is among the warnings already
+            said.push_back(describe(*loss) + detail(*loss, playback));
+        note_joint_loss(*loss, playback);
+        playback.losses.push_back(std::move(*loss));
+    }
+    std::ranges::stable_sort(playback.losses, {}, rank_of);
+    if (const auto& beyond = playback.pipeline.joint_beyond())
+        playback.warnings.push_back(beyond_text(*beyond, playback.rig.joints.joints));
+}
+
+}  // namespace octoskin
