@@ -11,15 +11,18 @@
 #include <array>
 #include <cctype>
 #include <sstream>
+#include <unordered_map>
 #include <utility>
 
 #include "host/io/folder/confined.hpp"
+#include "hw/rigfile/nesting.hpp"
 #include "hw/rigfile/syntax_hint.hpp"
 
 namespace octoskin::rig {
 namespace {
 
-constexpr std::size_t kFileBytesMax = 1U << 20U;
+constexpr std::size_t kFileBytesMax = 256U << 10U;  ///< thirty times the largest rig
+constexpr std::size_t kKeysMax = 1000;              ///< of one table
 constexpr std::size_t kDepthMax = 16;
 constexpr std::size_t kExtendsMax = 8;
 
@@ -128,11 +131,14 @@ class TreeBuilder final : public YAML::EventHandler {
         return !open_.empty() && open_.back().kind == Value::Kind::table && !has_key_;
     }
     void start_entry(const YAML::Mark& mark, const std::string& key) {
-        if (const Value* first = open_.back().find(key)) {
+        const auto [first, is_new] = keys_.back().try_emplace(key, mark.line + 1);
+        if (!is_new) {
             throw Fault{{file_->shown(), mark.line + 1, quotes_ == Quotes::shown ? key : std::string(),
                          fmt::format("expected each key once, found it again (first at line {}): remove one",
-                                     first->line)}};
+                                     first->second)}};
         }
+        if (keys_.back().size() > kKeysMax)
+            fail(mark, fmt::format("expected at most {} keys in a table, found more", kKeysMax));
         pending_key_ = key;
         pending_key_line_ = mark.line + 1;
         has_key_ = true;
@@ -145,10 +151,12 @@ class TreeBuilder final : public YAML::EventHandler {
         Value value = make(mark, kind);
         take_key(value);
         open_.push_back(std::move(value));
+        keys_.emplace_back();
     }
     void close() {
         Value value = std::move(open_.back());
         open_.pop_back();
+        keys_.pop_back();
         (open_.empty() ? root_ : open_.back().items.emplace_back()) = std::move(value);
     }
     /// An entry stands where its key does: a table or list below it begins a line later.
@@ -165,6 +173,7 @@ class TreeBuilder final : public YAML::EventHandler {
     std::shared_ptr<const FilePlace> file_;
     Quotes quotes_;
     std::vector<Value> open_;  ///< tables and lists begun and not ended, outermost first
+    std::vector<std::unordered_map<std::string, int>> keys_;  ///< of each of them, with its line
     std::string pending_key_;
     int pending_key_line_ = 0;
     bool has_key_ = false;
@@ -247,6 +256,7 @@ const Value* Value::find(std::string_view wanted) const noexcept {
 Value load_document(const FilePlace& place, Quotes quotes) {
     const std::string text = read_text(place);
     const std::filesystem::path file = place.shown();
+    if (auto fault = deep_brackets(text)) throw Fault{{file, fault->line, "", std::move(fault->what)}};
     std::istringstream stream(text);
     TreeBuilder builder(std::make_shared<const FilePlace>(place), quotes);
     try {

@@ -41,8 +41,8 @@ struct Value {
 /// which may be no YAML of ours at all.
 enum class Quotes : std::uint8_t { shown, withheld };
 
-/// Reads one YAML file whose top is a table. Throws Fault: unreadable, over 1 MiB, not YAML, a key twice in
-/// one table, an anchor, alias or tag, more than one document, nested deeper than 16.
+/// Reads one YAML file whose top is a table. Throws Fault: unreadable, over 256 KiB, not YAML, a key twice in
+/// one table, over 1000 keys in one, an anchor, alias or tag, more than one document, nested deeper than 16.
 [[nodiscard]] Value load_document(const FilePlace& file, Quotes quotes = Quotes::shown);
 
 /// The file that a scalar names, relative to the file it is written in. Throws Fault, at the scalar, unless

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hw/rigfile/nesting.hpp"
+
 namespace octoskin::rig {
 namespace {
 
@@ -107,6 +109,8 @@ Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
     // What is no robot at all may be any file that a foreign rig names: nothing of it is shown.
     if (text->find("<robot") == std::string::npos)
         return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
+    if (auto fault = crowded_element(*text))
+        return unexpected(RigError{file, fault->line, "", std::move(fault->what)});
     auto outline = UrdfOutline::read(file, *text);
     if (!outline) return unexpected(outline.error());
     UrdfDocument document;

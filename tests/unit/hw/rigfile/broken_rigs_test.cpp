@@ -254,10 +254,10 @@ TEST(BrokenRigs, absent_file_and_folder_are_refused_by_name) {
     EXPECT_THAT(read_rig(kData).error().message(), HasSubstr("is a directory"));
 }
 
-TEST(BrokenRigs, file_over_a_mebibyte_is_refused_unread) {
+TEST(BrokenRigs, file_over_the_limit_is_refused_unread) {
     const auto path = std::filesystem::path(testing::TempDir()) / "octoskin-huge-rig.yaml";
     std::ofstream(path) << std::string((1U << 20U) + 1, '#');
-    EXPECT_THAT(read_rig(path).error().message(), HasSubstr("at most 1048576 bytes"));
+    EXPECT_THAT(read_rig(path).error().message(), HasSubstr("at most 262144 bytes"));
     std::filesystem::remove(path);
 }
 

@@ -1,0 +1,82 @@
+#include "hw/rigfile/nesting.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace octoskin::rig {
+namespace {
+
+constexpr int kBracketsMax = 64;
+constexpr int kAttributesMax = 100;
+
+int line_of(std::string_view text, std::size_t at) {
+    return 1 + static_cast<int>(std::ranges::count(text.substr(0, at), '\n'));
+}
+
+/// Behind what begins here, if it begins with `begin` and ends with `end`; npos: it begins with something
+/// else. One that does not end takes the rest.
+std::size_t behind(std::string_view text, std::size_t at, std::string_view begin, std::string_view end) {
+    if (!text.substr(at).starts_with(begin)) return std::string_view::npos;
+    const std::size_t found = text.find(end, at + begin.size());
+    return found == std::string_view::npos ? text.size() : found + end.size();
+}
+
+/// Behind a comment, a CDATA section or a declaration that begins here; npos: none does.
+std::size_t behind_no_element(std::string_view text, std::size_t at) {
+    for (const auto& [begin, end] :
+         {std::pair<std::string_view, std::string_view>{"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}}) {
+        const std::size_t next = behind(text, at, begin, end);
+        if (next != std::string_view::npos) return next;
+    }
+    return std::string_view::npos;
+}
+
+/// Behind the tag that begins here; `attributes` of it.
+std::size_t behind_tag(std::string_view text, std::size_t at, int& attributes) {
+    attributes = 0;
+    for (; at < text.size() && text[at] != '>'; ++at) {
+        if (text[at] == '=') ++attributes;
+        if (text[at] == '"' || text[at] == '\'') {
+            at = text.find(text[at], at + 1);
+            if (at == std::string_view::npos) return text.size();
+        }
+    }
+    return std::min(at + 1, text.size());
+}
+
+}  // namespace
+
+std::optional<TextFault> deep_brackets(std::string_view yaml) {
+    int open = 0;
+    for (std::size_t at = 0; at < yaml.size(); ++at) {
+        const char c = yaml[at];
+        if (c == '[' || c == '{') ++open;
+        if (c == ']' || c == '}') open = std::max(0, open - 1);
+        if (open > kBracketsMax)
+            return TextFault{
+                line_of(yaml, at),
+                fmt::format("expected at most {} brackets within each other, found more", kBracketsMax)};
+    }
+    return std::nullopt;
+}
+
+std::optional<TextFault> crowded_element(std::string_view xml) {
+    for (std::size_t at = xml.find('<'); at < xml.size(); at = xml.find('<', at)) {
+        const std::size_t next = behind_no_element(xml, at);
+        if (next != std::string_view::npos) {
+            at = next;
+            continue;
+        }
+        const std::size_t begin = at;
+        int attributes = 0;
+        at = behind_tag(xml, at + 1, attributes);
+        if (attributes > kAttributesMax)
+            return TextFault{line_of(xml, begin),
+                             fmt::format("expected at most {} attributes in an element, found {}",
+                                         kAttributesMax, attributes)};
+    }
+    return std::nullopt;
+}
+
+}  // namespace octoskin::rig
