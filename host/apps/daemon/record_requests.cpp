@@ -42,6 +42,19 @@ std::filesystem::path plain(const std::filesystem::path& folder) {
     return normal.has_filename() ? normal : normal.parent_path();
 }
 
+Result<RecordStart, AppError> read_record_start(std::string_view arguments) {
+    double seconds = 0.0;
+    const char* const last = arguments.data() + arguments.size();
+    const auto [end, error] = std::from_chars(arguments.data(), last, seconds);
+    const bool is_time = error == std::errc{} && seconds >= 0.0 && seconds <= kSecondsMax;
+    if (!is_time || end == last || *end != ' ')
+        return fail(ExitCode::usage, "expected: record start SECONDS FOLDER");
+    const std::filesystem::path named(end + 1, last);
+    if (const std::string fault = fault_of_folder(named); !fault.empty()) return fail(ExitCode::usage, fault);
+    const auto limit = seconds > 0.0 ? std::optional(Nanoseconds{std::llround(seconds * 1e9)}) : std::nullopt;
+    return RecordStart{limit, plain(named)};
+}
+
 std::string RecordRequests::answer(const std::string& line, const RecordedSettings& settings,
                                    Pipeline& pipeline, HostTime now) {
     Status<AppError> outcome = Done{};
@@ -69,22 +82,16 @@ std::string RecordRequests::answer(const std::string& line, const RecordedSettin
 
 Status<AppError> RecordRequests::start(const std::string& arguments, const RecordedSettings& settings,
                                        Pipeline& pipeline, HostTime now) {
-    double seconds = 0.0;
-    const char* const last = arguments.data() + arguments.size();
-    const auto [end, error] = std::from_chars(arguments.data(), last, seconds);
-    const bool is_time = error == std::errc{} && seconds >= 0.0 && seconds <= kSecondsMax;
-    if (!is_time || end == last || *end != ' ')
-        return fail(ExitCode::usage, "expected: record start SECONDS FOLDER");
-    const std::filesystem::path named(end + 1, last);
-    if (const std::string fault = fault_of_folder(named); !fault.empty()) return fail(ExitCode::usage, fault);
+    const auto asked = read_record_start(arguments);
+    if (!asked) return unexpected(asked.error());
     if (recorder_ && !recorder_->has_ended()) {
         return fail(ExitCode::cannot_create, "already recording to " + recorder_->folder().string() +
                                                  "; `octoskin record --stop` ends that");
     }
-    const auto limit = seconds > 0.0 ? std::optional(Nanoseconds{std::llround(seconds * 1e9)}) : std::nullopt;
     if (recorder_) recorder_->stop(now);  // the one before lets go of the pipeline first
     try {
-        return begin(std::make_unique<Recorder>(plain(named), limit, settings, pipeline, now, copier_), now);
+        return begin(
+            std::make_unique<Recorder>(asked->folder, asked->limit, settings, pipeline, now, copier_), now);
     } catch (const std::bad_alloc&) {
         refusal_ = fmt::format("no memory for a copy of the map ({} MiB), with which a recording begins",
                                pipeline.maps().fused()->memory_bytes() >> 20U);

@@ -9,7 +9,9 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "common/result.hpp"
@@ -25,6 +27,14 @@ namespace octoskin {
 [[nodiscard]] std::string fault_of_folder(const std::filesystem::path& folder);
 /// As it is named in requests and answers: without "." or "..", and without a slash at its end.
 [[nodiscard]] std::filesystem::path plain(const std::filesystem::path& folder);
+
+/// What `record start` asks for.
+struct RecordStart {
+    std::optional<Nanoseconds> limit;  ///< empty: until it is ended
+    std::filesystem::path folder;      ///< absolute, as `plain` has it
+};
+/// Reads "SECONDS FOLDER". Errors: `usage`.
+[[nodiscard]] Result<RecordStart, AppError> read_record_start(std::string_view arguments);
 
 class RecordRequests {
   public:
