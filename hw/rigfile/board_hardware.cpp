@@ -128,7 +128,7 @@ Result<BoardHardware, RigError> read_board_hardware(const std::filesystem::path&
         const Table top(document, "",
                         {"name", "openocd_board", "device_id", "memory", "clocks", "pins", "reserved_pins"});
         BoardHardware board;
-        board.name = top.name("name");
+        board.name = top.folder_name("name");
         board.openocd_board = top.name("openocd_board");
         board.device_id = top.integer<std::uint32_t>("device_id", {0, 0xFFF});
         read_memory(top, board);

@@ -226,7 +226,7 @@ Board read_board(const Value& value, const std::string& path) {
                       {"name", "board_type", "i2c_bus_count", "xshut_line_count", "sensors_max",
                        "sensors_per_bus_max", "supports_can_fd", "has_data_ready_lines"});
     Board board;
-    board.name = table.name("name");
+    board.name = table.folder_name("name");  // files of the shipped ones are found by it
     board.board_type = table.integer<std::uint8_t>("board_type", {0, 255});
     board.i2c_bus_count = table.integer<std::uint8_t>("i2c_bus_count", {1, kNodeBusesMax});
     board.xshut_line_count = table.integer<std::uint8_t>("xshut_line_count", {1, kNodeXshutLinesMax});

@@ -68,9 +68,15 @@ Result<Done, AppError> write_files(const Order& order, const image::FlashContent
                                       .writes_option_bytes = order.writes_option_bytes}));
 }
 
+std::string script_for_openocd() {
+    return std::string(kOpenocdFolder) + "/" + kScriptFile;
+}
+
 Result<OpenocdRun, AppError> run(const Order& order, std::vector<std::string> arguments,
                                  std::chrono::seconds patience) {
-    const OpenocdRun run = run_openocd(order.folder, std::move(arguments), patience);
+    const auto folder = OpenFolder::open(order.folder, FolderAccess::write);
+    if (!folder) return cannot_create(folder.error().path, folder.error().reason());
+    const OpenocdRun run = run_openocd(*folder, std::move(arguments), patience);
     if (auto done = write_text({NamedFolder(order.folder), kLogFile}, run.output); !done)
         return unexpected(done.error());
     return run;
@@ -111,13 +117,14 @@ Result<Prepared, AppError> prepare(const Order& order) {
 }
 
 Result<Programmed, AppError> program(const Order& order) {
-    const auto ended = run(order, {"-f", kScriptFile}, kPatience);
+    const auto ended = run(order, {"-f", script_for_openocd()}, kPatience);
     if (!ended) return unexpected(ended.error());
     return judge(*ended, {.device_id = order.board.device_id, .adapter_serial = order.adapter_serial});
 }
 
 Result<Done, AppError> rehearse(const Order& order) {
-    const auto ended = run(order, {"-c", "set octoskin_dry_run 1", "-f", kScriptFile}, kRehearsalPatience);
+    const auto ended =
+        run(order, {"-c", "set octoskin_dry_run 1", "-f", script_for_openocd()}, kRehearsalPatience);
     if (!ended) return unexpected(ended.error());
     if (const auto fault = judge_dry_run(*ended)) return unexpected(*fault);
     return Done{};

@@ -18,6 +18,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kOutputMax = std::size_t{1} << 20U;
+constexpr int kFolderInChild = 3;  ///< kOpenocdFolder names it
 
 /// A process that is killed and waited for, at the latest, when this goes.
 class Child {
@@ -61,18 +62,19 @@ class Child {
 };
 
 /// Its error, or 0 and the process.
-int spawn(const std::filesystem::path& folder, std::vector<std::string>& arguments, int output,
-          pid_t& process) {
+int spawn(const OpenFolder& folder, std::vector<std::string>& arguments, int output, pid_t& process) {
     std::vector<char*> raw;
     raw.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) raw.push_back(argument.data());
     raw.push_back(nullptr);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+    posix_spawn_file_actions_addchdir_np(&actions, "/");
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, output, STDERR_FILENO);
+    // Last: the output may have had its number, and is copied by then.
+    posix_spawn_file_actions_adddup2(&actions, folder.descriptor(), kFolderInChild);
     const int error = posix_spawnp(&process, raw[0], &actions, nullptr, raw.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     return error;
@@ -80,7 +82,7 @@ int spawn(const std::filesystem::path& folder, std::vector<std::string>& argumen
 
 }  // namespace
 
-OpenocdRun run_openocd(const std::filesystem::path& folder, std::vector<std::string> arguments,
+OpenocdRun run_openocd(const OpenFolder& folder, std::vector<std::string> arguments,
                        std::chrono::seconds patience) {
     OpenocdRun run;
     const Clock::time_point deadline = Clock::now() + patience;

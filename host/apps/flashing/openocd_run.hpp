@@ -2,9 +2,10 @@
 #pragma once
 
 #include <chrono>
-#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "host/io/folder/open_folder.hpp"
 
 namespace octoskin::flashing {
 
@@ -20,8 +21,13 @@ struct OpenocdRun {
     std::string output;  ///< standard output and standard error; the first MiB
 };
 
-/// `openocd ARGUMENTS...` in `folder`. Blocks until it ends, at most `patience`.
-[[nodiscard]] OpenocdRun run_openocd(const std::filesystem::path& folder, std::vector<std::string> arguments,
+/// `folder` of run_openocd(), as OpenOCD finds it: by its descriptor, whatever becomes of its name.
+inline constexpr const char* kOpenocdFolder = "/proc/self/fd/3";
+
+/// `openocd ARGUMENTS...` with `folder` as kOpenocdFolder. Blocks until it ends, at most `patience`. It runs
+/// in /: OpenOCD looks for each script that another one sources beneath its working directory first, and runs
+/// what it finds there, so that must be no folder that others may have filled.
+[[nodiscard]] OpenocdRun run_openocd(const OpenFolder& folder, std::vector<std::string> arguments,
                                      std::chrono::seconds patience);
 
 }  // namespace octoskin::flashing

@@ -29,12 +29,13 @@ std::string write_options_if_they_differ() {
 
 std::string openocd_script(const ScriptPlan& plan) {
     std::string text = fmt::format(
-        "# Made by `octoskin flash`. By hand, in this folder: openocd -f {}\n"
+        "# Made by `octoskin flash`. By hand: cd /; openocd -f FOLDER/{}\n"
+        "set octoskin_hex [file join [file dirname [info script]] {}]\n"
         "source [find {}]\n"
         "gdb_port disabled\n"
         "tcl_port disabled\n"
         "telnet_port disabled\n",
-        kScriptFile, plan.openocd_board);
+        kScriptFile, kHexFile, plan.openocd_board);
     // The node sleeps (WFI) nearly all the time, and does not keep its debug port clocked meanwhile
     // (DBGMCU_CR.DBG_SLEEP would cost the power that sleeping saves): it is met under reset instead, which
     // also meets one whose image is broken. OpenOCD sets the bit itself once it is in.
@@ -51,17 +52,18 @@ std::string openocd_script(const ScriptPlan& plan) {
     text += fmt::format(
         "\n"
         "proc octoskin_flash {{}} {{\n"
+        "    global octoskin_hex\n"
         "    init\n"
         "    reset init\n"
         "    set device [expr {{[read_memory 0x{0:08X} 32 1] & 0xFFF}}]\n"
         "    echo [format \"{1}0x%03X\" $device]\n"
         "    if {{$device != 0x{2:03X}}} {{ error \"another chip\" }}\n"
         "    set options [octoskin_options]\n"
-        "    flash write_image erase {3}\n"
-        "    echo \"{4}\"\n"
-        "    verify_image {3}\n"
-        "    echo \"{5}\"\n",
-        kDeviceRegister, kSaysDevice, plan.device_id, kHexFile, kSaysProgrammed, kSaysVerified);
+        "    flash write_image erase $octoskin_hex\n"
+        "    echo \"{3}\"\n"
+        "    verify_image $octoskin_hex\n"
+        "    echo \"{4}\"\n",
+        kDeviceRegister, kSaysDevice, plan.device_id, kSaysProgrammed, kSaysVerified);
     if (plan.writes_option_bytes) text += write_options_if_they_differ();
     text += fmt::format(
         "    reset run\n"

@@ -7,7 +7,7 @@
 
 namespace octoskin::flashing {
 
-/// Beside the script, so that no path needs quoting.
+/// Beside the script, which finds it by its own place.
 inline constexpr const char* kHexFile = "flash.hex";
 inline constexpr const char* kScriptFile = "flash.cfg";
 
@@ -25,8 +25,9 @@ struct ScriptPlan {
     bool writes_option_bytes = false;
 };
 
-/// Run in its folder by `openocd -f flash.cfg`. With `-c "set octoskin_dry_run 1"` before, it connects to
-/// nothing and lists the flash banks: then OpenOCD has read all of it.
+/// Run by `openocd -f FOLDER/flash.cfg`, in whatever working directory; the hex file lies beside it. With `-c
+/// "set octoskin_dry_run 1"` before, it connects to nothing and lists the flash banks: then OpenOCD has read
+/// all of it.
 [[nodiscard]] std::string openocd_script(const ScriptPlan& plan);
 
 }  // namespace octoskin::flashing

@@ -90,6 +90,24 @@ TEST_F(FlashTest, a_dry_run_does_everything_but_the_adapter) {
     EXPECT_THAT(content(path("out/flash.hex")), HasSubstr(":00000001FF"));
 }
 
+TEST_F(FlashTest, scripts_that_lie_in_its_folder_or_in_the_working_directory_are_not_run) {
+    if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
+    const std::string trap = "exec touch " + path("was_run") + "\n";
+    for (const std::string& folder : {path("out"), path("here")}) {
+        for (const char* name : {"board/st_nucleo_g4.cfg", "interface/stlink.cfg", "target/stm32g4x.cfg",
+                                 "target/swj-dp.tcl", "mem_helper.tcl", "openocd.cfg"}) {
+            std::filesystem::create_directories(std::filesystem::path(folder + "/" + name).parent_path());
+            write(folder + "/" + name, trap);
+        }
+    }
+    const Said said = run("cd " + path("here") + " && " OCTOSKIN_PROGRAM " flash --rig " +
+                          source("hw/rigs/bench_one_board.yaml") + " --elf " + path("image.elf") + " --out " +
+                          path("out") + " --dry-run");
+    EXPECT_EQ(said.exit_code, 0) << said.output;
+    EXPECT_THAT(content(path("out/openocd.log")), HasSubstr("stm32l4x"));
+    EXPECT_FALSE(std::filesystem::exists(path("was_run")));
+}
+
 TEST_F(FlashTest, without_an_adapter_it_says_so_in_one_sentence) {
     if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
     if (run("lsusb -d 0483: ").exit_code == 0) GTEST_SKIP() << "an ST-LINK may be connected";

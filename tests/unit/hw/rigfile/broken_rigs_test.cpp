@@ -78,6 +78,8 @@ const Broken kBroken[] = {
     {"name-with-a-slash.yaml", 2, "name", "that a folder can have, found 'lab/left': leave out / and .."},
     {"name-that-leaves-its-folder.yaml", 2, "name", "that a folder can have, found '..'"},
     {"node-name-that-leaves-its-folder.yaml", 3, "nodes[0].name", "that a folder can have, found 'board..7'"},
+    {"board-name-that-leaves-its-folder.yaml", 5, "nodes[0].board.name",
+     "that a folder can have, found '../a'"},
     {"node-name-of-a-dot.yaml", 3, "nodes[0].name", "that a folder can have, found '.'"},
     {"unknown-word.yaml", 3, "nodes[0].sensors[0].distance_mode",
      "expected short or medium or long, found 'far'"},

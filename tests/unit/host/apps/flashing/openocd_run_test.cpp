@@ -25,7 +25,8 @@ class OpenocdRunTest : public testing::Test {
         ::setenv("PATH", (folder_.path().string() + ":" + path_).c_str(), 1);
     }
     [[nodiscard]] OpenocdRun run(std::chrono::seconds patience = std::chrono::seconds(20)) const {
-        return run_openocd(folder_.path(), {"-f", "flash.cfg"}, patience);
+        const auto folder = OpenFolder::open(folder_.path(), FolderAccess::write);
+        return run_openocd(*folder, {"-f", "flash.cfg"}, patience);
     }
 
     testing_support::ScratchFolder folder_;
@@ -33,13 +34,17 @@ class OpenocdRunTest : public testing::Test {
 };
 
 TEST_F(OpenocdRunTest, keeps_all_that_it_says_and_its_exit_code) {
-    put_openocd("echo out $1 $2; echo err >&2; pwd; exit 3");
+    put_openocd("echo out $1 $2; echo err >&2; exit 3");
     const OpenocdRun ended = run();
     EXPECT_EQ(ended.end, End::exited);
     EXPECT_EQ(ended.exit_code, 3);
     EXPECT_THAT(ended.output, HasSubstr("out -f flash.cfg\n"));
     EXPECT_THAT(ended.output, HasSubstr("err\n"));
-    EXPECT_THAT(ended.output, HasSubstr(std::filesystem::canonical(folder_.path()).string()));
+}
+
+TEST_F(OpenocdRunTest, finds_the_folder_by_its_descriptor_and_works_in_none_that_others_fill) {
+    put_openocd(std::string("pwd; cd ") + kOpenocdFolder + "/ && pwd -P");
+    EXPECT_EQ(run().output, "/\n" + std::filesystem::canonical(folder_.path()).string() + "\n");
 }
 
 TEST_F(OpenocdRunTest, a_signal_is_no_success) {
