@@ -164,9 +164,10 @@ function(octoskin_program name)
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
     target_compile_features(${name} PRIVATE cxx_std_20)
     target_link_libraries(${name} PRIVATE octoskin_compile_options octoskin_program_options ${ARG_DEPENDS} ${ARG_EXTERNAL})
-    # Where modules are looked for that are loaded when they are needed.
+    # No search path of libraries, but for a program that sets its own; and the same one where it is built and where it
+    # is installed: CMake fills up the shorter one with empty folders, and each of them means the working directory.
     set_target_properties(${name} PROPERTIES OCTOSKIN_ROOM ${ARG_ROOM} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
-        BUILD_RPATH "\$ORIGIN" INSTALL_RPATH "\$ORIGIN/../libexec/octoskin")
+        INSTALL_RPATH "" BUILD_WITH_INSTALL_RPATH ON)
 endfunction()
 
 function(octoskin_test name)

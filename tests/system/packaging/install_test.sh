@@ -13,6 +13,14 @@ for name in octoskin octoskin-node; do
 done
 "$folder/prefix/bin/octoskin" rig "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml" > /dev/null
 "$folder/prefix/bin/octoskin" simulate --help | grep -qF "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml"
+# No program looks for libraries in the working directory: an empty or relative part of a search path means that. Where it was
+# built neither.
+for program in "$folder"/prefix/bin/* "$folder"/prefix/libexec/octoskin/octoskin-* "$2"/bin/octoskin*; do
+    if readelf -d "$program" | sed -n 's/.*Library r[un]*path: \[\(.*\)\]$/\1/p' | tr : '\n' | grep -v '^[$/]'; then
+        echo "$program looks for libraries in the working directory" >&2
+        exit 1
+    fi
+done
 # A world is read by a helper, in a process of its own, and that by a module, so that a file which is no world at all waits for no
 # library; without either that is said.
 ldd "$folder/prefix/bin/octoskin" > "$folder/libraries"
