@@ -109,6 +109,12 @@ std::optional<std::string> too_little() {
     return std::nullopt;
 }
 
+/// Files are opened by their descriptors' names there, so that no link is followed in between; and the
+/// helpers are found by it. Without it each file would be "no such file".
+bool has_proc() {
+    return ::access("/proc/self/fd", R_OK | X_OK) == 0 && ::access("/proc/self/exe", F_OK) == 0;
+}
+
 /// What was thrown, and the exit code for it. There may be no memory to say it in.
 int tell(const std::exception& thrown) noexcept {
     constexpr int kInternal = 70;
@@ -140,6 +146,10 @@ int main(int argc, char** argv) {
         if (const auto shortage = too_little()) {
             spdlog::error("{}", *shortage);
             return static_cast<int>(octoskin::ExitCode::no_resources);
+        }
+        if (!has_proc()) {
+            spdlog::error("there is no /proc here, through which octoskin opens files: mount it");
+            return static_cast<int>(octoskin::ExitCode::unavailable);
         }
         return checked(run(argc, argv));
     } catch (const std::exception& error) {

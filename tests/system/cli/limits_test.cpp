@@ -74,5 +74,19 @@ TEST_F(Limits, of_a_files_size_are_an_error_of_the_write) {
     EXPECT_NE(said.output.find("File too large"), std::string::npos) << said.output;
 }
 
+#ifndef OCTOSKIN_SANITIZED  // which needs /proc itself
+TEST_F(Limits, without_proc_that_is_said_and_no_helper_out_of_the_working_directory_runs) {
+    if (run("unshare -rm mount -t tmpfs none /proc").exit_code != 0) GTEST_SKIP() << "no namespaces here";
+    write(path("octoskin-camera"), "#!/bin/sh\ntouch was_run\n");
+    std::filesystem::permissions(path("octoskin-camera"), std::filesystem::perms::owner_all);
+    const Said said =
+        run("cd " + path("") +
+            " && unshare -rm sh -c 'mount -t tmpfs none /proc && exec " OCTOSKIN_PROGRAM " cameras'");
+    EXPECT_EQ(said.exit_code, 69) << said.output;
+    EXPECT_NE(said.output.find("there is no /proc here"), std::string::npos) << said.output;
+    EXPECT_FALSE(std::filesystem::exists(path("was_run")));
+}
+#endif
+
 }  // namespace
 }  // namespace octoskin
