@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 
 #include "hw/rigfile/file_kind.hpp"
 
@@ -14,6 +13,9 @@ namespace octoskin::image {
 namespace {
 
 using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::size_t kFileBytesMax = std::size_t{64} << 20U;  ///< with debug information ours have 2 MiB
+constexpr std::size_t kPieceBytes = std::size_t{1} << 16U;
 
 /// The structure at `offset`, if it is within the file.
 template <class T>
@@ -55,7 +57,17 @@ Result<ElfImage, ElfError> ElfImage::load(const std::string& path) {
         return unexpected(ElfError{fmt::format("{}: is {}, not an ordinary file", path, kind)});
     std::ifstream stream(path, std::ios::binary);
     if (!stream) return unexpected(ElfError{fmt::format("{}: cannot be read", path)});
-    const std::vector<std::uint8_t> file{std::istreambuf_iterator<char>(stream), {}};
+    std::vector<std::uint8_t> file;
+    std::vector<char> piece(kPieceBytes);
+    while (file.size() <= kFileBytesMax) {
+        stream.read(piece.data(), kPieceBytes);
+        if (stream.gcount() == 0) break;
+        file.insert(file.end(), piece.begin(), piece.begin() + stream.gcount());
+    }
+    if (file.size() > kFileBytesMax) {
+        return unexpected(
+            ElfError{fmt::format("{}: over {} bytes, which no image has", path, kFileBytesMax)});
+    }
     auto image = parse(file);
     if (!image) return unexpected(ElfError{fmt::format("{}: {}", path, image.error().what)});
     return image;

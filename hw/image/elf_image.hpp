@@ -25,7 +25,7 @@ struct ElfError {
 class ElfImage {
   public:
     /// A little-endian 32-bit ARM executable; segments without file contents are left out. Errors: the file
-    /// cannot be read, and those of `parse`; the message names the file.
+    /// cannot be read, or has over 64 MiB, and those of `parse`; the message names the file.
     [[nodiscard]] static Result<ElfImage, ElfError> load(const std::string& path);
     /// `file`: the whole ELF file. Errors: not such an executable; over 64 segments; a header or a segment
     /// reaches past the end.

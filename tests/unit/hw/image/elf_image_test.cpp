@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "tests/support/image/elf_builder.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::image {
 namespace {
@@ -42,6 +45,15 @@ TEST(ElfImage, refuses_what_is_no_program_for_arm) {
     ASSERT_FALSE(absent);
     EXPECT_THAT(absent.error().what, HasSubstr("/nowhere/image.elf: cannot be read"));
     EXPECT_FALSE(ElfImage::load("/"));
+}
+
+TEST(ElfImage, reads_no_more_of_a_file_than_an_image_has) {
+    const testing_support::ScratchFolder folder;
+    const auto file = folder.write("image.elf", ElfBuilder().text());
+    std::filesystem::resize_file(file, std::uintmax_t{64} << 20U);
+    EXPECT_TRUE(ElfImage::load(file.string()));
+    std::filesystem::resize_file(file, std::uintmax_t{1} << 40U);  // of holes
+    EXPECT_THAT(ElfImage::load(file.string()).error().what, HasSubstr("over 67108864 bytes"));
 }
 
 TEST(ElfImage, refuses_more_segments_than_an_image_has) {
