@@ -116,7 +116,7 @@ Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
     UrdfDocument document;
     document.file_ = file;
     document.outline_ = std::move(outline).value();
-    auto [model, complaint] = parse(*text);
+    auto [model, complaint] = parse(document.outline_.plain_text());
     if (!model || !model->getRoot()) {
         return unexpected(RigError{
             file, 0, "", "not a usable URDF: " + (complaint.empty() ? "no robot found" : complaint)});
