@@ -37,10 +37,13 @@ Status<FolderError> check_name(const FilePlace& file) {
     return unexpected(FolderError{FolderFault::is_there, file.shown(), EISDIR});
 }
 
+/// The mode of a file of ours. Another user's would choose who may write to the new one.
 void keep_mode(const OpenFolder& folder, const std::string& name, int descriptor) {
     struct stat old {};
     constexpr mode_t kPermissions = 0777;
-    if (::fstatat(folder.descriptor(), name.c_str(), &old, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(old.st_mode))
+    const bool is_there =
+        ::fstatat(folder.descriptor(), name.c_str(), &old, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(old.st_mode);
+    if (is_there && old.st_uid == ::geteuid())
         static_cast<void>(::fchmod(descriptor, old.st_mode & kPermissions));
 }
 

@@ -16,8 +16,8 @@ class ReplacingFile {
     /// the file nothing, an ordinary file or a link lies. Changes nothing. Errors: is_there (something else
     /// is in that place, or in that of the file beside it); as FilePlace::parent_to_write; not_permitted.
     [[nodiscard]] static Status<FolderError> check(const FilePlace& file);
-    /// A new, empty file beside `file`, with the mode of an ordinary file that is to be replaced. Errors: as
-    /// check().
+    /// A new, empty file beside `file`, with the mode of an ordinary file of the caller's that is to be
+    /// replaced. Errors: as check().
     [[nodiscard]] static Result<ReplacingFile, FolderError> begin(const FilePlace& file);
     ReplacingFile(ReplacingFile&& other) noexcept = default;
     ReplacingFile& operator=(ReplacingFile&&) = delete;
