@@ -57,7 +57,15 @@ bool contradicts_clock(ReadingReason reason) {
 }
 
 FrameReason reason_of(SyncFault fault) {
-    return fault == SyncFault::repeated ? FrameReason::sync_repeated : FrameReason::sync_unmatched;
+    switch (fault) {
+        case SyncFault::unmatched:
+            return FrameReason::sync_unmatched;
+        case SyncFault::repeated:
+            return FrameReason::sync_repeated;
+        case SyncFault::contradicted:
+            return FrameReason::sync_contradicted;
+    }
+    return FrameReason::sync_unmatched;
 }
 
 }  // namespace
@@ -72,6 +80,7 @@ CanIntake::CanIntake(const HostRig& rig, const IntakeConfig& config)
       joint_senders_(rig.joints.rate_hz, !config.has_local_joints) {
     for (const auto& [node, record] : nodes_.records()) {
         clocks_.emplace(node, ClockMap(config.clock));
+        answers_.try_emplace(node);
         questions_.try_emplace(node);
         losses_.try_emplace(node);
     }
@@ -254,6 +263,7 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Heartbeat& mes
     ranges_.on_rate(node, message.is_rate_overridden);
     if (nodes_.on_heartbeat(node, message, now()) == NodeRegistry::Life::restarted) {
         clocks_.at(node).forget();
+        answers_.at(node).forget();
         questions_.at(node).answer();
         ranges_.forget(node);
     }
@@ -273,11 +283,11 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::SensorHealth& 
 }
 
 void CanIntake::add_exchange(wire::NodeId node) {
-    const auto sample = exchange_.take_sample(node);
-    if (!sample) {
+    const auto answers = exchange_.take_samples(node);
+    const auto verdict = answers.empty() ? std::nullopt : answers_.at(node).take(answers, clocks_.at(node));
+    if (!verdict) {
         return;
     }
-    const SampleVerdict verdict = clocks_.at(node).add(*sample);
     if (verdict == SampleVerdict::contradicts) {
         ranges_.on_clock_contradicted(node);
         return;
@@ -288,11 +298,8 @@ void CanIntake::add_exchange(wire::NodeId node) {
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::SyncReport& message, FrameOutcome&) {
     const auto taken = exchange_.on_report(node, message);
-    if (!taken) {
-        return reason_of(taken.error());
-    }
     add_exchange(node);
-    return std::nullopt;
+    return taken ? std::nullopt : Rejection(reason_of(taken.error()));
 }
 
 CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::Sync& message, FrameOutcome&) {

@@ -10,6 +10,7 @@
 #include "common/time.hpp"
 #include "common/wire/can_frame.hpp"
 #include "common/wire/messages.hpp"
+#include "host/core/ingest/answer_check.hpp"
 #include "host/core/ingest/clock_question.hpp"
 #include "host/core/ingest/joint_assembler.hpp"
 #include "host/core/ingest/joint_measurement.hpp"
@@ -108,6 +109,8 @@ class CanIntake {
     [[nodiscard]] const HostClockEstimate& host_clock() const noexcept { return host_clock_; }
     /// Of a node of the rig.
     [[nodiscard]] const ClockMap& clock(wire::NodeId node) const { return clocks_.at(node); }
+    /// Likewise: what it answered to SYNC.
+    [[nodiscard]] const AnswerCheck& answers(wire::NodeId node) const { return answers_.at(node); }
 
   private:
     // One for each message. What they return goes into FrameOutcome::rejected.
@@ -152,6 +155,7 @@ class CanIntake {
     HostClockEstimate host_clock_;
     SyncExchange exchange_;
     std::map<wire::NodeId, ClockMap> clocks_;
+    std::map<wire::NodeId, AnswerCheck> answers_;      ///< of the same nodes
     std::map<wire::NodeId, ClockQuestion> questions_;  ///< of the same nodes
     std::map<wire::NodeId, NodeLosses> losses_;        ///< likewise
     ReadingHold held_;

@@ -27,6 +27,7 @@ enum class FrameReason : std::uint8_t {
     for_nodes,           ///< a command: nothing for the host in it
     sync_unmatched,      ///< FOLLOW_UP or SYNC_REPORT without their SYNC
     sync_repeated,       ///< a second SYNC, FOLLOW_UP or SYNC_REPORT where one belongs
+    sync_contradicted,   ///< a second SYNC_REPORT of one node to one SYNC, which tells another time
     node_refused,        ///< NODE_INFO or joints of a node that is quarantined, babbles or speaks another
                          ///< version
     not_joint_source,    ///< joint states of a node that the rig does not name for it
@@ -35,11 +36,12 @@ enum class FrameReason : std::uint8_t {
     for_people,    ///< a piece of a node's black box, or a calibration's answer: nothing for the map in it
     mark_ignored,  ///< a MARK where the map does not wait for one, or over 1 s from "now"
 };
-[[nodiscard]] constexpr std::array<const char*, 18> names_of(FrameReason) {
-    return {"foreign_format",     "unknown_type",  "wrong_length", "wrong_crc",        "wrong_version",
-            "nonzero_padding",    "invalid_field", "unknown_node", "unknown_sensor",   "for_nodes",
-            "sync_unmatched",     "sync_repeated", "node_refused", "not_joint_source", "joint_repeated",
-            "joint_no_host_time", "for_people",    "mark_ignored"};
+[[nodiscard]] constexpr std::array<const char*, 19> names_of(FrameReason) {
+    return {"foreign_format",     "unknown_type",    "wrong_length",     "wrong_crc",
+            "wrong_version",      "nonzero_padding", "invalid_field",    "unknown_node",
+            "unknown_sensor",     "for_nodes",       "sync_unmatched",   "sync_repeated",
+            "sync_contradicted",  "node_refused",    "not_joint_source", "joint_repeated",
+            "joint_no_host_time", "for_people",      "mark_ignored"};
 }
 static_assert(static_cast<std::size_t>(FrameReason::invalid_field) + 1 == wire::kDecodeErrors);
 [[nodiscard]] constexpr FrameReason reason_of(wire::DecodeError error) noexcept {

@@ -58,6 +58,11 @@ class ClockMap {
 
     /// The exchanges of one node in the order of their host times. O(window).
     SampleVerdict add(const SyncSample& sample);
+    /// Whether it goes on where those before it were, as far as any are known: false while the clock is in
+    /// doubt.
+    [[nodiscard]] bool fits(const SyncSample& sample) const {
+        return !points_.empty() && !suspect_ && is_consistent(sample);
+    }
     /// The node restarted: whatever was known of its clock is void.
     void forget();
 

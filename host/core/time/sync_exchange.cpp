@@ -1,15 +1,25 @@
 #include "host/core/time/sync_exchange.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <chrono>
+#include <span>
 
 namespace octoskin {
+namespace {
+
+bool are_one(NodeTime a, NodeTime b) {
+    return std::chrono::abs(elapsed(a, b)) <= SyncExchange::kOneInstant;
+}
+
+}  // namespace
 
 Status<SyncFault> SyncExchange::on_sync(const wire::Sync& sync, WallTime stamp) {
     const bool is_repeated = sync.sequence == sequence_last_;
     sequence_last_ = sync.sequence;
     stamp_ = stamp;
     host_.reset();
-    reports_.fill({});
+    answers_.fill({});
     if (is_repeated) {
         sequence_.reset();
         return unexpected(SyncFault::repeated);
@@ -31,26 +41,35 @@ Result<SyncStamp, SyncFault> SyncExchange::on_follow_up(const wire::FollowUp& fo
 }
 
 Status<SyncFault> SyncExchange::on_report(wire::NodeId node, const wire::SyncReport& report) {
-    assert(node < reports_.size());
+    assert(node < answers_.size());
     if (sequence_ != report.sequence) {
         return unexpected(SyncFault::unmatched);
     }
-    Report& mine = reports_[node];
-    if (mine.answer != Answer::none) {
+    Answers& mine = answers_[node];
+    const auto before = std::span(mine.heard).first(mine.count);
+    if (std::ranges::any_of(before, [&](NodeTime other) { return are_one(other, report.heard); })) {
         return unexpected(SyncFault::repeated);
     }
-    mine = {Answer::waiting, report.heard};
-    return Done{};
+    if (mine.count < mine.heard.size()) {
+        mine.heard[mine.count] = report.heard;
+        ++mine.count;
+    }
+    mine.has_new = true;
+    return before.empty() ? Status<SyncFault>(Done{}) : unexpected(SyncFault::contradicted);
 }
 
-std::optional<SyncSample> SyncExchange::take_sample(wire::NodeId node) {
-    assert(node < reports_.size());
-    Report& mine = reports_[node];
-    if (!host_ || mine.answer != Answer::waiting) {
-        return std::nullopt;
+std::vector<SyncSample> SyncExchange::take_samples(wire::NodeId node) {
+    assert(node < answers_.size());
+    Answers& mine = answers_[node];
+    std::vector<SyncSample> samples;
+    if (!host_ || !mine.has_new) {
+        return samples;
     }
-    mine.answer = Answer::taken;
-    return SyncSample{*host_, mine.heard};
+    mine.has_new = false;
+    for (const NodeTime heard : std::span(mine.heard).first(mine.count)) {
+        samples.push_back({*host_, heard});
+    }
+    return samples;
 }
 
 }  // namespace octoskin

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "common/result.hpp"
 #include "common/time.hpp"
@@ -25,8 +27,9 @@ struct SyncStamp {
 };
 
 enum class SyncFault : std::uint8_t {
-    unmatched,  ///< belongs to no SYNC that is open: its SYNC was lost, or it came too late
-    repeated,   ///< a second one of its kind for this SYNC; which of them is true cannot be told
+    unmatched,     ///< belongs to no SYNC that is open: its SYNC was lost, or it came too late
+    repeated,      ///< a second one of its kind for this SYNC
+    contradicted,  ///< an answer of this node to this SYNC is here and tells another time: two senders
 };
 
 class SyncExchange {
@@ -37,21 +40,27 @@ class SyncExchange {
     [[nodiscard]] Result<SyncStamp, SyncFault> on_follow_up(const wire::FollowUp& follow_up);
     [[nodiscard]] Status<SyncFault> on_report(wire::NodeId node, const wire::SyncReport& report);
 
-    /// The pair of readings of `node`, once, as soon as report and FOLLOW_UP are both here.
-    [[nodiscard]] std::optional<SyncSample> take_sample(wire::NodeId node);
+    /// The pairs of readings of `node`, as soon as report and FOLLOW_UP are both here; again, with all before
+    /// it, whenever one more answer contradicts them. Empty while there is nothing new.
+    [[nodiscard]] std::vector<SyncSample> take_samples(wire::NodeId node);
+
+    /// Answers that differ by no more are one: a bus that repeats a SYNC has a node answer twice.
+    static constexpr Microseconds kOneInstant{1'000};
+    /// Of the answers under one id as many are kept.
+    static constexpr std::size_t kAnswersMax = 4;
 
   private:
-    enum class Answer : std::uint8_t { none, waiting, taken };
-    struct Report {
-        Answer answer = Answer::none;
-        NodeTime heard;
+    struct Answers {
+        std::array<NodeTime, kAnswersMax> heard{};
+        std::size_t count = 0;
+        bool has_new = false;  ///< since they were taken
     };
 
     std::optional<std::uint8_t> sequence_;  ///< of the open exchange
     std::uint8_t sequence_last_ = 0xFF;     ///< of the newest SYNC, open or not
     WallTime stamp_;
     std::optional<HostTime> host_;
-    std::array<Report, wire::kBroadcastId + 1> reports_{};
+    std::array<Answers, wire::kBroadcastId + 1> answers_{};
 };
 
 }  // namespace octoskin

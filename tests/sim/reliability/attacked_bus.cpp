@@ -183,12 +183,15 @@ void AttackedBus::pass_on(const wire::CanFrame& frame, std::int64_t end_us) {
     const std::int64_t half_budget_us = 500 * setup_.budget_ms;
     if (range != nullptr && is_counted(host_of(end_us - half_budget_us)))
         ++counts_[{decoded->node_id, range->reading.sensor}].sent;
-    if (range == nullptr || !setup_.on_reading) {
-        way_.emplace(end_us, arriving);
-        return;
-    }
+    const auto* answer = decoded ? std::get_if<wire::SyncReport>(&decoded->message) : nullptr;
     std::vector<OnTheWay> way;
-    setup_.on_reading(decoded->node_id, range->reading, end_us, way);
+    if (range != nullptr && setup_.on_reading) {
+        setup_.on_reading(decoded->node_id, range->reading, end_us, way);
+    } else if (answer != nullptr && setup_.on_answer) {
+        setup_.on_answer(decoded->node_id, *answer, end_us, way);
+    } else {
+        way.push_back({end_us, arriving});
+    }
     for (const OnTheWay& one : way) way_.emplace(one.arrives_us, one.frame);
 }
 
@@ -210,6 +213,7 @@ void AttackedBus::look() {
             if (intake.ranges().senders(node, sensor).is_named(*now))
                 named_.try_emplace({node, sensor}, now_s());
         }
+        if (intake.answers(node).hears_two(*now)) named_clocks_.try_emplace(node, now_s());
         const NodeVerdict verdict = intake.nodes().verdict(node, now);
         if (now_s() > kSettled_s && verdict != NodeVerdict::usable) refused_.try_emplace(node, verdict);
         if (const auto loss = intake.losses(node, *now); loss && verdict == NodeVerdict::usable) {

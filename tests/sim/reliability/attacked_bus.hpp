@@ -34,6 +34,10 @@ struct OnTheWay {
 using Reader = std::function<void(wire::NodeId node, const wire::RangeReading& said, std::int64_t arrives_us,
                                   std::vector<OnTheWay>& way)>;
 
+/// The same of its answer to a SYNC.
+using Answerer = std::function<void(wire::NodeId node, const wire::SyncReport& said, std::int64_t arrives_us,
+                                    std::vector<OnTheWay>& way)>;
+
 struct BusSetup {
     std::uint8_t nodes = 1;  ///< ids 5 and 6
     std::uint8_t sensors = 4;
@@ -43,6 +47,7 @@ struct BusSetup {
     bool holds_phases = false;
     double run_s = 9.0;
     Reader on_reading = {};                  ///< empty: all arrives as it was said
+    Answerer on_answer = {};                 ///< likewise
     double loss = 0.0;                       ///< of all frames of the nodes, readings among them
     std::optional<double> resets_at_s = {};  ///< the first node's controller
     std::optional<double> clock_jumps_at_s = {};
@@ -72,6 +77,10 @@ class AttackedBus final : private CommitListener {
     /// When a sensor was named first: for its senders.
     [[nodiscard]] std::optional<double> named_s(SensorKey sensor) const;
     [[nodiscard]] const std::map<SensorKey, double>& named() const noexcept { return named_; }
+    /// When a node was named first: for what it answers to SYNC.
+    [[nodiscard]] const std::map<wire::NodeId, double>& named_clocks() const noexcept {
+        return named_clocks_;
+    }
     [[nodiscard]] const std::map<wire::NodeId, NodeLosses::Loss>& losses() const noexcept { return losses_; }
     [[nodiscard]] const std::map<wire::NodeId, double>& losing_s() const noexcept { return losing_s_; }
     /// Nodes that were not usable at some time after kSettled_s.
@@ -118,6 +127,7 @@ class AttackedBus final : private CommitListener {
     std::set<VoxelKey> untrue_voxels_;  ///< of the first untrue reading
     std::map<SensorKey, SensorCount> counts_;
     std::map<SensorKey, double> named_;
+    std::map<wire::NodeId, double> named_clocks_;
     std::map<wire::NodeId, NodeLosses::Loss> losses_;
     std::map<wire::NodeId, double> losing_s_;
     std::map<wire::NodeId, NodeVerdict> refused_;

@@ -277,6 +277,37 @@ TEST(ClockJumps, of_a_node_place_no_reading_wrong_and_are_over_after_two_exchang
     }
 }
 
+/// An answer to each SYNC beside the node's own, by a clock that is `ahead_ms` ahead.
+Answerer answers_ahead(std::int64_t ahead_ms, std::int64_t delay_us) {
+    return [=](wire::NodeId node, const wire::SyncReport& said, std::int64_t arrives_us,
+               std::vector<OnTheWay>& way) {
+        way.push_back({arrives_us, wire::encode(said, node)});
+        if (node != kFirst || arrives_us < kAttackUs) return;
+        const wire::SyncReport forged{said.sequence, said.heard + Microseconds{1'000 * ahead_ms}};
+        way.push_back({arrives_us + delay_us, wire::encode(forged, node)});
+    };
+}
+
+TEST(ForgedAnswersToSync, place_no_reading_wrong_cost_nobody_anything_and_are_named_at_the_first) {
+    const AttackedBus clean({.nodes = 2, .run_s = 12.0});
+    for (const std::int64_t ahead_ms : {-90, -25, 3, 25, 60, 90}) {
+        for (const std::int64_t delay_us : {-50, 500}) {  // it answers quicker than the node, and slower
+            SCOPED_TRACE(std::to_string(ahead_ms) + " ms, " + std::to_string(delay_us) + " us");
+            const AttackedBus bus(
+                {.nodes = 2, .run_s = 12.0, .on_answer = answers_ahead(ahead_ms, delay_us)});
+            EXPECT_EQ(bus.untrue(), 0U) << bus.pipeline().account_text();
+            EXPECT_EQ(bus.wrong_voxels(clean), 0U);
+            EXPECT_TRUE(bus.replayed_map() == bus.map());
+            expect_others_whole(bus, {});  // the attacked node's as well
+            ASSERT_TRUE(bus.named_clocks().contains(kFirst));
+            EXPECT_LE(bus.named_clocks().at(kFirst), kAttack_s + 1.0);
+            EXPECT_FALSE(bus.named_clocks().contains(kOther));
+            EXPECT_TRUE(bus.refused().empty());
+            EXPECT_EQ(bus.pipeline().intake().clock(kFirst).relocks(), 0U);
+        }
+    }
+}
+
 class HonestBus : public testing::TestWithParam<std::uint32_t> {};
 
 /// 5 % lost, 5 % repeated, 5 % up to 20 ms late, and every three seconds one damaged frame that passes CRC-8.
@@ -318,6 +349,7 @@ TEST_P(HonestBus, has_nobody_named_and_loses_only_what_the_bus_does) {
         for (const auto& [sensor, at_s] : bus.named())
             ADD_FAILURE() << int{sensor.first} << '.' << int{sensor.second} << " named at " << at_s
                           << bus.pipeline().account_text();
+        EXPECT_TRUE(bus.named_clocks().empty());
         EXPECT_TRUE(bus.losing_s().empty());
         for (const auto& [sensor, count] : bus.counts()) {
             if (is_reset && sensor.first == kFirst) continue;

@@ -9,9 +9,12 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "common/range_status.hpp"
+#include "common/wire/codec.hpp"
 #include "common/wire/crc.hpp"
 #include "tests/support/bus/scripted_bus.hpp"
 
@@ -103,6 +106,95 @@ TEST(CanIntake, accepts_all_readings_of_a_node_that_is_well_and_counts_no_gap) {
     EXPECT_EQ(intake.ranges().record(kNode, 0).sequence.gaps(), 0U);
     EXPECT_EQ(intake.ranges().record(kNode, 0).received, 182U);
     EXPECT_EQ(intake.ranges().record(kNode, 0).device_status[9], 182U);
+}
+
+/// An answer to the SYNC of second `k`, by a clock that is so far ahead of the node's.
+void answer_as(ScriptedBus& bus, wire::NodeId node, int k, double ahead_s, double delay_s) {
+    const double at_s = 0.1 + k;
+    bus.send(at_s + delay_s,
+             wire::SyncReport{static_cast<std::uint8_t>(k), bus.node_time(node, at_s + ahead_s)}, node);
+}
+
+TEST(CanIntake, keeps_the_clock_of_a_node_under_whose_id_another_answers_sync) {
+    for (const double ahead_s : {-0.09, -0.03, 0.002, 0.03, 0.06, 0.09}) {
+        for (const double delay_s : {0.0005, 0.0015, 0.0025, 0.04}) {  // before and after both true frames
+            SCOPED_TRACE(std::to_string(ahead_s) + " s ahead, after " + std::to_string(delay_s) + " s");
+            ScriptedBus attacked = bus();
+            for (int k = 3; k < 8; ++k) answer_as(attacked, kNode, k, ahead_s, delay_s);
+            std::vector<HostTime> captured;
+            int contradicted = 0;
+            const CanIntake intake = take(attacked, [&](const FrameOutcome& outcome, HostTime) {
+                contradicted += outcome.rejected == FrameReason::sync_contradicted ? 1 : 0;
+                for (const auto& reading : outcome.readings)
+                    if (reading) captured.push_back(reading->captured);
+            });
+            EXPECT_EQ(contradicted, 5);
+            EXPECT_GE(captured.size(), 172U) << "of 182, and two of each second that is attacked";
+            for (const HostTime at : captured) {
+                const double periods = 1e-9 * static_cast<double>((at - test::host_at(2.0)).count()) / 0.033;
+                EXPECT_NEAR(periods, std::round(periods), 0.02) << "a time at which it did not range";
+            }
+            EXPECT_EQ(intake.clock(kNode).relocks(), 0U);
+            EXPECT_EQ(intake.answers(kNode).contradictions(), 5U);
+            EXPECT_TRUE(intake.answers(kNode).hears_two(*intake.now()));
+            EXPECT_FALSE(intake.answers(kJointNode).hears_two(*intake.now()));
+        }
+    }
+}
+
+TEST(CanIntake, uses_no_answer_to_sync_where_none_or_two_of_them_fit) {
+    // Before anything is known of the clock; and where it has jumped, and another answers as if it had not.
+    for (const bool has_jumped : {false, true}) {
+        ScriptedBus attacked = bus();
+        if (has_jumped) {
+            for (int k = 4; k < 8; ++k) answer_as(attacked, kNode, k, 0.7, 0.0015);
+            for (int k = 4; k < 8; ++k) answer_as(attacked, kNode, k, 0.4, 0.0018);
+        } else {
+            for (int k = 0; k < 8; ++k) answer_as(attacked, kNode, k, 0.05, 0.0015);
+        }
+        int accepted = 0;
+        const CanIntake intake = take(attacked, [&](const FrameOutcome& outcome, HostTime now) {
+            for (const auto& reading : outcome.readings) accepted += reading && now.ns > 0 ? 1 : 0;
+        });
+        EXPECT_EQ(intake.clock(kNode).relocks(), 0U);
+        if (!has_jumped) {
+            EXPECT_EQ(accepted, 0);
+        }
+        EXPECT_TRUE(intake.answers(kNode).hears_two(*intake.now()));
+    }
+}
+
+TEST(CanIntake, does_not_take_the_repeated_answer_to_a_repeated_sync_for_another_sender) {
+    ScriptedBus repeated = bus();
+    for (int k = 1; k < 8; ++k) answer_as(repeated, kNode, k, 0.0003, 0.0022);
+    int accepted = 0;
+    int again = 0;
+    const CanIntake intake = take(repeated, [&](const FrameOutcome& outcome, HostTime) {
+        again += outcome.rejected == FrameReason::sync_repeated ? 1 : 0;
+        for (const auto& reading : outcome.readings) accepted += reading ? 1 : 0;
+    });
+    EXPECT_EQ(again, 7);
+    EXPECT_EQ(accepted, 182);
+    EXPECT_EQ(intake.answers(kNode).contradictions(), 0U);
+    EXPECT_FALSE(intake.answers(kNode).hears_two(*intake.now()));
+}
+
+TEST(CanIntake, takes_no_clock_of_before_its_start_for_a_node_that_began_anew) {
+    ScriptedBus restarted = bus();
+    wire::Heartbeat starting{};
+    starting.state = wire::NodeState::starting;
+    for (const StampedFrame& entry : restarted.frames()) {
+        const auto decoded = wire::decode(entry.frame);
+        const auto* beat = decoded ? std::get_if<wire::Heartbeat>(&decoded->message) : nullptr;
+        if (beat == nullptr || decoded->node_id != kNode) continue;
+        starting = *beat;
+        starting.state = wire::NodeState::starting;
+    }
+    restarted.send(5.1025, starting, kNode);  // between the answer to a SYNC and its contradiction
+    answer_as(restarted, kNode, 5, 0.05, 0.0030);
+    const CanIntake intake = take(restarted, [](const FrameOutcome&, HostTime) {});
+    EXPECT_EQ(intake.clock(kNode).relocks(), 0U);
+    EXPECT_FALSE(intake.clock(kNode).fault(*intake.now()).has_value()) << "two exchanges since";
 }
 
 TEST(CanIntake, rejects_readings_while_the_clock_map_is_less_certain_than_the_rig_asks) {

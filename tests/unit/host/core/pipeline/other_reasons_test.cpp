@@ -103,6 +103,10 @@ const std::vector<Case<FrameReason>>& frame_cases() {
          [](Scene& s) {
              s.bus.send(4.2, wire::SyncReport{4, s.bus.node_time(kLeft, 4.1)}, kLeft);
          }},
+        {R::sync_contradicted,
+         [](Scene& s) {
+             s.bus.send(4.2, wire::SyncReport{4, s.bus.node_time(kLeft, 4.13)}, kLeft);
+         }},
         {R::node_refused,
          [](Scene& s) {
              wire::Heartbeat other_board{};
