@@ -47,15 +47,17 @@ Status<SyncFault> SyncExchange::on_report(wire::NodeId node, const wire::SyncRep
     }
     Answers& mine = answers_[node];
     const auto before = std::span(mine.heard).first(mine.count);
-    if (std::ranges::any_of(before, [&](NodeTime other) { return are_one(other, report.heard); })) {
+    if (std::ranges::find(before, report.heard) != before.end()) {
         return unexpected(SyncFault::repeated);
     }
+    const bool may_be_one = !before.empty() && are_one(before.front(), report.heard);
     if (mine.count < mine.heard.size()) {
         mine.heard[mine.count] = report.heard;
         ++mine.count;
     }
     mine.has_new = true;
-    return before.empty() ? Status<SyncFault>(Done{}) : unexpected(SyncFault::contradicted);
+    if (before.empty()) return Done{};
+    return unexpected(may_be_one ? SyncFault::repeated : SyncFault::contradicted);
 }
 
 std::vector<SyncSample> SyncExchange::take_samples(wire::NodeId node) {

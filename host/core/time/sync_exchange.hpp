@@ -41,10 +41,10 @@ class SyncExchange {
     [[nodiscard]] Status<SyncFault> on_report(wire::NodeId node, const wire::SyncReport& report);
 
     /// The pairs of readings of `node`, as soon as report and FOLLOW_UP are both here; again, with all before
-    /// it, whenever one more answer contradicts them. Empty while there is nothing new.
+    /// it, whenever one more answer differs from them. Empty while there is nothing new.
     [[nodiscard]] std::vector<SyncSample> take_samples(wire::NodeId node);
 
-    /// Answers that differ by no more are one: a bus that repeats a SYNC has a node answer twice.
+    /// Answers that differ by no more may be one sender's: a bus that repeats a SYNC has a node answer twice.
     static constexpr Microseconds kOneInstant{1'000};
     /// Of the answers under one id as many are kept.
     static constexpr std::size_t kAnswersMax = 4;

@@ -142,6 +142,25 @@ TEST(CanIntake, keeps_the_clock_of_a_node_under_whose_id_another_answers_sync) {
     }
 }
 
+TEST(CanIntake, is_not_led_away_by_answers_that_go_further_off_by_little_and_little) {
+    for (const double off_s : {0.0003, -0.0003}) {
+        ScriptedBus attacked = bus();
+        for (int k = 4; k < 8; ++k) answer_as(attacked, kNode, k, off_s * (k - 3), 0.0015);
+        int accepted = 0;
+        const CanIntake intake = take(attacked, [&](const FrameOutcome& outcome, HostTime) {
+            for (const auto& reading : outcome.readings) {
+                if (!reading) continue;
+                ++accepted;
+                const double late_s =
+                    1e-9 * static_cast<double>((reading->captured - test::host_at(2.0)).count());
+                EXPECT_LT(std::abs(late_s - 0.033 * std::round(late_s / 0.033)), 0.0004);
+            }
+        });
+        EXPECT_GE(accepted, 172);
+        EXPECT_EQ(intake.answers(kNode).contradictions(), 1U) << "the last is over 1 ms off";
+    }
+}
+
 TEST(CanIntake, uses_no_answer_to_sync_where_none_or_two_of_them_fit) {
     // Before anything is known of the clock; and where it has jumped, and another answers as if it had not.
     for (const bool has_jumped : {false, true}) {
