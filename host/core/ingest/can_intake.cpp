@@ -92,6 +92,7 @@ FrameOutcome CanIntake::on_frame(const wire::CanFrame& frame, WallTime stamp) {
     const auto decoded = wire::decode(frame);
     if (!decoded) {
         outcome.rejected = reason_of(decoded.error());
+        note_damage(frame, decoded.error());
         const wire::NodeId sender = wire::node_of(frame.can_id);
         if (decoded.error() == wire::DecodeError::wrong_version &&
             wire::type_of(frame.can_id) == wire::FrameType::heartbeat && nodes_.knows(sender)) {
@@ -119,6 +120,15 @@ FrameOutcome CanIntake::on_frame(const wire::CanFrame& frame, WallTime stamp) {
         std::visit([&](const auto& message) { return on(node, message, outcome); }, decoded->message);
     end_joint_samples(outcome);
     return outcome;
+}
+
+/// By what was last known of the time: whatever came with such a frame moves nothing.
+void CanIntake::note_damage(const wire::CanFrame& frame, wire::DecodeError error) {
+    const wire::NodeId node = wire::node_of(frame.can_id);
+    const auto now_known = now();
+    if (error == wire::DecodeError::wrong_crc && now_known && nodes_.knows(node)) {
+        ranges_.on_damage(node, *now_known);
+    }
 }
 
 void CanIntake::end_joint_samples(FrameOutcome& outcome) {

@@ -9,6 +9,7 @@
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "common/wire/can_frame.hpp"
+#include "common/wire/codec.hpp"
 #include "common/wire/messages.hpp"
 #include "host/core/ingest/answer_check.hpp"
 #include "host/core/ingest/clock_question.hpp"
@@ -145,6 +146,7 @@ class CanIntake {
     [[nodiscard]] Result<JointMeasurement, JointReason> place(const JointReading& reading,
                                                               HostTime now) const;
     void add_exchange(wire::NodeId node);
+    void note_damage(const wire::CanFrame& frame, wire::DecodeError error);
     void end_joint_samples(FrameOutcome& outcome);
     void note_time();
     /// "Now", once the stamps have not jumped for a second: before, what was held back may still come.

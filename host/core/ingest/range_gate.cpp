@@ -273,6 +273,14 @@ void RangeGate::on_reflex(wire::NodeId node, const wire::Reflex& reflex) {
     record.reflex = reflex;
 }
 
+void RangeGate::on_damage(wire::NodeId node, HostTime now) {
+    for (auto& [key, sensor] : sensors_) {
+        if (key.first == node) {
+            sensor.senders.on_damage(now);
+        }
+    }
+}
+
 void RangeGate::forget(wire::NodeId node) {
     forget_order(node);
     for (auto& [key, sensor] : sensors_) {

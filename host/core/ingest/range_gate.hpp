@@ -96,6 +96,9 @@ class RangeGate {
     /// A node's sensors range at another period than configured, or as configured again.
     void on_rate(wire::NodeId node, bool is_overridden) { is_rate_overridden_[node] = is_overridden; }
 
+    /// A frame under this node's id did not fit its checksum.
+    void on_damage(wire::NodeId node, HostTime now);
+
     [[nodiscard]] const SensorRecord& record(wire::NodeId node, std::uint8_t sensor) const {
         return sensors_.at({node, sensor}).record;
     }

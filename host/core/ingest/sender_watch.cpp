@@ -36,7 +36,8 @@ void SenderWatch::on_taken(std::optional<unsigned> left_out, HostTime now) {
 
 void SenderWatch::on_stray(HostTime now) {
     ++strays_;
-    if (is_within(strayed_, now, kStrayHold)) strayed_twice_ = now;
+    const bool may_be_damage = is_within(damaged_, now, kDamageHold);
+    if (!may_be_damage || is_within(strayed_, now, kStrayHold)) strayed_surely_ = now;
     strayed_ = now;
     if (strays_kept_.keeps_with_event(now)) return;
     is_disputed_ = true;
@@ -48,7 +49,7 @@ bool SenderWatch::is_disputed(HostTime now) const noexcept {
 }
 
 bool SenderWatch::is_named(HostTime now) const noexcept {
-    return is_disputed(now) || is_within(strayed_twice_, now, kStrayHold);
+    return is_disputed(now) || is_within(strayed_surely_, now, kStrayHold);
 }
 
 }  // namespace octoskin

@@ -16,17 +16,22 @@ namespace octoskin {
 ///   Which of the two is true cannot be told. One alone may be a damaged frame: CRC-8 lets one in 256 pass.
 ///   Of two within a second the sensor is *disputed* until a second after the last.
 /// - A *stray*: a reading that was refused for its time or number between two that lack none between them.
-///   It did no harm, so two within 2.5 s are only named; more than a quarter of the sensor's own in a second
-///   make it disputed, as it may be the wrong ones that are used.
+///   It did no harm, so it is only named; more than a quarter of the sensor's own in a second make the sensor
+///   disputed, as it may be the wrong ones that are used. A damaged frame may be a stray, too, but for each
+///   that CRC-8 lets through 255 are refused: one alone is not named where any was within the last minute,
+///   two within 2.5 s always are.
 class SenderWatch {
   public:
     static constexpr Nanoseconds kDisputeHold{1'000'000'000};
     static constexpr Nanoseconds kStrayHold{2'500'000'000};
+    static constexpr Nanoseconds kDamageHold{60'000'000'000};
 
     /// `period`: of the sensor's ranges, as configured.
     explicit SenderWatch(Nanoseconds period);
 
     void on_contradiction(HostTime now);
+    /// A frame of its node did not fit its checksum.
+    void on_damage(HostTime now) noexcept { damaged_ = now; }
     /// A reading was refused for its time or number.
     void on_refused() noexcept { ++refused_; }
     /// One was taken, later than those before. `left_out`: numbers between them; empty: cannot be told.
@@ -51,8 +56,9 @@ class SenderWatch {
     unsigned refused_ = 0;  ///< since the newest that was taken
     std::optional<HostTime> contradicted_;
     bool is_disputed_ = false;  ///< at the newest of them
+    std::optional<HostTime> damaged_;
     std::optional<HostTime> strayed_;
-    std::optional<HostTime> strayed_twice_;
+    std::optional<HostTime> strayed_surely_;  ///< and no damage explains it
 };
 
 }  // namespace octoskin

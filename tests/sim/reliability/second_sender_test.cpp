@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/wire/codec.hpp"
@@ -243,7 +244,7 @@ TEST(ImpossibleTimes, of_one_sensor_cost_nobody_anything) {
             EXPECT_GE(worst, 0.99) << per_s;
             EXPECT_GE(own, 0.95) << per_s;
             EXPECT_EQ(bus.named_s(kAttacked).has_value(), per_s > 0);
-            EXPECT_LE(bus.named_s(kAttacked).value_or(0.0), kAttack_s + 1.1);
+            EXPECT_LE(bus.named_s(kAttacked).value_or(0.0), kAttack_s + 0.1) << "at the first of them";
             EXPECT_EQ(bus.named().size(), per_s > 0 ? 1U : 0U);
             EXPECT_EQ(bus.pipeline().intake().clock(kFirst).relocks(), 0U);
         }
@@ -311,7 +312,8 @@ TEST(ForgedAnswersToSync, place_no_reading_wrong_cost_nobody_anything_and_are_na
 class HonestBus : public testing::TestWithParam<std::uint32_t> {};
 
 /// 5 % lost, 5 % repeated, 5 % up to 20 ms late, and every three seconds one damaged frame that passes CRC-8.
-Reader rough(std::uint32_t seed) {
+/// Of the 255 that do not pass for each of these, one.
+Reader rough(std::uint32_t seed, bool is_damaged) {
     auto random = std::make_shared<std::mt19937>(seed);
     auto damaged_us = std::make_shared<std::int64_t>(0);
     return [=](wire::NodeId node, const wire::RangeReading& reading, std::int64_t arrives_us,
@@ -323,13 +325,19 @@ Reader rough(std::uint32_t seed) {
         way.push_back({arrives_us + late_us, range_frame(node, reading)});
         if (chance(0.05))
             way.push_back({arrives_us + static_cast<std::int64_t>((*random)() % 5'000), way.back().frame});
-        if (arrives_us - *damaged_us < 3'000'000) return;
+        if (!is_damaged || arrives_us - *damaged_us < 3'000'000) return;
         *damaged_us = arrives_us;
         wire::CanFrame damaged = range_frame(node, reading);
         for (std::uint32_t i = 0; i < 3; ++i) {
             const auto bit = static_cast<std::uint32_t>(3 + (*random)() % 52);
             damaged.data.at(bit / 8) ^= static_cast<std::uint8_t>(1U << (bit % 8));
         }
+        wire::CanFrame refused = damaged;
+        for (unsigned crc = 0; crc < 256; ++crc) {
+            refused.data[7] = static_cast<std::uint8_t>(crc);
+            if (!wire::decode(refused)) break;
+        }
+        way.push_back({arrives_us + 50, refused});
         for (unsigned crc = 0; crc < 256; ++crc) {  // the one of 256 that passes
             damaged.data[7] = static_cast<std::uint8_t>(crc);
             if (wire::decode(damaged)) break;
@@ -339,8 +347,9 @@ Reader rough(std::uint32_t seed) {
 }
 
 TEST_P(HonestBus, has_nobody_named_and_loses_only_what_the_bus_does) {
-    for (const bool is_reset : {false, true}) {
-        BusSetup setup{.nodes = 2, .run_s = 12.0, .on_reading = rough(GetParam()), .loss = 0.05};
+    for (const auto& [is_reset, is_damaged] :
+         {std::pair{false, true}, std::pair{true, true}, std::pair{false, false}, std::pair{true, false}}) {
+        BusSetup setup{.nodes = 2, .run_s = 12.0, .on_reading = rough(GetParam(), is_damaged), .loss = 0.05};
         setup.seed = GetParam();
         setup.holds_phases = GetParam() % 2 == 0;
         if (GetParam() % 3 == 0) setup.budget_ms = 20, setup.period_ms = 33;

@@ -59,8 +59,27 @@ TEST(SenderWatch, takes_for_strays_only_what_the_numbers_left_out_cannot_explain
     EXPECT_EQ(watch.strays(), 1U);
 }
 
+TEST(SenderWatch, names_one_stray_where_no_frame_of_its_node_was_damaged_for_a_minute) {
+    SenderWatch watch(kPeriod);
+    const auto stray = [&](std::int64_t at_ms) {
+        watch.on_refused();
+        watch.on_taken(0U, ms(at_ms));
+    };
+    stray(0);
+    EXPECT_TRUE(watch.is_named(ms(0)));
+    EXPECT_FALSE(watch.is_disputed(ms(0)));
+    EXPECT_TRUE(watch.is_named(ms(2'499)));
+    EXPECT_FALSE(watch.is_named(ms(2'500)));
+    watch.on_damage(ms(10'000));
+    stray(69'999);
+    EXPECT_FALSE(watch.is_named(ms(69'999))) << "it may be one that the checksum let through";
+    stray(80'000);
+    EXPECT_TRUE(watch.is_named(ms(80'000)));
+}
+
 TEST(SenderWatch, names_two_strays_in_two_and_a_half_seconds_and_disputes_more_than_a_quarter) {
     SenderWatch watch(kPeriod);  // 30 a second: 7 strays are kept
+    watch.on_damage(ms(0));
     const auto stray = [&](std::int64_t at_ms) {
         watch.on_refused();
         watch.on_taken(0U, ms(at_ms));
