@@ -12,12 +12,14 @@
 #include <cerrno>
 #include <cstring>
 #include <iterator>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
+#include "host/io/socketcan/passed_descriptors.hpp"
 
 namespace octoskin {
 namespace {
@@ -33,8 +35,7 @@ void forget_the_rest(int descriptor) {
     std::array<char, 4096> bytes{};
     ssize_t count = 1;
     constexpr int kReadsMax = 16;  // who sends without end has a broken connection
-    for (int i = 0; i < kReadsMax && count > 0; ++i)
-        count = ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    for (int i = 0; i < kReadsMax && count > 0; ++i) count = socketcan::receive_text(descriptor, bytes);
 }
 
 bool has_sent_something(int descriptor) {
@@ -100,7 +101,7 @@ ControlSocket::~ControlSocket() {
 void ControlSocket::close_clients() {
     acceptable_ = EventSource();
     idle_check_ = EventSource();
-    for (const Client& client : clients_) ::close(client.descriptor);
+    for (const Client& client : clients_) socketcan::close_connection(client.descriptor);
     clients_.clear();
 }
 
@@ -196,7 +197,7 @@ bool ControlSocket::serve(Client& client) {
     const bool is_whole = end != std::string_view::npos;
     if (!client.is_refused) client.request += here.substr(0, end);
     const std::size_t taken = is_whole ? end + 1 : here.size();
-    (void)::recv(client.descriptor, bytes.data(), taken, MSG_DONTWAIT);
+    (void)socketcan::receive_text(client.descriptor, std::span(bytes).first(taken));
     if (client.request.size() > kRequestMax) {
         refuse(client,
                fmt::format("a request has at most {} bytes, this one has more: ask about parts of it",
@@ -265,7 +266,7 @@ void ControlSocket::drop(int descriptor) {
     if (client == clients_.end()) return;
     if (client->ticket != 0) gone_(client->ticket);
     clients_.erase(client);  // with its own source, which may be at work just now
-    ::close(descriptor);
+    socketcan::close_connection(descriptor);
 }
 
 void ControlSocket::drop_gone() {

@@ -2,15 +2,14 @@
 
 #include <sys/socket.h>
 #include <sys/un.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstring>
 #include <ctime>
 
 #include "common/wall_time.hpp"
+#include "host/io/socketcan/passed_descriptors.hpp"
 
 namespace octoskin::socketcan {
 namespace {
@@ -20,16 +19,6 @@ Value value_of(const cmsghdr* part) {
     Value value{};
     std::memcpy(&value, CMSG_DATA(part), sizeof(value));
     return value;
-}
-
-/// Nobody asked for them: kept, they would be all that the process may have, some day.
-void close_descriptors(const cmsghdr* part) {
-    const std::size_t count = (part->cmsg_len - CMSG_LEN(0)) / sizeof(int);
-    for (std::size_t i = 0; i < count; ++i) {
-        int descriptor = -1;
-        std::memcpy(&descriptor, CMSG_DATA(part) + i * sizeof(int), sizeof(descriptor));
-        ::close(descriptor);
-    }
 }
 
 StampedDatagram::Sender sender_of(const cmsghdr* part) {
@@ -67,7 +56,7 @@ bool want_senders(int descriptor) {
 }
 
 StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes, std::string* address) {
-    alignas(cmsghdr) std::array<char, 128> control{};
+    alignas(cmsghdr) ControlRoom control{};
     iovec part{bytes.data(), bytes.size()};
     msghdr message{};
     message.msg_iov = &part;
@@ -83,12 +72,12 @@ StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes, std:
     datagram.count = ::recvmsg(descriptor, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
     if (datagram.count < 0) return datagram;
     datagram.flags = message.msg_flags;
+    close_passed(message);
     if (address != nullptr) *address = name_of(from, message.msg_namelen);
     for (cmsghdr* beside = CMSG_FIRSTHDR(&message); beside != nullptr;
          beside = CMSG_NXTHDR(&message, beside)) {
         if (beside->cmsg_level != SOL_SOCKET) continue;
         if (beside->cmsg_type == SO_TIMESTAMPNS) datagram.stamp = stamp_of(beside);
-        if (beside->cmsg_type == SCM_RIGHTS) close_descriptors(beside);
         if (beside->cmsg_type == SCM_CREDENTIALS) datagram.sender = sender_of(beside);
         if (beside->cmsg_type == SO_RXQ_OVFL) datagram.dropped = value_of<std::uint32_t>(beside);
     }

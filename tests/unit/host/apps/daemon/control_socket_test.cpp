@@ -12,6 +12,9 @@
 #include <atomic>
 #include <csignal>
 #include <ctime>
+#include <filesystem>
+#include <iterator>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -20,6 +23,7 @@
 #include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "tests/support/scratch_folder.hpp"
+#include "tests/unit/host/apps/daemon/lingering_connection.hpp"
 
 namespace octoskin {
 namespace {
@@ -61,6 +65,36 @@ class ControlSocketTest : public testing::Test {
     int asked_ = 0;
     std::unique_ptr<ControlSocket> socket_;
 };
+
+// Closed as they are, they would hold up the daemon for as long as they linger.
+TEST_F(ControlSocketTest, waits_for_no_connection_that_somebody_sends_along_and_keeps_none) {
+    const auto descriptors = [] {
+        const std::filesystem::directory_iterator open_now("/proc/self/fd");
+        return std::distance(begin(open_now), end(open_now));
+    };
+    const auto before = descriptors();
+    {
+        test::LingeringConnection beside_a_request;
+        test::LingeringConnection behind_too_long_a_one;  // which is not read to its end
+        const std::array<int, 2> clients{connect(), connect()};
+        beside_a_request.send_along(clients[0], "hello\n");
+        const std::string too_long(ControlSocket::kRequestMax + 1, 'x');
+        EXPECT_EQ(::send(clients[1], too_long.data(), too_long.size(), 0),
+                  static_cast<ssize_t>(too_long.size()));
+        behind_too_long_a_one.send_along(clients[1], "\n");
+        const auto begun = std::chrono::steady_clock::now();
+        serve([&] {
+            for (const int client : clients) {
+                std::array<char, 256> answer{};
+                EXPECT_GT(::recv(client, answer.data(), answer.size(), 0), 0);
+                ::close(client);
+            }
+            std::this_thread::sleep_for(50ms);  // for the daemon to see it
+        });
+        EXPECT_LT(std::chrono::steady_clock::now() - begun, 5s);
+    }
+    EXPECT_EQ(descriptors(), before);
+}
 
 TEST_F(ControlSocketTest, answers_each_line_with_one) {
     serve([&] {

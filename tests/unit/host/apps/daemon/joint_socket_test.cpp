@@ -28,6 +28,7 @@
 #include "host/apps/daemon/event_loop.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "tests/support/scratch_folder.hpp"
+#include "tests/unit/host/apps/daemon/lingering_connection.hpp"
 
 namespace octoskin {
 namespace {
@@ -154,6 +155,23 @@ TEST_F(JointSocketTest, keeps_no_descriptor_that_somebody_sends_along) {
     }
     ::close(sender);
     EXPECT_EQ(descriptors(), before);
+}
+
+// Closed as it is, it would hold up the daemon for as long as it lingers.
+TEST_F(JointSocketTest, waits_for_no_connection_that_somebody_sends_along) {
+    test::LingeringConnection connection;
+    const int sender = connect_unix_socket(file_, SOCK_DGRAM).value();
+    // What is read at once, by the thread, may be closed there before the sender's own end is.
+    const auto begun = std::chrono::steady_clock::now();
+    connection.send_along(sender, "0.1 0.2 0.3");
+    std::optional<JointSample> sample;
+    for (int i = 0; i < 100 && !sample; ++i) {
+        (void)socket_.receive(sample);
+        if (!sample) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_TRUE(sample);
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(5));
+    ::close(sender);
 }
 
 TEST_F(JointSocketTest, takes_as_many_joints_as_the_rig_that_is_loaded_anew) {
