@@ -201,6 +201,11 @@ void Inputs::take_frame(const socketcan::Received& received) {
         ++joint_node_ignored_;
         return;
     }
+    if (is_foreign_follow_up(received)) {
+        ++foreign_follow_ups_;
+        foreign_sync_ = monotonic_now();
+        return;
+    }
     feed(received.entry.frame, received.entry.stamp);
     newest_stamp_ = received.entry.stamp;
     if (is_of_node(received.entry.frame)) bus_time_.on_frame(monotonic_now(), pipeline_.now());
@@ -208,6 +213,14 @@ void Inputs::take_frame(const socketcan::Received& received) {
         answer_sync(received, *at);
         hear_host(received, *at);
     }
+}
+
+/// This host knows when its own SYNC was on the bus: another's word for it can only be wrong.
+bool Inputs::is_foreign_follow_up(const socketcan::Received& received) const {
+    const bool is_follow_up =
+        received.entry.frame.can_id == wire::can_id(wire::FrameType::follow_up, wire::kHostId);
+    return is_follow_up && !received.is_own && !request_.is_listen_only &&
+           wire::decode(received.entry.frame).has_value();
 }
 
 bool Inputs::is_of_node(const wire::CanFrame& frame) const {

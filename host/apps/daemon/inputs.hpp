@@ -72,7 +72,9 @@ class Inputs {
     [[nodiscard]] const LatencyHistogram& latency() const noexcept { return latency_; }
     /// Of the same: since they were captured.
     [[nodiscard]] const LatencyHistogram& age() const noexcept { return age_; }
-    /// Another host's newest SYNC, on this machine's clock.
+    /// FOLLOW_UP of other hosts, left out while this one sends its own.
+    [[nodiscard]] std::uint64_t foreign_follow_ups() const noexcept { return foreign_follow_ups_; }
+    /// Another host's newest SYNC or FOLLOW_UP, on this machine's clock.
     [[nodiscard]] std::optional<HostTime> foreign_sync() const noexcept { return foreign_sync_; }
     /// What time it is on the bus, on the clock that SYNC tells; empty while nobody knows.
     [[nodiscard]] std::optional<HostTime> bus_now(HostTime now) const { return bus_time_.at(now); }
@@ -92,6 +94,7 @@ class Inputs {
     bool drain_can(int& datagrams_left);
     [[nodiscard]] bool is_of_node(const wire::CanFrame& frame) const;
     void take_frame(const socketcan::Received& received);
+    [[nodiscard]] bool is_foreign_follow_up(const socketcan::Received& received) const;
     void exchange_alone();
     void answer_sync(const socketcan::Received& received, HostTime at);
     void hear_host(const socketcan::Received& received, HostTime at);
@@ -134,6 +137,7 @@ class Inputs {
     std::uint64_t joints_thinned_ = 0;
     std::uint64_t joints_of_several_ = 0;
     std::uint64_t joint_node_ignored_ = 0;
+    std::uint64_t foreign_follow_ups_ = 0;
     HostTime told_;  ///< when the newest frame that tells the pipeline the time was here
     std::optional<HostTime> foreign_sync_;
     ForeignClock foreign_clock_;

@@ -42,6 +42,7 @@ Json can_json(const DaemonView& view) {
             {"received", counts.received},
             {"sent", counts.sent},
             {"not_sent", counts.not_sent},
+            {"foreign_follow_ups", view.inputs->foreign_follow_ups()},
             {"busy_s", seconds_of(view.inputs->bus_busy())},
             {"error_frames", counts.error_frames},
             {"dropped_by_kernel", counts.dropped},
@@ -159,6 +160,8 @@ Json node_json(const DaemonView& view, const HostNode& node) {
     json["refused_share"] = loss ? Json(loss->share) : Json(nullptr);
     json["refused_most"] =
         loss ? Json(names_of(ReadingReason{})[static_cast<std::size_t>(loss->most)]) : Json(nullptr);
+    json["clock_contradictions"] = intake.answers(node.node_id).contradictions();
+    json["restarts"] = record.restarts;
     json["registers"] = registers_json(view, node, record);
     Json sensors = Json::array();
     for (std::size_t i = 0; i < node.sensors.size(); ++i) sensors.push_back(sensor_json(view, node, i));

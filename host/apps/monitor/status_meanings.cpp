@@ -49,6 +49,8 @@ constexpr std::array kStatusMeanings = {
     Meaning{"can", "not_sent",
             "frames that the interface did not take, as it was not up or its queue was full: they are not "
             "sent later, and nodes lose their time if it goes on"},
+    Meaning{"can", "foreign_follow_ups",
+            "FOLLOW_UP of other hosts, which would set the time: left out; none with --listen-only"},
     Meaning{"can", "busy_s",
             "for how many seconds this rig's frames have kept the bus busy, at worst; what grows in a second "
             "is the bus's load. Frames of others the kernel keeps back"},
@@ -106,6 +108,13 @@ constexpr std::array kStatusMeanings = {
             "of its readings within the last second, those that were refused for their time, their number or "
             "their sender; null: no more than 0.05"},
     Meaning{"nodes", "refused_most", "why most of these were, a name of account.md; null: no more than that"},
+    Meaning{
+        "nodes", "clock_contradictions",
+        "answers to SYNC under its id that contradicted one to the same SYNC (sync_contradicted): another "
+        "sender"},
+    Meaning{
+        "nodes", "restarts",
+        "how often it started anew by its own heartbeat; many: its supply, its watchdog or another sender"},
     Meaning{"nodes", "registers",
             "a list, one object for each register that reads otherwise than it is written, below; empty if "
             "none does"},

@@ -143,6 +143,10 @@ NodeRegistry::Life NodeRegistry::on_heartbeat(wire::NodeId node, const wire::Hea
     if (record.is_other_version && !record.other_version) {
         record.other_version = now;
     }
+    if (is_back_at_start) {
+        ++record.restarts;
+        record.restarted = now;
+    }
     if (is_other_board || is_back_at_start) {
         record.pages = {};
         record.registers = {};

@@ -68,7 +68,9 @@ struct NodeRecord {
     std::optional<HostTime> babbled;        ///< the newest frame that was one too many
     std::optional<HostTime> other_version;  ///< the newest heartbeat of another version
     bool is_other_version = false;
-    std::uint8_t version_told = 0;  ///< in that heartbeat
+    std::uint8_t version_told = 0;      ///< in that heartbeat
+    std::uint64_t restarts = 0;         ///< heartbeats that said `starting` after one that did not
+    std::optional<HostTime> restarted;  ///< at the newest of them
 
     /// The first of the node's claims that differs from the rig. Asked for every reading: allocates nothing.
     [[nodiscard]] std::optional<NodeMismatch> mismatch() const noexcept;

@@ -61,7 +61,8 @@ void add_other_hosts(const DaemonView& view, Problems& problems) {
     if (!view.is_listen_only && foreign && view.now - *foreign < kForeignHold) {
         problems.push_back(
             {"another host",
-             "another host sends SYNC on this bus: only one may (start this one with --listen-only)"});
+             "another host sends SYNC or FOLLOW_UP on this bus: only one may (start this one with "
+             "--listen-only)"});
     }
     constexpr Nanoseconds kLeapTold{60'000'000'000};
     if (view.used.time_back && view.now - *view.used.time_back < kLeapTold) {

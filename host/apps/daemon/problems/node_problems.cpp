@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <string>
 
 #include "common/wire/names.hpp"
@@ -37,6 +38,41 @@ void add_senders(const DaemonView& view, const HostNode& node, std::size_t index
 std::string with_remedy(ReadingReason reason) {
     const char* const name = names_of(ReadingReason{})[static_cast<std::size_t>(reason)];
     return fmt::format("{}.{}", name, remedy_sentence("readings", name));
+}
+
+/// Who answers SYNC in its name: its clock is what that says.
+void add_answers(const DaemonView& view, const HostNode& node, Problems& problems) {
+    const AnswerCheck& answers = view.pipeline->intake().answers(node.node_id);
+    if (!view.bus_now || !answers.hears_two(*view.bus_now)) return;
+    const std::string on = node_subject(node.node_id);
+    problems.push_back(
+        {on + " answers",
+         fmt::format(
+             "{} '{}': two answers to one SYNC come under its id (sync_contradicted, {}), and only one "
+             "that goes on where its clock was is used. Which board has the node id twice, or which "
+             "program forges it?",
+             on, node.name, answers.contradictions()),
+         {},
+         on});
+}
+
+/// Nothing of it is used until its clock is known anew: where it starts again and again, never.
+void add_restarts(const DaemonView& view, const HostNode& node, Problems& problems) {
+    constexpr Nanoseconds kTold{3'000'000'000};
+    const NodeRecord& record = view.pipeline->intake().nodes().records().at(node.node_id);
+    const bool is_new =
+        view.bus_now && record.restarted && std::chrono::abs(*view.bus_now - *record.restarted) < kTold;
+    if (!is_new) return;
+    const std::string on = node_subject(node.node_id);
+    problems.push_back(
+        {on + " restarts",
+         fmt::format(
+             "{} '{}' started anew (restarts, {}): nothing of it is used until its clock is known. If it "
+             "does so again and again, look at its supply and at what it was reset by, or for another "
+             "sender under its id",
+             on, node.name, record.restarts),
+         {},
+         on});
 }
 
 /// What it loses is not its sensors' fault.
@@ -93,6 +129,8 @@ void add_nodes(const DaemonView& view, Problems& problems) {
     const NodeRegistry& nodes = view.pipeline->intake().nodes();
     for (const HostNode& node : view.rig->nodes) {
         const NodeVerdict verdict = nodes.verdict(node.node_id, view.bus_now);
+        add_restarts(view, node, problems);
+        add_answers(view, node, problems);
         if (verdict != NodeVerdict::usable) {
             const std::string text = nodes.describe(node.node_id, view.bus_now);
             problems.push_back({text, text, node_subject(node.node_id)});
@@ -106,11 +144,13 @@ void add_nodes(const DaemonView& view, Problems& problems) {
     }
 }
 
-/// Why the joint states of the bus are refused, where their node is none of those that have sensors.
+/// What is wrong with who sends the joint states of the bus, where that is none of those that have sensors.
 void add_joint_node(const DaemonView& view, Problems& problems) {
     const wire::NodeId source = view.rig->joints.node_id;
     const NodeRegistry& nodes = view.pipeline->intake().nodes();
     if (!nodes.knows(source) || nodes.records().at(source).has_block) return;
+    add_restarts(view, nodes.records().at(source).expected, problems);
+    add_answers(view, nodes.records().at(source).expected, problems);
     if (!is_refused_for_joints(nodes.verdict(source, view.bus_now))) return;
     const std::string text = nodes.describe(source, view.bus_now);
     problems.push_back({text, text, node_subject(source)});

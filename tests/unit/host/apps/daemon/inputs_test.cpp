@@ -49,6 +49,27 @@ TEST_F(InputsTest, joint_states_from_before_a_reload_that_come_to_light_after_it
     EXPECT_EQ(inputs->joints_displaced(), 5U);
 }
 
+// A host that sends SYNC itself knows when that was on the bus.
+TEST_F(InputsTest, another_host_s_follow_up_is_left_out_unless_this_one_only_listens) {
+    const auto say_follow_up = [this](std::uint8_t flipped) {
+        wire::CanFrame frame = wire::encode(wire::FollowUp{1, 5'000'000}, wire::kHostId);
+        frame.data[3] ^= flipped;
+        say(frame);
+    };
+    say_follow_up(0);
+    EXPECT_EQ(inputs_->foreign_follow_ups(), 0U);
+    EXPECT_EQ(frames_in(), 1U);
+    request_.is_listen_only = false;
+    EXPECT_FALSE(inputs_->foreign_sync());
+    say_follow_up(0);
+    EXPECT_EQ(inputs_->foreign_follow_ups(), 1U);
+    EXPECT_TRUE(inputs_->foreign_sync());
+    EXPECT_EQ(frames_in(), 1U);
+    say_follow_up(1);
+    EXPECT_EQ(inputs_->foreign_follow_ups(), 1U);
+    EXPECT_EQ(frames_in(), 2U) << "wrong_crc";
+}
+
 // The camera's images are on that host's clock, too: by this machine's they would never grow old.
 TEST_F(InputsTest, the_time_is_that_of_another_host_where_no_node_speaks) {
     constexpr std::int64_t kAheadNs = 900'000'000'000'000;

@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "common/range_status.hpp"
 #include "common/wire/codec.hpp"
+#include "common/wire/crc.hpp"
 #include "common/wire/names.hpp"
 #include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/status.hpp"
 #include "tests/unit/host/apps/daemon/daemon_view_fixture.hpp"
 
 namespace octoskin::test {
@@ -81,8 +84,9 @@ TEST_F(ProblemsTest, have_the_adapters_word_until_traffic_proves_it_wrong) {
 
 TEST_F(ProblemsTest, have_another_host_for_three_seconds_after_its_sync_unless_this_one_only_listens) {
     view_.now = say_sync(1) + 3 * kSecond - kNs;
-    EXPECT_EQ(told("another host"),
-              "another host sends SYNC on this bus: only one may (start this one with --listen-only)");
+    EXPECT_EQ(
+        told("another host"),
+        "another host sends SYNC or FOLLOW_UP on this bus: only one may (start this one with --listen-only)");
     view_.is_listen_only = true;
     EXPECT_EQ(told("another host"), "");
     view_.is_listen_only = false;
@@ -249,6 +253,53 @@ TEST_F(ProblemsTest, have_two_senders_under_one_sensor_s_name_until_a_second_aft
               "of them. Which board has the node id twice, or who forges it?");
     EXPECT_NE(with_forged(2, 5.04), "");
     EXPECT_EQ(with_forged(2, 5.06), "");
+}
+
+TEST_F(ProblemsTest, have_two_answers_to_one_sync_for_two_and_a_half_seconds_of_any_node_that_keeps_time) {
+    const auto with_answer = [&](wire::NodeId node, double until_s) {
+        play_changed(
+            [&](Scene& scene) {
+                const std::uint8_t newest = 4;  // of the exchange at 4.1 s
+                scene.bus.send(4.1015, wire::SyncReport{newest, scene.bus.node_time(node, 4.16)}, node);
+            },
+            until_s);
+        return told("node " + std::to_string(int{node}) + " answers");
+    };
+    EXPECT_EQ(with_answer(kLeft, 4.1016), "") << "one alone";
+    EXPECT_EQ(
+        with_answer(kLeft, 4.2),
+        "node 1 'node 1': two answers to one SYNC come under its id (sync_contradicted, 1), and only one "
+        "that goes on where its clock was is used. Which board has the node id twice, or which program "
+        "forges it?");
+    EXPECT_EQ(status_json(view_)["nodes"][0]["clock_contradictions"], 1);
+    EXPECT_NE(with_answer(kJoints, 4.2), "");
+    EXPECT_NE(with_answer(kLeft, 4.5), "");
+    set_now(6.61);
+    EXPECT_EQ(told("node 1 answers"), "");
+}
+
+TEST_F(ProblemsTest, have_a_node_that_started_anew_for_three_seconds) {
+    const auto with_start = [&](wire::NodeId node, double until_s) {
+        play_changed(
+            [&](Scene& scene) {
+                wire::Heartbeat starting{};
+                starting.state = wire::NodeState::starting;
+                starting.uid_crc = crc16(ScriptedBus::uid_of(node));
+                starting.node_hash_low = static_cast<std::uint16_t>(scene.rig.nodes[0].node_hash);
+                scene.bus.send(4.25, starting, node);
+            },
+            until_s);
+        return told("node " + std::to_string(int{node}) + " restarts");
+    };
+    EXPECT_EQ(with_start(kLeft, 4.24), "");
+    EXPECT_EQ(
+        with_start(kLeft, 4.26),
+        "node 1 'node 1' started anew (restarts, 1): nothing of it is used until its clock is known. If "
+        "it does so again and again, look at its supply and at what it was reset by, or for another "
+        "sender under its id");
+    EXPECT_EQ(status_json(view_)["nodes"][0]["restarts"], 1);
+    set_now(7.26);
+    EXPECT_EQ(told("node 1 restarts"), "");
 }
 
 TEST_F(ProblemsTest, have_a_node_that_loses_over_a_twentieth_of_a_second_s_readings_and_why) {

@@ -67,7 +67,7 @@ TEST_F(StatusTest, has_what_came_over_the_bus_and_how_long_that_kept_it_busy) {
     view_.is_listen_only = true;
     EXPECT_EQ(status()["can"],
               Json::parse(R"({"interface": "can7", "state": "up", "why": "", "listen_only": true,
-        "received": 2, "sent": 0, "not_sent": 0, "busy_s": 0.00027, "error_frames": 0, "dropped_by_kernel": 0,
+        "received": 2, "sent": 0, "not_sent": 0, "foreign_follow_ups": 0, "busy_s": 0.00027, "error_frames": 0, "dropped_by_kernel": 0,
         "malformed": 0, "bus_off": 0, "went_down": 0, "reopened": 0})"));
     other_end_.reset();
     inputs_->catch_up();
@@ -123,7 +123,7 @@ TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
     EXPECT_EQ(node,
               Json::parse(R"({"id": 44, "name": "far", "verdict": "absent", "reason": null, "state": null,
         "age_s": null, "degraded_sensors": null, "clock_known": false, "clock_ppm": null, "clock_error_ms": null,
-        "refused_share": null, "refused_most": null, "registers": []})"));
+        "refused_share": null, "refused_most": null, "clock_contradictions": 0, "restarts": 0, "registers": []})"));
     EXPECT_EQ(
         sensor(0),
         Json::parse(R"({"index": 0, "name": "good", "state": null, "fault": null, "received": 0, "lost": 0,
