@@ -44,7 +44,8 @@ inline std::vector<VoxelKey> ray_keys(const octomap::OcTree& tree, const Eigen::
 }
 
 /// Every known voxel of a tree at its finest level, pruned nodes spread out.
-inline std::map<VoxelKey, float> voxels_of(const octomap::OcTree& tree) {
+template <class Node>
+std::map<VoxelKey, float> voxels_of(const octomap::OccupancyOcTreeBase<Node>& tree) {
     std::map<VoxelKey, float> voxels;
     for (auto leaf = tree.begin_leafs(), end = tree.end_leafs(); leaf != end; ++leaf) {
         const int edge = 1 << (tree.getTreeDepth() - leaf.getDepth());

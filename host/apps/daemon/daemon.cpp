@@ -205,12 +205,12 @@ Status<AppError> Daemon::Parts::take_folder() {
     home.emplace(std::move(taken).value());
     keeper.emplace(NamedFolder(home->folder()));
     auto saved = keeper->load(settings.mapping.map);
-    if (!saved) {
-        return fail(saved.error().code, saved.error().message + "; move it away to begin with an empty map");
-    }
+    if (!saved) return unexpected(saved.error());
     if (!saved->has_value()) return Done{};
-    spdlog::info("going on with the saved map: {} known voxels", (*saved)->known_voxels());
-    pipeline.begin_with(std::move(*saved).value());
+    LoadedMap& loaded = **saved;
+    for (const std::string& warning : loaded.warnings) spdlog::warn("{}", warning);
+    spdlog::info("going on with the saved map: {} known voxels", loaded.map.known_voxels());
+    pipeline.begin_with(std::move(loaded.map));
     return Done{};
 }
 
@@ -292,7 +292,7 @@ std::string Daemon::Parts::why_map_ends(const Settings& next) const {
     const double wanted = next.mapping.map.resolution_m;
     if (wanted == now) return why_no_room(*pipeline.maps().fused(), next.mapping.map);
     return describe_other_voxels(request.map_folder / "fused.ot", now, wanted) +
-           "; end octoskin, move it away and start octoskin to begin with an empty map";
+           "; end octoskin, move it and fused.bt away and start octoskin to begin with an empty map";
 }
 
 /// All that may speak against a reload, before anything has changed.

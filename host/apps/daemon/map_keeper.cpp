@@ -12,12 +12,41 @@
 #include "host/apps/recording/permission.hpp"
 #include "host/io/mapfile/atomic_file.hpp"
 #include "host/io/mapfile/map_file.hpp"
+#include "host/io/mapfile/octomap_writer.hpp"
 
 namespace octoskin {
 namespace {
 
 constexpr const char* kMapFile = "fused.ot";
 constexpr const char* kSmallMapFile = "fused.bt";
+
+Result<LoadedMap, AppError> load_to_go_on(const MapConfig& config, const FilePlace& file) {
+    const auto refuse = [&file](const std::string& why) {
+        return unexpected(reading_error(
+            file,
+            {ExitCode::bad_data, why + ". To begin with an empty map, move fused.ot and fused.bt away"}));
+    };
+    auto loaded = load_map_of(config, file);
+    if (!loaded) {
+        const char* const remedy =
+            loaded.error().is_of_other_voxels ? ": say map.resolution_m as it was" : "";
+        return refuse(loaded.error().message + remedy);
+    }
+    if (loaded->has_lost_colours) {
+        return refuse(file.shown().string() +
+                      ": its voxels have colours, which the next save would lose: to go on with the map "
+                      "without them, `convert_octree fused.ot fused.bt` and move fused.ot away");
+    }
+    return std::move(loaded).value();
+}
+
+/// Whether the next save of `map` may replace the .bt file beside its .ot file. An octoskin that left no
+/// comment in its files wrote it, too, if it holds the same voxels.
+bool is_of_map(const FilePlace& small_file, const FusedMap& map) {
+    if (is_saved_by_octoskin(small_file)) return true;
+    const auto small = load_map_of(map.config(), small_file);
+    return small && encode_bt(small->map) == encode_bt(map);
+}
 
 }  // namespace
 
@@ -50,16 +79,22 @@ MapKeeper::~MapKeeper() {
     is_busy ? thread_.detach() : thread_.join();
 }
 
-Result<std::optional<FusedMap>, AppError> MapKeeper::load(const MapConfig& config) const {
+Result<std::optional<LoadedMap>, AppError> MapKeeper::load(const MapConfig& config) const {
     const FilePlace file(work_->folder, kMapFile);
+    const FilePlace small_file(work_->folder, kSmallMapFile);
     // What cannot be seen may be there: beginning anew would overwrite it.
-    if (!file.is_there()) return std::optional<FusedMap>{};
-    auto map = load_map_of(config, file);
-    if (!map) {
-        const char* const remedy = map.error().is_of_other_voxels ? ": say map.resolution_m as it was" : "";
-        return unexpected(reading_error(file, {ExitCode::bad_data, map.error().message + remedy}));
+    const bool has_small_file = small_file.is_there();
+    if (!file.is_there() && !has_small_file) return std::optional<LoadedMap>{};
+    auto loaded = load_to_go_on(config, file.is_there() ? file : small_file);
+    if (!loaded) return unexpected(loaded.error());
+    if (file.is_there() && has_small_file && !is_of_map(small_file, loaded->map)) {
+        return fail(ExitCode::bad_data,
+                    small_file.shown().string() +
+                        ": is another map than fused.ot beside it, octoskin did not save it, and the next "
+                        "save would replace it. Move it away to go on with fused.ot, or move fused.ot away "
+                        "to go on with it");
     }
-    return std::optional(std::move(map).value());
+    return std::optional(std::move(loaded).value());
 }
 
 void MapKeeper::move_to(NamedFolder folder) {

@@ -16,6 +16,7 @@
 #include "host/apps/recording/app_error.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/io/folder/file_place.hpp"
+#include "host/io/mapfile/octomap_reader.hpp"
 
 namespace octoskin {
 
@@ -46,10 +47,11 @@ class MapKeeper {
     MapKeeper(const MapKeeper&) = delete;
     MapKeeper& operator=(const MapKeeper&) = delete;
 
-    /// The map that was saved last, checked as every foreign map; empty if there is none. An error names the
-    /// file, what is wrong with it and what to do. Any map that a keeper with this memory_max_mib saved has
-    /// room.
-    [[nodiscard]] Result<std::optional<FusedMap>, AppError> load(const MapConfig& config) const;
+    /// The map to go on with, checked as every foreign map: fused.ot, or fused.bt if that is all there is;
+    /// empty if neither is there. An error names the file, what is wrong with it and what to do. Any map that
+    /// a keeper with this memory_max_mib saved has room. Refused is, too, what the next save would destroy:
+    /// colours of voxels, and a fused.bt that neither octoskin saved nor fused.ot holds.
+    [[nodiscard]] Result<std::optional<LoadedMap>, AppError> load(const MapConfig& config) const;
 
     /// From the next save on maps go into this folder; it must be this process's own. One that is being
     /// written goes where it was to go.

@@ -198,8 +198,11 @@ Judged judge_map(const EvaluateOptions& options) {
     // and 3.511).
     limits.map.log_odds_min = -20.0F;
     limits.map.log_odds_max = 20.0F;
-    const auto map = load_map(options.input, limits);
-    if (!map) throw CommandFailure(reading_error(options.input, {ExitCode::bad_data, map.error().message}));
+    const auto loaded = load_map(options.input, limits);
+    if (!loaded)
+        throw CommandFailure(reading_error(options.input, {ExitCode::bad_data, loaded.error().message}));
+    for (const std::string& warning : loaded->warnings) spdlog::warn("{}", warning);
+    const FusedMap& map = loaded->map;
     const auto provenance = provenance_of_map(options.input, options.recording);
     if (!provenance) throw CommandFailure(provenance.error());
     if (provenance->origin && is_of_data_set(*provenance->origin) && options.scenario.empty())
@@ -207,9 +210,9 @@ Judged judge_map(const EvaluateOptions& options) {
     for (const std::string& warning : provenance->warnings) spdlog::warn("{}", warning);
     const rig::Rig rig = rig_of_map(options, *provenance);
     const Scene scene = scene_of_map(options, provenance->recording);
-    const evaluation::Truth truth = build(scene, rig, map->resolution_m());
+    const evaluation::Truth truth = build(scene, rig, map.resolution_m());
     const std::vector<evaluation::Run> runs = {
-        {"map", options.input.stem().string(), 0, evaluation::evaluate(*map, truth)}};
+        {"map", options.input.stem().string(), 0, evaluation::evaluate(map, truth)}};
     return {results_of(runs, rig, scene, options.rig)};
 }
 

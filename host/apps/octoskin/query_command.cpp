@@ -186,9 +186,10 @@ Json ask_map_file(const QueryOptions& options, const Question& question) {
     doubt_rig(options, rig);
     auto map = load_map(*options.map, limits);
     if (!map) throw CommandFailure(reading_error(*options.map, {ExitCode::bad_data, map.error().message}));
+    for (const std::string& warning : map->warnings) spdlog::warn("{}", warning);
     KeptField field;
     return answer_query(question.request,
-                        {&setup->rig, &setup->robot, std::move(map).value(), question.stands, &field});
+                        {&setup->rig, &setup->robot, std::move(map->map), question.stands, &field});
 }
 
 Json ask_running_daemon(const QueryOptions& options, const QueryRequest& request) {

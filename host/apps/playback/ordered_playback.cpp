@@ -29,7 +29,7 @@ std::uint32_t crc32_of_map(const FusedMap& map) {
     return crc;
 }
 
-Result<FusedMap, AppError> read_first_map(const PlaybackRequest& request, std::uint32_t crc) {
+Result<LoadedMap, AppError> read_first_map(const PlaybackRequest& request, std::uint32_t crc) {
     const auto file = request.recording.first_map();
     if (crc32_of(file) != crc)
         return fail(ExitCode::bad_data,
@@ -103,14 +103,17 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
                     fmt::format("{}: has {} joints, the rig {}", request.recording.order().shown().string(),
                                 order->header().joints, rig.joints.joints.size()));
     }
+    std::vector<std::string> first_warnings;
     if (order->header().first_map) {
         auto first = read_first_map(request, *order->header().first_map);
         if (!first) return unexpected(first.error());
-        pipeline.begin_with(std::move(first).value());
+        first_warnings = std::move(first->warnings);
+        pipeline.begin_with(std::move(first->map));
         if (request.listener != nullptr) request.listener->on_begin(*pipeline.maps().fused());
     }
     PacedCommits paced(*order, request.pace, begin);
     OrderedPlayback played{.outcome = replay_in_order(pipeline.builder(), paced, depth, report, begin)};
+    played.warnings = std::move(first_warnings);
     played.has_daemons_mapping =
         order->header().mapping_crc32 == crc32_of_text(mapping_text(request.mapping));
     played.accounts = {tabulate("readings", played.outcome.readings, 0, seconds_text),

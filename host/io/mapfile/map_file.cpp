@@ -4,18 +4,21 @@
 #include <sys/stat.h>
 
 #include <cerrno>
+#include <limits>
 #include <new>
 #include <system_error>
 
 #include "host/io/mapfile/atomic_file.hpp"
+#include "host/io/mapfile/octomap_header.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "host/io/mapfile/ply_writer.hpp"
 
 namespace octoskin {
 namespace {
 
-constexpr float kLogOddsMax = 100.0F;       // a mapping file may say no more
-constexpr std::uint64_t kBytesPerNode = 5;  ///< of an .ot file: log-odds, and which children there are
+constexpr float kLogOddsMax = 100.0F;          // a mapping file may say no more
+constexpr std::uint64_t kBytesPerNode = 5;     ///< of an .ot file: log-odds, and which children there are
+constexpr std::size_t kHeaderBytesMax = 4096;  ///< of a map that octoskin saved, with comments added since
 
 /// A brick of 512 known voxels takes 2112 bytes of memory, and 585 nodes of a file; one that is alone 13 more
 /// above it. Half as much again as the memory has room for both, the mebibyte for the header of a small one.
@@ -76,8 +79,8 @@ std::string describe_other_voxels(const std::filesystem::path& file, double map_
            std::to_string(mapping_m) + " m";
 }
 
-Result<FusedMap, MapFileError> load_map(const FilePlace& file, const MapReadLimits& limits,
-                                        std::uint64_t file_bytes_max) {
+Result<LoadedMap, MapFileError> load_map(const FilePlace& file, const MapReadLimits& limits,
+                                         std::uint64_t file_bytes_max) {
     const auto bytes = read_bytes(file, file_bytes_max);
     if (!bytes) return unexpected(bytes.error());
     auto map = decode_octomap(*bytes, limits);
@@ -86,30 +89,41 @@ Result<FusedMap, MapFileError> load_map(const FilePlace& file, const MapReadLimi
         return fail(file.shown(), map.error().what,
                     fault == MapFault::no_room || fault == MapFault::too_many_nodes);
     }
+    for (std::string& warning : map->warnings)
+        warning = fmt::format("{}: {}", file.shown().string(), warning);
     return std::move(map).value();
 }
 
-Result<FusedMap, MapFileError> load_map_of(const MapConfig& config, const FilePlace& file) try {
+bool is_saved_by_octoskin(const FilePlace& file) {
+    const auto opened = file.open();
+    if (!opened) return false;
+    const auto beginning = opened->read(kHeaderBytesMax);
+    if (!beginning) return false;
+    const auto header = parse_octomap_header(*beginning, std::numeric_limits<std::uint64_t>::max());
+    return header && header->is_octoskins;
+}
+
+Result<LoadedMap, MapFileError> load_map_of(const MapConfig& config, const FilePlace& file) try {
     const std::uint64_t bytes_max = file_bytes_max_of(config);
     MapConfig any_clamps = config;
     any_clamps.log_odds_min = -kLogOddsMax;
     any_clamps.log_odds_max = kLogOddsMax;
-    auto map = load_map(file, {.map = any_clamps, .nodes_max = bytes_max / kBytesPerNode}, bytes_max);
-    if (!map && map.error().is_too_large) {
+    auto loaded = load_map(file, {.map = any_clamps, .nodes_max = bytes_max / kBytesPerNode}, bytes_max);
+    if (!loaded && loaded.error().is_too_large) {
         return fail(file.shown(),
                     fmt::format("it was saved with more memory than the {} MiB of map.memory_max_mib: raise "
                                 "that in the mapping file ({})",
-                                config.memory_max_mib, map.error().message),
+                                config.memory_max_mib, loaded.error().message),
                     true);
     }
-    if (!map) return map;
-    if (map->resolution_m() != config.resolution_m) {
+    if (!loaded) return loaded;
+    if (loaded->map.resolution_m() != config.resolution_m) {
         return unexpected(MapFileError{
-            .message = describe_other_voxels(file.shown(), map->resolution_m(), config.resolution_m),
+            .message = describe_other_voxels(file.shown(), loaded->map.resolution_m(), config.resolution_m),
             .is_of_other_voxels = true});
     }
-    map->limit(config);
-    return map;
+    loaded->map.limit(config);
+    return loaded;
 } catch (const std::bad_alloc&) {
     return fail(file.shown(), "there is no memory to read it");
 }

@@ -27,14 +27,18 @@ struct MapFileError {
 /// the old one or the new one, whole. Equal maps give equal bytes.
 [[nodiscard]] Status<MapFileError> save_map(const FusedMap& map, const FilePlace& file);
 
-/// Reads a .ot or .bt (told apart by the first line, not by name), checked as octomap_reader.hpp says.
-/// Refuses what is no regular file and what is larger than `file_bytes_max`.
-[[nodiscard]] Result<FusedMap, MapFileError> load_map(const FilePlace& file, const MapReadLimits& limits = {},
-                                                      std::uint64_t file_bytes_max = 512ULL << 20U);
+/// Reads a .ot or .bt (told apart by the first line, not by name), checked as octomap_reader.hpp says; the
+/// warnings name the file. Refuses what is no regular file and what is larger than `file_bytes_max`.
+[[nodiscard]] Result<LoadedMap, MapFileError> load_map(const FilePlace& file,
+                                                       const MapReadLimits& limits = {},
+                                                       std::uint64_t file_bytes_max = 512ULL << 20U);
+
+/// Whether the file has the comment that save_map leaves in a .ot or .bt. False, too, if it cannot be read.
+[[nodiscard]] bool is_saved_by_octoskin(const FilePlace& file);
 
 /// A map to go on with, as it was saved from one of this resolution and `memory_max_mib`: any such map has
 /// room, also a full one. Whatever it was clamped to, it is clamped as `config` says from now on. Further
 /// errors: it needs more memory than that, or has voxels of another size.
-[[nodiscard]] Result<FusedMap, MapFileError> load_map_of(const MapConfig& config, const FilePlace& file);
+[[nodiscard]] Result<LoadedMap, MapFileError> load_map_of(const MapConfig& config, const FilePlace& file);
 
 }  // namespace octoskin

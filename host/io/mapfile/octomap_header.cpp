@@ -2,25 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <bit>
 #include <charconv>
-#include <optional>
-#include <string>
+#include <utility>
 
 namespace octoskin {
 namespace {
 
-constexpr std::size_t kHeaderMax = 4096;
+constexpr std::size_t kHeaderMax = std::size_t{1} << 20U;
+constexpr std::size_t kDifferencesMax = 4;  ///< that are told
 constexpr std::string_view kTextMagic = "# Octomap OcTree file";
 constexpr std::string_view kBinaryMagic = "# Octomap OcTree binary file";
+constexpr std::string_view kOctoskinsComment = "# saved by octoskin";
+constexpr std::string_view kWhiteSpace = " \t\n\v\f\r";
 
-/// The value of a whole text as a number; empty if anything is left over.
-template <class T>
-std::optional<T> parse_number(std::string_view text) {
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
+/// Of a .bt before OctoMap 1.4, little-endian: the type of tree as 32 bits, the resolution as a double, the
+/// nodes as 32 bits.
+constexpr std::string_view kBefore14Type("\x03\x00\x00\x00", 4);
+constexpr std::size_t kBefore14Bytes = 16;
 
 /// Printable, short, for a message: the file may hold anything.
 std::string excerpt(std::string_view text) {
@@ -29,91 +29,179 @@ std::string excerpt(std::string_view text) {
     return shown;
 }
 
+Unexpected<MapReadError> fail(MapFault fault, std::string what) {
+    return unexpected(MapReadError{fault, std::move(what)});
+}
+
+/// Written so that a NaN is none.
+bool is_resolution(double resolution_m) {
+    return resolution_m >= 1e-6 && resolution_m <= 1e6;
+}
+
 class HeaderParser {
   public:
     HeaderParser(std::string_view bytes, std::uint64_t nodes_max)
         : bytes_(bytes.substr(0, kHeaderMax)), nodes_max_(nodes_max) {}
 
     Result<OctomapHeader, MapReadError> parse() {
-        const auto first_line = next_line();
-        if (first_line != kTextMagic && first_line != kBinaryMagic) {
+        if (!take_first_line()) {
             return fail(MapFault::not_a_map,
                         fmt::format("the first line is not \"{}\" nor \"{}\"", kTextMagic, kBinaryMagic));
         }
-        header_.is_binary = first_line == kBinaryMagic;
-        while (const auto line = next_line()) {
-            if (line->substr(0, 1) == "#") continue;
-            if (*line == "data") return finish();
-            if (const auto error = take(*line)) return unexpected(*error);
+        for (std::string_view word = next_word(); !word.empty(); word = next_word()) {
+            if (word == "data") return finish();
+            if (auto error = take(word)) return unexpected(std::move(*error));
         }
         return fail(MapFault::header_malformed, "no line \"data\" ends the header");
     }
 
   private:
-    static Unexpected<MapReadError> fail(MapFault fault, std::string what) {
-        return unexpected(MapReadError{fault, std::move(what)});
+    bool take_first_line() {
+        const std::string_view line = rest_of_line();
+        header_.is_binary = line.starts_with(kBinaryMagic);
+        if (!header_.is_binary && !line.starts_with(kTextMagic)) return false;
+        const std::string_view behind =
+            line.substr(header_.is_binary ? kBinaryMagic.size() : kTextMagic.size());
+        if (behind == "\r") {
+            differ("its lines end with a carriage return");
+        } else if (!behind.empty()) {
+            differ(fmt::format("\"{}\" behind the first line", excerpt(behind)));
+        }
+        return true;
     }
 
-    /// The next complete line without its end; empty if there is none.
-    std::optional<std::string_view> next_line() {
-        const std::size_t end = bytes_.find('\n', position_);
-        if (end == std::string_view::npos) return std::nullopt;
-        const std::string_view line = bytes_.substr(position_, end - position_);
-        position_ = end + 1;
-        return line;
+    std::optional<MapReadError> take(std::string_view key) {
+        if (key.starts_with('#')) {
+            take_comment(key);
+            return std::nullopt;
+        }
+        const std::string_view between = bytes_.substr(position_, 1);
+        if (key == "id") return take_id(next_value(key, between, has_id_));
+        if (key == "size") return take_size(next_value(key, between, has_size_));
+        if (key == "res") return take_resolution(next_value(key, between, has_resolution_));
+        differ(fmt::format("key \"{}\" is skipped", excerpt(key)));
+        rest_of_line();
+        return std::nullopt;
     }
 
-    std::optional<MapReadError> take(std::string_view line) {
-        const std::size_t space = line.find(' ');
-        const std::string_view key = line.substr(0, space);
-        const std::string_view value = space == std::string_view::npos ? "" : line.substr(space + 1);
-        if (key == "id" && !has_id_) return take_id(value);
-        if (key == "size" && !has_size_) return take_size(value);
-        if (key == "res" && !has_resolution_) return take_resolution(value);
-        return MapReadError{MapFault::header_malformed,
-                            fmt::format("header line \"{}\" is unknown or comes twice", excerpt(line))};
+    void take_comment(std::string_view first_word) {
+        position_ -= first_word.size();
+        std::string_view line = rest_of_line();
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        header_.is_octoskins = header_.is_octoskins || line == kOctoskinsComment;
+    }
+
+    /// The word behind a key, which is expected on its line, one blank behind it, the line's end behind that.
+    std::string_view next_value(std::string_view key, std::string_view between, bool& is_known) {
+        if (std::exchange(is_known, true)) differ(fmt::format("{} comes twice, the last counts", key));
+        const std::size_t expected = position_ + 1;
+        const std::string_view value = next_word();
+        const std::size_t begin = position_ - value.size();
+        const bool is_plain =
+            between == " " && begin == expected && bytes_.substr(position_, 1).starts_with('\n');
+        const bool has_only_carriage_return = between == " " && begin == expected &&
+                                              bytes_.substr(position_, 2) == "\r\n" &&
+                                              !header_.differences.empty();
+        if (!is_plain && !has_only_carriage_return)
+            differ(fmt::format("the line of {} has more than \"{} {}\"", key, key, excerpt(value)));
+        return value;
     }
 
     std::optional<MapReadError> take_id(std::string_view value) {
-        has_id_ = true;
-        if (value == "OcTree") return std::nullopt;
-        return MapReadError{MapFault::wrong_tree_type,
-                            fmt::format("id is \"{}\", only OcTree can be read", excerpt(value))};
+        // What a .bt says of a node is the same for every tree of occupancies.
+        const bool has_same_nodes = value == "OcTree" || value == "OcTreeStamped";
+        const bool has_colours = value == "ColorOcTree";
+        header_.colour_bytes = !header_.is_binary && has_colours ? 3 : 0;
+        if (value == "1") {
+            differ("id is 1, as OctoMap wrote it once for OcTree");
+        } else if (header_.is_binary && !value.empty()) {
+            if (!has_same_nodes && !has_colours)
+                differ(fmt::format("id is \"{}\", read as OcTree", excerpt(value)));
+        } else if (!has_same_nodes && !has_colours) {
+            return MapReadError{MapFault::wrong_tree_type,
+                                fmt::format("id is \"{}\", only OcTree, ColorOcTree and OcTreeStamped can be "
+                                            "read of a .ot (OctoMap's convert_octree may make a .bt of it)",
+                                            excerpt(value))};
+        }
+        is_octree_ = value == "OcTree";
+        return std::nullopt;
     }
 
     std::optional<MapReadError> take_size(std::string_view value) {
-        has_size_ = true;
-        const auto nodes = parse_number<std::uint64_t>(value);
-        if (!nodes) {
+        header_.nodes.reset();
+        const bool is_negative = value.starts_with('-');
+        std::uint32_t nodes = 0;
+        if (!take_number(value.substr(is_negative ? 1 : 0), nodes)) {
             return MapReadError{MapFault::header_malformed,
                                 fmt::format("size is \"{}\", not a number of nodes", excerpt(value))};
         }
-        if (*nodes > nodes_max_) {
-            return MapReadError{MapFault::too_many_nodes,
-                                fmt::format("{} nodes, the limit is {}", *nodes, nodes_max_)};
+        if (is_negative) {
+            differ(fmt::format("size is \"{}\"", excerpt(value)));
+        } else {
+            header_.nodes = nodes;
         }
-        header_.nodes = *nodes;
         return std::nullopt;
     }
 
     std::optional<MapReadError> take_resolution(std::string_view value) {
-        has_resolution_ = true;
-        const auto resolution_m = parse_number<double>(value);
-        // Written so that a NaN fails it.
-        if (!resolution_m || !(*resolution_m >= 1e-6 && *resolution_m <= 1e6)) {
+        double resolution_m = 0.0;
+        if (!take_number(value, resolution_m) || !is_resolution(resolution_m)) {
             return MapReadError{MapFault::resolution_not_valid,
                                 fmt::format("res is \"{}\", not between 1e-6 and 1e6 m", excerpt(value))};
         }
-        header_.resolution_m = *resolution_m;
+        header_.resolution_m = resolution_m;
         return std::nullopt;
     }
 
+    /// The number that the word begins with; what follows it in the word is the next word.
+    template <class T>
+    bool take_number(std::string_view word, T& number) {
+        const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+        const auto left_over = static_cast<std::size_t>(digits.data() + digits.size() - end);
+        if (left_over > 0 || digits.size() != word.size())
+            differ(fmt::format("\"{}\" for a number", excerpt(word)));
+        position_ -= left_over;
+        return error == std::errc{};
+    }
+
     Result<OctomapHeader, MapReadError> finish() {
-        if (!has_id_ || !has_size_ || !has_resolution_) {
-            return fail(MapFault::header_malformed, "id, size or res is missing before \"data\"");
-        }
+        if (const std::string_view behind = rest_of_line(); !behind.empty() && behind != "\r")
+            differ(fmt::format("\"{}\" behind \"data\"", excerpt(behind)));
         header_.data_begin = position_;
-        return header_;
+        if (!has_id_ || !has_resolution_)
+            return fail(MapFault::header_malformed, "id or res is missing before \"data\"");
+        if (!has_size_) differ("size is missing");
+        if (header_.is_octoskins && !is_octree_)
+            return fail(MapFault::wrong_tree_type, "octoskin saved it, but its id is not OcTree");
+        if (header_.is_octoskins && !header_.differences.empty()) {
+            return fail(MapFault::header_malformed,
+                        "octoskin saved it, and its header was changed since: " + header_.differences[0]);
+        }
+        if (header_.is_octoskins && *header_.nodes > nodes_max_) {
+            return fail(MapFault::too_many_nodes,
+                        fmt::format("{} nodes, the limit is {}", *header_.nodes, nodes_max_));
+        }
+        return std::move(header_);
+    }
+
+    void differ(std::string what) {
+        if (header_.differences.size() < kDifferencesMax) header_.differences.push_back(std::move(what));
+    }
+
+    /// Empty at the end.
+    std::string_view next_word() {
+        const std::size_t begin = std::min(bytes_.find_first_not_of(kWhiteSpace, position_), bytes_.size());
+        position_ = std::min(bytes_.find_first_of(kWhiteSpace, begin), bytes_.size());
+        return bytes_.substr(begin, position_ - begin);
+    }
+
+    /// Without its end, which is passed.
+    std::string_view rest_of_line() {
+        const std::size_t begin = position_;
+        const std::size_t end = std::min(bytes_.find('\n', begin), bytes_.size());
+        position_ = std::min(end + 1, bytes_.size());
+        return bytes_.substr(begin, end - begin);
     }
 
     std::string_view bytes_;
@@ -123,11 +211,43 @@ class HeaderParser {
     bool has_id_ = false;
     bool has_size_ = false;
     bool has_resolution_ = false;
+    bool is_octree_ = false;
 };
+
+std::uint64_t little_endian(std::string_view bytes) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+        value |= std::uint64_t{static_cast<unsigned char>(bytes[i])} << (8 * i);
+    return value;
+}
+
+Result<OctomapHeader, MapReadError> parse_header_before_1_4(std::string_view bytes) {
+    if (bytes.size() < kBefore14Bytes)
+        return fail(MapFault::truncated, "the file ends within a header as before OctoMap 1.4");
+    OctomapHeader header;
+    header.is_binary = true;
+    header.resolution_m = std::bit_cast<double>(little_endian(bytes.substr(4, 8)));
+    header.nodes = little_endian(bytes.substr(12, 4));
+    header.data_begin = kBefore14Bytes;
+    header.differences = {"the format is that before OctoMap 1.4 (convert_octree makes a new one)"};
+    if (!is_resolution(header.resolution_m)) {
+        return fail(MapFault::resolution_not_valid,
+                    fmt::format("the resolution is {}, not between 1e-6 and 1e6 m", header.resolution_m));
+    }
+    return header;
+}
 
 }  // namespace
 
+std::string octomap_header(bool is_binary, std::uint64_t nodes, double resolution_m) {
+    return fmt::format(
+        "{}\n# (feel free to add / change comments, but leave the first line as it is!)\n{}\n#\n"
+        "id OcTree\nsize {}\nres {}\ndata\n",
+        is_binary ? kBinaryMagic : kTextMagic, kOctoskinsComment, nodes, resolution_m);
+}
+
 Result<OctomapHeader, MapReadError> parse_octomap_header(std::string_view bytes, std::uint64_t nodes_max) {
+    if (bytes.starts_with(kBefore14Type)) return parse_header_before_1_4(bytes);
     return HeaderParser(bytes, nodes_max).parse();
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -21,22 +22,27 @@ using LeafVisitor = std::function<bool(const VoxelCube&, float log_odds)>;  // f
 /// the walk and differ in what a node's bytes say.
 class TreeWalk {
   public:
-    TreeWalk(std::string_view bytes, const OctomapHeader& header, const MapConfig& config)
-        : bytes_(bytes), position_(header.data_begin), header_(header), config_(config) {}
+    TreeWalk(std::string_view bytes, const OctomapHeader& header, const MapReadLimits& limits)
+        : bytes_(bytes), position_(header.data_begin), header_(header), config_(limits.map) {
+        nodes_max_ = header.is_octoskins ? *header.nodes : limits.nodes_max;
+        config_.resolution_m = header.resolution_m;
+    }
 
     std::optional<MapReadError> walk(const LeafVisitor& visit) {
-        if (header_.nodes > 0) {
+        if (!is_empty()) {
             if (auto fault = walk_nodes(visit)) return fault;
         }
-        if (nodes_ != header_.nodes) {
-            return error(MapFault::node_count_differs,
-                         fmt::format("{} nodes, the header says {}", nodes_, header_.nodes));
-        }
-        if (position_ != bytes_.size()) {
-            return error(MapFault::trailing_bytes,
-                         fmt::format("{} bytes behind the last node", bytes_.size() - position_));
-        }
-        return std::nullopt;
+        if (nodes_ > nodes_max_ && !header_.is_octoskins)
+            return error(MapFault::too_many_nodes, fmt::format("more than {} nodes", nodes_max_));
+        return check_end();
+    }
+
+    /// How the tree's end differs from what the header says; empty if it does not.
+    [[nodiscard]] std::string why_end_differs() const {
+        if (!header_.nodes || *header_.nodes != nodes_)
+            return fmt::format("size is {}, the tree has {} nodes", said_nodes(), nodes_);
+        if (bytes_behind() > 0) return fmt::format("{} bytes behind the last node", bytes_behind());
+        return {};
     }
 
   private:
@@ -63,6 +69,27 @@ class TreeWalk {
     MapReadError error(MapFault fault, const std::string& what) const {
         return {fault, fmt::format("byte {}: {}", position_, what)};
     }
+    [[nodiscard]] std::size_t bytes_behind() const { return bytes_.size() - position_; }
+    [[nodiscard]] std::string said_nodes() const {
+        return header_.nodes ? fmt::format("{}", *header_.nodes) : "not known";
+    }
+    /// A header says that there is no node; other programs say so, too, of a tree that they did not count.
+    [[nodiscard]] bool is_empty() const {
+        return header_.nodes == 0U && (header_.is_octoskins || bytes_behind() == 0);
+    }
+
+    /// What octoskin saved ends as its header says. Of another's file one of two must speak for the tree that
+    /// was read: the number of its nodes, or that it ends with the file.
+    [[nodiscard]] std::optional<MapReadError> check_end() const {
+        const bool has_said_nodes = header_.nodes && *header_.nodes == nodes_;
+        const bool ends_with_file = bytes_behind() == 0;
+        if (header_.is_octoskins ? has_said_nodes && ends_with_file : has_said_nodes || ends_with_file)
+            return std::nullopt;
+        if (has_said_nodes) return error(MapFault::trailing_bytes, why_end_differs());
+        return error(MapFault::node_count_differs,
+                     fmt::format("{} nodes, the header says {}", nodes_, said_nodes()));
+    }
+
     MapReadError truncated() const { return error(MapFault::truncated, "the data end within the tree"); }
     MapReadError no_room() const {
         return error(MapFault::no_room,
@@ -81,7 +108,7 @@ class TreeWalk {
 
     std::optional<MapReadError> walk_nodes(const LeafVisitor& visit) {
         std::optional<Node> node = Node{0, kOctreeDepth, kInner};
-        for (; node && nodes_ <= header_.nodes; node = next_node()) {
+        for (; node && nodes_ <= nodes_max_; node = next_node()) {
             ++nodes_;
             const auto content = header_.is_binary ? take_binary(*node) : take_text();
             if (!content) return content.error();
@@ -115,6 +142,7 @@ class TreeWalk {
     /// .ot: each node has a value and a bit for each child.
     Result<Content, MapReadError> take_text() {
         const auto value_bits = take(4);
+        position_ += std::min(header_.colour_bytes, bytes_behind());
         const auto children = take(1);
         if (!value_bits || !children) return unexpected(truncated());
         const auto log_odds = std::bit_cast<float>(*value_bits);
@@ -149,27 +177,49 @@ class TreeWalk {
 
     std::string_view bytes_;
     std::size_t position_;
-    OctomapHeader header_;
+    const OctomapHeader& header_;
     MapConfig config_;
+    std::uint64_t nodes_max_ = 0;
     std::uint64_t nodes_ = 0;
     std::array<Open, kOctreeDepth> open_{};  // one for each level that can have children
     std::size_t open_count_ = 0;
 };
 
+/// One sentence: the differences matter to the program that wrote them, not one by one.
+std::vector<std::string> warnings_of(const OctomapHeader& header, const std::string& end) {
+    std::vector<std::string> differences = header.differences;
+    if (!end.empty()) differences.push_back(end);
+    std::vector<std::string> warnings;
+    if (!differences.empty()) {
+        std::string warning = "not as OctoMap writes it, but read";
+        for (const std::string& difference : differences)
+            warning += (&difference == differences.data() ? ": " : "; ") + difference;
+        warnings.push_back(std::move(warning));
+    }
+    if (header.colour_bytes > 0) warnings.emplace_back("its voxels' colours are left out");
+    return warnings;
+}
+
 }  // namespace
 
-Result<FusedMap, MapReadError> decode_octomap(std::string_view bytes, const MapReadLimits& limits) {
+Result<LoadedMap, MapReadError> decode_octomap(std::string_view bytes, const MapReadLimits& limits) {
     const auto header = parse_octomap_header(bytes, limits.nodes_max);
     if (!header) return unexpected(header.error());
+    TreeWalk look(bytes, *header, limits);
+    const auto look_only = [](const VoxelCube&, float) { return true; };
+    if (auto fault = look.walk(look_only)) return unexpected(std::move(*fault));
+
     MapConfig config = limits.map;
     config.resolution_m = header->resolution_m;
-    const auto look_only = [](const VoxelCube&, float) { return true; };
-    if (auto fault = TreeWalk(bytes, *header, config).walk(look_only)) return unexpected(std::move(*fault));
-
-    FusedMap map(config);
-    const auto fill = [&](const VoxelCube& cube, float log_odds) { return map.set_cube(cube, log_odds); };
-    if (auto fault = TreeWalk(bytes, *header, config).walk(fill)) return unexpected(std::move(*fault));
-    return map;
+    LoadedMap loaded{.map = FusedMap(config),
+                     .warnings = warnings_of(*header, look.why_end_differs()),
+                     .is_octoskins = header->is_octoskins,
+                     .has_lost_colours = header->colour_bytes > 0};
+    const auto fill = [&](const VoxelCube& cube, float log_odds) {
+        return loaded.map.set_cube(cube, log_odds);
+    };
+    if (auto fault = TreeWalk(bytes, *header, limits).walk(fill)) return unexpected(std::move(*fault));
+    return loaded;
 }
 
 }  // namespace octoskin

@@ -1,10 +1,11 @@
-// Checks and reads the bytes of a .ot or .bt file. The input is taken for hostile: OctoMap's own reader
-// accepts truncated files, wrong node counts and NaN, and overflows the stack on a deep chain.
+// Checks and reads the bytes of a .ot or .bt file. What OctoMap's own reader takes is taken, but the input
+// may be hostile: that reader also accepts truncated files and NaN, and overflows the stack on a deep chain.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/result.hpp"
 #include "host/core/mapping/fused_map.hpp"
@@ -12,17 +13,18 @@
 namespace octoskin {
 
 enum class MapFault : std::uint8_t {
-    not_a_map,                ///< the first line is neither OctoMap's for .ot nor for .bt
-    header_malformed,         ///< a line that is not id, size, res, data or a comment; one missing or twice
-    wrong_tree_type,          ///< not an OcTree: colours, stamps or counts are not ours to drop
-    resolution_not_valid,     ///< not a number between 1e-6 and 1e6
-    too_many_nodes,           ///< more than the limit
-    truncated,                ///< the data end before the tree does
-    trailing_bytes,           ///< the tree ends before the data do
-    node_count_differs,       ///< the tree has more or fewer nodes than the header says
-    too_deep,                 ///< a node below level 16
-    inner_node_empty,         ///< a node said to have children has none
-    log_odds_not_finite,      ///< NaN or infinity in a node
+    not_a_map,             ///< the first line is neither OctoMap's for .ot nor for .bt
+    header_malformed,      ///< id, res or data missing, size no number; octoskin's, and not as it was saved
+    wrong_tree_type,       ///< a .ot that is no tree of occupancies
+    resolution_not_valid,  ///< not a number between 1e-6 and 1e6
+    too_many_nodes,        ///< more than the limit
+    truncated,             ///< the data end before the tree does
+    trailing_bytes,        ///< octoskin saved it, and the tree ends before the data do
+    node_count_differs,    ///< the tree has more or fewer nodes than the header says; if octoskin did not
+                           ///< save it, only where the tree does not end with the data either
+    too_deep,              ///< a node below level 16
+    inner_node_empty,      ///< a node said to have children has none
+    log_odds_not_finite,   ///< NaN or infinity in a node
     log_odds_outside_clamps,  ///< beyond the clamps given
     no_room,                  ///< the voxels need more than `MapConfig::memory_max_mib`
 };
@@ -40,9 +42,17 @@ struct MapReadLimits {
     std::uint64_t nodes_max = 50'000'000;
 };
 
+/// A map, and what its file is beside that.
+struct LoadedMap {
+    FusedMap map;
+    std::vector<std::string> warnings;  ///< how the file differs from one that OctoMap writes
+    bool is_octoskins = false;          ///< octoskin saved it
+    bool has_lost_colours = false;      ///< the file has a colour for each voxel; the map has none
+};
+
 /// The map that the bytes hold, .ot or .bt by their first line. Everything is checked before a voxel is made.
 /// Leaves alone count: an inner node's value must be sane but is not used. O(bytes + voxels).
-[[nodiscard]] Result<FusedMap, MapReadError> decode_octomap(std::string_view bytes,
-                                                            const MapReadLimits& limits);
+[[nodiscard]] Result<LoadedMap, MapReadError> decode_octomap(std::string_view bytes,
+                                                             const MapReadLimits& limits);
 
 }  // namespace octoskin

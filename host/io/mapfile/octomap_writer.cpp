@@ -1,26 +1,16 @@
 #include "host/io/mapfile/octomap_writer.hpp"
 
-#include <fmt/format.h>
-
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
 
+#include "host/io/mapfile/octomap_header.hpp"
 #include "host/io/mapfile/octree.hpp"
 
 namespace octoskin {
 namespace {
-
-/// The resolution in its shortest form that reads back exactly; OctoMap's own six digits are the same for any
-/// resolution a person would write.
-std::string header(const char* first_line, std::uint64_t nodes, double resolution_m) {
-    return fmt::format(
-        "{}\n# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
-        "id OcTree\nsize {}\nres {}\ndata\n",
-        first_line, nodes, resolution_m);
-}
 
 char* put_little_endian(char* place, std::uint32_t value, unsigned count) {
     for (unsigned i = 0; i < count; ++i) *place++ = static_cast<char>((value >> (8 * i)) & 0xFFU);
@@ -80,14 +70,12 @@ std::string all_bytes(const ByteSource& source) {
 
 void write_ot(const FusedMap& map, const ByteSink& sink) {
     const PrunedOctree octree(map, LeafValues::exact);
-    if (sink(header("# Octomap OcTree file", octree.size(), map.resolution_m())))
-        write_nodes<OtNode>(octree, sink);
+    if (sink(octomap_header(false, octree.size(), map.resolution_m()))) write_nodes<OtNode>(octree, sink);
 }
 
 void write_bt(const FusedMap& map, const ByteSink& sink) {
     const PrunedOctree octree(map, LeafValues::max_likelihood);
-    if (sink(header("# Octomap OcTree binary file", octree.size(), map.resolution_m())))
-        write_nodes<BtNode>(octree, sink);
+    if (sink(octomap_header(true, octree.size(), map.resolution_m()))) write_nodes<BtNode>(octree, sink);
 }
 
 std::string encode_ot(const FusedMap& map) {

@@ -1,5 +1,6 @@
 // A map as the bytes of OctoMap's two file formats, the same that OctoMap 1.9 itself writes for a pruned
-// tree. In pieces, for a file, it takes memory for each brick (PrunedOctree), not for each voxel.
+// tree, and a comment in the header that says that octoskin saved it. In pieces, for a file, it takes memory
+// for each brick (PrunedOctree), not for each voxel.
 #pragma once
 
 #include <string>

@@ -59,8 +59,8 @@ TEST_F(DaemonTest, maps_a_live_bus_says_how_quick_it_is_and_saves_at_the_end) {
     EXPECT_EQ(*ended, 0) << daemon_->log();
     const auto map = load_map(daemon_->maps() / "fused.ot");
     ASSERT_TRUE(map) << map.error().message;
-    EXPECT_GE(map->known_voxels(), status["map"]["known_voxels"].get<std::size_t>());
-    EXPECT_GT(map->known_voxels(), 500U);
+    EXPECT_GE(map->map.known_voxels(), status["map"]["known_voxels"].get<std::size_t>());
+    EXPECT_GT(map->map.known_voxels(), 500U);
 }
 
 TEST_F(DaemonTest, names_a_node_that_falls_silent_within_a_second_and_takes_it_back) {

@@ -331,11 +331,30 @@ TEST_F(DaemonTest, goes_on_with_the_saved_map_after_it_was_killed) {
     daemon_.emplace(folder_, other_bus.end_of_daemon(), std::vector<std::string>{"--no-camera"});
     const auto up = daemon_->wait_until(
         [&](const Json& status) {
-            return status["map"]["known_voxels"].get<std::size_t>() >= map->known_voxels();
+            return status["map"]["known_voxels"].get<std::size_t>() >= map->map.known_voxels();
         },
         5s);
     ASSERT_TRUE(up) << daemon_->log();
     EXPECT_LE(*up, 3s);
+}
+
+TEST_F(DaemonTest, goes_on_with_a_bt_that_is_alone_in_its_folder_and_saves_what_it_began_with) {
+    FusedMap map(MapConfig{});
+    for (std::uint16_t i = 0; i < 40; ++i) {
+        const VoxelUpdate update{{static_cast<std::uint16_t>(20'000 + 3 * i), 20'000, 20'000}, 0.9F};
+        map.apply(std::span(&update, 1));
+    }
+    std::filesystem::create_directories(folder_ / "maps");
+    ASSERT_TRUE(save_map(map, folder_ / "maps" / "fused.bt"));
+    start({"--no-camera", "--save-every", "1"});
+    const auto is_saved = [](const Json& status) { return status["map"]["saved"].get<int>() >= 2; };
+    ASSERT_TRUE(daemon_->wait_until(is_saved, 10s)) << daemon_->log();
+    for (const char* file : {"fused.ot", "fused.bt"}) {
+        const auto saved = load_map(daemon_->maps() / file);
+        ASSERT_TRUE(saved) << saved.error().message;
+        EXPECT_EQ(saved->map.log_odds({20'000, 20'000, 20'000}), 3.5F) << file;
+        EXPECT_EQ(saved->map.log_odds({20'117, 20'000, 20'000}), 3.5F) << file;
+    }
 }
 
 }  // namespace

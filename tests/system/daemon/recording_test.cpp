@@ -135,9 +135,9 @@ TEST_F(DaemonRecording, begun_with_a_full_map_gives_the_daemons_own_map_and_expl
     const Said roomy = octoskin("replay " + out() + " --fused-only --configuration " + more.string() +
                                 " --out " + (folder_ / "roomy").string());
     ASSERT_EQ(roomy.exit_code, 0) << roomy.output;
-    const FusedMap own = load_map(out() + "/last.ot").value();
+    const FusedMap own = std::move(load_map(out() + "/last.ot").value().map);
     std::optional<Eigen::Vector3d> refused;
-    load_map(folder_ / "roomy" / "fused.ot").value().for_each_known([&](VoxelKey key, float) {
+    load_map(folder_ / "roomy" / "fused.ot").value().map.for_each_known([&](VoxelKey key, float) {
         if (!own.log_odds(key)) refused = own.centre_of(key);
     });
     ASSERT_TRUE(refused);

@@ -91,7 +91,7 @@ TEST(MapKeeper, loads_what_it_saved) {
     const MapKeeper again(folder / "maps");
     const auto loaded = again.load(MapConfig{});
     ASSERT_TRUE(loaded && *loaded);
-    EXPECT_EQ(encode_ot(**loaded), encode_ot(map));
+    EXPECT_EQ(encode_ot((*loaded)->map), encode_ot(map));
 }
 
 TEST(MapKeeper, refuses_a_damaged_map_and_one_of_another_resolution_by_name) {
@@ -106,7 +106,62 @@ TEST(MapKeeper, refuses_a_damaged_map_and_one_of_another_resolution_by_name) {
     ASSERT_FALSE(other);
     EXPECT_EQ(other.error().message, (folder / "fused.ot").string() +
                                          ": its voxels are 0.040000 m, the mapping's are 0.020000 m: "
-                                         "say map.resolution_m as it was");
+                                         "say map.resolution_m as it was. To begin with an empty map, "
+                                         "move fused.ot and fused.bt away");
+}
+
+// Who begins from the map of another program has it as a .bt, and who moved a damaged fused.ot away has no
+// more.
+TEST(MapKeeper, goes_on_with_a_bt_if_that_is_all_there_is) {
+    const FusedMap map = some_map(30);
+    const std::string octoskins = encode_bt(map);
+    std::string octomaps = octoskins;
+    octomaps.erase(octomaps.find("# saved by octoskin\n"), 20);
+    for (const std::string& bytes : {octoskins, octomaps}) {
+        const testing_support::ScratchFolder folder;
+        folder.write("fused.bt", bytes);
+        const auto loaded = MapKeeper(folder.path()).load(MapConfig{});
+        ASSERT_TRUE(loaded) << loaded.error().message;
+        ASSERT_TRUE(*loaded);
+        EXPECT_EQ(encode_bt((*loaded)->map), octoskins);
+        EXPECT_EQ((*loaded)->is_octoskins, bytes == octoskins);
+        EXPECT_EQ((*loaded)->map.log_odds({32768, 32768, 32700}), 3.5F);
+    }
+}
+
+TEST(MapKeeper, refuses_what_its_next_save_would_destroy) {
+    const std::string ot = encode_ot(some_map(30));
+    std::string octomaps = encode_bt(some_map(29));
+    octomaps.erase(octomaps.find("# saved by octoskin\n"), 20);
+    const std::string coloured = "# Octomap OcTree file\nid ColorOcTree\nsize 0\nres 0.04\ndata\n";
+    struct Case {
+        std::string ot, bt;
+        std::string named;  ///< in the refusal; empty: taken
+    };
+    const Case cases[] = {
+        {ot, encode_bt(some_map(30)), ""},
+        {ot, encode_bt(some_map(29)), ""},  // octoskin's own, saved less lately
+        {ot, octomaps, "fused.bt: is another map than fused.ot"},
+        {ot, "not a map at all", "fused.bt: is another map than fused.ot"},
+        {ot, octomaps.substr(0, octomaps.size() - 1), "fused.bt: is another map than fused.ot"},
+        {"", "not a map at all", "fused.bt: the first line is not"},
+        {"", octomaps.substr(0, octomaps.size() - 1), "fused.bt: byte "},
+        {coloured, "", "fused.ot: its voxels have colours"},
+    };
+    for (const Case& each : cases) {
+        const testing_support::ScratchFolder folder;
+        if (!each.ot.empty()) folder.write("fused.ot", each.ot);
+        if (!each.bt.empty()) folder.write("fused.bt", each.bt);
+        const auto loaded = MapKeeper(folder.path()).load(MapConfig{.memory_max_mib = 4});
+        EXPECT_EQ(loaded.has_value(), each.named.empty()) << each.named;
+        const std::string said = loaded ? "" : loaded.error().message;
+        EXPECT_NE(said.find(each.named), std::string::npos) << said;
+    }
+    // What an older octoskin saved has no comment; the two hold the same voxels.
+    const testing_support::ScratchFolder folder;
+    folder.write("fused.ot", encode_ot(some_map(29)));
+    folder.write("fused.bt", octomaps);
+    EXPECT_TRUE(MapKeeper(folder.path()).load(MapConfig{}));
 }
 
 /// A disk that a test stops.
@@ -240,7 +295,7 @@ TEST(MapKeeper, loads_any_map_that_it_saved_with_the_same_memory) {
         ASSERT_TRUE(keeper.finish(kPatience));
         const auto loaded = keeper.load(map.config());
         ASSERT_TRUE(loaded) << loaded.error().message;
-        EXPECT_EQ((*loaded)->known_voxels(), map.known_voxels());
+        EXPECT_EQ((*loaded)->map.known_voxels(), map.known_voxels());
         const auto bytes = std::filesystem::file_size(folder / "fused.ot");
         EXPECT_LT(bytes, (3U << 20U) * 3 / 2) << "what the limit for files is derived from";
         EXPECT_EQ(bytes > 3U << 20U, is_dense) << "the file of a dense map is larger than its memory";
@@ -255,10 +310,10 @@ TEST(MapKeeper, goes_on_with_a_map_that_was_saved_with_wider_clamps) {
     const MapConfig tighter{.log_odds_min = -0.1F, .log_odds_max = 0.5F};
     const auto loaded = keeper.load(tighter);
     ASSERT_TRUE(loaded) << loaded.error().message;
-    EXPECT_EQ((*loaded)->known_voxels(), 30U);
-    EXPECT_EQ((*loaded)->log_odds({32768, 32768, 32700}), 0.5F);
-    EXPECT_EQ((*loaded)->log_odds({32775, 32768, 32700}), -0.1F);
-    EXPECT_EQ((*loaded)->config(), tighter);
+    EXPECT_EQ((*loaded)->map.known_voxels(), 30U);
+    EXPECT_EQ((*loaded)->map.log_odds({32768, 32768, 32700}), 0.5F);
+    EXPECT_EQ((*loaded)->map.log_odds({32775, 32768, 32700}), -0.1F);
+    EXPECT_EQ((*loaded)->map.config(), tighter);
 }
 
 TEST(MapKeeper, says_what_to_do_about_a_map_that_was_saved_with_more_memory) {
@@ -303,7 +358,7 @@ TEST(MapKeeper, saves_the_last_map_without_a_copy_of_it) {
     EXPECT_EQ(keeper.record().saved, 1U) << keeper.record().error;
     const auto loaded = keeper.load(MapConfig{});
     ASSERT_TRUE(loaded && *loaded);
-    EXPECT_EQ(encode_ot(**loaded), encode_ot(map));
+    EXPECT_EQ(encode_ot((*loaded)->map), encode_ot(map));
 }
 
 TEST(MapKeeper, says_why_it_cannot_save) {

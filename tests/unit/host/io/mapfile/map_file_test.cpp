@@ -39,7 +39,7 @@ TEST(MapFile, loads_what_it_saved_by_content_and_not_by_name) {
     const auto file = folder.write("renamed.dat", encode_ot(map));
     const auto loaded = load_map(file);
     ASSERT_TRUE(loaded.has_value());
-    EXPECT_EQ(oracle::voxels_of(*loaded), oracle::voxels_of(map));
+    EXPECT_EQ(oracle::voxels_of(loaded->map), oracle::voxels_of(map));
 }
 
 TEST(MapFile, says_what_is_wrong_with_a_file_and_where) {
@@ -56,8 +56,9 @@ TEST(MapFile, says_what_is_wrong_with_a_file_and_where) {
 // Whoever has a mapping with that much memory saves such a map, and must be able to go on with it.
 TEST(MapFile, a_map_to_go_on_with_may_be_as_large_as_its_mappings_memory) {
     const ScratchFolder folder;
-    const auto large =
-        folder.write("large.ot", "# Octomap OcTree file\nid OcTree\nsize 60000000\nres 0.04\ndata\nxx");
+    const auto large = folder.write(
+        "large.ot",
+        "# Octomap OcTree file\n# saved by octoskin\nid OcTree\nsize 60000000\nres 0.04\ndata\nxx");
     EXPECT_TRUE(load_map(large).error().is_too_large);
     const auto loaded = load_map_of(MapConfig{.memory_max_mib = 800}, large);
     EXPECT_FALSE(loaded.error().is_too_large);

@@ -59,7 +59,9 @@ std::vector<octomap::OcTreeKey> keys_about(const FusedMap& map, std::mt19937& ra
 void expect_exports_alike(const octomap::OcTree& tree, const FusedMap& map, std::mt19937& random) {
     const auto whole = to_octomap(map);
     const std::string ot = ot_of(tree);
-    EXPECT_TRUE(ot == encode_ot(map));
+    // Both from the line on that octoskin's header has more than OctoMap's.
+    const std::string ours = encode_ot(map);
+    EXPECT_TRUE(ot.substr(ot.find("\nid ")) == ours.substr(ours.find("\nid ")));
     EXPECT_TRUE(ot == ot_of(*whole));
     EXPECT_TRUE(bt_of(tree) == bt_of(*whole));
     EXPECT_TRUE(tree == *whole) << "OctoMap's own comparison";

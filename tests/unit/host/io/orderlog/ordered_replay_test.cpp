@@ -94,7 +94,7 @@ MapBuilder make_builder(const Scene& scene, const std::string& first_ot) {
             .value();
     auto first = decode_octomap(first_ot, {.map = scene.mapping.map});
     EXPECT_TRUE(first);
-    builder.begin_with(std::move(first).value());
+    builder.begin_with(std::move(first->map));
     return builder;
 }
 
