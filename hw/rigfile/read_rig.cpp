@@ -44,7 +44,7 @@ void require_link(const Value& value, const std::string& path, const std::string
 }
 
 void read_self_filter(const Table& robot, const UrdfDocument& document, Rig& rig) {
-    rig.base_link = robot.name("base_link");
+    rig.base_link = robot.element_name("base_link");
     require_link(robot.require("base_link"), robot.path_of("base_link"), rig.base_link, document);
     rig.depth_self_margin_m = robot.number("depth_self_margin_m", {0.0, 1.0}, rig.depth_self_margin_m);
     rig.range_self_margin_m = robot.number("range_self_margin_m", {0.0, 1.0}, rig.range_self_margin_m);
@@ -62,7 +62,7 @@ void read_self_filter(const Table& robot, const UrdfDocument& document, Rig& rig
     if (const Value* ignored = robot.find("links_ignored_by_sensors")) {
         const std::string path = robot.path_of("links_ignored_by_sensors");
         for (const Value& link : read_list(*ignored, path)) {
-            rig.links_ignored_by_sensors.push_back(read_name(link, path));
+            rig.links_ignored_by_sensors.push_back(read_element_name(link, path));
             require_link(link, path, link.text, document);
         }
     }
@@ -74,7 +74,7 @@ AttachedCapsule read_attached(const Value& value, const std::string& path, const
     const Table table(value, path, {"name", "link", "from_m", "to_m", "radius_m", "padding_m"});
     AttachedCapsule capsule;
     capsule.name = table.name("name");
-    capsule.link = table.name("link");
+    capsule.link = table.element_name("link");
     require_link(table.require("link"), table.path_of("link"), capsule.link, robot);
     if (!robot.is_below(rig.base_link, capsule.link)) {
         table.fail("link",
@@ -131,7 +131,7 @@ void read_links_without_body(const Table& robot, const UrdfDocument& document, R
     if (list == nullptr) return;
     const std::string path = robot.path_of("links_without_body");
     for (const Value& item : read_list(*list, path)) {
-        auto link = read_name(item, path);
+        auto link = read_element_name(item, path);
         require_link(item, path, link, document);
         if (!document.is_below(rig.base_link, link))
             fail(item, path, fmt::format("expected a link at or below {}, found '{}'", rig.base_link, link));
@@ -195,7 +195,7 @@ std::vector<std::string> read_joint_names(const Table& table, const UrdfDocument
     const auto moving = robot.moving_joints(base_link);
     std::vector<std::string> names;
     for (const Value& item : read_list(list, path)) {
-        auto name = read_name(item, path);
+        auto name = read_element_name(item, path);
         if (std::find(moving.begin(), moving.end(), name) == moving.end()) {
             fail(item, path,
                  fmt::format("expected a moving joint of {}, found '{}'; it has {}",

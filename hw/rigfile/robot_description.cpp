@@ -115,6 +115,25 @@ std::vector<Capsule> to_capsules(Bodies bodies) {
     return capsules;
 }
 
+/// A link whose body cannot be taken.
+struct LinkFault {
+    RigError error;
+    std::string shape;  ///< of the first <collision> at fault
+};
+
+/// The first link in the file with what is wrong and the remedy, and after it where the others are.
+RigError one_error_of(std::vector<LinkFault> faults) {
+    std::ranges::stable_sort(faults, {}, [](const LinkFault& fault) { return fault.error.line; });
+    RigError error = faults[0].error;
+    if (faults.size() == 1) return error;
+    error.what += fmt::format(". {} more cannot be taken: ", faults.size() - 1);
+    for (std::size_t i = 1; i < faults.size(); ++i) {
+        error.what += fmt::format("{}{} (line {}, {})", i == 1 ? "" : ", ", faults[i].error.key,
+                                  faults[i].error.line, faults[i].shape);
+    }
+    return error;
+}
+
 BoxRule box_rule(const Rig& rig) {
     return rig.fits_capsules ? BoxRule::fitted : BoxRule::refused;
 }
@@ -154,6 +173,7 @@ Result<std::vector<Capsule>, RigError> read_capsules(const FilePlace& urdf,
         }
     }
     std::vector<Capsule> all;
+    std::vector<LinkFault> faults;
     for (const auto& [name, link] : links) {
         Bodies bodies;
         if (link->collision_array.size() > kCollisionsMax) {
@@ -164,7 +184,10 @@ Result<std::vector<Capsule>, RigError> read_capsules(const FilePlace& urdf,
         }
         for (const auto& collision : link->collision_array) {
             auto fault = add_body(*collision, name, boxes, bodies);
-            if (!fault.empty()) return unexpected(document->error("link", name, std::move(fault)));
+            if (fault.empty()) continue;
+            faults.push_back({document->error("link", name, std::move(fault)),
+                              collision->geometry ? shape_name(*collision->geometry) : "no geometry"});
+            break;
         }
         const auto padding = link_padding_m.find(name);
         for (Capsule& capsule : to_capsules(std::move(bodies))) {
@@ -172,6 +195,7 @@ Result<std::vector<Capsule>, RigError> read_capsules(const FilePlace& urdf,
             all.push_back(std::move(capsule));
         }
     }
+    if (!faults.empty()) return unexpected(one_error_of(std::move(faults)));
     return all;
 }
 

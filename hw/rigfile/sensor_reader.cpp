@@ -150,7 +150,7 @@ std::optional<Cone> read_cone(const Table& table) {
 }
 
 std::string read_link(const Table& table, const UrdfDocument& robot, const std::string& base_link) {
-    auto link = table.name("link");
+    auto link = table.element_name("link");
     if (!robot.is_below(base_link, link)) {
         table.fail("link", fmt::format("expected a link of {} at or below {}, found '{}'; there are {}",
                                        robot.file().filename().string(), base_link, link,

@@ -14,6 +14,7 @@ namespace octoskin::rig {
 namespace {
 
 constexpr std::size_t kNameLengthMax = 64;
+constexpr std::size_t kElementNameMax = 256;
 
 template <class T>
 std::optional<T> parse_all(std::string_view text, auto... format) {
@@ -98,6 +99,16 @@ bool is_writable_text(std::string_view text) {
     return true;
 }
 
+/// ASCII's, and in UTF-8 those from U+0080 to U+009F.
+bool has_control_character(std::string_view text) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : '\0');
+        if (byte < 0x20U || byte == 0x7FU || (byte == 0xC2U && next < 0xA0U)) return true;
+    }
+    return false;
+}
+
 std::optional<bool> parse_flag(std::string_view text) {
     if (text != "true" && text != "false") return std::nullopt;
     return text == "true";
@@ -175,6 +186,19 @@ std::string read_name(const Value& value, const std::string& path) {
         fail(value, path,
              fmt::format("expected a name of 1 to {} letters, digits or _ - . /, found {}", kNameLengthMax,
                          describe(value)));
+    }
+    return value.text;
+}
+
+std::string read_element_name(const Value& value, const std::string& path) {
+    const bool is_name = value.kind == Value::Kind::scalar && !value.text.empty() &&
+                         value.text.size() <= kElementNameMax && is_writable_text(value.text) &&
+                         !has_control_character(value.text);
+    if (!is_name) {
+        fail(value, path,
+             fmt::format("expected a name of 1 to {} bytes of UTF-8 without control characters, in quotes if "
+                         "it is more than letters and digits, found {}",
+                         kElementNameMax, describe(value)));
     }
     return value.text;
 }
@@ -257,6 +281,10 @@ std::uint64_t Table::unsigned_integer(std::string_view key, std::uint64_t fallba
 
 std::string Table::name(std::string_view key) const {
     return read_name(require(key), path_of(key));
+}
+
+std::string Table::element_name(std::string_view key) const {
+    return read_element_name(require(key), path_of(key));
 }
 
 std::string Table::folder_name(std::string_view key) const {

@@ -36,6 +36,9 @@ struct Range {
 [[nodiscard]] std::string read_text(const Value& value, const std::string& path);
 /// A name: 1..64 letters, digits and _ - . /
 [[nodiscard]] std::string read_name(const Value& value, const std::string& path);
+/// A name that a robot description or a world gives to something: 1..256 bytes of UTF-8 without control
+/// characters. Blanks and colons may be in it.
+[[nodiscard]] std::string read_element_name(const Value& value, const std::string& path);
 [[nodiscard]] const std::vector<Value>& read_list(const Value& value, const std::string& path);
 
 class Table {
@@ -63,6 +66,7 @@ class Table {
     [[nodiscard]] bool flag(std::string_view key, std::optional<bool> fallback = std::nullopt) const;
     [[nodiscard]] std::uint64_t unsigned_integer(std::string_view key, std::uint64_t fallback) const;
     [[nodiscard]] std::string name(std::string_view key) const;
+    [[nodiscard]] std::string element_name(std::string_view key) const;
     /// A name() that stays in its place as part of a path: without `/` and `..`, and not `.`.
     [[nodiscard]] std::string folder_name(std::string_view key) const;
     /// read_text(); empty if the key is absent.

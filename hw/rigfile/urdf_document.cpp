@@ -7,9 +7,11 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "hw/rigfile/nesting.hpp"
+#include "hw/rigfile/urdf_counted.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -55,6 +57,14 @@ Result<std::string, RigError> read_text(const FilePlace& file) {
     return std::move(*text);
 }
 
+/// By its mark, or by the zero in the first character that XML begins with.
+bool is_utf16(std::string_view text) {
+    using namespace std::string_view_literals;
+    const std::string_view beginning = text.substr(0, 2);
+    return beginning == "\xFF\xFE"sv || beginning == "\xFE\xFF"sv || beginning == "<\0"sv ||
+           beginning == "\0<"sv;
+}
+
 /// The model, or urdfdom's words for why there is none.
 std::pair<urdf::ModelInterfaceSharedPtr, std::string> parse(const std::string& text) {
     CapturedLog log;
@@ -73,6 +83,13 @@ constexpr double kTurnMax_rad = 4.0 * 3.1415927;  ///< no arm's joint turns furt
 
 bool is_within(double value, double max) {
     return std::abs(value) <= max;  // false for what is no number
+}
+
+/// An axis of a length that is 1 to three digits, as a person writes one, gets that length.
+void make_exact(urdf::Vector3& axis) {
+    constexpr double kWritten = 1e-3;
+    const double length = std::hypot(axis.x, axis.y, axis.z);
+    if (is_within(length - 1.0, kWritten)) axis = {axis.x / length, axis.y / length, axis.z / length};
 }
 
 /// What gives away that a joint is written in millimetres or degrees; empty if nothing does.
@@ -106,6 +123,10 @@ Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
     const auto text = read_text(place);
     const std::filesystem::path file = place.shown();
     if (!text) return unexpected(text.error());
+    if (is_utf16(*text)) {
+        return unexpected(RigError{
+            file, 0, "", "is in UTF-16: save it as UTF-8 (`iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`)"});
+    }
     // What is no robot at all may be any file that a foreign rig names: nothing of it is shown.
     if (text->find("<robot") == std::string::npos)
         return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
@@ -116,12 +137,15 @@ Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
     UrdfDocument document;
     document.file_ = file;
     document.outline_ = std::move(outline).value();
-    auto [model, complaint] = parse(document.outline_.plain_text());
+    const auto counted = counted_urdf(file, *text);
+    if (!counted) return unexpected(counted.error());
+    auto [model, complaint] = parse(*counted);
     if (!model || !model->getRoot()) {
         return unexpected(RigError{
             file, 0, "", "not a usable URDF: " + (complaint.empty() ? "no robot found" : complaint)});
     }
     for (const auto& [name, joint] : model->joints_) {
+        make_exact(joint->axis);
         if (auto fault = unit_fault(*joint); !fault.empty()) {
             return unexpected(document.error("joint", name, std::move(fault)));
         }

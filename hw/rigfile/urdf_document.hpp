@@ -21,7 +21,8 @@ namespace octoskin::rig {
 
 class UrdfDocument {
   public:
-    /// Errors: unreadable, over 16 MiB, those of UrdfOutline, and all that urdfdom refuses (a joint without
+    /// Errors: unreadable, in UTF-16, over 16 MiB, those of UrdfOutline and counted_urdf(), and all that
+    /// urdfdom refuses of what counts (a joint without
     /// its link, two roots, a repeated name), and what gives away millimetres (an origin or a sliding limit
     /// beyond 10 m) or degrees (a limit beyond two turns); the message carries urdfdom's own words. urdfdom
     /// prints nothing. Not to be called from two threads at once: urdfdom's log is global.

@@ -44,22 +44,6 @@ std::string turn_fault(const tinyxml2::XMLElement* origin) {
     return "";
 }
 
-/// Elements and attributes, and nothing between them.
-class PlainPrinter final : public tinyxml2::XMLPrinter {
-  public:
-    PlainPrinter() : XMLPrinter(nullptr, true) {}
-    bool Visit(const tinyxml2::XMLDeclaration& /*ignored*/) override { return true; }
-    bool Visit(const tinyxml2::XMLText& /*ignored*/) override { return true; }
-    bool Visit(const tinyxml2::XMLComment& /*ignored*/) override { return true; }
-    bool Visit(const tinyxml2::XMLUnknown& /*ignored*/) override { return true; }
-};
-
-std::string printed_anew(const tinyxml2::XMLElement& robot) {
-    PlainPrinter printer;
-    robot.Accept(&printer);
-    return printer.CStr();
-}
-
 /// The first element of a link or joint whose place we use and that is turned by too much.
 std::optional<RigError> find_turn_fault(const std::filesystem::path& file,
                                         const tinyxml2::XMLElement& element) {
@@ -90,7 +74,6 @@ Result<UrdfOutline, RigError> UrdfOutline::read(const std::filesystem::path& fil
     if (!robot) return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
     UrdfOutline outline;
     outline.file_ = file;
-    outline.plain_text_ = printed_anew(*robot);
     for (const auto* element = robot->FirstChildElement(); element; element = element->NextSiblingElement()) {
         const std::string tag = element->Name();
         if (tag.starts_with("xacro:")) {

@@ -21,11 +21,6 @@ class UrdfOutline {
     [[nodiscard]] static Result<UrdfOutline, RigError> read(const std::filesystem::path& file,
                                                             const std::string& text);
 
-    /// The <robot> printed anew, of elements and attributes alone: what two XML readers read alike. urdfdom's
-    /// ends an XML declaration elsewhere, and would read another robot out of the file than was looked at
-    /// here.
-    [[nodiscard]] const std::string& plain_text() const noexcept { return plain_text_; }
-
     /// An error about one element ("joint", "panda_joint3"), with its line if there is such an element.
     [[nodiscard]] RigError error(std::string_view tag, std::string_view name, std::string what) const;
 
@@ -44,7 +39,6 @@ class UrdfOutline {
     [[nodiscard]] std::optional<RigError> find_loop() const;
 
     std::filesystem::path file_;
-    std::string plain_text_;
     std::vector<Element> elements_;  ///< links and joints in the order of the file
 };
 

@@ -34,7 +34,7 @@ ModelPlace read_place(const rig::Value& value, const std::string& path, const Mo
 ModelMotion read_model(const rig::Value& value, const std::string& path, const std::vector<Solid>& solids) {
     const rig::Table table(value, path, {"model", "places"});
     ModelMotion motion;
-    motion.model = table.name("model");
+    motion.model = table.element_name("model");
     if (std::ranges::find(solids, motion.model, &Solid::model) == solids.end())
         table.fail("model", "the world has no model '" + motion.model + "'");
     const auto& places = rig::read_list(table.require("places"), table.path_of("places"));

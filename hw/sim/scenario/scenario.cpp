@@ -49,7 +49,7 @@ CircleMotion read_circle(const Value& value, const std::string& path, Scenario& 
                       {"link", "centre", "radius_m", "towards_start", "towards_quarter",
                        "ticks_per_revolution", "tick_rate_hz", "revolutions", "start_position_rad"});
     CircleMotion motion;
-    motion.link = table.name("link");
+    motion.link = table.element_name("link");
     const Eigen::Isometry3d T_base_centre =
         rig::read_pose(table.require("centre"), table.path_of("centre"), {.reach_m = kReach_m});
     motion.p_base_centre = T_base_centre.translation();
@@ -151,7 +151,7 @@ void read_judgement(const Table& top, Scenario& scenario) {
     note_place(top, "region", scenario);
     for (std::size_t i = 0; i < models.size(); ++i) {
         scenario.hidden_models.push_back(
-            rig::read_name(models[i], "hidden_models[" + std::to_string(i) + "]"));
+            rig::read_element_name(models[i], "hidden_models[" + std::to_string(i) + "]"));
     }
     const Table region(top.require("region"), "region", {"min_m", "max_m", "floor_top_m"});
     scenario.region.p_base_min = position(region, "min_m");

@@ -1,0 +1,165 @@
+#include "hw/rigfile/urdf_counted.hpp"
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <locale>
+#include <optional>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+namespace octoskin::rig {
+namespace {
+
+using Element = tinyxml2::XMLElement;
+using Names = std::initializer_list<std::string_view>;
+
+constexpr const char* kXacroRemedy = "run xacro first, and give its output";
+
+bool is_one_of(std::string_view name, Names names) {
+    return std::ranges::find(names, name) != names.end();
+}
+
+bool is_xacro(const Element& element) {
+    return std::string_view(element.Name()).starts_with("xacro:");
+}
+
+/// Removes all else; a xacro element stays, so that it is found.
+void keep_children(Element& parent, Names names) {
+    for (tinyxml2::XMLNode* child = parent.FirstChild(); child != nullptr;) {
+        tinyxml2::XMLNode* const next = child->NextSibling();
+        const Element* const element = child->ToElement();
+        const bool is_kept = element != nullptr && (is_one_of(element->Name(), names) || is_xacro(*element));
+        if (!is_kept) parent.DeleteChild(child);
+        child = next;
+    }
+}
+
+/// Whether an attribute has so many finite numbers and nothing else.
+bool has_numbers(const Element& element, const char* name, std::size_t count) {
+    const char* const text = element.Attribute(name);
+    std::istringstream numbers(text == nullptr ? "" : text);
+    numbers.imbue(std::locale::classic());
+    std::size_t found = 0;
+    for (double number = 0.0; numbers >> number; ++found)
+        if (!std::isfinite(number)) return false;
+    return numbers.eof() && found == count;
+}
+
+bool has_known_size(const Element* geometry) {
+    const Element* const shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+    if (shape == nullptr) return false;
+    const std::string_view name = shape->Name();
+    if (name == "box") return has_numbers(*shape, "size", 3);
+    if (name == "sphere") return has_numbers(*shape, "radius", 1);
+    return name == "cylinder" && has_numbers(*shape, "radius", 1) && has_numbers(*shape, "length", 1);
+}
+
+bool has_known_place(const Element* origin) {
+    if (origin == nullptr) return true;
+    const auto is_sound = [&](const char* name) {
+        return origin->Attribute(name) == nullptr || has_numbers(*origin, name, 3);
+    };
+    return is_sound("xyz") && is_sound("rpy");
+}
+
+void make_mesh(Element& geometry) {
+    geometry.DeleteChildren();
+    geometry.InsertNewChildElement("mesh")->SetAttribute("filename", "not read");
+}
+
+/// A visual decides what is warned of, never what the robot is.
+void simplify_visual(Element& visual) {
+    visual.DeleteAttribute("name");
+    keep_children(visual, {"origin", "geometry"});
+    if (has_known_size(visual.FirstChildElement("geometry")) &&
+        has_known_place(visual.FirstChildElement("origin")))
+        return;
+    visual.DeleteChildren();
+    make_mesh(*visual.InsertNewChildElement("geometry"));
+}
+
+/// That it is a mesh is all that is said about one.
+void simplify_collision(Element& collision) {
+    keep_children(collision, {"origin", "geometry"});
+    Element* const geometry = collision.FirstChildElement("geometry");
+    if (geometry != nullptr && geometry->FirstChildElement("mesh") != nullptr) make_mesh(*geometry);
+}
+
+void simplify(Element& element) {
+    if (std::string_view(element.Name()) == "joint") {
+        keep_children(element, {"origin", "parent", "child", "axis", "limit", "mimic"});
+        return;
+    }
+    keep_children(element, {"visual", "collision"});
+    for (Element* part = element.FirstChildElement(); part != nullptr; part = part->NextSiblingElement()) {
+        const std::string_view name = part->Name();
+        if (name == "visual") simplify_visual(*part);
+        if (name == "collision") simplify_collision(*part);
+    }
+}
+
+/// Elements and attributes, and nothing between them.
+class PlainPrinter final : public tinyxml2::XMLPrinter {
+  public:
+    PlainPrinter() : XMLPrinter(nullptr, true) {}
+    bool Visit(const tinyxml2::XMLDeclaration& /*ignored*/) override { return true; }
+    bool Visit(const tinyxml2::XMLText& /*ignored*/) override { return true; }
+    bool Visit(const tinyxml2::XMLComment& /*ignored*/) override { return true; }
+    bool Visit(const tinyxml2::XMLUnknown& /*ignored*/) override { return true; }
+};
+
+std::string printed_anew(const tinyxml2::XMLElement& robot) {
+    PlainPrinter printer;
+    robot.Accept(&printer);
+    return printer.CStr();
+}
+
+/// What xacro has not made plain at or below an element of a link or joint.
+std::optional<RigError> find_xacro(const std::filesystem::path& file, const Element& part) {
+    std::vector<const Element*> left{&part};
+    while (!left.empty()) {
+        const Element& element = *left.back();
+        left.pop_back();
+        if (is_xacro(element)) {
+            return RigError{file, element.GetLineNum(), element.Name(),
+                            fmt::format("a macro that is not expanded: {}", kXacroRemedy)};
+        }
+        for (const auto* at = element.FirstAttribute(); at != nullptr; at = at->Next()) {
+            const std::string_view value = at->Value();
+            if (value.find("${") == std::string_view::npos && value.find("$(") == std::string_view::npos)
+                continue;
+            return RigError{
+                file, element.GetLineNum(), fmt::format("<{}>", element.Name()),
+                fmt::format("{}=\"{}\" has a xacro expression: {}", at->Name(), value, kXacroRemedy)};
+        }
+        for (const auto* child = element.FirstChildElement(); child != nullptr;
+             child = child->NextSiblingElement())
+            left.push_back(child);
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+Result<std::string, RigError> counted_urdf(const std::filesystem::path& file, const std::string& text) {
+    tinyxml2::XMLDocument document;
+    document.Parse(text.data(), text.size());
+    Element* const robot = document.FirstChildElement("robot");
+    if (robot == nullptr)
+        return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
+    robot->DeleteAttribute("version");
+    keep_children(*robot, {"link", "joint"});
+    for (Element* element = robot->FirstChildElement(); element != nullptr;
+         element = element->NextSiblingElement()) {
+        simplify(*element);
+        if (auto fault = find_xacro(file, *element)) return unexpected(std::move(*fault));
+    }
+    return printed_anew(*robot);
+}
+
+}  // namespace octoskin::rig

@@ -1,0 +1,23 @@
+// What of a robot description counts, as a URDF of its own: urdfdom refuses a robot for what octoskin does
+// not use, too.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "common/result.hpp"
+#include "hw/rigfile/rig.hpp"
+
+namespace octoskin::rig {
+
+/// Printed anew, of elements and attributes alone: what two XML readers read alike. urdfdom's ends an XML
+/// declaration elsewhere, and would read another robot out of the file than was looked at here.
+///
+/// Links with their <visual> and <collision>, joints with what places and moves them; without <inertial>,
+/// materials, transmissions and whatever else there is. A <visual> whose size or place cannot be read, and a
+/// mesh, is a mesh without a size. `text`: a URDF that UrdfOutline has read. Error: what counts has a xacro
+/// expression or element left in it, at its line. `file` is for the message only.
+[[nodiscard]] Result<std::string, RigError> counted_urdf(const std::filesystem::path& file,
+                                                         const std::string& text);
+
+}  // namespace octoskin::rig
