@@ -16,6 +16,7 @@
 #include "hw/rigfile/file_kind.hpp"
 #include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/key_hint.hpp"
+#include "hw/sim/world/model_folders.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -94,6 +95,20 @@ CLI::Validator existing_path() {
                 throw CommandFailure({ExitCode::no_input, absolute(path) + ": no such file or directory"});
             },
             "PATH"};
+}
+
+void add_model_path(CLI::App& command) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--model-path",
+            [](const std::vector<std::string>& folders) { sim::put_model_folders_first(folders); },
+            "Folders in which the models of the world's model:// lie, before those of SDF_PATH, "
+            "GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and GAZEBO_MODEL_PATH; with colons between them")
+        ->delimiter(':')
+        ->type_name("FOLDERS")
+        ->expected(1)
+        ->take_all()
+        ->check(existing_path());
 }
 
 CLI::Validator seed() {

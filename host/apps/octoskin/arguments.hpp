@@ -17,6 +17,8 @@ namespace octoskin::app {
 [[nodiscard]] CLI::Validator existing_file();
 /// The same for a file or a directory.
 [[nodiscard]] CLI::Validator existing_path();
+/// --model-path: the folders come before those of the environment.
+void add_model_path(CLI::App& command);
 /// A seed: a whole number from 0 to 2^64 - 1.
 [[nodiscard]] CLI::Validator seed();
 /// A number of T's kind within these.

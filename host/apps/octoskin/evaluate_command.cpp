@@ -189,6 +189,7 @@ Scene scene_of_map(const EvaluateOptions& options, const std::optional<FilePlace
     }
     auto scene = read_scene(options.scenario, options.world);
     if (!scene) throw CommandFailure(scene.error());
+    for (const std::string& warning : scene->world.warnings()) spdlog::warn("{}", warning);
     return judged(std::move(*scene));
 }
 
@@ -261,6 +262,7 @@ void add_evaluate_command(CLI::App& app) {
         ->check(existing_file());
     command->add_option("--world", options->world, "World (SDF) in place of the recording's; likewise")
         ->check(existing_file());
+    add_model_path(*command);
     command
         ->add_option(
             "--rig", options->rig,

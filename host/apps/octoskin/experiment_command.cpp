@@ -64,6 +64,8 @@ void add_experiment_command(CLI::App& app) {
         ->check(existing_file());
     command->add_option("--world", request->inputs.world, "World (SDF) in place of the scenario's")
         ->check(existing_file());
+    add_model_path(*command);
+    request->inputs.on_world_warning = [](const std::string& warning) { spdlog::warn("{}", warning); };
     command->callback([request] { run_experiment(*request); });
 }
 

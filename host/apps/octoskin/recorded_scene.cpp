@@ -148,6 +148,8 @@ Result<RecordedScene, AppError> read_recorded_scene(const FilePlace& directory, 
     if (!world) return unexpected(scene_there ? world.error() : scene_there.error());
     auto scene = read_scene(*scenario, *world);
     if (!scene) return unexpected(scene.error());
+    const auto& of_world = scene->world.warnings();
+    warnings.insert(warnings.end(), of_world.begin(), of_world.end());
     return RecordedScene{std::move(*scene), std::move(warnings)};
 }
 

@@ -89,6 +89,7 @@ void add_simulate_command(CLI::App& app) {
         ->check(existing_file());
     command->add_option("--world", request->world, "World (SDF) in place of the scenario's")
         ->check(existing_file());
+    add_model_path(*command);
     command
         ->add_option("--seed", request->seed,
                      "Noise, parts, clocks, and where the world stands in the map's grid")
@@ -117,6 +118,7 @@ void add_simulate_command(CLI::App& app) {
                       "Exit code 0 although the image does what the chip's manuals forbid");
     command->callback([options] {
         options->request.out = options->out;
+        options->request.on_world_warning = [](const std::string& warning) { spdlog::warn("{}", warning); };
         options->request.on_scene_gap = [](const std::string& why) {
             spdlog::warn(
                 "the recording goes without its world, and evaluating it needs --scenario and "

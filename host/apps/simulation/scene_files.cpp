@@ -25,7 +25,7 @@ Status<AppError> write_files(const Scene& scene, const sim::WorldCopy& world, co
 }
 
 std::string bytes_of(const sim::World& world) {
-    return sim::to_bytes(world.solids());
+    return sim::to_bytes(sim::SolidsOfFile{world.solids()});
 }
 
 /// What differs between the scene and what is read from its files; empty: nothing.

@@ -12,6 +12,7 @@
 #include "host/apps/recording/app_error.hpp"
 #include "host/io/folder/file_place.hpp"
 #include "hw/sim/experiment/experiment.hpp"
+#include "hw/sim/world/world.hpp"
 
 namespace octoskin {
 
@@ -27,8 +28,13 @@ struct SimulationRequest {
     FilePlace out{};                                ///< made if it is not there
     /// Is told why the recording goes without its scene, if it does.
     std::function<void(const std::string& why)> on_scene_gap{};
+    /// Of each thing that was passed over when the world was read.
+    std::function<void(const std::string& warning)> on_world_warning{};
     bool may_replace = false;  ///< what is in `out`, if that is a simulated recording
 };
+
+/// Hands each of the world's warnings to on_world_warning, if there is one.
+void tell_world_warnings(const SimulationRequest& request, const sim::World& world);
 
 /// Simulates and records; unless it succeeds, `out` stays as it was. The recording's rig has the seed's shift
 /// in T_map_base. Several threads may each make a recording. state: not to be called while another thread

@@ -41,6 +41,7 @@ Result<StudyWorld, AppError> read_world(const SimulationRequest& inputs, double 
     auto scene = read_scene(inputs.scenario, inputs.world);
     if (!scene) return unexpected(scene.error());
     if (const auto still = check_stands_still(*scene); !still) return unexpected(still.error());
+    tell_world_warnings(inputs, scene->world);
     const auto rig = read_given_rig(inputs.rig, inputs.robot);
     if (!rig) return unexpected(rig.error());
     evaluation::TruthConfig truth = truth_config_of(scene->scenario, resolution_m);
@@ -133,6 +134,7 @@ class SeedWorkers {
             .keeps_recording = is_first,
             .main_configuration = main_of(configurations_).name,
             .keeps_maps = is_first};
+        seed_request.simulation.on_world_warning = {};  // they are the same for every seed
         seed_request.simulation.seed = request_.seeds[index];
         return seed_request;
     }

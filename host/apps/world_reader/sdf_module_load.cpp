@@ -78,7 +78,7 @@ SolidsOrError load_solids(const std::filesystem::path& sdf, const WorldFiles* fi
     if (const auto xml_error = xml_error_of(path, files == nullptr)) return failed(*xml_error);
     const auto module = sdf_module();
     if (!module) return failed(module.error());
-    SolidsOrError solids = std::vector<Solid>();
+    SolidsOrError solids = SolidsOfFile{};
     module->read_solids({.file = sdf, .path = path, .files = files}, &solids);
     return solids;
 }

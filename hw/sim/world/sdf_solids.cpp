@@ -3,8 +3,6 @@
 #include <string>
 #include <utility>
 
-#include "hw/sim/world/solids_bytes.hpp"
-
 namespace octoskin::sim {
 
 SolidsOrError read_solids(const FilePlace& sdf, const ReadLimits& limits) {
@@ -15,7 +13,10 @@ SolidsOrError read_solids(const FilePlace& sdf, const ReadLimits& limits) {
     if (!bytes) return failed(bytes.error());
     auto solids = from_bytes(*bytes);
     if (!solids) return failed("what reads it broke off");
-    if (*solids) return std::move(*solids);
+    if (*solids) {
+        for (std::string& warning : (*solids)->warnings) warning = sdf.shown().string() + ": " + warning;
+        return std::move(*solids);
+    }
     return unexpected(WorldError{sdf.shown(), solids->error().element, solids->error().what});
 }
 

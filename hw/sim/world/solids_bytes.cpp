@@ -7,7 +7,7 @@
 namespace octoskin::sim {
 namespace {
 
-constexpr std::string_view kMark = "octoskin-solids/1\n";
+constexpr std::string_view kMark = "octoskin-solids/2\n";
 enum class Kind : std::uint8_t { solids = 1, error = 2 };
 
 class Writer {
@@ -106,8 +106,10 @@ std::string to_bytes(const SolidsOrError& solids) {
         return writer.take();
     }
     writer.put(Kind::solids);
-    writer.put(static_cast<std::uint64_t>(solids->size()));
-    for (const Solid& solid : *solids) {
+    writer.put(static_cast<std::uint64_t>(solids->warnings.size()));
+    for (const std::string& warning : solids->warnings) writer.put_text(warning);
+    writer.put(static_cast<std::uint64_t>(solids->solids.size()));
+    for (const Solid& solid : solids->solids) {
         writer.put_text(solid.name);
         writer.put_text(solid.model);
         writer.put_vectors(solid.vertices);
@@ -128,14 +130,16 @@ std::optional<SolidsOrError> from_bytes(std::string_view bytes) {
         return SolidsOrError(unexpected(std::move(error)));
     }
     if (kind != Kind::solids) return std::nullopt;
-    std::vector<Solid> solids;
+    SolidsOfFile read;
+    for (auto left = reader.take<std::uint64_t>(); left > 0 && reader.is_whole(); --left)
+        read.warnings.push_back(reader.take_text());
     for (auto left = reader.take<std::uint64_t>(); left > 0; --left) {
         Solid solid = take_solid(reader);
         if (!reader.is_whole() || !has_its_corners(solid)) return std::nullopt;
-        solids.push_back(std::move(solid));
+        read.solids.push_back(std::move(solid));
     }
     if (!reader.is_at_end()) return std::nullopt;
-    return SolidsOrError(std::move(solids));
+    return SolidsOrError(std::move(read));
 }
 
 }  // namespace octoskin::sim

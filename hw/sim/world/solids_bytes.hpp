@@ -1,4 +1,5 @@
-// What octoskin-world-read hands to the program that started it: solids, or what is wrong with the file.
+// What octoskin-world-read hands to the program that started it: solids and warnings, or what is wrong with
+// the file.
 #pragma once
 
 #include <optional>
@@ -12,7 +13,12 @@
 
 namespace octoskin::sim {
 
-using SolidsOrError = Result<std::vector<Solid>, WorldError>;
+struct SolidsOfFile {
+    std::vector<Solid> solids;
+    std::vector<std::string> warnings = {};  ///< what was passed over, without the file's name
+};
+
+using SolidsOrError = Result<SolidsOfFile, WorldError>;
 
 /// Both ends are of one build and one machine: numbers as they lie in memory, every bit kept.
 [[nodiscard]] std::string to_bytes(const SolidsOrError& solids);

@@ -85,6 +85,7 @@ struct World::Impl {
     }
 
     std::vector<Solid> solids;
+    std::vector<std::string> warnings;
     std::vector<Eigen::AlignedBox3d> bounds;
     RayCaster caster;
 };
@@ -93,7 +94,10 @@ std::string WorldError::message() const {
     return file.string() + ": " + (element.empty() ? "" : element + ": ") + what;
 }
 
-World::World(std::vector<Solid> solids) : impl_(std::make_unique<Impl>(std::move(solids))) {}
+World::World(std::vector<Solid> solids, std::vector<std::string> warnings)
+    : impl_(std::make_unique<Impl>(std::move(solids))) {
+    impl_->warnings = std::move(warnings);
+}
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
@@ -103,7 +107,11 @@ Result<World, WorldError> World::read(const FilePlace& sdf) {
     if (!solids) {
         return unexpected(solids.error());
     }
-    return World(std::move(*solids));
+    return World(std::move(solids->solids), std::move(solids->warnings));
+}
+
+const std::vector<std::string>& World::warnings() const noexcept {
+    return impl_->warnings;
 }
 
 const std::vector<Solid>& World::solids() const noexcept {

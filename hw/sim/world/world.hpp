@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/result.hpp"
@@ -29,7 +30,7 @@ class World {
     /// The visuals of an SDF file; see read_solids() for shapes, errors, limits, and which files it may refer
     /// to.
     [[nodiscard]] static Result<World, WorldError> read(const FilePlace& sdf);
-    explicit World(std::vector<Solid> solids);
+    explicit World(std::vector<Solid> solids, std::vector<std::string> warnings = {});
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
     ~World();
@@ -47,6 +48,8 @@ class World {
     void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
                   double range_max_m, std::span<RayHit> hits) const;
     [[nodiscard]] const std::vector<Solid>& solids() const noexcept;
+    /// What was passed over when it was read, each with the file's name.
+    [[nodiscard]] const std::vector<std::string>& warnings() const noexcept;
 
     /// Calls `visit(point, solid index)` for points of the surface of all solids together, no two neighbours
     /// further apart than `pitch_m`. Points of a solid that are buried in or touch another solid are left

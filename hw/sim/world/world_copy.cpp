@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <optional>
 #include <utility>
+
+#include "hw/sim/world/model_folders.hpp"
 
 namespace octoskin::sim {
 namespace {
@@ -78,7 +81,9 @@ class Copier {
             begin == std::string::npos ? "" : uri.substr(begin, uri.find_last_not_of(" \t\r\n") + 1 - begin);
         if (uri.starts_with(kFileScheme)) uri.erase(0, kFileScheme.size());
         if (const auto known = names_.find(uri); known != names_.end()) return known->second;
-        const FilePlace mesh = sdf_.beside(uri);
+        // What lies in a recording refers to that alone.
+        const auto of_model = sdf_.folder() == nullptr ? find_model_file(uri) : std::nullopt;
+        const FilePlace mesh = of_model ? FilePlace(*of_model) : sdf_.beside(uri);
         std::string ending = mesh.name().extension().string();
         std::transform(ending.begin(), ending.end(), ending.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

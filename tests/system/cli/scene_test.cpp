@@ -36,6 +36,32 @@ std::string table_of(const Said& said) {
     return said.output.substr(said.output.find("Voxels against"));
 }
 
+TEST_F(SceneOfARecording, has_the_meshes_that_were_found_in_folders_of_models) {
+    make_kitchen();
+    std::filesystem::create_directories(path("models/kitchen"));
+    std::filesystem::rename(path("worlds/meshes"), path("models/kitchen/meshes"));
+    ASSERT_EQ(
+        run("sed -i 's#<uri>meshes/#<uri>model://kitchen/meshes/#; s#<model name=.cone.>#&<mimic/>#' " +
+            kitchen())
+            .exit_code,
+        0);
+    const std::string simulate = "simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
+                                 " --scenario " + source("tests/data/short/scenario.yaml") + " --world " +
+                                 kitchen();
+    const Said nowhere = octoskin(simulate);
+    EXPECT_EQ(nowhere.exit_code, 65);
+    EXPECT_THAT(nowhere.output, AllOf(HasSubstr("model://kitchen/meshes/"), HasSubstr("--model-path")));
+    const Said made = octoskin(simulate + " --model-path " + path("worlds") + ":" + path("models"));
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+    EXPECT_THAT(made.output, AllOf(HasSubstr("warning " + kitchen() + ": line "),
+                                   HasSubstr("<mimic> in <model>"), Not(HasSubstr("without its world"))));
+    const std::string world = content(path("rec/world.sdf"));
+    EXPECT_THAT(world, AllOf(HasSubstr("mesh_01.obj"), Not(HasSubstr("model://"))));
+    const Said judged = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(judged.exit_code, 0) << judged.output;
+    EXPECT_THAT(judged.output, HasSubstr("<mimic> in <model>"));
+}
+
 TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     make_kitchen();
     record_short("rec", "--world " + kitchen());

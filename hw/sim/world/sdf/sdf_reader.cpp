@@ -2,11 +2,17 @@
 
 #include <console_bridge/console.h>
 
+#include <algorithm>
 #include <fstream>
 #include <ignition/math/eigen3/Conversions.hh>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <sdf/sdf.hh>
+#include <string_view>
+#include <utility>
 
+#include "hw/sim/world/model_folders.hpp"
 #include "hw/sim/world/sdf/sdf_shapes.hpp"
 
 namespace octoskin::sim {
@@ -27,19 +33,94 @@ std::string line_of(const std::filesystem::path& file, int number) {
     return first == std::string::npos ? "" : line.substr(first, line.find_last_not_of(" \t\r") + 1 - first);
 }
 
-/// The parser's first error; the others are the same one, told again for each element round it.
-std::string text_of(const sdf::Errors& errors, const std::filesystem::path& file) {
-    const sdf::Error& error = errors.front();
+/// "box" of ".../geometry/box" if `up` is 0, "geometry" if it is 1; without its number or name in brackets.
+std::string name_in_path(const sdf::Error& error, std::size_t up) {
+    const std::filesystem::path path = error.XmlPath().value_or("");
+    auto at = path.end();
+    for (std::size_t i = 0; i <= up; ++i) {
+        if (at == path.begin()) return "";
+        --at;
+    }
+    const std::string name = at->string();
+    return name.substr(0, name.find('['));
+}
+
+bool is_unknown_element(const sdf::Error& error) {
+    return error.Code() == sdf::ErrorCode::ELEMENT_INCORRECT_TYPE &&
+           error.Message().find("not defined in SDF") != std::string::npos;
+}
+
+/// What is unknown in the shape of something that is seen may decide what it looks like. Below <geometry>
+/// itself it is a shape that cannot be drawn, which add_solid() names.
+bool is_in_seen_shape(const sdf::Error& error) {
+    constexpr std::string_view kShapes[] = {"box",       "cylinder", "sphere", "capsule",
+                                            "ellipsoid", "plane",    "mesh"};
+    const bool is_seen = error.XmlPath().value_or("").find("/visual") != std::string::npos;
+    return is_seen && std::ranges::find(kShapes, name_in_path(error, 1)) != std::end(kShapes);
+}
+
+/// One character more, less or other.
+bool is_alike(std::string_view a, std::string_view b) {
+    if (a.size() > b.size()) std::swap(a, b);
+    if (b.size() - a.size() > 1) return false;
+    const auto [in_a, in_b] = std::ranges::mismatch(a, b);
+    const auto from_a = static_cast<std::size_t>(in_a - a.begin());
+    const auto from_b = static_cast<std::size_t>(in_b - b.begin());
+    const std::size_t skipped = a.size() == b.size() && in_a != a.end() ? 1 : 0;
+    return a.substr(from_a + skipped) == b.substr(std::min(from_b + 1, b.size()));
+}
+
+/// What decides where something is or how it looks, in a slip of the pen: "poze". Passed over it would give
+/// another world.
+bool is_misspelt(const sdf::Error& error) {
+    constexpr std::string_view kThatCount[] = {"model", "link",    "visual", "geometry",
+                                               "pose",  "include", "frame"};
+    constexpr std::string_view kThatHaveThem[] = {"world", "model", "link", "visual", "include", "frame"};
+    const std::string name = name_in_path(error, 0);
+    return std::ranges::find(kThatHaveThem, name_in_path(error, 1)) != std::end(kThatHaveThem) &&
+           std::ranges::any_of(kThatCount, [&](std::string_view known) { return is_alike(name, known); });
+}
+
+/// That something round an error could not be loaded: the error itself is there, too.
+bool is_echo(const sdf::Error& error) {
+    return error.Message().starts_with("Failed to load a ");
+}
+
+/// Whether there is no world because of it.
+bool is_refusing(const sdf::Error& error) {
+    if (is_unknown_element(error)) return is_in_seen_shape(error) || is_misspelt(error);
+    return error.Code() != sdf::ErrorCode::LINK_INERTIA_INVALID && !is_echo(error);
+}
+
+/// "<density> in <inertial>".
+std::string element_of(const sdf::Error& error) {
+    std::string text = "<";  // GCC 12 warns of "<" + ... for nothing
+    text += name_in_path(error, 0);
+    text += "> in <";
+    text += name_in_path(error, 1);
+    return text + ">";
+}
+
+/// "line 7", of an included file "model.sdf, line 7"; empty if it is not known.
+std::string place_of(const sdf::Error& error, const std::filesystem::path& file) {
+    if (!error.LineNumber()) return "";
+    const std::filesystem::path at = error.FilePath().value_or(file.string());
+    return (at == file ? "" : at.string() + ", ") + "line " + std::to_string(*error.LineNumber());
+}
+
+std::string text_of(const sdf::Error& error, const std::filesystem::path& file) {
     std::string text = error.Message();
     text.erase(text.find_last_not_of(".\n ") + 1);
-    if (error.LineNumber()) {
-        text = "line " + std::to_string(*error.LineNumber()) + ": " + text + ", at '" +
-               line_of(file, *error.LineNumber()) + "'";
+    if (error.Code() == sdf::ErrorCode::URI_LOOKUP) {
+        const bool is_remote =
+            text.find("://") != std::string::npos && text.find(kModelScheme) == std::string::npos;
+        text += is_remote ? "; octoskin fetches nothing: put the model into a folder of "
+                          : "; give the folder that the model's folder lies in by ";
+        text += kModelFoldersHint;
     }
-    // The parser knows the wrong element's name and line but not which shapes would be right.
-    return text.find("child of element[geometry]") == std::string::npos
-               ? text
-               : text + "; supported shapes are " + kSdfShapes;
+    if (!error.LineNumber()) return text;
+    const std::filesystem::path at = error.FilePath().value_or(file.string());
+    return place_of(error, file) + ": " + text + ", at '" + line_of(at, *error.LineNumber()) + "'";
 }
 
 /// Silences the libraries while it lives: what they print comes back as errors, and when sdformat cannot read
@@ -63,9 +144,7 @@ class Reader {
     SolidsOrError read() {
         sdf::Root root;
         if (load(root) && add_root(root)) {
-            if (!solids_.empty()) {
-                return std::move(solids_);
-            }
+            if (!read_.solids.empty()) return std::move(read_);
             fail("", "no visual with a shape in it: there is nothing to see");
         }
         return unexpected(*error_);
@@ -82,11 +161,33 @@ class Reader {
             const auto beside = directory / uri;
             return std::filesystem::exists(beside) ? beside.string() : std::string();
         });
+        if (input_.files == nullptr) {
+            for (const auto& folder : model_folders())
+                config.AddURIPath(std::string(kModelScheme), folder.string());
+        }
         try {
             const sdf::Errors errors = root.Load(input_.path.string(), config);
-            return errors.empty() || fail("", text_of(errors, input_.path));
+            const auto first = std::ranges::find_if(errors, is_refusing);
+            if (first != errors.end()) return fail("", text_of(*first, input_.path));
+            warn_of(errors);
+            return true;
         } catch (const std::exception& exception) {
             return fail("", std::string("the SDF parser gave up: ") + exception.what());
+        }
+    }
+
+    /// Of each kind of element once, with how many there are.
+    void warn_of(const sdf::Errors& errors) {
+        std::map<std::string, std::pair<std::string, int>> unknown;
+        for (const sdf::Error& error : errors) {
+            if (!is_unknown_element(error)) continue;
+            auto& [first, count] = unknown[element_of(error)];
+            if (count++ == 0) first = place_of(error, input_.path) + ", " + error.XmlPath().value_or("");
+        }
+        for (const auto& [element, found] : unknown) {
+            read_.warnings.push_back(found.first + ": " + element +
+                                     " is not known to the installed sdformat, and is passed over (" +
+                                     std::to_string(found.second) + " in all)");
         }
     }
 
@@ -134,6 +235,9 @@ class Reader {
 
     bool add_link(const sdf::Link& link, const Eigen::Isometry3d& T_world_model, const std::string& model) {
         const std::string element = "model '" + model + "', link '" + link.Name() + "'";
+        // Rays need no inertia.
+        if (!link.Inertial().MassMatrix().IsValid())
+            read_.warnings.push_back(element + ": its inertia is not a real body's, and is passed over");
         const auto T_model_link = resolve(element, link.SemanticPose());
         for (std::uint64_t i = 0; T_model_link && i < link.VisualCount(); ++i) {
             const sdf::Visual& visual = *link.VisualByIndex(i);
@@ -162,7 +266,7 @@ class Reader {
             turn_inside_out(mesh);
         }
         const std::string model = name.substr(0, std::min(name.find("::"), name.find('/')));
-        solids_.push_back({name, model, std::move(mesh.vertices), std::move(mesh.triangles), closed});
+        read_.solids.push_back({name, model, std::move(mesh.vertices), std::move(mesh.triangles), closed});
         return true;
     }
 
@@ -170,7 +274,7 @@ class Reader {
         ignition::math::Pose3d resolved;
         const sdf::Errors errors = pose.Resolve(resolved);
         if (!errors.empty()) {
-            fail(element, text_of(errors, input_.path));
+            fail(element, text_of(errors.front(), input_.path));
             return std::nullopt;
         }
         if (!resolved.IsFinite()) {
@@ -187,7 +291,7 @@ class Reader {
 
     const SdfInput& input_;
     std::filesystem::path file_;
-    std::vector<Solid> solids_;
+    SolidsOfFile read_;
     std::optional<WorldError> error_;
 };
 

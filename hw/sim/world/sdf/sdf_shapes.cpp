@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <ignition/math/eigen3/Conversions.hh>
+#include <optional>
 #include <sdf/sdf.hh>
 #include <string_view>
 
+#include "hw/sim/world/model_folders.hpp"
 #include "hw/sim/world/sdf/mesh_file.hpp"
 #include "hw/sim/world/shapes.hpp"
 
@@ -57,6 +59,12 @@ MeshOrError mesh_file_of(const sdf::Mesh& mesh, const SdfInput& world) {
     std::string uri = mesh.Uri();
     if (uri.starts_with(kFileScheme)) {
         uri.erase(0, kFileScheme.size());
+    } else if (uri.starts_with(kModelScheme) && world.files == nullptr) {
+        const auto found = find_model_file(uri);
+        if (!found) {
+            return unexpected("mesh uri '" + uri + "': no such file in any folder of " + kModelFoldersHint);
+        }
+        uri = std::filesystem::absolute(*found).string();
     } else if (uri.find("://") != std::string::npos) {
         return unexpected("mesh uri '" + uri +
                           "' is not supported; expected a path relative to the SDF file");
@@ -108,9 +116,13 @@ Result<TriangleMesh, std::string> mesh_of(const sdf::Geometry& geometry, const S
         case sdf::GeometryType::EMPTY:
             break;
     }
-    const auto shape = geometry.Element() ? geometry.Element()->GetFirstElement() : nullptr;
-    return unexpected("unsupported shape '" + (shape ? shape->GetName() : "empty") +
-                      "'; supported shapes are " + kSdfShapes);
+    const auto element = geometry.Element();
+    const auto shape = element ? element->GetFirstElement() : nullptr;
+    // What sdformat does not know has no line of its own.
+    const auto line = element ? element->LineNumber() : std::nullopt;
+    std::string what = line ? "line " + std::to_string(*line) + ": " : "";
+    what += "unsupported shape '" + (shape ? shape->GetName() : "empty");
+    return unexpected(what + "'; supported shapes are " + kSdfShapes);
 }
 
 }  // namespace octoskin::sim

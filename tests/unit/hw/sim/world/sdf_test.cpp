@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
 
+#include "host/io/folder/open_folder.hpp"
+#include "hw/sim/world/model_folders.hpp"
 #include "hw/sim/world/world.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -74,8 +77,9 @@ TEST(Sdf, names_the_element_with_an_unsupported_shape_and_the_supported_ones) {
     EXPECT_THAT(error_of("heightmap.sdf"),
                 AllOf(HasSubstr("heightmap.sdf: model 'hill', link 'body', visual 'slope'"),
                       HasSubstr("unsupported shape 'heightmap'"), HasSubstr("box, cylinder, sphere")));
-    EXPECT_THAT(error_of("cone-element.sdf"), AllOf(HasSubstr("cone-element.sdf"), HasSubstr("line 7"),
-                                                    HasSubstr("cone"), HasSubstr("box, cylinder, sphere")));
+    EXPECT_THAT(error_of("cone-element.sdf"),
+                AllOf(HasSubstr("cone-element.sdf: model '"), HasSubstr("line 7"),
+                      HasSubstr("unsupported shape 'cone'"), HasSubstr("box, cylinder, sphere")));
     EXPECT_THAT(error_of("empty-geometry.sdf"), AllOf(HasSubstr("visual 'nothing'"), HasSubstr("empty")));
 }
 
@@ -88,6 +92,168 @@ TEST(Sdf, passes_on_the_parsers_message_for_a_broken_file) {
                 AllOf(HasSubstr("text-for-a-number.sdf: line 7"), HasSubstr("left")));
     EXPECT_THAT(error_of("no-such-file.sdf"), HasSubstr("no such file"));
     EXPECT_THAT(error_of("empty.sdf"), HasSubstr("empty.sdf: "));
+}
+
+/// A world with a box of 0.2 m, something else in its link and visual, and in the world.
+std::string world_with(const std::string& in_link, const std::string& in_world = "") {
+    return "<?xml version='1.0'?>\n<sdf version='1.9'><world name='w'>" + in_world +
+           "\n<model name='crate'><link name='l'>" + in_link +
+           "<visual name='v'><geometry><box><size>0.2 0.2 0.2</size></box></geometry></visual></link></model>"
+           "</world></sdf>\n";
+}
+
+std::string inertia(double izz) {
+    return "<inertial><mass>1</mass><inertia><ixx>1</ixx><ixy>0</ixy><ixz>0</ixz><iyy>1</iyy><iyz>0</iyz>"
+           "<izz>" +
+           std::to_string(izz) + "</izz></inertia></inertial>";
+}
+
+TEST(Sdf, warns_of_what_the_parser_does_not_know_and_rays_do_not_need) {
+    const testing_support::ScratchFolder scratch;
+    struct Case {
+        std::string text;
+        std::string named;
+    };
+    const std::string lamp = "<light name='lamp' type='point'><visualize>false</visualize></light>";
+    for (const Case& each :
+         {Case{world_with("<inertial auto='true'><density>600</density></inertial>"), "line 3, "},
+          Case{world_with("<inertial auto='true'><density>600</density></inertial>"),
+               "<density> in <inertial>"},
+          Case{world_with("", lamp), "<visualize> in <light>"},
+          Case{world_with("<fluid_added_mass/>"), "model[@name=\"crate\"]"},
+          Case{world_with("<collision name='c'><geometry><cone/></geometry></collision>"),
+               "<cone> in <geometry>"},
+          Case{world_with(inertia(5.0)), "model 'crate', link 'l': its inertia"}}) {
+        const auto world = World::read(scratch.write("w.sdf", each.text));
+        ASSERT_TRUE(world) << world.error().message();
+        EXPECT_EQ(world->solids().size(), 1U);
+        ASSERT_EQ(world->warnings().size(), 1U) << each.text;
+        EXPECT_THAT(world->warnings()[0], AllOf(HasSubstr("w.sdf: "), HasSubstr(each.named)));
+    }
+    const std::string other = "<light name='other' type='point'><visualize>true</visualize></light>";
+    const auto twice = World::read(scratch.write("w.sdf", world_with("", lamp + other)));
+    ASSERT_TRUE(twice) << twice.error().message();
+    ASSERT_EQ(twice->warnings().size(), 1U);
+    EXPECT_THAT(twice->warnings()[0], HasSubstr("(2 in all)"));
+    const auto sound = World::read(scratch.write("w.sdf", world_with(inertia(1.5))));
+    ASSERT_TRUE(sound) << sound.error().message();
+    EXPECT_TRUE(sound->warnings().empty());
+}
+
+TEST(Sdf, refuses_an_unknown_element_that_may_decide_what_is_seen) {
+    const testing_support::ScratchFolder scratch;
+    const auto visual = [](const std::string& inside) {
+        return world_with("<visual name='w'>" + inside + "</visual>");
+    };
+    const std::string box = "<geometry><box><size>1 1 1</size></box></geometry>";
+    for (const std::string& text :
+         {visual("<geometry><box><siez>1 1 1</siez><size>1 1 1</size></box></geometry>"),
+          visual(box + "<poze>1 0 0 0 0 0</poze>"), visual(box + "<posse>1 0 0 0 0 0</posse>"),
+          world_with("<visal name='x'>" + box + "</visal>"), world_with("", "<mode name='x'/>")}) {
+        const auto world = World::read(scratch.write("w.sdf", text));
+        ASSERT_FALSE(world) << text;
+        EXPECT_THAT(world.error().message(), HasSubstr("not defined in SDF"));
+    }
+}
+
+/// Has only these folders in an environment's variable while it lives.
+class ModelFolders {
+  public:
+    ModelFolders(const char* variable, const std::string& folders) : variable_(variable) {
+        for (const char* each : kModelFolderVariables) ::unsetenv(each);
+        ::setenv(variable, folders.c_str(), 1);
+    }
+    ModelFolders(const ModelFolders&) = delete;
+    ModelFolders& operator=(const ModelFolders&) = delete;
+    ~ModelFolders() { ::unsetenv(variable_); }
+
+  private:
+    const char* variable_;
+};
+
+class ModelUri : public testing::Test {
+  protected:
+    ModelUri() {
+        std::filesystem::create_directories(scratch_ / "models/crate/meshes");
+        std::filesystem::create_directories(scratch_ / "others/crate/meshes");
+        scratch_.write("models/crate/model.config",
+                       "<model><name>crate</name><sdf version='1.6'>model.sdf</sdf></model>");
+        scratch_.write("models/crate/model.sdf",
+                       "<sdf version='1.6'><model name='crate'><static>true</static><link name='l'>" +
+                           inertia(5.0) + mesh_visual("model://crate/meshes/a.obj") +
+                           "</link></model></sdf>");
+        scratch_.write("models/crate/meshes/a.obj",
+                       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    }
+    static std::string mesh_visual(const std::string& uri) {
+        return "<visual name='v'><geometry><mesh><uri>" + uri + "</uri></mesh></geometry></visual>";
+    }
+    std::filesystem::path world(const std::string& inside) {
+        return scratch_.write("w.sdf", "<sdf version='1.6'><world name='w'>" + inside + "</world></sdf>");
+    }
+    std::string models() const { return (scratch_ / "models").string(); }
+
+    testing_support::ScratchFolder scratch_;
+};
+
+TEST_F(ModelUri, is_found_for_includes_and_meshes_by_every_variable) {
+    const auto included = world(
+        "<include><uri>model://crate</uri><pose>0.6 0 0 0 0 0</pose></include><model name='m'><link "
+        "name='l'>" +
+        mesh_visual("model://crate/meshes/a.obj") + "</link></model>");
+    for (const char* variable : kModelFolderVariables) {
+        for (const std::string& folders : {models(), "/nonexistent:" + models() + ":/tmp"}) {
+            const ModelFolders set(variable, folders);
+            const auto read = World::read(included);
+            ASSERT_TRUE(read) << variable << ": " << read.error().message();
+            ASSERT_EQ(read->solids().size(), 2U);
+            EXPECT_EQ(read->solids()[0].model, "crate");
+            EXPECT_EQ(read->solids()[0].vertices.size(), 4U);
+            ASSERT_EQ(read->warnings().size(), 1U);
+            EXPECT_THAT(read->warnings()[0], HasSubstr("model 'crate', link 'l': its inertia"));
+        }
+    }
+}
+
+TEST_F(ModelUri, of_an_earlier_folder_hides_that_of_a_later_one) {
+    scratch_.write("others/crate/meshes/a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const auto mesh = world("<model name='m'><link name='l'>" + mesh_visual("model://crate/meshes/a.obj") +
+                            "</link></model>");
+    const std::string others = (scratch_ / "others").string();
+    const ModelFolders set("GZ_SIM_RESOURCE_PATH", models());
+    put_model_folders_first({others});
+    EXPECT_EQ(World::read(mesh)->solids()[0].vertices.size(), 3U);
+    ::setenv("SDF_PATH", (models() + ":" + others).c_str(), 1);
+    EXPECT_EQ(World::read(mesh)->solids()[0].vertices.size(), 4U);
+    ::unsetenv("SDF_PATH");
+}
+
+TEST_F(ModelUri, that_is_nowhere_is_refused_with_what_would_help) {
+    const ModelFolders set("SDF_PATH", "/nonexistent");
+    const auto error_of_world = [&](const std::string& inside) {
+        const auto read = World::read(world(inside));
+        return read ? "it was accepted" : read.error().message();
+    };
+    EXPECT_THAT(error_of_world("\n<include><uri>model://crate</uri></include>"),
+                AllOf(HasSubstr("w.sdf: line 2: "), HasSubstr("model://crate"), HasSubstr("--model-path")));
+    EXPECT_THAT(error_of_world("<include><uri>https://fuel.example/1.0/a/models/b</uri></include>"),
+                AllOf(HasSubstr("octoskin fetches nothing"), HasSubstr("--model-path")));
+    EXPECT_THAT(error_of_world("<model name='m'><link name='l'>" + mesh_visual("model://crate/meshes/a.obj") +
+                               "</link></model>"),
+                AllOf(HasSubstr("model 'm', link 'l', visual 'v'"), HasSubstr("model://crate/meshes/a.obj"),
+                      HasSubstr("--model-path")));
+}
+
+TEST_F(ModelUri, of_a_world_inside_a_recording_is_never_looked_for) {
+    const ModelFolders set("SDF_PATH", models());
+    (void)world("<model name='m'><link name='l'>" + mesh_visual("model://crate/meshes/a.obj") +
+                "</link></model>");
+    const FilePlace inside(OpenFolder::open(scratch_.path(), FolderAccess::read).value(), "w.sdf");
+    const auto mesh = World::read(inside);
+    ASSERT_FALSE(mesh);
+    EXPECT_THAT(mesh.error().message(), HasSubstr("is not supported"));
+    (void)world("<include><uri>model://crate</uri></include>");
+    EXPECT_FALSE(World::read(inside));
 }
 
 TEST(Sdf, refuses_sizes_and_meshes_that_make_no_solid) {

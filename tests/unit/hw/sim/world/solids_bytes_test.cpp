@@ -32,10 +32,11 @@ void expect_equal(const Solid& a, const Solid& b) {
 
 TEST(SolidsBytes, bring_every_bit_of_the_solids) {
     const auto solids = two_solids();
-    const auto again = from_bytes(to_bytes(solids));
+    const auto again = from_bytes(to_bytes(SolidsOfFile{solids, {"one", ""}}));
     ASSERT_TRUE(again && *again);
-    ASSERT_EQ((*again)->size(), 2U);
-    for (std::size_t i = 0; i < 2; ++i) expect_equal((**again)[i], solids[i]);
+    EXPECT_EQ((*again)->warnings, (std::vector<std::string>{"one", ""}));
+    ASSERT_EQ((*again)->solids.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) expect_equal((*again)->solids[i], solids[i]);
 }
 
 TEST(SolidsBytes, bring_an_error_without_its_file) {
@@ -49,7 +50,7 @@ TEST(SolidsBytes, bring_an_error_without_its_file) {
 
 TEST(SolidsBytes, that_are_cut_off_or_go_on_are_refused) {
     for (const std::string& whole :
-         {to_bytes(two_solids()), to_bytes(unexpected(WorldError{"", "element", "what"}))}) {
+         {to_bytes(SolidsOfFile{two_solids()}), to_bytes(unexpected(WorldError{"", "element", "what"}))}) {
         for (std::size_t size = 0; size < whole.size(); ++size)
             EXPECT_FALSE(from_bytes(std::string_view(whole).substr(0, size))) << size;
         EXPECT_FALSE(from_bytes(whole + '\0'));
@@ -57,22 +58,23 @@ TEST(SolidsBytes, that_are_cut_off_or_go_on_are_refused) {
 }
 
 TEST(SolidsBytes, with_counts_beyond_their_end_are_refused_without_making_room) {
-    const std::string whole = to_bytes(two_solids());
+    const std::string whole = to_bytes(SolidsOfFile{two_solids()});
     for (std::size_t at = 0; at + 8 <= whole.size(); ++at) {
         std::string changed = whole;
         for (std::size_t i = 0; i < 8; ++i) changed[at + i] = '\xff';
         (void)from_bytes(changed);  // no crash, no allocation beyond the bytes: the sanitizers watch
     }
-    std::string many = whole.substr(0, whole.find('\n') + 2);
-    many += std::string(7, '\xff') + '\x7f';
-    EXPECT_FALSE(from_bytes(many));
+    const std::string beginning = whole.substr(0, whole.find('\n') + 2);
+    const std::string many = std::string(7, '\xff') + '\x7f';
+    EXPECT_FALSE(from_bytes(beginning + many)) << "of warnings";
+    EXPECT_FALSE(from_bytes(beginning + std::string(8, '\0') + many)) << "of solids";
 }
 
 TEST(SolidsBytes, with_a_corner_that_is_no_vertex_are_refused) {
     for (const int corner : {2, -1, std::numeric_limits<int>::max()}) {
         auto solids = two_solids();
         solids[0].triangles[1][2] = corner;
-        EXPECT_FALSE(from_bytes(to_bytes(solids))) << corner;
+        EXPECT_FALSE(from_bytes(to_bytes(SolidsOfFile{solids}))) << corner;
     }
 }
 
