@@ -86,10 +86,16 @@ bool is_echo(const sdf::Error& error) {
     return error.Message().starts_with("Failed to load a ");
 }
 
+/// Of a type that a later sdformat knows.
+bool is_unknown_sensor(const sdf::Error& error) {
+    return error.Message().starts_with("Attempting to load a Sensor");
+}
+
 /// Whether there is no world because of it.
 bool is_refusing(const sdf::Error& error) {
     if (is_unknown_element(error)) return is_in_seen_shape(error) || is_misspelt(error);
-    return error.Code() != sdf::ErrorCode::LINK_INERTIA_INVALID && !is_echo(error);
+    return error.Code() != sdf::ErrorCode::LINK_INERTIA_INVALID && !is_unknown_sensor(error) &&
+           !is_echo(error);
 }
 
 /// "<density> in <inertial>".
@@ -184,6 +190,8 @@ class Reader {
             auto& [first, count] = unknown[element_of(error)];
             if (count++ == 0) first = place_of(error, input_.path) + ", " + error.XmlPath().value_or("");
         }
+        if (std::ranges::any_of(errors, is_unknown_sensor))
+            read_.warnings.emplace_back("a sensor of no or of unknown type is passed over");
         for (const auto& [element, found] : unknown) {
             read_.warnings.push_back(found.first + ": " + element +
                                      " is not known to the installed sdformat, and is passed over (" +

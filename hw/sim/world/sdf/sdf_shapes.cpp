@@ -67,7 +67,8 @@ MeshOrError mesh_file_of(const sdf::Mesh& mesh, const SdfInput& world) {
         uri = std::filesystem::absolute(*found).string();
     } else if (uri.find("://") != std::string::npos) {
         return unexpected("mesh uri '" + uri +
-                          "' is not supported; expected a path relative to the SDF file");
+                          "' is not supported; expected a path relative to the SDF file" +
+                          (world.files == nullptr ? ", or model://; octoskin fetches nothing" : ""));
     }
     // Without an <include> all of it is in the one file, which a checked descriptor's path does not say.
     const std::filesystem::path file =

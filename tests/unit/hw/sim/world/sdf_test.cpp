@@ -120,6 +120,7 @@ TEST(Sdf, warns_of_what_the_parser_does_not_know_and_rays_do_not_need) {
           Case{world_with("<inertial auto='true'><density>600</density></inertial>"),
                "<density> in <inertial>"},
           Case{world_with("", lamp), "<visualize> in <light>"},
+          Case{world_with("<sensor name='s' type='of_tomorrow'/>"), "a sensor of no or of unknown type"},
           Case{world_with("<fluid_added_mass/>"), "model[@name=\"crate\"]"},
           Case{world_with("<collision name='c'><geometry><cone/></geometry></collision>"),
                "<cone> in <geometry>"},
@@ -238,6 +239,9 @@ TEST_F(ModelUri, that_is_nowhere_is_refused_with_what_would_help) {
                 AllOf(HasSubstr("w.sdf: line 2: "), HasSubstr("model://crate"), HasSubstr("--model-path")));
     EXPECT_THAT(error_of_world("<include><uri>https://fuel.example/1.0/a/models/b</uri></include>"),
                 AllOf(HasSubstr("octoskin fetches nothing"), HasSubstr("--model-path")));
+    EXPECT_THAT(error_of_world("<model name='m'><link name='l'>" +
+                               mesh_visual("https://fuel.example/a/files/b.dae") + "</link></model>"),
+                AllOf(HasSubstr("model 'm', link 'l', visual 'v'"), HasSubstr("octoskin fetches nothing")));
     EXPECT_THAT(error_of_world("<model name='m'><link name='l'>" + mesh_visual("model://crate/meshes/a.obj") +
                                "</link></model>"),
                 AllOf(HasSubstr("model 'm', link 'l', visual 'v'"), HasSubstr("model://crate/meshes/a.obj"),
