@@ -62,7 +62,8 @@ class HeaderParser {
         if (!header_.is_binary && !line.starts_with(kTextMagic)) return false;
         const std::string_view behind =
             line.substr(header_.is_binary ? kBinaryMagic.size() : kTextMagic.size());
-        if (behind == "\r") {
+        has_carriage_returns_ = behind == "\r";
+        if (has_carriage_returns_) {
             differ("its lines end with a carriage return");
         } else if (!behind.empty()) {
             differ(fmt::format("\"{}\" behind the first line", excerpt(behind)));
@@ -75,10 +76,9 @@ class HeaderParser {
             take_comment(key);
             return std::nullopt;
         }
-        const std::string_view between = bytes_.substr(position_, 1);
-        if (key == "id") return take_id(next_value(key, between, has_id_));
-        if (key == "size") return take_size(next_value(key, between, has_size_));
-        if (key == "res") return take_resolution(next_value(key, between, has_resolution_));
+        if (key == "id") return take_id(next_value(key, has_id_));
+        if (key == "size") return take_size(next_value(key, has_size_));
+        if (key == "res") return take_resolution(next_value(key, has_resolution_));
         differ(fmt::format("key \"{}\" is skipped", excerpt(key)));
         rest_of_line();
         return std::nullopt;
@@ -91,19 +91,14 @@ class HeaderParser {
         header_.is_octoskins = header_.is_octoskins || line == kOctoskinsComment;
     }
 
-    /// The word behind a key, which is expected on its line, one blank behind it, the line's end behind that.
-    std::string_view next_value(std::string_view key, std::string_view between, bool& is_known) {
+    /// The word behind a key. Expected is a line of the two, one blank between them.
+    std::string_view next_value(std::string_view key, bool& is_known) {
         if (std::exchange(is_known, true)) differ(fmt::format("{} comes twice, the last counts", key));
-        const std::size_t expected = position_ + 1;
+        const std::size_t begin = position_ - key.size();
         const std::string_view value = next_word();
-        const std::size_t begin = position_ - value.size();
-        const bool is_plain =
-            between == " " && begin == expected && bytes_.substr(position_, 1).starts_with('\n');
-        const bool has_only_carriage_return = between == " " && begin == expected &&
-                                              bytes_.substr(position_, 2) == "\r\n" &&
-                                              !header_.differences.empty();
-        if (!is_plain && !has_only_carriage_return)
-            differ(fmt::format("the line of {} has more than \"{} {}\"", key, key, excerpt(value)));
+        const std::string plain = fmt::format("{} {}{}", key, value, has_carriage_returns_ ? "\r\n" : "\n");
+        if (bytes_.substr(begin, plain.size()) != plain)
+            differ(fmt::format("the line of {} is not \"{} {}\"", key, key, excerpt(value)));
         return value;
     }
 
@@ -208,6 +203,7 @@ class HeaderParser {
     std::uint64_t nodes_max_;
     std::size_t position_ = 0;
     OctomapHeader header_;
+    bool has_carriage_returns_ = false;
     bool has_id_ = false;
     bool has_size_ = false;
     bool has_resolution_ = false;
