@@ -59,8 +59,7 @@ TEST_F(UrdfEdges, what_does_not_count_refuses_no_robot) {
         "<visual><geometry><cylinder radius=\"1\"/></geometry></visual>",
         "<visual><origin xyz=\"0 0\"/><geometry><sphere radius=\"1\"/></geometry></visual>",
         "<visual><origin rpy=\"0 0 x\"/><geometry><sphere radius=\"1\"/></geometry></visual>",
-        "<visual><geometry><sphere radius=\"1\"/></geometry><material name=\"m\"><color rgba=\"2\"/>"
-        "</material></visual>",
+        "<visual><geometry><sphere radius=\"1\"/></geometry><material name=\"m\"/></visual>",
         "<contact/><self_collision_checking/><verbose value=\"x\"/>",
     };
     for (const char* in_link : in_links) {
