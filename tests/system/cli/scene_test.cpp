@@ -40,11 +40,10 @@ TEST_F(SceneOfARecording, has_the_meshes_that_were_found_in_folders_of_models) {
     make_kitchen();
     std::filesystem::create_directories(path("models/kitchen"));
     std::filesystem::rename(path("worlds/meshes"), path("models/kitchen/meshes"));
-    ASSERT_EQ(
-        run("sed -i 's#<uri>meshes/#<uri>model://kitchen/meshes/#; s#<model name=.cone.>#&<mimic/>#' " +
-            kitchen())
-            .exit_code,
-        0);
+    ASSERT_EQ(run("sed -i 's#<uri>meshes/#<uri>model://kitchen/meshes/#; s#<model name=.cone.>#&<mimic/>#' " +
+                  kitchen())
+                  .exit_code,
+              0);
     const std::string simulate = "simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
                                  " --scenario " + source("tests/data/short/scenario.yaml") + " --world " +
                                  kitchen();
