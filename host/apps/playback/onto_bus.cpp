@@ -62,8 +62,11 @@ Result<OntoBus, AppError> play_onto(const FilePlace& can_log, socketcan::CanSock
         }
     }
     played.lines_refused = reader->account().rejected();
-    if (played.interface.empty())
-        return fail(ExitCode::bad_data, can_log.shown().string() + ": no line of it is a frame");
+    if (played.interface.empty()) {
+        const auto foreign = reader->foreign_file();
+        return fail(ExitCode::bad_data,
+                    foreign ? foreign->message() : can_log.shown().string() + ": no line of it is a frame");
+    }
     return played;
 }
 

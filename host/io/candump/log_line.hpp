@@ -1,9 +1,17 @@
-// One line of a candump log, as `candump -L` and `candump -l` write it:
+// One line of a candump log. The compact form is that of `candump -L` and `candump -l`, the other is what
+// candump shows on a screen:
 //
-//     (1436509053.850870) vcan0 044#2A366C2BBA      classical; 8 identifier digits: extended, or an error
-//     frame (1436509053.850870) vcan0 044#R4              remote, with its length if that is not 0
-//     (1436509053.850870) vcan0 044##12A366C2B      CAN FD: a digit of flags (1 = bit rate switch), then the
-//     data
+//     (1436509053.850870) vcan0 044#2A366C2BBA           classical; an identifier of 8 digits is extended, or
+//     an
+//                                                        error frame
+//     (1436509053.850870) vcan0 044#R4                   remote, with its length if that is not 0
+//     (1436509053.850870) vcan0 044#2A366C2BBA010203_F   with -8: the raw length code of 8 bytes
+//     (1436509053.850870) vcan0 044##12A366C2B           CAN FD: a digit of flags (1 = bit rate switch), data
+//      (1436509053.850870)  vcan0  044   [5]  2A 36 6C 2B BA
+//      (1436509053.850870)  vcan0  RX B -  044  [05]  2A 36 6C 2B BA     -x: direction and flags; CAN FD
+//
+// The time is seconds with 3 to 9 decimals, or, with `-t A`, a date and a time of day. Any number of blanks
+// separates words.
 #pragma once
 
 #include <array>
@@ -20,7 +28,7 @@ namespace octoskin::candump {
 
 struct LogEntry {
     WallTime stamp;         ///< whole microseconds, not negative
-    std::string interface;  ///< 1 to 15 printable ASCII characters, no blank
+    std::string interface;  ///< 1 to 15 printable ASCII characters, no blank, no '#'
     wire::CanFrame frame;
     friend bool operator==(const LogEntry&, const LogEntry&) = default;
 };
@@ -29,10 +37,10 @@ struct LogEntry {
 enum class LineFault : std::uint8_t {
     blank,       ///< nothing on it
     foreign,     ///< does not begin with '(': not a line of candump
-    timestamp,   ///< not "(seconds.fraction)" with 6 or 9 digits of fraction
+    timestamp,   ///< neither "(seconds.fraction)" nor "(date time.fraction)", 3 to 9 digits of fraction
     interface,   ///< missing, longer than 15 characters, or not printable
     identifier,  ///< not 3 or 8 hexadecimal digits, or out of range
-    data,        ///< no '#', a digit that is not hexadecimal, half a byte, or something behind the frame
+    data,        ///< neither '#' nor "[length]", no hexadecimal digit, half a byte, or more behind the frame
     length,      ///< more than 8 bytes, or a length that CAN FD does not have
     too_long,    ///< more than kLineBytesMax bytes
     truncated,   ///< the file ends within the line
@@ -42,13 +50,13 @@ enum class LineFault : std::uint8_t {
             "line_data",  "line_length",  "line_too_long",  "line_truncated"};
 }
 
-/// The longest line that candump writes has 179 bytes: stamp 20, interface 16, identifier 8, FD marks 3, data
-/// 128, direction 2, CR and LF.
-inline constexpr std::size_t kLineBytesMax = 256;
+/// The longest line that candump shows has 282 bytes: colour 10, stamp 31, interface 17, direction 8,
+/// identifier 12, length 6, data 192, colour 4, CR and LF.
+inline constexpr std::size_t kLineBytesMax = 320;
 
-/// The entry in `line`, which has no line feed; a carriage return at its end is taken off, and a direction
-/// mark
-/// ("R", "T") behind the frame is allowed. Never returns `too_long` or `truncated`. Any bytes are safe.
+/// The entry in `line`, which has no line feed; a carriage return at its end and colours are taken off, and a
+/// direction mark ("R", "T") behind the frame is allowed. Dates are taken for UTC. Never returns `too_long`
+/// or `truncated`. Any bytes are safe.
 [[nodiscard]] Result<LogEntry, LineFault> parse_line(std::string_view line);
 
 /// The same line again, with a line feed. The stamp is cut to whole microseconds. Asserts what `LogEntry`

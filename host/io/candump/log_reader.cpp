@@ -1,8 +1,12 @@
 #include "host/io/candump/log_reader.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <utility>
+
+#include "host/io/candump/foreign_format.hpp"
 
 namespace octoskin::candump {
 namespace {
@@ -16,76 +20,121 @@ std::string reason_of(const FolderError& error) {
     return std::string("cannot open: ") + std::strerror(error.error_number);
 }
 
+/// How a file begins: enough to see whose it is, and what its times count from.
+struct Beginning {
+    std::string text;
+    StampKind stamps = StampKind::absolute;
+};
+
+Beginning beginning_of(std::ifstream stream) {
+    constexpr std::size_t kTextBytes = 1024;
+    constexpr std::uint64_t kLinesMax = 2 * StampKindFinder::kFramesEnough;
+    Beginning beginning;
+    StampKindFinder finder;
+    LineStream lines(std::move(stream), kLineBytesMax);
+    while (lines.number() < kLinesMax && !finder.has_enough() &&
+           lines.next() != LineStream::End::nothing_left) {
+        if (beginning.text.size() < kTextBytes) beginning.text += lines.line() + '\n';
+        if (const auto entry = parse_line(lines.line())) finder.take(entry->stamp);
+    }
+    beginning.stamps = finder.kind();
+    return beginning;
+}
+
+/// What a line lacks, in half a sentence.
+const char* lack(LineFault fault) {
+    switch (fault) {
+        case LineFault::foreign:
+            return "does not begin with a time in parentheses";
+        case LineFault::timestamp:
+            return "has no time of 3 to 9 decimals in its parentheses";
+        case LineFault::interface:
+            return "has no name of an interface behind its time";
+        case LineFault::identifier:
+            return "has no identifier of 3 or 8 hexadecimal digits";
+        case LineFault::data:
+            return "has no bytes in hexadecimal digits, behind a # or a [length]";
+        case LineFault::length:
+            return "has more bytes than a frame of its kind";
+        case LineFault::too_long:
+            return "is longer than any line of candump";
+        case LineFault::truncated:
+            return "is cut off";
+        case LineFault::blank:
+            break;
+    }
+    return "is blank";
+}
+
+/// For a message: printable, and not too long.
+std::string shown(std::string_view line) {
+    constexpr std::size_t kCharsMax = 60;
+    std::string text(line.substr(0, kCharsMax));
+    std::ranges::replace_if(
+        text, [](char c) { return c < ' ' || c > '~'; }, '?');
+    return text;
+}
+
 }  // namespace
 
 Result<LogReader, LogError> LogReader::open(const FilePlace& file) {
     const auto opened = file.open();
     if (!opened) return unexpected(LogError{file.shown(), reason_of(opened.error())});
-    std::ifstream stream(opened->path_for_libraries(), std::ios::binary);
-    if (!stream)
+    const auto stream = [&] { return std::ifstream(opened->path_for_libraries(), std::ios::binary); };
+    std::ifstream lines = stream();
+    if (!lines)
         return unexpected(LogError{file.shown(), std::string("cannot open: ") + std::strerror(errno)});
-    return LogReader(file.shown(), std::move(stream));
+    Beginning beginning = beginning_of(stream());
+    return LogReader(file.shown(), LineStream(std::move(lines), kLineBytesMax), std::move(beginning.text),
+                     beginning.stamps);
 }
 
-LogReader::LineEnd LogReader::read_line() {
-    constexpr int kEnd = std::char_traits<char>::eof();
-    line_.clear();
-    bool is_too_long = false;
-    while (true) {  // at most the rest of the file; memory stays at kLineBytesMax
-        const int byte = stream_.get();
-        if (byte == kEnd) {
-            const LineEnd end = line_.empty() ? LineEnd::nothing_left : LineEnd::end_of_file;
-            return is_too_long ? LineEnd::too_long : end;
-        }
-        if (byte == '\n') {
-            return is_too_long ? LineEnd::too_long : LineEnd::line_feed;
-        }
-        if (line_.size() < kLineBytesMax) {
-            line_.push_back(static_cast<char>(byte));
-        } else {
-            is_too_long = true;
-        }
-    }
-}
-
-Result<LogEntry, LineFault> LogReader::parse(LineEnd end) const {
-    if (end == LineEnd::too_long) {
-        return unexpected(LineFault::too_long);
-    }
-    Result<LogEntry, LineFault> entry = parse_line(line_);
-    // A cut line may still look like a shorter frame; its checksum decides then. What makes no sense was cut.
-    if (!entry && end == LineEnd::end_of_file && entry.error() != LineFault::blank) {
-        return unexpected(LineFault::truncated);
-    }
-    return entry;
+void LogReader::note(LineFault fault) {
+    account_.reject(fault);
+    std::uint64_t& first = first_line_[static_cast<std::size_t>(fault)];
+    first = first == 0 ? lines_.number() : first;
+    if (fault != LineFault::blank && !first_fault_)
+        first_fault_ = FirstFault{lines_.number(), fault, shown(lines_.line())};
 }
 
 Result<std::optional<LogEntry>, LogError> LogReader::next() {
     while (true) {  // ends with the file
-        const LineEnd end = read_line();
-        if (stream_.bad()) {
-            return unexpected(LogError{file_, "reading failed after line " + std::to_string(line_number_)});
+        const LineStream::End end = lines_.next();
+        if (lines_.has_failed()) {
+            return unexpected(
+                LogError{file_, "reading failed after line " + std::to_string(lines_.number())});
         }
-        if (end == LineEnd::nothing_left) {
-            return std::optional<LogEntry>{};
-        }
-        ++line_number_;
+        if (end == LineStream::End::nothing_left) return std::optional<LogEntry>{};
         account_.take_in();
-        Result<LogEntry, LineFault> entry = parse(end);
+        if (lines_.is_cut()) {
+            note(LineFault::too_long);
+            continue;
+        }
+        Result<LogEntry, LineFault> entry = parse_line(lines_.line());
         if (entry) {
             account_.use();
+            if (stamps_ == StampKind::difference) entry->stamp = newest_ = {newest_.ns + entry->stamp.ns};
             return std::optional<LogEntry>(std::move(entry).value());
         }
-        account_.reject(entry.error());
-        std::uint64_t& first = first_line_[static_cast<std::size_t>(entry.error())];
-        first = first == 0 ? line_number_ : first;
+        // A cut line may still look like a shorter frame; its checksum decides then. What makes no sense was
+        // cut.
+        const bool is_cut_off = end == LineStream::End::end_of_file && entry.error() != LineFault::blank;
+        note(is_cut_off ? LineFault::truncated : entry.error());
     }
 }
 
 std::optional<LogError> LogReader::foreign_file() const {
-    const bool has_lines = account_.in() > account_.rejected(LineFault::blank);
-    if (account_.used() > 0 || !has_lines) return std::nullopt;
-    return LogError{file_, "no line is in candump's log format; record with `candump -L can0 > can.log`"};
+    if (account_.used() > 0 || !first_fault_) return std::nullopt;
+    const std::string name = file_.filename().string();
+    if (const ForeignFormat* const format = foreign_format_of(begin_)) {
+        return LogError{file_,
+                        "is a log in the format " + std::string(format->name) +
+                            "; make one of candump's of it: " + conversion(*format, name, "candump.log") +
+                            " (docs/recording.md has what each command needs)"};
+    }
+    return LogError{file_, "no line is a frame as candump writes them: line " +
+                               std::to_string(first_fault_->line) + " " + lack(first_fault_->fault) + ": '" +
+                               first_fault_->text + "'; record with `candump -L can0 > can.log`"};
 }
 
 }  // namespace octoskin::candump

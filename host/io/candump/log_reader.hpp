@@ -4,14 +4,15 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 
 #include "common/result.hpp"
 #include "host/core/account/account.hpp"
 #include "host/io/candump/log_line.hpp"
+#include "host/io/candump/stamp_kind.hpp"
 #include "host/io/folder/file_place.hpp"
+#include "host/io/lines/line_stream.hpp"
 
 namespace octoskin::candump {
 
@@ -22,9 +23,11 @@ struct LogError {
     [[nodiscard]] std::string message() const { return file.string() + ": " + what; }
 };
 
-/// Holds one line at a time, whatever the file's size. About 2 million lines a second.
+/// Holds one line at a time, whatever the file's size. About 2 million lines a second. Text may be UTF-8 or
+/// UTF-16; times that are differences (`candump -t d`) are added up.
 class LogReader {
   public:
+    /// Reads the first few thousand lines to see what times count from.
     [[nodiscard]] static Result<LogReader, LogError> open(const FilePlace& file);
 
     /// The next line that is a frame; empty at the end of the file, and then for ever. An error means that
@@ -38,21 +41,29 @@ class LogReader {
         return first_line_[static_cast<std::size_t>(fault)];
     }
 
-    /// Of a file that was read to its end: that it has lines and none of them is a frame, with the way out.
+    /// Of a file that was read to its end: that it has lines and none of them is a frame, what the first of
+    /// them lacks, and the way out: of another program's log the command that converts it.
     [[nodiscard]] std::optional<LogError> foreign_file() const;
+    [[nodiscard]] StampKind stamps() const noexcept { return stamps_; }
 
   private:
-    enum class LineEnd : std::uint8_t { line_feed, end_of_file, nothing_left, too_long };
+    /// The first line that is neither a frame nor blank.
+    struct FirstFault {
+        std::uint64_t line = 0;
+        LineFault fault = LineFault::foreign;
+        std::string text;
+    };
 
-    LogReader(std::filesystem::path file, std::ifstream stream)
-        : file_(std::move(file)), stream_(std::move(stream)) {}
-    LineEnd read_line();
-    Result<LogEntry, LineFault> parse(LineEnd end) const;
+    LogReader(std::filesystem::path file, LineStream lines, std::string begin, StampKind stamps)
+        : file_(std::move(file)), lines_(std::move(lines)), begin_(std::move(begin)), stamps_(stamps) {}
+    void note(LineFault fault);
 
     std::filesystem::path file_;
-    std::ifstream stream_;
-    std::string line_;
-    std::uint64_t line_number_ = 0;
+    LineStream lines_;
+    std::string begin_;  ///< of the file, for what format it is
+    StampKind stamps_;
+    WallTime newest_;  ///< of differences, what they add up to
+    std::optional<FirstFault> first_fault_;
     Account<LineFault> account_;
     std::array<std::uint64_t, Account<LineFault>::kReasons> first_line_{};
 };

@@ -1,11 +1,13 @@
 // Whole files: the nasty ones in tests/data/candump, and the round trip through the writer.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "host/io/candump/foreign_format.hpp"
 #include "host/io/candump/log_reader.hpp"
 #include "host/io/candump/log_source.hpp"
 #include "host/io/candump/log_writer.hpp"
@@ -117,7 +119,7 @@ TEST(LogReader, takes_the_longest_line_that_is_allowed) {
     std::ofstream(file.path()) << line << std::string(kLineBytesMax - line.size(), 'A') << "\n"
                                << line << std::string(kLineBytesMax + 1 - line.size(), 'A') << "\n";
     const ReadBack back = read_all(file.path());
-    EXPECT_EQ(back.account.rejected(LineFault::length), 1U) << "256 bytes are a line, if a bad one";
+    EXPECT_EQ(back.account.rejected(LineFault::length), 1U) << "320 bytes are a line, if a bad one";
     EXPECT_EQ(back.account.rejected(LineFault::too_long), 1U);
 }
 
@@ -183,10 +185,96 @@ std::string foreign(const std::string& text) {
     return error ? error->what : "";
 }
 
+std::vector<std::int64_t> stamps_us(const std::string& text) {
+    const testing_support::ScratchFolder folder;
+    std::vector<std::int64_t> stamps;
+    for (const LogEntry& entry : read_all(folder.write("can.log", text)).entries)
+        stamps.push_back(entry.stamp.ns / 1000);
+    return stamps;
+}
+
+TEST(LogReader, adds_differences_up_and_leaves_times_since_the_first_frame_alone) {
+    const std::string of_t_d =
+        "(000.000000) can0 044#\n(000.000270) can0 044#\n(000.010000) can0 044#\n(000.000270) can0 044#\n"
+        "(bad) can0 044#\n(001.000000) can0 044#\n";
+    EXPECT_EQ(stamps_us(of_t_d), (std::vector<std::int64_t>{0, 270, 10'270, 10'540, 1'010'540}));
+    const std::string of_t_z =
+        "(000.000000) can0 044#\n(000.000270) can0 044#\n(000.010270) can0 044#\n(000.010270) can0 044#\n";
+    EXPECT_EQ(stamps_us(of_t_z), (std::vector<std::int64_t>{0, 270, 10'270, 10'270}));
+    const std::string of_a_clock_set_back =
+        "(1750000000.000000) can0 044#\n(1749999998.000270) can0 044#\n(1750000001.000000) can0 044#\n";
+    EXPECT_EQ(stamps_us(of_a_clock_set_back).at(1), 1'749'999'998'000'270);
+}
+
+TEST(LogReader, one_frame_out_of_order_does_not_make_differences_of_times) {
+    std::string text = "(000.000000) can0 044#\n(000.000300) can1 044#\n(000.000299) can0 044#\n";
+    for (int i = 3; i < 50; ++i) text += "(000.0" + std::to_string(10'000 + i) + ") can0 044#\n";
+    EXPECT_EQ(stamps_us(text).at(49), 10'049);
+}
+
+TEST(LogReader, reads_utf_16_as_powershell_writes_it) {
+    std::string bytes = "\xFF\xFE";
+    for (const char c : std::string("(1.000000) can0 044#2A\r\n(1.000001) can0 044#2B\r\n"))
+        bytes += {c, '\0'};
+    EXPECT_EQ(stamps_us(bytes), (std::vector<std::int64_t>{1'000'000, 1'000'001}));
+    EXPECT_EQ(stamps_us("\xEF\xBB\xBF(1.000000) can0 044#2A\n"), (std::vector<std::int64_t>{1'000'000}));
+}
+
+struct Foreign {
+    const char* name;
+    const char* command;  ///< how it begins
+    std::string text;
+};
+const Foreign kForeign[] = {
+    {"Vector ASC", "asc2log -I can.log -O candump.log",
+     "date Mon Jun 30 15:02:57.000 2025\nbase hex  timestamps absolute\n 0.1 1  44  Rx   d 1 2A\n"},
+    {"Vector BLF", "can_logconvert can.log candump.log", std::string("LOGG\x90\0\0\0\1\2\n\3\n", 13)},
+    {"PEAK TRC", "can_logconvert can.log candump.log", ";$FILEVERSION=1.1\n;   Start time: 1.2.2025\n"},
+    {"ASAM MDF", "can_logconvert can.log candump.log", std::string("MDF     4.10\0\n", 14)},
+    {"python-can CSV", "can_logconvert", "timestamp,arbitration_id,extended,remote,error,dlc,data\n"},
+    {"python-can SQLite", "can_logconvert", "SQLite format 3\n"},
+    {"gzip", "zcat can.log > candump.log", "\x1F\x8B\x08\n"},
+    {"BUSMASTER", "awk",
+     "***BUSMASTER Ver 2.4.0***\r\n***HEX***\r\n22:20:14:992 Rx 0 0000021A s 2 FE 36 \r\n"
+     "22:20:15:2 Tx 0 0x12345678 x 1 07\r\n"},
+    {"CRTD", "awk",
+     "166.064000 CXX a log\n80414.992000 R11 0000021A FE 36 \n80415.002000 1T29 12345678 07\n"},
+    {"GVRET CSV", "awk",
+     "Time Stamp,ID,Extended,Dir,Bus,LEN,D1,D2,D3\n80414992000,0000021A,false,Rx,0,2,FE,36,00,\n"
+     "80415002000,12345678,true,Tx,0,1,07,00,00,\n"},
+};
+
+TEST(LogFile, of_another_program_is_named_with_the_command_that_converts_it) {
+    for (const Foreign& file : kForeign) {
+        const std::string what = foreign(file.text);
+        EXPECT_TRUE(what.starts_with("is a log in the format " + std::string(file.name) + ";")) << what;
+        EXPECT_NE(what.find(": " + std::string(file.command)), std::string::npos) << what;
+    }
+}
+
+TEST(LogFile, of_another_program_is_what_it_was_behind_the_command_if_that_is_awks) {
+    const std::vector<LogEntry> expected{
+        {{80'414'992'000'000}, "can0", {.can_id = 0x21A, .payload_len = 2, .data = {0xFE, 0x36}}},
+        {{80'415'002'000'000},
+         "can0",
+         {.can_id = 0x12345678, .is_extended = true, .payload_len = 1, .data = {7}}}};
+    for (const Foreign& file : kForeign) {
+        if (file.command != std::string("awk")) continue;
+        const testing_support::ScratchFolder folder;
+        const auto in = folder.write("in", file.text);
+        const std::string command =
+            conversion(*foreign_format_of(file.text), in.string(), (folder / "out").string());
+        ASSERT_EQ(std::system(command.c_str()), 0) << command;
+        EXPECT_EQ(read_all(folder / "out").entries, expected) << file.name << "\n" << command;
+    }
+}
+
 TEST(LogFile, of_which_no_line_is_a_frame_says_how_to_record_one) {
     const std::string seen = "  can0  141   [8]  01 02 03 04 05 06 07 08\n";  // what candump shows without -L
-    EXPECT_EQ(foreign(seen + "\n" + seen),
-              "no line is in candump's log format; record with `candump -L can0 > can.log`");
+    EXPECT_EQ(
+        foreign("\n" + seen + seen),
+        "no line is a frame as candump writes them: line 2 does not begin with a time in parentheses: '  "
+        "can0  141   [8]  01 02 03 04 05 06 07 08'; record with `candump -L can0 > can.log`");
     EXPECT_EQ(foreign(seen + "(1436509053.850870) vcan0 044#2A\n"), "");
     EXPECT_EQ(foreign(""), "") << "an empty log is a log";
     EXPECT_EQ(foreign("\n\n"), "");

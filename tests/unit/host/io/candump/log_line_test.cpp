@@ -55,28 +55,110 @@ TEST(LogLine, takes_nanoseconds_a_direction_mark_and_a_carriage_return) {
     EXPECT_EQ(good(kHead + "044#11 T").frame.payload_len, 1);
 }
 
+TEST(LogLine, takes_what_candump_shows_on_a_screen) {
+    const wire::CanFrame five{.can_id = 0x44, .payload_len = 5, .data = {0x2A, 0x36, 0x6C, 0x2B, 0xBA}};
+    for (const char* shown :
+         {" (1436509053.850870)  vcan0  044   [5]  2A 36 6C 2B BA",
+          " (1436509053.850870)  vcan0  044   {5}  2A 36 6C 2B BA",
+          " (1436509053.850870)  vcan0       044   [5]  2A 36 6C 2B BA",
+          "(1436509053.850870)\tvcan0\t044\t[5]\t2A 36 6C 2B BA\r",
+          " (1436509053.850870)  vcan0  RX - -  044   [5]  2A 36 6C 2B BA",
+          " (1436509053.850870)  vcan0  TX - -  044   [5]  2A 36 6C 2B BA",
+          " (1436509053.850870)  vcan0  044   [5]  2A 36 6C 2B BA            '*6l+.'",
+          " \x1B[31m(1436509053.850870)  \x1B[32mvcan0\x1B[0m  044   [5]  2A 36 6C 2B BA\x1B[0m"}) {
+        const LogEntry entry = good(shown);
+        EXPECT_EQ(entry.stamp.ns, 1'436'509'053'850'870'000) << shown;
+        EXPECT_EQ(entry.interface, "vcan0") << shown;
+        EXPECT_EQ(entry.frame, five) << shown;
+    }
+    EXPECT_EQ(good(kHead + " 12345678   [1]  2A").frame,
+              (wire::CanFrame{.can_id = 0x12345678, .is_extended = true, .payload_len = 1, .data = {0x2A}}));
+    EXPECT_EQ(good(kHead + " 044   [4]  remote request").frame,
+              (wire::CanFrame{.can_id = 0x44, .is_remote = true, .payload_len = 4}));
+    EXPECT_EQ(good(kHead + " 20000004   [8]  00 00 00 00 00 00 00 00   ERRORFRAME").frame,
+              (wire::CanFrame{.can_id = 4, .is_error = true, .payload_len = 8}));
+    EXPECT_EQ(good(kHead + " 044  [01]  2A").frame,
+              (wire::CanFrame{.can_id = 0x44, .is_fd = true, .payload_len = 1, .data = {0x2A}}));
+    EXPECT_EQ(
+        good(kHead + " RX B -  044  [01]  2A").frame,
+        (wire::CanFrame{
+            .can_id = 0x44, .is_fd = true, .has_bit_rate_switch = true, .payload_len = 1, .data = {0x2A}}));
+    EXPECT_EQ(good(kHead + " 044   {F}  01 02 03 04 05 06 07 08").frame.payload_len, 8);
+    std::string longest = " \x1B[31m(2025-06-15 15:06:40.123456789)   fifteen_letters  TX B E  044  [64] ";
+    for (int i = 0; i < 64; ++i) longest += " 5A";
+    EXPECT_LT(longest.size() + 8, kLineBytesMax);
+    EXPECT_EQ(good(longest).frame.payload_len, 64);
+}
+
+TEST(LogLine, takes_times_of_every_kind) {
+    const auto ns = [](const std::string& stamp) { return good(stamp + " can0 044#2A").stamp.ns; };
+    EXPECT_EQ(ns("(000.000270)"), 270'000);
+    EXPECT_EQ(ns("(1436509053.850)"), 1'436'509'053'850'000'000);
+    EXPECT_EQ(ns("(1436509053.85087012)"), 1'436'509'053'850'870'000);
+    EXPECT_EQ(ns("(1436509053.850870999)"), 1'436'509'053'850'870'000);
+    EXPECT_EQ(ns("(2025-06-15 15:06:40.000220)"), 1'750'000'000'000'220'000);
+    EXPECT_EQ(ns("(2024-02-29 00:00:00.000)"), 1'709'164'800'000'000'000);
+    EXPECT_EQ(ns("(1970-01-01 00:00:00.000001)"), 1'000);
+}
+
+TEST(LogLine, takes_blanks_as_they_come_and_the_raw_length_code) {
+    EXPECT_EQ(good(" (1436509053.850870)  vcan0   044#2A  R ").frame.payload_len, 1);
+    const LogEntry entry = good(kHead + "044#0102030405060708_F");
+    EXPECT_EQ(entry.frame.payload_len, 8);
+    EXPECT_EQ(entry.frame.data[7], 8);
+}
+
 TEST(LogLine, names_what_is_wrong) {
     expect_fault(LineFault::blank, "");
     expect_fault(LineFault::blank, " \t \r");
     expect_fault(LineFault::foreign, "vcan0  044   [5]  2A 36 6C 2B BA");
-    expect_fault(LineFault::foreign, " (1436509053.850870) vcan0 044#2A");
-    for (const char* stamp : {"()", "(.)", "(1)", "(1.5)", "(1.12345)", "(-1.000000)", "(1.-00001)",
-                              "(1.000000", "(1,000000)", "(99999999999.000000)", "(nan.000000)"}) {
+    for (const char* stamp :
+         {"()", "(.)", "(1)", "(1.5)", "(1.12)", "(1.1234567890)", "(1.000000)x",
+          "(2025-02-29 15:06:40.000220)", "(2025-06-15 24:06:40.000220)", "(2025-06-15T15:06:40.000220)",
+          "(1969-06-15 15:06:40.000220)", "(-1.000000)", "(1.-00001)", "(1.000000", "(1,000000)",
+          "(99999999999.000000)", "(nan.000000)"}) {
         expect_fault(LineFault::timestamp, std::string(stamp) + " vcan0 044#2A");
     }
     expect_fault(LineFault::interface, "(1436509053.850870)");
     expect_fault(LineFault::interface, "(1436509053.850870)  044#2A");
+    expect_fault(LineFault::interface, "(1436509053.850870) vcan#0 044#2A");
     expect_fault(LineFault::interface, "(1436509053.850870) sixteen_letters_ 044#2A");
     for (const char* id : {"", "44", "0044", "800", "-44", "0x4", "G44", "80000044", "40000044"}) {
         expect_fault(LineFault::identifier, kHead + id + "#2A");
     }
     expect_fault(LineFault::identifier, kHead);
-    for (const char* body : {"", "#2", "#2A3", "#2G", "#-1", "#2A.36", "#RX", "#R10", "##", "##G00", "##00",
-                             "#2A x", "#2A R T", "#2A  R"}) {
+    for (const char* body : {"",
+                             "#2",
+                             "#2A3",
+                             "#2G",
+                             "#-1",
+                             "#2A.36",
+                             "#RX",
+                             "#R10",
+                             "##",
+                             "##G00",
+                             "##00",
+                             "#2A x",
+                             "#2A R T",
+                             "#2A_9",
+                             "#0102030405060708_8",
+                             "#0102030405060708_",
+                             "##00102030405060708_9",
+                             "   [5]  2A 36",
+                             "   [1]  2AB",
+                             "   [1]",
+                             "   5  2A",
+                             "   [1]  2A 36",
+                             "   [0]  remote",
+                             "   [08] remote request",
+                             "   [2]  2A`36"}) {
         expect_fault(LineFault::data, kHead + "044" + body);
     }
     expect_fault(LineFault::length, kHead + "044#010203040506070809");
     expect_fault(LineFault::length, kHead + "044#R9");
+    expect_fault(LineFault::length, kHead + "044   [9]  01 02 03 04 05 06 07 08 09");
+    expect_fault(LineFault::length, kHead + "044  [09]  01 02 03 04 05 06 07 08 09");
+    expect_fault(LineFault::identifier, kHead + "44   [1]  2A");
     expect_fault(LineFault::length, kHead + "044##0010203040506070809");
     expect_fault(LineFault::length, kHead + "044##0" + std::string(130, '0'));
 }
