@@ -75,7 +75,7 @@ CanIntake::CanIntake(const HostRig& rig, const IntakeConfig& config)
       joint_source_(rig.joints.node_id),
       host_clock_(config.host_clock),
       nodes_(rig),
-      ranges_(rig, config.uses_no_return),
+      ranges_(rig, config.uses_no_return, Nanoseconds{config.clock.now_slack}),
       joints_(rig.joints.rate_hz),
       joint_senders_(rig.joints.rate_hz, !config.has_local_joints) {
     for (const auto& [node, record] : nodes_.records()) {
@@ -402,7 +402,7 @@ Result<JointMeasurement, JointReason> CanIntake::place(const JointReading& readi
     if (!sampled) {
         return unexpected(clock_reason<JointReason>(sampled.error()));
     }
-    if (sampled->time - reading.begun > config_.host_clock.back_tolerance) {
+    if (sampled->time - reading.begun > Nanoseconds{config_.clock.now_slack}) {
         return unexpected(JointReason::contradictory);
     }
     // Frames of the next round come a round after this sample was taken, give or take a period of jitter.

@@ -21,8 +21,6 @@ double sigma_m_of(const wire::RangeReading& reading) {
 
 /// A reading waits 50 ms at most on its node; the rest is bus and host.
 constexpr Nanoseconds kTransportMax{100'000'000};
-/// "Now" may be this much behind (HostClockConfig::back_tolerance).
-constexpr Nanoseconds kNowEarlyMax{5'000'000};
 
 ReadingReason reason_of(SequenceFault fault) {
     switch (fault) {
@@ -45,9 +43,9 @@ bool is_misconfigured(const SensorRecord& record) {
            record.health->fault == wire::SensorFault::config_mismatch;
 }
 
-/// Its age makes no capture time possible; empty: it may be true.
-std::optional<ReadingReason> age_fault(Nanoseconds age, Nanoseconds half_window) {
-    if (age < half_window - kNowEarlyMax) {
+/// Its age makes no capture time possible; empty: it may be true. "Now" may be `now_early` behind.
+std::optional<ReadingReason> age_fault(Nanoseconds age, Nanoseconds half_window, Nanoseconds now_early) {
+    if (age < half_window - now_early) {
         return ReadingReason::too_young;
     }
     if (age > half_window + kTransportMax) {
@@ -61,8 +59,8 @@ std::optional<ReadingReason> age_fault(Nanoseconds age, Nanoseconds half_window)
 RangeGate::Sensor::Sensor(const HostSensor& sensor)
     : expected(sensor), cadence(Nanoseconds{sensor.period}), senders(Nanoseconds{sensor.period}) {}
 
-RangeGate::RangeGate(const HostRig& rig, bool uses_no_return)
-    : limits_(rig.range_limits), uses_no_return_(uses_no_return) {
+RangeGate::RangeGate(const HostRig& rig, bool uses_no_return, Nanoseconds now_early)
+    : limits_(rig.range_limits), uses_no_return_(uses_no_return), now_early_(now_early) {
     for (const HostNode& node : rig.nodes) {
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
             sensors_.emplace(SensorKey{node.node_id, static_cast<std::uint8_t>(i)}, Sensor(node.sensors[i]));
@@ -137,7 +135,7 @@ std::optional<ReadingReason> RangeGate::place_fault(Sensor& sensor, const Arriva
         return fault;
     }
     const Nanoseconds half_window = Nanoseconds{sensor.expected.timing_budget} / 2;
-    if (const auto fault = age_fault(arrival.now - arrival.captured, half_window)) {
+    if (const auto fault = age_fault(arrival.now - arrival.captured, half_window, now_early_)) {
         if (*fault == ReadingReason::too_young) sensor.senders.on_refused();
         return fault;
     }

@@ -49,8 +49,10 @@ class RangeGate {
   public:
     using SensorKey = std::pair<wire::NodeId, std::uint8_t>;
 
-    /// `uses_no_return`: beams without return may clear space; if not, they are rejected here.
-    RangeGate(const HostRig& rig, bool uses_no_return);
+    /// `uses_no_return`: beams without return may clear space; if not, they are rejected here. `now_early`:
+    /// "now" may be this much behind (ClockMapConfig::now_slack).
+    explicit RangeGate(const HostRig& rig, bool uses_no_return,
+                       Nanoseconds now_early = ClockMapConfig{}.now_slack);
 
     [[nodiscard]] bool knows(wire::NodeId node, std::uint8_t sensor) const {
         return sensors_.contains({node, sensor});
@@ -133,6 +135,7 @@ class RangeGate {
 
     HostRangeLimits limits_;
     bool uses_no_return_;
+    Nanoseconds now_early_;
     std::map<SensorKey, Sensor> sensors_;
     std::map<wire::NodeId, bool> is_rate_overridden_;
     std::map<wire::NodeId, HostTime> contradicted_;  ///< the newest contradiction of any of its sensors
