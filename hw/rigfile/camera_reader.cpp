@@ -58,11 +58,14 @@ void read_lens(const Table& table, Camera& camera) {
                     octoskin::describe(camera.lens), lost->u, lost->v, LensInverse(camera.lens).radius()));
 }
 
-DataSetDepth read_data_set(const Value& value, const std::string& path) {
-    const Table table(value, path, {"depth_units_per_m", "depth_no_value"});
-    DataSetDepth data_set;
-    data_set.units_per_m = table.number("depth_units_per_m", {1.0, 1e6}, data_set.units_per_m);
-    data_set.no_value = table.integer<std::uint16_t>("depth_no_value", {0, 65'535}, data_set.no_value);
+DataSetKeys read_data_set(const Value& value, const std::string& path) {
+    const Table table(value, path, {"depth_units_per_m", "depth_no_value", "pose_gap_max_ms"});
+    DataSetKeys data_set;
+    if (table.find("depth_units_per_m") != nullptr)
+        data_set.units_per_m = table.number("depth_units_per_m", {1.0, 1e6});
+    if (table.find("depth_no_value") != nullptr)
+        data_set.no_value = table.integer<std::uint16_t>("depth_no_value", {0, 65'535});
+    data_set.pose_gap_max_ms = table.number("pose_gap_max_ms", {1.0, 10'000.0}, data_set.pose_gap_max_ms);
     return data_set;
 }
 

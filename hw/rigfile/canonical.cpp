@@ -121,9 +121,12 @@ void write_camera(Writer& out, const Camera& camera) {
     out.line("  depth_max_m: {}", number(camera.depth_max_m));
     // Left out where they are the default, as the lens is where it is none: rigs that say nothing of them
     // keep the hash that they had before these keys were.
-    if (camera.data_set != DataSetDepth{}) {
-        out.line("  data_set: {{depth_units_per_m: {}, depth_no_value: {}}}",
-                 number(camera.data_set.units_per_m), camera.data_set.no_value);
+    const DataSetDepth depth = camera.data_set.depth();
+    const double gap_ms = camera.data_set.pose_gap_max_ms;
+    const bool has_gap = gap_ms != DataSetKeys{}.pose_gap_max_ms;
+    if (depth != DataSetDepth{} || has_gap) {
+        out.line("  data_set: {{depth_units_per_m: {}, depth_no_value: {}{}}}", number(depth.units_per_m),
+                 depth.no_value, has_gap ? ", pose_gap_max_ms: " + number(gap_ms) : "");
     }
     out.line("  pose: {}", pose(camera.T_base_camera));
 }

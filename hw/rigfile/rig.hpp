@@ -72,7 +72,7 @@ struct Camera {
     double depth_max_m = 4.5;
     Eigen::Isometry3d T_base_camera =
         Eigen::Isometry3d::Identity();  ///< optical frame: z forward, x right, y down
-    DataSetDepth data_set = {};
+    DataSetKeys data_set = {};
 };
 
 /// A piece of the robot's body that its URDF does not have: a tool, a grasped object, a stretch of cable. All

@@ -2,10 +2,17 @@
 
 #include <spdlog/spdlog.h>
 
+#include <Eigen/Geometry>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
 #include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/playback/data_set_playback.hpp"
+#include "host/apps/playback/film_playback.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "host/io/tum/data_set_camera.hpp"
 #include "hw/rigfile/joined.hpp"
@@ -22,6 +29,36 @@ Result<NamedMapping, AppError> configuration_of(const std::string& asked_for,
     return own.is_there() ? mapping_of_file(own) : named_mapping(kDefaultMapping);
 }
 
+/// Roll, pitch and yaw about the map's fixed x, y and z, as in a rig's rpy_deg.
+std::optional<Eigen::Isometry3d> pose_of(const std::string& text) {
+    if (text.empty()) return std::nullopt;
+    std::array<double, 6> numbers{};
+    std::string_view rest = text;
+    for (double& number : numbers) {
+        const std::string_view word = rest.substr(0, rest.find(','));
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+        const bool is_number =
+            error == std::errc{} && end == word.data() + word.size() && std::abs(number) <= 1'000.0;
+        const bool is_last = &number == &numbers.back();
+        if (!is_number || is_last != (word.size() == rest.size())) {
+            throw CommandFailure(
+                {ExitCode::usage, "--pose '" + text +
+                                      "': expected X,Y,Z,ROLL,PITCH,YAW, six numbers from -1000 to 1000, "
+                                      "metres and degrees"});
+        }
+        rest.remove_prefix(std::min(word.size() + 1, rest.size()));
+    }
+    const auto turn = [&numbers](std::size_t i, const Eigen::Vector3d& axis) {
+        return Eigen::AngleAxisd(numbers.at(i) * std::numbers::pi / 180.0, axis);
+    };
+    Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();
+    T_map_camera.translation() = Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
+    T_map_camera.linear() = (turn(5, Eigen::Vector3d::UnitZ()) * turn(4, Eigen::Vector3d::UnitY()) *
+                             turn(3, Eigen::Vector3d::UnitX()))
+                                .toRotationMatrix();
+    return T_map_camera;
+}
+
 }  // namespace
 
 void add_playback_options(CLI::App& command, PlaybackOptions& options) {
@@ -32,21 +69,26 @@ void add_playback_options(CLI::App& command, PlaybackOptions& options) {
         ->check(existing_file());
     command.add_option("--robot", options.robot, "Robot (URDF) in place of the recording's")
         ->check(existing_file());
-    command.add_option("--camera", options.camera,
-                       "Of a TUM RGB-D data set without --rig: " + rig::joined(tum::kDataSetCameras) +
-                           " (default: " + std::string(tum::kDataSetCameras.front()) + ")");
+    command.add_option(
+        "--camera", options.camera,
+        "Of a data set or a lone .oni file without --rig: " + rig::joined(tum::kDataSetCameras) +
+            " (default: as the data set's layout has it, " + std::string(tum::kDataSetCameras.front()) + ")");
+    command.add_option("--pose", options.pose,
+                       "Where the camera of an .oni file without a can.log was, in the map's frame: "
+                       "X,Y,Z,ROLL,PITCH,YAW of its optical frame, metres and degrees (default: the rig's)");
     command.add_flag("--by-capture-time", options.is_by_capture_time,
                      "In the order of capture times, even if the recording has a daemon's own order");
 }
 
 PlaybackRequest playback_request(const PlaybackOptions& options) {
     const RecordingPaths recording(options.recording);
-    if (!options.camera.empty() && (!options.rig.empty() || !is_data_set(recording))) {
+    const bool has_own_camera = !is_data_set(recording) && !lone_film(recording);
+    if (!options.camera.empty() && (!options.rig.empty() || has_own_camera)) {
         throw CommandFailure(
             {ExitCode::usage,
              "--camera " + options.camera +
                  (options.rig.empty() ? ": " + options.recording.string() +
-                                            " is no TUM RGB-D data set, and what recorded it is "
+                                            " is no data set and no .oni file, and what recorded it is "
                                             "in its rig: leave --camera out"
                                       : ": the camera is --rig's: give one of them")});
     }
@@ -60,6 +102,7 @@ PlaybackRequest playback_request(const PlaybackOptions& options) {
             .rig = options.rig,
             .robot = options.robot,
             .camera = options.camera,
+            .T_map_camera = pose_of(options.pose),
             .is_by_capture_time = options.is_by_capture_time,
             .pace = {},
             .listener = nullptr,

@@ -13,7 +13,8 @@ struct PlaybackOptions {
     std::filesystem::path recording;
     std::filesystem::path rig;    ///< empty: the recording's
     std::filesystem::path robot;  ///< empty: the recording's
-    std::string camera;           ///< of a data set without rig; empty: what most of them take
+    std::string camera;           ///< of a data set without rig; empty: as its layout has it
+    std::string pose;             ///< of the camera of a lone .oni; empty: the rig's
     std::string configuration;    ///< empty: the recording's own, or the default
     bool is_by_capture_time = false;
 };
@@ -23,7 +24,7 @@ struct PlaybackOptions {
 void add_playback_options(CLI::App& command, PlaybackOptions& options);
 
 /// What they ask for; the maps, the pace and the listener are the command's own. CommandFailure if the
-/// configuration is none.
+/// configuration or the pose is none.
 [[nodiscard]] PlaybackRequest playback_request(const PlaybackOptions& options);
 
 }  // namespace octoskin::app

@@ -15,6 +15,7 @@
 #include "host/apps/octoskin/interruption.hpp"
 #include "host/apps/octoskin/playback_options.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/playback/film_playback.hpp"
 #include "host/apps/playback/map_folder.hpp"
 #include "host/apps/playback/onto_bus.hpp"
 #include "host/apps/playback/ordered_playback.hpp"
@@ -95,6 +96,15 @@ void refuse_failed(const Playback& playback) {
     }
 }
 
+/// `maps` in a recording; of a film that was named itself, a folder of its name beside it.
+FilePlace maps_place(const ReplayOptions& options, const RecordingPaths& recording) {
+    if (!options.out.empty()) return FilePlace(options.out);
+    const std::filesystem::path& named = options.playback.recording;
+    if (lone_film(recording) && !std::filesystem::is_directory(named))
+        return FilePlace(std::filesystem::path(named).replace_extension(".maps"));
+    return recording.file(kMapsOfRecording);
+}
+
 void save(const Playback& playback, MapFolder& folder, const std::filesystem::path& out) {
     const auto maps = named_maps(playback);
     const auto saved = folder.save(maps, playback.origin);
@@ -147,8 +157,8 @@ void replay_recording(const ReplayOptions& options) {
     request.pace = pace_of(options);
     if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
     // Before the work: of two that write there, the second would else find out after it.
-    auto folder = MapFolder::open(options.out.empty() ? request.recording.file(kMapsOfRecording)
-                                                      : FilePlace(options.out));
+    const FilePlace maps = maps_place(options, request.recording);
+    auto folder = MapFolder::open(maps);
     if (!folder) throw CommandFailure(folder.error());
     ProgressSeconds seconds;
     const char* const unit = is_played_in_order(request) ? "commits" : "CAN frames";
@@ -162,8 +172,7 @@ void replay_recording(const ReplayOptions& options) {
     static_cast<void>(flush_standard_output());  // its failure is told at the end
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     refuse_failed(*playback);
-    save(*playback, *folder,
-         options.out.empty() ? options.playback.recording / kMapsOfRecording : options.out);
+    save(*playback, *folder, maps.shown());
     tell_last_posture(*playback);
     if (auto lost = loss_of(*playback)) throw CommandFailure(std::move(*lost));
     if (playback->is_unlike_daemons) {
@@ -179,9 +188,12 @@ void add_replay_command(CLI::App& app) {
     auto options = std::make_shared<ReplayOptions>();
     CLI::App* command =
         app.add_subcommand("replay", "Play a recording through the pipeline; write maps and the account");
-    command->add_option("recording", options->playback.recording, "Directory of the recording")->required();
-    auto* const out =
-        command->add_option("--out", options->out, "Where the maps go (default: RECORDING/maps)");
+    command
+        ->add_option("recording", options->playback.recording,
+                     "Directory of the recording or data set; or an .oni file")
+        ->required();
+    auto* const out = command->add_option("--out", options->out,
+                                          "Where the maps go (default: RECORDING/maps; of X.oni, X.maps)");
     add_playback_options(*command, options->playback);
     auto* const fused_only =
         command->add_flag("--fused-only", options->is_fused_only,
@@ -194,6 +206,7 @@ void add_replay_command(CLI::App& app) {
                      "Send the frames of can.log onto this CAN interface (fd:N: an open socket) in place "
                      "of making maps")
         ->excludes(command->get_option("--camera"))
+        ->excludes(command->get_option("--pose"))
         ->excludes(out)
         ->excludes(fused_only);
     command

@@ -3,88 +3,34 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
 #include <utility>
 
-#include "host/apps/recording/given_rig.hpp"
+#include "host/apps/playback/camera_alone.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/version/version.hpp"
 #include "host/io/mapping/mapping_file.hpp"
-#include "host/io/rig/host_rig_reader.hpp"
 #include "host/io/tum/data_set_camera.hpp"
 #include "host/io/tum/data_set_reader.hpp"
-#include "hw/rigfile/joined.hpp"
 
 namespace octoskin {
 namespace {
 
 namespace fs = std::filesystem;
 
-class NoBus final : public CanSource {
-  public:
-    [[nodiscard]] Result<std::optional<StampedFrame>, CanSourceError> next() override {
-        return std::optional<StampedFrame>{};
-    }
-};
-
-Result<rig::Camera, AppError> named_camera(const std::string& name) {
-    const auto found = tum::data_set_camera(name.empty() ? tum::kDataSetCameras.front() : name);
-    if (!found) {
-        return fail(ExitCode::usage, "--camera " + name + ": a data set's camera is one of " +
-                                         rig::joined(tum::kDataSetCameras));
-    }
-    rig::Camera camera;
-    camera.width = found->width;
-    camera.height = found->height;
-    camera.fx = found->fx;
-    camera.fy = found->fy;
-    camera.cx = found->cx;
-    camera.cy = found->cy;
-    camera.rate_hz = 30.0;
-    return camera;
-}
-
-Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request) {
-    if (request.rig.empty()) return named_camera(request.camera);
-    const auto lock = lock_reading();
-    const auto rig = read_given_rig(request.rig);
-    if (!rig) return unexpected(rig.error());
-    if (!rig->camera) {
-        return fail(ExitCode::bad_config,
-                    request.rig.string() + ": has no camera, which a data set is seen by");
-    }
-    return *rig->camera;
-}
-
-/// A camera, and nothing else.
-rig::Rig make_rig(const rig::Camera& camera) {
-    rig::Rig rig;
-    rig.name = "data_set";
-    rig.base_link = "map";
-    rig.camera = camera;
-    return rig;
-}
-
-Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, const rig::Rig& rig) {
-    HostRig host;
-    host.name = rig.name;
-    host.camera = host_camera(*rig.camera);
-    // A pipeline has a robot of at least one joint. Nobody moves this one, and nothing asks where it is.
-    const JointDescription joint{.name = "no_joint",
-                                 .parent_link = rig.base_link,
-                                 .child_link = "no_link",
-                                 .kind = JointKind::continuous,
-                                 .limits = {}};
-    host.joints.joints = {joint.name};
-    auto robot = RobotModel::build(rig.base_link, std::span(&joint, 1), host.joints.joints);
-    if (!robot) return fail(ExitCode::failed, std::string("no robot: ") + describe(robot.error().error));
-    PipelineConfig config;
-    config.maps = request.maps;
-    auto pipeline = Pipeline::build(host, std::move(*robot), request.mapping, config);
-    if (!pipeline) return fail(ExitCode::failed, "no pipeline: " + pipeline.error().element);
-    pipeline->tell(request.listener);
-    return std::move(*pipeline);
+/// That of the rig; else the one that was asked for; else the one that the data set has a file of; else that
+/// of its layout.
+Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request, const std::optional<rig::Rig>& given,
+                                        const tum::DataSetReader& reader) {
+    if (given) return *given->camera;
+    if (!request.camera.empty()) return named_camera(request.camera);
+    const auto calibration = reader.calibration();
+    if (!calibration) return named_camera(reader.layout().camera);
+    const auto found = tum::calibrated_camera(*calibration, reader.first_image());
+    if (found) return camera_with(*found);
+    return unexpected(reading_error(
+        calibration->shown(),
+        {ExitCode::bad_data, found.error().what + " (or give the camera with --camera or --rig)"}));
 }
 
 Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig::Rig& rig,
@@ -112,72 +58,135 @@ Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig:
                      .maps = {}};
 }
 
+std::string first_of(const tum::ImageCounts& images) {
+    return images.first_without_pose ? seconds_text(images.first_without_pose->captured.ns) : "";
+}
+
 AccountTable image_table(const tum::DataSetReader& reader, const ReplayOutcome& outcome) {
     const std::uint64_t failed = outcome.depth_error ? 1 : 0;
     const std::uint64_t left = reader.images_left() - failed;
+    const tum::ImageCounts& images = reader.images();
     return {.unit = "depth images",
-            .in = reader.images_read() + reader.images_without_pose() + failed + left,
-            .used = reader.images_read(),
+            .in = images.read + images.without_pose + images.bad.count + failed + left,
+            .used = images.read,
             .pending = left,
-            .rejected = {{"without_pose", reader.images_without_pose()}, {"unreadable", failed}},
+            .rejected = {{"without_pose", images.without_pose, first_of(images)},
+                         {"bad_line", images.bad.count},
+                         {"unreadable", failed}},
             .is_balanced = true};
+}
+
+AccountTable pose_table(const tum::PoseCounts& poses) {
+    return {
+        .unit = "camera poses",
+        .in = poses.in,
+        .used = poses.used,
+        .pending = 0,
+        .rejected = {{"no_pose", poses.no_pose}, {"bad_line", poses.bad.count}, {"repeated", poses.repeated}},
+        .is_balanced = poses.in == poses.used + poses.no_pose + poses.bad.count + poses.repeated};
+}
+
+void warn_of_lines(const tum::BadLines& bad, const std::optional<DepthSourceError>& disorder,
+                   std::uint64_t unordered, std::vector<std::string>& warnings) {
+    if (bad.first)
+        warnings.push_back(fmt::format("{}; left out (bad_line: {} in all)", bad.first->what, bad.count));
+    if (disorder) warnings.push_back(fmt::format("{}; put in order ({} in all)", disorder->what, unordered));
+}
+
+/// How far apart the poses about the first image without one are.
+void warn_of_gap(const tum::DataSetReader& reader, std::vector<std::string>& warnings) {
+    const auto& first = reader.images().first_without_pose;
+    if (!first || !first->gap) return;
+    constexpr double kNsPerMs = 1e6;
+    warnings.push_back(fmt::format(
+        "{}: those about it are {:.0f} ms apart, at most {:.0f} ms are bridged "
+        "(camera.data_set.pose_gap_max_ms of a --rig; without_pose: {} images in all)",
+        first->image.what, static_cast<double>(first->gap->count()) / kNsPerMs,
+        static_cast<double>(reader.pose_gap_max().count()) / kNsPerMs, reader.images().without_pose));
 }
 
 std::vector<std::string> warnings_of(const PlaybackRequest& request, const rig::Camera& camera,
                                      const tum::DataSetReader& reader) {
     std::vector<std::string> warnings;
-    const tum::DataSetReader::Paths paths{request.recording.directory};
-    if (reader.poses_repeated() > 0) {
+    const tum::ImageCounts& images = reader.images();
+    warn_of_lines(images.bad, images.disorder, images.unordered, warnings);
+    const tum::PoseCounts& poses = reader.poses();
+    warn_of_lines(poses.bad, poses.disorder, poses.unordered, warnings);
+    const std::string set = request.recording.directory.string();
+    if (poses.repeated > 0) {
         warnings.push_back(fmt::format("{}: {} poses have the time of the one above them, and were left out",
-                                       paths.poses().string(), reader.poses_repeated()));
+                                       set, poses.repeated));
     }
-    if (const auto doubt = tum::doubt_units(reader.values(), camera.data_set, camera.depth_min_m))
-        warnings.push_back(request.recording.directory.string() + ": " + *doubt);
+    if (poses.no_pose > 0) {
+        warnings.push_back(fmt::format(
+            "{}: {} times the camera's pose is not known (nan, a quaternion of zeros, or no file of it)", set,
+            poses.no_pose));
+    }
+    warn_of_gap(reader, warnings);
+    if (const auto doubt = tum::doubt_units(reader.values(), reader.scale(), camera.depth_min_m))
+        warnings.push_back(set + ": " + *doubt);
     return warnings;
 }
 
 }  // namespace
 
 bool is_data_set(const RecordingPaths& recording) {
-    const EntryKind kind = recording.file("depth.txt").kind();
-    return (kind == EntryKind::file || kind == EntryKind::link) && !recording.can_log().is_there();
+    return !recording.can_log().is_there() && tum::depth_images_of(recording.folder).has_value();
 }
 
 Status<AppError> check_data_set(const PlaybackRequest& request) {
-    const std::string name = request.recording.directory.string() + ": a data set (depth.txt)";
+    const std::string name = request.recording.directory.string() + ": a data set (" +
+                             tum::depth_images_of(request.recording.folder).value_or("") + ")";
     if (!request.robot.empty()) return fail(ExitCode::usage, name + " has no robot: without --robot");
     if (!request.rig.empty() && !request.camera.empty())
         return fail(ExitCode::usage, name + " takes --rig or --camera, not both");
     return Done{};
 }
 
+namespace {
+
+Result<tum::DataSetReader, AppError> open_reader(const PlaybackRequest& request,
+                                                 const std::optional<rig::Rig>& given) {
+    auto reader = tum::DataSetReader::open(request.recording.directory,
+                                           given ? given->camera->data_set : rig::DataSetKeys{});
+    if (reader) return std::move(*reader);
+    AppError error{ExitCode::bad_data, reader.error().what};
+    const auto files = tum::find_data_set(request.recording.folder);
+    if (!files) return unexpected(std::move(error));
+    for (const std::string& name : {files->poses, files->images}) {
+        if (name.empty()) continue;
+        const fs::path file = request.recording.directory / name;
+        std::error_code ignored;
+        if (!fs::exists(file, ignored)) error.code = ExitCode::no_input;
+        error = reading_error(file, std::move(error));
+    }
+    return unexpected(std::move(error));
+}
+
+}  // namespace
+
 Result<Playback, AppError> play_data_set(const PlaybackRequest& request_given, const ReplayReport& report) {
     PlaybackRequest request = request_given;
     request.mapping.removes_robot_from_depth = false;  // there is none
-    const auto camera = camera_of(request);
-    if (!camera) return unexpected(camera.error());
-    rig::Rig rig = make_rig(*camera);
-    auto reader = tum::DataSetReader::open(request.recording.directory, camera->data_set);
-    if (!reader) {
-        AppError error{ExitCode::bad_data, reader.error().what};
-        for (const char* name : {"groundtruth.txt", "depth.txt"}) {
-            const fs::path file = request.recording.directory / name;
-            std::error_code ignored;
-            if (!fs::exists(file, ignored)) error.code = ExitCode::no_input;
-            error = reading_error(file, std::move(error));
-        }
-        return unexpected(std::move(error));
+    if (!request.camera.empty()) {
+        if (const auto known = named_camera(request.camera); !known) return unexpected(known.error());
     }
+    const auto given = rig_with_camera(request, "a data set");
+    if (!given) return unexpected(given.error());
+    auto reader = open_reader(request, *given);
+    if (!reader) return unexpected(reader.error());
+    const auto camera = camera_of(request, *given, *reader);
+    if (!camera) return unexpected(camera.error());
+    rig::Rig rig = rig_of_camera(*camera, "data_set");
     auto origin = origin_of(request, rig, *reader);
     if (!origin) return unexpected(origin.error());
-    auto pipeline = make_pipeline(request, rig);
+    auto pipeline = pipeline_of_camera(request, rig);
     if (!pipeline) return unexpected(pipeline.error());
     NoBus bus;
     PacedDepth paced(*reader, request.pace);
     ReplayOutcome outcome = replay(*pipeline, bus, &paced, report);
     outcome.progress.begin = reader->begin();
-    AccountTable images = image_table(*reader, outcome);
-    std::vector<AccountTable> accounts{std::move(images)};
+    std::vector<AccountTable> accounts{image_table(*reader, outcome), pose_table(reader->poses())};
     for (AccountTable& table : pipeline->account_tables()) {
         if (table.in > 0) accounts.push_back(std::move(table));
     }

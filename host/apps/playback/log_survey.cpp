@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <variant>
 
 #include "common/wire/codec.hpp"
@@ -19,9 +20,9 @@ bool LogSurvey::is_heartbeat_of_rig(const wire::CanFrame& frame) const {
 void LogSurvey::take(const candump::LogEntry& entry) {
     if (interface_ && entry.interface != *interface_) return;
     const bool is_chosen = interface_ || is_heartbeat_of_rig(entry.frame);
-    if (is_chosen || scans_.size() < kInterfacesMax) scans_.try_emplace(entry.interface, rig_);
-    if (const auto scan = scans_.find(entry.interface); scan != scans_.end())
-        scan->second.on_frame(entry.frame, entry.stamp);
+    if (is_chosen || followed_.size() < kInterfacesMax) followed_.try_emplace(entry.interface, rig_, intake_);
+    if (const auto followed = followed_.find(entry.interface); followed != followed_.end())
+        followed->second.on_frame(entry.frame, entry.stamp);
     if (is_chosen) {
         interface_ = entry.interface;
     } else {
@@ -29,8 +30,17 @@ void LogSurvey::take(const candump::LogEntry& entry) {
     }
 }
 
+IntakeConfig LogSurvey::intake_for_stamps() const {
+    IntakeConfig intake = intake_;
+    const Nanoseconds grain = stamp_grain();
+    if (grain.count() == 0 || grain > StampGrain::kBridgedMax) return intake;
+    intake.clock.now_slack += std::chrono::ceil<Microseconds>(grain);
+    intake.host_clock.ahead_tolerance = std::min(intake.host_clock.ahead_tolerance, StampGrain::kAheadMax);
+    return intake;
+}
+
 std::optional<std::string> LogSurvey::warning() const {
-    const StartScan& scan = chosen();
+    const StartScan& scan = chosen().scan;
     if (scan.has_start()) return std::nullopt;
     if (scan.ignored().count > 0) {
         return fmt::format(

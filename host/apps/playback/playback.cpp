@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/apps/playback/data_set_playback.hpp"
+#include "host/apps/playback/film_playback.hpp"
 #include "host/apps/playback/log_survey.hpp"
 #include "host/apps/playback/losses.hpp"
 #include "host/apps/playback/ordered_playback.hpp"
@@ -47,11 +48,10 @@ Result<candump::LogReader, AppError> open_reader(const RecordingPaths& recording
     return std::move(*reader);
 }
 
-/// Reads the log through once before it is replayed: to its first START, or to its end.
-Result<LogSurvey, AppError> survey_log(const RecordingPaths& recording, const HostRig& rig) {
+/// Reads the log through before it is replayed: to its first START, or to its end.
+Status<AppError> survey_log(const RecordingPaths& recording, LogSurvey& survey) {
     auto reader = open_reader(recording);
     if (!reader) return unexpected(reader.error());
-    LogSurvey survey(rig);
     while (!survey.is_complete()) {
         const auto entry = reader->next();
         if (!entry) return unexpected(reading_error(ExitCode::bad_data, entry.error()));
@@ -62,7 +62,7 @@ Result<LogSurvey, AppError> survey_log(const RecordingPaths& recording, const Ho
         }
         survey.take(**entry);
     }
-    return survey;
+    return Done{};
 }
 
 Result<candump::LogSource, AppError> open_log(const RecordingPaths& recording, const std::string& interface) {
@@ -201,10 +201,12 @@ void find_full_maps(Playback& playback) {
     }
 }
 
-Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, Setup& setup, MapBegin begin) {
+Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, Setup& setup, MapBegin begin,
+                                         const IntakeConfig& intake = {}) {
     PipelineConfig config;
     config.maps = request.maps;
     config.begin = begin;
+    config.intake = intake;
     auto pipeline = Pipeline::build(setup.host.rig, std::move(setup.host.robot), request.mapping, config);
     if (!pipeline) {
         return fail(ExitCode::bad_config, request.recording.rig().shown().string() + ": the robot has no '" +
@@ -217,11 +219,19 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, Setup& 
 /// The log of the bus, through the whole pipeline.
 Result<Playback, AppError> play_log(const PlaybackRequest& request, Setup& setup, DepthInput& depth,
                                     MapOrigin origin, const ReplayReport& report) {
-    const auto survey = survey_log(request.recording, setup.host.rig);
-    if (!survey) return unexpected(survey.error());
-    auto log = open_log(request.recording, survey->interface());
+    LogSurvey first(setup.host.rig);
+    if (const auto read = survey_log(request.recording, first); !read) return unexpected(read.error());
+    const Nanoseconds grain = first.stamp_grain();
+    const IntakeConfig intake = first.intake_for_stamps();
+    std::optional<LogSurvey> again;  // by the rules that coarse stamps need: whether a START is taken
+    if (grain.count() > 0) {
+        again.emplace(setup.host.rig, intake);
+        if (const auto read = survey_log(request.recording, *again); !read) return unexpected(read.error());
+    }
+    const LogSurvey& survey = again ? *again : first;
+    auto log = open_log(request.recording, survey.interface());
     if (!log) return unexpected(log.error());
-    auto pipeline = make_pipeline(request, setup, survey->begin());
+    auto pipeline = make_pipeline(request, setup, survey.begin(), intake);
     if (!pipeline) return unexpected(pipeline.error());
     PacedCan paced(*log, request.pace);
     ReplayOutcome outcome = replay(*pipeline, paced, depth.reader ? &*depth.reader : nullptr, report);
@@ -238,7 +248,8 @@ Result<Playback, AppError> play_log(const PlaybackRequest& request, Setup& setup
         playback.accounts.push_back(std::move(table));
     playback.nodes = summarise(playback.pipeline.intake());
     playback.notes = take_notes(playback.pipeline);
-    if (auto warning = survey->warning()) playback.warnings.push_back(std::move(*warning));
+    if (auto warning = survey.warning()) playback.warnings.push_back(std::move(*warning));
+    if (auto warning = describe_stamps(grain)) playback.warnings.push_back(std::move(*warning));
     return playback;
 }
 
@@ -313,7 +324,13 @@ std::optional<AppError> loss_of(const Playback& playback) {
 }
 
 Status<AppError> check_playable(const PlaybackRequest& request) {
+    const bool is_lone_film = lone_film(request.recording).has_value();
+    if (request.T_map_camera && !is_lone_film) {
+        return fail(ExitCode::usage, "--pose: is for an .oni file without a can.log; " +
+                                         request.recording.directory.string() + " has poses of its own");
+    }
     if (is_data_set(request.recording)) return check_data_set(request);
+    if (is_lone_film) return check_film(request);
     if (const auto checked = check_recording(request.recording, !request.rig.empty()); !checked)
         return unexpected(reading_error(ExitCode::no_input, checked.error()));
     const RecordingPaths& recording = request.recording;
@@ -359,10 +376,16 @@ Result<Playback, AppError> play_robot(const PlaybackRequest& request, const Repl
 
 Result<Playback, AppError> play_recording(const PlaybackRequest& request, const ReplayReport& report) {
     if (const auto checked = check_playable(request); !checked) return unexpected(checked.error());
-    const auto lock = lock_recording(request.recording);
-    if (!lock) return unexpected(lock.error());
-    auto playback =
-        is_data_set(request.recording) ? play_data_set(request, report) : play_robot(request, report);
+    const auto play = is_data_set(request.recording) ? play_data_set
+                      : lone_film(request.recording) ? play_film
+                                                     : play_robot;
+    std::optional<FileLock> lock;  // of a folder: a film may be a file
+    if (std::filesystem::is_directory(request.recording.directory)) {
+        auto locked = lock_recording(request.recording);
+        if (!locked) return unexpected(locked.error());
+        lock.emplace(std::move(*locked));
+    }
+    auto playback = play(request, report);
     if (!playback) return playback;
     if (const DepthStage* stage = playback->pipeline.depth_stage())
         playback->accounts.push_back(pixel_table(*stage));

@@ -1,6 +1,7 @@
 // From a recording on disk to maps: the files opened, the host's pipeline run, the account drawn up.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <functional>
 #include <optional>
 #include <string>
@@ -29,8 +30,11 @@ struct PlaybackRequest {
     MapChoice maps;
     std::filesystem::path rig;    ///< in place of the recording's; empty: the recording's
     std::filesystem::path robot;  ///< in place of the recording's; empty: the recording's
-    /// Of a data set for which no rig is given, one of tum::kDataSetCameras; empty: the first.
+    /// Of a data set or a lone .oni for which no rig is given, one of tum::kDataSetCameras; empty: that of
+    /// the data set's layout, or the first.
     std::string camera = {};
+    /// Of an .oni file that stands alone: where its camera was. Empty: where the rig has it.
+    std::optional<Eigen::Isometry3d> T_map_camera = {};
     /// In the order of capture times, even if the recording has a daemon's own order.
     bool is_by_capture_time = false;
     Pace pace = {};

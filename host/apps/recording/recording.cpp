@@ -20,7 +20,8 @@ constexpr const char* kDirectoryMissing =
     "no such directory; `octoskin record` (of a running daemon) and `octoskin simulate` make recordings";
 constexpr const char* kLogMissing =
     "no such file: this is no recording, as `octoskin record` (of a running daemon) and `octoskin simulate` "
-    "make them; by hand, it is what `candump -L` writes";
+    "make them; by hand, it is what `candump -L` writes. A data set has depth.txt, associations.txt or "
+    "frame-*.depth.png, and the poses of its camera (docs/recording.md)";
 
 Unexpected<RecordingError> failure(const std::filesystem::path& file, std::string what) {
     return unexpected(RecordingError{file, std::move(what), 0, ""});

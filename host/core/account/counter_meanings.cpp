@@ -9,21 +9,25 @@ namespace {
 // Word for word as docs/account.md has them; a test holds the two equal and complete.
 constexpr std::array kCounterMeanings = {
     CounterMeaning{"log lines", "line_blank", "nothing on the line", Cause::other_device, ""},
-    CounterMeaning{"log lines", "line_foreign", "does not begin with \"(\": not a line of candump",
-                   Cause::mendable, "record the bus with candump -L"},
-    CounterMeaning{"log lines", "line_timestamp", "not \"(seconds.fraction)\" with 6 or 9 digits of fraction",
-                   Cause::mendable, "record the bus with candump -L"},
+    CounterMeaning{"log lines", "line_foreign",
+                   "does not begin with \"(\": not a line of candump with its time", Cause::mendable,
+                   "record the bus with candump -L"},
+    CounterMeaning{
+        "log lines", "line_timestamp",
+        "neither \"(seconds.fraction)\" nor \"(date time.fraction)\" with 3 to 9 digits of fraction",
+        Cause::mendable, "record the bus with candump -L"},
     CounterMeaning{"log lines", "line_interface",
                    "the interface is missing, longer than 15 characters, or not printable", Cause::mendable,
                    "record the bus with candump -L"},
     CounterMeaning{"log lines", "line_identifier", "not 3 or 8 hexadecimal digits, or out of range",
                    Cause::mendable, "record the bus with candump -L"},
     CounterMeaning{"log lines", "line_data",
-                   "no \"#\", a digit that is not hexadecimal, half a byte, or something behind the frame",
+                   "neither \"#\" nor \"[length]\", a digit that is not hexadecimal, half a byte, or "
+                   "something behind the frame",
                    Cause::mendable, "record the bus with candump -L"},
     CounterMeaning{"log lines", "line_length", "more than 8 bytes, or a length that CAN FD does not have",
                    Cause::mendable, "record the bus with candump -L"},
-    CounterMeaning{"log lines", "line_too_long", "longer than any line that candump writes (256 bytes)",
+    CounterMeaning{"log lines", "line_too_long", "longer than any line that candump writes (320 bytes)",
                    Cause::mendable, "record the bus with candump -L"},
     CounterMeaning{"log lines", "line_truncated", "the file ends within the line", Cause::mendable,
                    "copy the whole file"},
@@ -73,11 +77,10 @@ constexpr std::array kCounterMeanings = {
     CounterMeaning{"CAN frames", "joint_no_host_time",
                    "a joint frame while the host does not know the time yet", Cause::outside,
                    "let a host send SYNC and FOLLOW_UP on the bus"},
-    CounterMeaning{
-        "CAN frames", "for_people",
-        "a piece of a node's black box, or a calibration's answer: for octoskin black-box and octoskin "
-        "calibrate, nothing for the map in it",
-        Cause::other_device, ""},
+    CounterMeaning{"CAN frames", "for_people",
+                   "a piece of a node's black box, or a calibration's answer: for octoskin black-box and "
+                   "octoskin calibrate, nothing for the map in it",
+                   Cause::other_device, ""},
     CounterMeaning{"CAN frames", "mark_ignored",
                    "a START or STOP where none was waited for, or over 1 s from now", Cause::outside, ""},
     CounterMeaning{"readings", "node_absent", "the node has sent no heartbeat yet", Cause::outside,
@@ -88,11 +91,10 @@ constexpr std::array kCounterMeanings = {
                    Cause::mendable, "flash the firmware of this version"},
     CounterMeaning{"readings", "node_quarantined", "two boards share the node id", Cause::mendable,
                    "give each board its own node id"},
-    CounterMeaning{
-        "readings", "node_babbling",
-        "the node sent over twice as many frames within a second as the rig has it send, and has not kept "
-        "to that for a second",
-        Cause::mendable, "give the rig that the node was flashed with"},
+    CounterMeaning{"readings", "node_babbling",
+                   "the node sent over twice as many frames within a second as the rig has it send, and has "
+                   "not kept to that for a second",
+                   Cause::mendable, "give the rig that the node was flashed with"},
     CounterMeaning{"readings", "node_time_suspect", "the node's clock source failed its own check",
                    Cause::mendable, "look at the board's crystal"},
     CounterMeaning{"readings", "node_info_incomplete",
@@ -114,22 +116,22 @@ constexpr std::array kCounterMeanings = {
         "readings", "clock_in_doubt",
         "the newest exchange with the node contradicts those before: its clock jumped, or one of them is "
         "wrong. Or other readings of the node have times that cannot be, and this one's does not follow "
-        "those of its sensor by its period",
+        "those of its sensor by its period. Stamps of a serial adapter, in steps of over 16 ms, look the "
+        "same",
         Cause::mendable,
         "look for a second host that sends SYNC, and for an adapter that stamps frames coarsely or late"},
     CounterMeaning{"readings", "clock_silent", "no exchange with the node for too long", Cause::mendable,
                    "let the host send SYNC and FOLLOW_UP all the time"},
-    CounterMeaning{
-        "readings", "time_uncertain",
-        "the capture time may be further off than time_uncertainty_max_ms of the rig allows, or the node "
-        "has not told how far",
-        Cause::mendable, "raise time_uncertainty_max_ms of the rig, or shorten the SYNC period"},
+    CounterMeaning{"readings", "time_uncertain",
+                   "the capture time may be further off than time_uncertainty_max_ms of the rig allows, or "
+                   "the node has not told how far",
+                   Cause::mendable, "raise time_uncertainty_max_ms of the rig, or shorten the SYNC period"},
     CounterMeaning{"readings", "duplicate", "a reading that was here already", Cause::mendable,
                    "look for a second board with its node id, or frames that are recorded twice"},
     CounterMeaning{
         "readings", "contradicts_reading",
-        "another of its sensor has its number and other contents, or a later number and an earlier time: "
-        "a damaged frame or a second sender. Where the other still waited, it is counted here too",
+        "another of its sensor has its number and other contents, or a later number and an earlier time: a "
+        "damaged frame or a second sender. Where the other still waited, it is counted here too",
         Cause::mendable, "look for a second board with its node id, or frames that are recorded twice"},
     CounterMeaning{
         "readings", "sensor_disputed",
@@ -146,16 +148,15 @@ constexpr std::array kCounterMeanings = {
                    "look for a second board with its node id, or frames that are recorded twice"},
     CounterMeaning{"readings", "too_old", "arrived later than half its budget and 100 ms after its capture",
                    Cause::mendable, "look for a bus that is full or an adapter that holds frames back"},
-    CounterMeaning{
-        "readings", "sensor_misconfigured",
-        "its node says that the sensor's registers are not as configured: it may look elsewhere, or mean "
-        "another range",
-        Cause::mendable, "leave out the register that the node's line names, or exchange the sensor"},
-    CounterMeaning{
-        "readings", "no_return",
-        "the sensor saw no target, and the map leaves such beams alone (no_return_clear_m: 0): usual "
-        "when a beam leaves the room",
-        Cause::scene, "set no_return_clear_m of the mapping to let such beams free space"},
+    CounterMeaning{"readings", "sensor_misconfigured",
+                   "its node says that the sensor's registers are not as configured: it may look elsewhere, "
+                   "or mean another range",
+                   Cause::mendable,
+                   "leave out the register that the node's line names, or exchange the sensor"},
+    CounterMeaning{"readings", "no_return",
+                   "the sensor saw no target, and the map leaves such beams alone (no_return_clear_m: 0): "
+                   "usual when a beam leaves the room",
+                   Cause::scene, "set no_return_clear_m of the mapping to let such beams free space"},
     CounterMeaning{"readings", "status_fault", "the sensor gave any status but \"valid\" and \"no target\"",
                    Cause::scene, "look at the sensor, its cover and its light: bring-up.md"},
     CounterMeaning{"readings", "zone_unknown", "the node does not know which zone was in force",
@@ -184,18 +185,16 @@ constexpr std::array kCounterMeanings = {
                    "look for a number that is none in the rig and the robot description"},
     CounterMeaning{"readings", "outside_map", "beyond the bounds of the octree", Cause::mendable,
                    "look at T_map_base of the rig, or raise the mapping's resolution_m"},
-    CounterMeaning{
-        "readings", "contradicts_camera",
-        "its sensor contradicts the camera (the problems say how): the map does without it until it agrees "
-        "again",
-        Cause::mendable, "measure the poses of the camera and of this sensor again"},
+    CounterMeaning{"readings", "contradicts_camera",
+                   "its sensor contradicts the camera (the problems say how): the map does without it until "
+                   "it agrees again",
+                   Cause::mendable, "measure the poses of the camera and of this sensor again"},
     CounterMeaning{"joint samples", "incomplete", "not all four frames of the sample came in time",
                    Cause::mendable, "look for lost frames, or for a source that leaves frames out"},
-    CounterMeaning{
-        "joint samples", "contradictory",
-        "two frames differ that should be one, or one came before the sample was taken, or out of turn "
-        "and so late that it may be of the next round",
-        Cause::mendable, "let one program alone send joint states"},
+    CounterMeaning{"joint samples", "contradictory",
+                   "two frames differ that should be one, or one came before the sample was taken, or out of "
+                   "turn and so late that it may be of the next round",
+                   Cause::mendable, "let one program alone send joint states"},
     CounterMeaning{"joint samples", "clock_not_ready",
                    "fewer than two SYNC exchanges with the node yet: usual in its first seconds",
                    Cause::outside, "give it some seconds, with the SYNC of a host on the bus"},
@@ -216,17 +215,14 @@ constexpr std::array kCounterMeanings = {
                    "let one program alone send joint states"},
     CounterMeaning{"joint samples", "queue_overflow", "displaced by newer ones in a full queue",
                    Cause::mendable, "give the program more processor, or lower the rates"},
-    CounterMeaning{
-        "joint samples", "too_frequent",
-        "the source is over 1.6 times as quick as joints.rate_hz of the rig says: its samples cannot be "
-        "told apart with certainty. Its first five, if its clock is known by then",
-        Cause::mendable, "put the true rate into joints.rate_hz of the rig"},
-    CounterMeaning{
-        "joint samples", "second_sender",
-        "two senders of joint states are heard, or were within the last second, and it cannot be decided "
-        "which of "
-        "them is true: neither is used",
-        Cause::mendable, "let one program alone send joint states"},
+    CounterMeaning{"joint samples", "too_frequent",
+                   "the source is over 1.6 times as quick as joints.rate_hz of the rig says: its samples "
+                   "cannot be told apart with certainty. Its first five, if its clock is known by then",
+                   Cause::mendable, "put the true rate into joints.rate_hz of the rig"},
+    CounterMeaning{"joint samples", "second_sender",
+                   "two senders of joint states are heard, or were within the last second, and it cannot be "
+                   "decided which of them is true: neither is used",
+                   Cause::mendable, "let one program alone send joint states"},
     CounterMeaning{"joint samples", "joint_jump",
                    "further from the sample before it than 1.5 times the velocity of the robot description's "
                    "<limit> lets the arm move in that time",
@@ -238,11 +234,10 @@ constexpr std::array kCounterMeanings = {
                    Cause::mendable, "give a rig whose camera has their width_px and height_px"},
     CounterMeaning{"depth frames", "out_of_order", "not later than the frame before it", Cause::mendable,
                    "let one camera alone send images"},
-    CounterMeaning{
-        "depth frames", "ahead_of_time",
-        "captured over a second after all that was told of the time: the bus fell silent, its log ends "
-        "before the images, or the camera's clock is wrong",
-        Cause::mendable, "set the clock of the camera, or record the bus to the end"},
+    CounterMeaning{"depth frames", "ahead_of_time",
+                   "captured over a second after all that was told of the time: the bus fell silent, its log "
+                   "ends before the images, or the camera's clock is wrong",
+                   Cause::mendable, "set the clock of the camera, or record the bus to the end"},
     CounterMeaning{"depth frames", "queue_overflow", "displaced by newer ones in a full queue",
                    Cause::mendable, "give the program more processor, or lower the rates"},
     CounterMeaning{"depth frames", "outside_marks",
@@ -261,12 +256,22 @@ constexpr std::array kCounterMeanings = {
                    Cause::mendable, "raise depth_box_voxels_max, or resolution_m, of the mapping"},
     CounterMeaning{"depth frames", "no_memory", "the system had no memory to work it out with",
                    Cause::mendable, "free memory, or raise resolution_m of the mapping"},
-    CounterMeaning{"depth images", "without_pose",
-                   "groundtruth.txt has no poses about its time; usual at the beginning and the end",
-                   Cause::mendable, "record poses at a higher rate, or raise the gap that the rig allows"},
+    CounterMeaning{
+        "depth images", "without_pose",
+        "there are no poses about its time, or they are too far apart; usual at the beginning and the end",
+        Cause::mendable,
+        "raise camera.data_set.pose_gap_max_ms of the rig, or record poses at a higher rate"},
     CounterMeaning{"depth images", "unreadable",
                    "missing, damaged, or not grey with 16 bits: the replay ends there", Cause::mendable,
                    "take the line out of the list"},
+    CounterMeaning{"depth images", "bad_line", "the line does not name an image and its time",
+                   Cause::mendable, "correct the line, or take it out"},
+    CounterMeaning{"camera poses", "no_pose",
+                   "the pose at this time is not known: nan, a quaternion of zeros, or no file of it",
+                   Cause::outside, ""},
+    CounterMeaning{"camera poses", "bad_line", "the line, or the file of one pose, is no pose",
+                   Cause::mendable, "correct the line, or take it out"},
+    CounterMeaning{"camera poses", "repeated", "a pose of the same time is above it", Cause::outside, ""},
     CounterMeaning{"depth pixels", "no_value", "the camera or the filter gave none", Cause::scene, ""},
     CounterMeaning{"depth pixels", "robot", "on the robot, taken out", Cause::scene, ""},
     CounterMeaning{"depth pixels", "bad_value", "infinite, zero or negative", Cause::mendable, ""},

@@ -19,6 +19,22 @@ std::string with_end(std::string what, const std::optional<std::string>& how_it_
 
 Result<OniReader, DepthSourceError> OniReader::open(const FilePlace& oni, const FilePlace& epoch_file,
                                                     std::optional<std::filesystem::path> helper) {
+    const auto epoch = read_epoch(epoch_file);
+    auto reader = start(oni, std::move(helper));
+    if (!reader) return reader;
+    if (!epoch) return unexpected(epoch.error());
+    reader->first_frame_ = epoch->first_frame;
+    reader->frames_told_ = epoch->frames;
+    return reader;
+}
+
+Result<OniReader, DepthSourceError> OniReader::open_alone(const FilePlace& oni,
+                                                          std::optional<std::filesystem::path> helper) {
+    return start(oni, std::move(helper));
+}
+
+Result<OniReader, DepthSourceError> OniReader::start(const FilePlace& oni,
+                                                     std::optional<std::filesystem::path> helper) {
     const auto failure = [&oni](const std::string& what) {
         return unexpected(DepthSourceError{oni.shown().string() + ": " + what});
     };
@@ -27,8 +43,6 @@ Result<OniReader, DepthSourceError> OniReader::open(const FilePlace& oni, const 
         const bool is_link = opened.error().fault == FolderFault::link;
         return failure(is_link ? opened.error().reason() : "no such file, or not an ordinary one");
     }
-    const auto epoch = read_epoch(epoch_file);
-    if (!epoch) return unexpected(epoch.error());
     const auto program = find_helper(kReadHelper, helper);
     if (!program) return failure(program.error());
     auto process = HelperProcess::start(
@@ -40,12 +54,13 @@ Result<OniReader, DepthSourceError> OniReader::open(const FilePlace& oni, const 
         return failure(
             with_end("not a recording with depth that OpenNI2 can read", process->wait(kEndPatience)));
     }
-    return OniReader(oni.shown(), *epoch, std::move(*process), *header);
+    return OniReader(oni.shown(), std::move(*process), *header);
 }
 
 Unexpected<DepthSourceError> OniReader::fail(const std::string& what) {
+    const std::string of_all = frames_told_ ? " of " + std::to_string(*frames_told_) : "";
     failure_ = DepthSourceError{file_.string() + ": " + what + " after " + std::to_string(frames_read_) +
-                                " of " + std::to_string(epoch_.frames) + " frames"};
+                                of_all + " frames"};
     return unexpected(*failure_);
 }
 
@@ -55,8 +70,9 @@ Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
     auto piped = FramePipe(helper_.descriptor(), kReadPatience).read_frame(header_.size);
     if (!piped) return fail(with_end(name(piped.error()), helper_.wait(kEndPatience)));
     if (!piped->has_value()) {
-        const bool is_short = frames_read_ < epoch_.frames && !header_.is_salvaged;
-        if (is_short || frames_read_ > epoch_.frames) return fail("the recording ends");
+        const std::uint64_t told = frames_told_.value_or(frames_read_);
+        const bool is_short = frames_read_ < told && !header_.is_salvaged;
+        if (is_short || frames_read_ > told) return fail("the recording ends");
         is_ended_ = true;
         return std::optional<DepthFrame>{};
     }
@@ -64,7 +80,7 @@ Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
     const auto since_first = static_cast<std::int64_t>((*piped)->timestamp_us);
     constexpr std::int64_t kMaxUs = std::int64_t{1} << 48U;
     if (since_first < 0 || since_first > kMaxUs) return fail("an impossible time stamp");
-    const HostTime captured = epoch_.first_frame + Microseconds{since_first};
+    const HostTime captured = first_frame_ + Microseconds{since_first};
     if (frames_read_ > 0 && captured < last_) return fail("a time stamp that goes backwards");
     last_ = captured;
     ++frames_read_;
@@ -74,9 +90,11 @@ Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
 
 std::optional<std::string> OniReader::loss() const {
     if (!header_.is_salvaged) return std::nullopt;
-    return file_.string() + ": was cut off; " + std::to_string(frames_read_) + " of its " +
-           std::to_string(epoch_.frames) + " frames are whole and used, " +
-           std::to_string(epoch_.frames - std::min(epoch_.frames, frames_read_)) + " are lost";
+    const std::string read = std::to_string(frames_read_);
+    if (!frames_told_) return file_.string() + ": was cut off; " + read + " frames are whole and used";
+    return file_.string() + ": was cut off; " + read + " of its " + std::to_string(*frames_told_) +
+           " frames are whole and used, " +
+           std::to_string(*frames_told_ - std::min(*frames_told_, frames_read_)) + " are lost";
 }
 
 }  // namespace octoskin::openni2

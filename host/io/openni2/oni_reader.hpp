@@ -23,6 +23,11 @@ class OniReader final : public DepthSource {
         const FilePlace& oni, const FilePlace& epoch,
         std::optional<std::filesystem::path> helper = std::nullopt);
 
+    /// Opens one that stands alone: its first frame is at the host time 0, and how many there are is not
+    /// known.
+    [[nodiscard]] static Result<OniReader, DepthSourceError> open_alone(
+        const FilePlace& oni, std::optional<std::filesystem::path> helper = std::nullopt);
+
     /// Waits at most 15 s for a frame. A recording with fewer frames than its sidecar says ends with an error
     /// after the last whole frame; one that was cut off ends there, and loss() says so. After an error there
     /// is only that error.
@@ -33,13 +38,15 @@ class OniReader final : public DepthSource {
     [[nodiscard]] std::optional<std::string> loss() const;
 
   private:
-    OniReader(std::filesystem::path file, const DepthEpoch& epoch, HelperProcess helper,
-              const StreamHeader& header)
-        : file_(std::move(file)), epoch_(epoch), helper_(std::move(helper)), header_(header) {}
+    OniReader(std::filesystem::path file, HelperProcess helper, const StreamHeader& header)
+        : file_(std::move(file)), helper_(std::move(helper)), header_(header) {}
+    [[nodiscard]] static Result<OniReader, DepthSourceError> start(
+        const FilePlace& oni, std::optional<std::filesystem::path> helper);
     [[nodiscard]] Unexpected<DepthSourceError> fail(const std::string& what);
 
     std::filesystem::path file_;
-    DepthEpoch epoch_;
+    HostTime first_frame_{};
+    std::optional<std::uint64_t> frames_told_;  ///< by the sidecar
     HelperProcess helper_;
     StreamHeader header_;
     std::uint64_t frames_read_ = 0;

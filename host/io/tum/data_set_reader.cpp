@@ -38,44 +38,77 @@ std::vector<std::uint16_t> depth_mm_table(const rig::DataSetDepth& scale) {
 }
 
 Result<DataSetReader, DepthSourceError> DataSetReader::open(const std::filesystem::path& folder,
-                                                            const rig::DataSetDepth& scale) {
+                                                            const rig::DataSetKeys& keys) {
     const NamedFolder opened(folder);
-    auto trajectory = Trajectory::read({opened, "groundtruth.txt"});
+    auto files = find_data_set(opened);
+    if (!files) return unexpected(files.error());
+    const Nanoseconds gap_max{std::llround(1e6 * keys.pose_gap_max_ms)};
+    auto trajectory = files->poses.empty()
+                          ? Trajectory::read_frames(opened, files->frames, gap_max)
+                          : Trajectory::read({opened, files->poses}, gap_max, files->layout->axes);
     if (!trajectory) return unexpected(trajectory.error());
-    DataSetReader reader(Paths{folder}, opened, std::move(*trajectory), scale);
-    std::vector<Image>& images = reader.images_;
-    const auto take = [&images, &opened](std::uint64_t number, std::string_view line) -> Status<std::string> {
-        auto image = parse_image_line(line);
-        if (!image) return unexpected(image.error());
-        if (!images.empty() && image->captured < images.back().named.captured)
-            return unexpected(std::string("its time is before that of the image above it"));
-        if (auto elsewhere = elsewhere_fault({opened, image->file}))
-            return unexpected(image->file + ": " + *elsewhere);
-        images.push_back({number, std::move(*image)});
-        return Done{};
-    };
-    if (const auto done = read_lines({opened, "depth.txt"}, take); !done) return unexpected(done.error());
-    if (images.empty()) {
-        return unexpected(DepthSourceError{reader.paths_.images().string() +
-                                           ": names no image: expected lines of TIME FILE"});
+    DataSetReader reader(opened, std::move(*files), std::move(*trajectory), keys.depth(files->layout->depth));
+    if (const auto read = reader.read_list(); !read) return unexpected(read.error());
+    for (const Image& image : reader.images_) {
+        if (auto elsewhere = elsewhere_fault({opened, image.named.file}))
+            return unexpected(reader.about(image, *elsewhere));
     }
     return reader;
 }
 
+Status<DepthSourceError> DataSetReader::read_list() {
+    for (const NumberedFrame& frame : files_.frames) images_.push_back({0, {frame.captured, frame.image}});
+    if (files_.images.empty()) return Done{};
+    const FilePlace list(folder_, files_.images);
+    const auto take = [&](std::uint64_t number, std::string_view line) -> Status<std::string> {
+        auto image = parse_image_line(line);
+        if (!image) return unexpected(image.error());
+        const bool is_unordered = !images_.empty() && image->captured < images_.back().named.captured;
+        if (is_unordered && counts_.unordered++ == 0)
+            counts_.disorder =
+                line_error(list.shown(), number, "its time is before that of the image above it");
+        images_.push_back({number, std::move(*image)});
+        return Done{};
+    };
+    auto bad = read_lines(list, take);
+    if (!bad) return unexpected(bad.error());
+    if (images_.empty() && bad->first) return unexpected(*bad->first);
+    if (images_.empty()) {
+        return unexpected(
+            DepthSourceError{list.shown().string() + ": names no image: expected lines of TIME FILE"});
+    }
+    counts_.bad = std::move(*bad);
+    std::ranges::stable_sort(images_, {}, [](const Image& image) { return image.named.captured; });
+    return Done{};
+}
+
+DepthSourceError DataSetReader::about(const Image& image, const std::string& what) const {
+    const std::filesystem::path& folder = folder_.shown();
+    if (image.line == 0) return {(folder / image.named.file).string() + ": " + what};
+    return line_error(folder / files_.images, image.line, image.named.file + ": " + what);
+}
+
+void DataSetReader::count_without_pose(const Image& image) {
+    if (counts_.without_pose++ > 0) return;
+    const HostTime captured = image.named.captured;
+    counts_.first_without_pose =
+        FirstWithoutPose{about(image, "no pose about its time"), captured, trajectory_.gap_about(captured)};
+}
+
 Result<std::optional<DepthFrame>, DepthSourceError> DataSetReader::next() {
     for (; next_ < images_.size(); ++next_) {
-        const auto& [line, named] = images_[next_];
-        const auto T_map_camera = trajectory_.at(named.captured);
+        const Image& next = images_[next_];
+        const auto T_map_camera = trajectory_.at(next.named.captured);
         if (!T_map_camera) {
-            ++images_without_pose_;
+            count_without_pose(next);
             continue;
         }
-        const auto image = read_depth_png({folder_, named.file});
-        if (!image) return unexpected(line_error(paths_.images(), line, named.file + ": " + image.error()));
+        const auto image = read_depth_png({folder_, next.named.file});
+        if (!image) return unexpected(about(next, image.error()));
         ++next_;
-        ++images_read_;
+        ++counts_.read;
         values_.add(image->values);
-        DepthFrame frame{named.captured, image->width, image->height, {}, T_map_camera};
+        DepthFrame frame{next.named.captured, image->width, image->height, {}, T_map_camera};
         frame.depth_mm.reserve(image->values.size());
         std::transform(image->values.begin(), image->values.end(), std::back_inserter(frame.depth_mm),
                        [this](std::uint16_t value) { return depth_mm_[value]; });
@@ -84,27 +117,32 @@ Result<std::optional<DepthFrame>, DepthSourceError> DataSetReader::next() {
     return std::optional<DepthFrame>{};
 }
 
-std::optional<HostTime> DataSetReader::begin() const {
-    if (images_.empty()) return std::nullopt;
-    return images_.front().named.captured;
+std::optional<FilePlace> DataSetReader::calibration() const {
+    return files_.calibration.empty() ? std::nullopt : std::optional(FilePlace(folder_, files_.calibration));
 }
 
 std::vector<FilePlace> DataSetReader::files() const {
-    std::vector<FilePlace> files{{folder_, "depth.txt"}, {folder_, "groundtruth.txt"}};
+    std::vector<FilePlace> files;
+    for (const std::string& name : {files_.images, files_.poses, files_.calibration}) {
+        if (!name.empty()) files.emplace_back(folder_, name);
+    }
     for (const Image& image : images_) files.emplace_back(folder_, image.named.file);
+    for (const NumberedFrame& frame : files_.frames) {
+        if (frame.has_pose) files.emplace_back(folder_, frame.pose);
+    }
     return files;
 }
 
 std::optional<DepthSourceError> DataSetReader::missing_image() const {
-    for (const auto& [line, named] : images_) {
-        const auto opened = FilePlace(folder_, named.file).open();
+    for (const Image& image : images_) {
+        const auto opened = FilePlace(folder_, image.named.file).open();
         if (opened) continue;
         const FolderFault fault = opened.error().fault;
         std::string what = opened.error().reason();
         if (fault == FolderFault::not_permitted) what = "may not be read: give yourself the right to";
         if (fault == FolderFault::absent)
             what = "is not there: unpack the data set anew, or take out the line";
-        return line_error(paths_.images(), line, named.file + ": " + what);
+        return about(image, what);
     }
     return std::nullopt;
 }

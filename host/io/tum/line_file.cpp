@@ -1,23 +1,17 @@
 #include "host/io/tum/line_file.hpp"
 
 #include <fstream>
+#include <utility>
+
+#include "host/io/lines/line_stream.hpp"
 
 namespace octoskin::tum {
 namespace {
 
 constexpr std::size_t kLineBytesMax = 4096;
 
-/// False at the end; a line that is too long is cut just behind the limit.
-bool read_line(std::ifstream& stream, std::string& line) {
-    line.clear();
-    for (char next = 0; line.size() <= kLineBytesMax && stream.get(next); line += next) {
-        if (next == '\n') return true;
-    }
-    return !line.empty();
-}
-
 bool is_content(std::string_view line) {
-    const std::size_t begin = line.find_first_not_of(" \t");
+    const std::size_t begin = line.find_first_not_of(" \t\r");
     return begin != std::string_view::npos && line[begin] != '#';
 }
 
@@ -27,7 +21,9 @@ std::string reason_of(const FolderError& error) {
         case FolderFault::not_a_file:
             return "is a pipe or a device, not an ordinary file";
         case FolderFault::absent:
-            return "no such file: a data set has depth.txt and groundtruth.txt; unpack it anew";
+            return "no such file: a data set has a list of its depth images and the poses of the camera, "
+                   "depth.txt "
+                   "and groundtruth.txt; unpack it anew";
         case FolderFault::link:
         case FolderFault::outside:
             return error.reason();
@@ -41,29 +37,52 @@ std::string reason_of(const FolderError& error) {
     return "cannot be opened";
 }
 
+Result<LineStream, DepthSourceError> open_lines(const FilePlace& place) {
+    const std::string file = place.shown().string();
+    const auto opened = place.open();
+    if (!opened) return unexpected(DepthSourceError{file + ": " + reason_of(opened.error())});
+    std::ifstream stream(opened->path_for_libraries(), std::ios::binary);
+    if (!stream) return unexpected(DepthSourceError{file + ": cannot be opened"});
+    return LineStream(std::move(stream), kLineBytesMax);
+}
+
 }  // namespace
 
 DepthSourceError line_error(const std::filesystem::path& file, std::uint64_t line, const std::string& what) {
     return {file.string() + ":" + std::to_string(line) + ": " + what};
 }
 
-Status<DepthSourceError> read_lines(const FilePlace& place, const TakeLine& take) {
+Result<BadLines, DepthSourceError> read_lines(const FilePlace& place, const TakeLine& take) {
+    auto lines = open_lines(place);
+    if (!lines) return unexpected(lines.error());
     const std::filesystem::path file = place.shown();
-    const auto opened = place.open();
-    if (!opened) return unexpected(DepthSourceError{file.string() + ": " + reason_of(opened.error())});
-    std::ifstream stream(opened->path_for_libraries(), std::ios::binary);
-    if (!stream) return unexpected(DepthSourceError{file.string() + ": cannot be opened"});
-    std::string line;
-    for (std::uint64_t number = 1; read_line(stream, line); ++number) {
-        if (line.size() > kLineBytesMax)
-            return unexpected(line_error(file, number, "longer than 4096 bytes: no list of a data set"));
-        if (line.ends_with('\r')) line.pop_back();
-        if (!is_content(line)) continue;
-        if (const auto taken = take(number, line); !taken)
-            return unexpected(line_error(file, number, taken.error()));
+    BadLines bad;
+    while (lines->next() != LineStream::End::nothing_left) {  // ends with the file
+        if (lines->is_cut()) {
+            bad.add(line_error(file, lines->number(), "longer than 4096 bytes: no line of a data set"));
+        } else if (is_content(lines->line())) {
+            if (const auto taken = take(lines->number(), lines->line()); !taken)
+                bad.add(line_error(file, lines->number(), taken.error()));
+        }
     }
-    if (stream.bad()) return unexpected(DepthSourceError{file.string() + ": cannot be read on"});
-    return Done{};
+    if (lines->has_failed()) return unexpected(DepthSourceError{file.string() + ": cannot be read on"});
+    return bad;
+}
+
+Result<std::string, DepthSourceError> read_small_file(const FilePlace& place) {
+    auto lines = open_lines(place);
+    if (!lines) return unexpected(lines.error());
+    const auto refuse = [&place](const char* what) {
+        return unexpected(DepthSourceError{place.shown().string() + ": " + what});
+    };
+    std::string text;
+    while (lines->next() != LineStream::End::nothing_left) {  // ends with the file, or its limit
+        text += lines->line() + '\n';
+        if (lines->is_cut() || text.size() > kLineBytesMax)
+            return refuse("longer than 4096 bytes: no pose or calibration");
+    }
+    if (lines->has_failed()) return refuse("cannot be read on");
+    return text;
 }
 
 }  // namespace octoskin::tum

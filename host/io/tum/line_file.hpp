@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,16 @@
 
 namespace octoskin::tum {
 
+/// Lines that mean nothing, or not what they should: how many, and the first with its reason.
+struct BadLines {
+    std::uint64_t count = 0;
+    std::optional<DepthSourceError> first;
+
+    void add(DepthSourceError error) {
+        if (count++ == 0) first = std::move(error);
+    }
+};
+
 /// "FILE:LINE: WHAT".
 [[nodiscard]] DepthSourceError line_error(const std::filesystem::path& file, std::uint64_t line,
                                           const std::string& what);
@@ -20,8 +31,11 @@ namespace octoskin::tum {
 /// Says what is wrong with a line; `number` from 1.
 using TakeLine = std::function<Status<std::string>(std::uint64_t number, std::string_view line)>;
 
-/// Gives every line that is neither blank nor a comment to `take`, until it refuses one. Errors name the file
-/// and the line: not to be opened, a line over 4096 bytes, refused.
-[[nodiscard]] Status<DepthSourceError> read_lines(const FilePlace& file, const TakeLine& take);
+/// Gives every line that is neither blank nor a comment to `take`. Those that it refuses, and those over 4096
+/// bytes, are counted. Errors name the file: not to be opened, not to be read on.
+[[nodiscard]] Result<BadLines, DepthSourceError> read_lines(const FilePlace& file, const TakeLine& take);
+
+/// The whole file, if it has at most 4096 bytes. Errors as those of read_lines.
+[[nodiscard]] Result<std::string, DepthSourceError> read_small_file(const FilePlace& file);
 
 }  // namespace octoskin::tum

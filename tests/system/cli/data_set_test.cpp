@@ -79,6 +79,57 @@ TEST_F(DataSet, gives_the_map_of_a_recording_with_the_same_images) {
     EXPECT_FALSE(std::filesystem::exists(path("set/maps/proximity.ot"))) << "nothing measured proximity";
 }
 
+/// `folder`/film.oni of the images of record(), and its rig.
+void film(const std::filesystem::path& folder, const std::string& recording) {
+    record(recording);
+    std::filesystem::create_directories(folder);
+    std::filesystem::copy(recording + "/depth.oni", folder / "film.oni");
+}
+
+TEST_F(DataSet, an_oni_that_stands_alone_gives_the_same_map_from_where_its_camera_was) {
+    write(path("mapping.yaml"), "base: robust\nremoves_robot_from_depth: false\n");
+    film(path("film"), path("recording"));
+    const std::string how = " --configuration " + path("mapping.yaml") + " --rig " + path("recording.yaml");
+    ASSERT_EQ(octoskin("replay " + path("recording") + how).exit_code, 0);
+    const std::string map = content(path("recording/maps/fused.ot"));
+    const Said folder = octoskin("replay " + path("film") + how);
+    EXPECT_EQ(folder.exit_code, 0) << folder.output;
+    EXPECT_EQ(content(path("film/maps/fused.ot")), map);
+    const Said file = octoskin("replay " + path("film/film.oni") + how);
+    EXPECT_EQ(file.exit_code, 0) << file.output;
+    EXPECT_EQ(content(path("film/film.maps/fused.ot")), map);
+    // The same pose by --pose: optical z along the map's x.
+    const Said posed = octoskin("replay " + path("film/film.oni") + how +
+                                " --pose 0.1,0.2,0.8,-90,0,-90 --out " + path("posed"));
+    EXPECT_EQ(posed.exit_code, 0) << posed.output;
+    EXPECT_NEAR(static_cast<double>(content(path("posed/fused.ot")).size()), static_cast<double>(map.size()),
+                0.01 * static_cast<double>(map.size()));
+    const Said wall = octoskin("explain 2.145 0.21 0.81 --recording " + path("film/film.oni") + how +
+                               " --pose 0.1,0.2,0.8,-90,0,-90");
+    EXPECT_THAT(wall.output, HasSubstr("occupied, mainly by the camera"));
+}
+
+TEST_F(DataSet, an_oni_that_stands_alone_needs_to_know_where_its_camera_was) {
+    film(path("film"), path("recording"));
+    const Said unknown = octoskin("replay " + path("film/film.oni"));
+    EXPECT_EQ(unknown.exit_code, 64) << unknown.output;
+    EXPECT_THAT(unknown.output, HasSubstr("--pose X,Y,Z,ROLL,PITCH,YAW"));
+    for (const char* pose : {"1,2,3", "1,2,3,4,5,6,7", "1,2,3,4,5,nan", "a", "1,2,3,4,5,6,"}) {
+        const Said said = octoskin("replay " + path("film/film.oni") + " --pose " + pose);
+        EXPECT_EQ(said.exit_code, 64) << pose << said.output;
+    }
+    const Said size = octoskin("replay " + path("film/film.oni") + " --pose 0,0,0,0,0,0");
+    EXPECT_EQ(size.exit_code, 1) << size.output;
+    EXPECT_THAT(size.output, HasSubstr("128 x 106, the camera's are 640 x 480"));
+    write_data_set(path("set"));
+    EXPECT_EQ(octoskin("replay " + path("set") + " --pose 0,0,0,0,0,0").exit_code, 64);
+    write(path("film/film.oni"), "no film");
+    EXPECT_EQ(octoskin("replay " + path("film/film.oni") + " --pose 0,0,0,0,0,0").exit_code, 65);
+    std::filesystem::copy(path("recording/depth.oni"), path("film/other.oni"));
+    EXPECT_EQ(octoskin("replay " + path("film") + " --pose 0,0,0,0,0,0").exit_code, 64)
+        << "two of them: neither is meant";
+}
+
 TEST_F(DataSet, plays_at_the_speed_asked_for_and_step_by_step_into_the_same_map) {
     write_data_set(path("set"));
     const std::string rig = " --rig " + source("tests/data/short/rig.yaml");
@@ -136,6 +187,31 @@ TEST_F(DataSet, a_fault_is_named_with_file_and_line_and_leaves_no_map) {
     EXPECT_EQ(image.exit_code, 65) << image.output;
     EXPECT_THAT(image.output, HasSubstr("depth.txt:7: depth/1.300000.png: cannot be read as PNG"));
     EXPECT_FALSE(std::filesystem::exists(path("other/maps/fused.ot")));
+}
+
+TEST_F(DataSet, is_mapped_as_people_write_it_into_the_same_map) {
+    const std::string rig = " --rig " + source("tests/data/short/rig.yaml");
+    write_data_set(path("set"));
+    ASSERT_EQ(octoskin("replay " + path("set") + rig).exit_code, 0);
+    const std::string map = content(path("set/maps/depth.ot"));
+    ASSERT_GT(map.size(), 1'000U);
+    // Exponents, a mark, a pose that is not known, a broken line, no order; the list of both images.
+    write_data_set(path("other"));
+    std::filesystem::remove(path("other/depth.txt"));
+    std::string poses = "\xEF\xBB\xBF# of evo\r\n0.9 nan nan nan nan nan nan nan\r\nlost\r\n";
+    std::string images;
+    for (const std::string i : {"0", "2", "1", "3", "4", "5"}) {
+        const std::string time = "1." + i + "0000e+00 ";
+        poses += time + "1e-1 +2.0e-01 8.0e-1 0.5 -0.5 0.5 -0.5\r\n";
+        images += time + "rgb/" + i + ".png " + time + "depth/1." + i + "00000.png\n";
+    }
+    write(path("other/associations.txt"), images);
+    write(path("other/groundtruth.txt"), poses);
+    const Said said = octoskin("replay " + path("other") + rig);
+    EXPECT_EQ(said.exit_code, 0) << said.output;
+    EXPECT_EQ(content(path("other/maps/depth.ot")), map);
+    EXPECT_THAT(said.output, HasSubstr("groundtruth.txt:3: expected a time in seconds, found 'lost'"));
+    EXPECT_THAT(said.output, HasSubstr("associations.txt:3: its time is before"));
 }
 
 TEST_F(DataSet, says_below_the_account_which_size_its_images_have_and_which_is_expected) {

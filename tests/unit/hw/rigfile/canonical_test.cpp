@@ -50,7 +50,7 @@ camera:
   rate_hz: 15
   depth_min_m: 0.3
   depth_max_m: 4.25
-  data_set: {depth_units_per_m: 1000, depth_no_value: 65535}
+  data_set: {depth_units_per_m: 1000, depth_no_value: 65535, pose_gap_max_ms: 150}
   pose: {xyz_m: [2.7, 0, 1.8], looking_at_m: [0.4, 0, 0.45]}
 nodes:
   - name: board
@@ -153,7 +153,8 @@ TEST_F(RigText, every_value_of_a_full_rig_arrives) {
     EXPECT_EQ(rig.camera->fy, 60.5);
     EXPECT_EQ(rig.camera->lens,
               (LensDistortion{.k1 = 0.125, .k2 = -0.25, .p1 = 0.001, .p2 = -0.002, .k3 = 0.0625}));
-    EXPECT_EQ(rig.camera->data_set, (DataSetDepth{.units_per_m = 1000.0, .no_value = 65'535}));
+    EXPECT_EQ(rig.camera->data_set,
+              (DataSetKeys{.units_per_m = 1000.0, .no_value = 65'535, .pose_gap_max_ms = 150.0}));
     EXPECT_EQ(rig.joints.rate_hz, 100.5);
     const Node& node = rig.nodes.at(0);
     EXPECT_EQ(node.pinned_build_id, 0x1A2B3C4DU);
@@ -342,15 +343,16 @@ const Change kChanges[] = {
 TEST_F(RigText, of_a_camera_without_lens_and_scale_is_what_it_was_before_there_were_such_keys) {
     std::string plain =
         replaced(kFullRig, "  distortion: {k1: 0.125, k2: -0.25, p1: 0.001, p2: -0.002, k3: 0.0625}\n", "");
-    plain = replaced(plain, "  data_set: {depth_units_per_m: 1000, depth_no_value: 65535}\n", "");
+    plain = replaced(
+        plain, "  data_set: {depth_units_per_m: 1000, depth_no_value: 65535, pose_gap_max_ms: 150}\n", "");
     const Rig rig = read_good(plain);
     EXPECT_TRUE(rig.camera->lens.is_none());
     EXPECT_EQ(canonical_text(rig, "r").find("distortion"), std::string::npos);
     EXPECT_EQ(canonical_text(rig, "r").find("data_set"), std::string::npos);
-    const Rig written_out =
-        read_good(replaced(plain, "  rate_hz: 15\n",
-                           "  distortion: {k1: 0}\n  data_set: {depth_units_per_m: 5000}\n"
-                           "  rate_hz: 15\n"));
+    const Rig written_out = read_good(
+        replaced(plain, "  rate_hz: 15\n",
+                 "  distortion: {k1: 0}\n  data_set: {depth_units_per_m: 5000, pose_gap_max_ms: 50}\n"
+                 "  rate_hz: 15\n"));
     EXPECT_EQ(rig_hash(written_out), rig_hash(rig));
 }
 

@@ -376,10 +376,11 @@ TEST(Meanings, are_there_for_every_counter_of_the_account_and_for_no_other) {
         there.insert(std::string(meaning.unit) + " " + std::string(meaning.name));
     }
     // Those of a replay alone, as octoskin::playback counts them.
-    std::set<std::string> expected{"log lines other_interface", "depth images without_pose",
-                                   "depth images unreadable",   "depth pixels no_value",
-                                   "depth pixels robot",        "depth pixels bad_value",
-                                   "depth pixels outside_map"};
+    std::set<std::string> expected{
+        "log lines other_interface", "depth images without_pose", "depth images unreadable",
+        "depth images bad_line",     "camera poses no_pose",      "camera poses bad_line",
+        "camera poses repeated",     "depth pixels no_value",     "depth pixels robot",
+        "depth pixels bad_value",    "depth pixels outside_map"};
     expected.merge(names<candump::LineFault>("log lines"));
     expected.merge(names<FrameReason>("CAN frames"));
     expected.merge(names<ReadingReason>("readings"));

@@ -227,6 +227,83 @@ TEST_F(DataSetPlayback, accounts_for_every_image) {
     EXPECT_FALSE(failure_of(*played));
 }
 
+TEST_F(DataSetPlayback, accounts_for_every_line_of_both_lists) {
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_pose("100.01", "nan nan nan nan nan nan nan");
+    written_.add_pose("100.02", "0 0 0 0 0 0 1");
+    written_.add_pose("100.02", "0 0 0 0 0 0 1");
+    written_.add_line("groundtruth.txt", "lost");
+    written_.add_image("100", wall(1));
+    written_.add_line("depth.txt", "also lost");
+    written_.add_image("100.02", wall(2));
+    const auto played = play_recording(request());
+    ASSERT_TRUE(played) << played.error().message;
+    EXPECT_FALSE(failure_of(*played));
+    const AccountTable& images = played->accounts.at(0);
+    EXPECT_EQ(images.in, 3U);
+    EXPECT_EQ(images.used, 2U);
+    EXPECT_EQ(images.rejected.at(1).name, "bad_line");
+    EXPECT_EQ(images.rejected.at(1).count, 1U);
+    const AccountTable& poses = played->accounts.at(1);
+    EXPECT_EQ(poses.unit, "camera poses");
+    EXPECT_EQ(poses.in, 5U);
+    EXPECT_EQ(poses.used, 2U);
+    for (const auto& rejected : poses.rejected) EXPECT_EQ(rejected.count, 1U) << rejected.name;
+    EXPECT_TRUE(poses.is_balanced);
+    EXPECT_THAT(played->warnings, testing::Contains(HasSubstr("groundtruth.txt:8: expected a time")));
+    EXPECT_THAT(played->warnings, testing::Contains(HasSubstr("depth.txt:5: expected a time")));
+}
+
+/// Where a wall stands that the camera looks at from the origin, and how wide the image of it is.
+struct SeenWall {
+    double nearest_m;
+    double widest_m;
+};
+SeenWall seen_wall(const Playback& played) {
+    const FusedMap& map = *played.pipeline.maps().depth();
+    const VoxelLattice lattice(map.resolution_m());
+    SeenWall seen{100.0, 0.0};
+    map.for_each_known([&](VoxelKey key, float log_odds) {
+        if (log_odds <= 0.0F) return;
+        seen.nearest_m = std::min(seen.nearest_m, lattice.centre_of(key).z());
+        seen.widest_m = std::max(seen.widest_m, lattice.centre_of(key).x());
+    });
+    return seen;
+}
+
+// Each layout's camera sees x from the middle to the image's right edge: 320 pixels at 2 m.
+TEST_F(DataSetPlayback, each_layout_has_its_own_camera_scale_and_lists) {
+    const Grey fifths{640, 480, std::vector<std::uint16_t>(640 * 480, 10'000)};
+    const Grey millimetres{640, 480, std::vector<std::uint16_t>(640 * 480, 2'000)};
+    const auto icl = scratch_ / "icl";
+    std::filesystem::create_directories(icl / "depth");
+    testing_support::write_grey_png(icl / "depth/0.png", fifths);
+    std::ofstream(icl / "associations.txt") << "\xEF\xBB\xBF"
+                                               "0 depth/0.png 0 rgb/0.png\n";
+    std::ofstream(icl / "livingRoom.gt.freiburg") << "0 0 0 0 0 0 0 1\n";
+    const auto scenes = scratch_ / "seq-01";
+    std::filesystem::create_directories(scenes);
+    testing_support::write_grey_png(scenes / "frame-000000.depth.png", millimetres);
+    std::ofstream(scenes / "frame-000000.pose.txt") << "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+    written_.add_pose("1.000000000000000000e+00", "0 0 0 0 0 0 1");
+    written_.add_image("1.0", fifths);
+    std::ofstream(written_.folder() / "calibration.txt") << "1000 1000 319.5 239.5\n";
+    struct Layout {
+        std::filesystem::path folder;
+        double fx;
+    };
+    for (const Layout& layout :
+         {Layout{icl, 481.2}, Layout{scenes, 585.0}, Layout{written_.folder(), 1000.0}}) {
+        PlaybackRequest asked = request();
+        asked.recording = RecordingPaths(layout.folder);
+        asked.mapping.map.resolution_m = 0.01;
+        const auto played = play_recording(asked);
+        ASSERT_TRUE(played) << played.error().message;
+        EXPECT_NEAR(seen_wall(*played).nearest_m, 2.0, 0.011) << layout.folder;
+        EXPECT_NEAR(seen_wall(*played).widest_m, 320.0 / layout.fx * 2.0, 0.02) << layout.folder;
+    }
+}
+
 TEST_F(DataSetPlayback, an_image_that_cannot_be_read_makes_the_map_one_that_must_not_be_used) {
     written_.add_pose("100", "0 0 0 0 0 0 1");
     written_.add_image("100", wall(1));
@@ -263,7 +340,8 @@ TEST_F(DataSetPlayback, what_a_data_set_does_not_have_is_refused) {
     EXPECT_THAT(refused(two), HasSubstr("--rig or --camera"));
     PlaybackRequest unknown = request();
     unknown.camera = "freiburg4";
-    EXPECT_THAT(refused(unknown), HasSubstr("kinect, freiburg1, freiburg2, freiburg3"));
+    EXPECT_THAT(refused(unknown),
+                HasSubstr("kinect, freiburg1, freiburg2, freiburg3, icl_nuim, seven_scenes"));
     EXPECT_THAT(refused(request()), HasSubstr("depth.txt:4: depth/absent.png: is not there"));
 }
 

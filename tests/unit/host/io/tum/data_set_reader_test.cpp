@@ -80,7 +80,7 @@ TEST_F(DataSetReaderTest, gives_every_image_with_its_time_and_where_the_camera_w
     written_.add_image("100.000000", {3, 2, {0, 5000, 10000, 2, 3, 65535}});
     written_.add_image("100.010000", {3, 2, {5, 5, 5, 5, 5, 5}});
     DataSetReader reader = open();
-    EXPECT_EQ(reader.begin()->ns, 100'000'000'000);
+    EXPECT_EQ(reader.begin().ns, 100'000'000'000);
     EXPECT_EQ(reader.images_left(), 2U);
     const auto first = *reader.next();
     ASSERT_TRUE(first);
@@ -93,7 +93,7 @@ TEST_F(DataSetReaderTest, gives_every_image_with_its_time_and_where_the_camera_w
     EXPECT_NEAR(second->T_map_camera->translation().z(), 2.0, 1e-12);
     EXPECT_FALSE(*reader.next());
     EXPECT_FALSE(*reader.next());
-    EXPECT_EQ(reader.images_read(), 2U);
+    EXPECT_EQ(reader.images().read, 2U);
     EXPECT_EQ(reader.images_left(), 0U);
 }
 
@@ -113,17 +113,135 @@ TEST_F(DataSetReaderTest, counts_images_of_which_no_pose_is_known_and_does_not_r
     DataSetReader reader = open();
     EXPECT_THAT((*reader.next())->depth_mm, ElementsAre(1400));
     EXPECT_FALSE(*reader.next());
-    EXPECT_EQ(reader.images_read(), 1U);
-    EXPECT_EQ(reader.images_without_pose(), 2U);
+    EXPECT_EQ(reader.images().read, 1U);
+    EXPECT_EQ(reader.images().without_pose, 2U);
 }
 
-TEST_F(DataSetReaderTest, a_fault_in_the_list_names_file_and_line) {
+TEST_F(DataSetReaderTest, says_which_image_is_the_first_without_a_pose_and_how_far_poses_are_apart_there) {
+    written_.add_pose("100.00", "0 0 0 0 0 0 1");
+    written_.add_pose("100.066", "0 0 0 0 0 0 1");
+    written_.add_image("100.00", {1, 1, {7000}});
+    written_.add_image("100.01", {1, 1, {7000}});
+    written_.add_image("100.2", {1, 1, {7000}});
+    DataSetReader reader = open();
+    while (*reader.next()) continue;
+    const ImageCounts& images = reader.images();
+    EXPECT_EQ(images.without_pose, 2U);
+    ASSERT_TRUE(images.first_without_pose);
+    EXPECT_THAT(images.first_without_pose->image.what, HasSubstr("depth.txt:5: depth/100.01.png"));
+    EXPECT_EQ(images.first_without_pose->captured.ns, 100'010'000'000);
+    EXPECT_EQ(images.first_without_pose->gap, Nanoseconds{66'000'000});
+    EXPECT_EQ(reader.pose_gap_max(), Nanoseconds{50'000'000});
+    auto wide = DataSetReader::open(written_.folder(), {.pose_gap_max_ms = 66.0});
+    while (*wide->next()) continue;
+    EXPECT_EQ(wide->images().read, 2U);
+    EXPECT_FALSE(wide->images().first_without_pose->gap) << "behind the last pose";
+}
+
+TEST_F(DataSetReaderTest, lines_that_name_no_image_are_counted_and_those_out_of_order_put_in_order) {
     const std::string file = (written_.folder() / "depth.txt").string();
+    written_.add_pose("99", "0 0 0 0 0 0 1");
+    written_.add_pose("100", "0 0 0 0 0 0 1");
     written_.add_image("100", {1, 1, {7000}});
-    written_.add_line("depth.txt", "99.999999999 depth/100.png");
-    const auto backwards = DataSetReader::open(written_.folder());
-    ASSERT_FALSE(backwards);
-    EXPECT_EQ(backwards.error().what, file + ":5: its time is before that of the image above it");
+    written_.add_line("depth.txt", "nonsense");
+    written_.add_line("depth.txt", "x y");
+    written_.add_image("99", {1, 1, {5000}});
+    DataSetReader reader = open();
+    EXPECT_EQ(reader.images().bad.count, 2U);
+    EXPECT_THAT(reader.images().bad.first->what, StartsWith(file + ":5: expected a time"));
+    EXPECT_EQ(reader.images().unordered, 1U);
+    EXPECT_EQ(reader.images().disorder->what, file + ":7: its time is before that of the image above it");
+    EXPECT_EQ((*reader.next())->captured.ns, 99'000'000'000);
+    EXPECT_EQ((*reader.next())->captured.ns, 100'000'000'000);
+}
+
+/// Which voxel no other convention would give: a camera turned by half a turn about its axis, and moved.
+TEST_F(DataSetReaderTest, reads_the_layout_of_icl_nuim) {
+    const auto folder = scratch_ / "living_room_traj0_frei_png";
+    std::filesystem::create_directories(folder / "depth");
+    testing_support::write_grey_png(folder / "depth/0.png", {1, 1, {5000}});
+    testing_support::write_grey_png(folder / "depth/1.png", {1, 1, {10'000}});
+    std::ofstream(folder / "associations.txt") << "0 depth/0.png 0 rgb/0.png\n1 depth/1.png 1 rgb/1.png\n";
+    std::ofstream(folder / "livingRoom0.gt.freiburg") << "1 0.5 0.25 -2 0 0 0 1\n2 0 0 0 0 0 0 1\n";
+    auto reader = DataSetReader::open(folder);
+    ASSERT_TRUE(reader) << reader.error().what;
+    EXPECT_EQ(reader->layout().name, "ICL-NUIM");
+    EXPECT_EQ(reader->layout().camera, "icl_nuim");
+    const auto frame = *reader->next();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->captured.ns, 1'000'000'000);
+    EXPECT_THAT(frame->depth_mm, ElementsAre(2000));
+    EXPECT_TRUE(frame->T_map_camera->translation().isApprox(Eigen::Vector3d(0.5, -0.25, -2)));
+    EXPECT_FALSE(*reader->next());
+    EXPECT_EQ(reader->images().without_pose, 1U);  // its first image has none
+    std::ofstream(folder / "traj0.gt.freiburg") << "";
+    EXPECT_THAT(DataSetReader::open(folder).error().what,
+                HasSubstr("has livingRoom0.gt.freiburg and traj0.gt.freiburg"));
+}
+
+TEST_F(DataSetReaderTest, reads_the_layout_of_seven_scenes) {
+    const auto folder = scratch_ / "seq-01";
+    std::filesystem::create_directories(folder);
+    const auto pose = [&](const char* name, const char* text) { std::ofstream(folder / name) << text; };
+    for (const char* name : {"frame-000000.depth.png", "frame-000001.depth.png", "frame-000002.depth.png",
+                             "frame-000010.depth.png", "frame-1000000.depth.png"})
+        testing_support::write_grey_png(folder / name, {3, 1, {0, 1500, 65'535}});
+    testing_support::write_grey_png(folder / "frame-000000.color.png", {1, 1, {1}});
+    pose("frame-000000.pose.txt", "1 0 0 0.5\t\n 0 1 0 0 \n 0 0 1 0 \n 0 0 0 1 \n");
+    pose("frame-000001.pose.txt", "-inf -inf -inf -inf -inf -inf -inf -inf -inf -inf -inf -inf 0 0 0 1");
+    pose("frame-000010.pose.txt", "1 2 3");
+    pose("frame-1000000.pose.txt", "1 0 0 7 0 1 0 0 0 0 1 0 0 0 0 1");
+    auto reader = DataSetReader::open(folder);
+    ASSERT_TRUE(reader) << reader.error().what;
+    EXPECT_EQ(reader->layout().name, "7-Scenes");
+    const auto first = *reader->next();
+    EXPECT_EQ(first->captured.ns, 0);
+    EXPECT_THAT(first->depth_mm, ElementsAre(0, 1500, 0));
+    EXPECT_EQ(first->T_map_camera->translation().x(), 0.5);
+    const auto last = *reader->next();
+    EXPECT_EQ(last->captured.ns, 33'333'333'333'333);
+    EXPECT_EQ(last->T_map_camera->translation().x(), 7.0);
+    EXPECT_FALSE(*reader->next());
+    EXPECT_EQ(reader->images().without_pose, 3U);
+    EXPECT_EQ(reader->poses().in, 5U);
+    EXPECT_EQ(reader->poses().used, 2U);
+    EXPECT_EQ(reader->poses().no_pose, 2U);
+    EXPECT_THAT(reader->poses().bad.first->what, HasSubstr("frame-000010.pose.txt: expected the 16 numbers"));
+    EXPECT_EQ(reader->files().size(), 9U);
+    auto in_fifths = DataSetReader::open(folder, {.units_per_m = 5000.0});
+    EXPECT_THAT((*in_fifths->next())->depth_mm, ElementsAre(0, 300, 0));
+}
+
+TEST_F(DataSetReaderTest, a_calibration_beside_the_images_is_their_camera) {
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_image("100", {8, 6, std::vector<std::uint16_t>(48, 5000)});
+    EXPECT_FALSE(open().calibration());
+    const auto calibration = written_.folder() / "calibration.txt";
+    const auto camera = [&](const char* text) {
+        std::ofstream(calibration) << text;
+        return calibrated_camera(*open().calibration(), open().first_image());
+    };
+    // As ETH3D writes it, and as a matrix; whole numbers are pixel centres.
+    for (const char* text : {"726.5 725.25 3.5 2.25\n", "726.5 0 3.5\n0 725.25 2.25\n0 0 1\n"}) {
+        const auto found = camera(text);
+        ASSERT_TRUE(found) << found.error().what;
+        EXPECT_EQ(found->width, 8U);
+        EXPECT_EQ(found->height, 6U);
+        EXPECT_EQ(found->fx, 726.5);
+        EXPECT_EQ(found->fy, 725.25);
+        EXPECT_EQ(found->cx, 4.0);
+        EXPECT_EQ(found->cy, 2.75);
+    }
+    for (const auto& [text, reason] :
+         std::initializer_list<std::pair<const char*, const char*>>{{"1 2 3", "found 3 numbers"},
+                                                                    {"cam 1 2 3", "found 'cam'"},
+                                                                    {"0 500 3 3", "focal lengths"},
+                                                                    {"500 nan 3 3", "focal lengths"},
+                                                                    {"500 500 9 3", "principal point"}}) {
+        const auto refused = camera(text);
+        ASSERT_FALSE(refused) << text;
+        EXPECT_THAT(refused.error().what, AllOf(StartsWith(calibration.string()), HasSubstr(reason)));
+    }
 }
 
 TEST_F(DataSetReaderTest, an_image_whose_name_leads_elsewhere_is_named_before_any_is_read) {

@@ -1,0 +1,76 @@
+#include "host/apps/playback/camera_alone.hpp"
+
+#include <span>
+#include <utility>
+
+#include "host/apps/recording/given_rig.hpp"
+#include "host/apps/recording/permission.hpp"
+#include "host/apps/recording/reading.hpp"
+#include "host/io/rig/host_rig_reader.hpp"
+#include "host/io/tum/data_set_camera.hpp"
+#include "hw/rigfile/joined.hpp"
+
+namespace octoskin {
+
+rig::Camera camera_with(const CameraIntrinsics& intrinsics) {
+    rig::Camera camera;
+    camera.width = intrinsics.width;
+    camera.height = intrinsics.height;
+    camera.fx = intrinsics.fx;
+    camera.fy = intrinsics.fy;
+    camera.cx = intrinsics.cx;
+    camera.cy = intrinsics.cy;
+    camera.rate_hz = 30.0;
+    return camera;
+}
+
+Result<rig::Camera, AppError> named_camera(std::string_view name) {
+    if (const auto found = tum::data_set_camera(name)) return camera_with(*found);
+    return fail(ExitCode::usage, "--camera " + std::string(name) + ": a data set's camera is one of " +
+                                     rig::joined(tum::kDataSetCameras));
+}
+
+Result<std::optional<rig::Rig>, AppError> rig_with_camera(const PlaybackRequest& request,
+                                                          const std::string& seen) {
+    if (request.rig.empty()) return std::optional<rig::Rig>{};
+    const auto lock = lock_reading();
+    auto rig = read_given_rig(request.rig);
+    if (!rig) return unexpected(rig.error());
+    if (!rig->camera) {
+        return fail(ExitCode::bad_config,
+                    request.rig.string() + ": has no camera, which " + seen + " is seen by");
+    }
+    return std::optional(std::move(*rig));
+}
+
+rig::Rig rig_of_camera(const rig::Camera& camera, const std::string& name) {
+    rig::Rig rig;
+    rig.name = name;
+    rig.base_link = "map";
+    rig.camera = camera;
+    return rig;
+}
+
+Result<Pipeline, AppError> pipeline_of_camera(PlaybackRequest request, const rig::Rig& rig) {
+    request.mapping.removes_robot_from_depth = false;
+    HostRig host;
+    host.name = rig.name;
+    host.camera = host_camera(*rig.camera);
+    // A pipeline has a robot of at least one joint. Nobody moves this one, and nothing asks where it is.
+    const JointDescription joint{.name = "no_joint",
+                                 .parent_link = rig.base_link,
+                                 .child_link = "no_link",
+                                 .kind = JointKind::continuous,
+                                 .limits = {}};
+    host.joints.joints = {joint.name};
+    auto robot = RobotModel::build(rig.base_link, std::span(&joint, 1), host.joints.joints);
+    if (!robot) return fail(ExitCode::failed, std::string("no robot: ") + describe(robot.error().error));
+    PipelineConfig config;
+    config.maps = request.maps;
+    auto pipeline = Pipeline::build(host, std::move(*robot), request.mapping, config);
+    if (!pipeline) return fail(ExitCode::failed, "no pipeline: " + pipeline.error().element);
+    pipeline->tell(request.listener);
+    return std::move(*pipeline);
+}
+
+}  // namespace octoskin

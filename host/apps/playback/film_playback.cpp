@@ -1,0 +1,127 @@
+#include "host/apps/playback/film_playback.hpp"
+
+#include <utility>
+
+#include "host/apps/playback/camera_alone.hpp"
+#include "host/apps/playback/data_set_playback.hpp"
+#include "host/apps/recording/permission.hpp"
+#include "host/apps/recording/reading.hpp"
+#include "host/apps/version/version.hpp"
+#include "host/io/mapping/mapping_file.hpp"
+#include "host/io/openni2/oni_reader.hpp"
+#include "host/io/tum/data_set_camera.hpp"
+
+namespace octoskin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSuffix = ".oni";
+
+Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig::Rig& rig,
+                                      const FilePlace& film) {
+    const auto crc32 = crc32_of(film);
+    if (!crc32) return fail(ExitCode::bad_data, film.shown().string() + ": cannot be read");
+    const auto absolute = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
+    return MapOrigin{.made_by = program_version(),
+                     .recording = absolute(request.recording.directory),
+                     .recording_crc32 = *crc32,
+                     .rig = request.rig.empty() ? fs::path("-") : absolute(request.rig),
+                     .rig_hash = rig::rig_hash(rig),
+                     .robot = "-",
+                     .robot_crc32 = std::nullopt,
+                     .configuration = request.configuration,
+                     .mapping = mapping_text(request.mapping),
+                     .maps = {}};
+}
+
+/// What the images are seen by, and from where in the map.
+Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request) {
+    const auto given = rig_with_camera(request, "an .oni file");
+    if (!given) return unexpected(given.error());
+    auto camera = *given ? Result<rig::Camera, AppError>(*(*given)->camera)
+                         : named_camera(request.camera.empty() ? tum::kDataSetCameras.front()
+                                                               : std::string_view(request.camera));
+    if (!camera) return camera;
+    if (*given) camera->T_base_camera = (*given)->T_map_base * camera->T_base_camera;
+    if (request.T_map_camera) camera->T_base_camera = *request.T_map_camera;
+    return camera;
+}
+
+}  // namespace
+
+std::optional<FilePlace> lone_film(const RecordingPaths& recording) {
+    const bool is_named_so = recording.directory.extension() == kSuffix;
+    if (is_named_so && FilePlace(recording.directory).is_file()) return FilePlace(recording.directory);
+    for (const FilePlace& other : {recording.can_log(), recording.meta(), recording.order()}) {
+        if (other.is_there()) return std::nullopt;
+    }
+    const auto folder = recording.folder.open();
+    const auto names = folder ? folder->names() : unexpected(folder.error());
+    if (!names || is_data_set(recording)) return std::nullopt;
+    std::optional<FilePlace> film;
+    for (const std::string& name : *names) {
+        if (!name.ends_with(kSuffix)) continue;
+        if (film) return std::nullopt;
+        film = recording.file(name);
+    }
+    return film;
+}
+
+Status<AppError> check_film(const PlaybackRequest& request) {
+    const auto film = lone_film(request.recording);
+    const std::string name = film ? film->shown().string() : std::string();
+    if (film) {
+        if (auto refused = refused_to_read(*film)) return unexpected(std::move(*refused));
+    }
+    if (!request.robot.empty()) return fail(ExitCode::usage, name + ": has no robot: without --robot");
+    if (!request.rig.empty() && !request.camera.empty())
+        return fail(ExitCode::usage, name + ": takes --rig or --camera, not both");
+    if (request.rig.empty() && !request.T_map_camera) {
+        return fail(ExitCode::usage,
+                    name +
+                        ": there is no can.log, and it is not known where the camera was: give --pose X,Y,Z,"
+                        "ROLL,PITCH,YAW (metres and degrees, of its optical frame in the map's), or a --rig "
+                        "whose camera has its pose");
+    }
+    return Done{};
+}
+
+Result<Playback, AppError> play_film(const PlaybackRequest& request, const ReplayReport& report) {
+    const auto film = lone_film(request.recording);
+    if (!film) return fail(ExitCode::no_input, request.recording.directory.string() + ": the .oni is gone");
+    const auto camera = camera_of(request);
+    if (!camera) return unexpected(camera.error());
+    rig::Rig rig = rig_of_camera(*camera, "film");
+    auto origin = origin_of(request, rig, *film);
+    if (!origin) return unexpected(origin.error());
+    auto reader = openni2::OniReader::open_alone(*film);
+    if (!reader) return fail(ExitCode::bad_data, reader.error().what);
+    auto pipeline = pipeline_of_camera(request, rig);
+    if (!pipeline) return unexpected(pipeline.error());
+    NoBus bus;
+    PacedDepth paced(*reader, request.pace);
+    ReplayOutcome outcome = replay(*pipeline, bus, &paced, report);
+    outcome.progress.begin = HostTime{0};
+    std::vector<AccountTable> accounts;
+    for (AccountTable& table : pipeline->account_tables()) {
+        if (table.in > 0) accounts.push_back(std::move(table));
+    }
+    std::vector<std::string> warnings;
+    if (!request.rig.empty()) {
+        warnings.push_back(film->shown().string() +
+                           ": without joint states; a robot that the camera sees is in the map");
+    }
+    if (auto loss = reader->loss()) warnings.push_back(std::move(*loss));
+    return Playback{.rig = std::move(rig),
+                    .pipeline = std::move(*pipeline),
+                    .outcome = std::move(outcome),
+                    .accounts = std::move(accounts),
+                    .nodes = {},
+                    .notes = {},
+                    .warnings = std::move(warnings),
+                    .is_map_incomplete = false,
+                    .origin = std::move(*origin)};
+}
+
+}  // namespace octoskin
