@@ -290,9 +290,11 @@ TEST_F(BadInput, of_candump_without_L_names_the_way_to_record) {
     for (const std::string& command : {"replay " + path("rec"), "black-box " + path("rec/can.log")}) {
         const Said said = octoskin(command);
         EXPECT_EQ(said.exit_code, 65) << said.output;
-        EXPECT_THAT(said.output,
-                    HasSubstr("can.log: no line is in candump's log format; record with `candump "
-                              "-L can0 > can.log`"));
+        EXPECT_THAT(
+            said.output,
+            HasSubstr("can.log: no line is a frame as candump writes them: line 1 does not begin with a "
+                      "time in parentheses"));
+        EXPECT_THAT(said.output, HasSubstr("record with `candump -L can0 > can.log`"));
     }
     write(path("rec/can.log"), "");
     const Said empty = octoskin("black-box " + path("rec/can.log"));
