@@ -101,7 +101,7 @@ Unexpected<std::string> refuse_time(std::string_view word) {
 bool says_depth(std::string_view file) {
     constexpr std::string_view kDepth = "depth";
     const auto is_same = [](char a, char b) { return (a | 0x20) == b; };
-    return !std::ranges::search(file, kDepth, is_same).empty();
+    return std::search(file.begin(), file.end(), kDepth.begin(), kDepth.end(), is_same) != file.end();
 }
 
 Result<ImageLine, std::string> take_image(std::string_view& line) {
