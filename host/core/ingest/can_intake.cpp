@@ -270,7 +270,7 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::RangeAux& mess
 }
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Heartbeat& message, FrameOutcome&) {
-    ranges_.on_rate(node, message.is_rate_overridden);
+    ranges_.on_rate(node, message.is_rate_overridden, now());
     if (nodes_.on_heartbeat(node, message, now()) == NodeRegistry::Life::restarted) {
         clocks_.at(node).forget();
         answers_.at(node).forget();

@@ -99,11 +99,20 @@ bool RangeGate::is_certain(const Sensor& sensor, const MappedTime& captured) con
 /// Ranging windows of one sensor do not overlap. The sensor's oscillator may be 7 % fast, and each time
 /// carries an error: three quarters of the nominal window leave room for both. A sensor that keeps to its
 /// period is never twice as quick: of a slow one no second sender's readings fit between.
-Nanoseconds RangeGate::spacing_min(const Sensor& sensor, wire::NodeId node) const {
-    const auto rate = is_rate_overridden_.find(node);
-    const bool is_as_configured = rate == is_rate_overridden_.end() || !rate->second;
+Nanoseconds RangeGate::spacing_min(const Sensor& sensor, const Arrival& arrival) const {
+    const auto since = rate_overridden_since_.find(arrival.node);
+    const bool is_as_configured =
+        since == rate_overridden_since_.end() || arrival.now - since->second < kOverriddenFor;
     const Nanoseconds window = Nanoseconds{sensor.expected.timing_budget} * 3 / 4;
     return is_as_configured ? std::max(window, Nanoseconds{sensor.expected.period} / 2) : window;
+}
+
+void RangeGate::on_rate(wire::NodeId node, bool is_overridden, std::optional<HostTime> now) {
+    if (!is_overridden) {
+        rate_overridden_since_.erase(node);
+    } else if (now) {
+        rate_overridden_since_.try_emplace(node, *now);
+    }
 }
 
 void RangeGate::on_contradiction(Sensor& sensor, const Arrival& arrival) {
@@ -114,7 +123,7 @@ void RangeGate::on_contradiction(Sensor& sensor, const Arrival& arrival) {
 /// What a frame says beside its time: whether its number was here before.
 std::optional<ReadingReason> RangeGate::number_fault(Sensor& sensor, const Arrival& arrival) {
     constexpr Nanoseconds kDelayMax{250'000'000};  // of one frame against another: transport, a held bus
-    const Nanoseconds turn_min = spacing_min(sensor, arrival.node) * wire::kSequenceCount - kDelayMax;
+    const Nanoseconds turn_min = spacing_min(sensor, arrival) * wire::kSequenceCount - kDelayMax;
     switch (sensor.said.compare(arrival.reading, arrival.now, turn_min)) {
         case SaidNumbers::Fate::is_new:
             return std::nullopt;
@@ -140,8 +149,7 @@ std::optional<ReadingReason> RangeGate::place_fault(Sensor& sensor, const Arriva
         return fault;
     }
     const std::uint8_t sequence = arrival.reading.sequence;
-    const auto place =
-        sensor.record.sequence.place(sequence, arrival.captured, spacing_min(sensor, arrival.node));
+    const auto place = sensor.record.sequence.place(sequence, arrival.captured, spacing_min(sensor, arrival));
     if (!place) {
         note_misplaced(sensor, arrival, place.error());
         return reason_of(place.error());

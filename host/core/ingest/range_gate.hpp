@@ -95,8 +95,11 @@ class RangeGate {
     void on_clock_confirmed(wire::NodeId node);
     /// One does not: what was refused for its time was no second sender's.
     void on_clock_contradicted(wire::NodeId node);
-    /// A node's sensors range at another period than configured, or as configured again.
-    void on_rate(wire::NodeId node, bool is_overridden) { is_rate_overridden_[node] = is_overridden; }
+    /// Its node's newest heartbeat: its sensors range at another period than configured, or as configured.
+    /// The former counts once all heartbeats of a second have said so: one alone may be another sender's,
+    /// which wants room for its readings between those of a slow sensor.
+    void on_rate(wire::NodeId node, bool is_overridden, std::optional<HostTime> now);
+    static constexpr Nanoseconds kOverriddenFor{1'000'000'000};
 
     /// A frame under this node's id did not fit its checksum.
     void on_damage(wire::NodeId node, HostTime now);
@@ -126,7 +129,7 @@ class RangeGate {
         bool is_clock_questioned = false;
     };
     [[nodiscard]] bool is_certain(const Sensor& sensor, const MappedTime& captured) const;
-    [[nodiscard]] Nanoseconds spacing_min(const Sensor& sensor, wire::NodeId node) const;
+    [[nodiscard]] Nanoseconds spacing_min(const Sensor& sensor, const Arrival& arrival) const;
     [[nodiscard]] std::optional<ReadingReason> place_fault(Sensor& sensor, const Arrival& arrival);
     [[nodiscard]] std::optional<ReadingReason> number_fault(Sensor& sensor, const Arrival& arrival);
     void note_misplaced(Sensor& sensor, const Arrival& arrival, SequenceFault fault);
@@ -137,7 +140,7 @@ class RangeGate {
     bool uses_no_return_;
     Nanoseconds now_early_;
     std::map<SensorKey, Sensor> sensors_;
-    std::map<wire::NodeId, bool> is_rate_overridden_;
+    std::map<wire::NodeId, HostTime> rate_overridden_since_;  ///< all heartbeats have said so
     std::map<wire::NodeId, HostTime> contradicted_;  ///< the newest contradiction of any of its sensors
 };
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "common/range_status.hpp"
 #include "common/wire/names.hpp"
@@ -252,6 +253,41 @@ TEST(RangeGate, counts_what_came_and_what_was_lost_by_the_nodes_own_count) {
     arrive(11);
     gate.on_health(kNode, health(0, 464));
     EXPECT_EQ(gate.record(kNode, 0).lost, 0U) << "readings overtook the message";
+}
+
+/// Of a reading of this number, captured so long after kNow, and 20 ms later here.
+std::optional<ReadingReason> fate_of_next(RangeGate& gate, unsigned number, std::int64_t captured_ms) {
+    wire::RangeReading next = reading();
+    next.sequence = static_cast<std::uint8_t>(number % wire::kSequenceCount);
+    const HostTime captured = kNow + Nanoseconds{captured_ms * 1'000'000};
+    gate.on_arrival(kNode, next, captured);
+    const auto outcome =
+        gate.check(kNode, next, {captured, Nanoseconds{0}}, captured + Nanoseconds{20'000'000});
+    return outcome ? std::nullopt : std::optional(outcome.error());
+}
+
+// Another sender's reading would come 235 ms before its true twin, and nothing waits so long.
+TEST(RangeGate, has_half_a_period_between_readings_until_a_second_of_heartbeats_said_another_period) {
+    HostRig slow = rig();
+    slow.nodes[0].sensors[0].period = std::chrono::milliseconds(250);
+    const auto heartbeats = [](RangeGate& gate, std::int64_t from_ms, std::int64_t to_ms, int each_other) {
+        int count = 0;
+        for (std::int64_t ms = from_ms; ms <= to_ms; ms += 50) {
+            const bool is_forged = each_other == 0 || count++ % each_other == 0;
+            gate.on_rate(kNode, is_forged, kNow + Nanoseconds{ms * 1'000'000});
+        }
+    };
+    for (const int each_other : {0, 2, 3}) {  // all of them, or forged ones among the node's own
+        RangeGate gate(slow, false);
+        gate.on_health(kNode, health(0));
+        EXPECT_EQ(fate_of_next(gate, 1, 0), std::nullopt);
+        heartbeats(gate, 0, 950, each_other);
+        EXPECT_EQ(fate_of_next(gate, 2, 124), ReadingReason::too_soon) << "by now a second is not over";
+        EXPECT_EQ(fate_of_next(gate, 5, 950), std::nullopt);
+        heartbeats(gate, 1'000, 1'050, each_other);
+        EXPECT_EQ(fate_of_next(gate, 6, 1'040),
+                  each_other == 0 ? std::nullopt : std::optional(ReadingReason::too_soon));
+    }
 }
 
 TEST(RangeGate, counts_a_duplicate_as_received_once) {
