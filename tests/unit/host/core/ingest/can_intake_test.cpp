@@ -161,6 +161,19 @@ TEST(CanIntake, is_not_led_away_by_answers_that_go_further_off_by_little_and_lit
     }
 }
 
+// Each fits a clock that the ones before it have led away; but none that nobody had answered for.
+TEST(CanIntake, has_the_rate_of_its_node_after_fifteen_answers_each_a_little_further_off) {
+    for (const double off_s : {0.00015, -0.00015}) {
+        ScriptedBus attacked = bus();
+        for (int k = 8; k < 25; ++k) attacked.exchange(0.1 + k, {kNode, kJointNode});
+        for (int k = 80; k < 250; ++k) attacked.heartbeat(k / 10.0, rig().nodes[0]);
+        for (int k = 10; k < 25; ++k) answer_as(attacked, kNode, k, off_s * (k - 9), 0.0015);
+        const CanIntake intake = take(attacked, [](const FrameOutcome&, HostTime) {});
+        EXPECT_NEAR(intake.clock(kNode).drift().value(), -50e-6, 30e-6);
+        EXPECT_TRUE(intake.answers(kNode).hears_two(*intake.now()));
+    }
+}
+
 TEST(CanIntake, uses_no_answer_to_sync_where_none_or_two_of_them_fit) {
     // Before anything is known of the clock; and where it has jumped, and another answers as if it had not.
     for (const bool has_jumped : {false, true}) {
