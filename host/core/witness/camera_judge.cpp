@@ -19,7 +19,7 @@ constexpr double kPoseSigmaM = 0.01;
 constexpr double kCounts = 0.7;
 /// Those of a wall from behind for even less: its thickness changes from place to place.
 constexpr double kCountsFromBehind = 0.2;
-constexpr double kForgotten = 1.0 - 1.0 / 400.0;
+constexpr double kForgotten = 1.0 - 1.0 / 1500.0;
 /// A ray along a surface says nothing of where it meets it.
 constexpr double kAlongMin = 0.25;
 /// Of a cone's peak so much must be of surfaces that have a plane.
@@ -35,17 +35,15 @@ constexpr double kWallSigmaM = 0.04;
 
 /// A sensor speaks for an error from this log-likelihood ratio on.
 constexpr double kExplainedFrom = 1.0;
-constexpr std::size_t kExplainedMin = 3;
-constexpr double kNamedFrom = 5.0;
+constexpr std::size_t kExplainedMin = 2;
+constexpr double kNamedFrom = 4.5;
 constexpr double kKeptFrom = 3.0;
 constexpr double kSuspectFrom = 2.5;
 /// By so much an error must move what is predicted, in the mean of squares: less is no fault.
-constexpr double kNamedM = 0.01;
+constexpr double kNamedM = 0.006;
 constexpr double kSuspectM = 0.006;
 /// Errors that are larger are not what this model is true for.
-constexpr double kTurnMaxRad = 6.0 / kDegPerRad;
-/// An error explains a sensor's contradictions if that much of them is gone with it.
-constexpr double kExplainedShare = 0.5;
+constexpr double kTurnMaxRad = 10.0 / kDegPerRad;
 
 }  // namespace
 
@@ -53,19 +51,16 @@ CameraJudge::CameraJudge(std::size_t sensors) : sensors_(sensors) {}
 
 /// By how much the predicted range changes with each unknown. A point p of a ray with direction d lies on the
 /// plane n.p + D = 0 that the camera sees, and, with its error, on n.(p + turn x p + shift) + D scale = 0.
-std::optional<CameraJudge::Vector> CameraJudge::change_of_range(std::span<const SurfaceHit> hits,
-                                                                const CameraView& view, bool is_from_behind) {
+std::optional<CameraJudge::Vector> CameraJudge::change_of_range(std::span<const PlaneHit> hits,
+                                                                bool is_from_behind) {
     Vector change = Vector::Zero();
     double share = 0.0;
-    for (const SurfaceHit& hit : hits) {
-        const Eigen::Vector3d p = view.T_camera_map() * hit.p_map;
-        const auto plane = view.plane_at(p);
-        if (!plane) continue;
-        const Eigen::Vector3d& n = plane->normal;
-        const double along = n.dot(view.T_camera_map().linear() * hit.direction_map);
+    for (const PlaneHit& hit : hits) {
+        const Eigen::Vector3d& n = hit.plane.normal;
+        const double along = n.dot(hit.direction);
         if (std::abs(along) < kAlongMin || (along > 0.0) != is_from_behind) continue;
         CameraVector of_camera;
-        of_camera << p.cross(n), n, plane->distance_m;
+        of_camera << hit.p.cross(n), n, hit.plane.distance_m;
         change.head<kOfCamera>() -= hit.share / along * of_camera;
         share += hit.share;
     }
@@ -76,10 +71,9 @@ std::optional<CameraJudge::Vector> CameraJudge::change_of_range(std::span<const 
     return change;
 }
 
-void CameraJudge::compare(std::uint16_t number, const Compared& compared, std::span<const SurfaceHit> hits,
-                          const CameraView& view) {
+void CameraJudge::compare(std::uint16_t number, const Compared& compared, std::span<const PlaneHit> hits) {
     if (std::abs(compared.off_m) > kOffMaxM) return;
-    const auto change = change_of_range(hits, view, compared.is_from_behind);
+    const auto change = change_of_range(hits, compared.is_from_behind);
     if (!change) return;
     const double off_m = compared.off_m + (compared.is_from_behind ? kWallM : 0.0);
     const double sigma_m = std::hypot(compared.sigma_m, kPoseSigmaM);
@@ -111,6 +105,22 @@ CameraJudge::OfCamera CameraJudge::without_own(const Sensor& sensor) {
         .moment = sensor.moment.head<kOfCamera>() - by_own * sensor.moment.tail<kOfSensor>()};
 }
 
+CameraJudge::CameraMatrix CameraJudge::prior_covariance() {
+    CameraVector sigmas;
+    sigmas << Eigen::Vector3d::Constant(kTurnSigmaRad), Eigen::Vector3d::Constant(kShiftSigmaM), kScaleSigma;
+    return sigmas.cwiseAbs2().asDiagonal();
+}
+
+double CameraJudge::may_misplace_m(std::uint16_t number, const Eigen::Vector3d& p) const {
+    const Sensor& sensor = sensors_[number];
+    Eigen::Matrix<double, 3, kOfCamera> moves;           // turn x p + shift - scale p
+    moves << 0.0, p.z(), -p.y(), 1.0, 0.0, 0.0, -p.x(),  //
+        -p.z(), 0.0, p.x(), 0.0, 1.0, 0.0, -p.y(),       //
+        p.y(), -p.x(), 0.0, 0.0, 0.0, 1.0, -p.z();
+    const double variance = (moves * sensor.covariance_of_others * moves.transpose()).trace();
+    return (moves * sensor.of_others).norm() + 2.0 * std::sqrt(std::max(0.0, variance));
+}
+
 void CameraJudge::decide() {
     std::vector<OfCamera> of_camera;
     of_camera.reserve(sensors_.size());
@@ -122,25 +132,21 @@ void CameraJudge::decide() {
         all.moment += of_camera.back().moment;
         weight += sensor.weight;
     }
-    CameraVector prior;
-    prior << Eigen::Vector3d::Constant(std::pow(kTurnSigmaRad, -2.0)),
-        Eigen::Vector3d::Constant(std::pow(kShiftSigmaM, -2.0)), std::pow(kScaleSigma, -2.0);
-    CameraMatrix with_prior = all.information;
-    with_prior.diagonal() += prior;
+    const CameraMatrix with_prior = all.information + prior_covariance().inverse();
     const CameraVector likeliest = with_prior.ldlt().solve(all.moment);
+    const double evidence = 0.5 * likeliest.dot(all.moment);
 
-    double sum = -0.5 * likeliest.dot(prior.cwiseProduct(likeliest));
     double most = 0.0;
     explained_ = 0;
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
-        const double gain =
-            likeliest.dot(of_camera[i].moment) - 0.5 * likeliest.dot(of_camera[i].information * likeliest);
-        sensors_[i].gain = gain;
-        sum += gain;
-        most = std::max(most, gain);
-        explained_ += gain >= kExplainedFrom ? 1U : 0U;
+        const OfCamera& own = of_camera[i];
+        const double explained = likeliest.dot(own.moment) - 0.5 * likeliest.dot(own.information * likeliest);
+        most = std::max(most, explained);
+        explained_ += explained >= kExplainedFrom ? 1U : 0U;
+        sensors_[i].covariance_of_others = (with_prior - own.information).inverse();
+        sensors_[i].of_others = sensors_[i].covariance_of_others * (all.moment - own.moment);
     }
-    evidence_ = sum - most;
+    evidence_ = evidence - most;
     const double moved_m =
         weight > 0.0 ? std::sqrt(std::max(0.0, likeliest.dot(all.information * likeliest) / weight)) : 0.0;
     is_suspect_ = evidence_ >= kSuspectFrom && moved_m >= kSuspectM;
@@ -154,11 +160,6 @@ void CameraJudge::decide() {
     } else {
         error_.reset();
     }
-}
-
-bool CameraJudge::may_explain(std::uint16_t number) const {
-    const Sensor& sensor = sensors_[number];
-    return sensor.gain >= kExplainedFrom && sensor.gain >= kExplainedShare * sensor.misfit;
 }
 
 }  // namespace octoskin

@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "host/core/witness/camera_view.hpp"
 #include "host/core/witness/range_predictor.hpp"
 
 namespace octoskin {
@@ -23,7 +22,7 @@ struct CameraError {
 
 /// A weighted least-squares estimate of the camera's error from all newest ranges, with a prior, and the
 /// likelihood ratio of that error to none. Each sensor has an unknown offset of its own (1 cm), and, of walls
-/// that the camera sees from the other side, an unknown thickness: neither moves the camera. Of some 400
+/// that the camera sees from the other side, an unknown thickness: neither moves the camera. Of some 1500
 /// newest comparisons. 0.5 kB a sensor.
 class CameraJudge {
   public:
@@ -35,22 +34,22 @@ class CameraJudge {
         double sigma_m = 0.0;  ///< of that
         bool is_from_behind = false;
     };
-    /// `hits`: where the sensor's rays meet what the camera sees in `view`. What is off by over 15 cm is of
-    /// something else and not used. About 3 us for a ray, 50 us for a cone.
-    void compare(std::uint16_t sensor, const Compared& compared, std::span<const SurfaceHit> hits,
-                 const CameraView& view);
+    /// `hits`: where the sensor's rays meet what the camera sees. What is off by over 15 cm is of something
+    /// else and not used. About 1 us.
+    void compare(std::uint16_t sensor, const Compared& compared, std::span<const PlaneHit> hits);
     /// After all comparisons with one image. About 10 us for 34 sensors.
     void decide();
 
-    /// The camera's error, while at least three sensors speak for one, and all but the one that does so most
-    /// by a likelihood ratio of e^5.
+    /// The camera's error, while at least two sensors speak for one, and all but the one that does so most
+    /// by a likelihood ratio of e^4.5.
     [[nodiscard]] const std::optional<CameraError>& error() const noexcept { return error_; }
     /// Sensors that speak for it.
     [[nodiscard]] std::size_t explained() const noexcept { return explained_; }
     /// An error of the camera is so likely that no sensor may be named.
     [[nodiscard]] bool is_suspect() const noexcept { return is_suspect_; }
-    /// The likeliest error of the camera explains most of what this sensor contradicts.
-    [[nodiscard]] bool may_explain(std::uint16_t sensor) const;
+    /// By how much the camera may have a point in the wrong place (camera coordinates): the displacement that
+    /// the other sensors' ranges make likeliest and two deviations of it. About 1 us.
+    [[nodiscard]] double may_misplace_m(std::uint16_t sensor, const Eigen::Vector3d& p) const;
 
     /// Log-likelihood ratio of the likeliest error to none, without the sensor that speaks for it most.
     [[nodiscard]] double evidence() const noexcept { return evidence_; }
@@ -72,15 +71,18 @@ class CameraJudge {
         Vector moment = Vector::Zero();
         double weight = 0.0;  ///< 1/m^2
         double misfit = 0.0;  ///< minus the log-likelihood without any error
-        double gain = 0.0;    ///< of it with the camera's likeliest error
+        /// The camera's error as all others show it.
+        CameraVector of_others = CameraVector::Zero();
+        CameraMatrix covariance_of_others = prior_covariance();
     };
+    [[nodiscard]] static CameraMatrix prior_covariance();
     /// The same without what is the sensor's own.
     struct OfCamera {
         CameraMatrix information;
         CameraVector moment;
     };
-    [[nodiscard]] static std::optional<Vector> change_of_range(std::span<const SurfaceHit> hits,
-                                                               const CameraView& view, bool is_from_behind);
+    [[nodiscard]] static std::optional<Vector> change_of_range(std::span<const PlaneHit> hits,
+                                                               bool is_from_behind);
     [[nodiscard]] static OfCamera without_own(const Sensor& sensor);
 
     std::vector<Sensor> sensors_;

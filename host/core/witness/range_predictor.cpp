@@ -28,6 +28,10 @@ constexpr double kUnseenShareMax = 0.1;
 constexpr double kWeightMin = 0.003;
 /// Of how far the peak's ranges are spread, and of how far the peak is from the mean of all.
 constexpr double kSpreadShare = 0.25;
+/// Of a peak so much must be of surfaces that have a plane, and these be of one direction, within some 10
+/// degrees (the mean normal's length), if it is to be one surface.
+constexpr double kPlaneShareMin = 0.4;
+constexpr double kOnePlane = 0.985;
 /// Of how far the ranges are spread of a ray and of those a degree beside it: what a mount may be off.
 constexpr double kRayShare = 0.5;
 
@@ -91,76 +95,114 @@ RangePredictor::RangePredictor(const Eigen::Vector3d& direction_sensor, const Be
 }
 
 /// Deviation of the ranges of a bundle's rays, of those that meet something.
-double RangePredictor::spread_of(const Bundle& bundle, const std::vector<RayReach>& reaches) {
+double RangePredictor::spread_of(const Bundle& bundle, const Followed& rays) {
     double count = 0.0;
     double sum = 0.0;
     double squares = 0.0;
     for (const Weighed& ray : bundle) {
-        if (!reaches[ray.ray].surface_m) continue;
+        const auto& surface_m = rays[ray.ray].reach.surface_m;
+        if (!surface_m) continue;
         count += 1.0;
-        sum += *reaches[ray.ray].surface_m;
-        squares += *reaches[ray.ray].surface_m * *reaches[ray.ray].surface_m;
+        sum += *surface_m;
+        squares += *surface_m * *surface_m;
     }
     if (count == 0.0) return 0.0;
     return std::sqrt(std::max(0.0, squares / count - sum / count * (sum / count)));
 }
 
+RangePredictor::Followed RangePredictor::follow(const CameraView& view,
+                                                const Eigen::Isometry3d& T_map_sensor) const {
+    const Eigen::Isometry3d T_camera_sensor = view.T_camera_map() * T_map_sensor;
+    Followed rays;
+    rays.reserve(rays_sensor_.size());
+    for (const Eigen::Vector3d& ray : rays_sensor_) {
+        FollowedRay& followed = rays.emplace_back();
+        followed.reach =
+            view.reach(T_map_sensor.translation(), T_map_sensor.linear() * ray, config_.range_max_m);
+        if (!followed.reach.surface_m) continue;
+        const Eigen::Vector3d direction = T_camera_sensor.linear() * ray;
+        const Eigen::Vector3d p = T_camera_sensor.translation() + *followed.reach.surface_m * direction;
+        if (const auto plane = view.plane_at(p))
+            followed.hit = PlaneHit{.p = p, .direction = direction, .plane = *plane, .share = 1.0};
+    }
+    return rays;
+}
+
+/// Of the peak; of a cone's rays some meet no plane.
+std::vector<PlaneHit> RangePredictor::hits_of(const Echoes& echoes, const Followed& rays) {
+    std::vector<PlaneHit> hits;
+    double peak = 0.0;
+    for (std::size_t i = echoes.peak_begin; i < echoes.peak_end; ++i) peak += echoes.all[i].signal;
+    for (std::size_t i = echoes.peak_begin; i < echoes.peak_end; ++i) {
+        const auto& hit = rays[echoes.all[i].ray].hit;
+        if (!hit) continue;
+        hits.push_back(*hit);
+        hits.back().share = echoes.all[i].signal / peak;
+    }
+    return hits;
+}
+
+std::optional<SeenSurface> RangePredictor::surface_of(const std::vector<PlaneHit>& hits,
+                                                      const CameraView& view) {
+    Eigen::Vector3d p = Eigen::Vector3d::Zero();
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    double share = 0.0;
+    for (const PlaneHit& hit : hits) {
+        p += hit.share * hit.p;
+        normal += hit.share * hit.plane.normal;
+        share += hit.share;
+    }
+    if (share < kPlaneShareMin || normal.norm() < kOnePlane * share) return std::nullopt;
+    const Eigen::Isometry3d T_map_camera = view.T_camera_map().inverse();
+    return SeenSurface{.p_map = T_map_camera * (p / share),
+                       .normal_map = T_map_camera.linear() * normal.normalized()};
+}
+
 RangePredictions RangePredictor::predict(const CameraView& view,
                                          const Eigen::Isometry3d& T_map_sensor) const {
-    std::vector<RayReach> reaches;
-    reaches.reserve(rays_sensor_.size());
-    for (const Eigen::Vector3d& ray : rays_sensor_)
-        reaches.push_back(
-            view.reach(T_map_sensor.translation(), T_map_sensor.linear() * ray, config_.range_max_m));
+    const Followed rays = follow(view, T_map_sensor);
     RangePredictions predictions;
     Echoes echoes;
-    predictions.mounted = prediction_of(mounted_, reaches, echoes);
-    const auto add_hit = [&](std::size_t ray, double share) {
-        const Eigen::Vector3d direction_map = T_map_sensor.linear() * rays_sensor_[ray];
-        predictions.hits.push_back(
-            {.p_map = T_map_sensor.translation() + *reaches[ray].surface_m * direction_map,
-             .direction_map = direction_map,
-             .share = share});
-    };
-    if (is_cone_ && predictions.mounted.range_m) {
-        double peak = 0.0;
-        for (std::size_t i = echoes.peak_begin; i < echoes.peak_end; ++i) peak += echoes.all[i].signal;
-        for (std::size_t i = echoes.peak_begin; i < echoes.peak_end; ++i)
-            add_hit(echoes.all[i].ray, echoes.all[i].signal / peak);
-    }
-    // A single ray's range is its own; those beside it only say how sure that is.
-    if (!is_cone_ && predictions.mounted.range_m) {
-        const RayReach& axis = reaches.front();
-        if (axis.surface_m) {
+    predictions.mounted = prediction_of(mounted_, rays, echoes);
+    if (predictions.mounted.range_m) {
+        if (is_cone_) {
+            predictions.hits = hits_of(echoes, rays);
+        } else if (const RayReach& axis = rays.front().reach; axis.surface_m) {
+            // A single ray's range is its own; those beside it only say how sure that is.
             predictions.mounted.range_m = axis.surface_m;
             predictions.mounted.depth_per_m = axis.depth_per_m;
             predictions.mounted.is_from_behind = axis.is_from_behind;
-            predictions.mounted.sigma_m = std::hypot(config_.camera_sigma_m / axis.depth_per_m,
-                                                     kRayShare * spread_of(mounted_, reaches));
-            add_hit(0, 1.0);
+            predictions.mounted.sigma_m =
+                std::hypot(config_.camera_sigma_m / axis.depth_per_m, kRayShare * spread_of(mounted_, rays));
+            if (rays.front().hit) predictions.hits = {*rays.front().hit};
         } else {
             predictions.mounted.range_m.reset();
         }
+        predictions.mounted.surface = surface_of(predictions.hits, view);
     }
-    for (std::size_t i = 0; i < kTurns; ++i)
-        predictions.turned[i] = prediction_of(turned_[i], reaches, echoes);
+    for (std::size_t i = 0; i < kTurns; ++i) {
+        predictions.turned[i] = prediction_of(turned_[i], rays, echoes);
+        if (predictions.turned[i].range_m)
+            predictions.turned[i].surface = surface_of(hits_of(echoes, rays), view);
+    }
     return predictions;
 }
 
-RangePrediction RangePredictor::prediction_of(const Bundle& bundle, const std::vector<RayReach>& reaches,
+RangePrediction RangePredictor::prediction_of(const Bundle& bundle, const Followed& rays,
                                               Echoes& echoes) const {
     RangePrediction prediction{.range_m = {},
                                .sigma_m = 0.0,
                                .hidden_until_m = 0.0,
                                .clear_m = config_.range_max_m,
                                .depth_per_m = 0.0,
-                               .is_from_behind = false};
+                               .is_from_behind = false,
+                               .surface = {}};
     if (bundle.empty()) return {};
     echoes.count = 0;
     double unseen_signal = 0.0;
     double signal = 0.0;
     for (const Weighed& ray : bundle) {
-        const RayReach& reach = reaches[ray.ray];
+        const RayReach& reach = rays[ray.ray].reach;
         const double clear_m = std::max({reach.clear_m, reach.hidden_until_m, 0.05});
         if (ray.weight >= kWeightMin) {
             prediction.hidden_until_m = std::max(prediction.hidden_until_m, reach.hidden_until_m);

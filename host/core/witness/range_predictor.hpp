@@ -11,28 +11,36 @@
 
 namespace octoskin {
 
+/// What a sensor ranges, in the map: where, and its normal, towards the camera.
+struct SeenSurface {
+    Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
+    Eigen::Vector3d normal_map = Eigen::Vector3d::UnitZ();
+};
+
 struct RangePrediction {
-    std::optional<double> range_m;  ///< of the surface that the camera sees there
-    double sigma_m = 0.0;           ///< of that, without the range's own
-    double hidden_until_m = 0.0;    ///< nearer than this there may be anything
-    double clear_m = 0.0;           ///< from there to here the camera sees nothing
-    double depth_per_m = 1.0;       ///< RayReach's, of most of it
-    bool is_from_behind = false;    ///< RayReach's, of any of it
+    std::optional<double> range_m;       ///< of the surface that the camera sees there
+    double sigma_m = 0.0;                ///< of that, without the range's own
+    double hidden_until_m = 0.0;         ///< nearer than this there may be anything
+    double clear_m = 0.0;                ///< from there to here the camera sees nothing
+    double depth_per_m = 1.0;            ///< RayReach's, of most of it
+    bool is_from_behind = false;         ///< RayReach's, of any of it
+    std::optional<SeenSurface> surface;  ///< of most of it, if that is one plane
 };
 
 /// In so many directions, evenly about the zone's axis.
 inline constexpr std::size_t kTurns = 8;
 inline constexpr double kTurnDeg = 10.0;
 
-/// Where one ray of a sensor meets what the camera sees.
-struct SurfaceHit {
-    Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
-    Eigen::Vector3d direction_map = Eigen::Vector3d::UnitZ();  ///< of the ray
-    double share = 1.0;                                        ///< of the signal that is ranged
+/// Where one ray of a sensor meets a plane that the camera sees, in camera coordinates.
+struct PlaneHit {
+    Eigen::Vector3d p = Eigen::Vector3d::Zero();
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< of the ray
+    SeenPlane plane;
+    double share = 1.0;  ///< of the signal that is ranged
 };
 
 struct RangePredictions {
-    std::vector<SurfaceHit> hits;                ///< that make the range as mounted, if there is one
+    std::vector<PlaneHit> hits;                  ///< that make the range as mounted, if there is one
     RangePrediction mounted;                     ///< as the rig has it
     std::array<RangePrediction, kTurns> turned;  ///< about the sensor's position by kTurnDeg
 };
@@ -68,6 +76,11 @@ class RangePredictor {
         double depth_per_m = 0.0;
         bool is_from_behind = false;
     };
+    struct FollowedRay {
+        RayReach reach;
+        std::optional<PlaneHit> hit;
+    };
+    using Followed = std::vector<FollowedRay>;
     /// In ascending order of range; the peak is some of them.
     struct Echoes {
         std::array<Echo, 128> all;
@@ -76,9 +89,13 @@ class RangePredictor {
         std::size_t peak_end = 0;
     };
 
-    [[nodiscard]] static double spread_of(const Bundle& bundle, const std::vector<RayReach>& reaches);
-    [[nodiscard]] RangePrediction prediction_of(const Bundle& bundle, const std::vector<RayReach>& reaches,
+    [[nodiscard]] Followed follow(const CameraView& view, const Eigen::Isometry3d& T_map_sensor) const;
+    [[nodiscard]] static double spread_of(const Bundle& bundle, const Followed& rays);
+    [[nodiscard]] RangePrediction prediction_of(const Bundle& bundle, const Followed& rays,
                                                 Echoes& echoes) const;
+    [[nodiscard]] static std::optional<SeenSurface> surface_of(const std::vector<PlaneHit>& hits,
+                                                               const CameraView& view);
+    [[nodiscard]] static std::vector<PlaneHit> hits_of(const Echoes& echoes, const Followed& rays);
     [[nodiscard]] bool find_peak(Echoes& echoes) const;
 
     PredictorConfig config_;

@@ -24,13 +24,25 @@ constexpr double kDoubt = 0.15;
 constexpr double kSomethingElseM = 0.12;
 /// and one that is a little shorter may be.
 constexpr double kMisfitOfHiddenMax = 1.2;
+/// What ends so little beyond where the camera does not see may be of there: the image is of another instant,
+/// and the camera a little off.
+constexpr double kHiddenMarginM = 0.1;
 /// Thinner than this is a wall, and that much of noise.
 constexpr double kWallM = 0.1;
 constexpr double kWallNoiseM = 0.06;
+/// A ray along a surface says little of how thick it is.
+constexpr double kAlongMin = 0.3;
 /// Short is shorter than what is there by this and 3 sigma. Then log(1/3 / 1/50), and log(2/3) where not.
 constexpr double kShortM = 0.12;
 constexpr double kShortRatio = 2.8;
 constexpr double kNotShortRatio = -0.4;
+
+/// Weak evidence of one place, 0.3 m about, adds up to this at the most: it may be of one thing. Less than
+/// what names.
+constexpr double kPlaceM = 0.3;
+constexpr double kPlaceMax = 5.0;
+/// Evidence that is together counts up to this.
+constexpr double kEvidenceMax = 40.0;
 
 /// No fault is named, but that of single ranges, while the newest dozen fit what the rig says this well.
 constexpr double kMisfitShare = 1.0 / 12.0;
@@ -42,6 +54,10 @@ constexpr double kSaysMuch = 0.5;
 constexpr float kForgotten = 1.0F - 1.0F / 64.0F;
 /// Evidence of a shorter time is of one view of one thing; and it takes the camera's so long.
 constexpr Nanoseconds kEvidenceTime{3'000'000'000};
+/// So far may the camera have a place from where it is, and a sensor still be named for what it contradicts
+/// there. What two exchanged sensors contradict is larger than what a camera does that is off.
+constexpr double kMisplacedM = 0.1;
+constexpr double kMisplacedOfExchangedM = 0.25;
 /// So many others may contradict the camera beside one that is named: of two that are exchanged both do.
 constexpr std::size_t kOthersMax = 1;
 
@@ -73,8 +89,24 @@ void SensorJudge::Sum::add(double ratio, HostTime now) {
         againsts = kForgotten * againsts + (ratio < 0.0 ? 1.0F : 0.0F);
     }
     if (for_it <= 0.0) since = now;
-    for_it = std::clamp(for_it + ratio - kDoubt, -kCreditMax, 2.0 * kNamedFrom);
-    against_it = std::clamp(against_it - ratio - kDoubt, 0.0, 2.0 * kNamedFrom);
+    for_it = std::clamp(for_it + ratio - kDoubt, -kCreditMax, kEvidenceMax);
+    against_it = std::clamp(against_it - ratio - kDoubt, 0.0, kEvidenceMax);
+}
+
+void SensorJudge::Sum::add_weak(double ratio, const Beam& beam) {
+    if (ratio > kDoubt) {
+        const Eigen::Vector3f p_map = (beam.p_map_sensor + *beam.range_m * beam.direction_map).cast<float>();
+        auto place = std::ranges::find_if(places, [&p_map](const Place& of) {
+            return of.for_it > 0.0F && static_cast<double>((of.p_map - p_map).norm()) < kPlaceM;
+        });
+        if (place == places.end()) {
+            place = std::ranges::min_element(places, {}, &Place::for_it);
+            *place = Place{.p_map = p_map, .for_it = 0.0F};
+        }
+        ratio = std::min(ratio, kDoubt + kPlaceMax - static_cast<double>(place->for_it));
+        place->for_it += static_cast<float>(ratio - kDoubt);
+    }
+    add(ratio, beam.captured);
 }
 
 SensorJudge::SensorJudge(std::span<const std::size_t> sensors_of_nodes)
@@ -93,14 +125,14 @@ SensorJudge::Expected SensorJudge::expected(const Compared& compared,
                                             const RangePrediction& prediction) const {
     Expected expected{
         .at = prediction, .has_lower_bound = !prediction.is_from_behind, .sigma_m = prediction.sigma_m};
-    if (!prediction.range_m || !prediction.is_from_behind) return expected;
-    // Of a turned mount this is not quite the place; the memory's cells are larger than that.
-    const Eigen::Vector3d p_map =
-        compared.beam.p_map_sensor + *prediction.range_m * compared.beam.direction_map;
-    const auto known = thickness_.known_to_others(compared.sensor, p_map);
+    if (!prediction.range_m || !prediction.is_from_behind || !prediction.surface) return expected;
+    const auto known = thickness_.known_to_others(compared.sensor, prediction.surface->p_map);
     if (!known) return expected;
-    *expected.at.range_m -= known->thickness_m / prediction.depth_per_m;
-    expected.sigma_m = std::hypot(expected.sigma_m, known->sigma_m / prediction.depth_per_m);
+    // Of a turned mount the ray's direction is not quite that.
+    const double along =
+        std::max(kAlongMin, std::abs(prediction.surface->normal_map.dot(compared.beam.direction_map)));
+    *expected.at.range_m -= known->thickness_m / along;
+    expected.sigma_m = std::hypot(expected.sigma_m, known->sigma_m / along);
     expected.has_lower_bound = true;
     return expected;
 }
@@ -122,7 +154,7 @@ std::optional<double> SensorJudge::misfit(const Expected& expected, double range
             if (!expected.has_lower_bound) return 0.0;
             if (off_m > kSomethingElseM) return std::nullopt;
             misfit_max = kMisfitOfHiddenMax;
-        } else if (range_m < at.hidden_until_m) {
+        } else if (range_m < at.hidden_until_m + kHiddenMarginM) {
             return std::nullopt;
         }
     }
@@ -134,7 +166,7 @@ double SensorJudge::sigma_of(const Compared& compared, const Expected& a, const 
     return std::hypot(std::max(a.sigma_m, b.sigma_m), compared.beam.sigma_m, kPoseSigmaM);
 }
 
-void SensorJudge::judge(std::span<const Compared> compared, const CameraView& view) {
+void SensorJudge::judge(std::span<const Compared> compared) {
     std::vector<Expected> mounted;
     mounted.reserve(compared.size());
     looks_.assign(sensors_.size(), Look::nothing);
@@ -150,7 +182,7 @@ void SensorJudge::judge(std::span<const Compared> compared, const CameraView& vi
                 weigh_exchange(compared[i], mounted[i], compared[j], mounted[j]);
         }
     }
-    for (const Compared& one : compared) ask_camera(one, view);
+    for (const Compared& one : compared) ask_camera(one);
     camera_.decide();
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
         decide(static_cast<std::uint16_t>(i));
@@ -159,7 +191,7 @@ void SensorJudge::judge(std::span<const Compared> compared, const CameraView& vi
     for (const Compared& one : compared) remember(one);
 }
 
-void SensorJudge::ask_camera(const Compared& compared, const CameraView& view) {
+void SensorJudge::ask_camera(const Compared& compared) {
     const RangePrediction& at = compared.predictions.mounted;
     const double range_m = *compared.beam.range_m;
     if (!at.range_m || (!at.is_from_behind && range_m < at.hidden_until_m)) return;
@@ -167,20 +199,31 @@ void SensorJudge::ask_camera(const Compared& compared, const CameraView& view) {
                     {.off_m = range_m - *at.range_m,
                      .sigma_m = std::hypot(compared.beam.sigma_m, at.sigma_m),
                      .is_from_behind = at.is_from_behind},
-                    compared.predictions.hits, view);
+                    compared.predictions.hits);
 }
 
 bool SensorJudge::contradicts(const Sensor& sensor) const {
     return sensor.verdict.fault || sensor.is_far_off || sensor.verdict.evidence >= kContradictsFrom;
 }
 
-bool SensorJudge::may_name(std::uint16_t number) const {
-    if (camera_.error() || camera_.is_suspect() || camera_.may_explain(number)) return false;
+bool SensorJudge::may_name(std::uint16_t number, const Eigen::Vector3d& p_camera,
+                           double misplaced_max_m) const {
+    if (camera_.error() || camera_.is_suspect()) return false;
+    if (camera_.may_misplace_m(number, p_camera) > misplaced_max_m) return false;
     // Another test may have found one since the newest image was judged: they are counted anew.
     const auto contradicting =
         std::ranges::count_if(sensors_, [this](const Sensor& sensor) { return contradicts(sensor); });
     const auto others = static_cast<std::size_t>(contradicting) - (contradicts(sensors_[number]) ? 1U : 0U);
     return others <= kOthersMax;
+}
+
+/// From behind, what ends before the surface may end at something that the camera does not see: that is weak.
+void SensorJudge::add(Sum& sum, double ratio, const Compared& compared, const Expected& mounted) {
+    if (mounted.at.is_from_behind && *compared.beam.range_m < *mounted.at.range_m) {
+        sum.add_weak(ratio, compared.beam);
+    } else {
+        sum.add(ratio, compared.beam.captured);
+    }
 }
 
 void SensorJudge::weigh(const Compared& compared, const Expected& mounted) {
@@ -192,22 +235,24 @@ void SensorJudge::weigh(const Compared& compared, const Expected& mounted) {
     weigh_short(sensor, compared, mounted, sound.value_or(kMisfitMax));
     if (!sound) return;
     if (!mounted.at.range_m) return;
+    if (!compared.predictions.hits.empty()) sensor.p_camera = compared.predictions.hits.front().p;
     if (mounted.has_lower_bound || *sound > 0.0) {
         sensor.misfit_mean += kMisfitShare * (*sound - sensor.misfit_mean);
         ++sensor.verdict.compared;
         sensor.verdict.agreed += *sound <= kMisfitOfHiddenMax ? 1U : 0U;
     }
     if (const auto other = misfit(mounted, range_m - kOffsetM, sigma_m))
-        sensor.faults[kTooLong].add(*sound - *other, sensor.now);
+        add(sensor.faults[kTooLong], *sound - *other, compared, mounted);
     if (const auto other = misfit(mounted, range_m + kOffsetM, sigma_m))
-        sensor.faults[kTooShort].add(*sound - *other, sensor.now);
+        add(sensor.faults[kTooShort], *sound - *other, compared, mounted);
     for (std::size_t i = 0; i < kTurns; ++i) {
         if (!compared.predictions.turned[i].range_m) continue;
         const Expected turned = expected(compared, compared.predictions.turned[i]);
         const double sigma_both_m = sigma_of(compared, mounted, turned);
         const auto as_mounted = misfit(mounted, range_m, sigma_both_m);
         const auto as_turned = misfit(turned, range_m, sigma_both_m);
-        if (as_mounted && as_turned) sensor.faults[kTurned + i].add(*as_mounted - *as_turned, sensor.now);
+        if (as_mounted && as_turned)
+            add(sensor.faults[kTurned + i], *as_mounted - *as_turned, compared, mounted);
     }
 }
 
@@ -244,7 +289,7 @@ void SensorJudge::weigh_exchange(const Compared& of, const Expected& own, const 
     const auto sound = misfit(own, *of.beam.range_m, sigma_m);
     const auto exchanged = misfit(others, *of.beam.range_m, sigma_m);
     if (sound && exchanged)
-        sensor.exchanged[other.sensor - sensor.node_begin].add(*sound - *exchanged, sensor.now);
+        add(sensor.exchanged[other.sensor - sensor.node_begin], *sound - *exchanged, of, own);
 }
 
 /// Not what a few seconds say, nor what as many comparisons deny.
@@ -278,8 +323,10 @@ void SensorJudge::decide(std::uint16_t number) {
         is_exchange &&
         sensors_[sensor.node_begin + other].exchanged[number - sensor.node_begin].for_it < kDeniedFrom;
     const double enough = is_exchange ? kExchangedFrom : kNamedFrom;
-    const bool is_enough = likeliest.for_it >= enough && !is_denied && is_convincing(sensor, likeliest);
-    if (!is_enough || !may_name(number)) {
+    const bool is_enough =
+        sensor.verdict.evidence >= enough && !is_denied && is_convincing(sensor, likeliest);
+    if (!is_enough ||
+        !may_name(number, sensor.p_camera, is_exchange ? kMisplacedOfExchangedM : kMisplacedM)) {
         sensor.verdict.cannot_tell = likeliest.for_it >= kContradictsFrom;
         return;
     }
@@ -296,11 +343,11 @@ void SensorJudge::decide(std::uint16_t number) {
 /// What contradicts is not for others.
 void SensorJudge::remember(const Compared& compared) {
     const RangePrediction& at = compared.predictions.mounted;
-    if (contradicts(sensors_[compared.sensor]) || !at.range_m || !at.is_from_behind) return;
-    const double thickness_m = (*at.range_m - *compared.beam.range_m) * at.depth_per_m;
+    if (contradicts(sensors_[compared.sensor]) || !at.range_m || !at.is_from_behind || !at.surface) return;
+    const double along = std::abs(at.surface->normal_map.dot(compared.beam.direction_map));
+    const double thickness_m = (*at.range_m - *compared.beam.range_m) * along;
     if (thickness_m > -kWallNoiseM && thickness_m < kWallM)
-        thickness_.add(compared.sensor,
-                       compared.beam.p_map_sensor + *at.range_m * compared.beam.direction_map, thickness_m);
+        thickness_.add(compared.sensor, at.surface->p_map, thickness_m);
 }
 
 }  // namespace octoskin

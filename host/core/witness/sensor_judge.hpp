@@ -37,14 +37,15 @@ class SensorJudge {
     explicit SensorJudge(std::span<const std::size_t> sensors_of_nodes);
 
     /// All that is compared with one image, at most one range a sensor. 0.3 ms for 34.
-    void judge(std::span<const Compared> compared, const CameraView& view);
+    void judge(std::span<const Compared> compared);
     /// What another test has found of a sensor counts as its contradicting.
     void set_far_off(std::uint16_t sensor, bool is_far_off) { sensors_[sensor].is_far_off = is_far_off; }
 
     /// Whether a sensor that contradicts may be named. Not while the camera may be what is off: because an
     /// error of it explains what several sensors contradict, or this one and others a little; or because
     /// more than two sensors contradict at once.
-    [[nodiscard]] bool may_name(std::uint16_t sensor) const;
+    [[nodiscard]] bool may_name(std::uint16_t sensor, const Eigen::Vector3d& p_camera,
+                                double misplaced_max_m) const;
     [[nodiscard]] const CameraJudge& camera() const noexcept { return camera_; }
 
     struct Verdict {
@@ -58,11 +59,11 @@ class SensorJudge {
     [[nodiscard]] const Verdict& verdict(std::uint16_t sensor) const { return sensors_[sensor].verdict; }
 
     /// With so much evidence a fault is named.
-    static constexpr double kNamedFrom = 24.0;
+    static constexpr double kNamedFrom = 12.0;
     /// With so much against it, it is no more.
-    static constexpr double kTakenBackFrom = 14.0;
+    static constexpr double kTakenBackFrom = 10.0;
     /// An exchange takes more: it is the best of as many guesses as the node has sensors.
-    static constexpr double kExchangedFrom = 30.0;
+    static constexpr double kExchangedFrom = 16.0;
     /// With so much it counts as contradicting.
     static constexpr double kContradictsFrom = 8.0;
 
@@ -74,19 +75,28 @@ class SensorJudge {
         float fors = 0.0F;        ///< of the newest comparisons that say much, about how many are for it
         float againsts = 0.0F;    ///< and against it
         HostTime since{};         ///< when the newest evidence for it began
+        /// Where weak evidence for it came from, and how much.
+        struct Place {
+            Eigen::Vector3f p_map = Eigen::Vector3f::Zero();
+            float for_it = 0.0F;
+        };
+        std::array<Place, 4> places{};
+
         void add(double ratio, HostTime now);
+        void add_weak(double ratio, const Beam& beam);
     };
     static constexpr std::size_t kFaults = 3 + kTurns;
     enum class Look : std::uint8_t { nothing, agrees, is_short };
     struct Sensor {
         std::size_t node_begin = 0;  ///< the node's sensors are numbered from here
         std::array<Sum, kFaults> faults{};
-        std::vector<Sum> exchanged;   ///< by sensor of the node
-        const Sum* named = nullptr;   ///< of those
-        HostTime now{};               ///< of what is weighed
-        bool is_far_off = false;      ///< by another test
-        double misfit_mean = 0.0;     ///< of the newest ranges, to what the rig says
-        std::array<Look, 2> looks{};  ///< of the two images before, the newest first
+        std::vector<Sum> exchanged;                           ///< by sensor of the node
+        const Sum* named = nullptr;                           ///< of those
+        HostTime now{};                                       ///< of what is weighed
+        Eigen::Vector3d p_camera = Eigen::Vector3d::UnitZ();  ///< where it ranged last
+        bool is_far_off = false;                              ///< by another test
+        double misfit_mean = 0.0;                             ///< of the newest ranges, to what the rig says
+        std::array<Look, 2> looks{};                          ///< of the two images before, the newest first
         Verdict verdict;
     };
     /// Where a hypothesis has the range.
@@ -100,12 +110,13 @@ class SensorJudge {
     [[nodiscard]] static std::optional<double> misfit(const Expected& expected, double range_m,
                                                       double sigma_m);
     [[nodiscard]] static double sigma_of(const Compared& compared, const Expected& a, const Expected& b);
+    static void add(Sum& sum, double ratio, const Compared& compared, const Expected& mounted);
     void weigh(const Compared& compared, const Expected& mounted);
     void weigh_short(Sensor& sensor, const Compared& compared, const Expected& mounted,
                      double misfit_mounted);
     void weigh_exchange(const Compared& of, const Expected& own, const Compared& other,
                         const Expected& others);
-    void ask_camera(const Compared& compared, const CameraView& view);
+    void ask_camera(const Compared& compared);
     [[nodiscard]] bool contradicts(const Sensor& sensor) const;
     [[nodiscard]] bool is_convincing(const Sensor& sensor, const Sum& sum) const;
     void decide(std::uint16_t number);

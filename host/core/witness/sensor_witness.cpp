@@ -49,6 +49,8 @@ bool has_moved(const Beam& beam, const Beam& before) {
 /// What contradicts for a shorter time, or at one place only, may be a thing that the camera does not show.
 constexpr Nanoseconds kContradictsForMin{8'000'000'000};
 constexpr double kElsewhereM = 0.12;
+/// Where the camera may have a place further off than this, depth edges are not where it shows them.
+constexpr double kMisplacedM = 0.06;
 /// The camera's filter takes about half of its noise.
 constexpr double kFiltered = 0.5;
 /// So many ranges that fit, and a sensor speaks for the camera.
@@ -212,7 +214,7 @@ void SensorWitness::compare_next() {
 /// Once for each image.
 void SensorWitness::judge() {
     next_ = sensors_.size();
-    judge_.judge(compared_, view());
+    judge_.judge(compared_);
     compared_.clear();
     contradicting_ = 0;
     agreeing_ = 0;
@@ -221,7 +223,9 @@ void SensorWitness::judge() {
         SensorEvidence& evidence = sensors_[i].evidence;
         // Found, it counts for the others at once.
         judge_.set_far_off(static_cast<std::uint16_t>(i), sensors_[i].found_far_off);
-        const bool may_name = judge_.may_name(static_cast<std::uint16_t>(i));
+        const bool may_name =
+            judge_.may_name(static_cast<std::uint16_t>(i),
+                            T_map_camera_.inverse() * sensors_[i].p_contradicted_map, kMisplacedM);
         evidence.is_far_off =
             sensors_[i].found_far_off && (evidence.is_far_off || may_name) && !judge_.camera().error();
         evidence.cannot_tell = verdict.cannot_tell || (sensors_[i].found_far_off && !evidence.is_far_off);
@@ -287,6 +291,7 @@ void SensorWitness::count(Sensor& sensor, const Beam& beam, Finding finding) con
     if (!agrees) {
         const Eigen::Vector3d p_map =
             beam.p_map_sensor + beam.range_m.value_or(beam.clear_limit_m) * beam.direction_map;
+        sensor.p_contradicted_map = p_map;
         if (!sensor.first_contradiction) sensor.first_contradiction = {beam.captured, p_map};
         const Contradiction& first = *sensor.first_contradiction;
         sensor.contradicts_elsewhere |= (p_map - first.p_map).norm() > kElsewhereM;

@@ -115,9 +115,10 @@ class SensorWitness {
         std::array<std::optional<Placed>, 3> newest;  ///< the newest first
         std::optional<Placed> waiting;
         std::optional<Beam> counted;
-        std::optional<Contradiction> first_contradiction;  ///< in the test that is not ended
-        bool contradicts_elsewhere = false;                ///< than at that
-        bool found_far_off = false;                        ///< by the test, whichever device may be off
+        std::optional<Contradiction> first_contradiction;              ///< in the test that is not ended
+        Eigen::Vector3d p_contradicted_map = Eigen::Vector3d::Zero();  ///< the newest one
+        bool contradicts_elsewhere = false;                            ///< than at that
+        bool found_far_off = false;  ///< by the test, whichever device may be off
         SensorEvidence evidence;
         bool contradicted = false;  ///< after the newest image
     };

@@ -6,8 +6,8 @@
 namespace octoskin {
 namespace {
 
-constexpr std::size_t kCells = 2048;
-constexpr double kEdgeM = 0.6;
+constexpr std::size_t kPlaces = 512;
+constexpr double kExtentM = 1.2;
 /// Others agree who are within this of each other.
 constexpr float kAgreementM = 0.04F;
 constexpr std::size_t kAgreeingMin = 2;
@@ -16,32 +16,36 @@ constexpr double kSigmaM = 0.015;
 
 }  // namespace
 
-ThicknessMemory::ThicknessMemory() : cells_(kCells) {}
-
-ThicknessMemory::Place ThicknessMemory::place_of(const Eigen::Vector3d& p_map) {
-    Place place;
-    for (int i = 0; i < 3; ++i)
-        place[static_cast<std::size_t>(i)] =
-            static_cast<std::int16_t>(std::clamp(std::floor(p_map[i] / kEdgeM), -30'000.0, 30'000.0));
-    return place;
+ThicknessMemory::ThicknessMemory() {
+    places_.reserve(kPlaces);
 }
 
-std::size_t ThicknessMemory::index_of(const Place& place) const {
-    std::uint32_t hash = 2'166'136'261U;
-    for (const std::int16_t coordinate : place)
-        hash = (hash ^ static_cast<std::uint16_t>(coordinate)) * 16'777'619U;
-    return (hash ^ (hash >> 15U)) % cells_.size();
+std::optional<std::size_t> ThicknessMemory::find(const Eigen::Vector3d& p_map) const {
+    std::optional<std::size_t> nearest;
+    double nearest_m = kExtentM;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        const double distance_m = (p_map - places_[i].p_map).norm();
+        if (distance_m >= nearest_m) continue;
+        nearest = i;
+        nearest_m = distance_m;
+    }
+    return nearest;
 }
 
 void ThicknessMemory::add(std::uint16_t sensor, const Eigen::Vector3d& p_map, double thickness_m) {
-    const Place place = place_of(p_map);
-    Cell& cell = cells_[index_of(place)];
-    if (cell.place != place) cell = Cell{.place = place, .next = 0, .words = {}};
+    auto found = find(p_map);
+    if (!found) {
+        if (places_.size() < kPlaces) places_.emplace_back();
+        found = next_;
+        next_ = (next_ + 1) % kPlaces;
+        places_[*found] = Place{.p_map = p_map, .next = 0, .words = {}};
+    }
+    Place& place = places_[*found];
     auto word = std::ranges::find_if(
-        cell.words, [sensor](const Word& of) { return of.count > 0 && of.sensor == sensor; });
-    if (word == cell.words.end()) {
-        word = cell.words.begin() + cell.next;
-        cell.next = static_cast<std::uint8_t>((cell.next + 1U) % kWords);
+        place.words, [sensor](const Word& of) { return of.count > 0 && of.sensor == sensor; });
+    if (word == place.words.end()) {
+        word = place.words.begin() + place.next;
+        place.next = static_cast<std::uint8_t>((place.next + 1U) % kWords);
         *word = Word{.sensor = sensor, .count = 0, .mean_m = 0.0F};
     }
     word->count = std::min<std::uint16_t>(kCountMax, static_cast<std::uint16_t>(word->count + 1U));
@@ -50,31 +54,21 @@ void ThicknessMemory::add(std::uint16_t sensor, const Eigen::Vector3d& p_map, do
 
 std::optional<ThicknessMemory::Known> ThicknessMemory::known_to_others(std::uint16_t sensor,
                                                                        const Eigen::Vector3d& p_map) const {
-    const Place place = place_of(p_map);
-    const Cell& cell = cells_[index_of(place)];
-    if (cell.place != place) return std::nullopt;
+    const auto found = find(p_map);
+    if (!found) return std::nullopt;
+    const Place& place = places_[*found];
     std::array<float, kWords> others;
     std::size_t count = 0;
-    for (const Word& word : cell.words) {
+    for (const Word& word : place.words) {
         if (word.count == 0 || word.sensor == sensor) continue;
         std::size_t at = count++;  // in ascending order
         for (; at > 0 && others[at - 1] > word.mean_m; --at) others[at] = others[at - 1];
         others[at] = word.mean_m;
     }
-    std::size_t first = 0;
-    std::size_t agreeing = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        std::size_t j = i;
-        while (j < count && others[j] <= others[i] + kAgreementM) ++j;
-        if (j - i > agreeing) {
-            first = i;
-            agreeing = j - i;
-        }
-    }
-    if (agreeing < kAgreeingMin || 2 * agreeing <= count) return std::nullopt;
+    if (count < kAgreeingMin || others[kAgreeingMin - 1] - others[0] > kAgreementM) return std::nullopt;
     double sum = 0.0;
-    for (std::size_t i = first; i < first + agreeing; ++i) sum += static_cast<double>(others[i]);
-    return Known{sum / static_cast<double>(agreeing), kSigmaM};
+    for (std::size_t i = 0; i < kAgreeingMin; ++i) sum += static_cast<double>(others[i]);
+    return Known{sum / static_cast<double>(kAgreeingMin), kSigmaM};
 }
 
 }  // namespace octoskin

@@ -9,20 +9,22 @@
 
 namespace octoskin {
 
-/// By cells of 0.6 m where the camera's side of the surface is. A sensor is never told its own word, nor that
-/// of only one other. 200 kB, whatever comes.
+/// By places, up to 1.2 m about where a surface was first met. A sensor is never told its own word, nor that
+/// of only one other. 50 kB, whatever comes.
 class ThicknessMemory {
   public:
     ThicknessMemory();
 
-    /// What a sensor found, along the camera's axis: what it ranged lies so far before the camera's side.
+    /// What a sensor found, along the surface's normal: what it ranged lies so far before the camera's side.
+    /// About 0.5 us, as the next.
     void add(std::uint16_t sensor, const Eigen::Vector3d& p_map, double thickness_m);
 
     struct Known {
         double thickness_m = 0.0;
         double sigma_m = 0.0;
     };
-    /// What at least two others agree on, and no as many deny.
+    /// The mean of the two others that found it thinnest, if they agree: what stands before a surface, where
+    /// the camera does not see it, makes it seem thicker, and nothing makes it seem thinner.
     [[nodiscard]] std::optional<Known> known_to_others(std::uint16_t sensor,
                                                        const Eigen::Vector3d& p_map) const;
 
@@ -33,17 +35,17 @@ class ThicknessMemory {
         float mean_m = 0.0F;
     };
     static constexpr std::size_t kWords = 8;
-    struct Cell {
-        std::array<std::int16_t, 3> place{};
+    struct Place {
+        Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
         std::uint8_t next = 0;  ///< to be overwritten
         std::array<Word, kWords> words{};
     };
-    using Place = std::array<std::int16_t, 3>;
 
-    [[nodiscard]] static Place place_of(const Eigen::Vector3d& p_map);
-    [[nodiscard]] std::size_t index_of(const Place& place) const;
+    /// The nearest one's index; empty: none is near.
+    [[nodiscard]] std::optional<std::size_t> find(const Eigen::Vector3d& p_map) const;
 
-    std::vector<Cell> cells_;
+    std::vector<Place> places_;
+    std::size_t next_ = 0;  ///< to be overwritten, once all are in use
 };
 
 }  // namespace octoskin

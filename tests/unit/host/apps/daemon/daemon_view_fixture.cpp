@@ -9,6 +9,7 @@
 
 #include "common/wire/codec.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
+#include "tests/unit/host/core/pipeline/corner_scene.hpp"
 
 namespace octoskin::test {
 
@@ -63,17 +64,14 @@ void DaemonViewTest::play_on(const std::vector<StampedFrame>& frames, double unt
 
 void DaemonViewTest::let_camera_contradict(const std::function<void()>& look) {
     Scene scene = daemon_scene();
-    scene.rig.camera->intrinsics.fx = 10.0;
-    scene.rig.camera->intrinsics.fy = 10.0;
+    scene.depth.clear();  // of a smaller camera
+    scene.rig = in_corner(std::move(scene.rig));
     play(scene, kAllWell);
     MapBuilder& builder = pipeline_->builder();
     builder.forget_motion({});
-    // What is compared is so with the next reading.
-    for (int i = 0; i < 7; ++i) {
-        const double now_s = 5.0 + 1.7 * i;  // what lasts for eight seconds counts
-        EXPECT_TRUE(builder.add({host_at(now_s), {M_PI / 2.0 - 0.08 * i}}));
-        EXPECT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, host_at(now_s), 0.52, 0.02}));
-        EXPECT_TRUE(builder.integrate(flat_frame(now_s, 3'000)));
+    CornerLooks looks(builder, scene_.rig, 5.0);
+    for (int i = 0; i < 80; ++i) {
+        (void)looks.look(0.3);
         if (look) look();
     }
 }

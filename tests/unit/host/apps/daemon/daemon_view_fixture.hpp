@@ -42,8 +42,8 @@ class DaemonViewTest : public testing::Test {
     }
     /// What more of frames, stamped before `until_s`.
     void play_on(const std::vector<StampedFrame>& frames, double until_s);
-    /// The arm turns from image to image, and its sensor reports 0.52 m each time, where the camera sees
-    /// through. `look` after each.
+    /// The arm swings before a corner, and kGood reports 0.3 m less than the camera shows. `look` after each
+    /// of 80 images.
     void let_camera_contradict(const std::function<void()>& look = {});
     void set_now(double now_s) { view_.now = host_at(now_s), view_.bus_now = host_at(now_s); }
 

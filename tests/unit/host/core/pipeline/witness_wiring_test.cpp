@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "host/core/pipeline/map_builder.hpp"
+#include "tests/unit/host/core/pipeline/corner_scene.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
 
 namespace octoskin::test {
@@ -69,73 +70,52 @@ TEST(Witness, sees_through_in_front_of_the_robot) {
     EXPECT_EQ(builder.witness()->evidence(kLeft, kGood).in_free_space, 1U);
 }
 
-/// The arm looks away from the camera at a wall 1 m behind the column, and swings; one sensor ranges the
-/// wall, the other `off_m` less.
-class TwoSensors {
-  public:
-    explicit TwoSensors(bool refuses)
-        : builder(
-              MapBuilder::build(one_joint_rig(), one_joint_robot(), mapping_that(refuses), {}, {}).value()) {}
-
-    /// What became of the second one's reading.
-    Status<ReadingReason> look(double off_m) {
-        const double angle = M_PI - 0.04 * ((image_ / 8) % 2 == 0 ? image_ % 8 : 8 - image_ % 8);
-        const double at_s = 1.0 + 0.1 * image_++;
-        now = host_at(at_s);
-        EXPECT_TRUE(builder.add({now, {angle}}));
-        const double range_m = -1.0 / std::cos(angle) - 0.12;
-        EXPECT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kSpare, 0}, now, range_m, 0.02}));
-        const auto fate = builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, now, range_m - off_m, 0.02});
-        EXPECT_TRUE(builder.integrate(flat_frame(at_s, 3'000)));
-        return fate;
-    }
-    /// Looks until it is, or until 100 images are over; how many.
-    int look_until(double off_m, bool is_refused) {
-        for (int i = 1; i <= 100; ++i) {
-            if (look(off_m).has_value() != is_refused) return i;
-        }
-        return 0;
-    }
-    const SensorEvidence& evidence() const { return builder.witness()->evidence(kLeft, kGood); }
-
-    MapBuilder builder;
-    HostTime now{};  ///< of the newest image
-
-  private:
+/// A builder, and what it is given in the corner.
+struct Corner {
+    explicit Corner(bool refuses)
+        : builder(MapBuilder::build(rig, one_joint_robot(), mapping_that(refuses), {}, {}).value()) {}
     static MappingConfig mapping_that(bool refuses) {
         MappingConfig mapping = plain_mapping();
         mapping.refuses_contradicting_sensors = refuses;
         return mapping;
     }
-    int image_ = 0;
+    [[nodiscard]] const SensorEvidence& evidence() const { return builder.witness()->evidence(kLeft, kGood); }
+
+    HostRig rig = in_corner(one_joint_rig());
+    MapBuilder builder;
+    CornerLooks looks{builder, rig};
 };
 
 TEST(Witness, keeps_a_sensor_that_contradicts_out_of_the_map_until_it_agrees_again) {
-    TwoSensors two(true);
-    EXPECT_GT(two.look_until(0.5, true), 10);
-    EXPECT_TRUE(two.evidence().contradicts());
-    EXPECT_TRUE(two.builder.is_refused(kLeft, kGood));
-    EXPECT_FALSE(two.builder.is_refused(kLeft, kSpare));
-    EXPECT_EQ(two.look(0.5).error(), ReadingReason::contradicts_camera);
+    Corner corner(true);
+    EXPECT_GT(corner.looks.look_until(0.3, true), 10);
+    EXPECT_TRUE(corner.evidence().contradicts());
+    EXPECT_TRUE(corner.builder.is_refused(kLeft, kGood));
+    EXPECT_FALSE(corner.builder.is_refused(kLeft, kSpare));
+    const auto refused = corner.looks.look(0.3);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error(), ReadingReason::contradicts_camera);
     // A reading that is refused changes nothing: with it and without it the map is the same.
-    const auto known = [&] { return two.builder.maps().fused()->counters(); };
+    const auto known = [&] { return corner.builder.maps().fused()->counters(); };
     const auto before = known();
-    EXPECT_FALSE(two.builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, two.now, 0.3, 0.02}));
+    EXPECT_FALSE(
+        corner.builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, corner.looks.now(), 0.3, 0.02}));
     EXPECT_EQ(known(), before);
-    EXPECT_TRUE(two.builder.integrate(RangeMeasurement{{kLeft, kSpare, 0}, two.now, 0.3, 0.02}));
+    EXPECT_TRUE(
+        corner.builder.integrate(RangeMeasurement{{kLeft, kSpare, 0}, corner.looks.now(), 0.3, 0.02}));
     EXPECT_NE(known(), before);
-    EXPECT_GT(two.look_until(0.0, false), 10);
-    EXPECT_FALSE(two.evidence().contradicts());
+    EXPECT_GT(corner.looks.look_until(0.0, false), 10);
+    EXPECT_FALSE(corner.evidence().contradicts());
 }
 
 TEST(Witness, only_names_it_where_the_mapping_says_so_or_the_order_is_given) {
-    TwoSensors named(false);
-    TwoSensors ordered(true);
+    Corner named(false);
+    Corner ordered(true);
     ordered.builder.refuse_nobody();
-    for (TwoSensors* two : {&named, &ordered}) {
-        EXPECT_EQ(two->look_until(0.5, true), 0);
-        EXPECT_TRUE(two->evidence().contradicts());
-        EXPECT_FALSE(two->builder.is_refused(kLeft, kGood));
+    for (Corner* corner : {&named, &ordered}) {
+        EXPECT_EQ(corner->looks.look_until(0.3, true, 100), 0);
+        EXPECT_TRUE(corner->evidence().contradicts());
+        EXPECT_FALSE(corner->builder.is_refused(kLeft, kGood));
     }
 }
 

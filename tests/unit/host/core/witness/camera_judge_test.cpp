@@ -44,12 +44,17 @@ class CornerScene : public testing::Test {
                 const double range_m = true_depth_m(x) * Eigen::Vector3d(x, y, 1.0).norm() + off_m;
                 const RayReach reach = view.reach(Eigen::Vector3d::Zero(), direction, 4.0);
                 if (!reach.surface_m) continue;
-                const SurfaceHit hit{
-                    .p_map = *reach.surface_m * direction, .direction_map = direction, .share = 1.0};
+                const Eigen::Vector3d p = view.T_camera_map() * (*reach.surface_m * direction);
+                const auto plane = view.plane_at(p);
+                if (!plane) continue;
+                const PlaneHit hit{.p = p,
+                                   .direction = view.T_camera_map().linear() * direction,
+                                   .plane = *plane,
+                                   .share = 1.0};
                 judge_.compare(
                     static_cast<std::uint16_t>(sensor),
                     {.off_m = range_m - *reach.surface_m, .sigma_m = 0.02, .is_from_behind = false},
-                    {&hit, 1}, view);
+                    {&hit, 1});
             }
             judge_.decide();
         }
@@ -68,7 +73,7 @@ TEST_F(CornerScene, a_camera_that_is_where_the_rig_has_it_is_not_named) {
     look(4, Eigen::Isometry3d::Identity());
     EXPECT_FALSE(judge_.error());
     EXPECT_FALSE(judge_.is_suspect());
-    EXPECT_FALSE(judge_.may_explain(0));
+    EXPECT_LT(judge_.may_misplace_m(0, 2.0 * kAhead), 0.12);  // two walls: nothing of its height
 }
 
 TEST_F(CornerScene, one_that_is_three_degrees_off_is_named_with_about_that) {
@@ -77,7 +82,15 @@ TEST_F(CornerScene, one_that_is_three_degrees_off_is_named_with_about_that) {
     EXPECT_GE(judge_.explained(), 3U);
     EXPECT_NEAR(judge_.error()->turn_deg.y(), 3.0, 1.1);
     EXPECT_LE(std::abs(judge_.error()->turn_deg.x()), 1.0);
-    EXPECT_TRUE(judge_.may_explain(0));
+    EXPECT_GT(judge_.may_misplace_m(0, 2.0 * kAhead), 0.08);
+}
+
+TEST_F(CornerScene, without_other_sensors_the_camera_may_be_anywhere_that_a_mount_may_be) {
+    EXPECT_GT(judge_.may_misplace_m(0, 2.0 * kAhead), 0.25);
+    // The sensor's own ranges say nothing of the camera by which it is judged.
+    look(1, Eigen::Isometry3d::Identity());
+    EXPECT_GT(judge_.may_misplace_m(0, 2.0 * kAhead), 0.25);
+    EXPECT_LT(judge_.may_misplace_m(1, 2.0 * kAhead), 0.15);
 }
 
 TEST_F(CornerScene, one_whose_depth_is_five_percent_short_is_named_until_it_is_right) {
@@ -85,7 +98,7 @@ TEST_F(CornerScene, one_whose_depth_is_five_percent_short_is_named_until_it_is_r
     look(4, Eigen::Isometry3d::Identity());
     EXPECT_TRUE(judge_.error());
     for (float& depth_m : seen_.depth_m) depth_m *= 1.05F;
-    look(4, Eigen::Isometry3d::Identity(), 0.0, 200);
+    look(4, Eigen::Isometry3d::Identity(), 0.0, 2000);
     EXPECT_FALSE(judge_.error());
 }
 
