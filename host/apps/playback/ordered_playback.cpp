@@ -20,12 +20,13 @@ std::uint32_t crc32_of_text(std::string_view text, std::uint32_t before = 0) {
 }
 
 /// Of its .ot file, which is larger than the map: it need not be in the memory beside that.
-std::uint32_t crc32_of_map(const FusedMap& map) {
+std::uint32_t crc32_of_map(const FusedMap& map, decltype(write_ot) write) {
     std::uint32_t crc = 0;
-    write_ot(map, [&crc](std::string_view bytes) {
+    const auto add = [&crc](std::string_view bytes) {
         crc = crc32_of_text(bytes, crc);
         return true;
-    });
+    };
+    write(map, add);
     return crc;
 }
 
@@ -70,7 +71,9 @@ std::string guess_at_unlike(const rig::Rig& rig, const orderlog::OrderReader& or
 bool is_daemons(const orderlog::OrderReader& order, const FusedMap& map) {
     if (!order.trailer()) return false;
     const auto& last = order.trailer()->last_map;
-    return last ? crc32_of_map(map) == *last : map.known_voxels() == 0;
+    if (!last) return map.known_voxels() == 0;
+    // Octoskin did not mark its maps always.
+    return crc32_of_map(map, write_ot) == *last || crc32_of_map(map, write_unmarked_ot) == *last;
 }
 
 void judge(const PlaybackRequest& request, const rig::Rig& rig, const orderlog::OrderReader& order,

@@ -235,11 +235,12 @@ Result<OctomapHeader, MapReadError> parse_header_before_1_4(std::string_view byt
 
 }  // namespace
 
-std::string octomap_header(bool is_binary, std::uint64_t nodes, double resolution_m) {
+std::string octomap_header(bool is_binary, std::uint64_t nodes, double resolution_m, SavedMark mark) {
     return fmt::format(
-        "{}\n# (feel free to add / change comments, but leave the first line as it is!)\n{}\n#\n"
+        "{}\n# (feel free to add / change comments, but leave the first line as it is!)\n{}{}#\n"
         "id OcTree\nsize {}\nres {}\ndata\n",
-        is_binary ? kBinaryMagic : kTextMagic, kOctoskinsComment, nodes, resolution_m);
+        is_binary ? kBinaryMagic : kTextMagic, mark == SavedMark::present ? kOctoskinsComment : "",
+        mark == SavedMark::present ? "\n" : "", nodes, resolution_m);
 }
 
 Result<OctomapHeader, MapReadError> parse_octomap_header(std::string_view bytes, std::uint64_t nodes_max) {

@@ -24,9 +24,13 @@ struct OctomapHeader {
     std::vector<std::string> differences;
 };
 
+/// Whether the header says that octoskin saved the map. Octoskin did not write that into maps always.
+enum class SavedMark : std::uint8_t { present, absent };
+
 /// What octoskin writes in front of the nodes: OctoMap's own header with one comment more. The resolution is
 /// in its shortest form that reads back exactly.
-[[nodiscard]] std::string octomap_header(bool is_binary, std::uint64_t nodes, double resolution_m);
+[[nodiscard]] std::string octomap_header(bool is_binary, std::uint64_t nodes, double resolution_m,
+                                         SavedMark mark = SavedMark::present);
 
 /// Reads the header at the beginning of `bytes` as OctoMap 1.9 does: words apart by any white space, of keys
 /// that come twice the last, unknown keys skipped with their line; before 1.4 a .bt began with binary

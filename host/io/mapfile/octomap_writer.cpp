@@ -66,11 +66,20 @@ std::string all_bytes(const ByteSource& source) {
     return all;
 }
 
+void write_all_ot(const FusedMap& map, const ByteSink& sink, SavedMark mark) {
+    const PrunedOctree octree(map, LeafValues::exact);
+    if (sink(octomap_header(false, octree.size(), map.resolution_m(), mark)))
+        write_nodes<OtNode>(octree, sink);
+}
+
 }  // namespace
 
 void write_ot(const FusedMap& map, const ByteSink& sink) {
-    const PrunedOctree octree(map, LeafValues::exact);
-    if (sink(octomap_header(false, octree.size(), map.resolution_m()))) write_nodes<OtNode>(octree, sink);
+    write_all_ot(map, sink, SavedMark::present);
+}
+
+void write_unmarked_ot(const FusedMap& map, const ByteSink& sink) {
+    write_all_ot(map, sink, SavedMark::absent);
 }
 
 void write_bt(const FusedMap& map, const ByteSink& sink) {

@@ -12,6 +12,8 @@ namespace octoskin {
 
 /// .ot: every voxel's log-odds. Equal maps give equal bytes.
 void write_ot(const FusedMap& map, const ByteSink& sink);
+/// The same without the comment, as octoskin wrote it before it marked its maps.
+void write_unmarked_ot(const FusedMap& map, const ByteSink& sink);
 [[nodiscard]] std::string encode_ot(const FusedMap& map);
 
 /// .bt: occupied, free and unknown only. Pruned on every level; OctoMap's own writer stops pruning at the

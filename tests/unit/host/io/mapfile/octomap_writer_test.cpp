@@ -61,6 +61,12 @@ TEST(OctomapWriter, writes_the_bytes_that_octomap_writes) {
         std::ostringstream text;
         ASSERT_TRUE(tree->write(text));
         EXPECT_EQ(without_comment(encode_ot(map)), text.str()) << "seed " << seed;
+        std::string unmarked;
+        write_unmarked_ot(map, [&unmarked](std::string_view bytes) {
+            unmarked += bytes;
+            return true;
+        });
+        EXPECT_EQ(unmarked, text.str()) << "seed " << seed;
         std::ostringstream binary;
         ASSERT_TRUE(octomaps_max_likelihood_tree(map)->writeBinary(binary));
         EXPECT_EQ(without_comment(encode_bt(map)), binary.str()) << "seed " << seed;
