@@ -29,6 +29,6 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         assert(!solids.error().what.empty());
         return 0;
     }
-    assert(!solids->empty());
+    assert(!solids->solids.empty());
     return 0;
 }
