@@ -54,7 +54,8 @@ std::optional<JointGap> JointHistory::gap_about(HostTime instant) const {
     const auto position = at(instant);
     if (position || position.error() != JointLookup::gap) return std::nullopt;
     const std::size_t after = first_not_before(instant);
-    return JointGap{sample(after).sampled - sample(after - 1).sampled, instant};
+    const HostTime from = sample(after - 1).sampled;
+    return JointGap{sample(after).sampled - from, instant, from};
 }
 
 const JointHistory::Sample& JointHistory::sample(std::size_t age_rank) const noexcept {

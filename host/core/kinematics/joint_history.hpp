@@ -51,6 +51,7 @@ struct JointHistoryConfig {
 struct JointGap {
     Nanoseconds between{0};
     HostTime instant;  ///< that was asked for
+    HostTime from;     ///< the earlier of the two
 };
 
 class JointHistory {

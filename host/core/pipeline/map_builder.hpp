@@ -96,6 +96,7 @@ class MapBuilder {
     [[nodiscard]] const std::optional<JointGap>& newest_joint_gap() const noexcept {
         return robot_.newest_gap();
     }
+    [[nodiscard]] std::uint64_t joint_gaps_in_a_row() const noexcept { return robot_.gaps_in_a_row(); }
     /// Every joint sample that poses are still interpolated from, the oldest first.
     void for_each_joint_sample(const std::function<void(const JointMeasurement&)>& visit) const {
         robot_.for_each_sample(visit);

@@ -33,12 +33,19 @@ Status<JointReason> RobotTracker::add(const JointMeasurement& joints) {
 const RobotPose* RobotTracker::at(HostTime instant) {
     const auto position = joints_.at(instant);
     if (!position) {
-        if (const auto gap = joints_.gap_about(instant)) newest_gap_ = gap;
+        if (const auto gap = joints_.gap_about(instant)) note_gap(*gap);
         return nullptr;
     }
     robot_.forward(position->span(), pose_.T_base_link);
     body_.pose(pose_.T_base_link, pose_.body_base);
     return &pose_;
+}
+
+void RobotTracker::note_gap(const JointGap& gap) {
+    constexpr Nanoseconds kRow{3'000'000'000};
+    if (!newest_gap_ || gap.from - newest_gap_->from > kRow) gaps_in_a_row_ = 0;
+    if (!newest_gap_ || gap.from != newest_gap_->from) ++gaps_in_a_row_;
+    newest_gap_ = gap;
 }
 
 void RobotTracker::for_each_sample(const std::function<void(const JointMeasurement&)>& visit) const {

@@ -1,6 +1,7 @@
 // Where the whole robot was at any instant: joint samples in, poses out.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -37,6 +38,9 @@ class RobotTracker {
 
     /// The newest gap between samples that no pose could be found in; empty if there was none.
     [[nodiscard]] const std::optional<JointGap>& newest_gap() const noexcept { return newest_gap_; }
+    /// How many such gaps, the newest included, came one within 3 s of the other: one is an interruption,
+    /// many are a source that is too slow.
+    [[nodiscard]] std::uint64_t gaps_in_a_row() const noexcept { return gaps_in_a_row_; }
 
     /// Every sample that is held, the oldest first.
     void for_each_sample(const std::function<void(const JointMeasurement&)>& visit) const;
@@ -44,12 +48,14 @@ class RobotTracker {
     [[nodiscard]] const RobotModel& robot() const noexcept { return robot_; }
 
   private:
+    void note_gap(const JointGap& gap);
     RobotTracker(RobotModel robot, RobotBody body, const JointHistoryConfig& config);
 
     RobotModel robot_;
     RobotBody body_;
     JointHistory joints_;
     std::optional<JointGap> newest_gap_;
+    std::uint64_t gaps_in_a_row_ = 0;
     RobotPose pose_;
 };
 

@@ -107,7 +107,9 @@ void add_joints_beyond(const DaemonView& view, Problems& problems) {
 /// Readings between samples that are too far apart have no pose.
 void add_joint_gap(const DaemonView& view, Problems& problems) {
     const auto& gap = view.pipeline->builder().newest_joint_gap();
+    constexpr std::uint64_t kSlow = 3;  // fewer are an interruption
     if (!gap || !is_recent(gap->instant, view.now)) return;
+    if (view.pipeline->builder().joint_gaps_in_a_row() < kSlow) return;
     problems.push_back({"joint gap", "readings have no pose (joints_missing). " + gap_text(*gap)});
 }
 

@@ -94,6 +94,40 @@ TEST_F(JointProblemsTest, have_joint_states_that_stopped_eight_tenths_of_a_secon
     EXPECT_EQ(told("no joints") + told("joints unused"), "");
 }
 
+TEST_F(JointProblemsTest, have_joint_states_that_are_too_slow_but_no_single_gap_between_them) {
+    MapBuilder& builder = pipeline_->builder();
+    const auto add = [&](double at_s) { EXPECT_TRUE(builder.add({host_at(at_s), {M_PI / 2.0}})); };
+    add(5.0);
+    for (int gaps = 1; gaps <= 4; ++gaps) {
+        const double at_s = 5.0 + 0.15 * gaps;
+        add(at_s);
+        for (const double before_s : {0.07, 0.06}) {
+            EXPECT_FALSE(
+                builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, host_at(at_s - before_s), 0.52, 0.02}));
+        }
+        set_now(at_s);
+        EXPECT_EQ(told("joint gap"), gaps < 3
+                                         ? ""
+                                         : "readings have no pose (joints_missing). Joint samples are 150 ms "
+                                           "apart; at most 100 ms are bridged, and 50 ms to the nearer one.");
+    }
+    set_now(8.7);
+    EXPECT_EQ(told("joint gap"), "") << "it is over";
+}
+
+TEST_F(JointProblemsTest, have_a_joint_beyond_its_limits_and_which) {
+    const double position = 3.3;
+    play_changed(
+        [&](Scene& scene) {
+            for (int k = 0; k < 5; ++k) scene.bus.joints(9.05 + 0.01 * k, kJoints, {&position, 1});
+            scene.bus.exchange(9.12, {kLeft, kRight, kJoints});
+            for (int k = 0; k < 20; ++k) scene.bus.heartbeat(9.0 + 0.02 * k, scene.rig.nodes.front());
+        },
+        9.3);
+    EXPECT_EQ(told("joints beyond limits"),
+              "joint samples beyond the limits are not used: shoulder is 3.3; its limits are -3.2 to 3.2");
+}
+
 TEST_F(JointProblemsTest, have_joint_states_that_come_quicker_than_the_rig_says) {
     const auto at_rate_of_rig = [&](double rate_hz) {
         play_changed([&](Scene& scene) { scene.rig.joints.rate_hz = rate_hz; });
