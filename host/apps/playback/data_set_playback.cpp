@@ -96,7 +96,7 @@ void warn_of_lines(const tum::BadLines& bad, const std::optional<DepthSourceErro
 /// How far apart the poses about the first image without one are.
 void warn_of_gap(const tum::DataSetReader& reader, std::vector<std::string>& warnings) {
     const auto& first = reader.images().first_without_pose;
-    if (!first || !first->gap) return;
+    if (!first || !first->gap || *first->gap <= reader.pose_gap_max()) return;  // else its pose is not known
     constexpr double kNsPerMs = 1e6;
     warnings.push_back(fmt::format(
         "{}: those about it are {:.0f} ms apart, at most {:.0f} ms are bridged "
@@ -119,7 +119,7 @@ std::vector<std::string> warnings_of(const PlaybackRequest& request, const rig::
     }
     if (poses.no_pose > 0) {
         warnings.push_back(fmt::format(
-            "{}: {} times the camera's pose is not known (nan, a quaternion of zeros, or no file of it)", set,
+            "{}: the camera's pose is not known at {} times (nan, a quaternion of zeros, or no file of it)", set,
             poses.no_pose));
     }
     warn_of_gap(reader, warnings);
