@@ -46,7 +46,9 @@ constexpr std::array kCounterMeanings = {
                    Cause::other_device,
                    "other devices share the bus: give octoskin identifiers of its own, or filter theirs"},
     CounterMeaning{"CAN frames", "wrong_version", "a sound frame of another version of the protocol",
-                   Cause::mendable, "flash the firmware of this version"},
+                   Cause::other_device,
+                   "flash the firmware of this version, if they are octoskin's nodes; else give octoskin "
+                   "identifiers of its own"},
     CounterMeaning{"CAN frames", "nonzero_padding", "bytes that must be 0 are not", Cause::other_device,
                    "other devices share the bus: give octoskin identifiers of its own, or filter theirs"},
     CounterMeaning{"CAN frames", "invalid_field", "a value outside its enumeration or range",
