@@ -167,7 +167,9 @@ TEST_F(Losses, depth_in_millimetres_is_doubted_with_the_key_that_mends_it) {
     EXPECT_THAT(mended.output, Not(doubts));
 }
 
-TEST_F(Losses, every_shipped_rig_still_ends_with_0) {
+class ShippedRigs : public ProgramTest {};
+
+TEST_F(ShippedRigs, still_end_with_0) {
     for (const auto& entry : std::filesystem::directory_iterator(source("hw/rigs"))) {
         const std::string rig = entry.path().string();
         const std::string name = entry.path().stem().string();
