@@ -119,8 +119,8 @@ std::vector<std::string> warnings_of(const PlaybackRequest& request, const rig::
     }
     if (poses.no_pose > 0) {
         warnings.push_back(fmt::format(
-            "{}: the camera's pose is not known at {} times (nan, a quaternion of zeros, or no file of it)", set,
-            poses.no_pose));
+            "{}: the camera's pose is not known at {} times (nan, a quaternion of zeros, or no file of it)",
+            set, poses.no_pose));
     }
     warn_of_gap(reader, warnings);
     if (const auto doubt = tum::doubt_units(reader.values(), reader.scale(), camera.depth_min_m))
