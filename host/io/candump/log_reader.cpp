@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <utility>
 
 #include "host/io/candump/foreign_format.hpp"
@@ -40,6 +41,9 @@ Beginning beginning_of(std::ifstream stream) {
     beginning.stamps = finder.kind();
     return beginning;
 }
+
+/// Differences that add up to more are no times: nanoseconds since 1970 leave 63 bits.
+constexpr WallTime kStampMax{std::numeric_limits<std::int64_t>::max()};
 
 /// What a line lacks, in half a sentence.
 const char* lack(LineFault fault) {
@@ -111,9 +115,16 @@ Result<std::optional<LogEntry>, LogError> LogReader::next() {
             continue;
         }
         Result<LogEntry, LineFault> entry = parse_line(lines_.line());
+        if (entry && stamps_ == StampKind::difference) {
+            // Both are 0 or more.
+            if (entry->stamp.ns > kStampMax.ns - newest_.ns) {
+                note(LineFault::timestamp);
+                continue;
+            }
+            entry->stamp = newest_ = {newest_.ns + entry->stamp.ns};
+        }
         if (entry) {
             account_.use();
-            if (stamps_ == StampKind::difference) entry->stamp = newest_ = {newest_.ns + entry->stamp.ns};
             return std::optional<LogEntry>(std::move(entry).value());
         }
         // A cut line may still look like a shorter frame; its checksum decides then. What makes no sense was

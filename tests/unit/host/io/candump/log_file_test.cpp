@@ -206,6 +206,14 @@ TEST(LogReader, adds_differences_up_and_leaves_times_since_the_first_frame_alone
     EXPECT_EQ(stamps_us(of_a_clock_set_back).at(1), 1'749'999'998'000'270);
 }
 
+TEST(LogReader, differences_that_leave_63_bits_of_nanoseconds_are_no_times) {
+    const std::string far = "(9223372035.999999) can0 044#\n";
+    const std::string text = "(000.000000) can0 044#\n" + far + "(000.000002) can0 044#\n" + far + far +
+                             "(000.000001) can0 044#\n";
+    const std::int64_t after_us = 9'223'372'035'999'999;
+    EXPECT_EQ(stamps_us(text), (std::vector<std::int64_t>{0, after_us, after_us + 2, after_us + 3}));
+}
+
 TEST(LogReader, one_frame_out_of_order_does_not_make_differences_of_times) {
     std::string text = "(000.000000) can0 044#\n(000.000300) can1 044#\n(000.000299) can0 044#\n";
     for (int i = 3; i < 50; ++i) text += "(000.0" + std::to_string(10'000 + i) + ") can0 044#\n";
