@@ -77,6 +77,7 @@ struct Corner {
     static MappingConfig mapping_that(bool refuses) {
         MappingConfig mapping = plain_mapping();
         mapping.refuses_contradicting_sensors = refuses;
+        mapping.map.resolution_m = 0.2;  // the witness does not look at the map
         return mapping;
     }
     [[nodiscard]] const SensorEvidence& evidence() const { return builder.witness()->evidence(kLeft, kGood); }
