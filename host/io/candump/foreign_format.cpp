@@ -83,10 +83,6 @@ constexpr std::array<ForeignFormat, 10> kFormats{{
      ",\"\",i);b=6+o;e=b+$(5+o)-1;"},
 }};
 
-void replace(std::string& text, std::string_view what, std::string_view by) {
-    if (const std::size_t at = text.rfind(what); at != std::string::npos) text.replace(at, what.size(), by);
-}
-
 }  // namespace
 
 std::span<const ForeignFormat> foreign_formats() noexcept {
@@ -102,8 +98,12 @@ const ForeignFormat* foreign_format_of(std::string_view begin) {
 std::string conversion(const ForeignFormat& format, std::string_view in, std::string_view out) {
     std::string command(format.command);
     if (!format.awk.empty()) command.append(" '").append(format.awk).append(kPrintFrame);
-    replace(command, "OUT", out);
-    replace(command, "IN", in);
+    // Both are looked for before a name is put in, which may have either in it. OUT is the last.
+    constexpr std::string_view kIn = "IN";
+    constexpr std::string_view kOut = "OUT";
+    const std::size_t in_at = command.rfind(kIn);
+    command.replace(command.rfind(kOut), kOut.size(), out);
+    command.replace(in_at, kIn.size(), in);
     return command;
 }
 

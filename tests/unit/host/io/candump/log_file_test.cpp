@@ -269,11 +269,12 @@ TEST(LogFile, of_another_program_is_what_it_was_behind_the_command_if_that_is_aw
     for (const Foreign& file : kForeign) {
         if (file.command != std::string("awk")) continue;
         const testing_support::ScratchFolder folder;
-        const auto in = folder.write("in", file.text);
-        const std::string command =
-            conversion(*foreign_format_of(file.text), in.string(), (folder / "out").string());
+        // Names that have in them what a command has in their places.
+        const auto in = folder.write("IN_to_OUT", file.text);
+        const auto out = folder / "OUT_of_IN";
+        const std::string command = conversion(*foreign_format_of(file.text), in.string(), out.string());
         ASSERT_EQ(std::system(command.c_str()), 0) << command;
-        EXPECT_EQ(read_all(folder / "out").entries, expected) << file.name << "\n" << command;
+        EXPECT_EQ(read_all(out).entries, expected) << file.name << "\n" << command;
     }
 }
 
