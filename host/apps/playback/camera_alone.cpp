@@ -1,11 +1,16 @@
 #include "host/apps/playback/camera_alone.hpp"
 
+#include <filesystem>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
+#include "host/apps/version/version.hpp"
+#include "host/core/pipeline/can_source.hpp"
+#include "host/io/mapping/mapping_file.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "host/io/tum/data_set_camera.hpp"
 #include "hw/rigfile/joined.hpp"
@@ -51,8 +56,32 @@ rig::Rig rig_of_camera(const rig::Camera& camera, const std::string& name) {
     return rig;
 }
 
-Result<Pipeline, AppError> pipeline_of_camera(PlaybackRequest request, const rig::Rig& rig) {
-    request.mapping.removes_robot_from_depth = false;
+namespace {
+
+namespace fs = std::filesystem;
+
+class NoBus final : public CanSource {
+  public:
+    [[nodiscard]] Result<std::optional<StampedFrame>, CanSourceError> next() override {
+        return std::optional<StampedFrame>{};
+    }
+};
+
+MapOrigin origin_of(const PlaybackRequest& request, const rig::Rig& rig, std::uint32_t crc32) {
+    const auto absolute = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
+    return {.made_by = program_version(),
+            .recording = absolute(request.recording.directory),
+            .recording_crc32 = crc32,
+            .rig = request.rig.empty() ? fs::path("-") : absolute(request.rig),
+            .rig_hash = rig::rig_hash(rig),
+            .robot = "-",
+            .robot_crc32 = std::nullopt,
+            .configuration = request.configuration,
+            .mapping = mapping_text(request.mapping),
+            .maps = {}};
+}
+
+Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, const rig::Rig& rig) {
     HostRig host;
     host.name = rig.name;
     host.camera = host_camera(*rig.camera);
@@ -71,6 +100,29 @@ Result<Pipeline, AppError> pipeline_of_camera(PlaybackRequest request, const rig
     if (!pipeline) return fail(ExitCode::failed, "no pipeline: " + pipeline.error().element);
     pipeline->tell(request.listener);
     return std::move(*pipeline);
+}
+
+}  // namespace
+
+Result<Playback, AppError> play_camera(PlaybackRequest request, rig::Rig rig, std::uint32_t crc32,
+                                       DepthSource& images, const ReplayReport& report) {
+    request.mapping.removes_robot_from_depth = false;  // there is none
+    auto pipeline = make_pipeline(request, rig);
+    if (!pipeline) return unexpected(pipeline.error());
+    MapOrigin origin = origin_of(request, rig, crc32);
+    NoBus bus;
+    PacedDepth paced(images, request.pace);
+    ReplayOutcome outcome = replay(*pipeline, bus, &paced, report);
+    std::vector<AccountTable> accounts = pipeline->account_tables();
+    std::erase_if(accounts, [](const AccountTable& table) { return table.in == 0; });
+    return Playback{.rig = std::move(rig),
+                    .pipeline = std::move(*pipeline),
+                    .outcome = std::move(outcome),
+                    .accounts = std::move(accounts),
+                    .nodes = {},
+                    .notes = {},
+                    .warnings = {},
+                    .origin = std::move(origin)};
 }
 
 }  // namespace octoskin

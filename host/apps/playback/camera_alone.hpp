@@ -1,6 +1,7 @@
 // What a camera without a bus and a robot is played with: a data set, or an .oni file that stands alone.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,17 +9,10 @@
 #include "common/result.hpp"
 #include "host/apps/playback/playback.hpp"
 #include "host/core/depth/depth_frame.hpp"
-#include "host/core/pipeline/can_source.hpp"
+#include "host/core/depth/depth_source.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin {
-
-class NoBus final : public CanSource {
-  public:
-    [[nodiscard]] Result<std::optional<StampedFrame>, CanSourceError> next() override {
-        return std::optional<StampedFrame>{};
-    }
-};
 
 /// Depth from 0.5 to 4.5 m, 30 images a second.
 [[nodiscard]] rig::Camera camera_with(const CameraIntrinsics& intrinsics);
@@ -31,7 +25,11 @@ class NoBus final : public CanSource {
 
 /// A camera, and nothing else.
 [[nodiscard]] rig::Rig rig_of_camera(const rig::Camera& camera, const std::string& name);
-/// Its map is in the frame that the camera's pose is in. No robot is taken out of the images.
-[[nodiscard]] Result<Pipeline, AppError> pipeline_of_camera(PlaybackRequest request, const rig::Rig& rig);
+/// Plays `images` to their end into maps in the frame that the camera's pose is in; no robot is taken out of
+/// them. `rig`: of the camera alone. `crc32`: of what the images are read from. The accounts are those of the
+/// pipeline that have something in them.
+[[nodiscard]] Result<Playback, AppError> play_camera(PlaybackRequest request, rig::Rig rig,
+                                                     std::uint32_t crc32, DepthSource& images,
+                                                     const ReplayReport& report);
 
 }  // namespace octoskin

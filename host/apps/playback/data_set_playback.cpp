@@ -8,8 +8,6 @@
 #include "host/apps/playback/camera_alone.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
-#include "host/apps/version/version.hpp"
-#include "host/io/mapping/mapping_file.hpp"
 #include "host/io/tum/data_set_camera.hpp"
 #include "host/io/tum/data_set_reader.hpp"
 
@@ -33,29 +31,17 @@ Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request, const st
         {ExitCode::bad_data, found.error().what + " (or give the camera with --camera or --rig)"}));
 }
 
-Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig::Rig& rig,
-                                      const tum::DataSetReader& reader) {
-    const auto crc32 = crc32_of(reader.files());
-    if (!crc32) {
-        const auto missing = reader.missing_image();
-        const bool is_refused = std::ranges::any_of(
-            reader.files(), [](const FilePlace& file) { return refused_to_read(file).has_value(); });
-        return fail(
-            is_refused ? ExitCode::no_permission : ExitCode::no_input,
-            missing ? missing->what
+/// Of all that the data set measured.
+Result<std::uint32_t, AppError> checksum_of(const PlaybackRequest& request,
+                                            const tum::DataSetReader& reader) {
+    if (const auto crc32 = crc32_of(reader.files())) return *crc32;
+    const auto missing = reader.missing_image();
+    const bool is_refused = std::ranges::any_of(
+        reader.files(), [](const FilePlace& file) { return refused_to_read(file).has_value(); });
+    return fail(is_refused ? ExitCode::no_permission : ExitCode::no_input,
+                missing
+                    ? missing->what
                     : request.recording.directory.string() + ": a file of it went away while it was read");
-    }
-    const auto absolute = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
-    return MapOrigin{.made_by = program_version(),
-                     .recording = absolute(request.recording.directory),
-                     .recording_crc32 = *crc32,
-                     .rig = request.rig.empty() ? fs::path("-") : absolute(request.rig),
-                     .rig_hash = rig::rig_hash(rig),
-                     .robot = "-",
-                     .robot_crc32 = std::nullopt,
-                     .configuration = request.configuration,
-                     .mapping = mapping_text(request.mapping),
-                     .maps = {}};
 }
 
 std::string first_of(const tum::ImageCounts& images) {
@@ -165,9 +151,7 @@ Result<tum::DataSetReader, AppError> open_reader(const PlaybackRequest& request,
 
 }  // namespace
 
-Result<Playback, AppError> play_data_set(const PlaybackRequest& request_given, const ReplayReport& report) {
-    PlaybackRequest request = request_given;
-    request.mapping.removes_robot_from_depth = false;  // there is none
+Result<Playback, AppError> play_data_set(const PlaybackRequest& request, const ReplayReport& report) {
     if (!request.camera.empty()) {
         if (const auto known = named_camera(request.camera); !known) return unexpected(known.error());
     }
@@ -177,28 +161,15 @@ Result<Playback, AppError> play_data_set(const PlaybackRequest& request_given, c
     if (!reader) return unexpected(reader.error());
     const auto camera = camera_of(request, *given, *reader);
     if (!camera) return unexpected(camera.error());
-    rig::Rig rig = rig_of_camera(*camera, "data_set");
-    auto origin = origin_of(request, rig, *reader);
-    if (!origin) return unexpected(origin.error());
-    auto pipeline = pipeline_of_camera(request, rig);
-    if (!pipeline) return unexpected(pipeline.error());
-    NoBus bus;
-    PacedDepth paced(*reader, request.pace);
-    ReplayOutcome outcome = replay(*pipeline, bus, &paced, report);
-    outcome.progress.begin = reader->begin();
-    std::vector<AccountTable> accounts{image_table(*reader, outcome), pose_table(reader->poses())};
-    for (AccountTable& table : pipeline->account_tables()) {
-        if (table.in > 0) accounts.push_back(std::move(table));
-    }
-    return Playback{.rig = std::move(rig),
-                    .pipeline = std::move(*pipeline),
-                    .outcome = std::move(outcome),
-                    .accounts = std::move(accounts),
-                    .nodes = {},
-                    .notes = {},
-                    .warnings = warnings_of(request, *camera, *reader),
-                    .is_map_incomplete = false,
-                    .origin = std::move(*origin)};
+    const auto crc32 = checksum_of(request, *reader);
+    if (!crc32) return unexpected(crc32.error());
+    auto playback = play_camera(request, rig_of_camera(*camera, "data_set"), *crc32, *reader, report);
+    if (!playback) return playback;
+    playback->outcome.progress.begin = reader->begin();
+    playback->accounts.insert(playback->accounts.begin(),
+                              {image_table(*reader, playback->outcome), pose_table(reader->poses())});
+    playback->warnings = warnings_of(request, *camera, *reader);
+    return playback;
 }
 
 }  // namespace octoskin

@@ -6,34 +6,13 @@
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
-#include "host/apps/version/version.hpp"
-#include "host/io/mapping/mapping_file.hpp"
 #include "host/io/openni2/oni_reader.hpp"
 #include "host/io/tum/data_set_camera.hpp"
 
 namespace octoskin {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr const char* kSuffix = ".oni";
-
-Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig::Rig& rig,
-                                      const FilePlace& film) {
-    const auto crc32 = crc32_of(film);
-    if (!crc32) return fail(ExitCode::bad_data, film.shown().string() + ": cannot be read");
-    const auto absolute = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
-    return MapOrigin{.made_by = program_version(),
-                     .recording = absolute(request.recording.directory),
-                     .recording_crc32 = *crc32,
-                     .rig = request.rig.empty() ? fs::path("-") : absolute(request.rig),
-                     .rig_hash = rig::rig_hash(rig),
-                     .robot = "-",
-                     .robot_crc32 = std::nullopt,
-                     .configuration = request.configuration,
-                     .mapping = mapping_text(request.mapping),
-                     .maps = {}};
-}
 
 /// What the images are seen by, and from where in the map.
 Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request) {
@@ -92,36 +71,19 @@ Result<Playback, AppError> play_film(const PlaybackRequest& request, const Repla
     if (!film) return fail(ExitCode::no_input, request.recording.directory.string() + ": the .oni is gone");
     const auto camera = camera_of(request);
     if (!camera) return unexpected(camera.error());
-    rig::Rig rig = rig_of_camera(*camera, "film");
-    auto origin = origin_of(request, rig, *film);
-    if (!origin) return unexpected(origin.error());
+    const auto crc32 = crc32_of(*film);
+    if (!crc32) return fail(ExitCode::bad_data, film->shown().string() + ": cannot be read");
     auto reader = openni2::OniReader::open_alone(*film);
     if (!reader) return fail(ExitCode::bad_data, reader.error().what);
-    auto pipeline = pipeline_of_camera(request, rig);
-    if (!pipeline) return unexpected(pipeline.error());
-    NoBus bus;
-    PacedDepth paced(*reader, request.pace);
-    ReplayOutcome outcome = replay(*pipeline, bus, &paced, report);
-    outcome.progress.begin = HostTime{0};
-    std::vector<AccountTable> accounts;
-    for (AccountTable& table : pipeline->account_tables()) {
-        if (table.in > 0) accounts.push_back(std::move(table));
-    }
-    std::vector<std::string> warnings;
+    auto playback = play_camera(request, rig_of_camera(*camera, "film"), *crc32, *reader, report);
+    if (!playback) return playback;
+    playback->outcome.progress.begin = HostTime{0};
     if (!request.rig.empty()) {
-        warnings.push_back(film->shown().string() +
-                           ": without joint states; a robot that the camera sees is in the map");
+        playback->warnings.push_back(film->shown().string() +
+                                     ": without joint states; a robot that the camera sees is in the map");
     }
-    if (auto loss = reader->loss()) warnings.push_back(std::move(*loss));
-    return Playback{.rig = std::move(rig),
-                    .pipeline = std::move(*pipeline),
-                    .outcome = std::move(outcome),
-                    .accounts = std::move(accounts),
-                    .nodes = {},
-                    .notes = {},
-                    .warnings = std::move(warnings),
-                    .is_map_incomplete = false,
-                    .origin = std::move(*origin)};
+    if (auto loss = reader->loss()) playback->warnings.push_back(std::move(*loss));
+    return playback;
 }
 
 }  // namespace octoskin
