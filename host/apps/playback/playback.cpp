@@ -86,11 +86,8 @@ DepthInput open_depth(const RecordingPaths& recording) {
 }
 
 AccountTable line_table(const candump::LogSource& log) {
-    AccountTable table = tabulate("log lines", log.reader().account());
-    for (std::size_t i = 0; i < table.rejected.size(); ++i) {
-        const std::uint64_t line = log.reader().first_line(static_cast<candump::LineFault>(i));
-        if (line > 0) table.rejected[i].first = "can.log:" + std::to_string(line);
-    }
+    const auto line = [](std::int64_t number) { return "can.log:" + std::to_string(number); };
+    AccountTable table = tabulate("log lines", log.reader().account(), 0, line);
     table.used -= log.other_interface();
     table.rejected.push_back({"other_interface", log.other_interface()});
     return table;

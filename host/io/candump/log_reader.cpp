@@ -94,9 +94,8 @@ Result<LogReader, LogError> LogReader::open(const FilePlace& file) {
 }
 
 void LogReader::note(LineFault fault) {
+    account_.now_at(static_cast<std::int64_t>(lines_.number()));
     account_.reject(fault);
-    std::uint64_t& first = first_line_[static_cast<std::size_t>(fault)];
-    first = first == 0 ? lines_.number() : first;
     if (fault != LineFault::blank && !first_fault_)
         first_fault_ = FirstFault{lines_.number(), fault, shown(lines_.line())};
 }

@@ -1,7 +1,6 @@
 // Reads a candump log line by line. Lines that are no frames are counted under a name, never fatal.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -38,7 +37,7 @@ class LogReader {
     [[nodiscard]] const Account<LineFault>& account() const noexcept { return account_; }
     /// The 1-based number of the first line with this fault; 0 if there was none.
     [[nodiscard]] std::uint64_t first_line(LineFault fault) const noexcept {
-        return first_line_[static_cast<std::size_t>(fault)];
+        return account_.rejected(fault) == 0 ? 0 : static_cast<std::uint64_t>(account_.first_place(fault));
     }
 
     /// Of a file that was read to its end: that it has lines and none of them is a frame, what the first of
@@ -64,8 +63,7 @@ class LogReader {
     StampKind stamps_;
     WallTime newest_;  ///< of differences, what they add up to
     std::optional<FirstFault> first_fault_;
-    Account<LineFault> account_;
-    std::array<std::uint64_t, Account<LineFault>::kReasons> first_line_{};
+    Account<LineFault> account_;  ///< a place is the number of a line
 };
 
 }  // namespace octoskin::candump
