@@ -50,12 +50,11 @@ Result<JointPosition, JointLookup> JointHistory::at(HostTime instant) const {
     return interpolate(left, right, instant);
 }
 
-std::optional<JointGap> JointHistory::gap_about(HostTime instant) const {
-    const auto position = at(instant);
-    if (position || position.error() != JointLookup::gap) return std::nullopt;
+JointGap JointHistory::gap_about(HostTime instant) const {
     const std::size_t after = first_not_before(instant);
+    assert(after > 0 && after < size_);
     const HostTime from = sample(after - 1).sampled;
-    return JointGap{sample(after).sampled - from, instant, from};
+    return {sample(after).sampled - from, instant, from};
 }
 
 const JointHistory::Sample& JointHistory::sample(std::size_t age_rank) const noexcept {

@@ -69,8 +69,8 @@ class JointHistory {
     /// Equality with a limit of the configuration is within it. O(log capacity), no allocation.
     [[nodiscard]] Result<JointPosition, JointLookup> at(HostTime instant) const;
 
-    /// The samples about an instant for which `at` answers `gap`; empty for another one.
-    [[nodiscard]] std::optional<JointGap> gap_about(HostTime instant) const;
+    /// The samples about an instant for which `at` answers `gap` (asserted: there are two).
+    [[nodiscard]] JointGap gap_about(HostTime instant) const;
 
     /// Whether `at` gives its last word on this instant: a sample of that time or later is here. O(1).
     [[nodiscard]] bool is_settled(HostTime instant) const noexcept {

@@ -33,7 +33,7 @@ Status<JointReason> RobotTracker::add(const JointMeasurement& joints) {
 const RobotPose* RobotTracker::at(HostTime instant) {
     const auto position = joints_.at(instant);
     if (!position) {
-        if (const auto gap = joints_.gap_about(instant)) note_gap(*gap);
+        if (position.error() == JointLookup::gap) note_gap(joints_.gap_about(instant));
         return nullptr;
     }
     robot_.forward(position->span(), pose_.T_base_link);
