@@ -2,7 +2,10 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <cstring>
+
+#include "host/io/socketcan/stamped_datagram.hpp"
 
 namespace octoskin::socketcan {
 namespace {
@@ -29,16 +32,7 @@ void close_passed(const msghdr& message) {
 }
 
 ssize_t receive_text(int descriptor, std::span<char> bytes) {
-    alignas(cmsghdr) ControlRoom control{};
-    iovec part{bytes.data(), bytes.size()};
-    msghdr message{};
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    message.msg_control = control.data();
-    message.msg_controllen = control.size();
-    const ssize_t count = ::recvmsg(descriptor, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
-    if (count >= 0) close_passed(message);
-    return count;
+    return receive_stamped(descriptor, std::as_writable_bytes(bytes)).count;
 }
 
 void close_connection(int descriptor) {

@@ -4,16 +4,9 @@
 #include <sys/socket.h>
 #include <sys/types.h>
 
-#include <array>
-#include <cstddef>
 #include <span>
 
 namespace octoskin::socketcan {
-
-/// Room for all that may come beside one message: 253 descriptors (SCM_MAX_FD), and what else a socket tells.
-/// With less the kernel would close the others itself, as they are.
-inline constexpr std::size_t kControlRoom = 1536;
-using ControlRoom = std::array<char, kControlRoom>;
 
 /// Closes those that came with this message: kept, they would be all that this process may have, some day.
 /// Each loses its SO_LINGER before: else closing the last descriptor of a connection waits, for hours if its

@@ -4,6 +4,7 @@
 #include <sys/un.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <ctime>
@@ -13,6 +14,11 @@
 
 namespace octoskin::socketcan {
 namespace {
+
+/// Room for all that may come beside one message: 253 descriptors (SCM_MAX_FD), and what else a socket tells.
+/// With less the kernel would close the others itself, as they are.
+constexpr std::size_t kControlRoom = 1536;
+using ControlRoom = std::array<char, kControlRoom>;
 
 template <class Value>
 Value value_of(const cmsghdr* part) {

@@ -134,21 +134,7 @@ TEST_F(JointSocketTest, keeps_no_descriptor_that_somebody_sends_along) {
     const auto before = descriptors();
     const int sender = connect_unix_socket(file_, SOCK_DGRAM).value();
     for (int i = 0; i < 10; ++i) {
-        std::string text = "0.1 0.2 0.3";
-        iovec part{text.data(), text.size()};
-        alignas(cmsghdr) std::array<char, CMSG_SPACE(2 * sizeof(int))> control{};
-        msghdr message{};
-        message.msg_iov = &part;
-        message.msg_iovlen = 1;
-        message.msg_control = control.data();
-        message.msg_controllen = control.size();
-        cmsghdr* const beside = CMSG_FIRSTHDR(&message);
-        beside->cmsg_level = SOL_SOCKET;
-        beside->cmsg_type = SCM_RIGHTS;
-        beside->cmsg_len = CMSG_LEN(2 * sizeof(int));
-        const std::array<int, 2> sent{STDOUT_FILENO, sender};
-        std::memcpy(CMSG_DATA(beside), sent.data(), sizeof(sent));
-        ASSERT_GT(::sendmsg(sender, &message, 0), 0);
+        ASSERT_NO_FATAL_FAILURE(test::send_along(sender, "0.1 0.2 0.3", std::array{STDOUT_FILENO, sender}));
         std::optional<JointSample> sample;
         ASSERT_TRUE(socket_.receive(sample));
         EXPECT_TRUE(sample);

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <sys/uio.h>
 #include <unistd.h>
 
 #include <array>
@@ -15,6 +14,8 @@
 #include <cstring>
 #include <string>
 #include <utility>
+
+#include "tests/unit/host/apps/daemon/sent_along.hpp"
 
 namespace octoskin::test {
 
@@ -52,19 +53,7 @@ class LingeringConnection {
     /// Sends its end along with `text`, and keeps none: who gets it has the last one. No earlier does it
     /// wait.
     void send_along(int socket, std::string text) {
-        iovec part{text.data(), text.size()};
-        alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
-        msghdr message{};
-        message.msg_iov = &part;
-        message.msg_iovlen = 1;
-        message.msg_control = control.data();
-        message.msg_controllen = control.size();
-        cmsghdr* const beside = CMSG_FIRSTHDR(&message);
-        beside->cmsg_level = SOL_SOCKET;
-        beside->cmsg_type = SCM_RIGHTS;
-        beside->cmsg_len = CMSG_LEN(sizeof(int));
-        std::memcpy(CMSG_DATA(beside), &end_, sizeof(end_));
-        ASSERT_EQ(::sendmsg(socket, &message, 0), static_cast<ssize_t>(text.size()));
+        ASSERT_NO_FATAL_FAILURE(test::send_along(socket, std::move(text), std::array{end_}));
         ::close(std::exchange(end_, -1));
     }
 
