@@ -146,20 +146,15 @@ std::optional<RigError> find_xacro(const std::filesystem::path& file, const Elem
 
 }  // namespace
 
-Result<std::string, RigError> counted_urdf(const std::filesystem::path& file, const std::string& text) {
-    tinyxml2::XMLDocument document;
-    document.Parse(text.data(), text.size());
-    Element* const robot = document.FirstChildElement("robot");
-    if (robot == nullptr)
-        return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
-    robot->DeleteAttribute("version");
-    keep_children(*robot, {"link", "joint"});
-    for (Element* element = robot->FirstChildElement(); element != nullptr;
+Result<std::string, RigError> counted_urdf(const std::filesystem::path& file, tinyxml2::XMLElement& robot) {
+    robot.DeleteAttribute("version");
+    keep_children(robot, {"link", "joint"});
+    for (Element* element = robot.FirstChildElement(); element != nullptr;
          element = element->NextSiblingElement()) {
         simplify(*element);
         if (auto fault = find_xacro(file, *element)) return unexpected(std::move(*fault));
     }
-    return printed_anew(*robot);
+    return printed_anew(robot);
 }
 
 }  // namespace octoskin::rig

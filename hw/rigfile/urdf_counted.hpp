@@ -8,6 +8,10 @@
 #include "common/result.hpp"
 #include "hw/rigfile/rig.hpp"
 
+namespace tinyxml2 {
+class XMLElement;
+}
+
 namespace octoskin::rig {
 
 /// Printed anew, of elements and attributes alone: what two XML readers read alike. urdfdom's ends an XML
@@ -15,9 +19,10 @@ namespace octoskin::rig {
 ///
 /// Links with their <visual> and <collision>, joints with what places and moves them; without <inertial>,
 /// materials, transmissions and whatever else there is. A <visual> whose size or place cannot be read, and a
-/// mesh, is a mesh without a size. `text`: a URDF that UrdfOutline has read. Error: what counts has a xacro
-/// expression or element left in it, at its line. `file` is for the message only.
+/// mesh, is a mesh without a size. `robot`: that UrdfOutline has read; what does not count is taken out of
+/// it. Error: what counts has a xacro expression or element left in it, at its line. `file` is for the
+/// message only.
 [[nodiscard]] Result<std::string, RigError> counted_urdf(const std::filesystem::path& file,
-                                                         const std::string& text);
+                                                         tinyxml2::XMLElement& robot);
 
 }  // namespace octoskin::rig

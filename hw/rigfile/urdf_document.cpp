@@ -2,6 +2,7 @@
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
+#include <tinyxml2.h>
 #include <urdf_model/joint.h>
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
@@ -10,8 +11,8 @@
 #include <string_view>
 #include <utility>
 
-#include "hw/rigfile/nesting.hpp"
 #include "hw/rigfile/urdf_counted.hpp"
+#include "hw/rigfile/urdf_xml.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -130,14 +131,15 @@ Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
     // What is no robot at all may be any file that a foreign rig names: nothing of it is shown.
     if (text->find("<robot") == std::string::npos)
         return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
-    if (auto fault = crowded_element(*text))
-        return unexpected(RigError{file, fault->line, "", std::move(fault->what)});
-    auto outline = UrdfOutline::read(file, *text);
+    tinyxml2::XMLDocument xml;
+    const auto robot = parse_robot(file, *text, xml);
+    if (!robot) return unexpected(robot.error());
+    auto outline = UrdfOutline::read(file, **robot);
     if (!outline) return unexpected(outline.error());
     UrdfDocument document;
     document.file_ = file;
     document.outline_ = std::move(outline).value();
-    const auto counted = counted_urdf(file, *text);
+    const auto counted = counted_urdf(file, **robot);
     if (!counted) return unexpected(counted.error());
     auto [model, complaint] = parse(*counted);
     if (!model || !model->getRoot()) {

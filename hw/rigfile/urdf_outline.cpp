@@ -9,8 +9,6 @@
 #include <sstream>
 #include <utility>
 
-#include "hw/rigfile/syntax_hint.hpp"
-
 namespace octoskin::rig {
 namespace {
 
@@ -20,14 +18,6 @@ constexpr std::size_t kElementsMax = 4'000;
 std::string attribute(const tinyxml2::XMLElement* element, const char* name) {
     const char* text = element ? element->Attribute(name) : nullptr;
     return text ? text : "";
-}
-
-/// The element that tinyxml2 tells with its error, if any: "...: XMLElement name=link".
-std::string element_of(const tinyxml2::XMLDocument& document) {
-    constexpr std::string_view kMark = "XMLElement name=";
-    const std::string text = document.ErrorStr();
-    const auto at = text.find(kMark);
-    return at == std::string::npos ? "" : text.substr(at + kMark.size());
 }
 
 /// What gives away that an `<origin rpy>` is written in degrees; empty if nothing does. urdfdom keeps no
@@ -63,18 +53,11 @@ std::optional<RigError> find_turn_fault(const std::filesystem::path& file,
 
 }  // namespace
 
-Result<UrdfOutline, RigError> UrdfOutline::read(const std::filesystem::path& file, const std::string& text) {
-    tinyxml2::XMLDocument document;
-    if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-        return unexpected(
-            RigError{file, document.ErrorLineNum(), "",
-                     "not XML: " + xml_syntax_hint(document.ErrorName(), element_of(document))});
-    }
-    const auto* robot = document.FirstChildElement("robot");
-    if (!robot) return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
+Result<UrdfOutline, RigError> UrdfOutline::read(const std::filesystem::path& file,
+                                                const tinyxml2::XMLElement& robot) {
     UrdfOutline outline;
     outline.file_ = file;
-    for (const auto* element = robot->FirstChildElement(); element; element = element->NextSiblingElement()) {
+    for (const auto* element = robot.FirstChildElement(); element; element = element->NextSiblingElement()) {
         const std::string tag = element->Name();
         if (tag.starts_with("xacro:")) {
             return unexpected(RigError{file, element->GetLineNum(), tag,

@@ -11,15 +11,18 @@
 #include "common/result.hpp"
 #include "hw/rigfile/rig.hpp"
 
+namespace tinyxml2 {
+class XMLElement;
+}
+
 namespace octoskin::rig {
 
 class UrdfOutline {
   public:
-    /// Errors, each with its line: not XML, nested deeper than 100, no <robot>, more than 4,000 links and
-    /// joints, an <origin rpy> of more than a turn, a link that hangs from two joints, a loop. O(n log n).
-    /// `file` is for the messages only.
+    /// Errors, each with its line: a xacro element, more than 4,000 links and joints, an <origin rpy> of more
+    /// than a turn, a link that hangs from two joints, a loop. O(n log n). `file` is for the messages only.
     [[nodiscard]] static Result<UrdfOutline, RigError> read(const std::filesystem::path& file,
-                                                            const std::string& text);
+                                                            const tinyxml2::XMLElement& robot);
 
     /// An error about one element ("joint", "panda_joint3"), with its line if there is such an element.
     [[nodiscard]] RigError error(std::string_view tag, std::string_view name, std::string what) const;

@@ -3,9 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tinyxml2.h>
 
 #include "hw/rigfile/document.hpp"
-#include "hw/rigfile/urdf_outline.hpp"
+#include "hw/rigfile/urdf_xml.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::rig {
@@ -63,10 +64,11 @@ TEST(XmlSyntax, mistakes_are_placed_and_explained) {
         {"<robot>\n <link name=\"a\"\n</robot>", "r.urdf:2: ", "no end '>'"},
         {"<robot>\n <!-- x \n</robot>", "r.urdf:2: ", "comment is not closed"}};
     for (const Mistake& mistake : mistakes) {
-        const auto outline = UrdfOutline::read("r.urdf", mistake.text);
-        ASSERT_FALSE(outline) << mistake.text;
-        EXPECT_THAT(outline.error().message(), HasSubstr(mistake.place)) << mistake.text;
-        EXPECT_THAT(outline.error().message(), HasSubstr(mistake.hint)) << mistake.text;
+        tinyxml2::XMLDocument xml;
+        const auto robot = parse_robot("r.urdf", mistake.text, xml);
+        ASSERT_FALSE(robot) << mistake.text;
+        EXPECT_THAT(robot.error().message(), HasSubstr(mistake.place)) << mistake.text;
+        EXPECT_THAT(robot.error().message(), HasSubstr(mistake.hint)) << mistake.text;
     }
 }
 

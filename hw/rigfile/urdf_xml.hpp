@@ -1,0 +1,23 @@
+// A robot description as XML.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "common/result.hpp"
+#include "hw/rigfile/rig.hpp"
+
+namespace tinyxml2 {
+class XMLDocument;
+class XMLElement;
+}  // namespace tinyxml2
+
+namespace octoskin::rig {
+
+/// The <robot> of `text`, which `xml` has from then on. Errors, with the line: not XML, nested deeper than
+/// 100, an element with more than 100 attributes, no <robot>. `file` is for the messages only.
+[[nodiscard]] Result<tinyxml2::XMLElement*, RigError> parse_robot(const std::filesystem::path& file,
+                                                                  const std::string& text,
+                                                                  tinyxml2::XMLDocument& xml);
+
+}  // namespace octoskin::rig
