@@ -235,7 +235,7 @@ TEST_F(CameraProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) 
     view_.camera->newest = view_.now;
     EXPECT_EQ(told("depth unused"),
               "no depth frame could be used yet: depth frames: 6 of 6 are lost, most as outside_map (6): the "
-              "camera stands beyond the octree, or its pose is no number. Correct the camera's pose.");
+              "camera is beyond the octree, or its pose is no number. Correct the camera's pose.");
     EXPECT_EQ(told("depth of another size"), "");
     play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
     view_.camera->newest = view_.now;
