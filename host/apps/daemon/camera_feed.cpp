@@ -122,7 +122,10 @@ void CameraFeed::watch_camera() {
     auto process = openni2::HelperProcess::start(*helper, arguments, openni2::HelperPipe::its_output,
                                                  openni2::HelperComplaints::kept);
     if (!process) return note_closed(process.error());
-    const auto header = openni2::FramePipe(process->descriptor(), kOpenPatience, end_).read_header();
+    std::error_code error;
+    const auto film_bytes = std::filesystem::file_size(uri_, error);
+    const auto patience = kOpenPatience + openni2::time_to_check(error ? 0 : film_bytes);
+    const auto header = openni2::FramePipe(process->descriptor(), patience, end_).read_header();
     if (!header) return note_closed(with_complaint(not_opened(uri_), *process));
     note_opened(header->rate_mhz * 1e-3);
     openni2::FramePipe frames(process->descriptor(), silence_max_, end_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -25,6 +26,12 @@ enum class HelperComplaints : std::uint8_t {
 inline constexpr unsigned kHelperMemoryMib = 2048;
 inline constexpr unsigned kHelperProcessorSecondsPerFrame = 5;
 inline constexpr int kOutOfMemory = 70;
+
+/// How much longer a helper may take to begin for so many bytes of a recording, all of which it reads first:
+/// a second for each 20 MB.
+[[nodiscard]] constexpr std::chrono::milliseconds time_to_check(std::uintmax_t bytes) {
+    return std::chrono::milliseconds(bytes / 20'000);
+}
 
 class HelperProcess {
   public:

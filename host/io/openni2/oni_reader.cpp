@@ -49,7 +49,10 @@ Result<OniReader, DepthSourceError> OniReader::start(const FilePlace& oni,
         *program, {path_of_descriptor(HelperProcess::kInherited).string(), oni.shown().string()},
         HelperPipe::its_output, HelperComplaints::on_our_standard_error, opened->descriptor());
     if (!process) return failure(process.error());
-    const auto header = FramePipe(process->descriptor(), kReadPatience).read_header();
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path_of_descriptor(opened->descriptor()), error);
+    const auto patience = kReadPatience + time_to_check(error ? 0 : size);
+    const auto header = FramePipe(process->descriptor(), patience).read_header();
     if (!header) {
         return failure(
             with_end("not a recording with depth that OpenNI2 can read", process->wait(kEndPatience)));

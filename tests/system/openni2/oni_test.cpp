@@ -16,7 +16,9 @@
 #include <thread>
 #include <vector>
 
+#include "host/io/openni2/helpers/oni_check.hpp"
 #include "host/io/openni2/helpers/oni_outline.hpp"
+#include "host/io/openni2/helpers/oni_records.hpp"
 #include "host/io/openni2/oni_reader.hpp"
 #include "host/io/openni2/oni_writer.hpp"
 
@@ -173,6 +175,28 @@ TEST_F(OniTest, a_damaged_recording_gives_an_error_or_its_frames_in_bounded_time
             EXPECT_LE(count_frames(*reader, error), kFrames);
         }
         EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(6));
+    }
+}
+
+TEST_F(OniTest, what_would_overflow_the_buffers_of_OpenNI2_is_never_given_to_it) {
+    record();
+    EXPECT_EQ(fault_of(oni()), std::nullopt);
+    OniRecords records(oni());
+    auto frame = records.next();
+    while (frame && frame->type != OniRecordType::new_data) frame = records.next();
+    ASSERT_TRUE(frame);
+    // A payload whose size and that of the fields are small together: modulo 2^32.
+    const std::uint32_t payload_size = 0U - 16U;
+    std::fstream file(oni(), std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(static_cast<std::streamoff>(frame->position + 16));
+    file.write(reinterpret_cast<const char*>(&payload_size), sizeof(payload_size));
+    file.close();
+    EXPECT_EQ(fault_of(oni()).value().position, frame->position);
+    for (const char* program : {"octoskin-oni-read", "octoskin-camera"}) {
+        auto helper = HelperProcess::start(find_helper(program).value(), {oni().string()},
+                                           HelperPipe::its_output, HelperComplaints::kept);
+        ASSERT_TRUE(helper);
+        EXPECT_EQ(helper->wait(std::chrono::seconds(20)), "exit code 65") << program;
     }
 }
 

@@ -10,6 +10,7 @@
 #include "host/io/helper_limits/helper_limits.hpp"
 #include "host/io/openni2/helper_process.hpp"
 #include "host/io/openni2/helpers/frame_pixels.hpp"
+#include "host/io/openni2/helpers/oni_check.hpp"
 #include "host/io/openni2/one_line.hpp"
 
 namespace octoskin::openni2 {
@@ -38,6 +39,14 @@ int DepthStream::complain(const std::string& what) const {
     const std::string said = printable(what + (why.empty() ? "" : ": ") + why);
     std::fprintf(stderr, "%s: %s\n", program_, said.c_str());
     return 1;
+}
+
+bool DepthStream::is_sound(const std::filesystem::path& oni, const std::string& shown) const {
+    const auto fault = fault_of(oni, [] { allow_processor_seconds(kHelperProcessorSecondsPerFrame); });
+    if (!fault) return true;
+    std::fprintf(stderr, "%s: %s: at byte %ju: %s\n", program_, printable(shown).c_str(), fault->position,
+                 printable(fault->what).c_str());
+    return false;
 }
 
 bool DepthStream::open(const char* uri) {

@@ -4,6 +4,7 @@
 #include <OpenNI.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ namespace octoskin::openni2 {
 /// OpenNI2. Empty if that fails; `program` has then said why.
 [[nodiscard]] std::optional<int> begin_helper(const char* program);
 
+/// Exit code of a helper whose file OpenNI2 was not given.
+inline constexpr int kUnsound = 65;
+
 /// Ends this process at once, without clean-up: OpenNI2's shutdown may hang on a camera that is gone, or on a
 /// damaged file.
 [[noreturn]] void end_helper(int exit_code);
@@ -26,6 +30,9 @@ class DepthStream {
     /// `program`: who complains on standard error.
     explicit DepthStream(const char* program) : program_(program) {}
 
+    /// False if the file is none that OpenNI2 can be given (oni_check.hpp); that is said then. `shown`: what
+    /// messages call it. Reads all of it.
+    [[nodiscard]] bool is_sound(const std::filesystem::path& oni, const std::string& shown) const;
     /// False if there is no such device or file, or OpenNI2 cannot read it.
     [[nodiscard]] bool open(const char* uri);
     /// False if it gives no depth in millimetres; that is said then. `wanted`: a camera is put into the mode

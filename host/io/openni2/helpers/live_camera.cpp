@@ -49,6 +49,12 @@ int stream_frames(DepthStream& depth, int descriptor) {
 }
 
 int watch(DepthStream& depth, const char* uri, const std::optional<CameraMode>& mode, int descriptor) {
+    std::error_code error;  // what cannot be looked at is no file, but a camera's address
+    const std::filesystem::path film = uri == nullptr ? "" : uri;  // null: any camera
+    if (std::filesystem::exists(film, error)) {
+        if (!std::filesystem::is_regular_file(film, error)) return depth.complain("is no ordinary file");
+        if (!depth.is_sound(film, film.string())) return kUnsound;
+    }
     if (!depth.open(uri)) return depth.complain("cannot open the camera");
     if (openni::PlaybackControl* playback = depth.playback(); playback != nullptr) {
         playback->setRepeatEnabled(true);

@@ -60,6 +60,7 @@ Input input_of(const std::filesystem::path& file, const char* shown) {
 /// `shown`: what messages call the file.
 int read_recording(DepthStream& depth, const std::filesystem::path& file, const char* shown, int descriptor) {
     const Input input = input_of(file, shown);
+    if (!depth.is_sound(input.path, shown)) return kUnsound;
     if (!depth.open(input.path.c_str()) || !depth.is_file()) {
         std::fprintf(stderr, "%s: %s: not an .oni recording, or a damaged or cut off one\n", kProgram,
                      printable(shown).c_str());

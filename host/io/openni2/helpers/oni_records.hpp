@@ -12,11 +12,17 @@ namespace octoskin::openni2 {
 // header whose `fields_size` counts itself. Little-endian, as all its machines are.
 inline constexpr std::uintmax_t kOniFileHeaderSize = 24;
 inline constexpr std::uint32_t kOniRecordHeaderSize = 28;
-inline constexpr std::uint32_t kOniRecordMagic = 0x0052494E;  // "NIR"
+inline constexpr std::uint32_t kOniFrameFieldsSize = kOniRecordHeaderSize + 12;  // a time stamp and a number
+inline constexpr std::uint32_t kOniRecordMagic = 0x0052494E;                     // "NIR"
 
 enum class OniRecordType : std::uint32_t {
+    int_property = 0x03,
+    real_property = 0x04,
+    string_property = 0x05,
+    general_property = 0x06,
     node_removed = 0x07,
     data_begin = 0x08,
+    state_ready = 0x09,
     new_data = 0x0A,
     end = 0x0B,
     node_added = 0x0D,
@@ -38,6 +44,8 @@ class OniRecords {
 
     /// The next whole record; empty where the file or its sense ends. One small read.
     [[nodiscard]] std::optional<OniRecord> next();
+    /// Where next() looks.
+    [[nodiscard]] std::uintmax_t position() const noexcept { return position_; }
     /// The file, to read in: next() finds its way by itself.
     [[nodiscard]] std::ifstream& file() noexcept { return file_; }
 

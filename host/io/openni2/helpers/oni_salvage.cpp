@@ -41,7 +41,6 @@ std::uint64_t timestamp_of(std::ifstream& file, const OniRecord& record) {
 }
 
 Contents contents_of(const std::filesystem::path& oni) {
-    constexpr std::uint32_t kFrameFieldsSize = kOniRecordHeaderSize + 12;  // a time stamp and a number
     Contents contents;
     OniRecords records(oni);
     while (const auto record = records.next()) {
@@ -54,7 +53,7 @@ Contents contents_of(const std::filesystem::path& oni) {
         if (record->type != OniRecordType::new_data) continue;
         const auto stream = contents.streams.find(record->node);
         // A frame of no stream: here the file's sense ends.
-        if (record->fields_size < kFrameFieldsSize || stream == contents.streams.end()) break;
+        if (record->fields_size < kOniFrameFieldsSize || stream == contents.streams.end()) break;
         stream->second.frames.push_back({timestamp_of(records.file(), *record), record->position});
         ++contents.frames;
         contents.length = record->end;

@@ -1,0 +1,79 @@
+#include "host/io/openni2/helpers/oni_check.hpp"
+
+#include <array>
+#include <cstring>
+#include <vector>
+
+#include "host/io/openni2/helpers/oni_fields.hpp"
+#include "host/io/openni2/helpers/oni_records.hpp"
+#include "host/io/openni2/helpers/oni_streams.hpp"
+
+namespace octoskin::openni2 {
+namespace {
+
+/// The player reads them into a buffer that has room for the largest payload and a frame's fields.
+constexpr std::uint32_t kFieldsMax = 1U << 20U;
+/// The player counts them from its file header, and calls itself for each stream within another.
+constexpr std::uint32_t kStreamNumbersMax = 32;
+
+/// How many numbers of streams there are; or what is wrong with the header.
+Result<std::uint32_t, std::string> stream_numbers(std::ifstream& file) {
+    constexpr std::array<char, 12> kBegin{'N', 'I', '1', '0', 1, 0, 1, 0, 0, 0, 0, 0};  // 1.0.1.0
+    std::array<char, kOniFileHeaderSize> header{};
+    file.clear();
+    file.seekg(0);
+    if (!file.read(header.data(), header.size()) ||
+        std::memcmp(header.data(), kBegin.data(), kBegin.size()) != 0)
+        return unexpected(std::string("not the begin of a recording of OpenNI 2 (NI10, version 1.0.1.0)"));
+    std::uint32_t last = 0;
+    std::memcpy(&last, header.data() + header.size() - sizeof(last), sizeof(last));
+    if (last >= kStreamNumbersMax)
+        return unexpected("streams numbered up to " + std::to_string(last) + ", not up to " +
+                          std::to_string(kStreamNumbersMax - 1));
+    return last + 1;
+}
+
+class Reading {
+  public:
+    /// Fields and payload; false if they are more than the player has room for, or cannot be read.
+    bool read(std::ifstream& file, const OniRecord& record) {
+        const std::uintmax_t payload = record.end - record.position - record.fields_size;
+        fields_ = record.fields_size - kOniRecordHeaderSize;
+        if (fields_ > kFieldsMax || payload > kOniPayloadMax) return false;
+        bytes_.resize(fields_ + static_cast<std::size_t>(payload));
+        file.clear();
+        file.seekg(static_cast<std::streamoff>(record.position + kOniRecordHeaderSize));
+        file.read(reinterpret_cast<char*>(bytes_.data()), static_cast<std::streamsize>(bytes_.size()));
+        return static_cast<bool>(file);
+    }
+    [[nodiscard]] OniBytes fields() const { return OniBytes(bytes_).first(fields_); }
+    [[nodiscard]] OniBytes payload() const { return OniBytes(bytes_).subspan(fields_); }
+
+  private:
+    std::vector<std::uint8_t> bytes_;
+    std::size_t fields_ = 0;
+};
+
+}  // namespace
+
+std::optional<OniFault> fault_of(const std::filesystem::path& oni, const std::function<void()>& is_alive) {
+    OniRecords records(oni);
+    const auto numbers = stream_numbers(records.file());
+    if (!numbers) return OniFault{0, numbers.error()};
+    OniStreams streams(*numbers);
+    Reading reading;
+    while (const auto record = records.next()) {
+        if (is_alive) is_alive();
+        if (!reading.read(records.file(), *record))
+            return OniFault{record->position, "a record that is larger than OpenNI2 has room for"};
+        const bool is_end = record->type == OniRecordType::end;
+        // Whatever is behind the end, the player does not come to it.
+        const auto verdict =
+            is_end ? streams.at_end() : streams.take(*record, reading.fields(), reading.payload());
+        if (!verdict) return OniFault{record->position, verdict.error()};
+        if (is_end) return std::nullopt;
+    }
+    return OniFault{records.position(), "no whole record, and no end before"};
+}
+
+}  // namespace octoskin::openni2

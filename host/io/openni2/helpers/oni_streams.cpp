@@ -1,0 +1,226 @@
+#include "host/io/openni2/helpers/oni_streams.hpp"
+
+#include <algorithm>
+
+#include "host/io/openni2/frame_pipe.hpp"
+#include "host/io/openni2/helpers/oni_fields.hpp"
+#include "host/io/openni2/helpers/packed_depth.hpp"
+
+namespace octoskin::openni2 {
+namespace {
+
+constexpr std::uint32_t kTypeDepth = 2;
+constexpr std::uint32_t kTypeImage = 3;
+constexpr std::uint32_t kTypeInfrared = 5;
+constexpr std::uint64_t kFormatDepthMm = 100;
+constexpr std::size_t kDataBeginFields = 12;
+constexpr std::size_t kNameMax = 79;  ///< PlayerNode has 80 bytes for it
+
+constexpr std::uint32_t codec_of(const char (&name)[5]) {
+    std::uint32_t codec = 0;
+    for (unsigned i = 0; i < 4; ++i) codec |= std::uint32_t{static_cast<std::uint8_t>(name[i])} << 8U * i;
+    return codec;
+}
+constexpr std::uint32_t kUncompressed = codec_of("NONE");
+constexpr std::uint32_t kPlainDepth = codec_of("16zP");
+constexpr std::uint32_t kTableDepth = codec_of("16zT");
+constexpr std::uint32_t kJpeg = codec_of("JPEG");
+
+Unexpected<std::string> fault(std::string what) {
+    return unexpected(std::move(what));
+}
+
+std::string text_of(std::uint64_t number) {
+    return std::to_string(number);
+}
+
+bool is_property(OniRecordType type) {
+    return type == OniRecordType::int_property || type == OniRecordType::real_property ||
+           type == OniRecordType::string_property || type == OniRecordType::general_property;
+}
+
+OniVerdict fault_of_codec(std::uint32_t codec, bool is_depth) {
+    if (codec == kUncompressed || (is_depth && (codec == kPlainDepth || codec == kTableDepth))) return Done{};
+    if (codec == kJpeg) {
+        return fault(
+            "colours with lossy compression, whose decoder is not safe; record without it, or the depth "
+            "stream alone");
+    }
+    return fault("a compression (" + text_of(codec) + ") that OpenNI2's recorder does not write for it");
+}
+
+}  // namespace
+
+OniVerdict OniStreams::take(const OniRecord& record, OniBytes fields, OniBytes payload) {
+    const bool has_payload =
+        record.type == OniRecordType::new_data || record.type == OniRecordType::seek_table;
+    // Elsewhere the player would take the payload for the next records.
+    if (!has_payload && !payload.empty()) return fault("a payload where there is none");
+    if (record.node >= numbers_)
+        return fault("stream " + text_of(record.node) + " of " + text_of(numbers_) + " numbers");
+    if (record.type == OniRecordType::node_added) return add(record, fields);
+    const auto found = streams_.find(record.node);
+    if (found == streams_.end()) return fault("stream " + text_of(record.node) + " was not added");
+    Stream& stream = found->second;
+    if (record.type == OniRecordType::seek_table) return take_table(stream, record, payload);
+    if (stream.state == State::removed) return fault("stream " + text_of(record.node) + " was removed");
+    return take_of(stream, record, fields, payload);
+}
+
+OniVerdict OniStreams::take_of(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload) {
+    if (is_property(record.type)) return set(stream, record, fields);
+    if (record.type == OniRecordType::state_ready) return make_ready(stream);
+    if (record.type == OniRecordType::new_data) return take_frame(stream, record, payload);
+    if (record.type == OniRecordType::data_begin) {
+        if (stream.state != State::ready || fields.size() != kDataBeginFields)
+            return fault("data that begin before the stream is ready, or twice");
+        stream.state = State::playing;
+        return Done{};
+    }
+    if (record.type == OniRecordType::node_removed) {
+        if (stream.state != State::playing) return fault("a stream that ends before it begins");
+        stream.state = State::removed;
+        return Done{};
+    }
+    return fault("a record of type " + text_of(static_cast<std::uint32_t>(record.type)) +
+                 ", which OpenNI2's recorder does not write");
+}
+
+OniVerdict OniStreams::add(const OniRecord& record, OniBytes bytes) {
+    OniFields fields(bytes);
+    const auto name = fields.take_text();
+    const auto type = fields.take<std::uint32_t>();
+    const auto codec = fields.take<std::uint32_t>();
+    const auto frames = fields.take<std::uint32_t>();
+    const auto times = fields.take_bytes(16);
+    const auto table = fields.take<std::uint64_t>();
+    if (!name || !type || !codec || !frames || !times || !table || !fields.are_at_end())
+        return fault("a stream whose fields are not whole");
+    if (name->empty() || name->size() > kNameMax) return fault("a stream's name without 1 to 79 characters");
+    if (*type != kTypeDepth && *type != kTypeImage && *type != kTypeInfrared)
+        return fault("a stream of type " + text_of(*type) + ", not depth, colour or infrared");
+    // The player finds streams by their names, and never forgets one.
+    for (const auto& [node, other] : streams_) {
+        if (node == record.node || other.name == *name)
+            return fault("a second stream of one number or of one name");
+    }
+    const bool is_depth = *type == kTypeDepth;
+    if (const auto verdict = fault_of_codec(*codec, is_depth); !verdict) return verdict;
+    Stream stream;
+    stream.name = *name;
+    stream.is_depth = is_depth;
+    stream.codec = *codec;
+    stream.frames_announced = *frames;
+    stream.table_announced = *frames == 0 ? 0 : *table;
+    streams_.emplace(record.node, std::move(stream));
+    return Done{};
+}
+
+OniVerdict OniStreams::set(Stream& stream, const OniRecord& record, OniBytes bytes) {
+    OniFields fields(bytes);
+    const auto name = fields.take_text();
+    const auto size = fields.take<std::uint32_t>();
+    const auto value = size ? fields.take_bytes(*size) : std::nullopt;
+    if (!name || !value || !fields.are_at_end()) return fault("a property whose fields are not whole");
+    const std::string named(*name);
+    const bool is_number =
+        record.type == OniRecordType::int_property || record.type == OniRecordType::real_property;
+    if (is_number && value->size() != 8) return fault("a number of other than 8 bytes");
+    if (record.type == OniRecordType::string_property && (value->empty() || value->back() != 0))
+        return fault("a text without an end");
+    if (record.type == OniRecordType::int_property)
+        return set_number(stream, named, *OniFields(*value).take<std::uint64_t>());
+    return record.type == OniRecordType::general_property ? set_bytes(stream, named, *value)
+                                                          : OniVerdict(Done{});
+}
+
+OniVerdict OniStreams::set_number(Stream& stream, const std::string& name, std::uint64_t value) {
+    if (name == "oniPixelFormat" || name == "xnPixelFormat") {
+        // Until then the player has no mode to put it into, and takes one that nothing has set.
+        if (!stream.size) return fault("a pixel format before the size of the pictures");
+        if (stream.is_depth && name == "oniPixelFormat" && value != kFormatDepthMm)
+            return fault("depth that is not in millimetres (pixel format " + text_of(value) + ")");
+    }
+    if (name == "oniRequiredFrameSize" || name == "RequiredDataSize") {
+        if (value > kOniPayloadMax) return fault("frames of " + text_of(value) + " bytes");
+        if (stream.frame_bytes.value_or(value) != value) return fault("a second size of frames");
+        stream.frame_bytes = value;
+    }
+    return Done{};
+}
+
+OniVerdict OniStreams::set_bytes(Stream& stream, const std::string& name, OniBytes bytes) {
+    if (name == "xnFOV" && bytes.size() != 16) return fault("a field of view of other than 16 bytes");
+    if (name == "xnCropping" && bytes.size() != 12) return fault("a cropping of other than 12 bytes");
+    if (name == "xnCropping" && stream.is_depth && *OniFields(bytes).take<std::uint32_t>() != 0)
+        return fault("a cropped depth stream");
+    if (name != "xnMapOutputMode") return Done{};
+    if (bytes.size() != 12) return fault("a mode of other than 12 bytes");
+    const auto size = *OniFields(bytes).take<std::array<std::uint32_t, 2>>();
+    const auto [width, height] = size;
+    if (width == 0 || height == 0 || width > kSideMax || height > kSideMax ||
+        FrameSize{width, height}.pixels() > kPixelsMax)
+        return fault("pictures of " + text_of(width) + " x " + text_of(height) + " pixels");
+    if (stream.size.value_or(size) != size)
+        return fault("pictures that change their size to " + text_of(width) + " x " + text_of(height));
+    stream.size = size;
+    return Done{};
+}
+
+OniVerdict OniStreams::make_ready(Stream& stream) {
+    if (stream.state != State::added) return fault("a stream that gets ready twice");
+    if (!stream.size) return fault("a stream without the size of its pictures");
+    const std::uint64_t needed = FrameSize{(*stream.size)[0], (*stream.size)[1]}.pixels() * 2;
+    // 0: the player takes what the pictures need.
+    if (stream.is_depth && stream.frame_bytes.value_or(0) != 0 && *stream.frame_bytes < needed)
+        return fault("frames of " + text_of(*stream.frame_bytes) + " bytes for pictures of " +
+                     text_of(needed));
+    stream.state = State::ready;
+    return Done{};
+}
+
+OniVerdict OniStreams::take_frame(Stream& stream, const OniRecord& record, OniBytes payload) {
+    if (stream.state != State::playing) return fault("a frame before the data begin");
+    if (record.fields_size != kOniFrameFieldsSize) return fault("a frame with other fields");
+    stream.frames.push_back(record.position);
+    if (!stream.is_depth) return Done{};
+    const std::size_t pixels = FrameSize{(*stream.size)[0], (*stream.size)[1]}.pixels();
+    const auto is_whole = [&] {
+        if (stream.codec == kUncompressed) return payload.size() == pixels * 2;
+        return depths_in(payload, stream.codec == kTableDepth ? DepthPacking::with_table
+                                                              : DepthPacking::plain) == pixels;
+    };
+    return is_whole() ? OniVerdict(Done{})
+                      : fault("a frame that does not hold its " + text_of(pixels) + " pixels");
+}
+
+OniVerdict OniStreams::take_table(Stream& stream, const OniRecord& record, OniBytes payload) {
+    constexpr std::uint64_t kEntrySize = 20;
+    // The last of them: of each the player reads that which the stream's first record points to.
+    if (stream.state != State::removed || stream.table != 0)
+        return fault("a seek table that is not behind its stream's end");
+    if (payload.size() != (std::uint64_t{stream.frames_announced} + 1) * kEntrySize)
+        return fault("a seek table that is not for " + text_of(stream.frames_announced) + " frames");
+    stream.table = record.position;
+    OniFields entries(payload);
+    (void)entries.take_bytes(kEntrySize);  // of no frame: they are counted from 1
+    while (!entries.are_at_end()) {
+        (void)entries.take_bytes(kEntrySize - 8);
+        const auto place = entries.take<std::uint64_t>();
+        if (!place || !std::binary_search(stream.frames.begin(), stream.frames.end(), *place))
+            return fault("a seek table with a place where there is no frame");
+    }
+    return Done{};
+}
+
+OniVerdict OniStreams::at_end() const {
+    for (const auto& [node, stream] : streams_) {
+        if (stream.state != State::removed) return fault("the end, before that of stream " + text_of(node));
+        if (stream.table_announced != 0 && stream.table_announced != stream.table)
+            return fault("stream " + text_of(node) + " has its seek table elsewhere");
+    }
+    if (streams_.empty()) return fault("the end, and no stream");
+    return Done{};
+}
+
+}  // namespace octoskin::openni2
