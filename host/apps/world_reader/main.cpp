@@ -14,6 +14,7 @@
 
 #include "host/apps/world_reader/folder_files.hpp"
 #include "host/apps/world_reader/sdf_module_load.hpp"
+#include "host/io/helper_limits/confinement.hpp"
 #include "host/io/helper_limits/helper_limits.hpp"
 #include "hw/sim/world/reader_process.hpp"
 
@@ -33,11 +34,11 @@ bool take_number(std::string_view text, std::uint64_t& number) {
 void limit(const Limits& limits) {
     limit_this_process({.memory_mib = limits.memory_mib, .exit_without_memory = kOutOfMemory});
     limit_processor_seconds(limits.processor_s);
-    // It writes to a pipe alone; and sdformat is given no home to write its log to.
+    // It writes to a pipe alone; and sdformat is given no home to make a folder in and write its log to.
     ::signal(SIGXFSZ, SIG_IGN);
     const rlimit no_file{0, 0};
     ::setrlimit(RLIMIT_FSIZE, &no_file);
-    ::setenv("HOME", "/nonexistent", 1);
+    ::unsetenv("HOME");
 }
 
 bool write_all(int descriptor, std::string_view bytes) {
@@ -74,6 +75,7 @@ int main(int argc, char** argv) {
     }
     limit(limits);
     const int output = octoskin::take_standard_output();
+    octoskin::confine_this_process("octoskin-world-read");
     const bool is_written = write_all(output, to_bytes(read(argv[3], is_beneath)));
     ::_exit(is_written ? 0 : 1);  // the libraries' ends take time and give nothing
 }

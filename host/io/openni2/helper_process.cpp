@@ -89,6 +89,8 @@ std::optional<std::string> end_of(int status) {
         return "it needs more than " + std::to_string(kHelperProcessorSecondsPerFrame) +
                " s of processor time for a frame";
     }
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS)
+        return "it asked the system for more than to read a file, as one does that is made to attack";
     if (WIFSIGNALED(status)) return "signal " + std::to_string(WTERMSIG(status));
     if (WEXITSTATUS(status) == kOutOfMemory)
         return "it needs more than " + std::to_string(kHelperMemoryMib) + " MiB of memory";

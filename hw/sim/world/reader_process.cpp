@@ -133,6 +133,11 @@ std::string refusal(const std::string& limit) {
 std::optional<std::string> fault_of(int status, const ReadLimits& limits) {
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
         return refusal(std::to_string(limits.processor_s) + " s of processor time");
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS) {
+        return "what reads it asked the system for more than to read files, and was ended: the file, or one "
+               "of "
+               "its meshes, is made to attack; do not use it";
+    }
     if (WIFSIGNALED(status)) {
         return "what reads it was ended by signal " + std::to_string(WTERMSIG(status)) +
                ": the file, or one of its meshes, is damaged; take it out, or save it anew";

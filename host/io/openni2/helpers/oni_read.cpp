@@ -8,6 +8,7 @@
 #include <string>
 
 #include "host/core/text/printable.hpp"
+#include "host/io/helper_limits/confinement.hpp"
 #include "host/io/openni2/helpers/depth_stream.hpp"
 #include "host/io/openni2/helpers/oni_outline.hpp"
 #include "host/io/openni2/helpers/oni_salvage.hpp"
@@ -60,6 +61,7 @@ Input input_of(const std::filesystem::path& file, const char* shown) {
 /// `shown`: what messages call the file.
 int read_recording(DepthStream& depth, const std::filesystem::path& file, const char* shown, int descriptor) {
     const Input input = input_of(file, shown);
+    confine_this_process(kProgram);  // the copy, if there is one, is written
     if (!depth.is_sound(input.path, shown)) return kUnsound;
     if (!depth.open(input.path.c_str()) || !depth.is_file()) {
         std::fprintf(stderr, "%s: %s: not an .oni recording, or a damaged or cut off one\n", kProgram,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <ignition/math/eigen3/Conversions.hh>
+#include <iostream>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -130,16 +131,23 @@ std::string text_of(const sdf::Error& error, const std::filesystem::path& file) 
 }
 
 /// Silences the libraries while it lives: what they print comes back as errors, and when sdformat cannot read
-/// a file it tries it as a robot description and prints why it is none.
+/// a file it tries it as a robot description and prints why it is none. Before it can be silenced it
+/// prints that it has no home for its log.
 class Silence {
   public:
-    Silence() {
+    Silence() : shown_(std::cerr.rdbuf(nullptr)) {
         sdf::Console::Instance()->SetQuiet(true);
         console_bridge::noOutputHandler();
     }
-    ~Silence() { console_bridge::restorePreviousOutputHandler(); }
+    ~Silence() {
+        console_bridge::restorePreviousOutputHandler();
+        std::cerr.rdbuf(shown_);
+    }
     Silence(const Silence&) = delete;
     Silence& operator=(const Silence&) = delete;
+
+  private:
+    std::streambuf* shown_;
 };
 
 /// Walks one file; the first error stops it.

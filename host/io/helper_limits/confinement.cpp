@@ -1,0 +1,169 @@
+#include "host/io/helper_limits/confinement.hpp"
+
+#include <fcntl.h>
+#include <linux/audit.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <initializer_list>
+#include <span>
+#include <vector>
+
+namespace octoskin {
+namespace {
+
+#if defined(__x86_64__)
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
+#elif defined(__aarch64__)
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
+#else
+constexpr std::uint32_t kArchitecture = 0;
+#endif
+
+// The sanitizers look at /proc, start a program for their reports and stop the other threads for them.
+#ifdef OCTOSKIN_SANITIZED
+constexpr bool kConfines = false;
+#else
+constexpr bool kConfines = kArchitecture != 0;
+#endif
+
+/// As x86-64 marks the calls of its 32-bit relative (x32), which have the same numbers.
+constexpr std::uint32_t kOtherCalls = 0x4000'0000U;
+
+/// One half of an argument, of which only the bits of `mask` are looked at.
+struct Wanted {
+    std::size_t offset;
+    std::uint32_t mask;
+    std::uint32_t value;
+};
+constexpr Wanted low_half(std::size_t argument, std::uint32_t value, std::uint32_t mask = ~0U) {
+    return {offsetof(seccomp_data, args) + 8 * argument, mask, value};  // both machines are little-endian
+}
+constexpr Wanted high_half(std::size_t argument, std::uint32_t value) {
+    return {offsetof(seccomp_data, args) + 8 * argument + 4, ~0U, value};
+}
+
+class Filter {
+  public:
+    Filter() {
+        load(offsetof(seccomp_data, arch));
+        add(BPF_JMP | BPF_JEQ | BPF_K, kArchitecture, 1, 0);
+        answer(SECCOMP_RET_KILL_PROCESS);
+        load(offsetof(seccomp_data, nr));
+        add(BPF_JMP | BPF_JGE | BPF_K, kOtherCalls, 0, 1);
+        answer(SECCOMP_RET_KILL_PROCESS);
+    }
+    void allow(std::initializer_list<long> calls) {
+        for (const long call : calls) rule(call, SECCOMP_RET_ALLOW, {});
+    }
+    /// If its arguments are all as wanted.
+    void allow(long call, std::initializer_list<Wanted> wanted) { rule(call, SECCOMP_RET_ALLOW, wanted); }
+    /// As on a kernel that does not have it: for calls whose arguments are in memory, which a filter does not
+    /// see, and for which the library or we have an older way.
+    void lack(long call) { rule(call, SECCOMP_RET_ERRNO | ENOSYS, {}); }
+
+    /// 0, or the error.
+    [[nodiscard]] int install() {
+        answer(SECCOMP_RET_KILL_PROCESS);
+        const sock_fprog program{static_cast<unsigned short>(code_.size()), code_.data()};
+        if (::prctl(PR_SET_NO_NEW_PRIVS, 1UL, 0UL, 0UL, 0UL) != 0) return errno;
+        const long result =
+            ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &program);
+        if (result > 0) return EBUSY;  // a thread has a filter of its own
+        return result == 0 ? 0 : errno;
+    }
+
+  private:
+    /// Behind the number of the call, which is loaded when it begins and when it ends.
+    void rule(long call, std::uint32_t result, std::span<const Wanted> wanted) {
+        const std::size_t length = 1 + 3 * wanted.size();
+        std::size_t left = length;  // up to where the rule does not hold
+        add(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(call), 0, left + (wanted.empty() ? 0 : 1));
+        for (const Wanted& one : wanted) {
+            left -= 3;
+            load(one.offset);
+            add(BPF_ALU | BPF_AND | BPF_K, one.mask);
+            add(BPF_JMP | BPF_JEQ | BPF_K, one.value, 0, left);
+        }
+        answer(result);
+        if (!wanted.empty()) load(offsetof(seccomp_data, nr));
+    }
+    void rule(long call, std::uint32_t result, std::initializer_list<Wanted> wanted) {
+        rule(call, result, std::span(wanted.begin(), wanted.size()));
+    }
+    void load(std::size_t offset) { add(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset)); }
+    void answer(std::uint32_t result) { add(BPF_RET | BPF_K, result); }
+    void add(int what, std::uint32_t operand, std::size_t then = 0, std::size_t otherwise = 0) {
+        code_.push_back({static_cast<std::uint16_t>(what), static_cast<std::uint8_t>(then),
+                         static_cast<std::uint8_t>(otherwise), operand});
+    }
+
+    std::vector<sock_filter> code_;
+};
+
+void allow_reading(Filter& filter) {
+    // Of O_TMPFILE the bit that O_DIRECTORY does not have.
+    constexpr std::uint32_t kWrites =
+        O_ACCMODE | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~std::uint32_t{O_DIRECTORY});
+    filter.allow(SYS_openat, {low_half(2, O_RDONLY, kWrites)});
+    filter.lack(SYS_openat2);
+    filter.allow({SYS_read, SYS_readv, SYS_pread64, SYS_lseek, SYS_close, SYS_fstat, SYS_newfstatat,
+                  SYS_statx, SYS_statfs, SYS_fstatfs, SYS_getdents64, SYS_readlinkat, SYS_faccessat,
+                  SYS_faccessat2, SYS_getcwd, SYS_fadvise64, SYS_dup});
+    // Not F_SETOWN and F_SETSIG, which send signals to others.
+    for (const int command : {F_GETFD, F_SETFD, F_GETFL, F_DUPFD, F_DUPFD_CLOEXEC})
+        filter.allow(SYS_fcntl, {low_half(1, static_cast<std::uint32_t>(command))});
+#ifdef __x86_64__  // the older machine has the older calls, too
+    filter.allow(SYS_open, {low_half(1, O_RDONLY, kWrites)});
+    filter.allow({SYS_stat, SYS_lstat, SYS_access, SYS_readlink, SYS_poll, SYS_time});
+#endif
+}
+
+void allow_writing_to_what_is_open(Filter& filter) {
+    filter.allow({SYS_write, SYS_writev, SYS_ppoll});
+    filter.allow(SYS_sendto, {low_half(4, 0), high_half(4, 0)});  // to the other end, and nowhere else
+    filter.allow(SYS_ioctl, {low_half(1, TCGETS)});               // whether it is a terminal
+}
+
+void allow_memory_time_and_threads(Filter& filter) {
+    filter.allow({SYS_brk, SYS_mmap, SYS_munmap, SYS_mremap, SYS_mprotect, SYS_madvise});
+    filter.allow({SYS_clock_gettime, SYS_clock_getres, SYS_clock_nanosleep, SYS_nanosleep, SYS_gettimeofday,
+                  SYS_getrusage, SYS_sysinfo, SYS_uname, SYS_getrandom, SYS_sched_yield,
+                  SYS_sched_getaffinity, SYS_getcpu});
+    filter.allow(SYS_clone, {low_half(0, CLONE_THREAD, CLONE_THREAD)});
+    filter.lack(SYS_clone3);
+    filter.allow({SYS_futex, SYS_set_robust_list, SYS_rseq, SYS_exit, SYS_exit_group, SYS_rt_sigaction,
+                  SYS_rt_sigprocmask, SYS_rt_sigreturn, SYS_sigaltstack, SYS_restart_syscall, SYS_getpid,
+                  SYS_gettid, SYS_getuid, SYS_geteuid, SYS_getgid, SYS_getegid});
+    filter.allow(SYS_prctl, {low_half(0, PR_SET_NAME)});
+    filter.allow(SYS_tgkill, {low_half(0, static_cast<std::uint32_t>(::getpid()))});  // abort()
+    filter.allow(SYS_prlimit64, {low_half(0, 0), low_half(1, RLIMIT_CPU)});
+    filter.allow(SYS_prlimit64, {low_half(0, 0), low_half(2, 0), high_half(2, 0)});  // to ask
+}
+
+}  // namespace
+
+void confine_this_process(const char* program) {
+    if (!kConfines) return;
+    Filter filter;
+    allow_reading(filter);
+    allow_writing_to_what_is_open(filter);
+    allow_memory_time_and_threads(filter);
+    if (const int error = filter.install(); error != 0)
+        std::fprintf(stderr, "%s: runs without confinement, for the kernel has no filter here: %s\n", program,
+                     std::strerror(error));
+}
+
+}  // namespace octoskin

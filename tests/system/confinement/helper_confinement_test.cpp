@@ -1,0 +1,87 @@
+// That the helpers are confined while they hand over what they read: it is not taken, so they wait.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <linux/seccomp.h>
+#include <signal.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "host/io/openni2/helper_process.hpp"
+#include "host/io/openni2/oni_writer.hpp"
+#include "tests/support/scratch_folder.hpp"
+
+namespace octoskin {
+namespace {
+
+/// Whether the program that these words start gets a filter for its system calls within 10 s.
+bool gets_a_filter(std::vector<std::string> command) {
+    std::array<int, 2> ends{-1, -1};
+    EXPECT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
+    std::vector<char*> words;
+    for (std::string& word : command) words.push_back(word.data());
+    words.push_back(nullptr);
+    const pid_t process = ::fork();
+    if (process == 0) {
+        ::dup2(ends[1], STDOUT_FILENO);
+        ::execv(words.front(), words.data());
+        ::_exit(127);
+    }
+    const auto has_filter = [process] {
+        std::ifstream status("/proc/" + std::to_string(process) + "/status");
+        for (std::string line; std::getline(status, line);) {
+            if (line == "Seccomp:\t2") return true;
+        }
+        return false;
+    };
+    bool is_confined = false;
+    for (int tries = 0; tries < 1000 && !is_confined; ++tries) {
+        is_confined = has_filter();
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ::kill(process, SIGKILL);
+    ::waitpid(process, nullptr, 0);
+    for (const int end : ends) ::close(end);
+    return is_confined;
+}
+
+class HelperConfinementTest : public testing::Test {
+  protected:
+    void SetUp() override {
+#ifdef OCTOSKIN_SANITIZED
+        GTEST_SKIP() << "sanitizers ask for more";
+#endif
+        const std::uint32_t action = SECCOMP_RET_KILL_PROCESS;  // an emulator has none
+        if (::syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &action) != 0)
+            GTEST_SKIP() << "no filters here";
+    }
+    static std::string helper(const char* name) {
+        return openni2::find_helper(name).value().string();
+    }
+};
+
+TEST_F(HelperConfinementTest, what_reads_worlds) {
+    EXPECT_TRUE(gets_a_filter(
+        {helper("octoskin-world-read"), "1024", "20", OCTOSKIN_SOURCE_DIR "/hw/worlds/cupboard.sdf"}));
+}
+
+TEST_F(HelperConfinementTest, what_reads_recordings) {
+    const testing_support::ScratchFolder scratch;
+    constexpr openni2::FrameSize kSize{512, 424};
+    auto writer = openni2::OniWriter::create(scratch / "depth.oni", scratch / "epoch.yaml", kSize);
+    ASSERT_TRUE(writer);
+    const std::vector<std::uint16_t> depth(kSize.pixels(), 1000);
+    for (int i = 0; i < 5; ++i) ASSERT_TRUE(writer->write(HostTime{i * 100'000'000LL}, depth));
+    ASSERT_TRUE(writer->close());
+    EXPECT_TRUE(gets_a_filter({helper("octoskin-oni-read"), (scratch / "depth.oni").string()}));
+}
+
+}  // namespace
+}  // namespace octoskin
