@@ -1,16 +1,57 @@
 #include "hw/sim/world/sdf/mesh_file.hpp"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
+#include <memory>
 #include <string_view>
 
 #include "hw/rigfile/file_kind.hpp"
 
 namespace octoskin::sim {
 namespace {
+
+/// What a mesh may be: the endings of its name, and the readers of assimp that are kept for them.
+constexpr std::array<std::string_view, 3> kKinds{"stl", "obj", "dae"};
+
+bool is_a_kind(std::string_view ending) {
+    return std::ranges::find(kKinds, ending) != kKinds.end();
+}
+
+bool has_a_kind(const std::filesystem::path& file) {
+    std::string ending = file.extension().string();
+    std::ranges::transform(ending, ending.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return !ending.empty() && is_a_kind(std::string_view(ending).substr(1));
+}
+
+/// Its endings are words with blanks between them.
+bool reads_a_kind(const Assimp::BaseImporter& reader) {
+    std::string_view endings = reader.GetInfo()->mFileExtensions;
+    while (!endings.empty()) {
+        const std::string_view ending = endings.substr(0, endings.find(' '));
+        if (is_a_kind(ending)) return true;
+        endings.remove_prefix(std::min(ending.size() + 1, endings.size()));
+    }
+    return false;
+}
+
+/// assimp has some forty readers, and takes one by what a file holds, whatever its name says.
+void keep_readers_of_our_kinds(Assimp::Importer& importer) {
+    for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+        Assimp::BaseImporter* const reader = importer.GetImporter(i);
+        if (reads_a_kind(*reader)) continue;
+        importer.UnregisterLoader(reader);
+        const std::unique_ptr<Assimp::BaseImporter> ours(reader);  // from then on
+    }
+}
 
 void append(const aiMesh& part, TriangleMesh& mesh) {
     const int first = static_cast<int>(mesh.vertices.size());
@@ -48,6 +89,10 @@ class CheckedFiles final : public Assimp::DefaultIOSystem {
 }  // namespace
 
 Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, const WorldFiles* files) {
+    if (!has_a_kind(file)) {
+        return unexpected("mesh " + file.string() +
+                          ": is neither .stl nor .obj nor .dae (COLLADA); convert it to one of them");
+    }
     if (files != nullptr) {
         if (const auto path = files->openable(file); !path)
             return unexpected("mesh " + file.string() + ": " + path.error());
@@ -55,6 +100,7 @@ Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, c
     if (const auto kind = rig::other_than_a_file(file); !kind.empty())
         return unexpected("mesh " + file.string() + " is " + std::string(kind) + ", not an ordinary file");
     Assimp::Importer importer;
+    keep_readers_of_our_kinds(importer);
     if (files != nullptr) importer.SetIOHandler(new CheckedFiles(*files));  // the importer's from here on
     const aiScene* scene =
         importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);

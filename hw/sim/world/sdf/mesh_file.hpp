@@ -1,4 +1,4 @@
-// Reads a mesh file (OBJ, STL, COLLADA, ...) with assimp: the only file that includes it.
+// Reads a mesh file (STL, OBJ or COLLADA) with assimp: the only file that includes it.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +10,9 @@
 
 namespace octoskin::sim {
 
-/// All triangles of the file in the file's own coordinates, node transforms applied. The error says what
-/// assimp says, or that there is no triangle or a coordinate that is not finite. `files`: that it and what it
-/// refers to (materials, buffers) must be among; nullptr: any.
+/// All triangles of the file, whose name ends in .stl, .obj or .dae, in the file's own coordinates, node
+/// transforms applied. The error says what assimp says, or that there is no triangle or a coordinate that is
+/// not finite. `files`: that it and what it refers to (materials, buffers) must be among; nullptr: any.
 [[nodiscard]] Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file,
                                                           const WorldFiles* files = nullptr);
 
