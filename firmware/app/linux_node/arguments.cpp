@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cstdio>
 
+#include "common/wire/interface_name.hpp"
+
 namespace octoskin::linux_node {
 namespace {
 
@@ -88,6 +90,8 @@ std::string take_texts(const Texts& texts, Arguments& arguments) {
     if (const auto why = add_lines(texts.xshut, arguments.xshut); !why.empty()) return "--xshut " + why;
     if (const auto why = add_lines(texts.data_ready, arguments.data_ready); !why.empty())
         return "--data-ready " + why;
+    if (!wire::is_interface_name(arguments.can))
+        return "--can '" + arguments.can + "': " + std::string(wire::kInterfaceNameRule);
     arguments.i2c_lateness = Microseconds{std::int64_t{texts.i2c_lateness_ms} * 1'000};
     if (!texts.uid.empty() && !(arguments.uid = parse_uid(texts.uid)))
         return "--uid '" + texts.uid + "': expected 24 hexadecimal digits";

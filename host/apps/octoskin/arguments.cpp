@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <net/if.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "common/wire/interface_name.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/io/mapping/mapping_file.hpp"
@@ -40,20 +40,9 @@ std::string is_seed(std::string& text) {
 }
 
 void check_interface_name(const std::string& interface) {
-    constexpr std::size_t kLengthMax = IFNAMSIZ - 1;
-    if (interface.empty() || interface.size() > kLengthMax) {
-        throw CommandFailure(
-            {ExitCode::usage, fmt::format("'{}': an interface's name has 1 to {} characters, "
-                                          "this one {}",
-                                          interface, kLengthMax, interface.size())});
-    }
-    // A line of a recording's log has it between two blanks.
-    const auto is_printable = [](char c) { return c > ' ' && c <= '~'; };
-    if (std::ranges::all_of(interface, is_printable)) return;
-    throw CommandFailure(
-        {ExitCode::usage, fmt::format("'{}': an interface's name here has printable ASCII characters "
-                                      "alone, no blanks: rename it (`ip link set OLD name NEW`)",
-                                      interface)});
+    // A recording's log has it on each line.
+    if (wire::is_interface_name(interface)) return;
+    throw CommandFailure({ExitCode::usage, fmt::format("'{}': {}", interface, wire::kInterfaceNameRule)});
 }
 
 void check_frame_socket(const std::string& interface, int descriptor) {

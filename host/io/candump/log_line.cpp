@@ -7,11 +7,12 @@
 #include <cstdio>
 #include <optional>
 
+#include "common/wire/interface_name.hpp"
+
 namespace octoskin::candump {
 namespace {
 
-// linux/can.h: the interface's name, the flag of an error frame, and the masks of both identifier lengths.
-constexpr std::size_t kInterfaceCharsMax = 15;
+// linux/can.h: the flag of an error frame, and the masks of both identifier lengths.
 constexpr std::uint32_t kErrorFlag = 0x2000'0000U;
 constexpr std::uint32_t kExtendedIdMax = 0x1FFF'FFFFU;
 constexpr std::uint32_t kStandardIdMax = 0x7FFU;
@@ -19,12 +20,6 @@ constexpr unsigned kBitRateSwitchFlag = 1U;
 
 // The year 2262, where nanoseconds since 1970 leave 63 bits, has a second of 10 digits.
 constexpr std::int64_t kSecondsMax = 9'223'372'035;
-
-bool is_interface_name(std::string_view name) {
-    const auto is_printable = [](char c) { return c > ' ' && c <= '~'; };
-    return !name.empty() && name.size() <= kInterfaceCharsMax && std::ranges::all_of(name, is_printable) &&
-           name.find('#') == std::string_view::npos;
-}
 
 constexpr std::string_view kBlanks = " \t";
 
@@ -246,7 +241,7 @@ Result<LogEntry, LineFault> parse_line(std::string_view line) {
     if (!stamp) return unexpected(LineFault::timestamp);
     LogEntry entry{.stamp = *stamp, .interface = {}, .frame = {}};
     const std::string_view interface = take_word(line);
-    if (!is_interface_name(interface)) return unexpected(LineFault::interface);
+    if (!wire::is_interface_name(interface)) return unexpected(LineFault::interface);
     entry.interface = interface;
     std::string_view word = take_word(line);
     const bool has_switch = take_shown_flags(word, line);
@@ -261,7 +256,7 @@ Result<LogEntry, LineFault> parse_line(std::string_view line) {
 std::string format_line(const LogEntry& entry) {
     const wire::CanFrame& frame = entry.frame;
     assert(entry.stamp.ns >= 0);
-    assert(is_interface_name(entry.interface));
+    assert(wire::is_interface_name(entry.interface));
     assert(frame.can_id <= (frame.is_extended || frame.is_error ? kExtendedIdMax : kStandardIdMax));
     assert(!(frame.is_fd && frame.is_remote));
     assert(frame.is_fd ? wire::is_fd_length(frame.payload_len)

@@ -28,7 +28,7 @@ namespace octoskin::candump {
 
 struct LogEntry {
     WallTime stamp;         ///< whole microseconds, not negative
-    std::string interface;  ///< 1 to 15 printable ASCII characters, no blank, no '#'
+    std::string interface;  ///< as wire::is_interface_name has it
     wire::CanFrame frame;
     friend bool operator==(const LogEntry&, const LogEntry&) = default;
 };
@@ -38,7 +38,7 @@ enum class LineFault : std::uint8_t {
     blank,       ///< nothing on it
     foreign,     ///< does not begin with '(': not a line of candump
     timestamp,   ///< neither "(seconds.fraction)" nor "(date time.fraction)", 3 to 9 digits of fraction
-    interface,   ///< missing, longer than 15 characters, or not printable
+    interface,   ///< missing, or not as wire::is_interface_name has it: no part of it is taken for a frame
     identifier,  ///< not 3 or 8 hexadecimal digits, or out of range
     data,        ///< neither '#' nor "[length]", no hexadecimal digit, half a byte, or more behind the frame
     length,      ///< more than 8 bytes, or a length that CAN FD does not have

@@ -4,9 +4,14 @@
 #include <cstring>
 #include <utility>
 
+#include "common/wire/interface_name.hpp"
+
 namespace octoskin::candump {
 
 Result<LogWriter, LogError> LogWriter::create(const FilePlace& file, std::string interface) {
+    if (!wire::is_interface_name(interface))
+        return unexpected(
+            LogError{file.shown(), "'" + interface + "': " + std::string(wire::kInterfaceNameRule)});
     const auto created = file.create_anew();
     if (!created) return unexpected(LogError{file.shown(), "cannot create: " + created.error().reason()});
     errno = 0;

@@ -14,8 +14,8 @@ namespace octoskin::candump {
 
 class LogWriter {
   public:
-    /// Makes `file` anew, in place of one that is there. `interface`: the name on every line, 1 to 15
-    /// characters without blanks.
+    /// Makes `file` anew, in place of one that is there. `interface`: the name on every line;
+    /// an error that says so, if it is none (wire::is_interface_name).
     [[nodiscard]] static Result<LogWriter, LogError> create(const FilePlace& file,
                                                             std::string interface = "can0");
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "common/wall_time.hpp"
+#include "common/wire/interface_name.hpp"
 #include "common/wire/socketcan_layout.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
 
@@ -104,6 +105,8 @@ bool SocketFault::is_down() const noexcept {
 }
 
 Result<CanSocket, SocketFault> CanSocket::open(const std::string& interface, const SocketOptions& options) {
+    if (!wire::is_interface_name(interface))
+        return unexpected(SocketFault{interface, EINVAL, std::string(wire::kInterfaceNameRule)});
     CanSocket socket(interface, ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
     if (socket.descriptor_ < 0) return unexpected(socket.fault(errno, "cannot open a CAN socket"));
     if (!set_options(socket.descriptor_, options))

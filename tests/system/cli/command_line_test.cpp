@@ -78,10 +78,11 @@ TEST_F(CommandLine, answers_64_to_what_can_be_no_interface_and_no_socket) {
     };
     expect(daemon + "fd:0 < /dev/null", "fd:0 is no socket");
     expect(daemon + "fd:0 < " + source("README.md"), "fd:0 is no socket");
-    expect(daemon + "a_name_too_long_",
-           "'a_name_too_long_': an interface's name has 1 to 15 characters, this one 16");
-    expect(daemon + "'a b'", "printable ASCII");
-    expect(daemon + "fd:0000000000000", "1 to 15 characters");
+    for (const char* name : {"a_name_too_long_", "a b", "can#0", "123#00", "fd:0000000000000", ""})
+        expect(daemon + "'" + name + "'", "'" + std::string(name) + "': a CAN interface's name");
+    for (const std::string& command :
+         {"joints --rig " + source("hw/rigs/experiment.yaml"), std::string("command 1 stop")})
+        expect(command + " --can '123#00' < /dev/null", "'123#00': a CAN interface's name");
     const std::string long_path = path(std::string(120, 's'));
     expect(daemon + "can0 --socket " + long_path, "1 to 107 bytes");
     expect("status --socket " + long_path, "1 to 107 bytes");

@@ -52,6 +52,8 @@ TEST(LinuxNodeArguments, that_are_wrong_are_a_usage_error) {
         return code != nullptr && *code == ExitCode::usage;
     };
     EXPECT_TRUE(with({"--unknown"}));
+    for (const char* name : {"can#0", "123#00", "a b", "", "sixteen_letters_"})
+        EXPECT_TRUE(with({"--can", name})) << name;
     EXPECT_TRUE(with({"--data-ready", "c:1,1"}));
     EXPECT_TRUE(with({"--data-ready", "17"}));
     EXPECT_TRUE(with({"--uid", "0011"}));

@@ -168,6 +168,14 @@ TEST(LogWriter, reports_a_full_disk) {
     EXPECT_FALSE(written.has_value() && writer->close().has_value());
 }
 
+TEST(LogWriter, makes_no_log_whose_lines_could_be_read_in_two_ways) {
+    for (const char* name : {"can#0", "123#00", "a b", "", "sixteen_letters_", "can\t0", "can\x80"}) {
+        TemporaryFile file("refused");
+        EXPECT_FALSE(LogWriter::create(file.path(), name).has_value()) << name;
+        EXPECT_FALSE(std::filesystem::exists(file.path())) << name;
+    }
+}
+
 TEST(LogWriter, says_why_a_file_cannot_be_created) {
     const auto writer = LogWriter::create("/nowhere/can.log");
     ASSERT_FALSE(writer.has_value());

@@ -108,6 +108,21 @@ TEST(LogLine, takes_blanks_as_they_come_and_the_raw_length_code) {
     EXPECT_EQ(entry.frame.data[7], 8);
 }
 
+TEST(LogLine, takes_the_frame_from_behind_the_name_whatever_that_looks_like) {
+    for (const char* name : {"can(0)", "(0)", "123", "[1]", "RX", "044", "R", "'a'"}) {
+        for (const char* frame : {" 045#2A", "  045   [1]  2A"}) {
+            const auto entry = parse_line("(1436509053.850870) " + std::string(name) + frame);
+            ASSERT_TRUE(entry) << name << frame;
+            EXPECT_EQ(entry->interface, name);
+            EXPECT_EQ(entry->frame.can_id, 0x45U) << name << frame;
+            EXPECT_EQ(entry->frame.payload_len, 1U) << name << frame;
+        }
+    }
+    // No name of Linux has a blank. One of another tool that does is no frame of its second word.
+    for (const char* name : {"a 123#00", "a 123#00 R", "a 123", "a 123 [0]", "a 123 [1] 2A"})
+        EXPECT_FALSE(parse_line("(1436509053.850870) " + std::string(name) + " 045#2A")) << name;
+}
+
 TEST(LogLine, names_what_is_wrong) {
     expect_fault(LineFault::blank, "");
     expect_fault(LineFault::blank, " \t \r");
@@ -121,7 +136,10 @@ TEST(LogLine, names_what_is_wrong) {
     }
     expect_fault(LineFault::interface, "(1436509053.850870)");
     expect_fault(LineFault::interface, "(1436509053.850870)  044#2A");
-    expect_fault(LineFault::interface, "(1436509053.850870) vcan#0 044#2A");
+    for (const char* name : {"vcan#0", "123#00", "#", "123##0", "123#R"}) {
+        expect_fault(LineFault::interface, "(1436509053.850870) " + std::string(name) + " 044#2A");
+        expect_fault(LineFault::interface, "(1436509053.850870)  " + std::string(name) + "  044   [1]  2A");
+    }
     expect_fault(LineFault::interface, "(1436509053.850870) sixteen_letters_ 044#2A");
     for (const char* id : {"", "44", "0044", "800", "-44", "0x4", "G44", "80000044", "40000044"}) {
         expect_fault(LineFault::identifier, kHead + id + "#2A");

@@ -195,6 +195,14 @@ TEST(CanSocketOpen, names_the_interface_and_what_to_do) {
     EXPECT_NE(socket.error().message().find('('), std::string::npos) << socket.error().message();
 }
 
+TEST(CanSocketOpen, refuses_a_name_that_a_log_cannot_have) {
+    for (const char* name : {"can#0", "123#00", "a b", "", "sixteen_letters_"}) {
+        const auto socket = CanSocket::open(name);
+        ASSERT_FALSE(socket) << name;
+        EXPECT_EQ(socket.error().error_number, EINVAL) << name;
+    }
+}
+
 TEST(CanSocketOpen, moves_its_descriptor) {
     std::array<int, 2> ends{};
     ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data()), 0);
