@@ -170,6 +170,16 @@ function(octoskin_program name)
         INSTALL_RPATH "" BUILD_WITH_INSTALL_RPATH ON)
 endfunction()
 
+# The programs that others start, and find beside themselves.
+set(OCTOSKIN_HELPERS octoskin-camera octoskin-oni-read octoskin-oni-write octoskin-world-read)
+
+# Has tests that are built in this folder find them, too.
+function(octoskin_helpers_beside_tests)
+    foreach(helper IN LISTS OCTOSKIN_HELPERS)
+        file(CREATE_LINK ${PROJECT_BINARY_DIR}/bin/${helper} ${CMAKE_CURRENT_BINARY_DIR}/${helper} SYMBOLIC)
+    endforeach()
+endfunction()
+
 function(octoskin_test name)
     cmake_parse_arguments(ARG "ALONE;WAITS" "TIMEOUT;HALF_IN_QEMU" "LABELS;SOURCES;HOST_SOURCES;DEPENDS;EXTERNAL;APART" ${ARGN})
     if(NOT ARG_TIMEOUT)
@@ -192,6 +202,7 @@ function(octoskin_test name)
         math(EXPR ARG_TIMEOUT "20 * ${ARG_TIMEOUT}")
     endif()
     octoskin_check_room(${name} tests ${ARG_DEPENDS})
+    octoskin_helpers_beside_tests()
     add_executable(${name} ${ARG_SOURCES})
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
     target_compile_features(${name} PRIVATE cxx_std_20)

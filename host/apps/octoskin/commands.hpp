@@ -49,8 +49,7 @@ void add_calibrate_command(CLI::App& app);
 void add_command_command(CLI::App& app);
 void add_repair_command(CLI::App& app);
 
-/// A file that ships with octoskin: under share/octoskin beside the installed program, or in the source tree
-/// it was built from.
+/// A file that ships with octoskin: in share/octoskin beside the program's folder, wherever that is.
 [[nodiscard]] std::filesystem::path shipped_file(const std::string& relative);
 
 }  // namespace octoskin::app

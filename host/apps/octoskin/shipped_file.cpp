@@ -5,9 +5,10 @@ namespace octoskin::app {
 std::filesystem::path shipped_file(const std::string& relative) {
     std::error_code error;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-    const auto installed = self.parent_path() / "share" / "octoskin" / relative;
-    if (std::filesystem::exists(installed, error)) return installed;
-    return std::filesystem::path(OCTOSKIN_SHIPPED_DIR) / relative;
+    const auto data = self.parent_path() / "share" / "octoskin";
+    // Beside the folder of programs of a build, a link that leads to the sources.
+    const auto sources = std::filesystem::read_symlink(data, error);
+    return (error ? data : sources) / relative;
 }
 
 }  // namespace octoskin::app

@@ -195,10 +195,10 @@ Result<std::filesystem::path, std::string> find_helper(
     if (in_its_place) return *in_its_place;
     std::error_code error;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-    for (const auto& directory :
-         {self, self.parent_path() / "libexec" / "octoskin", std::filesystem::path(OCTOSKIN_HELPER_DIR)}) {
-        if (std::filesystem::exists(directory / name, error)) return directory / name;
-    }
+    if (self.is_absolute() && std::filesystem::exists(self / name, error)) return self / name;
+    const auto libexec = self.parent_path() / "libexec" / "octoskin";
+    // Above any other folder another user may have made one.
+    if (self.filename() == "bin" && std::filesystem::exists(libexec / name, error)) return libexec / name;
     return unexpected(name +
                       " is neither beside this program nor in libexec: build octoskin_programs, or "
                       "install octoskin anew");

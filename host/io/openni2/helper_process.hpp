@@ -69,8 +69,9 @@ class HelperProcess {
     int complaints_ = -1;
 };
 
-/// A helper program: `in_its_place`, or the one beside the running executable, in ../libexec/octoskin/, or
-/// where the build put it. The message says what to do about one that is nowhere.
+/// A helper program: `in_its_place`, or the one beside the running executable, or that in
+/// ../libexec/octoskin/ of one in a folder bin; never one where it happened to be built. The message says
+/// what to do about one that is nowhere.
 [[nodiscard]] Result<std::filesystem::path, std::string> find_helper(
     const std::string& name, const std::optional<std::filesystem::path>& in_its_place = {});
 

@@ -114,15 +114,15 @@ class Reader {
     int error_ = 0;
 };
 
-/// Beside the running program, in ../libexec/octoskin/, or where the build put it; empty if it is nowhere.
+/// Beside the running program, or in ../libexec/octoskin/ of one in a folder bin: above any other folder
+/// another user may have made one. Empty if it is nowhere.
 std::filesystem::path find_reader() {
     std::error_code error;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-    for (const auto& folder :
-         {self, self.parent_path() / "libexec" / "octoskin", std::filesystem::path(OCTOSKIN_HELPER_DIR)}) {
-        if (std::filesystem::exists(folder / kWorldReader, error)) return folder / kWorldReader;
-    }
-    return {};
+    if (self.is_absolute() && std::filesystem::exists(self / kWorldReader, error)) return self / kWorldReader;
+    const auto libexec = self.parent_path() / "libexec" / "octoskin";
+    const bool is_there = self.filename() == "bin" && std::filesystem::exists(libexec / kWorldReader, error);
+    return is_there ? libexec / kWorldReader : std::filesystem::path();
 }
 
 std::string refusal(const std::string& limit) {

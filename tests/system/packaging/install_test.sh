@@ -13,6 +13,19 @@ for name in octoskin octoskin-node; do
 done
 "$folder/prefix/bin/octoskin" rig "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml" > /dev/null
 "$folder/prefix/bin/octoskin" simulate --help | grep -qF "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml"
+# No file names the folder that it was built in, and no program that of the sources alone: what is looked for there, another user may put
+# there. (What an assertion says of itself names a source.)
+sources=$(cd "$(dirname "$0")/../../.." && pwd)
+if grep -rlF -e "$2" "$folder/prefix"; then
+    echo "the files above name the build folder" >&2
+    exit 1
+fi
+for program in "$folder"/prefix/bin/* "$folder"/prefix/libexec/octoskin/octoskin-*; do
+    if strings -a "$program" | grep -xF -e "$sources" -e "$sources/"; then
+        echo "$program names the folder of the sources" >&2
+        exit 1
+    fi
+done
 # No program looks for libraries in the working directory: an empty or relative part of a search path means that. Where it was
 # built neither.
 for program in "$folder"/prefix/bin/* "$folder"/prefix/libexec/octoskin/octoskin-* "$2"/bin/octoskin*; do

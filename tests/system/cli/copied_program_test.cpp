@@ -1,0 +1,60 @@
+// A program away from where it was built and installed: it has no helpers and no data, and takes none from
+// anywhere else.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/system/cli/program.hpp"
+
+namespace octoskin {
+namespace {
+
+class CopiedProgram : public ProgramTest {
+  protected:
+    /// The program there, and a helper that leaves a mark in `helpers`.
+    void copy(const std::string& folder, const std::string& helpers) {
+        std::filesystem::create_directories(path(folder));
+        std::filesystem::create_directories(path(helpers));
+        std::filesystem::copy_file(OCTOSKIN_PROGRAM, path(folder + "/octoskin"));
+        const std::string helper = helpers + "/octoskin-camera";
+        write(path(helper), "#!/bin/sh\ntouch " + path("was_run") + "\n");
+        std::filesystem::permissions(path(helper), std::filesystem::perms::owner_all);
+    }
+    bool runs_it(const std::string& folder) {
+        (void)run(path(folder + "/octoskin") + " cameras");
+        return std::filesystem::exists(path("was_run"));
+    }
+};
+
+TEST_F(CopiedProgram, has_no_helpers_and_no_data) {
+    std::filesystem::create_directories(path("away/bin"));
+    std::filesystem::copy_file(OCTOSKIN_PROGRAM, path("away/bin/octoskin"));
+    const std::string program = path("away/bin/octoskin");
+    EXPECT_EQ(run(program + " cameras").exit_code, 69);
+    const Said world =
+        run(program + " simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
+            " --scenario " + source("tests/data/short/scenario.yaml"));
+    EXPECT_NE(world.exit_code, 0);
+    EXPECT_NE(world.output.find("octoskin-world-read"), std::string::npos) << world.output;
+    const Said data = run(program + " simulate " + path("rec"));
+    EXPECT_EQ(data.exit_code, 78) << data.output;
+    EXPECT_NE(data.output.find(path("away/share/octoskin")), std::string::npos) << data.output;
+}
+
+TEST_F(CopiedProgram, has_the_helpers_beside_it) {
+    copy("there", "there");
+    EXPECT_TRUE(runs_it("there"));
+}
+
+TEST_F(CopiedProgram, has_the_helpers_of_its_installation) {
+    copy("there/bin", "there/libexec/octoskin");
+    EXPECT_TRUE(runs_it("there/bin"));
+}
+
+TEST_F(CopiedProgram, has_none_above_a_folder_that_is_no_installation) {
+    copy("there/mine", "there/libexec/octoskin");
+    EXPECT_FALSE(runs_it("there/mine"));
+}
+
+}  // namespace
+}  // namespace octoskin
