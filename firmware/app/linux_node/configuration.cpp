@@ -1,6 +1,7 @@
 #include "firmware/app/linux_node/configuration.hpp"
 
 #include <bit>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <span>
@@ -33,6 +34,11 @@ const char* words(NodeConfigError error) {
 }
 
 Result<NodeConfig, StartFailure> read_block(const std::filesystem::path& file) {
+    // To open a pipe is to wait for its other end, and a device may have no end.
+    std::error_code error;
+    const auto kind = std::filesystem::status(file, error);
+    if (std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind))
+        return refuse(ExitCode::no_input, file.string() + ": is no ordinary file");
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return refuse(ExitCode::no_input, file.string() + ": cannot be read");
     // One byte more than a block can have: a file that is longer is not one.

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -111,6 +112,14 @@ TEST_F(LinuxNodeConfiguration, is_refused_if_it_is_not_there_or_not_whole) {
     expect_refused(ExitCode::bad_config, "truncated");
     std::ofstream(arguments_.config) << "name: bench_one_board\n# a rig is no block\n";
     expect_refused(ExitCode::bad_config, "no configuration block");
+}
+
+TEST_F(LinuxNodeConfiguration, is_not_waited_for_at_a_pipe) {
+    ASSERT_EQ(::mkfifo(arguments_.config.c_str(), 0600), 0);
+    expect_refused(ExitCode::no_input, "no ordinary file");
+    std::filesystem::remove(arguments_.config);
+    std::filesystem::create_directory(arguments_.config);
+    expect_refused(ExitCode::no_input, "no ordinary file");
 }
 
 TEST_F(LinuxNodeConfiguration, is_refused_for_another_type_of_board) {
