@@ -5,25 +5,43 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "hw/rigfile/file_kind.hpp"
+#include "hw/sim/world/model_folders.hpp"
 #include "hw/sim/world/sdf/sdf_module.hpp"
 
 namespace octoskin::sim {
 namespace {
 
-/// sdformat looks for what is included in folders of its own choice, too.
-class FirstInclude final : public tinyxml2::XMLVisitor {
+struct Include {
+    int line = 0;
+    std::string uri;
+};
+
+class Includes final : public tinyxml2::XMLVisitor {
   public:
     bool VisitEnter(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute* /*first*/) override {
-        if (std::string_view(element.Name()) == "include" && line_ == 0) line_ = element.GetLineNum();
-        return line_ == 0;
+        if (std::string_view(element.Name()) != "include") return true;
+        const tinyxml2::XMLElement* const uri = element.FirstChildElement("uri");
+        const char* const text = uri == nullptr ? nullptr : uri->GetText();
+        found_.push_back({element.GetLineNum(), text == nullptr ? "" : text});
+        return true;
     }
-    [[nodiscard]] int line() const noexcept { return line_; }
+    [[nodiscard]] const std::vector<Include>& found() const noexcept { return found_; }
 
   private:
-    int line_ = 0;
+    std::vector<Include> found_;
 };
+
+/// What is there of an included file, as far as it is found without sdformat: which waits at a pipe.
+std::filesystem::path place_of(std::string_view uri, const std::filesystem::path& world) {
+    constexpr std::string_view kFileScheme = "file://";
+    if (uri.starts_with(kModelScheme)) return find_model_file(uri).value_or("");
+    if (uri.starts_with(kFileScheme)) uri.remove_prefix(kFileScheme.size());
+    return world.parent_path() / uri;
+}
 
 /// What keeps a file from being SDF at all, or nothing. sdformat would only say that it cannot read it, after
 /// trying it as a robot description.
@@ -35,13 +53,24 @@ std::optional<std::string> xml_error_of(const std::filesystem::path& file, bool 
     }
     const std::string root = document.RootElement() == nullptr ? "" : document.RootElement()->Name();
     if (root != "sdf") return "not an SDF file: expected the root element 'sdf', found '" + root + "'";
-    FirstInclude include;
-    if (!may_include) document.Accept(&include);
-    if (include.line() == 0) return std::nullopt;
-    return "line " + std::to_string(include.line()) +
-           ": <include> is not read in a world inside a recording: give the world by its own option, or "
-           "write "
-           "the model out";
+    Includes includes;
+    document.Accept(&includes);
+    for (const Include& include : includes.found()) {
+        const std::string line = "line " + std::to_string(include.line);
+        // sdformat looks for what is included in folders of its own choice, too.
+        if (!may_include)
+            return line +
+                   ": <include> is not read in a world inside a recording: give the world by its own option, "
+                   "or write the model out";
+        const auto place = place_of(include.uri, file);
+        std::error_code error;
+        const bool is_model = std::filesystem::is_directory(place, error);
+        const auto kind = rig::other_than_a_file(is_model ? place / "model.config" : place);
+        if (!kind.empty())
+            return line + ": <include> of '" + include.uri + "', which is " + std::string(kind) +
+                   ", not an ordinary file or a model's folder";
+    }
+    return std::nullopt;
 }
 
 struct SdfModule {

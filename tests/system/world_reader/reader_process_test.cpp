@@ -175,6 +175,21 @@ TEST_F(ReaderProcessTest, includes_nothing_in_a_world_of_a_folder) {
                 AllOf(HasSubstr("w.sdf: line 3"), HasSubstr("<include>")));
 }
 
+TEST_F(ReaderProcessTest, waits_at_no_pipe_that_is_included) {
+    fs::create_directories(scratch_ / "model");
+    ASSERT_EQ(::mkfifo((scratch_ / "pipe.sdf").c_str(), 0600), 0);
+    ASSERT_EQ(::mkfifo((scratch_ / "model/model.config").c_str(), 0600), 0);
+    const std::string absolute = (scratch_ / "pipe.sdf").string();
+    for (const std::string& uri :
+         {absolute, "file://" + absolute, std::string("pipe.sdf"), std::string("model")}) {
+        const auto world = scratch_.write("w.sdf", "<sdf version='1.9'>\n<world name='w'>\n<include><uri>" +
+                                                       uri + "</uri></include></world></sdf>");
+        EXPECT_THAT(error_of_world(world, {.patience = std::chrono::seconds(5)}),
+                    AllOf(HasSubstr("w.sdf: line 3"), HasSubstr("a named pipe")))
+            << uri;
+    }
+}
+
 TEST_F(ReaderProcessTest, reads_no_world_outside_of_its_folder) {
     make_world_with("");
     const auto outside = scratch_.write("w.sdf", "<sdf version='1.9'/>");
