@@ -1,12 +1,15 @@
-// octoskin repair: ends what an octoskin left half moved that was killed while it put files in their places.
+// octoskin repair: ends what an octoskin left half moved that was killed while it put files in their places,
+// and removes what it had not come to move.
 #include <fmt/format.h>
 
 #include <memory>
 
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/recording/file_lock.hpp"
 #include "host/apps/recording/file_set.hpp"
 #include "host/io/folder/open_folder.hpp"
+#include "host/io/mapfile/atomic_file.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -28,15 +31,33 @@ bool is_finished(const OpenFolder& folder) {
     return true;
 }
 
+/// Drafts of killed processes, of which nothing had come to its place. Of a process that lives they are its
+/// own: it holds the lock.
+bool is_cleared(const OpenFolder& folder) {
+    const auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
+    if (!lock) return false;
+    std::size_t drafts = remove_leftovers(folder);
+    if (folder.kind_of(FileSet::kDraftFolder) == EntryKind::folder &&
+        folder.remove_all(FileSet::kDraftFolder))
+        ++drafts;
+    if (drafts > 0) print("{}: drafts of killed runs are removed: {}\n", folder.shown().string(), drafts);
+    return drafts > 0;
+}
+
+bool is_repaired(const OpenFolder& folder) {
+    const bool is_any = is_finished(folder);
+    return is_cleared(folder) || is_any;
+}
+
 void repair(const std::filesystem::path& named) {
     const auto folder = OpenFolder::open(named, FolderAccess::write);
     if (!folder) throw CommandFailure(error_of(folder.error()));
-    bool is_any = is_finished(*folder);
+    bool is_any = is_repaired(*folder);
     for (const char* const name : kFoldersWithin) {
         if (folder->kind_of(name) != EntryKind::folder) continue;
         const auto within = folder->open_folder(name);
         if (!within) throw CommandFailure(error_of(within.error()));
-        is_any = is_finished(*within) || is_any;
+        is_any = is_repaired(*within) || is_any;
     }
     if (!is_any) print("{}: nothing is half moved there\n", named.string());
 }

@@ -183,6 +183,21 @@ TEST_F(FolderWalk, one_that_was_left_half_moved_is_repaired_on_demand_or_by_what
     EXPECT_EQ(octoskin("repair " + path("absent")).exit_code, 66);
 }
 
+TEST_F(FolderWalk, drafts_of_killed_runs_go_with_a_repair) {
+    make_template();
+    ASSERT_TRUE(lay_in_recording(Trap::folder, ".octoskin-part"));
+    const fs::path rec = directory_ / "rec";
+    fs::create_directories(rec / "maps");
+    for (const char* name : {".octoskin-part/can.log", ".scores.json.octoskin-part",
+                             "maps/.fused.ot.octoskin-part", "mine.octoskin-part", ".mine"})
+        write(rec / name, "half");
+    EXPECT_EQ(expect_harmless("repair " + path("rec"), "drafts").exit_code, 0);
+    for (const char* gone : {".octoskin-part", ".scores.json.octoskin-part", "maps/.fused.ot.octoskin-part"})
+        EXPECT_FALSE(fs::exists(rec / gone)) << gone;
+    for (const char* kept : {"can.log", "meta.yaml", "mine.octoskin-part", ".mine"})
+        EXPECT_TRUE(fs::exists(rec / kept)) << kept;
+}
+
 TEST_F(FolderWalk, a_link_in_the_path_that_was_typed_is_followed) {
     make_template();
     fs::create_directory_symlink("template", directory_ / "rec");
