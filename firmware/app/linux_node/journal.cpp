@@ -1,9 +1,12 @@
 #include "firmware/app/linux_node/journal.hpp"
 
+#include <unistd.h>
+
 #include <array>
 #include <cstdio>
 
 #include "common/wire/names.hpp"
+#include "firmware/port/linux/line_writer.hpp"
 
 namespace octoskin::linux_node {
 namespace {
@@ -38,7 +41,8 @@ const char* words(node::CanState state) {
 
 void say(const std::string& what) {
     // One write a line, so that lines of several nodes do not mix.
-    (void)std::fputs(("octoskin-node: " + what + "\n").c_str(), stderr);
+    static linux_port::LineWriter writer(STDERR_FILENO);
+    writer.add("octoskin-node: " + what + "\n");
 }
 
 void Journal::started(const NodeConfig& config, const std::string& can, std::uint32_t build_id) {

@@ -14,7 +14,7 @@
 
 namespace octoskin::linux_node {
 
-/// One line, with the program's name.
+/// One line, with the program's name. Never waits for what reads it; at the end of the program for 1 s.
 void say(const std::string& what);
 
 class Journal {
