@@ -90,8 +90,10 @@ void tell_warnings(const Settings& settings) {
 
 /// What lives while the daemon does. The loop comes first: whatever watches through it goes before it.
 struct Daemon::Parts {
-    Parts(DaemonRequest request_in, Settings settings_in, Pipeline pipeline_in)
-        : request(std::move(request_in)),
+    Parts(DaemonRequest request_in, Settings settings_in, Pipeline pipeline_in,
+          std::shared_ptr<const LogQueue> log_in)
+        : log(std::move(log_in)),
+          request(std::move(request_in)),
           settings(std::move(settings_in)),
           pipeline(std::move(pipeline_in)),
           inputs(request, settings.host.rig, loop, pipeline, recordings),
@@ -123,6 +125,7 @@ struct Daemon::Parts {
     [[nodiscard]] DaemonView view() const;
     std::string answer(const std::string& line);
 
+    std::shared_ptr<const LogQueue> log;
     DaemonRequest request;
     Settings settings;
     EventLoop loop;
@@ -146,13 +149,15 @@ struct Daemon::Parts {
     std::vector<EventSource> sources;
 };
 
-Result<std::unique_ptr<Daemon>, AppError> Daemon::build(const DaemonRequest& request) {
+Result<std::unique_ptr<Daemon>, AppError> Daemon::build(const DaemonRequest& request,
+                                                        std::shared_ptr<const LogQueue> log) {
     auto settings = read_settings(request);
     if (!settings) return unexpected(settings.error());
     tell_warnings(*settings);
     auto pipeline = make_pipeline(request, *settings);
     if (!pipeline) return unexpected(pipeline.error());
-    auto parts = std::make_unique<Parts>(request, std::move(settings).value(), std::move(pipeline).value());
+    auto parts = std::make_unique<Parts>(request, std::move(settings).value(), std::move(pipeline).value(),
+                                         std::move(log));
     if (const auto taken = parts->take_sockets(); !taken) return unexpected(taken.error());
     if (const auto taken = parts->take_folder(); !taken) return unexpected(taken.error());
     parts->watch();
@@ -397,6 +402,7 @@ DaemonView Daemon::Parts::view() const {
             .is_listen_only = request.is_listen_only,
             .camera = inputs.camera(),
             .used = last_used,
+            .log = log->record(),
             .saves = keeper->record(),
             .maps_problem = home->problem(),
             .recorder = recordings.recorder(),

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/result.hpp"
+#include "host/apps/daemon/log_queue.hpp"
 #include "host/apps/daemon/settings.hpp"
 #include "host/apps/recording/app_error.hpp"
 
@@ -14,8 +15,9 @@ namespace octoskin {
 class Daemon {
   public:
     /// Reads rig and robot, takes the sockets, loads the map that was saved last. A CAN interface or camera
-    /// that is not there yet is no error.
-    [[nodiscard]] static Result<std::unique_ptr<Daemon>, AppError> build(const DaemonRequest& request);
+    /// that is not there yet is no error. `log`: what its status tells of it.
+    [[nodiscard]] static Result<std::unique_ptr<Daemon>, AppError> build(const DaemonRequest& request,
+                                                                         std::shared_ptr<const LogQueue> log);
     ~Daemon();
 
     /// Until SIGTERM or SIGINT; then the map is saved, and it returns within 5 s, saved or not; with a map of

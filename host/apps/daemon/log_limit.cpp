@@ -1,7 +1,6 @@
 #include "host/apps/daemon/log_limit.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <utility>
@@ -53,12 +52,6 @@ void LogLimit::set_pattern(const std::string& pattern) {
 void LogLimit::set_formatter(std::unique_ptr<spdlog::formatter> formatter) {
     const std::lock_guard lock(mutex_);
     for (const auto& each : sinks_) each->set_formatter(formatter->clone());
-}
-
-void limit_log() {
-    auto& sinks = spdlog::default_logger()->sinks();
-    const auto limited = std::make_shared<LogLimit>(sinks);
-    sinks = {limited};
 }
 
 }  // namespace octoskin

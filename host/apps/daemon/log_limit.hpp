@@ -48,7 +48,4 @@ class LogLimit final : public spdlog::sinks::sink {
     std::array<Level, spdlog::level::n_levels> levels_;
 };
 
-/// From now on the log of this process has that bound.
-void limit_log();
-
 }  // namespace octoskin

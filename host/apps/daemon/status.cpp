@@ -329,6 +329,10 @@ Json status_json(const DaemonView& view) {
              {{"count", view.reloads.count},
               {"unchanged", view.reloads.unchanged},
               {"dropped", view.reloads.dropped}}},
+            {"log",
+             {{"dropped", view.log.dropped},
+              {"waiting", view.log.waiting},
+              {"stuck_s", age_s(view.log.stuck_since, view.now)}}},
             {"account", account_json(*view.pipeline)}};
 }
 

@@ -11,6 +11,7 @@
 #include "common/time.hpp"
 #include "host/apps/daemon/camera_feed.hpp"
 #include "host/apps/daemon/inputs.hpp"
+#include "host/apps/daemon/log_queue.hpp"
 #include "host/apps/daemon/map_keeper.hpp"
 #include "host/apps/daemon/problem_log.hpp"
 #include "host/apps/daemon/recorder.hpp"
@@ -60,6 +61,7 @@ struct DaemonView {
     bool is_listen_only = false;
     std::optional<CameraRecord> camera;  ///< empty without a camera
     LastUsed used;
+    LogRecord log;
     SaveRecord saves;
     std::string maps_problem;            ///< what has become of the maps' folder; empty: it is there
     const Recorder* recorder = nullptr;  ///< at work, or the last one; null if there was none

@@ -34,6 +34,7 @@ constexpr std::array kStatusMeanings = {
             "taken, below"},
     Meaning{"", "map", "the fused map, below"},
     Meaning{"", "reloads", "rig, robot and mapping read again, below"},
+    Meaning{"", "log", "the daemon's own log on its way to standard error, below"},
     Meaning{"", "account",
             "one object for each of \"CAN frames\", \"readings\", \"joint samples\" and \"depth frames\", "
             "below; counts since the newest reload"},
@@ -307,6 +308,9 @@ constexpr std::array kStatusMeanings = {
     Meaning{
         "reloads", "dropped",
         "readings, joint samples and depth frames that waited at a reload and could not be used any more"},
+    Meaning{"log", "dropped", "lines left out, as what reads the log took none for too long"},
+    Meaning{"log", "waiting", "lines that are not written yet"},
+    Meaning{"log", "stuck_s", "for how long one line is being written; null: none is"},
     Meaning{"account", "in", "what came"},
     Meaning{"account", "used", "what went into the map, or was taken in"},
     Meaning{"account", "pending", "what waits, for a joint state or for others to arrive"},

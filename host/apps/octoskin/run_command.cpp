@@ -7,7 +7,7 @@
 
 #include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/daemon/daemon.hpp"
-#include "host/apps/daemon/log_limit.hpp"
+#include "host/apps/daemon/log_queue.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
@@ -31,9 +31,9 @@ void refuse_few_descriptors() {
 void run_daemon(DaemonRequest& request) {
     refuse_few_descriptors();
     request.can_descriptor = descriptor_of(request.interface);
-    if (std::getenv("JOURNAL_STREAM") != nullptr) set_journal_format();
-    limit_log();
-    auto daemon = Daemon::build(request);
+    const auto log = guard_log();
+    std::getenv("JOURNAL_STREAM") != nullptr ? set_journal_format() : set_log_format();
+    auto daemon = Daemon::build(request, log);
     if (!daemon) throw CommandFailure(daemon.error());
     const ExitCode outcome = (*daemon)->run();
     if (outcome != ExitCode::ok) throw CommandFailure({outcome, "ended by a failure: see above"});

@@ -33,4 +33,7 @@ void add_camera(const DaemonView& view, Problems& problems);
 // --- map_problems.cpp: the map, its folder, the recording, the newest reload
 void add_map(const DaemonView& view, Problems& problems);
 
+// --- log_problems.cpp
+void add_log(const DaemonView& view, Problems& problems);
+
 }  // namespace octoskin

@@ -17,6 +17,7 @@ std::vector<Problem> problems(const DaemonView& view) {
         add_camera(view, problems);
     }
     add_map(view, problems);
+    add_log(view, problems);
     return problems;
 }
 

@@ -1,0 +1,20 @@
+#include <fmt/format.h>
+
+#include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/problems/problem_groups.hpp"
+
+namespace octoskin {
+
+void add_log(const DaemonView& view, Problems& problems) {
+    constexpr Nanoseconds kStuck{3'000'000'000};
+    const LogRecord& log = view.log;
+    if (!log.stuck_since || view.now - *log.stuck_since < kStuck) return;
+    problems.push_back(
+        {"log stuck",
+         fmt::format(
+             "the log takes no line since {:.0f} s: what reads it (a pager, a terminal with Ctrl-S, a "
+             "pipe, the journal) has stopped; {} lines wait, {} were dropped; mapping goes on",
+             seconds_of(view.now - *log.stuck_since), log.waiting, log.dropped)});
+}
+
+}  // namespace octoskin
