@@ -1,5 +1,6 @@
 #include "host/apps/daemon/daemon.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 
@@ -16,8 +17,8 @@
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/depth_thread.hpp"
 #include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/daemon/home_watch.hpp"
 #include "host/apps/daemon/inputs.hpp"
-#include "host/apps/daemon/map_home.hpp"
 #include "host/apps/daemon/map_keeper.hpp"
 #include "host/apps/daemon/problem_log.hpp"
 #include "host/apps/daemon/query_desk.hpp"
@@ -45,10 +46,12 @@ Nanoseconds end_patience(std::size_t map_bytes) {
     return kSmallMap + Nanoseconds{kNsPerByte * static_cast<std::int64_t>(map_bytes - kSmallBytes)};
 }
 
+/// With a small map the 10 s of the unit's TimeoutStopSec.
+constexpr Nanoseconds kEndMargin{6'500'000'000};
+
 /// The service manager waits as long, and its watchdog too: the loop that feeds it has ended.
 void tell_end(Nanoseconds patience) {
-    constexpr Nanoseconds kMargin{6'500'000'000};  // with a small map the 10 s of the unit's TimeoutStopSec
-    const auto all = std::chrono::duration_cast<std::chrono::microseconds>(patience + kMargin);
+    const auto all = std::chrono::duration_cast<std::chrono::microseconds>(patience + kEndMargin);
     (void)sd_notifyf(0, "STOPPING=1\nEXTEND_TIMEOUT_USEC=%lld\nWATCHDOG_USEC=%lld",
                      static_cast<long long>(all.count()), static_cast<long long>(all.count()));
 }
@@ -104,7 +107,8 @@ struct Daemon::Parts {
     Status<AppError> take_folder();
     void watch();
     void attend();
-    void look_at_home();
+    void go_where_home_is(std::optional<OpenFolder> next);
+    [[nodiscard]] std::optional<HostTime> maps_silent_since(HostTime now) const;
     void save_map();
     std::string save_last_map(HostTime end);
     std::uint64_t settle_pipeline();
@@ -133,7 +137,7 @@ struct Daemon::Parts {
     DepthThread depth_thread;   ///< goes before the pipeline that it works for
     RecordRequests recordings;  ///< lets go of the pipeline before that goes
     Inputs inputs;
-    std::optional<MapHome> home;
+    std::optional<HomeWatch> home;
     std::optional<MapKeeper> keeper;
     std::unique_ptr<ControlSocket> control;
     QueryDesk queries;
@@ -207,8 +211,8 @@ Status<AppError> Daemon::Parts::take_sockets() {
 Status<AppError> Daemon::Parts::take_folder() {
     auto taken = MapHome::take(request.map_folder);
     if (!taken) return unexpected(taken.error());
+    keeper.emplace(NamedFolder(taken->folder()));
     home.emplace(std::move(taken).value());
-    keeper.emplace(NamedFolder(home->folder()));
     auto saved = keeper->load(settings.mapping.map);
     if (!saved) return unexpected(saved.error());
     if (!saved->has_value()) return Done{};
@@ -239,7 +243,8 @@ void Daemon::Parts::watch() {
         for (const auto& [ticket, line] : queries.serve(pipeline, of_map)) control->reply(ticket, line);
     }));
     sources.push_back(loop.every(kAttendPeriod, [this] { attend(); }));
-    sources.push_back(loop.every(kHomePeriod, [this] { look_at_home(); }));
+    sources.push_back(loop.every(kHomePeriod, [this] { home->ask(); }));
+    sources.push_back(loop.on_readable(home->descriptor(), [this] { go_where_home_is(home->take()); }));
     sources.push_back(loop.every(request.save_period, [this] { save_map(); }));
     inputs.watch(settings.host.rig);
 }
@@ -254,25 +259,42 @@ void Daemon::Parts::attend() {
     for (const std::string& line : register_log.news(pipeline.intake().nodes())) spdlog::info("{}", line);
 }
 
-/// Whether maps still go where a person looks for them.
-void Daemon::Parts::look_at_home() {
-    if (!home->look()) return;
-    keeper->move_to(NamedFolder(home->folder()));
+/// Where a person looks for them.
+void Daemon::Parts::go_where_home_is(std::optional<OpenFolder> next) {
+    if (!next) return;
+    keeper->move_to(NamedFolder(std::move(*next)));
     spdlog::warn("{}: the maps' folder was removed and made anew: the map goes on being saved there",
                  home->where());
 }
 
+/// Since when the maps' folder does not answer; empty: it does, or may only be slow.
+std::optional<HostTime> Daemon::Parts::maps_silent_since(HostTime now) const {
+    constexpr Nanoseconds kLookMax{3'000'000'000};
+    const auto& looking = home->looking_since();
+    if (looking && now - *looking > kLookMax) return looking;
+    const auto saving = keeper->record().saving_since;
+    if (!saving) return std::nullopt;
+    const Nanoseconds save_max = end_patience(pipeline.maps().fused()->memory_bytes()) + kEndMargin;
+    return now - *saving > save_max ? saving : std::nullopt;
+}
+
 void Daemon::Parts::save_map() {
-    look_at_home();
     (void)keeper->save(*pipeline.maps().fused());  // counted if one is at work still; the next is not far
 }
 
 /// Why it could not be saved by `end`; empty: it is saved.
 std::string Daemon::Parts::save_last_map(HostTime end) {
-    look_at_home();
-    if (!keeper->finish(end - monotonic_now())) return "the disk took too long for the save before";
+    constexpr Nanoseconds kLookMax{500'000'000};
+    go_where_home_is(home->look_again(std::min(kLookMax, end - monotonic_now())));
+    const auto too_long = [this](const char* what) {
+        const auto silent = home->looking_since();
+        return silent ? fmt::format("the maps' folder does not answer since {:.1f} s",
+                                    seconds_of(monotonic_now() - *silent))
+                      : std::string(what);
+    };
+    if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long for the save before");
     keeper->save_last(pipeline.take_fused());
-    if (!keeper->finish(end - monotonic_now())) return "the disk took too long";
+    if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long");
     return keeper->record().error;
 }
 
@@ -404,6 +426,7 @@ DaemonView Daemon::Parts::view() const {
             .used = last_used,
             .log = log->record(),
             .saves = keeper->record(),
+            .maps_silent_since = maps_silent_since(now),
             .maps_problem = home->problem(),
             .recorder = recordings.recorder(),
             .recording_refusal = recordings.refusal(),

@@ -107,6 +107,7 @@ bool MapKeeper::save(const FusedMap& map) {
         const std::lock_guard lock(work_->mutex);
         work_->record.skipped += work_->is_busy ? 1U : 0U;
         if (std::exchange(work_->is_busy, true)) return false;
+        work_->record.saving_since = monotonic_now();
     }
     try {
         FusedMap copy = copier_(map);  // takes long, so nobody is kept waiting for the lock
@@ -128,6 +129,7 @@ void MapKeeper::save_last(FusedMap map) {
         const std::lock_guard lock(work_->mutex);
         assert(!work_->is_busy);
         work_->is_busy = true;
+        work_->record.saving_since = monotonic_now();
         work_->waiting.emplace(std::move(map));
     }
     work_->changed.notify_all();
@@ -167,6 +169,7 @@ void MapKeeper::end_save(Work& shared, std::string error) {
     {
         const std::lock_guard lock(shared.mutex);
         shared.is_busy = false;
+        shared.record.saving_since.reset();
         ++(error.empty() ? shared.record.saved : shared.record.failed);
         if (error.empty()) shared.record.newest = monotonic_now();
         shared.record.error = std::move(error);

@@ -29,7 +29,8 @@ struct SaveRecord {
     std::uint64_t failed = 0;
     std::uint64_t skipped = 0;  ///< asked for while one was being written
     std::optional<HostTime> newest;
-    std::string error;  ///< of the newest save; empty if it went well
+    std::string error;                          ///< of the newest save; empty if it went well
+    std::optional<HostTime> saving_since = {};  ///< the save that is at work; empty: none is
 };
 
 class MapKeeper {

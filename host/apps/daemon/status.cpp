@@ -250,7 +250,8 @@ Json map_json(const DaemonView& view) {
             {"saved", view.saves.saved},
             {"saves_failed", view.saves.failed},
             {"saves_skipped", view.saves.skipped},
-            {"saved_age_s", age_s(view.saves.newest, view.now)}};
+            {"saved_age_s", age_s(view.saves.newest, view.now)},
+            {"folder_silent_s", age_s(view.maps_silent_since, view.now)}};
 }
 
 Json account_json(const Pipeline& pipeline) {

@@ -63,10 +63,11 @@ struct DaemonView {
     LastUsed used;
     LogRecord log;
     SaveRecord saves;
-    std::string maps_problem;            ///< what has become of the maps' folder; empty: it is there
-    const Recorder* recorder = nullptr;  ///< at work, or the last one; null if there was none
-    std::string recording_refusal;       ///< why the newest one could not begin; empty if it could
-    std::string reload_error;            ///< of the newest SIGHUP; empty if it went well
+    std::optional<HostTime> maps_silent_since;  ///< a save or a look at the folder hangs; empty: none does
+    std::string maps_problem;                   ///< what has become of the maps' folder; empty: it is there
+    const Recorder* recorder = nullptr;         ///< at work, or the last one; null if there was none
+    std::string recording_refusal;              ///< why the newest one could not begin; empty if it could
+    std::string reload_error;                   ///< of the newest SIGHUP; empty if it went well
     ReloadCounts reloads;
     std::optional<HostTime> reloaded;  ///< when SIGHUP changed something last
 

@@ -303,6 +303,8 @@ constexpr std::array kStatusMeanings = {
     Meaning{"map", "saves_failed", "saves that failed; problems has why"},
     Meaning{"map", "saves_skipped", "saves left out, as the one before was still being written: a slow disk"},
     Meaning{"map", "saved_age_s", "since the newest good save; null: none yet"},
+    Meaning{"map", "folder_silent_s",
+            "for how long the maps' folder has not answered a save or a look at it; null: it answers"},
     Meaning{"reloads", "count", "how often SIGHUP brought new settings"},
     Meaning{"reloads", "unchanged", "how often SIGHUP found the files as they were: nothing changed then"},
     Meaning{

@@ -7,8 +7,10 @@
 
 #include <chrono>
 #include <csignal>
+#include <optional>
 #include <string>
 
+#include "tests/support/held_opens.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
 
 namespace octoskin::test {
@@ -47,6 +49,30 @@ TEST_F(HangingTest, maps_and_ends_while_no_line_of_its_log_is_taken) {
     EXPECT_EQ(daemon_->wait(5s), 0);
     EXPECT_TRUE(std::filesystem::exists(daemon_->maps() / "fused.ot"));
     ::close(pipe);
+}
+
+/// What a network mount does whose server is gone.
+TEST_F(HangingTest, maps_on_and_ends_while_the_maps_folder_does_not_answer) {
+    start({"--no-camera", "--save-every", "1"});
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    const auto is_saved = [](const Json& now) { return now["map"]["saved"].get<int>() > 0; };
+    ASSERT_TRUE(daemon_->wait_until(is_saved, 10s)) << daemon_->log();
+    std::optional<testing_support::HeldOpens> held(daemon_->maps());
+    if (!*held) GTEST_SKIP() << "needs CAP_SYS_ADMIN";
+    const auto is_silent = [](const Json& now) {
+        return now["map"]["folder_silent_s"].is_number() && has_problem(now, "folder does not answer");
+    };
+    ASSERT_TRUE(daemon_->wait_until(is_silent, 20s)) << daemon_->status()["map"].dump();
+    EXPECT_TRUE(maps_on());
+    const int saved = daemon_->status()["map"]["saved"].get<int>();
+    held.reset();
+    const auto answers = [saved](const Json& now) {
+        return now["map"]["folder_silent_s"].is_null() && now["map"]["saved"].get<int>() > saved + 1;
+    };
+    EXPECT_TRUE(daemon_->wait_until(answers, 10s)) << daemon_->status()["map"].dump();
+    held.emplace(daemon_->maps());
+    daemon_->signal(SIGTERM);
+    EXPECT_EQ(daemon_->wait(8s), 73);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "host/apps/daemon/clocks.hpp"
+
 namespace octoskin {
 
 void add_map(const DaemonView& view, Problems& problems) {
@@ -19,6 +21,15 @@ void add_map(const DaemonView& view, Problems& problems) {
                                         "refused (no_memory); lower map.memory_max_mib in the mapping file, "
                                         "or give the service more",
                                         map.counters().no_memory)});
+    }
+    if (view.maps_silent_since) {
+        problems.push_back(
+            {"maps folder silent",
+             fmt::format(
+                 "the maps' folder does not answer since {:.0f} s, and the map is not saved: the file "
+                 "system that it lies on hangs (a network mount, FUSE, a failing disk); mapping, "
+                 "queries and recordings elsewhere go on",
+                 seconds_of(view.now - *view.maps_silent_since))});
     }
     if (!view.maps_problem.empty()) problems.push_back({"maps folder", view.maps_problem, "maps"});
     if (!view.saves.error.empty())

@@ -200,12 +200,17 @@ TEST(MapKeeper, copies_nothing_while_it_writes_and_counts_what_it_skipped) {
     const testing_support::ScratchFolder folder;
     SlowDisk disk;
     MapKeeper keeper(folder.path(), disk.writer());
+    EXPECT_FALSE(keeper.record().saving_since);
     EXPECT_TRUE(keeper.save(some_map(5)));
     disk.wait_for_write();
+    const auto since = keeper.record().saving_since;
+    EXPECT_TRUE(since);
     EXPECT_FALSE(keeper.save(some_map(6)));
     EXPECT_FALSE(keeper.save(some_map(7)));
+    EXPECT_EQ(keeper.record().saving_since, since);
     disk.open();
     ASSERT_TRUE(keeper.finish(kPatience));
+    EXPECT_FALSE(keeper.record().saving_since);
     EXPECT_EQ(disk.written(), 5U);
     EXPECT_TRUE(keeper.save(some_map(8)));
     ASSERT_TRUE(keeper.finish(kPatience));

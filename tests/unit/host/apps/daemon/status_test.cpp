@@ -330,6 +330,10 @@ TEST_F(StatusTest, has_the_map_with_its_memory_and_saves) {
     EXPECT_NEAR(map["saved_age_s"], 0.25, kTiny);
     view_.saves.newest.reset();
     EXPECT_EQ(status()["map"]["saved_age_s"], nullptr);
+    EXPECT_EQ(status()["map"]["folder_silent_s"], nullptr);
+    view_.maps_silent_since = host_at(1.55);
+    EXPECT_NEAR(status()["map"]["folder_silent_s"], 3.0, kTiny);
+    EXPECT_NE(told("maps folder silent"), "");
 }
 
 TEST_F(StatusTest, has_how_much_of_the_map_has_no_time) {

@@ -1,0 +1,35 @@
+// A file system that does not answer: whatever opens a file, or something in a folder, waits for as long as
+// this lives (fanotify(7), which needs CAP_SYS_ADMIN). The test's own process, too.
+#pragma once
+
+#include <fcntl.h>
+#include <sys/fanotify.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace octoskin::testing_support {
+
+class HeldOpens {
+  public:
+    explicit HeldOpens(const std::filesystem::path& place)
+        : descriptor_(::fanotify_init(FAN_CLASS_CONTENT | FAN_CLOEXEC | FAN_NONBLOCK, O_RDONLY)) {
+        constexpr std::uint64_t kEvents = FAN_OPEN_PERM | FAN_ONDIR | FAN_EVENT_ON_CHILD;
+        is_held_ = descriptor_ >= 0 &&
+                   ::fanotify_mark(descriptor_, FAN_MARK_ADD, kEvents, AT_FDCWD, place.c_str()) == 0;
+    }
+    ~HeldOpens() {
+        if (descriptor_ >= 0) ::close(descriptor_);  // all that wait go on
+    }
+    HeldOpens(const HeldOpens&) = delete;
+    HeldOpens& operator=(const HeldOpens&) = delete;
+
+    /// False: this process may not hold anything.
+    [[nodiscard]] explicit operator bool() const noexcept { return is_held_; }
+
+  private:
+    int descriptor_;
+    bool is_held_ = false;
+};
+
+}  // namespace octoskin::testing_support
