@@ -25,6 +25,7 @@
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/daemon/register_log.hpp"
 #include "host/apps/daemon/reload_pace.hpp"
+#include "host/apps/daemon/side_task.hpp"
 #include "host/apps/daemon/status.hpp"
 #include "host/apps/querying/query_answer.hpp"
 #include "host/apps/recording/shortage.hpp"
@@ -89,6 +90,28 @@ void tell_warnings(const Settings& settings) {
     for (const std::string& note : settings.host.notes) spdlog::info("{}", note);
 }
 
+/// What a reload goes on with.
+struct Next {
+    Settings settings;
+    Pipeline pipeline;
+};
+/// Empty: the files say what holds already.
+using NextResult = Result<std::optional<Next>, AppError>;
+
+/// Beside the loop: it touches nothing that changes.
+NextResult read_next(const DaemonRequest& request, const RecordedSettings& held) {
+    try {
+        auto read = read_settings(request);
+        if (!read) return unexpected(read.error());
+        if (read->recorded == held) return std::optional<Next>{};
+        auto made = make_pipeline(request, *read);
+        if (!made) return unexpected(made.error());
+        return std::optional(Next{std::move(read).value(), std::move(made).value()});
+    } catch (const std::bad_alloc&) {
+        return fail(ExitCode::bad_config, "no memory for what the files say");
+    }
+}
+
 }  // namespace
 
 /// What lives while the daemon does. The loop comes first: whatever watches through it goes before it.
@@ -107,25 +130,22 @@ struct Daemon::Parts {
     Status<AppError> take_folder();
     void watch();
     void attend();
+    void tell_problems();
     void go_where_home_is(std::optional<OpenFolder> next);
     [[nodiscard]] std::optional<HostTime> maps_silent_since(HostTime now) const;
     void save_map();
     std::string save_last_map(HostTime end);
     std::uint64_t settle_pipeline();
-    struct Next {
-        Settings settings;
-        Pipeline pipeline;
-    };
     [[nodiscard]] std::string why_map_ends(const Settings& next) const;
-    /// Empty: the files say what holds already.
-    [[nodiscard]] Result<std::optional<Next>, AppError> read_next() const;
     void keep_within(const MapConfig& next);
     [[nodiscard]] bool take_limits(const MapConfig& next);
     [[nodiscard]] bool go_on_with(Next& next);
     void ask_reload();
-    void reload();
+    void begin_reload();
+    void end_reload();
+    void obey_reload(NextResult next);
     /// Whether anything changed.
-    [[nodiscard]] bool take_next();
+    [[nodiscard]] bool take_next(NextResult next);
     [[nodiscard]] DaemonView view() const;
     std::string answer(const std::string& line);
 
@@ -146,6 +166,7 @@ struct Daemon::Parts {
     ReloadCounts reloads;
     std::optional<HostTime> reloaded;
     ReloadPace reload_pace;
+    SideTask<NextResult> reading;  ///< of the files, for SIGHUP
     ProblemLog problem_log;
     RegisterLog register_log;
     LastUsed last_used;
@@ -232,6 +253,7 @@ void Daemon::Parts::watch() {
         loop.stop(static_cast<int>(ExitCode::no_resources));
     }));
     sources.push_back(loop.on_signal(SIGHUP, [this] { ask_reload(); }));
+    sources.push_back(loop.on_readable(reading.descriptor(), [this] { end_reload(); }));
     pipeline.work_beside(&depth_thread);
     sources.push_back(loop.on_readable(depth_thread.descriptor(), [this] {
         depth_thread.acknowledge();
@@ -253,10 +275,14 @@ void Daemon::Parts::attend() {
     inputs.attend();
     recordings.attend(monotonic_now());
     last_used.note(pipeline, monotonic_now());
-    if (reload_pace.is_due(monotonic_now())) reload();
+    if (reload_pace.is_due(monotonic_now())) begin_reload();
+    tell_problems();
+    for (const std::string& line : register_log.news(pipeline.intake().nodes())) spdlog::info("{}", line);
+}
+
+void Daemon::Parts::tell_problems() {
     const DaemonView now = view();
     problem_log.tell(problems(now), now.now, now.is_settling());
-    for (const std::string& line : register_log.news(pipeline.intake().nodes())) spdlog::info("{}", line);
 }
 
 /// Where a person looks for them.
@@ -322,22 +348,6 @@ std::string Daemon::Parts::why_map_ends(const Settings& next) const {
            "; end octoskin, move it and fused.bt away and start octoskin to begin with an empty map";
 }
 
-/// All that may speak against a reload, before anything has changed.
-Result<std::optional<Daemon::Parts::Next>, AppError> Daemon::Parts::read_next() const {
-    try {
-        auto read = read_settings(request);
-        if (!read) return unexpected(read.error());
-        if (read->recorded == settings.recorded) return std::optional<Next>{};
-        const std::string why = why_map_ends(*read);
-        if (!why.empty()) return fail(ExitCode::bad_config, why);
-        auto made = make_pipeline(request, *read);
-        if (!made) return unexpected(made.error());
-        return std::optional(Next{std::move(read).value(), std::move(made).value()});
-    } catch (const std::bad_alloc&) {
-        return fail(ExitCode::bad_config, "no memory for what the files say");
-    }
-}
-
 /// What still waits must not make the map larger than it may be from then on: the next start would refuse it.
 void Daemon::Parts::keep_within(const MapConfig& next) {
     MapConfig both = settings.mapping.map;
@@ -384,21 +394,38 @@ bool Daemon::Parts::go_on_with(Next& next) {
 void Daemon::Parts::ask_reload() {
     const HostTime now = monotonic_now();
     const bool is_first = reload_pace.ask();
-    if (reload_pace.is_due(now)) return reload();
-    if (is_first)
+    if (reload_pace.is_due(now)) return begin_reload();
+    if (is_first && !reading.begun())
         spdlog::info("SIGHUP: the files are read in {:.1f} s, as they were a moment ago",
                      seconds_of(reload_pace.wait(now)));
 }
 
-void Daemon::Parts::reload() {
+void Daemon::Parts::begin_reload() {
     (void)sd_notify(0, "RELOADING=1");
-    const bool has_changed = take_next();
+    reload_pace.begin_reading();
+    try {
+        reading.begin([request = request, held = settings.recorded] { return read_next(request, held); });
+    } catch (const std::bad_alloc&) {
+        obey_reload(fail(ExitCode::bad_config, "no memory for what the files say"));
+    }
+}
+
+void Daemon::Parts::end_reload() {
+    if (auto next = reading.take()) obey_reload(std::move(*next));
+}
+
+void Daemon::Parts::obey_reload(NextResult next) {
+    const bool has_changed = take_next(std::move(next));
     reload_pace.obeyed(monotonic_now(), has_changed);
+    tell_problems();  // why it was refused, if it was
     (void)sd_notify(0, "READY=1");
 }
 
-bool Daemon::Parts::take_next() {
-    auto next = read_next();
+bool Daemon::Parts::take_next(NextResult next) {
+    if (next && next->has_value()) {
+        if (std::string why = why_map_ends((*next)->settings); !why.empty())
+            next = fail(ExitCode::bad_config, std::move(why));
+    }
     if (!next) reload_error = next.error().message;
     if (next && !next->has_value()) {
         ++reloads.unchanged;
@@ -407,7 +434,7 @@ bool Daemon::Parts::take_next() {
         return false;
     }
     if (next && go_on_with(**next)) return true;
-    spdlog::error("not reloaded");  // why, the next look at the problems tells
+    spdlog::error("not reloaded");  // why, the problems tell
     return next.has_value();
 }
 
@@ -431,7 +458,7 @@ DaemonView Daemon::Parts::view() const {
             .recorder = recordings.recorder(),
             .recording_refusal = recordings.refusal(),
             .reload_error = reload_error,
-            .reloads = reloads,
+            .reloads = {reloads.count, reloads.unchanged, reloads.dropped, reading.begun()},
             .reloaded = reloaded};
 }
 

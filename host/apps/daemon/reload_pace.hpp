@@ -18,22 +18,30 @@ class ReloadPace {
     /// again after 3 s.
     static constexpr Nanoseconds kAfterChange{4'000'000'000};
 
-    /// A SIGHUP came. True if it is the first that waits.
+    /// A SIGHUP came. True if it is the first that waits: one that comes while files are read waits, too.
     bool ask() noexcept { return !std::exchange(is_asked_, true); }
     /// One that came is to be obeyed now.
-    [[nodiscard]] bool is_due(HostTime now) const noexcept { return is_asked_ && wait(now).count() == 0; }
+    [[nodiscard]] bool is_due(HostTime now) const noexcept {
+        return is_asked_ && !is_reading_ && wait(now).count() == 0;
+    }
     /// So long one that comes now waits.
     [[nodiscard]] Nanoseconds wait(HostTime now) const noexcept {
         return next_ ? std::max(*next_ - now, Nanoseconds{0}) : Nanoseconds{0};
     }
-    /// All that came before `now` are obeyed, and that changed something or did not.
-    void obeyed(HostTime now, bool has_changed) noexcept {
+    /// The files are read now, for all that came so far.
+    void begin_reading() noexcept {
         is_asked_ = false;
+        is_reading_ = true;
+    }
+    /// All that came before `begin_reading` are obeyed, and that changed something or did not.
+    void obeyed(HostTime now, bool has_changed) noexcept {
+        is_reading_ = false;
         next_ = now + (has_changed ? kAfterChange : kAfterNothing);
     }
 
   private:
     bool is_asked_ = false;
+    bool is_reading_ = false;
     std::optional<HostTime> next_;
 };
 

@@ -44,6 +44,7 @@ struct ReloadCounts {
     std::uint64_t count = 0;
     std::uint64_t unchanged = 0;  ///< times that the files said what held already
     std::uint64_t dropped = 0;    ///< readings, joint samples, depth frames that waited and could not be used
+    std::optional<HostTime> reading_since = {};  ///< the files are being read; empty: they are not
 };
 
 /// All that there is to tell. What it points to must be there.

@@ -310,6 +310,7 @@ constexpr std::array kStatusMeanings = {
     Meaning{
         "reloads", "dropped",
         "readings, joint samples and depth frames that waited at a reload and could not be used any more"},
+    Meaning{"reloads", "reading_s", "for how long SIGHUP's files are being read; null: they are not"},
     Meaning{"log", "dropped", "lines left out, as what reads the log took none for too long"},
     Meaning{"log", "waiting", "lines that are not written yet"},
     Meaning{"log", "stuck_s", "for how long one line is being written; null: none is"},

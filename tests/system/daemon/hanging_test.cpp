@@ -75,5 +75,32 @@ TEST_F(HangingTest, maps_on_and_ends_while_the_maps_folder_does_not_answer) {
     EXPECT_EQ(daemon_->wait(8s), 73);
 }
 
+TEST_F(HangingTest, maps_on_while_the_files_of_a_reload_do_not_answer_and_obeys_it_when_they_do) {
+    const auto rig_named = [this](const char* name) {
+        return folder_.write("rig.yaml", std::string("extends: ") + kExperiment + "\nname: " + name + "\n");
+    };
+    const auto rig_file = rig_named("first");
+    start({"--no-camera"}, rig_file);
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    rig_named("second");
+    std::optional<testing_support::HeldOpens> held(rig_file);
+    if (!*held) GTEST_SKIP() << "needs CAP_SYS_ADMIN";
+    daemon_->signal(SIGHUP);
+    const auto is_read = [](const Json& now) {
+        return now["reloads"]["reading_s"].is_number() && has_problem(now, "are being read since");
+    };
+    ASSERT_TRUE(daemon_->wait_until(is_read, 10s)) << daemon_->status()["reloads"].dump();
+    EXPECT_TRUE(maps_on());
+    for (int i = 0; i < 3; ++i) daemon_->signal(SIGHUP);
+    EXPECT_EQ(daemon_->status()["rig"], "first");
+    held.reset();
+    const auto are_obeyed = [](const Json& now) {
+        return now["rig"] == "second" && now["reloads"]["unchanged"] == 1;
+    };
+    EXPECT_TRUE(daemon_->wait_until(are_obeyed, 10s)) << daemon_->status()["reloads"].dump();
+    EXPECT_EQ(daemon_->status()["reloads"]["count"], 1);
+    EXPECT_TRUE(daemon_->status()["reloads"]["reading_s"].is_null());
+}
+
 }  // namespace
 }  // namespace octoskin::test

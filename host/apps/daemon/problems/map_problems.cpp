@@ -45,6 +45,14 @@ void add_map(const DaemonView& view, Problems& problems) {
     if (!view.recording_refusal.empty())
         problems.push_back(
             {"recording refused", "the newest recording did not begin: " + view.recording_refusal});
+    constexpr Nanoseconds kReading{3'000'000'000};
+    if (view.reloads.reading_since && view.now - *view.reloads.reading_since > kReading) {
+        problems.push_back(
+            {"reload silent",
+             fmt::format("SIGHUP: rig, robot and mapping are being read since {:.0f} s: the file system that "
+                         "one of them lies on hangs; the old settings hold until they are here",
+                         seconds_of(view.now - *view.reloads.reading_since))});
+    }
     if (!view.reload_error.empty())
         problems.push_back({"reload " + view.reload_error,
                             "the newest reload was refused, and the old settings hold: " + view.reload_error,

@@ -388,7 +388,12 @@ TEST_F(StatusTest, names_nothing_that_is_learnt_anew_for_three_seconds_after_a_r
 TEST_F(StatusTest, has_the_recording_or_null_and_the_reloads) {
     EXPECT_EQ(status()["recording"], nullptr);
     view_.reloads = {.count = 2, .unchanged = 3, .dropped = 7};
-    EXPECT_EQ(status()["reloads"], Json::parse(R"({"count": 2, "unchanged": 3, "dropped": 7})"));
+    EXPECT_EQ(status()["reloads"],
+              Json::parse(R"({"count": 2, "unchanged": 3, "dropped": 7, "reading_s": null})"));
+    view_.reloads.reading_since = host_at(0.55);
+    EXPECT_NEAR(status()["reloads"]["reading_s"], 4.0, kTiny);
+    EXPECT_NE(told("reload silent"), "");
+    view_.reloads.reading_since.reset();
     Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, host_at(4.3));
     view_.recorder = &recorder;
     const Json recording = status()["recording"];
