@@ -19,6 +19,7 @@
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
+#include "host/io/socketcan/descriptor_disposal.hpp"
 #include "host/io/socketcan/passed_descriptors.hpp"
 
 namespace octoskin {
@@ -35,7 +36,8 @@ void forget_the_rest(int descriptor) {
     std::array<char, 4096> bytes{};
     ssize_t count = 1;
     constexpr int kReadsMax = 16;  // who sends without end has a broken connection
-    for (int i = 0; i < kReadsMax && count > 0; ++i) count = socketcan::receive_text(descriptor, bytes);
+    for (int i = 0; i < kReadsMax && count > 0 && socketcan::has_room_for_closing(); ++i)
+        count = socketcan::receive_text(descriptor, bytes);
 }
 
 bool has_sent_something(int descriptor) {
@@ -111,6 +113,14 @@ void ControlSocket::watch() {
 }
 
 void ControlSocket::accept() {
+    if (!socketcan::has_room_for_closing()) {
+        spdlog::warn(
+            "{}: {} descriptors that programs sent along do not close: nobody new is let in for a while",
+            file_.string(), socketcan::closing());
+        is_resting_ = true;
+        acceptable_ = EventSource();
+        return;
+    }
     const int descriptor = ::accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (descriptor < 0) {
         // Whoever cannot be let in stays at the door, which would keep the loop turning.
@@ -189,6 +199,10 @@ void ControlSocket::watch(Client& client) {
 /// One request: the descriptor stays readable while there are more, and the loop comes back when all others
 /// have had their turn. What a client asks in one go must not keep the bus waiting.
 bool ControlSocket::serve(Client& client) {
+    if (!socketcan::has_room_for_closing() && socketcan::has_descriptors_beside(client.descriptor)) {
+        ++dropped_;
+        return false;
+    }
     std::array<char, 512> bytes{};
     const ssize_t seen = ::recv(client.descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_PEEK);
     if (seen <= 0) return seen < 0 && (errno == EAGAIN || errno == EINTR);

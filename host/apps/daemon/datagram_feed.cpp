@@ -15,10 +15,14 @@
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
+#include "host/io/socketcan/descriptor_disposal.hpp"
+#include "host/io/socketcan/passed_descriptors.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
 
 namespace octoskin {
 namespace {
+
+constexpr int kHeldUpMs = 20;
 
 /// Addresses of a program that can be seen say nothing more of it: it cannot flood under many names.
 SenderKey key_of(const socketcan::StampedDatagram& received, const std::string& address) {
@@ -86,6 +90,10 @@ void DatagramFeed::work() {
         if (watched[1].revents != 0) return;
         // In a flood this thread would have the lock again before anybody who waits for it wakes up.
         while (takers_ > 0) std::this_thread::yield();
+        if (is_held_up()) {
+            (void)::poll(&watched[1], 1, kHeldUpMs);
+            continue;
+        }
         try {
             put_next();
         } catch (const std::bad_alloc&) {
@@ -93,6 +101,11 @@ void DatagramFeed::work() {
             ++displaced_;
         }
     }
+}
+
+/// By descriptors that do not close, beside the next datagram.
+bool DatagramFeed::is_held_up() const {
+    return !socketcan::has_room_for_closing() && socketcan::has_descriptors_beside(socket_);
 }
 
 void DatagramFeed::put_next() {
@@ -130,7 +143,7 @@ void DatagramFeed::displace() {
 /// flood: what is beyond its sender's share is not looked for without end.
 std::optional<Datagram> DatagramFeed::receive() {
     constexpr int kSurplusAtOnce = 64;
-    for (int i = 0; i < kSurplusAtOnce; ++i) {
+    for (int i = 0; i < kSurplusAtOnce && !is_held_up(); ++i) {
         std::string address;
         const auto received =
             socketcan::receive_stamped(socket_, std::as_writable_bytes(std::span(room_)), &address);

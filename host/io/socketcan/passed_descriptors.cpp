@@ -2,18 +2,30 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <ctime>
 
+#include "host/io/socketcan/descriptor_disposal.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
 
 namespace octoskin::socketcan {
 namespace {
 
-void close_at_once(int descriptor) {
-    const linger none{.l_onoff = 0, .l_linger = 0};
-    (void)::setsockopt(descriptor, SOL_SOCKET, SO_LINGER, &none, sizeof(none));  // no socket: nothing to do
-    ::close(descriptor);
+/// Of a message: a person's own program sends none, so that there is nothing to be gained by a larger room.
+constexpr std::size_t kPeekedMax = CMSG_SPACE(sizeof(ucred)) + CMSG_SPACE(sizeof(timespec));
+
+bool is_on(int descriptor, int option) {
+    int value = 0;
+    socklen_t size = sizeof(value);
+    return ::getsockopt(descriptor, SOL_SOCKET, option, &value, &size) == 0 && value != 0;
+}
+
+/// What the kernel tells beside each message of this socket.
+std::size_t told_bytes(int descriptor) {
+    return (is_on(descriptor, SO_PASSCRED) ? CMSG_SPACE(sizeof(ucred)) : 0) +
+           (is_on(descriptor, SO_TIMESTAMPNS) ? CMSG_SPACE(sizeof(timespec)) : 0);
 }
 
 }  // namespace
@@ -26,9 +38,23 @@ void close_passed(const msghdr& message) {
         for (std::size_t i = 0; i < count; ++i) {
             int descriptor = -1;
             std::memcpy(&descriptor, CMSG_DATA(part) + i * sizeof(int), sizeof(descriptor));
-            close_at_once(descriptor);
+            close_beside(descriptor);
         }
     }
+}
+
+bool has_descriptors_beside(int descriptor) {
+    alignas(cmsghdr) std::array<char, kPeekedMax> told{};
+    char byte = 0;
+    iovec part{&byte, sizeof(byte)};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = told.data();
+    message.msg_controllen = std::min(told_bytes(descriptor), told.size());
+    if (::recvmsg(descriptor, &message, MSG_DONTWAIT | MSG_PEEK | MSG_CMSG_CLOEXEC) < 0) return false;
+    close_passed(message);  // copies, where the kernel told less than it was to
+    return (message.msg_flags & MSG_CTRUNC) != 0;
 }
 
 ssize_t receive_text(int descriptor, std::span<char> bytes) {
@@ -40,8 +66,9 @@ void close_connection(int descriptor) {
     ::shutdown(descriptor, SHUT_RDWR);
     std::array<char, 4096> bytes{};
     ssize_t count = 1;
-    for (int i = 0; i < kReadsMax && count > 0; ++i) count = receive_text(descriptor, bytes);
-    ::close(descriptor);
+    for (int i = 0; i < kReadsMax && count > 0 && has_room_for_closing(); ++i)
+        count = receive_text(descriptor, bytes);
+    count > 0 ? close_beside(descriptor) : void(::close(descriptor));
 }
 
 }  // namespace octoskin::socketcan

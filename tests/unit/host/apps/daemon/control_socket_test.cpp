@@ -93,7 +93,42 @@ TEST_F(ControlSocketTest, waits_for_no_connection_that_somebody_sends_along_and_
         });
         EXPECT_LT(std::chrono::steady_clock::now() - begun, 5s);
     }
+    test::wait_for_closing();
     EXPECT_EQ(descriptors(), before);
+}
+
+// More of them than there are threads that close: and each waits for as long as the connection in it lingers.
+TEST_F(ControlSocketTest,
+       answers_while_what_was_sent_along_does_not_close_and_drops_who_sends_too_much_of_it) {
+    {
+        std::array<test::NestedConnection, 8> nested;
+        const int client = connect();
+        const int other = connect();
+        for (test::NestedConnection& one : nested) one.send_along(client, "a\n");
+        std::array<int, 200> many{};
+        many.fill(STDERR_FILENO);
+        ASSERT_NO_FATAL_FAILURE(test::send_along(client, "b\n", many));
+        ASSERT_NO_FATAL_FAILURE(test::send_along(client, "c\n", std::array{STDERR_FILENO}));
+        const auto begun = std::chrono::steady_clock::now();
+        serve([&] {
+            std::string answers;
+            std::array<char, 256> bytes{};
+            ssize_t count = 1;
+            while ((count = ::recv(client, bytes.data(), bytes.size(), 0)) > 0)
+                answers.append(bytes.data(), static_cast<std::size_t>(count));
+            EXPECT_EQ(std::ranges::count(answers, '\n'), 9) << "the last is dropped";
+            EXPECT_GE(socketcan::closing(), socketcan::kClosingMax);
+            // Without descriptors all is as ever, for who is there.
+            ASSERT_EQ(::send(other, "d\n", 2, 0), 2);
+            EXPECT_EQ(::recv(other, bytes.data(), bytes.size(), 0), std::ssize("you said d"));
+            ::close(client);
+            ::close(other);
+            std::this_thread::sleep_for(50ms);  // for the daemon to see it
+        });
+        EXPECT_LT(std::chrono::steady_clock::now() - begun, 5s);
+        EXPECT_EQ(socket_->dropped(), 1U);
+    }
+    test::wait_for_closing();
 }
 
 TEST_F(ControlSocketTest, answers_each_line_with_one) {

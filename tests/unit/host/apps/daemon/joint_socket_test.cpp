@@ -140,6 +140,7 @@ TEST_F(JointSocketTest, keeps_no_descriptor_that_somebody_sends_along) {
         EXPECT_TRUE(sample);
     }
     ::close(sender);
+    test::wait_for_closing();
     EXPECT_EQ(descriptors(), before);
 }
 
@@ -158,6 +159,39 @@ TEST_F(JointSocketTest, waits_for_no_connection_that_somebody_sends_along) {
     EXPECT_TRUE(sample);
     EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(5));
     ::close(sender);
+}
+
+TEST_F(JointSocketTest, waits_for_nothing_that_does_not_close_and_takes_no_more_of_it_than_it_can_bear) {
+    std::optional<JointSample> sample;
+    const auto takes_one = [&](std::chrono::milliseconds patience) {
+        const auto end = std::chrono::steady_clock::now() + patience;
+        sample.reset();
+        while (!sample && std::chrono::steady_clock::now() < end) {
+            (void)socket_.receive(sample);
+            if (!sample) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return sample.has_value();
+    };
+    const int sender = connect_unix_socket(file_, SOCK_DGRAM).value();
+    const auto begun = std::chrono::steady_clock::now();
+    {
+        std::array<test::NestedConnection, 6> nested;  // more than there are threads that close
+        for (test::NestedConnection& one : nested) one.close_beside();
+        EXPECT_EQ(socketcan::closing(), nested.size());
+        std::array<int, 200> many{};
+        many.fill(STDERR_FILENO);
+        ASSERT_NO_FATAL_FAILURE(test::send_along(sender, "0.1 0.2 0.3", many));
+        EXPECT_TRUE(takes_one(std::chrono::seconds(2)));
+        EXPECT_GE(socketcan::closing(), socketcan::kClosingMax);
+        send("0.1 0.2 0.3");
+        EXPECT_TRUE(takes_one(std::chrono::seconds(2))) << "it has none beside it";
+        ASSERT_NO_FATAL_FAILURE(test::send_along(sender, "0.1 0.2 0.3", std::array{STDERR_FILENO}));
+        EXPECT_FALSE(takes_one(std::chrono::milliseconds(200)));
+    }
+    EXPECT_TRUE(takes_one(std::chrono::seconds(2))) << "there is room again";
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10));
+    ::close(sender);
+    test::wait_for_closing();
 }
 
 TEST_F(JointSocketTest, takes_as_many_joints_as_the_rig_that_is_loaded_anew) {

@@ -1,5 +1,6 @@
 // A network connection that takes long to close: what it still has to send nobody reads, and it is to wait
-// for that.
+// for that. And such a one that waits, unread, in another connection: whoever closes that waits, too, and
+// cannot take its SO_LINGER.
 #pragma once
 
 #include <arpa/inet.h>
@@ -13,8 +14,10 @@
 #include <chrono>
 #include <cstring>
 #include <string>
+#include <thread>
 #include <utility>
 
+#include "host/io/socketcan/descriptor_disposal.hpp"
 #include "tests/unit/host/apps/daemon/sent_along.hpp"
 
 namespace octoskin::test {
@@ -44,12 +47,16 @@ class LingeringConnection {
         }
     }
     ~LingeringConnection() {
-        ::close(other_end_);  // before: now nothing waits for it any more
+        end();
         if (end_ >= 0) ::close(end_);
     }
     LingeringConnection(const LingeringConnection&) = delete;
     LingeringConnection& operator=(const LingeringConnection&) = delete;
 
+    /// Now nothing waits for it any more.
+    void end() {
+        if (other_end_ >= 0) ::close(std::exchange(other_end_, -1));
+    }
     /// Sends its end along with `text`, and keeps none: who gets it has the last one. No earlier does it
     /// wait.
     void send_along(int socket, std::string text) {
@@ -61,5 +68,42 @@ class LingeringConnection {
     int end_ = -1;
     int other_end_ = -1;
 };
+
+class NestedConnection {
+  public:
+    NestedConnection() {
+        std::array<int, 2> ends{};
+        EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
+        inner_.send_along(ends[0], "x");
+        ::close(ends[0]);
+        outer_ = ends[1];
+    }
+    ~NestedConnection() {
+        inner_.end();
+        if (outer_ >= 0) ::close(outer_);
+    }
+    NestedConnection(const NestedConnection&) = delete;
+    NestedConnection& operator=(const NestedConnection&) = delete;
+
+    /// As LingeringConnection::send_along.
+    void send_along(int socket, std::string text) {
+        ASSERT_NO_FATAL_FAILURE(test::send_along(socket, std::move(text), std::array{outer_}));
+        ::close(std::exchange(outer_, -1));
+    }
+
+    /// As if it had been sent along to this process.
+    void close_beside() { socketcan::close_beside(std::exchange(outer_, -1)); }
+
+  private:
+    LingeringConnection inner_;
+    int outer_ = -1;
+};
+
+/// So that nothing is left to the tests behind it.
+inline void wait_for_closing() {
+    for (int i = 0; i < 1000 && socketcan::closing() > 0; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{5});
+    EXPECT_EQ(socketcan::closing(), 0U);
+}
 
 }  // namespace octoskin::test
