@@ -71,20 +71,6 @@ int tell_why_it_ends(const std::exception& thrown) {
     return static_cast<int>(shortage->code);
 }
 
-/// Those that would end the process without a save, and that are no fault of its own: they mean nothing here.
-/// One that somebody has taken already, as a profiler, is left alone.
-void ignore_stray_signals() {
-    const auto ignore = [](int signal) {
-        struct sigaction found {};
-        if (::sigaction(signal, nullptr, &found) == 0 && found.sa_handler == SIG_DFL)
-            std::signal(signal, SIG_IGN);
-    };
-    for (const int signal :
-         {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT, SIGPIPE})
-        ignore(signal);
-    for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) ignore(signal);
-}
-
 void tell_warnings(const Settings& settings) {
     for (const std::string& warning : settings.host.warnings) spdlog::warn("{}", warning);
     for (const std::string& note : settings.host.notes) spdlog::info("{}", note);
@@ -245,7 +231,6 @@ Status<AppError> Daemon::Parts::take_folder() {
 }
 
 void Daemon::Parts::watch() {
-    ignore_stray_signals();
     for (const int signal : {SIGTERM, SIGINT, SIGQUIT})
         sources.push_back(loop.on_signal(signal, [this] { loop.stop(0); }));
     sources.push_back(loop.on_signal(SIGXCPU, [this] {

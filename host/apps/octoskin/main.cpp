@@ -15,6 +15,7 @@
 
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/daemon_signals.hpp"
 #include "host/apps/octoskin/log_format.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/recording/shortage.hpp"
@@ -140,6 +141,7 @@ int main(int argc, char** argv) {
     // A reader that goes away (`| head`) must not end the program in the middle of a file, nor must the limit
     // of a file's size (ulimit -f): both are errors of the write, which is told.
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
+    if (argc > 1 && std::string_view(argv[1]) == "run") octoskin::app::hold_daemon_signals();
     try {
         spdlog::set_default_logger(spdlog::stderr_color_mt("octoskin"));
         octoskin::app::set_log_format();

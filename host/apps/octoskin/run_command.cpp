@@ -11,6 +11,7 @@
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/daemon_signals.hpp"
 #include "host/apps/octoskin/log_format.hpp"
 
 namespace octoskin::app {
@@ -28,12 +29,19 @@ void refuse_few_descriptors() {
                      limit.rlim_cur, kLeast)});
 }
 
+Result<std::unique_ptr<Daemon>, AppError> begin(const DaemonRequest& request,
+                                                const std::shared_ptr<const LogQueue>& log) {
+    const StartGuard guard(log);
+    return Daemon::build(request, log);
+}
+
 void run_daemon(DaemonRequest& request) {
+    keep_processor_time_for_the_end();
     refuse_few_descriptors();
     request.can_descriptor = descriptor_of(request.interface);
     const auto log = guard_log();
     std::getenv("JOURNAL_STREAM") != nullptr ? set_journal_format() : set_log_format();
-    auto daemon = Daemon::build(request, log);
+    auto daemon = begin(request, log);
     if (!daemon) throw CommandFailure(daemon.error());
     const ExitCode outcome = (*daemon)->run();
     if (outcome != ExitCode::ok) throw CommandFailure({outcome, "ended by a failure: see above"});
@@ -89,7 +97,8 @@ void add_run_command(CLI::App& app) {
         "66 no such file; 69 a socket's folder is not there; 71 too little memory, descriptors or threads\n"
         "(ulimit); 73 another daemon has the socket or the maps, "
         "or\n"
-        "the map cannot be saved; 77 no permission; 78 rig, robot or mapping file.");
+        "the map cannot be saved; 77 no permission; 78 rig, robot or mapping file; 130, 131, 143 SIGINT,\n"
+        "SIGQUIT, SIGTERM within a start that hangs.");
     command->callback([request] { run_daemon(*request); });
 }
 
