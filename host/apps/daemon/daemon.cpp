@@ -16,10 +16,12 @@
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/depth_thread.hpp"
+#include "host/apps/daemon/ending.hpp"
 #include "host/apps/daemon/event_loop.hpp"
 #include "host/apps/daemon/home_watch.hpp"
 #include "host/apps/daemon/inputs.hpp"
 #include "host/apps/daemon/map_keeper.hpp"
+#include "host/apps/daemon/next_settings.hpp"
 #include "host/apps/daemon/problem_log.hpp"
 #include "host/apps/daemon/query_desk.hpp"
 #include "host/apps/daemon/record_requests.hpp"
@@ -28,7 +30,6 @@
 #include "host/apps/daemon/side_task.hpp"
 #include "host/apps/daemon/status.hpp"
 #include "host/apps/querying/query_answer.hpp"
-#include "host/apps/recording/shortage.hpp"
 #include "host/io/mapfile/map_file.hpp"
 
 namespace octoskin {
@@ -36,66 +37,10 @@ namespace {
 
 constexpr std::chrono::milliseconds kAttendPeriod{50};
 constexpr std::chrono::milliseconds kHomePeriod{500};
-/// For what is being saved when the end comes, the last save, and what is being recorded. The camera may take
-/// another second, what is left behind 0.2 s: 5 s in all. A large map has as long as a disk with 50 MB/s
-/// takes to write it twice, as a save may just have begun. A file of dense space is 1.4 times the memory.
-Nanoseconds end_patience(std::size_t map_bytes) {
-    constexpr Nanoseconds kSmallMap{3'500'000'000};
-    constexpr std::size_t kSmallBytes = std::size_t{64} << 20U;
-    constexpr std::int64_t kNsPerByte = 2 * 14 * 2;  // 20 ns a byte at 50 MB/s, 1.4 bytes, twice
-    if (map_bytes <= kSmallBytes) return kSmallMap;
-    return kSmallMap + Nanoseconds{kNsPerByte * static_cast<std::int64_t>(map_bytes - kSmallBytes)};
-}
-
-/// With a small map the 10 s of the unit's TimeoutStopSec.
-constexpr Nanoseconds kEndMargin{6'500'000'000};
-
-/// The service manager waits as long, and its watchdog too: the loop that feeds it has ended.
-void tell_end(Nanoseconds patience) {
-    const auto all = std::chrono::duration_cast<std::chrono::microseconds>(patience + kEndMargin);
-    (void)sd_notifyf(0, "STOPPING=1\nEXTEND_TIMEOUT_USEC=%lld\nWATCHDOG_USEC=%lld",
-                     static_cast<long long>(all.count()), static_cast<long long>(all.count()));
-}
-
-constexpr int kInternal = 70;
-
-/// The exit code for it.
-int tell_why_it_ends(const std::exception& thrown) {
-    const auto shortage = shortage_in(thrown);
-    if (!shortage) {
-        spdlog::critical("a defect of octoskin, please report it: {}; it saves the map and ends",
-                         thrown.what());
-        return kInternal;
-    }
-    spdlog::critical("{}; it saves the map and ends", shortage->message);
-    return static_cast<int>(shortage->code);
-}
 
 void tell_warnings(const Settings& settings) {
     for (const std::string& warning : settings.host.warnings) spdlog::warn("{}", warning);
     for (const std::string& note : settings.host.notes) spdlog::info("{}", note);
-}
-
-/// What a reload goes on with.
-struct Next {
-    Settings settings;
-    Pipeline pipeline;
-};
-/// Empty: the files say what holds already.
-using NextResult = Result<std::optional<Next>, AppError>;
-
-/// Beside the loop: it touches nothing that changes.
-NextResult read_next(const DaemonRequest& request, const RecordedSettings& held) {
-    try {
-        auto read = read_settings(request);
-        if (!read) return unexpected(read.error());
-        if (read->recorded == held) return std::optional<Next>{};
-        auto made = make_pipeline(request, *read);
-        if (!made) return unexpected(made.error());
-        return std::optional(Next{std::move(read).value(), std::move(made).value()});
-    } catch (const std::bad_alloc&) {
-        return fail(ExitCode::bad_config, "no memory for what the files say");
-    }
 }
 
 }  // namespace
@@ -182,7 +127,7 @@ ExitCode Daemon::run() {
     (void)sd_notify(0, "READY=1");
     spdlog::info("running: rig '{}', {}{}", parts_->settings.host.rig.name, parts_->request.interface,
                  parts_->request.is_listen_only ? ", listening only" : "");
-    int outcome = kInternal;
+    int outcome = kInternalDefect;
     try {
         outcome = parts_->loop.run();
     } catch (const std::exception& error) {
