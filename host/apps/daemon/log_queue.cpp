@@ -17,6 +17,7 @@
 #include <exception>
 #include <mutex>
 #include <new>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -154,7 +155,12 @@ LogQueue::~LogQueue() {
 }
 
 void LogQueue::log(const spdlog::details::log_msg& message) {
-    work_->add(message);
+    if (message.payload.size() <= kLineMax) return work_->add(message);
+    const std::string text = fmt::format(
+        "{}... ({} bytes)", std::string_view(message.payload.data(), kLineMax), message.payload.size());
+    spdlog::details::log_msg shorter = message;
+    shorter.payload = text;
+    work_->add(shorter);
 }
 
 void LogQueue::set_pattern(const std::string& pattern) {

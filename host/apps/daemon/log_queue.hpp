@@ -28,6 +28,8 @@ class LogQueue final : public spdlog::sinks::sink {
     /// What may wait: the lines of some hours. Beyond, a line is dropped, and the next one that is written
     /// comes after one that tells how many were.
     static constexpr std::size_t kBytesMax = std::size_t{1} << 20U;
+    /// Of a longer line the beginning is kept, and how many bytes it had.
+    static constexpr std::size_t kLineMax = 4096;
     /// What waits at the end is written for so long.
     static constexpr Nanoseconds kEndPatience{1'000'000'000};
 

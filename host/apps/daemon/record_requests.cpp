@@ -28,6 +28,10 @@ constexpr Nanoseconds kFolderPatience{100'000'000};
 std::string fault_of_folder(const std::filesystem::path& folder) {
     const std::string name = folder.string();
     const std::string shown = printable(name);
+    constexpr std::size_t kLongest = 4095;
+    if (name.size() > kLongest)
+        return fmt::format("a path has at most {} bytes, and this one {}: give a shorter one", kLongest,
+                           name.size());
     if (!folder.is_absolute()) return fmt::format("'{}' is no absolute path", shown);
     if (shown == name) return {};
     // It goes to logs, to the status, and to whoever replays it.

@@ -61,6 +61,8 @@ class Recorder final : public CommitListener {
     [[nodiscard]] bool has_ended() const { return writer_.has_ended(); }
     /// For a person; empty: all is well so far.
     [[nodiscard]] std::string error() const { return writer_.error(); }
+    /// As RecordingWriter::writing_since.
+    [[nodiscard]] std::optional<HostTime> writing_since() const { return writer_.writing_since(); }
     /// All that the map was made of could be recorded so far.
     [[nodiscard]] bool is_complete() const { return counts_.is_complete() && error().empty(); }
     [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }

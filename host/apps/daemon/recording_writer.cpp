@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/depth_recorder.hpp"
 #include "host/apps/daemon/growing_file.hpp"
 #include "host/apps/daemon/text_queue.hpp"
@@ -65,6 +66,7 @@ class RecordingWriter::Work {
     [[nodiscard]] bool add_depth(const DepthFrame& frame) { return depth_.add(frame); }
     [[nodiscard]] bool has_ended() const;
     [[nodiscard]] std::string error() const;
+    [[nodiscard]] std::optional<HostTime> writing_since() const;
     [[nodiscard]] bool wait(Nanoseconds patience);
     [[nodiscard]] std::string refusal(Nanoseconds patience);
     [[nodiscard]] const fs::path& folder() const { return begin_.paths.directory; }
@@ -95,6 +97,7 @@ class RecordingWriter::Work {
     bool has_folder_ = false;  ///< which was empty, and nobody else's
     bool has_ended_ = false;
     std::string error_;
+    std::optional<HostTime> writing_since_ = monotonic_now();
 };
 
 RecordingWriter::RecordingWriter(RecordingBegin begin, MapWriter map_writer)
@@ -129,6 +132,9 @@ std::string RecordingWriter::error() const {
 bool RecordingWriter::wait(Nanoseconds patience) {
     return work_->wait(patience);
 }
+std::optional<HostTime> RecordingWriter::writing_since() const {
+    return work_->writing_since();
+}
 std::string RecordingWriter::refusal(Nanoseconds patience) {
     return work_->refusal(patience);
 }
@@ -159,6 +165,11 @@ std::string RecordingWriter::Work::error() const {
     return error_.empty() ? depth_.error() : error_;
 }
 
+std::optional<HostTime> RecordingWriter::Work::writing_since() const {
+    const std::lock_guard lock(mutex_);
+    return writing_since_;
+}
+
 bool RecordingWriter::Work::wait(Nanoseconds patience) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, patience, [this] { return has_ended_; });
@@ -180,6 +191,7 @@ void RecordingWriter::Work::run() {
     {
         const std::lock_guard lock(mutex_);
         has_ended_ = true;
+        writing_since_.reset();
         if (!outcome) error_ = outcome.error();
     }
     changed_.notify_all();
@@ -236,7 +248,10 @@ Status<std::string> RecordingWriter::Work::begin() {
 
 bool RecordingWriter::Work::rest() {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, kWritePeriod, [this] { return end_ || is_dropped_; });
+    writing_since_.reset();
+    const bool is_to_end = changed_.wait_for(lock, kWritePeriod, [this] { return end_ || is_dropped_; });
+    writing_since_ = monotonic_now();
+    return is_to_end;
 }
 
 Status<std::string> RecordingWriter::Work::write_waiting() {

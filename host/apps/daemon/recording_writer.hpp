@@ -61,6 +61,8 @@ class RecordingWriter {
     [[nodiscard]] bool has_ended() const;
     /// What went wrong, for a person; empty: nothing so far.
     [[nodiscard]] std::string error() const;
+    /// When what is being written, or asked of the folder, was begun; empty: nothing is.
+    [[nodiscard]] std::optional<HostTime> writing_since() const;
     /// Why the folder was not taken, and nothing written; empty if it was, or if the disk has not told within
     /// `patience`.
     [[nodiscard]] std::string refusal(Nanoseconds patience);

@@ -42,6 +42,16 @@ void add_map(const DaemonView& view, Problems& problems) {
                             "recording.lost_commits and lost_depth (the disk was too slow, there was no "
                             "memory, or depth lay beyond 32.767 m)"});
     }
+    constexpr Nanoseconds kWriting{10'000'000'000};
+    const auto writing = view.recorder != nullptr ? view.recorder->writing_since() : std::nullopt;
+    if (writing && view.now - *writing > kWriting) {
+        problems.push_back(
+            {"recording silent",
+             fmt::format(
+                 "the recording's folder {} does not answer since {:.0f} s: what comes waits, some MiB "
+                 "of it, and is lost beyond",
+                 view.recorder->folder().string(), seconds_of(view.now - *writing))});
+    }
     if (!view.recording_refusal.empty())
         problems.push_back(
             {"recording refused", "the newest recording did not begin: " + view.recording_refusal});

@@ -99,6 +99,12 @@ TEST_F(LogQueueTest, waits_for_no_reader_and_tells_how_many_lines_it_dropped_onc
     EXPECT_EQ(queue_->record().dropped, held.dropped);
 }
 
+TEST_F(LogQueueTest, keeps_the_beginning_of_a_line_without_end) {
+    log_.info("{}", std::string(40'000, 'x'));
+    ASSERT_TRUE(sink_->has(1));
+    EXPECT_EQ(sink_->lines().front(), std::string(LogQueue::kLineMax, 'x') + "... (40000 bytes)");
+}
+
 TEST_F(LogQueueTest, writes_what_waits_before_it_ends) {
     for (int i = 0; i < 100; ++i) log_.info("{}", i);
     log_.sinks().clear();

@@ -63,6 +63,8 @@ TEST_F(RecordRequestsTest, refuses_what_is_no_request_and_begins_nothing) {
     expect_refused("record stop", "nothing is being recorded");
     expect_refused("record stop /tmp/a", "nothing is being recorded");
     expect_refused("record stop here", "is no absolute path");
+    for (const char* const request : {"record start 0 /", "record stop /"})
+        expect_refused(request + std::string(40'000, 'a'), "at most 4095 bytes, and this one 40001");
     EXPECT_EQ(ask("record status")["ok"], true);
 }
 

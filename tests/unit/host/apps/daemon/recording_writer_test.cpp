@@ -172,6 +172,23 @@ TEST_F(RecordingWriterTest, is_left_behind_by_its_end_when_the_disk_hangs) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // it ends before its folder goes
 }
 
+TEST_F(RecordingWriterTest, tells_since_when_it_is_writing) {
+    HungDisk disk;
+    RecordingWriter writer(begin(), disk.writer());
+    for (int i = 0; i < 1000 && writer.writing_since(); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{5});
+    EXPECT_FALSE(writer.writing_since()) << "it waits for what comes";
+    writer.finish(end(1));
+    disk.wait_for_write();
+    const auto since = writer.writing_since();
+    EXPECT_TRUE(since);
+    EXPECT_FALSE(writer.wait(Nanoseconds{50'000'000}));
+    EXPECT_EQ(writer.writing_since(), since);
+    disk.open();
+    ASSERT_TRUE(writer.wait(kPatience));
+    EXPECT_FALSE(writer.writing_since());
+}
+
 TEST_F(RecordingWriterTest, names_what_was_thrown_while_it_wrote) {
     RecordingWriter writer(
         begin(), [](const FusedMap&, const FilePlace&) -> Status<MapFileError> { throw std::bad_alloc(); });
