@@ -65,6 +65,13 @@ Json clock_json(const DaemonView& view) {
             {"follow_up_outliers", view.inputs->foreign_clock().outliers()}};
 }
 
+Json not_excluded_json(const SensorEvidence& evidence) {
+    Json faults = Json::array();
+    for (std::size_t i = 0; i < kSensorFaults; ++i)
+        if (evidence.not_excluded[i]) faults.push_back(name(static_cast<SensorFault>(i)));
+    return faults;
+}
+
 Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index) {
     const SensorRecord& record =
         view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
@@ -99,9 +106,11 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
         const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(index));
         const bool is_refused =
             view.pipeline->builder().is_refused(node.node_id, static_cast<std::uint8_t>(index));
-        json["camera"] = {{"contradicts", evidence.contradicts()},
+        json["camera"] = {{"verdict", name(evidence.verdict())},
+                          {"contradicts", evidence.contradicts()},
                           {"fault", evidence.fault ? Json(name(*evidence.fault)) : Json(nullptr)},
-                          {"cannot_tell", evidence.cannot_tell},
+                          {"doubt", evidence.doubt ? Json(name(*evidence.doubt)) : Json(nullptr)},
+                          {"not_excluded", not_excluded_json(evidence)},
                           {"refused", is_refused},
                           {"compared", evidence.compared},
                           {"fitted", evidence.fitted},

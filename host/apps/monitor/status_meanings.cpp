@@ -167,14 +167,23 @@ constexpr std::array kStatusMeanings = {
     Meaning{"nodes.sensors", "reflex_below_m", "its limit in the rig; 0: none"},
     Meaning{"nodes.sensors", "reflex_m", "how close what made it do so last was; null: never"},
     Meaning{"nodes.sensors", "camera", "what the camera says of it, below; null without a camera"},
+    Meaning{"nodes.sensors.camera", "verdict",
+            "agrees: each fault that would have changed its ranges has enough evidence against it; "
+            "contradicts; or cannot_tell: doubt has why"},
     Meaning{"nodes.sensors.camera", "contradicts",
             "it contradicts the camera: swapped with another, stuck, or not where the rig has it"},
-    Meaning{
-        "nodes.sensors.camera", "cannot_tell",
-        "it contradicts the camera, but an error of the camera may explain it, or more than two sensors do"},
     Meaning{"nodes.sensors.camera", "fault",
             "what it ranges like: ranges_too_long, ranges_too_short, often_short, turned or exchanged; null: "
             "none of these"},
+    Meaning{
+        "nodes.sensors.camera", "doubt",
+        "why it is cannot_tell: too_few_comparisons, a fault would not have shown yet; ambiguous, there is "
+        "too little evidence for a fault, and too little against it; camera_not_known, the other sensors do "
+        "not show well enough where the camera is; camera_is_off, or likely; several_contradict, more than "
+        "two sensors do; null: it is not"},
+    Meaning{"nodes.sensors.camera", "not_excluded",
+            "a list, the faults that it may have by what was compared; turned and exchanged are in it until "
+            "each turn and each exchange has been excluded, also those that would not have changed a range"},
     Meaning{"nodes.sensors.camera", "refused",
             "its readings stay out of the map (contradicts_camera): it contradicts the camera, no fewer "
             "others agree with it, and the mapping refuses such sensors"},

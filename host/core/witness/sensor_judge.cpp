@@ -15,10 +15,6 @@ constexpr double kPoseSigmaM = 0.01;
 constexpr double kMisfitMax = 4.0;
 /// The offset that is looked for.
 constexpr double kOffsetM = 0.06;
-/// What fits counts for a sensor until so much is together.
-constexpr double kCreditMax = 14.0;
-/// Each comparison that says anything takes this of the evidence.
-constexpr double kDoubt = 0.15;
 /// Where the camera does not see what is before a surface, a range that is shorter by this is of something
 /// else,
 constexpr double kSomethingElseM = 0.12;
@@ -37,21 +33,11 @@ constexpr double kShortM = 0.12;
 constexpr double kShortRatio = 2.8;
 constexpr double kNotShortRatio = -0.4;
 
-/// Weak evidence of one place, 0.3 m about, adds up to this at the most: it may be of one thing. Less than
-/// what names.
-constexpr double kPlaceM = 0.3;
-constexpr double kPlaceMax = 5.0;
-/// Evidence that is together counts up to this.
-constexpr double kEvidenceMax = 40.0;
-
 /// No fault is named, but that of single ranges, while the newest dozen fit what the rig says this well.
 constexpr double kMisfitShare = 1.0 / 12.0;
 constexpr double kMisfitOfSoundMax = 0.35;
 /// Two that are exchanged both range like the other: no exchange, if the other denies it so much.
 constexpr double kDeniedFrom = -6.0;
-/// A comparison that says so much is for a fault or against it, until some 64 others are.
-constexpr double kSaysMuch = 0.5;
-constexpr float kForgotten = 1.0F - 1.0F / 64.0F;
 /// Evidence of a shorter time is of one view of one thing; and it takes the camera's so long.
 constexpr Nanoseconds kEvidenceTime{3'000'000'000};
 /// So far may the camera have a place from where it is, and a sensor still be named for what it contradicts
@@ -81,33 +67,6 @@ SensorFault fault_at(std::size_t place) {
 }
 
 }  // namespace
-
-void SensorJudge::Sum::add(double ratio, HostTime now) {
-    if (ratio == 0.0) return;
-    if (std::abs(ratio) >= kSaysMuch) {
-        fors = kForgotten * fors + (ratio > 0.0 ? 1.0F : 0.0F);
-        againsts = kForgotten * againsts + (ratio < 0.0 ? 1.0F : 0.0F);
-    }
-    if (for_it <= 0.0) since = now;
-    for_it = std::clamp(for_it + ratio - kDoubt, -kCreditMax, kEvidenceMax);
-    against_it = std::clamp(against_it - ratio - kDoubt, 0.0, kEvidenceMax);
-}
-
-void SensorJudge::Sum::add_weak(double ratio, const Beam& beam) {
-    if (ratio > kDoubt) {
-        const Eigen::Vector3f p_map = (beam.p_map_sensor + *beam.range_m * beam.direction_map).cast<float>();
-        auto place = std::ranges::find_if(places, [&p_map](const Place& of) {
-            return of.for_it > 0.0F && static_cast<double>((of.p_map - p_map).norm()) < kPlaceM;
-        });
-        if (place == places.end()) {
-            place = std::ranges::min_element(places, {}, &Place::for_it);
-            *place = Place{.p_map = p_map, .for_it = 0.0F};
-        }
-        ratio = std::min(ratio, kDoubt + kPlaceMax - static_cast<double>(place->for_it));
-        place->for_it += static_cast<float>(ratio - kDoubt);
-    }
-    add(ratio, beam.captured);
-}
 
 SensorJudge::SensorJudge(std::span<const std::size_t> sensors_of_nodes)
     : camera_(std::accumulate(sensors_of_nodes.begin(), sensors_of_nodes.end(), std::size_t{0})) {
@@ -206,23 +165,32 @@ bool SensorJudge::contradicts(const Sensor& sensor) const {
     return sensor.verdict.fault || sensor.is_far_off || sensor.verdict.evidence >= kContradictsFrom;
 }
 
-bool SensorJudge::may_name(std::uint16_t number, const Eigen::Vector3d& p_camera,
-                           double misplaced_max_m) const {
-    if (camera_.error() || camera_.is_suspect()) return false;
-    if (camera_.may_misplace_m(number, p_camera) > misplaced_max_m) return false;
+std::optional<SensorDoubt> SensorJudge::against_naming(std::uint16_t number, const Eigen::Vector3d& p_camera,
+                                                       double misplaced_max_m) const {
+    if (camera_.error() || camera_.is_suspect()) return SensorDoubt::camera_is_off;
+    if (camera_.may_misplace_m(number, p_camera) > misplaced_max_m) return SensorDoubt::camera_not_known;
     // Another test may have found one since the newest image was judged: they are counted anew.
     const auto contradicting =
         std::ranges::count_if(sensors_, [this](const Sensor& sensor) { return contradicts(sensor); });
     const auto others = static_cast<std::size_t>(contradicting) - (contradicts(sensors_[number]) ? 1U : 0U);
-    return others <= kOthersMax;
+    if (others > kOthersMax) return SensorDoubt::several_contradict;
+    return std::nullopt;
 }
 
 /// From behind, what ends before the surface may end at something that the camera does not see: that is weak.
-void SensorJudge::add(Sum& sum, double ratio, const Compared& compared, const Expected& mounted) {
-    if (mounted.at.is_from_behind && *compared.beam.range_m < *mounted.at.range_m) {
-        sum.add_weak(ratio, compared.beam);
+template <typename Misfit>
+void SensorJudge::weigh_fault(FaultSum& sum, const Compared& compared, const Expected& mounted,
+                              double sigma_m, const Misfit& misfit_with_fault) {
+    const double range_m = *compared.beam.range_m;
+    const auto sound = misfit(mounted, range_m, sigma_m);
+    const auto faulty = misfit_with_fault(range_m);
+    if (!sound || !faulty) return;
+    const double ratio = *sound - *faulty;
+    const double expected = misfit_with_fault(*mounted.at.range_m).value_or(0.0);
+    if (mounted.at.is_from_behind && range_m < *mounted.at.range_m) {
+        sum.add_weak(ratio, expected, compared.beam);
     } else {
-        sum.add(ratio, compared.beam.captured);
+        sum.add(ratio, expected, compared.beam.captured);
     }
 }
 
@@ -241,18 +209,15 @@ void SensorJudge::weigh(const Compared& compared, const Expected& mounted) {
         ++sensor.verdict.compared;
         sensor.verdict.agreed += *sound <= kMisfitOfHiddenMax ? 1U : 0U;
     }
-    if (const auto other = misfit(mounted, range_m - kOffsetM, sigma_m))
-        add(sensor.faults[kTooLong], *sound - *other, compared, mounted);
-    if (const auto other = misfit(mounted, range_m + kOffsetM, sigma_m))
-        add(sensor.faults[kTooShort], *sound - *other, compared, mounted);
+    for (const auto& [place, off_m] : {std::pair{kTooLong, kOffsetM}, std::pair{kTooShort, -kOffsetM}})
+        weigh_fault(sensor.faults[place], compared, mounted, sigma_m,
+                    [&, by_m = off_m](double at_m) { return misfit(mounted, at_m - by_m, sigma_m); });
     for (std::size_t i = 0; i < kTurns; ++i) {
         if (!compared.predictions.turned[i].range_m) continue;
         const Expected turned = expected(compared, compared.predictions.turned[i]);
         const double sigma_both_m = sigma_of(compared, mounted, turned);
-        const auto as_mounted = misfit(mounted, range_m, sigma_both_m);
-        const auto as_turned = misfit(turned, range_m, sigma_both_m);
-        if (as_mounted && as_turned)
-            add(sensor.faults[kTurned + i], *as_mounted - *as_turned, compared, mounted);
+        weigh_fault(sensor.faults[kTurned + i], compared, mounted, sigma_both_m,
+                    [&](double at_m) { return misfit(turned, at_m, sigma_both_m); });
     }
 }
 
@@ -264,9 +229,9 @@ void SensorJudge::weigh_short(Sensor& sensor, const Compared& compared, const Ex
     const double range_m = *compared.beam.range_m;
     const double margin_m = kShortM + 3.0 * sigma_of(compared, mounted, mounted);
     Look& look = looks_[compared.sensor];
-    Sum& sum = sensor.faults[kOftenShort];
+    FaultSum& sum = sensor.faults[kOftenShort];
     if (!at.is_from_behind && range_m > at.hidden_until_m + margin_m && range_m < at.clear_m - margin_m) {
-        sum.add(kShortRatio, sensor.now);
+        sum.add(kShortRatio, 0.0, sensor.now);
         return;
     }
     if (!at.range_m || !mounted.has_lower_bound) return;
@@ -276,8 +241,8 @@ void SensorJudge::weigh_short(Sensor& sensor, const Compared& compared, const Ex
         look = Look::agrees;
         const bool agreed_before = sensor.looks[0] == Look::agrees;
         const bool was_short_between = sensor.looks[0] == Look::is_short && sensor.looks[1] == Look::agrees;
-        if (was_short_between) sum.add(kShortRatio, sensor.now);
-        if (agreed_before) sum.add(kNotShortRatio, sensor.now);
+        if (was_short_between) sum.add(kShortRatio, 0.0, sensor.now);
+        if (agreed_before) sum.add(kNotShortRatio, -kNotShortRatio, sensor.now);
     }
 }
 
@@ -286,38 +251,61 @@ void SensorJudge::weigh_exchange(const Compared& of, const Expected& own, const 
     if (!own.at.range_m || !others.at.range_m) return;
     Sensor& sensor = sensors_[of.sensor];
     const double sigma_m = sigma_of(of, own, others);
-    const auto sound = misfit(own, *of.beam.range_m, sigma_m);
-    const auto exchanged = misfit(others, *of.beam.range_m, sigma_m);
-    if (sound && exchanged)
-        add(sensor.exchanged[other.sensor - sensor.node_begin], *sound - *exchanged, of, own);
+    weigh_fault(sensor.exchanged[other.sensor - sensor.node_begin], of, own, sigma_m,
+                [&](double at_m) { return misfit(others, at_m, sigma_m); });
 }
 
 /// Not what a few seconds say, nor what as many comparisons deny.
-bool SensorJudge::is_convincing(const Sensor& sensor, const Sum& sum) const {
+bool SensorJudge::is_convincing(const Sensor& sensor, const FaultSum& sum) const {
     if (sensor.now - sum.since < kEvidenceTime) return false;
     const bool is_short = &sum == &sensor.faults[kOftenShort];
     if (!is_short && sensor.misfit_mean < kMisfitOfSoundMax) return false;
     return static_cast<double>(sum.fors) >= static_cast<double>(sum.againsts);
 }
 
+/// Of a sensor without enough evidence for any fault: whether there is enough against all of them. A turn, or
+/// an exchange, that would not have changed a range is not waited for; an offset and short ranges always
+/// show.
+std::optional<SensorDoubt> SensorJudge::doubt_of(Sensor& sensor) const {
+    sensor.verdict.not_excluded.reset();
+    bool is_left = false;
+    bool is_ambiguous = sensor.misfit_mean >= kMisfitOfSoundMax;
+    const auto look_at = [&](const FaultSum& sum, SensorFault fault, bool always_shows) {
+        if (sum.is_excluded()) return;
+        sensor.verdict.not_excluded.set(static_cast<std::size_t>(fault));
+        is_left |= always_shows;
+        is_ambiguous |= sum.has_shown();
+    };
+    for (std::size_t i = 0; i < kFaults; ++i) look_at(sensor.faults[i], fault_at(i), i < kTurned);
+    const auto number = static_cast<std::size_t>(&sensor - sensors_.data());
+    for (std::size_t i = 0; i < sensor.exchanged.size(); ++i)
+        if (sensor.node_begin + i != number) look_at(sensor.exchanged[i], SensorFault::exchanged, false);
+    if (camera_.error()) return SensorDoubt::camera_is_off;
+    if (is_ambiguous) return SensorDoubt::ambiguous;
+    return is_left ? std::optional(SensorDoubt::too_few_comparisons) : std::nullopt;
+}
+
 void SensorJudge::decide(std::uint16_t number) {
     Sensor& sensor = sensors_[number];
-    const auto by_evidence = [](const Sum& a, const Sum& b) { return a.for_it < b.for_it; };
+    const auto by_evidence = [](const FaultSum& a, const FaultSum& b) { return a.for_it < b.for_it; };
     const bool is_taken_back = sensor.named != nullptr && sensor.named->against_it >= kTakenBackFrom;
     if (is_taken_back || camera_.error()) {
         sensor.named = nullptr;
         sensor.verdict.fault.reset();
         sensor.verdict.exchanged_with.reset();
         sensor.faults.fill({});
-        std::ranges::fill(sensor.exchanged, Sum{});
+        std::ranges::fill(sensor.exchanged, FaultSum{});
     }
     const auto fault = std::ranges::max_element(sensor.faults, by_evidence);
     const auto exchange = std::ranges::max_element(sensor.exchanged, by_evidence);
     const bool is_exchange = exchange->for_it > fault->for_it;
-    Sum& likeliest = is_exchange ? *exchange : *fault;
+    FaultSum& likeliest = is_exchange ? *exchange : *fault;
     sensor.verdict.evidence = likeliest.for_it;
-    sensor.verdict.cannot_tell = false;
-    if (sensor.named != nullptr) return;
+    sensor.verdict.doubt = doubt_of(sensor);
+    if (sensor.named != nullptr) {
+        sensor.verdict.doubt.reset();
+        return;
+    }
     const auto other = static_cast<std::size_t>(exchange - sensor.exchanged.begin());
     const bool is_denied =
         is_exchange &&
@@ -325,11 +313,13 @@ void SensorJudge::decide(std::uint16_t number) {
     const double enough = is_exchange ? kExchangedFrom : kNamedFrom;
     const bool is_enough =
         sensor.verdict.evidence >= enough && !is_denied && is_convincing(sensor, likeliest);
-    if (!is_enough ||
-        !may_name(number, sensor.p_camera, is_exchange ? kMisplacedOfExchangedM : kMisplacedM)) {
-        sensor.verdict.cannot_tell = likeliest.for_it >= kContradictsFrom;
+    if (!is_enough) return;
+    if (const auto doubt =
+            against_naming(number, sensor.p_camera, is_exchange ? kMisplacedOfExchangedM : kMisplacedM)) {
+        sensor.verdict.doubt = doubt;
         return;
     }
+    sensor.verdict.doubt.reset();
     sensor.named = &likeliest;
     likeliest.against_it = 0.0;
     if (is_exchange) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 
 #include "host/core/beams/beam.hpp"
 #include "host/core/witness/camera_judge.hpp"
+#include "host/core/witness/fault_sum.hpp"
 #include "host/core/witness/range_predictor.hpp"
 #include "host/core/witness/thickness_memory.hpp"
 
@@ -22,6 +24,17 @@ enum class SensorFault : std::uint8_t {
     often_short,       ///< one range of a few ends where there is nothing
     turned,            ///< its mount, by about 10 degrees
     exchanged,         ///< with another of its node
+};
+
+inline constexpr std::size_t kSensorFaults = 5;
+
+/// Why a sensor can neither be named nor be said to agree.
+enum class SensorDoubt : std::uint8_t {
+    too_few_comparisons,  ///< one of its faults would not have shown yet
+    ambiguous,            ///< a fault has neither enough evidence for it nor enough against it
+    camera_not_known,     ///< the other sensors do not show well enough where the camera is
+    camera_is_off,        ///< an error of the camera is named, or likely
+    several_contradict,   ///< more than two sensors do: the robot's pose may be what is off
 };
 
 /// One range and what the camera predicts at its time.
@@ -41,17 +54,20 @@ class SensorJudge {
     /// What another test has found of a sensor counts as its contradicting.
     void set_far_off(std::uint16_t sensor, bool is_far_off) { sensors_[sensor].is_far_off = is_far_off; }
 
-    /// Whether a sensor that contradicts may be named. Not while the camera may be what is off: because an
-    /// error of it explains what several sensors contradict, or this one and others a little; or because
-    /// more than two sensors contradict at once.
-    [[nodiscard]] bool may_name(std::uint16_t sensor, const Eigen::Vector3d& p_camera,
-                                double misplaced_max_m) const;
+    /// Why a sensor that contradicts may not be named, if so. Not while the camera may be what is off:
+    /// because an error of it explains what several sensors contradict, or this one and others a little; or
+    /// because more than two sensors contradict at once.
+    [[nodiscard]] std::optional<SensorDoubt> against_naming(std::uint16_t sensor,
+                                                            const Eigen::Vector3d& p_camera,
+                                                            double misplaced_max_m) const;
     [[nodiscard]] const CameraJudge& camera() const noexcept { return camera_; }
 
+    /// With neither fault nor doubt the sensor agrees: no fault that would have changed its ranges is left.
     struct Verdict {
         std::optional<SensorFault> fault;
         std::optional<std::uint8_t> exchanged_with;  ///< local index on its node
-        bool cannot_tell = false;    ///< it contradicts, but not convincingly, or it may be the camera
+        std::optional<SensorDoubt> doubt = SensorDoubt::too_few_comparisons;
+        std::bitset<kSensorFaults> not_excluded = (1U << kSensorFaults) - 1U;  ///< by SensorFault
         std::uint64_t agreed = 0;    ///< comparisons with a surface that fit what the rig says
         std::uint64_t compared = 0;  ///< and all of them
         double evidence = 0.0;       ///< for the likeliest fault: log-likelihood ratio to a sound sensor
@@ -68,30 +84,13 @@ class SensorJudge {
     static constexpr double kContradictsFrom = 8.0;
 
   private:
-    /// One fault that a sensor may have.
-    struct Sum {
-        double for_it = 0.0;  ///< log-likelihood ratio to a sound sensor, from the last time that it was 0
-        double against_it = 0.0;  ///< the same the other way round
-        float fors = 0.0F;        ///< of the newest comparisons that say much, about how many are for it
-        float againsts = 0.0F;    ///< and against it
-        HostTime since{};         ///< when the newest evidence for it began
-        /// Where weak evidence for it came from, and how much.
-        struct Place {
-            Eigen::Vector3f p_map = Eigen::Vector3f::Zero();
-            float for_it = 0.0F;
-        };
-        std::array<Place, 4> places{};
-
-        void add(double ratio, HostTime now);
-        void add_weak(double ratio, const Beam& beam);
-    };
     static constexpr std::size_t kFaults = 3 + kTurns;
     enum class Look : std::uint8_t { nothing, agrees, is_short };
     struct Sensor {
         std::size_t node_begin = 0;  ///< the node's sensors are numbered from here
-        std::array<Sum, kFaults> faults{};
-        std::vector<Sum> exchanged;                           ///< by sensor of the node
-        const Sum* named = nullptr;                           ///< of those
+        std::array<FaultSum, kFaults> faults{};
+        std::vector<FaultSum> exchanged;                      ///< by sensor of the node
+        const FaultSum* named = nullptr;                      ///< of those
         HostTime now{};                                       ///< of what is weighed
         Eigen::Vector3d p_camera = Eigen::Vector3d::UnitZ();  ///< where it ranged last
         bool is_far_off = false;                              ///< by another test
@@ -110,7 +109,9 @@ class SensorJudge {
     [[nodiscard]] static std::optional<double> misfit(const Expected& expected, double range_m,
                                                       double sigma_m);
     [[nodiscard]] static double sigma_of(const Compared& compared, const Expected& a, const Expected& b);
-    static void add(Sum& sum, double ratio, const Compared& compared, const Expected& mounted);
+    template <typename Misfit>
+    static void weigh_fault(FaultSum& sum, const Compared& compared, const Expected& mounted, double sigma_m,
+                            const Misfit& misfit_with_fault);
     void weigh(const Compared& compared, const Expected& mounted);
     void weigh_short(Sensor& sensor, const Compared& compared, const Expected& mounted,
                      double misfit_mounted);
@@ -118,7 +119,8 @@ class SensorJudge {
                         const Expected& others);
     void ask_camera(const Compared& compared);
     [[nodiscard]] bool contradicts(const Sensor& sensor) const;
-    [[nodiscard]] bool is_convincing(const Sensor& sensor, const Sum& sum) const;
+    [[nodiscard]] bool is_convincing(const Sensor& sensor, const FaultSum& sum) const;
+    [[nodiscard]] std::optional<SensorDoubt> doubt_of(Sensor& sensor) const;
     void decide(std::uint16_t number);
     void remember(const Compared& compared);
 

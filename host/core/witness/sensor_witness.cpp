@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 namespace octoskin {
@@ -63,67 +62,6 @@ std::vector<std::size_t> sensors_of_nodes(const HostRig& rig) {
 }
 
 }  // namespace
-
-const char* name(SensorFault fault) {
-    switch (fault) {
-        case SensorFault::ranges_too_long:
-            return "ranges_too_long";
-        case SensorFault::ranges_too_short:
-            return "ranges_too_short";
-        case SensorFault::often_short:
-            return "often_short";
-        case SensorFault::turned:
-            return "turned";
-        case SensorFault::exchanged:
-            return "exchanged";
-    }
-    return "unknown";
-}
-
-namespace {
-
-std::string describe_fault(const SensorEvidence& evidence) {
-    const std::string offset = ": set its offset (docs/bring-up.md, \"A sensor with a wrong offset\")";
-    if (!evidence.fault)
-        return "is it swapped with another at the harness, stuck, or its pose in the rig not the true one?";
-    switch (*evidence.fault) {
-        case SensorFault::ranges_too_long:
-            return "its ranges are some centimetres too long" + offset;
-        case SensorFault::ranges_too_short:
-            return "its ranges are some centimetres too short" + offset + ", if its cover glass is clean";
-        case SensorFault::often_short:
-            return "some of its ranges end where nothing is: is its cover glass clean?";
-        case SensorFault::turned:
-            return "it ranges like one turned by some 10 degrees: is its mount bent, or its pose in the rig "
-                   "not "
-                   "the true one?";
-        case SensorFault::exchanged:
-            break;
-    }
-    return "it ranges like sensor " + std::to_string(evidence.exchanged_with.value_or(0)) +
-           " of its node: are the two swapped at the harness?";
-}
-
-}  // namespace
-
-/// Ranges that agree are not told: those of a sensor that is 6 cm off do, and more of them come while it is
-/// about to be cleared.
-std::string describe(const SensorEvidence& evidence) {
-    std::string text = "contradicts the camera: " + describe_fault(evidence);
-    if (evidence.in_free_space + evidence.behind_surface == 0) return text;
-    return text + " (" + std::to_string(evidence.in_free_space) +
-           " of its ranges end where the camera sees through, " + std::to_string(evidence.behind_surface) +
-           " behind a surface that it sees)";
-}
-
-std::string describe(const CameraError& error, std::size_t sensors) {
-    std::array<char, 96> by{};
-    std::snprintf(by.data(), by.size(), "turned by %.1f deg, shifted by %.1f cm, its depth off by %.1f %%",
-                  error.turn_deg.norm(), 100.0 * error.shift_m.norm(), 100.0 * (error.depth_scale - 1.0));
-    return "not where the rig has it, or its scale is off: that explains what " + std::to_string(sensors) +
-           " sensors contradict (by an estimate " + by.data() +
-           "): measure its pose anew (docs/method.md, \"A sensor that contradicts the camera\")";
-}
 
 SensorWitness::SensorWitness(const HostRig& rig, const WitnessConfig& config)
     : config_(config),
@@ -211,6 +149,16 @@ void SensorWitness::compare_next() {
     }
 }
 
+/// Both tests have to be without a doubt; the one of what is far off has none while as much agrees.
+std::optional<SensorDoubt> SensorWitness::doubt_of(const Sensor& sensor, const SensorJudge::Verdict& verdict,
+                                                   std::optional<SensorDoubt> against_naming) const {
+    if (sensor.evidence.contradicts()) return std::nullopt;
+    if (sensor.found_far_off) return against_naming.value_or(SensorDoubt::ambiguous);
+    if (verdict.doubt) return verdict.doubt;
+    const bool is_untold = sensor.evidence.log_likelihood_ratio > 0.0;
+    return is_untold ? std::optional(SensorDoubt::ambiguous) : std::nullopt;
+}
+
 /// Once for each image.
 void SensorWitness::judge() {
     next_ = sensors_.size();
@@ -223,13 +171,14 @@ void SensorWitness::judge() {
         SensorEvidence& evidence = sensors_[i].evidence;
         // Found, it counts for the others at once.
         judge_.set_far_off(static_cast<std::uint16_t>(i), sensors_[i].found_far_off);
-        const bool may_name =
-            judge_.may_name(static_cast<std::uint16_t>(i),
-                            T_map_camera_.inverse() * sensors_[i].p_contradicted_map, kMisplacedM);
+        const auto against_naming =
+            judge_.against_naming(static_cast<std::uint16_t>(i),
+                                  T_map_camera_.inverse() * sensors_[i].p_contradicted_map, kMisplacedM);
         evidence.is_far_off =
-            sensors_[i].found_far_off && (evidence.is_far_off || may_name) && !judge_.camera().error();
-        evidence.cannot_tell = verdict.cannot_tell || (sensors_[i].found_far_off && !evidence.is_far_off);
+            sensors_[i].found_far_off && (evidence.is_far_off || !against_naming) && !judge_.camera().error();
         evidence.fault = verdict.fault;
+        evidence.doubt = doubt_of(sensors_[i], verdict, against_naming);
+        evidence.not_excluded = verdict.not_excluded;
         evidence.compared = verdict.compared;
         evidence.fitted = verdict.agreed;
         evidence.exchanged_with = verdict.exchanged_with;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -34,6 +35,8 @@ struct WitnessConfig {
     double missed = 1e-3;
 };
 
+enum class WitnessVerdict : std::uint8_t { agrees, contradicts, cannot_tell };
+
 /// What the camera has said of a sensor so far.
 struct SensorEvidence {
     std::uint64_t agreed = 0;          ///< it reported a surface where the camera sees one
@@ -48,10 +51,16 @@ struct SensorEvidence {
     std::uint64_t fitted = 0;
     double evidence = 0.0;  ///< for the likeliest fault: log-likelihood ratio to a sound sensor
 
-    /// It would be named, but the camera or several sensors may be what is off.
-    bool cannot_tell = false;
+    /// Why it can neither be named nor be said to agree; empty with one of these.
+    std::optional<SensorDoubt> doubt = SensorDoubt::too_few_comparisons;
+    std::bitset<kSensorFaults> not_excluded =
+        (1U << kSensorFaults) - 1U;  ///< by SensorFault; one that agrees may have faults that do not show
 
     [[nodiscard]] bool contradicts() const noexcept { return is_far_off || fault.has_value(); }
+    [[nodiscard]] WitnessVerdict verdict() const noexcept {
+        if (contradicts()) return WitnessVerdict::contradicts;
+        return doubt ? WitnessVerdict::cannot_tell : WitnessVerdict::agrees;
+    }
 };
 
 /// "not where the rig has it: ..." with what to do, for a person.
@@ -68,6 +77,10 @@ struct SeenImages {
 [[nodiscard]] std::string describe(const SensorEvidence& evidence);
 /// "ranges_too_long", ...
 [[nodiscard]] const char* name(SensorFault fault);
+/// "too_few_comparisons", ...
+[[nodiscard]] const char* name(SensorDoubt doubt);
+/// "agrees", ...
+[[nodiscard]] const char* name(WitnessVerdict verdict);
 
 class SensorWitness {
   public:
@@ -129,6 +142,9 @@ class SensorWitness {
     void compare_next();
     void judge();
     [[nodiscard]] Finding compare(const Beam& beam, const BeamOptics& optics, const CameraView& view) const;
+    [[nodiscard]] std::optional<SensorDoubt> doubt_of(const Sensor& sensor,
+                                                      const SensorJudge::Verdict& verdict,
+                                                      std::optional<SensorDoubt> against_naming) const;
     void count(Sensor& sensor, const Beam& beam, Finding finding) const;
     [[nodiscard]] std::size_t index_of(std::uint8_t node_id, std::uint8_t sensor) const;
 

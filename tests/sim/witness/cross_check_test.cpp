@@ -102,14 +102,14 @@ struct Outcome {
     double camera_evidence_max = 0.0;
     double evidence_max = 0.0;
     std::uint64_t compared = 0;
-    std::size_t cannot_tell = 0;
+    std::size_t cannot_tell = 0;             ///< in the end
+    std::vector<WitnessVerdict> at_the_end;  ///< by number
 };
 
 Outcome outcome_of(const KeptRun& run, const Altered& altered = {}) {
     SensorWitness witness(run.rig, {});
     Outcome outcome;
     std::vector<bool> is_named(run.sources.size());
-    std::vector<bool> is_unclear(run.sources.size());
     for (std::size_t image = 0; image < run.images.size(); ++image) {
         const auto captured =
             HostTime{static_cast<std::int64_t>(1e9 * static_cast<double>(image) / run.images_hz)};
@@ -131,7 +131,6 @@ Outcome outcome_of(const KeptRun& run, const Altered& altered = {}) {
         }
         for (SensorNumber i = 0; i < run.sources.size(); ++i) {
             const SensorEvidence& evidence = witness.evidence(run.sources[i].node_id, run.sources[i].sensor);
-            is_unclear[i] = is_unclear[i] || evidence.cannot_tell;
             outcome.evidence_max = std::max(outcome.evidence_max, evidence.evidence);
             if (!evidence.contradicts() || is_named[i]) continue;
             is_named[i] = true;
@@ -140,9 +139,13 @@ Outcome outcome_of(const KeptRun& run, const Altered& altered = {}) {
                                     " s: " + describe(evidence));
         }
     }
-    for (const BeamSource& source : run.sources)
-        outcome.compared += witness.evidence(source.node_id, source.sensor).compared;
-    outcome.cannot_tell = static_cast<std::size_t>(std::ranges::count(is_unclear, true));
+    for (const BeamSource& source : run.sources) {
+        const SensorEvidence& evidence = witness.evidence(source.node_id, source.sensor);
+        outcome.compared += evidence.compared;
+        outcome.at_the_end.push_back(evidence.verdict());
+    }
+    outcome.cannot_tell =
+        static_cast<std::size_t>(std::ranges::count(outcome.at_the_end, WitnessVerdict::cannot_tell));
     return outcome;
 }
 
@@ -228,6 +231,7 @@ TEST(CrossCheck, names_one_sensor_that_is_stuck_or_far_off) {
                 EXPECT_EQ(named, faulty) << what;
                 found += named == faulty ? 1U : 0U;
             }
+            EXPECT_NE(outcome.at_the_end[faulty], WitnessVerdict::agrees) << what << ", sensor " << faulty;
             EXPECT_FALSE(outcome.camera_named_s) << what << ", sensor " << faulty;
         }
         std::printf("%s: %zu of %zu found\n", what, found, tried.size());

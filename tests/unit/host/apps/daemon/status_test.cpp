@@ -129,7 +129,9 @@ TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
         Json::parse(R"({"index": 0, "name": "good", "state": null, "fault": null, "received": 0, "lost": 0,
         "age_s": null, "rejected": null, "contradictions": 0, "strays": 0, "second_sender": false,
         "disputed": false, "reflexes": 0, "reflex_below_m": 0.0, "reflex_m": null,
-        "camera": {"contradicts": false, "fault": null, "cannot_tell": false, "refused": false, "compared": 0, "fitted": 0,
+        "camera": {"verdict": "cannot_tell", "contradicts": false, "fault": null, "doubt": "too_few_comparisons",
+                   "not_excluded": ["ranges_too_long", "ranges_too_short", "often_short", "turned", "exchanged"],
+                   "refused": false, "compared": 0, "fitted": 0,
                    "agreed": 0, "in_free_space": 0, "behind_surface": 0}})"));
 }
 
@@ -258,6 +260,8 @@ TEST_F(StatusTest, has_what_the_camera_says_of_a_sensor_or_null_without_one) {
     const SensorEvidence& evidence = pipeline_->builder().witness()->evidence(kLeft, kGood);
     const Json camera = sensor(kGood)["camera"];
     EXPECT_EQ(camera["contradicts"], true);
+    EXPECT_EQ(camera["verdict"], "contradicts");
+    EXPECT_EQ(camera["doubt"], nullptr);
     EXPECT_EQ(camera["in_free_space"], evidence.in_free_space);
     EXPECT_GT(evidence.in_free_space, 50U);
     EXPECT_EQ(camera["agreed"], evidence.agreed);

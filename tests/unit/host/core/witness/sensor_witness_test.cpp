@@ -324,12 +324,32 @@ TEST_F(SensorWitnessTest, names_no_sensor_before_others_have_shown_where_the_cam
     compare(200, 0.5, wall_at(2.0F));
     EXPECT_EQ(evidence().in_free_space, 200U);
     EXPECT_FALSE(evidence().contradicts());
-    EXPECT_TRUE(evidence().cannot_tell);
+    EXPECT_EQ(evidence().verdict(), WitnessVerdict::cannot_tell);
+    EXPECT_EQ(evidence().doubt, SensorDoubt::camera_not_known);
     EXPECT_FALSE(witness_.is_to_be_refused(4, 1));
     compare(200, 1.06, wall_at(2.0F));
     EXPECT_FALSE(evidence().contradicts());
-    EXPECT_TRUE(evidence().cannot_tell);
+    EXPECT_EQ(evidence().doubt, SensorDoubt::camera_not_known);
     EXPECT_FALSE(witness_.camera().error());
+}
+
+// One wall at right angles shows no turn; an offset and short ranges have to be excluded.
+TEST_F(SensorWitnessTest, cannot_tell_of_a_sensor_until_no_fault_is_left_that_would_have_shown) {
+    EXPECT_EQ(evidence().doubt, SensorDoubt::too_few_comparisons);
+    EXPECT_TRUE(evidence().not_excluded.all());
+    compare(10, 1.0, wall_at(2.0F));
+    EXPECT_EQ(evidence().doubt, SensorDoubt::too_few_comparisons);
+    compare(40, 1.0, wall_at(2.0F));
+    EXPECT_EQ(evidence().verdict(), WitnessVerdict::agrees);
+    EXPECT_EQ(evidence().doubt, std::nullopt);
+    EXPECT_FALSE(evidence().not_excluded[static_cast<std::size_t>(SensorFault::ranges_too_short)]);
+    EXPECT_TRUE(evidence().not_excluded[static_cast<std::size_t>(SensorFault::turned)]);
+    while (evidence().verdict() == WitnessVerdict::agrees) compare(1, 1.06, wall_at(2.0F));
+    EXPECT_EQ(evidence().verdict(), WitnessVerdict::cannot_tell);
+    EXPECT_EQ(evidence().doubt, SensorDoubt::ambiguous);
+    compare(60, 1.06, wall_at(2.0F));
+    EXPECT_EQ(evidence().verdict(), WitnessVerdict::contradicts);
+    EXPECT_EQ(evidence().doubt, std::nullopt);
 }
 
 // As long as nobody tells it to go on, a beam is only compared when another one comes.
