@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "hw/rigfile/element_fault.hpp"
 #include "hw/rigfile/urdf_document.hpp"
 #include "hw/rigfile/urdf_pose.hpp"
 
@@ -115,25 +116,6 @@ std::vector<Capsule> to_capsules(Bodies bodies) {
     return capsules;
 }
 
-/// A link whose body cannot be taken.
-struct LinkFault {
-    RigError error;
-    std::string shape;  ///< of the first <collision> at fault
-};
-
-/// The first link in the file with what is wrong and the remedy, and after it where the others are.
-RigError one_error_of(std::vector<LinkFault> faults) {
-    std::ranges::stable_sort(faults, {}, [](const LinkFault& fault) { return fault.error.line; });
-    RigError error = faults[0].error;
-    if (faults.size() == 1) return error;
-    error.what += fmt::format(". {} more cannot be taken: ", faults.size() - 1);
-    for (std::size_t i = 1; i < faults.size(); ++i) {
-        error.what += fmt::format("{}{} (line {}, {})", i == 1 ? "" : ", ", faults[i].error.key,
-                                  faults[i].error.line, faults[i].shape);
-    }
-    return error;
-}
-
 BoxRule box_rule(const Rig& rig) {
     return rig.fits_capsules ? BoxRule::fitted : BoxRule::refused;
 }
@@ -173,7 +155,7 @@ Result<std::vector<Capsule>, RigError> read_capsules(const FilePlace& urdf,
         }
     }
     std::vector<Capsule> all;
-    std::vector<LinkFault> faults;
+    std::vector<ElementFault> faults;
     for (const auto& [name, link] : links) {
         Bodies bodies;
         if (link->collision_array.size() > kCollisionsMax) {

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "hw/rigfile/element_fault.hpp"
 #include "hw/rigfile/urdf_counted.hpp"
 #include "hw/rigfile/urdf_xml.hpp"
 
@@ -146,12 +147,13 @@ Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
         return unexpected(RigError{
             file, 0, "", "not a usable URDF: " + (complaint.empty() ? "no robot found" : complaint)});
     }
+    std::vector<ElementFault> faults;
     for (const auto& [name, joint] : model->joints_) {
         make_exact(joint->axis);
-        if (auto fault = unit_fault(*joint); !fault.empty()) {
-            return unexpected(document.error("joint", name, std::move(fault)));
-        }
+        if (auto fault = unit_fault(*joint); !fault.empty())
+            faults.push_back({document.error("joint", name, std::move(fault)), "its numbers"});
     }
+    if (!faults.empty()) return unexpected(one_error_of(std::move(faults)));
     document.model_ = std::move(model);
     return document;
 }

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <utility>
 
+#include "hw/rigfile/element_fault.hpp"
+
 namespace octoskin::rig {
 namespace {
 
@@ -57,6 +59,7 @@ Result<UrdfOutline, RigError> UrdfOutline::read(const std::filesystem::path& fil
                                                 const tinyxml2::XMLElement& robot) {
     UrdfOutline outline;
     outline.file_ = file;
+    std::vector<ElementFault> faults;
     for (const auto* element = robot.FirstChildElement(); element; element = element->NextSiblingElement()) {
         const std::string tag = element->Name();
         if (tag.starts_with("xacro:")) {
@@ -70,13 +73,14 @@ Result<UrdfOutline, RigError> UrdfOutline::read(const std::filesystem::path& fil
                          fmt::format("expected a robot of at most {} links and joints together, found more",
                                      kElementsMax)});
         }
-        if (auto fault = find_turn_fault(file, *element)) return unexpected(std::move(*fault));
+        if (auto fault = find_turn_fault(file, *element)) faults.push_back({std::move(*fault), "its rpy"});
         const auto* limit = element->FirstChildElement("limit");
         outline.elements_.push_back({tag, attribute(element, "name"), element->GetLineNum(),
                                      attribute(element->FirstChildElement("parent"), "link"),
                                      attribute(element->FirstChildElement("child"), "link"),
                                      limit != nullptr && limit->Attribute("upper") == nullptr});
     }
+    if (!faults.empty()) return unexpected(one_error_of(std::move(faults)));
     if (auto loop = outline.find_loop()) return unexpected(std::move(*loop));
     return outline;
 }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "hw/rigfile/element_fault.hpp"
 #include "hw/rigfile/urdf_document.hpp"
 
 namespace octoskin {
@@ -47,23 +48,41 @@ std::string axis_fault_of(const urdf::Vector3& axis) {
                        axis.x / length, axis.y / length, axis.z / length);
 }
 
-/// Why a joint cannot be taken, or nothing.
-std::string fault_of(const rig::UrdfDocument& document, const urdf::Joint& joint) {
+const char* name_of_other(const urdf::Joint& joint) {
+    if (joint.type == urdf::Joint::FLOATING) return "floating";
+    return joint.type == urdf::Joint::PLANAR ? "planar" : "of an unknown type";
+}
+
+/// Why a joint cannot be taken, and in a word; or nothing.
+struct Refusal {
+    std::string what;
+    std::string kind;
+};
+
+std::optional<Refusal> refusal_of(const rig::UrdfDocument& document, const urdf::Joint& joint) {
     const auto kind = kind_of(joint);
     if (!kind) {
-        return "expected a fixed, revolute, continuous or prismatic joint, found another kind: make it "
-               "type=\"fixed\"";
+        return Refusal{
+            "expected a fixed, revolute, continuous or prismatic joint, found another kind: make it "
+            "type=\"fixed\"",
+            name_of_other(joint)};
     }
-    if (*kind == JointKind::fixed) return "";  // a <mimic> left in it says nothing
+    if (*kind == JointKind::fixed) return std::nullopt;  // a <mimic> left in it says nothing
     if (joint.mimic) {
-        return "expected a joint with a position of its own, found a mimic joint: make it type=\"fixed\", or "
-               "remove <mimic> and name the joint in the rig";
+        return Refusal{
+            "expected a joint with a position of its own, found a mimic joint: make it type=\"fixed\", or "
+            "remove <mimic> and name the joint in the rig",
+            "mimic"};
     }
     const bool needs_limits = *kind == JointKind::revolute || *kind == JointKind::prismatic;
-    if (needs_limits && !joint.limits) return "expected <limit>, found none";
-    if (needs_limits && document.is_upper_missing(joint.name))
-        return "expected <limit> with lower and upper, found no upper, for which URDF takes 0: write it";
-    return axis_fault_of(joint.axis);
+    if (needs_limits && !joint.limits) return Refusal{"expected <limit>, found none", "no limit"};
+    if (needs_limits && document.is_upper_missing(joint.name)) {
+        return Refusal{
+            "expected <limit> with lower and upper, found no upper, for which URDF takes 0: write it",
+            "no upper limit"};
+    }
+    auto fault = axis_fault_of(joint.axis);
+    return fault.empty() ? std::nullopt : std::optional(Refusal{std::move(fault), "its axis"});
 }
 
 JointDescription to_description(const urdf::Joint& joint) {
@@ -86,16 +105,21 @@ JointDescription to_description(const urdf::Joint& joint) {
 Result<std::vector<JointDescription>, rig::RigError> joints_below(const rig::UrdfDocument& document,
                                                                   const urdf::Link& base) {
     std::vector<JointDescription> descriptions;
+    std::vector<rig::ElementFault> faults;
     std::vector<const urdf::Link*> links = {&base};
     for (std::size_t i = 0; i < links.size(); ++i) {
         const urdf::Link& link = *links[i];
         for (const auto& joint : link.child_joints) {
-            auto fault = fault_of(document, *joint);
-            if (!fault.empty()) return unexpected(document.error("joint", joint->name, std::move(fault)));
-            descriptions.push_back(to_description(*joint));
+            if (auto refusal = refusal_of(document, *joint)) {
+                faults.push_back({document.error("joint", joint->name, std::move(refusal->what)),
+                                  std::move(refusal->kind)});
+            } else {
+                descriptions.push_back(to_description(*joint));
+            }
         }
         for (const auto& child : link.child_links) links.push_back(child.get());
     }
+    if (!faults.empty()) return unexpected(rig::one_error_of(std::move(faults)));
     return descriptions;
 }
 

@@ -15,7 +15,7 @@ namespace octoskin {
 /// Errors name file and element, and the line if it can be found: an unreadable file, whatever urdfdom
 /// refuses (a joint without its link, a loop), an unknown base link or joint, a joint that moves but is not
 /// in `moved`, a kind of joint other than fixed, revolute, continuous and prismatic, a mimic joint, an axis
-/// whose length is not 1.
+/// whose length is not 1. All joints that cannot be taken are in one error.
 [[nodiscard]] Result<RobotModel, rig::RigError> read_robot_model(const FilePlace& urdf,
                                                                  const std::string& base_link,
                                                                  std::span<const std::string> moved);

@@ -10,6 +10,7 @@
 #include <limits>
 #include <set>
 
+#include "hw/rigfile/element_fault.hpp"
 #include "hw/rigfile/urdf_document.hpp"
 
 namespace octoskin::sim {
@@ -39,61 +40,66 @@ struct Arm::Builder {
     const rig::UrdfDocument& urdf;
     const std::vector<std::string>& joints;
     Arm arm = {};
-    std::optional<rig::RigError> error = {};
+    std::vector<rig::ElementFault> faults = {};
 
-    bool build(const std::string& base_link) {
+    void build(const std::string& base_link) {
         const auto base = urdf.model().getLink(base_link);
         if (!base) {
-            return fail("robot", urdf.model().getName(), "has no link '" + base_link + "' to be its base");
+            return fail("robot", urdf.model().getName(), "has no link '" + base_link + "' to be its base",
+                        "");
         }
         arm.joints_.assign(joints.size(), Limits{"", 0.0, 0.0});
         arm.links_.push_back({.name = base_link});
         // A link's children follow it in the list, and urdfdom has made sure that there is no loop.
         for (std::size_t i = 0; i < arm.links_.size(); ++i) {
             for (const auto& joint : urdf.model().getLink(arm.links_[i].name)->child_joints) {
-                if (!add(*joint, i)) {
-                    return false;
-                }
+                add(*joint, i);
             }
+        }
+        if (!faults.empty()) {
+            return;
         }
         for (std::size_t i = 0; i < joints.size(); ++i) {
             if (arm.joints_[i].joint.empty()) {
                 return fail("joint", joints[i],
                             "expected a moving joint beyond link '" + base_link +
-                                "', each named once; there is none of this name");
+                                "', each named once; there is none of this name",
+                            "");
             }
         }
-        return true;
     }
 
-    bool add(const urdf::Joint& joint, std::size_t parent) {
+    /// Its link comes in, too, if the joint cannot be taken: what is beyond it may be wrong as well.
+    void add(const urdf::Joint& joint, std::size_t parent) {
         Link link{.name = joint.child_link_name, .parent = parent};
         link.T_parent_joint = isometry_of(joint.parent_to_joint_origin_transform);
         link.axis = Eigen::Vector3d(joint.axis.x, joint.axis.y, joint.axis.z);
-        if (!link.T_parent_joint.matrix().allFinite()) {
-            return fail("joint", joint.name, "expected an origin of finite numbers");
-        }
         const auto motion = motion_of(joint);
-        if (!motion) {
-            return fail("joint", joint.name, "expected a fixed, revolute, continuous or prismatic joint");
-        }
-        link.motion = *motion;
-        if (link.motion != Motion::fixed && !add_moving(joint, link)) {
-            return false;
+        if (!link.T_parent_joint.matrix().allFinite()) {
+            fail("joint", joint.name, "expected an origin of finite numbers", "its origin");
+        } else if (!motion) {
+            fail("joint", joint.name, "expected a fixed, revolute, continuous or prismatic joint",
+                 "of another kind");
+        } else {
+            link.motion = *motion;
+            if (link.motion != Motion::fixed) {
+                add_moving(joint, link);
+            }
         }
         arm.links_.push_back(std::move(link));
-        return true;
     }
 
-    bool add_moving(const urdf::Joint& joint, Link& link) {
+    void add_moving(const urdf::Joint& joint, Link& link) {
         const auto named = std::find(joints.begin(), joints.end(), joint.name);
         if (named == joints.end() || joint.mimic) {
-            return fail("joint", joint.name, "moves, but the rig's joint states do not say where it is");
+            return fail("joint", joint.name, "moves, but the rig's joint states do not say where it is",
+                        joint.mimic ? "mimic" : "not named");
         }
         const double length = link.axis.norm();
         if (!(std::abs(length - 1.0) <= 1e-6)) {
             return fail("joint", joint.name,
-                        "expected an axis of length 1, found one of length " + std::to_string(length));
+                        "expected an axis of length 1, found one of length " + std::to_string(length),
+                        "its axis");
         }
         link.axis /= length;
         link.joint = static_cast<std::size_t>(named - joints.begin());
@@ -101,7 +107,6 @@ struct Arm::Builder {
         const bool is_bounded = joint.limits && joint.type != urdf::Joint::CONTINUOUS;
         arm.joints_[link.joint] = {joint.name, is_bounded ? joint.limits->lower : -kInfinity,
                                    is_bounded ? joint.limits->upper : kInfinity};
-        return true;
     }
 
     static std::optional<Motion> motion_of(const urdf::Joint& joint) {
@@ -121,9 +126,9 @@ struct Arm::Builder {
         return std::nullopt;
     }
 
-    bool fail(const std::string& tag, const std::string& name, const std::string& what) {
-        error = urdf.error(tag, name, what);
-        return false;
+    void fail(const std::string& tag, const std::string& name, const std::string& what,
+              const std::string& kind) {
+        faults.push_back({urdf.error(tag, name, what), kind});
     }
 };
 
@@ -134,8 +139,9 @@ Result<Arm, rig::RigError> Arm::read(const FilePlace& urdf, const std::string& b
         return unexpected(document.error());
     }
     Builder builder{*document, joints};
-    if (!builder.build(base_link)) {
-        return unexpected(*builder.error);
+    builder.build(base_link);
+    if (!builder.faults.empty()) {
+        return unexpected(rig::one_error_of(std::move(builder.faults)));
     }
     return std::move(builder.arm);
 }

@@ -163,5 +163,18 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenUrdf{"empty.urdf", "", "expected a URDF with a <robot>, found none", 0},
         BrokenUrdf{"absent.urdf", "", "cannot be opened", 0}));
 
+// In the order of the file, whatever the order of the tree is.
+TEST(UrdfRobot, every_joint_that_cannot_be_taken_is_in_one_message) {
+    const std::vector<std::string> moved = {"elbow"};
+    const auto model = read_robot_model(kBroken / "joints-of-every-refused-kind.urdf", "base", moved);
+    ASSERT_FALSE(model);
+    EXPECT_EQ(model.error().key, "joint finger");
+    EXPECT_EQ(model.error().line, 8);
+    EXPECT_THAT(
+        model.error().what,
+        HasSubstr("4 more cannot be taken: joint elbow (line 13, its axis), joint cart (line 17, planar), "
+                  "joint drone (line 20, floating), joint lift (line 23, no upper limit)"));
+}
+
 }  // namespace
 }  // namespace octoskin
