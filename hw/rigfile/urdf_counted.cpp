@@ -10,7 +10,10 @@
 #include <optional>
 #include <sstream>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "hw/rigfile/element_fault.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -83,11 +86,41 @@ void simplify_visual(Element& visual) {
     make_mesh(*visual.InsertNewChildElement("geometry"));
 }
 
-/// That it is a mesh is all that is said about one.
+/// That it is a mesh is all that is said about one. A capsule, which urdfdom does not know, is a cylinder
+/// with half a ball at either end: just the body that a cylinder becomes.
 void simplify_collision(Element& collision) {
     keep_children(collision, {"origin", "geometry"});
     Element* const geometry = collision.FirstChildElement("geometry");
-    if (geometry != nullptr && geometry->FirstChildElement("mesh") != nullptr) make_mesh(*geometry);
+    if (geometry == nullptr) return;
+    if (geometry->FirstChildElement("mesh") != nullptr) make_mesh(*geometry);
+    Element* const shape = geometry->FirstChildElement();
+    if (shape != nullptr && std::string_view(shape->Name()) == "capsule") shape->SetName("cylinder");
+}
+
+/// The first shape of a link's body that is none or has no size, by its line: urdfdom says neither that nor
+/// what would help.
+std::optional<ElementFault> find_shape_fault(const std::filesystem::path& file, const Element& link) {
+    for (const auto* body = link.FirstChildElement("collision"); body != nullptr;
+         body = body->NextSiblingElement("collision")) {
+        const auto* const geometry = body->FirstChildElement("geometry");
+        const auto* const shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+        if (shape == nullptr) continue;
+        const std::string name = shape->Name();
+        const auto fault = [&](const std::string& what) {
+            const char* const of = link.Attribute("name");
+            return ElementFault{
+                {file, shape->GetLineNum(), fmt::format("link {}", of == nullptr ? "" : of), what}, name};
+        };
+        if (!is_one_of(name, {"box", "sphere", "cylinder", "capsule", "mesh"})) {
+            return fault(fmt::format(
+                "its <collision> is a <{}>: expected a cylinder, a sphere or a capsule; put one around it in "
+                "its place, or remove it",
+                name));
+        }
+        if (name == "capsule" && !(has_numbers(*shape, "radius", 1) && has_numbers(*shape, "length", 1)))
+            return fault("expected a <capsule> with a radius and a length, each a finite number of metres");
+    }
+    return std::nullopt;
 }
 
 void simplify(Element& element) {
@@ -149,11 +182,14 @@ std::optional<RigError> find_xacro(const std::filesystem::path& file, const Elem
 Result<std::string, RigError> counted_urdf(const std::filesystem::path& file, tinyxml2::XMLElement& robot) {
     robot.DeleteAttribute("version");
     keep_children(robot, {"link", "joint"});
+    std::vector<ElementFault> faults;
     for (Element* element = robot.FirstChildElement(); element != nullptr;
          element = element->NextSiblingElement()) {
+        if (auto fault = find_shape_fault(file, *element)) faults.push_back(std::move(*fault));
         simplify(*element);
         if (auto fault = find_xacro(file, *element)) return unexpected(std::move(*fault));
     }
+    if (!faults.empty()) return unexpected(one_error_of(std::move(faults)));
     return printed_anew(robot);
 }
 

@@ -162,6 +162,51 @@ TEST_F(UrdfEdges, every_link_whose_body_cannot_be_taken_is_in_one_message) {
     EXPECT_THAT(fitted.error().what, HasSubstr("1 more cannot be taken: link a (line 5, mesh)"));
 }
 
+TEST_F(UrdfEdges, a_capsule_is_the_body_that_a_cylinder_and_two_spheres_are) {
+    const std::string at = "<origin xyz=\"0.1 0 0.2\" rpy=\"0 1 0\"/>";
+    const auto body_of = [&](const std::string& in_link) {
+        return read_capsules(folder_.write("arm.urdf", arm(in_link)), {});
+    };
+    const auto capsule = body_of(
+        "<collision>" + at + "<geometry><capsule radius=\"0.05\" length=\"0.3\"/></geometry></collision>");
+    const auto cylinder = body_of(
+        "<collision>" + at + "<geometry><cylinder radius=\"0.05\" length=\"0.3\"/></geometry></collision>");
+    ASSERT_TRUE(capsule) << capsule.error().message();
+    ASSERT_EQ(capsule->size(), 1U);
+    EXPECT_EQ(capsule->front().radius_m, 0.05);
+    EXPECT_EQ(capsule->front().p_link_a, cylinder->front().p_link_a);
+    EXPECT_EQ(capsule->front().p_link_b, cylinder->front().p_link_b);
+    for (const char* numbers : {"radius=\"0.05\"", "length=\"0.3\"", "radius=\"x\" length=\"0.3\"",
+                                "radius=\"0.05\" length=\"inf\"", "radius=\"0.05 1\" length=\"0.3\""}) {
+        const auto refused =
+            body_of("<collision>\n<geometry><capsule " + std::string(numbers) + "/></geometry></collision>");
+        ASSERT_FALSE(refused) << numbers;
+        EXPECT_EQ(refused.error().line, 3) << numbers;
+        EXPECT_EQ(refused.error().key, "link a") << numbers;
+    }
+    EXPECT_EQ(body_of("<collision><geometry><capsule radius=\"-1\" length=\"0.3\"/></geometry></collision>")
+                  .error()
+                  .key,
+              "link a");
+}
+
+TEST_F(UrdfEdges, every_shape_that_is_none_is_in_one_message_with_its_line) {
+    const auto link = [](const std::string& name, const std::string& shape) {
+        return "<link name=\"" + name + "\"><collision><geometry>\n" + shape +
+               "</geometry></collision></link>\n";
+    };
+    const auto refused = read_capsules(
+        folder_.write("arm.urdf", "<robot name=\"r\">\n" + link("z", "<ellipsoid radii=\"1 1 1\"/>") +
+                                      link("y", "<capsule radius=\"1\"/>") + link("x", "<plane/>") +
+                                      "</robot>\n"),
+        {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().line, 3);
+    EXPECT_EQ(refused.error().key, "link z");
+    EXPECT_THAT(refused.error().what,
+                HasSubstr("2 more cannot be taken: link y (line 5, capsule), link x (line 7, plane)"));
+}
+
 TEST_F(UrdfEdges, an_axis_of_length_1_to_three_digits_is_made_exact) {
     const std::string text = arm("");
     const std::string axis = "xyz=\"0 0 1\"/><limit";
