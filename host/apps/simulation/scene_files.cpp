@@ -67,7 +67,7 @@ std::span<const std::uint8_t> as_bytes(const std::string& text) {
 }  // namespace
 
 Result<SceneGap, AppError> write_scene(const Scene& scene, const RecordingPaths& recording) {
-    const auto world = sim::copy_of_world(scene.world_place);
+    const auto world = sim::copy_of_world(scene.world_place, scene.world.written_out());
     if (!world) return SceneGap(world.error());
     if (const auto written = write_files(scene, *world, recording); !written)
         return unexpected(written.error());

@@ -16,6 +16,8 @@ namespace octoskin::sim {
 struct SolidsOfFile {
     std::vector<Solid> solids;
     std::vector<std::string> warnings = {};  ///< what was passed over, without the file's name
+    /// The same SDF with what it includes in it, and meshes by their whole paths; empty: it includes nothing.
+    std::string written_out = {};
 };
 
 using SolidsOrError = Result<SolidsOfFile, WorldError>;

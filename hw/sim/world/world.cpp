@@ -86,6 +86,7 @@ struct World::Impl {
 
     std::vector<Solid> solids;
     std::vector<std::string> warnings;
+    std::string written_out;
     std::vector<Eigen::AlignedBox3d> bounds;
     RayCaster caster;
 };
@@ -107,7 +108,13 @@ Result<World, WorldError> World::read(const FilePlace& sdf) {
     if (!solids) {
         return unexpected(solids.error());
     }
-    return World(std::move(solids->solids), std::move(solids->warnings));
+    World world(std::move(solids->solids), std::move(solids->warnings));
+    world.impl_->written_out = std::move(solids->written_out);
+    return world;
+}
+
+const std::string& World::written_out() const noexcept {
+    return impl_->written_out;
 }
 
 const std::vector<std::string>& World::warnings() const noexcept {

@@ -48,6 +48,8 @@ class World {
     void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
                   double range_max_m, std::span<RayHit> hits) const;
     [[nodiscard]] const std::vector<Solid>& solids() const noexcept;
+    /// Its SDF with what it includes in it; empty if it includes nothing.
+    [[nodiscard]] const std::string& written_out() const noexcept;
     /// What was passed over when it was read, each with the file's name.
     [[nodiscard]] const std::vector<std::string>& warnings() const noexcept;
 

@@ -44,9 +44,13 @@ class Copier {
   public:
     explicit Copier(const FilePlace& sdf) : sdf_(sdf) {}
 
-    Result<WorldCopy, std::string> copy() {
-        const auto text = read_all(sdf_, kWorldBytesMax);
+    Result<WorldCopy, std::string> copy(const std::string& written_out) {
+        auto text = written_out.empty() ? read_all(sdf_, kWorldBytesMax) : written_out;
         if (!text) return unexpected(text.error());
+        if (text->size() > kWorldBytesMax) {
+            return unexpected(fmt::format("{}: has more than {} MiB with what it includes",
+                                          sdf_.shown().string(), kWorldBytesMax >> 20U));
+        }
         tinyxml2::XMLDocument document;
         if (document.Parse(text->data(), text->size()) != tinyxml2::XML_SUCCESS)
             return unexpected(sdf_.shown().string() + ": is not XML");
@@ -111,8 +115,8 @@ class Copier {
 
 }  // namespace
 
-Result<WorldCopy, std::string> copy_of_world(const FilePlace& sdf) {
-    return Copier(sdf).copy();
+Result<WorldCopy, std::string> copy_of_world(const FilePlace& sdf, const std::string& written_out) {
+    return Copier(sdf).copy(written_out);
 }
 
 bool is_mesh_copy(const std::string& name) {

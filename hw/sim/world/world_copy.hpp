@@ -26,10 +26,12 @@ struct WorldCopy {
     std::vector<MeshCopy> meshes;
 };
 
-/// Reads the world's file and those of its meshes, each once. The error says why there can be no such copy:
-/// it includes models, a mesh cannot be read, has no ordinary ending, or all of it is too large. What the
-/// meshes refer to in their turn is left out: what is read from the copy has to be compared with the world.
-[[nodiscard]] Result<WorldCopy, std::string> copy_of_world(const FilePlace& sdf);
+/// Reads the world's file and those of its meshes, each once. `written_out`: World::written_out(), taken in
+/// place of a file that includes models. The error says why there can be no such copy: it includes models
+/// all the same, a mesh cannot be read, has no ordinary ending, or all of it is too large. What the meshes
+/// refer to in their turn is left out: what is read from the copy has to be compared with the world.
+[[nodiscard]] Result<WorldCopy, std::string> copy_of_world(const FilePlace& sdf,
+                                                           const std::string& written_out = {});
 
 /// A name that a copy gives to a mesh.
 [[nodiscard]] bool is_mesh_copy(const std::string& name);

@@ -61,6 +61,31 @@ TEST_F(SceneOfARecording, has_the_meshes_that_were_found_in_folders_of_models) {
     EXPECT_THAT(judged.output, HasSubstr("<mimic> in <model>"));
 }
 
+TEST_F(SceneOfARecording, has_the_models_that_its_world_includes) {
+    make_kitchen();
+    std::filesystem::create_directories(path("models/crate_2"));
+    write(path("models/crate_2/model.config"),
+          "<model><name>crate_2</name><sdf version='1.6'>model.sdf</sdf></model>");
+    write(path("models/crate_2/model.sdf"),
+          "<sdf version='1.6'><model name='crate_2'><static>true</static><link name='l'><visual "
+          "name='v'><geometry>"
+          "<box><size>0.2 0.2 0.2</size></box></geometry></visual></link></model></sdf>");
+    std::string world = content(kitchen());
+    world.insert(world.find("</world>"),
+                 "<include><uri>model://crate_2</uri><pose>-0.6 0.3 0.1 0 0 0.3</pose></include>");
+    write(kitchen(), world);
+    const Said made = octoskin("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
+                               " --scenario " + source("tests/data/short/scenario.yaml") + " --world " +
+                               kitchen() + " --model-path " + path("models"));
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+    EXPECT_THAT(made.output, Not(HasSubstr("without its world")));
+    std::filesystem::remove_all(path("models"));
+    std::filesystem::remove_all(path("worlds"));
+    const Said judged = octoskin("evaluate " + path("rec"));
+    EXPECT_EQ(judged.exit_code, 0) << judged.output;
+    EXPECT_THAT(judged.output, HasSubstr("judging in " + path("rec") + "/world.sdf"));
+}
+
 TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     make_kitchen();
     record_short("rec", "--world " + kitchen());

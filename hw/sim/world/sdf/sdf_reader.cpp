@@ -15,6 +15,7 @@
 
 #include "hw/sim/world/model_folders.hpp"
 #include "hw/sim/world/sdf/sdf_shapes.hpp"
+#include "hw/sim/world/sdf/written_out.hpp"
 
 namespace octoskin::sim {
 namespace {
@@ -158,7 +159,10 @@ class Reader {
     SolidsOrError read() {
         sdf::Root root;
         if (load(root) && add_root(root)) {
-            if (!read_.solids.empty()) return std::move(read_);
+            if (!read_.solids.empty()) {
+                if (input_.files == nullptr) read_.written_out = written_out(root);
+                return std::move(read_);
+            }
             fail("", "no visual with a shape in it: there is nothing to see");
         }
         return unexpected(*error_);

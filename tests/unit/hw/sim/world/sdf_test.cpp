@@ -10,7 +10,9 @@
 
 #include "host/io/folder/open_folder.hpp"
 #include "hw/sim/world/model_folders.hpp"
+#include "hw/sim/world/solids_bytes.hpp"
 #include "hw/sim/world/world.hpp"
+#include "hw/sim/world/world_copy.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::sim {
@@ -214,6 +216,38 @@ TEST_F(ModelUri, is_found_for_includes_and_meshes_by_every_variable) {
             EXPECT_THAT(read->warnings()[0], HasSubstr("model 'crate', link 'l': its inertia"));
         }
     }
+}
+
+TEST_F(ModelUri, of_what_is_included_is_in_the_world_that_is_written_out) {
+    const ModelFolders set("SDF_PATH", models());
+    std::filesystem::create_directory(scratch_ / "models/box");
+    scratch_.write("models/box/model.config",
+                   "<model><name>box</name><sdf version='1.5'>b.sdf</sdf></model>");
+    scratch_.write(
+        "models/box/b.sdf",
+        "<sdf version='1.5'><model name='box'><link name='l'><pose>0.1 0.123456789012 0 0 0.7 0</pose>" +
+            mesh_visual("../crate/meshes/a.obj") + "</link></model></sdf>");
+    const auto file = world(
+        "<include><uri>model://crate</uri><name>one</name><pose>0.6 0 0 0.1 0.2 "
+        "0.333333333333</pose></include>"
+        "<model name='m'><pose>0 0 1 0 0 1.5</pose><include><uri>model://box</uri></include><link name='l'>" +
+        mesh_visual("models/crate/meshes/a.obj") + "</link></model>");
+    const auto read = World::read(file);
+    ASSERT_TRUE(read) << read.error().message();
+    ASSERT_EQ(read->solids().size(), 3U);
+    const auto copy = copy_of_world(file, read->written_out());
+    ASSERT_TRUE(copy) << copy.error();
+    EXPECT_EQ(copy->sdf.find("include"), std::string::npos);
+    EXPECT_EQ(copy->meshes.size(), 3U) << "by as many names";
+    std::filesystem::create_directory(scratch_ / "rec");
+    for (const MeshCopy& mesh : copy->meshes) scratch_.write("rec/" + mesh.name, mesh.bytes);
+    scratch_.write("rec/world.sdf", copy->sdf);
+    std::filesystem::remove_all(scratch_ / "models");
+    const auto again =
+        World::read(FilePlace(OpenFolder::open(scratch_ / "rec", FolderAccess::read).value(), "world.sdf"));
+    ASSERT_TRUE(again) << again.error().message();
+    EXPECT_EQ(to_bytes(SolidsOfFile{again->solids()}), to_bytes(SolidsOfFile{read->solids()}));
+    EXPECT_EQ(again->written_out(), "");
 }
 
 TEST_F(ModelUri, of_an_earlier_folder_hides_that_of_a_later_one) {

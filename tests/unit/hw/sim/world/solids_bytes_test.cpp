@@ -32,7 +32,7 @@ void expect_equal(const Solid& a, const Solid& b) {
 
 TEST(SolidsBytes, bring_every_bit_of_the_solids) {
     const auto solids = two_solids();
-    const auto again = from_bytes(to_bytes(SolidsOfFile{solids, {"one", ""}}));
+    const auto again = from_bytes(to_bytes(SolidsOfFile{solids, {"one", ""}, "<sdf/>"}));
     ASSERT_TRUE(again && *again);
     EXPECT_EQ((*again)->warnings, (std::vector<std::string>{"one", ""}));
     ASSERT_EQ((*again)->solids.size(), 2U);

@@ -48,6 +48,18 @@ TEST(WorldCopy, gives_each_mesh_one_name_of_a_fixed_scheme) {
     EXPECT_EQ(copy->sdf.find("a b.STL"), std::string::npos);
 }
 
+TEST(WorldCopy, is_of_what_is_written_out_in_place_of_the_file) {
+    const ScratchFolder scratch;
+    scratch.write("one.stl", "one");
+    const auto file = scratch.write("a.sdf", world_of("<include><uri>model</uri></include>"));
+    const auto copy = copy_of_world(file, world_of(mesh((scratch / "one.stl").string())));
+    ASSERT_TRUE(copy) << copy.error();
+    ASSERT_EQ(copy->meshes.size(), 1U);
+    EXPECT_EQ(copy->meshes[0].bytes, "one");
+    EXPECT_NE(copy->sdf.find("<uri>mesh_01.stl</uri>"), std::string::npos);
+    EXPECT_FALSE(copy_of_world(file, world_of(std::string(kWorldBytesMax, ' '))));
+}
+
 TEST(WorldCopy, that_cannot_be_made_says_why) {
     const ScratchFolder scratch;
     scratch.write("plain", "no ending");
