@@ -11,8 +11,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "host/core/mapping/beam_integrator.hpp"
 #include "host/core/mapping/depth_integrator.hpp"
+#include "host/core/mapping/ray_model.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapfile/octomap_mirror.hpp"
 #include "host/io/mapfile/octomap_tree.hpp"
@@ -101,22 +101,22 @@ class BeamCycles {
 class OurBeams final : public Task {
   public:
     OurBeams(const std::string& resolution, bool keeps_times)
-        : config_(bench_mapping(resolution, DepthUpdate::robust)), integrator_(config_), map_(config_.map) {
+        : config_(bench_mapping(resolution, DepthUpdate::robust)), model_(config_), map_(config_.map) {
         if (keeps_times) map_.go_on(HostTime{0});
     }
     void prepare() override { beams_ = cycles_.next(); }
     void run() override {
         for (const Beam& beam : beams_) {
-            const auto updates = integrator_.integrate(beam);
-            if (!updates) throw std::runtime_error("a beam was refused");
-            map_.apply(*updates);
+            const auto evidence = model_.find(beam);
+            if (!evidence) throw std::runtime_error("a beam was refused");
+            map_.apply(**evidence);
         }
     }
     void tell(Figures& figures) const override { tell_size(map_, figures); }
 
   private:
     MappingConfig config_;
-    BeamIntegrator integrator_;
+    RayModel model_;
     FusedMap map_;
     BeamCycles cycles_;
     std::vector<Beam> beams_;

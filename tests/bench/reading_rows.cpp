@@ -92,7 +92,7 @@ class Readings final : public Task {
     /// A reading that ends on the robot itself is refused, and costs little.
     void tell(Figures& figures) const override {
         if (20 * taken_ < 17 * given_) throw std::runtime_error("of the readings over 15 % are refused");
-        tell_size(*builder_.maps().fused(), figures);
+        tell_size(builder_.map(), figures);
     }
 
   private:
@@ -109,8 +109,7 @@ class Readings final : public Task {
         if (!setup) throw std::runtime_error("the rig's robot cannot be read");
         MappingConfig mapping = bench_mapping(resolution, DepthUpdate::fast);
         mapping.range_update = update;
-        auto builder = MapBuilder::build(setup->rig, std::move(setup->robot), mapping, {},
-                                         {.depth = false, .proximity = false, .fused = true});
+        auto builder = MapBuilder::build(setup->rig, std::move(setup->robot), mapping, {}, {MapFeed::both});
         if (!builder) throw std::runtime_error("the rig and its robot do not go together");
         return std::move(builder).value();
     }

@@ -8,7 +8,6 @@
 
 #include "host/core/mapping/depth_integrator.hpp"
 #include "tests/bench/clouds.hpp"
-#include "tests/support/voxel_updates.hpp"
 
 namespace octoskin::bench {
 

@@ -133,7 +133,7 @@ ExitCode Daemon::run() {
     } catch (const std::exception& error) {
         outcome = tell_why_it_ends(error);
     }
-    const Nanoseconds patience = end_patience(parts_->pipeline.maps().fused()->memory_bytes());
+    const Nanoseconds patience = end_patience(parts_->pipeline.map().memory_bytes());
     tell_end(patience);
     parts_->recordings.stop(monotonic_now(), "the daemon ended");
     const HostTime end = monotonic_now() + patience;
@@ -230,12 +230,12 @@ std::optional<HostTime> Daemon::Parts::maps_silent_since(HostTime now) const {
     if (looking && now - *looking > kLookMax) return looking;
     const auto saving = keeper->record().saving_since;
     if (!saving) return std::nullopt;
-    const Nanoseconds save_max = end_patience(pipeline.maps().fused()->memory_bytes()) + kEndMargin;
+    const Nanoseconds save_max = end_patience(pipeline.map().memory_bytes()) + kEndMargin;
     return now - *saving > save_max ? saving : std::nullopt;
 }
 
 void Daemon::Parts::save_map() {
-    (void)keeper->save(*pipeline.maps().fused());  // counted if one is at work still; the next is not far
+    (void)keeper->save(pipeline.map());  // counted if one is at work still; the next is not far
 }
 
 /// Why it could not be saved by `end`; empty: it is saved.
@@ -249,7 +249,7 @@ std::string Daemon::Parts::save_last_map(HostTime end) {
                       : std::string(what);
     };
     if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long for the save before");
-    keeper->save_last(pipeline.take_fused());
+    keeper->save_last(pipeline.take_map());
     if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long");
     return keeper->record().error;
 }
@@ -273,7 +273,7 @@ std::uint64_t Daemon::Parts::settle_pipeline() {
 std::string Daemon::Parts::why_map_ends(const Settings& next) const {
     const double now = settings.mapping.map.resolution_m;
     const double wanted = next.mapping.map.resolution_m;
-    if (wanted == now) return why_no_room(*pipeline.maps().fused(), next.mapping.map);
+    if (wanted == now) return why_no_room(pipeline.map(), next.mapping.map);
     return describe_other_voxels(request.map_folder / "fused.ot", now, wanted) +
            "; end octoskin, move it and fused.bt away and start octoskin to begin with an empty map";
 }
@@ -282,16 +282,16 @@ std::string Daemon::Parts::why_map_ends(const Settings& next) const {
 void Daemon::Parts::keep_within(const MapConfig& next) {
     MapConfig both = settings.mapping.map;
     both.memory_max_mib = std::min(both.memory_max_mib, next.memory_max_mib);
-    pipeline.limit_fused(both);
+    pipeline.limit_map(both);
 }
 
 /// While the map is still the pipeline's: it must not be lost with what there is no memory for.
 bool Daemon::Parts::take_limits(const MapConfig& next) {
     try {
-        pipeline.limit_fused(next);
+        pipeline.limit_map(next);
         return true;
     } catch (const std::bad_alloc&) {
-        pipeline.limit_fused(settings.mapping.map);
+        pipeline.limit_map(settings.mapping.map);
         reload_error = "there is no memory for the map within its new limits beside the old one";
         return false;
     }

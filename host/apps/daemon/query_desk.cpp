@@ -64,7 +64,7 @@ std::vector<std::pair<std::uint64_t, std::string>> QueryDesk::serve(const Pipeli
     std::unique_lock lock(mutex_);
     auto answers = std::exchange(answers_, {});
     if (wants_ground_) {
-        ground_.emplace(Ground{setup_, pipeline.maps().fused()->copy(),
+        ground_.emplace(Ground{setup_, pipeline.map().copy(),
                                present_joints(pipeline, setup_->robot.joint_count(), now.known), now});
         wants_ground_ = false;
         lock.unlock();

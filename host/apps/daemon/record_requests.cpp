@@ -98,7 +98,7 @@ Status<AppError> RecordRequests::start(const std::string& arguments, const Recor
             std::make_unique<Recorder>(asked->folder, asked->limit, settings, pipeline, now, copier_), now);
     } catch (const std::bad_alloc&) {
         refusal_ = fmt::format("no memory for a copy of the map ({} MiB), with which a recording begins",
-                               pipeline.maps().fused()->memory_bytes() >> 20U);
+                               pipeline.map().memory_bytes() >> 20U);
     } catch (const std::system_error& error_thrown) {
         refusal_ = fmt::format("no thread to be had for a recording ({})", error_thrown.code().message());
     }

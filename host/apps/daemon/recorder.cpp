@@ -31,7 +31,7 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
                       .mapping_crc32 = crc32_of_text(settings.mapping),
                       .joints = settings.joints,
                       .first_map = std::nullopt},
-            .first_map = copier(*pipeline.maps().fused())};
+            .first_map = copier(pipeline.map())};
 }
 
 /// What `add` says; false if there was no memory for it. What it was told of is on the map by then: it is
@@ -96,7 +96,7 @@ void Recorder::on_reading(const RangeMeasurement& measurement, const Beam&, std:
     put(measurement);
 }
 
-void Recorder::on_depth(const DepthFrame& frame, const DepthTerms&) {
+void Recorder::on_depth(const DepthFrame& frame, const Evidence&) {
     DepthCommit commit{std::nullopt, frame.captured};
     if (is_storable(frame, depth_max_m_) && has_memory_for([&] { return writer_.add_depth(frame); })) {
         commit.index = depth_frames_++;
@@ -157,7 +157,7 @@ void Recorder::tell_end() {
 
 std::optional<FusedMap> Recorder::last_map() const {
     try {
-        return copier_(*pipeline_->maps().fused());
+        return copier_(pipeline_->map());
     } catch (const std::bad_alloc&) {
         return std::nullopt;
     }

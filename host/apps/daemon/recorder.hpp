@@ -71,7 +71,7 @@ class Recorder final : public CommitListener {
     void on_joints(const JointMeasurement& joints) override { put(joints); }
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
-    void on_depth(const DepthFrame& frame, const DepthTerms& terms) override;
+    void on_depth(const DepthFrame& frame, const Evidence& terms) override;
     /// Ends it: its replay could not go on from there.
     void on_time_leap() override;
 

@@ -54,7 +54,7 @@ Result<Settings, AppError> read_settings(const DaemonRequest& request) {
 
 Result<Pipeline, AppError> make_pipeline(const DaemonRequest& request, const Settings& settings) {
     PipelineConfig config;
-    config.maps = {.depth = false, .proximity = false, .fused = true};
+    config.maps = {MapFeed::both};
     config.depth_threads = request.depth_threads;
     config.release = Release::once_placed;
     config.intake.has_local_joints = !request.joint_socket.empty();

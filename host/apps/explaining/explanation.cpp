@@ -42,12 +42,12 @@ Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vect
                                 p_map.y(), p_map.z(), 32768 * grid.resolution_m()));
     }
     VoxelWitness witness(*key, request.mapping.map, contributions_max);
-    request.maps = {.depth = false, .proximity = false, .fused = true};
+    request.maps = {MapFeed::both};
     request.listener = &witness;
     const auto played = play_recording(request, report);
     if (!played) return unexpected(played.error());
     if (auto failure = failure_of(*played)) return unexpected(std::move(*failure));
-    const FusedMap& map = *played->pipeline.maps().fused();
+    const FusedMap& map = played->pipeline.map();
     std::uint64_t no_room = 0;
     if (is_without_room(map, witness)) {
         no_room = witness.count();

@@ -17,17 +17,17 @@ void VoxelWitness::on_reading(const RangeMeasurement& measurement, const Beam& b
     take(std::move(contribution), updates);
 }
 
-void VoxelWitness::on_depth(const DepthFrame& frame, const DepthTerms& terms) {
+void VoxelWitness::on_depth(const DepthFrame& frame, const Evidence& terms) {
     Contribution contribution;
     contribution.frame = depth_frames_++;
     contribution.captured = frame.captured;
-    const VoxelUpdate update{key_, terms.of(key_)};
+    const VoxelUpdate update{key_, term_of(terms, key_)};
     take(std::move(contribution), std::span(&update, 1));
 }
 
 void VoxelWitness::on_fused(const FusedMap& map) {
     const auto now = map.log_odds(key_);
-    if (now == now_ && !map.counts().has(brick_of(key_))) return;
+    if (now == now_ && !map.layers().counts.has(brick_of(key_))) return;
     now_ = now;
     if (!is_newest_of_commit_ || newest_.empty()) return;
     Contribution& newest = newest_.back();

@@ -50,11 +50,11 @@ class VoxelWitness final : public CommitListener {
     void on_joints(const JointMeasurement&) override {}
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
-    void on_depth(const DepthFrame& frame, const DepthTerms& terms) override;
+    void on_depth(const DepthFrame& frame, const Evidence& terms) override;
     /// Where range sensors count hits and misses, or the voxel was forgotten for its age, terms do not simply
     /// add up: there the map is asked.
-    void on_maps(const MapSet& maps) override {
-        if (maps.fused() != nullptr) on_fused(*maps.fused());
+    void on_maps(std::span<const FedMap> maps) override {
+        if (const FusedMap* const map = find_map(maps, MapFeed::both)) on_fused(*map);
     }
     void on_fused(const FusedMap& map);
 

@@ -101,7 +101,7 @@ Judged judge_recording(const EvaluateOptions& options) {
         .recording = recording,
         .mapping = mapping,
         .configuration = configuration->name,
-        .maps = {},
+        .maps = every_feed(),
         .rig = options.rig,
         .robot = options.robot,
         .warn_first = [](const std::string& warning) { spdlog::warn("{}", warning); }};
@@ -117,13 +117,11 @@ Judged judge_recording(const EvaluateOptions& options) {
     if (const auto failure = failure_of(*playback)) throw CommandFailure(*failure);
     const evaluation::Truth truth = build(scene, playback->rig, mapping.map.resolution_m);
     const std::string& name = configuration->name;
-    const MapSet& maps = playback->pipeline.maps();
     const std::uint64_t seed = meta->seed.value_or(0);
-    std::vector<evaluation::Run> runs = {
-        {name, "proximity", seed, evaluation::evaluate(*maps.proximity(), truth)}};
-    if (playback->rig.camera) {
-        runs.insert(runs.begin(), {name, "depth", seed, evaluation::evaluate(*maps.depth(), truth)});
-        runs.push_back({name, "fused", seed, evaluation::evaluate(*maps.fused(), truth)});
+    std::vector<evaluation::Run> runs;
+    for (const auto& [feed, map] : playback->pipeline.maps()) {
+        if (!playback->rig.camera && feed != MapFeed::ranges) continue;
+        runs.push_back({name, std::string(name_of(feed)), seed, evaluation::evaluate(map, truth)});
     }
     return {results_of(runs, playback->rig, scene,
                        options.rig.empty() ? recording.rig() : FilePlace(options.rig)),

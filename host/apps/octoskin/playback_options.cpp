@@ -98,7 +98,7 @@ PlaybackRequest playback_request(const PlaybackOptions& options) {
             .mapping = configuration->mapping,
             .configuration = configuration->name,
             .is_mapping_given = !options.configuration.empty(),
-            .maps = {},
+            .maps = every_feed(),
             .rig = options.rig,
             .robot = options.robot,
             .camera = options.camera,

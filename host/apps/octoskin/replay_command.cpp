@@ -153,7 +153,7 @@ void tell_last_posture(const Playback& playback) {
 void replay_recording(const ReplayOptions& options) {
     const bool wants_all = !options.is_fused_only;
     PlaybackRequest request = playback_request(options.playback);
-    request.maps = {.depth = wants_all, .proximity = wants_all, .fused = true};
+    request.maps = wants_all ? every_feed() : std::vector{MapFeed::both};
     request.pace = pace_of(options);
     if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
     // Before the work: of two that write there, the second would else find out after it.

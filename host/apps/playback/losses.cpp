@@ -39,7 +39,7 @@ int rank_of(const Loss& loss) {
 }  // namespace
 
 void find_losses(Playback& playback) {
-    const bool is_empty = playback.pipeline.maps().fused()->known_voxels() == 0;
+    const bool is_empty = playback.pipeline.map().known_voxels() == 0;
     for (const AccountTable& table : playback.accounts) {
         auto loss = octoskin::loss_of(table);
         if (!loss && is_empty && table.used == 0) loss = most_frequent(table);

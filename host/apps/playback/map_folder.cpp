@@ -31,13 +31,13 @@ OtherMaps look_at_others(const OpenFolder& folder, const MapOrigin& origin) {
 }  // namespace
 
 NamedMaps named_maps(const Playback& playback) {
-    const MapSet& maps = playback.pipeline.maps();
     NamedMaps named;
-    if (maps.depth() != nullptr && playback.outcome.progress.depth_frames > 0)
-        named.emplace_back("depth", maps.depth());
-    if (maps.proximity() != nullptr && !playback.rig.nodes.empty())
-        named.emplace_back("proximity", maps.proximity());
-    if (maps.fused() != nullptr) named.emplace_back("fused", maps.fused());
+    for (const FedMap& fed : playback.pipeline.maps()) {
+        const bool has_no_frames = playback.outcome.progress.depth_frames == 0;
+        if (fed.feed == MapFeed::camera && has_no_frames) continue;
+        if (fed.feed == MapFeed::ranges && playback.rig.nodes.empty()) continue;
+        named.emplace_back(name_of(fed.feed), &fed.map);
+    }
     return named;
 }
 

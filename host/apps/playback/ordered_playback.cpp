@@ -112,7 +112,7 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
         if (!first) return unexpected(first.error());
         first_warnings = std::move(first->warnings);
         pipeline.begin_with(std::move(first->map));
-        if (request.listener != nullptr) request.listener->on_begin(*pipeline.maps().fused());
+        if (request.listener != nullptr) request.listener->on_begin(pipeline.map());
     }
     PacedCommits paced(*order, request.pace, begin);
     OrderedPlayback played{.outcome = replay_in_order(pipeline.builder(), paced, depth, report, begin)};
@@ -122,7 +122,7 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
     played.accounts = {tabulate("readings", played.outcome.readings, 0, seconds_text),
                        tabulate("joint samples", played.outcome.joint_samples, 0, seconds_text),
                        tabulate("depth frames", played.outcome.depth_frames, 0, seconds_text)};
-    judge(request, rig, *order, *pipeline.maps().fused(), played);
+    judge(request, rig, *order, pipeline.map(), played);
     return played;
 }
 

@@ -184,15 +184,12 @@ void find_wrong_sizes(Playback& playback) {
 }
 
 void find_full_maps(Playback& playback) {
-    const std::pair<const char*, const FusedMap*> maps[] = {
-        {"depth", playback.pipeline.maps().depth()},
-        {"proximity", playback.pipeline.maps().proximity()},
-        {"fused", playback.pipeline.maps().fused()}};
-    for (const auto& [name, map] : maps) {
-        if (map == nullptr || map->counters().no_room == 0) continue;
-        const bool is_as_daemons = map == playback.pipeline.maps().fused() && playback.is_as_full_as_daemons;
+    for (const auto& [feed, map] : playback.pipeline.maps()) {
+        const std::uint64_t no_room = map.counters().no_room;
+        if (no_room == 0) continue;
+        const bool is_as_daemons = feed == MapFeed::both && playback.is_as_full_as_daemons;
         playback.is_map_incomplete |= !is_as_daemons;
-        playback.warnings.push_back(std::string(name) + ": " + std::to_string(map->counters().no_room) +
+        playback.warnings.push_back(std::string(name_of(feed)) + ": " + std::to_string(no_room) +
                                     " voxel terms had no room" + (is_as_daemons ? ", as in the daemon" : "") +
                                     "; raise map.memory_max_mib in the mapping file");
     }
@@ -306,7 +303,7 @@ std::optional<AppError> failure_of(const Playback& playback, std::string_view wh
                                                        [](const auto& table) { return table.is_balanced; });
     if (!is_balanced) return AppError{ExitCode::failed, "the account does not balance"};
     if (playback.is_map_incomplete) return AppError{ExitCode::failed, "the map is not complete"};
-    if (playback.pipeline.maps().fused()->known_voxels() == 0) {
+    if (playback.pipeline.map().known_voxels() == 0) {
         return AppError{ExitCode::failed,
                         "nothing came into the map" + why_nothing(playback, where_the_account_is)};
     }

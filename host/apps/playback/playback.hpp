@@ -27,7 +27,7 @@ struct PlaybackRequest {
     MappingConfig mapping;
     std::string configuration;      ///< what `mapping` is called
     bool is_mapping_given = false;  ///< in place of the recording's
-    MapChoice maps;
+    std::vector<MapFeed> maps = every_feed();
     std::filesystem::path rig;    ///< in place of the recording's; empty: the recording's
     std::filesystem::path robot;  ///< in place of the recording's; empty: the recording's
     /// Of a data set or a lone .oni for which no rig is given, one of tum::kDataSetCameras; empty: that of

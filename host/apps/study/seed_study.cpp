@@ -74,16 +74,18 @@ class UnknownSpaceWatch final : public CommitListener {
     void on_reading(const RangeMeasurement& measurement, const Beam&, std::span<const VoxelUpdate>) override {
         captured_ = measurement.captured;
     }
-    void on_depth(const DepthFrame& frame, const DepthTerms&) override { captured_ = frame.captured; }
-    void on_maps(const MapSet& maps) override { meter_.see(captured_, depth_of(maps), *maps.fused()); }
+    void on_depth(const DepthFrame& frame, const Evidence&) override { captured_ = frame.captured; }
+    void on_maps(std::span<const FedMap> maps) override {
+        meter_.see(captured_, depth_of(maps), *find_map(maps, MapFeed::both));
+    }
 
-    [[nodiscard]] evaluation::UnknownSpace finish(const MapSet& maps) {
-        return meter_.finish(depth_of(maps), *maps.fused());
+    [[nodiscard]] evaluation::UnknownSpace finish(std::span<const FedMap> maps) {
+        return meter_.finish(depth_of(maps), *find_map(maps, MapFeed::both));
     }
 
   private:
-    [[nodiscard]] const FusedMap* depth_of(const MapSet& maps) const {
-        return has_camera_ ? maps.depth() : nullptr;
+    [[nodiscard]] const FusedMap* depth_of(std::span<const FedMap> maps) const {
+        return has_camera_ ? find_map(maps, MapFeed::camera) : nullptr;
     }
 
     bool has_camera_;
@@ -98,7 +100,7 @@ Result<Playback, AppError> play(const SeedRequest& request, const NamedMapping& 
     auto playback = play_recording({.recording = recording,
                                     .mapping = configuration.mapping,
                                     .configuration = configuration.name,
-                                    .maps = {},
+                                    .maps = every_feed(),
                                     .rig = {},
                                     .robot = {},
                                     .listener = listener});
@@ -112,13 +114,11 @@ Result<Playback, AppError> play(const SeedRequest& request, const NamedMapping& 
 void judge(const Playback& playback, const std::string& configuration, const evaluation::Truth& truth,
            SeedOutcome& outcome) {
     const PartTimer timer("evaluate");
-    const MapSet& maps = playback.pipeline.maps();
-    const std::pair<const char*, const FusedMap*> named[] = {
-        {"depth", maps.depth()}, {"proximity", maps.proximity()}, {"fused", maps.fused()}};
-    for (const auto& [name, map] : named) {
+    for (const auto& [feed, map] : playback.pipeline.maps()) {
         // Without a camera there is one map only, whatever it is called.
-        if (!playback.rig.camera && map != maps.proximity()) continue;
-        outcome.runs.push_back({configuration, name, outcome.seed, evaluation::evaluate(*map, truth)});
+        if (!playback.rig.camera && feed != MapFeed::ranges) continue;
+        outcome.runs.push_back(
+            {configuration, std::string(name_of(feed)), outcome.seed, evaluation::evaluate(map, truth)});
     }
     outcome.times.push_back(timer.stop());
 }

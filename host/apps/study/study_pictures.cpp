@@ -60,13 +60,14 @@ struct NamedMap {
     const FusedMap* map;
 };
 
-std::vector<NamedMap> maps_to_draw(const MapSet& maps, bool has_camera) {
+std::vector<NamedMap> maps_to_draw(std::span<const FedMap> maps, bool has_camera) {
     const NamedMap ranges = {"Range sensors only", "What the sensors on the arm found during its motion.",
-                             maps.proximity()};
+                             find_map(maps, MapFeed::ranges)};
     if (!has_camera) return {ranges};
-    return {{"Depth camera only", "What a planner with the external camera alone knows.", maps.depth()},
+    return {{"Depth camera only", "What a planner with the external camera alone knows.",
+             find_map(maps, MapFeed::camera)},
             ranges,
-            {"Fused", "One map of both.", maps.fused()}};
+            {"Fused", "One map of both.", find_map(maps, MapFeed::both)}};
 }
 
 /// All in one frame, so that they can be laid over each other.
@@ -101,7 +102,7 @@ PicturePair draw_scene(const sim::World& world, const sim::Scenario& scenario, c
 }  // namespace
 
 std::vector<PicturePair> draw_pictures(const sim::World& world, const sim::Scenario& scenario,
-                                       const rig::Rig& rig, const MapSet& maps,
+                                       const rig::Rig& rig, std::span<const FedMap> maps,
                                        const evaluation::Truth& truth) {
     std::vector<PicturePair> pictures = draw_maps(maps_to_draw(maps, rig.camera.has_value()), truth);
     pictures.insert(pictures.begin(), draw_scene(world, scenario, rig));

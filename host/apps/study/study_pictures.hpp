@@ -5,7 +5,7 @@
 
 #include "host/apps/evaluation/truth.hpp"
 #include "host/apps/report/report.hpp"
-#include "host/core/pipeline/map_set.hpp"
+#include "host/core/pipeline/fed_map.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/sim/scenario/scenario.hpp"
 #include "hw/sim/world/world.hpp"
@@ -16,7 +16,8 @@ namespace octoskin {
 /// 10 s on one core.
 [[nodiscard]] std::vector<report::PicturePair> draw_pictures(const sim::World& world,
                                                              const sim::Scenario& scenario,
-                                                             const rig::Rig& rig, const MapSet& maps,
+                                                             const rig::Rig& rig,
+                                                             std::span<const FedMap> maps,
                                                              const evaluation::Truth& truth);
 
 }  // namespace octoskin

@@ -25,6 +25,18 @@ void for_each_cell(const BrickMask& mask, const Visit& visit) {
             visit(64 * word + static_cast<std::size_t>(std::countr_zero(voxels)));
 }
 
+[[nodiscard]] inline std::size_t count_of(const BrickMask& mask) noexcept {
+    std::size_t count = 0;
+    for (const std::uint64_t word : mask) count += static_cast<std::size_t>(std::popcount(word));
+    return count;
+}
+
+[[nodiscard]] inline bool is_whole(const BrickMask& mask) noexcept {
+    for (const std::uint64_t word : mask)
+        if (word != ~std::uint64_t{0}) return false;
+    return true;
+}
+
 /// Of 64 voxels of a brick, a word of a BrickMask: bit i is voxel i.
 struct WordSets {
     std::uint64_t known = 0;

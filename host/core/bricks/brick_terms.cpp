@@ -46,7 +46,7 @@ std::size_t add_to_voxels(float* values, const std::uint64_t* words, const Clamp
 }
 
 /// One by one, as a voxel may be among them twice.
-std::size_t add_to_each(float* const* voxels, const VoxelUpdate* updates, std::size_t count,
+std::size_t add_to_each(float* const* voxels, const CellTerm* cells, std::size_t count,
                         const ClampedTerm& clamps) {
     const hn::CappedTag<float, 1> f;
     const auto min = hn::Set(f, clamps.min);
@@ -55,7 +55,7 @@ std::size_t add_to_each(float* const* voxels, const VoxelUpdate* updates, std::s
     for (std::size_t i = 0; i < count; ++i) {
         const auto before = hn::Load(f, voxels[i]);
         const auto is_known = hn::Eq(before, before);
-        const auto sum = hn::Add(hn::IfThenElseZero(is_known, before), hn::Set(f, updates[i].log_odds));
+        const auto sum = hn::Add(hn::IfThenElseZero(is_known, before), hn::Set(f, cells[i].term));
         hn::Store(hn::Min(max, hn::Max(min, sum)), f, voxels[i]);
         known = hn::Add(known, hn::IfThenElseZero(is_known, hn::Set(f, 1.0F)));
     }
@@ -88,9 +88,9 @@ std::size_t add_to_voxels(BrickValues& values, const BrickMask& voxels, const Cl
     return HWY_DYNAMIC_DISPATCH(add_to_voxels)(values.data(), voxels.data(), term);
 }
 
-std::size_t add_to_each(std::span<float* const> voxels, std::span<const VoxelUpdate> updates,
+std::size_t add_to_each(std::span<float* const> voxels, std::span<const CellTerm> cells,
                         const ClampedTerm& clamps) noexcept {
-    return HWY_DYNAMIC_DISPATCH(add_to_each)(voxels.data(), updates.data(), voxels.size(), clamps);
+    return HWY_DYNAMIC_DISPATCH(add_to_each)(voxels.data(), cells.data(), voxels.size(), clamps);
 }
 
 bool are_alike(const BrickValues& values) noexcept {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "host/core/bricks/brick.hpp"
-#include "host/core/voxels/voxel_update.hpp"
+#include "host/core/bricks/cell_term.hpp"
 
 namespace octoskin {
 
@@ -27,9 +27,9 @@ struct ClampedTerm {
 /// every processor. About 50 ns for a whole brick.
 std::size_t add_to_voxels(BrickValues& values, const BrickMask& voxels, const ClampedTerm& term) noexcept;
 
-/// Adds to each of the voxels its update's term, in this order; a voxel may come twice. Of `clamps` the term
+/// Adds to each of the voxels its cell's term, in this order; a voxel may come twice. Of `clamps` the term
 /// does not count. The answer and the bits are as above. About 1 ns a voxel.
-std::size_t add_to_each(std::span<float* const> voxels, std::span<const VoxelUpdate> updates,
+std::size_t add_to_each(std::span<float* const> voxels, std::span<const CellTerm> cells,
                         const ClampedTerm& clamps) noexcept;
 
 /// Whether all of them are known and alike.

@@ -34,6 +34,7 @@ class ConeFinder {
     /// Whether a voxel touches the cap of a beam with a range, as far as a cube and a cap can be told apart
     /// by the cube's centre and half its edge, however long the range.
     [[nodiscard]] bool ends_about(const Beam& beam, VoxelKey key) const noexcept;
+    [[nodiscard]] const VoxelLattice& lattice() const noexcept { return lattice_; }
     /// By which they are found, and are to be counted.
     [[nodiscard]] const ConeModel& model_of(const Beam& beam) const noexcept {
         return config_.cone_of(beam.optics);

@@ -8,12 +8,6 @@
 
 namespace octoskin {
 
-/// Which voxels of a cap get its hits.
-enum class Blame : std::uint8_t {
-    all,       ///< each its share
-    occupied,  ///< those that are occupied and no others, if any is
-};
-
 /// A voxel of a cap: what the beam weighs there, 1 on its axis. Without weight it is seen, and gets no hits.
 struct CapVoxel {
     VoxelKey key;
@@ -29,8 +23,8 @@ struct ConeVoxels {
     /// | |v| - r | <= h, angle of v and d <= cap angle; each once. Empty beyond `hit_range_max_m`.
     std::vector<CapVoxel> cap;
     /// Where its surface most likely is, as far as one reading tells: | |v| - r | <= half an edge, angle of v
-    /// and d <= `StandingModel::angle_share` of the half angle; or, if that is no voxel, the end's own. Empty
-    /// where `cap` is.
+    /// and d <= `StationaryModel::angle_share` of the half angle; or, if that is no voxel, the end's own.
+    /// Empty where `cap` is.
     std::vector<VoxelKey> middle;
 };
 

@@ -87,19 +87,18 @@ constexpr unsigned kPartHeight = kBrickHeight + 2;
 
 /// In cache lines of its own: with each hit its ends are written.
 struct alignas(64) PartTerms {
-    DepthTerms terms;
+    Evidence terms;
 };
 
 /// Calls add_below(terms, cube) for each cube, whoever is free, and joins what they say in the cubes' order.
 /// `parts`: working memory.
 template <class AddBelow>
 void add_together(Crew& crew, const std::vector<VoxelCube>& cubes, const AddBelow& add_below,
-                  std::vector<PartTerms>& parts, DepthTerms& terms) {
+                  std::vector<PartTerms>& parts, Evidence& terms) {
     if (parts.size() < cubes.size()) parts.resize(cubes.size());
     crew.work(cubes.size(), [&](std::size_t i) {
-        DepthTerms& own = parts[i].terms;
-        own.bricks.clear();
-        own.hits.clear();
+        Evidence& own = parts[i].terms;
+        own.clear();
         own.miss = terms.miss;
         add_below(own, cubes[i]);
     });
@@ -169,10 +168,10 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
     takes_voxels ? place(place_voxels) : place(place_image);
     DepthUpdates result;
     result.pixels = rays.counts;
-    DepthTerms& terms = result.terms;
+    Evidence& terms = result.terms;
     terms.miss = config_.model.miss_log_odds;
     terms.bricks.reserve(workspace_->bricks_before);
-    terms.hits.reserve(workspace_->hits_before);
+    terms.cells.reserve(workspace_->hits_before);
     bool has_room = false;
     switch (config_.depth_update) {
         case DepthUpdate::paper:
@@ -194,14 +193,14 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
     }
     if (!has_room) return unexpected(DepthRejection::box_too_large);
     workspace_->bricks_before = terms.bricks.size();
-    workspace_->hits_before = terms.hits.size();
+    workspace_->hits_before = terms.cells.size();
     return result;
 }
 
 /// The paper's sets: a hit wins over any number of rays that passed, and the largest hit counts. A hit with a
 /// term of 0 (too near to be trusted) is a hit all the same: it never turns into a miss.
 bool DepthIntegrator::take_sets(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
-                                DepthTerms& terms) {
+                                Evidence& terms) {
     MarkGrid& marks = workspace_->marks;
     HitBricks& hits = workspace_->hits;
     const KeyBox box = box_of(rays, lattice_);
@@ -216,13 +215,13 @@ bool DepthIntegrator::take_sets(const PlacedImage& rays, const Eigen::Isometry3d
         const LargestHits largest(hits.of(brick));
         terms.add(brick, without(passed, largest.mask()));
         for_each_cell(largest.mask(), [&](std::size_t cell) {
-            terms.add_hit(brick, {static_cast<std::uint16_t>(cell), largest.of(cell)});
+            terms.add_cell(brick, {static_cast<std::uint16_t>(cell), largest.of(cell)});
         });
     });
     return true;
 }
 
-bool DepthIntegrator::take_means(const PlacedImage& rays, DepthTerms& terms) {
+bool DepthIntegrator::take_means(const PlacedImage& rays, Evidence& terms) {
     TallyGrid& tallies = workspace_->tallies;
     if (!tallies.span(box_of(rays, lattice_), config_.depth_box_voxels_max)) return false;
     for_each_ray(rays, [&](const Eigen::Vector3f& end, double) {
@@ -237,11 +236,11 @@ bool DepthIntegrator::take_means(const PlacedImage& rays, DepthTerms& terms) {
     tallies.drain([&](VoxelKey key, const VoxelTally& tally) {
         updates.push_back({key, mean_term(tally, config_.model.miss_log_odds)});
     });
-    terms.take(std::move(updates));
+    terms.take_image(std::move(updates));
     return true;
 }
 
-bool DepthIntegrator::take_nearest(const PlacedImage& rays, const CertainView& view, DepthTerms& terms) {
+bool DepthIntegrator::take_nearest(const PlacedImage& rays, const CertainView& view, Evidence& terms) {
     EndVoxels& ends = workspace_->ends;
     const KeyBox box = box_of(rays, lattice_);
     ReachWindows& reach = workspace_->reach;
@@ -265,7 +264,7 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const CertainView& v
         all.fill(~std::uint64_t{0});
         return all;
     }();
-    const auto add_brick = [&](DepthTerms& to, MortonCode brick, bool is_all) {
+    const auto add_brick = [&](Evidence& to, MortonCode brick, bool is_all) {
         if (is_all) return to.add(brick, kAll);
         const VoxelRays::Brick place = voxel_rays.brick_at(key_of_morton(brick));
         const BrickMask hit = ends.of(brick);
@@ -276,10 +275,10 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const CertainView& v
         for_each_cell(hit, [&](std::size_t cell) {
             const auto range_m = static_cast<double>(voxel_rays.range_m(place, cell));
             const float term = voted_term(votes[cell], config_.model.depth.log_odds(range_m), terms.miss);
-            to.add_hit(brick, {static_cast<std::uint16_t>(cell), term});
+            to.add_cell(brick, {static_cast<std::uint16_t>(cell), term});
         });
     };
-    const auto add_below = [&](DepthTerms& to, const VoxelCube& cube) {
+    const auto add_below = [&](Evidence& to, const VoxelCube& cube) {
         walk_bricks(
             box, verdict_of, [&](MortonCode brick, bool is_all) { add_brick(to, brick, is_all); }, cube);
     };

@@ -10,7 +10,7 @@
 #include "host/core/crew/crew.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/depth/pixel_rays.hpp"
-#include "host/core/mapping/depth_terms.hpp"
+#include "host/core/mapping/evidence.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/traversal/certain_view.hpp"
 #include "host/core/traversal/placed_image.hpp"
@@ -26,7 +26,7 @@ enum class DepthRejection : std::uint8_t {
 };
 
 struct DepthUpdates {
-    DepthTerms terms;
+    Evidence terms;
     DepthPixelCounts pixels;
 };
 
@@ -57,9 +57,9 @@ class DepthIntegrator {
                                                                   const Eigen::Isometry3d& T_map_camera);
     /// Each of them false: the rays span too many voxels.
     [[nodiscard]] bool take_sets(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
-                                 DepthTerms& terms);
-    [[nodiscard]] bool take_means(const PlacedImage& rays, DepthTerms& terms);
-    [[nodiscard]] bool take_nearest(const PlacedImage& rays, const CertainView& view, DepthTerms& terms);
+                                 Evidence& terms);
+    [[nodiscard]] bool take_means(const PlacedImage& rays, Evidence& terms);
+    [[nodiscard]] bool take_nearest(const PlacedImage& rays, const CertainView& view, Evidence& terms);
 
     struct Workspace;
     MappingConfig config_;

@@ -7,7 +7,7 @@
 #include "host/core/depth/depth_filter.hpp"
 #include "host/core/mapping/cone_model.hpp"
 #include "host/core/mapping/map_config.hpp"
-#include "host/core/mapping/standing_model.hpp"
+#include "host/core/mapping/stationary_model.hpp"
 #include "host/core/mapping/update_model.hpp"
 #include "host/core/rig/beam_optics.hpp"
 
@@ -38,7 +38,7 @@ struct MappingConfig {
     RangeUpdate range_update = RangeUpdate::ray;
     ConeModel cone = {};            ///< of sensors that see all of their cone at a time, or more than half
     ConeModel zone = zone_model();  ///< of a zone of at most half of its array's SPADs
-    StandingModel standing = {};    ///< of both, while they stand still
+    StationaryModel standing = {};  ///< of both, while they stand still
     DepthUpdate depth_update = DepthUpdate::robust;
     DepthFilterConfig depth_filter;
     /// A depth pixel whose range is larger clears space up to here and marks nothing; 0: no maximum.

@@ -12,7 +12,7 @@
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/can_intake.hpp"
 #include "host/core/mapping/fused_map.hpp"
-#include "host/core/pipeline/map_set.hpp"
+#include "host/core/pipeline/fed_map.hpp"
 
 namespace octoskin {
 
@@ -35,9 +35,9 @@ class CommitListener {
     virtual void on_joints(const JointMeasurement& joints) = 0;
     virtual void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                             std::span<const VoxelUpdate> updates) = 0;
-    virtual void on_depth(const DepthFrame& frame, const DepthTerms& terms) = 0;
+    virtual void on_depth(const DepthFrame& frame, const Evidence& terms) = 0;
     /// After each reading and frame, and after what was told of it.
-    virtual void on_maps(const MapSet&) {}
+    virtual void on_maps(std::span<const FedMap>) {}
     /// What comes next is told by another time, from before what came so far or far ahead of it: a replay in
     /// this order ends here.
     virtual void on_time_leap() {}

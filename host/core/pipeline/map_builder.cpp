@@ -17,10 +17,6 @@ ReadingReason reason_of(BeamRejection rejection) {
                                                    : ReadingReason::beam_not_valid;
 }
 
-CapWidth width_of(const StandingRanges::Answer& standing) {
-    return standing.stands ? CapWidth::core : CapWidth::whole;
-}
-
 bool sees_any_cone(const HostRig& rig) {
     const auto is_cone = [](const HostZone& zone) { return zone.optics.is_cone(); };
     const auto has_cone = [&](const HostSensor& sensor) {
@@ -44,7 +40,8 @@ Result<DepthUpdates, DepthReason> updates_or_reason(DepthStage& stage, const Dep
 
 Result<MapBuilder, RobotModelFault> MapBuilder::build(const HostRig& rig, RobotModel robot,
                                                       const MappingConfig& mapping,
-                                                      const JointHistoryConfig& joints, const MapChoice& maps,
+                                                      const JointHistoryConfig& joints,
+                                                      const std::vector<MapFeed>& maps,
                                                       unsigned depth_threads) {
     assert(robot.joint_count() == rig.joints.joints.size());
     auto beams = BeamBuilder::build(rig, robot,
@@ -63,15 +60,11 @@ Result<MapBuilder, RobotModelFault> MapBuilder::build(const HostRig& rig, RobotM
 }
 
 MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams,
-                       const MappingConfig& mapping, const MapChoice& maps, unsigned depth_threads)
+                       const MappingConfig& mapping, const std::vector<MapFeed>& maps, unsigned depth_threads)
     : robot_(std::move(robot)),
       beams_(std::move(beams)),
-      beam_integrator_(mapping),
-      cone_finder_(mapping),
-      standing_(mapping.standing),
-      sight_(mapping.standing),
-      has_cones_(mapping.range_update == RangeUpdate::cone && sees_any_cone(rig)),
-      maps_(mapping.map, maps) {
+      ranges_(mapping, mapping.range_update == RangeUpdate::cone && sees_any_cone(rig)) {
+    for (const MapFeed feed : maps) maps_.push_back({feed, FusedMap(mapping.map)});
     const bool compares =
         rig.camera && mapping.removes_robot_from_depth && mapping.reports_contradicting_sensors;
     if (rig.camera) {
@@ -82,6 +75,28 @@ MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams
                                             .is_filtered = mapping.depth_filter.is_enabled});
         refuses_contradicting_ = mapping.refuses_contradicting_sensors;
     }
+}
+
+void MapBuilder::begin_with(FusedMap map) {
+    assert(map.resolution_m() == own_map().resolution_m());
+    own_map() = std::move(map);
+}
+
+void MapBuilder::forget_counts() noexcept {
+    for (FedMap& fed : maps_) fed.map.forget_counts();
+    ranges_.forget();
+}
+
+const FusedMap& MapBuilder::map(MapFeed feed) const noexcept {
+    const FusedMap* const map = find_map(maps_, feed);
+    assert(map != nullptr);
+    return *map;
+}
+
+FusedMap& MapBuilder::own_map() noexcept {
+    const auto found = std::ranges::find(maps_, MapFeed::both, &FedMap::feed);
+    assert(found != maps_.end());
+    return found->map;
 }
 
 Status<JointReason> MapBuilder::add(const JointMeasurement& joints) {
@@ -96,9 +111,8 @@ void MapBuilder::forget_motion(Nanoseconds leapt) {
     if (listener_ != nullptr) {
         listener_->on_time_leap();
     }
-    maps_.leap(leapt);
-    standing_.forget();
-    sight_.forget();
+    for (FedMap& fed : maps_) fed.map.leap(leapt);
+    ranges_.forget();
     if (witness_) {
         witness_->forget_beams();
     }
@@ -116,88 +130,24 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
     }
     const BeamSource& source = measurement.source;
     const bool is_out = is_refused(source.node_id, source.sensor);
-    const Status<ReadingReason> added = is_out ? unexpected(ReadingReason::contradicts_camera)
-                                        : beam->optics.is_cone() ? add_cone(measurement, *beam)
-                                                                 : add_ray(measurement, *beam);
+    const Status<ReadingReason> added =
+        is_out ? unexpected(ReadingReason::contradicts_camera) : add_range(measurement, *beam);
     if (witness_ && (added || is_out)) {
         witness_->on_beam(*beam, beams_.T_map_sensor(source, *robot));
     }
     return added;
 }
 
-Status<ReadingReason> MapBuilder::add_ray(const RangeMeasurement& measurement, const Beam& beam) {
-    const auto updates = beam_integrator_.integrate(beam);
-    if (!updates) {
-        return unexpected(reason_of(updates.error()));
-    }
-    maps_.go_on(measurement.captured);
-    maps_.add_proximity(*updates);
-    if (has_cones_) {
-        (void)sight_.take(beam, cone_finder_.length_m(beam));
-    }
+Status<ReadingReason> MapBuilder::add_range(const RangeMeasurement& measurement, const Beam& beam) {
+    std::vector<VoxelUpdate> changes;
+    MapFeeder feeder(maps_, measurement.captured, listener_ != nullptr ? &changes : nullptr);
+    if (const auto added = ranges_.integrate(beam, feeder); !added)
+        return unexpected(reason_of(added.error()));
     if (listener_ != nullptr) {
-        listener_->on_reading(measurement, beam, *updates);
-        listener_->on_maps(maps_);
-    }
-    return Done{};
-}
-
-Status<ReadingReason> MapBuilder::add_cone(const RangeMeasurement& measurement, const Beam& beam) {
-    const StandingRanges::Answer standing = standing_.take(beam);
-    const auto voxels = cone_finder_.find(beam, width_of(standing));
-    if (!voxels) {
-        return unexpected(reason_of(voxels.error()));
-    }
-    maps_.go_on(measurement.captured);
-    const ConeModel& model = cone_finder_.model_of(beam);
-    const Blame blame = standing.is_told ? Blame::occupied : Blame::all;
-    if (listener_ != nullptr) {
-        std::vector<VoxelUpdate> changes = maps_.changes_of_proximity(**voxels, model, blame);
-        believe_standing(beam, standing, &changes);
         listener_->on_reading(measurement, beam, changes);
         listener_->on_maps(maps_);
-    } else {
-        maps_.add_proximity(**voxels, model, blame);
-        believe_standing(beam, standing, nullptr);
     }
     return Done{};
-}
-
-void MapBuilder::believe_standing(const Beam& beam, const StandingRanges::Answer& standing,
-                                  std::vector<VoxelUpdate>* changes) {
-    std::vector<VoxelUpdate> more;
-    std::vector<VoxelUpdate>* const told = changes != nullptr ? &more : nullptr;
-    if (const Beam* const through = sight_.take(beam, cone_finder_.length_m(beam))) {
-        const auto is_ranged = [&](VoxelKey key) {
-            return sight_.any_newest(beam.captured,
-                                     [&](const Beam& other) { return cone_finder_.ends_about(other, key); });
-        };
-        if (const auto voxels = cone_finder_.find(*through)) {
-            maps_.clear(**voxels, is_ranged, told);
-        }
-    }
-    for (const Beam& ended : standing.ended) {
-        if (const auto voxels = cone_finder_.find(ended)) {
-            maps_.forget_weak_hits(**voxels, told);
-        }
-    }
-    for (const Beam& believed : standing.believed) {
-        // As a rule what was marked once is still there, and nothing else need be found.
-        const Eigen::Vector3d p_map = believed.p_map_sensor + *believed.range_m * believed.direction_map;
-        if (maps_.is_marked(p_map)) continue;
-        // So near to the edge of the octree a mean of ranges may lie beyond it.
-        if (const auto voxels = cone_finder_.find(believed, width_of(standing))) {
-            maps_.mark(**voxels, p_map, standing_.model().hits, told);
-        }
-    }
-    for (const VoxelUpdate& update : more) {
-        const auto same = std::ranges::find(*changes, update.key, &VoxelUpdate::key);
-        if (same != changes->end()) {
-            same->log_odds += update.log_odds;
-        } else {
-            changes->push_back(update);
-        }
-    }
 }
 
 Status<DepthReason> MapBuilder::integrate(DepthFrame frame) {
@@ -236,8 +186,7 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
     if (depth.robot && robot_.at(depth.frame.captured) == nullptr) {
         return unexpected(DepthReason::late);
     }
-    maps_.go_on(depth.frame.captured);
-    maps_.add_depth(depth.updates->terms);
+    MapFeeder(maps_, depth.frame.captured, nullptr).apply(depth.updates->terms, nullptr);
     if (witness_) {
         depth_stage_->swap_images(seen_);
         witness_->on_depth(seen_, depth_stage_->T_map_camera_of(depth.frame), depth.frame.captured);

@@ -14,14 +14,12 @@
 #include "host/core/ingest/can_intake.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/core/kinematics/robot_model.hpp"
-#include "host/core/mapping/beam_integrator.hpp"
-#include "host/core/mapping/cone_finder.hpp"
 #include "host/core/mapping/mapping_config.hpp"
-#include "host/core/mapping/standing_ranges.hpp"
-#include "host/core/mapping/standing_sight.hpp"
+#include "host/core/mapping/range_model.hpp"
 #include "host/core/pipeline/commit.hpp"
 #include "host/core/pipeline/depth_stage.hpp"
-#include "host/core/pipeline/map_set.hpp"
+#include "host/core/pipeline/fed_map.hpp"
+#include "host/core/pipeline/map_feeder.hpp"
 #include "host/core/pipeline/robot_tracker.hpp"
 #include "host/core/rig/host_rig.hpp"
 #include "host/core/witness/sensor_witness.hpp"
@@ -35,22 +33,19 @@ class MapBuilder {
     [[nodiscard]] static Result<MapBuilder, RobotModelFault> build(const HostRig& rig, RobotModel robot,
                                                                    const MappingConfig& mapping,
                                                                    const JointHistoryConfig& joints,
-                                                                   const MapChoice& maps,
+                                                                   const std::vector<MapFeed>& maps,
                                                                    unsigned depth_threads = 1);
 
-    /// The fused map goes on from this one, which has the mapping's resolution (asserted).
-    void begin_with(FusedMap fused) { maps_.begin_with(std::move(fused)); }
-    /// Other limits for the fused map, at the same resolution (asserted).
-    void limit_fused(const MapConfig& config) { maps_.limit_fused(config); }
-    /// From now on the maps are as if they had been read from files: who records from here on, and replays
-    /// from a file of the fused map, gets the same.
-    void forget_counts() noexcept {
-        maps_.forget_counts();
-        standing_.forget();
-        sight_.forget();
-    }
-    /// The fused map, for another builder to begin with; nothing may be given in after.
-    [[nodiscard]] FusedMap take_fused() { return maps_.take_fused(); }
+    /// The map of all sensors (asserted that there is one) goes on from this one, which has the mapping's
+    /// resolution (asserted).
+    void begin_with(FusedMap map);
+    /// Other limits for it, at the same resolution (asserted).
+    void limit_map(const MapConfig& config) { own_map().limit(config); }
+    /// From now on the maps are as if they had been read from files: a recording that begins here, and is
+    /// replayed from a file of the map, gives the same.
+    void forget_counts() noexcept;
+    /// That map, for another builder to begin with; nothing may be given in after.
+    [[nodiscard]] FusedMap take_map() { return std::move(own_map()); }
     /// `listener` is told of what goes in from now on; null: nobody is.
     void tell(CommitListener* listener) noexcept { listener_ = listener; }
 
@@ -102,7 +97,9 @@ class MapBuilder {
         robot_.for_each_sample(visit);
     }
 
-    [[nodiscard]] const MapSet& maps() const noexcept { return maps_; }
+    [[nodiscard]] std::span<const FedMap> maps() const noexcept { return maps_; }
+    /// The map that is fed so, which is there (asserted).
+    [[nodiscard]] const FusedMap& map(MapFeed feed = MapFeed::both) const noexcept;
     /// Null if the rig has no camera.
     [[nodiscard]] const DepthStage* depth_stage() const noexcept {
         return depth_stage_ ? &*depth_stage_ : nullptr;
@@ -117,27 +114,19 @@ class MapBuilder {
 
   private:
     MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
-               const MapChoice& maps, unsigned depth_threads);
+               const std::vector<MapFeed>& maps, unsigned depth_threads);
 
-    [[nodiscard]] Status<ReadingReason> add_cone(const RangeMeasurement& measurement, const Beam& beam);
-    [[nodiscard]] Status<ReadingReason> add_ray(const RangeMeasurement& measurement, const Beam& beam);
-    /// Marks and frees what a sensor that stands still is believed. `changes`: of the fused map, each voxel
-    /// once; may be null.
-    void believe_standing(const Beam& beam, const StandingRanges::Answer& standing,
-                          std::vector<VoxelUpdate>* changes);
+    [[nodiscard]] FusedMap& own_map() noexcept;
+    [[nodiscard]] Status<ReadingReason> add_range(const RangeMeasurement& measurement, const Beam& beam);
 
     RobotTracker robot_;
     BeamBuilder beams_;
-    BeamIntegrator beam_integrator_;
-    ConeFinder cone_finder_;
-    StandingRanges standing_;
-    StandingSight sight_;
-    bool has_cones_ = false;  ///< then what rays end on is not to be freed by cones
+    RangeModel ranges_;
     std::optional<DepthStage> depth_stage_;
     std::optional<SensorWitness> witness_;
     bool refuses_contradicting_ = false;
     SeenImages seen_;  ///< their memory goes to the depth stage and comes back
-    MapSet maps_;
+    std::vector<FedMap> maps_;
     CommitListener* listener_ = nullptr;
 };
 

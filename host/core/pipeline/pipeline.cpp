@@ -65,7 +65,7 @@ Pipeline::Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& 
 
 void Pipeline::go_on_from(Pipeline& ended) {
     assert(ended.is_finished_);
-    begin_with(ended.take_fused());
+    begin_with(ended.take_map());
     told_newest_ = ended.told_newest_;
     goes_on_from_ = ended.goes_on_from_;
     // This one's clock has not begun to run.

@@ -23,7 +23,7 @@
 #include "host/core/pipeline/depth_stage.hpp"
 #include "host/core/pipeline/depth_worker.hpp"
 #include "host/core/pipeline/map_builder.hpp"
-#include "host/core/pipeline/map_set.hpp"
+#include "host/core/pipeline/fed_map.hpp"
 #include "host/core/pipeline/mark_gate.hpp"
 #include "host/core/pipeline/mark_window.hpp"
 #include "host/core/pipeline/reorder_buffer.hpp"
@@ -41,7 +41,7 @@ enum class Release : std::uint8_t {
 };
 
 struct PipelineConfig {
-    MapChoice maps;
+    std::vector<MapFeed> maps = every_feed();
     MapBegin begin = MapBegin::first_usable;
     Release release = Release::by_capture_time;
     /// A measurement waits so long at most after it was captured. More than the longest gap that joints are
@@ -91,9 +91,9 @@ class Pipeline {
     /// The fused map goes on from this one, which has the mapping's resolution (asserted).
     void begin_with(FusedMap fused) { builder_.begin_with(std::move(fused)); }
     /// Other limits for the fused map from now on, at the same resolution (asserted): FusedMap::limit.
-    void limit_fused(const MapConfig& config) { builder_.limit_fused(config); }
+    void limit_map(const MapConfig& config) { builder_.limit_map(config); }
     /// After `finish`: the fused map.
-    [[nodiscard]] FusedMap take_fused() { return builder_.take_fused(); }
+    [[nodiscard]] FusedMap take_map() { return builder_.take_map(); }
     /// The fused map of another one goes on, which has ended (`finish`) and has this one's resolution
     /// (asserted), and with it what time it was there: what passes meanwhile makes the map older, and where
     /// the time leaps nothing does.
@@ -122,7 +122,11 @@ class Pipeline {
     /// Nothing more will come: what still waits is integrated or counted. Nothing may be given in afterwards.
     void finish();
 
-    [[nodiscard]] const MapSet& maps() const noexcept { return builder_.maps(); }
+    [[nodiscard]] std::span<const FedMap> maps() const noexcept { return builder_.maps(); }
+    /// The map that is fed so, which is there (asserted).
+    [[nodiscard]] const FusedMap& map(MapFeed feed = MapFeed::both) const noexcept {
+        return builder_.map(feed);
+    }
     [[nodiscard]] const PipelineAccounts& accounts() const noexcept { return accounts_; }
     /// In = used + rejected + what still waits, for each unit of account.
     [[nodiscard]] bool is_balanced() const;

@@ -52,7 +52,7 @@ class EvidenceSearch {
     void look_into(const VoxelCube& brick, const BrickView& log_odds) {
         if (log_odds.is_unknown()) return;
         const MortonCode first = morton_of(brick.lowest);
-        const StampView stamps = map_.confirmations().find(first);
+        const StampView stamps = map_.layers().ages.find(first);
         if (stamps.values == nullptr && stamps.value >= limit_) return;
         for (std::size_t word = 0; word < kBrickVoxels / 64; ++word) {
             std::uint64_t voxels = stamps.values == nullptr
@@ -109,11 +109,11 @@ std::optional<WeakestEvidence> weakest_in(const FusedMap& map, const PosedCapsul
                                           const std::optional<WeakestEvidence>& than) noexcept {
     // No stamp reaches it: the clock's largest reading comes with a kind of 3, which there is not.
     constexpr std::uint32_t kAnything = std::numeric_limits<std::uint16_t>::max();
-    if (!map.confirmations().has_begun()) return std::nullopt;
+    if (!map.layers().ages.has_begun()) return std::nullopt;
     EvidenceSearch search(map, capsule, than ? than->stamp : kAnything);
     search.run();
     if (!search.voxel()) return than;
-    return WeakestEvidence{*search.voxel(), map.confirmations().told_by(search.stamp()),
+    return WeakestEvidence{*search.voxel(), map.layers().ages.confirmation_of(search.stamp()),
                            search.stamp() < map.stale_stamp(), search.stamp()};
 }
 

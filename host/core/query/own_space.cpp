@@ -41,8 +41,9 @@ std::size_t free_own_space(FusedMap& map, std::span<const PosedCapsule> capsules
     for (const PosedCapsule& capsule : capsules) {
         updates.clear();
         list_own(map, capsule, margin_m, updates);
-        map.forget_counts_of(updates);  // or what ranges counted there would mark it all the same
-        map.apply(updates, SensorKind::none);
+        const Evidence is_free = evidence_of(updates, SensorKind::none);
+        map.forget_counts_of(is_free);  // or what ranges counted there would mark it all the same
+        map.apply(is_free);
         freed += updates.size();
     }
     return freed;

@@ -173,7 +173,7 @@ ConeModel read_cone(const Table& table, ConeModel cone) {
     return cone;
 }
 
-StandingModel read_standing(const Table& table, StandingModel standing) {
+StationaryModel read_standing(const Table& table, StationaryModel standing) {
     constexpr std::uint32_t kReadingsMax = 8;
     standing.readings = table.integer<std::uint32_t>("readings", {0, kReadingsMax}, standing.readings);
     standing.hits = single(table, "hits", {0.0, 10'000.0}, standing.hits);

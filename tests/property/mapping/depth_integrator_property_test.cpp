@@ -9,8 +9,8 @@
 
 #include "host/core/mapping/depth_integrator.hpp"
 #include "tests/property/mapping/random_geometry.hpp"
+#include "tests/support/evidence.hpp"
 #include "tests/support/octomap_oracle.hpp"
-#include "tests/support/voxel_updates.hpp"
 
 namespace octoskin::property {
 namespace {
@@ -101,7 +101,7 @@ TEST(DepthIntegratorProperty, paper_builds_octomaps_map_bit_for_bit_over_many_fr
         const DepthImage image = random.depth_image(kCamera.width, kCamera.height);
         const auto result = integrator.integrate(image, T_map_camera);
         ASSERT_TRUE(result.has_value());
-        map.apply(result->terms);
+        feed(map, result->terms);
 
         const auto points = points_of(image, T_map_camera);
         std::map<VoxelKey, float> term_of_hit;

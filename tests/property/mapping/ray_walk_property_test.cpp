@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "host/core/mapping/beam_integrator.hpp"
+#include "host/core/mapping/ray_model.hpp"
 #include "host/core/voxels/ray_updates.hpp"
 #include "tests/property/mapping/random_geometry.hpp"
 #include "tests/support/instruction_sets.hpp"
@@ -117,10 +117,10 @@ TEST(RayWalkProperty, takes_no_more_steps_and_strays_no_farther_than_it_promises
 }
 
 // Oracle: OctoMap's ray keys and updateNode, beam by beam, compared bit for bit after clamping.
-TEST(BeamIntegratorProperty, a_map_of_random_beams_equals_octomaps) {
+TEST(RayModelProperty, a_map_of_random_beams_equals_octomaps) {
     constexpr unsigned kSeed = 31;
     const MappingConfig config = paper_mapping();
-    BeamIntegrator integrator(config);
+    RayModel model(config);
     FusedMap map(config.map);
     oracle::ClampedTree tree(config.map);
     RandomGeometry random(kSeed, config.map.resolution_m);
@@ -130,9 +130,9 @@ TEST(BeamIntegratorProperty, a_map_of_random_beams_equals_octomaps) {
         beam.direction_map =
             Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
         beam.range_m = random.uniform(0.0, 2.0);
-        const auto updates = integrator.integrate(beam);
-        ASSERT_TRUE(updates.has_value());
-        map.apply(*updates);
+        const auto evidence = model.find(beam);
+        ASSERT_TRUE(evidence.has_value());
+        map.apply(**evidence);
 
         const Eigen::Vector3f origin = beam.p_map_sensor.cast<float>();
         const Eigen::Vector3f end = (beam.p_map_sensor + *beam.range_m * beam.direction_map).cast<float>();

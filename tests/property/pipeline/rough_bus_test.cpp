@@ -136,7 +136,7 @@ TEST(RoughBus, carries_noise_without_losing_count) {
     }
     pipeline.finish();
     EXPECT_TRUE(pipeline.is_balanced());
-    EXPECT_EQ(pipeline.maps().fused()->known_voxels(), 0U);
+    EXPECT_EQ(pipeline.map().known_voxels(), 0U);
 }
 
 }  // namespace

@@ -39,11 +39,11 @@ class PassesUntilFree final : public CommitListener {
   public:
     void on_joints(const JointMeasurement&) override {}
     void on_reading(const RangeMeasurement&, const Beam&, std::span<const VoxelUpdate>) override {}
-    void on_depth(const DepthFrame&, const DepthTerms& terms) override {
-        for (auto& [key, passes] : passes_) passes = terms.of(key) == terms.miss ? passes + 1 : 0;
+    void on_depth(const DepthFrame&, const Evidence& terms) override {
+        for (auto& [key, passes] : passes_) passes = term_of(terms, key) == terms.miss ? passes + 1 : 0;
     }
-    void on_maps(const MapSet& maps) override {
-        const FusedMap& map = *maps.fused();
+    void on_maps(std::span<const FedMap> maps) override {
+        const FusedMap& map = *find_map(maps, MapFeed::both);
         for (auto entry = passes_.begin(); entry != passes_.end();) {
             longest_ = std::max(longest_, entry->second);
             if (map.occupancy(entry->first) == Occupancy::occupied) {
@@ -111,9 +111,8 @@ class MovingWorldBeforeCamera : public testing::TestWithParam<std::pair<const ch
         MappingConfig mapping = shipped;
         mapping.removes_robot_from_depth = false;
         HostSetup setup = make_host_setup(rig_).value();
-        MapBuilder builder = MapBuilder::build(setup.rig, std::move(setup.robot), mapping, {},
-                                               {.depth = false, .proximity = false, .fused = true})
-                                 .value();
+        MapBuilder builder =
+            MapBuilder::build(setup.rig, std::move(setup.robot), mapping, {}, {MapFeed::both}).value();
         builder.tell(&passes_);
         for (int frame = 0; frame < kFramesInAll; ++frame) {
             const double time_s = kFramePeriod_s * frame;
@@ -124,7 +123,7 @@ class MovingWorldBeforeCamera : public testing::TestWithParam<std::pair<const ch
                     builder.integrate(DepthFrame{host_time(frame), rig_.camera->width, rig_.camera->height,
                                                  camera.render({}, static_cast<std::uint32_t>(frame))}));
             }
-            count(*builder.maps().fused());
+            count(builder.map());
         }
     }
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "host/core/mapping/beam_integrator.hpp"
 #include "host/core/mapping/cone_finder.hpp"
+#include "host/core/mapping/ray_model.hpp"
 #include "host/core/pipeline/map_builder.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/rig.hpp"
@@ -49,7 +49,7 @@ class PassesOfReadings final : public CommitListener {
   public:
     explicit PassesOfReadings(const MappingConfig& mapping) : rays_(mapping), cones_(mapping) {}
     void on_joints(const JointMeasurement&) override {}
-    void on_depth(const DepthFrame&, const DepthTerms&) override {}
+    void on_depth(const DepthFrame&, const Evidence&) override {}
     void on_reading(const RangeMeasurement&, const Beam& beam, std::span<const VoxelUpdate>) override {
         beam_ = beam;
         std::set<VoxelKey> passed;
@@ -59,17 +59,17 @@ class PassesOfReadings final : public CommitListener {
             for (auto& [zone, passes] : of_zone_)
                 for (const CapVoxel& voxel : voxels->cap) passes.erase(voxel.key);
         } else {
-            const auto updates = rays_.integrate(beam).value();
-            for (const VoxelUpdate& update : updates)
-                if (update.log_odds < 0.0F) passed.insert(update.key);
+            for_each_term(*rays_.find(beam).value(), [&](const VoxelUpdate& term) {
+                if (term.log_odds < 0.0F) passed.insert(term.key);
+            });
         }
         std::map<VoxelKey, int> now;
         passes_ = &of_zone_[beam.source.zone];
         for (const VoxelKey key : passed) now[key] = (*passes_)[key] + 1;
         *passes_ = std::move(now);
     }
-    void on_maps(const MapSet& maps) override {
-        const FusedMap& map = *maps.fused();
+    void on_maps(std::span<const FedMap> maps) override {
+        const FusedMap& map = *find_map(maps, MapFeed::both);
         for (const auto& [key, passes] : *passes_) {
             const bool is_occupied = map.occupancy(key) == Occupancy::occupied;
             if (is_occupied) {
@@ -85,7 +85,7 @@ class PassesOfReadings final : public CommitListener {
     [[nodiscard]] const std::map<int, std::size_t>& freed() const { return freed_; }
 
   private:
-    BeamIntegrator rays_;
+    RayModel rays_;
     ConeFinder cones_;
     std::optional<Beam> beam_;
     std::map<std::uint8_t, std::map<VoxelKey, int>> of_zone_;
@@ -155,9 +155,9 @@ TEST_P(BoxBeforeRangeSensor, is_on_the_map_and_off_it_in_time) {
                 const auto& zones = node.config.sensors[i].zones;
                 const std::uint32_t zone_count = node.config.sensors[i].zone_count;
                 HostSetup setup = make_host_setup(rig_).value();
-                MapBuilder builder = MapBuilder::build(setup.rig, std::move(setup.robot), mapping, {},
-                                                       {.depth = false, .proximity = false, .fused = true})
-                                         .value();
+                MapBuilder builder =
+                    MapBuilder::build(setup.rig, std::move(setup.robot), mapping, {}, {MapFeed::both})
+                        .value();
                 PassesOfReadings passes(mapping);
                 builder.tell(&passes);
                 int reading = 0;
@@ -205,9 +205,9 @@ TEST_P(BoxBeforeRangeSensor, is_on_the_map_and_off_it_in_time) {
                 for (int k = 0; k < readings; ++k) {
                     read(with_box);
                     bool has_occupied = false;
-                    builder.maps().fused()->for_each_known([&](VoxelKey, float log_odds) {
-                        has_occupied = has_occupied ||
-                                       builder.maps().fused()->occupancy_of(log_odds) == Occupancy::occupied;
+                    builder.map().for_each_known([&](VoxelKey, float log_odds) {
+                        has_occupied =
+                            has_occupied || builder.map().occupancy_of(log_odds) == Occupancy::occupied;
                     });
                     if (has_occupied && !first) first = k;
                 }

@@ -257,7 +257,7 @@ void AttackedBus::on_reading(const RangeMeasurement& measurement, const Beam&,
 }
 
 std::string AttackedBus::map() const {
-    return encode_ot(*pipeline_->maps().fused());
+    return encode_ot(pipeline_->map());
 }
 
 std::string AttackedBus::replayed_map() const {
@@ -270,13 +270,13 @@ std::string AttackedBus::replayed_map() const {
             EXPECT_TRUE(builder.integrate(std::get<RangeMeasurement>(commit)).has_value());
         }
     }
-    return encode_ot(*replayed.maps().fused());
+    return encode_ot(replayed.map());
 }
 
 std::uint64_t AttackedBus::wrong_voxels(const AttackedBus& clean) const {
     const auto states = [](const AttackedBus& bus) {
         std::map<VoxelKey, bool> occupied;
-        bus.pipeline_->maps().fused()->for_each_known(
+        bus.pipeline_->map().for_each_known(
             [&](VoxelKey key, float log_odds) { occupied[key] = log_odds > 0.0F; });
         return occupied;
     };

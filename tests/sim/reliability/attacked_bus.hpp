@@ -107,7 +107,7 @@ class AttackedBus final : private CommitListener {
     [[nodiscard]] bool is_counted(HostTime captured) const;
     [[nodiscard]] bool is_true(const RangeMeasurement& measurement) const;
     void on_joints(const JointMeasurement& joints) override { commits_.emplace_back(joints); }
-    void on_depth(const DepthFrame&, const DepthTerms&) override {}
+    void on_depth(const DepthFrame&, const Evidence&) override {}
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
 

@@ -135,7 +135,7 @@ class Placed final : public CommitListener {
         beams.emplace(Key{beam.source, beam.captured.ns}, beam);
         commits.emplace_back(measurement);
     }
-    void on_depth(const DepthFrame&, const DepthTerms&) override {}
+    void on_depth(const DepthFrame&, const Evidence&) override {}
 
     std::map<Key, Beam> beams;
     std::vector<Commit> commits;
@@ -160,7 +160,7 @@ Played play(const std::vector<StampedFrame>& frames, Release release) {
     const HostSetup& setup = recorded().setup;
     PipelineConfig config;
     config.release = release;
-    config.maps = {.depth = false, .proximity = false, .fused = true};
+    config.maps = {MapFeed::both};
     Pipeline pipeline = Pipeline::build(setup.rig, setup.robot, robust_mapping(), config).value();
     Played played;
     pipeline.tell(&played.placed);
@@ -176,7 +176,7 @@ Played play(const std::vector<StampedFrame>& frames, Release release) {
     EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
     played.accounts = pipeline.accounts();
     played.contradictions = pipeline.intake().joint_senders().contradictions();
-    played.map = encode_ot(*pipeline.maps().fused());
+    played.map = encode_ot(pipeline.map());
     return played;
 }
 
@@ -197,7 +197,7 @@ double apart_m(const Beam& a, const Beam& b) {
 std::string map_without(const Placed& all, const Placed& kept) {
     const HostSetup& setup = recorded().setup;
     PipelineConfig config;
-    config.maps = {.depth = false, .proximity = false, .fused = true};
+    config.maps = {MapFeed::both};
     Pipeline pipeline = Pipeline::build(setup.rig, setup.robot, robust_mapping(), config).value();
     for (const Commit& commit : all.commits) {
         if (const auto* joints = std::get_if<JointMeasurement>(&commit)) {
@@ -208,14 +208,14 @@ std::string map_without(const Placed& all, const Placed& kept) {
             }
         }
     }
-    return encode_ot(*pipeline.maps().fused());
+    return encode_ot(pipeline.map());
 }
 
 /// The map of what was committed, by way of the text that a recording has of it.
 std::string map_of_order(const std::vector<Commit>& commits) {
     const HostSetup& setup = recorded().setup;
     PipelineConfig config;
-    config.maps = {.depth = false, .proximity = false, .fused = true};
+    config.maps = {MapFeed::both};
     Pipeline pipeline = Pipeline::build(setup.rig, setup.robot, robust_mapping(), config).value();
     for (const Commit& commit : commits) {
         std::string line = orderlog::format_commit(commit, setup.rig.joints.joints.size());
@@ -228,7 +228,7 @@ std::string map_of_order(const std::vector<Commit>& commits) {
             EXPECT_TRUE(pipeline.builder().integrate(std::get<RangeMeasurement>(*read)));
         }
     }
-    return encode_ot(*pipeline.maps().fused());
+    return encode_ot(pipeline.map());
 }
 
 double seconds_between(WallTime from, WallTime to) {

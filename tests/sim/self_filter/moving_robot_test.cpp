@@ -77,9 +77,8 @@ class MovingRobot : public testing::Test {
         HostSetup setup = make_host_setup(rig_).value();
         setup.rig.camera->T_base_camera.pretranslate(injected.camera_off_m);
         setup.rig.depth_self_margin_m = margin_m;
-        MapBuilder builder = MapBuilder::build(setup.rig, std::move(setup.robot), mapping, {},
-                                               {.depth = false, .proximity = false, .fused = true})
-                                 .value();
+        MapBuilder builder =
+            MapBuilder::build(setup.rig, std::move(setup.robot), mapping, {}, {MapFeed::both}).value();
         const auto late_us = std::llround(1e6 * injected.joints_late_s);
         for (std::int64_t at_us = -200'000; at_us < (kFrames + 2) * kFramePeriod_us; at_us += 10'000) {
             const Eigen::VectorXd joints = trajectory_.at(sim::SimTime{std::max<std::int64_t>(0, at_us)});
@@ -103,7 +102,7 @@ class MovingRobot : public testing::Test {
     }
 
     static Voxels occupied(const MapBuilder& builder) {
-        const FusedMap& map = *builder.maps().fused();
+        const FusedMap& map = builder.map();
         Voxels voxels;
         map.for_each_known([&](VoxelKey key, float log_odds) {
             if (map.occupancy_of(log_odds) == Occupancy::occupied) voxels.insert(key);
@@ -168,7 +167,7 @@ class MovingRobot : public testing::Test {
             bodies_[frame] = body_at(frame);
             integrate(world, camera, frame, {});
             if (frame + 1 == kFramesBefore) {
-                both.begin_with(world.maps().fused()->copy());
+                both.begin_with(world.map().copy());
                 before = occupied(world);
                 obstacles = before;
             }

@@ -15,6 +15,7 @@
 
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/io/mapfile/map_file.hpp"
+#include "tests/support/evidence.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
 
 namespace octoskin::test {
@@ -342,7 +343,7 @@ TEST_F(DaemonTest, goes_on_with_a_bt_that_is_alone_in_its_folder_and_saves_what_
     FusedMap map(MapConfig{});
     for (std::uint16_t i = 0; i < 40; ++i) {
         const VoxelUpdate update{{static_cast<std::uint16_t>(20'000 + 3 * i), 20'000, 20'000}, 0.9F};
-        map.apply(std::span(&update, 1));
+        feed(map, std::span(&update, 1));
     }
     std::filesystem::create_directories(folder_ / "maps");
     ASSERT_TRUE(save_map(map, folder_ / "maps" / "fused.bt"));

@@ -7,7 +7,7 @@
 namespace octoskin {
 
 void add_map(const DaemonView& view, Problems& problems) {
-    const FusedMap& map = *view.pipeline->maps().fused();
+    const FusedMap& map = view.pipeline->map();
     if (map.counters().no_room > 0) {
         problems.push_back(
             {"map full",

@@ -1,4 +1,5 @@
 #include "host/apps/daemon/map_keeper.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +23,7 @@ FusedMap some_map(std::uint16_t voxels) {
     for (std::uint16_t i = 0; i < voxels; ++i) {
         const VoxelUpdate update{{static_cast<std::uint16_t>(32768 + 7 * i), 32768, 32700},
                                  i % 3 == 0 ? 0.9F : -0.4F};
-        map.apply(std::span(&update, 1));
+        feed(map, std::span(&update, 1));
     }
     return map;
 }
@@ -35,7 +36,7 @@ TEST(FusedMapCopy, is_equal_and_its_own) {
     EXPECT_EQ(copy.counters(), map.counters());
     const std::string before = encode_ot(copy);
     const VoxelUpdate update{{40000, 40000, 40000}, 0.9F};
-    map.apply(std::span(&update, 1));
+    feed(map, std::span(&update, 1));
     EXPECT_EQ(encode_ot(copy), before);
     EXPECT_NE(encode_ot(map), before);
 }
@@ -59,7 +60,7 @@ TEST(FusedMapLimit, makes_room_again_and_counts_anew) {
     const auto fill = [&map](std::uint16_t from) {
         for (std::uint16_t i = 0; i < 1000; ++i) {
             const VoxelUpdate update{{static_cast<std::uint16_t>(8 * i), from, 0}, 0.9F};
-            map.apply(std::span(&update, 1));
+            feed(map, std::span(&update, 1));
         }
     };
     fill(0);
@@ -286,7 +287,7 @@ FusedMap full_map(std::uint32_t memory_mib, bool is_dense) {
         // Neighbours differ, so that no octree leaves any of them out.
         const VoxelUpdate update{{axis(0, 8), axis(8, 8), axis(16, 8)},
                                  0.5F + 0.001F * static_cast<float>(i % 997U)};
-        map.apply(std::span(&update, 1));
+        feed(map, std::span(&update, 1));
     }
     return map;
 }

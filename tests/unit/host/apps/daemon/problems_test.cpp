@@ -400,7 +400,7 @@ TEST_F(ProblemsTest, have_a_map_without_room) {
         scene.mapping.map.memory_max_mib = 1;
         scene.mapping.map.resolution_m = 0.01;
     });
-    const auto& counters = pipeline_->maps().fused()->counters();
+    const auto& counters = pipeline_->map().counters();
     ASSERT_GT(counters.no_room, 0U);
     EXPECT_EQ(told("map full"),
               "the map is full (1 MiB): it takes no new space, " + std::to_string(counters.no_room) +

@@ -1,6 +1,7 @@
 // Questions that come while the map goes on. The oracle is a search in a copy of the map as it was when the
 // question's turn came.
 #include "host/apps/daemon/query_desk.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -39,12 +40,12 @@ class QueryDeskTest : public testing::Test {
         map.go_on(kNow);
         std::vector<VoxelUpdate> seen;
         map.for_each_known([&](VoxelKey key, float) { seen.push_back({key, -0.1F}); });
-        map.apply(seen, SensorKind::camera);
+        feed(map, seen, SensorKind::camera);
         return map;
     }
     void SetUp() override { pipeline_.begin_with(free_about_base(scene_.mapping.map)); }
 
-    [[nodiscard]] const FusedMap& map() const { return *pipeline_.maps().fused(); }
+    [[nodiscard]] const FusedMap& map() const { return pipeline_.map(); }
     void mark(std::mt19937& random) {
         std::uniform_real_distribution<double> along(-0.6, 0.6);
         FusedMap next = map().copy();

@@ -1,4 +1,5 @@
 #include "host/apps/daemon/recording_writer.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -54,7 +55,7 @@ class RecordingWriterTest : public testing::Test {
         meta.source = "robot";
         FusedMap map{MapConfig{}};
         const VoxelUpdate update{*map.key_of({0.1, 0.2, 0.3}), 1.0F};
-        map.apply({&update, 1});
+        feed(map, {&update, 1});
         orderlog::Trailer trailer;
         trailer.commits = commits;
         return {.order = trailer, .remarks = "# none\n", .meta = meta, .last_map = std::move(map)};

@@ -1,5 +1,6 @@
 // The figures that the daemon tells of itself, each in its unit: of a scene that is known by heart.
 #include "host/apps/daemon/status.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -319,11 +320,10 @@ TEST_F(StatusTest, has_what_came_through_the_joint_socket_or_null_without_one) {
 TEST_F(StatusTest, has_the_map_with_its_memory_and_saves) {
     view_.saves = {.saved = 5, .failed = 1, .skipped = 2, .newest = host_at(4.3), .error = {}};
     Json map = status()["map"];
-    EXPECT_EQ(map["known_voxels"], pipeline_->maps().fused()->known_voxels());
+    EXPECT_EQ(map["known_voxels"], pipeline_->map().known_voxels());
     EXPECT_GT(map["known_voxels"], 100);
     EXPECT_EQ(map["resolution_m"], 0.04);
-    EXPECT_DOUBLE_EQ(map["memory_mib"],
-                     static_cast<double>(pipeline_->maps().fused()->memory_bytes()) / 1'048'576);
+    EXPECT_DOUBLE_EQ(map["memory_mib"], static_cast<double>(pipeline_->map().memory_bytes()) / 1'048'576);
     EXPECT_EQ(map["memory_max_mib"], 800);
     EXPECT_EQ(map["no_room"], 0);
     EXPECT_EQ(map["no_memory"], 0);
@@ -348,7 +348,7 @@ TEST_F(StatusTest, has_how_much_of_the_map_has_no_time) {
         for (std::uint16_t y = 0; y < 20; ++y)
             updates.push_back(
                 {{static_cast<std::uint16_t>(64 * x), static_cast<std::uint16_t>(64 * y), 0}, -0.4F});
-    map.apply(updates);
+    feed(map, updates);
     const std::uint64_t undated = map.counters().undated;
     ASSERT_GT(undated, 0U);
     pipeline_->begin_with(std::move(map));

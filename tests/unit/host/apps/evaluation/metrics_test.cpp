@@ -1,4 +1,5 @@
 #include "host/apps/evaluation/metrics.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -160,7 +161,7 @@ TEST(Metrics, of_a_map_with_nothing_right_are_zero_not_empty) {
 
 TEST(SampleMap, reads_state_and_probability_of_every_voxel) {
     FusedMap map(MapConfig{});
-    map.apply(std::vector<VoxelUpdate>{{key(0, 0, 0), 0.85F}, {key(1, 0, 0), -0.4F}});
+    feed(map, std::vector<VoxelUpdate>{{key(0, 0, 0), 0.85F}, {key(1, 0, 0), -0.4F}});
     const auto samples = sample_map(map, row(3));
     EXPECT_EQ(samples[0].occupancy, kOccupied);
     EXPECT_NEAR(samples[0].probability, 0.70057F, 1e-5);  // 1 / (1 + exp(-0.85))
@@ -174,7 +175,7 @@ TEST(Evaluate, judges_a_map_by_its_own_threshold) {
     MapConfig config;
     config.log_odds_occupied = 0.8F;
     FusedMap map(config);
-    map.apply(std::vector<VoxelUpdate>{{key(0, 0, 0), 0.85F}, {key(1, 0, 0), 0.75F}});
+    feed(map, std::vector<VoxelUpdate>{{key(0, 0, 0), 0.85F}, {key(1, 0, 0), 0.75F}});
     Truth truth{0.04, VoxelGrid<Occupancy>(row(2), kOccupied), VoxelGrid<SurfaceVoxel>(row(2))};
     const Metrics metrics = evaluate(map, truth);
     EXPECT_EQ(metrics.occupied, 1U);

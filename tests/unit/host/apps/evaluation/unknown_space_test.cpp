@@ -1,4 +1,5 @@
 #include "host/apps/evaluation/unknown_space.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ void free_up_to(FusedMap& map, double x_max_m) {
     for (double x = -0.5; x < x_max_m; x += 0.04) {
         for (double y = -0.5; y < 0.52; y += 0.04) {
             for (double z = 0.02; z < 0.52; z += 0.04)
-                map.apply(std::vector<VoxelUpdate>{{*map.lattice().key_of({x, y, z}), -0.4F}});
+                feed(map, std::vector<VoxelUpdate>{{*map.lattice().key_of({x, y, z}), -0.4F}});
         }
     }
 }
@@ -69,7 +70,7 @@ TEST(UnknownSpace, tells_of_each_column_how_much_of_it_is_left) {
     FusedMap depth{MapConfig{}};
     FusedMap fused{MapConfig{}};
     const PocketRegion ball{{0.6, -0.4, 0.0}, 0.5, 0.0};
-    fused.apply(std::vector<VoxelUpdate>{{*fused.lattice().key_of({0.62, -0.38, 0.14}), -0.4F},
+    feed(fused, std::vector<VoxelUpdate>{{*fused.lattice().key_of({0.62, -0.38, 0.14}), -0.4F},
                                          {*fused.lattice().key_of({0.62, -0.38, 0.22}), 2.0F},
                                          {*fused.lattice().key_of({0.62, -0.38, -0.1}), 2.0F}});
     UnknownSpaceMeter meter(ball);

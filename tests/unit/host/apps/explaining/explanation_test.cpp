@@ -1,4 +1,5 @@
 #include "host/apps/explaining/explanation.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,18 +28,18 @@ class Witnesses final : public CommitListener {
                     std::span<const VoxelUpdate> updates) override {
         for (VoxelWitness& witness : all) witness.on_reading(reading, beam, updates);
     }
-    void on_depth(const DepthFrame& frame, const DepthTerms& terms) override {
+    void on_depth(const DepthFrame& frame, const Evidence& terms) override {
         for (VoxelWitness& witness : all) witness.on_depth(frame, terms);
     }
-    void on_maps(const MapSet& maps) override {
+    void on_maps(std::span<const FedMap> maps) override {
         for (VoxelWitness& witness : all) witness.on_maps(maps);
     }
     std::vector<VoxelWitness> all;
 };
 
-DepthTerms terms_of(const std::vector<VoxelUpdate>& updates) {
-    DepthTerms terms{.miss = -0.4F, .bricks = {}, .hits = {}};
-    terms.take(updates);
+Evidence terms_of(const std::vector<VoxelUpdate>& updates) {
+    Evidence terms{.miss = -0.4F, .bricks = {}, .cells = {}};
+    terms.take_image(updates);
     return terms;
 }
 
@@ -85,18 +86,19 @@ TEST(VoxelWitness, sums_up_to_the_maps_log_odds_bit_for_bit_clamping_included) {
     play(scene, first);
     Witnesses witnesses;
     std::size_t seen = 0;
-    first.maps().fused()->for_each_known([&](VoxelKey key, float) {
+    first.map().for_each_known([&](VoxelKey key, float) {
         if (seen++ % 997 == 0) witnesses.all.emplace_back(key, scene.mapping.map, kKept);
     });
-    first.maps().proximity()->for_each_known(
-        [&](VoxelKey key, float) { witnesses.all.emplace_back(key, scene.mapping.map, kKept); });
+    first.map(MapFeed::ranges).for_each_known([&](VoxelKey key, float) {
+        witnesses.all.emplace_back(key, scene.mapping.map, kKept);
+    });
     Pipeline pipeline = make_pipeline(scene);
     pipeline.tell(&witnesses);
     play(scene, pipeline);
     std::size_t clamped = 0;
     for (const VoxelWitness& witness : witnesses.all) {
         ASSERT_TRUE(witness.log_odds());
-        EXPECT_EQ(witness.log_odds(), pipeline.maps().fused()->log_odds(witness.key()));
+        EXPECT_EQ(witness.log_odds(), pipeline.map().log_odds(witness.key()));
         double sum = 0.0;
         std::uint64_t count = 0;
         for (const Contribution& contribution : witness.newest()) sum += contribution.change();
@@ -143,12 +145,12 @@ TEST(VoxelWitness, says_what_the_map_says_where_sensors_that_see_a_cone_have_cou
     std::size_t known = 0;
     for (int i = 0; i < 40; ++i) {
         if (i % 4 == 3) {
-            const DepthTerms terms = terms_of({{key, i % 3 == 0 ? 0.7F : -0.4F}});
-            map.apply(terms);
+            const Evidence terms = terms_of({{key, i % 3 == 0 ? 0.7F : -0.4F}});
+            feed(map, terms);
             witness.on_depth({{1'000'000 * i}, 0, 0, {}}, terms);
         } else {
             std::vector<VoxelUpdate> changes;
-            map.apply(i / 5 % 2 == 0 ? at : through, model, Blame::all, &changes);
+            feed(map, i / 5 % 2 == 0 ? at : through, model, false, &changes);
             witness.on_reading(reading_at(1e-3 * i), Beam{}, changes);
         }
         witness.on_fused(map);

@@ -74,7 +74,7 @@ class DataSetPlayback : public testing::Test {
         PlaybackRequest request{.recording = RecordingPaths(written_.folder()),
                                 .mapping = {},
                                 .configuration = "test",
-                                .maps = {},
+                                .maps = every_feed(),
                                 .rig = {},
                                 .robot = {}};
         request.mapping.map.resolution_m = 0.05;
@@ -91,7 +91,7 @@ class DataSetPlayback : public testing::Test {
 };
 
 TEST_F(DataSetPlayback, maps_each_image_from_where_the_camera_was) {
-    MapSet expected(request().mapping.map, {});
+    FusedMap expected(request().mapping.map);
     HostRig rig;
     rig.camera = HostCamera{};
     rig.camera->intrinsics = {640, 480, 525.0, 525.0, 320.0, 240.0};
@@ -104,15 +104,15 @@ TEST_F(DataSetPlayback, maps_each_image_from_where_the_camera_was) {
         rig.camera->T_base_camera = pose_of(i);
         MappingConfig mapping = request().mapping;
         mapping.removes_robot_from_depth = false;
-        expected.add_depth(DepthStage(rig, mapping).updates(frame, nullptr)->terms);
+        expected.apply(DepthStage(rig, mapping).updates(frame, nullptr)->terms);
     }
     const auto played = play_recording(request());
     ASSERT_TRUE(played) << played.error().message;
     EXPECT_FALSE(failure_of(*played)) << failure_of(*played)->message;
-    ASSERT_GT(expected.depth()->known_voxels(), 10'000U);
+    ASSERT_GT(expected.known_voxels(), 10'000U);
     EXPECT_EQ(played->outcome.progress.depth_frames, std::uint64_t{kFrames});
-    EXPECT_EQ(voxels_of(*played->pipeline.maps().depth()), voxels_of(*expected.depth()));
-    EXPECT_EQ(voxels_of(*played->pipeline.maps().fused()), voxels_of(*expected.fused()));
+    EXPECT_EQ(voxels_of(played->pipeline.map(MapFeed::camera)), voxels_of(expected));
+    EXPECT_EQ(voxels_of(played->pipeline.map()), voxels_of(expected));
 }
 
 /// A plane that leans, 2 m from the camera, as this lens pictures it: in millimetres, every fourth pixel of
@@ -162,10 +162,10 @@ TEST_F(DataSetPlayback, scale_missing_value_intrinsics_and_lens_are_the_rigs) {
     ASSERT_TRUE(played) << played.error().message;
     EXPECT_EQ(played->pipeline.depth_stage()->pixels().used, 160U * 120U);
     constexpr double kHalfDiagonalM = 0.0174;  // of a voxel of 2 cm
-    EXPECT_LT(furthest_m(*played->pipeline.maps().depth(), normal), kHalfDiagonalM + 0.001);
+    EXPECT_LT(furthest_m(played->pipeline.map(MapFeed::camera), normal), kHalfDiagonalM + 0.001);
     const auto bent = play_recording(without_lens);
     ASSERT_TRUE(bent) << bent.error().message;
-    EXPECT_GT(furthest_m(*bent->pipeline.maps().depth(), normal), 0.03);
+    EXPECT_GT(furthest_m(bent->pipeline.map(MapFeed::camera), normal), 0.03);
     EXPECT_NE(bent->origin.rig_hash, played->origin.rig_hash);
 }
 
@@ -181,7 +181,7 @@ TEST_F(DataSetPlayback, pace_decides_when_an_image_is_mapped_and_not_what_the_ma
     struct Mapped : CommitListener {
         void on_joints(const JointMeasurement&) override {}
         void on_reading(const RangeMeasurement&, const Beam&, std::span<const VoxelUpdate>) override {}
-        void on_depth(const DepthFrame&, const DepthTerms&) override { ++images; }
+        void on_depth(const DepthFrame&, const Evidence&) override { ++images; }
         int images = 0;
     };
     Mapped mapped;
@@ -199,7 +199,8 @@ TEST_F(DataSetPlayback, pace_decides_when_an_image_is_mapped_and_not_what_the_ma
                                                "depth image 1 of 1305031102.133333000: 640 x 480",
                                                "depth image 2 of 1305031102.166666000: 640 x 480",
                                                "depth image 3 of 1305031102.199999000: 640 x 480"}));
-    EXPECT_EQ(voxels_of(*by_step->pipeline.maps().depth()), voxels_of(*expected->pipeline.maps().depth()));
+    EXPECT_EQ(voxels_of(by_step->pipeline.map(MapFeed::camera)),
+              voxels_of(expected->pipeline.map(MapFeed::camera)));
 
     // 100 ms of images at a quarter of their speed: at least 400 ms, however fast the machine is.
     PlaybackRequest slow = request();
@@ -208,7 +209,8 @@ TEST_F(DataSetPlayback, pace_decides_when_an_image_is_mapped_and_not_what_the_ma
     const auto paced = play_recording(slow);
     EXPECT_GE(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(399));
     ASSERT_TRUE(paced) << paced.error().message;
-    EXPECT_EQ(voxels_of(*paced->pipeline.maps().depth()), voxels_of(*expected->pipeline.maps().depth()));
+    EXPECT_EQ(voxels_of(paced->pipeline.map(MapFeed::camera)),
+              voxels_of(expected->pipeline.map(MapFeed::camera)));
 }
 
 TEST_F(DataSetPlayback, accounts_for_every_image) {
@@ -260,7 +262,7 @@ struct SeenWall {
     double widest_m;
 };
 SeenWall seen_wall(const Playback& played) {
-    const FusedMap& map = *played.pipeline.maps().depth();
+    const FusedMap& map = played.pipeline.map(MapFeed::camera);
     const VoxelLattice lattice(map.resolution_m());
     SeenWall seen{100.0, 0.0};
     map.for_each_known([&](VoxelKey key, float log_odds) {

@@ -1,5 +1,6 @@
 // A field makes no difference to an answer: what is asked with one is asked without, too.
 #include "host/apps/querying/kept_field.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -50,7 +51,7 @@ TEST(KeptField, is_not_brought_up_to_date_for_less_than_that_costs) {
     ASSERT_NE(kept.of(map, along_x(0.0, 0.5)), nullptr);
     std::vector<VoxelUpdate> updates;
     map.for_each_known([&](VoxelKey key, float) { updates.push_back({key, 0.01F}); });
-    map.apply(updates);
+    feed(map, updates);
     EXPECT_EQ(kept.of(map, along_x(0.0, 0.5, 1)), nullptr) << "512 bricks were written";
     const DistanceField* const field = kept.of(map, along_x(0.0, 0.5));
     ASSERT_NE(field, nullptr);
@@ -109,7 +110,7 @@ TEST(KeptField, makes_no_difference_to_what_is_answered_while_the_map_is_written
         const auto add = [&](VoxelKey key, float log_odds) {
             const VoxelUpdate update{key, log_odds};
             const std::scoped_lock lock(mutex);
-            map.apply(std::span(&update, 1));
+            feed(map, std::span(&update, 1));
         };
         while (!ends.stop_requested()) {
             marked.push_back(*map.key_of({along(random), along(random), along(random)}));

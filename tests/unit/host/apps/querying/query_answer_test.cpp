@@ -1,4 +1,5 @@
 #include "host/apps/querying/query_answer.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gmock/gmock.h>
 
@@ -246,7 +247,7 @@ TEST_F(QueryAnswer, tells_how_old_the_weakest_evidence_is_and_by_what) {
     confirm_about_origin(map, HostTime{100'000'000'000});
     const auto hand = map.key_of({0.42, 0.02, 0.30}).value();
     go_on_to(105);
-    map.apply(std::vector<VoxelUpdate>{{hand, -0.4F}}, SensorKind::camera);
+    feed(map, std::vector<VoxelUpdate>{{hand, -0.4F}}, SensorKind::camera);
     go_on_to(120);
     const Json young = ask(path({{0.0, 0.0}}), map);
     EXPECT_EQ(young.at("state"), "free");
@@ -333,8 +334,8 @@ TEST_F(QueryAnswer, takes_own_space_for_free_whatever_range_sensors_counted_ther
     cone.cap = {{inside, 1.0F}};
     cone.middle = {inside};
     FusedMap marked = map.copy();
-    marked.mark(cone, 2.0F);
-    for (int i = 0; i < 6; ++i) map.apply(cone, config.cone);
+    confirm(marked, cone, 2.0F);
+    for (int i = 0; i < 6; ++i) feed(map, cone, config.cone);
     QueryRequest request = path({{0.0, 0.0}});
     for (const FusedMap* counted : {&map, &marked}) {
         request.own_space_m.reset();

@@ -1,4 +1,5 @@
 #include "host/apps/report/pictures.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +47,7 @@ TEST(PaintMap, tells_right_hidden_wrong_lost_and_floor_apart) {
     truth.surface.at(key(4, 0, 1)) = {.is_surface = true};
     truth.surface.at(key(0, 0, 2)) = {.is_interior = true};
     FusedMap map{MapConfig{}};
-    map.apply(std::vector<VoxelUpdate>{{key(0, 0, 1), 1.0F},
+    feed(map, std::vector<VoxelUpdate>{{key(0, 0, 1), 1.0F},
                                        {key(1, 0, 1), 1.0F},
                                        {key(2, 0, 1), 1.0F},
                                        {key(3, 0, 1), -1.0F},

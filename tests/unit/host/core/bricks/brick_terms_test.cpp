@@ -54,17 +54,17 @@ TEST(BrickTerms, go_to_each_voxel_in_turn_though_it_comes_twice) {
         for (float& value : values) value = random() % 3 == 0 ? kUnknownLogOdds : -1.7F;
         BrickValues expected = values;
         std::vector<float*> voxels;
-        std::vector<VoxelUpdate> updates;
+        std::vector<CellTerm> cells;
         std::size_t unknown = 0;
         for (int i = 0; i < 200; ++i) {
             const std::size_t cell = random() % 100;
             const ClampedTerm term{random() % 3 == 0 ? 0.9F : -0.4F, -2.0F, 3.5F};
             voxels.push_back(&values[cell]);
-            updates.push_back({{}, term.log_odds});
+            cells.push_back({0, term.log_odds});
             unknown += std::isnan(expected[cell]) ? 1U : 0U;
             expected[cell] = term.added_to(expected[cell]);
         }
-        EXPECT_EQ(add_to_each(voxels, updates, kMiss), unknown) << name;
+        EXPECT_EQ(add_to_each(voxels, cells, kMiss), unknown) << name;
         EXPECT_EQ(bits_of(values), bits_of(expected)) << name;
     });
 }

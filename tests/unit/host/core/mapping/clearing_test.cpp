@@ -5,19 +5,20 @@
 
 #include "host/core/mapping/fused_map.hpp"
 #include "host/core/mapping/mapping_config.hpp"
+#include "tests/support/evidence.hpp"
 
 namespace octoskin {
 namespace {
 
 constexpr VoxelKey kKey{32768, 32768, 32768};
 
-DepthTerms image(float term) {
-    DepthTerms terms;
+Evidence image(float term) {
+    Evidence terms;
     terms.miss = -0.4F;
-    terms.take({{kKey, term}});
+    terms.take_image({{kKey, term}});
     return terms;
 }
-const DepthTerms kPassing = image(-0.4F);
+const Evidence kPassing = image(-0.4F);
 ConeVoxels cone_through() {
     ConeVoxels cone;
     cone.passed = {kKey};
@@ -43,9 +44,9 @@ std::vector<FusedMap> occupied_maps(const MappingConfig& mapping) {
         for (const int hits : {0, 1, 5, 60})
             for (const int misses : {0, 3, 10}) {
                 FusedMap map(mapping.map);
-                for (int i = 0; i < images; ++i) map.apply(image(0.9F));
-                for (int i = 0; i < hits; ++i) map.apply(cone_onto(), mapping.cone);
-                for (int i = 0; i < misses; ++i) map.apply(cone_through(), mapping.cone);
+                for (int i = 0; i < images; ++i) feed(map, image(0.9F));
+                for (int i = 0; i < hits; ++i) feed(map, cone_onto(), mapping.cone);
+                for (int i = 0; i < misses; ++i) feed(map, cone_through(), mapping.cone);
                 if (map.occupancy(kKey) == Occupancy::occupied) maps.push_back(std::move(map));
             }
     return maps;
@@ -64,22 +65,22 @@ TEST_P(Clearing, is_done_by_five_images_whatever_was_there) {
     auto maps = occupied_maps(GetParam());
     EXPECT_GT(maps.size(), 30U);
     for (FusedMap& map : maps)
-        EXPECT_LE(times_until(map, Occupancy::free, [](FusedMap& m) { m.apply(kPassing); }), 5);
+        EXPECT_LE(times_until(map, Occupancy::free, [](FusedMap& m) { feed(m, kPassing); }), 5);
 }
 
 TEST_P(Clearing, is_done_by_a_range_sensors_thirty_cones_whatever_was_there) {
     for (FusedMap& map : occupied_maps(GetParam()))
         EXPECT_LE(times_until(map, Occupancy::free,
-                              [](FusedMap& m) { m.apply(cone_through(), robust_mapping().cone); }),
+                              [](FusedMap& m) { feed(m, cone_through(), robust_mapping().cone); }),
                   30);
 }
 
 TEST_P(Clearing, is_done_by_a_range_sensors_thirty_rays_whatever_the_camera_saw) {
     FusedMap map(GetParam().map);
-    for (int i = 0; i < 50; ++i) map.apply(image(0.9F));
+    for (int i = 0; i < 50; ++i) feed(map, image(0.9F));
     EXPECT_LE(times_until(map, Occupancy::free,
                           [](FusedMap& m) {
-                              m.apply(std::vector<VoxelUpdate>{{kKey, -0.4F}});
+                              feed(m, std::vector<VoxelUpdate>{{kKey, -0.4F}});
                           }),
               30);
 }
@@ -89,9 +90,9 @@ TEST_P(Clearing, is_undone_by_three_images_of_what_has_come) {
     for (const float hit : {0.9F, 0.8F, 0.6F, 0.5F}) {  // ranges of 1 to 5 m
         for (const int cones : {0, 5, 60}) {
             FusedMap map(GetParam().map);
-            for (int i = 0; i < 50; ++i) map.apply(kPassing);
-            for (int i = 0; i < cones; ++i) map.apply(cone_through(), GetParam().cone);
-            EXPECT_LE(times_until(map, Occupancy::occupied, [&](FusedMap& m) { m.apply(image(hit)); }), 3)
+            for (int i = 0; i < 50; ++i) feed(map, kPassing);
+            for (int i = 0; i < cones; ++i) feed(map, cone_through(), GetParam().cone);
+            EXPECT_LE(times_until(map, Occupancy::occupied, [&](FusedMap& m) { feed(m, image(hit)); }), 3)
                 << hit << ' ' << cones;
         }
     }
@@ -99,10 +100,10 @@ TEST_P(Clearing, is_undone_by_three_images_of_what_has_come) {
 
 TEST_P(Clearing, leaves_a_surface_that_the_camera_goes_on_seeing) {
     FusedMap map(GetParam().map);
-    for (int i = 0; i < 20; ++i) map.apply(image(0.9F));
+    for (int i = 0; i < 20; ++i) feed(map, image(0.9F));
     for (int i = 0; i < 300; ++i) {
-        map.apply(cone_through(), GetParam().cone);
-        if (i % 3 == 0) map.apply(image(0.9F));
+        feed(map, cone_through(), GetParam().cone);
+        if (i % 3 == 0) feed(map, image(0.9F));
         EXPECT_EQ(map.occupancy(kKey), Occupancy::occupied);
     }
 }
@@ -112,8 +113,8 @@ INSTANTIATE_TEST_SUITE_P(Default, Clearing, testing::Values(fast_mapping(), robu
 
 TEST(Clearing, of_the_papers_update_takes_what_its_clamps_take) {
     FusedMap map(paper_mapping().map);
-    for (int i = 0; i < 20; ++i) map.apply(image(0.9F));
-    EXPECT_EQ(times_until(map, Occupancy::free, [](FusedMap& m) { m.apply(kPassing); }), 9);
+    for (int i = 0; i < 20; ++i) feed(map, image(0.9F));
+    EXPECT_EQ(times_until(map, Occupancy::free, [](FusedMap& m) { feed(m, kPassing); }), 9);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "host/core/mapping/fused_map.hpp"
+#include "tests/support/evidence.hpp"
 
 namespace octoskin {
 namespace {
@@ -121,12 +122,12 @@ void expect_equal(const FusedMap& map, const Oracle& oracle) {
 
 TEST(CountingMap, shares_a_hit_by_weight_and_what_was_known) {
     FusedMap map(map_config());
-    map.apply(std::vector<VoxelUpdate>{{key_at(0), 3.5F}});
+    feed(map, std::vector<VoxelUpdate>{{key_at(0), 3.5F}});
     ConeVoxels cone;
     cone.cap = {{key_at(0), 1.0F}, {key_at(1), 1.0F}, {key_at(2), 0.5F}};
-    map.apply(cone, {});
+    feed(map, cone, {});
     // P before: 25.4 / 26 = 0.97692, 0.4, 0.4; their weighted sum 1.57692.
-    const RangeCounts& counts = map.counts();
+    const CountLayer& counts = map.layers().counts;
     const MortonCode brick = brick_of(key_at(0));
     EXPECT_NEAR(counts.hits.find(brick).at(cell_of(key_at(0))), 0.61951, 1e-5);
     EXPECT_NEAR(counts.hits.find(brick).at(cell_of(key_at(1))), 0.25366, 1e-5);
@@ -137,19 +138,19 @@ TEST(CountingMap, leaves_unknown_what_a_cap_merely_touches) {
     FusedMap map(map_config());
     ConeVoxels cone;
     for (int x = 0; x < 4; ++x) cone.cap.push_back({key_at(x), 1.0F});
-    map.apply(cone, {});  // a quarter of a hit each, less than 0.35
+    feed(map, cone, {});  // a quarter of a hit each, less than 0.35
     EXPECT_EQ(map.known_voxels(), 0U);
-    map.apply(cone, {});
+    feed(map, cone, {});
     EXPECT_EQ(map.known_voxels(), 4U);
     EXPECT_EQ(map.occupancy(key_at(2)), Occupancy::occupied);
 }
 
 TEST(CountingMap, frees_what_is_passed_but_not_a_surface_that_the_camera_is_sure_of) {
     FusedMap map(map_config());
-    for (int i = 0; i < 4; ++i) map.apply(std::vector<VoxelUpdate>{{key_at(0), 1.0F}});
+    for (int i = 0; i < 4; ++i) feed(map, std::vector<VoxelUpdate>{{key_at(0), 1.0F}});
     ConeVoxels cone;
     cone.passed = {key_at(0), key_at(1)};
-    for (int i = 0; i < 100; ++i) map.apply(cone, {});
+    for (int i = 0; i < 100; ++i) feed(map, cone, {});
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied);
     EXPECT_EQ(map.occupancy(key_at(1)), Occupancy::free);
 }
@@ -158,12 +159,12 @@ TEST(CountingMap, is_fused_anew_when_the_camera_speaks_after_the_counts) {
     FusedMap map(map_config());
     ConeVoxels cone;
     cone.cap = {{key_at(0), 1.0F}};
-    map.apply(cone, {});
+    feed(map, cone, {});
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied);
-    DepthTerms terms;
+    Evidence terms;
     terms.miss = -0.4F;
-    terms.take({{key_at(0), -0.4F}});
-    map.apply(terms);  // 0.75 hits are left, and 1.6 misses are as good as known
+    terms.take_image({{key_at(0), -0.4F}});
+    feed(map, terms);  // 0.75 hits are left, and 1.6 misses are as good as known
     EXPECT_NEAR(map.log_odds(key_at(0)).value(), std::log(1.15 / 2.2 * 0.55 / 0.45), 1e-5);
 }
 
@@ -171,13 +172,13 @@ TEST(CountingMap, loses_hits_where_every_image_sees_through) {
     FusedMap map(map_config());
     ConeVoxels cone;
     cone.cap = {{key_at(0), 1.0F}};
-    for (int i = 0; i < 20; ++i) map.apply(cone, {});
-    DepthTerms terms;
+    for (int i = 0; i < 20; ++i) feed(map, cone, {});
+    Evidence terms;
     terms.miss = -0.4F;
-    terms.take({{key_at(0), -0.4F}});
-    for (int i = 0; i < 40; ++i) map.apply(terms);
+    terms.take_image({{key_at(0), -0.4F}});
+    for (int i = 0; i < 40; ++i) feed(map, terms);
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free);
-    EXPECT_EQ(map.counts().hits.find(brick_of(key_at(0))).at(cell_of(key_at(0))), 0.0F);
+    EXPECT_EQ(map.layers().counts.hits.find(brick_of(key_at(0))).at(cell_of(key_at(0))), 0.0F);
 }
 
 TEST(CountingMap, forgets_counts_and_keeps_what_they_came_to) {
@@ -185,12 +186,12 @@ TEST(CountingMap, forgets_counts_and_keeps_what_they_came_to) {
     ConeVoxels cone;
     cone.cap = {{key_at(0), 1.0F}};
     cone.passed = {key_at(1)};
-    map.apply(cone, {});
+    feed(map, cone, {});
     const auto before = map.log_odds(key_at(0));
     map.forget_counts();
     EXPECT_EQ(map.log_odds(key_at(0)), before);
-    EXPECT_TRUE(map.counts().empty());
-    map.apply(std::vector<VoxelUpdate>{{key_at(0), -0.4F}});
+    EXPECT_TRUE(map.layers().counts.empty());
+    feed(map, std::vector<VoxelUpdate>{{key_at(0), -0.4F}});
     EXPECT_EQ(map.log_odds(key_at(0)), *before - 0.4F);
 }
 
@@ -212,17 +213,17 @@ TEST(CountingMap, equals_the_arithmetic_of_every_voxel_on_its_own) {
                 step % 6 == 0 && term < 0.0F ? oracle.see_through(key)
                                              : oracle.add(key, static_cast<double>(term));
             }
-            DepthTerms depth;
+            Evidence depth;
             depth.miss = -0.4F;
-            depth.take(updates);
-            step % 6 == 0 ? map.apply(depth) : map.apply(updates);
+            depth.take_image(updates);
+            step % 6 == 0 ? feed(map, depth) : feed(map, updates);
         } else {
             ConeVoxels cone;
             std::map<VoxelKey, float> cap;
             for (int i = 0; i < 10; ++i) cap[any_key()] = real(random);
             for (const auto& [key, weight] : cap) cone.cap.push_back({key, weight});
             for (int i = 0; i < 3; ++i) cone.passed.push_back(any_key());
-            map.apply(cone, model);
+            feed(map, cone, model);
             oracle.count(cone, model);
         }
     }
@@ -234,12 +235,12 @@ TEST(CountingMap, copies_keep_what_they_were_and_go_on_the_same_way) {
     ConeVoxels cone;
     cone.cap = {{key_at(0), 1.0F}, {key_at(1), 0.5F}};
     cone.passed = {key_at(-1)};
-    map.apply(cone, {});
+    feed(map, cone, {});
     FusedMap copy = map.copy();
     const auto before = copy.log_odds(key_at(0));
-    map.apply(cone, {});
+    feed(map, cone, {});
     EXPECT_EQ(copy.log_odds(key_at(0)), before);
-    copy.apply(cone, {});
+    feed(copy, cone, {});
     EXPECT_EQ(copy.log_odds(key_at(0)), map.log_odds(key_at(0)));
     EXPECT_EQ(copy.log_odds(key_at(-1)), map.log_odds(key_at(-1)));
 }
@@ -250,7 +251,7 @@ TEST(CountingMap, tells_what_changed) {
     cone.cap = {{key_at(0), 1.0F}};
     cone.passed = {key_at(-1)};
     std::vector<VoxelUpdate> changes;
-    map.apply(cone, {.hit_mass = 1.0F, .miss_mass = 1.0F}, Blame::all, &changes);
+    feed(map, cone, {.hit_mass = 1.0F, .miss_mass = 1.0F}, false, &changes);
     ASSERT_EQ(changes.size(), 2U);
     EXPECT_EQ(changes[0], (VoxelUpdate{key_at(0), map.log_odds(key_at(0)).value()}));
     EXPECT_EQ(changes[1], (VoxelUpdate{key_at(-1), map.log_odds(key_at(-1)).value()}));
@@ -262,10 +263,10 @@ TEST(CountingMap, counts_within_three_quarters_more_memory) {
     FusedMap map(config);
     ConeVoxels cone;
     for (int x = 0; x < 1000; ++x) cone.passed.push_back(key_at(8 * x));
-    map.apply(cone, {});
+    feed(map, cone, {});
     EXPECT_GT(map.counters().no_room, 0U);
     EXPECT_EQ(map.counters().applied + map.counters().no_room, 1000U);
-    EXPECT_LE(map.counts().heap_bytes(), std::size_t{3} << 18U);
+    EXPECT_LE(map.layers().counts.heap_bytes(), std::size_t{3} << 18U);
     EXPECT_LE(map.memory_bytes(), std::size_t{1} << 20U);
 }
 
@@ -273,7 +274,7 @@ TEST(CountingMap, is_fused_anew_with_other_limits) {
     FusedMap map(map_config());
     ConeVoxels cone;
     for (int x = 0; x < 4; ++x) cone.cap.push_back({key_at(x), 1.0F});
-    map.apply(cone, {});
+    feed(map, cone, {});
     MapConfig config = map_config();
     config.counts.hits_min = 0.2F;
     map.limit(config);
@@ -287,13 +288,13 @@ TEST(CountingMap, takes_no_space_for_what_other_limits_leave_unknown) {
     FusedMap map(map_config());
     ConeVoxels cone;
     for (int x = 0; x < 100; ++x) cone.cap.push_back({key_at(8 * x), 1.0F});
-    map.apply(cone, {});
+    feed(map, cone, {});
     ASSERT_EQ(map.known_voxels(), 0U);
     MapConfig config = map_config();
     config.counts.hits_min *= 1.5F;
     map.limit(config);
     EXPECT_TRUE(map.bricks().empty());
-    EXPECT_TRUE(map.counts().has(brick_of(key_at(0)))) << "what was counted goes on";
+    EXPECT_TRUE(map.layers().counts.has(brick_of(key_at(0)))) << "what was counted goes on";
 }
 
 /// A cap of three voxels, one of them its middle.
@@ -307,29 +308,29 @@ ConeVoxels cap_of_three() {
 TEST(CountingMap, marks_the_middle_of_what_is_believed_however_free_it_was) {
     for (const bool has_camera : {false, true}) {
         FusedMap map(map_config());
-        if (has_camera) map.apply(std::vector<VoxelUpdate>{{key_at(0), -2.0F}});
+        if (has_camera) feed(map, std::vector<VoxelUpdate>{{key_at(0), -2.0F}});
         ConeVoxels through;
         through.passed = {key_at(0), key_at(1)};
-        for (int i = 0; i < 100; ++i) map.apply(through, {});
+        for (int i = 0; i < 100; ++i) feed(map, through, {});
         EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free);
         std::vector<VoxelUpdate> changes;
         const float before = map.log_odds(key_at(0)).value();
-        map.mark(cap_of_three(), 0.0F, &changes);
+        confirm(map, cap_of_three(), 0.0F, &changes);
         EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied) << "with no more hits than it takes";
         EXPECT_EQ(map.occupancy(key_at(1)), Occupancy::free);
         EXPECT_EQ(map.occupancy(key_at(2)), Occupancy::unknown);
         ASSERT_EQ(changes.size(), 1U);
         EXPECT_EQ(changes.front().key, key_at(0));
         EXPECT_NEAR(before + changes.front().log_odds, map.log_odds(key_at(0)).value(), 1e-5);
-        map.apply(through, {});
+        feed(map, through, {});
         EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free) << "and one reading takes it back";
     }
 }
 
 TEST(CountingMap, leaves_what_is_marked_as_many_hits_as_it_is_told) {
     FusedMap map(map_config());
-    map.mark(cap_of_three(), 2.0F);
-    const RangeCounts& counts = map.counts();
+    confirm(map, cap_of_three(), 2.0F);
+    const CountLayer& counts = map.layers().counts;
     const MortonCode brick = brick_of(key_at(0));
     EXPECT_EQ(counts.hits.find(brick).at(cell_of(key_at(0))), 2.0F);
     EXPECT_EQ(counts.misses.find(brick).at(cell_of(key_at(0))), 0.0F);
@@ -340,9 +341,9 @@ TEST(CountingMap, leaves_what_is_marked_as_many_hits_as_it_is_told) {
 
 TEST(CountingMap, marks_nothing_where_something_known_explains_the_range) {
     FusedMap map(map_config());
-    map.apply(std::vector<VoxelUpdate>{{key_at(2), 1.0F}});
+    feed(map, std::vector<VoxelUpdate>{{key_at(2), 1.0F}});
     const auto before = map.counters();
-    map.mark(cap_of_three(), 2.0F);
+    confirm(map, cap_of_three(), 2.0F);
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
     EXPECT_EQ(map.counters(), before);
 }
@@ -350,7 +351,7 @@ TEST(CountingMap, marks_nothing_where_something_known_explains_the_range) {
 TEST(CountingMap, confirms_what_it_marks) {
     FusedMap map(map_config());
     map.go_on(HostTime{5'000'000'000});
-    map.mark(cap_of_three(), 2.0F);
+    confirm(map, cap_of_three(), 2.0F);
     EXPECT_EQ(map.confirmation(key_at(0)), (Confirmation{0, SensorKind::range}));
 }
 
@@ -362,14 +363,14 @@ TEST(CountingMap, frees_at_once_what_is_surely_seen_through_however_sure_it_was)
             FusedMap map(map_config());
             ConeVoxels onto;
             onto.cap = {{key_at(0), 1.0F}};
-            for (int i = 0; i < images; ++i) map.apply(std::vector<VoxelUpdate>{{key_at(0), 1.0F}});
-            for (int i = 0; i < hits; ++i) map.apply(onto, {});
-            map.apply(std::vector<VoxelUpdate>{{key_at(1), -1.0F}});
+            for (int i = 0; i < images; ++i) feed(map, std::vector<VoxelUpdate>{{key_at(0), 1.0F}});
+            for (int i = 0; i < hits; ++i) feed(map, onto, {});
+            feed(map, std::vector<VoxelUpdate>{{key_at(1), -1.0F}});
             const auto before = map.copy();
             ConeVoxels through;
             through.passed = {key_at(0), key_at(1), key_at(2)};
             std::vector<VoxelUpdate> changes;
-            map.clear(through, kNobodyRanges, &changes);
+            clear(map, through, kNobodyRanges, &changes);
             EXPECT_EQ(map.log_odds(key_at(1)), before.log_odds(key_at(1))) << "what is free stays as it is";
             EXPECT_EQ(map.occupancy(key_at(2)), Occupancy::unknown);
             if (before.occupancy(key_at(0)) != Occupancy::occupied) {
@@ -379,7 +380,7 @@ TEST(CountingMap, frees_at_once_what_is_surely_seen_through_however_sure_it_was)
             EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free) << images << " images, " << hits << " hits";
             ASSERT_EQ(changes.size(), 1U);
             EXPECT_NEAR(*before.log_odds(key_at(0)) + changes[0].log_odds, *map.log_odds(key_at(0)), 1e-5);
-            for (int i = 0; i < 2; ++i) map.apply(std::vector<VoxelUpdate>{{key_at(0), 0.8F}});
+            for (int i = 0; i < 2; ++i) feed(map, std::vector<VoxelUpdate>{{key_at(0), 0.8F}});
             EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied) << "and may come again";
         }
     }
@@ -394,58 +395,58 @@ TEST(CountingMap, takes_nothing_from_what_the_camera_sees_again_and_again) {
     for (int tenth = 0; tenth < 60; ++tenth) {
         for (int reading = 0; reading < 3; ++reading) {
             map.go_on(HostTime{(100 * tenth + 33 * reading) * 1'000'000LL});
-            if (reading == 1) map.apply(surface, SensorKind::camera);
-            map.apply(through, {});
-            map.clear(through, kNobodyRanges);
+            if (reading == 1) feed(map, surface, SensorKind::camera);
+            feed(map, through, {});
+            clear(map, through, kNobodyRanges);
             ASSERT_TRUE(tenth <= 2 || map.occupancy(key_at(0)) == Occupancy::occupied) << tenth;
         }
     }
     EXPECT_EQ(map.confirmation(key_at(1)), (Confirmation{0, SensorKind::range}));
     EXPECT_EQ(map.confirmation(key_at(0)), (Confirmation{0, SensorKind::camera}));
     map.go_on(HostTime{8'000'000'000});
-    map.clear(through, kNobodyRanges);
+    clear(map, through, kNobodyRanges);
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free) << "it no longer looks";
 }
 
 TEST(CountingMap, gives_hits_to_all_where_nothing_is_that_could_take_them) {
     FusedMap told(map_config());
     FusedMap untold(map_config());
-    told.apply(cap_of_three(), {}, Blame::occupied);
-    untold.apply(cap_of_three(), {}, Blame::all);
+    feed(told, cap_of_three(), {}, true);
+    feed(untold, cap_of_three(), {}, false);
     for (const int i : {0, 1, 2}) EXPECT_EQ(told.log_odds(key_at(i)), untold.log_odds(key_at(i)));
-    for (int reading = 0; reading < 20; ++reading) told.apply(cap_of_three(), {}, Blame::occupied);
+    for (int reading = 0; reading < 20; ++reading) feed(told, cap_of_three(), {}, true);
     EXPECT_EQ(told.occupancy(key_at(0)), Occupancy::occupied);
 }
 
 TEST(CountingMap, sees_what_has_no_weight_and_gives_it_nothing) {
     FusedMap map(map_config());
     map.go_on(HostTime{1'000'000'000});
-    map.apply(std::vector<VoxelUpdate>{{key_at(1), 2.0F}});
+    feed(map, std::vector<VoxelUpdate>{{key_at(1), 2.0F}});
     const auto before = map.copy();
     ConeVoxels cone = cap_of_three();
     cone.cap[1].weight = 0.0F;
     cone.cap[2].weight = 0.0F;
     map.go_on(HostTime{9'000'000'000});
-    map.apply(cone, {.hit_mass = 10.0F});
+    feed(map, cone, {.hit_mass = 10.0F});
     EXPECT_EQ(map.log_odds(key_at(1)), before.log_odds(key_at(1)));
     EXPECT_EQ(map.confirmation(key_at(1)), (Confirmation{0, SensorKind::range})) << "it is there, as it says";
     EXPECT_FALSE(map.confirmation(key_at(2)));
-    map.mark(cone, 2.0F);
+    confirm(map, cone, 2.0F);
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied) << "what has no weight explains nothing";
 }
 
 TEST(CountingMap, takes_back_hits_that_mark_nothing) {
     FusedMap map(map_config());
-    map.mark(cap_of_three(), 2.0F);
+    confirm(map, cap_of_three(), 2.0F);
     ConeVoxels cap = cap_of_three();
     cap.cap.push_back({key_at(3), 1.0F});
-    map.apply(std::vector<VoxelUpdate>{{key_at(2), -1.0F}});
+    feed(map, std::vector<VoxelUpdate>{{key_at(2), -1.0F}});
     const auto free_before = map.log_odds(key_at(2));
     for (int event = 0; event < 100; ++event) {
-        map.apply(cap, {.hit_mass = 0.5F});
+        feed(map, cap, {.hit_mass = 0.5F});
         const auto before = map.copy();
         std::vector<VoxelUpdate> changes;
-        map.forget_weak_hits(cap, &changes);
+        withdraw(map, cap, &changes);
         for (const VoxelUpdate& change : changes)
             EXPECT_NEAR(*before.log_odds(change.key) + change.log_odds, *map.log_odds(change.key), 1e-5);
         EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied);
@@ -458,10 +459,10 @@ TEST(CountingMap, takes_back_hits_that_mark_nothing) {
 TEST(CountingMap, gives_hits_to_what_is_there_and_nothing_else_if_it_is_told_so) {
     FusedMap map(map_config());
     map.go_on(HostTime{1'000'000'000});
-    map.mark(cap_of_three(), 2.0F);
+    confirm(map, cap_of_three(), 2.0F);
     const auto before = map.copy();
     map.go_on(HostTime{9'000'000'000});
-    map.apply(cap_of_three(), {}, Blame::occupied);
+    feed(map, cap_of_three(), {}, true);
     for (const int i : {1, 2, 3}) EXPECT_EQ(map.log_odds(key_at(i)), before.log_odds(key_at(i))) << i;
     EXPECT_GT(*map.log_odds(key_at(0)), *before.log_odds(key_at(0)));
     EXPECT_EQ(map.confirmation(key_at(0)), (Confirmation{0, SensorKind::range}));
@@ -477,15 +478,15 @@ TEST(CountingMap, frees_not_what_others_see_at_the_same_time) {
     ConeVoxels through;
     through.passed = {key_at(0), key_at(1)};
     map.go_on(HostTime{10'900'000'000});
-    for (int i = 0; i < 3; ++i) map.apply(surface, SensorKind::camera);
+    for (int i = 0; i < 3; ++i) feed(map, surface, SensorKind::camera);
     map.go_on(HostTime{11'900'000'000});
-    map.clear(through, kNobodyRanges);
+    clear(map, through, kNobodyRanges);
     EXPECT_EQ(occupied(), std::pair(true, true)) << "the camera, in the second before";
     map.go_on(HostTime{12'000'000'000});
-    map.clear(through, [](VoxelKey key) { return key == key_at(1); });
+    clear(map, through, [](VoxelKey key) { return key == key_at(1); });
     EXPECT_EQ(occupied(), std::pair(false, true));
-    for (int i = 0; i < 3; ++i) map.apply(surface, SensorKind::range);
-    map.clear(through, kNobodyRanges);
+    for (int i = 0; i < 3; ++i) feed(map, surface, SensorKind::range);
+    clear(map, through, kNobodyRanges);
     EXPECT_EQ(occupied(), std::pair(false, false)) << "an earlier range does not count";
 }
 

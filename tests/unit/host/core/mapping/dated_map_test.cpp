@@ -9,6 +9,7 @@
 
 #include "host/core/mapping/fused_map.hpp"
 #include "host/core/mapping/mapping_config.hpp"
+#include "tests/support/evidence.hpp"
 
 namespace octoskin {
 namespace {
@@ -30,10 +31,10 @@ MapConfig aging(std::uint32_t stale_after_s, std::uint32_t unknown_after_s) {
 std::vector<VoxelUpdate> one(VoxelKey key, float term) {
     return {{key, term}};
 }
-DepthTerms image_of(std::vector<VoxelUpdate> updates) {
-    DepthTerms terms;
+Evidence image_of(std::vector<VoxelUpdate> updates) {
+    Evidence terms;
     terms.miss = -0.4F;
-    terms.take(std::move(updates));
+    terms.take_image(std::move(updates));
     return terms;
 }
 Confirmation by(SensorKind kind, std::uint32_t age_s) {
@@ -42,19 +43,19 @@ Confirmation by(SensorKind kind, std::uint32_t age_s) {
 
 TEST(DatedMap, keeps_no_times_before_it_is_told_one) {
     FusedMap map(aging(1, 2));
-    map.apply(one(key_at(0), 1.0F));
+    feed(map, one(key_at(0), 1.0F));
     EXPECT_FALSE(map.confirmation(key_at(0)).has_value());
     EXPECT_FALSE(map.is_stale(key_at(0)));
-    EXPECT_EQ(map.confirmations().heap_bytes(), 0U);
+    EXPECT_EQ(map.layers().ages.heap_bytes(), 0U);
 }
 
 TEST(DatedMap, knows_when_and_by_what_a_voxel_was_last_confirmed) {
     FusedMap map(MapConfig{});
     map.go_on(at_s(100.9));
-    map.apply(one(key_at(0), -0.4F));
-    map.apply(image_of({{key_at(1), -0.4F}, {key_at(2), 0.8F}}));
+    feed(map, one(key_at(0), -0.4F));
+    feed(map, image_of({{key_at(1), -0.4F}, {key_at(2), 0.8F}}));
     map.go_on(at_s(107.0));
-    map.apply(one(key_at(2), 0.5F));
+    feed(map, one(key_at(2), 0.5F));
     EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 7));
     EXPECT_EQ(map.confirmation(key_at(1)), by(SensorKind::camera, 7));
     EXPECT_EQ(map.confirmation(key_at(2)), by(SensorKind::range, 0));
@@ -64,27 +65,27 @@ TEST(DatedMap, knows_when_and_by_what_a_voxel_was_last_confirmed) {
 TEST(DatedMap, is_confirmed_by_what_changes_nothing_at_a_clamp_but_not_by_a_term_of_zero) {
     FusedMap map(MapConfig{});
     map.go_on(at_s(0));
-    for (int i = 0; i < 9; ++i) map.apply(one(key_at(0), -0.4F));
-    map.apply(one(key_at(1), -0.4F));
+    for (int i = 0; i < 9; ++i) feed(map, one(key_at(0), -0.4F));
+    feed(map, one(key_at(1), -0.4F));
     map.go_on(at_s(5));
-    map.apply(one(key_at(0), -0.4F));
-    map.apply(one(key_at(1), 0.0F));
+    feed(map, one(key_at(0), -0.4F));
+    feed(map, one(key_at(1), 0.0F));
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 0U);
     EXPECT_EQ(map.confirmation(key_at(1))->age_s, 5U);
 }
 
 TEST(DatedMap, has_what_it_held_when_its_clock_began_stale_until_it_is_confirmed_or_unknown) {
     FusedMap map(aging(10, 20));
-    map.apply(one(key_at(0), -0.4F));
-    map.apply(one(key_at(100), -0.4F));
+    feed(map, one(key_at(0), -0.4F));
+    feed(map, one(key_at(100), -0.4F));
     map.go_on(at_s(50));
     EXPECT_FALSE(map.confirmation(key_at(0)).has_value()) << "nobody knows";
     EXPECT_TRUE(map.is_stale(key_at(0)));
-    map.apply(one(key_at(100), -0.4F));
+    feed(map, one(key_at(100), -0.4F));
     EXPECT_FALSE(map.is_stale(key_at(100)));
     map.go_on(at_s(69.9));
     EXPECT_EQ(map.known_voxels(), 2U);
-    map.apply(one(key_at(100), -0.4F));
+    feed(map, one(key_at(100), -0.4F));
     map.go_on(at_s(70));
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
     EXPECT_EQ(map.known_voxels(), 1U);
@@ -92,7 +93,7 @@ TEST(DatedMap, has_what_it_held_when_its_clock_began_stale_until_it_is_confirmed
 
 TEST(DatedMap, knows_no_more_of_what_was_before_its_clock_when_that_has_run_for_days) {
     FusedMap map(aging(10, 0));
-    map.apply(one(key_at(0), -0.4F));
+    feed(map, one(key_at(0), -0.4F));
     for (double s = 0; s < 50'000; s += 900) map.go_on(at_s(s));
     EXPECT_FALSE(map.confirmation(key_at(0)).has_value());
     EXPECT_TRUE(map.is_stale(key_at(0)));
@@ -101,19 +102,19 @@ TEST(DatedMap, knows_no_more_of_what_was_before_its_clock_when_that_has_run_for_
 TEST(DatedMap, becomes_stale_and_then_unknown) {
     FusedMap map(aging(10, 20));
     map.go_on(at_s(0));
-    map.apply(one(key_at(0), 3.0F));
-    map.apply(one(key_at(100), -0.4F));
+    feed(map, one(key_at(0), 3.0F));
+    feed(map, one(key_at(100), -0.4F));
     map.go_on(at_s(19));
     EXPECT_TRUE(map.is_stale(key_at(0)));
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied);
     EXPECT_EQ(map.known_voxels(), 2U);
-    map.apply(one(key_at(100), -0.4F));
+    feed(map, one(key_at(100), -0.4F));
     map.go_on(at_s(20));
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
     EXPECT_FALSE(map.is_stale(key_at(0)));
     EXPECT_EQ(map.occupancy(key_at(100)), Occupancy::free);
     EXPECT_EQ(map.known_voxels(), 1U);
-    map.apply(one(key_at(0), 0.5F));
+    feed(map, one(key_at(0), 0.5F));
     EXPECT_EQ(map.log_odds(key_at(0)), 0.5F) << "as if nobody had ever been there";
     map.go_on(at_s(1000));
     EXPECT_EQ(map.known_voxels(), 0U);
@@ -125,24 +126,24 @@ TEST(DatedMap, forgets_counts_of_what_it_forgets) {
     map.go_on(at_s(0));
     ConeVoxels cone;
     cone.passed = {key_at(0)};
-    for (int i = 0; i < 20; ++i) map.apply(cone, {});
+    for (int i = 0; i < 20; ++i) feed(map, cone, {});
     EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 0));
     map.go_on(at_s(5));
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
-    EXPECT_FALSE(map.counts().has(brick_of(key_at(0)))) << "an emptied brick is given back";
-    map.apply(cone, {});
+    EXPECT_FALSE(map.layers().counts.has(brick_of(key_at(0)))) << "an emptied brick is given back";
+    feed(map, cone, {});
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown) << "one reading does not free it";
 }
 
 TEST(DatedMap, has_of_a_cap_only_what_is_occupied_confirmed) {
     FusedMap map(MapConfig{});
     map.go_on(at_s(0));
-    map.apply(one(key_at(0), -2.0F));
-    for (int i = 0; i < 4; ++i) map.apply(one(key_at(1), 1.0F));
+    feed(map, one(key_at(0), -2.0F));
+    for (int i = 0; i < 4; ++i) feed(map, one(key_at(1), 1.0F));
     map.go_on(at_s(30));
     ConeVoxels cone;
     cone.cap = {{key_at(0), 1.0F}, {key_at(1), 1.0F}};
-    map.apply(cone, {});
+    feed(map, cone, {});
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 30U);
     EXPECT_EQ(map.confirmation(key_at(1)), by(SensorKind::range, 0));
 }
@@ -153,14 +154,14 @@ TEST(DatedMap, adds_no_hits_up_over_longer_than_it_knows_anything) {
     for (int x = 0; x < 100; ++x) cone.cap.push_back({key_at(x), 1.0F});
     for (int hour = 0; hour < 100; ++hour) {
         map.go_on(at_s(3600.0 * hour));
-        map.apply(cone, {});
+        feed(map, cone, {});
     }
     EXPECT_EQ(map.known_voxels(), 0U);
     EXPECT_FALSE(map.confirmation(key_at(0)).has_value()) << "unknown";
     map.go_on(at_s(3600.0 * 100));
-    EXPECT_TRUE(map.counts().empty());
+    EXPECT_TRUE(map.layers().counts.empty());
     EXPECT_EQ(map.heap_bytes(), 0U);
-    for (int reading = 0; reading < 100; ++reading) map.apply(cone, {});
+    for (int reading = 0; reading < 100; ++reading) feed(map, cone, {});
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied) << "so many would have marked it at once";
 }
 
@@ -170,8 +171,8 @@ TEST(DatedMap, forgets_hits_of_an_unknown_voxel_whose_neighbours_are_confirmed) 
     for (int x = 0; x < 100; ++x) cone.cap.push_back({key_at(x), 1.0F});
     for (int second = 0; second < 800; second += 4) {
         map.go_on(at_s(second));
-        if (second % 8 == 0) map.apply(cone, {});
-        map.apply(one(key_at(0, 1), -0.4F));
+        if (second % 8 == 0) feed(map, cone, {});
+        feed(map, one(key_at(0, 1), -0.4F));
     }
     EXPECT_EQ(map.known_voxels(), 1U) << "each was forgotten before the next";
 }
@@ -183,14 +184,14 @@ TEST(DatedMap, is_confirmed_by_a_cone_of_which_one_voxel_finds_no_room) {
     map.go_on(at_s(0));
     ConeVoxels cone;
     cone.passed = {key_at(0), key_at(1)};
-    for (int i = 0; i < 20; ++i) map.apply(cone, {});
-    for (int x = 1; x < 2000; ++x) map.apply(one(key_at(-8 * x), -0.4F));
+    for (int i = 0; i < 20; ++i) feed(map, cone, {});
+    for (int x = 1; x < 2000; ++x) feed(map, one(key_at(-8 * x), -0.4F));
     ASSERT_GT(map.counters().no_room, 0U);
     cone.passed.push_back(key_at(0, 4000));
     const auto before = map.counters();
     for (int second = 1; second <= 20; ++second) {
         map.go_on(at_s(second));
-        map.apply(cone, {});
+        feed(map, cone, {});
     }
     EXPECT_GT(map.counters().no_room, before.no_room) << "as soon as it would be free";
     EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 0));
@@ -200,7 +201,7 @@ TEST(DatedMap, is_confirmed_by_a_cone_of_which_one_voxel_finds_no_room) {
 TEST(DatedMap, waits_for_late_measurements_and_follows_a_clock_that_was_set_back) {
     FusedMap map(MapConfig{});
     map.go_on(at_s(100));
-    map.apply(one(key_at(0), 1.0F));
+    feed(map, one(key_at(0), 1.0F));
     map.go_on(at_s(103));
     map.go_on(at_s(102));
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 3U);
@@ -214,7 +215,7 @@ TEST(DatedMap, grows_no_older_where_time_leaps_and_goes_on_growing_old_after) {
     for (const int leap_s : {1000, 100'000, -50, -100'000}) {
         FusedMap map(aging(10, 20));
         map.go_on(at_s(100));
-        map.apply(one(key_at(0), 1.0F));
+        feed(map, one(key_at(0), 1.0F));
         map.go_on(at_s(103));
         map.leap(std::chrono::seconds(leap_s));
         map.go_on(at_s(104 + leap_s));
@@ -230,7 +231,7 @@ TEST(DatedMap, grows_no_older_where_time_leaps_and_goes_on_growing_old_after) {
 TEST(DatedMap, leaps_by_the_nearest_second) {
     FusedMap map(MapConfig{});
     map.go_on(at_s(100.5));
-    map.apply(one(key_at(0), 1.0F));
+    feed(map, one(key_at(0), 1.0F));
     map.leap(std::chrono::milliseconds(2'700));
     map.go_on(at_s(105.2));  // 2.0 s have passed
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 2U);
@@ -239,10 +240,10 @@ TEST(DatedMap, leaps_by_the_nearest_second) {
 TEST(DatedMap, tells_ages_over_days) {
     FusedMap map(MapConfig{});
     map.go_on(at_s(-3));
-    map.apply(one(key_at(0), 1.0F));
+    feed(map, one(key_at(0), 1.0F));
     for (double s = 0; s < 200'000; s += 997) {
         map.go_on(at_s(s));
-        map.apply(one(key_at(1), 1.0F));
+        feed(map, one(key_at(1), 1.0F));
         EXPECT_EQ(map.confirmation(key_at(0))->age_s, std::min(s + 3, 8191.0));
         EXPECT_EQ(map.confirmation(key_at(1))->age_s, 0U);
     }
@@ -254,11 +255,11 @@ TEST(DatedMap, forgets_in_time_when_its_clock_is_brought_up_meanwhile) {
     FusedMap map(aging(0, 7000));
     for (int second = 0; second <= 8000; second += 1000) {
         map.go_on(at_s(second));
-        map.apply(one(key_at(100), 1.0F));
+        feed(map, one(key_at(100), 1.0F));
     }
-    map.apply(one(key_at(0), 1.0F));
+    feed(map, one(key_at(0), 1.0F));
     map.go_on(at_s(9000));  // beyond what a stamp can hold
-    map.apply(one(key_at(100), 1.0F));
+    feed(map, one(key_at(100), 1.0F));
     map.go_on(at_s(14'999));
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 6999U);
     map.go_on(at_s(15'000));
@@ -272,7 +273,7 @@ TEST(DatedMap, forgets_in_time_when_its_clock_is_brought_up_meanwhile) {
 TEST(DatedMap, keeps_what_was_when_a_copy_goes_on) {
     FusedMap map(aging(10, 20));
     map.go_on(at_s(0));
-    map.apply(one(key_at(0), 1.0F));
+    feed(map, one(key_at(0), 1.0F));
     FusedMap copy = map.copy();
     copy.go_on(at_s(20));
     EXPECT_EQ(copy.known_voxels(), 0U);
@@ -283,13 +284,13 @@ TEST(DatedMap, keeps_what_was_when_a_copy_goes_on) {
 TEST(DatedMap, copies_nothing_that_is_confirmed_again_within_a_second) {
     FusedMap map(MapConfig{});
     map.go_on(at_s(0));
-    const DepthTerms image = image_of({{key_at(0), -0.4F}, {key_at(1), 0.8F}});
-    map.apply(image);
+    const Evidence image = image_of({{key_at(0), -0.4F}, {key_at(1), 0.8F}});
+    feed(map, image);
     const FusedMap copy = map.copy();
     map.go_on(at_s(0.9));
-    map.apply(image);
-    copy.confirmations().stamps().for_each_difference(map.confirmations().stamps(),
-                                                      [](MortonCode) { ADD_FAILURE() << "nothing changed"; });
+    feed(map, image);
+    copy.layers().ages.stamps().for_each_difference(map.layers().ages.stamps(),
+                                                    [](MortonCode) { ADD_FAILURE() << "nothing changed"; });
 }
 
 TEST(DatedMap, has_its_times_within_a_bound_and_counts_what_has_none) {
@@ -299,8 +300,8 @@ TEST(DatedMap, has_its_times_within_a_bound_and_counts_what_has_none) {
     map.go_on(at_s(0));
     std::vector<VoxelUpdate> updates;  // each in a brick and in nodes of its own: the worst there is
     for (int x = 0; x < 2000; ++x) updates.push_back({key_at(64 * (x % 100), 64 * (x / 100)), -0.4F});
-    map.apply(updates);
-    EXPECT_LE(map.confirmations().heap_bytes(), std::size_t{9} << 16U);
+    feed(map, updates);
+    EXPECT_LE(map.layers().ages.heap_bytes(), std::size_t{9} << 16U);
     EXPECT_LE(map.memory_bytes(), std::size_t{1} << 20U);
     std::uint64_t undated = 0;
     map.for_each_known([&](VoxelKey key, float) {
@@ -315,7 +316,7 @@ TEST(DatedMap, forgets_times_with_counts_where_they_decide_what_is_known) {
     FusedMap passing(aging(10, 20));
     for (FusedMap* map : {&lasting, &passing}) {
         map->go_on(at_s(0));
-        map->apply(one(key_at(0), 1.0F));
+        feed(*map, one(key_at(0), 1.0F));
         map->go_on(at_s(15));
         map->forget_counts();
         map->go_on(at_s(25));
@@ -349,7 +350,7 @@ TEST(DatedMap, equals_a_time_and_a_kind_kept_for_each_voxel) {
         std::vector<VoxelUpdate> updates;
         for (const VoxelKey key : keys) updates.push_back({key, random() % 2 == 0 ? -0.4F : 0.7F});
         const bool is_image = random() % 2 == 0;
-        is_image ? map.apply(image_of(updates)) : map.apply(updates);
+        is_image ? feed(map, image_of(updates)) : feed(map, updates);
         for (const VoxelKey key : keys)
             oracle[key] = {second, is_image ? SensorKind::camera : SensorKind::range};
         ASSERT_EQ(map.known_voxels(), oracle.size()) << "step " << step;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/support/voxel_updates.hpp"
+#include "tests/support/evidence.hpp"
 
 namespace octoskin {
 namespace {

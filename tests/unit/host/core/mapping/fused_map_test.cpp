@@ -1,4 +1,5 @@
 #include "host/core/mapping/fused_map.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ namespace {
 constexpr VoxelKey kKey{32768, 32767, 40000};
 
 void apply_one(FusedMap& map, VoxelKey key, float log_odds) {
-    map.apply(std::vector<VoxelUpdate>{{key, log_odds}});
+    feed(map, std::vector<VoxelUpdate>{{key, log_odds}});
 }
 
 TEST(FusedMap, begins_unknown_everywhere) {
@@ -68,9 +69,9 @@ TEST(FusedMap, refuses_and_counts_terms_that_are_not_finite) {
 
 TEST(FusedMap, clamps_after_every_term_and_not_only_at_the_end) {
     FusedMap map(MapConfig{});
-    map.apply(std::vector<VoxelUpdate>{{kKey, 3.0F}, {kKey, 3.0F}, {kKey, -1.0F}});
+    feed(map, std::vector<VoxelUpdate>{{kKey, 3.0F}, {kKey, 3.0F}, {kKey, -1.0F}});
     EXPECT_EQ(map.log_odds(kKey), 2.5F);
-    map.apply(std::vector<VoxelUpdate>{{kKey, -9.0F}, {kKey, 0.5F}});
+    feed(map, std::vector<VoxelUpdate>{{kKey, -9.0F}, {kKey, 0.5F}});
     EXPECT_EQ(map.log_odds(kKey), -1.5F);
 }
 
@@ -80,10 +81,10 @@ TEST(FusedMap, takes_no_new_space_beyond_its_memory_but_goes_on_updating) {
     FusedMap map(config);
     std::vector<VoxelUpdate> updates;
     for (unsigned i = 0; i < 600; ++i) updates.push_back({{static_cast<std::uint16_t>(8 * i), 0, 0}, 1.0F});
-    map.apply(updates);
+    feed(map, updates);
     EXPECT_EQ(map.counters(), (MapCounters{.applied = 465, .no_room = 135}));
     EXPECT_EQ(map.occupancy({8 * 599, 0, 0}), Occupancy::unknown);
-    map.apply(updates);
+    feed(map, updates);
     EXPECT_EQ(map.log_odds({0, 0, 0}), 2.0F);
     EXPECT_EQ(map.known_voxels(), 465U);
     EXPECT_FALSE(map.set_cube({.lowest = {60000, 0, 0}, .height = 0}, 1.0F));
@@ -125,10 +126,10 @@ TEST(FusedMap, is_walked_in_morton_order_whatever_the_order_of_filling) {
     const auto draw = [&] { return static_cast<std::uint16_t>(any(random)); };
     for (int i = 0; i < 2000; ++i) updates.push_back({{draw(), draw(), draw()}, 0.5F});
     FusedMap forwards(MapConfig{});
-    forwards.apply(updates);
+    feed(forwards, updates);
     std::reverse(updates.begin(), updates.end());
     FusedMap backwards(MapConfig{});
-    backwards.apply(updates);
+    feed(backwards, updates);
 
     std::vector<VoxelKey> order;
     forwards.for_each_known([&](VoxelKey key, float) { order.push_back(key); });
@@ -159,7 +160,7 @@ TEST(FusedMap, equals_octomaps_update_node_sequence_bit_for_bit) {
     oracle::ClampedTree tree(config);
     std::vector<VoxelUpdate> updates;
     for (int i = 0; i < 40'000; ++i) updates.push_back({{draw(), draw(), draw()}, any_term(random)});
-    map.apply(updates);
+    feed(map, updates);
     for (const auto& update : updates) tree.updateNode(oracle::key_of(update.key), update.log_odds);
     EXPECT_EQ(oracle::voxels_of(map), oracle::voxels_of(tree)) << "seed " << kSeed;
 }

@@ -22,7 +22,7 @@ class AgeWiring : public testing::Test {
         MappingConfig mapping = plain_mapping();
         mapping.map.age = age;
         mapping.removes_robot_from_depth = false;
-        return MapBuilder::build(one_joint_rig(), one_joint_robot(), mapping, {}, {}).value();
+        return MapBuilder::build(one_joint_rig(), one_joint_robot(), mapping, {}, every_feed()).value();
     }
     static void read_at(MapBuilder& builder, double time_s) {
         const HostTime captured{static_cast<std::int64_t>(time_s * 1e9)};
@@ -39,29 +39,29 @@ TEST_F(AgeWiring, tells_the_maps_the_times_of_readings_and_images) {
     MapBuilder builder = build({});
     ASSERT_TRUE(builder.integrate(flat_frame(3.5)));
     read_at(builder, 10.5);
-    EXPECT_GT(confirmed(*builder.maps().fused(), SensorKind::camera, 7), 100U);
-    EXPECT_GT(confirmed(*builder.maps().fused(), SensorKind::range, 0), 5U);
-    EXPECT_GT(confirmed(*builder.maps().depth(), SensorKind::camera, 7), 100U);
-    EXPECT_GT(confirmed(*builder.maps().proximity(), SensorKind::range, 0), 5U);
+    EXPECT_GT(confirmed(builder.map(), SensorKind::camera, 7), 100U);
+    EXPECT_GT(confirmed(builder.map(), SensorKind::range, 0), 5U);
+    EXPECT_GT(confirmed(builder.map(MapFeed::camera), SensorKind::camera, 7), 100U);
+    EXPECT_GT(confirmed(builder.map(MapFeed::ranges), SensorKind::range, 0), 5U);
 }
 
 TEST_F(AgeWiring, forgets_what_no_sensor_has_confirmed) {
     MapBuilder builder = build({.stale_after_s = 2, .unknown_after_s = 5});
     ASSERT_TRUE(builder.integrate(flat_frame(3.5)));
     read_at(builder, 7.9);
-    EXPECT_GT(builder.maps().fused()->known_voxels(), builder.maps().proximity()->known_voxels());
+    EXPECT_GT(builder.map().known_voxels(), builder.map(MapFeed::ranges).known_voxels());
     read_at(builder, 8.1);
-    EXPECT_EQ(builder.maps().fused()->known_voxels(), builder.maps().proximity()->known_voxels());
-    EXPECT_GT(builder.maps().proximity()->known_voxels(), 0U);
+    EXPECT_EQ(builder.map().known_voxels(), builder.map(MapFeed::ranges).known_voxels());
+    EXPECT_GT(builder.map(MapFeed::ranges).known_voxels(), 0U);
 }
 
 TEST_F(AgeWiring, begins_anew_where_a_recording_does_if_ages_decide_what_is_known) {
     MapBuilder builder = build({.stale_after_s = 2, .unknown_after_s = 5});
     ASSERT_TRUE(builder.integrate(flat_frame(3.5)));
-    const std::size_t known = builder.maps().fused()->known_voxels();
+    const std::size_t known = builder.map().known_voxels();
     builder.forget_counts();
     read_at(builder, 8.1);
-    EXPECT_GE(builder.maps().fused()->known_voxels(), known);
+    EXPECT_GE(builder.map().known_voxels(), known);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST(ClockSteps, of_the_wall_clock_put_no_range_in_the_wrong_place) {
 
 /// The maps, byte by byte.
 std::string maps_of(const Pipeline& pipeline) {
-    return encode_ot(*pipeline.maps().fused()) + encode_ot(*pipeline.maps().proximity());
+    return encode_ot(pipeline.map()) + encode_ot(pipeline.map(MapFeed::ranges));
 }
 
 TEST(ClockSteps, of_the_wall_clock_by_an_hour_are_counted_and_over_after_two_exchanges) {
@@ -180,7 +180,7 @@ TEST(ClockSteps, ahead_of_the_host_that_sends_sync_make_nothing_older) {
             EXPECT_EQ(pipeline.times_ahead(), ahead_s > 1.0 ? 1U : 0U);
             EXPECT_EQ(pipeline.times_back(), 0U);
             // The first shot is of 3.0 s, the newest of 7.9 s.
-            EXPECT_NEAR(age_of_oldest_s(*pipeline.maps().fused()), 5.0, 1.0);
+            EXPECT_NEAR(age_of_oldest_s(pipeline.map()), 5.0, 1.0);
         }
     }
 }
@@ -198,7 +198,7 @@ TEST(ClockSteps, none_over_a_silence_of_a_quarter_of_an_hour_which_makes_a_map_o
     scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 0};
     const Pipeline pipeline = play(scene, frames_with_silence(900.0));
     EXPECT_EQ(pipeline.times_ahead(), 0U);
-    EXPECT_NEAR(age_of_oldest_s(*pipeline.maps().fused()), 905.0, 1.0);
+    EXPECT_NEAR(age_of_oldest_s(pipeline.map()), 905.0, 1.0);
 }
 
 // A controller that was off for a while: its clock begins anew, and the map has grown old meanwhile.
@@ -210,7 +210,7 @@ TEST(ClockSteps, back_after_a_silence_make_a_map_as_old_as_it_is) {
     scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 0};
     const Pipeline pipeline = play(scene, frames);
     EXPECT_EQ(pipeline.times_back(), 1U);
-    EXPECT_NEAR(age_of_oldest_s(*pipeline.maps().fused()), 905.0, 1.0);
+    EXPECT_NEAR(age_of_oldest_s(pipeline.map()), 905.0, 1.0);
 }
 
 /// As `play`, but from the step on with another pipeline, as a daemon that reads its files anew.
@@ -237,7 +237,7 @@ TEST(ClockSteps, that_come_while_a_pipeline_gives_way_to_another_age_the_map_as_
     Scene scene = turning_scene();
     scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 0};
     const auto age_s = [&](const std::vector<StampedFrame>& frames) {
-        return age_of_oldest_s(*play_in_two(scene, frames).maps().fused());
+        return age_of_oldest_s(play_in_two(scene, frames).map());
     };
     EXPECT_NEAR(age_s(turning_scene().bus.frames()), 5.0, 1.0);
     EXPECT_NEAR(age_s(frames_with_silence(900.0)), 905.0, 1.0);
@@ -253,11 +253,11 @@ TEST(ClockSteps, of_a_wall_clock_while_nobody_spoke_make_nothing_older_than_it_i
     scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 0};
     const Pipeline ahead = play(scene, frames_with_silence(900.0, 3600.0));
     EXPECT_EQ(ahead.times_ahead(), 0U);
-    EXPECT_NEAR(age_of_oldest_s(*ahead.maps().fused()), 905.0, 1.0);
+    EXPECT_NEAR(age_of_oldest_s(ahead.map()), 905.0, 1.0);
     // Which of the two clocks was set nobody can tell: the lesser counts.
     const Pipeline back = play(scene, frames_with_silence(900.0, -300.0));
     EXPECT_EQ(back.times_ahead(), 1U);
-    EXPECT_NEAR(age_of_oldest_s(*back.maps().fused()), 605.0, 1.0);
+    EXPECT_NEAR(age_of_oldest_s(back.map()), 605.0, 1.0);
 }
 
 TEST(ClockSteps, back_leave_the_camera_its_place) {
@@ -300,7 +300,7 @@ TEST(ClockSteps, ahead_make_images_of_the_time_before_late_and_the_map_no_older)
     pipeline.finish();
     EXPECT_EQ(pipeline.times_ahead(), 1U);
     EXPECT_GE(pipeline.accounts().depth_frames.rejected(DepthReason::late), 10U) << pipeline.account_text();
-    EXPECT_NEAR(age_of_oldest_s(*pipeline.maps().fused()), 5.0, 1.0);
+    EXPECT_NEAR(age_of_oldest_s(pipeline.map()), 5.0, 1.0);
 }
 
 TEST(ClockSteps, of_any_number_of_foreign_stamps_do_not_change_the_map) {

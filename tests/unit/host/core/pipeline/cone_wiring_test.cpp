@@ -8,6 +8,7 @@
 
 #include "host/core/pipeline/map_builder.hpp"
 #include "host/core/pipeline/pipeline.hpp"
+#include "tests/support/evidence.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
 
 namespace octoskin::test {
@@ -57,7 +58,7 @@ TEST(ConeWiring, counts_zones_with_parameters_of_their_own) {
 class Changes final : public CommitListener {
   public:
     void on_joints(const JointMeasurement&) override {}
-    void on_depth(const DepthFrame&, const DepthTerms&) override {}
+    void on_depth(const DepthFrame&, const Evidence&) override {}
     void on_reading(const RangeMeasurement&, const Beam&, std::span<const VoxelUpdate> updates) override {
         for (const VoxelUpdate& update : updates) {
             EXPECT_TRUE(told_now_.insert(update.key).second) << "each voxel once";
@@ -65,9 +66,10 @@ class Changes final : public CommitListener {
         }
         told_now_.clear();
     }
-    void on_maps(const MapSet& maps) override {
-        maps.fused()->for_each_known(
-            [&](VoxelKey key, float log_odds) { EXPECT_NEAR(told_[key], log_odds, 1e-4); });
+    void on_maps(std::span<const FedMap> maps) override {
+        find_map(maps, MapFeed::both)->for_each_known([&](VoxelKey key, float log_odds) {
+            EXPECT_NEAR(told_[key], log_odds, 1e-4);
+        });
     }
 
   private:
@@ -81,7 +83,8 @@ class StandingCone : public testing::Test {
     StandingCone() {
         Scene scene = scene_of(RangeUpdate::cone, kCone);
         scene.mapping.standing = fast_mapping().standing;
-        builder_.emplace(MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, {}).value());
+        builder_.emplace(
+            MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, every_feed()).value());
         builder_->tell(&changes_);
     }
     void read(std::optional<double> range_m, int times, double period_s = 0.033) {
@@ -95,7 +98,7 @@ class StandingCone : public testing::Test {
     }
     [[nodiscard]] std::size_t occupied() const {
         std::size_t voxels = 0;
-        const FusedMap& map = *builder_->maps().fused();
+        const FusedMap& map = builder_->map();
         map.for_each_known([&](VoxelKey, float log_odds) {
             voxels += map.occupancy_of(log_odds) == Occupancy::occupied ? 1U : 0U;
         });
@@ -141,10 +144,11 @@ TEST_F(StandingCone, has_what_comes_on_the_map_beside_what_it_never_passes) {
     ASSERT_EQ(occupied(), 0U);
     Scene scene = scene_of(RangeUpdate::cone, kCone);
     scene.mapping.standing = fast_mapping().standing;
-    builder_.emplace(MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, {}).value());
+    builder_.emplace(
+        MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, every_feed()).value());
     FusedMap with_edge(scene.mapping.map);
     const Eigen::Vector3d p_edge(0.13, 0.6, 0.02);
-    with_edge.apply(std::vector<VoxelUpdate>{{*with_edge.key_of(p_edge), 3.0F}});
+    feed(with_edge, std::vector<VoxelUpdate>{{*with_edge.key_of(p_edge), 3.0F}});
     builder_->begin_with(std::move(with_edge));
     read(1.3, 30);
     ASSERT_EQ(occupied(), 1U);
@@ -187,7 +191,8 @@ class StandingZones : public testing::Test {
         zones.push_back(zones.front());
         zones.back().direction_sensor = Eigen::Vector3d(0.1, 0.0, 1.0).normalized();
         scene.mapping.standing = fast_mapping().standing;
-        builder_.emplace(MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, {}).value());
+        builder_.emplace(
+            MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, every_feed()).value());
     }
     /// Both, one after the other; the first may be silent.
     void read(std::optional<double> first_m, double second_m) {
@@ -203,7 +208,7 @@ class StandingZones : public testing::Test {
     /// Well before the wall.
     [[nodiscard]] bool has_hand(double before_m = 0.6) const {
         bool is_any = false;
-        const FusedMap& map = *builder_->maps().fused();
+        const FusedMap& map = builder_->map();
         map.for_each_known([&](VoxelKey key, float log_odds) {
             is_any = is_any || (map.occupancy_of(log_odds) == Occupancy::occupied &&
                                 map.centre_of(key).norm() < before_m);

@@ -50,7 +50,7 @@ class OrderOf final : public CommitListener, public CommitSource {
     void on_reading(const RangeMeasurement& measurement, const Beam&, std::span<const VoxelUpdate>) override {
         commits_.emplace_back(measurement);
     }
-    void on_depth(const DepthFrame& frame, const DepthTerms&) override {
+    void on_depth(const DepthFrame& frame, const Evidence&) override {
         commits_.emplace_back(DepthCommit{frames_.size(), frame.captured});
         frames_.push_back(frame);
     }
@@ -123,8 +123,8 @@ TEST_P(DepthWorkerTest, loses_nothing_and_the_order_told_makes_the_same_map_howe
     ScriptedDepth depth(order.frames());
     const OrderedOutcome outcome = replay_in_order(replayed.builder(), order, &depth);
     EXPECT_EQ(outcome.depth_frames.used(), frames.used());
-    EXPECT_EQ(encode_ot(*replayed.maps().fused()), encode_ot(*pipeline.maps().fused()));
-    EXPECT_EQ(encode_ot(*replayed.maps().depth()), encode_ot(*pipeline.maps().depth()));
+    EXPECT_EQ(encode_ot(replayed.map()), encode_ot(pipeline.map()));
+    EXPECT_EQ(encode_ot(replayed.map(MapFeed::camera)), encode_ot(pipeline.map(MapFeed::camera)));
 }
 
 INSTANTIATE_TEST_SUITE_P(Patience, DepthWorkerTest, testing::Values(1, 2, 7, 20, 40, kNeverDone));

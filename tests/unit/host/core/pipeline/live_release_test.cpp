@@ -118,13 +118,13 @@ TEST(LiveRelease, builds_the_map_that_the_order_of_capture_builds_where_the_orde
     const Pipeline live = play(live_scene(), [](const Pipeline&) {});
     EXPECT_EQ(live.accounts().readings.used(), 10U);
     EXPECT_EQ(live.accounts().depth_frames.used(), 6U);
-    EXPECT_EQ(encode_ot(*live.maps().fused()), run(good_scene()).fused_ot);
+    EXPECT_EQ(encode_ot(live.map()), run(good_scene()).fused_ot);
 }
 
 TEST(LiveRelease, gives_the_same_bytes_for_the_same_calls) {
     const Pipeline once = play(live_scene(), [](const Pipeline&) {});
     const Pipeline again = play(live_scene(), [](const Pipeline&) {});
-    EXPECT_EQ(encode_ot(*once.maps().fused()), encode_ot(*again.maps().fused()));
+    EXPECT_EQ(encode_ot(once.map()), encode_ot(again.map()));
 }
 
 TEST(LiveRelease, gives_up_a_reading_without_joints_once_the_lag_is_over) {

@@ -174,9 +174,9 @@ RunResult run(const Scene& scene, std::vector<StampedFrame> frames) {
     });
     EXPECT_TRUE(outcome.is_complete());
     return {.accounts = pipeline.accounts(),
-            .depth_ot = encode_ot(*pipeline.maps().depth()),
-            .proximity_ot = encode_ot(*pipeline.maps().proximity()),
-            .fused_ot = encode_ot(*pipeline.maps().fused()),
+            .depth_ot = encode_ot(pipeline.map(MapFeed::camera)),
+            .proximity_ot = encode_ot(pipeline.map(MapFeed::ranges)),
+            .fused_ot = encode_ot(pipeline.map()),
             .outcome = outcome,
             .account_text = pipeline.account_text()};
 }

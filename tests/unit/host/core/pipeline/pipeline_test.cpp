@@ -67,9 +67,9 @@ TEST(Pipeline, places_one_range_at_the_joint_position_of_its_own_capture_time) {
         expected[key(0, y, 0)] = -0.4F;
     }
     expected[key(0, 16, 0)] = 0.9636F;
-    EXPECT_EQ(voxels(*pipeline.maps().proximity()), expected);
-    EXPECT_EQ(voxels(*pipeline.maps().fused()), expected);
-    EXPECT_TRUE(voxels(*pipeline.maps().depth()).empty());
+    EXPECT_EQ(voxels(pipeline.map(MapFeed::ranges)), expected);
+    EXPECT_EQ(voxels(pipeline.map()), expected);
+    EXPECT_TRUE(voxels(pipeline.map(MapFeed::camera)).empty());
     EXPECT_EQ(pipeline.accounts().readings.used(), 1U);
 }
 
@@ -103,8 +103,8 @@ TEST(Pipeline, places_a_range_of_a_fd_frame_the_same_way) {
     frame.entries[1].reading.device_status = 7;
     scene.bus.send(3.52, frame, kLeft);
     const Pipeline pipeline = play(scene);
-    EXPECT_EQ(voxels(*pipeline.maps().proximity()).size(), 14U);
-    EXPECT_FLOAT_EQ(voxels(*pipeline.maps().proximity()).at(key(0, 16, 0)), 0.9636F);
+    EXPECT_EQ(voxels(pipeline.map(MapFeed::ranges)).size(), 14U);
+    EXPECT_FLOAT_EQ(voxels(pipeline.map(MapFeed::ranges)).at(key(0, 16, 0)), 0.9636F);
     EXPECT_EQ(pipeline.accounts().readings.in(), 2U);
     EXPECT_EQ(pipeline.accounts().readings.rejected(ReadingReason::status_fault), 1U);
 }
@@ -126,8 +126,8 @@ TEST(Pipeline, places_a_depth_frame_and_leaves_the_robot_out) {
         expected[key(x, 0, 0)] = -0.4F;
     }
     expected[key(10, 0, 0)] = 0.94F;
-    EXPECT_EQ(voxels(*pipeline.maps().depth()), expected);
-    EXPECT_EQ(voxels(*pipeline.maps().fused()), expected);
+    EXPECT_EQ(voxels(pipeline.map(MapFeed::camera)), expected);
+    EXPECT_EQ(voxels(pipeline.map()), expected);
     EXPECT_EQ(pipeline.accounts().depth_frames.used(), 3U);
     EXPECT_EQ(pipeline.depth_stage()->robot_pixels(), 2U);
 }
@@ -139,8 +139,8 @@ TEST(Pipeline, filters_a_depth_frame_if_told_so) {
     scene.depth[0].depth_mm[5 * 16 + 8] = 1000;
     const auto is_hit_there = [](const Pipeline& pipeline) {
         // 1 m along the axis from (2.02, 0.02, 0.52), half a pixel to the right and up.
-        const auto found = pipeline.maps().depth()->key_of({1.02, 0.02 + 0.025, 0.52 + 0.025});
-        return pipeline.maps().depth()->occupancy(*found) == Occupancy::occupied;
+        const auto found = pipeline.map(MapFeed::camera).key_of({1.02, 0.02 + 0.025, 0.52 + 0.025});
+        return pipeline.map(MapFeed::camera).occupancy(*found) == Occupancy::occupied;
     };
     EXPECT_TRUE(is_hit_there(play(scene)));
     scene.mapping.depth_filter.is_enabled = true;
@@ -203,7 +203,7 @@ TEST(Pipeline, clears_space_with_beams_without_return_only_up_to_the_configured_
     for (int y = 3; y <= 7; ++y) {
         expected[key(0, y, 0)] = -0.4F;
     }
-    EXPECT_EQ(voxels(*pipeline.maps().proximity()), expected);
+    EXPECT_EQ(voxels(pipeline.map(MapFeed::ranges)), expected);
 }
 
 TEST(Pipeline, gives_the_same_bytes_every_time) {
@@ -226,11 +226,11 @@ TEST(Pipeline, gives_the_same_bytes_from_the_lines_of_a_candump_log) {
 
 TEST(Pipeline, builds_only_the_maps_asked_for) {
     Scene scene = good_scene();
-    scene.config.maps = {.depth = false, .proximity = false, .fused = true};
+    scene.config.maps = {MapFeed::both};
     const Pipeline pipeline = play(scene);
-    EXPECT_EQ(pipeline.maps().depth(), nullptr);
-    EXPECT_EQ(pipeline.maps().proximity(), nullptr);
-    EXPECT_EQ(encode_ot(*pipeline.maps().fused()), run(good_scene()).fused_ot);
+    EXPECT_EQ(find_map(pipeline.maps(), MapFeed::camera), nullptr);
+    EXPECT_EQ(find_map(pipeline.maps(), MapFeed::ranges), nullptr);
+    EXPECT_EQ(encode_ot(pipeline.map()), run(good_scene()).fused_ot);
 }
 
 TEST(Pipeline, gives_the_same_bytes_in_whatever_order_frames_arrive_within_the_lag) {
@@ -263,14 +263,14 @@ TEST(Pipeline, takes_no_space_for_what_waits_beyond_a_memory_that_it_is_given_me
         pipeline.on_can(entry.frame, entry.stamp);
         if (pipeline.now() && *pipeline.now() >= HostTime{3'700'000'000}) break;  // the first: 3.505 s
     }
-    ASSERT_EQ(pipeline.maps().fused()->known_voxels(), 0U) << "the reading has to wait yet";
+    ASSERT_EQ(pipeline.map().known_voxels(), 0U) << "the reading has to wait yet";
     MapConfig none = scene.mapping.map;
     none.memory_max_mib = 0;
-    pipeline.limit_fused(none);
+    pipeline.limit_map(none);
     pipeline.finish();
-    EXPECT_EQ(pipeline.maps().fused()->known_voxels(), 0U);
-    EXPECT_GT(pipeline.maps().fused()->counters().no_room, 0U);
-    EXPECT_GT(pipeline.maps().proximity()->known_voxels(), 0U) << "nothing waited";
+    EXPECT_EQ(pipeline.map().known_voxels(), 0U);
+    EXPECT_GT(pipeline.map().counters().no_room, 0U);
+    EXPECT_GT(pipeline.map(MapFeed::ranges).known_voxels(), 0U) << "nothing waited";
 }
 
 TEST(Pipeline, says_when_the_camera_is_stale) {

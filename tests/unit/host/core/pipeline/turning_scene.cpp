@@ -51,7 +51,7 @@ Pipeline play(const Scene& scene, const std::vector<StampedFrame>& frames) {
 }
 
 void expect_hits_where_shots_ended(const Pipeline& pipeline, std::size_t hits_min) {
-    const FusedMap& map = *pipeline.maps().fused();
+    const FusedMap& map = pipeline.map();
     std::size_t hits = 0;
     map.for_each_known([&](VoxelKey key, float log_odds) {
         if (log_odds <= 0.0F) {

@@ -16,7 +16,7 @@ SensorEvidence after_seven_images(const MappingConfig& mapping, std::uint16_t de
     HostRig rig = one_joint_rig();
     rig.camera->intrinsics.fx = 10.0;
     rig.camera->intrinsics.fy = 10.0;
-    auto builder = MapBuilder::build(rig, one_joint_robot(), mapping, {}, {}).value();
+    auto builder = MapBuilder::build(rig, one_joint_robot(), mapping, {}, every_feed()).value();
     for (int i = 0; i < 7; ++i) {
         const HostTime now = host_at(1.0 + 0.1 * i);
         EXPECT_TRUE(builder.add({now, {M_PI / 2.0 - 0.04 * i}}));
@@ -45,12 +45,14 @@ TEST(Witness, is_not_there_without_a_camera_where_the_robot_stays_in_the_image_o
     HostRig rig = one_joint_rig();
     MappingConfig mapping = plain_mapping();
     mapping.removes_robot_from_depth = false;
-    EXPECT_EQ(MapBuilder::build(rig, one_joint_robot(), mapping, {}, {}).value().witness(), nullptr);
+    EXPECT_EQ(MapBuilder::build(rig, one_joint_robot(), mapping, {}, every_feed()).value().witness(),
+              nullptr);
     MappingConfig silent = plain_mapping();
     silent.reports_contradicting_sensors = false;
-    EXPECT_EQ(MapBuilder::build(rig, one_joint_robot(), silent, {}, {}).value().witness(), nullptr);
+    EXPECT_EQ(MapBuilder::build(rig, one_joint_robot(), silent, {}, every_feed()).value().witness(), nullptr);
     rig.camera.reset();
-    EXPECT_EQ(MapBuilder::build(rig, one_joint_robot(), plain_mapping(), {}, {}).value().witness(), nullptr);
+    EXPECT_EQ(MapBuilder::build(rig, one_joint_robot(), plain_mapping(), {}, every_feed()).value().witness(),
+              nullptr);
 }
 
 // The camera looks at the arm, which points at the camera, and its sensor with it: half a metre before the
@@ -59,7 +61,7 @@ TEST(Witness, sees_through_in_front_of_the_robot) {
     HostRig rig = one_joint_rig();
     rig.camera->intrinsics = {.width = 20, .height = 20, .fx = 40.0, .fy = 40.0, .cx = 10.0, .cy = 10.0};
     rig.camera->T_base_camera.translation().z() = 0.0;
-    auto builder = MapBuilder::build(rig, one_joint_robot(), plain_mapping(), {}, {}).value();
+    auto builder = MapBuilder::build(rig, one_joint_robot(), plain_mapping(), {}, every_feed()).value();
     const HostTime now = host_at(1.0);
     ASSERT_TRUE(builder.add({now, {0.0}}));
     ASSERT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, now, 0.5, 0.02}));
@@ -73,7 +75,8 @@ TEST(Witness, sees_through_in_front_of_the_robot) {
 /// A builder, and what it is given in the corner.
 struct Corner {
     explicit Corner(bool refuses)
-        : builder(MapBuilder::build(rig, one_joint_robot(), mapping_that(refuses), {}, {}).value()) {}
+        : builder(
+              MapBuilder::build(rig, one_joint_robot(), mapping_that(refuses), {}, every_feed()).value()) {}
     static MappingConfig mapping_that(bool refuses) {
         MappingConfig mapping = plain_mapping();
         mapping.refuses_contradicting_sensors = refuses;
@@ -97,7 +100,7 @@ TEST(Witness, keeps_a_sensor_that_contradicts_out_of_the_map_until_it_agrees_aga
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error(), ReadingReason::contradicts_camera);
     // A reading that is refused changes nothing: with it and without it the map is the same.
-    const auto known = [&] { return corner.builder.maps().fused()->counters(); };
+    const auto known = [&] { return corner.builder.map().counters(); };
     const auto before = known();
     EXPECT_FALSE(
         corner.builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, corner.looks.now(), 0.3, 0.02}));

@@ -10,6 +10,7 @@
 
 #include "host/core/query/distance_field.hpp"
 #include "tests/support/cases.hpp"
+#include "tests/support/evidence.hpp"
 #include "tests/support/random_space.hpp"
 
 namespace octoskin {
@@ -151,7 +152,7 @@ TEST(DistanceField, works_on_nothing_if_no_voxel_changed_its_state) {
     const FusedMap before = map.copy();
     const VoxelUpdate more{voxel_at(0, 0, 0),
                            map.occupancy(voxel_at(0, 0, 0)) == Occupancy::occupied ? 0.01F : -0.01F};
-    map.apply(std::span(&more, 1));
+    feed(map, std::span(&more, 1));
     const auto update = field.update(map);
     EXPECT_EQ(update.written, 1U);
     EXPECT_LE(update.changed,

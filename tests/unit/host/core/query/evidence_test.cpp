@@ -1,4 +1,5 @@
 // The oracle looks at every voxel.
+#include "tests/support/evidence.hpp"
 #include "host/core/query/evidence.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +30,7 @@ std::uint16_t least_stamp(const FusedMap& map, const PosedCapsule& capsule) {
     std::uint16_t least = 0xFFFF;
     map.for_each_known([&](VoxelKey key, float) {
         if (segment.distance(map.centre_of(key), 0.5 * map.resolution_m()) > capsule.radius_m + 1e-9) return;
-        least = std::min(least, map.confirmations().find(brick_of(key)).at(cell_of(key)));
+        least = std::min(least, map.layers().ages.find(brick_of(key)).at(cell_of(key)));
     });
     return least;
 }
@@ -44,7 +45,7 @@ TEST(Evidence, is_that_of_the_voxel_that_was_confirmed_the_longest_ago) {
             std::vector<VoxelUpdate> updates;
             for (int i = 0; i < 300; ++i)
                 updates.push_back({map.key_of({place(random), place(random), place(random)}).value(), -0.4F});
-            map.apply(updates, random() % 2 == 0 ? SensorKind::camera : SensorKind::range);
+            feed(map, updates, random() % 2 == 0 ? SensorKind::camera : SensorKind::range);
         }
         const PosedCapsule capsule{{place(random), place(random), place(random)},
                                    {place(random), place(random), place(random)},
@@ -63,7 +64,7 @@ TEST(Evidence, is_that_of_the_voxel_that_was_confirmed_the_longest_ago) {
 TEST(Evidence, of_space_without_any_is_none) {
     const PosedCapsule capsule{{0, 0, 0}, {0, 0, 0.2}, 0.1};
     FusedMap map = aging_map(20);
-    map.apply(std::vector<VoxelUpdate>{{map.key_of({0, 0, 0}).value(), -0.4F}});
+    feed(map, std::vector<VoxelUpdate>{{map.key_of({0, 0, 0}).value(), -0.4F}});
     EXPECT_FALSE(weakest_in(map, capsule).has_value()) << "no clock";
     map.go_on(at_second(0));
     EXPECT_FALSE(weakest_in(map, capsule)->confirmation.has_value()) << "nobody knows how old";
@@ -83,7 +84,7 @@ TEST(Evidence, makes_a_free_posture_stale_but_an_occupied_one_is_occupied) {
     EXPECT_EQ(state(), PostureState::stale);
     const auto stale = worst_of(query, map, *query.pose(std::vector{0.0, 0.0})).value();
     EXPECT_TRUE(stale.link && stale.voxel && map.is_stale(*stale.voxel));
-    map.apply(std::vector<VoxelUpdate>{{map.key_of({0.4, 0, 0.3}).value(), 3.5F}});
+    feed(map, std::vector<VoxelUpdate>{{map.key_of({0.4, 0, 0.3}).value(), 3.5F}});
     map.go_on(at_second(100));
     EXPECT_EQ(state(), PostureState::occupied) << "however old";
 }

@@ -10,6 +10,7 @@
 
 #include "host/core/kinematics/robot_model.hpp"
 #include "host/core/rig/host_rig.hpp"
+#include "tests/support/evidence.hpp"
 
 namespace octoskin {
 
@@ -76,7 +77,7 @@ inline void confirm_about_origin(FusedMap& map, HostTime now) {
     map.go_on(now);
     std::vector<VoxelUpdate> updates;
     map.for_each_known([&](VoxelKey key, float) { updates.push_back({key, -0.4F}); });
-    map.apply(updates, SensorKind::range);
+    feed(map, updates, SensorKind::range);
 }
 
 inline void mark(FusedMap& map, const Eigen::Vector3d& point, float log_odds = 1.0F) {

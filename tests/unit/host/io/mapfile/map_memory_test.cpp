@@ -16,6 +16,7 @@
 #include "host/io/mapfile/octomap_mirror.hpp"
 #include "host/io/mapfile/octomap_tree.hpp"
 #include "tests/support/allocation_hooks.hpp"
+#include "tests/support/evidence.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace {
@@ -60,7 +61,7 @@ FusedMap full_map(std::uint32_t mib, unsigned spacing) {
                                axis(brick / kEdge / kEdge, voxel / 64)};
             updates.push_back({key, 0.001F * static_cast<float>(1 + voxel)});
         }
-        map.apply(updates);
+        feed(map, updates);
     }
     return map;
 }
@@ -92,16 +93,16 @@ TEST(MapMemory, what_is_counted_is_what_the_voxels_take) {
 TEST(MapMemory, a_map_that_gets_none_counts_that_and_goes_on_when_there_is_some) {
     FusedMap map{MapConfig{}};
     const VoxelUpdate old{{100, 100, 100}, 0.5F};
-    map.apply(std::span(&old, 1));
-    const std::vector<VoxelUpdate> updates{
-        {{200, 0, 0}, 0.5F}, {{201, 0, 0}, 0.5F}, {{100, 100, 101}, 0.5F}, {{300, 0, 0}, 0.5F}};
+    feed(map, std::span(&old, 1));
+    const Evidence evidence = evidence_of(std::vector<VoxelUpdate>{
+        {{200, 0, 0}, 0.5F}, {{201, 0, 0}, 0.5F}, {{100, 100, 101}, 0.5F}, {{300, 0, 0}, 0.5F}});
     is_memory_gone = true;
-    map.apply(updates);
+    map.apply(evidence);
     is_memory_gone = false;
     EXPECT_EQ(map.counters(), (MapCounters{.applied = 2, .no_memory = 3}));
     EXPECT_EQ(map.known_voxels(), 2U);
     EXPECT_EQ(map.bricks().size(), 1U);
-    map.apply(updates);
+    map.apply(evidence);
     EXPECT_EQ(map.counters(), (MapCounters{.applied = 6, .no_memory = 3}));
     EXPECT_EQ(map.known_voxels(), 5U);
     EXPECT_EQ(map.log_odds({100, 100, 101}), 1.0F);
@@ -112,8 +113,9 @@ TEST(MapMemory, new_space_that_gets_none_at_any_moment_takes_no_room) {
     for (bool has_failed = true; has_failed; ++failures) {
         FusedMap map{MapConfig{}};
         const VoxelUpdate update{{200, 0, 0}, 0.5F};
+        const Evidence evidence = evidence_of(std::span(&update, 1));
         allocations_left = failures;
-        map.apply(std::span(&update, 1));
+        map.apply(evidence);
         allocations_left = -1;
         has_failed = map.counters().no_memory > 0;
         EXPECT_EQ(map.memory_bytes() == 0, has_failed) << "after failure " << failures;
@@ -193,12 +195,13 @@ TEST(MapMemory, a_copy_takes_none_until_a_brick_is_written) {
     is_memory_gone = false;
     EXPECT_EQ(bytes_now, before);
     const VoxelUpdate update{{16384, 16384, 16384}, 0.5F};
+    const Evidence evidence = evidence_of(std::span(&update, 1));
     is_memory_gone = true;
-    map.apply(std::span(&update, 1));
+    map.apply(evidence);
     is_memory_gone = false;
     EXPECT_EQ(map.counters().no_memory, 1U);
     EXPECT_EQ(map.log_odds(update.key), copy.log_odds(update.key));
-    map.apply(std::span(&update, 1));
+    map.apply(evidence);
     EXPECT_EQ(map.log_odds(update.key), copy.log_odds(update.key).value() + 0.5F);
     EXPECT_LT(bytes_now - before, 8 * BrickTree::kNodeBytes + BrickTree::kBrickBytes);
 }
@@ -211,7 +214,7 @@ TEST(MapMemory, space_of_one_value_takes_next_to_none_and_counts_as_if_it_took_m
     EXPECT_EQ(map.heap_bytes(), map.memory_bytes() - 4096 * BrickTree::kBrickBytes);
     EXPECT_EQ(map.known_voxels(), 1U << 21U);
     const VoxelUpdate update{{32768, 32768, 32768}, 0.5F};
-    map.apply(std::span(&update, 1));
+    feed(map, std::span(&update, 1));
     EXPECT_EQ(map.log_odds(update.key), -1.5F);
     EXPECT_EQ(map.log_odds({32769, 32768, 32768}), -2.0F);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/core/mapping/fused_map.hpp"
+#include "tests/support/evidence.hpp"
 
 namespace octoskin::samples {
 
@@ -19,9 +20,9 @@ inline VoxelKey key(int x, int y, int z) {
 /// One occupied, one free voxel and a pruned cube of two voxels' edge.
 inline FusedMap small_map() {
     FusedMap map(MapConfig{});
-    map.apply(std::vector<VoxelUpdate>{{key(0, 0, 0), 0.75F}, {key(-3, 5, 1), -0.5F}});
+    feed(map, std::vector<VoxelUpdate>{{key(0, 0, 0), 0.75F}, {key(-3, 5, 1), -0.5F}});
     for (int i = 0; i < 8; ++i) {
-        map.apply(std::vector<VoxelUpdate>{{key(8 + (i & 1), 8 + (i >> 1 & 1), 8 + (i >> 2)), -0.4F}});
+        feed(map, std::vector<VoxelUpdate>{{key(8 + (i & 1), 8 + (i >> 1 & 1), 8 + (i >> 2)), -0.4F}});
     }
     return map;
 }
@@ -43,7 +44,7 @@ inline FusedMap random_map(unsigned seed) {
             updates.push_back({key(x0 + i % size, y0 + i / size % size, z0 + i / size / size), term});
         }
     }
-    map.apply(updates);
+    feed(map, updates);
     return map;
 }
 
@@ -69,7 +70,7 @@ inline FusedMap far_map(unsigned seed) {
             updates.push_back({{at(lowest.x), at(lowest.y), at(lowest.z)}, term(random)});
         }
         for (int i = 0; i < 200; ++i) updates.push_back({{axis(0), axis(0), axis(0)}, term(random)});
-        map.apply(updates);
+        feed(map, updates);
     }
     return map;
 }

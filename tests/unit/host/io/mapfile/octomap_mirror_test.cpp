@@ -1,5 +1,6 @@
 // Oracle: a whole export of the same map, node for node, by OctoMap's own writer.
 #include "host/io/mapfile/octomap_mirror.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -121,7 +122,7 @@ class RandomChanges {
     void some_voxels(FusedMap& map) {
         std::vector<VoxelUpdate> updates;
         for (unsigned i = 1 + below(60); i-- > 0;) updates.push_back({place(0), value()});
-        map.apply(updates);
+        feed(map, updates);
     }
     void set_cube(FusedMap& map, unsigned height) {
         ASSERT_TRUE(map.set_cube({place(height), height}, value()));
@@ -137,7 +138,7 @@ class RandomChanges {
             const VoxelKey brick{part(lowest.x, 0), part(lowest.y, 1), part(lowest.z, 2)};
             ASSERT_TRUE(map.set_cube({brick, 3}, log_odds));
         }
-        if (below(2) == 0) map.apply(std::vector<VoxelUpdate>{{lowest, value()}});
+        if (below(2) == 0) feed(map, std::vector<VoxelUpdate>{{lowest, value()}});
     }
     /// Voxel by voxel to a clamp: bricks that keep a value for each voxel although they are alike.
     void saturate(FusedMap& map) {
@@ -146,7 +147,7 @@ class RandomChanges {
         std::vector<VoxelUpdate> updates;
         for (MortonCode voxel = first; voxel < first + kBrickVoxels; ++voxel)
             updates.push_back({key_of_morton(voxel), term});
-        map.apply(updates);
+        feed(map, updates);
     }
     void limit(FusedMap& map) {
         MapConfig config = map.config();
@@ -196,7 +197,7 @@ TEST(OctomapMirror, goes_back_to_an_older_copy) {
     std::mt19937 random(1);
     FusedMap map = samples::random_map(2);
     const FusedMap older = map.copy();
-    map.apply(std::vector<VoxelUpdate>{{samples::key(500, -500, 3), 1.0F}, {samples::key(0, 0, 0), 1.0F}});
+    feed(map, std::vector<VoxelUpdate>{{samples::key(500, -500, 3), 1.0F}, {samples::key(0, 0, 0), 1.0F}});
     OctomapMirror mirror(map.config());
     (void)mirror.update(map);
     EXPECT_EQ(mirror.update(older), 2U);
@@ -209,7 +210,7 @@ TEST(OctomapMirror, looks_at_no_brick_that_was_not_written) {
     EXPECT_EQ(mirror.update(map), map.bricks().size());
     EXPECT_EQ(mirror.update(map), 0U);
     EXPECT_EQ(mirror.update(map.copy()), 0U);
-    map.apply(std::vector<VoxelUpdate>{{samples::key(100, 0, 0), 0.5F}, {samples::key(101, 0, 0), 0.5F}});
+    feed(map, std::vector<VoxelUpdate>{{samples::key(100, 0, 0), 0.5F}, {samples::key(101, 0, 0), 0.5F}});
     EXPECT_EQ(mirror.update(map), 1U);
     MapConfig config = map.config();
     config.log_odds_occupied = 0.7F;
@@ -221,13 +222,13 @@ TEST(OctomapMirror, looks_at_no_brick_that_was_not_written) {
 TEST(OctomapMirror, leaves_nodes_where_they_are_that_a_change_is_not_below) {
     FusedMap map(MapConfig{});
     const auto at = [](int x) { return samples::key(x, 0, 0); };
-    map.apply(std::vector<VoxelUpdate>{{at(0), 0.5F}, {at(2), 0.5F}, {at(64), 0.5F}});
+    feed(map, std::vector<VoxelUpdate>{{at(0), 0.5F}, {at(2), 0.5F}, {at(64), 0.5F}});
     OctomapMirror mirror(map.config());
     (void)mirror.update(map);
     const auto node = [&](VoxelKey key) { return mirror.tree().search(oracle::key_of(key)); };
     const octomap::OcTreeNode* const same_brick = node(at(0));
     const octomap::OcTreeNode* const other_brick = node(at(64));
-    map.apply(std::vector<VoxelUpdate>{{at(2), 0.25F}, {at(3), 0.25F}});
+    feed(map, std::vector<VoxelUpdate>{{at(2), 0.25F}, {at(3), 0.25F}});
     (void)mirror.update(map);
     EXPECT_EQ(node(at(0)), same_brick);
     EXPECT_EQ(node(at(64)), other_brick);
@@ -245,7 +246,7 @@ TEST(OctomapMirror, prunes_upwards_what_comes_to_be_one_value_and_opens_it_again
         // The root and eleven inner nodes down to the cube of 16 voxels' edge, and the bricks below it.
         EXPECT_EQ(mirror.tree().size(), brick < 7 ? 13U + brick + 1 : 13U);
     }
-    map.apply(std::vector<VoxelUpdate>{{{zero, zero, zero}, 0.5F}});
+    feed(map, std::vector<VoxelUpdate>{{{zero, zero, zero}, 0.5F}});
     (void)mirror.update(map);
     EXPECT_EQ(mirror.tree().size(), 13U + 4 * 8);
     EXPECT_EQ(mirror.tree().getRoot()->getLogOdds(), 1.5F);

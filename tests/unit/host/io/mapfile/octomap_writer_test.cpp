@@ -1,5 +1,6 @@
 // Oracle: OctoMap's own writer and reader.
 #include "host/io/mapfile/octomap_writer.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -103,7 +104,7 @@ TEST(OctomapWriter, writes_equal_bytes_for_equal_maps_however_they_were_filled) 
     map.for_each_known([&](VoxelKey key, float log_odds) { updates.push_back({key, log_odds}); });
     std::reverse(updates.begin(), updates.end());
     FusedMap backwards(MapConfig{});
-    backwards.apply(updates);
+    feed(backwards, updates);
     EXPECT_EQ(encode_ot(backwards), encode_ot(map));
     EXPECT_EQ(encode_bt(backwards), encode_bt(map));
     EXPECT_EQ(encode_ot(map), encode_ot(samples::random_map(3)));
@@ -153,7 +154,7 @@ TEST(Octree, prunes_eight_equal_leaves_on_every_level) {
     auto nodes = nodes_of(PrunedOctree(map, LeafValues::exact));
     EXPECT_EQ(nodes.size(), 13U);  // the root, eleven inner nodes and the leaf of 16 voxels' edge
     EXPECT_EQ(nodes.back(), (OctreeNode{1.0F, 0, NodeState::occupied_leaf}));
-    map.apply(std::vector<VoxelUpdate>{{{32768, 32768, 32768}, 0.5F}});
+    feed(map, std::vector<VoxelUpdate>{{{32768, 32768, 32768}, 0.5F}});
     nodes = nodes_of(PrunedOctree(map, LeafValues::exact));
     EXPECT_EQ(nodes.size(), 13U + 4 * 8);  // the path to the voxel opened on four levels
     EXPECT_EQ(nodes.front().log_odds, 1.5F) << "an inner node is as occupied as its most occupied child";

@@ -1,4 +1,5 @@
 #include "host/io/mapfile/ply_writer.hpp"
+#include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -64,7 +65,7 @@ double volume_of(const Mesh& mesh) {
 
 FusedMap occupied(const std::vector<VoxelKey>& keys) {
     FusedMap map(MapConfig{});
-    for (const VoxelKey voxel : keys) map.apply(std::vector<VoxelUpdate>{{voxel, 1.0F}});
+    for (const VoxelKey voxel : keys) feed(map, std::vector<VoxelUpdate>{{voxel, 1.0F}});
     return map;
 }
 
@@ -98,7 +99,7 @@ TEST(PlyWriter, encloses_the_volume_of_any_shape) {
 
 TEST(PlyWriter, colours_by_height_and_shows_occupied_voxels_only) {
     FusedMap map = occupied({key(0, 0, 0), key(0, 0, 10)});
-    map.apply(std::vector<VoxelUpdate>{{key(0, 0, 20), -1.0F}});
+    feed(map, std::vector<VoxelUpdate>{{key(0, 0, 20), -1.0F}});
     const Mesh mesh = parse(encode_ply(map));
     EXPECT_EQ(mesh.faces.size(), 12U);
     // The top faces come last, unshaded: the ends of the colour map.

@@ -26,7 +26,7 @@ class Keeper final : public CommitListener {
     void on_reading(const RangeMeasurement& reading, const Beam&, std::span<const VoxelUpdate>) override {
         put(reading);
     }
-    void on_depth(const DepthFrame& frame, const DepthTerms&) override {
+    void on_depth(const DepthFrame& frame, const Evidence&) override {
         put(DepthCommit{frames.size(), frame.captured});
         frames.push_back(frame);
         frames.back().captured.ns += 999;  // the order's time counts, not that of the frame's recording
@@ -55,7 +55,7 @@ class TextSource final : public CommitSource {
 Scene live_scene() {
     Scene scene = good_scene();
     scene.config.release = Release::once_placed;
-    scene.config.maps = {.depth = false, .proximity = false, .fused = true};
+    scene.config.maps = {MapFeed::both};
     return scene;
 }
 
@@ -74,7 +74,7 @@ Recorded record(const Scene& scene, std::size_t begin, std::size_t end) {
     for (std::size_t i = 0; i < end; ++i) {
         if (i == begin) {
             pipeline.builder().forget_counts();
-            recorded.first_ot = encode_ot(*pipeline.maps().fused());
+            recorded.first_ot = encode_ot(pipeline.map());
             pipeline.builder().for_each_joint_sample(
                 [&](const JointMeasurement& joints) { recorded.keeper.put(joints); });
             pipeline.tell(&recorded.keeper);
@@ -84,7 +84,7 @@ Recorded record(const Scene& scene, std::size_t begin, std::size_t end) {
             pipeline.on_depth(*depth++);
         }
     }
-    recorded.last_ot = encode_ot(*pipeline.maps().fused());
+    recorded.last_ot = encode_ot(pipeline.map());
     return recorded;
 }
 
@@ -114,7 +114,7 @@ void expect_live_map_from_any_moment_on(const Scene& scene) {
         ScriptedDepth depth(recorded.keeper.frames);
         const OrderedOutcome outcome = replay_in_order(builder, order, &depth);
         EXPECT_TRUE(outcome.took_all()) << "begun at " << begin_s << " s";
-        EXPECT_TRUE(encode_ot(*builder.maps().fused()) == recorded.last_ot) << "begun at " << begin_s << " s";
+        EXPECT_TRUE(encode_ot(builder.map()) == recorded.last_ot) << "begun at " << begin_s << " s";
         EXPECT_GT(outcome.readings.used() + outcome.depth_frames.used(), 0U)
             << "begun at " << begin_s << " s";
         EXPECT_TRUE(recorded.first_ot != recorded.last_ot) << "begun at " << begin_s << " s";
@@ -148,7 +148,7 @@ TEST(OrderedReplay, needs_the_first_map_and_the_joint_samples_before_it) {
     TextSource order(recorded.keeper.text);
     ScriptedDepth depth(recorded.keeper.frames);
     EXPECT_TRUE(replay_in_order(without_map, order, &depth).took_all());
-    EXPECT_TRUE(encode_ot(*without_map.maps().fused()) != recorded.last_ot);
+    EXPECT_TRUE(encode_ot(without_map.map()) != recorded.last_ot);
     MapBuilder without_past = make_builder(scene, recorded.first_ot);
     const std::size_t first_committed = recorded.keeper.text.find_first_of("RD");
     TextSource later(recorded.keeper.text.substr(first_committed));

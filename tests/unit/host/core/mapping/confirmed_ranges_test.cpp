@@ -1,6 +1,6 @@
 // When ranges of a sensor are believed at once: the rules of docs/method.md "A sensor that stands still",
 // with 4 readings of the last 7.
-#include "host/core/mapping/standing_ranges.hpp"
+#include "host/core/mapping/confirmed_ranges.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ Beam beam_at(std::optional<double> range_m, std::uint8_t zone = 0, double x_m = 
     return beam;
 }
 
-class StandingRangesTest : public testing::Test {
+class ConfirmedRangesTest : public testing::Test {
   protected:
     /// How many ranges of something well before the wall, which is at 1 m, are believed after each of these,
     /// from one place, of one zone.
@@ -47,10 +47,10 @@ class StandingRangesTest : public testing::Test {
     }
     using Counts = std::vector<std::size_t>;
 
-    StandingRanges ranges_{StandingModel{.readings = 4}};
+    ConfirmedRanges ranges_{StationaryModel{.readings = 4}};
 };
 
-TEST_F(StandingRangesTest, believes_the_fourth_that_agrees_and_its_mean) {
+TEST_F(ConfirmedRangesTest, believes_the_fourth_that_agrees_and_its_mean) {
     EXPECT_EQ(take({0.50, 0.52, 0.49}), Counts({0, 0, 0}));
     const auto believed = ranges_.take(beam_at(0.53)).believed;
     ASSERT_EQ(believed.size(), 1U);
@@ -58,12 +58,12 @@ TEST_F(StandingRangesTest, believes_the_fourth_that_agrees_and_its_mean) {
     EXPECT_EQ(believed.front().source, (BeamSource{1, 2, 0}));
 }
 
-TEST_F(StandingRangesTest, believes_nothing_if_the_mapping_says_never) {
-    StandingRanges never{StandingModel{}};
+TEST_F(ConfirmedRangesTest, believes_nothing_if_the_mapping_says_never) {
+    ConfirmedRanges never{StationaryModel{}};
     for (int i = 0; i < 20; ++i) EXPECT_TRUE(never.take(beam_at(0.5)).believed.empty());
 }
 
-TEST_F(StandingRangesTest, believes_no_wrong_reading_however_often_one_comes) {
+TEST_F(ConfirmedRangesTest, believes_no_wrong_reading_however_often_one_comes) {
     take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
     // Every third is wrong: never four in seven.
     for (int i = 0; i < 20; ++i) EXPECT_EQ(take({0.5, 1.0, 1.0}), Counts({0, 0, 0}));
@@ -71,13 +71,13 @@ TEST_F(StandingRangesTest, believes_no_wrong_reading_however_often_one_comes) {
     EXPECT_EQ(take({0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.3, 0.6, 0.2}), Counts(10, 0));
 }
 
-TEST_F(StandingRangesTest, believes_what_comes_though_three_of_seven_are_wrong_or_fail) {
+TEST_F(ConfirmedRangesTest, believes_what_comes_though_three_of_seven_are_wrong_or_fail) {
     take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
     EXPECT_EQ(take({0.5, 1.0, 0.5, kNothing, 0.5, 0.2, 0.5}), Counts({0, 0, 0, 0, 0, 0, 1}));
 }
 
-TEST_F(StandingRangesTest, believes_what_was_new_as_long_as_it_stays) {
-    StandingRanges ranges{StandingModel{.readings = 4}};
+TEST_F(ConfirmedRangesTest, believes_what_was_new_as_long_as_it_stays) {
+    ConfirmedRanges ranges{StationaryModel{.readings = 4}};
     const auto told = [&](const std::vector<std::optional<double>>& ranges_m) {
         std::vector<std::size_t> believed;
         for (const auto& range_m : ranges_m)
@@ -93,7 +93,7 @@ TEST_F(StandingRangesTest, believes_what_was_new_as_long_as_it_stays) {
     EXPECT_EQ(told(std::vector<std::optional<double>>(12, 1.0)), Counts(12, 0)) << "it was never nearer";
 }
 
-TEST_F(StandingRangesTest, follows_what_it_believes_as_it_moves_away) {
+TEST_F(ConfirmedRangesTest, follows_what_it_believes_as_it_moves_away) {
     take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
     take({0.5, 0.5, 0.5, 0.5});
     for (double range_m = 0.5; range_m < 0.9; range_m += 0.01) {
@@ -103,26 +103,26 @@ TEST_F(StandingRangesTest, follows_what_it_believes_as_it_moves_away) {
     }
 }
 
-TEST_F(StandingRangesTest, takes_what_was_as_near_before_for_no_news) {
+TEST_F(ConfirmedRangesTest, takes_what_was_as_near_before_for_no_news) {
     take({0.54, 1.0, 1.0, 1.0, 1.0});
     // Until the reading of 0.54 m is no longer one of the three before the window.
     EXPECT_EQ(take({0.5, 0.5, 0.5, 0.5, 0.5, 0.5}), Counts({0, 0, 0, 0, 0, 1}));
 }
 
-TEST_F(StandingRangesTest, believes_no_sensor_that_moves_or_turns_faster_than_it_may) {
+TEST_F(ConfirmedRangesTest, believes_no_sensor_that_moves_or_turns_faster_than_it_may) {
     for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0034 * i)).believed.empty());
     ranges_.forget();
     for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0, 0.34 * i)).believed.empty());
 }
 
-TEST_F(StandingRangesTest, believes_a_sensor_that_moves_and_turns_slowly) {
+TEST_F(ConfirmedRangesTest, believes_a_sensor_that_moves_and_turns_slowly) {
     for (int i = 0; i < 30; ++i) {
         const auto believed = ranges_.take(beam_at(0.5, 0, 0.0033 * i, 0.33 * i)).believed;
         EXPECT_EQ(believed.size(), i < 3 ? 0U : 1U);
     }
 }
 
-TEST_F(StandingRangesTest, hears_zones_that_are_ranged_in_turn) {
+TEST_F(ConfirmedRangesTest, hears_zones_that_are_ranged_in_turn) {
     for (int cycle = 0; cycle < 2; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone) (void)ranges_.take(beam_at(1.0, zone));
     // Something square before zones 4 to 8: what the fourth of them says makes all four believed.
@@ -132,7 +132,7 @@ TEST_F(StandingRangesTest, hears_zones_that_are_ranged_in_turn) {
     EXPECT_EQ(counts, Counts({0, 0, 0, 4, 1}));
 }
 
-TEST_F(StandingRangesTest, hears_zones_of_what_comes_again_a_second_after_it_left) {
+TEST_F(ConfirmedRangesTest, hears_zones_of_what_comes_again_a_second_after_it_left) {
     const auto cycles_of = [&](int cycles, double range_m) {
         std::size_t believed = 0;
         for (int cycle = 0; cycle < cycles; ++cycle)
@@ -147,7 +147,7 @@ TEST_F(StandingRangesTest, hears_zones_of_what_comes_again_a_second_after_it_lef
     EXPECT_GT(cycles_of(1, 0.5), 0U);
 }
 
-TEST_F(StandingRangesTest, hears_one_zone_by_its_own_readings) {
+TEST_F(ConfirmedRangesTest, hears_one_zone_by_its_own_readings) {
     std::vector<int> cycles;
     for (int cycle = 0; cycle < 20; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone) {
@@ -161,7 +161,7 @@ TEST_F(StandingRangesTest, hears_one_zone_by_its_own_readings) {
     EXPECT_EQ(cycles.size(), 5U + 6U * 9U) << "and from then on whichever zone looks past it";
 }
 
-TEST_F(StandingRangesTest, believes_no_zone_for_what_its_neighbours_have_always_said) {
+TEST_F(ConfirmedRangesTest, believes_no_zone_for_what_its_neighbours_have_always_said) {
     for (int cycle = 0; cycle < 10; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone)
             (void)ranges_.take(beam_at(zone == 4 ? 1.0 : 0.5, zone));
@@ -170,7 +170,7 @@ TEST_F(StandingRangesTest, believes_no_zone_for_what_its_neighbours_have_always_
             EXPECT_NE(believed.source.zone, 4U) << "one reading does not change what it was believed";
 }
 
-TEST_F(StandingRangesTest, tells_what_only_says_again_what_is_believed) {
+TEST_F(ConfirmedRangesTest, tells_what_only_says_again_what_is_believed) {
     const auto told = [&](std::optional<double> range_m) { return ranges_.take(beam_at(range_m)).is_told; };
     for (int i = 0; i < 4; ++i) EXPECT_FALSE(told(0.5)) << i << ": it is believed with the fourth";
     for (int i = 0; i < 100; ++i) EXPECT_TRUE(told(0.5));
@@ -182,9 +182,9 @@ TEST_F(StandingRangesTest, tells_what_only_says_again_what_is_believed) {
 }
 
 /// Two zones in turn, of which the first sees something before the wall.
-class SilentZone : public StandingRangesTest {
+class SilentZone : public ConfirmedRangesTest {
   protected:
-    StandingRanges::Answer take_after(std::uint8_t zone, double range_m, double period_s) {
+    ConfirmedRanges::Answer take_after(std::uint8_t zone, double range_m, double period_s) {
         Beam beam = beam_at(range_m, zone);
         captured_s_ += period_s;
         beam.captured = HostTime{static_cast<std::int64_t>(std::llround(1e9 * captured_s_))};
@@ -249,7 +249,7 @@ TEST_F(SilentZone, is_forgotten_with_all_that_it_said_once_that_is_too_old) {
     EXPECT_TRUE(believes_hand_after(0, 0.4, 0.033)) << "the fourth after that";
 }
 
-TEST_F(StandingRangesTest, tells_what_is_believed_no_longer) {
+TEST_F(ConfirmedRangesTest, tells_what_is_believed_no_longer) {
     const auto ended = [&](std::optional<double> range_m) {
         return ranges_.take(beam_at(range_m)).ended.size();
     };
@@ -260,12 +260,12 @@ TEST_F(StandingRangesTest, tells_what_is_believed_no_longer) {
     EXPECT_EQ(ended(1.0), 0U);
 }
 
-TEST_F(StandingRangesTest, tells_not_what_a_sensor_leaves_behind_that_moves_on) {
+TEST_F(ConfirmedRangesTest, tells_not_what_a_sensor_leaves_behind_that_moves_on) {
     for (int i = 0; i < 8; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5)).ended.empty());
     for (int i = 1; i < 20; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.02 * i)).ended.empty()) << i;
 }
 
-TEST_F(StandingRangesTest, knows_who_has_stood_for_a_window) {
+TEST_F(ConfirmedRangesTest, knows_who_has_stood_for_a_window) {
     for (int i = 0; i < 30; ++i) EXPECT_EQ(ranges_.take(beam_at(0.5)).stands, i >= 7) << i;
     ranges_.forget();
     // To and fro.
@@ -273,7 +273,7 @@ TEST_F(StandingRangesTest, knows_who_has_stood_for_a_window) {
         EXPECT_FALSE(ranges_.take(beam_at(0.5, 0, i % 7 == 0 ? 0.02 : 0.0)).stands) << i;
 }
 
-TEST_F(StandingRangesTest, keeps_sensors_apart) {
+TEST_F(ConfirmedRangesTest, keeps_sensors_apart) {
     for (std::uint8_t i = 0; i < 12; ++i) {
         Beam beam = beam_at(0.5);
         beam.source = {static_cast<std::uint8_t>(i % 2), static_cast<std::uint8_t>(i / 2 % 2), 0};
@@ -281,7 +281,7 @@ TEST_F(StandingRangesTest, keeps_sensors_apart) {
     }
 }
 
-TEST_F(StandingRangesTest, begins_anew_after_it_was_told_to_forget) {
+TEST_F(ConfirmedRangesTest, begins_anew_after_it_was_told_to_forget) {
     take({0.5, 0.5, 0.5});
     ranges_.forget();
     EXPECT_EQ(take({0.5, 0.5, 0.5, 0.5}), Counts({0, 0, 0, 1}));

@@ -8,7 +8,7 @@ namespace octoskin {
 /// A range of a cone is shared by all of its cap, and readings from many places tell where in it the surface
 /// is. From one place nothing tells, and a share takes many readings to mark: so what came before a sensor
 /// that stands still would not be on the map in time.
-struct StandingModel {
+struct StationaryModel {
     /// So many readings that agree are believed at once, of a sensor's last `window()`; 0: none ever are.
     std::uint32_t readings = 0;
     float hits = 2.0F;          ///< what they leave a voxel at least, and no misses
@@ -19,7 +19,7 @@ struct StandingModel {
 
     /// Some may be wrong or fail, and what has come is still on the map after 0.2 s at 30 readings a second.
     [[nodiscard]] constexpr std::uint32_t window() const noexcept { return readings + 3; }
-    friend constexpr bool operator==(const StandingModel&, const StandingModel&) = default;
+    friend constexpr bool operator==(const StationaryModel&, const StationaryModel&) = default;
 };
 
 }  // namespace octoskin

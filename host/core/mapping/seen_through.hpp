@@ -7,22 +7,22 @@
 #include <map>
 
 #include "host/core/beams/beam.hpp"
-#include "host/core/mapping/standing_model.hpp"
+#include "host/core/mapping/stationary_model.hpp"
 
 namespace octoskin {
 
 /// Counting frees what is gone within a second at 30 readings a second. A zone that is ranged in turn with
 /// others has not so many: what three of its readings see through is free, if nobody else sees it.
-class StandingSight {
+class SeenThrough {
   public:
     static constexpr std::size_t kReadingsMin = 3;
 
-    explicit StandingSight(const StandingModel& model) : model_(model) {}
+    explicit SeenThrough(const StationaryModel& model) : model_(model) {}
 
     /// Takes a beam, of a ray, too, that went into the map, and how far that frees space. The answer: the
-    /// shortest of the zone's newest readings of this place (StandingRanges), as many as last
-    /// `StandingModel::clears_after_s` and no longer than twice that; null while there are not three, or not
-    /// of so long; valid until the next call. A beam that frees nothing is none. O(readings of so long),
+    /// shortest of the zone's newest readings of this place (ConfirmedRanges), as many as last
+    /// `StationaryModel::clears_after_s` and no longer than twice that; null while there are not three, or
+    /// not of so long; valid until the next call. A beam that frees nothing is none. O(readings of so long),
     /// below 1 us; 0.2 kB each. Throws std::bad_alloc.
     [[nodiscard]] const Beam* take(const Beam& beam, double frees_m);
 
@@ -57,7 +57,7 @@ class StandingSight {
     }
     [[nodiscard]] bool lasts(const Readings& readings, std::size_t from) const;
 
-    StandingModel model_;
+    StationaryModel model_;
     std::map<BeamSource, Readings> zones_;
 };
 

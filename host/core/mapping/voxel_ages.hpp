@@ -5,22 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <span>
 
 #include "common/time.hpp"
 #include "host/core/bricks/brick_stamps.hpp"
 #include "host/core/bricks/brick_tree.hpp"
 #include "host/core/mapping/expiry_agenda.hpp"
-#include "host/core/voxels/voxel_update.hpp"
+#include "host/core/voxels/sensor_kind.hpp"
 
 namespace octoskin {
-
-/// The later one's evidence is the stronger.
-enum class SensorKind : std::uint8_t {
-    none,   ///< no sensor: who asks knows that the robot itself is there
-    range,  ///< a range sensor
-    camera,
-};
 
 /// A voxel's last confirmation.
 struct Confirmation {
@@ -34,7 +26,7 @@ using StampView = BrickViewOf<std::uint16_t>;
 
 /// A clock of whole seconds, and its reading for each voxel: 14 bits, and two of the kind. Copies share what
 /// they have in common, as a BrickTree's do.
-class Confirmations {
+class VoxelAges {
   public:
     /// As far back as ages are told apart. A clock that runs further brings all stamps up with it, once in as
     /// many seconds.
@@ -58,7 +50,7 @@ class Confirmations {
     /// Of a voxel that was there when the clock began: nobody knows since when. Lower than all but 0.
     static constexpr std::uint16_t kOfBefore = 1U << 2U;
     /// Empty for a stamp of 0, which is none, and for kOfBefore.
-    [[nodiscard]] std::optional<Confirmation> told_by(std::uint16_t stamp) const noexcept;
+    [[nodiscard]] std::optional<Confirmation> confirmation_of(std::uint16_t stamp) const noexcept;
     /// Stamps below this one are `age_s` old or older, up to kAgeMax_s; 0 and kOfBefore always are.
     [[nodiscard]] std::uint16_t stamp_before(std::uint32_t age_s) const noexcept;
     /// Whole seconds since the clock began.
@@ -67,10 +59,9 @@ class Confirmations {
     /// Confirms voxels of a brick. Throws std::bad_alloc, and then nothing is changed. About 50 ns, and as
     /// much as a copy of the brick if a copy has it, too, and anything changes.
     void confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind);
-    /// Confirms the voxels of updates as long as they have a place each and the terms are finite and not 0,
-    /// and returns how many: all of a beam's where it was seen before. As `FusedMap` adds their terms. About
-    /// 3 ns each.
-    [[nodiscard]] std::size_t confirm_owned(std::span<const VoxelUpdate> updates, SensorKind kind) noexcept;
+    /// Bricks whose stamps have a place each, for a caller that gives them `stamp(kind)` itself; until a
+    /// brick is confirmed otherwise.
+    [[nodiscard]] StampTree::OwnBricks own_bricks() noexcept { return StampTree::OwnBricks(stamps_); }
     /// All of a brick, which has no stamps yet, was there when the clock began. Throws std::bad_alloc, and
     /// then nothing is changed.
     void take_from_before(MortonCode brick);

@@ -1,4 +1,4 @@
-#include "host/core/mapping/standing_ranges.hpp"
+#include "host/core/mapping/confirmed_ranges.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@ namespace octoskin {
 namespace {
 
 double tolerance_m(const Beam& a, const Beam& b) {
-    return StandingRanges::kAgreement_m + StandingRanges::kAgreementSigmas * std::max(a.sigma_m, b.sigma_m);
+    return ConfirmedRanges::kAgreement_m + ConfirmedRanges::kAgreementSigmas * std::max(a.sigma_m, b.sigma_m);
 }
 
 /// Both have a range.
@@ -19,18 +19,18 @@ bool agree(const Beam& a, const Beam& b) {
 
 /// That `before` was already told what `beam` tells, or of something nearer.
 bool is_told_by(const Beam& before, const Beam& beam) {
-    return before.range_m && StandingRanges::are_of_one_place(before, beam) &&
+    return before.range_m && ConfirmedRanges::are_of_one_place(before, beam) &&
            *before.range_m <= *beam.range_m + tolerance_m(before, beam);
 }
 
 /// That it tells of what its zone was believed before.
 bool goes_on(const Beam& believed, const Beam& beam) {
-    return beam.range_m && StandingRanges::are_of_one_place(believed, beam) && agree(believed, beam);
+    return beam.range_m && ConfirmedRanges::are_of_one_place(believed, beam) && agree(believed, beam);
 }
 
 }  // namespace
 
-bool StandingRanges::are_of_one_place(const Beam& a, const Beam& b) {
+bool ConfirmedRanges::are_of_one_place(const Beam& a, const Beam& b) {
     // The trace of a rotation is 1 + 2 cos(angle).
     static const double trace_min = 1.0 + 2.0 * std::cos(kTurnedMax_rad);
     const double moved2 = (a.p_map_sensor - b.p_map_sensor).squaredNorm();
@@ -38,7 +38,7 @@ bool StandingRanges::are_of_one_place(const Beam& a, const Beam& b) {
            a.R_map_sensor.cwiseProduct(b.R_map_sensor).sum() >= trace_min;
 }
 
-bool StandingRanges::stands(const Zone& zone) const {
+bool ConfirmedRanges::stands(const Zone& zone) const {
     const std::span<const Reading> all(zone.newest);
     const std::size_t window = model_.window();
     return all.size() > window && std::ranges::all_of(all.last(window + 1), [&](const Reading& reading) {
@@ -48,7 +48,7 @@ bool StandingRanges::stands(const Zone& zone) const {
 
 /// By the mean time between its readings so many in a row have not come. All that it said is forgotten: what
 /// is there when it speaks again is new.
-void StandingRanges::forget_silent(Sensor& sensor, const Beam& beam) {
+void ConfirmedRanges::forget_silent(Sensor& sensor, const Beam& beam) {
     for (auto& entry : sensor.zones) {
         Zone& zone = entry.second;
         if (zone.newest.empty()) continue;
@@ -63,7 +63,7 @@ void StandingRanges::forget_silent(Sensor& sensor, const Beam& beam) {
     }
 }
 
-StandingRanges::Answer StandingRanges::take(const Beam& beam) {
+ConfirmedRanges::Answer ConfirmedRanges::take(const Beam& beam) {
     believed_.clear();
     ended_.clear();
     if (model_.readings == 0) return {};
@@ -101,7 +101,7 @@ StandingRanges::Answer StandingRanges::take(const Beam& beam) {
 
 /// What is believed may move slowly; it has gone if none of so many readings tells of it. The answer: the
 /// newest does.
-bool StandingRanges::follow_believed(Zone& zone) {
+bool ConfirmedRanges::follow_believed(Zone& zone) {
     if (!zone.believed) return false;
     const Beam& newest = zone.newest.back().beam;
     if (goes_on(*zone.believed, newest)) {
@@ -116,13 +116,13 @@ bool StandingRanges::follow_believed(Zone& zone) {
 }
 
 /// `now`: the sensor's newest beam. What a sensor that has moved on counted it did not count from one place.
-void StandingRanges::end(Zone& zone, const Beam& now) {
+void ConfirmedRanges::end(Zone& zone, const Beam& now) {
     if (!zone.believed) return;
     if (are_of_one_place(*zone.believed, now)) ended_.push_back(*zone.believed);
     zone.believed.reset();
 }
 
-void StandingRanges::add_what_stays(const Beam& newest, const Sensor& sensor) {
+void ConfirmedRanges::add_what_stays(const Beam& newest, const Sensor& sensor) {
     for (const auto& entry : sensor.zones) {
         const Zone& zone = entry.second;
         if (!zone.believed) continue;  // nor need it have a reading, if there was no memory for it
@@ -136,7 +136,7 @@ void StandingRanges::add_what_stays(const Beam& newest, const Sensor& sensor) {
     }
 }
 
-void StandingRanges::believe(const Beam& newest, const Window& window) {
+void ConfirmedRanges::believe(const Beam& newest, const Window& window) {
     agreeing_.clear();
     for (const auto& [zone, first] : window) {
         const std::span<Reading> all(zone->newest);

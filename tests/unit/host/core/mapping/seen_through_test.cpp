@@ -1,6 +1,6 @@
 // How far a sensor that stands still has surely seen: the rules of docs/method.md "A sensor that stands
 // still", with readings of one zone every 0.3 s.
-#include "host/core/mapping/standing_sight.hpp"
+#include "host/core/mapping/seen_through.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t kPeriod_ns = 300'000'000;
 constexpr double kNoReturn_m = 0.0;  ///< frees nothing
 
-class StandingSightTest : public testing::Test {
+class SeenThroughTest : public testing::Test {
   protected:
     Beam beam(double frees_m, double x_m = 0.0, std::uint8_t zone = 0) {
         Beam beam;
@@ -36,16 +36,16 @@ class StandingSightTest : public testing::Test {
         return text;
     }
 
-    StandingSight sight_{StandingModel{.clears_after_s = 0.55}};
+    SeenThrough sight_{StationaryModel{.clears_after_s = 0.55}};
     std::int64_t now_ns_ = 0;
 };
 
-TEST_F(StandingSightTest, is_the_shortest_of_the_newest_three) {
+TEST_F(SeenThroughTest, is_the_shortest_of_the_newest_three) {
     EXPECT_EQ(seen({1.02, 0.99, 1.03, 1.01, 1.05, 1.06, 1.02}), " - - 99 99 101 101 102");
     EXPECT_EQ(seen({0.5, 1.0, 1.0, 1.0}), " 50 50 50 100");
 }
 
-TEST_F(StandingSightTest, takes_half_a_second_however_many_readings_that_are) {
+TEST_F(SeenThroughTest, takes_half_a_second_however_many_readings_that_are) {
     for (int reading = 0; reading < 30; ++reading) {
         now_ns_ = reading * 33'000'000;
         EXPECT_EQ(sight_.take(beam(1.0), 1.0) != nullptr, reading >= 17) << reading;
@@ -60,7 +60,7 @@ TEST_F(StandingSightTest, takes_half_a_second_however_many_readings_that_are) {
     EXPECT_EQ(*sight_.take(beam(2.0), 2.0)->range_m, 2.0);
 }
 
-TEST_F(StandingSightTest, is_none_where_readings_are_further_apart_than_they_may_be) {
+TEST_F(SeenThroughTest, is_none_where_readings_are_further_apart_than_they_may_be) {
     EXPECT_EQ(seen({1.0, 1.0}), " - -");
     now_ns_ += 20'000'000'000;
     EXPECT_EQ(seen({1.0, 1.0, 1.0}), " - - 100");
@@ -72,11 +72,11 @@ TEST_F(StandingSightTest, is_none_where_readings_are_further_apart_than_they_may
     }
 }
 
-TEST_F(StandingSightTest, is_not_told_by_what_frees_nothing) {
+TEST_F(SeenThroughTest, is_not_told_by_what_frees_nothing) {
     EXPECT_EQ(seen({1.0, kNoReturn_m, 1.0, 1.0, kNoReturn_m, 1.0}), " - - - 100 - 100");
 }
 
-TEST_F(StandingSightTest, is_none_where_the_sensor_moves) {
+TEST_F(SeenThroughTest, is_none_where_the_sensor_moves) {
     for (int reading = 0; reading < 20; ++reading)
         EXPECT_EQ(sight_.take(beam(1.0, 0.006 * reading), 1.0), nullptr) << reading;
     for (int reading = 0; reading < 20; ++reading)
@@ -85,7 +85,7 @@ TEST_F(StandingSightTest, is_none_where_the_sensor_moves) {
         EXPECT_EQ(sight_.take(beam(1.0, 1.0 + 0.004 * reading), 1.0) != nullptr, reading >= 2) << "a creep";
 }
 
-TEST_F(StandingSightTest, hears_each_zone_by_itself) {
+TEST_F(SeenThroughTest, hears_each_zone_by_itself) {
     for (int reading = 0; reading < 3; ++reading) {
         now_ns_ = reading * kPeriod_ns;
         const Beam far = beam(1.0, 0.0, 0);
@@ -96,7 +96,7 @@ TEST_F(StandingSightTest, hears_each_zone_by_itself) {
     }
 }
 
-TEST_F(StandingSightTest, knows_where_other_zones_ranges_end_as_long_as_they_are_new) {
+TEST_F(SeenThroughTest, knows_where_other_zones_ranges_end_as_long_as_they_are_new) {
     const auto ends_at = [](double range_m) {
         return [range_m](const Beam& beam) { return *beam.range_m == range_m; };
     };
@@ -111,11 +111,11 @@ TEST_F(StandingSightTest, knows_where_other_zones_ranges_end_as_long_as_they_are
     EXPECT_FALSE(sight_.any_newest(HostTime{600'000'000}, ends_at(0.5))) << "two newer ones of the zone";
 }
 
-TEST_F(StandingSightTest, is_none_if_the_mapping_says_never_and_is_forgotten) {
+TEST_F(SeenThroughTest, is_none_if_the_mapping_says_never_and_is_forgotten) {
     (void)seen({1.0, 1.0});
     sight_.forget();
     EXPECT_EQ(seen({1.0, 1.0, 1.0}), " - - 100");
-    StandingSight never{StandingModel{}};
+    SeenThrough never{StationaryModel{}};
     for (int reading = 0; reading < 20; ++reading) EXPECT_EQ(never.take(beam(1.0), 1.0), nullptr);
 }
 

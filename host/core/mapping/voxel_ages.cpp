@@ -1,10 +1,9 @@
-#include "host/core/mapping/confirmations.hpp"
+#include "host/core/mapping/voxel_ages.hpp"
 
 #include <algorithm>
 #include <bit>
 
-#include "host/core/bricks/brick_runs.hpp"
-#include "host/core/mapping/depth_terms.hpp"
+#include "host/core/bricks/brick_sets.hpp"
 
 namespace octoskin {
 namespace {
@@ -36,13 +35,9 @@ std::uint16_t oldest_of(const StampView& view) {
     return static_cast<std::uint16_t>(least + 1U);
 }
 
-bool is_whole(const BrickMask& voxels) {
-    return std::ranges::all_of(voxels, [](std::uint64_t word) { return word == ~std::uint64_t{0}; });
-}
-
 }  // namespace
 
-bool Confirmations::go_on(HostTime now) {
+bool VoxelAges::go_on(HostTime now) {
     const std::int64_t second = whole_seconds(now);
     if (!has_begun_) {
         has_begun_ = true;
@@ -69,12 +64,12 @@ bool Confirmations::go_on(HostTime now) {
     return true;
 }
 
-void Confirmations::leap(Nanoseconds by) noexcept {
+void VoxelAges::leap(Nanoseconds by) noexcept {
     zero_s_ += whole_seconds(HostTime{by.count() + kNanosecondsPerSecond / 2});
 }
 
 /// What is too old for that stays the oldest there is.
-void Confirmations::bring_up(std::uint32_t by) {
+void VoxelAges::bring_up(std::uint32_t by) {
     const auto brought_up = [&](std::uint16_t stamp) -> std::uint16_t {
         if (stamp == 0) return 0;
         const auto then = std::uint32_t{stamp} >> kKindBits;
@@ -90,7 +85,7 @@ void Confirmations::bring_up(std::uint32_t by) {
     agenda_.change_stamps(brought_up);
 }
 
-void Confirmations::begin_agenda() {
+void VoxelAges::begin_agenda() {
     ExpiryAgenda agenda;
     stamps_.for_each([&](MortonCode brick, const StampView& view) {
         agenda.make_room();
@@ -100,27 +95,27 @@ void Confirmations::begin_agenda() {
     agenda_ = std::move(agenda);
 }
 
-std::uint16_t Confirmations::oldest_in(MortonCode brick) const noexcept {
+std::uint16_t VoxelAges::oldest_in(MortonCode brick) const noexcept {
     return oldest_of(stamps_.find(brick));
 }
 
-void Confirmations::take_from_before(MortonCode brick) {
+void VoxelAges::take_from_before(MortonCode brick) {
     stamp_first(brick, kOfBefore, [&] { stamps_.set_all(brick, kOfBefore); });
 }
 
-std::optional<Confirmation> Confirmations::told_by(std::uint16_t stamp) const noexcept {
+std::optional<Confirmation> VoxelAges::confirmation_of(std::uint16_t stamp) const noexcept {
     if (stamp == 0 || stamp == kOfBefore) return std::nullopt;
     const auto then = std::uint32_t{stamp} >> kKindBits;
     const auto kind = static_cast<SensorKind>(stamp & ((1U << kKindBits) - 1U));
     return Confirmation{then == 1 ? kAgeMax_s : std::min(now_ - then, kAgeMax_s), kind};
 }
 
-std::uint16_t Confirmations::stamp_before(std::uint32_t age_s) const noexcept {
+std::uint16_t VoxelAges::stamp_before(std::uint32_t age_s) const noexcept {
     if (age_s >= now_) return kOfBefore + 1;
     return static_cast<std::uint16_t>((now_ - age_s + 1) << kKindBits);
 }
 
-void Confirmations::confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind) {
+void VoxelAges::confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind) {
     const std::uint16_t now = stamp(kind);
     if (BrickStamps* const own = stamps_.own(brick)) {
         if (is_whole(voxels)) return stamps_.set_all(brick, now);
@@ -136,17 +131,7 @@ void Confirmations::confirm(MortonCode brick, const BrickMask& voxels, SensorKin
     before.is_unknown() ? stamp_first(brick, now, stamp_voxels) : stamp_voxels();
 }
 
-std::size_t Confirmations::confirm_owned(std::span<const VoxelUpdate> updates, SensorKind kind) noexcept {
-    BrickRuns found;
-    find_runs(updates, found);
-    BricksOfRuns<std::uint16_t> bricks;  // NOLINT: as many as there are runs are set
-    own_bricks(stamps_, updates, found, bricks);
-    const std::uint16_t now = stamp(kind);
-    for (std::size_t i = 0; i < found.updates; ++i) bricks[found.run_of[i]][found.cell_of[i]] = now;
-    return found.updates;
-}
-
-void Confirmations::forget(MortonCode brick, const BrickMask& voxels) {
+void VoxelAges::forget(MortonCode brick, const BrickMask& voxels) {
     if (stamps_.find(brick).is_unknown()) return;
     if (is_whole(voxels)) return stamps_.forget(brick);
     BrickStamps& stamps = stamps_.open(brick);

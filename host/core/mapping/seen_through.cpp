@@ -1,19 +1,19 @@
-#include "host/core/mapping/standing_sight.hpp"
+#include "host/core/mapping/seen_through.hpp"
 
-#include "host/core/mapping/standing_ranges.hpp"
+#include "host/core/mapping/confirmed_ranges.hpp"
 
 namespace octoskin {
 
-bool StandingSight::lasts(const Readings& readings, std::size_t from) const {
+bool SeenThrough::lasts(const Readings& readings, std::size_t from) const {
     return readings.size() >= from + kReadingsMin &&
            seconds_since(readings[from].beam, readings.back().beam.captured) >= model_.clears_after_s;
 }
 
-const Beam* StandingSight::take(const Beam& beam, double frees_m) {
+const Beam* SeenThrough::take(const Beam& beam, double frees_m) {
     if (!(model_.clears_after_s > 0.0 && frees_m > 0.0)) return nullptr;
     Readings& newest = zones_[beam.source];
     std::erase_if(newest, [&](const Reading& before) {
-        return !counts(before.beam, beam.captured) || !StandingRanges::are_of_one_place(before.beam, beam);
+        return !counts(before.beam, beam.captured) || !ConfirmedRanges::are_of_one_place(before.beam, beam);
     });
     newest.push_back({beam, frees_m});
     while (lasts(newest, 1)) newest.pop_front();

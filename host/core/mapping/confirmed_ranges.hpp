@@ -10,16 +10,16 @@
 #include <vector>
 
 #include "host/core/beams/beam.hpp"
-#include "host/core/mapping/standing_model.hpp"
+#include "host/core/mapping/stationary_model.hpp"
 
 namespace octoskin {
 
 /// One reading may be wrong, so that none is believed alone. What agrees are either readings of one zone, or
 /// of several zones of a sensor, which are ranged in turn: what has come is before many of them.
-class StandingRanges {
+class ConfirmedRanges {
   public:
     /// Two readings are of one place if the sensor has moved and turned no further between them. So it may
-    /// move by as much within `StandingModel::readings` - 1 readings, and its ranges are believed still.
+    /// move by as much within `StationaryModel::readings` - 1 readings, and its ranges are believed still.
     static constexpr double kMovedMax_m = 0.01;
     static constexpr double kTurnedMax_rad = 0.0175;
     /// Ranges of one zone agree to this and so many of the larger sigma; of two zones to the angle between
@@ -31,19 +31,19 @@ class StandingRanges {
 
     [[nodiscard]] static bool are_of_one_place(const Beam& a, const Beam& b);
 
-    explicit StandingRanges(const StandingModel& model) : model_(model) {}
+    explicit ConfirmedRanges(const StationaryModel& model) : model_(model) {}
 
     struct Answer {
         /// Which ranges are believed now, one for each zone: the zone's newest beam, with the mean of the
         /// ranges that agree. None as a rule; valid until the next call.
         std::span<const Beam> believed;
         /// Those that were, and are no more though the sensor is where it was: what they left in their caps
-        /// that marks nothing is to be taken back (FusedMap::forget_weak_hits). Valid likewise.
+        /// that marks nothing is to be taken back (EvidenceRule::withdraw). Valid likewise.
         std::span<const Beam> ended;
         /// The beam says again what was believed before it: from one place no reading tells more of where in
         /// its cap that is, however many there are. What is there takes its hits.
         bool is_told = false;
-        /// The beam is of one place with the last `StandingModel::window()` before it of its zone: then it
+        /// The beam is of one place with the last `StationaryModel::window()` before it of its zone: then it
         /// marks only where it would free space, too.
         bool stands = false;
     };
@@ -54,7 +54,7 @@ class StandingRanges {
     /// said is forgotten. O(zones of the sensor), below 1 us; 2 kB a zone. Throws std::bad_alloc.
     [[nodiscard]] Answer take(const Beam& beam);
 
-    [[nodiscard]] const StandingModel& model() const noexcept { return model_; }
+    [[nodiscard]] const StationaryModel& model() const noexcept { return model_; }
     /// As if there had been no beam.
     void forget() noexcept { sensors_.clear(); }
 
@@ -82,7 +82,7 @@ class StandingRanges {
     void end(Zone& zone, const Beam& now);
     void add_what_stays(const Beam& newest, const Sensor& sensor);
 
-    StandingModel model_;
+    StationaryModel model_;
     std::map<std::pair<std::uint8_t, std::uint8_t>, Sensor> sensors_;  ///< by node and local index
     Window window_;
     std::vector<Reading*> agreeing_;

@@ -1,0 +1,209 @@
+#include "host/core/mapping/brick_editor.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "host/core/bricks/brick_sets.hpp"
+
+namespace octoskin {
+namespace {
+
+/// Of a brick's voxels those whose stamp is `first` or more, and below the limit.
+BrickMask stamped_from_to(const StampView& view, std::uint16_t first, std::uint16_t limit) {
+    BrickMask voxels{};
+    if (view.values == nullptr) {
+        if (view.value >= first && view.value < limit) voxels.fill(~std::uint64_t{0});
+        return voxels;
+    }
+    for (std::size_t word = 0; word < voxels.size(); ++word) {
+        const std::uint64_t below = stamps_below(*view.values, word, limit);
+        voxels[word] = below == 0 ? 0 : below & ~stamps_below(*view.values, word, first);
+    }
+    return voxels;
+}
+
+BrickMask known_in(const BrickView& view) {
+    BrickMask known{};
+    if (view.values == nullptr) {
+        known.fill(~std::uint64_t{0});
+        return known;
+    }
+    for (std::size_t word = 0; word < known.size(); ++word)
+        known[word] = sets_of(*view.values, word, 0.0F).known;
+    return known;
+}
+
+BrickTree clamped_tree(const BrickTree& tree, const VoxelRules& rules) {
+    const auto clamp = [&](float& log_odds) {  // a NaN, which is an unknown voxel, stays one
+        log_odds = rules.clamped(log_odds);
+    };
+    BrickTree clamped = tree;
+    tree.for_each([&](MortonCode brick, const BrickView& view) {
+        if (view.values != nullptr) {
+            std::ranges::for_each(clamped.open(brick), clamp);
+        } else {
+            clamped.set_all(brick, rules.clamped(view.value));
+        }
+    });
+    return clamped;
+}
+
+}  // namespace
+
+std::size_t bytes_at_most(const BrickTree& tree) noexcept {
+    return tree.nodes() * BrickTree::kNodeBytes + tree.bricks() * BrickTree::kBrickBytes;
+}
+
+bool BrickEditor::has_room_for(MortonCode brick) const noexcept {
+    const std::size_t more =
+        layers_.log_odds.nodes_missing(brick) * BrickTree::kNodeBytes + BrickTree::kBrickBytes;
+    return bytes_at_most(layers_.log_odds) + more <= bytes_max();
+}
+
+bool BrickEditor::has_room_to_count(MortonCode brick) const noexcept {
+    const CountLayer& counts = layers_.counts;
+    return 16 * (counts.bytes_at_most() + counts.bytes_of_new(brick)) <= 3 * bytes_max();
+}
+
+bool BrickEditor::has_room_to_date(MortonCode brick) const noexcept {
+    const VoxelAges& ages = layers_.ages;
+    return 16 * (ages.bytes_at_most() + ages.bytes_of_new(brick)) <= 9 * bytes_max();
+}
+
+Status<MapRefusal> BrickEditor::open_counts(MortonCode brick) noexcept {
+    CountLayer& counts = layers_.counts;
+    const bool is_new = !counts.has(brick);
+    if (is_new && !has_room_to_count(brick)) return unexpected(&MapCounters::no_room);
+    try {
+        if (is_new) counts.begin(brick, layers_.log_odds.find(brick));
+        (void)counts.misses.open(brick);
+        (void)counts.hits.open(brick);
+        return Done{};
+    } catch (const std::bad_alloc&) {
+        return unexpected(&MapCounters::no_memory);
+    }
+}
+
+void BrickEditor::date(MortonCode brick, const BrickMask& voxels, SensorKind kind) noexcept {
+    VoxelAges& ages = layers_.ages;
+    if (!ages.has_begun()) return;
+    bool is_dated = !ages.find(brick).is_unknown();
+    if (!is_dated) {
+        // Refused, or of counts alone where nothing ever expires.
+        const bool is_to_expire = config_.age.unknown_after_s > 0 && has_counts(brick);
+        if (layers_.log_odds.find(brick).is_unknown() && !is_to_expire) return;
+        is_dated = has_room_to_date(brick);
+    }
+    try {
+        if (is_dated) ages.confirm(brick, voxels, kind);
+    } catch (const std::bad_alloc&) {
+        is_dated = false;
+    }
+    if (!is_dated) counters_.undated += count_of(voxels);
+}
+
+bool BrickEditor::is_seen_by_camera(std::uint16_t stamp) const noexcept {
+    const auto last = layers_.ages.confirmation_of(stamp);
+    return last && last->kind == SensorKind::camera && last->age_s <= 1;
+}
+
+void BrickEditor::date_all() {
+    layers_.log_odds.for_each([&](MortonCode brick, const BrickView&) {
+        if (!layers_.ages.find(brick).is_unknown()) return;  // an earlier second came so far
+        if (has_room_to_date(brick)) {
+            layers_.ages.take_from_before(brick);
+        } else {
+            counters_.undated += kBrickVoxels;
+        }
+    });
+}
+
+void BrickEditor::expire() {
+    VoxelAges& ages = layers_.ages;
+    const std::uint16_t limit = ages.stamp_before(config_.age.unknown_after_s);
+    // What was there before the clock has its time from then on.
+    const bool takes_all = ages.runs_for_s() >= std::int64_t{config_.age.unknown_after_s};
+    const auto first = static_cast<std::uint16_t>(takes_all ? 1 : VoxelAges::kOfBefore + 1);
+    ages.look_at_due(first, limit, [&](MortonCode brick) {
+        const BrickMask voxels = stamped_from_to(ages.find(brick), first, limit);
+        if (count_of(voxels) == 0) return;
+        expire_log_odds(brick, voxels);
+        if (has_counts(brick)) layers_.counts.expire(brick, voxels);
+        ages.forget(brick, voxels);  // last: what there was no memory for is found again
+    });
+}
+
+void BrickEditor::expire_log_odds(MortonCode brick, const BrickMask& voxels) {
+    BrickTree& log_odds = layers_.log_odds;
+    const BrickView before = log_odds.find(brick);
+    if (before.is_unknown()) return;
+    const BrickMask known = known_in(before);
+    BrickMask expired{};
+    for (std::size_t word = 0; word < known.size(); ++word) expired[word] = known[word] & voxels[word];
+    if (expired == known) {
+        log_odds.forget(brick);
+    } else {
+        BrickValues& values = log_odds.open(brick);
+        for_each_cell(expired, [&](std::size_t cell) { values[cell] = kUnknownLogOdds; });
+    }
+    layers_.known_voxels -= count_of(expired);
+}
+
+bool BrickEditor::fill(const VoxelCube& cube, float log_odds) {
+    assert(layers_.counts.empty());
+    const std::size_t bricks = (std::size_t{1} << (3 * cube.height)) / kBrickVoxels;
+    // At once: a file may claim the whole octree.
+    if (bricks > bytes_max() / BrickTree::kBrickBytes) return false;
+    // Adding 0 turns a -0 into a 0: equal values must be equal bytes in a file.
+    const float value = rules_.clamped(log_odds) + 0.0F;
+    const MortonCode first = morton_of(cube.lowest);
+    const MortonCode end = first + (MortonCode{1} << (3 * cube.height));
+    const MortonCode step = std::min<MortonCode>(end - first, kBrickVoxels);
+    for (MortonCode code = first; code < end; code += step) {
+        const MortonCode brick = code & ~MortonCode{kBrickVoxels - 1};
+        const BrickView before = layers_.log_odds.find(brick);
+        if (before.is_unknown() && !has_room_for(brick)) return false;
+        if (step == kBrickVoxels) {
+            for (std::size_t cell = 0; cell < kBrickVoxels; ++cell)
+                layers_.known_voxels += std::isnan(before.at(cell)) ? 1U : 0U;
+            layers_.log_odds.set_all(brick, value);
+            continue;
+        }
+        BrickValues& values = layers_.log_odds.open(brick);
+        for (std::size_t cell = code % kBrickVoxels, last = cell + step; cell < last; ++cell)
+            set(values[cell], value);
+    }
+    return true;
+}
+
+void BrickEditor::clamp_all() {
+    layers_.log_odds = clamped_tree(layers_.log_odds, rules_);
+    layers_.counts.prior = clamped_tree(layers_.counts.prior, rules_);
+}
+
+void BrickEditor::fuse_all() {
+    const BrickTree counted = layers_.counts.hits;
+    counted.for_each([&](MortonCode brick, const BrickView&) { fuse(brick); });
+}
+
+void BrickEditor::fuse(MortonCode brick) {
+    const BrickView hits = layers_.counts.hits.find(brick);
+    const BrickView misses = layers_.counts.misses.find(brick);
+    const BrickView prior = layers_.counts.prior.find(brick);
+    const BrickView before = layers_.log_odds.find(brick);
+    BrickValues fused;
+    bool is_any_known = false;
+    for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) {
+        VoxelState voxel{before.at(cell), prior.at(cell), hits.at(cell), misses.at(cell)};
+        rules_.fuse(voxel);
+        fused[cell] = voxel.log_odds;
+        is_any_known = is_any_known || !std::isnan(voxel.log_odds);
+    }
+    if (!is_any_known) return;  // counted only: it needs no place
+    BrickValues& values = layers_.log_odds.open(brick);
+    for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) set(values[cell], fused[cell]);
+}
+
+}  // namespace octoskin

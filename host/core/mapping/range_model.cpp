@@ -1,0 +1,25 @@
+#include "host/core/mapping/range_model.hpp"
+
+#include "host/core/mapping/cone_evidence.hpp"
+
+namespace octoskin {
+
+Status<BeamRejection> RangeModel::integrate_ray(const Beam& beam, EvidenceSink& sink) {
+    const auto evidence = ray_.find(beam);
+    if (!evidence) return unexpected(evidence.error());
+    sink.apply(**evidence, nullptr);
+    if (sees_any_cone_) stationary_.take_ray(beam);
+    return Done{};
+}
+
+Status<BeamRejection> RangeModel::integrate_cone(const Beam& beam, EvidenceSink& sink) {
+    const ConfirmedRanges::Answer answer = stationary_.take(beam);
+    const auto voxels = cone_.find(beam, width_of(answer));
+    if (!voxels) return unexpected(voxels.error());
+    make_counts(**voxels, cone_.model_of(beam), answer.is_told, counts_);
+    sink.apply(counts_, nullptr);
+    stationary_.conclude(beam, answer, sink);
+    return Done{};
+}
+
+}  // namespace octoskin

@@ -1,0 +1,42 @@
+// From one placed range to evidence: the way of a range into the maps, whatever its sensor sees.
+#pragma once
+
+#include "common/result.hpp"
+#include "host/core/beams/beam.hpp"
+#include "host/core/mapping/beam_rejection.hpp"
+#include "host/core/mapping/cone_finder.hpp"
+#include "host/core/mapping/evidence_sink.hpp"
+#include "host/core/mapping/mapping_config.hpp"
+#include "host/core/mapping/ray_model.hpp"
+#include "host/core/mapping/stationary_sensors.hpp"
+
+namespace octoskin {
+
+/// Ranges in the order in which they are measured. Keeps its memory; not for two threads at once.
+class RangeModel {
+  public:
+    /// `sees_any_cone`: whether any zone of the rig does. Where all are rays, no stationary sensor clears.
+    RangeModel(const MappingConfig& config, bool sees_any_cone)
+        : ray_(config), cone_(config), stationary_(config), sees_any_cone_(sees_any_cone) {}
+
+    /// Gives `sink` what the beam says. Refuses it, and gives nothing, if it is not valid or leaves the
+    /// octree. About 0.5 us a ray, 14 us a cone of 1 m at 0.04 m. Throws std::bad_alloc.
+    [[nodiscard]] Status<BeamRejection> integrate(const Beam& beam, EvidenceSink& sink) {
+        return beam.optics.is_cone() ? integrate_cone(beam, sink) : integrate_ray(beam, sink);
+    }
+
+    /// As if there had been no beam.
+    void forget() noexcept { stationary_.forget(); }
+
+  private:
+    [[nodiscard]] Status<BeamRejection> integrate_ray(const Beam& beam, EvidenceSink& sink);
+    [[nodiscard]] Status<BeamRejection> integrate_cone(const Beam& beam, EvidenceSink& sink);
+
+    RayModel ray_;
+    ConeFinder cone_;
+    StationarySensors stationary_;
+    bool sees_any_cone_;
+    Evidence counts_;
+};
+
+}  // namespace octoskin

@@ -1,0 +1,44 @@
+#include "host/core/pipeline/map_feeder.hpp"
+
+#include <algorithm>
+
+namespace octoskin {
+
+void MapFeeder::apply(const Evidence& evidence, const std::function<bool(VoxelKey)>* spares) {
+    if (!has_begun_) {
+        for (FedMap& fed : maps_) fed.map.go_on(now_);
+    }
+    std::vector<VoxelUpdate> changes;
+    for (FedMap& fed : maps_) {
+        if (!fed.takes(evidence.sensor)) continue;
+        const bool is_listed = changes_ != nullptr && fed.feed == MapFeed::both;
+        fed.map.apply(evidence, {.spares = spares, .changes = is_listed ? &changes : nullptr});
+    }
+    if (changes_ != nullptr) {
+        if (evidence.rule == EvidenceRule::terms)
+            for_each_term(evidence, [&](const VoxelUpdate& term) { changes.push_back(term); });
+        // What comes first has most voxels, and each of them once.
+        if (!has_begun_)
+            changes_->swap(changes);
+        else
+            for (const VoxelUpdate& change : changes) add_change(change);
+    }
+    has_begun_ = true;
+}
+
+void MapFeeder::add_change(const VoxelUpdate& change) {
+    const auto same = std::ranges::find(*changes_, change.key, &VoxelUpdate::key);
+    if (same != changes_->end()) {
+        same->log_odds += change.log_odds;
+    } else {
+        changes_->push_back(change);
+    }
+}
+
+bool MapFeeder::is_occupied(VoxelKey key) const {
+    return std::ranges::all_of(maps_, [&](const FedMap& fed) {
+        return !fed.takes(SensorKind::range) || fed.map.occupancy(key) == Occupancy::occupied;
+    });
+}
+
+}  // namespace octoskin

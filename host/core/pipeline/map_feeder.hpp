@@ -1,0 +1,35 @@
+// The maps that are built at the same time, fed with what one measurement says.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "common/time.hpp"
+#include "host/core/mapping/evidence_sink.hpp"
+#include "host/core/pipeline/fed_map.hpp"
+
+namespace octoskin {
+
+/// Evidence of one measurement of `now`, for each map that takes its sensor.
+class MapFeeder final : public EvidenceSink {
+  public:
+    /// `changes`: gets by how much the log-odds of the map of both sensors changed, each voxel once; of
+    /// `terms` what they say. May be null.
+    MapFeeder(std::span<FedMap> maps, HostTime now, std::vector<VoxelUpdate>* changes) noexcept
+        : maps_(maps), now_(now), changes_(changes) {}
+
+    /// O(maps) more than FusedMap::apply. Throws only where there is a list of changes.
+    void apply(const Evidence& evidence, const std::function<bool(VoxelKey)>* spares) override;
+    [[nodiscard]] bool is_occupied(VoxelKey key) const override;
+
+  private:
+    void add_change(const VoxelUpdate& change);
+
+    std::span<FedMap> maps_;
+    HostTime now_;
+    std::vector<VoxelUpdate>* changes_;
+    bool has_begun_ = false;
+};
+
+}  // namespace octoskin
