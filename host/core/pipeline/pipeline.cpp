@@ -15,12 +15,6 @@ constexpr Nanoseconds kDepthAheadMax{1'000'000'000};
 /// Far less than any timing budget: two readings of one source this close are one and the same, placed by two
 /// states of the clock map.
 constexpr Nanoseconds kSameReading{5'000'000};
-/// More than one stamp that ran ahead takes back (HostClockConfig::ahead_tolerance). Less than the 200 ms
-/// that a node's clock takes to settle anew (ClockMapConfig::settling): so that no reading finds a pose of
-/// the time before, which was another instant.
-constexpr Nanoseconds kTimeBackMax{150'000'000};
-/// Less ages nothing by a second.
-constexpr Nanoseconds kTimeAheadMax{1'000'000'000};
 /// Images that wait for the worker. With one more the map would be older by the time that one takes; with one
 /// less a worker that is quick enough would miss one now and then.
 constexpr std::size_t kBesideWorkMax = 2;
@@ -66,10 +60,8 @@ Pipeline::Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& 
 void Pipeline::go_on_from(Pipeline& ended) {
     assert(ended.is_finished_);
     begin_with(ended.take_map());
-    told_newest_ = ended.told_newest_;
-    goes_on_from_ = ended.goes_on_from_;
-    // This one's clock has not begun to run.
-    if (told_newest_) told_newest_->running -= ended.intake_.host_clock().running();
+    time_leap_.go_on_from(ended.time_leap_, ended.intake_.host_clock());
+    time_begin_ = ended.time_begin_;
 }
 
 void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
@@ -81,7 +73,10 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     FrameOutcome outcome = intake_.on_frame(frame, stamp);
     queue(outcome.joint_samples_of_before);
     if (const auto now_known = now()) {
-        notice_time_leap(*now_known);
+        if (const auto leap = time_leap_.notice(*now_known, intake_.host_clock())) {
+            go_on_after(leap->by);
+            time_begin_ = leap->begin;
+        }
     }
     const auto fate = outcome.mark ? marks_.take(*outcome.mark, now()) : MarkGate::Fate::taken;
     if (fate == MarkGate::Fate::ignored) {
@@ -98,45 +93,15 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     }
 }
 
-/// A smaller step back is over by itself: until then everything is older than what was used. After a larger
-/// one that would last as long as the step, an hour or for ever. After a step ahead the map would forget what
-/// nobody has confirmed for as long as the step.
-void Pipeline::notice_time_leap(HostTime now) {
-    const HostClockEstimate& clock = intake_.host_clock();
-    const Told told{now, *clock.newest_stamp(), clock.running()};
-    if (told_newest_) {
-        const Nanoseconds went = now - told_newest_->now;
-        const Nanoseconds leapt = went - passed_between(*told_newest_, told);
-        const bool is_back = went < -kTimeBackMax;
-        if (is_back || leapt > kTimeAheadMax) {
-            ++(is_back ? times_back_ : times_ahead_);
-            go_on_after(leapt);
-            // What was still told by the time before would make the map older by the leap.
-            goes_on_from_ = is_back ? std::nullopt : std::optional(now - kTimeAheadMax);
-        }
-    }
-    if (!told_newest_ || now > told_newest_->now) told_newest_ = told;
-}
-
+/// All that is remembered of the time before ends here; the maps stay, and are no older.
 void Pipeline::go_on_after(Nanoseconds leapt) {
     settle_waiting();
     builder_.forget_motion(leapt);
     joint_jump_.forget();
     integrated_.reset();
     used_.clear();
-    just_used_.clear();  // told by the time before: their age is not known
+    just_used_.clear();  // of the time before: their age is not known
     depth_newest_.reset();
-    told_newest_.reset();
-}
-
-/// Frames that were received one after the other tell how much passed at least. Over a silence only stamps
-/// do, or "now": whichever of the two clocks was not set. The lesser is taken: too much forgets a map. Where
-/// "now" went back, as after a controller was off for a while, the stamps alone tell.
-Nanoseconds Pipeline::passed_between(const Told& before, const Told& now) {
-    const Nanoseconds by_stamps{now.stamp.ns - before.stamp.ns};
-    const Nanoseconds went = now.now - before.now;
-    const Nanoseconds passed = went < Nanoseconds{0} ? by_stamps : std::min(by_stamps, went);
-    return std::max(now.running - before.running, passed);
 }
 
 void Pipeline::settle_waiting() {
@@ -236,19 +201,11 @@ void Pipeline::queue(const JointMeasurement& joints) {
 }
 
 std::optional<DepthReason> Pipeline::fault_on_arrival(const DepthFrame& frame) const {
-    if (!builder_.has_camera()) {
-        return DepthReason::no_camera;
-    }
-    if (depth_newest_ && frame.captured <= *depth_newest_) {
-        return DepthReason::out_of_order;
-    }
+    if (!builder_.has_camera()) return DepthReason::no_camera;
+    if (depth_newest_ && frame.captured <= *depth_newest_) return DepthReason::out_of_order;
     const auto now_known = told_beside_ ? told_beside_ : now();
-    if (now_known && frame.captured - *now_known > kDepthAheadMax) {
-        return DepthReason::ahead_of_time;
-    }
-    if (is_late({frame.captured, kCameraSource})) {
-        return DepthReason::late;
-    }
+    if (now_known && frame.captured - *now_known > kDepthAheadMax) return DepthReason::ahead_of_time;
+    if (is_late({frame.captured, kCameraSource})) return DepthReason::late;
     return std::nullopt;
 }
 
@@ -425,18 +382,12 @@ std::vector<AccountTable> Pipeline::account_tables() const {
 }
 
 bool Pipeline::is_balanced() const {
-    bool is_balanced = true;
-    for (const AccountTable& table : account_tables()) {
-        is_balanced = is_balanced && table.is_balanced;
-    }
-    return is_balanced;
+    return std::ranges::all_of(account_tables(), &AccountTable::is_balanced);
 }
 
 std::string Pipeline::account_text() const {
     std::string text;
-    for (const AccountTable& table : account_tables()) {
-        text += to_text(table);
-    }
+    for (const AccountTable& table : account_tables()) text += to_text(table);
     return text;
 }
 

@@ -22,11 +22,12 @@
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/pipeline/depth_stage.hpp"
 #include "host/core/pipeline/depth_worker.hpp"
-#include "host/core/pipeline/map_builder.hpp"
 #include "host/core/pipeline/fed_map.hpp"
+#include "host/core/pipeline/map_builder.hpp"
 #include "host/core/pipeline/mark_gate.hpp"
 #include "host/core/pipeline/mark_window.hpp"
 #include "host/core/pipeline/reorder_buffer.hpp"
+#include "host/core/pipeline/time_leap.hpp"
 #include "host/core/rig/host_rig.hpp"
 
 namespace octoskin {
@@ -139,10 +140,10 @@ class Pipeline {
     [[nodiscard]] std::optional<HostTime> now() const { return intake_.now(); }
     /// How often "now" went back by over 0.15 s: the host that sends SYNC began anew, or another one
     /// does. What waited was settled, and what was remembered of the time before forgotten: the maps stay.
-    [[nodiscard]] std::uint64_t times_back() const noexcept { return times_back_; }
+    [[nodiscard]] std::uint64_t times_back() const noexcept { return time_leap_.times_back(); }
     /// How often it went ahead by over a second more than passed: another host sends SYNC, or its clock was
     /// set. The same is done, and the maps stay as old as they were.
-    [[nodiscard]] std::uint64_t times_ahead() const noexcept { return times_ahead_; }
+    [[nodiscard]] std::uint64_t times_ahead() const noexcept { return time_leap_.times_ahead(); }
     /// When the readings were captured that the last `on_can`, `on_depth` or `on_silence` put into the maps.
     [[nodiscard]] std::span<const HostTime> just_used() const noexcept { return just_used_; }
     /// True if "now" is known and three periods have passed without a depth frame that the rig promises.
@@ -164,7 +165,6 @@ class Pipeline {
              const PipelineConfig& config);
 
     void settle_marks(HostTime now);
-    void notice_time_leap(HostTime now);
     void go_on_after(Nanoseconds leapt);
     /// What waits is integrated or counted, by what is known.
     void settle_waiting();
@@ -188,7 +188,7 @@ class Pipeline {
     void drop_oldest_depth();
     void finish_depth();
     [[nodiscard]] bool is_late(const ReleaseKey& key) const {
-        if (goes_on_from_ && key.captured < *goes_on_from_) return true;
+        if (time_begin_ && key.captured < *time_begin_) return true;
         return config_.release == Release::by_capture_time && integrated_ && key <= *integrated_;
     }
     [[nodiscard]] bool is_repeated(const ReleaseKey& key) const;
@@ -213,17 +213,8 @@ class Pipeline {
     std::map<BeamSource, HostTime> used_;         ///< the newest reading of each source in the maps
     std::optional<Nanoseconds> camera_patience_;  ///< three periods; empty without a camera
     std::optional<HostTime> depth_newest_;        ///< capture time of the newest depth frame
-    /// "Now" at its newest since it last leapt, and what the receive stamps said then.
-    struct Told {
-        HostTime now;
-        WallTime stamp;
-        Nanoseconds running{0};
-    };
-    [[nodiscard]] static Nanoseconds passed_between(const Told& before, const Told& now);
-    std::optional<Told> told_newest_;
-    std::optional<HostTime> goes_on_from_;  ///< after a leap ahead: what is earlier is of the time before
-    std::uint64_t times_back_ = 0;
-    std::uint64_t times_ahead_ = 0;
+    TimeLeap time_leap_;
+    std::optional<HostTime> time_begin_;   ///< after a leap ahead: what is earlier is of the time before
     bool has_can_time_ = false;            ///< and more of it may come
     std::optional<HostTime> told_beside_;  ///< of `on_silence`, since the newest frame
     bool is_finished_ = false;
