@@ -115,7 +115,7 @@ void ControlSocket::watch() {
 void ControlSocket::accept() {
     if (!socketcan::has_room_for_closing()) {
         spdlog::warn(
-            "{}: {} descriptors that programs sent along do not close: nobody new is let in for a while",
+            "{}: {} descriptors that programs sent along do not close: no new client is let in for a while",
             file_.string(), socketcan::closing());
         is_resting_ = true;
         acceptable_ = EventSource();

@@ -23,7 +23,7 @@ class ControlSocket {
     /// Answers a request (without its line feed) with one line (without a line feed). Is not asked for a
     /// client that has gone by then, and of each client once in a turn of the loop. Descriptors that come
     /// along are closed (socketcan::close_beside); while too many of them do not close, a client that sends
-    /// more is dropped, and nobody new is let in.
+    /// more is dropped, and no new one is let in.
     using Answer = std::function<std::string(const std::string& request)>;
 
     /// Takes a request that needs time: true, and `reply` with the ticket will follow, from the loop's

@@ -1,4 +1,4 @@
-// How long the daemon's end may take, and what is told of it.
+// How long the daemon's end may take, and what it says then.
 #pragma once
 
 #include <cstddef>

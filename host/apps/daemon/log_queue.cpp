@@ -193,7 +193,7 @@ void wait_for_log(int signal) {
     (void)::raise(signal);
 }
 
-/// In place of the library's own words, which wait for whoever reads standard error.
+/// In place of the library's own words, which wait for what reads standard error.
 [[noreturn]] void log_and_abort() {
     try {
         if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);

@@ -13,7 +13,8 @@
 namespace octoskin::socketcan {
 namespace {
 
-/// Of a message: a person's own program sends none, so that there is nothing to be gained by a larger room.
+/// For what the kernel says beside a message of its own accord. With room for a descriptor one would be
+/// received.
 constexpr std::size_t kPeekedMax = CMSG_SPACE(sizeof(ucred)) + CMSG_SPACE(sizeof(timespec));
 
 bool is_on(int descriptor, int option) {
@@ -22,8 +23,8 @@ bool is_on(int descriptor, int option) {
     return ::getsockopt(descriptor, SOL_SOCKET, option, &value, &size) == 0 && value != 0;
 }
 
-/// What the kernel tells beside each message of this socket.
-std::size_t told_bytes(int descriptor) {
+/// That the kernel fills beside each message of this socket.
+std::size_t bytes_beside(int descriptor) {
     return (is_on(descriptor, SO_PASSCRED) ? CMSG_SPACE(sizeof(ucred)) : 0) +
            (is_on(descriptor, SO_TIMESTAMPNS) ? CMSG_SPACE(sizeof(timespec)) : 0);
 }
@@ -44,16 +45,16 @@ void close_passed(const msghdr& message) {
 }
 
 bool has_descriptors_beside(int descriptor) {
-    alignas(cmsghdr) std::array<char, kPeekedMax> told{};
+    alignas(cmsghdr) std::array<char, kPeekedMax> beside{};
     char byte = 0;
     iovec part{&byte, sizeof(byte)};
     msghdr message{};
     message.msg_iov = &part;
     message.msg_iovlen = 1;
-    message.msg_control = told.data();
-    message.msg_controllen = std::min(told_bytes(descriptor), told.size());
+    message.msg_control = beside.data();
+    message.msg_controllen = std::min(bytes_beside(descriptor), beside.size());
     if (::recvmsg(descriptor, &message, MSG_DONTWAIT | MSG_PEEK | MSG_CMSG_CLOEXEC) < 0) return false;
-    close_passed(message);  // copies, where the kernel told less than it was to
+    close_passed(message);  // copies, where the kernel says less than it was asked for
     return (message.msg_flags & MSG_CTRUNC) != 0;
 }
 

@@ -99,7 +99,7 @@ TEST_F(ControlSocketTest, waits_for_no_connection_that_somebody_sends_along_and_
 
 // More of them than there are threads that close: and each waits for as long as the connection in it lingers.
 TEST_F(ControlSocketTest,
-       answers_while_what_was_sent_along_does_not_close_and_drops_who_sends_too_much_of_it) {
+       answers_while_what_was_sent_along_does_not_close_and_drops_a_client_that_sends_more) {
     {
         std::array<test::NestedConnection, 8> nested;
         const int client = connect();
@@ -118,7 +118,7 @@ TEST_F(ControlSocketTest,
                 answers.append(bytes.data(), static_cast<std::size_t>(count));
             EXPECT_EQ(std::ranges::count(answers, '\n'), 9) << "the last is dropped";
             EXPECT_GE(socketcan::closing(), socketcan::kClosingMax);
-            // Without descriptors all is as ever, for who is there.
+            // Without descriptors all is as ever, for those that are there.
             ASSERT_EQ(::send(other, "d\n", 2, 0), 2);
             EXPECT_EQ(::recv(other, bytes.data(), bytes.size(), 0), std::ssize("you said d"));
             ::close(client);

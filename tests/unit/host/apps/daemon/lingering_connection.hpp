@@ -1,5 +1,5 @@
 // A network connection that takes long to close: what it still has to send nobody reads, and it is to wait
-// for that. And such a one that waits, unread, in another connection: whoever closes that waits, too, and
+// for that. And such a one that waits, unread, in another connection: what closes that waits, too, and
 // cannot take its SO_LINGER.
 #pragma once
 

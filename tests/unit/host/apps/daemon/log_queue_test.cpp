@@ -1,5 +1,5 @@
-// The log while nothing takes its lines. Oracle: what a sink got, which holds the writer for as long as it is
-// told.
+// The log while nothing takes its lines. Oracle: what a sink got, which holds the writer for as long as a
+// test wants.
 #include "host/apps/daemon/log_queue.hpp"
 
 #include <gtest/gtest.h>
