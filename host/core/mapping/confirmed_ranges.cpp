@@ -17,15 +17,15 @@ bool agree(const Beam& a, const Beam& b) {
     return std::fabs(*a.range_m - *b.range_m) <= tolerance_m(a, b) + angle * *a.range_m;
 }
 
-/// That `before` was already told what `beam` tells, or of something nearer.
-bool is_told_by(const Beam& before, const Beam& beam) {
+/// Whether `before` was of what `beam` is of, or of something nearer.
+bool is_explained_by(const Beam& before, const Beam& beam) {
     return before.range_m && ConfirmedRanges::are_of_one_place(before, beam) &&
            *before.range_m <= *beam.range_m + tolerance_m(before, beam);
 }
 
-/// That it tells of what its zone was believed before.
-bool goes_on(const Beam& believed, const Beam& beam) {
-    return beam.range_m && ConfirmedRanges::are_of_one_place(believed, beam) && agree(believed, beam);
+/// Whether it is of what its zone has confirmed.
+bool goes_on(const Beam& confirmed, const Beam& beam) {
+    return beam.range_m && ConfirmedRanges::are_of_one_place(confirmed, beam) && agree(confirmed, beam);
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ bool ConfirmedRanges::are_of_one_place(const Beam& a, const Beam& b) {
            a.R_map_sensor.cwiseProduct(b.R_map_sensor).sum() >= trace_min;
 }
 
-bool ConfirmedRanges::stands(const Zone& zone) const {
+bool ConfirmedRanges::is_stationary(const Zone& zone) const {
     const std::span<const Reading> all(zone.newest);
     const std::size_t window = model_.window();
     return all.size() > window && std::ranges::all_of(all.last(window + 1), [&](const Reading& reading) {
@@ -46,14 +46,14 @@ bool ConfirmedRanges::stands(const Zone& zone) const {
            });
 }
 
-/// By the mean time between its readings so many in a row have not come. All that it said is forgotten: what
+/// By the mean time between its readings so many in a row have not come. All its readings are forgotten: what
 /// is there when it speaks again is new.
 void ConfirmedRanges::forget_silent(Sensor& sensor, const Beam& beam) {
     for (auto& entry : sensor.zones) {
         Zone& zone = entry.second;
         if (zone.newest.empty()) continue;
         constexpr double kMissing = static_cast<double>(kBefore) + 0.5;
-        constexpr double kLoneFor_s = 10.0;  // of one reading nobody knows how often they come
+        constexpr double kLoneFor_s = 10.0;  // of one reading the rate is not known
         const auto intervals = static_cast<double>(zone.newest.size() - 1);
         const double lasted_s = seconds_since(zone.newest.front().beam, zone.newest.back().beam.captured);
         const double silent_max_s = intervals > 0.0 ? kMissing * lasted_s / intervals : kLoneFor_s;
@@ -64,7 +64,7 @@ void ConfirmedRanges::forget_silent(Sensor& sensor, const Beam& beam) {
 }
 
 ConfirmedRanges::Answer ConfirmedRanges::take(const Beam& beam) {
-    believed_.clear();
+    confirmed_.clear();
     ended_.clear();
     if (model_.readings == 0) return {};
     Sensor& sensor = sensors_[{beam.source.node_id, beam.source.sensor}];
@@ -74,11 +74,11 @@ ConfirmedRanges::Answer ConfirmedRanges::take(const Beam& beam) {
     zone.newest.reserve(window + kBefore);
     if (zone.newest.size() >= window + kBefore) zone.newest.erase(zone.newest.begin());
     zone.newest.push_back({beam, ++sensor.readings, false});
-    const bool is_told = follow_believed(zone);
-    if (!beam.range_m) return {{}, ended_, false, stands(zone)};
+    const bool repeats_confirmed = follow_confirmed(zone);
+    if (!beam.range_m) return {{}, ended_, false, is_stationary(zone)};
 
     window_ = {{&zone, zone.newest.size() - std::min(zone.newest.size(), window)}};
-    believe(beam, window_);
+    confirm(beam, window_);
     if (sensor.zones.size() > 1) {
         window_.clear();
         for (auto& [index, each] : sensor.zones) {
@@ -88,55 +88,56 @@ ConfirmedRanges::Answer ConfirmedRanges::take(const Beam& beam) {
             if (first != each.newest.end())
                 window_.emplace_back(&each, static_cast<std::size_t>(first - each.newest.begin()));
         }
-        believe(beam, window_);
+        confirm(beam, window_);
     }
-    for (const Beam& believed : believed_) {
-        Zone& of = sensor.zones[believed.source.zone];
-        if (of.believed && !goes_on(*of.believed, believed)) end(of, beam);
-        of.believed = believed;
+    for (const Beam& confirmed : confirmed_) {
+        Zone& of = sensor.zones[confirmed.source.zone];
+        if (of.confirmed && !goes_on(*of.confirmed, confirmed)) end(of, beam);
+        of.confirmed = confirmed;
     }
-    add_what_stays(beam, sensor);
-    return {believed_, ended_, is_told, stands(zone)};
+    add_persisting(beam, sensor);
+    return {confirmed_, ended_, repeats_confirmed, is_stationary(zone)};
 }
 
-/// What is believed may move slowly; it has gone if none of so many readings tells of it. The answer: the
+/// What is confirmed may move slowly; it has gone if none of so many readings is of it. The answer: the
 /// newest does.
-bool ConfirmedRanges::follow_believed(Zone& zone) {
-    if (!zone.believed) return false;
+bool ConfirmedRanges::follow_confirmed(Zone& zone) {
+    if (!zone.confirmed) return false;
     const Beam& newest = zone.newest.back().beam;
-    if (goes_on(*zone.believed, newest)) {
+    if (goes_on(*zone.confirmed, newest)) {
         constexpr double kShare = 0.25;
-        *zone.believed->range_m += kShare * (*newest.range_m - *zone.believed->range_m);
+        *zone.confirmed->range_m += kShare * (*newest.range_m - *zone.confirmed->range_m);
         return true;
     }
     const auto last = std::span(zone.newest).last(std::min(zone.newest.size(), kBefore));
-    const auto tells = [&](const Reading& reading) { return goes_on(*zone.believed, reading.beam); };
-    if (std::ranges::none_of(last, tells)) end(zone, newest);
+    const auto is_of_it = [&](const Reading& reading) { return goes_on(*zone.confirmed, reading.beam); };
+    if (std::ranges::none_of(last, is_of_it)) end(zone, newest);
     return false;
 }
 
 /// `now`: the sensor's newest beam. What a sensor that has moved on counted it did not count from one place.
 void ConfirmedRanges::end(Zone& zone, const Beam& now) {
-    if (!zone.believed) return;
-    if (are_of_one_place(*zone.believed, now)) ended_.push_back(*zone.believed);
-    zone.believed.reset();
+    if (!zone.confirmed) return;
+    if (are_of_one_place(*zone.confirmed, now)) ended_.push_back(*zone.confirmed);
+    zone.confirmed.reset();
 }
 
-void ConfirmedRanges::add_what_stays(const Beam& newest, const Sensor& sensor) {
+void ConfirmedRanges::add_persisting(const Beam& newest, const Sensor& sensor) {
     for (const auto& entry : sensor.zones) {
         const Zone& zone = entry.second;
-        if (!zone.believed) continue;  // nor need it have a reading, if there was no memory for it
+        if (!zone.confirmed) continue;  // nor need it have a reading, if there was no memory for it
         const Beam& own_newest = zone.newest.back().beam;
-        if (!goes_on(*zone.believed, own_newest)) continue;
-        const bool is_asked = own_newest.source == newest.source || *zone.believed->range_m < *newest.range_m;
+        if (!goes_on(*zone.confirmed, own_newest)) continue;
+        const bool is_asked =
+            own_newest.source == newest.source || *zone.confirmed->range_m < *newest.range_m;
         const bool is_added = std::ranges::any_of(
-            believed_, [&](const Beam& added) { return added.source == own_newest.source; });
-        if (is_asked && !is_added && are_of_one_place(*zone.believed, newest))
-            believed_.push_back(*zone.believed);
+            confirmed_, [&](const Beam& added) { return added.source == own_newest.source; });
+        if (is_asked && !is_added && are_of_one_place(*zone.confirmed, newest))
+            confirmed_.push_back(*zone.confirmed);
     }
 }
 
-void ConfirmedRanges::believe(const Beam& newest, const Window& window) {
+void ConfirmedRanges::confirm(const Beam& newest, const Window& window) {
     agreeing_.clear();
     for (const auto& [zone, first] : window) {
         const std::span<Reading> all(zone->newest);
@@ -144,7 +145,7 @@ void ConfirmedRanges::believe(const Beam& newest, const Window& window) {
         for (Reading& reading : all.subspan(first)) {
             const Beam& beam = reading.beam;
             const bool is_new = std::ranges::none_of(
-                newest_before, [&](const Reading& before) { return is_told_by(before.beam, beam); });
+                newest_before, [&](const Reading& before) { return is_explained_by(before.beam, beam); });
             if (beam.range_m && is_new && are_of_one_place(beam, newest) && agree(beam, newest))
                 agreeing_.push_back(&reading);
         }
@@ -153,16 +154,16 @@ void ConfirmedRanges::believe(const Beam& newest, const Window& window) {
     for (auto reading = agreeing_.begin(); reading != agreeing_.end();) {
         // Those of a zone stand together, the newest last.
         double sum_m = 0.0;
-        bool is_believed = true;
+        bool is_confirmed = true;
         auto next = reading;
         for (; next != agreeing_.end() && (*next)->beam.source == (*reading)->beam.source; ++next) {
             sum_m += *(*next)->beam.range_m;
-            is_believed = is_believed && (*next)->is_believed;
-            (*next)->is_believed = true;
+            is_confirmed = is_confirmed && (*next)->is_confirmed;
+            (*next)->is_confirmed = true;
         }
-        if (!is_believed) {
-            believed_.push_back((*(next - 1))->beam);
-            believed_.back().range_m = sum_m / static_cast<double>(next - reading);
+        if (!is_confirmed) {
+            confirmed_.push_back((*(next - 1))->beam);
+            confirmed_.back().range_m = sum_m / static_cast<double>(next - reading);
         }
         reading = next;
     }

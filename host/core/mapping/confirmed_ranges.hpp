@@ -1,5 +1,5 @@
-// Which ranges are believed at once: those on which the newest readings of a sensor that stands still agree,
-// after it has seen further, or has only just come to a stand.
+// Which ranges are confirmed at once: those on which the newest readings of a sensor that does not move
+// agree, after it has seen further, or has only just stopped.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@
 
 namespace octoskin {
 
-/// One reading may be wrong, so that none is believed alone. What agrees are either readings of one zone, or
+/// One reading may be wrong, so that none is confirmed alone. What agrees are either readings of one zone, or
 /// of several zones of a sensor, which are ranged in turn: what has come is before many of them.
 class ConfirmedRanges {
   public:
     /// Two readings are of one place if the sensor has moved and turned no further between them. So it may
-    /// move by as much within `StationaryModel::readings` - 1 readings, and its ranges are believed still.
+    /// move by as much within `StationaryModel::readings` - 1 readings, and its ranges are confirmed still.
     static constexpr double kMovedMax_m = 0.01;
     static constexpr double kTurnedMax_rad = 0.0175;
     /// Ranges of one zone agree to this and so many of the larger sigma; of two zones to the angle between
@@ -34,24 +34,24 @@ class ConfirmedRanges {
     explicit ConfirmedRanges(const StationaryModel& model) : model_(model) {}
 
     struct Answer {
-        /// Which ranges are believed now, one for each zone: the zone's newest beam, with the mean of the
+        /// Which ranges are confirmed now, one for each zone: the zone's newest beam, with the mean of the
         /// ranges that agree. None as a rule; valid until the next call.
-        std::span<const Beam> believed;
+        std::span<const Beam> confirmed;
         /// Those that were, and are no more though the sensor is where it was: what they left in their caps
         /// that marks nothing is to be taken back (EvidenceRule::withdraw). Valid likewise.
         std::span<const Beam> ended;
-        /// The beam says again what was believed before it: from one place no reading tells more of where in
-        /// its cap that is, however many there are. What is there takes its hits.
-        bool is_told = false;
+        /// The beam repeats what was confirmed before it. From one place no number of readings localises that
+        /// within the cap, so its hits go to what is occupied there.
+        bool repeats_confirmed = false;
         /// The beam is of one place with the last `StationaryModel::window()` before it of its zone: then it
         /// marks only where it would free space, too.
-        bool stands = false;
+        bool is_stationary = false;
     };
-    /// Takes a beam that goes into the map, in the order in which they do. A range is believed first while it
-    /// is new: if none of the `kBefore` readings of its zone before the window was of this place and as
-    /// short. It stays believed, with each reading of its zone that agrees with it, and with those of other
-    /// zones that see further, until `kBefore` in a row do not agree; or do not come: then all that the zone
-    /// said is forgotten. O(zones of the sensor), below 1 us; 2 kB a zone. Throws std::bad_alloc.
+    /// Takes a beam that goes into the map, in the order in which they do. A range is confirmed first while
+    /// it is new: if none of the `kBefore` readings of its zone before the window was of this place and as
+    /// short. It stays confirmed, with each reading of its zone that agrees with it, and with those of other
+    /// zones that see further, until `kBefore` in a row do not agree; or do not come: then all readings of
+    /// the zone are forgotten. O(zones of the sensor), below 1 us; 2 kB a zone. Throws std::bad_alloc.
     [[nodiscard]] Answer take(const Beam& beam);
 
     [[nodiscard]] const StationaryModel& model() const noexcept { return model_; }
@@ -62,11 +62,11 @@ class ConfirmedRanges {
     struct Reading {
         Beam beam;
         std::uint64_t number = 0;  ///< of the sensor's, from 1
-        bool is_believed = false;
+        bool is_confirmed = false;
     };
     struct Zone {
         std::vector<Reading> newest;  ///< the last of them last
-        std::optional<Beam> believed;
+        std::optional<Beam> confirmed;
     };
     struct Sensor {
         std::uint64_t readings = 0;
@@ -75,18 +75,18 @@ class ConfirmedRanges {
     /// The first reading of a zone in a window.
     using Window = std::vector<std::pair<Zone*, std::size_t>>;
 
-    void believe(const Beam& newest, const Window& window);
-    [[nodiscard]] bool stands(const Zone& zone) const;
+    void confirm(const Beam& newest, const Window& window);
+    [[nodiscard]] bool is_stationary(const Zone& zone) const;
     void forget_silent(Sensor& sensor, const Beam& beam);
-    [[nodiscard]] bool follow_believed(Zone& zone);
+    [[nodiscard]] bool follow_confirmed(Zone& zone);
     void end(Zone& zone, const Beam& now);
-    void add_what_stays(const Beam& newest, const Sensor& sensor);
+    void add_persisting(const Beam& newest, const Sensor& sensor);
 
     StationaryModel model_;
     std::map<std::pair<std::uint8_t, std::uint8_t>, Sensor> sensors_;  ///< by node and local index
     Window window_;
     std::vector<Reading*> agreeing_;
-    std::vector<Beam> believed_;
+    std::vector<Beam> confirmed_;
     std::vector<Beam> ended_;
 };
 

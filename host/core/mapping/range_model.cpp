@@ -16,7 +16,7 @@ Status<BeamRejection> RangeModel::integrate_cone(const Beam& beam, EvidenceSink&
     const ConfirmedRanges::Answer answer = stationary_.take(beam);
     const auto voxels = cone_.find(beam, width_of(answer));
     if (!voxels) return unexpected(voxels.error());
-    make_counts(**voxels, cone_.model_of(beam), answer.is_told, counts_);
+    make_counts(**voxels, cone_.model_of(beam), answer.repeats_confirmed, counts_);
     sink.apply(counts_, nullptr);
     stationary_.conclude(beam, answer, sink);
     return Done{};

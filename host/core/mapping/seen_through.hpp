@@ -1,4 +1,4 @@
-// How far a sensor that stands still has surely seen: as far as all of its readings of half a second.
+// How far a sensor that does not move has surely seen: as far as all of its readings of half a second.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace octoskin {
 
 /// Counting frees what is gone within a second at 30 readings a second. A zone that is ranged in turn with
-/// others has not so many: what three of its readings see through is free, if nobody else sees it.
+/// others has not so many: what three of its readings see through is free, if no other reading ends there.
 class SeenThrough {
   public:
     static constexpr std::size_t kReadingsMin = 3;
@@ -51,7 +51,7 @@ class SeenThrough {
     };
     using Readings = std::deque<Reading>;  ///< of a zone, the newest last; none if there was no memory
 
-    /// What nobody heard of for longer may have come and gone.
+    /// What was not measured for longer may have come and gone.
     [[nodiscard]] bool counts(const Beam& before, HostTime now) const {
         return seconds_since(before, now) <= 2.0 * model_.clears_after_s;
     }

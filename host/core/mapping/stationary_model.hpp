@@ -1,4 +1,4 @@
-// When ranges of a sensor that stands still mark at once what has come before it, and free what has gone.
+// When ranges of a sensor that does not move mark at once what has come before it, and free what has gone.
 #pragma once
 
 #include <cstdint>
@@ -6,10 +6,10 @@
 namespace octoskin {
 
 /// A range of a cone is shared by all of its cap, and readings from many places tell where in it the surface
-/// is. From one place nothing tells, and a share takes many readings to mark: so what came before a sensor
+/// is. From one place no reading does, and a share takes many readings to mark: so what came before a sensor
 /// that stands still would not be on the map in time.
 struct StationaryModel {
-    /// So many readings that agree are believed at once, of a sensor's last `window()`; 0: none ever are.
+    /// So many readings that agree are confirmed at once, of a sensor's last `window()`; 0: none ever are.
     std::uint32_t readings = 0;
     float hits = 2.0F;          ///< what they leave a voxel at least, and no misses
     double angle_share = 0.25;  ///< how far off the axis, of the way to where nothing is seen any more

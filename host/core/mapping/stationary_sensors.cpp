@@ -15,7 +15,7 @@ void StationarySensors::conclude(const Beam& beam, const ConfirmedRanges::Answer
         make_withdrawal(**voxels, evidence_);
         sink.apply(evidence_, nullptr);
     }
-    for (const Beam& confirmed : answer.believed) confirm(confirmed, width_of(answer), sink);
+    for (const Beam& confirmed : answer.confirmed) confirm(confirmed, width_of(answer), sink);
 }
 
 void StationarySensors::clear_seen_through(const Beam& beam, EvidenceSink& sink) {

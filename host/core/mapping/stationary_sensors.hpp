@@ -45,7 +45,7 @@ class StationarySensors {
 
 /// How far off its axis a range marks: a sensor that does not move marks only where it would free space, too.
 [[nodiscard]] inline CapWidth width_of(const ConfirmedRanges::Answer& answer) noexcept {
-    return answer.stands ? CapWidth::core : CapWidth::whole;
+    return answer.is_stationary ? CapWidth::core : CapWidth::whole;
 }
 
 }  // namespace octoskin

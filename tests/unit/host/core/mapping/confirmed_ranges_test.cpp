@@ -1,4 +1,4 @@
-// When ranges of a sensor are believed at once: the rules of docs/method.md "A sensor that stands still",
+// When ranges of a sensor are confirmed at once: the rules of docs/method.md "A sensor that stands still",
 // with 4 readings of the last 7.
 #include "host/core/mapping/confirmed_ranges.hpp"
 
@@ -34,14 +34,14 @@ Beam beam_at(std::optional<double> range_m, std::uint8_t zone = 0, double x_m = 
 
 class ConfirmedRangesTest : public testing::Test {
   protected:
-    /// How many ranges of something well before the wall, which is at 1 m, are believed after each of these,
+    /// How many ranges of something well before the wall, which is at 1 m, are confirmed after each of these,
     /// from one place, of one zone.
     std::vector<std::size_t> take(const std::vector<std::optional<double>>& ranges_m) {
         std::vector<std::size_t> counts;
         for (const auto& range_m : ranges_m) {
-            const auto believed = ranges_.take(beam_at(range_m)).believed;
+            const auto confirmed = ranges_.take(beam_at(range_m)).confirmed;
             counts.push_back(static_cast<std::size_t>(
-                std::ranges::count_if(believed, [](const Beam& beam) { return *beam.range_m < 0.9; })));
+                std::ranges::count_if(confirmed, [](const Beam& beam) { return *beam.range_m < 0.9; })));
         }
         return counts;
     }
@@ -50,20 +50,20 @@ class ConfirmedRangesTest : public testing::Test {
     ConfirmedRanges ranges_{StationaryModel{.readings = 4}};
 };
 
-TEST_F(ConfirmedRangesTest, believes_the_fourth_that_agrees_and_its_mean) {
+TEST_F(ConfirmedRangesTest, confirms_the_fourth_that_agrees_and_its_mean) {
     EXPECT_EQ(take({0.50, 0.52, 0.49}), Counts({0, 0, 0}));
-    const auto believed = ranges_.take(beam_at(0.53)).believed;
-    ASSERT_EQ(believed.size(), 1U);
-    EXPECT_NEAR(*believed.front().range_m, 0.51, 1e-12);
-    EXPECT_EQ(believed.front().source, (BeamSource{1, 2, 0}));
+    const auto confirmed = ranges_.take(beam_at(0.53)).confirmed;
+    ASSERT_EQ(confirmed.size(), 1U);
+    EXPECT_NEAR(*confirmed.front().range_m, 0.51, 1e-12);
+    EXPECT_EQ(confirmed.front().source, (BeamSource{1, 2, 0}));
 }
 
-TEST_F(ConfirmedRangesTest, believes_nothing_if_the_mapping_says_never) {
+TEST_F(ConfirmedRangesTest, confirms_nothing_if_the_mapping_says_never) {
     ConfirmedRanges never{StationaryModel{}};
-    for (int i = 0; i < 20; ++i) EXPECT_TRUE(never.take(beam_at(0.5)).believed.empty());
+    for (int i = 0; i < 20; ++i) EXPECT_TRUE(never.take(beam_at(0.5)).confirmed.empty());
 }
 
-TEST_F(ConfirmedRangesTest, believes_no_wrong_reading_however_often_one_comes) {
+TEST_F(ConfirmedRangesTest, confirms_no_wrong_reading_however_often_one_comes) {
     take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
     // Every third is wrong: never four in seven.
     for (int i = 0; i < 20; ++i) EXPECT_EQ(take({0.5, 1.0, 1.0}), Counts({0, 0, 0}));
@@ -71,35 +71,36 @@ TEST_F(ConfirmedRangesTest, believes_no_wrong_reading_however_often_one_comes) {
     EXPECT_EQ(take({0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.3, 0.6, 0.2}), Counts(10, 0));
 }
 
-TEST_F(ConfirmedRangesTest, believes_what_comes_though_three_of_seven_are_wrong_or_fail) {
+TEST_F(ConfirmedRangesTest, confirms_what_comes_though_three_of_seven_are_wrong_or_fail) {
     take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
     EXPECT_EQ(take({0.5, 1.0, 0.5, kNothing, 0.5, 0.2, 0.5}), Counts({0, 0, 0, 0, 0, 0, 1}));
 }
 
-TEST_F(ConfirmedRangesTest, believes_what_was_new_as_long_as_it_stays) {
+TEST_F(ConfirmedRangesTest, confirms_what_was_new_as_long_as_it_stays) {
     ConfirmedRanges ranges{StationaryModel{.readings = 4}};
-    const auto told = [&](const std::vector<std::optional<double>>& ranges_m) {
-        std::vector<std::size_t> believed;
+    const auto counts_of = [&](const std::vector<std::optional<double>>& ranges_m) {
+        std::vector<std::size_t> confirmed;
         for (const auto& range_m : ranges_m)
-            believed.push_back(ranges.take(beam_at(range_m)).believed.size());
-        return believed;
+            confirmed.push_back(ranges.take(beam_at(range_m)).confirmed.size());
+        return confirmed;
     };
-    told({0.3, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
-    EXPECT_EQ(told({1.0, 1.0, 1.0, 1.0, 1.0}), Counts({1, 1, 1, 1, 1})) << "new when it began";
-    EXPECT_EQ(told(std::vector<std::optional<double>>(12, 0.5)),
+    counts_of({0.3, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
+    EXPECT_EQ(counts_of({1.0, 1.0, 1.0, 1.0, 1.0}), Counts({1, 1, 1, 1, 1})) << "new when it began";
+    EXPECT_EQ(counts_of(std::vector<std::optional<double>>(12, 0.5)),
               Counts({0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1}));
-    EXPECT_EQ(told({1.0, 0.5, kNothing, 1.0, 0.5}), Counts({0, 1, 0, 0, 1})) << "two in a row are nothing";
-    EXPECT_EQ(told({1.0, 1.0, 1.0, 0.5, 1.0}), Counts(5, 0)) << "three are";
-    EXPECT_EQ(told(std::vector<std::optional<double>>(12, 1.0)), Counts(12, 0)) << "it was never nearer";
+    EXPECT_EQ(counts_of({1.0, 0.5, kNothing, 1.0, 0.5}), Counts({0, 1, 0, 0, 1}))
+        << "two in a row are nothing";
+    EXPECT_EQ(counts_of({1.0, 1.0, 1.0, 0.5, 1.0}), Counts(5, 0)) << "three are";
+    EXPECT_EQ(counts_of(std::vector<std::optional<double>>(12, 1.0)), Counts(12, 0)) << "it was never nearer";
 }
 
-TEST_F(ConfirmedRangesTest, follows_what_it_believes_as_it_moves_away) {
+TEST_F(ConfirmedRangesTest, follows_what_it_confirms_as_it_moves_away) {
     take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
     take({0.5, 0.5, 0.5, 0.5});
     for (double range_m = 0.5; range_m < 0.9; range_m += 0.01) {
-        const auto believed = ranges_.take(beam_at(range_m)).believed;
-        ASSERT_EQ(believed.size(), 1U) << range_m;
-        EXPECT_NEAR(*believed.front().range_m, range_m, 0.035);
+        const auto confirmed = ranges_.take(beam_at(range_m)).confirmed;
+        ASSERT_EQ(confirmed.size(), 1U) << range_m;
+        EXPECT_NEAR(*confirmed.front().range_m, range_m, 0.035);
     }
 }
 
@@ -109,36 +110,36 @@ TEST_F(ConfirmedRangesTest, takes_what_was_as_near_before_for_no_news) {
     EXPECT_EQ(take({0.5, 0.5, 0.5, 0.5, 0.5, 0.5}), Counts({0, 0, 0, 0, 0, 1}));
 }
 
-TEST_F(ConfirmedRangesTest, believes_no_sensor_that_moves_or_turns_faster_than_it_may) {
-    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0034 * i)).believed.empty());
+TEST_F(ConfirmedRangesTest, confirms_no_sensor_that_moves_or_turns_faster_than_it_may) {
+    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0034 * i)).confirmed.empty());
     ranges_.forget();
-    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0, 0.34 * i)).believed.empty());
+    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0, 0.34 * i)).confirmed.empty());
 }
 
-TEST_F(ConfirmedRangesTest, believes_a_sensor_that_moves_and_turns_slowly) {
+TEST_F(ConfirmedRangesTest, confirms_a_sensor_that_moves_and_turns_slowly) {
     for (int i = 0; i < 30; ++i) {
-        const auto believed = ranges_.take(beam_at(0.5, 0, 0.0033 * i, 0.33 * i)).believed;
-        EXPECT_EQ(believed.size(), i < 3 ? 0U : 1U);
+        const auto confirmed = ranges_.take(beam_at(0.5, 0, 0.0033 * i, 0.33 * i)).confirmed;
+        EXPECT_EQ(confirmed.size(), i < 3 ? 0U : 1U);
     }
 }
 
 TEST_F(ConfirmedRangesTest, hears_zones_that_are_ranged_in_turn) {
     for (int cycle = 0; cycle < 2; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone) (void)ranges_.take(beam_at(1.0, zone));
-    // Something square before zones 4 to 8: what the fourth of them says makes all four believed.
+    // Something square before zones 4 to 8: what the fourth of them says makes all four confirmed.
     std::vector<std::size_t> counts;
     for (std::uint8_t zone = 4; zone < 9; ++zone)
-        counts.push_back(ranges_.take(beam_at(0.5, zone)).believed.size());
+        counts.push_back(ranges_.take(beam_at(0.5, zone)).confirmed.size());
     EXPECT_EQ(counts, Counts({0, 0, 0, 4, 1}));
 }
 
 TEST_F(ConfirmedRangesTest, hears_zones_of_what_comes_again_a_second_after_it_left) {
     const auto cycles_of = [&](int cycles, double range_m) {
-        std::size_t believed = 0;
+        std::size_t confirmed = 0;
         for (int cycle = 0; cycle < cycles; ++cycle)
             for (std::uint8_t zone = 0; zone < 9; ++zone)
-                believed += ranges_.take(beam_at(range_m, zone)).believed.size();
-        return believed;
+                confirmed += ranges_.take(beam_at(range_m, zone)).confirmed.size();
+        return confirmed;
     };
     (void)cycles_of(8, 1.0);
     EXPECT_GT(cycles_of(3, 0.5), 0U);
@@ -152,8 +153,8 @@ TEST_F(ConfirmedRangesTest, hears_one_zone_by_its_own_readings) {
     for (int cycle = 0; cycle < 20; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone) {
             const bool is_there = zone == 4 && cycle >= 10;
-            const auto believed = ranges_.take(beam_at(is_there ? 0.5 : 1.0, zone)).believed;
-            if (std::ranges::any_of(believed, [](const Beam& beam) { return *beam.range_m == 0.5; }))
+            const auto confirmed = ranges_.take(beam_at(is_there ? 0.5 : 1.0, zone)).confirmed;
+            if (std::ranges::any_of(confirmed, [](const Beam& beam) { return *beam.range_m == 0.5; }))
                 cycles.push_back(cycle);
         }
     ASSERT_FALSE(cycles.empty());
@@ -161,24 +162,26 @@ TEST_F(ConfirmedRangesTest, hears_one_zone_by_its_own_readings) {
     EXPECT_EQ(cycles.size(), 5U + 6U * 9U) << "and from then on whichever zone looks past it";
 }
 
-TEST_F(ConfirmedRangesTest, believes_no_zone_for_what_its_neighbours_have_always_said) {
+TEST_F(ConfirmedRangesTest, confirms_no_zone_for_what_its_neighbours_have_always_ranged) {
     for (int cycle = 0; cycle < 10; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone)
             (void)ranges_.take(beam_at(zone == 4 ? 1.0 : 0.5, zone));
     for (std::uint8_t zone = 0; zone < 9; ++zone)
-        for (const Beam& believed : ranges_.take(beam_at(0.5, zone)).believed)
-            EXPECT_NE(believed.source.zone, 4U) << "one reading does not change what it was believed";
+        for (const Beam& confirmed : ranges_.take(beam_at(0.5, zone)).confirmed)
+            EXPECT_NE(confirmed.source.zone, 4U) << "one reading does not change what it was confirmed";
 }
 
-TEST_F(ConfirmedRangesTest, tells_what_only_says_again_what_is_believed) {
-    const auto told = [&](std::optional<double> range_m) { return ranges_.take(beam_at(range_m)).is_told; };
-    for (int i = 0; i < 4; ++i) EXPECT_FALSE(told(0.5)) << i << ": it is believed with the fourth";
-    for (int i = 0; i < 100; ++i) EXPECT_TRUE(told(0.5));
-    EXPECT_FALSE(told(1.0));
-    EXPECT_FALSE(told(kNothing));
-    EXPECT_TRUE(told(0.5));
-    for (int i = 0; i < 3; ++i) EXPECT_FALSE(told(1.0));
-    EXPECT_FALSE(told(0.5)) << "it was given up";
+TEST_F(ConfirmedRangesTest, names_what_only_repeats_what_is_confirmed) {
+    const auto repeats = [&](std::optional<double> range_m) {
+        return ranges_.take(beam_at(range_m)).repeats_confirmed;
+    };
+    for (int i = 0; i < 4; ++i) EXPECT_FALSE(repeats(0.5)) << i << ": it is confirmed with the fourth";
+    for (int i = 0; i < 100; ++i) EXPECT_TRUE(repeats(0.5));
+    EXPECT_FALSE(repeats(1.0));
+    EXPECT_FALSE(repeats(kNothing));
+    EXPECT_TRUE(repeats(0.5));
+    for (int i = 0; i < 3; ++i) EXPECT_FALSE(repeats(1.0));
+    EXPECT_FALSE(repeats(0.5)) << "it was given up";
 }
 
 /// Two zones in turn, of which the first sees something before the wall.
@@ -190,8 +193,8 @@ class SilentZone : public ConfirmedRangesTest {
         beam.captured = HostTime{static_cast<std::int64_t>(std::llround(1e9 * captured_s_))};
         return ranges_.take(beam);
     }
-    bool believes_hand_after(std::uint8_t zone, double range_m, double period_s) {
-        return std::ranges::any_of(take_after(zone, range_m, period_s).believed,
+    bool confirms_hand_after(std::uint8_t zone, double range_m, double period_s) {
+        return std::ranges::any_of(take_after(zone, range_m, period_s).confirmed,
                                    [](const Beam& beam) { return *beam.range_m < 0.9; });
     }
     double captured_s_ = 1.0;
@@ -208,11 +211,11 @@ TEST_F(SilentZone, is_believed_until_three_of_its_readings_have_not_come) {
                 (void)take_after(zone, zone == 0 ? 0.4 : 1.0, period_s);
         // The first zone is due about one period before each of these.
         for (int i = 1; i <= 3; ++i)
-            EXPECT_TRUE(believes_hand_after(1, 1.0, 1.9 * period_s)) << i << ' ' << period_s;
+            EXPECT_TRUE(confirms_hand_after(1, 1.0, 1.9 * period_s)) << i << ' ' << period_s;
         const auto answer = take_after(1, 1.0, 1.9 * period_s);
         ASSERT_EQ(answer.ended.size(), 1U);
         EXPECT_NEAR(*answer.ended.front().range_m, 0.4, 1e-9);
-        EXPECT_FALSE(believes_hand_after(1, 1.0, 1.9 * period_s));
+        EXPECT_FALSE(confirms_hand_after(1, 1.0, 1.9 * period_s));
     }
 }
 
@@ -220,10 +223,10 @@ TEST_F(SilentZone, is_believed_again_with_its_fourth_reading_after_a_gap) {
     for (int i = 0; i < 20; ++i) (void)take_after(0, 1.0, 0.033);
     for (int i = 0; i < 20; ++i) (void)take_after(0, 0.4, 0.033);
     for (const double gap_s : {0.2, 0.9, 5.0}) {
-        EXPECT_FALSE(believes_hand_after(0, 0.4, gap_s));
-        EXPECT_FALSE(believes_hand_after(0, 0.4, 0.033));
-        EXPECT_FALSE(believes_hand_after(0, 0.4, 0.033));
-        for (int i = 0; i < 20; ++i) EXPECT_TRUE(believes_hand_after(0, 0.4, 0.033)) << gap_s;
+        EXPECT_FALSE(confirms_hand_after(0, 0.4, gap_s));
+        EXPECT_FALSE(confirms_hand_after(0, 0.4, 0.033));
+        EXPECT_FALSE(confirms_hand_after(0, 0.4, 0.033));
+        for (int i = 0; i < 20; ++i) EXPECT_TRUE(confirms_hand_after(0, 0.4, 0.033)) << gap_s;
     }
 }
 
@@ -231,25 +234,25 @@ TEST_F(SilentZone, is_believed_again_with_its_fourth_reading_after_a_gap) {
 TEST_F(SilentZone, is_none_however_slow_it_is) {
     for (int cycle = 0; cycle < 20; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone) (void)take_after(zone, 1.0, 0.14);
-    std::vector<bool> believed;
+    std::vector<bool> confirmed;
     for (int cycle = 0; cycle < 6; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone) {
-            const bool is_believed = believes_hand_after(zone, zone == 4 ? 0.4 : 1.0, 0.14);
-            if (zone == 4) believed.push_back(is_believed);
+            const bool is_confirmed = confirms_hand_after(zone, zone == 4 ? 0.4 : 1.0, 0.14);
+            if (zone == 4) confirmed.push_back(is_confirmed);
         }
-    EXPECT_EQ(believed, (std::vector<bool>{false, false, false, true, true, true}));
+    EXPECT_EQ(confirmed, (std::vector<bool>{false, false, false, true, true, true}));
 }
 
-TEST_F(SilentZone, is_forgotten_with_all_that_it_said_once_that_is_too_old) {
+TEST_F(SilentZone, is_forgotten_with_all_its_readings_once_they_are_too_old) {
     for (int i = 0; i < 20; ++i) (void)take_after(0, 0.4, 0.033);
-    EXPECT_TRUE(believes_hand_after(0, 0.4, 0.1)) << "two are missing";
+    EXPECT_TRUE(confirms_hand_after(0, 0.4, 0.1)) << "two are missing";
     EXPECT_EQ(take_after(0, 0.4, 1.2).ended.size(), 1U);
-    EXPECT_FALSE(believes_hand_after(0, 0.4, 0.033));
-    EXPECT_FALSE(believes_hand_after(0, 0.4, 0.033));
-    EXPECT_TRUE(believes_hand_after(0, 0.4, 0.033)) << "the fourth after that";
+    EXPECT_FALSE(confirms_hand_after(0, 0.4, 0.033));
+    EXPECT_FALSE(confirms_hand_after(0, 0.4, 0.033));
+    EXPECT_TRUE(confirms_hand_after(0, 0.4, 0.033)) << "the fourth after that";
 }
 
-TEST_F(ConfirmedRangesTest, tells_what_is_believed_no_longer) {
+TEST_F(ConfirmedRangesTest, names_what_is_confirmed_no_longer) {
     const auto ended = [&](std::optional<double> range_m) {
         return ranges_.take(beam_at(range_m)).ended.size();
     };
@@ -260,28 +263,28 @@ TEST_F(ConfirmedRangesTest, tells_what_is_believed_no_longer) {
     EXPECT_EQ(ended(1.0), 0U);
 }
 
-TEST_F(ConfirmedRangesTest, tells_not_what_a_sensor_leaves_behind_that_moves_on) {
+TEST_F(ConfirmedRangesTest, does_not_name_what_a_sensor_leaves_behind_that_moves_on) {
     for (int i = 0; i < 8; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5)).ended.empty());
     for (int i = 1; i < 20; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.02 * i)).ended.empty()) << i;
 }
 
 TEST_F(ConfirmedRangesTest, knows_who_has_stood_for_a_window) {
-    for (int i = 0; i < 30; ++i) EXPECT_EQ(ranges_.take(beam_at(0.5)).stands, i >= 7) << i;
+    for (int i = 0; i < 30; ++i) EXPECT_EQ(ranges_.take(beam_at(0.5)).is_stationary, i >= 7) << i;
     ranges_.forget();
     // To and fro.
     for (int i = 0; i < 60; ++i)
-        EXPECT_FALSE(ranges_.take(beam_at(0.5, 0, i % 7 == 0 ? 0.02 : 0.0)).stands) << i;
+        EXPECT_FALSE(ranges_.take(beam_at(0.5, 0, i % 7 == 0 ? 0.02 : 0.0)).is_stationary) << i;
 }
 
 TEST_F(ConfirmedRangesTest, keeps_sensors_apart) {
     for (std::uint8_t i = 0; i < 12; ++i) {
         Beam beam = beam_at(0.5);
         beam.source = {static_cast<std::uint8_t>(i % 2), static_cast<std::uint8_t>(i / 2 % 2), 0};
-        EXPECT_TRUE(ranges_.take(beam).believed.empty());
+        EXPECT_TRUE(ranges_.take(beam).confirmed.empty());
     }
 }
 
-TEST_F(ConfirmedRangesTest, begins_anew_after_it_was_told_to_forget) {
+TEST_F(ConfirmedRangesTest, begins_anew_after_forget) {
     take({0.5, 0.5, 0.5});
     ranges_.forget();
     EXPECT_EQ(take({0.5, 0.5, 0.5, 0.5}), Counts({0, 0, 0, 1}));
