@@ -17,6 +17,7 @@
 #include "host/io/openni2/helper_process.hpp"
 #include "host/io/openni2/oni_writer.hpp"
 #include "tests/support/scratch_folder.hpp"
+#include "tests/support/system_call_filters.hpp"
 
 namespace octoskin {
 namespace {
@@ -55,16 +56,9 @@ bool gets_a_filter(std::vector<std::string> command) {
 class HelperConfinementTest : public testing::Test {
   protected:
     void SetUp() override {
-#ifdef OCTOSKIN_SANITIZED
-        GTEST_SKIP() << "sanitizers ask for more";
-#endif
-        const std::uint32_t action = SECCOMP_RET_KILL_PROCESS;  // an emulator has none
-        if (::syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &action) != 0)
-            GTEST_SKIP() << "no filters here";
+        if (const char* const why = testing_support::why_no_filters()) GTEST_SKIP() << why;
     }
-    static std::string helper(const char* name) {
-        return openni2::find_helper(name).value().string();
-    }
+    static std::string helper(const char* name) { return openni2::find_helper(name).value().string(); }
 };
 
 TEST_F(HelperConfinementTest, what_reads_worlds) {

@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "tests/support/scratch_folder.hpp"
+#include "tests/support/system_call_filters.hpp"
 
 namespace octoskin {
 namespace {
@@ -52,12 +53,7 @@ int confined(const std::function<int()>& action) {
 class ConfinementTest : public testing::Test {
   protected:
     void SetUp() override {
-#ifdef OCTOSKIN_SANITIZED
-        GTEST_SKIP() << "sanitizers ask for more";
-#endif
-        const std::uint32_t action = SECCOMP_RET_KILL_PROCESS;  // an emulator has none
-        if (::syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &action) != 0)
-            GTEST_SKIP() << "no filters here";
+        if (const char* const why = testing_support::why_no_filters()) GTEST_SKIP() << why;
     }
     testing_support::ScratchFolder scratch_;
 };
