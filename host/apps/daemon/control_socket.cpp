@@ -97,7 +97,8 @@ ControlSocket::ControlSocket(std::filesystem::path file, int descriptor, EventLo
 ControlSocket::~ControlSocket() {
     close_clients();
     ::unlink(file_.c_str());  // while it still answers: nobody else has the name yet
-    ::close(descriptor_);
+    // With what clients sent along that were not let in.
+    socketcan::close_beside(descriptor_);
 }
 
 void ControlSocket::close_clients() {

@@ -58,7 +58,8 @@ DatagramFeed::~DatagramFeed() {
     const std::uint64_t one = 1;
     (void)!::write(end_, &one, sizeof(one));
     thread_.join();
-    for (const int descriptor : {socket_, event_, end_}) ::close(descriptor);
+    socketcan::close_beside(socket_);  // with what was sent along and not taken
+    for (const int descriptor : {event_, end_}) ::close(descriptor);
 }
 
 std::optional<Datagram> DatagramFeed::take() {

@@ -131,6 +131,19 @@ TEST_F(ControlSocketTest,
     test::wait_for_closing();
 }
 
+TEST_F(ControlSocketTest, ends_without_a_wait_for_what_a_client_sent_along_that_was_not_let_in) {
+    {
+        test::NestedConnection nested;
+        const int client = connect();
+        ASSERT_NO_FATAL_FAILURE(nested.send_along(client, "a\n"));
+        ::close(client);
+        const auto begun = std::chrono::steady_clock::now();
+        socket_.reset();
+        EXPECT_LT(std::chrono::steady_clock::now() - begun, 5s);
+    }
+    test::wait_for_closing();
+}
+
 TEST_F(ControlSocketTest, answers_each_line_with_one) {
     serve([&] {
         EXPECT_EQ(ask_daemon(file(), "status").value(), "you said status");
