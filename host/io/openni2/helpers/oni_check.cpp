@@ -16,8 +16,8 @@ constexpr std::uint32_t kFieldsMax = 1U << 20U;
 /// The player counts them from its file header, and calls itself for each stream within another.
 constexpr std::uint32_t kStreamNumbersMax = 32;
 
-/// How many numbers of streams there are; or what is wrong with the header.
-Result<std::uint32_t, std::string> stream_numbers(std::ifstream& file) {
+/// Or what is wrong with it.
+Result<OniStreams::Header, std::string> header_of(std::ifstream& file) {
     constexpr std::array<char, 12> kBegin{'N', 'I', '1', '0', 1, 0, 1, 0, 0, 0, 0, 0};  // 1.0.1.0
     std::array<char, kOniFileHeaderSize> header{};
     file.clear();
@@ -25,12 +25,14 @@ Result<std::uint32_t, std::string> stream_numbers(std::ifstream& file) {
     if (!file.read(header.data(), header.size()) ||
         std::memcmp(header.data(), kBegin.data(), kBegin.size()) != 0)
         return unexpected(std::string("not the begin of a recording of OpenNI 2 (NI10, version 1.0.1.0)"));
+    std::uint64_t timestamp_max = 0;
     std::uint32_t last = 0;
-    std::memcpy(&last, header.data() + header.size() - sizeof(last), sizeof(last));
+    std::memcpy(&timestamp_max, header.data() + kBegin.size(), sizeof(timestamp_max));
+    std::memcpy(&last, header.data() + kBegin.size() + sizeof(timestamp_max), sizeof(last));
     if (last >= kStreamNumbersMax)
         return unexpected("streams numbered up to " + std::to_string(last) + ", not up to " +
                           std::to_string(kStreamNumbersMax - 1));
-    return last + 1;
+    return OniStreams::Header{last + 1, timestamp_max};
 }
 
 class Reading {
@@ -58,9 +60,9 @@ class Reading {
 
 std::optional<OniFault> fault_of(const std::filesystem::path& oni, const std::function<void()>& is_alive) {
     OniRecords records(oni);
-    const auto numbers = stream_numbers(records.file());
-    if (!numbers) return OniFault{0, numbers.error()};
-    OniStreams streams(*numbers);
+    const auto header = header_of(records.file());
+    if (!header) return OniFault{0, header.error()};
+    OniStreams streams(*header);
     Reading reading;
     while (const auto record = records.next()) {
         if (is_alive) is_alive();

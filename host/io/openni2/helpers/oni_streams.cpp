@@ -56,9 +56,15 @@ OniVerdict OniStreams::take(const OniRecord& record, OniBytes fields, OniBytes p
         record.type == OniRecordType::new_data || record.type == OniRecordType::seek_table;
     // Elsewhere the player would take the payload for the next records.
     if (!has_payload && !payload.empty()) return fault("a payload where there is none");
-    if (record.node >= numbers_)
-        return fault("stream " + text_of(record.node) + " of " + text_of(numbers_) + " numbers");
-    if (record.type == OniRecordType::node_added) return add(record, fields);
+    // A table with more fields is one that the player may not skip.
+    if (record.type == OniRecordType::seek_table && !fields.empty()) return fault("a seek table with fields");
+    if (record.node >= header_.streams)
+        return fault("stream " + text_of(record.node) + " of " + text_of(header_.streams) + " numbers");
+    // What the player refuses of a stream before, it does not open. Later it plays on without the stream, and
+    // takes the payloads of the stream's frames for records.
+    // A stream that plays may be changed (gain, mirroring): the player goes on, whatever it makes of it.
+    if (record.type == OniRecordType::node_added)
+        return has_begun_ ? fault("a stream that is added after the data begin") : add(record, fields);
     const auto found = streams_.find(record.node);
     if (found == streams_.end()) return fault("stream " + text_of(record.node) + " was not added");
     Stream& stream = found->second;
@@ -68,15 +74,14 @@ OniVerdict OniStreams::take(const OniRecord& record, OniBytes fields, OniBytes p
 }
 
 OniVerdict OniStreams::take_of(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload) {
-    if (is_property(record.type)) return set(stream, record, fields);
-    if (record.type == OniRecordType::state_ready) return make_ready(stream);
-    if (record.type == OniRecordType::new_data) return take_frame(stream, record, payload);
-    if (record.type == OniRecordType::data_begin) {
-        if (stream.state != State::ready || fields.size() != kDataBeginFields)
-            return fault("data that begin before the stream is ready, or twice");
-        stream.state = State::playing;
-        return Done{};
+    if (is_property(record.type)) {
+        if (has_begun_ && stream.state != State::playing)
+            return fault("a stream that is set up after the data begin");
+        return set(stream, record, fields);
     }
+    if (record.type == OniRecordType::state_ready) return make_ready(stream);
+    if (record.type == OniRecordType::new_data) return take_frame(stream, record, fields, payload);
+    if (record.type == OniRecordType::data_begin) return begin(stream, fields);
     if (record.type == OniRecordType::node_removed) {
         if (stream.state != State::playing) return fault("a stream that ends before it begins");
         stream.state = State::removed;
@@ -179,9 +184,30 @@ OniVerdict OniStreams::make_ready(Stream& stream) {
     return Done{};
 }
 
-OniVerdict OniStreams::take_frame(Stream& stream, const OniRecord& record, OniBytes payload) {
+OniVerdict OniStreams::begin(Stream& stream, OniBytes fields) {
+    if (stream.state != State::ready || fields.size() != kDataBeginFields)
+        return fault("data that begin before the stream is ready, or twice");
+    has_begun_ = true;
+    stream.state = State::playing;
+    return Done{};
+}
+
+OniVerdict OniStreams::take_frame(Stream& stream, const OniRecord& record, OniBytes bytes,
+                                  OniBytes payload) const {
     if (stream.state != State::playing) return fault("a frame before the data begin");
+    for (const auto& [node, other] : streams_) {
+        if (other.state == State::added) return fault("a frame before stream " + text_of(node) + " is ready");
+    }
     if (record.fields_size != kOniFrameFieldsSize) return fault("a frame with other fields");
+    // The player refuses such a frame before it skips the payload, and takes that for the next records.
+    OniFields fields(bytes);
+    const std::uint64_t timestamp = *fields.take<std::uint64_t>();
+    const std::uint32_t number = *fields.take<std::uint32_t>();
+    if (number == 0 || number > stream.frames_announced)
+        return fault("frame " + text_of(number) + " of " + text_of(stream.frames_announced));
+    if (timestamp > header_.timestamp_max)
+        return fault("a frame at " + text_of(timestamp) + " us, after the file's last at " +
+                     text_of(header_.timestamp_max));
     stream.frames.push_back(record.position);
     if (!stream.is_depth) return Done{};
     const std::size_t pixels = FrameSize{(*stream.size)[0], (*stream.size)[1]}.pixels();

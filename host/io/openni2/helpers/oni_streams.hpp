@@ -22,8 +22,11 @@ using OniVerdict = Status<std::string>;  ///< else what is wrong, for a person
 
 class OniStreams {
   public:
-    /// `streams`: as many numbers of streams as the player has room for.
-    explicit OniStreams(std::uint32_t streams) : numbers_(streams) {}
+    struct Header {
+        std::uint32_t streams = 0;        ///< as many numbers of streams as the player has room for
+        std::uint64_t timestamp_max = 0;  ///< of all frames, as the file header has it
+    };
+    explicit OniStreams(Header header) : header_(header) {}
 
     /// The next record with its fields and its payload. A file that has its end has no fault if all of them
     /// had none and at_end() has none either. Asserts nothing: any bytes are safe.
@@ -45,16 +48,18 @@ class OniStreams {
         std::vector<std::uint64_t> frames;  ///< where they are
     };
 
-    static OniVerdict take_of(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload);
+    OniVerdict take_of(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload);
     OniVerdict add(const OniRecord& record, OniBytes fields);
     static OniVerdict set(Stream& stream, const OniRecord& record, OniBytes fields);
     static OniVerdict set_number(Stream& stream, const std::string& name, std::uint64_t value);
     static OniVerdict set_bytes(Stream& stream, const std::string& name, OniBytes bytes);
     static OniVerdict make_ready(Stream& stream);
-    static OniVerdict take_frame(Stream& stream, const OniRecord& record, OniBytes payload);
+    OniVerdict begin(Stream& stream, OniBytes fields);
+    OniVerdict take_frame(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload) const;
     static OniVerdict take_table(Stream& stream, const OniRecord& record, OniBytes payload);
 
-    std::uint32_t numbers_;
+    Header header_;
+    bool has_begun_ = false;  ///< the data of any stream: the player has opened the file
     std::map<std::uint32_t, Stream> streams_;
 };
 

@@ -68,6 +68,10 @@ enum At : std::size_t {
     end
 };
 
+Record frame(std::uint32_t number, std::uint64_t timestamp = 0) {
+    return {0x0A, bytes_of(timestamp) + bytes_of(number), kPacked};
+}
+
 struct File {
     std::string header =
         std::string("NI10\1\0\1\0\0\0\0\0", 12) + std::string(8, '\xFF') + bytes_of(std::uint32_t{1});
@@ -79,7 +83,6 @@ struct File {
     std::vector<Record> records;
 
     File() {
-        const Record frame{0x0A, bytes_of(std::uint64_t{0}) + bytes_of(std::uint32_t{1}), kPacked};
         records = {{},
                    number("oniRequiredFrameSize", 16),
                    mode(4, 2),
@@ -87,8 +90,8 @@ struct File {
                    property("xnFOV", std::string(16, '\0')),
                    {0x09, ""},
                    {0x08, std::string(12, '\xFF')},
-                   frame,
-                   frame,
+                   frame(1),
+                   frame(2),
                    {0x07, ""},
                    {},
                    {0x0B, "", "", 0}};
@@ -147,19 +150,94 @@ TEST_F(OniCheckTest, what_OpenNI2_records_has_no_fault) {
 TEST_F(OniCheckTest, streams_of_one_file_are_kept_apart) {
     File file;
     file.header[20] = 2;
-    Record colours{0x0D, text("Image") + bytes_of(std::uint32_t{3}) + "NONE" + std::string(28, '\0')};
-    std::vector<Record> second{colours,
-                               mode(1600, 1200),
-                               {0x09, ""},
-                               {0x08, std::string(12, '\0')},
-                               {0x0A, std::string(12, '\0'), std::string(1600 * 1200 * 3, 'x')},
-                               {0x07, ""},
-                               {0x0E, "", std::string(20, '\0')}};
-    for (Record& record : second) record.node = 2;
-    file.records.insert(file.records.end() - 1, second.begin(), second.end());
+    const auto added_of = [](const std::string& name) {
+        return text(name) + bytes_of(std::uint32_t{3}) + "NONE" + bytes_of(std::uint32_t{1}) +
+               std::string(24, '\0');
+    };
+    std::vector<Record> of_colours{{0x0D, added_of("Image")},     mode(1600, 1200), {0x09, ""},
+                                   {0x08, std::string(12, '\0')}, frame(1),         {0x07, ""}};
+    of_colours[4].payload = std::string(1600 * 1200 * 3, 'x');
+    for (Record& record : of_colours) record.node = 2;
+    file.records.insert(file.records.begin() + begun, of_colours.begin(), of_colours.begin() + 3);
+    file.records.insert(file.records.end() - 1, of_colours.begin() + 3, of_colours.end());
+    file.set_added(0);
+    file.records[table + 3].payload = std::string(32, '\0') + bytes_of(file.place(first + 3)) +
+                                      std::string(12, '\0') + bytes_of(file.place(second + 3));
     EXPECT_EQ(fault_in(file.whole()), std::nullopt) << fault_in(file.whole())->what;
-    file.records[end].fields = text("Depth") + bytes_of(std::uint32_t{3}) + "NONE" + std::string(28, '\0');
-    EXPECT_EQ(fault_in(file.whole()).value().position, file.place(end)) << "of the same name";
+    file.records[begun].fields = added_of("Depth");
+    EXPECT_EQ(fault_in(file.whole()).value().position, file.place(begun)) << "of the same name";
+}
+
+// As OpenNI2's recorder writes two streams: both are added, then each gets ready and begins.
+TEST_F(OniCheckTest, a_stream_may_get_ready_after_the_data_of_another_begin) {
+    File file;
+    file.header[20] = 2;
+    const std::string added = text("Image") + bytes_of(std::uint32_t{3}) + "NONE" +
+                              bytes_of(std::uint32_t{1}) + std::string(24, '\0');
+    std::vector<Record> before{{0x0D, added}, mode(64, 48)};
+    std::vector<Record> after{{0x09, ""}, {0x08, std::string(12, '\0')}, frame(1)};
+    after[2].payload = std::string(64 * 48 * 3, 'x');
+    Record gone{0x07, ""};
+    for (Record* record : {&before[0], &before[1], &after[0], &after[1], &after[2], &gone}) record->node = 2;
+    file.records.insert(file.records.end() - 1, gone);
+    file.records.insert(file.records.begin() + first, after.begin(), after.end());
+    file.records.insert(file.records.begin() + begun - 1, before.begin(), before.end());
+    file.set_added(0);
+    file.records[table + 5].payload = std::string(32, '\0') + bytes_of(file.place(first + 5)) +
+                                      std::string(12, '\0') + bytes_of(file.place(second + 5));
+    const auto fault = fault_in(file.whole());
+    EXPECT_EQ(fault, std::nullopt) << fault->what << " at " << fault->position;
+}
+
+TEST_F(OniCheckTest, a_stream_that_plays_may_be_changed) {
+    for (const Record& record : {number("xnPixelFormat", 99), property("Gain", bytes_of(1.0), 0x04),
+                                 property("x", std::string(1, '\0'), 0x05)}) {
+        File file;
+        file.records.insert(file.records.begin() + second, record);
+        file.set_added(0);
+        file.records[table + 1].payload = std::string(32, '\0') + bytes_of(file.place(first)) +
+                                          std::string(12, '\0') + bytes_of(file.place(second + 1));
+        const auto fault = fault_in(file.whole());
+        EXPECT_EQ(fault, std::nullopt) << record.fields << fault->what;
+    }
+}
+
+TEST_F(OniCheckTest, streams_are_added_and_set_before_the_data_of_any_begin) {
+    // Each of them the player refuses without an end: then it reads the frames of the stream as records.
+    const Record colours{0x0D, text("Image") + bytes_of(std::uint32_t{3}) + "NONE" + std::string(28, '\0'),
+                         "", 2};
+    for (const std::size_t at : {std::size_t{begun}, std::size_t{first}, std::size_t{removed}}) {
+        File file;
+        file.header[20] = 2;
+        file.records.insert(file.records.begin() + static_cast<std::ptrdiff_t>(at), colours);
+        file.set_added(0);
+        // Before: it is the first frame of the other that comes too early.
+        EXPECT_EQ(fault_in(file.whole()).value().position, file.place(at == begun ? first + 1 : at)) << at;
+    }
+    for (Record record : {number("xnPixelFormat", 99), property("xnRealWorldTranslationData", "123")}) {
+        File file;
+        file.header[20] = 2;
+        file.records.insert(file.records.begin() + begun - 1, colours);
+        record.node = 2;
+        file.records.insert(file.records.begin() + first + 1, record);
+        file.set_added(0);
+        EXPECT_EQ(fault_in(file.whole()).value().position, file.place(first + 1)) << "set up late";
+    }
+    File again;
+    again.records.insert(again.records.begin() + second, Record{0x09, ""});
+    again.set_added(0);
+    EXPECT_EQ(fault_in(again.whole()).value().position, again.place(second)) << "ready twice";
+}
+
+TEST_F(OniCheckTest, a_frame_is_numbered_and_timed_within_what_the_file_announces) {
+    File file;
+    file.header.replace(12, 8, bytes_of(std::uint64_t{100}));
+    file.records[second] = frame(2, 100);
+    EXPECT_EQ(fault_in(file.whole()), std::nullopt) << fault_in(file.whole())->what;
+    for (const Record& other : {frame(0), frame(3), frame(0xFFFFFFFFU), frame(2, 101), frame(2, ~0ULL)}) {
+        file.records[second] = other;
+        EXPECT_EQ(fault_in(file.whole()).value().position, file.place(second));
+    }
 }
 
 TEST_F(OniCheckTest, a_file_that_is_cut_anywhere_has_a_fault) {
@@ -244,6 +322,7 @@ TEST_F(OniCheckTest, what_the_player_trusts_is_a_fault_of_the_record_that_has_it
         {"a number beyond the table", first,
          [&](File& f) { f.records[first].payload = in_a_table(1, bytes_of(std::uint16_t{1}) + "\xE3\x6D"); }},
         {"an empty frame", first, [](File& f) { f.records[first].payload = ""; }},
+        {"a table with fields", table, [](File& f) { f.records[table].fields = std::string(64, 'x'); }},
         {"a table for other frames", table,
          [](File& f) { f.records[table].payload += std::string(20, 'x'); }},
         {"a table's place elsewhere", end, [](File& f) { f.table_off = 1, f.refresh(); }},
