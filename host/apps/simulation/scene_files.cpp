@@ -66,9 +66,15 @@ std::span<const std::uint8_t> as_bytes(const std::string& text) {
 
 }  // namespace
 
-Result<SceneGap, AppError> write_scene(const Scene& scene, const RecordingPaths& recording) {
-    const auto world = sim::copy_of_world(scene.world_place, scene.world.written_out());
+Result<SceneGap, AppError> write_scene(const Scene& scene, const RecordingPaths& recording,
+                                       const std::function<void(const std::string&)>& on_warning) {
+    const auto world = sim::copy_of_world(scene.world_place, scene.world.meshes(), scene.world.written_out());
     if (!world) return SceneGap(world.error());
+    if (on_warning && !world->left_out.empty()) {
+        on_warning(scene.world_place.shown().string() + ": mesh '" + world->left_out.front() + "' (" +
+                   std::to_string(world->left_out.size()) +
+                   " in all) is that of no visual, and is left out of the recording");
+    }
     if (const auto written = write_files(scene, *world, recording); !written)
         return unexpected(written.error());
     SceneGap gap = difference(scene, recording);

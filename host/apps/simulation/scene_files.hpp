@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -18,7 +19,10 @@ using SceneGap = std::optional<std::string>;
 /// Writes scenario.yaml, world.sdf, the meshes and motion.yaml into the recording, whose folder is open to
 /// write to, and reads them again: they are the same scene, triangle by triangle, or none of them is left
 /// there. Error (cannot_create): they cannot be written. Under lock_reading(), if other threads may read.
-[[nodiscard]] Result<SceneGap, AppError> write_scene(const Scene& scene, const RecordingPaths& recording);
+/// `on_warning`: is called once if meshes are left out, which no sensor sees.
+[[nodiscard]] Result<SceneGap, AppError> write_scene(
+    const Scene& scene, const RecordingPaths& recording,
+    const std::function<void(const std::string&)>& on_warning = {});
 
 /// CRC-32 of the scene's files in the recording, one after the other, each with its name; empty if scenario
 /// or world is missing, or one cannot be read or

@@ -99,7 +99,7 @@ class Recorder {
 Result<std::optional<std::uint32_t>, AppError> record_scene(const Scene& scene, const RecordingPaths& paths,
                                                             const SimulationRequest& request) {
     const auto lock = lock_reading();
-    const auto gap = write_scene(scene, paths);
+    const auto gap = write_scene(scene, paths, request.on_world_warning);
     if (!gap) return unexpected(gap.error());
     if (!*gap) return crc32_of_scene(paths);
     if (request.on_scene_gap) request.on_scene_gap(**gap);

@@ -7,7 +7,7 @@
 namespace octoskin::sim {
 namespace {
 
-constexpr std::string_view kMark = "octoskin-solids/3\n";
+constexpr std::string_view kMark = "octoskin-solids/4\n";
 enum class Kind : std::uint8_t { solids = 1, error = 2 };
 
 class Writer {
@@ -109,6 +109,8 @@ std::string to_bytes(const SolidsOrError& solids) {
     writer.put(static_cast<std::uint64_t>(solids->warnings.size()));
     for (const std::string& warning : solids->warnings) writer.put_text(warning);
     writer.put_text(solids->written_out);
+    writer.put(static_cast<std::uint64_t>(solids->meshes.size()));
+    for (const std::string& mesh : solids->meshes) writer.put_text(mesh);
     writer.put(static_cast<std::uint64_t>(solids->solids.size()));
     for (const Solid& solid : solids->solids) {
         writer.put_text(solid.name);
@@ -135,6 +137,8 @@ std::optional<SolidsOrError> from_bytes(std::string_view bytes) {
     for (auto left = reader.take<std::uint64_t>(); left > 0 && reader.is_whole(); --left)
         read.warnings.push_back(reader.take_text());
     read.written_out = reader.take_text();
+    for (auto left = reader.take<std::uint64_t>(); left > 0 && reader.is_whole(); --left)
+        read.meshes.push_back(reader.take_text());
     for (auto left = reader.take<std::uint64_t>(); left > 0; --left) {
         Solid solid = take_solid(reader);
         if (!reader.is_whole() || !has_its_corners(solid)) return std::nullopt;

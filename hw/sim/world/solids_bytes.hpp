@@ -18,6 +18,8 @@ struct SolidsOfFile {
     std::vector<std::string> warnings = {};  ///< what was passed over, without the file's name
     /// The same SDF with what it includes in it, and meshes by their whole paths; empty: it includes nothing.
     std::string written_out = {};
+    /// The uris of the meshes that were read as shapes, as `written_out` or else the file has them.
+    std::vector<std::string> meshes = {};
 };
 
 using SolidsOrError = Result<SolidsOfFile, WorldError>;

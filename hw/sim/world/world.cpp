@@ -87,6 +87,7 @@ struct World::Impl {
     std::vector<Solid> solids;
     std::vector<std::string> warnings;
     std::string written_out;
+    std::vector<std::string> meshes;
     std::vector<Eigen::AlignedBox3d> bounds;
     RayCaster caster;
 };
@@ -110,11 +111,16 @@ Result<World, WorldError> World::read(const FilePlace& sdf) {
     }
     World world(std::move(solids->solids), std::move(solids->warnings));
     world.impl_->written_out = std::move(solids->written_out);
+    world.impl_->meshes = std::move(solids->meshes);
     return world;
 }
 
 const std::string& World::written_out() const noexcept {
     return impl_->written_out;
+}
+
+const std::vector<std::string>& World::meshes() const noexcept {
+    return impl_->meshes;
 }
 
 const std::vector<std::string>& World::warnings() const noexcept {

@@ -50,6 +50,8 @@ class World {
     [[nodiscard]] const std::vector<Solid>& solids() const noexcept;
     /// Its SDF with what it includes in it; empty if it includes nothing.
     [[nodiscard]] const std::string& written_out() const noexcept;
+    /// The uris of its meshes, as written_out() or else its file has them.
+    [[nodiscard]] const std::vector<std::string>& meshes() const noexcept;
     /// What was passed over when it was read, each with the file's name.
     [[nodiscard]] const std::vector<std::string>& warnings() const noexcept;
 

@@ -7,8 +7,10 @@
 #include <cctype>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "hw/sim/world/mesh_kinds.hpp"
 #include "hw/sim/world/model_folders.hpp"
 
 namespace octoskin::sim {
@@ -16,6 +18,7 @@ namespace {
 
 constexpr std::string_view kMeshName = "mesh_";
 constexpr std::size_t kEndingMax = 8;
+constexpr const char* kLeftOut = "left_out";  ///< in place of a mesh's uri
 
 bool is_ending_character(char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
@@ -31,6 +34,15 @@ Result<std::string, std::string> read_all(const FilePlace& file, std::size_t byt
     return std::move(*bytes);
 }
 
+/// What names the file, for the reader of the world, too.
+std::string trimmed(std::string uri) {
+    constexpr std::string_view kFileScheme = "file://";
+    const auto begin = uri.find_first_not_of(" \t\r\n");
+    uri = begin == std::string::npos ? "" : uri.substr(begin, uri.find_last_not_of(" \t\r\n") + 1 - begin);
+    if (uri.starts_with(kFileScheme)) uri.erase(0, kFileScheme.size());
+    return uri;
+}
+
 /// The next element in the order of the file, without recursion.
 tinyxml2::XMLElement* after(tinyxml2::XMLElement* element) {
     if (auto* const child = element->FirstChildElement()) return child;
@@ -42,7 +54,9 @@ tinyxml2::XMLElement* after(tinyxml2::XMLElement* element) {
 
 class Copier {
   public:
-    explicit Copier(const FilePlace& sdf) : sdf_(sdf) {}
+    Copier(const FilePlace& sdf, const std::vector<std::string>& meshes) : sdf_(sdf) {
+        for (const std::string& mesh : meshes) read_.insert(trimmed(mesh));
+    }
 
     Result<WorldCopy, std::string> copy(const std::string& written_out) {
         auto text = written_out.empty() ? read_all(sdf_, kWorldBytesMax) : written_out;
@@ -66,7 +80,8 @@ class Copier {
             if (!copied) return unexpected(copied.error());
             at->SetText(copied->c_str());
         }
-        if (copy_.meshes.empty()) {
+        copy_.left_out.assign(left_out_.begin(), left_out_.end());
+        if (copy_.meshes.empty() && left_out_.empty()) {
             copy_.sdf = *text;
         } else {
             tinyxml2::XMLPrinter printer;
@@ -78,12 +93,12 @@ class Copier {
 
   private:
     /// Its new name.
-    Result<std::string, std::string> copy_mesh(std::string uri) {
-        constexpr std::string_view kFileScheme = "file://";
-        const auto begin = uri.find_first_not_of(" \t\r\n");
-        uri =
-            begin == std::string::npos ? "" : uri.substr(begin, uri.find_last_not_of(" \t\r\n") + 1 - begin);
-        if (uri.starts_with(kFileScheme)) uri.erase(0, kFileScheme.size());
+    Result<std::string, std::string> copy_mesh(const std::string& written) {
+        const std::string uri = trimmed(written);
+        if (!read_.contains(uri)) {
+            left_out_.insert(uri);
+            return std::string(kLeftOut);
+        }
         if (const auto known = names_.find(uri); known != names_.end()) return known->second;
         // What lies in a recording refers to that alone.
         const auto of_model = sdf_.folder() == nullptr ? find_model_file(uri) : std::nullopt;
@@ -94,7 +109,7 @@ class Copier {
         const std::string name = fmt::format("{}{:02}{}", kMeshName, copy_.meshes.size() + 1, ending);
         if (copy_.meshes.size() == kMeshesMax)
             return unexpected(fmt::format("{}: has more than {} meshes", sdf_.shown().string(), kMeshesMax));
-        if (!is_mesh_copy(name))
+        if (!has_mesh_kind(name))
             return unexpected(mesh.shown().string() + ": has no ending as a file of a mesh has");
         auto bytes = read_all(mesh, kMeshBytesMax);
         if (!bytes) return unexpected(bytes.error());
@@ -108,6 +123,8 @@ class Copier {
     }
 
     const FilePlace& sdf_;
+    std::set<std::string> read_;
+    std::set<std::string> left_out_;
     std::map<std::string, std::string> names_;
     std::size_t bytes_ = 0;
     WorldCopy copy_;
@@ -115,8 +132,9 @@ class Copier {
 
 }  // namespace
 
-Result<WorldCopy, std::string> copy_of_world(const FilePlace& sdf, const std::string& written_out) {
-    return Copier(sdf).copy(written_out);
+Result<WorldCopy, std::string> copy_of_world(const FilePlace& sdf, const std::vector<std::string>& meshes,
+                                             const std::string& written_out) {
+    return Copier(sdf, meshes).copy(written_out);
 }
 
 bool is_mesh_copy(const std::string& name) {

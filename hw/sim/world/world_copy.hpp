@@ -24,13 +24,18 @@ struct MeshCopy {
 struct WorldCopy {
     std::string sdf;  ///< the same world, but that it names each mesh by its new name
     std::vector<MeshCopy> meshes;
+    std::vector<std::string> left_out;  ///< the uris of meshes that it is without, each once
 };
 
-/// Reads the world's file and those of its meshes, each once. `written_out`: World::written_out(), taken in
+/// Reads the world's file and those of its meshes, each once. `meshes`: World::meshes(), the uris of those
+/// that were read as shapes; any other file that the world calls a mesh, as of a collision, is left out, for
+/// it may be any of yours. `written_out`: World::written_out(), taken in
 /// place of a file that includes models. The error says why there can be no such copy: it includes models
-/// all the same, a mesh cannot be read, has no ordinary ending, or all of it is too large. What the meshes
-/// refer to in their turn is left out: what is read from the copy has to be compared with the world.
+/// all the same, a mesh cannot be read, has another ending than meshes have, or all of it is too large. What
+/// the meshes refer to in their turn is left out: what is read from the copy has to be compared with the
+/// world.
 [[nodiscard]] Result<WorldCopy, std::string> copy_of_world(const FilePlace& sdf,
+                                                           const std::vector<std::string>& meshes,
                                                            const std::string& written_out = {});
 
 /// A name that a copy gives to a mesh.

@@ -7,37 +7,22 @@
 #include <assimp/scene.h>
 
 #include <algorithm>
-#include <array>
 #include <assimp/Importer.hpp>
 #include <memory>
 #include <string_view>
 
 #include "hw/rigfile/file_kind.hpp"
+#include "hw/sim/world/mesh_kinds.hpp"
 
 namespace octoskin::sim {
 namespace {
-
-/// What a mesh may be: the endings of its name, and the readers of assimp that are kept for them.
-constexpr std::array<std::string_view, 3> kKinds{"stl", "obj", "dae"};
-
-bool is_a_kind(std::string_view ending) {
-    return std::ranges::find(kKinds, ending) != kKinds.end();
-}
-
-bool has_a_kind(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    std::ranges::transform(ending, ending.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
-    return !ending.empty() && is_a_kind(std::string_view(ending).substr(1));
-}
 
 /// Its endings are words with blanks between them.
 bool reads_a_kind(const Assimp::BaseImporter& reader) {
     std::string_view endings = reader.GetInfo()->mFileExtensions;
     while (!endings.empty()) {
         const std::string_view ending = endings.substr(0, endings.find(' '));
-        if (is_a_kind(ending)) return true;
+        if (is_mesh_kind(ending)) return true;
         endings.remove_prefix(std::min(ending.size() + 1, endings.size()));
     }
     return false;
@@ -89,7 +74,7 @@ class CheckedFiles final : public Assimp::DefaultIOSystem {
 }  // namespace
 
 Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, const WorldFiles* files) {
-    if (!has_a_kind(file)) {
+    if (!has_mesh_kind(file)) {
         return unexpected("mesh " + file.string() +
                           ": is neither .stl nor .obj nor .dae (COLLADA); convert it to one of them");
     }

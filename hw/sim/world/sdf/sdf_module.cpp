@@ -5,9 +5,9 @@
 using octoskin::sim::SdfInput;
 using octoskin::sim::SolidsOrError;
 
-extern "C" [[gnu::visibility("default")]] void octoskin_read_solids_v4(const SdfInput& sdf,
+extern "C" [[gnu::visibility("default")]] void octoskin_read_solids_v5(const SdfInput& sdf,
                                                                        SolidsOrError* result);
 
-void octoskin_read_solids_v4(const SdfInput& sdf, SolidsOrError* result) {
+void octoskin_read_solids_v5(const SdfInput& sdf, SolidsOrError* result) {
     *result = octoskin::sim::parse_solids(sdf);
 }

@@ -18,7 +18,7 @@ struct SdfInput {
 inline constexpr const char* kSdfModule = "octoskin-sdf.so";
 /// The module's one symbol, and its type. Module and program are of one build, so that they may hand each
 /// other C++ objects.
-inline constexpr const char* kReadSolidsSymbol = "octoskin_read_solids_v4";
+inline constexpr const char* kReadSolidsSymbol = "octoskin_read_solids_v5";
 using ReadSolids = void (*)(const SdfInput& sdf, SolidsOrError* result);
 
 }  // namespace octoskin::sim

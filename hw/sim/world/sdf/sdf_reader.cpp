@@ -161,6 +161,8 @@ class Reader {
         if (load(root) && add_root(root)) {
             if (!read_.solids.empty()) {
                 if (input_.files == nullptr) read_.written_out = written_out(root);
+                for (const auto& [uri, element] : meshes_)
+                    read_.meshes.push_back(read_.written_out.empty() ? uri : element->Get<std::string>());
                 return std::move(read_);
             }
             fail("", "no visual with a shape in it: there is nothing to see");
@@ -280,6 +282,10 @@ class Reader {
         if (!shape) {
             return fail(element, shape.error());
         }
+        if (visual.Geom()->Type() == sdf::GeometryType::MESH) {
+            const auto uri = visual.Geom()->MeshShape()->Element()->GetElement("uri");
+            meshes_.emplace_back(uri->Get<std::string>(), uri);
+        }
         TriangleMesh mesh = weld(transformed(*shape, T_world_visual));
         const bool closed = is_closed(mesh);
         if (closed && signed_volume(mesh) < 0.0) {
@@ -312,6 +318,7 @@ class Reader {
     const SdfInput& input_;
     std::filesystem::path file_;
     SolidsOfFile read_;
+    std::vector<std::pair<std::string, sdf::ElementPtr>> meshes_;  ///< the uri as it was, and where it is
     std::optional<WorldError> error_;
 };
 

@@ -191,6 +191,9 @@ class ModelUri : public testing::Test {
     static std::string mesh_visual(const std::string& uri) {
         return "<visual name='v'><geometry><mesh><uri>" + uri + "</uri></mesh></geometry></visual>";
     }
+    static std::string mesh_collision(const std::string& uri) {
+        return "<collision name='c'><geometry><mesh><uri>" + uri + "</uri></mesh></geometry></collision>";
+    }
     std::filesystem::path world(const std::string& inside) {
         return scratch_.write("w.sdf", "<sdf version='1.6'><world name='w'>" + inside + "</world></sdf>");
     }
@@ -226,7 +229,8 @@ TEST_F(ModelUri, of_what_is_included_is_in_the_world_that_is_written_out) {
     scratch_.write(
         "models/box/b.sdf",
         "<sdf version='1.5'><model name='box'><link name='l'><pose>0.1 0.123456789012 0 0 0.7 0</pose>" +
-            mesh_visual("../crate/meshes/a.obj") + "</link></model></sdf>");
+            mesh_visual("../crate/meshes/a.obj") + mesh_collision("../../secret.json") +
+            "</link></model></sdf>");
     const auto file = world(
         "<include><uri>model://crate</uri><name>one</name><pose>0.6 0 0 0.1 0.2 "
         "0.333333333333</pose></include>"
@@ -235,10 +239,11 @@ TEST_F(ModelUri, of_what_is_included_is_in_the_world_that_is_written_out) {
     const auto read = World::read(file);
     ASSERT_TRUE(read) << read.error().message();
     ASSERT_EQ(read->solids().size(), 3U);
-    const auto copy = copy_of_world(file, read->written_out());
+    const auto copy = copy_of_world(file, read->meshes(), read->written_out());
     ASSERT_TRUE(copy) << copy.error();
     EXPECT_EQ(copy->sdf.find("include"), std::string::npos);
     EXPECT_EQ(copy->meshes.size(), 3U) << "by as many names";
+    EXPECT_EQ(copy->left_out.size(), 1U) << "which no sensor sees";
     std::filesystem::create_directory(scratch_ / "rec");
     for (const MeshCopy& mesh : copy->meshes) scratch_.write("rec/" + mesh.name, mesh.bytes);
     scratch_.write("rec/world.sdf", copy->sdf);
@@ -248,6 +253,27 @@ TEST_F(ModelUri, of_what_is_included_is_in_the_world_that_is_written_out) {
     ASSERT_TRUE(again) << again.error().message();
     EXPECT_EQ(to_bytes(SolidsOfFile{again->solids()}), to_bytes(SolidsOfFile{read->solids()}));
     EXPECT_EQ(again->written_out(), "");
+}
+
+TEST_F(ModelUri, is_known_of_a_mesh_that_was_read_and_of_no_other) {
+    scratch_.write("secret.json", "{}");
+    const std::string secret = (scratch_ / "secret.json").string();
+    const std::string in_a_visual = mesh_visual(secret);
+    const auto file =
+        world("<plugin name='p' filename='p.so'>" + in_a_visual + "</plugin><model name='m'><link name='l'>" +
+              mesh_collision(secret) + mesh_visual("file://models/crate/meshes/a.obj") +
+              "</link><plugin name='p' filename='p.so'>" + in_a_visual + "</plugin></model>");
+    const auto read = World::read(file);
+    ASSERT_TRUE(read) << read.error().message();
+    EXPECT_EQ(read->meshes(), std::vector<std::string>{"file://models/crate/meshes/a.obj"});
+    const auto copy = copy_of_world(file, read->meshes(), read->written_out());
+    ASSERT_TRUE(copy) << copy.error();
+    EXPECT_EQ(copy->meshes.size(), 1U);
+    EXPECT_EQ(copy->left_out, std::vector<std::string>{secret});
+    EXPECT_EQ(World::read(scratch_.write("copy.sdf", copy->sdf)).has_value(), false)
+        << "its mesh is not there";
+    scratch_.write(copy->meshes[0].name, copy->meshes[0].bytes);
+    EXPECT_TRUE(World::read(scratch_ / "copy.sdf"));
 }
 
 TEST_F(ModelUri, of_an_earlier_folder_hides_that_of_a_later_one) {

@@ -32,9 +32,11 @@ void expect_equal(const Solid& a, const Solid& b) {
 
 TEST(SolidsBytes, bring_every_bit_of_the_solids) {
     const auto solids = two_solids();
-    const auto again = from_bytes(to_bytes(SolidsOfFile{solids, {"one", ""}, "<sdf/>"}));
+    const auto again = from_bytes(to_bytes(SolidsOfFile{solids, {"one", ""}, "<sdf/>", {"a.stl", "b.obj"}}));
     ASSERT_TRUE(again && *again);
     EXPECT_EQ((*again)->warnings, (std::vector<std::string>{"one", ""}));
+    EXPECT_EQ((*again)->written_out, "<sdf/>");
+    EXPECT_EQ((*again)->meshes, (std::vector<std::string>{"a.stl", "b.obj"}));
     ASSERT_EQ((*again)->solids.size(), 2U);
     for (std::size_t i = 0; i < 2; ++i) expect_equal((*again)->solids[i], solids[i]);
 }
