@@ -16,7 +16,6 @@
 namespace octoskin {
 namespace {
 
-constexpr const char* kLockFile = "lock";
 constexpr unsigned kMode = 0640;
 constexpr int kTries = 10;
 
@@ -29,11 +28,11 @@ std::string holder_of(int descriptor) {
 }
 
 Result<OpenFile, FolderError> open_or_create(const OpenFolder& folder) {
-    auto opened = folder.open_file(kLockFile);
+    auto opened = folder.open_file(FolderLock::kFile);
     if (opened || opened.error().fault != FolderFault::absent) return opened;
-    auto created = folder.create_new(kLockFile, kMode);
+    auto created = folder.create_new(FolderLock::kFile, kMode);
     if (created || created.error().fault != FolderFault::is_there) return created;
-    return folder.open_file(kLockFile);  // another process was quicker
+    return folder.open_file(FolderLock::kFile);  // another process was quicker
 }
 
 /// Of a file that has no other name: what is written there is written nowhere else.
@@ -82,7 +81,7 @@ Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const st
         }
         // Several names, or none any more: that file is left as it is, and a new one takes its place.
         if (status.st_nlink > 1) {
-            if (const auto removed = folder.remove(kLockFile); !removed)
+            if (const auto removed = folder.remove(FolderLock::kFile); !removed)
                 return unexpected(cannot_save(named, removed.error()));
         }
     }

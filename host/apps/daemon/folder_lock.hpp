@@ -13,6 +13,9 @@ namespace octoskin {
 /// Holds the folder until it is destroyed, or the process ends in any way.
 class FolderLock {
   public:
+    /// The file in the folder that is locked.
+    static constexpr const char* kFile = "lock";
+
     /// Makes the folder if it is not there. Refuses, naming its process, if somebody else holds it, if
     /// nothing can be written there, if the folder is somebody else's, and if its file "lock" is a link or no
     /// file. One with several names is replaced, not written to.

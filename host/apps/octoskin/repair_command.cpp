@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "host/apps/daemon/folder_lock.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/recording/file_lock.hpp"
@@ -32,10 +33,12 @@ bool is_finished(const OpenFolder& folder) {
 }
 
 /// Drafts of killed processes, of which nothing had come to its place. Of a process that lives they are its
-/// own: it holds the lock.
+/// own: it holds the lock,
+/// a daemon that of the folder of maps.
 bool is_cleared(const OpenFolder& folder) {
     const auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
-    if (!lock) return false;
+    const auto lock_of_maps = FileLock::take(FilePlace(folder, FolderLock::kFile), FileLock::Kind::exclusive);
+    if (!lock || !lock_of_maps) return false;
     std::size_t drafts = remove_leftovers(folder);
     if (folder.kind_of(FileSet::kDraftFolder) == EntryKind::folder &&
         folder.remove_all(FileSet::kDraftFolder))

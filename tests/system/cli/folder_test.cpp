@@ -2,8 +2,10 @@
 // touched.
 #include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <regex>
@@ -181,6 +183,20 @@ TEST_F(FolderWalk, one_that_was_left_half_moved_is_repaired_on_demand_or_by_what
     EXPECT_EQ(again.exit_code, 0);
     EXPECT_THAT(again.output, HasSubstr("nothing is half moved"));
     EXPECT_EQ(octoskin("repair " + path("absent")).exit_code, 66);
+}
+
+TEST_F(FolderWalk, drafts_of_a_daemon_that_keeps_its_map_there_stay) {
+    const fs::path maps = directory_ / "rec/maps";
+    fs::create_directories(maps);
+    write(maps / ".fused.ot.octoskin-part", "half saved");
+    write(maps / "lock", "1");
+    const int lock = ::open((maps / "lock").c_str(), O_RDONLY | O_CLOEXEC);
+    ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
+    EXPECT_EQ(octoskin("repair " + maps.string()).exit_code, 0);
+    EXPECT_TRUE(fs::exists(maps / ".fused.ot.octoskin-part"));
+    ::close(lock);
+    EXPECT_EQ(octoskin("repair " + maps.string()).exit_code, 0);
+    EXPECT_FALSE(fs::exists(maps / ".fused.ot.octoskin-part"));
 }
 
 TEST_F(FolderWalk, drafts_of_killed_runs_go_with_a_repair) {
