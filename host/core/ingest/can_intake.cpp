@@ -228,8 +228,7 @@ Result<RangeMeasurement, ReadingReason> CanIntake::measure(wire::NodeId node,
                                                            const wire::RangeReading& reading) {
     const auto captured = capture_time(node, reading.capture);
     if (!captured) {
-        ranges_.skip(node, reading.sensor);
-        return unexpected(captured.error());
+        return unexpected(ranges_.skip(node, reading, now()).value_or(captured.error()));
     }
     ClockQuestion& question = questions_.at(node);
     auto measurement = ranges_.check(node, reading, *captured, *now(), question.is_open());

@@ -99,10 +99,10 @@ bool RangeGate::is_certain(const Sensor& sensor, const MappedTime& captured) con
 /// Ranging windows of one sensor do not overlap. The sensor's oscillator may be 7 % fast, and each time
 /// carries an error: three quarters of the nominal window leave room for both. A sensor that keeps to its
 /// period is never twice as quick: of a slow one no second sender's readings fit between.
-Nanoseconds RangeGate::spacing_min(const Sensor& sensor, const Arrival& arrival) const {
-    const auto since = rate_overridden_since_.find(arrival.node);
+Nanoseconds RangeGate::spacing_min(const Sensor& sensor, wire::NodeId node, HostTime now) const {
+    const auto since = rate_overridden_since_.find(node);
     const bool is_as_configured =
-        since == rate_overridden_since_.end() || arrival.now - since->second < kOverriddenFor;
+        since == rate_overridden_since_.end() || now - since->second < kOverriddenFor;
     const Nanoseconds window = Nanoseconds{sensor.expected.timing_budget} * 3 / 4;
     return is_as_configured ? std::max(window, Nanoseconds{sensor.expected.period} / 2) : window;
 }
@@ -115,16 +115,17 @@ void RangeGate::on_rate(wire::NodeId node, bool is_overridden, std::optional<Hos
     }
 }
 
-void RangeGate::on_contradiction(Sensor& sensor, const Arrival& arrival) {
-    sensor.senders.on_contradiction(arrival.now);
-    contradicted_[arrival.node] = arrival.now;
+void RangeGate::on_contradiction(Sensor& sensor, wire::NodeId node, HostTime now) {
+    sensor.senders.on_contradiction(now);
+    contradicted_[node] = now;
 }
 
 /// What a frame says beside its time: whether its number was here before.
-std::optional<ReadingReason> RangeGate::number_fault(Sensor& sensor, const Arrival& arrival) {
+std::optional<ReadingReason> RangeGate::number_fault(Sensor& sensor, wire::NodeId node,
+                                                     const wire::RangeReading& reading, HostTime now) {
     constexpr Nanoseconds kDelayMax{250'000'000};  // of one frame against another: transport, a held bus
-    const Nanoseconds turn_min = spacing_min(sensor, arrival) * wire::kSequenceCount - kDelayMax;
-    switch (sensor.said.compare(arrival.reading, arrival.now, turn_min)) {
+    const Nanoseconds turn_min = spacing_min(sensor, node, now) * wire::kSequenceCount - kDelayMax;
+    switch (sensor.said.compare(reading, now, turn_min)) {
         case SaidNumbers::Fate::is_new:
             return std::nullopt;
         case SaidNumbers::Fate::same:
@@ -132,24 +133,23 @@ std::optional<ReadingReason> RangeGate::number_fault(Sensor& sensor, const Arriv
             return ReadingReason::duplicate;
         case SaidNumbers::Fate::other:
             --sensor.record.received;
-            on_contradiction(sensor, arrival);
+            on_contradiction(sensor, node, now);
             return ReadingReason::contradicts_reading;
     }
     return std::nullopt;
 }
 
-/// A reading takes its number only with a time that can be true: the one that has the number may come yet.
+/// A reading whose time is known takes its number only if that can be true: the one that has the number may
+/// come yet.
 std::optional<ReadingReason> RangeGate::place_fault(Sensor& sensor, const Arrival& arrival) {
-    if (const auto fault = number_fault(sensor, arrival)) {
-        return fault;
-    }
     const Nanoseconds half_window = Nanoseconds{sensor.expected.timing_budget} / 2;
     if (const auto fault = age_fault(arrival.now - arrival.captured, half_window, now_early_)) {
         if (*fault == ReadingReason::too_young) sensor.senders.on_refused();
         return fault;
     }
     const std::uint8_t sequence = arrival.reading.sequence;
-    const auto place = sensor.record.sequence.place(sequence, arrival.captured, spacing_min(sensor, arrival));
+    const Nanoseconds spacing = spacing_min(sensor, arrival.node, arrival.now);
+    const auto place = sensor.record.sequence.place(sequence, arrival.captured, spacing);
     if (!place) {
         note_misplaced(sensor, arrival, place.error());
         return reason_of(place.error());
@@ -172,10 +172,21 @@ void RangeGate::note_misplaced(Sensor& sensor, const Arrival& arrival, SequenceF
     if (fault == SequenceFault::duplicate) {
         --sensor.record.received;
     } else if (fault == SequenceFault::behind) {
-        on_contradiction(sensor, arrival);
+        on_contradiction(sensor, arrival.node, arrival.now);
     } else {
         sensor.senders.on_refused();
     }
+}
+
+std::optional<ReadingReason> RangeGate::skip(wire::NodeId node, const wire::RangeReading& reading,
+                                             std::optional<HostTime> now) {
+    Sensor& sensor = sensors_.at({node, reading.sensor});
+    if (now) {
+        if (const auto fault = number_fault(sensor, node, reading, *now)) return fault;
+        sensor.said.take(reading, *now);
+    }
+    sensor.record.sequence.skip();
+    return std::nullopt;
 }
 
 std::optional<ReadingReason> RangeGate::figure_fault(double range_m, double sigma_m) const {
@@ -198,9 +209,11 @@ Result<RangeMeasurement, ReadingReason> RangeGate::check(wire::NodeId node, cons
                                                          const MappedTime& captured, HostTime now,
                                                          bool is_clock_questioned) {
     Sensor& sensor = sensors_.at({node, reading.sensor});
-    if (!is_certain(sensor, captured)) {
-        sensor.record.sequence.skip();  // such a time is no evidence of what came before what
-        return unexpected(ReadingReason::time_uncertain);
+    if (!is_certain(sensor, captured)) {  // such a time is no evidence of what came before what
+        return unexpected(skip(node, reading, now).value_or(ReadingReason::time_uncertain));
+    }
+    if (const auto fault = number_fault(sensor, node, reading, now)) {
+        return unexpected(*fault);
     }
     if (const auto fault = place_fault(sensor, {node, reading, captured.time, now, is_clock_questioned})) {
         return unexpected(*fault);

@@ -80,10 +80,17 @@ class RangeGate {
     static constexpr Nanoseconds kHeldMax{240'000'000};
 
     /// After `on_arrival`, for a reading that cannot be checked: its node is not usable, or its time not
-    /// known.
-    void skip(wire::NodeId node, std::uint8_t sensor) { sensors_.at({node, sensor}).record.sequence.skip(); }
+    /// known. Its number is compared and taken all the same: else another sender, that has the node's
+    /// readings refused for what the node seems to tell, could send its own under their numbers. Returns what
+    /// is wrong with its number. `now`: empty while unknown, and then there is nothing to compare by.
+    [[nodiscard]] std::optional<ReadingReason> skip(wire::NodeId node, const wire::RangeReading& reading,
+                                                    std::optional<HostTime> now);
 
     void on_health(wire::NodeId node, const wire::SensorHealth& health);
+    /// By what its node told last, its capture times alone are within what the rig allows.
+    [[nodiscard]] bool is_certain(wire::NodeId node, std::uint8_t sensor) const {
+        return is_certain(sensors_.at({node, sensor}), MappedTime{});
+    }
     void on_signal(wire::NodeId node, std::uint8_t sensor, const wire::SignalReading& signal);
     /// Counted whoever the node is: it is for people and for arms, and does not touch the map.
     void on_reflex(wire::NodeId node, const wire::Reflex& reflex);
@@ -129,11 +136,12 @@ class RangeGate {
         bool is_clock_questioned = false;
     };
     [[nodiscard]] bool is_certain(const Sensor& sensor, const MappedTime& captured) const;
-    [[nodiscard]] Nanoseconds spacing_min(const Sensor& sensor, const Arrival& arrival) const;
+    [[nodiscard]] Nanoseconds spacing_min(const Sensor& sensor, wire::NodeId node, HostTime now) const;
     [[nodiscard]] std::optional<ReadingReason> place_fault(Sensor& sensor, const Arrival& arrival);
-    [[nodiscard]] std::optional<ReadingReason> number_fault(Sensor& sensor, const Arrival& arrival);
+    [[nodiscard]] std::optional<ReadingReason> number_fault(Sensor& sensor, wire::NodeId node,
+                                                            const wire::RangeReading& reading, HostTime now);
     void note_misplaced(Sensor& sensor, const Arrival& arrival, SequenceFault fault);
-    void on_contradiction(Sensor& sensor, const Arrival& arrival);
+    void on_contradiction(Sensor& sensor, wire::NodeId node, HostTime now);
     [[nodiscard]] std::optional<ReadingReason> figure_fault(double range_m, double sigma_m) const;
 
     HostRangeLimits limits_;

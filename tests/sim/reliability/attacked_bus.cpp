@@ -190,6 +190,7 @@ void AttackedBus::pass_on(const wire::CanFrame& frame, std::int64_t end_us) {
     } else if (answer != nullptr && setup_.on_answer) {
         setup_.on_answer(decoded->node_id, *answer, end_us, way);
     } else {
+        if (decoded && setup_.on_other) setup_.on_other(*decoded);
         way.push_back({end_us, arriving});
     }
     for (const OnTheWay& one : way) way_.emplace(one.arrives_us, one.frame);

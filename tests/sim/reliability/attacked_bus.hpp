@@ -38,6 +38,9 @@ using Reader = std::function<void(wire::NodeId node, const wire::RangeReading& s
 using Answerer = std::function<void(wire::NodeId node, const wire::SyncReport& said, std::int64_t arrives_us,
                                     std::vector<OnTheWay>& way)>;
 
+/// Told of all else that a node says.
+using Listener = std::function<void(const wire::Decoded& said)>;
+
 struct BusSetup {
     std::uint8_t nodes = 1;  ///< ids 5 and 6
     std::uint8_t sensors = 4;
@@ -46,8 +49,9 @@ struct BusSetup {
     Release release = Release::once_placed;
     bool holds_phases = false;
     double run_s = 9.0;
-    Reader on_reading = {};                  ///< empty: all arrives as it was said
-    Answerer on_answer = {};                 ///< likewise
+    Reader on_reading = {};   ///< empty: all arrives as it was said
+    Answerer on_answer = {};  ///< likewise
+    Listener on_other = {};
     double loss = 0.0;                       ///< of all frames of the nodes, readings among them
     std::optional<double> resets_at_s = {};  ///< the first node's controller
     std::optional<double> clock_jumps_at_s = {};

@@ -200,6 +200,107 @@ INSTANTIATE_TEST_SUITE_P(Each, SecondSender,
                                           testing::Values(Release::once_placed, Release::by_capture_time)),
                          scenario_name);
 
+/// The newest of what the attacked node told about itself.
+struct Heard {
+    std::optional<wire::Heartbeat> heartbeat;
+    std::map<std::size_t, wire::NodeInfo> pages;
+    std::optional<wire::SensorHealth> health;  ///< of the attacked sensor
+
+    void note(const wire::Decoded& said) {
+        if (said.node_id != kAttacked.first) return;
+        if (const auto* told = std::get_if<wire::Heartbeat>(&said.message)) heartbeat = *told;
+        if (const auto* page = std::get_if<wire::NodeInfo>(&said.message)) pages[page->index()] = *page;
+        const auto* told = std::get_if<wire::SensorHealth>(&said.message);
+        if (told != nullptr && told->sensor == kAttacked.second) health = *told;
+    }
+};
+
+/// A frame in the node's name that has its readings refused, and the one that has them count again.
+struct Switch {
+    std::string name;
+    std::function<std::pair<wire::Message, wire::Message>(const Heard&)> make;
+    bool is_of_node = true;  ///< else of the attacked sensor alone
+};
+void PrintTo(const Switch& off, std::ostream* out) {
+    *out << off.name;
+}
+
+Switch by_page(const std::string& name, wire::InfoPage page, void (*alter)(wire::NodeInfo&)) {
+    return {name, [=](const Heard& heard) -> std::pair<wire::Message, wire::Message> {
+                const wire::NodeInfo own = heard.pages.at(static_cast<std::size_t>(page));
+                wire::NodeInfo other = own;
+                alter(other);
+                return {other, own};
+            }};
+}
+
+std::vector<Switch> switches() {
+    const auto by_heartbeat = [](const std::string& name, void (*alter)(wire::Heartbeat&)) {
+        return Switch{name, [=](const Heard& heard) -> std::pair<wire::Message, wire::Message> {
+                          wire::Heartbeat other = heard.heartbeat.value();
+                          alter(other);
+                          return {other, *heard.heartbeat};
+                      }};
+    };
+    const auto by_bound = [](const Heard& heard) -> std::pair<wire::Message, wire::Message> {
+        wire::SensorHealth other = heard.health.value();
+        other.capture_bound_64us = 255;
+        return {other, *heard.health};
+    };
+    return {{"capture_bound", by_bound},
+            by_heartbeat("is_time_suspect", [](wire::Heartbeat& told) { told.is_time_suspect = true; }),
+            by_heartbeat("node_hash_low", [](wire::Heartbeat& told) { told.node_hash_low ^= 1U; }),
+            by_page("node_hash", wire::InfoPage::identity,
+                    [](wire::NodeInfo& told) { std::get<wire::InfoIdentity>(told).node_hash ^= 1U << 31U; }),
+            by_page("unique_id", wire::InfoPage::uid_low,
+                    [](wire::NodeInfo& told) { std::get<wire::InfoUidLow>(told).uid[0] ^= 1U; })};
+}
+
+class SwitchedOff : public testing::TestWithParam<std::tuple<Switch, Release>> {};
+
+/// The attacker has each reading of the sensor refused, or every second one if not `is_each`, and sends its
+/// own under the same number afterwards. While a sensor is switched off its node's readings are refused for
+/// 40 us, so that the others' lose nothing.
+BusSetup with_switch(const Switch& off, bool is_each, bool is_mine_sent = true) {
+    BusSetup setup{.nodes = 2};
+    auto heard = std::make_shared<Heard>();
+    setup.on_other = [=](const wire::Decoded& said) { heard->note(said); };
+    setup.on_reading = attack_on({kAttacked}, [=](const Said& said, std::vector<OnTheWay>& way) {
+        if (!is_each && said.count % 2 != 0) return;
+        const auto [refusing, own] = off.make(*heard);
+        way.push_back({said.arrives_us - 20, wire::encode(refusing, said.node)});
+        way.push_back({said.arrives_us + 20, wire::encode(own, said.node)});
+        if (is_mine_sent) put(said, forged(moved(said.reading, 0, 8'000), 200), 9'000, way);
+    });
+    return setup;
+}
+
+TEST_P(SwitchedOff, a_sensor_s_own_readings_leave_no_room_for_another_s) {
+    const auto& [off, release] = GetParam();
+    for (const bool is_each : {true, false}) {
+        const AttackedBus clean({.nodes = 2, .release = release});
+        BusSetup setup = with_switch(off, is_each);
+        setup.release = release;
+        const AttackedBus bus(setup);
+        EXPECT_EQ(bus.untrue(), 0U) << bus.pipeline().account_text();
+        EXPECT_EQ(bus.wrong_voxels(clean), 0U);
+        EXPECT_TRUE(bus.replayed_map() == bus.map());
+        expect_others_whole(bus, {kAttacked});
+        ASSERT_TRUE(bus.named_s(kAttacked));
+        EXPECT_LE(*bus.named_s(kAttacked), kAttack_s + 1.0);
+        EXPECT_GE(bus.pipeline().intake().ranges().senders(kFirst, 0).contradictions(), 2U);
+    }
+}
+
+std::string switch_name(const testing::TestParamInfo<std::tuple<Switch, Release>>& given) {
+    const bool is_live = std::get<1>(given.param) == Release::once_placed;
+    return std::get<0>(given.param).name + (is_live ? "_live" : "_replayed");
+}
+INSTANTIATE_TEST_SUITE_P(Each, SwitchedOff,
+                         testing::Combine(testing::ValuesIn(switches()),
+                                          testing::Values(Release::once_placed, Release::by_capture_time)),
+                         switch_name);
+
 /// Of an attacker's readings with impossible times, the three kinds by turns.
 wire::RangeReading impossible(const wire::RangeReading& reading, unsigned kind) {
     const int steps = kind % 3 == 0 ? 1 : kind % 3 == 1 ? 1 : 20;

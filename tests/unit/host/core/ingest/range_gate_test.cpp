@@ -178,9 +178,12 @@ TEST(RangeGate, refuses_what_arrives_before_half_the_budget_has_passed_or_later_
 }
 
 /// One reading whose time the clock map knows within `map_us`.
-Result<RangeMeasurement, ReadingReason> check_with(RangeGate& gate, std::int64_t map_us) {
+Result<RangeMeasurement, ReadingReason> check_with(RangeGate& gate, std::int64_t map_us,
+                                                   std::uint8_t number = 0) {
     gate.on_arrival(kNode, wire::RangeReading{}, std::nullopt);
-    return gate.check(kNode, reading(), {kNow - Nanoseconds{20'000'000}, Microseconds{map_us}}, kNow);
+    wire::RangeReading given = reading();
+    given.sequence = number;
+    return gate.check(kNode, given, {kNow - Nanoseconds{20'000'000}, Microseconds{map_us}}, kNow);
 }
 
 TEST(RangeGate, refuses_a_time_whose_two_bounds_together_exceed_the_limit) {
@@ -203,20 +206,55 @@ TEST(RangeGate, takes_the_limit_on_uncertain_times_from_the_rig) {
     RangeGate gate(strict, false);
     gate.on_health(kNode, health(0, 0, 3));
     EXPECT_EQ(check_with(gate, 109).error(), ReadingReason::time_uncertain);
-    EXPECT_TRUE(check_with(gate, 108).has_value());
+    EXPECT_TRUE(check_with(gate, 108, 1).has_value());
 }
 
 TEST(RangeGate, does_not_trust_a_time_while_the_node_has_not_told_how_good_it_is) {
     RangeGate gate(rig(), false);
     EXPECT_EQ(check_with(gate, 0).error(), ReadingReason::time_uncertain);
     gate.on_health(kNode, health(0));
-    EXPECT_TRUE(check_with(gate, 0).has_value());
+    EXPECT_TRUE(check_with(gate, 0, 1).has_value());
     gate.forget_order(kNode);  // the host's clock, not the node's
     EXPECT_TRUE(check_with(gate, 0).has_value());
     gate.forget(kNode);
     EXPECT_EQ(check_with(gate, 0).error(), ReadingReason::time_uncertain);
     gate.on_health(kNode, health(0));
-    EXPECT_TRUE(check_with(gate, 0).has_value());
+    EXPECT_TRUE(check_with(gate, 0, 1).has_value());
+}
+
+TEST(RangeGate, compares_the_numbers_of_readings_that_are_refused_for_something_else) {
+    constexpr std::uint8_t kUseless = 255;
+    const MappedTime captured{kNow - Nanoseconds{20'000'000}, Nanoseconds{0}};
+    RangeGate gate = informed_gate();
+    wire::RangeReading own = reading();
+    for (const bool is_of_its_time : {true, false}) {
+        gate.on_arrival(kNode, own, kNow);
+        if (is_of_its_time) {
+            gate.on_health(kNode, health(0, 0, kUseless));
+            EXPECT_EQ(gate.check(kNode, own, captured, kNow).error(), ReadingReason::time_uncertain);
+            gate.on_health(kNode, health(0));
+        } else {
+            EXPECT_EQ(gate.skip(kNode, own, kNow), std::nullopt);
+        }
+        wire::RangeReading forged = own;
+        forged.range_mm = 300;
+        gate.on_arrival(kNode, forged, kNow);
+        EXPECT_EQ(gate.check(kNode, forged, captured, kNow).error(), ReadingReason::contradicts_reading);
+        EXPECT_EQ(gate.skip(kNode, forged, kNow), ReadingReason::duplicate) << "it was here already";
+        EXPECT_EQ(gate.skip(kNode, own, kNow), ReadingReason::duplicate);
+        ++own.sequence;
+    }
+    EXPECT_EQ(gate.senders(kNode, 0).contradictions(), 2U);
+    EXPECT_TRUE(gate.senders(kNode, 0).is_disputed(kNow));
+}
+
+TEST(RangeGate, compares_no_numbers_while_now_is_unknown) {
+    RangeGate gate = informed_gate();
+    wire::RangeReading given = reading();
+    EXPECT_EQ(gate.skip(kNode, given, std::nullopt), std::nullopt);
+    given.range_mm = 300;
+    EXPECT_EQ(gate.skip(kNode, given, kNow), std::nullopt);
+    EXPECT_EQ(gate.senders(kNode, 0).contradictions(), 0U);
 }
 
 TEST(RangeGate, counts_no_gap_across_readings_of_uncertain_time) {
