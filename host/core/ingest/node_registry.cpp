@@ -28,6 +28,24 @@ bool is_refused(const NodeRecord& record, std::optional<HostTime> now) {
            is_babbling(record, now);
 }
 
+bool is_suspect(const NodeRecord& record, std::optional<HostTime> now) {
+    if (record.heartbeat->is_time_suspect) return true;
+    return record.sends_joints &&
+           is_held(record.is_suspected, record.suspected, now, NodeRegistry::kSuspectHold);
+}
+
+/// Before the heartbeat is the newest.
+void note_suspicion(NodeRecord& record, const wire::Heartbeat& heartbeat, std::optional<HostTime> now) {
+    if (heartbeat.is_time_suspect) {
+        record.is_suspected = true;
+        record.suspected = now;
+    } else if (record.is_suspected && !record.suspected) {
+        record.suspected = now;  // the hold starts when there is a time to count from
+    } else {
+        record.is_suspected = is_held(record.is_suspected, record.suspected, now, NodeRegistry::kSuspectHold);
+    }
+}
+
 void note_second_board(NodeRecord& record, std::optional<HostTime> now) {
     record.is_in_conflict = true;
     record.conflict = now;
@@ -96,6 +114,7 @@ NodeRegistry::NodeRegistry(const HostRig& rig) {
 void NodeRegistry::add(const HostNode& node, const HostJointSource& joints) {
     const bool sends_joints = !joints.joints.empty() && node.node_id == joints.node_id;
     records_[node.node_id].expected = node;
+    records_[node.node_id].sends_joints = sends_joints;
     traffic_.emplace(node.node_id, NodeTraffic(node, sends_joints ? joints.rate_hz : 0.0));
 }
 
@@ -151,6 +170,7 @@ NodeRegistry::Life NodeRegistry::on_heartbeat(wire::NodeId node, const wire::Hea
         record.pages = {};
         record.registers = {};
     }
+    note_suspicion(record, heartbeat, now);
     record.heartbeat = heartbeat;
     record.heard = now ? now : record.heard;
     record.is_heard_since = !now;
@@ -196,7 +216,7 @@ NodeVerdict NodeRegistry::verdict(wire::NodeId node, std::optional<HostTime> now
     if (is_lost(record, now)) {
         return NodeVerdict::lost;
     }
-    if (record.heartbeat->is_time_suspect) {
+    if (is_suspect(record, now)) {
         return NodeVerdict::time_suspect;
     }
     if (!record.has_block) {

@@ -24,7 +24,7 @@ enum class NodeVerdict : std::uint8_t {
     babbling,       ///< more frames than NodeTraffic allows, within the last second
     absent,         ///< no heartbeat yet
     lost,           ///< no heartbeat for 350 ms
-    time_suspect,   ///< says so itself
+    time_suspect,   ///< says so itself, or sends joint states and did within the last second
     info_incomplete,  ///< pages of NODE_INFO are missing
     info_mismatch,    ///< see NodeRecord::mismatch
     build_refused,    ///< the rig pins another build
@@ -68,6 +68,9 @@ struct NodeRecord {
     std::optional<HostTime> babbled;        ///< the newest frame that was one too many
     std::optional<HostTime> other_version;  ///< the newest heartbeat of another version
     bool is_other_version = false;
+    bool sends_joints = false;
+    std::optional<HostTime> suspected;  ///< the newest heartbeat that said `is_time_suspect`
+    bool is_suspected = false;
     std::uint8_t version_told = 0;      ///< in that heartbeat
     std::uint64_t restarts = 0;         ///< heartbeats that said `starting` after one that did not
     std::optional<HostTime> restarted;  ///< at the newest of them
@@ -92,6 +95,9 @@ class NodeRegistry {
     static constexpr Nanoseconds kConflictHold{2'000'000'000};
     static constexpr Nanoseconds kOtherVersionHold{1'000'000'000};
     static constexpr Nanoseconds kBabbleHold{1'000'000'000};
+    /// Of a joint source: else one that has its samples refused could send its own between them, and every
+    /// pose would be by those. Readings are compared with refused ones: RangeGate::skip.
+    static constexpr Nanoseconds kSuspectHold{1'000'000'000};
 
     explicit NodeRegistry(const HostRig& rig);
 

@@ -147,6 +147,8 @@ struct Played {
     std::uint64_t contradictions = 0;
     std::optional<WallTime> named;  ///< when two senders, or a jump, were first told of
     std::optional<WallTime> named_last;
+    std::optional<WallTime>
+        refused;  ///< when the joint node was first told of as one whose word does not count
     std::string map;
 };
 
@@ -167,6 +169,10 @@ Played play(const std::vector<StampedFrame>& frames, Release release) {
     std::uint64_t told = 0;
     for (const StampedFrame& entry : frames) {
         pipeline.on_can(entry.frame, entry.stamp);
+        const CanIntake& intake = pipeline.intake();
+        if (!played.refused &&
+            is_refused_for_joints(intake.nodes().verdict(setup.rig.joints.node_id, intake.now())))
+            played.refused = entry.stamp;
         if (told_of(pipeline) == told) continue;
         told = told_of(pipeline);
         if (!played.named) played.named = entry.stamp;
@@ -308,6 +314,60 @@ TEST(SecondJointSender, under_the_joint_node_moves_no_voxel_and_is_named_within_
 }
 
 // A frame alone voids the node's own sample: the poses are interpolated across twice the period then.
+wire::Heartbeat own_heartbeat() {
+    for (const StampedFrame& entry : recorded().frames) {
+        const auto decoded = wire::decode(entry.frame);
+        const auto* told = decoded ? std::get_if<wire::Heartbeat>(&decoded->message) : nullptr;
+        if (told != nullptr && told->state == wire::NodeState::ranging &&
+            decoded->node_id == recorded().setup.rig.joints.node_id)
+            return *told;
+    }
+    return {.state = wire::NodeState::ranging};
+}
+
+/// Each sample of the joint node itself comes between two heartbeats: by the first its word does not count,
+/// by the second it does. After every second one comes another, with the same number and 2 ms later.
+Forged forge_with_refused_samples() {
+    const std::vector<StampedFrame>& honest = recorded().frames;
+    const wire::NodeId node = recorded().setup.rig.joints.node_id;
+    Forged forged{honest, {}, {}};
+    unsigned count = 0;
+    for (const Sample& sample : samples_of(honest, node)) {
+        const WallTime first = honest[sample.first].stamp;
+        const WallTime last = honest[sample.last].stamp;
+        const double at_s = seconds_between(honest.front().stamp, first);
+        if (at_s < kAttackBeginS || at_s > kAttackEndS) continue;
+        if (forged.begin.ns == 0) forged.begin = first;
+        forged.end = last;
+        wire::Heartbeat told = own_heartbeat();
+        told.is_time_suspect = true;
+        forged.frames.push_back({{first.ns - 1'000}, wire::encode(told, node)});
+        told.is_time_suspect = false;
+        forged.frames.push_back({{last.ns + 1'000}, wire::encode(told, node)});
+        if (++count % 2 != 0) continue;
+        auto position = sample.position_urad;
+        position[0] += static_cast<std::int32_t>(std::lround(1e6 * 0.3 * (at_s - kAttackBeginS)));
+        const wire::TimeResidue sampled{(sample.sampled_us + 2'000U) % wire::kFdTimeSpanUs,
+                                        wire::kFdTimeSpanUs};
+        std::int64_t stamp_ns = last.ns + 2'000'000;
+        for (const wire::CanFrame& frame : wire::joint_frames(node, sample.sequence, position, sampled))
+            forged.frames.push_back({{stamp_ns += 1'000}, frame});
+    }
+    std::ranges::stable_sort(forged.frames, {}, &StampedFrame::stamp);
+    return forged;
+}
+
+TEST(SecondJointSender, that_has_the_node_s_own_samples_refused_moves_no_voxel_and_the_node_is_named) {
+    const Forged forged = forge_with_refused_samples();
+    for (const Release release : {Release::by_capture_time, Release::once_placed}) {
+        const Played played = play(forged.frames, release);
+        expect_no_wrong_place(played, clean(release), forged, 0.0);
+        EXPECT_FALSE(clean(release).refused);
+        ASSERT_TRUE(played.refused);
+        EXPECT_LE(seconds_between(forged.begin, *played.refused), 0.1);
+    }
+}
+
 TEST(SecondJointSender, whose_single_frames_come_among_the_nodes_own_mixes_no_sample_and_is_named) {
     const Played& expected = clean(Release::once_placed);
     for (const bool is_within : {false, true}) {

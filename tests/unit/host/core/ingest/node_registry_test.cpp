@@ -151,6 +151,27 @@ TEST(NodeRegistry, does_not_trust_a_clock_that_the_node_doubts_itself) {
     EXPECT_EQ(registry.verdict(kNode, ms(200)), NodeVerdict::usable);
 }
 
+TEST(NodeRegistry, holds_a_doubt_about_the_clock_of_a_joint_source_for_a_second) {
+    constexpr wire::NodeId kJoints = 9;
+    NodeRegistry registry(rig());
+    wire::Heartbeat suspect = heartbeat();
+    suspect.is_time_suspect = true;
+    const auto beat = [&](const wire::Heartbeat& told, std::optional<HostTime> now) {
+        (void)registry.on_heartbeat(kJoints, told, now);
+        return registry.verdict(kJoints, now);
+    };
+    EXPECT_EQ(beat(heartbeat(), ms(0)), NodeVerdict::usable);
+    EXPECT_EQ(beat(suspect, ms(100)), NodeVerdict::time_suspect);
+    for (std::int64_t t = 100; t < 1'100; t += 100)
+        EXPECT_EQ(beat(heartbeat(), ms(t)), NodeVerdict::time_suspect) << t;
+    EXPECT_EQ(beat(heartbeat(), ms(1'100)), NodeVerdict::usable);
+    EXPECT_EQ(beat(heartbeat(), ms(500)), NodeVerdict::usable) << "the host's clock began anew";
+    EXPECT_EQ(beat(suspect, std::nullopt), NodeVerdict::time_suspect);
+    EXPECT_EQ(beat(heartbeat(), std::nullopt), NodeVerdict::time_suspect);
+    EXPECT_EQ(beat(heartbeat(), ms(2'000)), NodeVerdict::time_suspect) << "from when now is known";
+    EXPECT_EQ(beat(heartbeat(), ms(3'000)), NodeVerdict::usable);
+}
+
 TEST(NodeRegistry, quarantines_two_boards_with_one_id_at_the_second_heartbeat) {
     NodeRegistry registry(rig());
     identify(registry, 0);
