@@ -17,7 +17,10 @@ std::int64_t index_of(HostTime at) {
 
 bool is_loss(ReadingReason reason) noexcept {
     const bool is_of_clock = reason == ReadingReason::clock_in_doubt || reason == ReadingReason::clock_silent;
-    return is_of_clock || (reason > ReadingReason::duplicate && reason <= ReadingReason::too_old);
+    const bool is_of_word =  // a node that is usable now has told nothing of that but by another sender
+        reason == ReadingReason::node_time_suspect || reason == ReadingReason::node_info_mismatch;
+    return is_of_clock || is_of_word ||
+           (reason > ReadingReason::duplicate && reason <= ReadingReason::too_old);
 }
 
 NodeLosses::Tenth& NodeLosses::tenth_of(HostTime now) {

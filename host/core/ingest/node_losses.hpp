@@ -11,9 +11,9 @@
 
 namespace octoskin {
 
-/// Because of the time, the numbers or the sender: nothing of these is usual, and no sensor can be blamed for
-/// it. Not: what comes before the clock is known, nor a sensor whose times its own node calls
-/// uncertain.
+/// Because of the time, the numbers, the sender or what the node seemed to tell: nothing of these is usual,
+/// and no sensor can be blamed for it. Not: what comes before the clock is known, nor a sensor whose times
+/// its own node calls uncertain.
 [[nodiscard]] bool is_loss(ReadingReason reason) noexcept;
 
 class NodeLosses {

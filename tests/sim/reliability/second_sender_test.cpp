@@ -301,6 +301,22 @@ INSTANTIATE_TEST_SUITE_P(Each, SwitchedOff,
                                           testing::Values(Release::once_placed, Release::by_capture_time)),
                          switch_name);
 
+TEST(SwitchedOff, readings_of_a_node_that_is_usable_again_are_named_with_their_reason) {
+    for (const Switch& off : switches()) {
+        if (off.name == "capture_bound") continue;  // of one sensor: its node may tell that
+        SCOPED_TRACE(off.name);
+        const AttackedBus bus(with_switch(off, true, false));
+        EXPECT_EQ(bus.untrue(), 0U);
+        ASSERT_TRUE(bus.losing_s().contains(kFirst));
+        EXPECT_LE(bus.losing_s().at(kFirst), kAttack_s + 1.0);
+        EXPECT_EQ(bus.losses().at(kFirst).most, off.name == "is_time_suspect"
+                                                    ? ReadingReason::node_time_suspect
+                                                    : ReadingReason::node_info_mismatch);
+        EXPECT_FALSE(bus.losing_s().contains(kOther));
+        EXPECT_TRUE(bus.named().empty());
+    }
+}
+
 /// Of an attacker's readings with impossible times, the three kinds by turns.
 wire::RangeReading impossible(const wire::RangeReading& reading, unsigned kind) {
     const int steps = kind % 3 == 0 ? 1 : kind % 3 == 1 ? 1 : 20;
