@@ -83,6 +83,7 @@ CanIntake::CanIntake(const HostRig& rig, const IntakeConfig& config)
         answers_.try_emplace(node);
         questions_.try_emplace(node);
         losses_.try_emplace(node);
+        told_.try_emplace(node);
     }
 }
 
@@ -275,12 +276,22 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Heartbeat& mes
         answers_.at(node).forget();
         questions_.at(node).answer();
         ranges_.forget(node);
+        told_.at(node).forget();
     }
+    ToldWatch& told = told_.at(node);
+    told.on_told(ToldWatch::Fact::time_suspect, 0, message.is_time_suspect ? 1 : 0, steady_now());
+    told.on_told(ToldWatch::Fact::hash_low, 0, message.node_hash_low, steady_now());
     return std::nullopt;
 }
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::NodeInfo& message, FrameOutcome&) {
-    return nodes_.on_info(node, message, now()) ? std::nullopt : Rejection(FrameReason::node_refused);
+    if (!nodes_.on_info(node, message, now())) return FrameReason::node_refused;
+    ToldWatch& told = told_.at(node);
+    if (const auto* identity = std::get_if<wire::InfoIdentity>(&message))
+        told.on_told(ToldWatch::Fact::hash, 0, identity->node_hash, steady_now());
+    if (const auto* build = std::get_if<wire::InfoBuild>(&message))
+        told.on_told(ToldWatch::Fact::build, 0, build->build_id, steady_now());
+    return std::nullopt;
 }
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::SensorHealth& message, FrameOutcome&) {
@@ -288,6 +299,8 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::SensorHealth& 
         return FrameReason::unknown_sensor;
     }
     ranges_.on_health(node, message);
+    const bool is_certain = ranges_.is_certain(node, message.sensor);
+    told_.at(node).on_told(ToldWatch::Fact::certain, message.sensor, is_certain ? 1 : 0, steady_now());
     return std::nullopt;
 }
 

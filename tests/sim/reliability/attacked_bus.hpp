@@ -85,6 +85,8 @@ class AttackedBus final : private CommitListener {
     [[nodiscard]] const std::map<wire::NodeId, double>& named_clocks() const noexcept {
         return named_clocks_;
     }
+    /// When a node was named first: for what it tells about itself.
+    [[nodiscard]] const std::map<wire::NodeId, double>& named_words() const noexcept { return named_words_; }
     [[nodiscard]] const std::map<wire::NodeId, NodeLosses::Loss>& losses() const noexcept { return losses_; }
     [[nodiscard]] const std::map<wire::NodeId, double>& losing_s() const noexcept { return losing_s_; }
     /// Nodes that were not usable at some time after kSettled_s.
@@ -132,6 +134,7 @@ class AttackedBus final : private CommitListener {
     std::map<SensorKey, SensorCount> counts_;
     std::map<SensorKey, double> named_;
     std::map<wire::NodeId, double> named_clocks_;
+    std::map<wire::NodeId, double> named_words_;
     std::map<wire::NodeId, NodeLosses::Loss> losses_;
     std::map<wire::NodeId, double> losing_s_;
     std::map<wire::NodeId, NodeVerdict> refused_;

@@ -301,6 +301,17 @@ INSTANTIATE_TEST_SUITE_P(Each, SwitchedOff,
                                           testing::Values(Release::once_placed, Release::by_capture_time)),
                          switch_name);
 
+TEST(SwitchedOff, a_node_is_named_for_what_goes_back_and_forth) {
+    for (const Switch& off : switches()) {
+        if (off.name == "unique_id") continue;  // the losses name it
+        SCOPED_TRACE(off.name);
+        const AttackedBus bus(with_switch(off, true, false));
+        ASSERT_TRUE(bus.named_words().contains(kFirst));
+        EXPECT_LE(bus.named_words().at(kFirst), kAttack_s + 1.0);
+        EXPECT_FALSE(bus.named_words().contains(kOther));
+    }
+}
+
 TEST(SwitchedOff, readings_of_a_node_that_is_usable_again_are_named_with_their_reason) {
     for (const Switch& off : switches()) {
         if (off.name == "capture_bound") continue;  // of one sensor: its node may tell that
@@ -476,6 +487,7 @@ TEST_P(HonestBus, has_nobody_named_and_loses_only_what_the_bus_does) {
             ADD_FAILURE() << int{sensor.first} << '.' << int{sensor.second} << " named at " << at_s
                           << bus.pipeline().account_text();
         EXPECT_TRUE(bus.named_clocks().empty());
+        EXPECT_TRUE(bus.named_words().empty());
         EXPECT_TRUE(bus.losing_s().empty());
         for (const auto& [sensor, count] : bus.counts()) {
             if (is_reset && sensor.first == kFirst) continue;

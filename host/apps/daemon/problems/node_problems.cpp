@@ -56,6 +56,22 @@ void add_answers(const DaemonView& view, const HostNode& node, Problems& problem
          on});
 }
 
+/// What decides whether its readings count goes back and forth.
+void add_told(const DaemonView& view, const HostNode& node, Problems& problems) {
+    const ToldWatch& watch = view.pipeline->intake().told(node.node_id);
+    if (!view.bus_now || !watch.hears_two(*view.bus_now)) return;
+    const std::string on = node_subject(node.node_id);
+    problems.push_back(
+        {on + " tells",
+         fmt::format(
+             "{} '{}': what comes under its id about its clock, its node_hash, its build or a sensor's "
+             "capture_bound goes back and forth within a second ({}). Which board has the node id "
+             "twice, or which program forges it?",
+             on, node.name, watch.contradictions()),
+         {},
+         on});
+}
+
 /// Nothing of it is used until its clock is known anew: where it starts again and again, never.
 void add_restarts(const DaemonView& view, const HostNode& node, Problems& problems) {
     constexpr Nanoseconds kTold{3'000'000'000};
@@ -131,6 +147,7 @@ void add_nodes(const DaemonView& view, Problems& problems) {
         const NodeVerdict verdict = nodes.verdict(node.node_id, view.bus_now);
         add_restarts(view, node, problems);
         add_answers(view, node, problems);
+        add_told(view, node, problems);
         if (verdict != NodeVerdict::usable) {
             const std::string text = nodes.describe(node.node_id, view.bus_now);
             problems.push_back({text, text, node_subject(node.node_id)});
@@ -151,6 +168,7 @@ void add_joint_node(const DaemonView& view, Problems& problems) {
     if (!nodes.knows(source) || nodes.records().at(source).has_block) return;
     add_restarts(view, nodes.records().at(source).expected, problems);
     add_answers(view, nodes.records().at(source).expected, problems);
+    add_told(view, nodes.records().at(source).expected, problems);
     if (!is_refused_for_joints(nodes.verdict(source, view.bus_now))) return;
     const std::string text = nodes.describe(source, view.bus_now);
     problems.push_back({text, text, node_subject(source)});
