@@ -1,4 +1,5 @@
-// A thread that no signal is delivered to: signals are for the one that runs the event loop.
+// A thread that no signal is delivered to but its own faults: signals are for the one that runs the event
+// loop.
 #pragma once
 
 #include <pthread.h>
@@ -14,10 +15,12 @@ namespace octoskin {
 
 template <class Work>
 [[nodiscard]] std::thread start_without_signals(Work work) {
-    sigset_t all;
+    sigset_t others;
     sigset_t before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
+    sigfillset(&others);
+    // A fault whose signal is blocked ends the process at once: what waits in the log would be lost.
+    for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) sigdelset(&others, fault);
+    pthread_sigmask(SIG_SETMASK, &others, &before);
     struct Restored {
         const sigset_t& mask;
         ~Restored() { pthread_sigmask(SIG_SETMASK, &mask, nullptr); }

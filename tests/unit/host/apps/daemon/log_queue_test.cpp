@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/quiet_thread.hpp"
 
 namespace octoskin {
 namespace {
@@ -132,6 +133,13 @@ TEST(LogQueueDeathTest, writes_what_waits_before_a_defect_ends_the_process) {
     };
     EXPECT_EXIT(crash(true), testing::KilledBySignal(SIGABRT), "line 49");
     EXPECT_EXIT(crash(false), testing::KilledBySignal(SIGABRT), "line 49(.|\n)*a defect of octoskin");
+    const auto crash_in_a_thread = [] {
+        const auto log = guard_log();
+        for (int i = 0; i < 50; ++i) spdlog::info("line {}", i);
+        start_without_signals([] { (void)std::raise(SIGSEGV); }).join();
+        std::exit(0);
+    };
+    EXPECT_EXIT(crash_in_a_thread(), testing::KilledBySignal(SIGSEGV), "line 49");
 }
 
 }  // namespace
