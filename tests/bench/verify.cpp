@@ -8,6 +8,7 @@
 
 #include "host/core/mapping/depth_integrator.hpp"
 #include "tests/bench/clouds.hpp"
+#include "tests/support/evidence.hpp"
 
 namespace octoskin::bench {
 
