@@ -18,7 +18,7 @@ struct CapVoxel {
 /// A voxel is told by where its centre lies; v: from the sensor to there, d: the axis, r: the range.
 struct ConeVoxels {
     /// 0 <= v.d, |v - (v.d) d| <= margin + (v.d) tan(core angle), |v| < r - h, where h is the cap's half
-    /// thickness.
+    /// thickness; each once.
     std::vector<VoxelKey> passed;
     /// | |v| - r | <= h, angle of v and d <= cap angle; each once. Empty beyond `hit_range_max_m`.
     std::vector<CapVoxel> cap;

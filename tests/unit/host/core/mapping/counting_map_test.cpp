@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <random>
+#include <set>
 
 #include "host/core/mapping/fused_map.hpp"
 #include "tests/support/evidence.hpp"
@@ -222,7 +223,9 @@ TEST(CountingMap, equals_the_arithmetic_of_every_voxel_on_its_own) {
             std::map<VoxelKey, float> cap;
             for (int i = 0; i < 10; ++i) cap[any_key()] = real(random);
             for (const auto& [key, weight] : cap) cone.cap.push_back({key, weight});
-            for (int i = 0; i < 3; ++i) cone.passed.push_back(any_key());
+            std::set<VoxelKey> passed;  // each once, as a cone passes them
+            while (passed.size() < 3) passed.insert(any_key());
+            cone.passed.assign(passed.begin(), passed.end());
             feed(map, cone, model);
             oracle.count(cone, model);
         }
