@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "host/core/bricks/brick_tree.hpp"
+#include "host/core/bricks/brick.hpp"
 #include "host/core/voxels/voxel_update.hpp"
 
 namespace octoskin {
@@ -28,27 +28,5 @@ struct BrickRuns {
 /// Runs are short and no two of a ray are alike: where one ends no processor foresees, so that here no branch
 /// asks. The same on every processor. About 0.4 ns an update.
 void find_runs(std::span<const VoxelUpdate> updates, BrickRuns& found) noexcept;
-
-/// Of each run.
-template <class Value>
-using BricksOfRuns = std::array<Value*, BrickRuns::kUpdatesMax>;
-
-/// Asks for each run's brick, and leaves out what was found from the first on that `BrickTreeOf::own` has
-/// not.
-template <class Value>
-void own_bricks(BrickTreeOf<Value>& tree, std::span<const VoxelUpdate> updates, BrickRuns& found,
-                BricksOfRuns<Value>& bricks) noexcept {
-    typename BrickTreeOf<Value>::OwnBricks own(tree);
-    for (std::size_t run = 0; run < found.runs; ++run) {
-        const std::uint32_t first = found.first_of[run];
-        auto* const values = own.find(brick_of(updates[first].key));
-        if (values == nullptr) {
-            found.runs = run;
-            found.updates = first;
-            return;
-        }
-        bricks[run] = values->data();
-    }
-}
 
 }  // namespace octoskin

@@ -75,14 +75,19 @@ std::size_t TermWriter::write_owned(const Evidence& evidence, std::size_t from) 
     return written;
 }
 
+bool TermWriter::leaves_out(float term) noexcept {
+    if (is_plain(term)) return false;
+    editor_.note(term == 0.0F ? &MapCounters::zero : &MapCounters::not_finite);
+    return true;
+}
+
 /// The brick is made for the first voxel that it is needed for.
 void TermWriter::write_brick(const Evidence& evidence, const BrickEvidence& brick) noexcept {
     BrickTree& log_odds = editor_.layers().log_odds;
     BrickValues* values = log_odds.own(brick.first);
     Status<MapRefusal> has_values = Done{};
     for_each_voxel(evidence, brick, [&](std::size_t cell, float term) {
-        if (!is_plain(term))
-            return editor_.note(term == 0.0F ? &MapCounters::zero : &MapCounters::not_finite);
+        if (leaves_out(term)) return;
         const ClampedTerm added = editor_.rules().added(term);
         if (values == nullptr && has_values) {
             const BrickView before = log_odds.find(brick.first);
@@ -101,8 +106,7 @@ void TermWriter::write_priors(const Evidence& evidence, const BrickEvidence& bri
     const BrickView hits = layers.counts.hits.find(brick.first);
     const BrickView misses = layers.counts.misses.find(brick.first);
     for_each_voxel(evidence, brick, [&](std::size_t cell, float term) {
-        if (!is_plain(term))
-            return editor_.note(term == 0.0F ? &MapCounters::zero : &MapCounters::not_finite);
+        if (leaves_out(term)) return;
         editor_.note(
             editor_.change(brick.first,
                            [&] {

@@ -17,6 +17,8 @@ class TermWriter {
 
   private:
     [[nodiscard]] std::size_t write_owned(const Evidence& evidence, std::size_t from) noexcept;
+    /// Counts a term that touches nothing; false for any other.
+    [[nodiscard]] bool leaves_out(float term) noexcept;
     void write_brick(const Evidence& evidence, const BrickEvidence& brick) noexcept;
     void write_priors(const Evidence& evidence, const BrickEvidence& brick) noexcept;
     void date(const Evidence& evidence) noexcept;

@@ -1,6 +1,7 @@
 #include "host/core/pipeline/map_feeder.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace octoskin {
 
@@ -14,16 +15,13 @@ void MapFeeder::apply(const Evidence& evidence, const std::function<bool(VoxelKe
         const bool is_listed = changes_ != nullptr && fed.feed == MapFeed::both;
         fed.map.apply(evidence, {.spares = spares, .changes = is_listed ? &changes : nullptr});
     }
-    if (changes_ != nullptr) {
-        if (evidence.rule == EvidenceRule::terms)
-            for_each_term(evidence, [&](const VoxelUpdate& term) { changes.push_back(term); });
-        // What comes first has most voxels, and each of them once.
-        if (!has_begun_)
-            changes_->swap(changes);
-        else
-            for (const VoxelUpdate& change : changes) add_change(change);
-    }
-    has_begun_ = true;
+    const bool is_first = !std::exchange(has_begun_, true);
+    if (changes_ == nullptr) return;
+    if (evidence.rule == EvidenceRule::terms)
+        for_each_term(evidence, [&](const VoxelUpdate& term) { changes.push_back(term); });
+    // What comes first has most voxels, and each of them once.
+    if (is_first) return changes_->swap(changes);
+    for (const VoxelUpdate& change : changes) add_change(change);
 }
 
 void MapFeeder::add_change(const VoxelUpdate& change) {
