@@ -12,17 +12,21 @@ find_package(PNG REQUIRED)
 find_package(urdfdom REQUIRED)
 find_package(console_bridge REQUIRED)
 find_package(orocos_kdl REQUIRED)
-find_package(sdformat12 REQUIRED)
 pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)
-find_package(embree 3 REQUIRED)
-find_package(assimp REQUIRED)
+if(OCTOSKIN_LAB)
+    find_package(sdformat12 REQUIRED)
+    find_package(embree 3 REQUIRED)
+    find_package(assimp REQUIRED)
+endif()
 pkg_check_modules(HIGHWAY REQUIRED IMPORTED_TARGET libhwy)
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
     # Vectors of a length that is known at run time cannot be members; NEON is used.
     target_compile_definitions(PkgConfig::HIGHWAY INTERFACE
         "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
 endif()
-pkg_check_modules(UNICORN QUIET IMPORTED_TARGET unicorn)  # optional: only the emulated board is made of it
+if(OCTOSKIN_LAB)
+    pkg_check_modules(UNICORN QUIET IMPORTED_TARGET unicorn)  # optional: only the emulated board is made of it
+endif()
 pkg_check_modules(FUSE3 QUIET IMPORTED_TARGET fuse3)      # optional: only I2C devices for tests are made of it
 pkg_check_modules(GPIOD QUIET IMPORTED_TARGET libgpiod)   # optional: only a Linux board's node is made of it
 find_package(fcl QUIET)                                   # optional: only an oracle of a test is made of it

@@ -1,15 +1,18 @@
 # The rooms of the house and who may depend on whom. A target that breaks the rule fails to configure.
 #
-#   octoskin_library(<name> ROOM <room> SOURCES a.cpp ... HEADERS a.hpp ... [DEPENDS octoskin::x ...]
+#   octoskin_library(<name> ROOM <room> [FOLDER <folder>] SOURCES a.cpp ... HEADERS a.hpp ... [DEPENDS octoskin::x ...]
 #                    [PRIVATE_DEPENDS octoskin::y ...] [EXTERNAL lib ...] [PRIVATE_EXTERNAL lib ...] [APART]
 #                    [IN_MODULE])
-#   octoskin_program(<name> ROOM <room> SOURCES ... [DEPENDS ...] [EXTERNAL ...])
-#   octoskin_test(<name> LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...] [APART ...] [HALF_IN_QEMU <filter>]
+#   octoskin_program(<name> ROOM <room> [FOLDER <folder>] SOURCES ... [DEPENDS ...] [EXTERNAL ...])
+#   octoskin_test(<name> [FOLDER <folder>] LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...] [APART ...] [HALF_IN_QEMU <filter>]
 #                 [ALONE | WAITS])
 #
 # In the rooms that OCTOSKIN_UNITY names the sources of a library or a test program are compiled several at once, but for a
 # library that is told to keep them APART, and those of a test program that it names as APART: the name of something that is
 # a file's own is that of something else in another file.
+#
+# SOURCES, HEADERS and the like are below FOLDER, which is below the folder of the CMakeLists.txt: a room has one of these,
+# and so has the room of the tests that mirrors it.
 #
 # DEPENDS names our own targets only; EXTERNAL names third-party ones. Includes are written from the
 # repository's root ("common/wire/codec.hpp"), so every include line says which room it reaches into.
@@ -32,9 +35,12 @@ set(OCTOSKIN_MAY_USE_hw/image common hw/image hw/rigfile)
 set(OCTOSKIN_MAY_USE_hw/sim common firmware/drivers firmware/core host/io/folder hw/image hw/rigfile hw/sim)
 set(OCTOSKIN_MAY_USE_host/core common host/core)
 set(OCTOSKIN_MAY_USE_host/io common host/core hw/rigfile host/io host/io/folder)
+# The product: it neither knows nor needs the simulator and the laboratory.
+set(OCTOSKIN_MAY_USE_host/apps common firmware/drivers firmware/core hw/image hw/rigfile host/core host/io host/io/folder
+    host/apps)
 set(OCTOSKIN_ALL_ROOMS common firmware/drivers firmware/core firmware/port hw/dbc hw/image hw/rigfile hw/sim host/core
-    host/io host/io/folder host/apps firmware/app tests)
-set(OCTOSKIN_MAY_USE_host/apps ${OCTOSKIN_ALL_ROOMS})
+    host/io host/io/folder host/apps host/lab firmware/app tests)
+set(OCTOSKIN_MAY_USE_host/lab ${OCTOSKIN_ALL_ROOMS})
 set(OCTOSKIN_MAY_USE_firmware/app ${OCTOSKIN_ALL_ROOMS})
 set(OCTOSKIN_MAY_USE_tests ${OCTOSKIN_ALL_ROOMS})
 
@@ -107,8 +113,16 @@ function(octoskin_is_left_out result target)
     endif()
 endfunction()
 
+# The folder of a target's sources, from its argument FOLDER.
+macro(octoskin_set_folder)
+    set(folder ${CMAKE_CURRENT_SOURCE_DIR})
+    if(ARG_FOLDER)
+        string(APPEND folder /${ARG_FOLDER})
+    endif()
+endmacro()
+
 function(octoskin_library name)
-    cmake_parse_arguments(ARG "APART;IN_MODULE" "ROOM" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS;EXTERNAL;PRIVATE_EXTERNAL" ${ARGN})
+    cmake_parse_arguments(ARG "APART;IN_MODULE" "ROOM;FOLDER" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS;EXTERNAL;PRIVATE_EXTERNAL" ${ARGN})
     if(ARG_UNPARSED_ARGUMENTS)
         message(FATAL_ERROR "octoskin_library(${name}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
     endif()
@@ -120,8 +134,9 @@ function(octoskin_library name)
         endif()
     endif()
     octoskin_check_room(octoskin::${name} ${ARG_ROOM} ${ARG_DEPENDS} ${ARG_PRIVATE_DEPENDS})
-    list(TRANSFORM ARG_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE headers)
-    list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE sources)
+    octoskin_set_folder()
+    list(TRANSFORM ARG_HEADERS PREPEND ${folder}/ OUTPUT_VARIABLE headers)
+    list(TRANSFORM ARG_SOURCES PREPEND ${folder}/ OUTPUT_VARIABLE sources)
     octoskin_check_includes(octoskin::${name} ${ARG_ROOM} ${headers} ${sources})
     set(target octoskin_${name})
     if(ARG_SOURCES)
@@ -156,9 +171,10 @@ function(octoskin_library name)
 endfunction()
 
 function(octoskin_program name)
-    cmake_parse_arguments(ARG "" "ROOM" "SOURCES;DEPENDS;EXTERNAL" ${ARGN})
+    cmake_parse_arguments(ARG "" "ROOM;FOLDER" "SOURCES;DEPENDS;EXTERNAL" ${ARGN})
     octoskin_check_room(${name} ${ARG_ROOM} ${ARG_DEPENDS})
-    list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE sources)
+    octoskin_set_folder()
+    list(TRANSFORM ARG_SOURCES PREPEND ${folder}/ OUTPUT_VARIABLE sources)
     octoskin_check_includes(${name} ${ARG_ROOM} ${sources})
     add_executable(${name} ${sources})
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
@@ -171,17 +187,18 @@ function(octoskin_program name)
 endfunction()
 
 # The programs that others start, and find beside themselves.
-set(OCTOSKIN_HELPERS octoskin-camera octoskin-oni-read octoskin-oni-write octoskin-world-read)
+set(OCTOSKIN_HELPERS octoskin-camera octoskin-oni-read octoskin-oni-write)
+set(OCTOSKIN_LAB_HELPERS octoskin-world-read)
 
 # Has tests that are built in this folder find them, too.
 function(octoskin_helpers_beside_tests)
-    foreach(helper IN LISTS OCTOSKIN_HELPERS)
+    foreach(helper IN LISTS OCTOSKIN_HELPERS OCTOSKIN_LAB_HELPERS)
         file(CREATE_LINK ${PROJECT_BINARY_DIR}/bin/${helper} ${CMAKE_CURRENT_BINARY_DIR}/${helper} SYMBOLIC)
     endforeach()
 endfunction()
 
 function(octoskin_test name)
-    cmake_parse_arguments(ARG "ALONE;WAITS" "TIMEOUT;HALF_IN_QEMU" "LABELS;SOURCES;HOST_SOURCES;DEPENDS;EXTERNAL;APART" ${ARGN})
+    cmake_parse_arguments(ARG "ALONE;WAITS" "TIMEOUT;HALF_IN_QEMU;FOLDER" "LABELS;SOURCES;HOST_SOURCES;DEPENDS;EXTERNAL;APART" ${ARGN})
     if(NOT ARG_TIMEOUT)
         set(ARG_TIMEOUT 60)
     endif()
@@ -203,6 +220,9 @@ function(octoskin_test name)
     endif()
     octoskin_check_room(${name} tests ${ARG_DEPENDS})
     octoskin_helpers_beside_tests()
+    octoskin_set_folder()
+    list(TRANSFORM ARG_SOURCES PREPEND ${folder}/)
+    list(TRANSFORM ARG_APART PREPEND ${folder}/)
     add_executable(${name} ${ARG_SOURCES})
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
     target_compile_features(${name} PRIVATE cxx_std_20)

@@ -1,6 +1,6 @@
 // The simulated bus tied to an interface, over a socketpair that carries frames as the kernel lays them out.
 // A real interface is for a machine that has one.
-#include "host/apps/octoskin_board/can_gateway.hpp"
+#include "host/lab/octoskin_board/can_gateway.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

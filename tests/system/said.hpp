@@ -3,6 +3,7 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string>
@@ -27,8 +28,20 @@ inline Said run(const std::string& command, const std::string& errors = "2>&1") 
     return said;
 }
 
+/// Whether `arguments` begin with a command of octoskin-lab, and not of octoskin.
+inline bool are_for_lab(const std::string& arguments) {
+    const std::size_t begin = std::min(arguments.find_first_not_of(' '), arguments.size());
+    const std::string command = arguments.substr(begin, arguments.find(' ', begin) - begin);
+    return command == "simulate" || command == "evaluate" || command == "experiment";
+}
+
+/// The program that has the command which `arguments` begin with, and them: as typed.
+inline std::string typed(const std::string& arguments) {
+    return (are_for_lab(arguments) ? OCTOSKIN_LAB_PROGRAM " " : OCTOSKIN_PROGRAM " ") + arguments;
+}
+
 inline Said octoskin(const std::string& arguments) {
-    return run(OCTOSKIN_PROGRAM " " + arguments);
+    return run(typed(arguments));
 }
 
 }  // namespace octoskin

@@ -5,9 +5,10 @@
 #include <memory>
 
 #include "common/wire/codec.hpp"
-#include "host/apps/octoskin/arguments.hpp"
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/core/black_box/dump_assembler.hpp"
 #include "host/core/black_box/transfer_script.hpp"

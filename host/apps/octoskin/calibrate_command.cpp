@@ -6,9 +6,10 @@
 
 #include "common/wire/frame_type.hpp"
 #include "host/apps/calibrating/calibrating.hpp"
-#include "host/apps/octoskin/arguments.hpp"
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/recording/given_rig.hpp"
 
 namespace octoskin::app {

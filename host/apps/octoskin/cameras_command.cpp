@@ -6,8 +6,9 @@
 #include <chrono>
 #include <string>
 
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/standard_output.hpp"
 #include "host/io/openni2/helper_process.hpp"
 
 namespace octoskin::app {

@@ -6,10 +6,11 @@
 #include <memory>
 
 #include "common/wire/frame_type.hpp"
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/commanding/dialogue.hpp"
-#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/recording/given_rig.hpp"
 
 namespace octoskin::app {

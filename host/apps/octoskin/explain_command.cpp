@@ -6,11 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/explaining/explanation.hpp"
-#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/playback_options.hpp"
-#include "host/apps/octoskin/standard_output.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -26,7 +27,7 @@ void explain_voxel(const ExplainOptions& options) {
     if (options.playback.recording.empty()) {
         throw CommandFailure({ExitCode::usage,
                               "--recording is required: the directory that `octoskin record` (of a running "
-                              "daemon) or `octoskin simulate` made"});
+                              "daemon) or `octoskin-lab simulate` made"});
     }
     const auto explanation = explain(playback_request(options.playback),
                                      {options.p_map[0], options.p_map[1], options.p_map[2]}, options.lines);
@@ -53,7 +54,7 @@ void add_explain_command(CLI::App& app) {
     command->add_option("z", options->p_map[2])->required();
     command->add_option(
         "--recording", options->playback.recording,
-        "Directory of the recording, as `octoskin record` and `octoskin simulate` make it (required)");
+        "Directory of the recording, as `octoskin record` and `octoskin-lab simulate` make it (required)");
     add_playback_options(*command, options->playback);
     command->add_option("--lines", options->lines, "List at most so many contributions, the newest ones")
         ->check(from_to(0, 1'000'000))

@@ -5,11 +5,13 @@
 #include <cctype>
 #include <memory>
 
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/shipped_file.hpp"
+#include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/flashing/flashing.hpp"
 #include "host/apps/flashing/record.hpp"
-#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"

@@ -17,14 +17,15 @@
 #include <vector>
 
 #include "common/wire/codec.hpp"
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/end_signals.hpp"
 #include "host/apps/daemon/can_link.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/joint_socket.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
-#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/end_signals.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/core/ingest/local_joints.hpp"

@@ -4,9 +4,10 @@
 #include <memory>
 
 #include "host/apps/choosing/named_mapping.hpp"
-#include "host/apps/octoskin/arguments.hpp"
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/standard_output.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 
 namespace octoskin::app {

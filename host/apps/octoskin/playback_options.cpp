@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "host/apps/choosing/named_mapping.hpp"
-#include "host/apps/octoskin/arguments.hpp"
-#include "host/apps/octoskin/commands.hpp"
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/film_playback.hpp"
 #include "host/io/mapping/mapping_file.hpp"

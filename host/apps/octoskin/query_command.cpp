@@ -14,13 +14,14 @@
 #include <string>
 #include <vector>
 
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/places.hpp"
-#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/map_provenance.hpp"
-#include "host/apps/octoskin/standard_output.hpp"
+#include "host/apps/playback/map_provenance.hpp"
 #include "host/apps/querying/joint_lines.hpp"
 #include "host/apps/querying/query_answer.hpp"
 #include "host/apps/querying/query_request.hpp"

@@ -9,13 +9,14 @@
 #include <string>
 #include <thread>
 
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/end_signals.hpp"
+#include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/daemon/record_requests.hpp"
-#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/end_signals.hpp"
-#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/querying/query_answer.hpp"
 #include "host/apps/recording/recording.hpp"
 

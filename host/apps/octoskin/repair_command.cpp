@@ -4,9 +4,10 @@
 
 #include <memory>
 
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/daemon/folder_lock.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/recording/file_lock.hpp"
 #include "host/apps/recording/file_set.hpp"
 #include "host/io/folder/open_folder.hpp"

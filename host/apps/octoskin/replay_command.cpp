@@ -10,11 +10,12 @@
 #include <optional>
 #include <span>
 
-#include "host/apps/octoskin/arguments.hpp"
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/interruption.hpp"
+#include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/interruption.hpp"
 #include "host/apps/octoskin/playback_options.hpp"
-#include "host/apps/octoskin/standard_output.hpp"
 #include "host/apps/playback/film_playback.hpp"
 #include "host/apps/playback/map_folder.hpp"
 #include "host/apps/playback/onto_bus.hpp"

@@ -6,13 +6,14 @@
 #include <memory>
 
 #include "host/apps/choosing/named_mapping.hpp"
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/log_format.hpp"
 #include "host/apps/daemon/daemon.hpp"
 #include "host/apps/daemon/log_queue.hpp"
 #include "host/apps/daemon/places.hpp"
-#include "host/apps/octoskin/arguments.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/daemon_signals.hpp"
-#include "host/apps/octoskin/log_format.hpp"
 
 namespace octoskin::app {
 namespace {

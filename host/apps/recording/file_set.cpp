@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "host/apps/recording/text_file.hpp"
-#include "hw/sim/world/world_copy.hpp"
 
 namespace octoskin {
 namespace {
@@ -341,13 +340,25 @@ Status<AppError> FileSet::check_places(const OpenFolder& folder, const std::vect
     return Done{};
 }
 
+bool is_scene_mesh(std::string_view name) {
+    constexpr std::string_view kBegin = "mesh_";
+    constexpr std::size_t kDot = kBegin.size() + 2;
+    constexpr std::size_t kEndingMax = 8;
+    if (!name.starts_with(kBegin) || name.size() < kDot + 2 || name.size() > kDot + 1 + kEndingMax)
+        return false;
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    const auto is_small = [is_digit](char c) { return (c >= 'a' && c <= 'z') || is_digit(c); };
+    return is_digit(name[kDot - 2]) && is_digit(name[kDot - 1]) && name[kDot] == '.' &&
+           std::all_of(name.begin() + kDot + 1, name.end(), is_small);
+}
+
 bool is_file_of_set(const fs::path& name) {
     const std::string text = name.string();
     const auto is_in = [](const auto& list, std::string_view one) {
         return std::find(list.begin(), list.end(), one) != list.end();
     };
     constexpr std::string_view kMaps = "maps/";
-    return is_in(kRecordingFiles, text) || sim::is_mesh_copy(text) || is_in(kMapFiles, text) ||
+    return is_in(kRecordingFiles, text) || is_scene_mesh(text) || is_in(kMapFiles, text) ||
            (text.starts_with(kMaps) && is_in(kMapFiles, std::string_view(text).substr(kMaps.size())));
 }
 

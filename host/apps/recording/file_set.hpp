@@ -62,6 +62,9 @@ class FileSet {
     FileLock lock_;
 };
 
+/// Whether a recording names a mesh of its world so: mesh_01.stl.
+[[nodiscard]] bool is_scene_mesh(std::string_view name);
+
 /// A name that octoskin may put into a folder or retire from it: a recording's files, and maps, also in
 /// "maps/".
 [[nodiscard]] bool is_file_of_set(const std::filesystem::path& name);

@@ -7,7 +7,6 @@
 
 #include "host/apps/recording/file_set.hpp"
 #include "hw/rigfile/table.hpp"
-#include "hw/sim/world/world_copy.hpp"
 
 namespace octoskin {
 namespace {
@@ -17,9 +16,10 @@ constexpr std::int64_t kCrcMax = 0xFFFF'FFFF;
 constexpr const char* kMetaMissing =
     "no such file; the least that it can be is two lines, 'schema: octoskin-recording/1' and 'source: robot'";
 constexpr const char* kDirectoryMissing =
-    "no such directory; `octoskin record` (of a running daemon) and `octoskin simulate` make recordings";
+    "no such directory; `octoskin record` (of a running daemon) and `octoskin-lab simulate` make recordings";
 constexpr const char* kLogMissing =
-    "no such file: this is no recording, as `octoskin record` (of a running daemon) and `octoskin simulate` "
+    "no such file: this is no recording, as `octoskin record` (of a running daemon) and `octoskin-lab "
+    "simulate` "
     "make them; by hand, it is what `candump -L` writes. A data set has depth.txt, associations.txt or "
     "frame-*.depth.png, and the poses of its camera (docs/recording.md)";
 
@@ -113,7 +113,7 @@ std::vector<FilePlace> RecordingPaths::meshes() const {
     std::vector<FilePlace> meshes;
     if (!names) return meshes;
     for (const std::string& name : *names) {
-        if (sim::is_mesh_copy(name)) meshes.push_back(file(name));
+        if (is_scene_mesh(name)) meshes.push_back(file(name));
     }
     return meshes;
 }

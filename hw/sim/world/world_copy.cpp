@@ -17,12 +17,7 @@ namespace octoskin::sim {
 namespace {
 
 constexpr std::string_view kMeshName = "mesh_";
-constexpr std::size_t kEndingMax = 8;
 constexpr const char* kLeftOut = "left_out";  ///< in place of a mesh's uri
-
-bool is_ending_character(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
-}
 
 Result<std::string, std::string> read_all(const FilePlace& file, std::size_t bytes_max) {
     const auto opened = file.open();
@@ -135,15 +130,6 @@ class Copier {
 Result<WorldCopy, std::string> copy_of_world(const FilePlace& sdf, const std::vector<std::string>& meshes,
                                              const std::string& written_out) {
     return Copier(sdf, meshes).copy(written_out);
-}
-
-bool is_mesh_copy(const std::string& name) {
-    constexpr std::size_t kStem = kMeshName.size() + 2;
-    if (!name.starts_with(kMeshName) || name.size() < kStem + 2 || name.size() > kStem + 1 + kEndingMax)
-        return false;
-    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-    return is_digit(name[kStem - 2]) && is_digit(name[kStem - 1]) && name[kStem] == '.' &&
-           std::all_of(name.begin() + kStem + 1, name.end(), is_ending_character);
 }
 
 }  // namespace octoskin::sim

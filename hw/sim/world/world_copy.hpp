@@ -38,7 +38,4 @@ struct WorldCopy {
                                                            const std::vector<std::string>& meshes,
                                                            const std::string& written_out = {});
 
-/// A name that a copy gives to a mesh.
-[[nodiscard]] bool is_mesh_copy(const std::string& name);
-
 }  // namespace octoskin::sim

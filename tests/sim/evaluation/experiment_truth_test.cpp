@@ -2,7 +2,7 @@
 // surfaces and solids), so each is the other's oracle.
 #include <gtest/gtest.h>
 
-#include "host/apps/evaluation/truth.hpp"
+#include "host/lab/evaluation/truth.hpp"
 
 namespace octoskin::evaluation {
 namespace {

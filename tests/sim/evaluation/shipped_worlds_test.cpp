@@ -11,8 +11,8 @@
 #include <string>
 #include <utility>
 
-#include "host/apps/evaluation/truth.hpp"
-#include "host/apps/study/study.hpp"
+#include "host/lab/evaluation/truth.hpp"
+#include "host/lab/study/study.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/sim/arm/arm.hpp"
 #include "hw/sim/arm/trajectory.hpp"

@@ -47,7 +47,7 @@ TEST_F(AskingTest, a_reader_that_goes_away_is_no_failure) {
                                R"("nodes": [], "map": {"known_voxels": 1}, "problems": []})";
     const auto said =
         ask(answer, {"status", "status --json", "monitor --once"}, [](const std::string& arguments) {
-            return run("( ( sleep 0.3; " OCTOSKIN_PROGRAM " " + arguments + "; echo code $? >&2 ) | true )");
+            return run("( ( sleep 0.3; " + typed(arguments) + "; echo code $? >&2 ) | true )");
         });
     ASSERT_EQ(said.size(), 3U);
     for (const Said& each : said) EXPECT_EQ(each.output, "code 0\n");

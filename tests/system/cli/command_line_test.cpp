@@ -23,9 +23,12 @@ TEST_F(CommandLine, names_the_command_that_is_none_and_the_one_that_is_like_it) 
     EXPECT_THAT(near.output, AllOf(HasSubstr("'reply'"), HasSubstr("did you mean 'replay'?")));
     const Said far = octoskin("frobnicate");
     EXPECT_EQ(far.exit_code, 64);
-    EXPECT_THAT(far.output, HasSubstr("'frobnicate'. There are simulate"));
+    EXPECT_THAT(far.output, HasSubstr("'frobnicate'. There are replay"));
     EXPECT_THAT(far.output,
-                AllOf(HasSubstr("'frobnicate'"), Not(HasSubstr("did you mean")), HasSubstr("evaluate")));
+                AllOf(HasSubstr("'frobnicate'"), Not(HasSubstr("did you mean")), HasSubstr("repair")));
+    const Said of_lab = run(OCTOSKIN_PROGRAM " simulate x");
+    EXPECT_EQ(of_lab.exit_code, 64);
+    EXPECT_THAT(of_lab.output, HasSubstr("octoskin-lab"));
 }
 
 TEST_F(CommandLine, helps_with_options_as_they_are_typed_and_with_exit_codes) {
@@ -37,8 +40,8 @@ TEST_F(CommandLine, helps_with_options_as_they_are_typed_and_with_exit_codes) {
 }
 
 TEST_F(CommandLine, names_the_target_that_builds_emulated_boards) {
-    std::filesystem::copy_file(OCTOSKIN_PROGRAM, path("octoskin"));  // nothing lies beside it
-    const Said said = run(path("octoskin") + " simulate " + path("out") + " --board emulated --image " +
+    std::filesystem::copy_file(OCTOSKIN_LAB_PROGRAM, path("octoskin-lab"));  // nothing lies beside it
+    const Said said = run(path("octoskin-lab") + " simulate " + path("out") + " --board emulated --image " +
                           source("README.md") + " --rig " + source("hw/rigs/experiment.yaml") +
                           " --scenario " + source("hw/worlds/experiment.scenario.yaml"));
     EXPECT_EQ(said.exit_code, 69) << said.output;
@@ -120,8 +123,8 @@ TEST_F(CommandLine, refuses_a_camera_that_nobody_would_use) {
         const Said said =
             run("python3 -c 'import os, socket, sys; a, b = socket.socketpair(socket.AF_UNIX, "
                 "socket.SOCK_SEQPACKET); os.dup2(a.fileno(), 0); os.execvp(sys.argv[1], sys.argv[1:])' "
-                "timeout 20 " OCTOSKIN_PROGRAM " " +
-                command);
+                "timeout 20 " +
+                typed(command));
         EXPECT_EQ(said.exit_code, 64) << command << ": " << said.output;
         EXPECT_THAT(said.output, HasSubstr("--camera")) << command;
     }
@@ -259,7 +262,7 @@ TEST_F(CommandLine, tells_of_sensors_in_one_light_by_groups_and_not_by_pairs) {
 
 /// With standard output as `redirection` says; only standard error is kept.
 Said octoskin_into(const std::string& redirection, const std::string& arguments) {
-    return run("( " OCTOSKIN_PROGRAM " " + arguments + " " + redirection + " )");
+    return run("( " + typed(arguments) + " " + redirection + " )");
 }
 
 TEST_F(CommandLine, a_standard_output_that_takes_nothing_is_a_failure_of_every_command) {
@@ -325,7 +328,7 @@ TEST_F(CommandLine, a_pipe_or_a_device_for_a_file_is_refused_instead_of_waited_f
               "flash --dry-run --rig " + rig + " --elf " + other,
               "experiment --out " + path("out") + " --rig " + other,
               "experiment --out " + path("out") + " --configurations " + other}) {
-            const Said said = run("timeout 20 " OCTOSKIN_PROGRAM " " + arguments);
+            const Said said = run("timeout 20 " + typed(arguments));
             EXPECT_TRUE(said.exit_code >= 64 && said.exit_code <= 78 && said.exit_code != 70)
                 << arguments << ": " << said.exit_code << said.output;
             EXPECT_THAT(said.output, HasSubstr(other)) << arguments;
@@ -336,8 +339,7 @@ TEST_F(CommandLine, a_pipe_or_a_device_for_a_file_is_refused_instead_of_waited_f
     // A scenario's world and a world's mesh are such files, too.
     write(path("my.scenario.yaml"),
           "extends: " + source("tests/data/short/scenario.yaml") + "\nworld: " + path("pipe") + "\n");
-    const Said world =
-        run("timeout 20 " OCTOSKIN_PROGRAM " " + base + "--scenario " + path("my.scenario.yaml"));
+    const Said world = run("timeout 20 " + typed(base) + "--scenario " + path("my.scenario.yaml"));
     EXPECT_EQ(world.exit_code, 78) << world.output;
     EXPECT_THAT(world.output, HasSubstr("my.scenario.yaml:2: world"));
 }

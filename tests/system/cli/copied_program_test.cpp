@@ -29,8 +29,9 @@ class CopiedProgram : public ProgramTest {
 TEST_F(CopiedProgram, has_no_helpers_and_no_data) {
     std::filesystem::create_directories(path("away/bin"));
     std::filesystem::copy_file(OCTOSKIN_PROGRAM, path("away/bin/octoskin"));
-    const std::string program = path("away/bin/octoskin");
-    EXPECT_EQ(run(program + " cameras").exit_code, 69);
+    EXPECT_EQ(run(path("away/bin/octoskin cameras")).exit_code, 69);
+    std::filesystem::copy_file(OCTOSKIN_LAB_PROGRAM, path("away/bin/octoskin-lab"));
+    const std::string program = path("away/bin/octoskin-lab");
     const Said world =
         run(program + " simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
             " --scenario " + source("tests/data/short/scenario.yaml"));

@@ -99,7 +99,7 @@ class FolderWalk : public ProgramTest {
     /// Runs it, and looks at the world outside, of which the recording's own names are no part.
     Said expect_harmless(const std::string& command, const std::string& case_name) const {
         const auto before = states_in(directory_ / "outside");
-        const Said said = run("timeout 20 " OCTOSKIN_PROGRAM " " + command + " < /dev/null");
+        const Said said = run("timeout 20 " + typed(command) + " < /dev/null");
         EXPECT_EQ(states_in(directory_ / "outside"), before) << case_name << ": " << command << said.output;
         EXPECT_NE(said.exit_code, 124) << case_name << " hangs: " << command;
         EXPECT_THAT(said.exit_code,
@@ -253,9 +253,7 @@ TEST_F(FolderWalk, writes_only_into_folders_of_the_caller_or_of_root_and_reads_a
     const auto own = [this](const char* name, uid_t user) {
         ASSERT_EQ(::lchown(path(name).c_str(), user, user), 0);
     };
-    const auto said_of = [&](const std::string& arguments) {
-        return run(as_another + OCTOSKIN_PROGRAM " " + arguments);
-    };
+    const auto said_of = [&](const std::string& arguments) { return run(as_another + typed(arguments)); };
     own("rec", 12'346);
     const Said in_anothers = said_of("replay " + path("rec"));
     EXPECT_EQ(in_anothers.exit_code, 73) << in_anothers.output;
@@ -284,15 +282,15 @@ TEST(FolderRule, nothing_else_in_the_host_makes_moves_or_removes_files_by_path) 
         }
     }
     EXPECT_THAT(found, testing::ElementsAre(
-                           "host/apps/daemon/recording_writer.cpp",  // the folder that a user names
-                           "host/apps/flashing/flashing.cpp",        // the same
-                           "host/apps/study/work_folder.cpp",        // in an open folder, by its descriptor
-                           "host/io/helper_limits/confinement.cpp",  // names what it refuses
-                           "host/io/mapfile/atomic_file.cpp",        // in an open folder
+                           "host/apps/daemon/recording_writer.cpp",     // the folder that a user names
+                           "host/apps/flashing/flashing.cpp",           // the same
+                           "host/io/helper_limits/confinement.cpp",     // names what it refuses
+                           "host/io/mapfile/atomic_file.cpp",           // in an open folder
                            "host/io/openni2/helpers/oni_recorder.cpp",  // of a file that octoskin has made
                            "host/io/openni2/helpers/oni_write.cpp",     // the same
                            "host/io/tum/depth_png.cpp",                 // to read
-                           "hw/sim/experiment/emulated_board.cpp"));    // temporary, its own
+                           "host/lab/study/work_folder.cpp",          // in an open folder, by its descriptor
+                           "hw/sim/experiment/emulated_board.cpp"));  // temporary, its own
 }
 
 }  // namespace

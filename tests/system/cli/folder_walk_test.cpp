@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "host/apps/study/results_folder.hpp"
+#include "host/lab/study/results_folder.hpp"
 #include "tests/system/cli/folder_states.hpp"
 #include "tests/system/cli/folder_traps.hpp"
 #include "tests/system/cli/program.hpp"
@@ -219,7 +219,7 @@ class Walker {
         std::string command = walk.command;
         for (auto at = command.find("{}"); at != std::string::npos; at = command.find("{}"))
             command.replace(at, 2, (home_ / "it").string());
-        const Said said = run("timeout 60 " OCTOSKIN_PROGRAM " " + command + " < /dev/null");
+        const Said said = run("timeout 60 " + typed(command) + " < /dev/null");
         EXPECT_EQ(states_in(outside_, Bytes::trusted), before_) << name << said.output;
         EXPECT_NE(said.exit_code, 124) << name << " hangs";
         EXPECT_THAT(said.exit_code, testing::AnyOf(0, 1, 2, 64, 65, 66, 69, 73, 77, 78))

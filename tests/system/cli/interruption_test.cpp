@@ -19,8 +19,7 @@ class Interrupted : public ProgramTest {
   protected:
     /// How it ended after it got the signal as soon as `begun` was there; 128 and more: killed by one.
     Said interrupt(const std::string& arguments, const std::string& begun, int signal) const {
-        const std::string command =
-            "exec " OCTOSKIN_PROGRAM " " + arguments + " > " + path("said") + " 2>&1 < /dev/zero";
+        const std::string command = "exec " + typed(arguments) + " > " + path("said") + " 2>&1 < /dev/zero";
         const pid_t process = ::fork();
         if (process == 0) {
             ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);

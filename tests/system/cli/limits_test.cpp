@@ -13,8 +13,7 @@ class Limits : public ProgramTest {
   protected:
     /// With `ulimit` so set, in a shell of its own. `run` is told to end after 3 s.
     [[nodiscard]] static Said limited(const std::string& limit, const std::string& arguments) {
-        return run("( ulimit " + limit + " && exec timeout -s TERM 3 " OCTOSKIN_PROGRAM " " + arguments +
-                   " ) < /dev/null");
+        return run("( ulimit " + limit + " && exec timeout -s TERM 3 " + typed(arguments) + " ) < /dev/null");
     }
     [[nodiscard]] std::string daemon() const {
         return "run --no-camera --can nocan0 --rig " + source("hw/rigs/experiment.yaml") + " --maps " +

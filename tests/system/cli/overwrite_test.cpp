@@ -116,9 +116,9 @@ TEST_F(Overwrite, two_that_write_one_directory_at_once_are_kept_apart) {
     record_short("rec");
     ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
     const std::string log = content(path("rec/can.log"));
-    const std::string both = "( " OCTOSKIN_PROGRAM " simulate " + path("rec") + " --force --seed 7 --rig " +
-                             source("tests/data/short/rig.yaml") + " --scenario " +
-                             source("tests/data/short/scenario.yaml");
+    const std::string both = "( " OCTOSKIN_LAB_PROGRAM " simulate " + path("rec") +
+                             " --force --seed 7 --rig " + source("tests/data/short/rig.yaml") +
+                             " --scenario " + source("tests/data/short/scenario.yaml");
     // Two simulations, started together: one is refused, and what is there is of the other alone.
     const Said said = run(both + "; echo first $? ) & " + both + "; echo second $? ) & wait");
     EXPECT_THAT(said.output, testing::AnyOf(AllOf(HasSubstr("first 0"), HasSubstr("second 73")),

@@ -27,7 +27,8 @@ class PermissionTest : public ProgramTest {
     }
     Said as_nobody(const std::string& arguments) const {
         const std::string who = ::geteuid() == 0 ? "setpriv --reuid 65534 --regid 65534 --clear-groups " : "";
-        return run("cd " + path("") + " && timeout 20 " + who + path("bin/octoskin") + " " + arguments);
+        const std::string program = are_for_lab(arguments) ? "bin/octoskin-lab" : "bin/octoskin";
+        return run("cd " + path("") + " && timeout 20 " + who + path(program) + " " + arguments);
     }
     /// That each of them says of `file` that it may not be read, and does what it does once it may.
     void expect_refused(const std::string& file, const std::vector<std::string>& commands) const {

@@ -21,7 +21,7 @@ class Refusal : public ProgramTest {
     };
     static void expect_each(const std::vector<Case>& cases) {
         for (const Case& each : cases) {
-            const Said said = run("timeout 30 " OCTOSKIN_PROGRAM " " + each.arguments);
+            const Said said = run("timeout 30 " + typed(each.arguments));
             EXPECT_EQ(said.exit_code, each.exit_code) << each.arguments << ": " << said.output;
             EXPECT_THAT(said.output, HasSubstr(each.words)) << each.arguments;
         }

@@ -103,8 +103,8 @@ TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     const Said own = octoskin(evaluate + " --world " + kitchen() + " --json " + path("figures.json"));
     ASSERT_EQ(own.exit_code, 0) << own.output;
     EXPECT_THAT(own.output, AllOf(HasSubstr("judging in " + kitchen()), Not(HasSubstr("recorded in"))));
-    const Said to_output = run(OCTOSKIN_PROGRAM " " + evaluate + " --world " + kitchen() +
-                               " --json /dev/stdout > " + path("both"));
+    const Said to_output =
+        run(typed(evaluate) + " --world " + kitchen() + " --json /dev/stdout > " + path("both"));
     EXPECT_EQ(to_output.exit_code, 0) << to_output.output;
     EXPECT_THAT(content(path("both")),
                 AllOf(HasSubstr("Voxels against"), HasSubstr("kitchen.sdf, CRC-32 0x")));
@@ -206,7 +206,7 @@ TEST_F(SceneOfARecording, made_with_ones_own_scenario_and_world_is_in_it) {
         write(file, whole + "\n");
         const Said changed = octoskin("evaluate " + rec);
         EXPECT_EQ(changed.exit_code, 65) << name << changed.output;
-        EXPECT_THAT(changed.output, AllOf(HasSubstr("not what `octoskin simulate` put there"),
+        EXPECT_THAT(changed.output, AllOf(HasSubstr("not what `octoskin-lab simulate` put there"),
                                           HasSubstr("give --scenario and --world")));
         std::filesystem::remove(file);
         std::filesystem::create_symlink("/etc/passwd", file);
@@ -217,7 +217,7 @@ TEST_F(SceneOfARecording, made_with_ones_own_scenario_and_world_is_in_it) {
     EXPECT_EQ(octoskin("evaluate " + rec).exit_code, 0);
     const std::string sdf = content(rec + "/world.sdf");
     std::filesystem::resize_file(rec + "/world.sdf", std::uintmax_t{1} << 40U);
-    EXPECT_EQ(run("timeout 20 " OCTOSKIN_PROGRAM " evaluate " + rec).exit_code, 65)
+    EXPECT_EQ(run("timeout 20 " OCTOSKIN_LAB_PROGRAM " evaluate " + rec).exit_code, 65)
         << "without reading all of it";
     write(rec + "/world.sdf", sdf);
     // A map of it, beside it and elsewhere.

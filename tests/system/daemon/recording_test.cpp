@@ -30,7 +30,7 @@ using testing_support::ScratchFolder;
 
 /// Without warnings, which would spoil JSON.
 Said octoskin_json(const std::string& arguments) {
-    return run(OCTOSKIN_PROGRAM " " + arguments, "2> /dev/null");
+    return run(typed(arguments), "2> /dev/null");
 }
 
 /// Empty while nothing was recorded: there is a null then.

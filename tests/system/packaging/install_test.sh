@@ -12,7 +12,7 @@ for name in octoskin octoskin-node; do
     grep -q "^EnvironmentFile=$folder/prefix/etc/default/$name\$" "$folder/prefix/lib/systemd/system/$name.service"
 done
 "$folder/prefix/bin/octoskin" rig "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml" > /dev/null
-"$folder/prefix/bin/octoskin" simulate --help | grep -qF "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml"
+"$folder/prefix/bin/octoskin-lab" simulate --help | grep -qF "$folder/prefix/share/octoskin/hw/rigs/experiment.yaml"
 # No file names the folder that it was built in, and no program that of the sources alone: what is looked for there, another user may put
 # there. (What an assertion says of itself names a source.)
 sources=$(cd "$(dirname "$0")/../../.." && pwd)
@@ -36,10 +36,13 @@ for program in "$folder"/prefix/bin/* "$folder"/prefix/libexec/octoskin/octoskin
 done
 # A world is read by a helper, in a process of its own, and that by a module, so that a file which is no world at all waits for no
 # library; without either that is said.
-ldd "$folder/prefix/bin/octoskin" > "$folder/libraries"
+ldd "$folder/prefix/bin/octoskin-lab" > "$folder/libraries"
 if grep -q sdformat "$folder/libraries"; then exit 1; fi
+# The product has nothing of the laboratory.
+ldd "$folder/prefix/bin/octoskin" > "$folder/libraries"
+if grep -qE 'sdformat|embree|assimp' "$folder/libraries"; then exit 1; fi
 simulate() {
-    "$folder/prefix/bin/octoskin" simulate "$folder/$1" --rig "$folder/prefix/share/octoskin/hw/rigs/bench_one_board.yaml" \
+    "$folder/prefix/bin/octoskin-lab" simulate "$folder/$1" --rig "$folder/prefix/share/octoskin/hw/rigs/bench_one_board.yaml" \
         --scenario "$folder/prefix/share/octoskin/hw/worlds/bench.scenario.yaml" > "$folder/log" 2>&1
 }
 simulate recording

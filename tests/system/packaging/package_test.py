@@ -11,18 +11,22 @@ import unittest
 SOURCE = pathlib.Path(__file__).resolve().parents[3]
 HELPERS = "usr/libexec/octoskin"
 PROGRAMS = {"usr/bin/octoskin", "usr/bin/octoskin-node", f"{HELPERS}/octoskin-camera",
-            f"{HELPERS}/octoskin-oni-read", f"{HELPERS}/octoskin-oni-write", f"{HELPERS}/octoskin-world-read"}
+            f"{HELPERS}/octoskin-oni-read", f"{HELPERS}/octoskin-oni-write"}
+LAB_PROGRAMS = {"usr/bin/octoskin-lab", f"{HELPERS}/octoskin-world-read"}
 LINKS = {"usr/share/doc/octoskin/hw", f"{HELPERS}/openni2/libOpenNI2.so.0", f"{HELPERS}/openni2/OpenNI2/Drivers/libOniFile.so.0"}
 SETTINGS = {"etc/default/octoskin", "etc/default/octoskin-node"}
-OTHERS = {f"{HELPERS}/octoskin-sdf.so", f"{HELPERS}/openni2/OpenNI2/Drivers/libOctoskinVirtual.so.0",
+OTHERS = {f"{HELPERS}/openni2/OpenNI2/Drivers/libOctoskinVirtual.so.0",
           "usr/lib/systemd/system/octoskin.service", "usr/lib/systemd/system/octoskin-node.service",
           "usr/lib/sysusers.d/octoskin.conf", "usr/lib/udev/rules.d/60-octoskin-node.rules",
           "usr/share/man/man1/octoskin.1.gz", "usr/share/man/man1/octoskin-node.1.gz",
           "usr/share/doc/octoskin/README.md", "usr/share/doc/octoskin/SECURITY.md", "usr/share/doc/octoskin/packaging/README.md",
           "usr/share/doc/octoskin/copyright",
           "usr/share/doc/octoskin/changelog.gz", "usr/share/octoskin/hw/octoskin.dbc"}
+LAB_OTHERS = {f"{HELPERS}/octoskin-sdf.so", "usr/share/man/man1/octoskin-lab.1.gz", "usr/share/doc/octoskin-lab/copyright",
+              "usr/share/doc/octoskin-lab/changelog.gz"}
+LAB_FOLDERS = {"hw/worlds": "usr/share/octoskin/hw/worlds"}
 FOLDERS = {"docs": "usr/share/doc/octoskin/docs", "host/config": "usr/share/octoskin/config"} | {
-    f"hw/{name}": f"usr/share/octoskin/hw/{name}" for name in ("boards", "rigs", "robots", "worlds")}
+    f"hw/{name}": f"usr/share/octoskin/hw/{name}" for name in ("boards", "rigs", "robots")}
 
 
 def run(*command, **options):
@@ -32,8 +36,8 @@ def run(*command, **options):
     return done.stdout
 
 
-def data_files():
-    for source, target in FOLDERS.items():
+def data_files(folders):
+    for source, target in folders.items():
         for file in (SOURCE / source).rglob("*"):
             if file.is_file():
                 yield f"{target}/{file.relative_to(SOURCE / source)}"
@@ -47,55 +51,72 @@ class Package(unittest.TestCase):
         folder = pathlib.Path(cls.scratch.name)
         run(CPACK, "--config", f"{BUILD}/CPackConfig.cmake", "-B", folder / "made")
         (cls.package,) = (folder / "made").glob("octoskin_*.deb")
+        (cls.lab,) = (folder / "made").glob("octoskin-lab_*.deb")
         cls.root = folder / "root"
-        run("dpkg-deb", "-x", cls.package, cls.root)
+        for package in (cls.package, cls.lab):
+            run("dpkg-deb", "-x", package, cls.root)
         # Its links lead to the library that it depends on.
         (triplet,) = {path.name for path in pathlib.Path("/usr/lib").glob("*-linux-gnu*")
                       if (path / "libOpenNI2.so.0").exists()}
         (cls.root / "usr/lib" / triplet).symlink_to(f"/usr/lib/{triplet}")
         cls.program = cls.root / "usr/bin/octoskin"
-        cls.listed = [line.split(None, 5) for line in run("dpkg-deb", "-c", cls.package).splitlines()]
+        cls.lab_program = cls.root / "usr/bin/octoskin-lab"
 
-    def names(self, kind):
-        return {entry[5].split(" -> ")[0].removeprefix("./") for entry in self.listed if entry[0][0] == kind}
+    def listed(self, package):
+        return [line.split(None, 5) for line in run("dpkg-deb", "-c", package).splitlines()]
 
-    def field(self, name):
-        return run("dpkg-deb", "-f", self.package, name).strip()
+    def names(self, package, kind):
+        return {entry[5].split(" -> ")[0].removeprefix("./") for entry in self.listed(package) if entry[0][0] == kind}
+
+    def field(self, package, name):
+        return run("dpkg-deb", "-f", package, name).strip()
+
+    def depends(self, package):
+        return {re.split(r"[ |]", word.strip())[0] for word in self.field(package, "Depends").split(",")}
 
     def test_has_these_files_and_no_other(self):
-        data = set(data_files())
-        self.assertGreater(len(data), 20)
-        self.assertEqual(self.names("-"), PROGRAMS | SETTINGS | OTHERS | data)
-        self.assertEqual(self.names("l"), LINKS)
+        data = set(data_files(FOLDERS))
+        self.assertGreater(len(data), 10)
+        self.assertEqual(self.names(self.package, "-"), PROGRAMS | SETTINGS | OTHERS | data)
+        self.assertEqual(self.names(self.package, "l"), LINKS)
+        worlds = set(data_files(LAB_FOLDERS))
+        self.assertGreater(len(worlds), 5)
+        self.assertEqual(self.names(self.lab, "-"), LAB_PROGRAMS | LAB_OTHERS | worlds)
+        self.assertEqual(self.names(self.lab, "l"), set())
 
     def test_belongs_to_root_who_alone_may_write(self):
-        for mode, owner, *_, name in self.listed:
+        for mode, owner, *_, name in self.listed(self.package) + self.listed(self.lab):
             self.assertEqual(owner, "root/root", name)
             if mode[0] == "l":
                 continue
-            is_run = mode[0] == "d" or name.removeprefix("./") in PROGRAMS
+            is_run = mode[0] == "d" or name.removeprefix("./") in PROGRAMS | LAB_PROGRAMS
             self.assertEqual(mode[1:], "rwxr-xr-x" if is_run else "rw-r--r--", name)
 
     def test_is_named_by_version_and_architecture(self):
         architecture = run("dpkg", "--print-architecture").strip()
         version = run(self.program, "--version").split()[1]
         self.assertEqual(self.package.name, f"octoskin_{version}_{architecture}.deb")
+        self.assertEqual(self.lab.name, f"octoskin-lab_{version}_{architecture}.deb")
+        self.assertIn(f"octoskin (= {version})", self.field(self.lab, "Depends"))
         changes = run("zcat", self.root / "usr/share/doc/octoskin/changelog.gz")
         self.assertTrue(changes.startswith(f"octoskin ({version}) "), changes)
 
     def test_names_the_maintainer_that_the_build_was_given(self):
-        self.assertEqual(self.field("Maintainer"), MAINTAINER)
+        self.assertEqual(self.field(self.package, "Maintainer"), MAINTAINER)
         self.assertRegex(MAINTAINER, "^[^<>]+ <[^<>@]+@[^<>@]+>$")
 
     def test_depends_on_what_its_programs_load(self):
-        depends = {re.split(r"[ |]", word.strip())[0] for word in self.field("Depends").split(",")}
-        for file in PROGRAMS:
+        for file in PROGRAMS | LAB_PROGRAMS:
             for line in run("ldd", self.root / file).splitlines():
                 self.assertNotIn("not found", line, file)
         # By hand, the other way round: the library each program cannot do without.
-        for package in ("libopenni2-0", "libsystemd0", "libgpiod2", "libsdformat12-12", "libembree3-3", "procps"):
+        depends, lab = self.depends(self.package), self.depends(self.lab)
+        for package in ("libopenni2-0", "libsystemd0", "libgpiod2", "procps"):
             self.assertIn(package, depends)
-        self.assertFalse({name for name in depends if "unicorn" in name or name.endswith("-dev")})
+        for package in ("libsdformat12-12", "libembree3-3"):
+            self.assertIn(package, lab)
+            self.assertNotIn(package, depends)
+        self.assertFalse({name for name in depends | lab if "unicorn" in name or name.endswith("-dev")})
 
     def test_keeps_settings_that_somebody_changed(self):
         conffiles = run("dpkg-deb", "--info", self.package, "conffiles").split()
@@ -121,12 +142,13 @@ class Package(unittest.TestCase):
                 self.assertEqual(len(list(wants.iterdir())), left, verb)
 
     def test_names_every_command_in_the_manual(self):
-        said = run(self.program, "--help").split("Subcommands:")[1].split("Exit codes")[0]
-        commands = re.findall(r"^  ([a-z-]+) ", said, re.MULTILINE)
-        self.assertGreater(len(commands), 10)
-        manual = run("zcat", self.root / "usr/share/man/man1/octoskin.1.gz")
-        bold = set(re.findall(r"[a-z-]+", " ".join(re.findall(r"^\.BR? (.*)$", manual, re.MULTILINE))))
-        self.assertEqual([name for name in commands if name not in bold], [])
+        for program, least in ((self.program, 10), (self.lab_program, 3)):
+            said = run(program, "--help").split("Subcommands:")[1].split("Exit codes")[0]
+            commands = re.findall(r"^  ([a-z-]+) ", said, re.MULTILINE)
+            self.assertGreaterEqual(len(commands), least)
+            manual = run("zcat", self.root / f"usr/share/man/man1/{program.name}.1.gz")
+            bold = set(re.findall(r"[a-z-]+", " ".join(re.findall(r"^\.BR? (.*)$", manual, re.MULTILINE))))
+            self.assertEqual([name for name in commands if name not in bold], [])
 
     def test_simulates_records_and_maps_with_its_own_helpers_and_data(self):
         shared = self.root / "usr/share/octoskin"
@@ -134,8 +156,8 @@ class Package(unittest.TestCase):
         scenario.write_text(f"extends: {shared}/hw/worlds/experiment.scenario.yaml\n"
                             "motion: {rest_s: 3, circle: {radius_m: 0.02, ticks_per_revolution: 15}}\n")
         recording = pathlib.Path(self.scratch.name) / "recording"
-        self.assertIn(f"{shared}/hw/rigs/experiment.yaml", run(self.program, "simulate", "--help"))
-        run(self.program, "simulate", recording, "--scenario", scenario)
+        self.assertIn(f"{shared}/hw/rigs/experiment.yaml", run(self.lab_program, "simulate", "--help"))
+        run(self.lab_program, "simulate", recording, "--scenario", scenario)
         run(self.program, "replay", recording)
         self.assertGreater((recording / "maps/depth.ot").stat().st_size, 10_000)
 

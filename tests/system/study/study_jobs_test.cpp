@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/apps/study/study.hpp"
+#include "host/lab/study/study.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {

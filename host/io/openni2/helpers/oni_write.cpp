@@ -84,7 +84,8 @@ std::string record(const std::filesystem::path& file) {
 int main(int argc, char** argv) {
     if (argc != 2 && argc != 3) {
         std::fputs(
-            "usage: octoskin-oni-write FILE.oni [NAME] < frames\nA helper of octoskin; `octoskin simulate` "
+            "usage: octoskin-oni-write FILE.oni [NAME] < frames\nA helper of octoskin; `octoskin-lab "
+            "simulate` "
             "runs "
             "it.\n",
             stderr);

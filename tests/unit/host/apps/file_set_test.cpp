@@ -308,5 +308,14 @@ TEST(FileSetTest, leaves_nothing_unfinished_of_a_process_that_is_told_to_end) {
     EXPECT_EQ(told(parent.path()), kNew);
 }
 
+TEST(SceneMesh, is_known_by_its_name) {
+    for (const char* name : {"mesh_01.stl", "mesh_99.obj", "mesh_00.x", "mesh_12.abcdefgh"})
+        EXPECT_TRUE(is_scene_mesh(name)) << name;
+    for (const char* name :
+         {"", "mesh_", "mesh_01", "mesh_01.", "mesh_1.stl", "mesh_001.stl", "mesh_01.STL", "mesh_01.a/b",
+          "mesh_01..", "mesh_01.abcdefghi", "xmesh_01.stl", "mesh_01.stl\n", "maps/mesh_01.stl"})
+        EXPECT_FALSE(is_scene_mesh(name)) << name;
+}
+
 }  // namespace
 }  // namespace octoskin

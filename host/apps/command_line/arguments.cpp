@@ -1,0 +1,132 @@
+#include "host/apps/command_line/arguments.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <string_view>
+
+#include "common/wire/interface_name.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/recording/permission.hpp"
+#include "host/io/mapping/mapping_file.hpp"
+#include "hw/rigfile/file_kind.hpp"
+#include "hw/rigfile/joined.hpp"
+#include "hw/rigfile/key_hint.hpp"
+
+namespace octoskin::app {
+namespace {
+
+std::string absolute(const std::string& path) {
+    std::error_code error;
+    const auto whole = std::filesystem::absolute(path, error);
+    return error ? path : whole.lexically_normal().string();
+}
+
+void check_readable(const std::string& path) {
+    if (const auto refused = refused_to_read(absolute(path))) throw CommandFailure(*refused);
+}
+
+std::string is_seed(std::string& text) {
+    std::uint64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, value);
+    if (parsed.ec == std::errc{} && parsed.ptr == end) return {};
+    return "expected a whole number from 0 to 2^64 - 1, found '" + text + "'";
+}
+
+void check_interface_name(const std::string& interface) {
+    // A recording's log has it on each line.
+    if (wire::is_interface_name(interface)) return;
+    throw CommandFailure({ExitCode::usage, fmt::format("'{}': {}", interface, wire::kInterfaceNameRule)});
+}
+
+void check_frame_socket(const std::string& interface, int descriptor) {
+    int type = 0;
+    socklen_t size = sizeof(type);
+    if (::getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &size) != 0) {
+        throw CommandFailure({ExitCode::usage, interface + " is no socket: give one that carries frames as a "
+                                                           "raw CAN socket does"});
+    }
+    if (type == SOCK_STREAM) {
+        throw CommandFailure({ExitCode::usage, interface + " is a stream, in which frames have no borders: "
+                                                           "give a socket of datagrams (SOCK_SEQPACKET)"});
+    }
+}
+
+}  // namespace
+
+CLI::Validator existing_file() {
+    return {[](std::string& path) -> std::string {
+                check_readable(path);
+                std::error_code error;
+                if (std::filesystem::is_directory(path, error)) return path + " is a directory, not a file";
+                if (const auto kind = rig::other_than_a_file(path); !kind.empty()) {
+                    throw CommandFailure({ExitCode::no_input, absolute(path) + ": is " + std::string(kind) +
+                                                                  "; give an ordinary file: it is read more "
+                                                                  "than once"});
+                }
+                if (std::filesystem::exists(path, error)) return {};
+                throw CommandFailure({ExitCode::no_input, absolute(path) + ": no such file"});
+            },
+            "FILE"};
+}
+
+CLI::Validator existing_path() {
+    return {[](std::string& path) -> std::string {
+                check_readable(path);
+                std::error_code error;
+                if (std::filesystem::exists(path, error)) return {};
+                throw CommandFailure({ExitCode::no_input, absolute(path) + ": no such file or directory"});
+            },
+            "PATH"};
+}
+
+CLI::Validator seed() {
+    return {is_seed, "SEED"};
+}
+
+std::string configuration_help(const std::string& use) {
+    return use + ": " + rig::joined(kBuiltInMappings) + ", or a YAML file";
+}
+
+void check_command_name(const CLI::App& app, const std::string& others, int argc, const char* const* argv) {
+    if (argc < 2 || std::string_view(argv[1]).starts_with('-')) return;
+    const std::string word = argv[1];
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), word) != names.end()) return;
+    const auto near = rig::nearest_word(word, names);
+    throw CommandFailure({ExitCode::usage, "there is no command '" + word + "'" +
+                                               (near ? ": did you mean '" + *near + "'?" : ".") +
+                                               " There are " + rig::joined(names) +
+                                               "; --help says what they do" + others});
+}
+
+std::optional<int> descriptor_of(const std::string& interface) {
+    constexpr std::string_view kPrefix = "fd:";
+    check_interface_name(interface);
+    if (!interface.starts_with(kPrefix)) return std::nullopt;
+    int descriptor = -1;
+    const char* const last = interface.data() + interface.size();
+    const auto [end, error] = std::from_chars(interface.data() + kPrefix.size(), last, descriptor);
+    if (error != std::errc{} || end != last)
+        throw CommandFailure(
+            {ExitCode::usage, interface + ": expected fd: and the number of an open descriptor"});
+    if (descriptor < 0 || ::fcntl(descriptor, F_GETFD) < 0)
+        throw CommandFailure({ExitCode::usage, interface + ": no descriptor of that number is open"});
+    check_frame_socket(interface, descriptor);
+    return descriptor;
+}
+
+socketcan::CanSocket open_can(const std::string& interface, const socketcan::SocketOptions& options) {
+    if (const auto descriptor = descriptor_of(interface)) return {interface, *descriptor};
+    auto socket = socketcan::CanSocket::open(interface, options);
+    if (!socket) throw CommandFailure({ExitCode::unavailable, socket.error().message()});
+    return std::move(socket).value();
+}
+
+}  // namespace octoskin::app

@@ -1,0 +1,66 @@
+// Figures over seeds: mean, spread, and differences paired by seed (the spread over seeds is mostly voxel
+// phase, which a paired difference cancels).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/lab/evaluation/metrics.hpp"
+
+namespace octoskin::evaluation {
+
+/// One map of one configuration of one seed, judged.
+struct Run {
+    std::string configuration;  ///< "robust"
+    std::string map;            ///< "fused"
+    std::uint64_t seed = 0;
+    Metrics metrics;
+};
+
+/// One figure over seeds. Seeds where it is undefined stay in `per_seed` as empty and out of the rest.
+struct Summary {
+    std::optional<double> mean;
+    std::optional<double> sd;  ///< sample standard deviation (n - 1); empty below two values
+    std::vector<std::optional<double>> per_seed;
+};
+[[nodiscard]] Summary summarise(std::vector<std::optional<double>> per_seed);
+
+using MetricSummaries = std::map<std::string, Summary, std::less<>>;
+
+/// One map of one configuration over all its seeds.
+struct MapSummary {
+    std::string configuration;
+    std::string map;
+    std::vector<std::uint64_t> seeds;  ///< ascending; the order of `per_seed`
+    MetricSummaries metrics;
+    Calibration calibration;  ///< pooled over the seeds
+
+    /// The metric must exist (asserted).
+    [[nodiscard]] const Summary& at(std::string_view metric) const;
+};
+
+/// One summary per configuration and map, in the order of their first run. A seed may occur only once for
+/// each (asserted).
+[[nodiscard]] std::vector<MapSummary> aggregate(std::span<const Run> runs);
+
+/// Empty if there is none.
+[[nodiscard]] const MapSummary* find_map(std::span<const MapSummary> summaries,
+                                         std::string_view configuration, std::string_view map);
+
+/// `minuend` - `subtrahend`, seed by seed, over the seeds that both have.
+struct PairedDifference {
+    std::string name;  ///< "robust/fused - robust/depth"
+    std::vector<std::uint64_t> seeds;
+    MetricSummaries metrics;
+};
+[[nodiscard]] PairedDifference paired_difference(const MapSummary& minuend, const MapSummary& subtrahend);
+
+/// What the experiment asks: in each configuration fused - depth and fused - proximity, and for every pair of
+/// configurations the later one's fused map minus the earlier one's.
+[[nodiscard]] std::vector<PairedDifference> standard_differences(std::span<const MapSummary> summaries);
+
+}  // namespace octoskin::evaluation

@@ -1,0 +1,161 @@
+#include "host/lab/evaluation/metrics.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace octoskin::evaluation {
+namespace {
+
+/// Log loss of a certain and wrong prediction is infinite; a map with clamps never makes one.
+constexpr double kProbabilityFloor = 1e-9;
+
+std::optional<double> ratio(double part, double whole) {
+    return whole > 0.0 ? std::optional(part / whole) : std::nullopt;
+}
+std::optional<double> ratio(std::uint64_t part, std::uint64_t whole) {
+    return ratio(static_cast<double>(part), static_cast<double>(whole));
+}
+
+/// Sums over the voxels that are not interior to a solid.
+struct SurfaceSums {
+    std::uint64_t voxels = 0;
+    std::uint64_t known = 0;
+    std::uint64_t surface = 0;
+    std::uint64_t marked = 0;  ///< occupied in the map
+    std::uint64_t marked_surface = 0;
+    std::uint64_t marked_near_surface = 0;
+    std::uint64_t occluded = 0;
+    std::uint64_t marked_occluded = 0;
+    std::uint64_t object = 0;  ///< occluded, and of a hidden object
+    std::uint64_t marked_object = 0;
+    double log_loss = 0.0;
+    double squared_error = 0.0;
+    Calibration calibration;
+};
+
+void add_prediction(SurfaceSums& sums, const MapVoxel& voxel, bool is_surface) {
+    const double predicted = static_cast<double>(voxel.probability);
+    const double of_outcome = is_surface ? predicted : 1.0 - predicted;
+    sums.log_loss -= std::log(std::max(of_outcome, kProbabilityFloor));
+    sums.squared_error += (1.0 - of_outcome) * (1.0 - of_outcome);
+    if (voxel.occupancy != Occupancy::unknown) {
+        const auto bin = static_cast<std::size_t>(predicted * static_cast<double>(kCalibrationBins));
+        auto& of_bin = sums.calibration[std::min(bin, kCalibrationBins - 1)];
+        of_bin.count += 1;
+        of_bin.probability_sum += predicted;
+        of_bin.occupied_count += is_surface ? 1 : 0;
+    }
+}
+
+void add_voxel(SurfaceSums& sums, const MapVoxel& voxel, const SurfaceVoxel& truth) {
+    if (truth.is_interior) {
+        return;
+    }
+    const bool is_marked = voxel.occupancy == Occupancy::occupied;
+    const bool is_object = truth.is_occluded && truth.is_hidden_object;
+    sums.voxels += 1;
+    sums.known += voxel.occupancy != Occupancy::unknown ? 1 : 0;
+    sums.surface += truth.is_surface ? 1 : 0;
+    sums.marked += is_marked ? 1 : 0;
+    sums.marked_surface += is_marked && truth.is_surface ? 1 : 0;
+    sums.marked_near_surface += is_marked && truth.is_near_surface ? 1 : 0;
+    sums.occluded += truth.is_occluded ? 1 : 0;
+    sums.marked_occluded += is_marked && truth.is_occluded ? 1 : 0;
+    sums.object += is_object ? 1 : 0;
+    sums.marked_object += is_marked && is_object ? 1 : 0;
+    add_prediction(sums, voxel, truth.is_surface);
+}
+
+void add_table_one(Metrics& metrics, Occupancy map, Occupancy truth) {
+    const bool is_marked = map == Occupancy::occupied;
+    if (truth == Occupancy::occupied) {
+        metrics.occupied += is_marked ? 1 : 0;
+        metrics.missed += map == Occupancy::unknown ? 1 : 0;
+        metrics.lost += map == Occupancy::free ? 1 : 0;
+        return;
+    }
+    metrics.incorrect += is_marked ? 1 : 0;
+    metrics.free += map == Occupancy::free && truth == Occupancy::free ? 1 : 0;
+}
+
+void set_ratios(Metrics& metrics, const SurfaceSums& sums) {
+    const std::uint64_t united = sums.marked + sums.surface - sums.marked_surface;
+    metrics.precision = ratio(sums.marked_surface, sums.marked);
+    metrics.recall = ratio(sums.marked_surface, sums.surface);
+    metrics.f1 = ratio(2 * sums.marked_surface, sums.marked + sums.surface);
+    metrics.iou = ratio(sums.marked_surface, united);
+    metrics.precision_tolerant = ratio(sums.marked_near_surface, sums.marked);
+    metrics.occluded_recall = ratio(sums.marked_occluded, sums.occluded);
+    metrics.object_recall = ratio(sums.marked_object, sums.object);
+    metrics.coverage = ratio(sums.known, sums.voxels);
+    metrics.log_loss = ratio(sums.log_loss, static_cast<double>(sums.voxels));
+    metrics.brier = ratio(sums.squared_error, static_cast<double>(sums.voxels));
+    metrics.calibration = sums.calibration;
+}
+
+std::optional<double> as_double(std::uint64_t count) {
+    return static_cast<double>(count);
+}
+
+constexpr std::array<MetricField, 15> kFields{{
+    {"occupied", true, true, [](const Metrics& m) { return as_double(m.occupied); }},
+    {"free", true, true, [](const Metrics& m) { return as_double(m.free); }},
+    {"missed", true, false, [](const Metrics& m) { return as_double(m.missed); }},
+    {"incorrect", true, false, [](const Metrics& m) { return as_double(m.incorrect); }},
+    {"lost", true, false, [](const Metrics& m) { return as_double(m.lost); }},
+    {"precision", false, true, [](const Metrics& m) { return m.precision; }},
+    {"recall", false, true, [](const Metrics& m) { return m.recall; }},
+    {"f1", false, true, [](const Metrics& m) { return m.f1; }},
+    {"iou", false, true, [](const Metrics& m) { return m.iou; }},
+    {"precision_tolerant", false, true, [](const Metrics& m) { return m.precision_tolerant; }},
+    {"occluded_recall", false, true, [](const Metrics& m) { return m.occluded_recall; }},
+    {"object_recall", false, true, [](const Metrics& m) { return m.object_recall; }},
+    {"coverage", false, true, [](const Metrics& m) { return m.coverage; }},
+    {"log_loss", false, false, [](const Metrics& m) { return m.log_loss; }},
+    {"brier", false, false, [](const Metrics& m) { return m.brier; }},
+}};
+
+}  // namespace
+
+std::optional<double> CalibrationBin::mean_predicted() const noexcept {
+    return ratio(probability_sum, static_cast<double>(count));
+}
+
+std::optional<double> CalibrationBin::observed_fraction() const noexcept {
+    return ratio(occupied_count, count);
+}
+
+VoxelGrid<MapVoxel> sample_map(const FusedMap& map, const KeyBox& box) {
+    VoxelGrid<MapVoxel> samples(box);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const VoxelKey key = box.key_at(i);
+        if (const auto log_odds = map.log_odds(key)) {
+            samples[i] = {map.occupancy(key), 1.0F / (1.0F + std::exp(-*log_odds))};
+        }
+    }
+    return samples;
+}
+
+Metrics compute_metrics(const VoxelGrid<MapVoxel>& map, const Truth& truth) {
+    assert(map.box() == truth.region() && truth.surface.box() == truth.region());
+    Metrics metrics;
+    SurfaceSums sums;
+    for (std::size_t i = 0; i < map.size(); ++i) {
+        add_table_one(metrics, map[i].occupancy, truth.camera[i]);
+        add_voxel(sums, map[i], truth.surface[i]);
+    }
+    set_ratios(metrics, sums);
+    return metrics;
+}
+
+Metrics evaluate(const FusedMap& map, const Truth& truth) {
+    assert(map.resolution_m() == truth.resolution_m);
+    return compute_metrics(sample_map(map, truth.region()), truth);
+}
+
+std::span<const MetricField> metric_fields() noexcept {
+    return kFields;
+}
+
+}  // namespace octoskin::evaluation

@@ -1,0 +1,79 @@
+// One map against the ground truths: every figure by its full name. docs/evaluation.md has the domain of
+// each.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "host/core/mapping/fused_map.hpp"
+#include "host/lab/evaluation/truth.hpp"
+#include "host/lab/evaluation/voxel_grid.hpp"
+
+namespace octoskin::evaluation {
+
+/// What a map says of one voxel; an unknown one has the prior 0.5.
+struct MapVoxel {
+    Occupancy occupancy = Occupancy::unknown;
+    float probability = 0.5F;
+};
+
+/// The map's content over a box. O(size * tree depth), about 20 ms for the experiment's region.
+[[nodiscard]] VoxelGrid<MapVoxel> sample_map(const FusedMap& map, const KeyBox& box);
+
+/// Known voxels whose probability lies in [i / 10, (i + 1) / 10).
+struct CalibrationBin {
+    std::uint64_t count = 0;
+    double probability_sum = 0.0;
+    std::uint64_t occupied_count = 0;  ///< of them surface voxels
+
+    [[nodiscard]] std::optional<double> mean_predicted() const noexcept;
+    [[nodiscard]] std::optional<double> observed_fraction() const noexcept;
+};
+inline constexpr std::size_t kCalibrationBins = 10;
+using Calibration = std::array<CalibrationBin, kCalibrationBins>;
+
+struct Metrics {
+    // Against the camera truth, voxels of the region (Strong et al. 2021, Table I, and the column it leaves
+    // out).
+    std::uint64_t occupied = 0;   ///< occupied in truth and in the map
+    std::uint64_t free = 0;       ///< free in truth and in the map
+    std::uint64_t missed = 0;     ///< occupied in truth, unknown in the map
+    std::uint64_t incorrect = 0;  ///< occupied in the map, free or unknown in truth
+    std::uint64_t lost = 0;       ///< occupied in truth, free in the map
+
+    // Against the analytic surfaces, voxels of the region that are not interior to a solid. Empty where the
+    // denominator is 0.
+    std::optional<double> precision;
+    std::optional<double> recall;
+    std::optional<double> f1;
+    std::optional<double> iou;
+    std::optional<double> precision_tolerant;  ///< one voxel beside a surface is right too
+    std::optional<double> occluded_recall;     ///< recall on surface voxels that the camera cannot see
+    std::optional<double> object_recall;       ///< the same on the hidden objects only
+    std::optional<double> coverage;            ///< known voxels / all
+    std::optional<double> log_loss;            ///< natural logarithm; unknown predicts 0.5
+    std::optional<double> brier;
+    Calibration calibration;
+};
+
+/// `map` must be over the truth's region (asserted).
+[[nodiscard]] Metrics compute_metrics(const VoxelGrid<MapVoxel>& map, const Truth& truth);
+
+/// Samples the map over the truth's region and computes. The resolutions must be equal (asserted).
+[[nodiscard]] Metrics evaluate(const FusedMap& map, const Truth& truth);
+
+/// A scalar metric by name, for tables and files. `is_count`: print without decimals.
+/// `is_more_better`: a larger value is the better one.
+struct MetricField {
+    std::string_view name;
+    bool is_count;
+    bool is_more_better;
+    std::optional<double> (*value)(const Metrics&);
+};
+/// All scalar metrics, in the order in which they are printed.
+[[nodiscard]] std::span<const MetricField> metric_fields() noexcept;
+
+}  // namespace octoskin::evaluation

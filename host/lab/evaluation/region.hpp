@@ -1,0 +1,36 @@
+// The part of the map that is judged.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+#include "host/lab/evaluation/voxel_grid.hpp"
+
+namespace octoskin::evaluation {
+
+/// A box in the map frame, and the floor that bounds it from below.
+struct RegionConfig {
+    Eigen::Vector3d p_map_min{-0.6, -1.2, -0.2};
+    Eigen::Vector3d p_map_max{1.4, 1.2, 1.4};
+    /// Height of the floor's top in the world frame, metres. The region begins one layer above the layer that
+    /// holds it, so that the floor, which every sensor sees, does not drown what matters. Empty: no floor.
+    std::optional<double> floor_top_m = -0.02;
+};
+
+/// Why there is nothing to be judged in the box at this resolution, with what to do; empty if there is: no
+/// voxel above the floor, outside the map's keys, or over 50 million voxels, which no machine of today judges
+/// in reasonable time.
+[[nodiscard]] std::optional<std::string> region_fault(const RegionConfig& config, double resolution_m,
+                                                      const Eigen::Isometry3d& T_map_base);
+
+/// The voxels whose centres lie in the box and whose layer is above the floor's. `T_map_base` puts the world
+/// into the map. `region_fault` must find nothing (asserted).
+[[nodiscard]] KeyBox region_of(const RegionConfig& config, double resolution_m,
+                               const Eigen::Isometry3d& T_map_base);
+
+/// The layer (z of a voxel key) that holds the floor's top.
+[[nodiscard]] std::uint16_t floor_layer(double floor_top_m, double resolution_m,
+                                        const Eigen::Isometry3d& T_map_base);
+
+}  // namespace octoskin::evaluation

@@ -1,0 +1,137 @@
+#include "host/lab/octoskin_board/arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <sstream>
+
+namespace octoskin::board {
+namespace {
+
+const std::map<std::string, sim::I2cFaultKind> kFaultKinds = {
+    {"nack_address", sim::I2cFaultKind::nack_address},
+    {"nack_byte", sim::I2cFaultKind::nack_byte},
+    {"nack_read", sim::I2cFaultKind::nack_read},
+    {"flip_bit", sim::I2cFaultKind::flip_bit},
+    {"flip_written_bit", sim::I2cFaultKind::flip_written_bit},
+    {"lose_write", sim::I2cFaultKind::lose_write},
+    {"read_ones", sim::I2cFaultKind::read_ones},
+    {"lose_arbitration", sim::I2cFaultKind::lose_arbitration},
+    {"stretch", sim::I2cFaultKind::stretch},
+    {"sda_stuck_low", sim::I2cFaultKind::sda_stuck_low},
+};
+
+std::uint64_t number(const std::string& key, const std::string& text) {
+    std::size_t used = 0;
+    std::uint64_t value = 0;
+    try {
+        value = std::stoull(text, &used, 0);
+    } catch (const std::exception&) {
+        used = 0;
+    }
+    if (used != text.size() || text.empty())
+        throw CLI::ValidationError("--i2c-fault", fmt::format("{}={}: not a number", key, text));
+    return value;
+}
+
+void set(BusFault& parsed, const std::string& key, const std::string& value) {
+    if (key == "kind") {
+        const auto kind = kFaultKinds.find(value);
+        if (kind == kFaultKinds.end())
+            throw CLI::ValidationError("--i2c-fault", fmt::format("no kind '{}'", value));
+        parsed.fault.kind = kind->second;
+    } else if (key == "bus") {
+        parsed.bus = number(key, value);
+        if (parsed.bus > 3) throw CLI::ValidationError("--i2c-fault", fmt::format("no bus {}", value));
+    } else if (key == "first") {
+        parsed.fault.first = number(key, value);
+    } else if (key == "count") {
+        parsed.fault.count = number(key, value);
+    } else if (key == "position") {
+        parsed.fault.position = static_cast<std::uint32_t>(number(key, value));
+    } else if (key == "address") {
+        parsed.fault.address = static_cast<std::uint8_t>(number(key, value));
+    } else {
+        throw CLI::ValidationError("--i2c-fault", fmt::format("unknown key '{}'", key));
+    }
+}
+
+}  // namespace
+
+BusFault parse_i2c_fault(const std::string& text) {
+    BusFault parsed;
+    std::istringstream parts(text);
+    for (std::string part; std::getline(parts, part, ',');) {
+        const auto equals = part.find('=');
+        if (equals == std::string::npos)
+            throw CLI::ValidationError("--i2c-fault", fmt::format("'{}' is not key=value", part));
+        set(parsed, part.substr(0, equals), part.substr(equals + 1));
+    }
+    if (parsed.fault.kind == sim::I2cFaultKind::sda_stuck_low && parsed.fault.position == 0)
+        throw CLI::ValidationError(
+            "--i2c-fault", "sda_stuck_low wants position=CLOCKS: so many let SDA go again, 100000 hold it");
+    return parsed;
+}
+
+void describe(CLI::App& app, Arguments& arguments) {
+    app.add_option("--elf", arguments.elf, "The image that is flashed")->required()->check(CLI::ExistingFile);
+    auto* config = app.add_option("--config", arguments.config, "Configuration block (binary)")
+                       ->check(CLI::ExistingFile);
+    auto* rig = app.add_option("--rig", arguments.rig, "Rig (YAML) to take the configuration from")
+                    ->check(CLI::ExistingFile);
+    app.add_option("--node", arguments.node, "Which of the rig's nodes: name or id; the first by default")
+        ->needs(rig);
+    config->excludes(rig);
+    app.add_option("--seconds", arguments.seconds, "How long to run, simulated")
+        ->capture_default_str()
+        ->check(CLI::Range(0.001, 1e6));
+    app.add_option("--wall", arguments.wall_m,
+                   "Distance of the wall that each sensor looks at, metres; the list is repeated")
+        ->capture_default_str();
+    app.add_option("--can-log", arguments.can_log, "Write the bus's frames there, as candump -L does");
+    app.add_option("--can", arguments.can_interface,
+                   "Tie the bus to a CAN interface of this machine, such as vcan0; runs in real time then");
+    app.add_flag("--sync", arguments.sends_sync, "Play the host's part: SYNC and FOLLOW_UP once a second");
+    app.add_flag("--alone", arguments.is_alone_on_bus, "Nobody on the CAN bus acknowledges");
+    app.add_option("--drift-ppm", arguments.drift_ppm, "Error of the board's crystal")->capture_default_str();
+    app.add_option("--lsi-hz", arguments.lsi_hz, "The watchdog's oscillator")->capture_default_str();
+    app.add_option("--cycles-per-instruction", arguments.cycles_per_instruction, "What an instruction costs")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 20));
+    app.add_flag_callback(
+        "--no-crystal", [&arguments] { arguments.has_crystal = false; }, "The crystal does not start");
+    app.add_option("--crystal-fails-at", arguments.crystal_fails_s, "Seconds after power-up");
+    app.add_flag("--slow-edges", arguments.has_slow_edges, "I2C edges as slow as the specification allows");
+    app.add_option(
+        "--i2c-fault", arguments.i2c_faults,
+        "bus=0,kind=stretch,first=100[,count=1][,position=0][,address=0x30]; may be repeated. Transfers are "
+        "counted from power-up, position is the byte (of flip_* the bit; of sda_stuck_low, which has no "
+        "count, the clocks that let SDA go). Kinds: "
+        "nack_address nack_byte nack_read flip_bit flip_written_bit lose_write read_ones "
+        "lose_arbitration stretch sda_stuck_low");
+    app.add_option("--seed", arguments.seed, "Of the sensors' constants, the unique id and what RAM holds")
+        ->capture_default_str();
+    app.add_option("--slow-clock-min", arguments.slow_clocks.factor_min,
+                   "The sensors' slow oscillators are at least so many times as fast as they say")
+        ->capture_default_str();
+    app.add_option("--slow-clock-max", arguments.slow_clocks.factor_max, "And at most")
+        ->capture_default_str();
+    app.add_option("--sensor-traits", arguments.sensor_traits,
+                   "[sensor=3,][register=71,reads=12[,mask=255],][range_spread_us=1000,][range_step_us=300,]"
+                   "[boot_load_us=3000]: of that sensor or of all; may be repeated")
+        ->check([](const std::string& text) {
+            return sim::parse_traits(text) ? std::string() : "'" + text + "' is not key=number,...";
+        });
+    app.add_flag("--allow-violations", arguments.allows_violations, "Exit code 0 in spite of violations");
+    app.add_flag(
+        "--serial", arguments.shows_serial,
+        "Print what the board said on its serial line (the NUCLEO's virtual COM port), once it has run");
+    app.add_option("--socket-fd", arguments.socket,
+                   "Serve a simulator over this inherited Unix socket instead of running alone");
+    app.footer(
+        "Violations are listed on standard error. Exit codes: 0 done; 1 the program did what the manuals\n"
+        "forbid; 64 command line; 65 unusable image or block; 69 no such CAN\n"
+        "interface; 73 cannot write; 74 the CAN interface failed; 77 not allowed to use it; 78 rig.");
+}
+
+}  // namespace octoskin::board

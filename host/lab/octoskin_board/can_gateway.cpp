@@ -1,0 +1,53 @@
+#include "host/lab/octoskin_board/can_gateway.hpp"
+
+#include <cerrno>
+#include <utility>
+
+namespace octoskin::board {
+namespace {
+
+constexpr std::size_t kMailboxes = 64;
+constexpr int kFramesPerPoll = 64;  // a flood must not hold simulated time
+
+}  // namespace
+
+CanGateway::CanGateway(socketcan::CanSocket socket, sim::SimulatedCanBus& bus) : socket_(std::move(socket)) {
+    // It never hears its own frames: nothing goes round in a circle.
+    seat_ = &bus.attach([this](const wire::CanFrame& frame, sim::SimTime) { forward(frame); }, kMailboxes);
+}
+
+void CanGateway::forward(const wire::CanFrame& frame) {
+    const auto sent = socket_.send(frame);
+    ++(sent && *sent ? counts_.sent : counts_.not_sent);
+    if (!sent) note(sent.error());
+}
+
+void CanGateway::note(const socketcan::SocketFault& fault) {
+    if (!fault.is_down() && !fault_) fault_ = fault;
+}
+
+Status<AppError> CanGateway::poll() {
+    for (int frames_left = kFramesPerPoll; frames_left > 0;) {
+        const auto received = socket_.receive(frames_left);
+        if (!received) {
+            note(received.error());
+            break;
+        }
+        if (!*received) break;
+        const wire::CanFrame& frame = (*received)->entry.frame;
+        if (frame.is_error) continue;
+        ++(seat_->send(frame) ? counts_.received : counts_.not_received);
+    }
+    if (fault_) return unexpected(AppError{ExitCode::io_failed, fault_->message()});
+    return Done{};
+}
+
+Result<socketcan::CanSocket, AppError> open_interface(const std::string& interface) {
+    auto socket = socketcan::CanSocket::open(interface);
+    if (socket) return std::move(*socket);
+    const int error = socket.error().error_number;
+    const bool is_forbidden = error == EPERM || error == EACCES;
+    return fail(is_forbidden ? ExitCode::no_permission : ExitCode::unavailable, socket.error().message());
+}
+
+}  // namespace octoskin::board

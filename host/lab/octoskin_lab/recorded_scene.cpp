@@ -1,0 +1,156 @@
+#include "host/lab/octoskin_lab/recorded_scene.hpp"
+
+#include <functional>
+#include <utility>
+
+#include "host/apps/command_line/shipped_file.hpp"
+#include "host/apps/recording/permission.hpp"
+#include "host/apps/recording/recording.hpp"
+#include "host/lab/simulation/scene_files.hpp"
+
+namespace octoskin::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Or why the file cannot be used.
+using Checksum = std::function<Result<std::uint32_t, std::string>(const FilePlace&)>;
+
+/// A kind of file that a recording is judged with.
+struct Part {
+    std::string kind;      ///< "world"; with dashes before it, the option that gives another one
+    SourceFile recorded;   ///< as meta.yaml has it
+    fs::path given;        ///< as the command line has it; empty: not at all
+    FilePlace copy;        ///< that simulate put into the recording; empty: none that is whole
+    Checksum checksum_of;  ///< as it was made when recording
+};
+
+std::string describe(const fs::path& file, const std::optional<std::uint32_t>& crc32) {
+    return file.filename().string() + (crc32 ? " (CRC-32 " + crc_text(*crc32) + ")" : "");
+}
+
+/// Whether `file` is what was recorded: by its content, or by its name where meta.yaml has no more.
+bool is_recorded(const Part& part, const FilePlace& file) {
+    if (!part.recorded.crc32) return file.filename() == part.recorded.file.filename().string();
+    const auto crc32 = part.checksum_of(file);
+    return crc32 && *crc32 == *part.recorded.crc32;
+}
+
+FilePlace take_given(const Part& part, std::vector<std::string>& warnings) {
+    if (!part.recorded.file.empty() && !is_recorded(part, part.given)) {
+        const auto crc32 = part.checksum_of(part.given);
+        warnings.push_back("recorded in " + describe(part.recorded.file, part.recorded.crc32) +
+                           ", judging in " +
+                           describe(part.given, crc32 ? std::optional(*crc32) : std::nullopt) + ", as --" +
+                           part.kind + " says");
+    }
+    return part.given;
+}
+
+/// Why `file`, which has the recorded name, is not what was recorded.
+AppError other_file(const Part& part, const RecordingPaths& recording, const FilePlace& file) {
+    const auto crc32 = part.checksum_of(file);
+    const std::string begin = recording.directory.string() + ": recorded in " +
+                              describe(part.recorded.file, part.recorded.crc32) + ", ";
+    const std::string end = ": give --" + part.kind;
+    if (!crc32)
+        return {ExitCode::bad_data,
+                begin + "and what has its name cannot be used (" + crc32.error() + ")" + end};
+    return {ExitCode::bad_data, begin + "judging in " + file.shown().string() + " (CRC-32 " +
+                                    crc_text(*crc32) + "), which is another" + end};
+}
+
+Result<FilePlace, AppError> find(const Part& part, const RecordingPaths& recording,
+                                 std::vector<std::string>& warnings) {
+    if (!part.given.empty()) return take_given(part, warnings);
+    const std::string remedy = ": give --" + part.kind;
+    if (part.recorded.file.empty()) {
+        return unexpected(
+            AppError{ExitCode::usage, recording.meta().shown().string() + " names no " + part.kind + remedy});
+    }
+    const fs::path name = part.recorded.file.filename();
+    // Never by the path that meta.yaml has: a recording of somebody else's would choose what is opened.
+    const FilePlace shipped(shipped_file("hw/worlds/" + name.string()));
+    if (shipped.is_there() && part.recorded.crc32 && is_recorded(part, shipped)) return shipped;
+    if (!part.copy.empty()) return part.copy;
+    std::optional<FilePlace> other;
+    for (const FilePlace& candidate : {FilePlace(recording.folder, name), shipped}) {
+        if (!candidate.is_there()) continue;
+        if (const auto opened = candidate.open(); !opened)
+            return unexpected(AppError{ExitCode::bad_data, opened.error().message()});
+        if (is_recorded(part, candidate)) return candidate;
+        if (!other) other = candidate;
+    }
+    if (other) return unexpected(other_file(part, recording, *other));
+    return unexpected(AppError{ExitCode::no_input,
+                               recording.directory.string() + ": recorded in " + part.recorded.file.string() +
+                                   ", and no file of that name is in it or shipped" + remedy + " " +
+                                   part.recorded.file.string() + ", if that is yours"});
+}
+
+Result<std::uint32_t, std::string> scenario_checksum(const FilePlace& file) {
+    // Its world is looked for by itself.
+    const auto scenario = sim::read_scenario(file, sim::WorldOf::others);
+    if (!scenario) return unexpected(scenario.error().message());
+    const auto crc32 = source_file(file, scenario->extended_files).crc32;
+    if (!crc32) return unexpected(file.shown().string() + " cannot be read");
+    return *crc32;
+}
+
+Result<std::uint32_t, std::string> world_checksum(const FilePlace& file) {
+    const auto crc32 = crc32_of(file);
+    if (crc32) return *crc32;
+    const auto opened = file.open();
+    return unexpected(opened ? file.shown().string() + " cannot be read" : opened.error().message());
+}
+
+/// The world; empty: the scenario's own, which only the recording of a robot may mean, and with a warning.
+Result<FilePlace, AppError> find_world(const RecordingMeta& meta, const GivenScene& given, FilePlace copy,
+                                       const RecordingPaths& recording, const FilePlace& scenario,
+                                       std::vector<std::string>& warnings) {
+    if (meta.world.file.empty() && given.world.empty() && !meta.is_simulated()) {
+        warnings.push_back(recording.meta().shown().string() + " names no world: judging in the one that " +
+                           scenario.shown().string() + " names; --world gives another");
+        return FilePlace();
+    }
+    return find({"world", meta.world, given.world, std::move(copy), world_checksum}, recording, warnings);
+}
+
+/// Whether the recording has its scene; a scene that is not what simulate put there (bad_data) is none.
+Result<bool, AppError> has_scene(const RecordingMeta& meta, const RecordingPaths& recording) {
+    if (!meta.scene_crc32) return false;
+    const auto found = crc32_of_scene(recording);
+    if (found && *found == *meta.scene_crc32) return true;
+    return fail(ExitCode::bad_data,
+                recording.directory.string() +
+                    ": its scene (scenario.yaml, world.sdf and what they name) is " +
+                    (found ? "not what `octoskin-lab simulate` put there (CRC-32 " + crc_text(*found) +
+                                 ", meta.yaml says " + crc_text(*meta.scene_crc32) + ")"
+                           : "missing, or cannot be read") +
+                    ": put it there again, or give --scenario and --world");
+}
+
+}  // namespace
+
+Result<RecordedScene, AppError> read_recorded_scene(const FilePlace& directory, const GivenScene& given) {
+    const RecordingPaths recording(directory);
+    const auto meta = read_meta(recording);
+    if (!meta) return unexpected(reading_error(ExitCode::bad_data, meta.error()));
+    std::vector<std::string> warnings;
+    const auto scene_there = has_scene(*meta, recording);
+    const bool is_whole = scene_there && *scene_there;
+    const auto scenario = find({"scenario", meta->scenario, given.scenario,
+                                is_whole ? recording.scenario() : FilePlace(), scenario_checksum},
+                               recording, warnings);
+    if (!scenario) return unexpected(scene_there ? scenario.error() : scene_there.error());
+    const auto world =
+        find_world(*meta, given, is_whole ? recording.world() : FilePlace(), recording, *scenario, warnings);
+    if (!world) return unexpected(scene_there ? world.error() : scene_there.error());
+    auto scene = read_scene(*scenario, *world);
+    if (!scene) return unexpected(scene.error());
+    const auto& of_world = scene->world.warnings();
+    warnings.insert(warnings.end(), of_world.begin(), of_world.end());
+    return RecordedScene{std::move(*scene), std::move(warnings)};
+}
+
+}  // namespace octoskin::app

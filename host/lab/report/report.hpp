@@ -1,0 +1,61 @@
+// report.html: one self-contained file that shows what the fused map knows and the camera cannot.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/core/mapping/cone_model.hpp"
+#include "host/core/mapping/update_model.hpp"
+#include "host/lab/evaluation/results.hpp"
+#include "host/lab/report/image.hpp"
+
+namespace octoskin::report {
+
+/// One map or the scene, from the robot's side and from the camera's.
+struct PicturePair {
+    std::string title;    ///< "Depth camera only"
+    std::string caption;  ///< what one sees, one or two sentences
+    Image front;
+    Image back;
+};
+
+/// The account of one kind of input: in = used + sum of rejected.
+struct Account {
+    std::string input;  ///< "ranges"
+    std::uint64_t received = 0;
+    std::uint64_t used = 0;
+    std::vector<std::pair<std::string, std::uint64_t>> rejected;  ///< counter name, count
+};
+
+/// How the ranges of a run came into its map.
+struct RangeCounting {
+    bool has_rays = true;           ///< some are rays, with the update model's terms
+    std::optional<ConeModel> cone;  ///< of beams that were counted, if there are any, and are whole cones
+    std::optional<ConeModel> zone;  ///< the same of zones
+    CountModel counts;
+};
+
+struct ReportInput {
+    std::string title = "octoskin: what the camera cannot see";
+    evaluation::Results results;
+    /// The configuration that the headline and the pictures speak of.
+    std::string main_configuration = "fast";
+    std::uint64_t picture_seed = 0;
+    std::vector<PicturePair> pictures;  ///< scene first, then the maps
+    UpdateModel update_model;
+    RangeCounting range_counting;
+    std::vector<Account> accounts;
+    std::vector<std::string> hidden_objects;  ///< what the scenario names as hidden: "cone", "crate"
+    std::vector<std::string> idealisations;   ///< one sentence each
+    std::vector<std::string> reproduce;       ///< shell commands
+};
+
+/// What the input has nothing of is left out: the camera's share if no map of it was judged, the paper's
+/// figures if the experiment is another. The whole document, UTF-8, no reference to anything outside itself.
+/// Text in the input may hold any characters: it is escaped. Equal inputs give equal bytes.
+[[nodiscard]] std::string report_html(const ReportInput& input);
+
+}  // namespace octoskin::report

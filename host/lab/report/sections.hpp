@@ -1,0 +1,34 @@
+// The report's parts, each as HTML, in the order in which they are read.
+#pragma once
+
+#include <string>
+
+#include "host/lab/report/report.hpp"
+
+namespace octoskin::report {
+
+[[nodiscard]] std::string headline_section(const ReportInput& input);
+[[nodiscard]] std::string pictures_section(const ReportInput& input);
+[[nodiscard]] std::string paper_section(const ReportInput& input);
+[[nodiscard]] std::string paired_section(const ReportInput& input);
+[[nodiscard]] std::string unknown_section(const ReportInput& input);
+[[nodiscard]] std::string metrics_section(const ReportInput& input);
+[[nodiscard]] std::string update_section(const ReportInput& input);
+[[nodiscard]] std::string calibration_section(const ReportInput& input);
+[[nodiscard]] std::string account_section(const ReportInput& input);
+[[nodiscard]] std::string idealisations_section(const ReportInput& input);
+[[nodiscard]] std::string times_section(const ReportInput& input);
+[[nodiscard]] std::string reproduce_section(const ReportInput& input);
+
+/// "cone, crate", escaped.
+[[nodiscard]] std::string hidden_objects_text(const ReportInput& input);
+
+/// A chart with what there is to see in it; empty if there is no chart. `caption`: HTML.
+[[nodiscard]] std::string chart_figure(const std::string& svg, std::string_view caption);
+/// Of a legend of lines.
+[[nodiscard]] std::string legend_entry(std::string_view map, std::string_view title);
+
+/// "the fused map" in the words of the report; unknown names as they are, escaped.
+[[nodiscard]] std::string map_title(std::string_view map);
+
+}  // namespace octoskin::report

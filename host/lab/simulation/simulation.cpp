@@ -1,0 +1,167 @@
+#include "host/lab/simulation/simulation.hpp"
+
+#include <optional>
+
+#include "host/apps/recording/given_rig.hpp"
+#include "host/apps/recording/permission.hpp"
+#include "host/apps/recording/reading.hpp"
+#include "host/apps/recording/recording_draft.hpp"
+#include "host/apps/recording/text_file.hpp"
+#include "host/apps/version/version.hpp"
+#include "host/io/candump/log_writer.hpp"
+#include "host/io/openni2/oni_writer.hpp"
+#include "host/lab/simulation/scene.hpp"
+#include "host/lab/simulation/scene_files.hpp"
+#include "hw/rigfile/rig.hpp"
+#include "hw/rigfile/robot_description.hpp"
+#include "hw/sim/arm/arm.hpp"
+
+namespace octoskin {
+namespace {
+
+/// Everything that is read before anything is simulated.
+struct Inputs {
+    Scene scene;
+    rig::Rig rig;
+    sim::Arm arm;
+    std::vector<rig::Capsule> body;  ///< the real one: without the rig's padding
+};
+
+Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
+    const auto lock = lock_reading();
+    auto scene = read_scene(request.scenario, request.world);
+    if (!scene) return unexpected(scene.error());
+    tell_world_warnings(request, scene->world);
+    auto rig = read_given_rig(request.rig, request.robot);
+    if (!rig) return unexpected(rig.error());
+    auto arm = sim::Arm::read(rig->urdf, rig->base_link, rig->joints.joints);
+    if (!arm) return unexpected(reading_error(ExitCode::bad_config, arm.error()));
+    auto body = rig::real_body(*rig);
+    if (!body) return unexpected(reading_error(ExitCode::bad_config, body.error()));
+    rig->T_map_base.pretranslate(scene->scenario.map_shift_m(request.seed));
+    return Inputs{std::move(*scene), std::move(*rig), std::move(*arm), std::move(*body)};
+}
+
+std::string describe(const sim::ExperimentError& error, const sim::Scenario& scenario) {
+    if (error.scenario_key.empty()) return error.what;
+    return scenario.error(error.scenario_key, error.what).message();
+}
+
+/// The files of the recording that is being made; the first error stops the writing and is kept.
+class Recorder {
+  public:
+    static Result<Recorder, AppError> create(const RecordingPaths& paths, const rig::Rig& rig) {
+        if (const auto copied = copy_file(rig.urdf, paths.robot()); !copied)
+            return unexpected(copied.error());
+        const std::string rig_text = rig::canonical_text(rig, paths.robot().filename());
+        if (const auto written = write_text(paths.rig(), rig_text); !written)
+            return unexpected(written.error());
+        auto log = candump::LogWriter::create(paths.can_log());
+        if (!log) return fail(ExitCode::cannot_create, log.error().message());
+        Recorder recorder(std::move(*log));
+        if (rig.camera) {
+            auto depth = openni2::OniWriter::create(paths.depth(), paths.depth_epoch(),
+                                                    {rig.camera->width, rig.camera->height});
+            if (!depth) return fail(ExitCode::cannot_create, depth.error().what);
+            recorder.depth_.emplace(std::move(*depth));
+        }
+        return recorder;
+    }
+
+    void write(const wire::CanFrame& frame, WallTime stamp) {
+        if (error_) return;
+        if (const auto written = log_.write(stamp, frame); !written) error_ = written.error().message();
+    }
+    void write(HostTime captured, std::span<const std::uint16_t> depth_mm) {
+        if (error_) return;
+        if (const auto written = depth_->write(captured, depth_mm); !written) error_ = written.error().what;
+    }
+    Status<AppError> close() {
+        if (!error_) {
+            if (const auto closed = log_.close(); !closed) error_ = closed.error().message();
+        }
+        if (!error_ && depth_) {
+            if (const auto closed = depth_->close(); !closed) error_ = closed.error().what;
+        }
+        if (error_) return fail(ExitCode::cannot_create, *error_);
+        return Done{};
+    }
+
+  private:
+    explicit Recorder(candump::LogWriter log) : log_(std::move(log)) {}
+
+    candump::LogWriter log_;
+    std::optional<openni2::OniWriter> depth_;
+    std::optional<std::string> error_;
+};
+
+/// The checksum of its files; empty: it cannot be had as files of a recording.
+Result<std::optional<std::uint32_t>, AppError> record_scene(const Scene& scene, const RecordingPaths& paths,
+                                                            const SimulationRequest& request) {
+    const auto lock = lock_reading();
+    const auto gap = write_scene(scene, paths, request.on_world_warning);
+    if (!gap) return unexpected(gap.error());
+    if (!*gap) return crc32_of_scene(paths);
+    if (request.on_scene_gap) request.on_scene_gap(**gap);
+    return std::optional<std::uint32_t>();
+}
+
+}  // namespace
+
+void tell_world_warnings(const SimulationRequest& request, const sim::World& world) {
+    if (!request.on_world_warning) return;
+    for (const std::string& warning : world.warnings()) request.on_world_warning(warning);
+}
+
+Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequest& request,
+                                                            const std::function<void(double)>& on_progress) {
+    if (const auto checked = RecordingDraft::check(request.out, request.may_replace); !checked)
+        return unexpected(checked.error());
+    auto inputs = read_inputs(request);
+    if (!inputs) return unexpected(inputs.error());
+    auto draft = RecordingDraft::create(request.out, request.may_replace);
+    if (!draft) return unexpected(draft.error());
+    auto recorder = Recorder::create(draft->paths(), inputs->rig);
+    if (!recorder) return unexpected(recorder.error());
+    const auto scene_crc32 = record_scene(inputs->scene, draft->paths(), request);
+    if (!scene_crc32) return unexpected(scene_crc32.error());
+
+    const sim::ExperimentInput input{.rig = inputs->rig,
+                                     .capsules = inputs->body,
+                                     .world = inputs->scene.world,
+                                     .arm = inputs->arm,
+                                     .scenario = inputs->scene.scenario,
+                                     .seed = request.seed,
+                                     .is_depth_noise_free = request.is_depth_noise_free,
+                                     .emulated = request.emulated,
+                                     .board_starts = request.board_starts,
+                                     .motions = inputs->scene.motions};
+    const sim::ExperimentOutput output{
+        .on_frame = [&](const wire::CanFrame& frame, WallTime stamp) { recorder->write(frame, stamp); },
+        .on_depth = [&](HostTime captured, std::uint32_t, std::uint32_t,
+                        const std::vector<std::uint16_t>& depth_mm) { recorder->write(captured, depth_mm); },
+        .on_progress = on_progress};
+    if (on_progress) on_progress(0.0);
+    const auto summary = sim::run_experiment(input, output);
+    if (!summary) return fail(ExitCode::bad_config, describe(summary.error(), inputs->scene.scenario));
+    if (const auto closed = recorder->close(); !closed) return unexpected(closed.error());
+
+    const RecordingMeta meta{.made_by = program_version(),
+                             .source = "simulation",
+                             .world = inputs->scene.world_file,
+                             .scenario = inputs->scene.scenario_file,
+                             .rig = source_file(request.rig, inputs->rig.extended_files),
+                             .seed = request.seed,
+                             .is_depth_noise_free = request.is_depth_noise_free,
+                             .scene_crc32 = *scene_crc32,
+                             .can_frames = summary->can_frames,
+                             .depth_frames = summary->depth_frames,
+                             .duration_s = summary->duration_s};
+    if (const auto written = write_meta(draft->paths(), meta); !written) {
+        return fail(ExitCode::cannot_create, written.error().message());
+    }
+    if (const auto committed = draft->commit(); !committed) return unexpected(committed.error());
+    return *summary;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,112 @@
+#include "host/lab/study/study_pictures.hpp"
+
+#include "host/apps/recording/reading.hpp"
+#include "host/lab/report/pictures.hpp"
+#include "host/lab/study/captions.hpp"
+#include "hw/rigfile/robot_description.hpp"
+#include "hw/sim/arm/arm.hpp"
+#include "hw/sim/arm/body.hpp"
+#include "hw/sim/arm/trajectory.hpp"
+
+namespace octoskin {
+namespace {
+
+using report::PicturePair;
+
+using Beams = std::vector<report::Segment>;
+
+/// One range of each sensor that meets something of the world.
+Beams beams_at(const sim::World& world, const rig::Rig& rig, const sim::Arm::LinkPoses& poses) {
+    Beams beams;
+    for (const rig::Node& node : rig.nodes) {
+        for (const rig::Sensor& sensor : node.sensors) {
+            const Eigen::Isometry3d T_base_sensor = poses.at(sensor.link) * sensor.T_link_sensor;
+            const Eigen::Vector3d origin = T_base_sensor.translation();
+            const Eigen::Vector3d direction = T_base_sensor.linear().col(2);
+            if (const auto hit = world.cast(origin, direction, rig.range_limits.max_m)) {
+                beams.push_back({origin, origin + hit->range_m * direction});
+            }
+        }
+    }
+    return beams;
+}
+
+/// The robot at the one of a few instants of its motion at which most sensors see something.
+void dress_with_robot(const sim::World& world, const sim::Scenario& scenario, const rig::Rig& rig,
+                      report::SceneDressing& dressing) {
+    const auto lock = lock_reading();
+    const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints);
+    const auto capsules = rig::real_body(rig);
+    if (!arm || !capsules) return;  // the same files were read before; a picture without a robot beats none
+    const auto trajectory = sim::Trajectory::circle(*arm, scenario.motion, sim::SimTime{0});
+    if (!trajectory) return;
+    constexpr int kInstants = 8;
+    for (int i = 0; i < kInstants; ++i) {
+        const auto poses = arm->forward(trajectory->at(sim::SimTime{trajectory->end().us * i / kInstants}));
+        Beams beams = beams_at(world, rig, poses);
+        if (i > 0 && beams.size() <= dressing.beams.size()) continue;
+        dressing.beams = std::move(beams);
+        dressing.robot.clear();
+        for (const sim::BodyCapsule& capsule : sim::posed_body(*capsules, poses)) {
+            dressing.robot.push_back({capsule.p_base_a, capsule.p_base_b, capsule.radius_m});
+        }
+    }
+}
+
+/// A map, and how it is called and described.
+struct NamedMap {
+    const char* title;
+    const char* caption;
+    const FusedMap* map;
+};
+
+std::vector<NamedMap> maps_to_draw(std::span<const FedMap> maps, bool has_camera) {
+    const NamedMap ranges = {"Range sensors only", "What the sensors on the arm found during its motion.",
+                             find_map(maps, MapFeed::ranges)};
+    if (!has_camera) return {ranges};
+    return {{"Depth camera only", "What a planner with the external camera alone knows.",
+             find_map(maps, MapFeed::camera)},
+            ranges,
+            {"Fused", "One map of both.", find_map(maps, MapFeed::both)}};
+}
+
+/// All in one frame, so that they can be laid over each other.
+std::vector<PicturePair> draw_maps(const std::vector<NamedMap>& named, const evaluation::Truth& truth) {
+    std::vector<std::vector<report::PaintedVoxel>> painted;
+    for (const NamedMap& one : named) painted.push_back(report::paint_map(*one.map, truth));
+    painted.push_back(report::paint_truth(truth));
+    const Eigen::AlignedBox3d content = report::content_of(painted, truth.resolution_m);
+    if (content.isEmpty()) return {};
+    const report::ViewPair views = report::views_of(report::corners_of(content));
+    std::vector<PicturePair> pictures;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+        report::ImagePair images = report::render_voxels(painted[i], truth.resolution_m, views);
+        pictures.push_back(
+            {named[i].title, named[i].caption, std::move(images.front), std::move(images.back)});
+    }
+    return pictures;
+}
+
+PicturePair draw_scene(const sim::World& world, const sim::Scenario& scenario, const rig::Rig& rig) {
+    report::SceneDressing dressing;
+    dressing.stage = {scenario.region.p_base_min, scenario.region.p_base_max};
+    if (scenario.region.floor_top_m) dressing.stage.min().z() = *scenario.region.floor_top_m;
+    dressing.camera = rig.camera;
+    dressing.hidden_models = scenario.hidden_models;
+    dress_with_robot(world, scenario, rig, dressing);
+    report::ImagePair images = report::render_scene(world, dressing);
+    return {"The scene", scene_caption(rig, scenario, dressing.beams.size()), std::move(images.front),
+            std::move(images.back)};
+}
+
+}  // namespace
+
+std::vector<PicturePair> draw_pictures(const sim::World& world, const sim::Scenario& scenario,
+                                       const rig::Rig& rig, std::span<const FedMap> maps,
+                                       const evaluation::Truth& truth) {
+    std::vector<PicturePair> pictures = draw_maps(maps_to_draw(maps, rig.camera.has_value()), truth);
+    pictures.insert(pictures.begin(), draw_scene(world, scenario, rig));
+    return pictures;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,115 @@
+#include "host/lab/world_reader/sdf_module_load.hpp"
+
+#include <dlfcn.h>
+#include <tinyxml2.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hw/rigfile/file_kind.hpp"
+#include "hw/sim/world/model_folders.hpp"
+#include "hw/sim/world/sdf/sdf_module.hpp"
+
+namespace octoskin::sim {
+namespace {
+
+struct Include {
+    int line = 0;
+    std::string uri;
+};
+
+class Includes final : public tinyxml2::XMLVisitor {
+  public:
+    bool VisitEnter(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute* /*first*/) override {
+        if (std::string_view(element.Name()) != "include") return true;
+        const tinyxml2::XMLElement* const uri = element.FirstChildElement("uri");
+        const char* const text = uri == nullptr ? nullptr : uri->GetText();
+        found_.push_back({element.GetLineNum(), text == nullptr ? "" : text});
+        return true;
+    }
+    [[nodiscard]] const std::vector<Include>& found() const noexcept { return found_; }
+
+  private:
+    std::vector<Include> found_;
+};
+
+/// What is there of an included file, as far as it is found without sdformat: which waits at a pipe.
+std::filesystem::path place_of(std::string_view uri, const std::filesystem::path& world) {
+    constexpr std::string_view kFileScheme = "file://";
+    if (uri.starts_with(kModelScheme)) return find_model_file(uri).value_or("");
+    if (uri.starts_with(kFileScheme)) uri.remove_prefix(kFileScheme.size());
+    return world.parent_path() / uri;
+}
+
+/// What keeps a file from being SDF at all, or nothing. sdformat would only say that it cannot read it, after
+/// trying it as a robot description.
+std::optional<std::string> xml_error_of(const std::filesystem::path& file, bool may_include) {
+    tinyxml2::XMLDocument document;
+    if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) {
+        return "line " + std::to_string(document.ErrorLineNum()) + ": not well-formed XML (" +
+               document.ErrorName() + ")";
+    }
+    const std::string root = document.RootElement() == nullptr ? "" : document.RootElement()->Name();
+    if (root != "sdf") return "not an SDF file: expected the root element 'sdf', found '" + root + "'";
+    Includes includes;
+    document.Accept(&includes);
+    for (const Include& include : includes.found()) {
+        const std::string line = "line " + std::to_string(include.line);
+        // sdformat looks for what is included in folders of its own choice, too.
+        if (!may_include)
+            return line +
+                   ": <include> is not read in a world inside a recording: give the world by its own option, "
+                   "or write the model out";
+        const auto place = place_of(include.uri, file);
+        std::error_code error;
+        const bool is_model = std::filesystem::is_directory(place, error);
+        const auto kind = rig::other_than_a_file(is_model ? place / "model.config" : place);
+        if (!kind.empty())
+            return line + ": <include> of '" + include.uri + "', which is " + std::string(kind) +
+                   ", not an ordinary file or a model's folder";
+    }
+    return std::nullopt;
+}
+
+struct SdfModule {
+    ReadSolids read_solids = nullptr;
+};
+
+/// The message says why it cannot be had.
+Result<SdfModule, std::string> sdf_module() {
+    void* const module = ::dlopen(kSdfModule, RTLD_NOW | RTLD_LOCAL);
+    void* const symbol = module == nullptr ? nullptr : ::dlsym(module, kReadSolidsSymbol);
+    if (symbol == nullptr) {
+        const char* const reason = ::dlerror();
+        return unexpected("what reads SDF files cannot be loaded: " +
+                          std::string(reason == nullptr ? kReadSolidsSymbol : reason) +
+                          "; build octoskin_programs, or install octoskin anew");
+    }
+    return SdfModule{reinterpret_cast<ReadSolids>(symbol)};
+}
+
+}  // namespace
+
+SolidsOrError load_solids(const std::filesystem::path& sdf, const WorldFiles* files) {
+    const auto failed = [](const std::string& what) { return unexpected(WorldError{{}, "", what}); };
+    std::filesystem::path path = sdf;
+    if (files != nullptr) {
+        auto checked = files->openable(sdf);
+        if (!checked) return failed(checked.error());
+        path = std::move(*checked);
+    }
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) return failed("no such file");
+    if (const auto kind = rig::other_than_a_file(path); !kind.empty())
+        return failed("is " + std::string(kind) + ", not an ordinary file");
+    if (const auto xml_error = xml_error_of(path, files == nullptr)) return failed(*xml_error);
+    const auto module = sdf_module();
+    if (!module) return failed(module.error());
+    SolidsOrError solids = SolidsOfFile{};
+    module->read_solids({.file = sdf, .path = path, .files = files}, &solids);
+    return solids;
+}
+
+}  // namespace octoskin::sim
