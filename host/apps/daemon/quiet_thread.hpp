@@ -4,6 +4,7 @@
 
 #include <pthread.h>
 
+#include <atomic>
 #include <csignal>
 #include <future>
 #include <thread>
@@ -49,11 +50,22 @@ class LeavableThread {
     bool end(Nanoseconds patience) {
         if (!thread_.joinable()) return true;
         const bool has_ended = ended_.wait_for(patience) == std::future_status::ready;
-        has_ended ? thread_.join() : thread_.detach();
+        if (has_ended) {
+            thread_.join();
+        } else {
+            thread_.detach();
+            was_left_ = true;
+        }
         return has_ended;
     }
 
+    /// Whether any was ever left behind. The process must then end by _exit(2): such a thread may still be at
+    /// work on what exit(3) takes away.
+    [[nodiscard]] static bool was_one_left() noexcept { return was_left_; }
+
   private:
+    static inline std::atomic<bool> was_left_ = false;
+
     std::future<void> ended_;
     std::thread thread_;
 };

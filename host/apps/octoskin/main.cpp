@@ -1,7 +1,10 @@
 // octoskin: the one command-line program.
+#include <unistd.h>
+
 #include <string_view>
 
 #include "host/apps/command_line/program.hpp"
+#include "host/apps/daemon/quiet_thread.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/daemon_signals.hpp"
 
@@ -41,8 +44,10 @@ void add_commands(CLI::App& app) {
 
 int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "run") octoskin::app::hold_daemon_signals();
-    return octoskin::app::run_program(
+    const int exit_code = octoskin::app::run_program(
         {"octoskin", "One map of what a depth camera and the range sensors on a robot arm see.", kFooter,
          add_commands, ". To simulate, evaluate and experiment: octoskin-lab"},
         argc, argv);
+    if (octoskin::LeavableThread::was_one_left()) ::_exit(exit_code);
+    return exit_code;
 }
