@@ -24,8 +24,8 @@ if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
     target_compile_definitions(PkgConfig::HIGHWAY INTERFACE
         "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
 endif()
-if(OCTOSKIN_LAB)
-    pkg_check_modules(UNICORN QUIET IMPORTED_TARGET unicorn)  # optional: only the emulated board is made of it
+if(OCTOSKIN_EMULATED_BOARD)
+    pkg_check_modules(UNICORN REQUIRED IMPORTED_TARGET unicorn)
 endif()
 pkg_check_modules(FUSE3 QUIET IMPORTED_TARGET fuse3)      # optional: only I2C devices for tests are made of it
 pkg_check_modules(GPIOD QUIET IMPORTED_TARGET libgpiod)   # optional: only a Linux board's node is made of it

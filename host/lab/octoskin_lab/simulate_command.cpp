@@ -38,8 +38,8 @@ sim::EmulatedBoards emulated_boards(const SimulateOptions& options) {
             {ExitCode::unavailable,
              boards.program.string() +
                  ": not there; no package has it. In octoskin's sources: sudo apt install libunicorn-dev, "
-                 "then cmake --preset host-release && cmake --build --preset host-release --target "
-                 "octoskin_board. Without --board, the node core is simulated"});
+                 "then cmake --preset host-release -DOCTOSKIN_EMULATED_BOARD=ON && cmake --build --preset "
+                 "host-release --target octoskin_board. Without --board, the node core is simulated"});
     }
     if (!std::filesystem::exists(boards.image)) {
         throw CommandFailure({ExitCode::no_input,
