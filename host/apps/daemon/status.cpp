@@ -200,7 +200,7 @@ Json camera_json(const DaemonView& view) {
 
 Json joint_states_json(const DaemonView& view) {
     const JointSenderCheck& senders = view.pipeline->intake().joint_senders();
-    const auto& jumped = view.pipeline->joint_jump().newest();
+    const auto& jumped = view.pipeline->joint_gate().jump().newest();
     return {{"second_sender", are_joints_withheld(view)},
             {"contradictions", senders.contradictions()},
             {"jumped", jumped ? Json(view.rig->joints.joints.at(jumped->joint)) : Json(nullptr)},

@@ -51,7 +51,7 @@ void find_losses(Playback& playback) {
         playback.losses.push_back(std::move(*loss));
     }
     std::ranges::stable_sort(playback.losses, {}, rank_of);
-    if (const auto& beyond = playback.pipeline.joint_beyond())
+    if (const auto& beyond = playback.pipeline.joint_gate().beyond())
         playback.warnings.push_back(beyond_text(*beyond, playback.rig.joints.joints));
 }
 

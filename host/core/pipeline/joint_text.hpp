@@ -5,7 +5,7 @@
 #include <string>
 
 #include "host/core/kinematics/joint_history.hpp"
-#include "host/core/pipeline/pipeline.hpp"
+#include "host/core/pipeline/joint_gate.hpp"
 
 namespace octoskin {
 

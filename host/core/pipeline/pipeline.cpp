@@ -4,23 +4,15 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <new>
 #include <utility>
 
 namespace octoskin {
 namespace {
 
-/// A depth frame this far in the future has a wrong epoch.
-constexpr Nanoseconds kDepthAheadMax{1'000'000'000};
-/// Far less than any timing budget: two readings of one source this close are one and the same, placed by two
-/// states of the clock map.
-constexpr Nanoseconds kSameReading{5'000'000};
 /// Images that wait for the worker. With one more the map would be older by the time that one takes; with one
 /// less a worker that is quick enough would miss one now and then.
 constexpr std::size_t kBesideWorkMax = 2;
 constexpr HostTime kEndOfTime{std::numeric_limits<std::int64_t>::max()};
-/// The camera's place in the order of sources: node 0 is the host.
-constexpr BeamSource kCameraSource{};
 
 IntakeConfig intake_config(const PipelineConfig& config, const MappingConfig& mapping) {
     IntakeConfig intake = config.intake;
@@ -47,11 +39,9 @@ Pipeline::Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& 
     : config_(config),
       intake_(rig, intake_config(config, mapping)),
       marks_(config.begin),
-      joints_waiting_(config.joint_samples_waiting_max),
-      readings_waiting_(config.readings_waiting_max),
-      depth_waiting_(config.depth_frames_waiting_max),
-      builder_(std::move(builder)),
-      joint_jump_(builder_.joint_limits()) {
+      waiting_(config.release, config.waiting_max),
+      joint_gate_(builder.joint_limits(), config.joints.limit_tolerance),
+      builder_(std::move(builder)) {
     if (rig.camera) {
         camera_patience_ = Nanoseconds{std::llround(3e9 / rig.camera->rate_hz)};
     }
@@ -61,7 +51,7 @@ void Pipeline::go_on_from(Pipeline& ended) {
     assert(ended.is_finished_);
     begin_with(ended.take_map());
     time_leap_.go_on_from(ended.time_leap_, ended.intake_.host_clock());
-    time_begin_ = ended.time_begin_;
+    waiting_.begin_at(ended.waiting_.begin());
 }
 
 void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
@@ -73,10 +63,7 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     FrameOutcome outcome = intake_.on_frame(frame, stamp);
     queue(outcome.joint_samples_of_before);
     if (const auto now_known = now()) {
-        if (const auto leap = time_leap_.notice(*now_known, intake_.host_clock())) {
-            go_on_after(leap->by);
-            time_begin_ = leap->begin;
-        }
+        if (const auto leap = time_leap_.notice(*now_known, intake_.host_clock())) on_leap(*leap);
     }
     const auto fate = outcome.mark ? marks_.take(*outcome.mark, now()) : MarkGate::Fate::taken;
     if (fate == MarkGate::Fate::ignored) {
@@ -94,14 +81,12 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
 }
 
 /// All that is remembered of the time before ends here; the maps stay, and are no older.
-void Pipeline::go_on_after(Nanoseconds leapt) {
+void Pipeline::on_leap(const TimeLeap::Leap& leap) {
     settle_waiting();
-    builder_.forget_motion(leapt);
-    joint_jump_.forget();
-    integrated_.reset();
-    used_.clear();
+    builder_.forget_motion(leap.by);
+    joint_gate_.forget();
+    waiting_.forget_time(leap.begin);
     just_used_.clear();  // of the time before: their age is not known
-    depth_newest_.reset();
 }
 
 void Pipeline::settle_waiting() {
@@ -111,39 +96,30 @@ void Pipeline::settle_waiting() {
     }
     queue(intake_.settle_joints());
     release_joints(kEndOfTime);
-    if (in_work_) {
-        finish_depth();
-    }
-    // A live map does not stand still for images that it had no time for.
-    while (worker_ != nullptr && depth_waiting_.size() > 0) {
-        drop_oldest_depth();
-    }
+    if (beside_.is_at_work()) finish_depth();
+    // A live map does not stop for images that it had no time for.
+    while (beside_.has_worker() && waiting_.depth_frames() > 0) drop_oldest_depth();
     release_measurements(kEndOfTime);
 }
 
 void Pipeline::drop_oldest_depth() {
-    (void)depth_waiting_.pop();
+    (void)waiting_.take_depth();
     accounts_.depth_frames.reject(DepthReason::queue_overflow);
 }
 
 void Pipeline::work_beside(DepthWorker* worker) {
     assert(worker == nullptr || config_.release == Release::once_placed);
-    assert(!in_work_);
-    worker_ = worker;
+    beside_.lend(worker);
 }
 
 void Pipeline::on_worker_done() {
-    if (!in_work_ || !worker_->is_done()) {
-        return;
-    }
+    if (!beside_.is_at_work() || !beside_.is_done()) return;
     finish_depth();
     release_measurements(released_until_);
 }
 
 void Pipeline::finish_depth() {
-    const auto done = std::exchange(in_work_, nullptr);
-    worker_->finish();
-    accounts_.depth_frames.settle(builder_.finish(*done));
+    accounts_.depth_frames.settle(beside_.finish(builder_));
 }
 
 void Pipeline::settle_marks(HostTime now) {
@@ -165,24 +141,10 @@ void Pipeline::queue(const FrameOutcome& outcome) {
 }
 
 void Pipeline::queue(const RangeMeasurement& measurement) {
-    const ReleaseKey key{measurement.captured, measurement.source};
-    std::optional<ReadingReason> rejected;
-    if (is_late(key)) {
-        rejected = ReadingReason::late;
-    } else if (is_repeated(key)) {
-        rejected = ReadingReason::duplicate;
-    } else if (readings_waiting_.push(key, measurement) != ReorderBuffer<RangeMeasurement>::Pushed::waits) {
-        rejected = ReadingReason::queue_overflow;
-    }
+    const auto rejected = waiting_.put(measurement);
     if (!rejected) return;
     accounts_.readings.reject(*rejected);
     intake_.on_lost(measurement.source.node_id, *rejected);
-}
-
-bool Pipeline::is_repeated(const ReleaseKey& key) const {
-    const auto used = used_.find(key.source);
-    return (used != used_.end() && key.captured - used->second < kSameReading) ||
-           readings_waiting_.has_near(key, kSameReading);
 }
 
 void Pipeline::queue(const JointSenderCheck::Ended& joint_samples) {
@@ -192,21 +154,7 @@ void Pipeline::queue(const JointSenderCheck::Ended& joint_samples) {
 }
 
 void Pipeline::queue(const JointMeasurement& joints) {
-    using Pushed = ReorderBuffer<JointMeasurement>::Pushed;
-    const Pushed pushed = joints_waiting_.push({joints.sampled, kCameraSource}, joints);
-    if (pushed != Pushed::waits) {
-        accounts_.joint_samples.reject(pushed == Pushed::refused ? JointReason::out_of_order
-                                                                 : JointReason::queue_overflow);
-    }
-}
-
-std::optional<DepthReason> Pipeline::fault_on_arrival(const DepthFrame& frame) const {
-    if (!builder_.has_camera()) return DepthReason::no_camera;
-    if (depth_newest_ && frame.captured <= *depth_newest_) return DepthReason::out_of_order;
-    const auto now_known = told_beside_ ? told_beside_ : now();
-    if (now_known && frame.captured - *now_known > kDepthAheadMax) return DepthReason::ahead_of_time;
-    if (is_late({frame.captured, kCameraSource})) return DepthReason::late;
-    return std::nullopt;
+    if (const auto rejected = waiting_.put(joints)) accounts_.joint_samples.reject(*rejected);
 }
 
 void Pipeline::on_depth(DepthFrame frame) {
@@ -214,26 +162,20 @@ void Pipeline::on_depth(DepthFrame frame) {
     if (!has_can_time_) accounts_.now_at(frame.captured.ns);
     accounts_.depth_frames.take_in();
     just_used_.clear();
-    if (const auto reason = fault_on_arrival(frame)) {
-        accounts_.depth_frames.reject(*reason);
+    const auto known = told_beside_ ? told_beside_ : now();
+    const auto refused =
+        builder_.has_camera() ? waiting_.check_arrival(frame, known) : std::optional(DepthReason::no_camera);
+    if (refused) {
+        accounts_.depth_frames.reject(*refused);
         return;
     }
-    const HostTime captured = frame.captured;
-    depth_newest_ = captured;
     // A rig without a bus, or with a silent one, has no other clock than its camera. What is due makes room.
-    const std::optional<HostTime> now_known = has_can_time_ ? now() : captured;
-    if (now_known) {
-        advance(*now_known);
-    }
-    using Pushed = ReorderBuffer<DepthFrame>::Pushed;
-    if (depth_waiting_.is_full() ||
-        depth_waiting_.push({captured, kCameraSource}, std::move(frame)) != Pushed::waits) {
-        accounts_.depth_frames.reject(DepthReason::queue_overflow);
-    }
-    if (now_known && config_.release == Release::once_placed) {
-        advance(*now_known);
-    }
-    while (in_work_ && depth_waiting_.size() > kBesideWorkMax && is_placed(*depth_waiting_.front())) {
+    const std::optional<HostTime> now_known = has_can_time_ ? now() : frame.captured;
+    if (now_known) advance(*now_known);
+    if (const auto full = waiting_.put(std::move(frame))) accounts_.depth_frames.reject(*full);
+    if (now_known && config_.release == Release::once_placed) advance(*now_known);
+    while (beside_.is_at_work() && waiting_.depth_frames() > kBesideWorkMax &&
+           is_placed(*waiting_.oldest_depth(), true)) {
         drop_oldest_depth();
     }
 }
@@ -248,48 +190,27 @@ void Pipeline::advance(HostTime now) {
     release_measurements(now - config_.lag);
 }
 
-bool Pipeline::is_placed(const ReleaseKey& key) const {
-    if (config_.release == Release::by_capture_time) {
-        return false;
-    }
-    const bool needs_robot = key.source != kCameraSource || builder_.depth_needs_robot();
+bool Pipeline::is_placed(const ReleaseKey& key, bool is_depth) const {
+    if (config_.release == Release::by_capture_time) return false;
+    const bool needs_robot = !is_depth || builder_.depth_needs_robot();
     return !needs_robot || builder_.is_settled(key.captured);
 }
 
 void Pipeline::release_joints(HostTime until) {
-    while (joints_waiting_.size() > 0 && joints_waiting_.front()->captured <= until) {
-        accounts_.joint_samples.settle(add(joints_waiting_.pop()));
+    while (const auto joints = waiting_.take_joints(until)) {
+        const auto checked = joint_gate_.check(*joints);
+        accounts_.joint_samples.settle(checked ? builder_.add(*joints) : checked);
     }
-}
-
-/// What is beyond the limits is nowhere that the arm could have moved to or from.
-Status<JointReason> Pipeline::add(const JointMeasurement& joints) {
-    const std::span<const JointLimits> limits = builder_.joint_limits();
-    const auto position = std::span(joints.position_rad).first(limits.size());
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-        if (limits[i].hold(position[i], config_.joints.limit_tolerance)) continue;
-        joint_beyond_ = {i, position[i], limits[i], joints.sampled};
-        return unexpected(JointReason::out_of_limits);
-    }
-    const JointJump::Verdict verdict = joint_jump_.judge(joints.sampled, position, joints.relocks);
-    if (verdict == JointJump::Verdict::jumped) return unexpected(JointReason::joint_jump);
-    if (verdict == JointJump::Verdict::withheld) return unexpected(JointReason::second_sender);
-    return builder_.add(joints);
 }
 
 void Pipeline::release_measurements(HostTime until) {
     released_until_ = until;
     while (true) {  // each round takes one out of a bounded buffer
-        const auto reading = readings_waiting_.front();
-        const auto depth = in_work_ ? std::nullopt : depth_waiting_.front();
-        const bool is_depth_next = depth && (!reading || *depth < *reading);
-        const auto next = is_depth_next ? depth : reading;
-        if (!next || (next->captured > until && !is_placed(*next))) {
-            return;
-        }
-        const bool is_used = is_depth_next ? take_depth(depth_waiting_.pop())
-                                           : accounts_.readings.settle(integrate(readings_waiting_.pop()));
-        integrated_ = is_used ? next : integrated_;
+        const auto next = waiting_.next(!beside_.is_at_work());
+        if (!next || (next->key.captured > until && !is_placed(next->key, next->is_depth))) return;
+        const bool is_used = next->is_depth ? take_depth(waiting_.take_depth())
+                                            : accounts_.readings.settle(integrate(waiting_.take_reading()));
+        if (is_used) waiting_.on_used(next->key);
     }
 }
 
@@ -301,7 +222,7 @@ Status<ReadingReason> Pipeline::integrate(const RangeMeasurement& measurement) {
     const auto integrated = builder_.integrate(measurement);
     intake_.on_fate_in_map(measurement.source, integrated ? std::nullopt : std::optional(integrated.error()));
     if (integrated) {
-        used_[measurement.source] = measurement.captured;
+        waiting_.on_used_reading(measurement.source, measurement.captured);
         just_used_.push_back(measurement.captured);
     }
     return integrated;
@@ -312,29 +233,10 @@ bool Pipeline::take_depth(DepthFrame frame) {
         accounts_.depth_frames.reject(DepthReason::outside_marks);
         return false;
     }
-    if (worker_ == nullptr) {
-        return accounts_.depth_frames.settle(builder_.integrate(std::move(frame)));
-    }
-    const Status<DepthReason> begun = begin_depth(std::move(frame));
-    if (!begun) {
-        accounts_.depth_frames.reject(begun.error());
-    }
+    if (!beside_.has_worker()) return accounts_.depth_frames.settle(builder_.integrate(std::move(frame)));
+    const auto begun = beside_.begin(builder_, std::move(frame));
+    if (!begun) accounts_.depth_frames.reject(begun.error());
     return false;
-}
-
-Status<DepthReason> Pipeline::begin_depth(DepthFrame frame) {
-    try {
-        auto begun = builder_.begin(std::move(frame));
-        if (!begun) {
-            return unexpected(begun.error());
-        }
-        in_work_ = std::make_unique<MapBuilder::DepthWork>(std::move(begun).value());
-        worker_->begin([this, depth = in_work_.get()] { builder_.work(*depth); });
-        return Done{};
-    } catch (const std::bad_alloc&) {
-        in_work_ = nullptr;
-        return unexpected(DepthReason::no_memory);
-    }
 }
 
 void Pipeline::on_silence(HostTime now) {
@@ -367,18 +269,19 @@ bool Pipeline::is_camera_stale() const {
     if (!camera_patience_ || !now_known) {
         return false;
     }
-    return !depth_newest_ || *now_known - *depth_newest_ > *camera_patience_;
+    const auto newest = waiting_.newest_depth();
+    return !newest || *now_known - *newest > *camera_patience_;
 }
 
 std::vector<AccountTable> Pipeline::account_tables() const {
     const std::uint64_t samples_open = is_finished_ ? 0 : intake_.joint_samples_pending();
-    return {tabulate("CAN frames", accounts_.frames, marks_.waiting(), seconds_text),
-            tabulate("readings", accounts_.readings, readings_waiting_.size() + intake_.readings_held(),
-                     seconds_text),
-            tabulate("joint samples", accounts_.joint_samples, joints_waiting_.size() + samples_open,
-                     seconds_text),
-            tabulate("depth frames", accounts_.depth_frames, depth_waiting_.size() + (in_work_ ? 1U : 0U),
-                     seconds_text)};
+    return {
+        tabulate("CAN frames", accounts_.frames, marks_.waiting(), seconds_text),
+        tabulate("readings", accounts_.readings, waiting_.readings() + intake_.readings_held(), seconds_text),
+        tabulate("joint samples", accounts_.joint_samples, waiting_.joint_samples() + samples_open,
+                 seconds_text),
+        tabulate("depth frames", accounts_.depth_frames,
+                 waiting_.depth_frames() + (beside_.is_at_work() ? 1U : 0U), seconds_text)};
 }
 
 bool Pipeline::is_balanced() const {

@@ -3,8 +3,6 @@
 // arrived.
 #pragma once
 
-#include <map>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,29 +15,20 @@
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/can_intake.hpp"
 #include "host/core/ingest/reasons.hpp"
-#include "host/core/kinematics/joint_jump.hpp"
 #include "host/core/kinematics/robot_model.hpp"
 #include "host/core/mapping/mapping_config.hpp"
+#include "host/core/pipeline/depth_beside.hpp"
 #include "host/core/pipeline/depth_stage.hpp"
-#include "host/core/pipeline/depth_worker.hpp"
 #include "host/core/pipeline/fed_map.hpp"
+#include "host/core/pipeline/joint_gate.hpp"
 #include "host/core/pipeline/map_builder.hpp"
 #include "host/core/pipeline/mark_gate.hpp"
 #include "host/core/pipeline/mark_window.hpp"
-#include "host/core/pipeline/reorder_buffer.hpp"
+#include "host/core/pipeline/measurement_queue.hpp"
 #include "host/core/pipeline/time_leap.hpp"
 #include "host/core/rig/host_rig.hpp"
 
 namespace octoskin {
-
-/// When a measurement that waits enters the map.
-enum class Release : std::uint8_t {
-    /// `lag` after it was captured, in the order (capture time, source): whatever order frames came in, the
-    /// map is the same.
-    by_capture_time,
-    /// As soon as it is known where the robot was: a live map. Its bytes depend on the order of the calls.
-    once_placed,
-};
 
 struct PipelineConfig {
     std::vector<MapFeed> maps = every_feed();
@@ -50,11 +39,7 @@ struct PipelineConfig {
     Nanoseconds lag{250'000'000};
     JointHistoryConfig joints;
     IntakeConfig intake;  ///< `uses_no_return` follows from the mapping
-    /// Bounds of what may wait; beyond, it is counted and dropped: the oldest, but the newest of depth
-    /// frames: those that wait have their joints.
-    std::size_t readings_waiting_max = 4096;
-    std::size_t depth_frames_waiting_max = 16;
-    std::size_t joint_samples_waiting_max = 256;
+    QueueLimits waiting_max;
     unsigned depth_threads = 1;  ///< how many work on a depth image; the map is the same
 };
 
@@ -71,14 +56,6 @@ struct PipelineAccounts {
         joint_samples.now_at(ns);
         depth_frames.now_at(ns);
     }
-};
-
-/// A joint sample that is beyond the limits of the robot description.
-struct JointBeyond {
-    std::size_t joint = 0;  ///< of HostJoints::joints
-    double position = 0.0;  ///< radians or metres
-    JointLimits limits;
-    HostTime sampled;
 };
 
 class Pipeline {
@@ -149,10 +126,8 @@ class Pipeline {
     /// True if "now" is known and three periods have passed without a depth frame that the rig promises.
     [[nodiscard]] bool is_camera_stale() const;
     [[nodiscard]] const CanIntake& intake() const noexcept { return intake_; }
-    /// The newest joint sample beyond its limits; empty if none was.
-    [[nodiscard]] const std::optional<JointBeyond>& joint_beyond() const noexcept { return joint_beyond_; }
-    /// Which joint samples the arm cannot have moved to.
-    [[nodiscard]] const JointJump& joint_jump() const noexcept { return joint_jump_; }
+    /// Which joint samples the arm cannot have taken.
+    [[nodiscard]] const JointGate& joint_gate() const noexcept { return joint_gate_; }
     /// Null if the rig has no camera.
     [[nodiscard]] const DepthStage* depth_stage() const noexcept { return builder_.depth_stage(); }
     /// What turns measurements into maps: whoever starts to record needs its joint samples.
@@ -165,58 +140,44 @@ class Pipeline {
              const PipelineConfig& config);
 
     void settle_marks(HostTime now);
-    void go_on_after(Nanoseconds leapt);
+    void on_leap(const TimeLeap::Leap& leap);
     /// What waits is integrated or counted, by what is known.
     void settle_waiting();
     void queue(const FrameOutcome& outcome);
     void queue(const RangeMeasurement& measurement);
     void queue(const JointMeasurement& joints);
     void queue(const JointSenderCheck::Ended& joint_samples);
-    [[nodiscard]] std::optional<DepthReason> fault_on_arrival(const DepthFrame& frame) const;
 
     /// Integrates what need not wait any longer.
     void advance(HostTime now);
     void release_joints(HostTime until);
-    [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
     /// Those captured until then, and those that are placed if that is enough.
     void release_measurements(HostTime until);
-    [[nodiscard]] bool is_placed(const ReleaseKey& key) const;
+    [[nodiscard]] bool is_placed(const ReleaseKey& key, bool is_depth) const;
     [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
     /// The frame goes into the maps, or the worker begins with it. Whether it is in the maps.
     bool take_depth(DepthFrame frame);
-    [[nodiscard]] Status<DepthReason> begin_depth(DepthFrame frame);
-    void drop_oldest_depth();
     void finish_depth();
-    [[nodiscard]] bool is_late(const ReleaseKey& key) const {
-        if (time_begin_ && key.captured < *time_begin_) return true;
-        return config_.release == Release::by_capture_time && integrated_ && key <= *integrated_;
-    }
-    [[nodiscard]] bool is_repeated(const ReleaseKey& key) const;
+    void drop_oldest_depth();
 
     PipelineConfig config_;
+    // From frames to measurements in host time.
     CanIntake intake_;
     MarkGate marks_;
-    ReorderBuffer<JointMeasurement> joints_waiting_;
-    ReorderBuffer<RangeMeasurement> readings_waiting_;
-    ReorderBuffer<DepthFrame> depth_waiting_;
-    MapBuilder builder_;
-    JointJump joint_jump_;
-    std::optional<JointBeyond> joint_beyond_;
-
-    DepthWorker* worker_ = nullptr;
-    std::unique_ptr<MapBuilder::DepthWork> in_work_;  ///< what the worker is at, or has done
-    HostTime released_until_;
-
-    PipelineAccounts accounts_;
-    std::optional<ReleaseKey> integrated_;        ///< the newest measurement in the maps
-    std::vector<HostTime> just_used_;             ///< by the call under way, or the last one
-    std::map<BeamSource, HostTime> used_;         ///< the newest reading of each source in the maps
-    std::optional<Nanoseconds> camera_patience_;  ///< three periods; empty without a camera
-    std::optional<HostTime> depth_newest_;        ///< capture time of the newest depth frame
     TimeLeap time_leap_;
-    std::optional<HostTime> time_begin_;   ///< after a leap ahead: what is earlier is of the time before
     bool has_can_time_ = false;            ///< and more of it may come
     std::optional<HostTime> told_beside_;  ///< of `on_silence`, since the newest frame
+    // Their order.
+    MeasurementQueue waiting_;
+    HostTime released_until_;
+    // Where each was taken, and what it says of the maps' voxels.
+    JointGate joint_gate_;
+    MapBuilder builder_;
+    DepthBeside beside_;
+
+    PipelineAccounts accounts_;
+    std::vector<HostTime> just_used_;             ///< by the call under way, or the last one
+    std::optional<Nanoseconds> camera_patience_;  ///< three periods; empty without a camera
     bool is_finished_ = false;
 };
 

@@ -58,7 +58,7 @@ bool is_recent(const std::optional<HostTime>& at, HostTime now) {
 }
 
 void add_joint_jump(const DaemonView& view, Problems& problems) {
-    const auto& jumped = view.pipeline->joint_jump().newest();
+    const auto& jumped = view.pipeline->joint_gate().jump().newest();
     if (!jumped || !is_recent(view.used.joint_jump, view.now)) return;
     problems.push_back(
         {"joint jump",
@@ -99,7 +99,7 @@ void add_joint_senders(const DaemonView& view, Problems& problems) {
 }
 
 void add_joints_beyond(const DaemonView& view, Problems& problems) {
-    const auto& beyond = view.pipeline->joint_beyond();
+    const auto& beyond = view.pipeline->joint_gate().beyond();
     if (!beyond || !is_recent(beyond->sampled, view.now)) return;
     problems.push_back({"joints beyond limits", beyond_text(*beyond, view.rig->joints.joints)});
 }

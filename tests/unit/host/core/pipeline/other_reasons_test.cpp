@@ -213,7 +213,7 @@ TEST(JointReasonsAll, have_a_case_each) {
 }
 TEST(JointReasonsAll, drop_the_oldest_where_too_many_wait) {
     Scene crowded = good_scene();
-    crowded.config.joint_samples_waiting_max = 5;
+    crowded.config.waiting_max.joint_samples = 5;
     const RunResult result = run(crowded);
     // 150 ms of 100 Hz wait: ten of them too many. None reaches a reading in time but those of the last
     // moment.
@@ -279,7 +279,7 @@ TEST(DepthReasonsAll, reject_every_frame_of_a_camera_outside_the_octree) {
 }
 TEST(DepthReasonsAll, refuse_the_newest_where_too_many_wait) {
     Scene scene = good_scene();
-    scene.config.depth_frames_waiting_max = 2;
+    scene.config.waiting_max.depth_frames = 2;
     const RunResult result = run(scene);
     // Ten a second, each waits 250 ms: no room at 4.2 and 4.5 s.
     EXPECT_EQ(result.accounts.depth_frames.rejected(DepthReason::queue_overflow), 2U);

@@ -288,7 +288,7 @@ TEST(ReadingReasonsAll, keep_a_sensor_out_that_two_senders_have_until_a_second_a
 TEST(ReadingReasonsAll, drop_the_oldest_where_too_many_wait) {
     Scene good = good_scene();
     Scene crowded = good;
-    crowded.config.readings_waiting_max = 3;
+    crowded.config.waiting_max.readings = 3;
     const RunResult expected = run(good);
     const RunResult result = run(crowded);
     // Every 33 ms one, each waits 250 ms: seven at a time, and the last three get through.
