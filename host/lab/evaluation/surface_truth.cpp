@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -6,6 +8,13 @@
 
 namespace octoskin::evaluation {
 namespace {
+
+/// Some five minutes of work, and hundreds of times what the shipped worlds have.
+constexpr double kSurfacePointsMax = 1e9;
+
+KeyBox with_margins(const KeyBox& region, const TruthConfig& config) {
+    return region.padded(std::max(config.occlusion_margin_voxels, config.tolerance_voxels));
+}
 
 /// The world's share of a box of voxels: an axis-parallel box in the base frame that covers it.
 Eigen::AlignedBox3d base_bounds(const KeyBox& box, const VoxelLattice& lattice,
@@ -61,11 +70,24 @@ VoxelMask seen_mask(const sim::World& world, const TruthConfig& config, const Ke
     return seen;
 }
 
+/// Why surface_truth() would take hours, for a person; empty if it does not.
+std::optional<std::string> surface_fault(const sim::World& world, const TruthConfig& config,
+                                         const KeyBox& region, const Eigen::Isometry3d& T_map_base) {
+    const auto bounds =
+        base_bounds(with_margins(region, config), VoxelLattice(config.resolution_m), T_map_base);
+    const double points = world.samples_within(config.surface_pitch_m, bounds);
+    if (points <= kSurfacePointsMax) return std::nullopt;
+    return fmt::format(
+        "{:.2g} points of the world's surfaces lie in the judged region; expected at most {:.0g}: "
+        "make the region smaller, or the world's meshes coarser",
+        points, kSurfacePointsMax);
+}
+
 }  // namespace
 
 VoxelGrid<SurfaceVoxel> surface_truth(const sim::World& world, const TruthConfig& config,
                                       const KeyBox& region, const Eigen::Isometry3d& T_map_base) {
-    const KeyBox box = region.padded(std::max(config.occlusion_margin_voxels, config.tolerance_voxels));
+    const KeyBox box = with_margins(region, config);
     const auto [surface, hidden] = surface_masks(world, config, box, T_map_base);
     const VoxelMask seen = seen_mask(world, config, box, T_map_base);
     const VoxelMask near_surface = dilated(surface, config.tolerance_voxels);
@@ -88,11 +110,13 @@ VoxelGrid<SurfaceVoxel> surface_truth(const sim::World& world, const TruthConfig
     return truth;
 }
 
-Truth build_truth(const sim::World& world, const Survey& survey, const TruthConfig& config,
-                  const Eigen::Isometry3d& T_map_base) {
+Result<Truth, std::string> build_truth(const sim::World& world, const Survey& survey,
+                                       const TruthConfig& config, const Eigen::Isometry3d& T_map_base) {
     const KeyBox region = region_of(config.region, config.resolution_m, T_map_base);
-    return {config.resolution_m, camera_truth(survey, config.camera, region, config.resolution_m, T_map_base),
-            surface_truth(world, config, region, T_map_base)};
+    if (auto fault = surface_fault(world, config, region, T_map_base)) return unexpected(std::move(*fault));
+    return Truth{config.resolution_m,
+                 camera_truth(survey, config.camera, region, config.resolution_m, T_map_base),
+                 surface_truth(world, config, region, T_map_base)};
 }
 
 }  // namespace octoskin::evaluation

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/result.hpp"
 #include "host/lab/evaluation/region.hpp"
 #include "host/lab/evaluation/survey.hpp"
 #include "host/lab/evaluation/voxel_grid.hpp"
@@ -71,8 +72,10 @@ struct Truth {
                                                     const KeyBox& region,
                                                     const Eigen::Isometry3d& T_map_base);
 
-/// Both truths for a world that stands at `T_map_base` in the map.
-[[nodiscard]] Truth build_truth(const sim::World& world, const Survey& survey, const TruthConfig& config,
-                                const Eigen::Isometry3d& T_map_base);
+/// Both truths for a world that stands at `T_map_base` in the map. Or why that would take hours: a thousand
+/// million points of surfaces in the region, and more.
+[[nodiscard]] Result<Truth, std::string> build_truth(const sim::World& world, const Survey& survey,
+                                                     const TruthConfig& config,
+                                                     const Eigen::Isometry3d& T_map_base);
 
 }  // namespace octoskin::evaluation

@@ -68,9 +68,12 @@ evaluation::Truth build(const Scene& scene, const rig::Rig& rig, double resoluti
     if (const auto fault = evaluation::region_fault(config.region, resolution_m, rig.T_map_base))
         throw CommandFailure({ExitCode::bad_config, scene.scenario.error("region", *fault).message()});
     spdlog::info("ground truth: a noise-free camera goes round the scene");
-    return evaluation::build_truth(scene.world,
-                                   evaluation::render_survey(scene.world, survey_config_of(scene.scenario)),
-                                   config, rig.T_map_base);
+    auto truth = evaluation::build_truth(
+        scene.world, evaluation::render_survey(scene.world, survey_config_of(scene.scenario)), config,
+        rig.T_map_base);
+    if (!truth)
+        throw CommandFailure({ExitCode::bad_config, scene.scenario.error("region", truth.error()).message()});
+    return std::move(*truth);
 }
 
 bool is_papers(const rig::Rig& rig, const Scene& scene) {

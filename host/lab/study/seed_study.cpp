@@ -130,9 +130,12 @@ Result<evaluation::Truth, AppError> make_truth(const StudyGround& ground, const 
     config.external_camera = rig.camera;
     if (auto fault = evaluation::region_fault(config.region, config.resolution_m, rig.T_map_base))
         return fail(ExitCode::bad_config, ground.scenario.error("region", std::move(*fault)).message());
-    evaluation::Truth truth = evaluation::build_truth(ground.world, ground.survey, config, rig.T_map_base);
+    auto truth = evaluation::build_truth(ground.world, ground.survey, config, rig.T_map_base);
+    if (!truth)
+        return fail(ExitCode::bad_config,
+                    ground.scenario.error("region", std::move(truth.error())).message());
     outcome.times.push_back(timer.stop());
-    return truth;
+    return std::move(*truth);
 }
 
 /// What is left over goes with the work folder.

@@ -4,8 +4,13 @@
 
 #include <algorithm>
 #include <cassert>
+#include <initializer_list>
 #include <limits>
+#include <map>
 #include <new>
+#include <utility>
+
+#include "hw/sim/world/polygon_clip.hpp"
 
 namespace octoskin::sim {
 namespace {
@@ -19,12 +24,53 @@ struct Plane {
     double offset;
 };
 
+/// Embree's single precision finds where a ray meets a tilted triangle well enough for exact_t() as long as
+/// no corner is further away than some 1000 m.
+constexpr double kCornerMax_m = 500.0;
+
+/// What Embree is given of a solid.
+struct Facets {
+    std::vector<Eigen::Vector3d> vertices;
+    std::vector<Eigen::Vector3i> triangles;
+    std::vector<Plane> planes;  ///< per triangle
+};
+
 Plane plane_of(const Solid& solid, const Eigen::Vector3i& triangle) {
     const auto& a = solid.vertices[static_cast<std::size_t>(triangle[0])];
     const auto& b = solid.vertices[static_cast<std::size_t>(triangle[1])];
     const auto& c = solid.vertices[static_cast<std::size_t>(triangle[2])];
     const Eigen::Vector3d normal = (b - a).cross(c - a).normalized();
     return {normal, normal.dot(a)};
+}
+
+Facets facets_of(const Solid& solid) {
+    Facets facets{solid.vertices, solid.triangles, {}};
+    for (const auto& triangle : solid.triangles) facets.planes.push_back(plane_of(solid, triangle));
+    return facets;
+}
+
+bool is_near(const Eigen::Vector3d& vertex) {
+    return vertex.cwiseAbs().maxCoeff() <= kCornerMax_m;
+}
+
+/// The share of a solid that is near, each triangle in parts with the plane of the whole.
+Facets near_facets_of(const Solid& solid, const Facets& all) {
+    const Eigen::Vector3d corner = Eigen::Vector3d::Constant(kCornerMax_m);
+    Facets facets;
+    for (std::size_t i = 0; i < all.triangles.size(); ++i) {
+        std::vector<Eigen::Vector3d> polygon;
+        for (const int vertex : all.triangles[i])
+            polygon.push_back(solid.vertices[static_cast<std::size_t>(vertex)]);
+        polygon = clipped_to(Eigen::AlignedBox3d(-corner, corner), std::move(polygon),
+                             [](const Eigen::Vector3d& p, Eigen::Index axis) { return p[axis]; });
+        const int first = static_cast<int>(facets.vertices.size());
+        for (int k = 1; k + 1 < static_cast<int>(polygon.size()); ++k) {
+            facets.triangles.emplace_back(first, first + k, first + k + 1);
+            facets.planes.push_back(all.planes[i]);
+        }
+        facets.vertices.insert(facets.vertices.end(), polygon.begin(), polygon.end());
+    }
+    return facets;
 }
 
 /// Embree gives nothing where there is no memory: all else that it is asked for here it has.
@@ -34,16 +80,17 @@ Pointer made(Pointer pointer) {
     return pointer;
 }
 
-RTCGeometry make_geometry(RTCDevice device, const Solid& solid) {
+RTCGeometry make_geometry(RTCDevice device, const Facets& facets) {
     RTCGeometry geometry = made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
     auto* vertices = static_cast<float*>(made(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), solid.vertices.size())));
-    for (const auto& vertex : solid.vertices) {
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), facets.vertices.size())));
+    for (const auto& vertex : facets.vertices) {
         vertices = std::copy_n(vertex.cast<float>().eval().data(), 3, vertices);
     }
-    auto* indices = static_cast<unsigned*>(made(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), solid.triangles.size())));
-    for (const auto& triangle : solid.triangles) {
+    auto* indices = static_cast<unsigned*>(
+        made(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                     3 * sizeof(unsigned), facets.triangles.size())));
+    for (const auto& triangle : facets.triangles) {
         indices = std::copy_n(triangle.cast<unsigned>().eval().data(), 3, indices);
     }
     rtcCommitGeometry(geometry);
@@ -62,7 +109,8 @@ struct RayCaster::Impl {
     RTCDevice device = nullptr;
     RTCScene all = nullptr;
     std::vector<RTCScene> one_solid;
-    std::vector<std::vector<Plane>> planes;  ///< per solid, per triangle
+    std::vector<std::vector<Plane>> planes;                  ///< per solid, per triangle of `all`
+    std::map<std::uint32_t, std::vector<Plane>> whole_ones;  ///< of `one_solid`, where they are others
 
     ~Impl() {
         for (RTCScene scene : one_solid) {
@@ -72,8 +120,41 @@ struct RayCaster::Impl {
         rtcReleaseDevice(device);
     }
 
-    [[nodiscard]] std::optional<TriangleHit> cast(RTCScene scene, const Eigen::Vector3d& origin,
-                                                  const Eigen::Vector3d& direction, double t_max) const {
+    /// Whether a point is inside a solid is asked of all of it, however far it reaches.
+    void add(const Solid& solid) {
+        const auto id = static_cast<std::uint32_t>(one_solid.size());
+        one_solid.push_back(make_scene(device));
+        Facets facets = facets_of(solid);
+        if (std::ranges::all_of(solid.vertices, is_near)) {
+            attach(facets, id, {all, one_solid.back()});
+        } else {
+            attach(facets, id, {one_solid.back()});
+            Facets near_ones = near_facets_of(solid, facets);
+            whole_ones[id] = std::exchange(facets.planes, std::move(near_ones.planes));
+            if (!near_ones.triangles.empty()) attach(near_ones, id, {all});
+        }
+        rtcCommitScene(one_solid.back());
+        planes.push_back(std::move(facets.planes));
+    }
+
+    void attach(const Facets& facets, std::uint32_t id, std::initializer_list<RTCScene> scenes) const {
+        RTCGeometry geometry = make_geometry(device, facets);
+        for (RTCScene scene : scenes) {
+            rtcAttachGeometryByID(scene, geometry, id);
+        }
+        rtcReleaseGeometry(geometry);
+    }
+
+    [[nodiscard]] const std::vector<Plane>& whole_planes(std::uint32_t solid) const {
+        const auto whole = whole_ones.find(solid);
+        return whole == whole_ones.end() ? planes[solid] : whole->second;
+    }
+
+    /// `planes_of(solid)`: of each triangle in the scene.
+    template <class PlanesOf>
+    [[nodiscard]] static std::optional<TriangleHit> cast(RTCScene scene, const PlanesOf& planes_of,
+                                                         const Eigen::Vector3d& origin,
+                                                         const Eigen::Vector3d& direction, double t_max) {
         RTCRayHit ray{};
         ray.ray.org_x = static_cast<float>(origin.x());
         ray.ray.org_y = static_cast<float>(origin.y());
@@ -90,7 +171,7 @@ struct RayCaster::Impl {
         if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
             return std::nullopt;
         }
-        const Plane& plane = planes[ray.hit.geomID][ray.hit.primID];
+        const Plane& plane = planes_of(ray.hit.geomID)[ray.hit.primID];
         return TriangleHit{exact_t(plane, origin, direction, ray.ray.tfar), ray.hit.geomID, plane.normal};
     }
 
@@ -147,20 +228,7 @@ RayCaster::RayCaster(const std::vector<Solid>& solids) : impl_(std::make_unique<
     // One thread: the scenes are small, and a library that starts threads of its own would surprise its user.
     impl_->device = made(rtcNewDevice("threads=1"));
     impl_->all = make_scene(impl_->device);
-    for (std::uint32_t i = 0; i < solids.size(); ++i) {
-        RTCGeometry geometry = make_geometry(impl_->device, solids[i]);
-        RTCScene alone = make_scene(impl_->device);
-        for (RTCScene scene : {impl_->all, alone}) {
-            rtcAttachGeometryByID(scene, geometry, i);
-        }
-        rtcReleaseGeometry(geometry);
-        rtcCommitScene(alone);
-        impl_->one_solid.push_back(alone);
-        auto& planes = impl_->planes.emplace_back();
-        for (const auto& triangle : solids[i].triangles) {
-            planes.push_back(plane_of(solids[i], triangle));
-        }
-    }
+    for (const Solid& solid : solids) impl_->add(solid);
     rtcCommitScene(impl_->all);
     const RTCError error = rtcGetDeviceError(impl_->device);
     if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -173,12 +241,18 @@ RayCaster::~RayCaster() = default;
 
 std::optional<TriangleHit> RayCaster::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                            double t_max) const {
-    return impl_->cast(impl_->all, origin, direction, t_max);
+    const auto planes_of = [&](unsigned solid) -> const auto& {
+        return impl_->planes[solid];
+    };
+    return Impl::cast(impl_->all, planes_of, origin, direction, t_max);
 }
 
 std::optional<TriangleHit> RayCaster::cast_at_solid(std::uint32_t solid, const Eigen::Vector3d& origin,
                                                     const Eigen::Vector3d& direction) const {
-    return impl_->cast(impl_->one_solid[solid], origin, direction, static_cast<double>(kInfinity));
+    const auto planes_of = [&](unsigned id) -> const auto& {
+        return impl_->whole_planes(id);
+    };
+    return Impl::cast(impl_->one_solid[solid], planes_of, origin, direction, static_cast<double>(kInfinity));
 }
 
 void RayCaster::cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,

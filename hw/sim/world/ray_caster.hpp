@@ -21,7 +21,8 @@ struct TriangleHit {
 
 /// Embree finds the triangle in single precision, without gaps between neighbours (its robust mode); where on
 /// the triangle's plane the ray meets it is then computed in double precision, so that ranges do not depend
-/// on the processor's vector width. Safe to use from several threads at once.
+/// on the processor's vector width. What lies further than 500 m from an axis' origin is not seen: a larger
+/// triangle is cut there. Safe to use from several threads at once.
 class RayCaster {
   public:
     explicit RayCaster(const std::vector<Solid>& solids);

@@ -9,6 +9,7 @@
 #include "host/io/folder/confined.hpp"
 #include "hw/sim/world/ray_caster.hpp"
 #include "hw/sim/world/sdf_solids.hpp"
+#include "hw/sim/world/triangle_lattice.hpp"
 
 namespace octoskin::sim {
 namespace {
@@ -25,28 +26,10 @@ Eigen::AlignedBox3d bounds_of(const Solid& solid) {
     return bounds;
 }
 
-/// Points of the triangle abc in rows parallel to its side ac, from ab to bc. With ab the longest side no two
-/// neighbours are further apart than the pitch, within a row, between rows, and along each side.
-template <class Visit>
-void sample_triangle(std::array<Eigen::Vector3d, 3> abc, double pitch_m, const Visit& visit) {
-    const auto length = [&](std::size_t i) { return (abc[(i + 1) % 3] - abc[i]).norm(); };
-    std::size_t longest = 0;
-    for (std::size_t i = 1; i < 3; ++i) {
-        longest = length(i) > length(longest) ? i : longest;
-    }
-    std::rotate(abc.begin(), abc.begin() + static_cast<std::ptrdiff_t>(longest), abc.end());
-    const auto& [a, b, c] = abc;
-    const int rows = std::max(1, static_cast<int>(std::ceil((b - a).norm() / pitch_m)));
-    for (int row = 0; row <= rows; ++row) {
-        const double part = static_cast<double>(row) / rows;
-        const Eigen::Vector3d from = a + part * (b - a);
-        const Eigen::Vector3d to = c + part * (b - c);
-        const int steps = static_cast<int>(std::ceil((to - from).norm() / pitch_m));
-        for (int step = 0; step <= steps; ++step) {
-            visit(steps == 0 ? from
-                             : Eigen::Vector3d(from + (to - from) * (static_cast<double>(step) / steps)));
-        }
-    }
+std::array<Eigen::Vector3d, 3> corners_of(const Solid& solid, const Eigen::Vector3i& triangle) {
+    return {solid.vertices[static_cast<std::size_t>(triangle[0])],
+            solid.vertices[static_cast<std::size_t>(triangle[1])],
+            solid.vertices[static_cast<std::size_t>(triangle[2])]};
 }
 
 }  // namespace
@@ -163,23 +146,28 @@ void World::sample_surfaces(double pitch_m,
 
 void World::sample_surfaces(double pitch_m, const Eigen::AlignedBox3d& region,
                             const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const {
-    assert(pitch_m > 0.0);
     for (std::uint32_t i = 0; i < impl_->solids.size(); ++i) {
         const Solid& solid = impl_->solids[i];
         for (const auto& triangle : solid.triangles) {
-            const std::array<Eigen::Vector3d, 3> corners = {
-                solid.vertices[static_cast<std::size_t>(triangle[0])],
-                solid.vertices[static_cast<std::size_t>(triangle[1])],
-                solid.vertices[static_cast<std::size_t>(triangle[2])]};
+            const auto corners = corners_of(solid, triangle);
             const Eigen::Vector3d probe =
                 kBurialProbe_m * (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-            sample_triangle(corners, pitch_m, [&](const Eigen::Vector3d& point) {
+            TriangleLattice(corners, pitch_m).for_each_near(region, [&](const Eigen::Vector3d& point) {
                 if (region.contains(point) && !impl_->is_inside_other(i, point + probe)) {
                     visit(point, i);
                 }
             });
         }
     }
+}
+
+double World::samples_within(double pitch_m, const Eigen::AlignedBox3d& region) const {
+    double samples = 0.0;
+    for (const Solid& solid : impl_->solids) {
+        for (const auto& triangle : solid.triangles)
+            samples += TriangleLattice(corners_of(solid, triangle), pitch_m).count_near(region);
+    }
+    return samples;
 }
 
 bool World::is_inside(const Eigen::Vector3d& point) const {

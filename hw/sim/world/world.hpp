@@ -1,6 +1,7 @@
 // The simulated world: the solids of an SDF file, ray-cast with Embree, and as surfaces and interiors for the
-// ground truth. All coordinates in the world frame, which is the robot's base frame; metres. Coordinates
-// should stay within some 100 m of the origin: the triangle that a ray meets is found in single precision.
+// ground truth. All coordinates in the world frame, which is the robot's base frame; metres. A ray
+// should begin within some 100 m of the origin: the triangle that it meets is found in single precision, and
+// what is further than 500 m along an axis is not seen.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -62,6 +63,9 @@ class World {
                          const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const;
     void sample_surfaces(double pitch_m, const Eigen::AlignedBox3d& region,
                          const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const;
+    /// About how many points sample_surfaces() looks at, those that it leaves out among them. Some 0.5 us a
+    /// triangle.
+    [[nodiscard]] double samples_within(double pitch_m, const Eigen::AlignedBox3d& region) const;
     /// True if a point lies inside a closed solid. About 0.2 us outside all solids' bounding boxes, 1 us
     /// within.
     [[nodiscard]] bool is_inside(const Eigen::Vector3d& point) const;

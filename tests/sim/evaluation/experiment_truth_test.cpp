@@ -49,7 +49,7 @@ class ExperimentTruth : public ::testing::Test {
         config.external_camera = rig->camera;
         Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
         T_map_base.translation() << x, y, z;
-        return build_truth(*world, render_survey(*world, SurveyConfig{}), config, T_map_base);
+        return build_truth(*world, render_survey(*world, SurveyConfig{}), config, T_map_base).value();
     }
 };
 

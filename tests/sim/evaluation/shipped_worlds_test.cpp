@@ -47,7 +47,8 @@ class ShippedWorld : public testing::TestWithParam<Shipped> {
         config.external_camera = rig.camera;
         Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
         T_map_base.translation() = scenario.map_shift_m(seed);
-        return build_truth(world, render_survey(world, survey_config_of(scenario)), config, T_map_base);
+        return build_truth(world, render_survey(world, survey_config_of(scenario)), config, T_map_base)
+            .value();
     }
 
     const sim::Scenario scenario_ =

@@ -25,6 +25,14 @@ using ignition::math::eigen3::convert;
 /// Models within models deeper than this are refused, so that reading is bounded whatever the file says.
 constexpr int kNestingMax = 16;
 
+/// Up to here double precision has a tenth of a millimetre to spare.
+constexpr double kCoordinateMax_m = 1e9;
+constexpr const char* kCoordinateMax = "1e9 m";
+
+bool is_near_enough(const Eigen::Vector3d& vertex) {
+    return vertex.cwiseAbs().maxCoeff() <= kCoordinateMax_m;
+}
+
 /// The text of a file's line, so that a message shows the value that the parser does not tell.
 std::string line_of(const std::filesystem::path& file, int number) {
     std::ifstream input(file);
@@ -287,6 +295,9 @@ class Reader {
             meshes_.emplace_back(uri->Get<std::string>(), uri);
         }
         TriangleMesh mesh = weld(transformed(*shape, T_world_visual));
+        if (!std::ranges::all_of(mesh.vertices, is_near_enough))
+            return fail(element, std::string("reaches further than ") + kCoordinateMax +
+                                     " from the origin: give it a smaller size, scale or pose");
         const bool closed = is_closed(mesh);
         if (closed && signed_volume(mesh) < 0.0) {
             turn_inside_out(mesh);

@@ -143,6 +143,22 @@ TEST(Sdf, warns_of_what_the_parser_does_not_know_and_rays_do_not_need) {
     EXPECT_TRUE(sound->warnings().empty());
 }
 
+TEST(Sdf, takes_a_ground_of_any_use_and_refuses_one_beyond_all_measure) {
+    const testing_support::ScratchFolder scratch;
+    const auto ground = [&](const std::string& size) {
+        return World::read(scratch.write(
+            "w.sdf", world_with("<visual name='ground'><geometry><plane><normal>0 0 1</normal><size>" + size +
+                                "</size></plane></geometry></visual>")));
+    };
+    EXPECT_TRUE(ground("10000 10000"));
+    EXPECT_TRUE(ground("1e9 1e9"));
+    for (const char* const size : {"3e9 1", "1 1e200", "1e308 1e308"}) {
+        const auto world = ground(size);
+        ASSERT_FALSE(world) << size;
+        EXPECT_THAT(world.error().message(), AllOf(HasSubstr("visual 'ground'"), HasSubstr("1e9 m")));
+    }
+}
+
 TEST(Sdf, refuses_an_unknown_element_that_may_decide_what_is_seen) {
     const testing_support::ScratchFolder scratch;
     const auto visual = [](const std::string& inside) {

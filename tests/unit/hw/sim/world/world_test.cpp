@@ -144,6 +144,36 @@ TEST(WorldCast, gives_a_fan_of_unit_rays_whole_hits) {
     EXPECT_GT(of_each[1], 20);
 }
 
+TEST(WorldCast, meets_a_tilted_ground_of_any_size_where_it_is) {
+    const Eigen::Vector3d normal = Eigen::Vector3d(0.48, 0.36, 0.8);
+    for (const double size_m : {100.0, 1e3, 1e4, 1e6, 2e9}) {
+        const World world = world_of(plane_mesh(normal, {size_m, size_m}));
+        std::mt19937_64 random(2);
+        std::uniform_real_distribution<double> x(-1.0, 1.0);
+        int met = 0;
+        for (int i = 0; i < 5000; ++i) {
+            const Eigen::Vector3d origin = Eigen::Vector3d(x(random), x(random), x(random)) + 2.0 * normal;
+            const Eigen::Vector3d direction =
+                (Eigen::Vector3d(x(random), x(random), x(random)) - 1.2 * normal).normalized();
+            const double slope = -direction.dot(normal);
+            if (slope < 0.05) continue;
+            const auto hit = world.cast(origin, direction, kFar_m);
+            if (!hit) continue;  // through the edge between the two triangles
+            EXPECT_NEAR(hit->range_m, origin.dot(normal) / slope, 1e-5) << size_m;
+            EXPECT_NEAR((hit->normal - normal).norm(), 0.0, 1e-9) << size_m;
+            ++met;
+        }
+        EXPECT_GE(met, 4000) << size_m;
+    }
+}
+
+TEST(WorldCast, does_not_see_what_is_far_away_but_knows_that_it_is_inside) {
+    const World world = world_of(box_mesh({4e3, 4e3, 4e3}));
+    EXPECT_FALSE(world.cast({0.1, 0.2, 0.3}, Eigen::Vector3d::UnitX(), 1e4));
+    EXPECT_TRUE(world.is_inside({0.1, 0.2, 0.3}));
+    EXPECT_FALSE(world.is_inside({3e3, 0.2, 0.3}));
+}
+
 TEST(WorldInside, knows_the_interior_of_boxes_and_spheres) {
     const World world(std::vector<Solid>{solid_of(box_mesh({1.0, 1.0, 1.0})),
                                          solid_of(ellipsoid_mesh({0.5, 0.5, 0.5}), {2.0, 0.0, 0.0})});
@@ -216,6 +246,19 @@ TEST(WorldSurfaces, keep_to_the_region_asked_for) {
         ++kept;
     });
     EXPECT_GE(kept, 21 * 21);
+}
+
+TEST(WorldSurfaces, of_a_ground_without_end_are_had_in_the_region_alone) {
+    const World world(std::vector<Solid>{solid_of(plane_mesh(Eigen::Vector3d::UnitZ(), {2e9, 2e9})),
+                                         solid_of(box_mesh({0.2, 0.2, 0.2}), {0.0, 0.0, 0.1})});
+    const Eigen::AlignedBox3d region(Eigen::Vector3d(-0.5, -0.5, -0.5), Eigen::Vector3d(0.5, 0.5, 0.05));
+    int kept = 0;
+    world.sample_surfaces(0.01, region, [&](const Eigen::Vector3d& p, std::uint32_t) {
+        EXPECT_TRUE(region.contains(p));
+        ++kept;
+    });
+    EXPECT_GT(kept, 9000);
+    EXPECT_GT(world.samples_within(0.01, region), kept);
 }
 
 TEST(Shapes, are_closed_and_have_their_volumes) {
