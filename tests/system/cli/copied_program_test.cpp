@@ -42,6 +42,19 @@ TEST_F(CopiedProgram, has_no_helpers_and_no_data) {
     EXPECT_NE(data.output.find(path("away/share/octoskin")), std::string::npos) << data.output;
 }
 
+TEST_F(CopiedProgram, has_its_data_where_a_link_leads_and_not_in_the_working_directory) {
+    std::filesystem::create_directories(path("away/bin"));
+    std::filesystem::create_directories(path("away/share"));
+    std::filesystem::create_directories(path("away/data"));
+    std::filesystem::create_directories(path("data"));  // as the link has it, seen from here
+    std::filesystem::create_directories(path("here"));
+    std::filesystem::create_symlink("../data", path("away/share/octoskin"));
+    std::filesystem::copy_file(OCTOSKIN_PROGRAM, path("away/bin/octoskin"));
+    const Said data = run("cd " + path("here") + " && ../away/bin/octoskin simulate " + path("rec"));
+    EXPECT_EQ(data.exit_code, 78) << data.output;
+    EXPECT_NE(data.output.find(path("away/data/hw")), std::string::npos) << data.output;
+}
+
 TEST_F(CopiedProgram, has_the_helpers_beside_it) {
     copy("there", "there");
     EXPECT_TRUE(runs_it("there"));
