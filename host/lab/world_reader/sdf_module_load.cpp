@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/apps/world_reader/ordinary_files.hpp"
 #include "hw/rigfile/file_kind.hpp"
 #include "hw/sim/world/model_folders.hpp"
 #include "hw/sim/world/sdf/sdf_module.hpp"
@@ -35,9 +36,18 @@ class Includes final : public tinyxml2::XMLVisitor {
     std::vector<Include> found_;
 };
 
-/// What is there of an included file, as far as it is found without sdformat: which waits at a pipe.
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kBlanks = " \t\r\n";
+    const auto first = text.find_first_not_of(kBlanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
+}
+
+/// What is there of an included file, as far as it is found without sdformat, which does not say why it
+/// cannot read what is no file.
 std::filesystem::path place_of(std::string_view uri, const std::filesystem::path& world) {
     constexpr std::string_view kFileScheme = "file://";
+    uri = trimmed(uri);
     if (uri.starts_with(kModelScheme)) return find_model_file(uri).value_or("");
     if (uri.starts_with(kFileScheme)) uri.remove_prefix(kFileScheme.size());
     return world.parent_path() / uri;
@@ -109,6 +119,10 @@ SolidsOrError load_solids(const std::filesystem::path& sdf, const WorldFiles* fi
     if (!module) return failed(module.error());
     SolidsOrError solids = SolidsOfFile{};
     module->read_solids({.file = sdf, .path = path, .files = files}, &solids);
+    if (const std::string refused = refused_file(); !refused.empty()) {
+        if (!solids) return failed("needs " + refused + ", not an ordinary file");
+        solids->warnings.push_back("needs " + refused + ", not an ordinary file, and goes without it");
+    }
     return solids;
 }
 

@@ -190,6 +190,42 @@ TEST_F(ReaderProcessTest, waits_at_no_pipe_that_is_included) {
     }
 }
 
+TEST_F(ReaderProcessTest, waits_at_no_pipe_that_the_libraries_alone_find) {
+    ASSERT_EQ(::mkfifo((scratch_ / "pipe.sdf").c_str(), 0600), 0);
+    const std::string pipe = (scratch_ / "pipe.sdf").string();
+    const auto including = [](const std::string& uri) {
+        return "<sdf version='1.9'>\n<world name='w'>\n<include><uri>" + uri +
+               "</uri></include></world></sdf>";
+    };
+    const auto model_of = [&](const std::string& folder, const std::string& sdf) {
+        fs::create_directories(scratch_ / folder);
+        scratch_.write(folder + "/model.config",
+                       "<?xml version='1.0'?>\n<model><name>m</name>\n"
+                       "<sdf version='1.9'>" +
+                           sdf + "</sdf></model>\n");
+    };
+    model_of("named", "../pipe.sdf");  // as what its configuration names
+    model_of("nested", "model.sdf");   // included by what is included
+    scratch_.write("nested/model.sdf", "<sdf version='1.9'><model name='m'><include><uri>" + pipe +
+                                           "</uri></include><link name='l'/></model></sdf>\n");
+    for (const std::string& uri : {"\n  " + pipe + "\n", std::string("named"), std::string("nested")}) {
+        const auto world = scratch_.write("w.sdf", including(uri));
+        EXPECT_THAT(error_of_world(world, {.patience = std::chrono::seconds(5)}),
+                    AllOf(HasSubstr("w.sdf: "), HasSubstr("pipe.sdf"), HasSubstr("a named pipe")))
+            << uri;
+    }
+}
+
+TEST_F(ReaderProcessTest, goes_without_a_material_that_is_a_pipe_and_says_so) {
+    make_world_with("it.obj");
+    scratch_.write("in/it.obj", kTetrahedron);
+    ASSERT_EQ(::mkfifo((in() / "it.mtl").c_str(), 0600), 0);
+    const auto read = read_solids(in() / "w.sdf", {.patience = std::chrono::seconds(5)});
+    ASSERT_TRUE(read) << read.error().message();
+    ASSERT_EQ(read->warnings.size(), 1U);
+    EXPECT_THAT(read->warnings[0], AllOf(HasSubstr("it.mtl"), HasSubstr("a named pipe")));
+}
+
 TEST_F(ReaderProcessTest, reads_no_world_outside_of_its_folder) {
     make_world_with("");
     const auto outside = scratch_.write("w.sdf", "<sdf version='1.9'/>");
