@@ -89,6 +89,17 @@ void report_progress(const ReplayProgress& progress, const char* unit, ProgressS
     }
 }
 
+/// A line for each five seconds that it takes.
+BytesReport checksum_report() {
+    static constexpr auto kQuiet = std::chrono::seconds(5);
+    return [last = std::chrono::steady_clock::now()](std::uint64_t bytes) mutable {
+        const auto now = std::chrono::steady_clock::now();
+        if (now - last < kQuiet) return;
+        last = now;
+        spdlog::info("checksum of the recording: {} MB so far", bytes / 1'000'000);
+    };
+}
+
 /// A replay that failed leaves the maps of the one before as they are.
 void refuse_failed(const Playback& playback) {
     if (auto failure = failure_of(playback, "the account above says why")) {
@@ -156,6 +167,7 @@ void replay_recording(const ReplayOptions& options) {
     PlaybackRequest request = playback_request(options.playback);
     request.maps = wants_all ? every_feed() : std::vector{MapFeed::both};
     request.pace = pace_of(options);
+    request.on_checksum = checksum_report();
     if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
     // Before the work: of two that write there, the second would else find out after it.
     const FilePlace maps = maps_place(options, request.recording);

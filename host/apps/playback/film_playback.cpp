@@ -71,8 +71,12 @@ Result<Playback, AppError> play_film(const PlaybackRequest& request, const Repla
     if (!film) return fail(ExitCode::no_input, request.recording.directory.string() + ": the .oni is gone");
     const auto camera = camera_of(request);
     if (!camera) return unexpected(camera.error());
-    const auto crc32 = crc32_of(*film);
-    if (!crc32) return fail(ExitCode::bad_data, film->shown().string() + ": cannot be read");
+    const auto crc32 = crc32_of(std::span(&*film, 1), request.on_checksum);
+    if (!crc32) {
+        const auto opened = film->open();
+        return fail(ExitCode::bad_data,
+                    opened ? film->shown().string() + ": cannot be read" : opened.error().message());
+    }
     auto reader = openni2::OniReader::open_alone(*film);
     if (!reader) return fail(ExitCode::bad_data, reader.error().what);
     auto playback = play_camera(request, rig_of_camera(*camera, "film"), *crc32, *reader, report);

@@ -57,13 +57,13 @@ std::vector<std::string> map_file_names() {
     return names;
 }
 
-std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording) {
+std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording, const BytesReport& report) {
     std::vector<FilePlace> files = {recording.can_log()};
     for (const FilePlace& file :
          {recording.depth(), recording.depth_epoch(), recording.order(), recording.first_map()}) {
         if (file.is_there()) files.push_back(file);
     }
-    return crc32_of(files);
+    return crc32_of(files, report);
 }
 
 Status<AppError> write_map_origin(const FilePlace& file, const MapOrigin& origin) {

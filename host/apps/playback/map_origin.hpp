@@ -11,6 +11,7 @@
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
 #include "host/apps/recording/recording.hpp"
+#include "host/apps/recording/source_file.hpp"
 
 namespace octoskin {
 
@@ -33,7 +34,8 @@ struct MapOrigin {
 /// CRC-32 of what a recording measured: can.log, and depth.oni with its sidecar, order.log
 /// and first.ot if they are there. Rig and
 /// robot have their own. Empty if one cannot be read.
-[[nodiscard]] std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording);
+[[nodiscard]] std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording,
+                                                              const BytesReport& report = {});
 
 [[nodiscard]] Status<AppError> write_map_origin(const FilePlace& file, const MapOrigin& origin);
 

@@ -113,8 +113,15 @@ Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig:
     const auto absolute = [](const std::filesystem::path& path) {
         return std::filesystem::absolute(path).lexically_normal();
     };
-    const auto crc32 = crc32_of_recording(request.recording);
-    if (!crc32) return fail(ExitCode::bad_data, request.recording.directory.string() + ": cannot be read");
+    const auto crc32 = crc32_of_recording(request.recording, request.on_checksum);
+    if (!crc32) {
+        for (const FilePlace& file : {request.recording.can_log(), request.recording.depth()}) {
+            const auto opened = file.open();
+            if (!opened && opened.error().fault != FolderFault::absent)
+                return fail(ExitCode::bad_data, opened.error().message());
+        }
+        return fail(ExitCode::bad_data, request.recording.directory.string() + ": cannot be read");
+    }
     return MapOrigin{.made_by = program_version(),
                      .recording = absolute(request.recording.directory),
                      .recording_crc32 = *crc32,

@@ -12,6 +12,7 @@
 #include "host/apps/playback/pace.hpp"
 #include "host/apps/recording/app_error.hpp"
 #include "host/apps/recording/recording.hpp"
+#include "host/apps/recording/source_file.hpp"
 #include "host/core/account/account.hpp"
 #include "host/core/account/loss.hpp"
 #include "host/core/ingest/node_summary.hpp"
@@ -43,6 +44,8 @@ struct PlaybackRequest {
     /// Is told, before anything is played, what a person should know about rig and robot; empty: that is
     /// among the warnings at the end.
     std::function<void(const std::string& warning)> warn_first = {};
+    /// Is told, before anything is played, how much of the recording's files was read for their checksum.
+    BytesReport on_checksum = {};
 };
 
 struct Playback {

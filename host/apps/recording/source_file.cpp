@@ -10,8 +10,9 @@
 
 namespace octoskin {
 
-std::optional<std::uint32_t> crc32_of(std::span<const FilePlace> files) {
+std::optional<std::uint32_t> crc32_of(std::span<const FilePlace> files, const BytesReport& report) {
     std::uint32_t crc = 0;
+    std::uint64_t read = 0;
     std::array<char, 65'536> buffer{};
     for (const auto& file : files) {
         const auto opened = file.open();
@@ -21,6 +22,8 @@ std::optional<std::uint32_t> crc32_of(std::span<const FilePlace> files) {
         while (stream.read(buffer.data(), buffer.size()), stream.gcount() > 0) {
             const auto* bytes = reinterpret_cast<const std::uint8_t*>(buffer.data());
             crc = crc32({bytes, static_cast<std::size_t>(stream.gcount())}, crc);
+            read += static_cast<std::uint64_t>(stream.gcount());
+            if (report) report(read);
         }
         if (stream.bad()) return std::nullopt;
     }

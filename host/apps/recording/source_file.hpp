@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,8 +17,13 @@ struct SourceFile {
     std::optional<std::uint32_t> crc32;  ///< of its bytes; of recordings before 0.1.1 it is not known
 };
 
-/// CRC-32 (zlib's) of the files' bytes, one after the other; empty if one cannot be read.
-[[nodiscard]] std::optional<std::uint32_t> crc32_of(std::span<const FilePlace> files);
+/// Is told of the bytes that are read so far.
+using BytesReport = std::function<void(std::uint64_t bytes)>;
+
+/// CRC-32 (zlib's) of the files' bytes, one after the other; empty if one cannot be read. Some 400 MB a
+/// second.
+[[nodiscard]] std::optional<std::uint32_t> crc32_of(std::span<const FilePlace> files,
+                                                    const BytesReport& report = {});
 [[nodiscard]] std::optional<std::uint32_t> crc32_of(const FilePlace& file);
 
 /// `file` made absolute, with its CRC-32, and that of the `further` files that it brings in.

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -25,6 +26,32 @@ std::string other_kind_of(unsigned mode) {
             return "a device";
     }
 }
+
+namespace {
+
+/// A file of holes is larger than the disk that it came on; all of it is read nonetheless, for hours. What is
+/// smaller than this is read in seconds.
+constexpr off_t kHolesMatter = off_t{1} << 30U;
+/// Frames of nothing, copied by a tool that leaves holes for zeros, hold more than that.
+constexpr off_t kBytesPerByteThere = 100;
+
+/// Leaves the descriptor at its begin. Where the file system does not know its holes there are none.
+bool is_nearly_all_holes(int descriptor, off_t size) {
+    if (size <= kHolesMatter) return false;
+    off_t there = 0;
+    off_t at = 0;
+    while (at < size) {
+        const off_t data = ::lseek(descriptor, at, SEEK_DATA);
+        if (data < 0 && errno == ENXIO) break;
+        at = data < 0 ? -1 : ::lseek(descriptor, data, SEEK_HOLE);
+        there = at < 0 ? size : there + (at - data);
+        if (there >= size / kBytesPerByteThere) break;
+    }
+    ::lseek(descriptor, 0, SEEK_SET);
+    return there < size / kBytesPerByteThere;
+}
+
+}  // namespace
 
 std::filesystem::path path_of_descriptor(int descriptor) {
     return fmt::format("/proc/self/fd/{}", descriptor);
@@ -61,6 +88,10 @@ Result<OpenFile, FolderError> open_ordinary(const Descriptor& path, const std::f
         return unexpected(FolderError{FolderFault::not_a_file, shown, 0, std::move(kind)});
     Descriptor opened(::open(path_of_descriptor(path.get()).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!opened) return unexpected(folder_error_of(errno, shown));
+    if (is_nearly_all_holes(opened.get(), status.st_size))
+        return unexpected(
+            FolderError{FolderFault::not_a_file, shown, 0,
+                        fmt::format("a file of {} bytes that are nearly all holes", status.st_size)});
     return OpenFile(std::move(opened), shown);
 }
 

@@ -37,7 +37,8 @@ class OpenFile {
 };
 
 /// Opens for reading what O_PATH has opened, if it is an ordinary file: to open a device or a pipe may
-/// already do something, or wait for ever. Error: not_a_file, naming what it is; the system's.
+/// already do something, or wait for ever. Error: not_a_file, naming what it is, a file of over 1 GiB that is
+/// nearly all holes among them; the system's.
 [[nodiscard]] Result<OpenFile, FolderError> open_ordinary(const Descriptor& path,
                                                           const std::filesystem::path& shown);
 

@@ -50,6 +50,11 @@ void allow_processor_seconds(unsigned seconds) {
     ::setrlimit(RLIMIT_CPU, &limit);
 }
 
+void limit_file_size(std::uint64_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    limit(RLIMIT_FSIZE, bytes);
+}
+
 int take_standard_output() {
     const int output = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
     ::dup2(STDERR_FILENO, STDOUT_FILENO);

@@ -29,6 +29,9 @@ void limit_processor_seconds(std::uint64_t seconds);
 /// left to end it.
 void allow_processor_seconds(unsigned seconds);
 
+/// The files that it writes become so large at most: more is an error of the write.
+void limit_file_size(std::uint64_t bytes);
+
 /// Moves standard output to a descriptor of its own, which is returned; what the libraries print goes to
 /// standard error and never into the result.
 [[nodiscard]] int take_standard_output();

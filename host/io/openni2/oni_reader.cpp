@@ -40,8 +40,9 @@ Result<OniReader, DepthSourceError> OniReader::start(const FilePlace& oni,
     };
     const auto opened = oni.open();
     if (!opened) {
-        const bool is_link = opened.error().fault == FolderFault::link;
-        return failure(is_link ? opened.error().reason() : "no such file, or not an ordinary one");
+        const FolderFault fault = opened.error().fault;
+        const bool is_clear = fault == FolderFault::link || fault == FolderFault::not_a_file;
+        return failure(is_clear ? opened.error().reason() : "no such file, or not an ordinary one");
     }
     const auto program = find_helper(kReadHelper, helper);
     if (!program) return failure(program.error());

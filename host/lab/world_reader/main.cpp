@@ -35,9 +35,7 @@ void limit(const Limits& limits) {
     limit_this_process({.memory_mib = limits.memory_mib, .exit_without_memory = kOutOfMemory});
     limit_processor_seconds(limits.processor_s);
     // It writes to a pipe alone; and sdformat is given no home to make a folder in and write its log to.
-    ::signal(SIGXFSZ, SIG_IGN);
-    const rlimit no_file{0, 0};
-    ::setrlimit(RLIMIT_FSIZE, &no_file);
+    octoskin::limit_file_size(0);
     ::unsetenv("HOME");
 }
 

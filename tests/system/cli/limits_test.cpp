@@ -73,6 +73,15 @@ TEST_F(Limits, of_a_files_size_are_an_error_of_the_write) {
     EXPECT_NE(said.output.find("File too large"), std::string::npos) << said.output;
 }
 
+TEST_F(Limits, a_film_of_holes_is_refused_before_all_of_it_is_read) {
+    write(path("film.oni"), "NI10");
+    std::filesystem::resize_file(path("film.oni"), std::uintmax_t{1} << 40U);
+    const Said said =
+        run("timeout 20 " OCTOSKIN_PROGRAM " replay " + path("film.oni") + " --pose 0,0,1,0,0,0");
+    EXPECT_EQ(said.exit_code, 65) << said.output;
+    EXPECT_NE(said.output.find("holes"), std::string::npos) << said.output;
+}
+
 #ifndef OCTOSKIN_SANITIZED  // which needs /proc itself
 TEST_F(Limits, without_proc_that_is_said_and_no_helper_out_of_the_working_directory_runs) {
     if (run("unshare -rm mount -t tmpfs none /proc").exit_code != 0) GTEST_SKIP() << "no namespaces here";

@@ -11,8 +11,6 @@
 namespace octoskin::openni2 {
 namespace {
 
-/// The player reads them into a buffer that has room for the largest payload and a frame's fields.
-constexpr std::uint32_t kFieldsMax = 1U << 20U;
 /// The player counts them from its file header, and calls itself for each stream within another.
 constexpr std::uint32_t kStreamNumbersMax = 32;
 
@@ -39,10 +37,9 @@ class Reading {
   public:
     /// Fields and payload; false if they are more than the player has room for, or cannot be read.
     bool read(std::ifstream& file, const OniRecord& record) {
-        const std::uintmax_t payload = record.end - record.position - record.fields_size;
+        if (!record.fits()) return false;
         fields_ = record.fields_size - kOniRecordHeaderSize;
-        if (fields_ > kFieldsMax || payload > kOniPayloadMax) return false;
-        bytes_.resize(fields_ + static_cast<std::size_t>(payload));
+        bytes_.resize(fields_ + static_cast<std::size_t>(record.payload_size()));
         file.clear();
         file.seekg(static_cast<std::streamoff>(record.position + kOniRecordHeaderSize));
         file.read(reinterpret_cast<char*>(bytes_.data()), static_cast<std::streamsize>(bytes_.size()));

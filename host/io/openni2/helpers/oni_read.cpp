@@ -9,6 +9,7 @@
 
 #include "host/core/text/printable.hpp"
 #include "host/io/helper_limits/confinement.hpp"
+#include "host/io/helper_limits/helper_limits.hpp"
 #include "host/io/openni2/helpers/depth_stream.hpp"
 #include "host/io/openni2/helpers/oni_outline.hpp"
 #include "host/io/openni2/helpers/oni_salvage.hpp"
@@ -52,9 +53,11 @@ Input input_of(const std::filesystem::path& file, const char* shown) {
     // Without a name, so that it goes when this process does; left open until then.
     const int copy = error ? -1 : ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     const std::string path = "/proc/self/fd/" + std::to_string(copy);
+    limit_file_size(kSalvageMax + (std::uintmax_t{64} << 20U));  // and the tables
     if (copy >= 0 && salvage(file, path)) return {path, true};
-    std::fprintf(stderr, "%s: %s: cut off, and there is no copying its %u whole frames to %s\n", kProgram,
-                 printable(shown).c_str(), outline.frames, folder.c_str());
+    std::fprintf(stderr,
+                 "%s: %s: cut off, and there is no copying its %u whole frames to %s (%ju MiB at most)\n",
+                 kProgram, printable(shown).c_str(), outline.frames, folder.c_str(), kSalvageMax >> 20U);
     return {file.string()};
 }
 

@@ -13,7 +13,9 @@ namespace octoskin::openni2 {
 inline constexpr std::uintmax_t kOniFileHeaderSize = 24;
 inline constexpr std::uint32_t kOniRecordHeaderSize = 28;
 inline constexpr std::uint32_t kOniFrameFieldsSize = kOniRecordHeaderSize + 12;  // a time stamp and a number
-inline constexpr std::uint32_t kOniRecordMagic = 0x0052494E;                     // "NIR"
+inline constexpr std::uint32_t kOniFieldsMax = 1U << 20U;
+inline constexpr std::uint32_t kOniPayloadMax = 1600 * 1200 * 3;  // PlayerNode::DATA_MAX_SIZE
+inline constexpr std::uint32_t kOniRecordMagic = 0x0052494E;      // "NIR"
 
 enum class OniRecordType : std::uint32_t {
     int_property = 0x03,
@@ -35,6 +37,13 @@ struct OniRecord {
     std::uint32_t fields_size = 0;
     std::uintmax_t position = 0;  ///< of its first byte
     std::uintmax_t end = 0;       ///< of the byte after its last
+
+    [[nodiscard]] std::uintmax_t payload_size() const noexcept { return end - position - fields_size; }
+    /// Whether the player has room for it: it reads the fields into a buffer for the largest payload and a
+    /// frame's fields.
+    [[nodiscard]] bool fits() const noexcept {
+        return fields_size - kOniRecordHeaderSize <= kOniFieldsMax && payload_size() <= kOniPayloadMax;
+    }
 };
 
 class OniRecords {

@@ -44,6 +44,7 @@ Contents contents_of(const std::filesystem::path& oni) {
     Contents contents;
     OniRecords records(oni);
     while (const auto record = records.next()) {
+        if (!record->fits()) break;
         if (record->type == OniRecordType::node_removed || record->type == OniRecordType::end) break;
         if (record->type == OniRecordType::node_added) {
             // Once each, with room for the totals: here, too, the file's sense ends.
@@ -136,7 +137,8 @@ void put_totals(Writer& out, const Stream& stream, std::uint64_t table) {
 
 std::optional<std::uint32_t> salvage(const std::filesystem::path& oni, const std::filesystem::path& copy) {
     const Contents contents = contents_of(oni);
-    if (contents.frames == 0 || contents.streams.size() > kStreamsMax) return std::nullopt;
+    if (contents.frames == 0 || contents.streams.size() > kStreamsMax || contents.length > kSalvageMax)
+        return std::nullopt;
     std::ifstream from(oni, std::ios::binary);
     Writer out(copy);
     out.copy(from, contents.length);

@@ -14,9 +14,6 @@
 
 namespace octoskin::openni2 {
 
-/// What OpenNI2's player has room for in a record's payload (PlayerNode::DATA_MAX_SIZE).
-inline constexpr std::uint32_t kOniPayloadMax = 1600 * 1200 * 3;
-
 using OniBytes = std::span<const std::uint8_t>;
 using OniVerdict = Status<std::string>;  ///< else what is wrong, for a person
 

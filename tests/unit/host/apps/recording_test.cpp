@@ -134,6 +134,10 @@ TEST(SourceFileTest, checksum_is_that_of_all_bytes_in_order) {
     EXPECT_EQ(crc32_of(std::vector<FilePlace>(parts.begin(), parts.end())), 0xCBF43926U);
     const auto large = folder.write("large", std::string(200'001, 'x'));
     EXPECT_EQ(crc32_of(large), crc32(std::vector<std::uint8_t>(200'001, 'x')));
+    std::uint64_t read = 0;
+    EXPECT_TRUE(crc32_of(std::vector<FilePlace>{FilePlace(large), FilePlace(digits)},
+                         [&](std::uint64_t bytes) { read = bytes; }));
+    EXPECT_EQ(read, 200'010U);
     EXPECT_EQ(crc32_of(folder / "absent"), std::nullopt);
     EXPECT_EQ(crc32_of(folder.path()), std::nullopt);
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <string>
+#include <utility>
 
 #include "tests/support/scratch_folder.hpp"
 
@@ -59,6 +61,23 @@ TEST_F(FilePlaceTest, a_typed_path_leads_to_an_ordinary_file_or_is_refused_at_on
     EXPECT_EQ(FilePlace(scratch_ / "none").open().error().fault, FolderFault::absent);
     EXPECT_FALSE(FilePlace(scratch_ / "none").is_there());
     EXPECT_TRUE(FilePlace().empty());
+}
+
+TEST_F(FilePlaceTest, a_file_that_is_nearly_all_holes_is_no_ordinary_one) {
+    constexpr std::uintmax_t kGiB = 1U << 30U;
+    const auto file = scratch_.write("large", std::string(16U << 20U, 'x'));
+    for (const auto& [size, is_opened] :
+         {std::pair{kGiB, true}, std::pair{kGiB + (kGiB >> 1U), true}, std::pair{4 * kGiB, false}}) {
+        fs::resize_file(file, size);
+        const auto opened = FilePlace(file).open();
+        EXPECT_EQ(opened.has_value(), is_opened) << size;
+        if (opened) {
+            EXPECT_EQ(opened->read(3)->substr(0, 3), "xxx");
+            EXPECT_EQ(::lseek(opened->descriptor(), 0, SEEK_CUR), 0) << "is at its begin";
+        } else {
+            EXPECT_EQ(opened.error().fault, FolderFault::not_a_file);
+        }
+    }
 }
 
 TEST_F(FilePlaceTest, its_folder_is_what_is_written_to) {

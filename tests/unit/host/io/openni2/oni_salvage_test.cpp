@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
 #include "host/io/openni2/helpers/oni_outline.hpp"
+#include "host/io/openni2/helpers/oni_records.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::openni2 {
@@ -106,6 +109,34 @@ TEST_F(OniSalvageTest, tells_streams_apart) {
     // So it does with a stream that is added again.
     EXPECT_EQ(salvaged(kBegun + frame(1, 0, 1) + node_added(1) + frame(1, 5, 2)), 1U);
     EXPECT_EQ(outline_of(scratch_ / "copy.oni").length, copy_.size());
+}
+
+TEST_F(OniSalvageTest, ends_at_what_OpenNI2_has_no_room_for) {
+    EXPECT_EQ(salvaged(kBegun + frame(1, 0, 1) + record(0x0F, 1, std::string((1U << 20U) + 1, 'x')) +
+                       frame(1, 5, 2)),
+              1U);
+    EXPECT_EQ(salvaged(kBegun + frame(1, 0, 1) +
+                       record(0x0A, 1, bytes_of(std::uint64_t{5}) + bytes_of(std::uint32_t{2}),
+                              std::string(kOniPayloadMax + 1, 'x')) +
+                       frame(1, 9, 3)),
+              1U);
+}
+
+TEST_F(OniSalvageTest, writes_nothing_of_more_than_its_limit) {
+    const auto oni = scratch_.write("large.oni", kBegun);
+    const std::string whole = record(0x0A, 1, bytes_of(std::uint64_t{5}) + bytes_of(std::uint32_t{1}),
+                                     std::string(kOniPayloadMax, 'x'));
+    const std::string begin = whole.substr(0, whole.size() - kOniPayloadMax);
+    std::uintmax_t size = kBegun.size();
+    std::ofstream file(oni, std::ios::binary | std::ios::in | std::ios::out);
+    for (; size <= kSalvageMax; size += whole.size()) {
+        file.seekp(static_cast<std::streamoff>(size));
+        file << begin;
+    }
+    file.close();
+    std::filesystem::resize_file(oni, size);
+    EXPECT_EQ(salvage(oni, scratch_ / "copy.oni"), std::nullopt);
+    EXPECT_FALSE(std::filesystem::exists(scratch_ / "copy.oni"));
 }
 
 TEST_F(OniSalvageTest, refuses_what_no_recorder_writes) {
