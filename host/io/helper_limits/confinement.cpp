@@ -21,6 +21,8 @@
 #include <span>
 #include <vector>
 
+#include "host/io/helper_limits/privileges.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -78,7 +80,6 @@ class Filter {
     [[nodiscard]] int install() {
         answer(SECCOMP_RET_KILL_PROCESS);
         const sock_fprog program{static_cast<unsigned short>(code_.size()), code_.data()};
-        if (::prctl(PR_SET_NO_NEW_PRIVS, 1UL, 0UL, 0UL, 0UL) != 0) return errno;
         const long result =
             ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &program);
         if (result > 0) return EBUSY;  // a thread has a filter of its own
@@ -137,12 +138,18 @@ void allow_writing_to_what_is_open(Filter& filter) {
     filter.allow(SYS_ioctl, {low_half(1, TCGETS)});               // whether it is a terminal
 }
 
-void allow_memory_time_and_threads(Filter& filter) {
+void allow_threads(Filter& filter) {
+    // In the namespaces of the process: root could else have a thread with its own.
+    constexpr std::uint32_t kNamespaces = CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC |
+                                          CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET;
+    filter.allow(SYS_clone, {low_half(0, CLONE_THREAD, CLONE_THREAD | kNamespaces)});
+}
+
+void allow_memory_and_time(Filter& filter) {
     filter.allow({SYS_brk, SYS_mmap, SYS_munmap, SYS_mremap, SYS_mprotect, SYS_madvise});
     filter.allow({SYS_clock_gettime, SYS_clock_getres, SYS_clock_nanosleep, SYS_nanosleep, SYS_gettimeofday,
                   SYS_getrusage, SYS_sysinfo, SYS_uname, SYS_getrandom, SYS_sched_yield,
                   SYS_sched_getaffinity, SYS_getcpu});
-    filter.allow(SYS_clone, {low_half(0, CLONE_THREAD, CLONE_THREAD)});
     filter.lack(SYS_clone3);
     filter.allow({SYS_futex, SYS_set_robust_list, SYS_rseq, SYS_exit, SYS_exit_group, SYS_rt_sigaction,
                   SYS_rt_sigprocmask, SYS_rt_sigreturn, SYS_sigaltstack, SYS_restart_syscall, SYS_getpid,
@@ -153,17 +160,31 @@ void allow_memory_time_and_threads(Filter& filter) {
     filter.allow(SYS_prlimit64, {low_half(0, 0), low_half(2, 0), high_half(2, 0)});  // to ask
 }
 
+/// Whatever cannot be confined goes on with all that it has.
+bool has_filters() {
+    const std::uint32_t action = SECCOMP_RET_KILL_PROCESS;
+    return ::syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &action) == 0;
+}
+
 }  // namespace
 
-void confine_this_process(const char* program) {
-    if (!kConfines) return;
-    Filter filter;
-    allow_reading(filter);
-    allow_writing_to_what_is_open(filter);
-    allow_memory_time_and_threads(filter);
-    if (const int error = filter.install(); error != 0)
+bool confine_this_process(const char* program, NewThreads threads) {
+    if (!kConfines) return true;
+    int error = 0;
+    if (!has_filters() || ::prctl(PR_SET_NO_NEW_PRIVS, 1UL, 0UL, 0UL, 0UL) != 0) error = errno;
+    if (error == 0) {
+        give_up_privileges();
+        Filter filter;
+        allow_reading(filter);
+        allow_writing_to_what_is_open(filter);
+        allow_memory_and_time(filter);
+        if (threads == NewThreads::allowed) allow_threads(filter);
+        error = filter.install();
+    }
+    if (error != 0)
         std::fprintf(stderr, "%s: runs without confinement, for the kernel has no filter here: %s\n", program,
                      std::strerror(error));
+    return error == 0;
 }
 
 }  // namespace octoskin

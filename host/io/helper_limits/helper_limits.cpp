@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <new>
 
@@ -41,12 +42,22 @@ void limit_processor_seconds(std::uint64_t seconds) {
     ::setrlimit(RLIMIT_CPU, &processor);
 }
 
+// A second between the two limits: that the soft one ended it shows, and says why.
+void bound_processor_seconds(std::uint64_t seconds) {
+    rlimit limit{};
+    ::getrlimit(RLIMIT_CPU, &limit);
+    limit.rlim_max = std::min<rlim_t>(limit.rlim_max, seconds);
+    limit.rlim_cur = std::min(limit.rlim_cur, limit.rlim_max - 1);
+    ::setrlimit(RLIMIT_CPU, &limit);
+}
+
 void allow_processor_seconds(unsigned seconds) {
     rusage used{};
     rlimit limit{};
     ::getrusage(RUSAGE_SELF, &used);
     ::getrlimit(RLIMIT_CPU, &limit);
-    limit.rlim_cur = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1U + seconds;
+    limit.rlim_cur = std::min(
+        limit.rlim_max - 1, static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1U + seconds);
     ::setrlimit(RLIMIT_CPU, &limit);
 }
 

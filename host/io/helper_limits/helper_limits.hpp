@@ -25,6 +25,10 @@ void limit_this_process(const HelperLimits& limits);
 /// So many seconds of processor time in all: SIGXCPU, which says why, then SIGKILL a second later.
 void limit_processor_seconds(std::uint64_t seconds);
 
+/// So many seconds of processor time in all, whatever allow_processor_seconds() is asked for later: SIGXCPU
+/// or, where that is ignored, SIGKILL.
+void bound_processor_seconds(std::uint64_t seconds);
+
 /// So many more seconds of processor time from now on: a helper that runs in circles ends even if nobody is
 /// left to end it.
 void allow_processor_seconds(unsigned seconds);

@@ -73,7 +73,11 @@ int main(int argc, char** argv) {
     }
     limit(limits);
     const int output = octoskin::take_standard_output();
-    octoskin::confine_this_process("octoskin-world-read");
-    const bool is_written = write_all(output, to_bytes(read(argv[3], is_beneath)));
+    const bool is_confined =
+        octoskin::confine_this_process("octoskin-world-read", octoskin::NewThreads::refused);
+    auto solids = read(argv[3], is_beneath);
+    if (!is_confined && solids)
+        solids->warnings.emplace_back("was read without confinement, for the kernel has no filter here");
+    const bool is_written = write_all(output, to_bytes(solids));
     ::_exit(is_written ? 0 : 1);  // the libraries' ends take time and give nothing
 }

@@ -20,6 +20,11 @@ namespace {
 constexpr std::chrono::milliseconds kPatience{600'000};  // the reader may think as long as it likes
 constexpr const char* kProgram = "octoskin-oni-read";
 
+/// Far more than it takes to check and to play it: what has taken the process over does not go on for ever.
+std::uintmax_t processor_seconds_for(std::uintmax_t bytes) {
+    return 600 + bytes / 1'000'000;
+}
+
 int stream_frames(DepthStream& depth, bool is_salvaged, int descriptor) {
     const int frame_count = depth.frame_count();
     FramePipe output(descriptor, kPatience);
@@ -64,7 +69,7 @@ Input input_of(const std::filesystem::path& file, const char* shown) {
 /// `shown`: what messages call the file.
 int read_recording(DepthStream& depth, const std::filesystem::path& file, const char* shown, int descriptor) {
     const Input input = input_of(file, shown);
-    confine_this_process(kProgram);  // the copy, if there is one, is written
+    (void)confine_this_process(kProgram, NewThreads::allowed);  // the copy, if there is one, is written
     if (!depth.is_sound(input.path, shown)) return kUnsound;
     if (!depth.open(input.path.c_str()) || !depth.is_file()) {
         std::fprintf(stderr, "%s: %s: not an .oni recording, or a damaged or cut off one\n", kProgram,
@@ -94,6 +99,9 @@ int main(int argc, char** argv) {
     const auto file = std::filesystem::absolute(argv[1]);
     const auto output = begin_helper(kProgram);
     if (!output) return 1;
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(file, error);
+    octoskin::bound_processor_seconds(processor_seconds_for(error ? 0 : bytes));
     DepthStream depth(kProgram);
     end_helper(read_recording(depth, file, argv[argc - 1], *output));
 }

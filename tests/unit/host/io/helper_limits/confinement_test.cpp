@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
+#include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/ptrace.h>
@@ -28,6 +29,8 @@
 #include <thread>
 #include <vector>
 
+#include "host/io/helper_limits/helper_limits.hpp"
+#include "host/io/helper_limits/helper_words.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/support/system_call_filters.hpp"
 
@@ -45,7 +48,7 @@ int status_of(const std::function<int()>& action) {
 
 int confined(const std::function<int()>& action) {
     return status_of([&] {
-        confine_this_process("test");
+        (void)confine_this_process("test", NewThreads::allowed);
         return action();
     });
 }
@@ -106,7 +109,7 @@ TEST_F(ConfinementTest, another_thread_is_confined_too) {
             std::this_thread::sleep_for(std::chrono::milliseconds(100));
             (void)::socket(AF_INET, SOCK_STREAM, 0);
         });
-        confine_this_process("test");
+        (void)confine_this_process("test", NewThreads::allowed);
         other.join();
         return 0;
     });
@@ -146,6 +149,60 @@ TEST_F(ConfinementTest, reading_writing_to_what_is_open_memory_and_threads_go_on
     for (const int end : ends) ::close(end);
 }
 
+TEST_F(ConfinementTest, a_thread_has_no_namespace_of_its_own_and_where_refused_there_is_none) {
+    const auto clone_with = [](int flag) {
+        return confined([flag] {
+            ::syscall(SYS_clone, CLONE_VM | CLONE_SIGHAND | CLONE_THREAD | flag, nullptr, nullptr, nullptr,
+                      0);
+            return 0;
+        });
+    };
+    for (const int flag : {CLONE_NEWNS, CLONE_NEWUTS, CLONE_NEWIPC, CLONE_NEWNET, CLONE_NEWUSER, CLONE_NEWPID,
+                           CLONE_NEWCGROUP}) {
+        const int status = clone_with(flag);
+        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS) << flag << ": " << status;
+    }
+    const int status = status_of([] {
+        (void)confine_this_process("test", NewThreads::refused);
+        std::thread([] {}).join();
+        return 0;
+    });
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS) << status;
+}
+
+TEST_F(ConfinementTest, looks_into_no_other_process_and_lifts_no_limit) {
+    const bool has_landlock = ::syscall(SYS_landlock_create_ruleset, nullptr, 0, 1) > 0;
+    if (!has_landlock && ::geteuid() != 0) GTEST_SKIP() << "the kernel has no Landlock";
+    const std::string parent = "/proc/" + std::to_string(::getpid());
+    const int status = confined([&] {
+        if (::open((parent + "/mem").c_str(), O_RDONLY) >= 0) return 1;
+        std::string text;
+        if (std::getline(std::ifstream(parent + "/environ"), text)) return 2;
+        if (::open("/proc/self/status", O_RDONLY) < 0) return 3;
+        return 0;
+    });
+    EXPECT_TRUE(WIFEXITED(status)) << status;
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+    const int limited = status_of([] {
+        bound_processor_seconds(7);
+        (void)confine_this_process("test", NewThreads::allowed);
+        allow_processor_seconds(1000);
+        const rlimit all{RLIM_INFINITY, RLIM_INFINITY};
+        ::setrlimit(RLIMIT_CPU, &all);
+        rlimit now{};
+        ::getrlimit(RLIMIT_CPU, &now);
+        return now.rlim_max == 7 && now.rlim_cur == 6 ? 0 : 1;
+    });
+    EXPECT_TRUE(WIFEXITED(limited)) << limited;
+    EXPECT_EQ(WEXITSTATUS(limited), 0);
+}
+
+TEST(HelperWordsTest, are_lines_that_order_a_terminal_nothing_and_are_not_taken_for_ours) {
+    EXPECT_EQ(helper_lines("octoskin-x", "octoskin-x: is wrong\n\n12:00:00 info fine\x1b]0;title\x07\nend"),
+              "octoskin-x: is wrong\noctoskin-x: 12:00:00 info fine\\x1b]0;title\\x07\noctoskin-x: end\n");
+    EXPECT_EQ(helper_lines("octoskin-x", ""), "");
+}
+
 TEST_F(ConfinementTest, its_own_abort_is_an_abort) {
     const int status = confined([]() -> int { std::abort(); });
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGABRT) << status;
@@ -168,9 +225,9 @@ TEST_F(ConfinementTest, a_kernel_without_filters_is_a_warning) {
     const int status = status_of([&] {
         refuse_filters();
         ::dup2(ends[1], STDERR_FILENO);
-        confine_this_process("octoskin-test");
+        const bool is_confined = confine_this_process("octoskin-test", NewThreads::allowed);
         const int made = ::open((scratch_ / "made").c_str(), O_WRONLY | O_CREAT, 0600);
-        return made >= 0 ? 0 : 1;
+        return made >= 0 && !is_confined ? 0 : 1;
     });
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
     ::close(ends[1]);
