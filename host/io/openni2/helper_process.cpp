@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/io/helper_limits/helper_words.hpp"
 #include "host/io/openni2/one_line.hpp"
 
 namespace octoskin::openni2 {
@@ -47,6 +48,9 @@ class Spawning {
     Spawning& operator=(const Spawning&) = delete;
 
     void connect(int descriptor, int as) { posix_spawn_file_actions_adddup2(&actions_, descriptor, as); }
+    void open_nothing_as(int descriptor) {
+        posix_spawn_file_actions_addopen(&actions_, descriptor, "/dev/null", O_RDONLY, 0);
+    }
     /// 0, or why not.
     int spawn(pid_t& process, std::string program, std::vector<std::string> arguments) const {
         std::vector<char*> pointers{program.data()};
@@ -114,17 +118,20 @@ Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::p
     for (const int end : ends) ::setsockopt(end, SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof(kSendBuffer));
     std::array<int, 2> words{-1, -1};
     // Without blocking: nobody reads before the helper has ended, and it must not wait for that.
-    if (complaints == HelperComplaints::kept) (void)!::pipe2(words.data(), O_CLOEXEC | O_NONBLOCK);
+    (void)!::pipe2(words.data(), O_CLOEXEC | O_NONBLOCK);
     Spawning spawning;
     spawning.connect(theirs, pipe == HelperPipe::its_input ? STDIN_FILENO : STDOUT_FILENO);
     if (words[1] >= 0) spawning.connect(words[1], STDERR_FILENO);
+    // What a terminal is told is not for it.
+    if (pipe == HelperPipe::its_output) spawning.open_nothing_as(STDIN_FILENO);
     // Last: it may take the number of one of those above, which are copied by then.
     if (inherited >= 0) spawning.connect(inherited, kInherited);
     pid_t process = -1;
     const int failed = spawning.spawn(process, program.string(), arguments);
     ::close(theirs);
     if (words[1] >= 0) ::close(words[1]);
-    HelperProcess helper(process, ours, words[0]);
+    const bool is_shown = complaints == HelperComplaints::on_our_standard_error;
+    HelperProcess helper(process, ours, words[0], is_shown ? program.filename().string() : std::string());
     if (failed != 0) return unexpected("cannot start " + program.string() + ": " + std::strerror(failed));
     return helper;
 }
@@ -132,12 +139,14 @@ Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::p
 HelperProcess::HelperProcess(HelperProcess&& other) noexcept
     : process_(std::exchange(other.process_, -1)),
       descriptor_(std::exchange(other.descriptor_, -1)),
-      complaints_(std::exchange(other.complaints_, -1)) {}
+      complaints_(std::exchange(other.complaints_, -1)),
+      shown_as_(std::move(other.shown_as_)) {}
 
 HelperProcess& HelperProcess::operator=(HelperProcess&& other) noexcept {
     std::swap(process_, other.process_);
     std::swap(descriptor_, other.descriptor_);
     std::swap(complaints_, other.complaints_);
+    std::swap(shown_as_, other.shown_as_);
     return *this;
 }
 
@@ -150,9 +159,14 @@ void HelperProcess::close_pipe() {
     if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
 }
 
+void HelperProcess::show_complaints() const {
+    if (!shown_as_.empty() && complaints_ >= 0) show_helper_words(shown_as_, complaints_);
+}
+
 void HelperProcess::end() {
     close_pipe();
     if (process_ < 0) return;
+    show_complaints();
     ::kill(process_, SIGKILL);
     constexpr int kTries = 200;
     const pid_t process = std::exchange(process_, -1);
@@ -179,6 +193,7 @@ std::optional<std::string> HelperProcess::wait(std::chrono::milliseconds patienc
         const pid_t ended = ::waitpid(process_, &status, WNOHANG);
         if (ended == process_) {
             process_ = -1;
+            show_complaints();
             return end_of(status);
         }
         if (ended < 0) return std::string("no such process");

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/result.hpp"
@@ -17,8 +18,8 @@ enum class HelperPipe : std::uint8_t { its_input, its_output };
 
 /// Where its standard error goes.
 enum class HelperComplaints : std::uint8_t {
-    on_our_standard_error,
-    kept,  ///< for `complaint`; what is too much for a pipe is lost
+    on_our_standard_error,  ///< when it ends, each line as helper_lines() has it; what is too much is lost
+    kept,                   ///< for `complaint`; what is too much for a pipe is lost
 };
 
 /// What a helper allows itself (host/io/helper_limits), and how it ends when that is not enough: with this
@@ -60,13 +61,18 @@ class HelperProcess {
     [[nodiscard]] std::string complaint();
 
   private:
-    HelperProcess(int process, int descriptor, int complaints)
-        : process_(process), descriptor_(descriptor), complaints_(complaints) {}
+    HelperProcess(int process, int descriptor, int complaints, std::string shown_as)
+        : process_(process),
+          descriptor_(descriptor),
+          complaints_(complaints),
+          shown_as_(std::move(shown_as)) {}
     void end();
+    void show_complaints() const;
 
     int process_ = -1;
     int descriptor_ = -1;
     int complaints_ = -1;
+    std::string shown_as_;  ///< its name, if its complaints are for our standard error
 };
 
 /// A helper program: `in_its_place`, or the one beside the running executable, or that in

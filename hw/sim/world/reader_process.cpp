@@ -36,8 +36,13 @@ class Reader {
             return;
         }
         output_ = ends[0];
-        error_ = spawn(std::move(command), ends[1], folder);
+        // Without blocking: nothing reads before the process has ended, and it must not wait for that.
+        std::array<int, 2> words{-1, -1};
+        (void)!::pipe2(words.data(), O_CLOEXEC | O_NONBLOCK);
+        words_ = words[0];
+        error_ = spawn(std::move(command), {ends[1], words[1]}, folder);
         ::close(ends[1]);
+        if (words[1] >= 0) ::close(words[1]);
     }
     Reader(const Reader&) = delete;
     Reader& operator=(const Reader&) = delete;
@@ -45,6 +50,7 @@ class Reader {
         if (output_ >= 0) ::close(output_);
         if (process_ > 0) ::kill(process_, SIGKILL);
         (void)ended_by(Clock::now() + kPatienceForEnd);
+        if (words_ >= 0) ::close(words_);
     }
 
     /// Why it could not be started; 0: it was.
@@ -62,6 +68,14 @@ class Reader {
             if (count >= 0) return static_cast<std::size_t>(count);
             if (errno != EINTR) return 0;
         }
+    }
+    /// What it has said on its standard error: maybe a foreign file's words, which no terminal sees as they
+    /// are.
+    [[nodiscard]] std::string words() const {
+        std::string text(4096, '\0');
+        const ssize_t count = words_ < 0 ? 0 : ::read(words_, text.data(), text.size());
+        text.resize(count > 0 ? static_cast<std::size_t>(count) : 0U);
+        return text;
     }
     /// Its status for waitpid(2)'s macros; empty if it has not ended until then.
     [[nodiscard]] std::optional<int> ended_by(Clock::time_point until) {
@@ -82,15 +96,20 @@ class Reader {
     static constexpr std::chrono::seconds kPatienceForEnd{2};
 
   private:
+    struct Ends {
+        int output;
+        int words;  ///< for its standard error; -1: ours
+    };
     /// With nothing of ours open but the pipe, and with no signal blocked or ignored. `folder`: its working
     /// directory, so that what it opens is beneath what was opened here; -1: ours.
-    [[nodiscard]] int spawn(std::vector<std::string> command, int output, int folder) {
+    [[nodiscard]] int spawn(std::vector<std::string> command, Ends ends, int folder) {
         posix_spawn_file_actions_t actions{};
         posix_spawnattr_t attributes{};
         posix_spawn_file_actions_init(&actions);
         posix_spawnattr_init(&attributes);
         posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-        posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
+        posix_spawn_file_actions_adddup2(&actions, ends.output, STDOUT_FILENO);
+        if (ends.words >= 0) posix_spawn_file_actions_adddup2(&actions, ends.words, STDERR_FILENO);
         if (folder >= 0) posix_spawn_file_actions_addfchdir_np(&actions, folder);
         posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
         sigset_t signals{};
@@ -111,6 +130,7 @@ class Reader {
 
     pid_t process_ = -1;
     int output_ = -1;
+    int words_ = -1;
     int error_ = 0;
 };
 
@@ -186,7 +206,10 @@ Result<std::string, std::string> read_in_process(const FilePlace& sdf, const Rea
     }
     const auto status = reader.ended_by(std::max(until, Clock::now() + Reader::kPatienceForEnd));
     if (!status) return unexpected(std::string("what reads it did not end"));
-    if (auto fault = fault_of(*status, limits)) return unexpected(std::move(*fault));
+    if (auto fault = fault_of(*status, limits)) {
+        const std::string words = reader.words();
+        return unexpected(std::move(*fault) + (words.empty() ? "" : "; it said: " + words));
+    }
     return bytes;
 }
 

@@ -72,6 +72,19 @@ TEST_F(HelperProcessTest, has_its_last_complaint_kept_however_much_it_complains)
     }
 }
 
+TEST_F(HelperProcessTest, reads_nothing_of_our_input_and_orders_our_terminal_nothing) {
+    auto helper = start("readlink /proc/self/fd/0; printf 'forged\\033[2J\\n' >&2");
+    ASSERT_TRUE(helper) << helper.error();
+    std::string text(10, ' ');
+    EXPECT_EQ(::read(helper->descriptor(), text.data(), text.size()), 10);
+    EXPECT_EQ(text, "/dev/null\n");
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(helper->wait(5s), std::nullopt);
+    const std::string shown = testing::internal::GetCapturedStderr();
+    EXPECT_NE(shown.find(": forged\\x1b[2J\n"), std::string::npos) << shown;
+    EXPECT_EQ(shown.find('\x1b'), std::string::npos);
+}
+
 TEST_F(HelperProcessTest, gets_its_argument_and_gives_its_output) {
     auto helper = start("printf '%s' \"$1\"");
     ASSERT_TRUE(helper) << helper.error();
