@@ -75,6 +75,8 @@ TEST_F(HelperConfinementTest, what_reads_recordings) {
     for (int i = 0; i < 5; ++i) ASSERT_TRUE(writer->write(HostTime{i * 100'000'000LL}, depth));
     ASSERT_TRUE(writer->close());
     EXPECT_TRUE(gets_a_filter({helper("octoskin-oni-read"), (scratch / "depth.oni").string()}));
+    EXPECT_TRUE(gets_a_filter({helper("octoskin-camera"), (scratch / "depth.oni").string()}))
+        << "as a camera";
 }
 
 }  // namespace

@@ -1,20 +1,25 @@
 // octoskin-camera --list: which cameras there are (camera_list.hpp). octoskin-camera URI [MODE]: the depth
 // frames of a camera to standard output (frame_pipe.hpp), each with the time of its capture on the host's
-// monotonic clock. An .oni file as URI is a camera too: played at its own speed, again and again.
+// monotonic clock. An .oni file as URI is a camera too, which octoskin-film plays in this program's place.
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <string>
 
+#include "host/core/text/printable.hpp"
 #include "host/io/openni2/capture_clock.hpp"
+#include "host/io/openni2/helper_process.hpp"
 #include "host/io/openni2/helpers/camera_list.hpp"
 #include "host/io/openni2/helpers/depth_stream.hpp"
 
 namespace octoskin::openni2 {
 namespace {
 
+constexpr const char* kProgram = "octoskin-camera";
 constexpr std::chrono::milliseconds kPatience{5'000};  // a daemon that takes no frames for so long is stuck
 
 std::int64_t monotonic_us() {
@@ -23,10 +28,6 @@ std::int64_t monotonic_us() {
         .count();
 }
 
-/// A film has no clock of its own, and its stamps tell how long to wait between two frames, no more: what
-/// OpenNI2 shows late on a busy machine makes all that follows as late, and each round begins when it does.
-/// So a frame is of the moment at which it is shown. It is here by then, or as soon as this thread has its
-/// turn: a period later at most, or the next frame would be here in its place.
 int stream_frames(DepthStream& depth, int descriptor) {
     FramePipe output(descriptor, kPatience);
     if (!output.write_header({.size = depth.size(), .rate_mhz = depth.rate_mhz()})) return 1;
@@ -35,8 +36,7 @@ int stream_frames(DepthStream& depth, int descriptor) {
         if (!depth.wait_for_frame()) return depth.complain("no more frames");
         const std::int64_t arrived_us = monotonic_us();
         const auto stamp_us = static_cast<std::int64_t>(depth.frame().getTimestamp());
-        const auto captured_us =
-            depth.is_file() ? std::optional(arrived_us) : clock.captured_us(stamp_us, arrived_us);
+        const auto captured_us = clock.captured_us(stamp_us, arrived_us);
         if (!captured_us) {
             if (!output.write_untimed_frame()) return 1;
             if (clock.is_lost()) return depth.complain("its frames came over 0.5 s late for 5 s");
@@ -49,21 +49,18 @@ int stream_frames(DepthStream& depth, int descriptor) {
 }
 
 int watch(DepthStream& depth, const char* uri, const std::optional<CameraMode>& mode, int descriptor) {
-    std::error_code error;  // what cannot be looked at is no file, but a camera's address
-    const std::filesystem::path film = uri == nullptr ? "" : uri;  // null: any camera
-    if (std::filesystem::exists(film, error)) {
-        if (!std::filesystem::is_regular_file(film, error)) return depth.complain("is no ordinary file");
-        if (!depth.is_sound(film, film.string())) return kUnsound;
-    }
     if (!depth.open(uri)) return depth.complain("cannot open the camera");
-    if (openni::PlaybackControl* playback = depth.playback(); playback != nullptr) {
-        playback->setRepeatEnabled(true);
-        playback->setSpeed(1.0F);
-    }
     if (!depth.start(mode)) return 1;
-    // One would be shown without a pause, for nothing tells how long it shall stand.
-    if (depth.is_file() && depth.frame_count() < 2) return depth.complain("it has fewer than two frames");
     return stream_frames(depth, descriptor);
+}
+
+/// Returns only if that is not there.
+int become_film_player(const std::filesystem::path& film) {
+    const auto player = find_helper("octoskin-film");
+    if (player) ::execl(player->c_str(), player->c_str(), film.c_str(), nullptr);
+    const std::string why = player ? player->string() + ": " + std::strerror(errno) : player.error();
+    std::fprintf(stderr, "%s: %s\n", kProgram, printable(why).c_str());
+    return 1;
 }
 
 int list_cameras(int descriptor) {
@@ -76,7 +73,6 @@ int list_cameras(int descriptor) {
 
 int main(int argc, char** argv) {
     using namespace octoskin::openni2;
-    constexpr const char* kProgram = "octoskin-camera";
     const auto mode = argc == 3 ? parse_camera_mode(argv[2]) : std::nullopt;
     if (argc < 2 || argc > 3 || (argc == 3 && !mode)) {
         std::fputs(
@@ -87,10 +83,14 @@ int main(int argc, char** argv) {
             stderr);
         return 2;
     }
-    // OpenNI2 changes the working directory while it loads its drivers.
-    std::error_code error;
-    std::string uri = argv[1];
-    if (std::filesystem::is_regular_file(uri, error)) uri = std::filesystem::absolute(uri).string();
+    std::error_code error;  // what cannot be looked at is no file, but a camera's address
+    const std::string uri = argv[1];
+    if (std::filesystem::is_regular_file(uri, error))
+        return become_film_player(std::filesystem::absolute(uri));
+    if (std::filesystem::exists(uri, error)) {
+        std::fprintf(stderr, "%s: is no ordinary file\n", kProgram);
+        return 1;
+    }
     const auto output = begin_helper(kProgram);
     if (!output) return 1;
     if (uri == "--list") end_helper(list_cameras(*output));
