@@ -187,7 +187,8 @@ function(octoskin_program name)
 endfunction()
 
 # The programs that others start, and find beside themselves.
-set(OCTOSKIN_HELPERS octoskin-camera octoskin-film octoskin-oni-read octoskin-oni-write octoskin-world-read)
+set(OCTOSKIN_HELPERS octoskin-camera octoskin-film octoskin-oni-read octoskin-oni-write)
+set(OCTOSKIN_LAB_HELPERS octoskin-world-read)
 
 # Has tests that are built in this folder find them, too.
 function(octoskin_helpers_beside_tests)

@@ -1,4 +1,4 @@
-#include "host/apps/world_reader/ordinary_files.hpp"
+#include "host/lab/world_reader/ordinary_files.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>

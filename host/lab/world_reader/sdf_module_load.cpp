@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "host/apps/world_reader/ordinary_files.hpp"
+#include "host/lab/world_reader/ordinary_files.hpp"
 #include "hw/rigfile/file_kind.hpp"
 #include "hw/sim/world/model_folders.hpp"
 #include "hw/sim/world/sdf/sdf_module.hpp"
