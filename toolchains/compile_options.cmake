@@ -34,15 +34,18 @@ add_library(octoskin_program_options INTERFACE)
 if(OCTOSKIN_SANITIZE)
     target_compile_options(octoskin_program_options INTERFACE -O0)
 endif()
-# What test programs are compiled with, after the above; where much of a build's time goes.
+# What test programs are compiled with, after the above, and the product's and the laboratory's commands, texts and JSON: where much
+# of a build's time goes, and little of a program's.
 add_library(octoskin_test_options INTERFACE)
+add_library(octoskin_app_options INTERFACE)
 if(OCTOSKIN_SANITIZE)
     target_link_libraries(octoskin_test_options INTERFACE octoskin_program_options)
 elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
     # When it optimises little, GCC 12 warns in vain of optional values, and of `std::string(...) + "..."` as if the longer
     # string lay in the short one's own bytes. The address sanitizer sees what does overflow.
-    target_compile_options(octoskin_test_options INTERFACE -O1
-        $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized$<SEMICOLON>-Wno-array-bounds$<SEMICOLON>-Wno-stringop-overflow>)
+    target_compile_options(octoskin_app_options INTERFACE -O1
+        $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized$<SEMICOLON>-Wno-array-bounds$<SEMICOLON>-Wno-stringop-overflow$<SEMICOLON>-Wno-stringop-overread>)
+    target_link_libraries(octoskin_test_options INTERFACE octoskin_app_options)
 endif()
 if(OCTOSKIN_COVERAGE)
     target_compile_options(octoskin_compile_options INTERFACE --coverage -fprofile-update=atomic)

@@ -2,7 +2,7 @@
 #
 #   octoskin_library(<name> ROOM <room> [FOLDER <folder>] SOURCES a.cpp ... HEADERS a.hpp ... [DEPENDS octoskin::x ...]
 #                    [PRIVATE_DEPENDS octoskin::y ...] [EXTERNAL lib ...] [PRIVATE_EXTERNAL lib ...] [APART]
-#                    [IN_MODULE])
+#                    [IN_MODULE] [LONG_LOOPS])
 #   octoskin_program(<name> ROOM <room> [FOLDER <folder>] SOURCES ... [DEPENDS ...] [EXTERNAL ...])
 #   octoskin_test(<name> [FOLDER <folder>] LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...] [APART ...] [HALF_IN_QEMU <filter>]
 #                 [ALONE | WAITS])
@@ -16,6 +16,8 @@
 #
 # DEPENDS names our own targets only; EXTERNAL names third-party ones. Includes are written from the
 # repository's root ("common/wire/codec.hpp"), so every include line says which room it reaches into.
+#
+# In the rooms host/apps and host/lab a library is optimised little, unless it has LONG_LOOPS: what works on voxels is in others.
 #
 # A library that is linked into a module, which is loaded when it is needed, is one IN_MODULE.
 #
@@ -121,8 +123,18 @@ macro(octoskin_set_folder)
     endif()
 endmacro()
 
+# What says what there is to say, and works on nothing large.
+function(octoskin_compile_as_app target)
+    target_link_libraries(${target} PRIVATE octoskin_app_options)
+    if(TARGET octoskin_app_headers)
+        # With the definitions that the headers were read with.
+        target_link_libraries(${target} PRIVATE fmt::fmt nlohmann_json::nlohmann_json spdlog::spdlog)
+        target_precompile_headers(${target} REUSE_FROM octoskin_app_headers)
+    endif()
+endfunction()
+
 function(octoskin_library name)
-    cmake_parse_arguments(ARG "APART;IN_MODULE" "ROOM;FOLDER" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS;EXTERNAL;PRIVATE_EXTERNAL" ${ARGN})
+    cmake_parse_arguments(ARG "APART;IN_MODULE;LONG_LOOPS" "ROOM;FOLDER" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS;EXTERNAL;PRIVATE_EXTERNAL" ${ARGN})
     if(ARG_UNPARSED_ARGUMENTS)
         message(FATAL_ERROR "octoskin_library(${name}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
     endif()
@@ -149,6 +161,8 @@ function(octoskin_library name)
         endif()
         if(ARG_IN_MODULE)
             set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+        elseif(ARG_ROOM MATCHES "^host/(apps|lab)$" AND NOT ARG_LONG_LOOPS)
+            octoskin_compile_as_app(${target})
         elseif(TARGET octoskin_host_headers AND ARG_ROOM MATCHES "^(host|hw)/")
             target_precompile_headers(${target} REUSE_FROM octoskin_host_headers)
         endif()
@@ -239,6 +253,8 @@ function(octoskin_test name)
         if(TARGET octoskin_test_headers)
             target_precompile_headers(${name} REUSE_FROM octoskin_test_headers)
         endif()
+    elseif(TARGET octoskin_sim_test_headers)
+        target_precompile_headers(${name} REUSE_FROM octoskin_sim_test_headers)
     endif()
     set_target_properties(${name} PROPERTIES OCTOSKIN_ROOM tests BUILD_RPATH ${PROJECT_BINARY_DIR}/bin)
     set(halves 2)

@@ -1,6 +1,7 @@
 #include "host/apps/daemon/query_desk.hpp"
 
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <span>
 
 #include "host/apps/daemon/quiet_thread.hpp"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 

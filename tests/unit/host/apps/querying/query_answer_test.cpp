@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/query/path_query.hpp"
