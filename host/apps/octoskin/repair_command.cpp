@@ -1,6 +1,7 @@
 // octoskin repair: ends what an octoskin left half moved that was killed while it put files in their places,
 // and removes what it had not come to move.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <memory>
 
@@ -35,33 +36,47 @@ bool is_finished(const OpenFolder& folder) {
 
 /// Drafts of killed processes, of which nothing had come to its place. Of a process that lives they are its
 /// own: it holds the lock,
-/// a daemon that of the folder of maps.
-bool is_cleared(const OpenFolder& folder) {
+/// a daemon that of the folder of maps. `stayed`: counts those that cannot be removed, each of which is
+/// named.
+bool is_cleared(const OpenFolder& folder, std::size_t& stayed) {
     const auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     const auto lock_of_maps = FileLock::take(FilePlace(folder, FolderLock::kFile), FileLock::Kind::exclusive);
     if (!lock || !lock_of_maps) return false;
-    std::size_t drafts = remove_leftovers(folder);
-    if (folder.kind_of(FileSet::kDraftFolder) == EntryKind::folder &&
-        folder.remove_all(FileSet::kDraftFolder))
-        ++drafts;
+    const auto complain = [&stayed](const FolderError& error) {
+        spdlog::error("{}", error.message());
+        ++stayed;
+    };
+    std::size_t drafts = remove_leftovers(folder, complain);
+    if (folder.kind_of(FileSet::kDraftFolder) == EntryKind::folder) {
+        const auto gone = folder.remove_all(FileSet::kDraftFolder);
+        if (gone) ++drafts;
+        if (!gone) complain(gone.error());
+    }
     if (drafts > 0) print("{}: drafts of killed runs are removed: {}\n", folder.shown().string(), drafts);
     return drafts > 0;
 }
 
-bool is_repaired(const OpenFolder& folder) {
+bool is_repaired(const OpenFolder& folder, std::size_t& stayed) {
     const bool is_any = is_finished(folder);
-    return is_cleared(folder) || is_any;
+    return is_cleared(folder, stayed) || is_any;
 }
 
 void repair(const std::filesystem::path& named) {
     const auto folder = OpenFolder::open(named, FolderAccess::write);
     if (!folder) throw CommandFailure(error_of(folder.error()));
-    bool is_any = is_repaired(*folder);
+    std::size_t stayed = 0;
+    bool is_any = is_repaired(*folder, stayed);
     for (const char* const name : kFoldersWithin) {
         if (folder->kind_of(name) != EntryKind::folder) continue;
         const auto within = folder->open_folder(name);
         if (!within) throw CommandFailure(error_of(within.error()));
-        is_any = is_repaired(*within) || is_any;
+        is_any = is_repaired(*within, stayed) || is_any;
+    }
+    if (stayed > 0) {
+        throw CommandFailure(
+            {ExitCode::cannot_create,
+             fmt::format("{}: {} drafts of killed runs cannot be removed: remove them yourself",
+                         named.string(), stayed)});
     }
     if (!is_any) print("{}: nothing is half moved there\n", named.string());
 }

@@ -186,14 +186,17 @@ Status<SaveError> save_atomically(const FilePlace& file, std::string_view bytes,
         file, [bytes](const ByteSink& sink) { (void)sink(bytes); }, operations, attributes);
 }
 
-std::size_t remove_leftovers(const OpenFolder& folder) {
+std::size_t remove_leftovers(const OpenFolder& folder, const std::function<void(const FolderError&)>& stays) {
     std::size_t removed = 0;
     const auto names = folder.names();
     if (!names) return removed;
     for (const std::string& name : *names) {
         const bool is_leftover = name.starts_with('.') && name.ends_with(kPartialSuffix) &&
                                  folder.kind_of(name) == EntryKind::file;
-        if (is_leftover && folder.remove(name)) ++removed;
+        if (!is_leftover) continue;
+        const auto gone = folder.remove(name);
+        if (gone) ++removed;
+        if (!gone && stays) stays(gone.error());
     }
     return removed;
 }

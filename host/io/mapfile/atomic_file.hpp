@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 
 #include "common/result.hpp"
 #include "host/io/folder/file_place.hpp"
+#include "host/io/folder/folder_error.hpp"
 #include "host/io/mapfile/byte_sink.hpp"
 
 namespace octoskin {
@@ -64,7 +66,8 @@ enum class Attributes : std::uint8_t { of_a_new_file, of_the_old_file };
                                                 Attributes attributes = Attributes::of_a_new_file);
 
 /// Removes what a process left in `folder` when it died while saving; returns how many. To be called at
-/// start, before any save.
-std::size_t remove_leftovers(const OpenFolder& folder);
+/// start, before any save. `stays` is told of each that cannot be removed.
+std::size_t remove_leftovers(const OpenFolder& folder,
+                             const std::function<void(const FolderError&)>& stays = {});
 
 }  // namespace octoskin

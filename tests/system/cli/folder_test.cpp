@@ -214,6 +214,15 @@ TEST_F(FolderWalk, drafts_of_killed_runs_go_with_a_repair) {
         EXPECT_TRUE(fs::exists(rec / kept)) << kept;
 }
 
+TEST_F(FolderWalk, drafts_that_cannot_be_removed_are_an_error_that_names_them) {
+    fs::path deep = directory_ / "rec/.octoskin-part";
+    for (int i = 0; i < 40; ++i) deep /= "a";  // deeper than what octoskin removes
+    fs::create_directories(deep);
+    const Said said = octoskin("repair " + path("rec"));
+    EXPECT_EQ(said.exit_code, 73) << said.output;
+    EXPECT_THAT(said.output, HasSubstr(".octoskin-part/a"));
+}
+
 TEST_F(FolderWalk, a_link_in_the_path_that_was_typed_is_followed) {
     make_template();
     fs::create_directory_symlink("template", directory_ / "rec");
