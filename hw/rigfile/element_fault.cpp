@@ -14,10 +14,17 @@ RigError one_error_of(std::vector<ElementFault> faults) {
     RigError error = std::move(faults[0].error);
     if (faults.size() == 1) return error;
     error.what += fmt::format(". {} more cannot be taken: ", faults.size() - 1);
-    for (std::size_t i = 1; i < faults.size(); ++i) {
+    // A file may have thousands, with names of kilobytes.
+    constexpr std::size_t kNamed = 20;
+    constexpr std::size_t kKeyMax = 100;
+    const std::size_t end = std::min(faults.size(), 1 + kNamed);
+    for (std::size_t i = 1; i < end; ++i) {
+        std::string& key = faults[i].error.key;
+        if (key.size() > kKeyMax) key = key.substr(0, kKeyMax) + "...";
         error.what += fmt::format("{}{} (line {}, {})", i == 1 ? "" : ", ", faults[i].error.key,
                                   faults[i].error.line, faults[i].kind);
     }
+    if (end < faults.size()) error.what += fmt::format(", and {} further ones", faults.size() - end);
     return error;
 }
 

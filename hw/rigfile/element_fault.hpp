@@ -14,8 +14,8 @@ struct ElementFault {
     std::string kind;  ///< in a word or two: "mesh", "planar"
 };
 
-/// The first element in the file with what is wrong and the remedy, and after it where the others are. Of at
-/// least one (asserted).
+/// The first element in the file with what is wrong and the remedy, and after it where the others are: the
+/// first twenty of them, and how many more there are. Of at least one (asserted).
 [[nodiscard]] RigError one_error_of(std::vector<ElementFault> faults);
 
 }  // namespace octoskin::rig

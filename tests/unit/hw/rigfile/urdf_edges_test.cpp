@@ -162,6 +162,19 @@ TEST_F(UrdfEdges, every_link_whose_body_cannot_be_taken_is_in_one_message) {
     EXPECT_THAT(fitted.error().what, HasSubstr("1 more cannot be taken: link a (line 5, mesh)"));
 }
 
+TEST_F(UrdfEdges, of_many_links_whose_body_cannot_be_taken_the_first_are_named_and_all_are_counted) {
+    std::string links;
+    for (int i = 0; i < 1000; ++i)
+        links += "<link name=\"" + std::string(2000, 'x') + std::to_string(i) +
+                 "\"><collision><geometry><capsule radius=\"1\"/></geometry></collision></link>\n";
+    const auto refused =
+        read_capsules(folder_.write("arm.urdf", "<robot name=\"r\">\n" + links + "</robot>"), {});
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().what, HasSubstr("999 more cannot be taken: "));
+    EXPECT_THAT(refused.error().what, HasSubstr(", and 979 further ones"));
+    EXPECT_LT(refused.error().what.size(), 10'000U);
+}
+
 TEST_F(UrdfEdges, a_capsule_is_the_body_that_a_cylinder_and_two_spheres_are) {
     const std::string at = "<origin xyz=\"0.1 0 0.2\" rpy=\"0 1 0\"/>";
     const auto body_of = [&](const std::string& in_link) {
