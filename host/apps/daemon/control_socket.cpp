@@ -19,7 +19,6 @@
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
-#include "host/io/socketcan/descriptor_disposal.hpp"
 #include "host/io/socketcan/passed_descriptors.hpp"
 
 namespace octoskin {
@@ -29,15 +28,6 @@ namespace {
 bool has_gone(int descriptor) {
     pollfd client{descriptor, 0, 0};
     return ::poll(&client, 1, 0) > 0 && (client.revents & (POLLHUP | POLLERR)) != 0;
-}
-
-/// What is left unread when a connection is closed breaks it for who is about to read its end.
-void forget_the_rest(int descriptor) {
-    std::array<char, 4096> bytes{};
-    ssize_t count = 1;
-    constexpr int kReadsMax = 16;  // who sends without end has a broken connection
-    for (int i = 0; i < kReadsMax && count > 0 && socketcan::has_room_for_closing(); ++i)
-        count = socketcan::receive_text(descriptor, bytes);
 }
 
 bool has_sent_something(int descriptor) {
@@ -96,15 +86,14 @@ ControlSocket::ControlSocket(std::filesystem::path file, int descriptor, EventLo
 
 ControlSocket::~ControlSocket() {
     close_clients();
-    ::unlink(file_.c_str());  // while it still answers: nobody else has the name yet
-    // With what clients sent along that were not let in.
-    socketcan::close_beside(descriptor_);
+    ::unlink(file_.c_str());               // while it still answers: nobody else has the name yet
+    socketcan::close_socket(descriptor_);  // with what clients sent that were not let in
 }
 
 void ControlSocket::close_clients() {
     acceptable_ = EventSource();
     idle_check_ = EventSource();
-    for (const Client& client : clients_) socketcan::close_connection(client.descriptor);
+    for (const Client& client : clients_) socketcan::close_socket(client.descriptor);
     clients_.clear();
 }
 
@@ -114,14 +103,6 @@ void ControlSocket::watch() {
 }
 
 void ControlSocket::accept() {
-    if (!socketcan::has_room_for_closing()) {
-        spdlog::warn(
-            "{}: {} descriptors that programs sent along do not close: no new client is let in for a while",
-            file_.string(), socketcan::closing());
-        is_resting_ = true;
-        acceptable_ = EventSource();
-        return;
-    }
     const int descriptor = ::accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (descriptor < 0) {
         // Whoever cannot be let in stays at the door, which would keep the loop turning.
@@ -200,10 +181,6 @@ void ControlSocket::watch(Client& client) {
 /// One request: the descriptor stays readable while there are more, and the loop comes back when all others
 /// have had their turn. What a client asks in one go must not keep the bus waiting.
 bool ControlSocket::serve(Client& client) {
-    if (!socketcan::has_room_for_closing() && socketcan::has_descriptors_beside(client.descriptor)) {
-        ++dropped_;
-        return false;
-    }
     std::array<char, 512> bytes{};
     const ssize_t seen = ::recv(client.descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_PEEK);
     if (seen <= 0) return seen < 0 && (errno == EAGAIN || errno == EINTR);
@@ -220,7 +197,7 @@ bool ControlSocket::serve(Client& client) {
                ExitCode::usage);
     }
     if (client.is_refused) {
-        if (is_whole) forget_the_rest(client.descriptor);
+        if (is_whole) socketcan::read_the_rest(client.descriptor);
         return !is_whole;
     }
     if (!is_whole) return true;
@@ -281,7 +258,7 @@ void ControlSocket::drop(int descriptor) {
     if (client == clients_.end()) return;
     if (client->ticket != 0) gone_(client->ticket);
     clients_.erase(client);  // with its own source, which may be at work just now
-    socketcan::close_connection(descriptor);
+    socketcan::close_socket(descriptor);
 }
 
 void ControlSocket::drop_gone() {

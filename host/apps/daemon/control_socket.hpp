@@ -21,9 +21,7 @@ namespace octoskin {
 class ControlSocket {
   public:
     /// Answers a request (without its line feed) with one line (without a line feed). Is not asked for a
-    /// client that has gone by then, and of each client once in a turn of the loop. Descriptors that come
-    /// along are closed (socketcan::close_beside); while too many of them do not close, a client that sends
-    /// more is dropped, and no new one is let in.
+    /// client that has gone by then, and of each client once in a turn of the loop.
     using Answer = std::function<std::string(const std::string& request)>;
 
     /// Takes a request that needs time: true, and `reply` with the ticket will follow, from the loop's
@@ -57,6 +55,7 @@ class ControlSocket {
     /// new is let in while this process has no descriptor left.
     static constexpr std::chrono::milliseconds kIdleMax{10'000};
 
+    /// Takes no descriptors that come along (passed_descriptors.hpp).
     [[nodiscard]] static Result<std::unique_ptr<ControlSocket>, AppError> open(
         const std::filesystem::path& file, EventLoop& loop, Answer answer,
         std::chrono::milliseconds idle_max = kIdleMax);

@@ -15,14 +15,12 @@
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
-#include "host/io/socketcan/descriptor_disposal.hpp"
 #include "host/io/socketcan/passed_descriptors.hpp"
+#include "host/io/socketcan/short_waits.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
 
 namespace octoskin {
 namespace {
-
-constexpr int kHeldUpMs = 20;
 
 /// Addresses of a program that can be seen say nothing more of it: it cannot flood under many names.
 SenderKey key_of(const socketcan::StampedDatagram& received, const std::string& address) {
@@ -33,6 +31,13 @@ SenderKey key_of(const socketcan::StampedDatagram& received, const std::string& 
 JointSender sender_of(const socketcan::StampedDatagram& received, std::string address) {
     const auto seen = received.sender.value_or(socketcan::StampedDatagram::Sender{});
     return {seen.pid, seen.pid > 0 ? seen.uid : 0, std::move(address)};
+}
+
+/// Waits for none of the descriptors that may be beside it.
+socketcan::StampedDatagram receive_one(int socket, std::span<char> room, std::string& address) {
+    std::optional<socketcan::ShortWaits> none_long;
+    if (socketcan::has_descriptors_beside(socket)) none_long.emplace();
+    return socketcan::receive_stamped(socket, std::as_writable_bytes(room), &address);
 }
 
 }  // namespace
@@ -58,7 +63,7 @@ DatagramFeed::~DatagramFeed() {
     const std::uint64_t one = 1;
     (void)!::write(end_, &one, sizeof(one));
     thread_.join();
-    socketcan::close_beside(socket_);  // with what was sent along and not taken
+    socketcan::close_socket(socket_);  // with what was not taken
     for (const int descriptor : {event_, end_}) ::close(descriptor);
 }
 
@@ -91,10 +96,6 @@ void DatagramFeed::work() {
         if (watched[1].revents != 0) return;
         // In a flood this thread would have the lock again before anybody who waits for it wakes up.
         while (takers_ > 0) std::this_thread::yield();
-        if (is_held_up()) {
-            (void)::poll(&watched[1], 1, kHeldUpMs);
-            continue;
-        }
         try {
             put_next();
         } catch (const std::bad_alloc&) {
@@ -102,11 +103,6 @@ void DatagramFeed::work() {
             ++displaced_;
         }
     }
-}
-
-/// By descriptors that do not close, beside the next datagram.
-bool DatagramFeed::is_held_up() const {
-    return !socketcan::has_room_for_closing() && socketcan::has_descriptors_beside(socket_);
 }
 
 void DatagramFeed::put_next() {
@@ -144,10 +140,9 @@ void DatagramFeed::displace() {
 /// flood: what is beyond its sender's share is not looked for without end.
 std::optional<Datagram> DatagramFeed::receive() {
     constexpr int kSurplusAtOnce = 64;
-    for (int i = 0; i < kSurplusAtOnce && !is_held_up(); ++i) {
+    for (int i = 0; i < kSurplusAtOnce; ++i) {
         std::string address;
-        const auto received =
-            socketcan::receive_stamped(socket_, std::as_writable_bytes(std::span(room_)), &address);
+        const auto received = receive_one(socket_, room_, address);
         if (received.count < 0) return std::nullopt;
         Datagram datagram;
         datagram.from = key_of(received, address);

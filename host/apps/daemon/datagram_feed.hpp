@@ -32,11 +32,10 @@ class DatagramFeed {
     /// arm that tells 1000 samples.
     static constexpr std::size_t kWaitingMax = 1024;
 
-    /// `socket` is one that does not block and stamps what it receives (socketcan::want_stamps); it is closed
-    /// here. Of each datagram the first `bytes_max` bytes are kept. Throws std::system_error if the system
-    /// has no room for it; the socket is then still the caller's. Descriptors that come along are closed
-    /// (socketcan::close_beside); while too many of them do not close, a datagram with more stays where it
-    /// is, and those behind it.
+    /// `socket` is a Unix socket that does not block and wants stamps and senders (stamped_datagram.hpp); it
+    /// is closed here. Of each datagram the first `bytes_max` bytes are kept. Throws std::system_error if the
+    /// system has no room for it; the socket is then still the caller's. Takes no descriptors that come along
+    /// (passed_descriptors.hpp).
     DatagramFeed(int socket, std::size_t bytes_max);
     /// At once.
     ~DatagramFeed();
@@ -56,7 +55,6 @@ class DatagramFeed {
   private:
     void work();
     void put_next();
-    [[nodiscard]] bool is_held_up() const;
     [[nodiscard]] std::optional<Datagram> receive();
     void displace();
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <span>
 #include <system_error>
@@ -14,6 +15,7 @@
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/apps/querying/joint_lines.hpp"
 #include "host/core/ingest/local_joints.hpp"
+#include "host/io/socketcan/passed_descriptors.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
 
 namespace octoskin {
@@ -86,12 +88,12 @@ std::string describe(JointTextFault fault, std::string_view text, std::size_t jo
 Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& file, std::size_t joint_count) {
     const auto descriptor = bind_unix_socket(file, SOCK_DGRAM, "--joints");
     if (!descriptor) return unexpected(descriptor.error());
-    (void)socketcan::want_stamps(*descriptor);
-    (void)socketcan::want_senders(*descriptor);
     try {
+        if (!socketcan::want_stamps(*descriptor) || !socketcan::want_senders(*descriptor))
+            throw std::system_error(errno, std::generic_category(), "cannot ask for stamps and senders");
         return JointSocket(file, std::make_unique<DatagramFeed>(*descriptor, kJointTextMax + 1), joint_count);
     } catch (const std::system_error& error) {
-        ::close(*descriptor);
+        socketcan::close_socket(*descriptor);
         ::unlink(file.c_str());
         return fail(ExitCode::unavailable, fmt::format("{}: {}", file.string(), error.what()));
     }

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "host/apps/recording/file_lock.hpp"
+#include "host/io/socketcan/passed_descriptors.hpp"
 
 namespace octoskin {
 namespace {
@@ -120,6 +121,7 @@ Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int ty
     }
     const int descriptor = ::socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (descriptor < 0) return failure(file, "no socket", errno);
+    socketcan::refuse_descriptors(descriptor);  // before it can be sent any
     const auto* generic = reinterpret_cast<const sockaddr*>(&*address);
     const mode_t others = ::umask(0007);
     const bool is_bound = ::bind(descriptor, generic, sizeof(*address)) == 0;

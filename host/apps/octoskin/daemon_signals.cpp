@@ -16,6 +16,8 @@
 #include <thread>
 #include <utility>
 
+#include "host/io/socketcan/short_waits.hpp"
+
 namespace octoskin::app {
 namespace {
 
@@ -53,6 +55,8 @@ void hold_daemon_signals() {
          {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT, SIGPIPE})
         ignore(signal);
     for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) ignore(signal);
+    const sigset_t ours = set_of({socketcan::ShortWaits::signal()});  // another's would end calls early
+    pthread_sigmask(SIG_BLOCK, &ours, nullptr);
 }
 
 void keep_processor_time_for_the_end() {

@@ -19,6 +19,7 @@
 #include "common/wall_time.hpp"
 #include "common/wire/interface_name.hpp"
 #include "common/wire/socketcan_layout.hpp"
+#include "host/io/socketcan/passed_descriptors.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
 
 namespace octoskin::socketcan {
@@ -125,7 +126,9 @@ CanSocket::CanSocket(std::string interface, int descriptor, bool hears_itself)
     if (descriptor_ < 0) return;
     (void)::fcntl(descriptor_, F_SETFD, FD_CLOEXEC);  // no helper program may keep the bus open
     (void)::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
-    (void)want_stamps(descriptor_);  // Unix sockets have stamps too, on most kernels
+    (void)want_stamps(descriptor_);   // Unix sockets have stamps too, on most kernels
+    (void)want_senders(descriptor_);  // which leaves descriptors no room
+    refuse_descriptors(descriptor_);
 }
 
 CanSocket::~CanSocket() {

@@ -1,25 +1,31 @@
-// Descriptors that come through a Unix socket, and that nobody asked for.
+// Descriptors that come through a Unix socket, and that nothing asked for. None is ever taken: the kernel
+// drops them, where it cannot refuse them to their sender. A drop may have to wait, for a connection that
+// lingers: it is made to wait for some milliseconds at most (short_waits.hpp), so that no sender can hold up
+// this process.
 #pragma once
 
-#include <sys/socket.h>
 #include <sys/types.h>
 
 #include <span>
 
 namespace octoskin::socketcan {
 
-/// Closes those that came with this message, beside (descriptor_disposal.hpp): kept, they would be all that
-/// this process may have, some day; and what a close waits for is their sender's choice. Never waits.
-void close_passed(const msghdr& message);
+/// From now on the kernel refuses them to who sends them (EPERM), at this Unix socket and at the connections
+/// that it takes: of Linux 6.16. Before that it does nothing.
+void refuse_descriptors(int socket);
 
-/// Whether the next message of a Unix socket has descriptors beside it; false: there is none. It stays there.
-[[nodiscard]] bool has_descriptors_beside(int descriptor);
+/// Whether the next datagram of a Unix socket that wants stamps and senders (stamped_datagram.hpp) has
+/// descriptors beside it; false: there is none. It stays there.
+[[nodiscard]] bool has_descriptors_beside(int socket);
 
-/// recv(2) without waiting, of text, closing what comes beside it.
-[[nodiscard]] ssize_t receive_text(int descriptor, std::span<char> bytes);
+/// recv(2) of a connection, of text; waits neither for it nor for what comes beside it.
+[[nodiscard]] ssize_t receive_text(int connection, std::span<char> bytes);
 
-/// Closes a connection, and never waits. What was not read of it may hold descriptors, too: it is read
-/// before; and where there is no room for closing them, the connection is closed beside, and they with it.
-void close_connection(int descriptor);
+/// Reads what a connection has sent until now, some 64 KiB at most: what is left unread when it is closed
+/// breaks it for who is about to read its end.
+void read_the_rest(int connection);
+
+/// close(2) of any Unix socket, with all that waits in it; waits for none of it.
+void close_socket(int socket);
 
 }  // namespace octoskin::socketcan

@@ -7,18 +7,14 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
-#include <ctime>
 
 #include "common/wall_time.hpp"
-#include "host/io/socketcan/passed_descriptors.hpp"
 
 namespace octoskin::socketcan {
 namespace {
 
-/// Room for all that may come beside one message: 253 descriptors (SCM_MAX_FD), and what else a socket tells.
-/// With less the kernel would close the others itself, as they are.
-constexpr std::size_t kControlRoom = 1536;
-using ControlRoom = std::array<char, kControlRoom>;
+using ControlRoom = std::array<char, kRoomBeside>;
+static_assert(CMSG_SPACE(sizeof(std::uint32_t)) <= CMSG_SPACE(sizeof(ucred)), "of CAN sockets: SO_RXQ_OVFL");
 
 template <class Value>
 Value value_of(const cmsghdr* part) {
@@ -75,10 +71,9 @@ StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes, std:
         message.msg_namelen = sizeof(from);
     }
     StampedDatagram datagram;
-    datagram.count = ::recvmsg(descriptor, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+    datagram.count = ::recvmsg(descriptor, &message, MSG_DONTWAIT);
     if (datagram.count < 0) return datagram;
     datagram.flags = message.msg_flags;
-    close_passed(message);
     if (address != nullptr) *address = name_of(from, message.msg_namelen);
     for (cmsghdr* beside = CMSG_FIRSTHDR(&message); beside != nullptr;
          beside = CMSG_NXTHDR(&message, beside)) {

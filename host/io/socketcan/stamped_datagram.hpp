@@ -1,10 +1,12 @@
 // One datagram with what the kernel says beside it: when it came, and how many it had no room for.
 #pragma once
 
+#include <sys/socket.h>
 #include <sys/types.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,14 +29,20 @@ struct StampedDatagram {
     std::optional<Sender> sender;
 };
 
+/// What the kernel says beside a datagram of its own accord has just this room. What a sender puts beside it
+/// finds none: descriptors are dropped, and MSG_CTRUNC says so.
+inline constexpr std::size_t kRoomBeside = CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(ucred));
+
 /// From now on datagrams are stamped, if the kernel does that for this kind of socket.
 bool want_stamps(int descriptor);
 
 /// From now on datagrams of a Unix socket tell the process that sent them.
 bool want_senders(int descriptor);
 
-/// Takes one datagram, if one is here; never waits. `address`: of a Unix socket, what the sender's is bound
-/// to, its own characters where they are printable and '?' elsewhere; empty: to nothing. May be null.
+/// Takes one datagram, if one is here, and no descriptor beside it: that is dropped, which can take as long
+/// as passed_descriptors.hpp says. Else never waits. A Unix socket is to want stamps and senders. `address`:
+/// of a Unix socket, what the sender's is bound to, its own characters where they are printable and '?'
+/// elsewhere; empty: to nothing. May be null.
 [[nodiscard]] StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes,
                                               std::string* address = nullptr);
 

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -14,11 +15,9 @@
 #include <chrono>
 #include <cstring>
 #include <string>
-#include <thread>
 #include <utility>
 
-#include "host/io/socketcan/descriptor_disposal.hpp"
-#include "tests/unit/host/apps/daemon/sent_along.hpp"
+#include "tests/support/sent_along.hpp"
 
 namespace octoskin::test {
 
@@ -28,6 +27,8 @@ class LingeringConnection {
 
     LingeringConnection() {
         const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        const int room = 1;  // raised by the kernel to the least there is
+        EXPECT_EQ(::setsockopt(listener, SOL_SOCKET, SO_RCVBUF, &room, sizeof(room)), 0);
         sockaddr_in address{};
         address.sin_family = AF_INET;
         address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -37,14 +38,17 @@ class LingeringConnection {
         EXPECT_EQ(::listen(listener, 1), 0);
         EXPECT_EQ(::getsockname(listener, generic, &size), 0);
         end_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        EXPECT_EQ(::setsockopt(end_, SOL_SOCKET, SO_SNDBUF, &room, sizeof(room)), 0);
         EXPECT_EQ(::connect(end_, generic, size), 0) << std::strerror(errno);
         other_end_ = ::accept(listener, nullptr, nullptr);
         ::close(listener);
         const linger wait{.l_onoff = 1, .l_linger = static_cast<int>(kLingers.count())};
         EXPECT_EQ(::setsockopt(end_, SOL_SOCKET, SO_LINGER, &wait, sizeof(wait)), 0);
         const std::string text(1 << 16, 'x');
-        while (::send(end_, text.data(), text.size(), MSG_DONTWAIT) > 0) {
-        }
+        constexpr int kOnItsWayMs = 2;  // what has no room now may have when the other end has taken some
+        pollfd writable{end_, POLLOUT, 0};
+        while (::poll(&writable, 1, kOnItsWayMs) > 0)
+            EXPECT_GT(::send(end_, text.data(), text.size(), MSG_DONTWAIT), 0);
     }
     ~LingeringConnection() {
         end();
@@ -57,6 +61,8 @@ class LingeringConnection {
     void end() {
         if (other_end_ >= 0) ::close(std::exchange(other_end_, -1));
     }
+    /// Its end is the caller's from now on.
+    [[nodiscard]] int release() { return std::exchange(end_, -1); }
     /// Sends its end along with `text`, and keeps none: who gets it has the last one. No earlier does it
     /// wait.
     void send_along(int socket, std::string text) {
@@ -85,25 +91,16 @@ class NestedConnection {
     NestedConnection(const NestedConnection&) = delete;
     NestedConnection& operator=(const NestedConnection&) = delete;
 
+    [[nodiscard]] int release() { return std::exchange(outer_, -1); }
     /// As LingeringConnection::send_along.
     void send_along(int socket, std::string text) {
         ASSERT_NO_FATAL_FAILURE(test::send_along(socket, std::move(text), std::array{outer_}));
         ::close(std::exchange(outer_, -1));
     }
 
-    /// As if it had been sent along to this process.
-    void close_beside() { socketcan::close_beside(std::exchange(outer_, -1)); }
-
   private:
     LingeringConnection inner_;
     int outer_ = -1;
 };
-
-/// So that nothing is left to the tests behind it.
-inline void wait_for_closing() {
-    for (int i = 0; i < 1000 && socketcan::closing() > 0; ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds{5});
-    EXPECT_EQ(socketcan::closing(), 0U);
-}
 
 }  // namespace octoskin::test
