@@ -79,6 +79,11 @@ std::optional<Datagram> DatagramFeed::take() {
     return oldest;
 }
 
+void DatagramFeed::keep(const Datagram& useful) {
+    const std::lock_guard lock(mutex_);
+    shares_.keep(useful.from, useful.read);
+}
+
 std::uint64_t DatagramFeed::displaced() const {
     const std::lock_guard lock(mutex_);
     return displaced_;

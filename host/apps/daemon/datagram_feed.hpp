@@ -47,6 +47,8 @@ class DatagramFeed {
     /// The oldest, in the order in which they came; empty: none came before this call that is not taken yet,
     /// whether or not the thread had its turn.
     [[nodiscard]] std::optional<Datagram> take();
+    /// One that was taken was of use: its sender is one of those that have a share (SenderShares::keep).
+    void keep(const Datagram& useful);
     /// So many gave way untaken.
     [[nodiscard]] std::uint64_t displaced() const;
     /// So many were beyond what one program may send (SenderShares), and are dropped as they come.

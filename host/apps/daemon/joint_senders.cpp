@@ -31,6 +31,10 @@ std::string describe(const JointSender& sender, const std::string& program) {
     return text;
 }
 
+std::string describe(const JointSender& sender) {
+    return describe(sender, program_of(sender.pid));
+}
+
 void JointSenders::hear(const JointSender& sender, HostTime at) {
     auto found = std::ranges::find(senders_, sender, &Heard::sender);
     if (found == senders_.end()) {

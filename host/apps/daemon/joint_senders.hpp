@@ -25,6 +25,8 @@ struct JointSender {
 
 /// For a person: "process 4711 (python3, user 1000)".
 [[nodiscard]] std::string describe(const JointSender& sender, const std::string& program);
+/// With the name that it has now, or none if it has ended.
+[[nodiscard]] std::string describe(const JointSender& sender);
 
 class JointSenders {
   public:

@@ -109,6 +109,7 @@ JointSocket& JointSocket::operator=(JointSocket&& other) noexcept {
     second_samples_ = other.second_samples_;
     rate_hz_ = other.rate_hz_;
     faults_ = other.faults_;
+    refused_ = std::move(other.refused_);
     return *this;
 }
 
@@ -124,6 +125,7 @@ bool JointSocket::receive(std::optional<JointSample>& sample) {
     auto parsed = parse_joints(datagram->bytes, joint_count_, datagram->read, datagram->came_at);
     if (parsed) {
         ++samples_;
+        feed_->keep(*datagram);
         sample = std::move(parsed).value();
         sample->came = datagram->came;
         const HostTime at = datagram->came_at.value_or(datagram->read);
@@ -132,6 +134,7 @@ bool JointSocket::receive(std::optional<JointSample>& sample) {
         sample->is_of_several = senders_.are_several(at);
     } else {
         ++faults_.at(static_cast<std::size_t>(parsed.error()));
+        refused_ = datagram->sender;
     }
     return true;
 }

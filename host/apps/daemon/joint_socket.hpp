@@ -80,9 +80,11 @@ class JointSocket {
     /// Samples that came in the newest whole second; those of several senders together.
     [[nodiscard]] double rate_hz(HostTime now) const;
     [[nodiscard]] const std::array<std::uint64_t, 5>& faults() const noexcept { return faults_; }
+    /// Whose datagram was newest of those that were no sample; empty: there was none.
+    [[nodiscard]] const std::optional<JointSender>& newest_refused() const noexcept { return refused_; }
     /// Datagrams that gave way to newer ones, as nobody received for too long.
     [[nodiscard]] std::uint64_t displaced() const { return feed_->displaced(); }
-    /// Datagrams beyond what one program may send.
+    /// Datagrams beyond what one program may send, or of more programs than eight.
     [[nodiscard]] std::uint64_t surplus() const { return feed_->surplus(); }
 
   private:
@@ -100,6 +102,7 @@ class JointSocket {
     std::uint64_t second_samples_ = 0;  ///< in it, so far
     double rate_hz_ = 0.0;              ///< of the one before
     std::array<std::uint64_t, 5> faults_{};
+    std::optional<JointSender> refused_;
 };
 
 }  // namespace octoskin

@@ -23,13 +23,32 @@ bool SenderShares::take(const SenderKey& sender, HostTime now) {
     return true;
 }
 
-/// Null: as many others have one.
+void SenderShares::keep(const SenderKey& sender, HostTime came) {
+    if (Share* const share = share_of(sender, came))
+        share->useful = std::max(share->useful, std::optional(came));
+}
+
+/// Null: as many others keep theirs.
 SenderShares::Share* SenderShares::share_of(const SenderKey& sender, HostTime now) {
     const auto found = std::ranges::find(shares_, sender, &Share::sender);
     if (found != shares_.end()) return &*found;
     std::erase_if(shares_, [now](const Share& share) { return now - share.newest >= kForgotten; });
-    if (shares_.size() >= kSendersMax) return nullptr;
-    return &shares_.emplace_back(Share{sender, kAtOnce, now});
+    if (shares_.size() < kSendersMax) return &shares_.emplace_back(Share{sender, kAtOnce, now, {}});
+    // With what is left of it, and no more: however many programs take turns, they send no more than eight.
+    Share* const lost = share_to_lose(now);
+    if (lost != nullptr) lost->sender = sender;
+    return lost;
+}
+
+/// The one that most is left of: who comes anew may have a sample to send.
+SenderShares::Share* SenderShares::share_to_lose(HostTime now) {
+    Share* found = nullptr;
+    for (Share& share : shares_) {
+        const bool is_kept = share.useful && now - *share.useful < kForgotten;
+        if (!is_kept && (found == nullptr || share.left > found->left)) found = &share;
+    }
+    if (found != nullptr) found->useful.reset();
+    return found;
 }
 
 }  // namespace octoskin

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,19 +25,24 @@ class SenderShares {
     static constexpr double kPerSecond = 2048.0;
     /// At once: what a program may have sent while nobody received for a second.
     static constexpr double kAtOnce = 2048.0;
-    /// Of a flood of programs as many have a share; those that came first keep theirs.
+    /// Of a flood of programs as many have a share: those that were found useful within the last second
+    /// (`keep`) keep theirs, the others lose it to any program that has none.
     static constexpr std::size_t kSendersMax = 8;
 
     /// One datagram of this program came at `now`; false: it is beyond what may be taken. O(kSendersMax).
     [[nodiscard]] bool take(const SenderKey& sender, HostTime now);
+    /// One that came at `came` was useful: the program keeps its share, or has one again. O(kSendersMax).
+    void keep(const SenderKey& sender, HostTime came);
 
   private:
     struct Share {
         SenderKey sender;
         double left = kAtOnce;
         HostTime newest;
+        std::optional<HostTime> useful;  ///< the newest of those that were
     };
     [[nodiscard]] Share* share_of(const SenderKey& sender, HostTime now);
+    [[nodiscard]] Share* share_to_lose(HostTime now);
 
     std::vector<Share> shares_;
 };

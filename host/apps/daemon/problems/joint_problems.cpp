@@ -29,8 +29,10 @@ std::string why_no_joints(const DaemonView& view) {
                            view.rig->joints.node_id);
     }
     if (const std::string refused = refused_lines(*socket); !refused.empty())
-        return fmt::format("no joint states: what comes through the socket is refused ({}); wanted: {}",
-                           refused, kJointTextWanted);
+        return fmt::format(
+            "no joint states: what comes through the socket is refused ({}, the newest of {}); "
+            "wanted: {}",
+            refused, describe(socket->newest_refused().value()), kJointTextWanted);
     if (view.inputs->joints_of_several() > 0) {
         return fmt::format(
             "no joint states: those that come through the socket are of more than one program "
@@ -135,10 +137,9 @@ void add_joints(const DaemonView& view, Problems& problems) {
             {"joints flood",
              fmt::format(
                  "joint states come, or came, through the socket quicker than they can be taken: {} gave "
-                 "way to newer ones (displaced), {} were more than one program may send (surplus); the rig "
-                 "has "
-                 "{} Hz, more is of no use",
-                 view.inputs->joints_displaced(), view.inputs->joints()->surplus(),
+                 "way to newer ones (displaced), {} were more than one program may send, or of more than {} "
+                 "programs (surplus); the rig has {} Hz, more is of no use",
+                 view.inputs->joints_displaced(), view.inputs->joints()->surplus(), SenderShares::kSendersMax,
                  view.rig->joints.rate_hz)});
     }
     if (joints.rejected(JointReason::too_frequent) > kFirstSamples) {

@@ -67,9 +67,11 @@ TEST_F(JointProblemsTest, have_joint_states_that_are_not_there_or_of_no_use) {
     send_joints("1 2 3 4");
     with_socket->catch_up();
     EXPECT_EQ(told("no joints"),
-              "no joint states: what comes through the socket is refused (not_a_number 1, wrong_count 1); "
-              "wanted: [TIME] Q1 ... QN, radians (metres for a prismatic joint) in the rig's order; TIME is "
-              "CLOCK_MONOTONIC in seconds, within 1 s of now");
+              "no joint states: what comes through the socket is refused (not_a_number 1, wrong_count 1, the "
+              "newest of " +
+                  describe(JointSender{::getpid(), ::getuid(), {}}) +
+                  "); wanted: [TIME] Q1 ... QN, radians (metres for a prismatic joint) in the rig's order; "
+                  "TIME is CLOCK_MONOTONIC in seconds, within 1 s of now");
     Scene scene = daemon_scene();
     scene.bus = ScriptedBus{};
     for (int k = 0; k <= 8; ++k) scene.bus.exchange(0.1 + k, {kLeft});

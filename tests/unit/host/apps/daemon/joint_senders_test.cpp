@@ -135,6 +135,20 @@ TEST_F(JointSocketSenders, that_send_no_sample_are_not_heard) {
     EXPECT_FALSE(receive().is_of_several);
 }
 
+TEST_F(JointSocketSenders, that_send_no_sample_keep_no_driver_out_however_many_they_are) {
+    std::optional<JointSample> sample;
+    pid_t newest = 0;
+    for (std::size_t i = 0; i < 2 * SenderShares::kSendersMax; ++i) {
+        newest = send_from_another("x");
+        EXPECT_TRUE(socket_.receive(sample));
+    }
+    ASSERT_TRUE(socket_.newest_refused());
+    EXPECT_EQ(socket_.newest_refused()->pid, newest);
+    send("1 2 3");
+    EXPECT_EQ(receive().position.size(), 3U);
+    EXPECT_EQ(socket_.surplus(), 0U);
+}
+
 TEST_F(JointSocketSenders, of_one_process_are_told_apart_by_the_addresses_that_they_bind) {
     for (const char* const name : {"one", "two"}) {
         const int sender = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
