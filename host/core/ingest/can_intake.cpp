@@ -83,7 +83,7 @@ CanIntake::CanIntake(const HostRig& rig, const IntakeConfig& config)
         answers_.try_emplace(node);
         questions_.try_emplace(node);
         losses_.try_emplace(node);
-        told_.try_emplace(node);
+        self_reports_.try_emplace(node);
     }
 }
 
@@ -276,21 +276,21 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Heartbeat& mes
         answers_.at(node).forget();
         questions_.at(node).answer();
         ranges_.forget(node);
-        told_.at(node).forget();
+        self_reports_.at(node).forget();
     }
-    ToldWatch& told = told_.at(node);
-    told.on_told(ToldWatch::Fact::time_suspect, 0, message.is_time_suspect ? 1 : 0, steady_now());
-    told.on_told(ToldWatch::Fact::hash_low, 0, message.node_hash_low, steady_now());
+    SelfReportCheck& reports = self_reports_.at(node);
+    reports.on_report(SelfReportCheck::Fact::time_suspect, 0, message.is_time_suspect ? 1 : 0, steady_now());
+    reports.on_report(SelfReportCheck::Fact::hash_low, 0, message.node_hash_low, steady_now());
     return std::nullopt;
 }
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::NodeInfo& message, FrameOutcome&) {
     if (!nodes_.on_info(node, message, now())) return FrameReason::node_refused;
-    ToldWatch& told = told_.at(node);
+    SelfReportCheck& reports = self_reports_.at(node);
     if (const auto* identity = std::get_if<wire::InfoIdentity>(&message))
-        told.on_told(ToldWatch::Fact::hash, 0, identity->node_hash, steady_now());
+        reports.on_report(SelfReportCheck::Fact::hash, 0, identity->node_hash, steady_now());
     if (const auto* build = std::get_if<wire::InfoBuild>(&message))
-        told.on_told(ToldWatch::Fact::build, 0, build->build_id, steady_now());
+        reports.on_report(SelfReportCheck::Fact::build, 0, build->build_id, steady_now());
     return std::nullopt;
 }
 
@@ -300,7 +300,8 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::SensorHealth& 
     }
     ranges_.on_health(node, message);
     const bool is_certain = ranges_.is_certain(node, message.sensor);
-    told_.at(node).on_told(ToldWatch::Fact::certain, message.sensor, is_certain ? 1 : 0, steady_now());
+    self_reports_.at(node).on_report(SelfReportCheck::Fact::certain, message.sensor, is_certain ? 1 : 0,
+                                     steady_now());
     return std::nullopt;
 }
 

@@ -21,7 +21,7 @@
 #include "host/core/ingest/range_gate.hpp"
 #include "host/core/ingest/reading_hold.hpp"
 #include "host/core/ingest/reasons.hpp"
-#include "host/core/ingest/told_watch.hpp"
+#include "host/core/ingest/self_report_check.hpp"
 #include "host/core/rig/host_rig.hpp"
 #include "host/core/time/clock_map.hpp"
 #include "host/core/time/host_clock.hpp"
@@ -115,7 +115,9 @@ class CanIntake {
     [[nodiscard]] const AnswerCheck& answers(wire::NodeId node) const { return answers_.at(node); }
 
     /// Likewise: what it told about itself.
-    [[nodiscard]] const ToldWatch& told(wire::NodeId node) const { return told_.at(node); }
+    [[nodiscard]] const SelfReportCheck& self_reports(wire::NodeId node) const {
+        return self_reports_.at(node);
+    }
 
   private:
     // One for each message. What they return goes into FrameOutcome::rejected.
@@ -161,10 +163,10 @@ class CanIntake {
     HostClockEstimate host_clock_;
     SyncExchange exchange_;
     std::map<wire::NodeId, ClockMap> clocks_;
-    std::map<wire::NodeId, AnswerCheck> answers_;      ///< of the same nodes
-    std::map<wire::NodeId, ClockQuestion> questions_;  ///< of the same nodes
-    std::map<wire::NodeId, NodeLosses> losses_;        ///< likewise
-    std::map<wire::NodeId, ToldWatch> told_;           ///< likewise
+    std::map<wire::NodeId, AnswerCheck> answers_;           ///< of the same nodes
+    std::map<wire::NodeId, ClockQuestion> questions_;       ///< of the same nodes
+    std::map<wire::NodeId, NodeLosses> losses_;             ///< likewise
+    std::map<wire::NodeId, SelfReportCheck> self_reports_;  ///< likewise
     ReadingHold held_;
     NodeRegistry nodes_;
     RangeGate ranges_;

@@ -215,7 +215,7 @@ void AttackedBus::look() {
                 named_.try_emplace({node, sensor}, now_s());
         }
         if (intake.answers(node).hears_two(*now)) named_clocks_.try_emplace(node, now_s());
-        if (intake.told(node).hears_two(*now)) named_words_.try_emplace(node, now_s());
+        if (intake.self_reports(node).hears_two(*now)) named_words_.try_emplace(node, now_s());
         const NodeVerdict verdict = intake.nodes().verdict(node, now);
         if (now_s() > kSettled_s && verdict != NodeVerdict::usable) refused_.try_emplace(node, verdict);
         if (const auto loss = intake.losses(node, *now); loss && verdict == NodeVerdict::usable) {

@@ -56,18 +56,18 @@ void add_answers(const DaemonView& view, const HostNode& node, Problems& problem
          on});
 }
 
-/// What decides whether its readings count goes back and forth.
-void add_told(const DaemonView& view, const HostNode& node, Problems& problems) {
-    const ToldWatch& watch = view.pipeline->intake().told(node.node_id);
-    if (!view.bus_now || !watch.hears_two(*view.bus_now)) return;
+/// What decides whether its readings count.
+void add_self_reports(const DaemonView& view, const HostNode& node, Problems& problems) {
+    const SelfReportCheck& check = view.pipeline->intake().self_reports(node.node_id);
+    if (!view.bus_now || !check.hears_two(*view.bus_now)) return;
     const std::string on = node_subject(node.node_id);
     problems.push_back(
-        {on + " tells",
+        {on + " reports",
          fmt::format(
-             "{} '{}': what comes under its id about its clock, its node_hash, its build or a sensor's "
-             "capture_bound goes back and forth within a second ({}). Which board has the node id "
-             "twice, or which program forges it?",
-             on, node.name, watch.contradictions()),
+             "{} '{}' reports one thing and the contrary by turns within a second ({}): of its clock, its "
+             "node_hash, its build or a sensor's capture_bound. Which board has the node id twice, or which "
+             "program forges it?",
+             on, node.name, check.contradictions()),
          {},
          on});
 }
@@ -147,7 +147,7 @@ void add_nodes(const DaemonView& view, Problems& problems) {
         const NodeVerdict verdict = nodes.verdict(node.node_id, view.bus_now);
         add_restarts(view, node, problems);
         add_answers(view, node, problems);
-        add_told(view, node, problems);
+        add_self_reports(view, node, problems);
         if (verdict != NodeVerdict::usable) {
             const std::string text = nodes.describe(node.node_id, view.bus_now);
             problems.push_back({text, text, node_subject(node.node_id)});
@@ -168,7 +168,7 @@ void add_joint_node(const DaemonView& view, Problems& problems) {
     if (!nodes.knows(source) || nodes.records().at(source).has_block) return;
     add_restarts(view, nodes.records().at(source).expected, problems);
     add_answers(view, nodes.records().at(source).expected, problems);
-    add_told(view, nodes.records().at(source).expected, problems);
+    add_self_reports(view, nodes.records().at(source).expected, problems);
     if (!is_refused_for_joints(nodes.verdict(source, view.bus_now))) return;
     const std::string text = nodes.describe(source, view.bus_now);
     problems.push_back({text, text, node_subject(source)});
