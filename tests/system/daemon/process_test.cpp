@@ -179,7 +179,7 @@ TEST_F(DaemonTest, is_not_ended_by_signals_that_mean_nothing_to_it) {
     start();
     ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
     for (const int signal : {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT, SIGPIPE,
-                             SIGXFSZ, SIGRTMIN, SIGRTMAX}) {
+                             SIGXFSZ, SIGTRAP, SIGSYS, SIGRTMIN, SIGRTMAX - 1, SIGRTMAX}) {
         daemon_->signal(signal);
         EXPECT_FALSE(daemon_->wait(20ms)) << signal;
     }
