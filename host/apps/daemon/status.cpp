@@ -80,7 +80,7 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
                  {"state", record.health ? Json(name(record.health->state)) : Json(nullptr)},
                  {"fault", record.health ? Json(name(record.health->fault)) : Json(nullptr)},
                  {"received", record.received},
-                 {"lost", record.lost},
+                 {"lost", record.sent.lost()},
                  {"age_s", age_s(record.newest_at, view.bus_now)}};
     if (record.newest) {
         json["range_m"] = record.newest->range_mm * 1e-3;

@@ -298,7 +298,7 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::SensorHealth& 
     if (!ranges_.knows(node, message.sensor)) {
         return FrameReason::unknown_sensor;
     }
-    ranges_.on_health(node, message);
+    ranges_.on_health(node, message, now());
     const bool is_certain = ranges_.is_certain(node, message.sensor);
     self_reports_.at(node).on_report(SelfReportCheck::Fact::certain, message.sensor, is_certain ? 1 : 0,
                                      steady_now());

@@ -14,7 +14,7 @@ std::optional<NodeSummary::Readings> readings_of(const RangeGate& ranges, const 
     for (std::size_t i = 0; i < node.sensors.size(); ++i) {
         const SensorRecord& record = ranges.record(node.node_id, static_cast<std::uint8_t>(i));
         sum.received += record.received;
-        sum.lost += record.lost;
+        sum.lost += record.sent.lost();
         sum.gaps += record.sequence.gaps();
     }
     return sum;

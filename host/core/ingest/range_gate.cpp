@@ -72,6 +72,7 @@ void RangeGate::on_arrival(wire::NodeId node, const wire::RangeReading& reading,
                            std::optional<HostTime> now) {
     SensorRecord& record = sensors_.at({node, reading.sensor}).record;
     ++record.received;
+    record.sent.on_arrival();
     record.newest = reading;
     record.newest_at = now;
 }
@@ -268,18 +269,22 @@ std::optional<HostTime> RangeGate::held_until(const RangeMeasurement& measuremen
     return measurement.captured + std::min(wait, kHeldMax);
 }
 
-void RangeGate::on_health(wire::NodeId node, const wire::SensorHealth& health) {
+bool RangeGate::is_silent(wire::NodeId node, std::uint8_t sensor, HostTime now) const {
+    constexpr Nanoseconds kSilent{1'000'000'000};
+    constexpr Nanoseconds kOvertaken{200'000'000};  // by a health message, on a bus that was away
+    const Sensor& known = sensors_.at({node, sensor});
+    const SensorRecord& record = known.record;
+    const Nanoseconds period{known.expected.period};
+    const bool is_ranging = record.health && record.health->state == wire::SensorState::ranging;
+    const bool is_recent = record.newest_at && now - *record.newest_at < std::max(kSilent, 3 * period);
+    return is_ranging && !is_recent && record.sent.are_missing(now, std::max(kOvertaken, 2 * period));
+}
+
+void RangeGate::on_health(wire::NodeId node, const wire::SensorHealth& health, std::optional<HostTime> now) {
     SensorRecord& record = sensors_.at({node, health.sensor}).record;
-    if (!record.health) {
-        record.received_before = record.received;
-        record.sent_total = 0;
-    } else {
-        record.sent_total += static_cast<std::uint16_t>(health.sent - record.health->sent);
-    }
+    record.sent.on_health(health.sent, record.received, now);
     record.health = health;
     record.capture_bound = Microseconds{wire::kClassicalTimeStepUs} * health.capture_bound_64us;
-    const std::uint64_t received = record.received - record.received_before;
-    record.lost = record.lost_before + (record.sent_total > received ? record.sent_total - received : 0);
 }
 
 void RangeGate::on_signal(wire::NodeId node, std::uint8_t sensor, const wire::SignalReading& signal) {
@@ -304,7 +309,7 @@ void RangeGate::forget(wire::NodeId node) {
     forget_order(node);
     for (auto& [key, sensor] : sensors_) {
         if (key.first == node) {
-            sensor.record.lost_before = sensor.record.lost;
+            sensor.record.sent.restart();
             sensor.record.health.reset();
             sensor.record.capture_bound.reset();
         }

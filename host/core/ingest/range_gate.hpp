@@ -17,6 +17,7 @@
 #include "host/core/ingest/reasons.hpp"
 #include "host/core/ingest/said_numbers.hpp"
 #include "host/core/ingest/sender_watch.hpp"
+#include "host/core/ingest/sent_count.hpp"
 #include "host/core/ingest/sequence_tracker.hpp"
 #include "host/core/rig/host_rig.hpp"
 #include "host/core/time/clock_map.hpp"
@@ -38,11 +39,7 @@ struct SensorRecord {
     std::optional<Nanoseconds> capture_bound;
     std::uint64_t reflexes = 0;          ///< times that something came closer than the sensor's limit
     std::optional<wire::Reflex> reflex;  ///< the newest
-    /// Readings that the node sent and that never came: exact as of the newest health message.
-    std::uint64_t lost = 0;
-    std::uint64_t lost_before = 0;      ///< of these, in the node's earlier lives
-    std::uint64_t sent_total = 0;       ///< by the node's own count, since its first health message
-    std::uint64_t received_before = 0;  ///< `received` at that message
+    SentCount sent;                      ///< and what of it was lost
 };
 
 class RangeGate {
@@ -86,7 +83,12 @@ class RangeGate {
     [[nodiscard]] std::optional<ReadingReason> skip(wire::NodeId node, const wire::RangeReading& reading,
                                                     std::optional<HostTime> now);
 
-    void on_health(wire::NodeId node, const wire::SensorHealth& health);
+    /// `now`: empty while unknown.
+    void on_health(wire::NodeId node, const wire::SensorHealth& health,
+                   std::optional<HostTime> now = std::nullopt);
+    /// Nothing came of a sensor for a second and three periods, though its node says that it ranges, and sent
+    /// more meanwhile than may be on the way.
+    [[nodiscard]] bool is_silent(wire::NodeId node, std::uint8_t sensor, HostTime now) const;
     /// By what its node told last, its capture times alone are within what the rig allows.
     [[nodiscard]] bool is_certain(wire::NodeId node, std::uint8_t sensor) const {
         return is_certain(sensors_.at({node, sensor}), MappedTime{});

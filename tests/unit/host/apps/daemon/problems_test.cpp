@@ -14,6 +14,7 @@
 #include "common/wire/names.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/status.hpp"
+#include "host/core/rig/sensor_text.hpp"
 #include "tests/unit/host/apps/daemon/daemon_view_fixture.hpp"
 
 namespace octoskin::test {
@@ -42,6 +43,35 @@ TEST_F(ProblemsTest, are_none_where_all_is_well) {
 }
 
 // No frame has a stamp then, whatever else may be said of the time.
+TEST_F(ProblemsTest, have_a_sensor_whose_readings_do_not_come_and_a_node_none_of_whose_do) {
+    const std::string of_sensor = sensor_text(scene_.rig.nodes[0], kGood) + " silence";
+    const auto play_silence = [&](bool does_another_come, bool is_sending) {
+        play_changed(
+            [&](Scene& scene) {  // the last reading comes at 3.8 s
+                for (int k = 1; k <= 4; ++k) {
+                    scene.bus.send(
+                        3.5 + 0.5 * k,
+                        wire::SensorHealth{.sensor = kGood,
+                                           .state = wire::SensorState::ranging,
+                                           .sent = static_cast<std::uint16_t>(is_sending ? 10 + 15 * k : 10),
+                                           .capture_bound_64us = 3},
+                        kLeft);
+                }
+                for (double t = 3.6; does_another_come && t < 5.6; t += 0.033)
+                    scene.bus.range(t, kLeft, good_reading(kSpare));
+            },
+            5.6);
+    };
+    play_silence(true, true);
+    EXPECT_THAT(told(of_sensor), HasSubstr("(lost, "));
+    EXPECT_EQ(told("node 1 silence"), "");
+    play_silence(false, true);
+    EXPECT_EQ(told(of_sensor), "");
+    EXPECT_THAT(told("node 1 silence"), HasSubstr("RANGE frames"));
+    play_silence(false, false);
+    EXPECT_EQ(told(of_sensor) + told("node 1 silence"), "") << "it sends none";
+}
+
 TEST_F(ProblemsTest, begin_with_a_clock_of_this_machine_that_shows_nonsense) {
     view_.is_wall_clock_right = false;
     other_end_.reset();

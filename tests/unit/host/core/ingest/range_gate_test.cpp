@@ -280,17 +280,17 @@ TEST(RangeGate, counts_what_came_and_what_was_lost_by_the_nodes_own_count) {
     };
     arrive(7);
     gate.on_health(kNode, health(0, 65'000));
-    EXPECT_EQ(gate.record(kNode, 0).lost, 0U) << "what was sent before is not known";
+    EXPECT_EQ(gate.record(kNode, 0).sent.lost(), 0U) << "what was sent before is not known";
     arrive(90);
     gate.on_health(kNode, health(0, 65'100));
-    EXPECT_EQ(gate.record(kNode, 0).lost, 10U);
+    EXPECT_EQ(gate.record(kNode, 0).sent.lost(), 10U);
     arrive(900);
     gate.on_health(kNode, health(0, 464));  // 65'100 + 900, modulo 65'536
-    EXPECT_EQ(gate.record(kNode, 0).lost, 10U);
+    EXPECT_EQ(gate.record(kNode, 0).sent.lost(), 10U);
     EXPECT_EQ(gate.record(kNode, 0).received, 997U);
     arrive(11);
     gate.on_health(kNode, health(0, 464));
-    EXPECT_EQ(gate.record(kNode, 0).lost, 0U) << "readings overtook the message";
+    EXPECT_EQ(gate.record(kNode, 0).sent.lost(), 0U) << "readings overtook the message";
 }
 
 /// Of a reading of this number, captured so long after kNow, and 20 ms later here.
