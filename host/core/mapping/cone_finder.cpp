@@ -119,14 +119,19 @@ bool ConeFinder::ends_about(const Beam& beam, VoxelKey key) const noexcept {
            std::atan2(std::max(0.0, aside_m - half_m), along_m) <= angle_rad;
 }
 
+std::optional<BeamRejection> ConeFinder::refusal_of(const Beam& beam) const noexcept {
+    if (const auto fault = fault_of(beam)) return fault;
+    const Eigen::Vector3d end = beam.p_map_sensor + length_m(beam) * beam.direction_map;
+    const bool is_inside = lattice_.key_of(beam.p_map_sensor) && lattice_.key_of(end);
+    return is_inside ? std::nullopt : std::optional(BeamRejection::outside_map);
+}
+
 Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam, CapWidth width) {
     assert(beam.optics.is_cone());
-    if (const auto fault = fault_of(beam)) return unexpected(*fault);
+    if (const auto refusal = refusal_of(beam)) return unexpected(*refusal);
     const ConeModel& model = model_of(beam);
     const double length_m = this->length_m(beam);
-    const Eigen::Vector3d end = beam.p_map_sensor + length_m * beam.direction_map;
-    const auto end_key = lattice_.key_of(end);
-    if (!lattice_.key_of(beam.p_map_sensor) || !end_key) return unexpected(BeamRejection::outside_map);
+    const auto end_key = lattice_.key_of(beam.p_map_sensor + length_m * beam.direction_map);
     voxels_.passed.clear();
     voxels_.cap.clear();
     voxels_.middle.clear();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "common/result.hpp"
 #include "host/core/beams/beam.hpp"
@@ -29,6 +30,8 @@ class ConeFinder {
     /// outside the octree is left out. O(voxels); about 3 us at 1 m and 0.04 m. Throws std::bad_alloc.
     [[nodiscard]] Result<const ConeVoxels*, BeamRejection> find(const Beam& beam,
                                                                 CapWidth width = CapWidth::whole);
+    /// Why `find` refuses a beam, of whatever width; empty if it does not. O(1).
+    [[nodiscard]] std::optional<BeamRejection> refusal_of(const Beam& beam) const noexcept;
     /// How far it reaches: its range, or how far it may free space without one.
     [[nodiscard]] double length_m(const Beam& beam) const noexcept;
     /// Whether a voxel touches the cap of a beam with a range, as far as a cube and a cap can be told apart

@@ -71,8 +71,8 @@ ConfirmedRanges::Answer ConfirmedRanges::take(const Beam& beam) {
     forget_silent(sensor, beam);
     Zone& zone = sensor.zones[beam.source.zone];
     const std::size_t window = model_.window();
-    zone.newest.reserve(window + kBefore);
-    if (zone.newest.size() >= window + kBefore) zone.newest.erase(zone.newest.begin());
+    zone.newest.reserve(readings_max(model_));
+    if (zone.newest.size() >= readings_max(model_)) zone.newest.erase(zone.newest.begin());
     zone.newest.push_back({beam, ++sensor.readings, false});
     const bool repeats_confirmed = follow_confirmed(zone);
     if (!beam.range_m) return {{}, ended_, false, is_stationary(zone)};

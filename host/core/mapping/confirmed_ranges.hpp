@@ -2,6 +2,7 @@
 // agree, after it has seen further, or has only just stopped.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -31,6 +32,22 @@ class ConfirmedRanges {
 
     [[nodiscard]] static bool are_of_one_place(const Beam& a, const Beam& b);
 
+    struct Reading {
+        Beam beam;
+        std::uint64_t number = 0;  ///< of the sensor's, from 1
+        bool is_confirmed = false;
+    };
+    struct Zone {
+        std::vector<Reading> newest;  ///< the last of them last
+        std::optional<Beam> confirmed;
+    };
+    struct Sensor {
+        std::uint64_t readings = 0;
+        std::map<std::uint8_t, Zone> zones;
+    };
+    /// By node and local index.
+    using Sensors = std::map<std::pair<std::uint8_t, std::uint8_t>, Sensor>;
+
     explicit ConfirmedRanges(const StationaryModel& model) : model_(model) {}
 
     struct Answer {
@@ -57,21 +74,15 @@ class ConfirmedRanges {
     [[nodiscard]] const StationaryModel& model() const noexcept { return model_; }
     /// As if there had been no beam.
     void forget() noexcept { sensors_.clear(); }
+    /// All that what comes next follows from, and how another one goes on with it. Of a zone at most
+    /// `readings_max()` readings, none later than the last; what is confirmed has a range, and a reading.
+    [[nodiscard]] const Sensors& sensors() const noexcept { return sensors_; }
+    void go_on_with(Sensors sensors) noexcept { sensors_ = std::move(sensors); }
+    [[nodiscard]] static std::size_t readings_max(const StationaryModel& model) noexcept {
+        return model.window() + kBefore;
+    }
 
   private:
-    struct Reading {
-        Beam beam;
-        std::uint64_t number = 0;  ///< of the sensor's, from 1
-        bool is_confirmed = false;
-    };
-    struct Zone {
-        std::vector<Reading> newest;  ///< the last of them last
-        std::optional<Beam> confirmed;
-    };
-    struct Sensor {
-        std::uint64_t readings = 0;
-        std::map<std::uint8_t, Zone> zones;
-    };
     /// The first reading of a zone in a window.
     using Window = std::vector<std::pair<Zone*, std::size_t>>;
 
@@ -83,7 +94,7 @@ class ConfirmedRanges {
     void add_persisting(const Beam& newest, const Sensor& sensor);
 
     StationaryModel model_;
-    std::map<std::pair<std::uint8_t, std::uint8_t>, Sensor> sensors_;  ///< by node and local index
+    Sensors sensors_;
     Window window_;
     std::vector<Reading*> agreeing_;
     std::vector<Beam> confirmed_;

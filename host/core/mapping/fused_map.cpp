@@ -15,6 +15,13 @@ namespace octoskin {
 FusedMap::FusedMap(const MapConfig& config)
     : config_(config), lattice_(config.resolution_m), rules_(config) {}
 
+FusedMap::FusedMap(const MapConfig& config, MapLayers layers, bool has_undated)
+    : config_(config),
+      lattice_(config.resolution_m),
+      rules_(config),
+      layers_(std::move(layers)),
+      has_undated_(has_undated) {}
+
 BrickEditor FusedMap::editor() noexcept {
     return {layers_, rules_, config_, counters_};
 }
@@ -29,14 +36,31 @@ void FusedMap::apply(const Evidence& evidence, const EvidenceOptions& options) {
 void FusedMap::go_on(HostTime now) noexcept {
     has_undated_ = has_undated_ || !layers_.ages.has_begun();
     try {
-        if (!layers_.ages.go_on(now)) return;
-        BrickEditor editor = this->editor();
-        if (has_undated_) editor.date_all();
-        has_undated_ = false;
-        if (config_.age.unknown_after_s > 0) editor.expire();
+        if (layers_.ages.go_on(now)) date_and_expire();
     } catch (const std::bad_alloc&) {  // what is too old expires, or is dated, in a later second
         ++counters_.undated;
     }
+}
+
+bool FusedMap::wait(std::int64_t seconds) noexcept {
+    try {
+        if (!layers_.ages.wait(seconds)) return false;
+        date_and_expire();
+    } catch (const std::bad_alloc&) {
+        ++counters_.undated;
+    }
+    return true;
+}
+
+void FusedMap::date_and_expire() {
+    BrickEditor editor = this->editor();
+    if (has_undated_) editor.date_all();
+    has_undated_ = false;
+    if (config_.age.unknown_after_s > 0) editor.expire();
+}
+
+void FusedMap::forget_times() {
+    layers_.ages.forget_times();
 }
 
 void FusedMap::limit(const MapConfig& config) {

@@ -33,6 +33,9 @@ class FusedMap {
   public:
     /// Resolution finite and positive; the rest as VoxelRules (asserted).
     explicit FusedMap(const MapConfig& config);
+    /// Goes on with the layers of another map of this configuration, as a snapshot holds them; the caller has
+    /// checked them. `has_undated`: of that map. O(1).
+    FusedMap(const MapConfig& config, MapLayers layers, bool has_undated);
     FusedMap(FusedMap&&) noexcept = default;
     FusedMap& operator=(FusedMap&&) noexcept = default;
 
@@ -56,6 +59,15 @@ class FusedMap {
     /// The clock by which times come from now on is ahead by this of the one before (or behind, below 0):
     /// nothing has become older.
     void leap(Nanoseconds by) noexcept { layers_.ages.leap(by); }
+    /// A map that was saved: what comes next has times of another scale, and until then `wait` says what has
+    /// passed. O(1).
+    void begin_to_wait() noexcept { layers_.ages.begin_to_wait(); }
+    /// So many seconds have passed since `begin_to_wait`, in all: every age grows by what was not added yet,
+    /// and what is too old expires. True if ages grew; false if the map does not wait. Costs as `go_on`.
+    bool wait(std::int64_t seconds) noexcept;
+    /// How long ago anything was seen is not known any more: everything is stale until a sensor sees it.
+    /// O(stamps). Throws std::bad_alloc, and then nothing is changed.
+    void forget_times();
     /// From now on other limits hold, at the same resolution (asserted): what lies beyond new clamps is
     /// clamped; bricks beyond a smaller memory stay. The counters begin anew. O(voxels) if the clamps change.
     /// Throws std::bad_alloc if there is no memory for as many voxels once more, if the clamps or the counts'
@@ -88,6 +100,8 @@ class FusedMap {
     [[nodiscard]] double resolution_m() const noexcept { return config_.resolution_m; }
     [[nodiscard]] const MapCounters& counters() const noexcept { return counters_; }
     [[nodiscard]] const MapLayers& layers() const noexcept { return layers_; }
+    /// Whether what was there when the clock began has not all been dated.
+    [[nodiscard]] bool has_undated() const noexcept { return has_undated_; }
     /// The voxel that holds a point of the map frame; empty for a point that is not finite or outside the
     /// octree.
     [[nodiscard]] std::optional<VoxelKey> key_of(const Eigen::Vector3d& p_map) const noexcept;
@@ -111,13 +125,15 @@ class FusedMap {
   private:
     FusedMap(const FusedMap&) noexcept = default;
     [[nodiscard]] BrickEditor editor() noexcept;
+    /// In a new second. Throws std::bad_alloc: what is left then is found in a later second.
+    void date_and_expire();
 
     MapConfig config_;
     VoxelLattice lattice_;
     VoxelRules rules_;
     MapCounters counters_;
     MapLayers layers_;
-    bool has_undated_ = false;  ///< what was there when the clock began has not all been dated
+    bool has_undated_ = false;
 };
 
 }  // namespace octoskin

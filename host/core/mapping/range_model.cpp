@@ -13,6 +13,8 @@ Status<BeamRejection> RangeModel::integrate_ray(const Beam& beam, EvidenceSink& 
 }
 
 Status<BeamRejection> RangeModel::integrate_cone(const Beam& beam, EvidenceSink& sink) {
+    // Before it is taken: what is refused is in no recording, and nothing may follow from it.
+    if (const auto refusal = cone_.refusal_of(beam)) return unexpected(*refusal);
     const ConfirmedRanges::Answer answer = stationary_.take(beam);
     const auto voxels = cone_.find(beam, width_of(answer));
     if (!voxels) return unexpected(voxels.error());

@@ -1,6 +1,8 @@
 // From one placed range to evidence: the way of a range into the maps, whatever its sensor sees.
 #pragma once
 
+#include <utility>
+
 #include "common/result.hpp"
 #include "host/core/beams/beam.hpp"
 #include "host/core/mapping/beam_rejection.hpp"
@@ -27,6 +29,10 @@ class RangeModel {
 
     /// As if there had been no beam.
     void forget() noexcept { stationary_.forget(); }
+
+    /// As StationarySensors.
+    [[nodiscard]] StationaryReadings readings() const { return stationary_.readings(); }
+    void go_on_with(StationaryReadings readings) noexcept { stationary_.go_on_with(std::move(readings)); }
 
   private:
     [[nodiscard]] Status<BeamRejection> integrate_ray(const Beam& beam, EvidenceSink& sink);

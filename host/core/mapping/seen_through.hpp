@@ -5,6 +5,7 @@
 #include <deque>
 #include <iterator>
 #include <map>
+#include <utility>
 
 #include "host/core/beams/beam.hpp"
 #include "host/core/mapping/stationary_model.hpp"
@@ -16,6 +17,13 @@ namespace octoskin {
 class SeenThrough {
   public:
     static constexpr std::size_t kReadingsMin = 3;
+
+    struct Reading {
+        Beam beam;
+        double frees_m = 0.0;
+    };
+    using Readings = std::deque<Reading>;  ///< of a zone, the newest last; none if there was no memory
+    using Zones = std::map<BeamSource, Readings>;
 
     explicit SeenThrough(const StationaryModel& model) : model_(model) {}
 
@@ -43,14 +51,11 @@ class SeenThrough {
 
     /// As if there had been no beam.
     void forget() noexcept { zones_.clear(); }
+    /// All that what comes next follows from, and how another one goes on with it.
+    [[nodiscard]] const Zones& zones() const noexcept { return zones_; }
+    void go_on_with(Zones zones) noexcept { zones_ = std::move(zones); }
 
   private:
-    struct Reading {
-        Beam beam;
-        double frees_m = 0.0;
-    };
-    using Readings = std::deque<Reading>;  ///< of a zone, the newest last; none if there was no memory
-
     /// What was not measured for longer may have come and gone.
     [[nodiscard]] bool counts(const Beam& before, HostTime now) const {
         return seconds_since(before, now) <= 2.0 * model_.clears_after_s;
@@ -58,7 +63,7 @@ class SeenThrough {
     [[nodiscard]] bool lasts(const Readings& readings, std::size_t from) const;
 
     StationaryModel model_;
-    std::map<BeamSource, Readings> zones_;
+    Zones zones_;
 };
 
 }  // namespace octoskin

@@ -1,6 +1,8 @@
 // Sensors that do not move: what came before one is on the map at once, and what left is free at once.
 #pragma once
 
+#include <utility>
+
 #include "host/core/beams/beam.hpp"
 #include "host/core/mapping/cone_finder.hpp"
 #include "host/core/mapping/confirmed_ranges.hpp"
@@ -10,6 +12,12 @@
 #include "host/core/mapping/seen_through.hpp"
 
 namespace octoskin {
+
+/// What was read so far, as far as what comes next follows from it.
+struct StationaryReadings {
+    ConfirmedRanges::Sensors confirmed;
+    SeenThrough::Zones seen;
+};
 
 /// From one pose no reading says where in its cone the surface is, so that shares of hits take long to mark
 /// and long to free. Readings that agree do both at once. Not for two threads at once.
@@ -31,6 +39,14 @@ class StationarySensors {
     void forget() noexcept {
         confirmed_.forget();
         seen_.forget();
+    }
+
+    /// A copy of what was read, 2 kB a zone. Throws std::bad_alloc.
+    [[nodiscard]] StationaryReadings readings() const { return {confirmed_.sensors(), seen_.zones()}; }
+    /// Goes on as if these had been read.
+    void go_on_with(StationaryReadings readings) noexcept {
+        confirmed_.go_on_with(std::move(readings.confirmed));
+        seen_.go_on_with(std::move(readings.seen));
     }
 
   private:

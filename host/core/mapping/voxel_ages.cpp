@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "host/core/bricks/brick_sets.hpp"
 
@@ -37,52 +38,86 @@ std::uint16_t oldest_of(const StampView& view) {
 
 }  // namespace
 
+bool VoxelAges::is_possible(const Clock& clock) noexcept {
+    constexpr std::int64_t kSecondsMax = std::int64_t{1} << 40U;
+    const auto is_time = [](std::int64_t seconds) { return seconds >= 0 && seconds <= kSecondsMax; };
+    const bool are_times = is_time(clock.runs_for_s) && is_time(clock.waited_s) &&
+                           clock.zero_s >= -kSecondsMax && clock.zero_s <= kSecondsMax;
+    if (!clock.has_begun) return are_times && clock.runs_for_s == 0 && clock.now == 0;
+    return are_times && clock.now >= kAgeMax_s && clock.now <= kNowMax;
+}
+
+bool VoxelAges::is_possible(std::uint16_t stamp, const Clock& clock) noexcept {
+    if (stamp == 0 || stamp == kOfBefore) return true;
+    const std::uint32_t then = std::uint32_t{stamp} >> kKindBits;
+    const auto kind = static_cast<SensorKind>(stamp & ((1U << kKindBits) - 1U));
+    return then >= 1 && then <= clock.now && (kind == SensorKind::range || kind == SensorKind::camera);
+}
+
 bool VoxelAges::go_on(HostTime now) {
     const std::int64_t second = whole_seconds(now);
-    if (!has_begun_) {
-        has_begun_ = true;
-        now_ = kAgeMax_s;
-        zero_s_ = second - now_;
+    if (!clock_.has_begun) {
+        clock_ = {.has_begun = true, .zero_s = second - kAgeMax_s, .now = kAgeMax_s};
         return true;
     }
-    const std::int64_t shown = second - zero_s_;
-    if (shown == now_ || (shown < now_ && now_ - shown <= kBackMax_s)) return false;
-    if (shown < now_) {
-        zero_s_ = second - now_;
+    if (std::exchange(clock_.waits, false)) {
+        clock_.zero_s = second - clock_.now;
+        return true;
+    }
+    const std::int64_t shown = second - clock_.zero_s;
+    if (shown == clock_.now || (shown < clock_.now && clock_.now - shown <= kBackMax_s)) return false;
+    if (shown < clock_.now) {
+        clock_.zero_s = second - clock_.now;
         return false;
     }
-    const std::int64_t passed_s = shown - now_;
-    if (shown <= kNowMax) {
-        runs_for_s_ += passed_s;
-        now_ = static_cast<std::uint32_t>(shown);
-        return true;
-    }
-    bring_up(static_cast<std::uint32_t>(std::min<std::int64_t>(shown - kAgeMax_s, kNowMax)));
-    runs_for_s_ += passed_s;
-    now_ = kAgeMax_s;
-    zero_s_ = second - now_;
+    advance(shown - clock_.now);
+    clock_.zero_s = second - clock_.now;
     return true;
 }
 
+void VoxelAges::advance(std::int64_t passed_s) {
+    const std::int64_t shown = clock_.now + passed_s;
+    const bool is_shown = shown <= kNowMax;
+    if (!is_shown) bring_up(static_cast<std::uint32_t>(std::min<std::int64_t>(shown - kAgeMax_s, kNowMax)));
+    clock_.now = is_shown ? static_cast<std::uint32_t>(shown) : kAgeMax_s;
+    clock_.runs_for_s += passed_s;
+}
+
+bool VoxelAges::wait(std::int64_t seconds) {
+    if (!clock_.has_begun || !clock_.waits || seconds <= clock_.waited_s) return false;
+    advance(seconds - clock_.waited_s);
+    clock_.waited_s = seconds;
+    return true;
+}
+
+void VoxelAges::forget_times() {
+    change_stamps([](std::uint16_t stamp) -> std::uint16_t { return stamp == 0 ? stamp : kOfBefore; });
+    clock_ = {};
+}
+
 void VoxelAges::leap(Nanoseconds by) noexcept {
-    zero_s_ += whole_seconds(HostTime{by.count() + kNanosecondsPerSecond / 2});
+    clock_.zero_s += whole_seconds(HostTime{by.count() + kNanosecondsPerSecond / 2});
+}
+
+template <class Change>
+void VoxelAges::change_stamps(const Change& change) {
+    StampTree next = stamps_;
+    stamps_.for_each([&](MortonCode brick, const StampView& view) {
+        if (view.values == nullptr) return next.set_all(brick, change(view.value));
+        for (std::uint16_t& stamp : next.open(brick)) stamp = change(stamp);
+    });
+    stamps_ = std::move(next);
+    agenda_.change_stamps(change);
 }
 
 /// What is too old for that stays the oldest there is.
 void VoxelAges::bring_up(std::uint32_t by) {
-    const auto brought_up = [&](std::uint16_t stamp) -> std::uint16_t {
+    change_stamps([by](std::uint16_t stamp) -> std::uint16_t {
         if (stamp == 0) return 0;
         const auto then = std::uint32_t{stamp} >> kKindBits;
         const std::uint32_t kind = stamp & ((1U << kKindBits) - 1U);
         return static_cast<std::uint16_t>(((then > by ? then - by : 1U) << kKindBits) | kind);
-    };
-    StampTree next = stamps_;
-    stamps_.for_each([&](MortonCode brick, const StampView& view) {
-        if (view.values == nullptr) return next.set_all(brick, brought_up(view.value));
-        for (std::uint16_t& stamp : next.open(brick)) stamp = brought_up(stamp);
     });
-    stamps_ = std::move(next);
-    agenda_.change_stamps(brought_up);
 }
 
 void VoxelAges::begin_agenda() {
@@ -107,12 +142,12 @@ std::optional<Confirmation> VoxelAges::confirmation_of(std::uint16_t stamp) cons
     if (stamp == 0 || stamp == kOfBefore) return std::nullopt;
     const auto then = std::uint32_t{stamp} >> kKindBits;
     const auto kind = static_cast<SensorKind>(stamp & ((1U << kKindBits) - 1U));
-    return Confirmation{then == 1 ? kAgeMax_s : std::min(now_ - then, kAgeMax_s), kind};
+    return Confirmation{then == 1 ? kAgeMax_s : std::min(clock_.now - then, kAgeMax_s), kind};
 }
 
 std::uint16_t VoxelAges::stamp_before(std::uint32_t age_s) const noexcept {
-    if (age_s >= now_) return kOfBefore + 1;
-    return static_cast<std::uint16_t>((now_ - age_s + 1) << kKindBits);
+    if (age_s >= clock_.now) return kOfBefore + 1;
+    return static_cast<std::uint16_t>((clock_.now - age_s + 1) << kKindBits);
 }
 
 void VoxelAges::confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "common/time.hpp"
 #include "host/core/bricks/brick_stamps.hpp"
@@ -32,7 +33,27 @@ class VoxelAges {
     /// many seconds.
     static constexpr std::uint32_t kAgeMax_s = 8191;
 
-    [[nodiscard]] bool has_begun() const noexcept { return has_begun_; }
+    /// What the clock is made of, for a snapshot of it.
+    struct Clock {
+        bool has_begun = false;
+        bool waits = false;           ///< the time that comes next begins a scale of its own
+        std::int64_t runs_for_s = 0;  ///< whole seconds since it began
+        std::int64_t waited_s = 0;    ///< of those, since it waits
+        std::int64_t zero_s = 0;      ///< of the host's time, at which it would show 0
+        std::uint32_t now = 0;        ///< what it shows, from 1 on: a stamp of 0 is none
+        friend bool operator==(const Clock&, const Clock&) = default;
+    };
+
+    VoxelAges() = default;
+    /// Goes on with the clock and the stamps of others; the caller has checked them (`fault_of`).
+    VoxelAges(const Clock& clock, StampTree stamps) noexcept : clock_(clock), stamps_(std::move(stamps)) {}
+    [[nodiscard]] const Clock& clock() const noexcept { return clock_; }
+    /// Whether a clock can have come to be so. O(1).
+    [[nodiscard]] static bool is_possible(const Clock& clock) noexcept;
+    /// Whether a voxel can have this stamp by that clock, which is possible; 0 is none, and is possible.
+    [[nodiscard]] static bool is_possible(std::uint16_t stamp, const Clock& clock) noexcept;
+
+    [[nodiscard]] bool has_begun() const noexcept { return clock_.has_begun; }
     /// Time goes on to `now`, or, the first time, begins. Measurements come late by fractions of a second:
     /// the clock waits for what is earlier by up to `kBackMax_s`; beyond, the time is another one from then
     /// on, and ages go on from what they were. True if it is another second than before. Throws
@@ -42,10 +63,22 @@ class VoxelAges {
     /// The time that comes next is ahead by this of the one so far, and none of it has passed. To whole
     /// seconds.
     void leap(Nanoseconds by) noexcept;
+    /// Of a map that was saved: the time that comes next begins a scale of its own, and ages go on from what
+    /// they were and from what `wait` adds to them.
+    void begin_to_wait() noexcept {
+        clock_.waits = true;
+        clock_.waited_s = 0;
+    }
+    /// So many seconds have passed since `begin_to_wait`, in all. Nothing unless the clock waits and has
+    /// begun, or if as many or more were added already. True if ages grew. Throws as `go_on`.
+    bool wait(std::int64_t seconds);
+    /// How long ago anything was seen is not known any more: all stamps are as of before the clock, which
+    /// begins anew. Throws std::bad_alloc, and then nothing is changed.
+    void forget_times();
 
     /// What a voxel that is confirmed now is given. The lower, the weaker: earlier, of another sensor.
     [[nodiscard]] std::uint16_t stamp(SensorKind kind) const noexcept {
-        return static_cast<std::uint16_t>((now_ << kKindBits) | static_cast<std::uint16_t>(kind));
+        return static_cast<std::uint16_t>((clock_.now << kKindBits) | static_cast<std::uint16_t>(kind));
     }
     /// Of a voxel that was there when the clock began: nobody knows since when. Lower than all but 0.
     static constexpr std::uint16_t kOfBefore = 1U << 2U;
@@ -54,7 +87,7 @@ class VoxelAges {
     /// Stamps below this one are `age_s` old or older, up to kAgeMax_s; 0 and kOfBefore always are.
     [[nodiscard]] std::uint16_t stamp_before(std::uint32_t age_s) const noexcept;
     /// Whole seconds since the clock began.
-    [[nodiscard]] std::int64_t runs_for_s() const noexcept { return runs_for_s_; }
+    [[nodiscard]] std::int64_t runs_for_s() const noexcept { return clock_.runs_for_s; }
 
     /// Confirms voxels of a brick. Throws std::bad_alloc, and then nothing is changed. About 50 ns, and as
     /// much as a copy of the brick if a copy has it, too, and anything changes.
@@ -99,7 +132,13 @@ class VoxelAges {
   private:
     static constexpr unsigned kKindBits = 2;
     static constexpr std::uint32_t kNowMax = (1U << (16 - kKindBits)) - 1;
+    /// Changes every stamp that is there; `change` keeps their order. Throws std::bad_alloc, and then nothing
+    /// is changed.
+    template <class Change>
+    void change_stamps(const Change& change);
     void bring_up(std::uint32_t by);
+    /// Makes the clock show so much more, `passed_s` above 0. Throws std::bad_alloc; then it shows the same.
+    void advance(std::int64_t passed_s);
     void begin_agenda();
     /// The earliest stamp; 0 if no voxel has one.
     [[nodiscard]] std::uint16_t oldest_in(MortonCode brick) const noexcept;
@@ -111,10 +150,7 @@ class VoxelAges {
         if (agenda_.is_kept()) agenda_.put(brick, with);
     }
 
-    bool has_begun_ = false;
-    std::int64_t runs_for_s_ = 0;
-    std::int64_t zero_s_ = 0;  ///< of the host's time, at which the clock would show 0
-    std::uint32_t now_ = 0;    ///< what the clock shows, from 1 on: a stamp of 0 is none
+    Clock clock_;
     StampTree stamps_;
     ExpiryAgenda agenda_;  ///< of each brick that has stamps, once somebody asked
 };

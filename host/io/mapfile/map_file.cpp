@@ -1,17 +1,15 @@
 #include "host/io/mapfile/map_file.hpp"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
-#include <cerrno>
 #include <limits>
 #include <new>
-#include <system_error>
 
 #include "host/io/mapfile/atomic_file.hpp"
 #include "host/io/mapfile/octomap_header.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "host/io/mapfile/ply_writer.hpp"
+#include "host/io/mapfile/whole_file.hpp"
 
 namespace octoskin {
 namespace {
@@ -29,30 +27,6 @@ std::uint64_t file_bytes_max_of(const MapConfig& config) {
 Unexpected<MapFileError> fail(const std::filesystem::path& file, const std::string& what,
                               bool is_too_large = false) {
     return unexpected(MapFileError{fmt::format("{}: {}", file.string(), what), is_too_large});
-}
-
-Unexpected<MapFileError> fail_with_errno(const std::filesystem::path& file, const char* step) {
-    return fail(file, fmt::format("{} failed ({})", step, std::generic_category().message(errno)));
-}
-
-Result<std::string, MapFileError> read_bytes(const FilePlace& file, std::uint64_t bytes_max) {
-    const auto opened = file.open();
-    if (!opened) {
-        const FolderError& error = opened.error();
-        if (error.fault == FolderFault::not_a_file) return fail(file.shown(), "not a regular file");
-        if (error.fault == FolderFault::link) return unexpected(MapFileError{error.message(), false});
-        return fail(file.shown(), fmt::format("opening failed ({})", error.reason()));
-    }
-    struct stat status {};
-    if (::fstat(opened->descriptor(), &status) != 0) return fail_with_errno(file.shown(), "looking at it");
-    const auto size = static_cast<std::uint64_t>(status.st_size);
-    if (size > bytes_max)
-        return fail(file.shown(), fmt::format("{} bytes, the limit is {}", size, bytes_max), true);
-    auto bytes = opened->read(size);
-    if (!bytes) return fail(file.shown(), fmt::format("reading failed ({})", bytes.error().reason()));
-    if (bytes->size() < size) return fail(file.shown(), "became shorter while it was read");
-    bytes->resize(size);  // what was added since is of another save
-    return std::move(*bytes);
 }
 
 }  // namespace
@@ -81,8 +55,8 @@ std::string describe_other_voxels(const std::filesystem::path& file, double map_
 
 Result<LoadedMap, MapFileError> load_map(const FilePlace& file, const MapReadLimits& limits,
                                          std::uint64_t file_bytes_max) {
-    const auto bytes = read_bytes(file, file_bytes_max);
-    if (!bytes) return unexpected(bytes.error());
+    const auto bytes = read_whole_file(file, file_bytes_max);
+    if (!bytes) return unexpected(MapFileError{bytes.error().message, bytes.error().is_too_large});
     auto map = decode_octomap(*bytes, limits);
     if (!map) {
         const MapFault fault = map.error().fault;

@@ -326,6 +326,55 @@ TEST(DatedMap, forgets_times_with_counts_where_they_decide_what_is_known) {
     EXPECT_TRUE(passing.is_stale(key_at(0)));
 }
 
+TEST(DatedMap, that_was_saved_grows_older_by_what_it_is_given_until_its_first_measurement) {
+    FusedMap map(aging(10, 0));
+    EXPECT_FALSE(map.wait(5)) << "it has no time";
+    map.go_on(at_s(100));
+    feed(map, one(key_at(0), 1.0F));
+    EXPECT_FALSE(map.wait(5)) << "it goes on";
+    map.begin_to_wait();
+    EXPECT_TRUE(map.wait(3));
+    EXPECT_FALSE(map.wait(3)) << "in all";
+    EXPECT_FALSE(map.wait(2));
+    EXPECT_TRUE(map.wait(8));
+    EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 8));
+    EXPECT_FALSE(map.is_stale(key_at(0)));
+    map.go_on(at_s(5'000'000));  // of another scale
+    EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 8));
+    EXPECT_FALSE(map.wait(100)) << "it has begun";
+    map.go_on(at_s(5'000'002));
+    EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 10));
+    EXPECT_TRUE(map.is_stale(key_at(0)));
+    map.begin_to_wait();
+    EXPECT_TRUE(map.wait(std::int64_t{1} << 40U));
+    EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, VoxelAges::kAgeMax_s));
+}
+
+TEST(DatedMap, forgets_while_it_waits_what_no_sensor_has_seen_for_too_long) {
+    FusedMap map(aging(10, 20));
+    map.go_on(at_s(0));
+    feed(map, one(key_at(0), 1.0F));
+    map.begin_to_wait();
+    EXPECT_TRUE(map.wait(19));
+    EXPECT_EQ(map.known_voxels(), 1U);
+    EXPECT_TRUE(map.wait(21));
+    EXPECT_EQ(map.known_voxels(), 0U);
+}
+
+TEST(DatedMap, without_its_times_has_all_voxels_stale_and_forgets_them_as_it_would_a_files) {
+    FusedMap map(aging(10, 20));
+    map.go_on(at_s(100));
+    feed(map, one(key_at(0), 1.0F));
+    map.forget_times();
+    map.go_on(at_s(3));
+    EXPECT_FALSE(map.confirmation(key_at(0)));
+    EXPECT_TRUE(map.is_stale(key_at(0)));
+    map.go_on(at_s(22));
+    EXPECT_EQ(map.known_voxels(), 1U);
+    map.go_on(at_s(24));
+    EXPECT_EQ(map.known_voxels(), 0U);
+}
+
 // Oracle: a std::map of times and kinds, the same terms without a clock for the log-odds.
 TEST(DatedMap, equals_a_time_and_a_kind_kept_for_each_voxel) {
     struct Dated {

@@ -1,0 +1,44 @@
+#include "host/io/snapshot/snapshot_file.hpp"
+
+#include <fmt/format.h>
+
+#include <new>
+#include <string>
+#include <utility>
+
+#include "host/io/mapfile/whole_file.hpp"
+
+namespace octoskin {
+namespace {
+
+/// Log-odds, counts and times come to less than twice the log-odds' share; readings to far less than the
+/// rest.
+std::uint64_t file_bytes_max_of(const MapConfig& config) {
+    return (std::uint64_t{config.memory_max_mib} << 21U) + (std::uint64_t{64} << 20U);
+}
+
+}  // namespace
+
+Status<SaveError> save_snapshot(const MapState& state, const SnapshotOrigin& origin, const FilePlace& file) {
+    return save_atomically(file, [&](const ByteSink& sink) { write_snapshot(state, origin, sink); });
+}
+
+Result<Snapshot, SnapshotError> load_snapshot(const FilePlace& file, const MappingConfig& mapping,
+                                              std::uint32_t mapping_crc32) try {
+    const auto bytes = read_whole_file(file, file_bytes_max_of(mapping.map));
+    if (!bytes) {
+        const bool is_too_large = bytes.error().is_too_large;
+        return unexpected(SnapshotError{is_too_large ? SnapshotFault::no_room : SnapshotFault::no_snapshot,
+                                        bytes.error().message});
+    }
+    auto snapshot = decode_snapshot(*bytes, mapping, mapping_crc32);
+    if (!snapshot)
+        return unexpected(SnapshotError{snapshot.error().fault,
+                                        fmt::format("{}: {}", file.shown().string(), snapshot.error().what)});
+    return snapshot;
+} catch (const std::bad_alloc&) {
+    return unexpected(
+        SnapshotError{SnapshotFault::no_room, file.shown().string() + ": there is no memory to read it"});
+}
+
+}  // namespace octoskin

@@ -1,0 +1,25 @@
+// Snapshots as files.
+#pragma once
+
+#include <cstdint>
+
+#include "common/result.hpp"
+#include "host/io/folder/file_place.hpp"
+#include "host/io/mapfile/atomic_file.hpp"
+#include "host/io/snapshot/snapshot.hpp"
+
+namespace octoskin {
+
+/// At every instant the file is the old one or the new one, whole. Blocks as long as the disk takes. Throws
+/// std::bad_alloc.
+[[nodiscard]] Status<SaveError> save_snapshot(const MapState& state, const SnapshotOrigin& origin,
+                                              const FilePlace& file);
+
+/// As decode_snapshot; errors begin with the file's name. Takes the file's size of memory besides the map's.
+/// A file that cannot be read is `no_snapshot`; without memory for it, or larger than any that was saved with
+/// this configuration, it is `no_room`.
+[[nodiscard]] Result<Snapshot, SnapshotError> load_snapshot(const FilePlace& file,
+                                                            const MappingConfig& mapping,
+                                                            std::uint32_t mapping_crc32);
+
+}  // namespace octoskin

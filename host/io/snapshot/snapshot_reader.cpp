@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "host/io/snapshot/blocks.hpp"
+#include "host/io/snapshot/brick_records.hpp"
+#include "host/io/snapshot/reading_records.hpp"
+#include "host/io/snapshot/snapshot.hpp"
+
+namespace octoskin {
+namespace {
+
+using namespace snapshot;
+
+/// What a mapping file may say is no more.
+constexpr float kLogOddsMax = 100.0F;
+
+bool is_log_odds(float value) {
+    if (std::isnan(value))
+        return std::bit_cast<std::uint32_t>(value) == std::bit_cast<std::uint32_t>(kUnknownLogOdds);
+    return std::fabs(value) <= kLogOddsMax;
+}
+
+bool is_count(float value) {
+    return std::isfinite(value) && value >= 0.0F;
+}
+
+std::size_t known_voxels_of(const BrickTree& log_odds) {
+    std::size_t known = 0;
+    log_odds.for_each([&](MortonCode, const BrickView& view) {
+        for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) known += std::isnan(view.at(cell)) ? 0U : 1U;
+    });
+    return known;
+}
+
+/// Counts are in the same bricks; what else was known there is in some of them.
+bool are_of_one_layer(const CountLayer& counts) {
+    bool are = counts.hits.bricks() == counts.misses.bricks();
+    counts.misses.for_each([&](MortonCode brick, const BrickView&) { are = are && counts.has(brick); });
+    counts.prior.for_each([&](MortonCode brick, const BrickView&) { are = are && counts.has(brick); });
+    return are;
+}
+
+class Decoder {
+  public:
+    Decoder(std::string_view bytes, const MappingConfig& mapping, std::uint32_t mapping_crc32)
+        : bytes_(bytes), mapping_(mapping), mapping_crc32_(mapping_crc32), blocks_(bytes) {}
+
+    Result<Snapshot, SnapshotError> decode() {
+        if (!blocks_.has_magic()) return no_snapshot();
+        while (!is_done_) {
+            const auto block = blocks_.next();
+            if (!block) return fail(SnapshotFault::damaged, blocks_.at(), "no whole and undamaged block");
+            if (has_head_ == (block->kind == BlockKind::head))
+                return fail(SnapshotFault::damaged, block->at, "not one head, and that first");
+            if (const auto taken = take(*block); !taken) return unexpected(taken.error());
+        }
+        if (!blocks_.is_over()) return fail(SnapshotFault::damaged, blocks_.at(), "more behind the end");
+        FusedMap map(mapping_.map, std::move(layers_), has_undated_);
+        return Snapshot{origin_, {std::move(map), std::move(readings_)}};
+    }
+
+  private:
+    using Taken = Status<SnapshotError>;
+
+    static Unexpected<SnapshotError> fail(SnapshotFault fault, std::size_t at, std::string_view what) {
+        return unexpected(SnapshotError{fault, fmt::format("byte {}: {}", at, what)});
+    }
+    Unexpected<SnapshotError> no_snapshot() const {
+        const std::string_view name = kMagic.substr(0, kMagic.size() - 1);
+        const bool is_other = bytes_.size() >= kMagic.size() && bytes_.starts_with(name);
+        return fail(is_other ? SnapshotFault::other_version : SnapshotFault::no_snapshot, 0,
+                    fmt::format("does not begin with '{}'", kMagic));
+    }
+
+    Taken take(const Block& block) {
+        const auto is_stamp = [this](std::uint16_t stamp) { return VoxelAges::is_possible(stamp, clock_); };
+        switch (block.kind) {
+            case BlockKind::head:
+                return take_head(block);
+            case BlockKind::log_odds:
+                return bricks(block, log_odds_.take(block.payload, is_log_odds));
+            case BlockKind::prior:
+                return bricks(block, prior_.take(block.payload, is_log_odds));
+            case BlockKind::misses:
+                return bricks(block, misses_.take(block.payload, is_count));
+            case BlockKind::hits:
+                return bricks(block, hits_.take(block.payload, is_count));
+            case BlockKind::ages:
+                return bricks(block, ages_.take(block.payload, is_stamp));
+            case BlockKind::confirmed:
+                return records(block, take_confirmed(block.payload, mapping_.standing, readings_.confirmed));
+            case BlockKind::seen:
+                return records(block, take_seen(block.payload, readings_.seen));
+            case BlockKind::done:
+                return take_done(block);
+        }
+        return records(block, false);
+    }
+    static Taken records(const Block& block, bool are_taken) {
+        if (are_taken) return Done{};
+        return fail(SnapshotFault::damaged, block.at,
+                    fmt::format("the block {} has a record that cannot be", tag_of(block.kind)));
+    }
+    Taken bricks(const Block& block, BricksRead read) const {
+        if (read != BricksRead::no_room) return records(block, read == BricksRead::all);
+        return fail(SnapshotFault::no_room, block.at,
+                    fmt::format("it needs more memory than the {} MiB of map.memory_max_mib",
+                                mapping_.map.memory_max_mib));
+    }
+
+    Taken take_head(const Block& block) {
+        ByteReader reader(block.payload);
+        origin_.mapping_crc32 = reader.get<std::uint32_t>();
+        const auto resolution_m = reader.get<double>();
+        const bool has_map = reader.get_flag();
+        const auto map_crc32 = reader.get<std::uint32_t>();
+        if (has_map) origin_.map_crc32 = map_crc32;
+        const bool has_time = reader.get_flag();
+        BootTime time;
+        for (std::uint8_t& byte : time.boot) byte = reader.get<std::uint8_t>();
+        time.since_boot = Nanoseconds{reader.get<std::int64_t>()};
+        if (has_time) origin_.map_time = time;
+        has_undated_ = reader.get_flag();
+        clock_.has_begun = reader.get_flag();
+        clock_.waits = reader.get_flag();
+        clock_.runs_for_s = reader.get<std::int64_t>();
+        clock_.waited_s = reader.get<std::int64_t>();
+        clock_.zero_s = reader.get<std::int64_t>();
+        clock_.now = reader.get<std::uint32_t>();
+        has_head_ = true;
+        const bool is_possible = reader.is_sound() && reader.is_over() && VoxelAges::is_possible(clock_) &&
+                                 time.since_boot >= Nanoseconds{0};
+        if (!is_possible) return records(block, false);
+        if (resolution_m != mapping_.map.resolution_m)
+            return fail(SnapshotFault::other_mapping, block.at,
+                        fmt::format("its voxels are {} m, the mapping's are {} m", resolution_m,
+                                    mapping_.map.resolution_m));
+        if (origin_.mapping_crc32 != mapping_crc32_)
+            return fail(SnapshotFault::other_mapping, block.at,
+                        fmt::format("it belongs to the mapping of CRC-32 {:08x}, the one in force has {:08x}",
+                                    origin_.mapping_crc32, mapping_crc32_));
+        return Done{};
+    }
+
+    Taken take_done(const Block& block) {
+        ByteReader reader(block.payload);
+        layers_.ages = VoxelAges(clock_, std::move(stamps_));
+        layers_.known_voxels = known_voxels_of(layers_.log_odds);
+        const std::uint64_t are[] = {layers_.log_odds.bricks(),      layers_.counts.prior.bricks(),
+                                     layers_.counts.misses.bricks(), layers_.counts.hits.bricks(),
+                                     layers_.ages.stamps().bricks(), zones_of(readings_.confirmed),
+                                     readings_.seen.size()};
+        bool are_all = true;
+        for (const std::uint64_t there : are) are_all = reader.get<std::uint64_t>() == there && are_all;
+        is_done_ = true;
+        return records(block,
+                       are_all && reader.is_sound() && reader.is_over() && are_of_one_layer(layers_.counts));
+    }
+
+    [[nodiscard]] std::size_t bytes_max() const noexcept {
+        return std::size_t{mapping_.map.memory_max_mib} << 20U;
+    }
+
+    std::string_view bytes_;
+    const MappingConfig& mapping_;
+    std::uint32_t mapping_crc32_;
+    BlockReader blocks_;
+    bool has_head_ = false;
+    bool is_done_ = false;
+    SnapshotOrigin origin_;
+    bool has_undated_ = false;
+    VoxelAges::Clock clock_;
+    MapLayers layers_;
+    StampTree stamps_;
+    StationaryReadings readings_;
+    BrickTaker<float> log_odds_{layers_.log_odds, bytes_max()};
+    BrickTaker<float> prior_{layers_.counts.prior, bytes_max()};
+    BrickTaker<float> misses_{layers_.counts.misses, bytes_max()};
+    BrickTaker<float> hits_{layers_.counts.hits, bytes_max()};
+    BrickTaker<std::uint16_t> ages_{stamps_, bytes_max()};
+};
+
+}  // namespace
+
+Result<Snapshot, SnapshotError> decode_snapshot(std::string_view bytes, const MappingConfig& mapping,
+                                                std::uint32_t mapping_crc32) {
+    return Decoder(bytes, mapping, mapping_crc32).decode();
+}
+
+}  // namespace octoskin
