@@ -22,8 +22,7 @@ std::uint32_t crc32_of_text(const std::string& text) {
 }
 
 RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSettings& settings,
-                        Pipeline& pipeline, const Recorder::Copier& copier) {
-    pipeline.builder().forget_counts();  // a replay begins with what a file says
+                        const Pipeline& pipeline, const Recorder::Copier& copier) {
     return {.paths = RecordingPaths(folder),
             .rig = settings.rig,
             .robot = settings.robot,
@@ -32,7 +31,7 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
                       .mapping_crc32 = crc32_of_text(settings.mapping),
                       .joints = settings.joints,
                       .first_map = std::nullopt},
-            .first_map = copier(pipeline.map())};
+            .first = {copier(pipeline.map()), pipeline.builder().readings()}};
 }
 
 /// What `add` says; false if there was no memory for it. What it was told of is on the map by then: it is

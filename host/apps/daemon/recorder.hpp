@@ -32,10 +32,11 @@ class Recorder final : public CommitListener {
   public:
     using Copier = std::function<FusedMap(const FusedMap& map)>;
 
-    /// Begins with the pipeline as it stands, at any time. `pipeline` must outlive the recording: until
-    /// `stop`. Waits for nothing: what is wrong with the folder shows in `error`. Throws std::bad_alloc if
-    /// there is no memory for a copy of the map, std::system_error if there is no thread to be had; the
-    /// pipeline then knows nothing of it.
+    /// Begins with the pipeline as it is, at any time, and changes nothing of it but its listener: the map
+    /// goes on as if nothing was recorded. `pipeline` must outlive the recording: until `stop`. Waits for
+    /// nothing: what is wrong with the folder shows in `error`. Throws std::bad_alloc if there is no memory
+    /// for a copy of the map, std::system_error if there is no thread to be had; the pipeline then knows
+    /// nothing of it.
     Recorder(const std::filesystem::path& folder, std::optional<Nanoseconds> limit,
              const RecordedSettings& settings, Pipeline& pipeline, HostTime now,
              Copier copier = &FusedMap::copy);
@@ -72,6 +73,7 @@ class Recorder final : public CommitListener {
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
     void on_depth(const DepthFrame& frame, const Evidence& terms) override;
+    void on_wait(const WaitCommit& passed) override { put(passed); }
     /// Ends it: its replay could not go on from there.
     void on_time_leap() override;
 

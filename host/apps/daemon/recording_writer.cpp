@@ -13,6 +13,7 @@
 #include "host/apps/daemon/growing_file.hpp"
 #include "host/apps/daemon/text_queue.hpp"
 #include "host/apps/recording/file_lock.hpp"
+#include "host/io/snapshot/snapshot_file.hpp"
 
 namespace octoskin {
 namespace {
@@ -79,6 +80,7 @@ class RecordingWriter::Work {
     /// True once `finish` or `drop` asks for the end.
     [[nodiscard]] bool rest();
     [[nodiscard]] Step end(RecordingEnd end);
+    [[nodiscard]] Step keep_first();
     /// Saves the map and gives its checksum; an empty one has neither file nor checksum.
     [[nodiscard]] Result<std::optional<std::uint32_t>, std::string> keep_map(const FusedMap& map,
                                                                              const FilePlace& file) const;
@@ -230,6 +232,20 @@ Result<std::optional<std::uint32_t>, std::string> RecordingWriter::Work::keep_ma
     return crc32;
 }
 
+Status<std::string> RecordingWriter::Work::keep_first() {
+    const auto map = keep_map(begin_.first.map, begin_.paths.first_map());
+    if (!map) return unexpected(map.error());
+    begin_.order.first_map = *map;
+    const FilePlace file = begin_.paths.first_state();
+    const SnapshotOrigin origin{.mapping_crc32 = begin_.order.mapping_crc32, .map_crc32 = *map};
+    if (const auto saved = save_snapshot(begin_.first, origin, file); !saved)
+        return unexpected(saved.error().message());
+    begin_.order.first_state = crc32_of(file);
+    if (!begin_.order.first_state) return unexpected(file.shown().string() + ": cannot be read again");
+    begin_.first = {FusedMap(begin_.first.map.config()), {}};  // its memory is not needed any more
+    return Done{};
+}
+
 Status<std::string> RecordingWriter::Work::begin() {
     const RecordingPaths& paths = begin_.paths;
     const std::pair<FilePlace, const std::string&> texts[] = {
@@ -237,10 +253,7 @@ Status<std::string> RecordingWriter::Work::begin() {
     for (const auto& [file, text] : texts) {
         if (const Step written = write_file(file, text); !written) return written;
     }
-    const auto first = keep_map(begin_.first_map, paths.first_map());
-    if (!first) return unexpected(first.error());
-    begin_.first_map = FusedMap(begin_.first_map.config());  // its memory is not needed any more
-    begin_.order.first_map = *first;
+    if (const Step kept = keep_first(); !kept) return kept;
     if (const Step created = can_file_.create(paths.can_log()); !created) return created;
     if (const Step created = order_file_.create(paths.order()); !created) return created;
     return order_file_.append(orderlog::format_header(begin_.order));

@@ -14,6 +14,7 @@
 #include "host/apps/recording/recording.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/mapping/fused_map.hpp"
+#include "host/core/mapping/map_state.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/orderlog/order_line.hpp"
 
@@ -25,8 +26,8 @@ struct RecordingBegin {
     std::string rig;         ///< the rig file's text; names robot.urdf
     std::string robot;       ///< the URDF's text
     std::string mapping;     ///< mapping.yaml's text
-    orderlog::Header order;  ///< but for the checksum of the first map
-    FusedMap first_map;
+    orderlog::Header order;  ///< but for the checksums of the first map and state
+    MapState first;
 };
 
 /// What it ends with.

@@ -59,8 +59,8 @@ std::vector<std::string> map_file_names() {
 
 std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording, const BytesReport& report) {
     std::vector<FilePlace> files = {recording.can_log()};
-    for (const FilePlace& file :
-         {recording.depth(), recording.depth_epoch(), recording.order(), recording.first_map()}) {
+    for (const FilePlace& file : {recording.depth(), recording.depth_epoch(), recording.order(),
+                                  recording.first_map(), recording.first_state()}) {
         if (file.is_there()) files.push_back(file);
     }
     return crc32_of(files, report);

@@ -32,7 +32,7 @@ struct MapOrigin {
 [[nodiscard]] std::vector<std::string> map_file_names();
 
 /// CRC-32 of what a recording measured: can.log, and depth.oni with its sidecar, order.log
-/// and first.ot if they are there. Rig and
+/// first.ot and first.snapshot if they are there. Rig and
 /// robot have their own. Empty if one cannot be read.
 [[nodiscard]] std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording,
                                                               const BytesReport& report = {});

@@ -11,6 +11,7 @@
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "host/io/orderlog/order_reader.hpp"
+#include "host/io/snapshot/snapshot_file.hpp"
 
 namespace octoskin {
 namespace {
@@ -30,17 +31,47 @@ std::uint32_t crc32_of_map(const FusedMap& map, decltype(write_ot) write) {
     return crc;
 }
 
+Status<AppError> check_first(const FilePlace& file, std::uint32_t crc) {
+    if (crc32_of(file) == crc) return Done{};
+    return fail(ExitCode::bad_data,
+                file.shown().string() + ": is not the one that this recording began with");
+}
+
 Result<LoadedMap, AppError> read_first_map(const PlaybackRequest& request, std::uint32_t crc) {
     const auto file = request.recording.first_map();
-    if (crc32_of(file) != crc)
-        return fail(ExitCode::bad_data,
-                    file.shown().string() + ": is not the map that this recording began with");
+    if (const auto checked = check_first(file, crc); !checked) return unexpected(checked.error());
     auto map = load_map_of(request.mapping.map, file);
     if (map) return std::move(map).value();
     const bool is_of_other_mapping = map.error().is_of_other_voxels || map.error().is_too_large;
     if (!is_of_other_mapping) return fail(ExitCode::bad_data, map.error().message);
     return fail(ExitCode::bad_config,
                 map.error().message + "; replay with the recording's own mapping, or with --by-capture-time");
+}
+
+Result<MapState, AppError> read_first_state(const PlaybackRequest& request, std::uint32_t crc,
+                                            std::uint32_t mapping_crc) {
+    const auto file = request.recording.first_state();
+    if (const auto checked = check_first(file, crc); !checked) return unexpected(checked.error());
+    auto snapshot = load_snapshot(file, request.mapping, mapping_crc);
+    if (!snapshot) return fail(ExitCode::bad_data, snapshot.error().what);
+    return std::move(snapshot->state);
+}
+
+/// Puts what the recording began with into `pipeline`. The answer: what a person should know of it.
+Result<std::vector<std::string>, AppError> begin_with_first(const PlaybackRequest& request,
+                                                            const orderlog::Header& header,
+                                                            bool has_daemons_mapping, Pipeline& pipeline) {
+    if (header.first_state && has_daemons_mapping) {
+        auto state = read_first_state(request, *header.first_state, header.mapping_crc32);
+        if (!state) return unexpected(state.error());
+        pipeline.begin_with(std::move(*state));
+        return std::vector<std::string>{};
+    }
+    if (!header.first_map) return std::vector<std::string>{};
+    auto first = read_first_map(request, *header.first_map);
+    if (!first) return unexpected(first.error());
+    pipeline.begin_with(std::move(first->map));
+    return std::move(first->warnings);
 }
 
 /// Why the map need not be the daemon's; empty if it must be.
@@ -106,19 +137,16 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
                     fmt::format("{}: has {} joints, the rig {}", request.recording.order().shown().string(),
                                 order->header().joints, rig.joints.joints.size()));
     }
-    std::vector<std::string> first_warnings;
-    if (order->header().first_map) {
-        auto first = read_first_map(request, *order->header().first_map);
-        if (!first) return unexpected(first.error());
-        first_warnings = std::move(first->warnings);
-        pipeline.begin_with(std::move(first->map));
-        if (request.listener != nullptr) request.listener->on_begin(pipeline.map());
-    }
+    const bool has_daemons_mapping =
+        order->header().mapping_crc32 == crc32_of_text(mapping_text(request.mapping));
+    auto warnings = begin_with_first(request, order->header(), has_daemons_mapping, pipeline);
+    if (!warnings) return unexpected(warnings.error());
+    if (request.listener != nullptr && pipeline.map().known_voxels() > 0)
+        request.listener->on_begin(pipeline.map());
     PacedCommits paced(*order, request.pace, begin);
     OrderedPlayback played{.outcome = replay_in_order(pipeline.builder(), paced, depth, report, begin)};
-    played.warnings = std::move(first_warnings);
-    played.has_daemons_mapping =
-        order->header().mapping_crc32 == crc32_of_text(mapping_text(request.mapping));
+    played.warnings = std::move(*warnings);
+    played.has_daemons_mapping = has_daemons_mapping;
     played.accounts = {tabulate("readings", played.outcome.readings, 0, seconds_text),
                        tabulate("joint samples", played.outcome.joint_samples, 0, seconds_text),
                        tabulate("depth frames", played.outcome.depth_frames, 0, seconds_text)};

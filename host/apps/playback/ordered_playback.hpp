@@ -23,10 +23,11 @@ struct OrderedPlayback {
 /// Whether the recording has an order.log and the request asks for nothing else.
 [[nodiscard]] bool is_played_in_order(const PlaybackRequest& request);
 
-/// Plays order.log into the maps of `pipeline`, which has been given nothing, begun with first.ot. Errors: an
-/// order.log of another version or another number of joints; a first.ot that is not the recording's, of
-/// another resolution than the mapping asks for, or of more memory. `depth`: null if there is none. `begin`:
-/// of the recording, if it is known.
+/// Plays order.log into the maps of `pipeline`, which has been given nothing, begun with first.snapshot; with
+/// first.ot where there is no snapshot, or another mapping than the daemon's was given. Errors: an order.log
+/// of another version or another number of joints; a file to begin with that is not the recording's, is
+/// damaged, of another resolution than the mapping asks for, or of more memory. `depth`: null if there is
+/// none. `begin`: of the recording, if it is known.
 [[nodiscard]] Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request,
                                                               const rig::Rig& rig, Pipeline& pipeline,
                                                               DepthSource* depth,

@@ -42,12 +42,15 @@ struct Describe {
     std::string operator()(const DepthCommit& frame) const {
         return frame.index ? fmt::format("depth frame {}", *frame.index) : "depth frame that is not recorded";
     }
+    std::string operator()(const WaitCommit&) const { return "time without a measurement"; }
 };
 
+/// Empty: it has none.
 struct TimeOf {
-    HostTime operator()(const JointMeasurement& joints) const { return joints.sampled; }
-    HostTime operator()(const RangeMeasurement& reading) const { return reading.captured; }
-    HostTime operator()(const DepthCommit& frame) const { return frame.captured; }
+    std::optional<HostTime> operator()(const JointMeasurement& joints) const { return joints.sampled; }
+    std::optional<HostTime> operator()(const RangeMeasurement& reading) const { return reading.captured; }
+    std::optional<HostTime> operator()(const DepthCommit& frame) const { return frame.captured; }
+    std::optional<HostTime> operator()(const WaitCommit&) const { return std::nullopt; }
 };
 
 }  // namespace
@@ -101,11 +104,12 @@ Result<std::optional<DepthFrame>, DepthSourceError> PacedDepth::next() {
 Result<std::optional<Commit>, CommitSourceError> PacedCommits::next() {
     auto commit = source_.next();
     if (!pace_.waits() || !commit || !commit->has_value()) return commit;
+    const auto time = std::visit(TimeOf{}, **commit);
+    if (!time) return commit;
     // A step is a reading or a frame: joint samples only say where the robot was.
     const bool is_step = !std::holds_alternative<JointMeasurement>(**commit);
-    const HostTime time = std::visit(TimeOf{}, **commit);
-    has_begun_ = has_begun_ || is_step || (begin_ && time >= *begin_);
-    if (is_step || (has_begun_ && !pace_.steps())) pace_.wait(time.ns, std::visit(Describe{}, **commit));
+    has_begun_ = has_begun_ || is_step || (begin_ && *time >= *begin_);
+    if (is_step || (has_begun_ && !pace_.steps())) pace_.wait(time->ns, std::visit(Describe{}, **commit));
     return commit;
 }
 

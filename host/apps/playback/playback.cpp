@@ -336,7 +336,7 @@ Status<AppError> check_playable(const PlaybackRequest& request) {
         return unexpected(reading_error(ExitCode::no_input, checked.error()));
     const RecordingPaths& recording = request.recording;
     for (const auto& file : {recording.can_log(), recording.meta(), recording.order(), recording.first_map(),
-                             recording.depth(), recording.depth_epoch()}) {
+                             recording.first_state(), recording.depth(), recording.depth_epoch()}) {
         if (auto refused = refused_to_read(file)) return unexpected(std::move(*refused));
     }
     return Done{};

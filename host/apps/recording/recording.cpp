@@ -100,9 +100,9 @@ RecordingMeta read_checked(const FilePlace& file) {
 }  // namespace
 
 std::vector<FilePlace> RecordingPaths::files() const {
-    std::vector<FilePlace> files{can_log(), depth(),   depth_epoch(), rig(),      robot(),
-                                 order(),   mapping(), first_map(),   last_map(), scenario(),
-                                 world(),   motion(),  meta()};
+    std::vector<FilePlace> files{can_log(),  depth(),   depth_epoch(), rig(),         robot(),
+                                 order(),    mapping(), first_map(),   first_state(), last_map(),
+                                 scenario(), world(),   motion(),      meta()};
     for (FilePlace& mesh : meshes()) files.push_back(std::move(mesh));
     return files;
 }

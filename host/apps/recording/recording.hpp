@@ -35,6 +35,8 @@ struct RecordingPaths {
     [[nodiscard]] FilePlace order() const { return file("order.log"); }
     [[nodiscard]] FilePlace mapping() const { return file("mapping.yaml"); }
     [[nodiscard]] FilePlace first_map() const { return file("first.ot"); }
+    /// All that the map and what comes after it follow from, before.
+    [[nodiscard]] FilePlace first_state() const { return file("first.snapshot"); }
     [[nodiscard]] FilePlace last_map() const { return file("last.ot"); }
     /// Of a simulation: what it happened in. Neither refers to a file outside of the recording.
     [[nodiscard]] FilePlace scenario() const { return file("scenario.yaml"); }

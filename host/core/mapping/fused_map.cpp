@@ -79,11 +79,6 @@ void FusedMap::limit(const MapConfig& config) {
     *this = std::move(next);
 }
 
-void FusedMap::forget_counts() noexcept {
-    layers_.counts = {};
-    if (config_.age.unknown_after_s > 0) layers_.ages = {};
-}
-
 void FusedMap::forget_counts_of(const Evidence& terms) {
     if (layers_.counts.empty()) return;
     for (const BrickEvidence& brick : terms.bricks) {

@@ -73,10 +73,6 @@ class FusedMap {
     /// Throws std::bad_alloc if there is no memory for as many voxels once more, if the clamps or the counts'
     /// model change; then nothing is changed.
     void limit(const MapConfig& config);
-    /// What was counted becomes log-odds like any other, and counting begins anew: what a file keeps of a
-    /// map. Where times decide what is known (`age.unknown_after_s`), they are forgotten, too, and the clock
-    /// begins anew. O(what was counted).
-    void forget_counts() noexcept;
     /// What range sensors counted in the voxels of `terms` is forgotten. Throws std::bad_alloc.
     void forget_counts_of(const Evidence& terms);
     /// Gives every voxel of a cube this value, clamped; for building a map from a file. False if there was no

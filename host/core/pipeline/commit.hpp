@@ -23,8 +23,15 @@ struct DepthCommit {
     friend bool operator==(const DepthCommit&, const DepthCommit&) = default;
 };
 
-/// A joint sample that was taken into the history, or a reading or frame that was integrated.
-using Commit = std::variant<JointMeasurement, RangeMeasurement, DepthCommit>;
+/// So many seconds passed, in all, while a map that was saved waits for its first measurement.
+struct WaitCommit {
+    std::int64_t seconds = 0;
+    friend bool operator==(const WaitCommit&, const WaitCommit&) = default;
+};
+
+/// A joint sample that was taken into the history, a reading or frame that was integrated, or time by which
+/// the map grew older without one.
+using Commit = std::variant<JointMeasurement, RangeMeasurement, DepthCommit, WaitCommit>;
 
 /// Is told of each, after it went in. What it is given is valid during the call only.
 class CommitListener {
@@ -36,6 +43,8 @@ class CommitListener {
     virtual void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                             std::span<const VoxelUpdate> updates) = 0;
     virtual void on_depth(const DepthFrame& frame, const Evidence& terms) = 0;
+    /// The map of all sensors grew older: MapBuilder::wait.
+    virtual void on_wait(const WaitCommit&) {}
     /// After each reading and frame, and after what was told of it.
     virtual void on_maps(std::span<const FedMap>) {}
     /// What comes next is told by another time, from before what came so far or far ahead of it: a replay in

@@ -82,9 +82,13 @@ void MapBuilder::begin_with(FusedMap map) {
     own_map() = std::move(map);
 }
 
-void MapBuilder::forget_counts() noexcept {
-    for (FedMap& fed : maps_) fed.map.forget_counts();
-    ranges_.forget();
+void MapBuilder::begin_with(MapState state) {
+    begin_with(std::move(state.map));
+    ranges_.go_on_with(std::move(state.readings));
+}
+
+void MapBuilder::wait(std::int64_t seconds) {
+    if (own_map().wait(seconds) && listener_ != nullptr) listener_->on_wait({seconds});
 }
 
 const FusedMap& MapBuilder::map(MapFeed feed) const noexcept {

@@ -2,6 +2,7 @@
 // maps. What it builds depends on nothing but the calls and their order: no clock, no queue, no gate.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -14,6 +15,7 @@
 #include "host/core/ingest/can_intake.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/core/kinematics/robot_model.hpp"
+#include "host/core/mapping/map_state.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/mapping/range_model.hpp"
 #include "host/core/pipeline/commit.hpp"
@@ -39,11 +41,18 @@ class MapBuilder {
     /// The map of all sensors (asserted that there is one) goes on from this one, which has the mapping's
     /// resolution (asserted).
     void begin_with(FusedMap map);
+    /// The same, with what the range sensors read before: what is given in next becomes what it would have
+    /// become where the state is from, for a rig and mapping that are equal.
+    void begin_with(MapState state);
+    /// All that the map of all sensors follows from, but for the joint samples (`for_each_joint_sample`). A
+    /// copy: O(sensors). Throws std::bad_alloc.
+    [[nodiscard]] MapState state() const { return {map().copy(), ranges_.readings()}; }
+    /// What of it the range sensors read. Throws std::bad_alloc.
+    [[nodiscard]] StationaryReadings readings() const { return ranges_.readings(); }
+    /// Of a map that waits for the time to go on: FusedMap::wait.
+    void wait(std::int64_t seconds);
     /// Other limits for it, at the same resolution (asserted).
     void limit_map(const MapConfig& config) { own_map().limit(config); }
-    /// From now on the maps are as if they had been read from files: a recording that begins here, and is
-    /// replayed from a file of the map, gives the same.
-    void forget_counts() noexcept;
     /// That map, for another builder to begin with; nothing may be given in after.
     [[nodiscard]] FusedMap take_map() { return std::move(own_map()); }
     /// `listener` is told of what goes in from now on; null: nobody is.

@@ -33,13 +33,17 @@ class Committer {
     Committer(MapBuilder& builder, DepthSource* depth, OrderedOutcome& outcome)
         : builder_(builder), depth_(depth, outcome), outcome_(outcome) {}
 
-    HostTime operator()(const JointMeasurement& joints) {
+    std::optional<HostTime> operator()(const WaitCommit& passed) {
+        builder_.wait(passed.seconds);
+        return std::nullopt;
+    }
+    std::optional<HostTime> operator()(const JointMeasurement& joints) {
         outcome_.joint_samples.now_at(joints.sampled.ns);
         outcome_.joint_samples.take_in();
         outcome_.joint_samples.settle(builder_.add(joints));
         return joints.sampled;
     }
-    HostTime operator()(const RangeMeasurement& reading) {
+    std::optional<HostTime> operator()(const RangeMeasurement& reading) {
         const bool is_of_rig = builder_.has(reading.source);
         outcome_.readings.now_at(reading.captured.ns);
         outcome_.readings.take_in();
@@ -47,7 +51,7 @@ class Committer {
                                            : unexpected(ReadingReason::unknown_sensor));
         return reading.captured;
     }
-    HostTime operator()(const DepthCommit& commit) {
+    std::optional<HostTime> operator()(const DepthCommit& commit) {
         auto frame = commit.index ? depth_.at(*commit.index) : std::nullopt;
         if (frame) {
             frame->captured = commit.captured;  // a recording of depth frames has whole microseconds
@@ -81,9 +85,10 @@ OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order, DepthSo
         auto commit = order.next();
         if (!commit) outcome.order_error = commit.error();
         if (!commit || !commit->has_value()) break;
-        outcome.now = std::visit(committer, **commit);
-        if (!outcome.begin && !std::holds_alternative<JointMeasurement>(**commit))
-            outcome.begin = outcome.now;
+        const auto time = std::visit(committer, **commit);
+        if (time) outcome.now = time;
+        if (!outcome.begin && time && !std::holds_alternative<JointMeasurement>(**commit))
+            outcome.begin = time;
         if (++outcome.commits % kReplayReportEvery == 0) tell();
     }
     tell();

@@ -11,7 +11,8 @@
 namespace octoskin::orderlog {
 namespace {
 
-constexpr std::string_view kSchema = "octoskin-order/1";
+constexpr std::string_view kSchema = "octoskin-order/2";
+constexpr std::string_view kSchemaBefore = "octoskin-order/1";  ///< begins with first.ot alone
 constexpr std::string_view kNone = "-";
 
 /// Takes words off a line, one blank between two; is_sound stays false once one was not as asked for.
@@ -75,6 +76,7 @@ class Words {
 
 /// As late as a clock of nanoseconds may be without its sums overflowing: 146 years.
 constexpr std::int64_t kTimeMax = std::numeric_limits<std::int64_t>::max() / 2;
+constexpr std::int64_t kWaitMax = kTimeMax / 1'000'000'000;
 
 std::string crc_or_none(const std::optional<std::uint32_t>& crc) {
     return crc ? fmt::format("{:08x}", *crc) : std::string(kNone);
@@ -118,6 +120,10 @@ RangeMeasurement parse_reading(Words& words) {
     return reading;
 }
 
+std::string format(const WaitCommit& passed) {
+    return fmt::format("W {}\n", passed.seconds);
+}
+
 DepthCommit parse_depth(Words& words) {
     const auto index = words.optional_number<std::uint64_t>();
     return {index, {words.number(kTimeMax)}};
@@ -126,13 +132,16 @@ DepthCommit parse_depth(Words& words) {
 }  // namespace
 
 std::string format_header(const Header& header) {
-    return fmt::format("{} rig {:08x} mapping {:08x} joints {} first {}\n", kSchema, header.rig_hash,
-                       header.mapping_crc32, header.joints, crc_or_none(header.first_map));
+    const auto& state = header.first_state;
+    return fmt::format("{} rig {:08x} mapping {:08x} joints {} first {}{}\n", state ? kSchema : kSchemaBefore,
+                       header.rig_hash, header.mapping_crc32, header.joints, crc_or_none(header.first_map),
+                       state ? fmt::format(" state {:08x}", *state) : "");
 }
 
 std::string format_commit(const Commit& commit, std::size_t joints) {
     if (const auto* const sample = std::get_if<JointMeasurement>(&commit)) return format(*sample, joints);
     if (const auto* const reading = std::get_if<RangeMeasurement>(&commit)) return format(*reading);
+    if (const auto* const passed = std::get_if<WaitCommit>(&commit)) return format(*passed);
     return format(std::get<DepthCommit>(commit));
 }
 
@@ -145,7 +154,8 @@ std::string format_trailer(const Trailer& trailer) {
 std::optional<Header> parse_header(std::string_view line) {
     Words words(line);
     Header header;
-    words.expect(kSchema);
+    const bool is_of_before = line.starts_with(kSchemaBefore);
+    words.expect(is_of_before ? kSchemaBefore : kSchema);
     words.expect("rig");
     header.rig_hash = words.crc();
     words.expect("mapping");
@@ -154,6 +164,10 @@ std::optional<Header> parse_header(std::string_view line) {
     header.joints = words.number<std::size_t>(wire::kJointsPerSample);
     words.expect("first");
     header.first_map = words.optional_crc();
+    if (!is_of_before) {
+        words.expect("state");
+        header.first_state = words.crc();
+    }
     if (!words.is_sound() || header.joints == 0) return std::nullopt;
     return header;
 }
@@ -165,6 +179,7 @@ std::optional<Commit> parse_commit(std::string_view line, std::size_t joints) {
     if (line[0] == 'J') commit = parse_joints(words, joints);
     if (line[0] == 'R') commit = parse_reading(words);
     if (line[0] == 'D') commit = parse_depth(words);
+    if (line[0] == 'W') commit = WaitCommit{words.number(kWaitMax)};
     return words.is_sound() ? commit : std::nullopt;
 }
 

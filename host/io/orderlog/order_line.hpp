@@ -1,16 +1,19 @@
 // One line of order.log:
 //
-//     octoskin-order/1 rig 1a2b3c4d mapping 1a2b3c4d joints 7 first 1a2b3c4d      the first line
+//     octoskin-order/2 rig 1a2b3c4d mapping 1a2b3c4d joints 7 first 1a2b3c4d state 1a2b3c4d    the first line
 //     J 71000000000 0.1 -0.2 0 0 0 0 0        joint sample: taken at (ns), radians, one for each of `joints`
 //     R 2 3 0 71003000000 0.734 0.021         reading: node, sensor, zone, captured at (ns), range and sigma
 //                                             in metres; range "-": no target
 //     D 12 71010000000                        depth frame: its place in depth.oni, from 0, captured at (ns);
 //                                             "-": it is not there
+//     W 12                                    the map, which was saved, waits for its first measurement: so
+//                                             many seconds have passed by now
 //     # anything                              for people
 //     end commits 3 lost_can 0 lost_commits 0 lost_depth 0 last 1a2b3c4d          the last line
 //
 // Times are on the clock that SYNC tells. Numbers are the shortest decimals that give the same double again.
-// CRC-32 (zlib's) of: the mapping in full, first.ot and last.ot; `rig` is the rig's hash; "-": an empty map.
+// CRC-32 (zlib's) of: the mapping in full, first.ot, first.snapshot (`state`) and last.ot; `rig` is the rig's
+// hash; "-": an empty map. Version 1 has neither `state` nor W: what it begins with is first.ot alone.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +30,9 @@ namespace octoskin::orderlog {
 struct Header {
     std::uint32_t rig_hash = 0;
     std::uint32_t mapping_crc32 = 0;
-    std::size_t joints = 0;                  ///< 1..7
-    std::optional<std::uint32_t> first_map;  ///< CRC-32 of first.ot; empty: the map was empty
+    std::size_t joints = 0;                         ///< 1..7
+    std::optional<std::uint32_t> first_map;         ///< CRC-32 of first.ot; empty: the map was empty
+    std::optional<std::uint32_t> first_state = {};  ///< CRC-32 of first.snapshot; empty: of version 1
     friend bool operator==(const Header&, const Header&) = default;
 };
 
@@ -44,7 +48,7 @@ struct Trailer {
     friend bool operator==(const Trailer&, const Trailer&) = default;
 };
 
-/// Each with its line feed.
+/// Each with its line feed. A header without `first_state` is one of version 1.
 [[nodiscard]] std::string format_header(const Header& header);
 [[nodiscard]] std::string format_commit(const Commit& commit, std::size_t joints);
 [[nodiscard]] std::string format_trailer(const Trailer& trailer);

@@ -11,7 +11,8 @@ Result<OrderReader, CommitSourceError> OrderReader::open(const FilePlace& file) 
     const auto header = reader.read_line() ? parse_header(reader.line_) : std::nullopt;
     if (!header) {
         return reader.failure(
-            "does not begin as an order of this version, 'octoskin-order/1'; move the file away to replay in "
+            "does not begin as an order of this version, 'octoskin-order/2' or "
+            "'octoskin-order/1'; move the file away to replay in "
             "the order of capture times");
     }
     reader.header_ = *header;

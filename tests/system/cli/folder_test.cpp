@@ -28,25 +28,11 @@ using testing::HasSubstr;
 using Names = std::vector<std::string>;
 
 /// What an octoskin writes, whatever the folder.
-const Names kFileNames = {"can.log",
-                          "depth.oni",
-                          "depth.epoch.yaml",
-                          "rig.yaml",
-                          "robot.urdf",
-                          "meta.yaml",
-                          "order.log",
-                          "mapping.yaml",
-                          "first.ot",
-                          "last.ot",
-                          "lock",
-                          "fused.ot",
-                          "fused.bt",
-                          "fused.ply",
-                          "maps.yaml",
-                          ".journal",
-                          "report.html",
-                          "metrics.json",
-                          ".fused.ot.octoskin-part"};
+const Names kFileNames = {"can.log",    "depth.oni",      "depth.epoch.yaml", "rig.yaml",
+                          "robot.urdf", "meta.yaml",      "order.log",        "mapping.yaml",
+                          "first.ot",   "first.snapshot", "last.ot",          "lock",
+                          "fused.ot",   "fused.bt",       "fused.ply",        "maps.yaml",
+                          ".journal",   "report.html",    "metrics.json",     ".fused.ot.octoskin-part"};
 
 class FolderWalk : public ProgramTest {
   protected:

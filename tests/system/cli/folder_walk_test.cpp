@@ -34,9 +34,9 @@ struct Walk {
     const char* from = "rec";          ///< what the folder is made of
 };
 
-const std::vector<std::string> kRead{"can.log",    "depth.oni", "depth.epoch.yaml", "rig.yaml",
-                                     "robot.urdf", "meta.yaml", "order.log",        "mapping.yaml",
-                                     "first.ot",   "last.ot",   ".octoskin-ready"};
+const std::vector<std::string> kRead{"can.log",    "depth.oni",      "depth.epoch.yaml", "rig.yaml",
+                                     "robot.urdf", "meta.yaml",      "order.log",        "mapping.yaml",
+                                     "first.ot",   "first.snapshot", "last.ot",          ".octoskin-ready"};
 const std::vector<std::string> kMaps{
     "maps",           "maps/depth.ot",  "maps/proximity.bt",   "maps/fused.ot",
     "maps/fused.ply", "maps/maps.yaml", "maps/.octoskin-ready"};

@@ -168,8 +168,9 @@ TEST_F(RecordingTest, what_lies_in_a_files_place_and_is_none_is_refused_by_name)
     for (const auto& file : {recording_.can_log(), recording_.rig(), recording_.meta()}) write(file, "x");
     ASSERT_TRUE(check_recording(recording_));
     std::ofstream(recording_.directory / "elsewhere") << "x";
-    for (const char* name : {"can.log", "rig.yaml", "meta.yaml", "robot.urdf", "depth.oni",
-                             "depth.epoch.yaml", "order.log", "mapping.yaml", "first.ot", "last.ot"}) {
+    for (const char* name :
+         {"can.log", "rig.yaml", "meta.yaml", "robot.urdf", "depth.oni", "depth.epoch.yaml", "order.log",
+          "mapping.yaml", "first.ot", "first.snapshot", "last.ot"}) {
         const auto file = recording_.directory / name;
         const auto kept = recording_.directory / "kept";
         const bool is_there = std::filesystem::exists(file);

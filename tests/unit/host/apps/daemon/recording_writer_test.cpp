@@ -48,7 +48,7 @@ class RecordingWriterTest : public testing::Test {
                 .robot = "robot text\n",
                 .mapping = "mapping text\n",
                 .order = {.rig_hash = 1, .mapping_crc32 = 2, .joints = 1, .first_map = std::nullopt},
-                .first_map = FusedMap(MapConfig{})};
+                .first = {FusedMap(MapConfig{}), {}}};
     }
     static RecordingEnd end(std::uint64_t commits) {
         RecordingMeta meta;
@@ -99,7 +99,10 @@ TEST_F(RecordingWriterTest, writes_what_came_before_the_end_and_vouches_for_it_l
     EXPECT_EQ(read("can.log"), "(1.000000) can0 001#\n");
     const auto crc = crc32_of(folder_ / "recording/last.ot");
     ASSERT_TRUE(crc);
-    EXPECT_EQ(read("order.log"), orderlog::format_header(begin().order) + "J 1 0\n# none\n" +
+    orderlog::Header header = begin().order;
+    header.first_state = crc32_of(folder_ / "recording/first.snapshot");
+    ASSERT_TRUE(header.first_state);
+    EXPECT_EQ(read("order.log"), orderlog::format_header(header) + "J 1 0\n# none\n" +
                                      orderlog::format_trailer({1, 0, 0, 0, crc}));
     EXPECT_TRUE(read_meta(RecordingPaths(folder_ / "recording")));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "recording/first.ot")) << "of an empty map";

@@ -182,20 +182,6 @@ TEST(CountingMap, loses_hits_where_every_image_sees_through) {
     EXPECT_EQ(map.layers().counts.hits.find(brick_of(key_at(0))).at(cell_of(key_at(0))), 0.0F);
 }
 
-TEST(CountingMap, forgets_counts_and_keeps_what_they_came_to) {
-    FusedMap map(map_config());
-    ConeVoxels cone;
-    cone.cap = {{key_at(0), 1.0F}};
-    cone.passed = {key_at(1)};
-    feed(map, cone, {});
-    const auto before = map.log_odds(key_at(0));
-    map.forget_counts();
-    EXPECT_EQ(map.log_odds(key_at(0)), before);
-    EXPECT_TRUE(map.layers().counts.empty());
-    feed(map, std::vector<VoxelUpdate>{{key_at(0), -0.4F}});
-    EXPECT_EQ(map.log_odds(key_at(0)), *before - 0.4F);
-}
-
 TEST(CountingMap, equals_the_arithmetic_of_every_voxel_on_its_own) {
     std::mt19937 random(7);
     std::uniform_int_distribution<int> place(0, 11);

@@ -311,21 +311,6 @@ TEST(DatedMap, has_its_times_within_a_bound_and_counts_what_has_none) {
     EXPECT_EQ(map.counters().undated, undated);
 }
 
-TEST(DatedMap, forgets_times_with_counts_where_they_decide_what_is_known) {
-    FusedMap lasting(aging(10, 0));
-    FusedMap passing(aging(10, 20));
-    for (FusedMap* map : {&lasting, &passing}) {
-        map->go_on(at_s(0));
-        feed(*map, one(key_at(0), 1.0F));
-        map->go_on(at_s(15));
-        map->forget_counts();
-        map->go_on(at_s(25));
-    }
-    EXPECT_EQ(lasting.confirmation(key_at(0)), by(SensorKind::range, 25));
-    EXPECT_FALSE(passing.confirmation(key_at(0)).has_value());
-    EXPECT_TRUE(passing.is_stale(key_at(0)));
-}
-
 TEST(DatedMap, that_was_saved_grows_older_by_what_it_is_given_until_its_first_measurement) {
     FusedMap map(aging(10, 0));
     EXPECT_FALSE(map.wait(5)) << "it has no time";

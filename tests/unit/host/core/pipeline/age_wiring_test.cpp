@@ -55,13 +55,27 @@ TEST_F(AgeWiring, forgets_what_no_sensor_has_confirmed) {
     EXPECT_GT(builder.map(MapFeed::ranges).known_voxels(), 0U);
 }
 
-TEST_F(AgeWiring, begins_anew_where_a_recording_does_if_ages_decide_what_is_known) {
-    MapBuilder builder = build({.stale_after_s = 2, .unknown_after_s = 5});
+TEST_F(AgeWiring, grows_older_while_a_saved_map_waits_and_says_so_to_a_listener) {
+    class Waits final : public CommitListener {
+      public:
+        void on_joints(const JointMeasurement&) override {}
+        void on_reading(const RangeMeasurement&, const Beam&, std::span<const VoxelUpdate>) override {}
+        void on_depth(const DepthFrame&, const Evidence&) override {}
+        void on_wait(const WaitCommit& passed) override { seconds.push_back(passed.seconds); }
+        std::vector<std::int64_t> seconds;
+    };
+    MapBuilder builder = build({.stale_after_s = 20, .unknown_after_s = 0});
     ASSERT_TRUE(builder.integrate(flat_frame(3.5)));
-    const std::size_t known = builder.map().known_voxels();
-    builder.forget_counts();
-    read_at(builder, 8.1);
-    EXPECT_GE(builder.map().known_voxels(), known);
+    MapState saved = builder.state();
+    saved.map.begin_to_wait();
+    builder.begin_with(std::move(saved));
+    Waits waits;
+    builder.tell(&waits);
+    for (const std::int64_t seconds : {0, 1, 1, 4}) builder.wait(seconds);
+    EXPECT_GT(confirmed(builder.map(), SensorKind::camera, 4), 100U);
+    read_at(builder, 100.0);
+    builder.wait(9);
+    EXPECT_EQ(waits.seconds, (std::vector<std::int64_t>{1, 4}));
 }
 
 }  // namespace

@@ -33,6 +33,8 @@ std::string without_feed(std::string line) {
 std::vector<std::string> sound_lines() {
     return {"octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 2 first 1a2b3c4d",
             "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 2 first -",
+            "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 first - state 1a2b3c4d",
+            "W 12",
             "J 71000000000 0.1 -0.25",
             "R 2 3 0 71003000000 0.734 0.021",
             "R 2 3 0 71003000000 - 0",
@@ -57,6 +59,12 @@ TEST(OrderLine, says_what_the_documentation_shows) {
     EXPECT_EQ(format_commit(DepthCommit{12, {71'010'000'000}}, 2), "D 12 71010000000\n");
     EXPECT_EQ(format_header({0x1a2b3c4d, 1, 2, std::nullopt}),
               "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 2 first -\n");
+    EXPECT_EQ(format_header({0x1a2b3c4d, 1, 2, std::nullopt, 0xAU}),
+              "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 first - state 0000000a\n");
+    EXPECT_EQ(parse_header("octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 first - state 0000000a"),
+              (Header{0x1a2b3c4d, 1, 2, std::nullopt, 0xAU}));
+    EXPECT_EQ(format_commit(WaitCommit{12}, 2), "W 12\n");
+    EXPECT_EQ(parse_commit("W 12", 2), Commit(WaitCommit{12}));
     EXPECT_EQ(format_trailer({3, 0, 0, 1, 0x1a2b3c4dU}),
               "end commits 3 lost_can 0 lost_commits 0 lost_depth 1 last 1a2b3c4d\n");
     for (const std::string& line : sound_lines()) EXPECT_TRUE(is_any(line)) << line;
@@ -92,13 +100,30 @@ TEST(OrderLine, refuses_every_line_that_was_cut_or_lengthened) {
 }
 
 TEST(OrderLine, refuses_what_is_no_number_of_the_field) {
-    for (const char* line :
-         {"J 71 nan 0", "J 71 inf 0", "J -1 0 0", "J 9223372036854775807 0 0", "J 71 0", "R 256 0 0 71 1 0",
-          "R 1 0 0 71 nan 0", "R 1 0 0 71 1 inf", "R -1 0 0 71 1 0", "R 1 0 0 71 1e400 0", "D -1 71",
-          "D 1.5 71", "D 0x1 71", "X 1 71", "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 first -",
-          "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 8 first -",
-          "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 0 first -",
-          "octoskin-order/1 rig 1a2b mapping 00000001 joints 2 first -"}) {
+    for (const char* line : {"J 71 nan 0",
+                             "J 71 inf 0",
+                             "J -1 0 0",
+                             "J 9223372036854775807 0 0",
+                             "J 71 0",
+                             "R 256 0 0 71 1 0",
+                             "R 1 0 0 71 nan 0",
+                             "R 1 0 0 71 1 inf",
+                             "R -1 0 0 71 1 0",
+                             "R 1 0 0 71 1e400 0",
+                             "D -1 71",
+                             "D 1.5 71",
+                             "D 0x1 71",
+                             "X 1 71",
+                             "W -1",
+                             "W 1.5",
+                             "W 9223372036854775807",
+                             "W",
+                             "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 2 first - state 1a2b3c4d",
+                             "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 first - state -",
+                             "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 first -",
+                             "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 8 first -",
+                             "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 0 first -",
+                             "octoskin-order/1 rig 1a2b mapping 00000001 joints 2 first -"}) {
         EXPECT_FALSE(is_any(line)) << line;
     }
 }

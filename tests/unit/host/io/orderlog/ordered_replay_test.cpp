@@ -7,9 +7,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "host/io/mapfile/octomap_reader.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "host/io/orderlog/order_line.hpp"
+#include "host/io/snapshot/snapshot.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
 
 namespace octoskin {
@@ -31,6 +31,7 @@ class Keeper final : public CommitListener {
         frames.push_back(frame);
         frames.back().captured.ns += 999;  // the order's time counts, not that of the frame's recording
     }
+    void on_wait(const WaitCommit& passed) override { put(passed); }
     void put(const Commit& commit) { text += orderlog::format_commit(commit, kJoints); }
 
     std::string text;
@@ -59,8 +60,11 @@ Scene live_scene() {
     return scene;
 }
 
+constexpr std::uint32_t kMapping = 1;
+
 struct Recorded {
     std::string first_ot;
+    std::string first_state;
     std::string last_ot;
     Keeper keeper;
 };
@@ -73,8 +77,8 @@ Recorded record(const Scene& scene, std::size_t begin, std::size_t end) {
     auto depth = scene.depth.begin();
     for (std::size_t i = 0; i < end; ++i) {
         if (i == begin) {
-            pipeline.builder().forget_counts();
             recorded.first_ot = encode_ot(pipeline.map());
+            recorded.first_state = encode_snapshot(pipeline.builder().state(), {.mapping_crc32 = kMapping});
             pipeline.builder().for_each_joint_sample(
                 [&](const JointMeasurement& joints) { recorded.keeper.put(joints); });
             pipeline.tell(&recorded.keeper);
@@ -88,13 +92,13 @@ Recorded record(const Scene& scene, std::size_t begin, std::size_t end) {
     return recorded;
 }
 
-MapBuilder make_builder(const Scene& scene, const std::string& first_ot) {
+MapBuilder make_builder(const Scene& scene, const std::string& first_state) {
     MapBuilder builder =
         MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, scene.config.joints, scene.config.maps)
             .value();
-    auto first = decode_octomap(first_ot, {.map = scene.mapping.map});
-    EXPECT_TRUE(first);
-    builder.begin_with(std::move(first->map));
+    auto first = decode_snapshot(first_state, scene.mapping, kMapping);
+    EXPECT_TRUE(first) << first.error().what;
+    builder.begin_with(std::move(first->state));
     return builder;
 }
 
@@ -109,7 +113,7 @@ std::size_t frame_at(const Scene& scene, double time_s) {
 void expect_live_map_from_any_moment_on(const Scene& scene) {
     for (const double begin_s : {0.0, 3.55, 3.99}) {
         const Recorded recorded = record(scene, frame_at(scene, begin_s), scene.bus.frames().size());
-        MapBuilder builder = make_builder(scene, recorded.first_ot);
+        MapBuilder builder = make_builder(scene, recorded.first_state);
         TextSource order(recorded.keeper.text);
         ScriptedDepth depth(recorded.keeper.frames);
         const OrderedOutcome outcome = replay_in_order(builder, order, &depth);
@@ -137,6 +141,34 @@ TEST(OrderedReplay, gives_the_live_map_where_sensors_see_a_cone) {
     expect_live_map_from_any_moment_on(scene);
 }
 
+TEST(OrderedReplay, gives_the_live_map_where_a_saved_one_waits_for_its_first_measurement) {
+    Scene scene = live_scene();
+    scene.depth.clear();
+    scene.mapping.map.age = {.stale_after_s = 10, .unknown_after_s = 12};
+    Pipeline before = make_pipeline(scene);
+    for (const StampedFrame& entry : scene.bus.frames()) before.on_can(entry.frame, entry.stamp);
+    MapState saved = before.builder().state();
+    ASSERT_GT(saved.map.known_voxels(), 0U);
+    saved.map.begin_to_wait();
+    Pipeline pipeline = make_pipeline(scene);
+    pipeline.begin_with(std::move(saved));
+    pipeline.wait(4);
+    const std::string first = encode_snapshot(pipeline.builder().state(), {.mapping_crc32 = kMapping});
+    Keeper keeper;
+    pipeline.tell(&keeper);
+    const auto expect_same = [&] {
+        MapBuilder builder = make_builder(scene, first);
+        TextSource order(keeper.text);
+        EXPECT_TRUE(replay_in_order(builder, order, nullptr).took_all());
+        EXPECT_TRUE(encode_snapshot(builder.state(), {}) == encode_snapshot(pipeline.builder().state(), {}));
+    };
+    for (const std::int64_t seconds : {4, 5, 8, 11}) pipeline.wait(seconds);
+    EXPECT_EQ(keeper.text, "W 5\nW 8\nW 11\n");
+    expect_same();
+    for (const StampedFrame& entry : scene.bus.frames()) pipeline.on_can(entry.frame, entry.stamp);
+    expect_same();
+}
+
 TEST(OrderedReplay, needs_the_first_map_and_the_joint_samples_before_it) {
     Scene scene = live_scene();
     scene.depth.clear();
@@ -144,12 +176,12 @@ TEST(OrderedReplay, needs_the_first_map_and_the_joint_samples_before_it) {
     const Recorded recorded = record(scene, frame_at(scene, 3.6), count);  // among the readings
     ASSERT_TRUE(recorded.first_ot != recorded.last_ot);
     const Recorded unrecorded = record(scene, 0, 1);
-    MapBuilder without_map = make_builder(scene, unrecorded.first_ot);
+    MapBuilder without_map = make_builder(scene, unrecorded.first_state);
     TextSource order(recorded.keeper.text);
     ScriptedDepth depth(recorded.keeper.frames);
     EXPECT_TRUE(replay_in_order(without_map, order, &depth).took_all());
     EXPECT_TRUE(encode_ot(without_map.map()) != recorded.last_ot);
-    MapBuilder without_past = make_builder(scene, recorded.first_ot);
+    MapBuilder without_past = make_builder(scene, recorded.first_state);
     const std::size_t first_committed = recorded.keeper.text.find_first_of("RD");
     TextSource later(recorded.keeper.text.substr(first_committed));
     ScriptedDepth again(recorded.keeper.frames);
@@ -161,7 +193,7 @@ TEST(OrderedReplay, begins_where_the_recording_does_and_not_with_the_joint_sampl
     const std::string text = "J 1000000000 0\nJ 3010000000 0\nJ 3020000000 0\nR 1 0 0 3015000000 0.52 0.01\n";
     for (const auto& [told, begin_ns] : {std::pair{std::optional<HostTime>(), 3'015'000'000},
                                          std::pair{std::optional(HostTime{3'012'000'000}), 3'012'000'000}}) {
-        MapBuilder builder = make_builder(scene, record(scene, 0, 1).first_ot);
+        MapBuilder builder = make_builder(scene, record(scene, 0, 1).first_state);
         TextSource order(text);
         const OrderedOutcome outcome = replay_in_order(builder, order, nullptr, {}, told);
         EXPECT_EQ(outcome.begin, HostTime{begin_ns});
@@ -171,7 +203,7 @@ TEST(OrderedReplay, begins_where_the_recording_does_and_not_with_the_joint_sampl
 
 TEST(OrderedReplay, says_what_it_could_not_take) {
     const Scene scene = live_scene();
-    MapBuilder builder = make_builder(scene, record(scene, 0, 1).first_ot);
+    MapBuilder builder = make_builder(scene, record(scene, 0, 1).first_state);
     TextSource order(
         "J 1000000000 0\nJ 1000000000 0\nJ 1010000000 0\n"  // the second is not later
         "R 77 0 0 1005000000 0.52 0.01\n"                   // no node of the rig

@@ -1,0 +1,178 @@
+// Recording a daemon's map changes nothing of it: two of them on the same frames, one of which is recorded.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "common/wire/crc.hpp"
+#include "host/apps/daemon/record_requests.hpp"
+#include "host/apps/daemon/settings.hpp"
+#include "host/apps/querying/query_answer.hpp"
+#include "host/io/mapfile/octomap_writer.hpp"
+#include "host/io/snapshot/snapshot_file.hpp"
+#include "tests/system/daemon/daemon_fixture.hpp"
+#include "tests/system/said.hpp"
+
+namespace octoskin::test {
+namespace {
+
+using testing_support::ScratchFolder;
+
+constexpr const char* kCones = OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment_cone.yaml";
+
+/// What a daemon does with frames, without its sockets and clocks.
+class DaemonOnFrames {
+  public:
+    explicit DaemonOnFrames(const std::string& configuration)
+        : settings_(read_settings(request(configuration)).value()),
+          pipeline_(make_pipeline(request(configuration), settings_).value()) {}
+
+    void on_can(const StampedFrame& entry) {
+        requests_.on_can(entry.frame, entry.stamp);
+        pipeline_.on_can(entry.frame, entry.stamp);
+    }
+    void on_depth(const DepthFrame& frame) { pipeline_.on_depth(frame); }
+    nlohmann::json record(const std::string& arguments, HostTime now) {
+        return nlohmann::json::parse(
+            requests_.answer("record " + arguments, settings_.recorded, pipeline_, now));
+    }
+    void finish() { requests_.finish(Nanoseconds{20'000'000'000}); }
+
+    [[nodiscard]] std::optional<HostTime> now() const { return pipeline_.now(); }
+    [[nodiscard]] const FusedMap& map() const { return pipeline_.map(); }
+    [[nodiscard]] bool has_readings() const {
+        const StationaryReadings readings = pipeline_.builder().readings();
+        return !readings.confirmed.empty() && !readings.seen.empty();
+    }
+    [[nodiscard]] std::string state() const { return encode_snapshot(pipeline_.builder().state(), {}); }
+    /// What a recording began with, as `state` has it.
+    [[nodiscard]] std::string state_in(const std::string& file) const {
+        const std::string& text = settings_.recorded.mapping;
+        const auto mapping_crc32 = crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+        const auto snapshot = load_snapshot(file, settings_.mapping, mapping_crc32);
+        EXPECT_TRUE(snapshot) << snapshot.error().what;
+        return snapshot ? encode_snapshot(snapshot->state, {}) : std::string();
+    }
+    /// To a posture, and to the way there from another one.
+    [[nodiscard]] std::vector<std::string> answers() const {
+        const std::vector<double> upright{0.0, 0.0, 0.0, -0.1, 0.0, 1.6, 0.0};
+        const std::vector<double> aside{0.8, 0.3, 0.0, -1.6, 0.0, 1.9, 0.0};
+        std::vector<std::string> answers;
+        using Path = std::vector<std::vector<double>>;
+        for (const Path& path : {Path{upright}, Path{upright, aside}}) {
+            QueryRequest asked;
+            asked.path = path;
+            FusedMap map = pipeline_.map().copy();
+            map.go_on(*now());
+            QueryGround ground{
+                &settings_.host.rig, &settings_.host.robot, std::move(map), upright, nullptr, true};
+            auto answer = answer_query(asked, std::move(ground));
+            answer.erase("took_us");
+            answers.push_back(answer.dump());
+        }
+        return answers;
+    }
+
+  private:
+    static DaemonRequest request(const std::string& configuration) {
+        DaemonRequest request;
+        request.rig = kCones;
+        request.configuration = configuration;
+        return request;
+    }
+
+    Settings settings_;
+    Pipeline pipeline_;
+    RecordRequests requests_;
+};
+
+/// A wall that stands in a part of the image, and leaves it.
+DepthFrame image_at(HostTime captured, int number) {
+    DepthFrame frame;
+    frame.width = 512;
+    frame.height = 424;
+    frame.captured = captured;
+    frame.depth_mm.assign(frame.width * frame.height, 0);
+    for (std::size_t i = 0; i < frame.depth_mm.size(); ++i)
+        if (i % frame.width < 40) frame.depth_mm[i] = number % 8 < 4 ? 3'000 : 2'500;
+    return frame;
+}
+
+struct Look {
+    const char* mapping;
+    std::int64_t begin_s;  ///< of the recording
+};
+
+class Looking : public testing::TestWithParam<Look> {
+  protected:
+    static const std::vector<StampedFrame>& log() {
+        static const std::vector<StampedFrame> log = make_log(rig::read_rig(kCones).value());
+        return log;
+    }
+    ScratchFolder folder_;
+};
+
+TEST_P(Looking, changes_nothing_and_the_replay_gives_the_same_bytes) {
+    const std::string configuration = folder_.write("mapping.yaml", GetParam().mapping).string();
+    DaemonOnFrames recorded(configuration);
+    DaemonOnFrames alone(configuration);
+    const std::string out = (folder_ / "recording").string();
+    const std::string taken = (folder_ / "taken").string();
+    std::filesystem::create_directory(taken);
+    (void)folder_.write("taken/file", "");
+    std::int64_t first_ns = 0;
+    std::int64_t second = 0;
+    int images = 0;
+    int compared = 0;
+    bool had_counts = false;
+    std::string first_state;
+    for (const StampedFrame& entry : log()) {
+        for (DaemonOnFrames* daemon : {&recorded, &alone}) daemon->on_can(entry);
+        const auto now = alone.now();
+        if (!now) continue;
+        if (first_ns == 0) first_ns = now->ns;
+        const std::int64_t passed_ns = now->ns - first_ns;
+        if (passed_ns / 250'000'000 > images) {
+            ++images;
+            for (DaemonOnFrames* daemon : {&recorded, &alone}) daemon->on_depth(image_at(*now, images));
+        }
+        if (passed_ns / 1'000'000'000 == second) continue;
+        second = passed_ns / 1'000'000'000;
+        if (second == GetParam().begin_s - 1) {
+            EXPECT_FALSE(recorded.record("start 0 " + taken, *now)["ok"].get<bool>());
+        }
+        if (second == GetParam().begin_s) {
+            first_state = recorded.state();
+            had_counts = !recorded.map().layers().counts.empty() && recorded.has_readings();
+            const auto answer = recorded.record("start 0 " + out, *now);
+            ASSERT_TRUE(answer["ok"].get<bool>()) << answer;
+        }
+        ++compared;
+        EXPECT_TRUE(recorded.state() == alone.state()) << "in second " << second;
+        EXPECT_TRUE(encode_ot(recorded.map()) == encode_ot(alone.map())) << "in second " << second;
+        EXPECT_EQ(recorded.answers(), alone.answers()) << "in second " << second;
+    }
+    EXPECT_GE(compared, 9);
+    EXPECT_TRUE(had_counts);
+    EXPECT_TRUE(recorded.record("stop", *alone.now())["ok"].get<bool>());
+    recorded.finish();
+    EXPECT_TRUE(recorded.state_in(out + "/first.snapshot") == first_state);
+    for (const char* maps : {" --fused-only", ""}) {
+        const Said replay = octoskin("replay " + out + maps);
+        EXPECT_EQ(replay.exit_code, 0) << replay.output;
+        EXPECT_NE(replay.output.find("the daemon's own, byte for byte"), std::string::npos) << replay.output;
+        EXPECT_TRUE(ScratchFolder::read(out + "/maps/fused.ot") == encode_ot(alone.map())) << maps;
+    }
+}
+
+// The others forget within the log what no sensor confirms.
+INSTANTIATE_TEST_SUITE_P(Mappings, Looking,
+                         testing::Values(Look{"base: fast\n", 3},
+                                         Look{"base: fast\nage: {stale_after_s: 2, unknown_after_s: 4}\n", 3},
+                                         Look{"base: fast\nage: {stale_after_s: 2, unknown_after_s: 4}\n",
+                                              6}));
+
+}  // namespace
+}  // namespace octoskin::test
