@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/wall_time.hpp"
+#include "host/apps/daemon/boot_clock.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/depth_thread.hpp"
@@ -64,6 +65,9 @@ struct Daemon::Parts {
     void tell_problems();
     void go_where_home_is(std::optional<OpenFolder> next);
     [[nodiscard]] std::optional<HostTime> maps_silent_since(HostTime now) const;
+    void go_on_with(KeptMap kept);
+    /// Of the map, for the next start.
+    [[nodiscard]] SnapshotOrigin origin_of_map();
     void save_map();
     std::string save_last_map(HostTime end);
     std::uint64_t settle_pipeline();
@@ -101,6 +105,7 @@ struct Daemon::Parts {
     ProblemLog problem_log;
     RegisterLog register_log;
     LastUsed last_used;
+    MapTime map_time;
 
     std::vector<EventSource> sources;
 };
@@ -165,14 +170,25 @@ Status<AppError> Daemon::Parts::take_folder() {
     if (!taken) return unexpected(taken.error());
     keeper.emplace(NamedFolder(taken->folder()));
     home.emplace(std::move(taken).value());
-    auto saved = keeper->load(settings.mapping.map);
+    auto saved = keeper->load(settings.mapping, settings.recorded.mapping_crc32());
     if (!saved) return unexpected(saved.error());
-    if (!saved->has_value()) return Done{};
-    LoadedMap& loaded = **saved;
-    for (const std::string& warning : loaded.warnings) spdlog::warn("{}", warning);
-    spdlog::info("going on with the saved map: {} known voxels", loaded.map.known_voxels());
-    pipeline.begin_with(std::move(loaded.map));
+    if (saved->has_value()) go_on_with(std::move(**saved));
     return Done{};
+}
+
+/// Its ages grow by what passed since it was saved, here and until its first measurement.
+void Daemon::Parts::go_on_with(KeptMap kept) {
+    for (const std::string& warning : kept.warnings) spdlog::warn("{}", warning);
+    const auto passed_s = map_time.begin_with(kept.map, kept.map_time);
+    spdlog::info(
+        "going on with the saved map: {} known voxels, {}", kept.map.known_voxels(),
+        passed_s ? fmt::format("{} s older", *passed_s) : "all of them stale: how old they are is not known");
+    pipeline.begin_with(std::move(kept.map));
+}
+
+SnapshotOrigin Daemon::Parts::origin_of_map() {
+    map_time.note(pipeline.map());
+    return {.mapping_crc32 = settings.recorded.mapping_crc32(), .map_time = map_time.map_time()};
 }
 
 void Daemon::Parts::watch() {
@@ -205,6 +221,8 @@ void Daemon::Parts::attend() {
     inputs.attend();
     recordings.attend(monotonic_now());
     last_used.note(pipeline, monotonic_now());
+    if (const auto passed_s = map_time.since_saved()) pipeline.wait(*passed_s);
+    map_time.note(pipeline.map());
     if (reload_pace.is_due(monotonic_now())) begin_reload();
     tell_problems();
     for (const std::string& line : register_log.news(pipeline.intake().nodes())) spdlog::info("{}", line);
@@ -235,7 +253,8 @@ std::optional<HostTime> Daemon::Parts::maps_silent_since(HostTime now) const {
 }
 
 void Daemon::Parts::save_map() {
-    (void)keeper->save(pipeline.map());  // counted if one is at work still; the next is not far
+    (void)keeper->save(pipeline.map(),
+                       origin_of_map());  // counted if one is at work still; the next is not far
 }
 
 /// Why it could not be saved by `end`; empty: it is saved.
@@ -249,7 +268,8 @@ std::string Daemon::Parts::save_last_map(HostTime end) {
                       : std::string(what);
     };
     if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long for the save before");
-    keeper->save_last(pipeline.take_map());
+    const SnapshotOrigin origin = origin_of_map();
+    keeper->save_last(pipeline.take_map(), origin);
     if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long");
     return keeper->record().error;
 }

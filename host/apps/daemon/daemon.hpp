@@ -21,7 +21,7 @@ class Daemon {
     ~Daemon();
 
     /// Until SIGTERM or SIGINT; then the map is saved, and it returns within 5 s, saved or not; with a map of
-    /// over 64 MiB 59 ms later for each MiB beyond, at most. SIGHUP reads rig, robot and mapping again: all
+    /// over 64 MiB 134 ms later for each MiB beyond, at most. SIGHUP reads rig, robot and mapping again: all
     /// of them, or none.
     [[nodiscard]] ExitCode run();
 

@@ -13,7 +13,7 @@ namespace octoskin {
 Nanoseconds end_patience(std::size_t map_bytes) noexcept {
     constexpr Nanoseconds kSmallMap{3'500'000'000};
     constexpr std::size_t kSmallBytes = std::size_t{64} << 20U;
-    constexpr std::int64_t kNsPerByte = 2 * 14 * 2;  // 20 ns a byte at 50 MB/s, 1.4 bytes, twice
+    constexpr std::int64_t kNsPerByte = 2 * 32 * 2;  // 20 ns a byte at 50 MB/s, 3.2 bytes, twice
     if (map_bytes <= kSmallBytes) return kSmallMap;
     return kSmallMap + Nanoseconds{kNsPerByte * static_cast<std::int64_t>(map_bytes - kSmallBytes)};
 }

@@ -10,15 +10,18 @@
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/apps/recording/permission.hpp"
+#include "host/apps/recording/source_file.hpp"
 #include "host/io/mapfile/atomic_file.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
+#include "host/io/snapshot/snapshot_file.hpp"
 
 namespace octoskin {
 namespace {
 
 constexpr const char* kMapFile = "fused.ot";
 constexpr const char* kSmallMapFile = "fused.bt";
+constexpr const char* kSnapshotFile = "fused.snapshot";
 
 Result<LoadedMap, AppError> load_to_go_on(const MapConfig& config, const FilePlace& file) {
     const auto refuse = [&file](const std::string& why) {
@@ -46,6 +49,28 @@ bool is_of_map(const FilePlace& small_file, const FusedMap& map) {
     if (is_saved_by_octoskin(small_file)) return true;
     const auto small = load_map_of(map.config(), small_file);
     return small && encode_bt(small->map) == encode_bt(map);
+}
+
+/// Of the fused.ot beside it. The error: why it is not to be used.
+Result<Snapshot, std::string> snapshot_of_map(const NamedFolder& folder, const MappingConfig& mapping,
+                                              std::uint32_t mapping_crc32) {
+    const FilePlace file(folder, kSnapshotFile);
+    auto snapshot = load_snapshot(file, mapping, mapping_crc32);
+    if (!snapshot) return unexpected(snapshot.error().what);
+    const auto map_crc32 = crc32_of(FilePlace(folder, kMapFile));
+    if (!map_crc32 || snapshot->origin.map_crc32 != map_crc32)
+        return unexpected(file.shown().string() + ": was not saved with the fused.ot beside it");
+    return std::move(*snapshot);
+}
+
+/// `why`: no snapshot is used; empty: there is none.
+Result<KeptMap, AppError> load_alone(const MapConfig& config, const FilePlace& file, const std::string& why) {
+    auto loaded = load_to_go_on(config, file);
+    if (!loaded) return unexpected(loaded.error());
+    KeptMap kept{std::move(loaded->map), std::move(loaded->warnings)};
+    if (!why.empty())
+        kept.warnings.push_back(why + "; the map goes on from its log-odds, and all of it is stale");
+    return kept;
 }
 
 }  // namespace
@@ -79,22 +104,33 @@ MapKeeper::~MapKeeper() {
     is_busy ? thread_.detach() : thread_.join();
 }
 
-Result<std::optional<LoadedMap>, AppError> MapKeeper::load(const MapConfig& config) const {
+Result<std::optional<KeptMap>, AppError> MapKeeper::load(const MappingConfig& mapping,
+                                                         std::uint32_t mapping_crc32) const {
     const FilePlace file(work_->folder, kMapFile);
     const FilePlace small_file(work_->folder, kSmallMapFile);
     // What cannot be seen may be there: beginning anew would overwrite it.
+    const bool has_file = file.is_there();
     const bool has_small_file = small_file.is_there();
-    if (!file.is_there() && !has_small_file) return std::optional<LoadedMap>{};
-    auto loaded = load_to_go_on(config, file.is_there() ? file : small_file);
-    if (!loaded) return unexpected(loaded.error());
-    if (file.is_there() && has_small_file && !is_of_map(small_file, loaded->map)) {
+    if (!has_file && !has_small_file) return std::optional<KeptMap>{};
+    auto kept = has_file ? load_with(mapping, mapping_crc32) : load_alone(mapping.map, small_file, {});
+    if (!kept) return unexpected(kept.error());
+    if (has_file && has_small_file && !is_of_map(small_file, kept->map)) {
         return fail(ExitCode::bad_data,
                     small_file.shown().string() +
                         ": is another map than fused.ot beside it, octoskin did not save it, and the next "
                         "save would replace it. Move it away to go on with fused.ot, or move fused.ot away "
                         "to go on with it");
     }
-    return std::optional(std::move(loaded).value());
+    return std::optional(std::move(*kept));
+}
+
+Result<KeptMap, AppError> MapKeeper::load_with(const MappingConfig& mapping,
+                                               std::uint32_t mapping_crc32) const {
+    const FilePlace file(work_->folder, kMapFile);
+    if (!FilePlace(work_->folder, kSnapshotFile).is_there()) return load_alone(mapping.map, file, {});
+    auto snapshot = snapshot_of_map(work_->folder, mapping, mapping_crc32);
+    if (!snapshot) return load_alone(mapping.map, file, snapshot.error());
+    return KeptMap{std::move(snapshot->state.map), {}, true, snapshot->origin.map_time};
 }
 
 void MapKeeper::move_to(NamedFolder folder) {
@@ -102,7 +138,7 @@ void MapKeeper::move_to(NamedFolder folder) {
     work_->folder = std::move(folder);
 }
 
-bool MapKeeper::save(const FusedMap& map) {
+bool MapKeeper::save(const FusedMap& map, const SnapshotOrigin& origin) {
     {
         const std::lock_guard lock(work_->mutex);
         work_->record.skipped += work_->is_busy ? 1U : 0U;
@@ -112,7 +148,7 @@ bool MapKeeper::save(const FusedMap& map) {
     try {
         FusedMap copy = copier_(map);  // takes long, so nobody is kept waiting for the lock
         const std::lock_guard lock(work_->mutex);
-        work_->waiting.emplace(std::move(copy));
+        work_->waiting.emplace(Save{std::move(copy), origin});
     } catch (const std::bad_alloc&) {
         constexpr unsigned kMib = 20;
         end_save(*work_, fmt::format("no memory for a copy of its {} MiB: lower map.memory_max_mib, or give "
@@ -124,13 +160,13 @@ bool MapKeeper::save(const FusedMap& map) {
     return true;
 }
 
-void MapKeeper::save_last(FusedMap map) {
+void MapKeeper::save_last(FusedMap map, const SnapshotOrigin& origin) {
     {
         const std::lock_guard lock(work_->mutex);
         assert(!work_->is_busy);
         work_->is_busy = true;
         work_->record.saving_since = monotonic_now();
-        work_->waiting.emplace(std::move(map));
+        work_->waiting.emplace(Save{std::move(map), origin});
     }
     work_->changed.notify_all();
 }
@@ -150,16 +186,16 @@ void MapKeeper::work(Work& shared) {
     while (true) {  // until the destructor says so
         shared.changed.wait(lock, [&shared] { return shared.waiting || shared.is_ending; });
         if (shared.is_ending) return;
-        std::optional<FusedMap> map = std::exchange(shared.waiting, std::nullopt);
+        std::optional<Save> save = std::exchange(shared.waiting, std::nullopt);
         const NamedFolder folder = shared.folder;
         lock.unlock();
         std::string error;
         try {
-            error = shared.writer(*map, folder);
+            error = shared.writer(save->map, save->origin, folder);
         } catch (const std::exception& thrown) {  // no memory for the file's text
             error = fmt::format("{}: {}", folder.shown().string(), thrown.what());
         }
-        map.reset();
+        save.reset();
         end_save(shared, std::move(error));
         lock.lock();
     }
@@ -177,11 +213,16 @@ void MapKeeper::end_save(Work& shared, std::string error) {
     shared.changed.notify_all();
 }
 
-std::string MapKeeper::write_map(const FusedMap& map, const NamedFolder& folder) {
+std::string MapKeeper::write_map(const FusedMap& map, const SnapshotOrigin& origin,
+                                 const NamedFolder& folder) {
     for (const char* file : {kMapFile, kSmallMapFile}) {
         if (const auto saved = save_map(map, {folder, file}); !saved) return saved.error().message;
     }
-    return {};
+    // Last: until then the one that is there belongs to another fused.ot, and is not used.
+    SnapshotOrigin of_map = origin;
+    of_map.map_crc32 = crc32_of(FilePlace(folder, kMapFile));
+    const auto saved = save_snapshot({map.copy(), {}}, of_map, {folder, kSnapshotFile});
+    return saved ? std::string() : saved.error().message();
 }
 
 }  // namespace octoskin

@@ -10,13 +10,14 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "host/apps/recording/app_error.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/io/folder/file_place.hpp"
-#include "host/io/mapfile/octomap_reader.hpp"
+#include "host/io/snapshot/snapshot.hpp"
 
 namespace octoskin {
 
@@ -33,26 +34,40 @@ struct SaveRecord {
     std::optional<HostTime> saving_since = {};  ///< the save that is at work; empty: none is
 };
 
+/// A map to go on with.
+struct KeptMap {
+    FusedMap map;
+    std::vector<std::string> warnings;  ///< for a person
+    /// With counts and times, from a snapshot; else log-odds alone, and how old they are is not known.
+    bool is_whole = false;
+    std::optional<BootTime> map_time = {};  ///< of a whole one: when its time was what it is
+};
+
 class MapKeeper {
   public:
-    /// What writes a map into the folder; the answer is empty, or why it could not.
-    using Writer = std::function<std::string(const FusedMap& map, const NamedFolder& folder)>;
+    /// What writes a map into the folder; the answer is empty, or why it could not. `origin`: but for the
+    /// checksum of the .ot.
+    using Writer = std::function<std::string(const FusedMap& map, const SnapshotOrigin& origin,
+                                             const NamedFolder& folder)>;
 
     using Copier = std::function<FusedMap(const FusedMap& map)>;
 
-    /// `folder` gets fused.ot and fused.bt; it must be this process's own (FolderLock). What a dead process
-    /// left of a save there is removed.
+    /// `folder` gets fused.ot, fused.bt and fused.snapshot; it must be this process's own (FolderLock). What
+    /// a dead process left of a save there is removed.
     explicit MapKeeper(NamedFolder folder, Writer writer = write_map, Copier copier = &FusedMap::copy);
     /// A save that the disk does not let go of is left behind: `finish` first.
     ~MapKeeper();
     MapKeeper(const MapKeeper&) = delete;
     MapKeeper& operator=(const MapKeeper&) = delete;
 
-    /// The map to go on with, checked as every foreign map: fused.ot, or fused.bt if that is all there is;
-    /// empty if neither is there. An error names the file, what is wrong with it and what to do. Any map that
-    /// a keeper with this memory_max_mib saved has room. Refused is, too, what the next save would destroy:
-    /// colours of voxels, and a fused.bt that neither octoskin saved nor fused.ot holds.
-    [[nodiscard]] Result<std::optional<LoadedMap>, AppError> load(const MapConfig& config) const;
+    /// The map to go on with: fused.snapshot, if that belongs to `mapping`, whose text has this checksum, and
+    /// was saved with the fused.ot that is there; else, with a warning that names the reason, fused.ot,
+    /// checked as every foreign map, or fused.bt if that is all there is; empty if neither is there. An error
+    /// names the file, what is wrong with it and what to do. Any map that a keeper with this memory_max_mib
+    /// saved has room. Refused is, too, what the next save would destroy: colours of voxels, and a fused.bt
+    /// that neither octoskin saved nor fused.ot holds.
+    [[nodiscard]] Result<std::optional<KeptMap>, AppError> load(const MappingConfig& mapping,
+                                                                std::uint32_t mapping_crc32 = 0) const;
 
     /// From the next save on maps go into this folder; it must be this process's own. One that is being
     /// written goes where it was to go.
@@ -61,17 +76,22 @@ class MapKeeper {
     /// Copies the map and has the copy saved, never waiting for the disk. While one is being saved nothing is
     /// copied, and false is the answer: there is one copy at a time. False, too, if there is no memory for
     /// it: counted as failed, and the next save is tried as if nothing had been.
-    bool save(const FusedMap& map);
+    bool save(const FusedMap& map, const SnapshotOrigin& origin = {});
     /// Saves the map itself, which needs no memory for a copy: the last save. `finish` first; asserted.
-    void save_last(FusedMap map);
+    void save_last(FusedMap map, const SnapshotOrigin& origin = {});
     /// Waits until nothing is left to save, `patience` at most; false if that was too short.
     [[nodiscard]] bool finish(Nanoseconds patience);
 
     [[nodiscard]] SaveRecord record() const;
 
-    static std::string write_map(const FusedMap& map, const NamedFolder& folder);
+    static std::string write_map(const FusedMap& map, const SnapshotOrigin& origin,
+                                 const NamedFolder& folder);
 
   private:
+    struct Save {
+        FusedMap map;
+        SnapshotOrigin origin;
+    };
     /// What the thread needs, for as long as it needs it: it may outlive the keeper.
     struct Work {
         Work(NamedFolder folder_in, Writer writer_in)
@@ -80,11 +100,14 @@ class MapKeeper {
         Writer writer;
         std::mutex mutex;
         std::condition_variable changed;
-        std::optional<FusedMap> waiting;
+        std::optional<Save> waiting;
         bool is_busy = false;  ///< from `save` on until it is written
         bool is_ending = false;
         SaveRecord record;
     };
+    /// fused.ot is there.
+    [[nodiscard]] Result<KeptMap, AppError> load_with(const MappingConfig& mapping,
+                                                      std::uint32_t mapping_crc32) const;
     static void work(Work& shared);
     static void end_save(Work& shared, std::string error);
 

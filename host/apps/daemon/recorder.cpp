@@ -9,17 +9,12 @@
 #include <span>
 #include <utility>
 
-#include "common/wire/crc.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/version/version.hpp"
 #include "host/io/openni2/oni_writer.hpp"
 
 namespace octoskin {
 namespace {
-
-std::uint32_t crc32_of_text(const std::string& text) {
-    return crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
 
 RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSettings& settings,
                         const Pipeline& pipeline, const Recorder::Copier& copier) {
@@ -28,7 +23,7 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
             .robot = settings.robot,
             .mapping = settings.mapping,
             .order = {.rig_hash = settings.rig_hash,
-                      .mapping_crc32 = crc32_of_text(settings.mapping),
+                      .mapping_crc32 = settings.mapping_crc32(),
                       .joints = settings.joints,
                       .first_map = std::nullopt},
             .first = {copier(pipeline.map()), pipeline.builder().readings()}};

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "common/time.hpp"
+#include "common/wire/crc.hpp"
 #include "host/apps/daemon/recording_writer.hpp"
 #include "host/core/pipeline/pipeline.hpp"
 #include "host/io/candump/log_line.hpp"
@@ -25,6 +26,10 @@ struct RecordedSettings {
     std::uint32_t rig_hash = 0;
     std::size_t joints = 0;
     std::string interface;
+    /// Of the mapping's text.
+    [[nodiscard]] std::uint32_t mapping_crc32() const noexcept {
+        return crc32({reinterpret_cast<const std::uint8_t*>(mapping.data()), mapping.size()});
+    }
     friend bool operator==(const RecordedSettings&, const RecordedSettings&) = default;
 };
 

@@ -10,13 +10,21 @@
 #include <new>
 #include <thread>
 
+#include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
+#include "host/io/snapshot/snapshot.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
 namespace {
 
 constexpr Nanoseconds kPatience{30'000'000'000};  // a busy machine, under the thread sanitizer
+
+MappingConfig mapping_of(const MapConfig& map) {
+    MappingConfig mapping;
+    mapping.map = map;
+    return mapping;
+}
 
 FusedMap some_map(std::uint16_t voxels) {
     FusedMap map{MapConfig{}};
@@ -83,27 +91,102 @@ TEST(MapKeeper, loads_what_it_saved) {
     {
         std::filesystem::create_directory(folder / "maps");
         MapKeeper keeper(folder / "maps");
-        EXPECT_FALSE(keeper.load(MapConfig{}).value().has_value());
+        EXPECT_FALSE(keeper.load(mapping_of(MapConfig{})).value().has_value());
         EXPECT_TRUE(keeper.save(map));
         ASSERT_TRUE(keeper.finish(kPatience));
         EXPECT_EQ(keeper.record().saved, 1U);
         EXPECT_TRUE(keeper.record().newest);
     }
     const MapKeeper again(folder / "maps");
-    const auto loaded = again.load(MapConfig{});
+    const auto loaded = again.load(mapping_of(MapConfig{}));
     ASSERT_TRUE(loaded && *loaded);
     EXPECT_EQ(encode_ot((*loaded)->map), encode_ot(map));
+}
+
+/// Whose voxel was seen by a range sensor 7 s ago, and counted.
+FusedMap dated_map() {
+    FusedMap map{MapConfig{}};
+    map.go_on(HostTime{100'000'000'000});
+    ConeVoxels cone;
+    cone.cap = {{{32768, 32768, 32700}, 1.0F}};
+    for (int i = 0; i < 9; ++i) feed(map, cone, ConeModel{});
+    map.go_on(HostTime{107'000'000'000});
+    return map;
+}
+
+constexpr std::uint32_t kMapping = 5;
+
+SnapshotOrigin origin_now() {
+    return {.mapping_crc32 = kMapping, .map_time = BootTime{{1, 2, 3}, Nanoseconds{4}}};
+}
+
+TEST(MapKeeper, loads_counts_and_times_that_it_saved_and_when_that_was) {
+    const testing_support::ScratchFolder folder;
+    const FusedMap map = dated_map();
+    ASSERT_GT(map.known_voxels(), 0U);
+    MapKeeper keeper(folder.path());
+    EXPECT_TRUE(keeper.save(map, origin_now()));
+    ASSERT_TRUE(keeper.finish(kPatience));
+    EXPECT_EQ(keeper.record().error, "");
+    const auto kept = keeper.load(mapping_of(MapConfig{}), kMapping);
+    ASSERT_TRUE(kept && *kept);
+    EXPECT_TRUE((*kept)->is_whole);
+    EXPECT_TRUE((*kept)->warnings.empty());
+    EXPECT_EQ((*kept)->map_time, origin_now().map_time);
+    const auto bytes = [](const FusedMap& of) { return encode_snapshot({of.copy(), {}}, {}); };
+    EXPECT_TRUE(bytes((*kept)->map) == bytes(map));
+}
+
+TEST(MapKeeper, goes_on_with_log_odds_alone_where_the_snapshot_is_not_the_maps) {
+    const auto folder_with = [](testing_support::ScratchFolder& folder) {
+        MapKeeper keeper(folder.path());
+        EXPECT_TRUE(keeper.save(dated_map(), origin_now()));
+        EXPECT_TRUE(keeper.finish(kPatience));
+    };
+    const auto expect_alone = [](const testing_support::ScratchFolder& folder, std::uint32_t mapping_crc32,
+                                 const std::string& why) {
+        const auto kept = MapKeeper(folder.path()).load(mapping_of(MapConfig{}), mapping_crc32);
+        ASSERT_TRUE(kept && *kept) << why;
+        EXPECT_FALSE((*kept)->is_whole) << why;
+        EXPECT_FALSE((*kept)->map.layers().ages.has_begun()) << why;
+        EXPECT_EQ((*kept)->map.known_voxels(), dated_map().known_voxels()) << why;
+        ASSERT_EQ((*kept)->warnings.size(), why.empty() ? 0U : 1U) << why;
+        EXPECT_TRUE(why.empty() || (*kept)->warnings.front().find(why) != std::string::npos) << why;
+    };
+    testing_support::ScratchFolder of_another_mapping;
+    folder_with(of_another_mapping);
+    expect_alone(of_another_mapping, kMapping + 1, "belongs to the mapping");
+
+    testing_support::ScratchFolder of_another_map;
+    folder_with(of_another_map);
+    const std::string snapshot = testing_support::ScratchFolder::read(of_another_map / "fused.snapshot");
+    {
+        MapKeeper keeper(of_another_map.path());
+        FusedMap other = dated_map();
+        feed(other, std::vector<VoxelUpdate>{{{32768, 32768, 32700}, -3.0F}});
+        EXPECT_TRUE(keeper.save(other, origin_now()));
+        EXPECT_TRUE(keeper.finish(kPatience));
+    }
+    of_another_map.write("fused.snapshot", snapshot);
+    expect_alone(of_another_map, kMapping, "was not saved with the fused.ot beside it");
+
+    testing_support::ScratchFolder damaged;
+    folder_with(damaged);
+    damaged.write("fused.snapshot", snapshot.substr(0, snapshot.size() - 1));
+    expect_alone(damaged, kMapping, "no whole and undamaged block");
+    std::filesystem::remove(damaged / "fused.snapshot");
+    expect_alone(damaged, kMapping, "");
 }
 
 TEST(MapKeeper, refuses_a_damaged_map_and_one_of_another_resolution_by_name) {
     const testing_support::ScratchFolder folder;
     const MapKeeper keeper(folder.path());
     folder.write("fused.ot", "# Octomap OcTree file\nid OcTree\nsize 9\nres 0.04\ndata\nxx");
-    const auto damaged = keeper.load(MapConfig{});
+    const auto damaged = keeper.load(mapping_of(MapConfig{}));
     ASSERT_FALSE(damaged);
     EXPECT_NE(damaged.error().message.find("fused.ot"), std::string::npos);
     folder.write("fused.ot", encode_ot(some_map(10)));
-    const auto other = keeper.load(MapConfig{.resolution_m = 0.02});
+    const auto other = keeper.load(mapping_of(MapConfig{.resolution_m = 0.02}));
     ASSERT_FALSE(other);
     EXPECT_EQ(other.error().message, (folder / "fused.ot").string() +
                                          ": its voxels are 0.040000 m, the mapping's are 0.020000 m: "
@@ -121,11 +204,11 @@ TEST(MapKeeper, goes_on_with_a_bt_if_that_is_all_there_is) {
     for (const std::string& bytes : {octoskins, octomaps}) {
         const testing_support::ScratchFolder folder;
         folder.write("fused.bt", bytes);
-        const auto loaded = MapKeeper(folder.path()).load(MapConfig{});
+        const auto loaded = MapKeeper(folder.path()).load(mapping_of(MapConfig{}));
         ASSERT_TRUE(loaded) << loaded.error().message;
         ASSERT_TRUE(*loaded);
         EXPECT_EQ(encode_bt((*loaded)->map), octoskins);
-        EXPECT_EQ((*loaded)->is_octoskins, bytes == octoskins);
+        EXPECT_EQ(is_saved_by_octoskin(folder / "fused.bt"), bytes == octoskins);
         EXPECT_EQ((*loaded)->map.log_odds({32768, 32768, 32700}), 3.5F);
     }
 }
@@ -153,7 +236,7 @@ TEST(MapKeeper, refuses_what_its_next_save_would_destroy) {
         const testing_support::ScratchFolder folder;
         if (!each.ot.empty()) folder.write("fused.ot", each.ot);
         if (!each.bt.empty()) folder.write("fused.bt", each.bt);
-        const auto loaded = MapKeeper(folder.path()).load(MapConfig{.memory_max_mib = 4});
+        const auto loaded = MapKeeper(folder.path()).load(mapping_of(MapConfig{.memory_max_mib = 4}));
         EXPECT_EQ(loaded.has_value(), each.named.empty()) << each.named;
         const std::string said = loaded ? "" : loaded.error().message;
         EXPECT_NE(said.find(each.named), std::string::npos) << said;
@@ -162,14 +245,14 @@ TEST(MapKeeper, refuses_what_its_next_save_would_destroy) {
     const testing_support::ScratchFolder folder;
     folder.write("fused.ot", encode_ot(some_map(29)));
     folder.write("fused.bt", octomaps);
-    EXPECT_TRUE(MapKeeper(folder.path()).load(MapConfig{}));
+    EXPECT_TRUE(MapKeeper(folder.path()).load(mapping_of(MapConfig{})));
 }
 
 /// A disk that a test stops.
 class SlowDisk {
   public:
     [[nodiscard]] MapKeeper::Writer writer() {
-        return [this](const FusedMap& map, const NamedFolder&) {
+        return [this](const FusedMap& map, const SnapshotOrigin&, const NamedFolder&) {
             std::unique_lock lock(mutex_);
             ++begun_;
             changed_.notify_all();
@@ -244,12 +327,12 @@ TEST(MapKeeper, goes_on_after_what_there_was_no_memory_for) {
     const auto need_memory = [&has_memory] {
         if (!has_memory) throw std::bad_alloc();
     };
-    const MapKeeper::Writer write = [&](const FusedMap&, const NamedFolder&) {
+    const MapKeeper::Writer write = [&](const FusedMap&, const SnapshotOrigin&, const NamedFolder&) {
         need_memory();
         return std::string();
     };
     MapKeeper to_copy(
-        folder.path(), [](const FusedMap&, const auto&) { return std::string(); },
+        folder.path(), [](const FusedMap&, const auto&, const auto&) { return std::string(); },
         [&](const FusedMap& map) {
             need_memory();
             return map.copy();
@@ -299,7 +382,7 @@ TEST(MapKeeper, loads_any_map_that_it_saved_with_the_same_memory) {
         const FusedMap map = full_map(3, is_dense);
         EXPECT_TRUE(keeper.save(map));
         ASSERT_TRUE(keeper.finish(kPatience));
-        const auto loaded = keeper.load(map.config());
+        const auto loaded = keeper.load(mapping_of(map.config()));
         ASSERT_TRUE(loaded) << loaded.error().message;
         EXPECT_EQ((*loaded)->map.known_voxels(), map.known_voxels());
         const auto bytes = std::filesystem::file_size(folder / "fused.ot");
@@ -314,7 +397,7 @@ TEST(MapKeeper, goes_on_with_a_map_that_was_saved_with_wider_clamps) {
     EXPECT_TRUE(keeper.save(some_map(30)));
     ASSERT_TRUE(keeper.finish(kPatience));
     const MapConfig tighter{.log_odds_min = -0.1F, .log_odds_max = 0.5F};
-    const auto loaded = keeper.load(tighter);
+    const auto loaded = keeper.load(mapping_of(tighter), kMapping);
     ASSERT_TRUE(loaded) << loaded.error().message;
     EXPECT_EQ((*loaded)->map.known_voxels(), 30U);
     EXPECT_EQ((*loaded)->map.log_odds({32768, 32768, 32700}), 0.5F);
@@ -328,14 +411,14 @@ TEST(MapKeeper, says_what_to_do_about_a_map_that_was_saved_with_more_memory) {
     EXPECT_TRUE(keeper.save(full_map(4, true)));
     ASSERT_TRUE(keeper.finish(kPatience));
     for (const std::uint32_t less_mib : {1U, 3U}) {
-        const auto loaded = keeper.load(MapConfig{.memory_max_mib = less_mib});
+        const auto loaded = keeper.load(mapping_of(MapConfig{.memory_max_mib = less_mib}));
         ASSERT_FALSE(loaded);
         EXPECT_NE(loaded.error().message.find("fused.ot: it was saved with more memory than the " +
                                               std::to_string(less_mib) + " MiB of map.memory_max_mib: raise"),
                   std::string::npos)
             << loaded.error().message;
     }
-    EXPECT_TRUE(keeper.load(MapConfig{.memory_max_mib = 4}));
+    EXPECT_TRUE(keeper.load(mapping_of(MapConfig{.memory_max_mib = 4})));
 }
 
 TEST(MapKeeper, tells_which_mapping_would_not_load_the_map_again) {
@@ -346,7 +429,7 @@ TEST(MapKeeper, tells_which_mapping_would_not_load_the_map_again) {
     ASSERT_TRUE(keeper.finish(kPatience));
     for (std::uint32_t mib = 1; mib < 6; ++mib) {
         const MapConfig next{.memory_max_mib = mib};
-        EXPECT_EQ(why_no_room(map, next).empty(), keeper.load(next).has_value()) << mib;
+        EXPECT_EQ(why_no_room(map, next).empty(), keeper.load(mapping_of(next)).has_value()) << mib;
     }
     EXPECT_EQ(why_no_room(map, MapConfig{.memory_max_mib = 3}),
               "the map takes 4 MiB, and map.memory_max_mib is 3: make that 4 or more, or end the daemon and "
@@ -362,7 +445,7 @@ TEST(MapKeeper, saves_the_last_map_without_a_copy_of_it) {
     keeper.save_last(map.copy());
     ASSERT_TRUE(keeper.finish(kPatience));
     EXPECT_EQ(keeper.record().saved, 1U) << keeper.record().error;
-    const auto loaded = keeper.load(MapConfig{});
+    const auto loaded = keeper.load(mapping_of(MapConfig{}));
     ASSERT_TRUE(loaded && *loaded);
     EXPECT_EQ(encode_ot((*loaded)->map), encode_ot(map));
 }
