@@ -40,7 +40,7 @@ SenderShares::Share* SenderShares::share_of(const SenderKey& sender, HostTime no
     return lost;
 }
 
-/// The one that most is left of: who comes anew may have a sample to send.
+/// The one that most is left of: a program that comes anew may have a sample to send.
 SenderShares::Share* SenderShares::share_to_lose(HostTime now) {
     Share* found = nullptr;
     for (Share& share : shares_) {

@@ -51,8 +51,9 @@ int open_signals() {
 void hold_daemon_signals() {
     const sigset_t obeyed = set_of({SIGTERM, SIGINT, SIGQUIT, SIGHUP, SIGXCPU});
     pthread_sigmask(SIG_BLOCK, &obeyed, nullptr);
-    for (const int signal : {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT, SIGPIPE,
-                             SIGTRAP, SIGSYS})  // of these two only what is sent: a fault of that kind ends it
+    for (const int signal :
+         {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT, SIGPIPE, SIGTRAP,
+          SIGSYS})  // of these two only what is sent: a fault of that kind ends it
         ignore(signal);
     for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) ignore(signal);
     const sigset_t ours = set_of({socketcan::ShortWaits::signal()});  // another's would end calls early

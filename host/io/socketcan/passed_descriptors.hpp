@@ -10,7 +10,7 @@
 
 namespace octoskin::socketcan {
 
-/// From now on the kernel refuses them to who sends them (EPERM), at this Unix socket and at the connections
+/// From now on the kernel refuses them to their sender (EPERM), at this Unix socket and at the connections
 /// that it takes: of Linux 6.16. Before that it does nothing.
 void refuse_descriptors(int socket);
 
@@ -22,7 +22,7 @@ void refuse_descriptors(int socket);
 [[nodiscard]] ssize_t receive_text(int connection, std::span<char> bytes);
 
 /// Reads what a connection has sent until now, some 64 KiB at most: what is left unread when it is closed
-/// breaks it for who is about to read its end.
+/// breaks it for its other end, which has an answer to read.
 void read_the_rest(int connection);
 
 /// close(2) of any Unix socket, with all that waits in it; waits for none of it.

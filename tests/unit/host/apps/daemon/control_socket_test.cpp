@@ -119,7 +119,7 @@ TEST_F(OlderControlSocketTest, waits_for_no_connection_that_a_client_sends_along
     EXPECT_EQ(descriptors(), before);
 }
 
-// However many there are: there is no number from which on it lets nobody in.
+// However many there are: there is no number from which on it lets no client in.
 TEST_F(OlderControlSocketTest, answers_everybody_whatever_clients_send_along) {
     std::list<test::NestedConnection> nested;
     const int client = connect();
