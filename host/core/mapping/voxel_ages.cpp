@@ -10,6 +10,8 @@ namespace octoskin {
 namespace {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+/// More than any clock of nanoseconds has. One that runs for longer says no more than that.
+constexpr std::int64_t kSecondsMax = std::int64_t{1} << 40U;
 
 /// Towards earlier times.
 std::int64_t whole_seconds(HostTime time) {
@@ -39,7 +41,6 @@ std::uint16_t oldest_of(const StampView& view) {
 }  // namespace
 
 bool VoxelAges::is_possible(const Clock& clock) noexcept {
-    constexpr std::int64_t kSecondsMax = std::int64_t{1} << 40U;
     const auto is_time = [](std::int64_t seconds) { return seconds >= 0 && seconds <= kSecondsMax; };
     const bool are_times = is_time(clock.runs_for_s) && is_time(clock.waited_s) &&
                            clock.zero_s >= -kSecondsMax && clock.zero_s <= kSecondsMax;
@@ -80,7 +81,7 @@ void VoxelAges::advance(std::int64_t passed_s) {
     const bool is_shown = shown <= kNowMax;
     if (!is_shown) bring_up(static_cast<std::uint32_t>(std::min<std::int64_t>(shown - kAgeMax_s, kNowMax)));
     clock_.now = is_shown ? static_cast<std::uint32_t>(shown) : kAgeMax_s;
-    clock_.runs_for_s += passed_s;
+    clock_.runs_for_s = std::min(clock_.runs_for_s + passed_s, kSecondsMax);
 }
 
 bool VoxelAges::wait(std::int64_t seconds) {

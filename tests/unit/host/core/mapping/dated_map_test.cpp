@@ -333,6 +333,9 @@ TEST(DatedMap, that_was_saved_grows_older_by_what_it_is_given_until_its_first_me
     map.begin_to_wait();
     EXPECT_TRUE(map.wait(std::int64_t{1} << 40U));
     EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, VoxelAges::kAgeMax_s));
+    map.begin_to_wait();
+    EXPECT_TRUE(map.wait(std::int64_t{1} << 40U));
+    EXPECT_TRUE(VoxelAges::is_possible(map.layers().ages.clock()));
 }
 
 TEST(DatedMap, forgets_while_it_waits_what_no_sensor_has_seen_for_too_long) {
