@@ -212,8 +212,8 @@ constexpr std::array kStatusMeanings = {
             "quicker than it takes them beside the bus"},
     Meaning{
         "joints_socket", "surplus",
-        "datagrams dropped as they came, beyond 2048 a second of one program, or of a ninth program: what "
-        "the others send is taken all the same"},
+        "datagrams dropped as they came, beyond 2048 a second of one program, or of a ninth program while "
+        "eight send samples: what the others send is taken all the same"},
     Meaning{"joints_socket", "thinned",
             "samples left out, as they came sooner after the one before than the rig's rate has it: usual "
             "for a quick driver"},
