@@ -33,7 +33,7 @@ std::string harmless_message(const CLI::App* app, const CLI::Error& error) {
 int run(const octoskin::app::Program& program, int argc, char** argv) {
     using namespace octoskin;
     CLI::App app{program.description};
-    app.set_version_flag("--version", program_version());
+    app.set_version_flag("--version", program_version(program.name));
     app.require_subcommand(1);
     app.failure_message(harmless_message);
     app.footer(program.footer);

@@ -1,4 +1,4 @@
-// octoskin: the one command-line program.
+// octoskin: the product's command-line program.
 #include <unistd.h>
 
 #include <string_view>

@@ -162,6 +162,11 @@ Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording)
 Status<RecordingError> check_recording(const RecordingPaths& recording, bool is_rig_given) {
     if (const auto checked = check_folder(recording); !checked) return checked;
     if (const auto checked = check_kinds(recording); !checked) return checked;
+    // What an experiment leaves is a folder with a recording in it.
+    if (!recording.can_log().is_there() && FilePlace(recording.folder, "recording/can.log").is_there()) {
+        return failure(recording.can_log().shown(),
+                       "no such file; did you mean " + (recording.directory / "recording").string() + "?");
+    }
     const std::pair<FilePlace, const char*> needed[] = {
         {recording.can_log(), kLogMissing},
         {recording.rig(), "no such file; put the rig there, or give --rig"},

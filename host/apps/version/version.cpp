@@ -2,8 +2,8 @@
 
 namespace octoskin {
 
-std::string program_version() {
-    return std::string("octoskin " OCTOSKIN_VERSION " (commit ") + kCommit +
+std::string program_version(const std::string& program) {
+    return program + " " OCTOSKIN_VERSION " (commit " + kCommit +
            (kIsCommitChanged ? ", with changes)" : ")");
 }
 

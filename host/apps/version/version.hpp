@@ -11,6 +11,6 @@ extern const char* const kCommit;
 extern const bool kIsCommitChanged;
 
 /// "octoskin 0.1.0 (commit 0123456789ab, with changes)".
-[[nodiscard]] std::string program_version();
+[[nodiscard]] std::string program_version(const std::string& program = "octoskin");
 
 }  // namespace octoskin

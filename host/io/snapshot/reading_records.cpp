@@ -115,20 +115,20 @@ ConfirmedRanges::Zone get_zone(ByteReader& reader, const BeamSource& source, std
 }  // namespace
 
 void put_readings(BlockWriter& blocks, const StationaryReadings& readings) {
-    for (const auto& [place, sensor] : readings.confirmed) {
-        for (const auto& [index, zone] : sensor.zones) {
+    for (const auto& sensor : readings.confirmed) {
+        for (const auto& zone : sensor.second.zones) {
             blocks.add(BlockKind::confirmed, [&](ByteWriter& writer, bool) {
-                put_source(writer, {place.first, place.second, index});
-                writer.put(sensor.readings);
-                put_zone(writer, zone);
+                put_source(writer, {sensor.first.first, sensor.first.second, zone.first});
+                writer.put(sensor.second.readings);
+                put_zone(writer, zone.second);
             });
         }
     }
-    for (const auto& [source, newest] : readings.seen) {
+    for (const auto& zone : readings.seen) {
         blocks.add(BlockKind::seen, [&](ByteWriter& writer, bool) {
-            put_source(writer, source);
-            writer.put(static_cast<std::uint32_t>(newest.size()));
-            for (const auto& reading : newest) {
+            put_source(writer, zone.first);
+            writer.put(static_cast<std::uint32_t>(zone.second.size()));
+            for (const auto& reading : zone.second) {
                 put_beam(writer, reading.beam);
                 writer.put(reading.frees_m);
             }

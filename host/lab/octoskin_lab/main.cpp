@@ -23,6 +23,6 @@ void add_commands(CLI::App& app) {
 int main(int argc, char** argv) {
     return octoskin::app::run_program(
         {"octoskin-lab", "Simulates rigs down to their sensors' registers, and judges maps.", kFooter,
-         add_commands, ". The other commands are octoskin's"},
+         add_commands, ". To replay, run, query and the like: octoskin"},
         argc, argv);
 }

@@ -49,8 +49,8 @@ TEST_F(CopiedProgram, has_its_data_where_a_link_leads_and_not_in_the_working_dir
     std::filesystem::create_directories(path("data"));  // as the link has it, seen from here
     std::filesystem::create_directories(path("here"));
     std::filesystem::create_symlink("../data", path("away/share/octoskin"));
-    std::filesystem::copy_file(OCTOSKIN_PROGRAM, path("away/bin/octoskin"));
-    const Said data = run("cd " + path("here") + " && ../away/bin/octoskin simulate " + path("rec"));
+    std::filesystem::copy_file(OCTOSKIN_LAB_PROGRAM, path("away/bin/octoskin-lab"));
+    const Said data = run("cd " + path("here") + " && ../away/bin/octoskin-lab simulate " + path("rec"));
     EXPECT_EQ(data.exit_code, 78) << data.output;
     EXPECT_NE(data.output.find(path("away/data/hw")), std::string::npos) << data.output;
 }

@@ -60,7 +60,7 @@ TEST_F(DaemonTest, takes_the_frames_of_a_camera_and_goes_on_without_it) {
     EXPECT_GT(status["map"]["known_voxels"].get<int>(), 100'000);
 
     std::filesystem::remove(wall);
-    const std::string helper = "pkill -KILL -f '[o]ctoskin-camera " + wall.string() + "'";
+    const std::string helper = "pkill -KILL -f '[o]ctoskin-film " + wall.string() + "'";
     ASSERT_EQ(std::system(helper.c_str()), 0);
     const auto told = daemon_->wait_until([](const Json& now) { return has_problem(now, "camera:"); }, 3s);
     ASSERT_TRUE(told);

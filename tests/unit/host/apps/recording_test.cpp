@@ -199,5 +199,15 @@ TEST_F(RecordingTest, one_that_was_left_half_moved_is_refused_with_what_finishes
     EXPECT_TRUE(std::filesystem::exists(recording_.directory / ".octoskin-ready"));
 }
 
+TEST_F(RecordingTest, a_folder_with_a_recording_in_it_says_where_that_is) {
+    const auto inner = recording_.directory / "recording";
+    std::filesystem::create_directory(inner);
+    std::ofstream(inner / "can.log") << "x";
+    const auto checked = check_recording(recording_);
+    ASSERT_FALSE(checked);
+    EXPECT_EQ(checked.error().file, recording_.can_log().shown());
+    EXPECT_THAT(checked.error().what, testing::HasSubstr("did you mean " + inner.string() + "?"));
+}
+
 }  // namespace
 }  // namespace octoskin
