@@ -1,6 +1,19 @@
 #include "host/io/orderlog/order_reader.hpp"
 
+#include <variant>
+
+#include "host/core/beams/beam_limits.hpp"
+
 namespace octoskin::orderlog {
+namespace {
+
+/// A cone of another's file would else be as large as the octree.
+bool can_be(const Commit& commit) {
+    const auto* const reading = std::get_if<RangeMeasurement>(&commit);
+    return reading == nullptr || !reading->range_m || can_be_a_range(*reading->range_m, reading->sigma_m);
+}
+
+}  // namespace
 
 Result<OrderReader, CommitSourceError> OrderReader::open(const FilePlace& file) {
     const auto opened = file.open();
@@ -48,6 +61,7 @@ Result<std::optional<Commit>, CommitSourceError> OrderReader::next() {
     while (read_line()) {
         if (line_.starts_with('#')) continue;
         if (auto commit = parse_commit(line_, header_.joints)) {
+            if (!can_be(*commit)) return failure("no sensor has that range: '" + line_.substr(0, 60) + "'");
             ++commits_;
             return commit;
         }

@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <utility>
 
+#include "host/core/beams/beam_limits.hpp"
 #include "host/core/mapping/beam_rejection.hpp"
 
 namespace octoskin::snapshot {
@@ -53,11 +53,8 @@ void put_beam(ByteWriter& writer, const Beam& beam) {
 bool is_possible(const Beam& beam) {
     // So that the difference of two of them is a time, too.
     constexpr std::int64_t kTimeMax = std::int64_t{1} << 61U;
-    const auto is_angle = [](double angle_rad) { return angle_rad >= 0.0 && angle_rad <= std::numbers::pi; };
     return beam.captured.ns >= -kTimeMax && beam.captured.ns <= kTimeMax && !fault_of(beam) &&
-           std::isfinite(beam.sigma_m) && beam.sigma_m >= 0.0 && std::isfinite(beam.clear_limit_m) &&
-           is_angle(beam.optics.half_angle_rad) && is_angle(beam.optics.sigma_rad) &&
-           beam.R_map_sensor.allFinite();
+           std::isfinite(beam.sigma_m) && beam.sigma_m >= 0.0 && is_within_limits(beam);
 }
 
 Beam get_beam(ByteReader& reader, const BeamSource& source) {
@@ -102,12 +99,14 @@ ConfirmedRanges::Zone get_zone(ByteReader& reader, const BeamSource& source, std
         reading.number = reader.get<std::uint64_t>();
         reading.is_confirmed = reader.get_flag();
         if (reading.number <= before || reading.number > sensors_readings) reader.fail();
+        if (!reading.beam.optics.is_cone()) reader.fail();
         before = reading.number;
         zone.newest.push_back(std::move(reading));
     }
     if (reader.get_flag()) {
         zone.confirmed = get_beam(reader, source);
-        if (!zone.confirmed->range_m || zone.newest.empty()) reader.fail();
+        if (!zone.confirmed->range_m || !zone.confirmed->optics.is_cone() || zone.newest.empty())
+            reader.fail();
     }
     return zone;
 }

@@ -159,6 +159,12 @@ TEST_F(OrderFile, of_a_daemon_that_was_killed_has_its_whole_lines) {
 TEST_F(OrderFile, with_a_mistake_is_named_with_its_line) {
     const std::string file = (folder_ / "order.log").string();
     EXPECT_EQ(read(std::string(kBegin) + "J 1 0\nhello\n" + kEnd), file + ":3: no line of an order: 'hello'");
+    for (const char* reading : {"R 1 0 0 71 8.1 0.02\n", "R 1 0 0 71 1 1.1\n", "R 1 0 0 71 -1 0.02\n"}) {
+        EXPECT_TRUE(
+            read(std::string(kBegin) + reading + kEnd).starts_with(file + ":2: no sensor has that range"))
+            << reading;
+    }
+    EXPECT_EQ(read(std::string(kBegin) + "R 1 0 0 71 8 1\nR 1 0 0 72 - 60\n" + kEnd), "2 whole");
     EXPECT_EQ(read(std::string(kBegin) + "J 1 0\n" + kEnd),
               file + ":3: there were 2 commits, 0 of them not recorded, and 1 are in the file");
     EXPECT_EQ(read(std::string(kBegin) + "J 1 0\nD 0 2\n" + kEnd + "J 3 0\n"),

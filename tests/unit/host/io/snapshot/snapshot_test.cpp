@@ -225,6 +225,25 @@ TEST(Snapshot, with_bytes_changed_and_right_checksums_is_a_possible_state_or_ref
     EXPECT_GT(accepted, 100);
 }
 
+TEST(Snapshot, with_a_reading_that_no_sensor_has_is_refused) {
+    const auto fault_with = [](const auto& change) -> std::optional<SnapshotFault> {
+        MeasuredMap small(quickly_aging());
+        small.measure(3, 10, 100.0);
+        auto state = small.state();
+        change(state.readings.confirmed.begin()->second.zones.begin()->second.newest.front().beam);
+        const auto read = decode(encode_snapshot(state, origin()));
+        return read ? std::nullopt : std::optional(read.error().fault);
+    };
+    EXPECT_FALSE(fault_with([](Beam&) {}));
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.sigma_m = 1e6; }), SnapshotFault::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.range_m = 600.0; }), SnapshotFault::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.clear_limit_m = 101.0; }), SnapshotFault::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.optics.half_angle_rad = 0.0; }), SnapshotFault::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.optics.half_angle_rad = 1.0; }), SnapshotFault::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.optics.sigma_rad = 0.0; }), SnapshotFault::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.R_map_sensor *= 2.0; }), SnapshotFault::damaged);
+}
+
 TEST(Snapshot, of_something_else_is_refused_by_what_it_is) {
     const std::string bytes = small_snapshot();
     EXPECT_EQ(fault_of_bytes(""), SnapshotFault::no_snapshot);
