@@ -126,7 +126,9 @@ endmacro()
 # What says what there is to say, and works on nothing large.
 function(octoskin_compile_as_app target)
     target_link_libraries(${target} PRIVATE octoskin_app_options)
-    if(TARGET octoskin_app_headers)
+    get_target_property(type ${target} TYPE)
+    # Under sanitizers a program is not optimised, and the headers are.
+    if(TARGET octoskin_app_headers AND NOT (OCTOSKIN_SANITIZE AND type STREQUAL "EXECUTABLE"))
         # With the definitions that the headers were read with.
         target_link_libraries(${target} PRIVATE fmt::fmt nlohmann_json::nlohmann_json spdlog::spdlog)
         target_precompile_headers(${target} REUSE_FROM octoskin_app_headers)

@@ -20,7 +20,8 @@ void StationarySensors::conclude(const Beam& beam, const ConfirmedRanges::Answer
 
 void StationarySensors::clear_seen_through(const Beam& beam, EvidenceSink& sink) {
     const Beam* const through = seen_.take(beam, cones_.length_m(beam));
-    if (through == nullptr) return;
+    // Of a zone of which the history of a ray is kept, as of another rig, no cone is known.
+    if (through == nullptr || !through->optics.is_cone()) return;
     const auto voxels = cones_.find(*through);
     if (!voxels) return;
     const std::function<bool(VoxelKey)> is_ranged = [&](VoxelKey key) {
