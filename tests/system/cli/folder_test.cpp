@@ -276,16 +276,18 @@ TEST(FolderRule, nothing_else_in_the_host_makes_moves_or_removes_files_by_path) 
             if (std::regex_search(content(entry.path()), by_path)) found.insert(name);
         }
     }
-    EXPECT_THAT(found, testing::ElementsAre(
-                           "host/apps/daemon/recording_writer.cpp",     // the folder that a user names
-                           "host/apps/flashing/flashing.cpp",           // the same
-                           "host/io/helper_limits/confinement.cpp",     // names what it refuses
-                           "host/io/mapfile/atomic_file.cpp",           // in an open folder
-                           "host/io/openni2/helpers/oni_recorder.cpp",  // of a file that octoskin has made
-                           "host/io/openni2/helpers/oni_write.cpp",     // the same
-                           "host/io/tum/depth_png.cpp",                 // to read
-                           "host/lab/study/work_folder.cpp",          // in an open folder, by its descriptor
-                           "hw/sim/experiment/emulated_board.cpp"));  // temporary, its own
+    EXPECT_THAT(found,
+                testing::ElementsAre(
+                    "host/apps/daemon/recording_writer.cpp",     // the folder that a user names
+                    "host/apps/flashing/flashing.cpp",           // the same
+                    "host/io/helper_limits/confinement.cpp",     // names what it refuses
+                    "host/io/mapfile/atomic_file.cpp",           // in an open folder
+                    "host/io/openni2/helpers/oni_recorder.cpp",  // of a file that octoskin has made
+                    "host/io/openni2/helpers/oni_write.cpp",     // the same
+                    "host/io/tum/depth_png.cpp",                 // to read
+                    "host/lab/study/work_folder.cpp",            // in an open folder, by its descriptor
+                    "host/lab/world_reader/ordinary_files.cpp",  // its fopen, which opens ordinary files
+                    "hw/sim/experiment/emulated_board.cpp"));    // temporary, its own
 }
 
 }  // namespace
