@@ -50,14 +50,14 @@ int run(const octoskin::app::Program& program, int argc, char** argv) {
         app::print_text(said.str());
         return exit_code == 0 ? 0 : static_cast<int>(ExitCode::usage);
     } catch (const app::CommandFailure& failure) {
-        // First what was printed: it may be what this speaks of. That it could not be is told at the end.
+        // First what was printed: the message may be about it. A failure to print is reported at the end.
         static_cast<void>(app::flush_standard_output());
         spdlog::error("{}", failure.what());
         return static_cast<int>(failure.code());
     }
 }
 
-/// What was done and could not be told is a failure, too.
+/// Work that was done and whose output could not be written is a failure, too.
 int checked(int exit_code) {
     const auto failure = octoskin::app::flush_standard_output();
     if (!failure) return exit_code;
@@ -113,7 +113,7 @@ namespace octoskin::app {
 int run_program(const Program& program, int argc, char** argv) noexcept {
     reserve_standard_descriptors();
     // A reader that goes away (`| head`) must not end the program in the middle of a file, nor must the limit
-    // of a file's size (ulimit -f): both are errors of the write, which is told.
+    // of a file's size (ulimit -f): both are errors of the write, which are reported.
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
     try {
         spdlog::set_default_logger(spdlog::stderr_color_mt(program.name));

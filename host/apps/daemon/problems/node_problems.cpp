@@ -158,13 +158,13 @@ void add_silence(const DaemonView& view, const HostNode& node, Problems& problem
         return;
     }
     for (const std::size_t index : silent) {
-        const std::string who = sensor_text(node, index);
+        const std::string sensor = sensor_text(node, index);
         problems.push_back(
-            {who + " silence",
+            {sensor + " silence",
              fmt::format(
                  "{}: none of its readings comes, though its node sends them (lost, {}), and those of "
                  "others of the node do: look for a gateway or a program between that leaves them out",
-                 who, record_of(index).sent.lost()),
+                 sensor, record_of(index).sent.lost()),
              {},
              on});
     }

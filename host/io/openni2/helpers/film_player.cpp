@@ -2,39 +2,26 @@
 // standard output (frame_pipe.hpp), each with the time at which it is shown. octoskin-camera becomes this
 // program when it is given a file: the drivers of cameras need too much of the system for a process that
 // reads a foreign file, so here there are none.
-#include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <string>
 
 #include "host/io/helper_limits/confinement.hpp"
 #include "host/io/openni2/helpers/depth_stream.hpp"
+#include "host/io/openni2/helpers/frame_stream.hpp"
 
 namespace octoskin::openni2 {
 namespace {
 
 constexpr const char* kProgram = "octoskin-film";
-constexpr std::chrono::milliseconds kPatience{5'000};  // a daemon that takes no frames for so long is stuck
-
-std::uint64_t monotonic_us() {
-    return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
-                                          std::chrono::steady_clock::now().time_since_epoch())
-                                          .count());
-}
 
 /// A film has no clock of its own, and its stamps tell how long to wait between two frames, no more: what
 /// OpenNI2 shows late on a busy machine makes all that follows as late, and each round begins when it does.
 /// So a frame is of the moment at which it is shown. It is here by then, or as soon as this thread has its
 /// turn: a period later at most, or the next frame would be here in its place.
-int stream_frames(DepthStream& depth, int descriptor) {
-    FramePipe output(descriptor, kPatience);
-    if (!output.write_header({.size = depth.size(), .rate_mhz = depth.rate_mhz()})) return 1;
-    while (true) {  // until what reads is gone
-        if (!depth.wait_for_frame()) return depth.complain("no more frames");
-        const std::uint64_t shown_us = monotonic_us();
-        const auto pixels = depth.pixels();
-        if (pixels.empty()) return depth.complain("a frame of another size");
-        if (!output.write_frame(shown_us, pixels)) return 1;
-    }
+Result<std::int64_t, std::string> shown_at(std::int64_t arrived_us) {
+    return arrived_us;
 }
 
 int play(DepthStream& depth, const std::filesystem::path& film, int descriptor) {
@@ -48,7 +35,7 @@ int play(DepthStream& depth, const std::filesystem::path& film, int descriptor) 
     if (!depth.start()) return 1;
     // One would be shown without a pause, for nothing tells how long it is to last.
     if (depth.frame_count() < 2) return depth.complain("it has fewer than two frames");
-    return stream_frames(depth, descriptor);
+    return stream_frames(depth, descriptor, shown_at);
 }
 
 }  // namespace

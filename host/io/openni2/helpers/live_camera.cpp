@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -15,43 +15,23 @@
 #include "host/io/openni2/helper_process.hpp"
 #include "host/io/openni2/helpers/camera_list.hpp"
 #include "host/io/openni2/helpers/depth_stream.hpp"
+#include "host/io/openni2/helpers/frame_stream.hpp"
 
 namespace octoskin::openni2 {
 namespace {
 
 constexpr const char* kProgram = "octoskin-camera";
-constexpr std::chrono::milliseconds kPatience{5'000};  // a daemon that takes no frames for so long is stuck
-
-std::int64_t monotonic_us() {
-    return std::chrono::duration_cast<std::chrono::microseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
-int stream_frames(DepthStream& depth, int descriptor) {
-    FramePipe output(descriptor, kPatience);
-    if (!output.write_header({.size = depth.size(), .rate_mhz = depth.rate_mhz()})) return 1;
-    CaptureClock clock;
-    while (true) {  // until the camera is gone, or whoever reads
-        if (!depth.wait_for_frame()) return depth.complain("no more frames");
-        const std::int64_t arrived_us = monotonic_us();
-        const auto stamp_us = static_cast<std::int64_t>(depth.frame().getTimestamp());
-        const auto captured_us = clock.captured_us(stamp_us, arrived_us);
-        if (!captured_us) {
-            if (!output.write_untimed_frame()) return 1;
-            if (clock.is_lost()) return depth.complain("its frames came over 0.5 s late for 5 s");
-            continue;
-        }
-        const auto pixels = depth.pixels();
-        if (pixels.empty()) return depth.complain("a frame of another size");
-        if (!output.write_frame(static_cast<std::uint64_t>(*captured_us), pixels)) return 1;
-    }
-}
 
 int watch(DepthStream& depth, const char* uri, const std::optional<CameraMode>& mode, int descriptor) {
     if (!depth.open(uri)) return depth.complain("cannot open the camera");
     if (!depth.start(mode)) return 1;
-    return stream_frames(depth, descriptor);
+    CaptureClock clock;
+    return stream_frames(
+        depth, descriptor, [&](std::int64_t arrived_us) -> Result<std::int64_t, std::string> {
+            const auto stamp_us = static_cast<std::int64_t>(depth.frame().getTimestamp());
+            if (const auto captured_us = clock.captured_us(stamp_us, arrived_us)) return *captured_us;
+            return unexpected(std::string(clock.is_lost() ? "its frames came over 0.5 s late for 5 s" : ""));
+        });
 }
 
 /// Returns only if that is not there.
