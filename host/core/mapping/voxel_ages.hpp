@@ -45,7 +45,7 @@ class VoxelAges {
     };
 
     VoxelAges() = default;
-    /// Goes on with the clock and the stamps of others; the caller has checked them (`fault_of`).
+    /// Goes on with the clock and the stamps of others; the caller has checked them (`is_possible`).
     VoxelAges(const Clock& clock, StampTree stamps) noexcept : clock_(clock), stamps_(std::move(stamps)) {}
     [[nodiscard]] const Clock& clock() const noexcept { return clock_; }
     /// Whether a clock can have come to be so. O(1).
