@@ -1,15 +1,20 @@
 // Who is heard, for how long, and what the kernel tells of a process that sends joint states.
 #include "host/apps/daemon/joint_senders.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/apps/daemon/joint_socket.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
@@ -79,16 +84,37 @@ class JointSocketSenders : public testing::Test {
   protected:
     /// From a process of its own, whose number is returned.
     [[nodiscard]] pid_t send_from_another(const char* text) const {
-        const pid_t child = ::fork();
-        if (child == 0) {
-            const auto sender = connect_unix_socket(file_, SOCK_DGRAM);
-            const bool is_sent = sender && ::send(*sender, text, std::strlen(text), 0) > 0;
-            ::_exit(is_sent ? 0 : 1);
+        const std::vector<pid_t> one = send_at_once_from(1, text);
+        expect_end_of(one);
+        return one.front();
+    }
+    /// From so many processes, which send once all have begun. Their datagrams are to be received before
+    /// their end is waited for: the kernel keeps only some.
+    [[nodiscard]] std::vector<pid_t> send_at_once_from(std::size_t count, const char* text) const {
+        std::array<int, 2> start{};
+        EXPECT_EQ(::pipe2(start.data(), O_CLOEXEC), 0);
+        std::vector<pid_t> programs;
+        while (programs.size() < count) {
+            const pid_t child = ::fork();
+            if (child == 0) {
+                ::close(start[1]);
+                char byte = 0;
+                const bool is_started = ::read(start[0], &byte, 1) == 0;
+                const auto sender = connect_unix_socket(file_, SOCK_DGRAM);
+                const bool is_sent = sender && ::send(*sender, text, std::strlen(text), 0) > 0;
+                ::_exit(is_started && is_sent ? 0 : 1);
+            }
+            programs.push_back(child);
         }
-        int outcome = -1;
-        EXPECT_EQ(::waitpid(child, &outcome, 0), child);
-        EXPECT_EQ(outcome, 0);
-        return child;
+        for (const int end : start) ::close(end);
+        return programs;
+    }
+    static void expect_end_of(const std::vector<pid_t>& programs) {
+        for (const pid_t program : programs) {
+            int outcome = -1;
+            EXPECT_EQ(::waitpid(program, &outcome, 0), program);
+            EXPECT_EQ(outcome, 0);
+        }
     }
     void send(const char* text) const {
         const auto sender = connect_unix_socket(file_, SOCK_DGRAM);
@@ -135,15 +161,19 @@ TEST_F(JointSocketSenders, that_send_no_sample_are_not_heard) {
     EXPECT_FALSE(receive().is_of_several);
 }
 
+// All send within a moment, however long it takes to start them: a share is a second's.
 TEST_F(JointSocketSenders, that_send_no_sample_keep_no_driver_out_however_many_they_are) {
+    const auto programs = send_at_once_from(2 * SenderShares::kSendersMax, "x");
     std::optional<JointSample> sample;
-    pid_t newest = 0;
-    for (std::size_t i = 0; i < 2 * SenderShares::kSendersMax; ++i) {
-        newest = send_from_another("x");
+    for (std::size_t i = 0; i < programs.size(); ++i) {
+        pollfd readable{socket_.descriptor(), POLLIN, 0};
+        constexpr int kLongMs = 10'000;
+        ASSERT_EQ(::poll(&readable, 1, kLongMs), 1);
         EXPECT_TRUE(socket_.receive(sample));
     }
+    expect_end_of(programs);
     ASSERT_TRUE(socket_.newest_refused());
-    EXPECT_EQ(socket_.newest_refused()->pid, newest);
+    EXPECT_EQ(std::ranges::count(programs, socket_.newest_refused()->pid), 1);
     send("1 2 3");
     EXPECT_EQ(receive().position.size(), 3U);
     EXPECT_EQ(socket_.surplus(), 0U);
