@@ -26,7 +26,7 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
                       .mapping_crc32 = settings.mapping_crc32(),
                       .joints = settings.joints,
                       .first_map = std::nullopt},
-            .first = {copier(pipeline.map()), pipeline.builder().readings()}};
+            .first = {copier(pipeline.map()), pipeline.builder().histories()}};
 }
 
 /// What `add` says; false if there was no memory for it. What it was told of is on the map by then: it is

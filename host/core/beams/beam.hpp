@@ -7,6 +7,7 @@
 
 #include "common/time.hpp"
 #include "host/core/rig/beam_optics.hpp"
+#include "host/core/rig/sensor_id.hpp"
 
 namespace octoskin {
 
@@ -15,6 +16,7 @@ struct BeamSource {
     std::uint8_t node_id = 0;
     std::uint8_t sensor = 0;
     std::uint8_t zone = 0;
+    [[nodiscard]] constexpr SensorId sensor_id() const noexcept { return {node_id, sensor}; }
     friend constexpr auto operator<=>(const BeamSource&, const BeamSource&) = default;
 };
 

@@ -73,7 +73,7 @@ Result<BeamBuilder, RobotModelFault> BeamBuilder::build(const HostRig& rig, cons
 }
 
 bool BeamBuilder::has(const BeamSource& source) const {
-    const auto found = sensors_.find({source.node_id, source.sensor});
+    const auto found = sensors_.find(source.sensor_id());
     return found != sensors_.end() && source.zone < found->second.zones.size();
 }
 
@@ -88,7 +88,7 @@ std::optional<double> BeamBuilder::self_hit(const Zone& zone, const Eigen::Isome
 
 Result<Beam, BeamFault> BeamBuilder::place(const RangeMeasurement& measurement,
                                            const RobotPose& robot) const {
-    const auto found = sensors_.find({measurement.source.node_id, measurement.source.sensor});
+    const auto found = sensors_.find(measurement.source.sensor_id());
     assert(found != sensors_.end());
     const Sensor& sensor = found->second;
     assert(measurement.source.zone < sensor.zones.size());
@@ -120,7 +120,7 @@ Result<Beam, BeamFault> BeamBuilder::place(const RangeMeasurement& measurement,
 }
 
 Eigen::Isometry3d BeamBuilder::T_map_sensor(const BeamSource& source, const RobotPose& robot) const {
-    const auto found = sensors_.find({source.node_id, source.sensor});
+    const auto found = sensors_.find(source.sensor_id());
     assert(found != sensors_.end());
     return T_map_base_ * robot.T_base_link[found->second.link] * found->second.T_link_sensor;
 }

@@ -4,8 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <map>
-#include <utility>
 #include <vector>
 
 #include "common/result.hpp"
@@ -14,6 +12,7 @@
 #include "host/core/beams/robot_pose.hpp"
 #include "host/core/kinematics/robot_model.hpp"
 #include "host/core/rig/host_rig.hpp"
+#include "host/core/rig/sensor_id.hpp"
 
 namespace octoskin {
 
@@ -69,7 +68,7 @@ class BeamBuilder {
     double self_margin_m_ = 0.0;
     Eigen::Isometry3d T_map_base_ = Eigen::Isometry3d::Identity();
     std::vector<LinkId> ignored_links_;
-    std::map<std::pair<std::uint8_t, std::uint8_t>, Sensor> sensors_;  ///< by node and local index
+    SensorTable<Sensor> sensors_;
 };
 
 }  // namespace octoskin

@@ -38,7 +38,7 @@ bool ConfirmedRanges::are_of_one_place(const Beam& a, const Beam& b) {
            a.R_map_sensor.cwiseProduct(b.R_map_sensor).sum() >= trace_min;
 }
 
-bool ConfirmedRanges::is_stationary(const Zone& zone) const {
+bool ConfirmedRanges::is_stationary(const ZoneHistory& zone) const {
     const std::span<const Reading> all(zone.newest);
     const std::size_t window = model_.window();
     return all.size() > window && std::ranges::all_of(all.last(window + 1), [&](const Reading& reading) {
@@ -48,9 +48,9 @@ bool ConfirmedRanges::is_stationary(const Zone& zone) const {
 
 /// By the mean time between its readings so many in a row have not come. All its readings are forgotten: what
 /// is there when it speaks again is new.
-void ConfirmedRanges::forget_silent(Sensor& sensor, const Beam& beam) {
+void ConfirmedRanges::forget_silent(SensorHistory& sensor, const Beam& beam) {
     for (auto& entry : sensor.zones) {
-        Zone& zone = entry.second;
+        ZoneHistory& zone = entry.second;
         if (zone.newest.empty()) continue;
         constexpr double kMissing = static_cast<double>(kBefore) + 0.5;
         constexpr double kLoneFor_s = 10.0;  // of one reading the rate is not known
@@ -63,13 +63,13 @@ void ConfirmedRanges::forget_silent(Sensor& sensor, const Beam& beam) {
     }
 }
 
-ConfirmedRanges::Answer ConfirmedRanges::take(const Beam& beam) {
+ConfirmedRanges::Answer ConfirmedRanges::take(const Beam& beam, SensorHistories& histories) {
     confirmed_.clear();
     ended_.clear();
     if (model_.readings == 0) return {};
-    Sensor& sensor = sensors_[{beam.source.node_id, beam.source.sensor}];
+    SensorHistory& sensor = histories[beam.source.sensor_id()];
     forget_silent(sensor, beam);
-    Zone& zone = sensor.zones[beam.source.zone];
+    ZoneHistory& zone = sensor.zones[beam.source.zone];
     const std::size_t window = model_.window();
     zone.newest.reserve(readings_max(model_));
     if (zone.newest.size() >= readings_max(model_)) zone.newest.erase(zone.newest.begin());
@@ -91,7 +91,7 @@ ConfirmedRanges::Answer ConfirmedRanges::take(const Beam& beam) {
         confirm(beam, window_);
     }
     for (const Beam& confirmed : confirmed_) {
-        Zone& of = sensor.zones[confirmed.source.zone];
+        ZoneHistory& of = sensor.zones[confirmed.source.zone];
         if (of.confirmed && !goes_on(*of.confirmed, confirmed)) end(of, beam);
         of.confirmed = confirmed;
     }
@@ -101,7 +101,7 @@ ConfirmedRanges::Answer ConfirmedRanges::take(const Beam& beam) {
 
 /// What is confirmed may move slowly; it has gone if none of so many readings is of it. The answer: the
 /// newest does.
-bool ConfirmedRanges::follow_confirmed(Zone& zone) {
+bool ConfirmedRanges::follow_confirmed(ZoneHistory& zone) {
     if (!zone.confirmed) return false;
     const Beam& newest = zone.newest.back().beam;
     if (goes_on(*zone.confirmed, newest)) {
@@ -116,15 +116,15 @@ bool ConfirmedRanges::follow_confirmed(Zone& zone) {
 }
 
 /// `now`: the sensor's newest beam. What a sensor that has moved on counted it did not count from one place.
-void ConfirmedRanges::end(Zone& zone, const Beam& now) {
+void ConfirmedRanges::end(ZoneHistory& zone, const Beam& now) {
     if (!zone.confirmed) return;
     if (are_of_one_place(*zone.confirmed, now)) ended_.push_back(*zone.confirmed);
     zone.confirmed.reset();
 }
 
-void ConfirmedRanges::add_persisting(const Beam& newest, const Sensor& sensor) {
+void ConfirmedRanges::add_persisting(const Beam& newest, const SensorHistory& sensor) {
     for (const auto& entry : sensor.zones) {
-        const Zone& zone = entry.second;
+        const ZoneHistory& zone = entry.second;
         if (!zone.confirmed) continue;  // nor need it have a reading, if there was no memory for it
         const Beam& own_newest = zone.newest.back().beam;
         if (!goes_on(*zone.confirmed, own_newest)) continue;

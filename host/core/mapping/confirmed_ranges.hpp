@@ -4,13 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "host/core/beams/beam.hpp"
+#include "host/core/mapping/sensor_history.hpp"
 #include "host/core/mapping/stationary_model.hpp"
 
 namespace octoskin {
@@ -32,22 +32,6 @@ class ConfirmedRanges {
 
     [[nodiscard]] static bool are_of_one_place(const Beam& a, const Beam& b);
 
-    struct Reading {
-        Beam beam;
-        std::uint64_t number = 0;  ///< of the sensor's, from 1
-        bool is_confirmed = false;
-    };
-    struct Zone {
-        std::vector<Reading> newest;  ///< the last of them last
-        std::optional<Beam> confirmed;
-    };
-    struct Sensor {
-        std::uint64_t readings = 0;
-        std::map<std::uint8_t, Zone> zones;
-    };
-    /// By node and local index.
-    using Sensors = std::map<std::pair<std::uint8_t, std::uint8_t>, Sensor>;
-
     explicit ConfirmedRanges(const StationaryModel& model) : model_(model) {}
 
     struct Answer {
@@ -68,33 +52,29 @@ class ConfirmedRanges {
     /// it is new: if none of the `kBefore` readings of its zone before the window was of this place and as
     /// short. It stays confirmed, with each reading of its zone that agrees with it, and with those of other
     /// zones that see further, until `kBefore` in a row do not agree; or do not come: then all readings of
-    /// the zone are forgotten. O(zones of the sensor), below 1 us; 2 kB a zone. Throws std::bad_alloc.
-    [[nodiscard]] Answer take(const Beam& beam);
+    /// the zone are forgotten. O(zones of the sensor), below 1 us. Throws std::bad_alloc.
+    [[nodiscard]] Answer take(const Beam& beam, SensorHistories& histories);
 
     [[nodiscard]] const StationaryModel& model() const noexcept { return model_; }
-    /// As if there had been no beam.
-    void forget() noexcept { sensors_.clear(); }
-    /// All that what comes next follows from, and how another one goes on with it. Of a zone at most
-    /// `readings_max()` readings, none later than the last; what is confirmed has a range, and a reading.
-    [[nodiscard]] const Sensors& sensors() const noexcept { return sensors_; }
-    void go_on_with(Sensors sensors) noexcept { sensors_ = std::move(sensors); }
+    /// So many readings of a zone it keeps at most, none later than the last; where a range is confirmed, one
+    /// at least.
     [[nodiscard]] static std::size_t readings_max(const StationaryModel& model) noexcept {
         return model.window() + kBefore;
     }
 
   private:
+    using Reading = ZoneHistory::Reading;
     /// The first reading of a zone in a window.
-    using Window = std::vector<std::pair<Zone*, std::size_t>>;
+    using Window = std::vector<std::pair<ZoneHistory*, std::size_t>>;
 
     void confirm(const Beam& newest, const Window& window);
-    [[nodiscard]] bool is_stationary(const Zone& zone) const;
-    void forget_silent(Sensor& sensor, const Beam& beam);
-    [[nodiscard]] bool follow_confirmed(Zone& zone);
-    void end(Zone& zone, const Beam& now);
-    void add_persisting(const Beam& newest, const Sensor& sensor);
+    [[nodiscard]] bool is_stationary(const ZoneHistory& zone) const;
+    void forget_silent(SensorHistory& sensor, const Beam& beam);
+    [[nodiscard]] bool follow_confirmed(ZoneHistory& zone);
+    void end(ZoneHistory& zone, const Beam& now);
+    void add_persisting(const Beam& newest, const SensorHistory& sensor);
 
     StationaryModel model_;
-    Sensors sensors_;
     Window window_;
     std::vector<Reading*> agreeing_;
     std::vector<Beam> confirmed_;

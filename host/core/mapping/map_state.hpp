@@ -2,7 +2,7 @@
 #pragma once
 
 #include "host/core/mapping/fused_map.hpp"
-#include "host/core/mapping/stationary_sensors.hpp"
+#include "host/core/mapping/sensor_history.hpp"
 
 namespace octoskin {
 
@@ -11,7 +11,7 @@ namespace octoskin {
 /// that.
 struct MapState {
     FusedMap map;
-    StationaryReadings readings;
+    SensorHistories histories;
 };
 
 }  // namespace octoskin

@@ -31,8 +31,8 @@ class RangeModel {
     void forget() noexcept { stationary_.forget(); }
 
     /// As StationarySensors.
-    [[nodiscard]] StationaryReadings readings() const { return stationary_.readings(); }
-    void go_on_with(StationaryReadings readings) noexcept { stationary_.go_on_with(std::move(readings)); }
+    [[nodiscard]] SensorHistories histories() const { return stationary_.histories(); }
+    void go_on_with(SensorHistories histories) noexcept { stationary_.go_on_with(std::move(histories)); }
 
   private:
     [[nodiscard]] Status<BeamRejection> integrate_ray(const Beam& beam, EvidenceSink& sink);

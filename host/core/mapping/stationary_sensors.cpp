@@ -19,13 +19,13 @@ void StationarySensors::conclude(const Beam& beam, const ConfirmedRanges::Answer
 }
 
 void StationarySensors::clear_seen_through(const Beam& beam, EvidenceSink& sink) {
-    const Beam* const through = seen_.take(beam, cones_.length_m(beam));
+    const Beam* const through = seen_.take(beam, cones_.length_m(beam), histories_);
     // Of a zone of which the history of a ray is kept, as of another rig, no cone is known.
     if (through == nullptr || !through->optics.is_cone()) return;
     const auto voxels = cones_.find(*through);
     if (!voxels) return;
     const std::function<bool(VoxelKey)> is_ranged = [&](VoxelKey key) {
-        return seen_.any_newest(beam.captured,
+        return seen_.any_newest(beam.captured, histories_,
                                 [&](const Beam& other) { return cones_.ends_about(other, key); });
     };
     make_clearance(**voxels, evidence_);

@@ -10,14 +10,9 @@
 #include "host/core/mapping/evidence_sink.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/mapping/seen_through.hpp"
+#include "host/core/mapping/sensor_history.hpp"
 
 namespace octoskin {
-
-/// What was read so far, as far as what comes next follows from it.
-struct StationaryReadings {
-    ConfirmedRanges::Sensors confirmed;
-    SeenThrough::Zones seen;
-};
 
 /// From one pose no reading says where in its cone the surface is, so that shares of hits take long to mark
 /// and long to free. Readings that agree do both at once. Not for two threads at once.
@@ -28,31 +23,26 @@ class StationarySensors {
 
     /// Takes a cone's beam, in the order in which they are measured. O(zones of the sensor), below 1 us.
     /// Throws std::bad_alloc.
-    [[nodiscard]] ConfirmedRanges::Answer take(const Beam& beam) { return confirmed_.take(beam); }
+    [[nodiscard]] ConfirmedRanges::Answer take(const Beam& beam) { return confirmed_.take(beam, histories_); }
     /// What the beams up to this one say together, after it was counted: what the sensor sees through is
     /// cleared, what is confirmed no longer withdrawn, what is confirmed occupied. Throws std::bad_alloc.
     void conclude(const Beam& beam, const ConfirmedRanges::Answer& answer, EvidenceSink& sink);
     /// Takes a ray's beam that went into the map: what it ends on is not to be cleared.
-    void take_ray(const Beam& beam) { (void)seen_.take(beam, cones_.length_m(beam)); }
+    void take_ray(const Beam& beam) { (void)seen_.take(beam, cones_.length_m(beam), histories_); }
 
     /// As if there had been no beam.
-    void forget() noexcept {
-        confirmed_.forget();
-        seen_.forget();
-    }
+    void forget() noexcept { histories_.clear(); }
 
-    /// A copy of what was read, 2 kB a zone. Throws std::bad_alloc.
-    [[nodiscard]] StationaryReadings readings() const { return {confirmed_.sensors(), seen_.zones()}; }
+    /// A copy of what was read. Throws std::bad_alloc.
+    [[nodiscard]] SensorHistories histories() const { return histories_; }
     /// Goes on as if these had been read.
-    void go_on_with(StationaryReadings readings) noexcept {
-        confirmed_.go_on_with(std::move(readings.confirmed));
-        seen_.go_on_with(std::move(readings.seen));
-    }
+    void go_on_with(SensorHistories histories) noexcept { histories_ = std::move(histories); }
 
   private:
     void clear_seen_through(const Beam& beam, EvidenceSink& sink);
     void confirm(const Beam& confirmed, CapWidth width, EvidenceSink& sink);
 
+    SensorHistories histories_;
     ConfirmedRanges confirmed_;
     SeenThrough seen_;
     ConeFinder cones_;

@@ -84,7 +84,7 @@ void MapBuilder::begin_with(FusedMap map) {
 
 void MapBuilder::begin_with(MapState state) {
     begin_with(std::move(state.map));
-    ranges_.go_on_with(std::move(state.readings));
+    ranges_.go_on_with(std::move(state.histories));
 }
 
 void MapBuilder::wait(std::int64_t seconds) {

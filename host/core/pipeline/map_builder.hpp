@@ -46,9 +46,9 @@ class MapBuilder {
     void begin_with(MapState state);
     /// All that the map of all sensors follows from, but for the joint samples (`for_each_joint_sample`). A
     /// copy: O(sensors). Throws std::bad_alloc.
-    [[nodiscard]] MapState state() const { return {map().copy(), ranges_.readings()}; }
+    [[nodiscard]] MapState state() const { return {map().copy(), ranges_.histories()}; }
     /// What of it the range sensors read. Throws std::bad_alloc.
-    [[nodiscard]] StationaryReadings readings() const { return ranges_.readings(); }
+    [[nodiscard]] SensorHistories histories() const { return ranges_.histories(); }
     /// Of a map that waits for the time to go on: FusedMap::wait.
     void wait(std::int64_t seconds);
     /// Other limits for it, at the same resolution (asserted).

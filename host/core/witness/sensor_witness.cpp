@@ -74,7 +74,7 @@ SensorWitness::SensorWitness(const HostRig& rig, const WitnessConfig& config)
                                         config.camera_sigma_m * (config.is_filtered ? kFiltered : 1.0)};
     for (const HostNode& node : rig.nodes) {
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
-            places_.try_emplace({node.node_id, static_cast<std::uint8_t>(i)}, sensors_.size());
+            places_.try_emplace(SensorId{node.node_id, static_cast<std::uint8_t>(i)}, sensors_.size());
             Sensor& sensor = sensors_.emplace_back();
             for (const HostZone& zone : node.sensors[i].zones) {
                 sensor.predictors.emplace_back(zone.direction_sensor, zone.optics, predictor);

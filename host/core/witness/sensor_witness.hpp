@@ -151,7 +151,7 @@ class SensorWitness {
     WitnessConfig config_;
     CameraIntrinsics camera_;
     double ray_slope_max_;  ///< beyond, the lens's polynomial means nothing
-    std::map<std::pair<std::uint8_t, std::uint8_t>, std::size_t> places_;  ///< by node and local index
+    SensorTable<std::size_t> places_;
     std::vector<Sensor> sensors_;
     SensorJudge judge_;
     SeenImages images_;

@@ -6,6 +6,7 @@
 
 #include "host/core/beams/beam_limits.hpp"
 #include "host/core/mapping/beam_rejection.hpp"
+#include "host/core/mapping/confirmed_ranges.hpp"
 
 namespace octoskin::snapshot {
 namespace {
@@ -76,7 +77,7 @@ Beam get_beam(ByteReader& reader, const BeamSource& source) {
     return beam;
 }
 
-void put_zone(ByteWriter& writer, const ConfirmedRanges::Zone& zone) {
+void put_zone(ByteWriter& writer, const ZoneHistory& zone) {
     writer.put(static_cast<std::uint16_t>(zone.newest.size()));
     for (const auto& reading : zone.newest) {
         put_beam(writer, reading.beam);
@@ -87,14 +88,13 @@ void put_zone(ByteWriter& writer, const ConfirmedRanges::Zone& zone) {
     if (zone.confirmed) put_beam(writer, *zone.confirmed);
 }
 
-ConfirmedRanges::Zone get_zone(ByteReader& reader, const BeamSource& source, std::size_t readings_max,
-                               std::uint64_t sensors_readings) {
-    ConfirmedRanges::Zone zone;
+void get_zone(ByteReader& reader, const BeamSource& source, std::size_t readings_max,
+              std::uint64_t sensors_readings, ZoneHistory& zone) {
     const auto count = reader.get<std::uint16_t>();
     if (count > readings_max) reader.fail();
     std::uint64_t before = 0;
     for (std::size_t i = 0; i < count && reader.is_sound(); ++i) {
-        ConfirmedRanges::Reading reading;
+        ZoneHistory::Reading reading;
         reading.beam = get_beam(reader, source);
         reading.number = reader.get<std::uint64_t>();
         reading.is_confirmed = reader.get_flag();
@@ -108,78 +108,94 @@ ConfirmedRanges::Zone get_zone(ByteReader& reader, const BeamSource& source, std
         if (!zone.confirmed->range_m || !zone.confirmed->optics.is_cone() || zone.newest.empty())
             reader.fail();
     }
-    return zone;
+}
+
+/// Which zones ConfirmedRanges keeps something of: all of a sensor that it took a reading of.
+bool has_confirming(const SensorHistory& sensor) {
+    return sensor.readings > 0;
+}
+
+/// Whether `source` comes after all before it, which it then does for the next one.
+bool is_further(std::optional<BeamSource>& newest, const BeamSource& source) {
+    const bool is = !newest || *newest < source;
+    newest = source;
+    return is;
 }
 
 }  // namespace
 
-void put_readings(BlockWriter& blocks, const StationaryReadings& readings) {
-    for (const auto& sensor : readings.confirmed) {
-        for (const auto& zone : sensor.second.zones) {
-            blocks.add(BlockKind::confirmed, [&](ByteWriter& writer, bool) {
-                put_source(writer, {sensor.first.first, sensor.first.second, zone.first});
-                writer.put(sensor.second.readings);
-                put_zone(writer, zone.second);
-            });
-        }
-    }
-    for (const auto& zone : readings.seen) {
+void put_readings(BlockWriter& blocks, const SensorHistories& histories) {
+    const auto for_each_zone = [&](const auto& put) {
+        for (const auto& [id, sensor] : histories)
+            for (const auto& [index, zone] : sensor.zones)
+                put(BeamSource{id.node_id, id.sensor, index}, sensor, zone);
+    };
+    for_each_zone([&](const BeamSource& source, const SensorHistory& sensor, const ZoneHistory& zone) {
+        if (!has_confirming(sensor)) return;
+        blocks.add(BlockKind::confirmed, [&](ByteWriter& writer, bool) {
+            put_source(writer, source);
+            writer.put(sensor.readings);
+            put_zone(writer, zone);
+        });
+    });
+    for_each_zone([&](const BeamSource& source, const SensorHistory&, const ZoneHistory& zone) {
+        if (zone.passages.empty()) return;
         blocks.add(BlockKind::seen, [&](ByteWriter& writer, bool) {
-            put_source(writer, zone.first);
-            writer.put(static_cast<std::uint32_t>(zone.second.size()));
-            for (const auto& reading : zone.second) {
-                put_beam(writer, reading.beam);
-                writer.put(reading.frees_m);
+            put_source(writer, source);
+            writer.put(static_cast<std::uint32_t>(zone.passages.size()));
+            for (const auto& passage : zone.passages) {
+                put_beam(writer, passage.beam);
+                writer.put(passage.frees_m);
             }
         });
-    }
+    });
 }
 
-bool take_confirmed(std::string_view payload, const StationaryModel& model,
-                    ConfirmedRanges::Sensors& sensors) {
+bool ReadingsTaker::take_confirmed(std::string_view payload, const StationaryModel& model) {
     // A sensor's number comes with each of its zones; as large as none can count to is none.
     constexpr std::uint64_t kReadingsMax = std::uint64_t{1} << 62U;
     ByteReader reader(payload);
     while (!reader.is_over()) {
         const BeamSource source = get_source(reader);
-        const std::pair place{source.node_id, source.sensor};
-        const bool is_further = sensors.empty() || place > sensors.rbegin()->first ||
-                                (place == sensors.rbegin()->first &&
-                                 source.zone > sensors.rbegin()->second.zones.rbegin()->first);
-        if (!is_further) return false;
-        const bool is_new = !sensors.contains(place);
-        ConfirmedRanges::Sensor& sensor = sensors[place];
+        if (!is_further(newest_confirmed_, source)) return false;
+        SensorHistory& sensor = histories_[source.sensor_id()];
         const auto readings = reader.get<std::uint64_t>();
-        if (readings > kReadingsMax || (!is_new && readings != sensor.readings)) return false;
+        const bool is_first = !has_confirming(sensor);
+        if (readings == 0 || readings > kReadingsMax || (!is_first && readings != sensor.readings))
+            return false;
         sensor.readings = readings;
-        sensor.zones[source.zone] = get_zone(reader, source, ConfirmedRanges::readings_max(model), readings);
+        get_zone(reader, source, ConfirmedRanges::readings_max(model), readings, sensor.zones[source.zone]);
         if (!reader.is_sound()) return false;
     }
     return reader.is_sound();
 }
 
-bool take_seen(std::string_view payload, SeenThrough::Zones& zones) {
+bool ReadingsTaker::take_seen(std::string_view payload) {
     ByteReader reader(payload);
     while (!reader.is_over()) {
         const BeamSource source = get_source(reader);
-        if (!zones.empty() && source <= zones.rbegin()->first) return false;
-        SeenThrough::Readings& newest = zones[source];
+        if (!is_further(newest_seen_, source)) return false;
+        auto& passages = histories_[source.sensor_id()].zones[source.zone].passages;
         const auto count = reader.get<std::uint32_t>();
         for (std::uint32_t i = 0; i < count && reader.is_sound(); ++i) {
             const Beam beam = get_beam(reader, source);
             const auto frees_m = reader.get<double>();
             if (!std::isfinite(frees_m) || !(frees_m > 0.0)) return false;
-            newest.push_back({beam, frees_m});
+            passages.push_back({beam, frees_m});
         }
-        if (!reader.is_sound()) return false;
+        if (count == 0 || !reader.is_sound()) return false;
     }
     return reader.is_sound();
 }
 
-std::uint64_t zones_of(const ConfirmedRanges::Sensors& sensors) noexcept {
-    std::uint64_t zones = 0;
-    for (const auto& entry : sensors) zones += entry.second.zones.size();
-    return zones;
+ZoneCounts count_zones(const SensorHistories& histories) noexcept {
+    ZoneCounts counts;
+    for (const auto& entry : histories) {
+        const SensorHistory& sensor = entry.second;
+        if (has_confirming(sensor)) counts.confirmed += sensor.zones.size();
+        for (const auto& zone : sensor.zones) counts.seen += zone.second.passages.empty() ? 0U : 1U;
+    }
+    return counts;
 }
 
 }  // namespace octoskin::snapshot

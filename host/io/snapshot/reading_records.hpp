@@ -1,24 +1,40 @@
 // What range sensors read, zone by zone, as records.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string_view>
 
+#include "host/core/beams/beam.hpp"
+#include "host/core/mapping/sensor_history.hpp"
 #include "host/core/mapping/stationary_model.hpp"
-#include "host/core/mapping/stationary_sensors.hpp"
 #include "host/io/snapshot/blocks.hpp"
 
 namespace octoskin::snapshot {
 
 /// Throws std::bad_alloc.
-void put_readings(BlockWriter& blocks, const StationaryReadings& readings);
+void put_readings(BlockWriter& blocks, const SensorHistories& histories);
 
-/// Take what a block of BlockKind::confirmed or BlockKind::seen holds, behind what is there. False: it cannot
-/// be. Throw std::bad_alloc.
-[[nodiscard]] bool take_confirmed(std::string_view payload, const StationaryModel& model,
-                                  ConfirmedRanges::Sensors& sensors);
-[[nodiscard]] bool take_seen(std::string_view payload, SeenThrough::Zones& zones);
+/// Takes what blocks of BlockKind::confirmed and BlockKind::seen hold, each kind in its order. False: it
+/// cannot be. Throws std::bad_alloc.
+class ReadingsTaker {
+  public:
+    explicit ReadingsTaker(SensorHistories& histories) : histories_(histories) {}
 
-/// How many zones they have.
-[[nodiscard]] std::uint64_t zones_of(const ConfirmedRanges::Sensors& sensors) noexcept;
+    [[nodiscard]] bool take_confirmed(std::string_view payload, const StationaryModel& model);
+    [[nodiscard]] bool take_seen(std::string_view payload);
+
+  private:
+    SensorHistories& histories_;
+    std::optional<BeamSource> newest_confirmed_;
+    std::optional<BeamSource> newest_seen_;
+};
+
+/// How many zones have a record of each kind.
+struct ZoneCounts {
+    std::uint64_t confirmed = 0;
+    std::uint64_t seen = 0;
+};
+[[nodiscard]] ZoneCounts count_zones(const SensorHistories& histories) noexcept;
 
 }  // namespace octoskin::snapshot

@@ -59,7 +59,7 @@ class Decoder {
         }
         if (!blocks_.is_over()) return fail(SnapshotFault::damaged, blocks_.at(), "more behind the end");
         FusedMap map(mapping_.map, std::move(layers_), has_undated_);
-        return Snapshot{origin_, {std::move(map), std::move(readings_)}};
+        return Snapshot{origin_, {std::move(map), std::move(histories_)}};
     }
 
   private:
@@ -91,13 +91,13 @@ class Decoder {
             case BlockKind::ages:
                 return bricks(block, ages_.take(block.payload, is_stamp));
             case BlockKind::confirmed:
-                return records(block, take_confirmed(block.payload, mapping_.standing, readings_.confirmed));
+                return records(block, readings_.take_confirmed(block.payload, mapping_.standing));
             case BlockKind::seen:
-                return records(block, take_seen(block.payload, readings_.seen));
+                return records(block, readings_.take_seen(block.payload));
             case BlockKind::done:
                 return take_done(block);
         }
-        return records(block, false);
+        return fail(SnapshotFault::damaged, block.at, "a block of no kind");
     }
     static Taken records(const Block& block, bool are_taken) {
         if (are_taken) return Done{};
@@ -149,10 +149,14 @@ class Decoder {
         ByteReader reader(block.payload);
         layers_.ages = VoxelAges(clock_, std::move(stamps_));
         layers_.known_voxels = known_voxels_of(layers_.log_odds);
-        const std::uint64_t are[] = {layers_.log_odds.bricks(),      layers_.counts.prior.bricks(),
-                                     layers_.counts.misses.bricks(), layers_.counts.hits.bricks(),
-                                     layers_.ages.stamps().bricks(), zones_of(readings_.confirmed),
-                                     readings_.seen.size()};
+        const ZoneCounts zones = count_zones(histories_);
+        const std::uint64_t are[] = {layers_.log_odds.bricks(),
+                                     layers_.counts.prior.bricks(),
+                                     layers_.counts.misses.bricks(),
+                                     layers_.counts.hits.bricks(),
+                                     layers_.ages.stamps().bricks(),
+                                     zones.confirmed,
+                                     zones.seen};
         bool are_all = true;
         for (const std::uint64_t there : are) are_all = reader.get<std::uint64_t>() == there && are_all;
         is_done_ = true;
@@ -175,7 +179,8 @@ class Decoder {
     VoxelAges::Clock clock_;
     MapLayers layers_;
     StampTree stamps_;
-    StationaryReadings readings_;
+    SensorHistories histories_;
+    ReadingsTaker readings_{histories_};
     BrickTaker<float> log_odds_{layers_.log_odds, bytes_max()};
     BrickTaker<float> prior_{layers_.counts.prior, bytes_max()};
     BrickTaker<float> misses_{layers_.counts.misses, bytes_max()};

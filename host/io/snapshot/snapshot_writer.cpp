@@ -33,8 +33,9 @@ void put_done(ByteWriter& writer, const MapState& state) {
          {&layers.log_odds, &layers.counts.prior, &layers.counts.misses, &layers.counts.hits})
         writer.put(std::uint64_t{tree->bricks()});
     writer.put(std::uint64_t{layers.ages.stamps().bricks()});
-    writer.put(zones_of(state.readings.confirmed));
-    writer.put(std::uint64_t{state.readings.seen.size()});
+    const ZoneCounts zones = count_zones(state.histories);
+    writer.put(zones.confirmed);
+    writer.put(zones.seen);
 }
 
 }  // namespace
@@ -48,7 +49,7 @@ void write_snapshot(const MapState& state, const SnapshotOrigin& origin, const B
     put_bricks(blocks, BlockKind::misses, layers.counts.misses);
     put_bricks(blocks, BlockKind::hits, layers.counts.hits);
     put_bricks(blocks, BlockKind::ages, layers.ages.stamps());
-    put_readings(blocks, state.readings);
+    put_readings(blocks, state.histories);
     blocks.add(BlockKind::done, [&](ByteWriter& writer, bool) { put_done(writer, state); });
     blocks.finish();
 }

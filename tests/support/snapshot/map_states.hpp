@@ -35,7 +35,7 @@ class MeasuredMap {
     explicit MeasuredMap(const MappingConfig& mapping) : map_(mapping.map), ranges_(mapping, true) {}
     MeasuredMap(const MappingConfig& mapping, MapState state)
         : map_(std::move(state.map)), ranges_(mapping, true) {
-        ranges_.go_on_with(std::move(state.readings));
+        ranges_.go_on_with(std::move(state.histories));
     }
 
     /// So many measurements, 50 ms apart, from `from_s` on.
@@ -47,7 +47,7 @@ class MeasuredMap {
             step % 9 == 8 ? see(random) : range(random, now);
         }
     }
-    [[nodiscard]] MapState state() const { return {map_.copy(), ranges_.readings()}; }
+    [[nodiscard]] MapState state() const { return {map_.copy(), ranges_.histories()}; }
     [[nodiscard]] FusedMap& map() noexcept { return map_; }
 
   private:

@@ -43,8 +43,9 @@ class DaemonOnFrames {
     [[nodiscard]] std::optional<HostTime> now() const { return pipeline_.now(); }
     [[nodiscard]] const FusedMap& map() const { return pipeline_.map(); }
     [[nodiscard]] bool has_readings() const {
-        const StationaryReadings readings = pipeline_.builder().readings();
-        return !readings.confirmed.empty() && !readings.seen.empty();
+        return std::ranges::any_of(pipeline_.builder().histories(), [](const auto& sensor) {
+            return sensor.second.readings > 0 && !sensor.second.zones.begin()->second.passages.empty();
+        });
     }
     [[nodiscard]] std::string state() const { return encode_snapshot(pipeline_.builder().state(), {}); }
     /// What a recording began with, as `state` has it.

@@ -39,7 +39,7 @@ class ConfirmedRangesTest : public testing::Test {
     std::vector<std::size_t> take(const std::vector<std::optional<double>>& ranges_m) {
         std::vector<std::size_t> counts;
         for (const auto& range_m : ranges_m) {
-            const auto confirmed = ranges_.take(beam_at(range_m)).confirmed;
+            const auto confirmed = ranges_.take(beam_at(range_m), histories_).confirmed;
             counts.push_back(static_cast<std::size_t>(
                 std::ranges::count_if(confirmed, [](const Beam& beam) { return *beam.range_m < 0.9; })));
         }
@@ -47,12 +47,13 @@ class ConfirmedRangesTest : public testing::Test {
     }
     using Counts = std::vector<std::size_t>;
 
+    SensorHistories histories_;
     ConfirmedRanges ranges_{StationaryModel{.readings = 4}};
 };
 
 TEST_F(ConfirmedRangesTest, confirms_the_fourth_that_agrees_and_its_mean) {
     EXPECT_EQ(take({0.50, 0.52, 0.49}), Counts({0, 0, 0}));
-    const auto confirmed = ranges_.take(beam_at(0.53)).confirmed;
+    const auto confirmed = ranges_.take(beam_at(0.53), histories_).confirmed;
     ASSERT_EQ(confirmed.size(), 1U);
     EXPECT_NEAR(*confirmed.front().range_m, 0.51, 1e-12);
     EXPECT_EQ(confirmed.front().source, (BeamSource{1, 2, 0}));
@@ -60,7 +61,7 @@ TEST_F(ConfirmedRangesTest, confirms_the_fourth_that_agrees_and_its_mean) {
 
 TEST_F(ConfirmedRangesTest, confirms_nothing_if_the_mapping_says_never) {
     ConfirmedRanges never{StationaryModel{}};
-    for (int i = 0; i < 20; ++i) EXPECT_TRUE(never.take(beam_at(0.5)).confirmed.empty());
+    for (int i = 0; i < 20; ++i) EXPECT_TRUE(never.take(beam_at(0.5), histories_).confirmed.empty());
 }
 
 TEST_F(ConfirmedRangesTest, confirms_no_wrong_reading_however_often_one_comes) {
@@ -77,11 +78,10 @@ TEST_F(ConfirmedRangesTest, confirms_what_comes_though_three_of_seven_are_wrong_
 }
 
 TEST_F(ConfirmedRangesTest, confirms_what_was_new_as_long_as_it_stays) {
-    ConfirmedRanges ranges{StationaryModel{.readings = 4}};
     const auto counts_of = [&](const std::vector<std::optional<double>>& ranges_m) {
         std::vector<std::size_t> confirmed;
         for (const auto& range_m : ranges_m)
-            confirmed.push_back(ranges.take(beam_at(range_m)).confirmed.size());
+            confirmed.push_back(ranges_.take(beam_at(range_m), histories_).confirmed.size());
         return confirmed;
     };
     counts_of({0.3, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
@@ -98,7 +98,7 @@ TEST_F(ConfirmedRangesTest, follows_what_it_confirms_as_it_moves_away) {
     take({1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
     take({0.5, 0.5, 0.5, 0.5});
     for (double range_m = 0.5; range_m < 0.9; range_m += 0.01) {
-        const auto confirmed = ranges_.take(beam_at(range_m)).confirmed;
+        const auto confirmed = ranges_.take(beam_at(range_m), histories_).confirmed;
         ASSERT_EQ(confirmed.size(), 1U) << range_m;
         EXPECT_NEAR(*confirmed.front().range_m, range_m, 0.035);
     }
@@ -111,25 +111,27 @@ TEST_F(ConfirmedRangesTest, takes_what_was_as_near_before_for_no_news) {
 }
 
 TEST_F(ConfirmedRangesTest, confirms_no_sensor_that_moves_or_turns_faster_than_it_may) {
-    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0034 * i)).confirmed.empty());
-    ranges_.forget();
-    for (int i = 0; i < 30; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0, 0.34 * i)).confirmed.empty());
+    for (int i = 0; i < 30; ++i)
+        EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0034 * i), histories_).confirmed.empty());
+    histories_.clear();
+    for (int i = 0; i < 30; ++i)
+        EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.0, 0.34 * i), histories_).confirmed.empty());
 }
 
 TEST_F(ConfirmedRangesTest, confirms_a_sensor_that_moves_and_turns_slowly) {
     for (int i = 0; i < 30; ++i) {
-        const auto confirmed = ranges_.take(beam_at(0.5, 0, 0.0033 * i, 0.33 * i)).confirmed;
+        const auto confirmed = ranges_.take(beam_at(0.5, 0, 0.0033 * i, 0.33 * i), histories_).confirmed;
         EXPECT_EQ(confirmed.size(), i < 3 ? 0U : 1U);
     }
 }
 
 TEST_F(ConfirmedRangesTest, hears_zones_that_are_ranged_in_turn) {
     for (int cycle = 0; cycle < 2; ++cycle)
-        for (std::uint8_t zone = 0; zone < 9; ++zone) (void)ranges_.take(beam_at(1.0, zone));
+        for (std::uint8_t zone = 0; zone < 9; ++zone) (void)ranges_.take(beam_at(1.0, zone), histories_);
     // Something square before zones 4 to 8: what the fourth of them says makes all four confirmed.
     std::vector<std::size_t> counts;
     for (std::uint8_t zone = 4; zone < 9; ++zone)
-        counts.push_back(ranges_.take(beam_at(0.5, zone)).confirmed.size());
+        counts.push_back(ranges_.take(beam_at(0.5, zone), histories_).confirmed.size());
     EXPECT_EQ(counts, Counts({0, 0, 0, 4, 1}));
 }
 
@@ -138,7 +140,7 @@ TEST_F(ConfirmedRangesTest, hears_zones_of_what_comes_again_a_second_after_it_le
         std::size_t confirmed = 0;
         for (int cycle = 0; cycle < cycles; ++cycle)
             for (std::uint8_t zone = 0; zone < 9; ++zone)
-                confirmed += ranges_.take(beam_at(range_m, zone)).confirmed.size();
+                confirmed += ranges_.take(beam_at(range_m, zone), histories_).confirmed.size();
         return confirmed;
     };
     (void)cycles_of(8, 1.0);
@@ -153,7 +155,7 @@ TEST_F(ConfirmedRangesTest, hears_one_zone_by_its_own_readings) {
     for (int cycle = 0; cycle < 20; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone) {
             const bool is_there = zone == 4 && cycle >= 10;
-            const auto confirmed = ranges_.take(beam_at(is_there ? 0.5 : 1.0, zone)).confirmed;
+            const auto confirmed = ranges_.take(beam_at(is_there ? 0.5 : 1.0, zone), histories_).confirmed;
             if (std::ranges::any_of(confirmed, [](const Beam& beam) { return *beam.range_m == 0.5; }))
                 cycles.push_back(cycle);
         }
@@ -165,15 +167,15 @@ TEST_F(ConfirmedRangesTest, hears_one_zone_by_its_own_readings) {
 TEST_F(ConfirmedRangesTest, confirms_no_zone_for_what_its_neighbours_have_always_ranged) {
     for (int cycle = 0; cycle < 10; ++cycle)
         for (std::uint8_t zone = 0; zone < 9; ++zone)
-            (void)ranges_.take(beam_at(zone == 4 ? 1.0 : 0.5, zone));
+            (void)ranges_.take(beam_at(zone == 4 ? 1.0 : 0.5, zone), histories_);
     for (std::uint8_t zone = 0; zone < 9; ++zone)
-        for (const Beam& confirmed : ranges_.take(beam_at(0.5, zone)).confirmed)
+        for (const Beam& confirmed : ranges_.take(beam_at(0.5, zone), histories_).confirmed)
             EXPECT_NE(confirmed.source.zone, 4U) << "one reading does not change what it was confirmed";
 }
 
 TEST_F(ConfirmedRangesTest, names_what_only_repeats_what_is_confirmed) {
     const auto repeats = [&](std::optional<double> range_m) {
-        return ranges_.take(beam_at(range_m)).repeats_confirmed;
+        return ranges_.take(beam_at(range_m), histories_).repeats_confirmed;
     };
     for (int i = 0; i < 4; ++i) EXPECT_FALSE(repeats(0.5)) << i << ": it is confirmed with the fourth";
     for (int i = 0; i < 100; ++i) EXPECT_TRUE(repeats(0.5));
@@ -191,7 +193,7 @@ class SilentZone : public ConfirmedRangesTest {
         Beam beam = beam_at(range_m, zone);
         captured_s_ += period_s;
         beam.captured = HostTime{static_cast<std::int64_t>(std::llround(1e9 * captured_s_))};
-        return ranges_.take(beam);
+        return ranges_.take(beam, histories_);
     }
     bool confirms_hand_after(std::uint8_t zone, double range_m, double period_s) {
         return std::ranges::any_of(take_after(zone, range_m, period_s).confirmed,
@@ -202,7 +204,7 @@ class SilentZone : public ConfirmedRangesTest {
 
 TEST_F(SilentZone, is_believed_until_three_of_its_readings_have_not_come) {
     for (const double period_s : {0.016, 0.033, 0.15}) {
-        ranges_.forget();
+        histories_.clear();
         for (int i = 0; i < 20; ++i)
             for (const std::uint8_t zone : {std::uint8_t{0}, std::uint8_t{1}})
                 (void)take_after(zone, 1.0, period_s);
@@ -254,7 +256,7 @@ TEST_F(SilentZone, is_forgotten_with_all_its_readings_once_they_are_too_old) {
 
 TEST_F(ConfirmedRangesTest, names_what_is_confirmed_no_longer) {
     const auto ended = [&](std::optional<double> range_m) {
-        return ranges_.take(beam_at(range_m)).ended.size();
+        return ranges_.take(beam_at(range_m), histories_).ended.size();
     };
     for (int i = 0; i < 8; ++i) EXPECT_EQ(ended(0.5), 0U);
     EXPECT_EQ(ended(1.0), 0U);
@@ -264,29 +266,30 @@ TEST_F(ConfirmedRangesTest, names_what_is_confirmed_no_longer) {
 }
 
 TEST_F(ConfirmedRangesTest, does_not_name_what_a_sensor_leaves_behind_that_moves_on) {
-    for (int i = 0; i < 8; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5)).ended.empty());
-    for (int i = 1; i < 20; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.02 * i)).ended.empty()) << i;
+    for (int i = 0; i < 8; ++i) EXPECT_TRUE(ranges_.take(beam_at(0.5), histories_).ended.empty());
+    for (int i = 1; i < 20; ++i)
+        EXPECT_TRUE(ranges_.take(beam_at(0.5, 0, 0.02 * i), histories_).ended.empty()) << i;
 }
 
 TEST_F(ConfirmedRangesTest, knows_who_has_stood_for_a_window) {
-    for (int i = 0; i < 30; ++i) EXPECT_EQ(ranges_.take(beam_at(0.5)).is_stationary, i >= 7) << i;
-    ranges_.forget();
+    for (int i = 0; i < 30; ++i) EXPECT_EQ(ranges_.take(beam_at(0.5), histories_).is_stationary, i >= 7) << i;
+    histories_.clear();
     // To and fro.
     for (int i = 0; i < 60; ++i)
-        EXPECT_FALSE(ranges_.take(beam_at(0.5, 0, i % 7 == 0 ? 0.02 : 0.0)).is_stationary) << i;
+        EXPECT_FALSE(ranges_.take(beam_at(0.5, 0, i % 7 == 0 ? 0.02 : 0.0), histories_).is_stationary) << i;
 }
 
 TEST_F(ConfirmedRangesTest, keeps_sensors_apart) {
     for (std::uint8_t i = 0; i < 12; ++i) {
         Beam beam = beam_at(0.5);
         beam.source = {static_cast<std::uint8_t>(i % 2), static_cast<std::uint8_t>(i / 2 % 2), 0};
-        EXPECT_TRUE(ranges_.take(beam).confirmed.empty());
+        EXPECT_TRUE(ranges_.take(beam, histories_).confirmed.empty());
     }
 }
 
 TEST_F(ConfirmedRangesTest, begins_anew_after_forget) {
     take({0.5, 0.5, 0.5});
-    ranges_.forget();
+    histories_.clear();
     EXPECT_EQ(take({0.5, 0.5, 0.5, 0.5}), Counts({0, 0, 0, 1}));
 }
 

@@ -159,7 +159,7 @@ TEST_F(StandingCone, has_what_comes_on_the_map_beside_what_it_never_passes) {
 /// It is in no recording: nothing may follow from it.
 TEST_F(StandingCone, reads_nothing_from_a_range_that_leaves_the_octree) {
     read(1.0, 5);
-    const auto readings = [&] { return builder_->readings().confirmed.begin()->second.readings; };
+    const auto readings = [&] { return builder_->histories().begin()->second.readings; };
     const std::uint64_t before = readings();
     for (const double beside_s : {0.09, 0.11})
         ASSERT_TRUE(builder_->add({host_at(now_s_ + beside_s), {M_PI / 2.0}}));

@@ -74,10 +74,10 @@ bool are_equal(const Beam& a, const Beam& b) {
            a.clear_limit_m == b.clear_limit_m && a.optics == b.optics && a.R_map_sensor == b.R_map_sensor;
 }
 
-void expect_equal(const StationaryReadings& a, const StationaryReadings& b) {
-    ASSERT_EQ(a.confirmed.size(), b.confirmed.size());
-    for (const auto& [place, sensor] : a.confirmed) {
-        const auto& other = b.confirmed.at(place);
+void expect_equal(const SensorHistories& a, const SensorHistories& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (const auto& [id, sensor] : a) {
+        const auto& other = b.at(id);
         EXPECT_EQ(sensor.readings, other.readings);
         ASSERT_EQ(sensor.zones.size(), other.zones.size());
         for (const auto& [index, zone] : sensor.zones) {
@@ -90,15 +90,11 @@ void expect_equal(const StationaryReadings& a, const StationaryReadings& b) {
             }
             ASSERT_EQ(zone.confirmed.has_value(), same.confirmed.has_value());
             EXPECT_TRUE(!zone.confirmed || are_equal(*zone.confirmed, *same.confirmed));
-        }
-    }
-    ASSERT_EQ(a.seen.size(), b.seen.size());
-    for (const auto& [source, newest] : a.seen) {
-        const auto& same = b.seen.at(source);
-        ASSERT_EQ(newest.size(), same.size());
-        for (std::size_t i = 0; i < newest.size(); ++i) {
-            EXPECT_TRUE(are_equal(newest[i].beam, same[i].beam));
-            EXPECT_EQ(newest[i].frees_m, same[i].frees_m);
+            ASSERT_EQ(zone.passages.size(), same.passages.size());
+            for (std::size_t i = 0; i < zone.passages.size(); ++i) {
+                EXPECT_TRUE(are_equal(zone.passages[i].beam, same.passages[i].beam));
+                EXPECT_EQ(zone.passages[i].frees_m, same.passages[i].frees_m);
+            }
         }
     }
 }
@@ -115,7 +111,7 @@ void expect_equal(const MapState& a, const MapState& b) {
     EXPECT_EQ(of_a.known_voxels, of_b.known_voxels);
     EXPECT_EQ(a.map.has_undated(), b.map.has_undated());
     EXPECT_EQ(a.map.config(), b.map.config());
-    expect_equal(a.readings, b.readings);
+    expect_equal(a.histories, b.histories);
 }
 
 /// Few bricks, and readings of one or two zones.
@@ -132,9 +128,14 @@ TEST(Snapshot, gives_every_layer_again_bit_by_bit) {
         measured.measure(seed, 150, 100.0);
         const MapState state = measured.state();
         EXPECT_FALSE(state.map.layers().counts.empty());
-        EXPECT_FALSE(state.readings.seen.empty());
-        for (const auto& [place, sensor] : state.readings.confirmed)
-            for (const auto& [index, zone] : sensor.zones) has_confirmed = has_confirmed || zone.confirmed;
+        bool has_passages = false;
+        for (const auto& [id, sensor] : state.histories) {
+            for (const auto& [index, zone] : sensor.zones) {
+                has_confirmed = has_confirmed || zone.confirmed;
+                has_passages = has_passages || !zone.passages.empty();
+            }
+        }
+        EXPECT_TRUE(has_passages);
         const std::string bytes = encode_snapshot(state, origin());
         const auto again = decode(bytes);
         ASSERT_TRUE(again) << again.error().what;
@@ -230,7 +231,7 @@ TEST(Snapshot, with_a_reading_that_no_sensor_has_is_refused) {
         MeasuredMap small(quickly_aging());
         small.measure(3, 10, 100.0);
         auto state = small.state();
-        change(state.readings.confirmed.begin()->second.zones.begin()->second.newest.front().beam);
+        change(state.histories.begin()->second.zones.begin()->second.newest.front().beam);
         const auto read = decode(encode_snapshot(state, origin()));
         return read ? std::nullopt : std::optional(read.error().fault);
     };
