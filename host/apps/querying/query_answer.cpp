@@ -100,7 +100,7 @@ class Asking {
                       "how it stands as --stands");
         if (const auto checked = check_present(); !checked) return unexpected(checked.error());
         if (const auto checked = check_path(); !checked) return unexpected(checked.error());
-        free_own_space();
+        if (const auto freed = free_own_space(); !freed) return unexpected(freed.error());
         return request_.kind == QueryKind::postures ? ask_postures() : ask_pockets();
     }
 
@@ -166,14 +166,22 @@ class Asking {
     }
 
     /// Where the arm stands: as it is known, or where the path begins.
-    void free_own_space() {
-        if (!request_.own_space_m) return;
+    Status<AppError> free_own_space() {
+        if (!request_.own_space_m) return Done{};
         const auto& stands = ground_.present.empty() ? request_.path.front() : ground_.present;
         // The arm itself, all of it and without padding.
         const auto body = RobotQuery::build(*ground_.rig, *ground_.robot, {.ignores_unmoved = false});
-        if (!body) return;
-        if (const auto capsules = body->pose(stands))
-            octoskin::free_own_space(ground_.map, *capsules, *request_.own_space_m);
+        if (!body) return Done{};
+        const auto capsules = body->pose(stands);
+        if (!capsules) return Done{};
+        if (octoskin::free_own_space(ground_.map, *capsules, *request_.own_space_m, is_ending_))
+            return Done{};
+        if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the arm's own space was known");
+        return fail(
+            ExitCode::usage,
+            fmt::format("own_space_m {}: about this arm that is more than {} million voxels of {} m; "
+                        "give a smaller one, or ask a map of larger voxels",
+                        *request_.own_space_m, kOwnSpaceVoxelsMax >> 20U, ground_.map.resolution_m()));
     }
 
     Result<Json, AppError> ask_postures() {

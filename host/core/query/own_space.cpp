@@ -2,23 +2,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace octoskin {
 namespace {
 
-/// Terms that clamp whatever they are added to at the least there is.
-void list_own(const FusedMap& map, const PosedCapsule& capsule, double margin_m,
-              std::vector<VoxelUpdate>& updates) {
-    const MapConfig& config = map.config();
-    const float all_the_way = config.log_odds_min - config.log_odds_max;
+/// Corners of what may be near a capsule, both included.
+struct VoxelBox {
+    VoxelKey lowest;
+    VoxelKey highest;
+};
+
+/// Empty where it reaches out of the octree, or a number is not finite.
+std::optional<VoxelBox> box_about(const FusedMap& map, const PosedCapsule& capsule, double margin_m) {
     const double reach_m = capsule.radius_m + margin_m;
     const auto lowest = map.key_of(capsule.p_a.cwiseMin(capsule.p_b).array() - reach_m);
     const auto highest = map.key_of(capsule.p_a.cwiseMax(capsule.p_b).array() + reach_m);
-    if (!lowest || !highest) return;
-    for (unsigned z = lowest->z; z <= highest->z; ++z) {
-        for (unsigned y = lowest->y; y <= highest->y; ++y) {
-            for (unsigned x = lowest->x; x <= highest->x; ++x) {
+    if (!lowest || !highest) return std::nullopt;
+    return VoxelBox{*lowest, *highest};
+}
+
+std::uint64_t voxels_of(const VoxelBox& box) {
+    // Three numbers of at most 2^16.
+    return (box.highest.x - box.lowest.x + 1ULL) * (box.highest.y - box.lowest.y + 1ULL) *
+           (box.highest.z - box.lowest.z + 1ULL);
+}
+
+/// Of the layers from `z_begin` to `z_last`: terms that clamp whatever they are added to at the least there
+/// is.
+void list_own(const FusedMap& map, const PosedCapsule& capsule, double margin_m, const VoxelBox& box,
+              unsigned z_begin, unsigned z_last, std::vector<VoxelUpdate>& updates) {
+    const float all_the_way = map.config().log_odds_min - map.config().log_odds_max;
+    for (unsigned z = z_begin; z <= z_last; ++z) {
+        for (unsigned y = box.lowest.y; y <= box.highest.y; ++y) {
+            for (unsigned x = box.lowest.x; x <= box.highest.x; ++x) {
                 const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
                                    static_cast<std::uint16_t>(z)};
                 const double outside_m = distance_to_surface(capsule, map.centre_of(key));
@@ -35,16 +53,31 @@ void list_own(const FusedMap& map, const PosedCapsule& capsule, double margin_m,
 
 }  // namespace
 
-std::size_t free_own_space(FusedMap& map, std::span<const PosedCapsule> capsules, double margin_m) {
+std::optional<std::size_t> free_own_space(FusedMap& map, std::span<const PosedCapsule> capsules,
+                                          double margin_m, const std::function<bool()>& is_ending) {
+    std::uint64_t voxels = 0;
+    for (const PosedCapsule& capsule : capsules) {
+        if (const auto box = box_about(map, capsule, margin_m)) voxels += voxels_of(*box);
+    }
+    if (voxels > kOwnSpaceVoxelsMax) return std::nullopt;
+
     std::size_t freed = 0;
     std::vector<VoxelUpdate> updates;
     for (const PosedCapsule& capsule : capsules) {
-        updates.clear();
-        list_own(map, capsule, margin_m, updates);
-        const Evidence is_free = evidence_of(updates, SensorKind::none);
-        map.forget_counts_of(is_free);  // or what ranges counted there would mark it all the same
-        map.apply(is_free);
-        freed += updates.size();
+        const auto box = box_about(map, capsule, margin_m);
+        if (!box) continue;
+        // A layer of bricks at a time: so long it takes to end, and so much memory the list takes.
+        unsigned z_last = 0;
+        for (unsigned z = box->lowest.z; z <= box->highest.z; z = z_last + 1) {
+            if (is_ending()) return std::nullopt;
+            z_last = std::min<unsigned>(z | (unsigned{kBrickEdge} - 1U), box->highest.z);
+            updates.clear();
+            list_own(map, capsule, margin_m, *box, z, z_last, updates);
+            const Evidence is_free = evidence_of(updates, SensorKind::none);
+            map.forget_counts_of(is_free);  // or what ranges counted there would mark it all the same
+            map.apply(is_free);
+            freed += updates.size();
+        }
     }
     return freed;
 }

@@ -206,6 +206,16 @@ TEST_F(QueryAnswer, takes_the_arms_own_space_for_free_if_it_is_told_to) {
     EXPECT_EQ(ask(request, holed, {2.0, 0.0}).at("state"), "unknown") << "it stands elsewhere";
 }
 
+TEST_F(QueryAnswer, refuses_an_own_space_of_too_many_voxels) {
+    MapConfig fine;
+    fine.resolution_m = 0.002;
+    QueryRequest request = path({{0.0, 0.0}});
+    request.own_space_m = 1.0;
+    const Json answer = ask(request, FusedMap{fine});
+    EXPECT_FALSE(answer.at("ok").get<bool>());
+    EXPECT_EQ(answer.at("code"), 64);
+}
+
 TEST_F(QueryAnswer, refuses_a_posture_in_which_the_arm_cannot_stand) {
     const auto error = [&](std::vector<double> stands) {
         const Json answer = ask(path({{0.0, 0.0}}), map_, std::move(stands));
