@@ -16,7 +16,7 @@
 namespace octoskin {
 namespace {
 
-constexpr unsigned kMode = 0640;
+constexpr unsigned kMode = 0600;  // what others can open they can lock
 constexpr int kTries = 10;
 
 /// Who holds it wrote its process id there; empty if it could not.
@@ -68,6 +68,7 @@ Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const st
     for (int tries = 0; tries < kTries; ++tries) {
         auto file = open_or_create(folder);
         if (!file) return unexpected(cannot_save(named, file.error()));
+        (void)::fchmod(file->descriptor(), kMode);  // of an earlier version's, or a copied one
         if (::flock(file->descriptor(), LOCK_EX | LOCK_NB) != 0) {
             return cannot_create(named, "another octoskin" + holder_of(file->descriptor()) +
                                             " keeps its map there; stop it, or name another folder");

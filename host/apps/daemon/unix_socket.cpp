@@ -12,8 +12,11 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "host/apps/recording/file_lock.hpp"
+#include "host/io/folder/file_place.hpp"
+#include "host/io/folder/open_folder.hpp"
 #include "host/io/socketcan/passed_descriptors.hpp"
 
 namespace octoskin {
@@ -84,21 +87,52 @@ std::optional<std::string> find_listener(const sockaddr_un& address, int type) {
     return is_nobody ? std::nullopt : std::optional(listener);
 }
 
-/// From the question whether somebody is there until the answer is "we are": two that begin at once would
-/// each find nobody, and the later one would take the earlier one's name away.
-std::optional<FileLock> lock_folder_of(const std::filesystem::path& file) {
-    constexpr int kTries = 400;
-    constexpr std::chrono::milliseconds kPause{5};
-    const auto folder = OpenFolder::open(folder_of(file), FolderAccess::read);
-    if (!folder) return FileLock::of_nothing();  // what is done there next says what is wrong with it
-    auto lock = FileLock::take(*folder, FileLock::Kind::exclusive);
-    for (int i = 0; i < kTries && !lock; ++i) {
-        std::this_thread::sleep_for(kPause);
-        auto again = FileLock::take(*folder, FileLock::Kind::exclusive);
-        if (again) return again;
+/// Between the question whether another daemon is there and the answer "this one": two that begin at once
+/// would each find none, and the later one would take the earlier one's name away. A file that no other user
+/// can open is locked, for what others can open they can lock.
+class StartLock {
+  public:
+    /// Not taken: another process holds it for two seconds. Where no such file can be made, it locks nothing:
+    /// what is done there next says what is wrong.
+    explicit StartLock(const std::filesystem::path& socket) : name_(socket.filename().string() + ".lock") {
+        constexpr int kTries = 400;
+        constexpr std::chrono::milliseconds kPause{5};
+        if (auto folder = OpenFolder::open(folder_of(socket), FolderAccess::write))
+            folder_ = std::move(*folder);
+        lock_ = take();
+        for (int i = 0; i < kTries && !lock_; ++i) {
+            std::this_thread::sleep_for(kPause);
+            lock_ = take();
+        }
     }
-    return lock;
-}
+    ~StartLock() {
+        if (is_own_ && lock_) (void)folder_->remove(name_);  // while it is locked
+    }
+    StartLock(const StartLock&) = delete;
+    StartLock& operator=(const StartLock&) = delete;
+
+    [[nodiscard]] bool is_taken() const noexcept { return lock_.has_value(); }
+
+  private:
+    std::optional<FileLock> take() {
+        constexpr unsigned kOwnersMode = 0600;
+        is_own_ = false;
+        if (!folder_) return FileLock::of_nothing();
+        const auto created = folder_->create_new(name_, kOwnersMode);
+        if (!created && created.error().fault != FolderFault::is_there) return FileLock::of_nothing();
+        const auto file = folder_->open_file(name_);
+        if (!file && file.error().fault == FolderFault::absent) return std::nullopt;  // removed just now
+        struct stat status {};
+        is_own_ = file && ::fstat(file->descriptor(), &status) == 0 && status.st_uid == ::geteuid() &&
+                  (status.st_mode & 0077U) == 0;
+        return is_own_ ? FileLock::take_removed_later({*folder_, name_}) : FileLock::of_nothing();
+    }
+
+    std::string name_;
+    std::optional<OpenFolder> folder_;
+    bool is_own_ = false;
+    std::optional<FileLock> lock_;
+};
 
 }  // namespace
 
@@ -106,9 +140,10 @@ Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int ty
                                        const std::string& option) {
     const auto address = address_of(file);
     if (!address) return fail(ExitCode::usage, file.string() + ": a socket's path has 1 to 107 bytes");
-    const auto lock = lock_folder_of(file);
-    if (!lock) {
-        return cannot_create(file, "another octoskin keeps its folder locked; is it stopped in mid-start?");
+    const StartLock lock(file);
+    if (!lock.is_taken()) {
+        return cannot_create(file, "another octoskin keeps " + file.filename().string() +
+                                       ".lock beside it locked; is it stopped in mid-start?");
     }
     if (const auto listener = find_listener(*address, type)) {
         return cannot_create(

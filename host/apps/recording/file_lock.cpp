@@ -43,6 +43,16 @@ std::optional<FileLock> FileLock::take(const FilePlace& file, Kind kind) {
     return std::nullopt;
 }
 
+std::optional<FileLock> FileLock::take_removed_later(const FilePlace& file) {
+    auto opened = file.open();
+    if (!opened) return std::nullopt;
+    auto locked = lock(Descriptor(opened->release()), Kind::exclusive);
+    if (!locked || !locked->descriptor_) return locked;
+    const auto again = file.open();
+    const bool is_there = again && is_same_file(again->descriptor(), locked->descriptor_.get());
+    return is_there ? std::move(locked) : std::nullopt;
+}
+
 std::optional<FileLock> FileLock::take(const OpenFolder& folder, Kind kind) {
     // Opened anew: a lock belongs to one opening, and the folder's own has copies.
     Descriptor again(::openat(folder.descriptor(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));

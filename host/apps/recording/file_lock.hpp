@@ -18,6 +18,9 @@ class FileLock {
     /// opened, give a lock that locks nothing: whatever is done there next says what is wrong with it.
     [[nodiscard]] static std::optional<FileLock> take(const FilePlace& file, Kind kind);
     [[nodiscard]] static std::optional<FileLock> take(const OpenFolder& folder, Kind kind);
+    /// Of a file that is removed before it is given back: empty also where it was removed, or replaced,
+    /// before it was locked, or is not there.
+    [[nodiscard]] static std::optional<FileLock> take_removed_later(const FilePlace& file);
     [[nodiscard]] static FileLock of_nothing() { return FileLock(Descriptor()); }
 
   private:

@@ -25,9 +25,11 @@ class StartingTest : public DaemonTest {
   protected:
     /// Before it makes its sockets a daemon waits for this lock, 2 s at most.
     void start_and_hold() {
-        const auto folder = OpenFolder::open(folder_.path(), FolderAccess::read);
+        const auto folder = OpenFolder::open(folder_.path(), FolderAccess::write);
         ASSERT_TRUE(folder);
-        lock_ = FileLock::take(*folder, FileLock::Kind::exclusive);
+        const FilePlace file(*folder, "control.lock");
+        ASSERT_TRUE(file.create_new(0600));
+        lock_ = FileLock::take(file, FileLock::Kind::exclusive);
         ASSERT_TRUE(lock_);
         start();
         std::this_thread::sleep_for(500ms);

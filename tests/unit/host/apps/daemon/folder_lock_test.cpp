@@ -30,6 +30,18 @@ TEST(FolderLock, is_held_by_one_at_a_time_whose_process_is_named) {
     EXPECT_TRUE(FolderLock::take(folder));
 }
 
+/// Of what others can open they can keep the lock.
+TEST(FolderLock, is_of_a_file_that_no_other_user_can_open) {
+    const testing_support::ScratchFolder scratch;
+    using std::filesystem::perms;
+    const auto mode = [&] { return std::filesystem::status(scratch / FolderLock::kFile).permissions(); };
+    EXPECT_TRUE(FolderLock::take(scratch.path()));
+    EXPECT_EQ(mode(), perms{0600});
+    std::filesystem::permissions(scratch / FolderLock::kFile, perms{0640});
+    EXPECT_TRUE(FolderLock::take(scratch.path()));
+    EXPECT_EQ(mode(), perms{0600});
+}
+
 TEST(FolderLock, says_why_nothing_can_be_written_there) {
     const testing_support::ScratchFolder scratch;
     scratch.write("file", "in the way");

@@ -1,6 +1,8 @@
 #include "host/apps/daemon/unix_socket.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -8,6 +10,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
@@ -47,6 +50,19 @@ TEST(UnixSocket, is_given_to_one_of_many_that_begin_at_once) {
             ::unlink(file.c_str());
         }
     }
+}
+
+/// A lock of the folder can be held by each user who may read it.
+TEST(UnixSocket, is_given_in_a_folder_that_another_has_locked_and_leaves_nothing_else_there) {
+    const testing_support::ScratchFolder folder;
+    const int others = ::open(folder.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    ASSERT_EQ(::flock(others, LOCK_EX), 0);
+    const auto bound = bind_unix_socket(folder / "control", SOCK_STREAM);
+    EXPECT_TRUE(bound);
+    ::close(others);
+    ::close(bound.value());
+    ::unlink((folder / "control").c_str());
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(UnixSocket, for_datagrams_is_refused_without_the_others_process) {
