@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 namespace octoskin {
@@ -15,6 +16,7 @@ constexpr std::size_t kDifferencesMax = 4;  ///< that are told
 constexpr std::string_view kTextMagic = "# Octomap OcTree file";
 constexpr std::string_view kBinaryMagic = "# Octomap OcTree binary file";
 constexpr std::string_view kOctoskinsComment = "# saved by octoskin";
+constexpr std::string_view kOccupiedComment = "# occupied from log-odds ";
 constexpr std::string_view kWhiteSpace = " \t\n\v\f\r";
 
 /// Of a .bt before OctoMap 1.4, little-endian: the type of tree as 32 bits, the resolution as a double, the
@@ -73,8 +75,7 @@ class HeaderParser {
 
     std::optional<MapReadError> take(std::string_view key) {
         if (key.starts_with('#')) {
-            take_comment(key);
-            return std::nullopt;
+            return take_comment(key);
         }
         if (key == "id") return take_id(next_value(key, has_id_));
         if (key == "size") return take_size(next_value(key, has_size_));
@@ -84,11 +85,23 @@ class HeaderParser {
         return std::nullopt;
     }
 
-    void take_comment(std::string_view first_word) {
+    std::optional<MapReadError> take_comment(std::string_view first_word) {
         position_ -= first_word.size();
         std::string_view line = rest_of_line();
         if (line.ends_with('\r')) line.remove_suffix(1);
         header_.is_octoskins = header_.is_octoskins || line == kOctoskinsComment;
+        if (!header_.is_octoskins || !line.starts_with(kOccupiedComment)) return std::nullopt;
+        const std::string_view number = line.substr(kOccupiedComment.size());
+        float from = 0.0F;
+        const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), from);
+        constexpr float kMost = 100.0F;  // of what a mapping may say
+        if (error != std::errc{} || end != number.data() + number.size() || !(std::fabs(from) <= kMost)) {
+            return MapReadError{
+                MapFault::header_malformed,
+                fmt::format("\"{}\" is no log-odds from which voxels are occupied", excerpt(number))};
+        }
+        header_.occupied_from = from;
+        return std::nullopt;
     }
 
     /// The word behind a key. Expected is a line of the two, one blank between them.
@@ -235,12 +248,16 @@ Result<OctomapHeader, MapReadError> parse_header_before_1_4(std::string_view byt
 
 }  // namespace
 
-std::string octomap_header(bool is_binary, std::uint64_t nodes, double resolution_m, SavedMark mark) {
+std::string octomap_header(bool is_binary, std::uint64_t nodes, double resolution_m, SavedMark mark,
+                           float occupied_from) {
+    std::string comments;
+    if (mark == SavedMark::present) comments = fmt::format("{}\n", kOctoskinsComment);
+    if (mark == SavedMark::present && occupied_from != 0.0F)
+        comments += fmt::format("{}{}\n", kOccupiedComment, occupied_from);
     return fmt::format(
-        "{}\n# (feel free to add / change comments, but leave the first line as it is!)\n{}{}#\n"
+        "{}\n# (feel free to add / change comments, but leave the first line as it is!)\n{}#\n"
         "id OcTree\nsize {}\nres {}\ndata\n",
-        is_binary ? kBinaryMagic : kTextMagic, mark == SavedMark::present ? kOctoskinsComment : "",
-        mark == SavedMark::present ? "\n" : "", nodes, resolution_m);
+        is_binary ? kBinaryMagic : kTextMagic, comments, nodes, resolution_m);
 }
 
 Result<OctomapHeader, MapReadError> parse_octomap_header(std::string_view bytes, std::uint64_t nodes_max) {

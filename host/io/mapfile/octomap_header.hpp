@@ -20,6 +20,8 @@ struct OctomapHeader {
     std::size_t colour_bytes = 0;        ///< of a .ot, behind each node's log-odds
     std::size_t data_begin = 0;          ///< where the nodes begin in the file
     bool is_octoskins = false;           ///< octoskin saved the file: its comment is there
+    /// From which log-odds on a voxel is occupied, where octoskin saved it with another number than 0.
+    std::optional<float> occupied_from;
     /// What is not as OctoMap and octoskin write it, but does not change what the file means.
     std::vector<std::string> differences;
 };
@@ -27,10 +29,11 @@ struct OctomapHeader {
 /// Whether the header says that octoskin saved the map. Octoskin did not write that into maps always.
 enum class SavedMark : std::uint8_t { present, absent };
 
-/// What octoskin writes in front of the nodes: OctoMap's own header with one comment more. The resolution is
-/// in its shortest form that reads back exactly.
+/// What octoskin writes in front of the nodes: OctoMap's own header with one comment more, and another where
+/// `occupied_from` is not 0, from which on OctoMap takes a voxel for occupied. Numbers are in their shortest
+/// form that reads back exactly.
 [[nodiscard]] std::string octomap_header(bool is_binary, std::uint64_t nodes, double resolution_m,
-                                         SavedMark mark = SavedMark::present);
+                                         SavedMark mark = SavedMark::present, float occupied_from = 0.0F);
 
 /// Reads the header at the beginning of `bytes` as OctoMap 1.9 does: words apart by any white space, of keys
 /// that come twice the last, unknown keys skipped with their line; before 1.4 a .bt began with binary

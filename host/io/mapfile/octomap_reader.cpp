@@ -211,6 +211,7 @@ Result<LoadedMap, MapReadError> decode_octomap(std::string_view bytes, const Map
 
     MapConfig config = limits.map;
     config.resolution_m = header->resolution_m;
+    if (header->occupied_from) config.log_odds_occupied = *header->occupied_from;
     LoadedMap loaded{.map = FusedMap(config),
                      .warnings = warnings_of(*header, look.why_end_differs()),
                      .is_octoskins = header->is_octoskins,

@@ -36,8 +36,9 @@ struct MapReadError {
 };
 
 struct MapReadLimits {
-    /// Clamps, threshold and memory of the map to be made; its resolution comes from the file. A program that
-    /// left OctoMap's defaults alone clamps at 3.5110 rather than 3.5.
+    /// Clamps, threshold and memory of the map to be made; its resolution comes from the file, and so does
+    /// the threshold where the file says it. A program that left OctoMap's defaults alone clamps at 3.5110
+    /// rather than 3.5.
     MapConfig map;
     std::uint64_t nodes_max = 50'000'000;
 };

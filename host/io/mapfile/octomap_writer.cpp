@@ -68,7 +68,7 @@ std::string all_bytes(const ByteSource& source) {
 
 void write_all_ot(const FusedMap& map, const ByteSink& sink, SavedMark mark) {
     const PrunedOctree octree(map, LeafValues::exact);
-    if (sink(octomap_header(false, octree.size(), map.resolution_m(), mark)))
+    if (sink(octomap_header(false, octree.size(), map.resolution_m(), mark, map.config().log_odds_occupied)))
         write_nodes<OtNode>(octree, sink);
 }
 

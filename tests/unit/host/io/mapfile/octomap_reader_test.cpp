@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <string>
 
@@ -71,6 +72,32 @@ TEST(OctomapReader, reads_what_was_written) {
         EXPECT_EQ(encode_bt(from_bt->map), encode_bt(map));
         EXPECT_EQ(from_bt->map.known_voxels(), map.known_voxels());
     }
+}
+
+/// As it was in the map, whatever the reader's own limits say; OctoMap reads the file as ever.
+TEST(OctomapReader, takes_for_occupied_what_octoskin_saved_as_occupied) {
+    for (const float from : {-1.2F, 0.0F, 0.1F}) {
+        MapConfig config;
+        config.log_odds_occupied = from;
+        FusedMap map{config};
+        ASSERT_TRUE(map.set_cube({.lowest = {32, 64, 96}, .height = 1}, -1.0F));
+        ASSERT_TRUE(map.set_cube({.lowest = {64, 64, 96}, .height = 1}, 0.05F));
+        const std::string bytes = encode_ot(map);
+        const auto loaded = decode_octomap(bytes, {});
+        ASSERT_TRUE(loaded) << loaded.error().what;
+        for (const VoxelKey key : {VoxelKey{32, 64, 96}, VoxelKey{64, 64, 96}})
+            EXPECT_EQ(loaded->map.occupancy(key), map.occupancy(key)) << from;
+        EXPECT_EQ(encode_ot(loaded->map), bytes);
+        std::istringstream text(bytes);
+        const std::unique_ptr<octomap::AbstractOcTree> read(octomap::AbstractOcTree::read(text));
+        ASSERT_NE(read, nullptr);
+        EXPECT_EQ(read->size(), dynamic_cast<octomap::OcTree&>(*read).calcNumNodes());
+    }
+    const std::string saved = kOctoskins + "# occupied from log-odds ";
+    EXPECT_EQ(fault_of(ot_header(saved + "-1.2\n" + fields(0))), std::nullopt);
+    for (const char* number : {"", "x", "nan", "1e9", "-1.2 m"})
+        EXPECT_EQ(fault_of(ot_header(saved + number + "\n" + fields(0))), MapFault::header_malformed)
+            << number;
 }
 
 // Oracle: OctoMap's writer, on a tree of its own with another resolution.
