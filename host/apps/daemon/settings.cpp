@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/apps/choosing/named_mapping.hpp"
+#include "host/apps/choosing/rig_pipeline.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/io/mapping/mapping_file.hpp"
@@ -58,10 +59,8 @@ Result<Pipeline, AppError> make_pipeline(const DaemonRequest& request, const Set
     config.depth_threads = request.depth_threads;
     config.release = Release::once_placed;
     config.intake.has_local_joints = !request.joint_socket.empty();
-    auto pipeline = Pipeline::build(settings.host.rig, settings.host.robot, settings.mapping, config);
-    if (pipeline) return std::move(pipeline).value();
-    return fail(ExitCode::bad_config, request.rig.string() + ": the robot has no '" +
-                                          pipeline.error().element + "' that the rig speaks of");
+    return build_pipeline(request.rig.string(), settings.host.rig, settings.host.robot, settings.mapping,
+                          config);
 }
 
 }  // namespace octoskin

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/apps/choosing/rig_pipeline.hpp"
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/film_playback.hpp"
 #include "host/apps/playback/log_survey.hpp"
@@ -208,11 +209,11 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, Setup& 
     config.maps = request.maps;
     config.begin = begin;
     config.intake = intake;
-    auto pipeline = Pipeline::build(setup.host.rig, std::move(setup.host.robot), request.mapping, config);
-    if (!pipeline) {
-        return fail(ExitCode::bad_config, request.recording.rig().shown().string() + ": the robot has no '" +
-                                              pipeline.error().element + "' that the rig speaks of");
-    }
+    const std::filesystem::path rig_file =
+        request.rig.empty() ? request.recording.rig().shown() : request.rig;
+    auto pipeline = build_pipeline(rig_file.string(), setup.host.rig, std::move(setup.host.robot),
+                                   request.mapping, config);
+    if (!pipeline) return unexpected(pipeline.error());
     pipeline->tell(request.listener);
     return std::move(*pipeline);
 }

@@ -190,6 +190,9 @@ constexpr std::array kCounterMeanings = {
                    "look for a number that is none in the rig and the robot description"},
     CounterMeaning{"readings", "outside_map", "beyond the bounds of the octree", Cause::mendable,
                    "look at T_map_base of the rig, or raise the mapping's resolution_m"},
+    CounterMeaning{"readings", "cone_too_large",
+                   "the cone that it sees has more than 16777216 of the map's voxels", Cause::mendable,
+                   "raise resolution_m of the mapping, or lower no_return_clear_m"},
     CounterMeaning{"readings", "contradicts_camera",
                    "its sensor contradicts the camera (the problems say how): the map does without it until "
                    "it agrees again",

@@ -93,9 +93,10 @@ enum class ReadingReason : std::uint8_t {
     self_hit,            ///< reaches the robot's own body
     beam_not_valid,      ///< a pose or range that is no number
     outside_map,         ///< beyond the octree
+    cone_too_large,      ///< what it sees has more voxels than one range may have
     contradicts_camera,  ///< its sensor does: it is off, turned, exchanged with another, or stuck
 };
-[[nodiscard]] constexpr std::array<const char*, 39> names_of(ReadingReason) {
+[[nodiscard]] constexpr std::array<const char*, 40> names_of(ReadingReason) {
     return {"node_absent",
             "node_lost",
             "node_version",
@@ -134,6 +135,7 @@ enum class ReadingReason : std::uint8_t {
             "self_hit",
             "beam_not_valid",
             "outside_map",
+            "cone_too_large",
             "contradicts_camera"};
 }
 

@@ -15,9 +15,11 @@ enum class BeamRejection : std::uint8_t {
     range_not_valid,     ///< not finite, or negative
     limit_not_valid,     ///< the clearing limit is not finite, or negative
     outside_map,         ///< origin or endpoint lies outside the octree
+    cone_too_large,      ///< its cone may have more voxels than `kConeVoxelsMax`
 };
 
-/// What is wrong with the beam's figures; `outside_map` is not looked for. Empty: nothing.
+/// What is wrong with the beam's figures; `outside_map` and `cone_too_large` are not looked for. Empty:
+/// nothing.
 [[nodiscard]] std::optional<BeamRejection> fault_of(const Beam& beam);
 
 }  // namespace octoskin

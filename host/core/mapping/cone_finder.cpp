@@ -100,22 +100,13 @@ VoxelKey key_at(const std::array<int, 3>& key) {
 
 ConeFinder::ConeFinder(const MappingConfig& config) : config_(config), lattice_(config.map.resolution_m) {}
 
-double ConeFinder::length_m(const Beam& beam) const noexcept {
-    return beam.range_m.value_or(std::min(config_.no_return_clear_m, beam.clear_limit_m));
-}
-
-double ConeFinder::cap_half_m(const Beam& beam) const noexcept {
-    const ConeModel& model = model_of(beam);
-    return model.cap_half_thickness_m + model.cap_sigmas * beam.sigma_m;
-}
-
 bool ConeFinder::ends_about(const Beam& beam, VoxelKey key) const noexcept {
     const Eigen::Vector3d v = lattice_.centre_of(key) - beam.p_map_sensor;
     const double half_m = 0.5 * lattice_.resolution_m();
     const double angle_rad = model_of(beam).cap_angle_share * beam.optics.half_angle_rad;
     const double along_m = v.dot(beam.direction_map);
     const double aside_m = (v - along_m * beam.direction_map).norm();
-    return std::fabs(v.norm() - *beam.range_m) <= cap_half_m(beam) + half_m &&
+    return std::fabs(v.norm() - *beam.range_m) <= cap_half_m(beam, config_) + half_m &&
            std::atan2(std::max(0.0, aside_m - half_m), along_m) <= angle_rad;
 }
 
@@ -123,7 +114,8 @@ std::optional<BeamRejection> ConeFinder::refusal_of(const Beam& beam) const noex
     if (const auto fault = fault_of(beam)) return fault;
     const Eigen::Vector3d end = beam.p_map_sensor + length_m(beam) * beam.direction_map;
     const bool is_inside = lattice_.key_of(beam.p_map_sensor) && lattice_.key_of(end);
-    return is_inside ? std::nullopt : std::optional(BeamRejection::outside_map);
+    if (!is_inside) return BeamRejection::outside_map;
+    return is_cone_too_large(beam, config_) ? std::optional(BeamRejection::cone_too_large) : std::nullopt;
 }
 
 Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam, CapWidth width) {
@@ -135,12 +127,8 @@ Result<const ConeVoxels*, BeamRejection> ConeFinder::find(const Beam& beam, CapW
     voxels_.passed.clear();
     voxels_.cap.clear();
     voxels_.middle.clear();
-    const double cap_m = beam.range_m ? cap_half_m(beam) : 0.0;
-    // Wider ones have slices that are no ellipses (SlicedCone).
-    constexpr double kCoreMax_rad = 0.6;
-    const double core_rad =
-        std::min({beam.optics.half_angle_rad,
-                  beam.optics.sigma_rad * std::sqrt(-2.0 * std::log(model.core_weight_min)), kCoreMax_rad});
+    const double cap_m = beam.range_m ? cap_half_m(beam, config_) : 0.0;
+    const double core_rad = core_angle_rad(beam.optics, config_);
     find_passed(beam, {.end_m = length_m - cap_m,
                        .tan_core = std::tan(core_rad),
                        .margin_m = model.core_margin_voxels * lattice_.resolution_m()});

@@ -7,6 +7,7 @@
 #include "common/result.hpp"
 #include "host/core/beams/beam.hpp"
 #include "host/core/mapping/beam_rejection.hpp"
+#include "host/core/mapping/cone_size.hpp"
 #include "host/core/mapping/cone_voxels.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
@@ -27,13 +28,14 @@ class ConeFinder {
     /// The voxels of a beam whose optics are a cone (asserted), by the parameters for these optics
     /// (`model_of`); valid until the next call. Without return:
     /// what is passed up to the smaller of `MappingConfig::no_return_clear_m` and the beam's limit. What lies
-    /// outside the octree is left out. O(voxels); about 3 us at 1 m and 0.04 m. Throws std::bad_alloc.
+    /// outside the octree is left out; more than `kConeVoxelsMax` are refused. O(voxels); about 3 us at 1 m
+    /// and 0.04 m. Throws std::bad_alloc.
     [[nodiscard]] Result<const ConeVoxels*, BeamRejection> find(const Beam& beam,
                                                                 CapWidth width = CapWidth::whole);
     /// Why `find` refuses a beam, of whatever width; empty if it does not. O(1).
     [[nodiscard]] std::optional<BeamRejection> refusal_of(const Beam& beam) const noexcept;
     /// How far it reaches: its range, or how far it may free space without one.
-    [[nodiscard]] double length_m(const Beam& beam) const noexcept;
+    [[nodiscard]] double length_m(const Beam& beam) const noexcept { return cone_length_m(beam, config_); }
     /// Whether a voxel touches the cap of a beam with a range, as far as a cube and a cap can be told apart
     /// by the cube's centre and half its edge, however long the range.
     [[nodiscard]] bool ends_about(const Beam& beam, VoxelKey key) const noexcept;
@@ -57,7 +59,6 @@ class ConeFinder {
         double middle_rad = 0.0;
         double marks_rad = 0.0;  ///< beyond, they have no weight
     };
-    [[nodiscard]] double cap_half_m(const Beam& beam) const noexcept;
     void find_passed(const Beam& beam, const Passed& passed);
     void find_cap(const Beam& beam, const Cap& cap);
 

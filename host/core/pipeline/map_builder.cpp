@@ -13,8 +13,9 @@ ReadingReason reason_of(BeamFault fault) {
 }
 
 ReadingReason reason_of(BeamRejection rejection) {
-    return rejection == BeamRejection::outside_map ? ReadingReason::outside_map
-                                                   : ReadingReason::beam_not_valid;
+    if (rejection == BeamRejection::outside_map) return ReadingReason::outside_map;
+    if (rejection == BeamRejection::cone_too_large) return ReadingReason::cone_too_large;
+    return ReadingReason::beam_not_valid;
 }
 
 bool sees_any_cone(const HostRig& rig) {

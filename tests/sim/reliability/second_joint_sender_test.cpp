@@ -244,8 +244,9 @@ double seconds_between(WallTime from, WallTime to) {
 /// For what is known before a pose is: the rest is joints_missing where there is none.
 std::uint64_t rejected_without_pose(const Account<ReadingReason>& readings) {
     std::uint64_t rejected = readings.rejected();
-    for (const ReadingReason reason : {ReadingReason::joints_missing, ReadingReason::self_hit,
-                                       ReadingReason::beam_not_valid, ReadingReason::outside_map})
+    for (const ReadingReason reason :
+         {ReadingReason::joints_missing, ReadingReason::self_hit, ReadingReason::beam_not_valid,
+          ReadingReason::outside_map, ReadingReason::cone_too_large})
         rejected -= readings.rejected(reason);
     return rejected;
 }

@@ -30,13 +30,13 @@ TEST(FateHistory, names_the_most_frequent_reason) {
     EXPECT_EQ(fates.streak(), ReadingReason::sigma_above_max);
 }
 
-// Each of the 37 reasons, by name: what counts against a sensor is decided here, not by its place in a list.
+// Each of the reasons, by name: what counts against a sensor is decided here, not by its place in a list.
 TEST(FateHistory, blames_a_sensor_for_what_is_its_own) {
     const std::string own =
         " time_uncertain duplicate out_of_window too_soon too_young too_old sensor_misconfigured "
         "status_fault "
         "zone_unknown zone_not_in_rig not_finite below_range_min above_range_max sigma_above_max "
-        "beam_not_valid outside_map ";
+        "beam_not_valid outside_map cone_too_large ";
     for (std::size_t i = 0; i < names_of(ReadingReason{}).size(); ++i) {
         const std::string name = names_of(ReadingReason{}).at(i);
         FateHistory fates;

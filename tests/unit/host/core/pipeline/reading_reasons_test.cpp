@@ -221,6 +221,13 @@ const std::vector<ReadingCase>& cases() {
         {R::self_hit, spare([](auto& reading) { reading.sensor = kInward; })},
         {R::beam_not_valid, spare([](auto& reading) { reading.sensor = kLostPose; })},
         {R::outside_map, spare([](auto& reading) { reading.sensor = kFar; })},
+        {R::cone_too_large, spare([](auto& reading) { reading.device_status = kDeviceStatusNoTarget; }),
+         [](Scene& s) {  // 30 m of a cone, as no program begins with
+             s.mapping.range_update = RangeUpdate::cone;
+             s.mapping.no_return_clear_m = 30.0;
+             s.mapping.removes_robot_from_ranges = false;
+             s.rig.nodes[0].sensors[kSpare].zones[0].optics = {.half_angle_rad = 0.3, .sigma_rad = 0.2};
+         }},
     };
     return all;
 }
