@@ -11,7 +11,6 @@
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/source_file.hpp"
-#include "host/io/mapfile/atomic_file.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "host/io/snapshot/snapshot_file.hpp"
@@ -215,14 +214,18 @@ void MapKeeper::end_save(Work& shared, std::string error) {
 
 std::string MapKeeper::write_map(const FusedMap& map, const SnapshotOrigin& origin,
                                  const NamedFolder& folder) {
-    for (const char* file : {kMapFile, kSmallMapFile}) {
-        if (const auto saved = save_map(map, {folder, file}); !saved) return saved.error().message;
-    }
-    // Last: until then the one that is there belongs to another fused.ot, and is not used.
+    auto exact = draft_map(map, {folder, kMapFile});
+    if (!exact) return exact.error().message;
+    auto small = draft_map(map, {folder, kSmallMapFile});
+    if (!small) return small.error().message;
     SnapshotOrigin of_map = origin;
-    of_map.map_crc32 = crc32_of(FilePlace(folder, kMapFile));
-    const auto saved = save_snapshot({map.copy(), {}}, of_map, {folder, kSnapshotFile});
-    return saved ? std::string() : saved.error().message();
+    of_map.map_crc32 = exact->crc();
+    auto snapshot = draft_snapshot({map.copy(), {}}, of_map, {folder, kSnapshotFile});
+    if (!snapshot) return snapshot.error().message();
+    // A snapshot counts with its fused.ot alone: the two directly after each other.
+    FileDraft drafts[] = {std::move(*snapshot), std::move(*exact), std::move(*small)};
+    const auto put = put_in_place(drafts);
+    return put ? std::string() : put.error().message();
 }
 
 }  // namespace octoskin

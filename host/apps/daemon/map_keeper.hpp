@@ -84,6 +84,8 @@ class MapKeeper {
 
     [[nodiscard]] SaveRecord record() const;
 
+    /// All three files, or, if one cannot be written, none. Only between two renames, some microseconds, does
+    /// the folder hold files of two saves. Needs the disk's room for both. Throws std::bad_alloc.
     static std::string write_map(const FusedMap& map, const SnapshotOrigin& origin,
                                  const NamedFolder& folder);
 

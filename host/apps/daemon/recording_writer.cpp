@@ -226,22 +226,19 @@ Status<std::string> RecordingWriter::Work::record() {
 Result<std::optional<std::uint32_t>, std::string> RecordingWriter::Work::keep_map(
     const FusedMap& map, const FilePlace& file) const {
     if (map.known_voxels() == 0) return std::optional<std::uint32_t>{};
-    if (const auto saved = map_writer_(map, file); !saved) return unexpected(saved.error().message);
-    const auto crc32 = crc32_of(file);
-    if (!crc32) return unexpected(file.shown().string() + ": cannot be read again");
-    return crc32;
+    const auto saved = map_writer_(map, file);
+    if (!saved) return unexpected(saved.error().message);
+    return std::optional(*saved);
 }
 
 Status<std::string> RecordingWriter::Work::keep_first() {
     const auto map = keep_map(begin_.first.map, begin_.paths.first_map());
     if (!map) return unexpected(map.error());
     begin_.order.first_map = *map;
-    const FilePlace file = begin_.paths.first_state();
     const SnapshotOrigin origin{.mapping_crc32 = begin_.order.mapping_crc32, .map_crc32 = *map};
-    if (const auto saved = save_snapshot(begin_.first, origin, file); !saved)
-        return unexpected(saved.error().message());
-    begin_.order.first_state = crc32_of(file);
-    if (!begin_.order.first_state) return unexpected(file.shown().string() + ": cannot be read again");
+    const auto saved = save_snapshot(begin_.first, origin, begin_.paths.first_state());
+    if (!saved) return unexpected(saved.error().message());
+    begin_.order.first_state = *saved;
     begin_.first = {FusedMap(begin_.first.map.config()), {}};  // its memory is not needed any more
     return Done{};
 }

@@ -42,8 +42,9 @@ class RecordingWriter {
   public:
     /// What may wait of each text: seconds of a full bus.
     static constexpr std::size_t kTextMax = std::size_t{8} << 20U;
-    /// Saves a map under that name.
-    using MapWriter = std::function<Status<MapFileError>(const FusedMap& map, const FilePlace& file)>;
+    /// Saves a map under that name; gives the file's CRC-32.
+    using MapWriter =
+        std::function<Result<std::uint32_t, MapFileError>(const FusedMap& map, const FilePlace& file)>;
 
     /// Throws std::system_error if there is no thread to be had.
     explicit RecordingWriter(RecordingBegin begin, MapWriter map_writer = save_map);

@@ -59,11 +59,9 @@ Result<SavedMaps, AppError> MapFolder::save(const NamedMaps& maps, MapOrigin ori
     for (const auto& [name, map] : maps) {
         for (const char* extension : {".ot", ".bt", ".ply"}) {
             const FilePlace file(files_.draft(), files.emplace_back(name + extension));
-            if (const auto saved = save_map(*map, file); !saved)
-                return unexpected(AppError{ExitCode::cannot_create, saved.error().message});
-            const auto crc = crc32_of(file);
-            if (!crc) return cannot_create(file.shown(), "cannot be read back");
-            origin.maps[file.filename()] = *crc;
+            const auto saved = save_map(*map, file);
+            if (!saved) return unexpected(AppError{ExitCode::cannot_create, saved.error().message});
+            origin.maps[file.filename()] = *saved;
         }
     }
     const OtherMaps others = look_at_others(files_.folder(), origin);

@@ -9,6 +9,9 @@
 #include <cstdio>
 #include <optional>
 #include <system_error>
+#include <utility>
+
+#include "common/wire/crc.hpp"
 
 namespace octoskin {
 namespace {
@@ -65,49 +68,74 @@ const char* name_of(SaveStep step) {
     return "saving";
 }
 
-/// The steps of one save. Each returns what it failed at; errno says why.
-class Save {
+}  // namespace
+
+FileOperations& posix_file_operations() {
+    static PosixFileOperations operations;  // stateless
+    return operations;
+}
+
+std::string SaveError::message() const {
+    const std::string reason =
+        error_number == 0 ? "the path names no file" : std::generic_category().message(error_number);
+    const char* const outcome = step == SaveStep::sync_directory
+                                    ? "the new file is in place, but may not survive a power failure"
+                                    : "the old file, if any, is untouched";
+    return fmt::format("{}: {} failed ({}); {}", file.string(), name_of(step), reason, outcome);
+}
+
+/// The file beside the one that it is to replace. Each step returns what it failed at; errno says why.
+class FileDraft::Partial {
   public:
-    Save(FileOperations& operations, const OpenFolder& folder, const FilePlace& file, Attributes attributes)
+    Partial(FileOperations& operations, OpenFolder folder, const FilePlace& file, Attributes attributes)
         : operations_(operations),
+          folder_(std::move(folder)),
           shown_(file.shown()),
-          folder_(folder.path_for_libraries()),
-          file_(folder_ / file.filename()),
-          partial_(folder_ / partial_name_of(file.filename())),
+          file_(folder_.path_for_libraries() / file.filename()),
+          path_(folder_.path_for_libraries() / partial_name_of(file.filename())),
           attributes_(attributes) {}
-
-    std::optional<SaveError> run(const ByteSource& content) {
-        if (auto error = write_partial_or_remove(content)) return error;
-        if (operations_.rename(partial_.c_str(), file_.c_str()) != 0) {
-            auto error = failed(SaveStep::rename);
-            operations_.remove(partial_.c_str());
-            return error;
-        }
-        return sync_directory();
+    ~Partial() {
+        if (is_there_) operations_.remove(path_.c_str());
     }
+    Partial(const Partial&) = delete;
+    Partial& operator=(const Partial&) = delete;
 
-  private:
-    SaveError failed(SaveStep step) const { return {step, errno, shown_}; }
-
-    std::optional<SaveError> write_partial_or_remove(const ByteSource& content) {
-        const int descriptor = operations_.create(partial_.c_str());
+    std::optional<SaveError> write(const ByteSource& content) {
+        const int descriptor = operations_.create(path_.c_str());
+        if (descriptor < 0) return failed(SaveStep::create);
+        is_there_ = true;
         std::optional<SaveError> error;
-        if (descriptor < 0) {
-            error = failed(SaveStep::create);
-        } else {
-            try {
-                error = fill(descriptor, content);
-            } catch (...) {  // no memory for a piece of it
-                operations_.close(descriptor);
-                operations_.remove(partial_.c_str());
-                throw;
-            }
-            // A late write error may show only here (network file systems).
-            if (operations_.close(descriptor) != 0 && !error) error = failed(SaveStep::close);
+        try {
+            error = fill(descriptor, content);
+        } catch (...) {  // no memory for a piece of it
+            operations_.close(descriptor);
+            throw;
         }
-        if (error) operations_.remove(partial_.c_str());
+        // A late write error may show only here (network file systems).
+        if (operations_.close(descriptor) != 0 && !error) error = failed(SaveStep::close);
         return error;
     }
+
+    std::optional<SaveError> rename() {
+        if (operations_.rename(path_.c_str(), file_.c_str()) != 0) return failed(SaveStep::rename);
+        is_there_ = false;
+        return std::nullopt;
+    }
+
+    /// Makes the rename itself durable.
+    std::optional<SaveError> sync_directory() {
+        const int descriptor = operations_.open_directory(folder_.path_for_libraries().c_str());
+        if (descriptor < 0) return failed(SaveStep::sync_directory);
+        std::optional<SaveError> error;
+        if (operations_.sync(descriptor) != 0) error = failed(SaveStep::sync_directory);
+        operations_.close(descriptor);
+        return error;
+    }
+
+    [[nodiscard]] std::uint32_t crc() const noexcept { return crc_; }
+
+  private:
+    [[nodiscard]] SaveError failed(SaveStep step) const { return {step, errno, shown_}; }
 
     std::optional<SaveError> fill(int descriptor, const ByteSource& content) {
         // Before a byte of it: what only its owner may read, nobody else ever may.
@@ -116,6 +144,7 @@ class Save {
             return failed(SaveStep::attributes);
         std::optional<SaveError> error;
         content([&](std::string_view bytes) {
+            crc_ = crc32({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, crc_);
             if (!error) error = write_all(descriptor, bytes);
             return !error;
         });
@@ -134,54 +163,54 @@ class Save {
         return std::nullopt;
     }
 
-    /// Makes the rename itself durable.
-    std::optional<SaveError> sync_directory() {
-        const int descriptor = operations_.open_directory(folder_.c_str());
-        if (descriptor < 0) return failed(SaveStep::sync_directory);
-        std::optional<SaveError> error;
-        if (operations_.sync(descriptor) != 0) error = failed(SaveStep::sync_directory);
-        operations_.close(descriptor);
-        return error;
-    }
-
     FileOperations& operations_;
+    OpenFolder folder_;
     std::filesystem::path shown_;
-    std::filesystem::path folder_;  ///< this and the next two by the folder's descriptor
-    std::filesystem::path file_;
-    std::filesystem::path partial_;
+    std::filesystem::path file_;  ///< this and the next by the folder's descriptor
+    std::filesystem::path path_;
     Attributes attributes_;
+    std::uint32_t crc_ = 0;
+    bool is_there_ = false;
 };
 
-}  // namespace
+FileDraft::FileDraft(std::unique_ptr<Partial> partial) noexcept : partial_(std::move(partial)) {}
+FileDraft::FileDraft(FileDraft&&) noexcept = default;
+FileDraft::~FileDraft() = default;
 
-FileOperations& posix_file_operations() {
-    static PosixFileOperations operations;  // stateless
-    return operations;
-}
-
-std::string SaveError::message() const {
-    const std::string reason =
-        error_number == 0 ? "the path names no file" : std::generic_category().message(error_number);
-    const char* const outcome = step == SaveStep::sync_directory
-                                    ? "the new file is in place, but may not survive a power failure"
-                                    : "the old file, if any, is untouched";
-    return fmt::format("{}: {} failed ({}); {}", file.string(), name_of(step), reason, outcome);
-}
-
-Status<SaveError> save_atomically(const FilePlace& named, const ByteSource& content,
-                                  FileOperations& operations, Attributes attributes) {
-    const std::string name = named.filename();
+Result<FileDraft, SaveError> FileDraft::write(const FilePlace& file, const ByteSource& content,
+                                              FileOperations& operations, Attributes attributes) {
+    const std::string name = file.filename();
     if (name.empty() || name == "." || name == "..")
-        return unexpected(SaveError{SaveStep::name, 0, named.shown()});
-    const auto folder = named.parent_to_write();
-    if (!folder) return unexpected(SaveError{SaveStep::create, folder.error().error_number, named.shown()});
-    if (auto error = Save(operations, *folder, named, attributes).run(content))
-        return unexpected(std::move(*error));
+        return unexpected(SaveError{SaveStep::name, 0, file.shown()});
+    auto folder = file.parent_to_write();
+    if (!folder) return unexpected(SaveError{SaveStep::create, folder.error().error_number, file.shown()});
+    auto partial = std::make_unique<Partial>(operations, std::move(*folder), file, attributes);
+    if (auto error = partial->write(content)) return unexpected(std::move(*error));
+    return FileDraft(std::move(partial));
+}
+
+std::uint32_t FileDraft::crc() const noexcept {
+    return partial_->crc();
+}
+
+Status<SaveError> put_in_place(std::span<FileDraft> drafts) {
+    for (FileDraft& draft : drafts)
+        if (auto error = draft.partial_->rename()) return unexpected(std::move(*error));
+    for (FileDraft& draft : drafts)
+        if (auto error = draft.partial_->sync_directory()) return unexpected(std::move(*error));
     return Done{};
 }
 
-Status<SaveError> save_atomically(const FilePlace& file, std::string_view bytes, FileOperations& operations,
-                                  Attributes attributes) {
+Result<std::uint32_t, SaveError> save_atomically(const FilePlace& file, const ByteSource& content,
+                                                 FileOperations& operations, Attributes attributes) {
+    auto draft = FileDraft::write(file, content, operations, attributes);
+    if (!draft) return unexpected(draft.error());
+    if (const auto put = put_in_place({&*draft, 1}); !put) return unexpected(put.error());
+    return draft->crc();
+}
+
+Result<std::uint32_t, SaveError> save_atomically(const FilePlace& file, std::string_view bytes,
+                                                 FileOperations& operations, Attributes attributes) {
     return save_atomically(
         file, [bytes](const ByteSink& sink) { (void)sink(bytes); }, operations, attributes);
 }

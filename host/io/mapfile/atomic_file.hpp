@@ -1,11 +1,14 @@
-// Saves a file so that at every instant the name stands for the old content or the new, never for a mixture:
-// written under another name beside it, flushed to the disk, then renamed.
+// Saves files so that at every instant a name stands for the old content or the new, never for a mixture:
+// written under another name beside it, flushed to the disk, then renamed. Several that belong together are
+// all written before the first is renamed.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -52,18 +55,48 @@ struct SaveError {
 /// Whose a file is and who may read it.
 enum class Attributes : std::uint8_t { of_a_new_file, of_the_old_file };
 
-/// Saves what `content` gives as `file`; it is asked for once. On an error before `sync_directory` the old
-/// file is as it was and nothing is left behind; on that one the new file is in place, but may be lost if
-/// power fails now. Blocks for as long as the disk takes. Two writers of one file at once are not supported.
-/// What `content` throws passes through, as after an error. Of a file with several names only this one
-/// changes, and a link in the file's place is replaced, not followed.
-[[nodiscard]] Status<SaveError> save_atomically(const FilePlace& file, const ByteSource& content,
-                                                FileOperations& operations = posix_file_operations(),
-                                                Attributes attributes = Attributes::of_a_new_file);
+/// What a file is to become: written and flushed to the disk under another name beside it, until
+/// `put_in_place` gives it the file's. What is dropped before that is removed. Two drafts of one file at once
+/// are not supported.
+class FileDraft {
+  public:
+    /// Writes what `content` gives; it is asked for once. Blocks for as long as the disk takes. On an error,
+    /// and if `content` throws, which passes through, nothing is left behind. `operations` must outlive the
+    /// draft.
+    [[nodiscard]] static Result<FileDraft, SaveError> write(
+        const FilePlace& file, const ByteSource& content,
+        FileOperations& operations = posix_file_operations(),
+        Attributes attributes = Attributes::of_a_new_file);
+    FileDraft(FileDraft&& other) noexcept;
+    FileDraft& operator=(FileDraft&&) = delete;
+    ~FileDraft();
+
+    /// CRC-32 (zlib's) of what was written, some 400 MB a second.
+    [[nodiscard]] std::uint32_t crc() const noexcept;
+
+  private:
+    class Partial;
+    explicit FileDraft(std::unique_ptr<Partial> partial) noexcept;
+    friend Status<SaveError> put_in_place(std::span<FileDraft> drafts);
+
+    std::unique_ptr<Partial> partial_;
+};
+
+/// Gives the drafts their files' names, once each, in this order and one directly after the other, and then
+/// waits for the disk. Of a file with several names only this one changes, and a link in the file's place is
+/// replaced, not followed. On an error at `rename` that file and those behind it are as they were; at
+/// `sync_directory` all new ones are in place, but may be lost if power fails now.
+[[nodiscard]] Status<SaveError> put_in_place(std::span<FileDraft> drafts);
+
+/// Saves what `content` gives as `file`, by a draft that is put in its place, and gives its CRC-32. On an
+/// error before `sync_directory` the old file is as it was and nothing is left behind.
+[[nodiscard]] Result<std::uint32_t, SaveError> save_atomically(
+    const FilePlace& file, const ByteSource& content, FileOperations& operations = posix_file_operations(),
+    Attributes attributes = Attributes::of_a_new_file);
 /// The same with all of its bytes.
-[[nodiscard]] Status<SaveError> save_atomically(const FilePlace& file, std::string_view bytes,
-                                                FileOperations& operations = posix_file_operations(),
-                                                Attributes attributes = Attributes::of_a_new_file);
+[[nodiscard]] Result<std::uint32_t, SaveError> save_atomically(
+    const FilePlace& file, std::string_view bytes, FileOperations& operations = posix_file_operations(),
+    Attributes attributes = Attributes::of_a_new_file);
 
 /// Removes what a process left in `folder` when it died while saving; returns how many. To be called at
 /// start, before any save. `stays` is told of each that cannot be removed.

@@ -5,7 +5,6 @@
 #include <limits>
 #include <new>
 
-#include "host/io/mapfile/atomic_file.hpp"
 #include "host/io/mapfile/octomap_header.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "host/io/mapfile/ply_writer.hpp"
@@ -31,7 +30,7 @@ Unexpected<MapFileError> fail(const std::filesystem::path& file, const std::stri
 
 }  // namespace
 
-Status<MapFileError> save_map(const FusedMap& map, const FilePlace& file) {
+Result<FileDraft, MapFileError> draft_map(const FusedMap& map, const FilePlace& file) {
     const std::string extension = file.shown().extension().string();
     ByteSource content;
     if (extension == ".ot") {
@@ -43,9 +42,17 @@ Status<MapFileError> save_map(const FusedMap& map, const FilePlace& file) {
     } else {
         return fail(file.shown(), fmt::format("extension \"{}\" is not one of .ot, .bt, .ply", extension));
     }
-    const auto saved = save_atomically(file, content);
-    if (!saved) return unexpected(MapFileError{saved.error().message(), false});
-    return Done{};
+    auto draft = FileDraft::write(file, content);
+    if (!draft) return unexpected(MapFileError{draft.error().message(), false});
+    return std::move(draft).value();
+}
+
+Result<std::uint32_t, MapFileError> save_map(const FusedMap& map, const FilePlace& file) {
+    auto draft = draft_map(map, file);
+    if (!draft) return unexpected(draft.error());
+    if (const auto put = put_in_place({&*draft, 1}); !put)
+        return unexpected(MapFileError{put.error().message(), false});
+    return draft->crc();
 }
 
 std::string describe_other_voxels(const std::filesystem::path& file, double map_m, double mapping_m) {

@@ -8,6 +8,7 @@
 #include "common/result.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/io/folder/file_place.hpp"
+#include "host/io/mapfile/atomic_file.hpp"
 #include "host/io/mapfile/octomap_reader.hpp"
 
 namespace octoskin {
@@ -23,9 +24,11 @@ struct MapFileError {
 [[nodiscard]] std::string describe_other_voxels(const std::filesystem::path& file, double map_m,
                                                 double mapping_m);
 
-/// Writes the map, in the format that the extension names (.ot, .bt or .ply). At every instant the file is
-/// the old one or the new one, whole. Equal maps give equal bytes.
-[[nodiscard]] Status<MapFileError> save_map(const FusedMap& map, const FilePlace& file);
+/// Writes the map, in the format that the extension names (.ot, .bt or .ply), beside `file`, until
+/// `put_in_place`. Equal maps give equal bytes.
+[[nodiscard]] Result<FileDraft, MapFileError> draft_map(const FusedMap& map, const FilePlace& file);
+/// The same in its place, and its CRC-32: at every instant the file is the old one or the new one, whole.
+[[nodiscard]] Result<std::uint32_t, MapFileError> save_map(const FusedMap& map, const FilePlace& file);
 
 /// Reads a .ot or .bt (told apart by the first line, not by name), checked as octomap_reader.hpp says; the
 /// warnings name the file. Refuses what is no regular file and what is larger than `file_bytes_max`.

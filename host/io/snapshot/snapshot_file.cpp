@@ -19,7 +19,13 @@ std::uint64_t file_bytes_max_of(const MapConfig& config) {
 
 }  // namespace
 
-Status<SaveError> save_snapshot(const MapState& state, const SnapshotOrigin& origin, const FilePlace& file) {
+Result<FileDraft, SaveError> draft_snapshot(const MapState& state, const SnapshotOrigin& origin,
+                                            const FilePlace& file) {
+    return FileDraft::write(file, [&](const ByteSink& sink) { write_snapshot(state, origin, sink); });
+}
+
+Result<std::uint32_t, SaveError> save_snapshot(const MapState& state, const SnapshotOrigin& origin,
+                                               const FilePlace& file) {
     return save_atomically(file, [&](const ByteSink& sink) { write_snapshot(state, origin, sink); });
 }
 

@@ -10,10 +10,13 @@
 
 namespace octoskin {
 
-/// At every instant the file is the old one or the new one, whole. Blocks as long as the disk takes. Throws
-/// std::bad_alloc.
-[[nodiscard]] Status<SaveError> save_snapshot(const MapState& state, const SnapshotOrigin& origin,
-                                              const FilePlace& file);
+/// Written beside `file`, until `put_in_place`. Blocks as long as the disk takes. Throws std::bad_alloc.
+[[nodiscard]] Result<FileDraft, SaveError> draft_snapshot(const MapState& state, const SnapshotOrigin& origin,
+                                                          const FilePlace& file);
+/// The same in its place, and its CRC-32: at every instant the file is the old one or the new one, whole.
+[[nodiscard]] Result<std::uint32_t, SaveError> save_snapshot(const MapState& state,
+                                                             const SnapshotOrigin& origin,
+                                                             const FilePlace& file);
 
 /// As decode_snapshot; errors begin with the file's name. Takes the file's size of memory besides the map's.
 /// A file that cannot be read is `no_snapshot`; without memory for it, or larger than any that was saved with

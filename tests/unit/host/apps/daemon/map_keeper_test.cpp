@@ -2,6 +2,8 @@
 #include "tests/support/evidence.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -135,6 +137,62 @@ TEST(MapKeeper, loads_counts_and_times_that_it_saved_and_when_that_was) {
     EXPECT_EQ((*kept)->map_time, origin_now().map_time);
     const auto bytes = [](const FusedMap& of) { return encode_snapshot({of.copy(), {}}, {}); };
     EXPECT_TRUE(bytes((*kept)->map) == bytes(map));
+}
+
+/// What happens in a folder while it lives.
+class FolderEvents {
+  public:
+    explicit FolderEvents(const std::filesystem::path& folder) : descriptor_(::inotify_init1(IN_NONBLOCK)) {
+        ::inotify_add_watch(descriptor_, folder.c_str(),
+                            IN_CREATE | IN_MODIFY | IN_CLOSE_WRITE | IN_MOVED_TO);
+    }
+    ~FolderEvents() { ::close(descriptor_); }
+    FolderEvents(const FolderEvents&) = delete;
+    FolderEvents& operator=(const FolderEvents&) = delete;
+
+    /// Names of what came into its place, after all else; empty: something else came behind the first.
+    [[nodiscard]] std::vector<std::string> moved_last() const {
+        std::vector<std::string> moved;
+        alignas(inotify_event) char bytes[65'536];
+        const ssize_t count = ::read(descriptor_, bytes, sizeof(bytes));
+        for (ssize_t at = 0; at < count;) {
+            const auto* const event = reinterpret_cast<const inotify_event*>(bytes + at);
+            at += static_cast<ssize_t>(sizeof(inotify_event) + event->len);
+            const bool is_moved = (event->mask & IN_MOVED_TO) != 0;
+            if (!is_moved && !moved.empty()) return {};
+            if (is_moved) moved.emplace_back(event->name);
+        }
+        return moved;
+    }
+
+  private:
+    int descriptor_;
+};
+
+TEST(MapKeeper, has_written_all_its_files_before_the_first_comes_into_its_place) {
+    const testing_support::ScratchFolder folder;
+    for (int save = 0; save < 2; ++save) {
+        const FolderEvents events(folder.path());
+        EXPECT_EQ(MapKeeper::write_map(dated_map(), origin_now(), NamedFolder(folder.path())), "");
+        EXPECT_EQ(events.moved_last(), (std::vector<std::string>{"fused.snapshot", "fused.ot", "fused.bt"}));
+    }
+}
+
+TEST(MapKeeper, leaves_the_whole_map_of_before_where_one_of_its_files_cannot_be_written) {
+    for (const char* const name : {"fused.ot", "fused.bt", "fused.snapshot"}) {
+        const testing_support::ScratchFolder folder;
+        EXPECT_EQ(MapKeeper::write_map(dated_map(), origin_now(), NamedFolder(folder.path())), "");
+        const auto in_the_way = folder / ("." + std::string(name) + ".octoskin-part");
+        std::filesystem::create_directory(in_the_way);
+        const std::string error =
+            MapKeeper::write_map(some_map(30), origin_now(), NamedFolder(folder.path()));
+        EXPECT_NE(error.find(name), std::string::npos) << error;
+        EXPECT_EQ(folder.entries(), 4) << name;
+        const auto kept = MapKeeper(folder.path()).load(mapping_of(MapConfig{}), kMapping);
+        ASSERT_TRUE(kept && *kept) << name;
+        EXPECT_TRUE((*kept)->is_whole) << name;
+        EXPECT_EQ(encode_ot((*kept)->map), encode_ot(dated_map())) << name;
+    }
 }
 
 TEST(MapKeeper, goes_on_with_log_odds_alone_where_the_snapshot_is_not_the_maps) {

@@ -134,7 +134,7 @@ TEST_F(RecordingWriterTest, takes_nothing_that_has_no_room_and_never_waits) {
 class HungDisk {
   public:
     [[nodiscard]] RecordingWriter::MapWriter writer() {
-        return [this](const FusedMap&, const FilePlace&) -> Status<MapFileError> {
+        return [this](const FusedMap&, const FilePlace&) -> Result<std::uint32_t, MapFileError> {
             std::unique_lock lock(mutex_);
             is_writing_ = true;
             changed_.notify_all();
@@ -194,8 +194,10 @@ TEST_F(RecordingWriterTest, tells_since_when_it_is_writing) {
 }
 
 TEST_F(RecordingWriterTest, names_what_was_thrown_while_it_wrote) {
-    RecordingWriter writer(
-        begin(), [](const FusedMap&, const FilePlace&) -> Status<MapFileError> { throw std::bad_alloc(); });
+    RecordingWriter writer(begin(),
+                           [](const FusedMap&, const FilePlace&) -> Result<std::uint32_t, MapFileError> {
+                               throw std::bad_alloc();
+                           });
     writer.finish(end(0));
     ASSERT_TRUE(writer.wait(kPatience));
     EXPECT_NE(writer.error().find("bad_alloc"), std::string::npos) << writer.error();

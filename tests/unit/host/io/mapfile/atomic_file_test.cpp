@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <iterator>
 #include <new>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "tests/support/scratch_folder.hpp"
 
@@ -52,8 +54,8 @@ class FailingOperations final : public FileOperations {
     int calls_left_;
 };
 
-/// Interrupted before every write that succeeds.
-class InterruptedOperations final : public FileOperations {
+/// The real operations.
+class RealOperations : public FileOperations {
   public:
     int create(const char* path) override { return real_.create(path); }
     int open_directory(const char* path) override { return real_.open_directory(path); }
@@ -61,12 +63,7 @@ class InterruptedOperations final : public FileOperations {
         return real_.copy_attributes(path, descriptor);
     }
     ssize_t write(int descriptor, const void* bytes, std::size_t count) override {
-        is_interrupted_ = !is_interrupted_;
-        if (is_interrupted_) {
-            errno = EINTR;
-            return -1;
-        }
-        return real_.write(descriptor, bytes, std::min<std::size_t>(count, 3));
+        return real_.write(descriptor, bytes, count);
     }
     int sync(int descriptor) override { return real_.sync(descriptor); }
     int close(int descriptor) override { return real_.close(descriptor); }
@@ -75,8 +72,61 @@ class InterruptedOperations final : public FileOperations {
 
   private:
     FileOperations& real_ = posix_file_operations();
+};
+
+/// Interrupted before every write that succeeds.
+class InterruptedOperations final : public RealOperations {
+  public:
+    ssize_t write(int descriptor, const void* bytes, std::size_t count) override {
+        is_interrupted_ = !is_interrupted_;
+        if (is_interrupted_) {
+            errno = EINTR;
+            return -1;
+        }
+        return RealOperations::write(descriptor, bytes, std::min<std::size_t>(count, 3));
+    }
+
+  private:
     bool is_interrupted_ = false;
 };
+
+/// Keeps which steps that last, or can be seen, came in which order.
+class OrderedOperations final : public RealOperations {
+  public:
+    int create(const char* path) override {
+        steps += 'c';
+        return RealOperations::create(path);
+    }
+    int sync(int descriptor) override {
+        steps += 's';
+        return RealOperations::sync(descriptor);
+    }
+    int rename(const char* from, const char* to) override {
+        steps += 'r';
+        renamed.push_back(std::filesystem::path(to).filename());
+        return RealOperations::rename(from, to);
+    }
+    std::string steps;
+    std::vector<std::string> renamed;
+};
+
+ByteSource all_of(std::string_view bytes) {
+    return [bytes](const ByteSink& sink) { (void)sink(bytes); };
+}
+
+/// Drafts of "new" for files that have "old", in the order of their names; what the draft of the last failed
+/// at, or putting them in their places did.
+std::optional<SaveStep> save_together(const ScratchFolder& folder, const std::vector<std::string>& names,
+                                      FileOperations& operations) {
+    std::vector<FileDraft> drafts;
+    for (const std::string& name : names) {
+        auto draft = FileDraft::write(folder / name, all_of("new"), operations);
+        if (!draft) return draft.error().step;
+        drafts.push_back(std::move(*draft));
+    }
+    const auto put = put_in_place(drafts);
+    return put ? std::nullopt : std::optional(put.error().step);
+}
 
 TEST(AtomicFile, saves_a_new_file_and_replaces_an_old_one) {
     const ScratchFolder folder;
@@ -150,6 +200,46 @@ TEST(AtomicFile, leaves_the_old_file_and_nothing_else_if_its_content_throws) {
     EXPECT_EQ(ScratchFolder::read(file), "old");
     EXPECT_EQ(folder.entries(), 1);
     EXPECT_EQ(descriptors(), before);
+}
+
+TEST(AtomicFile, gives_the_checksum_of_what_it_wrote) {
+    const ScratchFolder folder;
+    const ByteSource pieces = [](const ByteSink& sink) {
+        for (const char* const piece : {"1234", "", "56789"}) EXPECT_TRUE(sink(piece));
+    };
+    InterruptedOperations operations;
+    EXPECT_EQ(save_atomically(folder / "map.ot", pieces, operations).value(), 0xCBF43926U);
+    EXPECT_EQ(save_atomically(folder / "map.ot", "").value(), 0U);
+    EXPECT_EQ(FileDraft::write(folder / "map.ot", pieces).value().crc(), 0xCBF43926U);
+    EXPECT_EQ(folder.entries(), 1) << "the draft that was dropped";
+    EXPECT_EQ(ScratchFolder::read(folder / "map.ot"), "");
+}
+
+TEST(AtomicFile, renames_what_belongs_together_directly_one_after_the_other) {
+    const ScratchFolder folder;
+    OrderedOperations operations;
+    EXPECT_EQ(save_together(folder, {"b", "a", "c"}, operations), std::nullopt);
+    EXPECT_EQ(operations.steps, "cscscsrrrsss");
+    EXPECT_EQ(operations.renamed, (std::vector<std::string>{"b", "a", "c"}));
+    EXPECT_EQ(folder.entries(), 3);
+}
+
+TEST(AtomicFile, leaves_all_old_files_where_one_of_those_that_belong_together_cannot_be_written) {
+    constexpr int kCallsBeforeRename = 8;  // of each of the two: create, write, sync, close
+    for (int failing_call = 0; failing_call < kCallsBeforeRename + 4; ++failing_call) {
+        const ScratchFolder folder;
+        folder.write("a", "old");
+        folder.write("b", "old");
+        FailingOperations operations(failing_call);
+        const auto failed = save_together(folder, {"a", "b"}, operations);
+        ASSERT_TRUE(failed) << failing_call;
+        EXPECT_EQ(folder.entries(), 2) << failing_call;
+        const bool has_first = failing_call > kCallsBeforeRename;
+        const bool has_second = failing_call > kCallsBeforeRename + 1;
+        EXPECT_EQ(ScratchFolder::read(folder / "a"), has_first ? "new" : "old") << failing_call;
+        EXPECT_EQ(ScratchFolder::read(folder / "b"), has_second ? "new" : "old") << failing_call;
+        EXPECT_EQ(*failed == SaveStep::sync_directory, has_second) << failing_call;
+    }
 }
 
 TEST(AtomicFile, keeps_the_old_files_mode_where_it_is_asked_to) {
