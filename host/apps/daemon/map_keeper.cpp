@@ -50,15 +50,28 @@ bool is_of_map(const FilePlace& small_file, const FusedMap& map) {
     return small && encode_bt(small->map) == encode_bt(map);
 }
 
-/// Of the fused.ot beside it. The error: why it is not to be used.
-Result<Snapshot, std::string> snapshot_of_map(const NamedFolder& folder, const MappingConfig& mapping,
-                                              std::uint32_t mapping_crc32) {
-    const FilePlace file(folder, kSnapshotFile);
+/// Of the fused.ot beside it, which has this checksum. The error: why it is not to be used.
+Result<Snapshot, std::string> snapshot_of_map(const FilePlace& file, const MappingConfig& mapping,
+                                              std::uint32_t mapping_crc32,
+                                              const std::optional<std::uint32_t>& map_crc32) {
     auto snapshot = load_snapshot(file, mapping, mapping_crc32);
     if (!snapshot) return unexpected(snapshot.error().what);
-    const auto map_crc32 = crc32_of(FilePlace(folder, kMapFile));
     if (!map_crc32 || snapshot->origin.map_crc32 != map_crc32)
         return unexpected(file.shown().string() + ": was not saved with the fused.ot beside it");
+    return std::move(*snapshot);
+}
+
+/// The snapshot of a save that was killed when fused.ot was in its place, and it was not yet: it comes there.
+std::optional<Snapshot> finish_save(const NamedFolder& folder, const MappingConfig& mapping,
+                                    std::uint32_t mapping_crc32,
+                                    const std::optional<std::uint32_t>& map_crc32) {
+    const FilePlace draft(folder, draft_name_of(kSnapshotFile));
+    if (!draft.is_there()) return std::nullopt;
+    auto snapshot = snapshot_of_map(draft, mapping, mapping_crc32, map_crc32);
+    if (!snapshot) return std::nullopt;
+    // If it cannot be moved it is used all the same: the next save replaces it.
+    if (const auto opened = draft.parent_to_write())
+        static_cast<void>(opened->move(draft.filename(), kSnapshotFile));
     return std::move(*snapshot);
 }
 
@@ -86,9 +99,6 @@ std::string why_no_room(const FusedMap& map, const MapConfig& next) {
 
 MapKeeper::MapKeeper(NamedFolder folder, Writer writer, Copier copier)
     : copier_(std::move(copier)), work_(std::make_shared<Work>(std::move(folder), std::move(writer))) {
-    if (const auto opened = work_->folder.open()) {
-        if (const auto to_write = opened->to_write()) remove_leftovers(*to_write);
-    }
     thread_ = start_without_signals([shared = work_] { work(*shared); });
 }
 
@@ -104,6 +114,15 @@ MapKeeper::~MapKeeper() {
 }
 
 Result<std::optional<KeptMap>, AppError> MapKeeper::load(const MappingConfig& mapping,
+                                                         std::uint32_t mapping_crc32) const {
+    auto kept = find(mapping, mapping_crc32);
+    if (const auto opened = work_->folder.open()) {
+        if (const auto to_write = opened->to_write()) remove_leftovers(*to_write);
+    }
+    return kept;
+}
+
+Result<std::optional<KeptMap>, AppError> MapKeeper::find(const MappingConfig& mapping,
                                                          std::uint32_t mapping_crc32) const {
     const FilePlace file(work_->folder, kMapFile);
     const FilePlace small_file(work_->folder, kSmallMapFile);
@@ -126,9 +145,15 @@ Result<std::optional<KeptMap>, AppError> MapKeeper::load(const MappingConfig& ma
 Result<KeptMap, AppError> MapKeeper::load_with(const MappingConfig& mapping,
                                                std::uint32_t mapping_crc32) const {
     const FilePlace file(work_->folder, kMapFile);
-    if (!FilePlace(work_->folder, kSnapshotFile).is_there()) return load_alone(mapping.map, file, {});
-    auto snapshot = snapshot_of_map(work_->folder, mapping, mapping_crc32);
-    if (!snapshot) return load_alone(mapping.map, file, snapshot.error());
+    const FilePlace snapshot_file(work_->folder, kSnapshotFile);
+    const auto map_crc32 = crc32_of(file);
+    auto snapshot = snapshot_of_map(snapshot_file, mapping, mapping_crc32, map_crc32);
+    const bool has_file = snapshot || snapshot_file.is_there();
+    if (!snapshot) {
+        if (auto finished = finish_save(work_->folder, mapping, mapping_crc32, map_crc32))
+            snapshot = std::move(*finished);
+    }
+    if (!snapshot) return load_alone(mapping.map, file, has_file ? snapshot.error() : std::string());
     return KeptMap{std::move(snapshot->state.map), {}, true, snapshot->origin.map_time};
 }
 
@@ -222,8 +247,8 @@ std::string MapKeeper::write_map(const FusedMap& map, const SnapshotOrigin& orig
     of_map.map_crc32 = exact->crc();
     auto snapshot = draft_snapshot({map.copy(), {}}, of_map, {folder, kSnapshotFile});
     if (!snapshot) return snapshot.error().message();
-    // A snapshot counts with its fused.ot alone: the two directly after each other.
-    FileDraft drafts[] = {std::move(*snapshot), std::move(*exact), std::move(*small)};
+    // Killed behind the first rename, it leaves the snapshot's whole draft, by which the next start goes on.
+    FileDraft drafts[] = {std::move(*exact), std::move(*snapshot), std::move(*small)};
     const auto put = put_in_place(drafts);
     return put ? std::string() : put.error().message();
 }

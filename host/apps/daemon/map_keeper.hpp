@@ -52,8 +52,7 @@ class MapKeeper {
 
     using Copier = std::function<FusedMap(const FusedMap& map)>;
 
-    /// `folder` gets fused.ot, fused.bt and fused.snapshot; it must be this process's own (FolderLock). What
-    /// a dead process left of a save there is removed.
+    /// `folder` gets fused.ot, fused.bt and fused.snapshot; it must be this process's own (FolderLock).
     explicit MapKeeper(NamedFolder folder, Writer writer = write_map, Copier copier = &FusedMap::copy);
     /// A save that the disk does not let go of is left behind: `finish` first.
     ~MapKeeper();
@@ -65,7 +64,8 @@ class MapKeeper {
     /// checked as every foreign map, or fused.bt if that is all there is; empty if neither is there. An error
     /// names the file, what is wrong with it and what to do. Any map that a keeper with this memory_max_mib
     /// saved has room. Refused is, too, what the next save would destroy: colours of voxels, and a fused.bt
-    /// that neither octoskin saved nor fused.ot holds.
+    /// that neither octoskin saved nor fused.ot holds. What a dead process left of a save is removed, but for
+    /// a snapshot of the fused.ot that is there: a save that had come so far is finished.
     [[nodiscard]] Result<std::optional<KeptMap>, AppError> load(const MappingConfig& mapping,
                                                                 std::uint32_t mapping_crc32 = 0) const;
 
@@ -84,8 +84,9 @@ class MapKeeper {
 
     [[nodiscard]] SaveRecord record() const;
 
-    /// All three files, or, if one cannot be written, none. Only between two renames, some microseconds, does
-    /// the folder hold files of two saves. Needs the disk's room for both. Throws std::bad_alloc.
+    /// All three files, or, if one cannot be written, none. A process that is killed in it leaves what `load`
+    /// takes for the map of before or for this one, as a whole. Needs the disk's room for both. Throws
+    /// std::bad_alloc.
     static std::string write_map(const FusedMap& map, const SnapshotOrigin& origin,
                                  const NamedFolder& folder);
 
@@ -107,6 +108,8 @@ class MapKeeper {
         bool is_ending = false;
         SaveRecord record;
     };
+    [[nodiscard]] Result<std::optional<KeptMap>, AppError> find(const MappingConfig& mapping,
+                                                                std::uint32_t mapping_crc32) const;
     /// fused.ot is there.
     [[nodiscard]] Result<KeptMap, AppError> load_with(const MappingConfig& mapping,
                                                       std::uint32_t mapping_crc32) const;

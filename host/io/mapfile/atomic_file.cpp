@@ -42,10 +42,6 @@ class PosixFileOperations final : public FileOperations {
     int remove(const char* path) override { return ::unlink(path); }
 };
 
-std::string partial_name_of(const std::string& file) {
-    return fmt::format(".{}{}", file, kPartialSuffix);
-}
-
 const char* name_of(SaveStep step) {
     switch (step) {
         case SaveStep::name:
@@ -75,6 +71,10 @@ FileOperations& posix_file_operations() {
     return operations;
 }
 
+std::string draft_name_of(const std::string& file) {
+    return fmt::format(".{}{}", file, kPartialSuffix);
+}
+
 std::string SaveError::message() const {
     const std::string reason =
         error_number == 0 ? "the path names no file" : std::generic_category().message(error_number);
@@ -92,7 +92,7 @@ class FileDraft::Partial {
           folder_(std::move(folder)),
           shown_(file.shown()),
           file_(folder_.path_for_libraries() / file.filename()),
-          path_(folder_.path_for_libraries() / partial_name_of(file.filename())),
+          path_(folder_.path_for_libraries() / draft_name_of(file.filename())),
           attributes_(attributes) {}
     ~Partial() {
         if (is_there_) operations_.remove(path_.c_str());

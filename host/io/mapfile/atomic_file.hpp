@@ -82,6 +82,9 @@ class FileDraft {
     std::unique_ptr<Partial> partial_;
 };
 
+/// The name of a file's draft, beside it.
+[[nodiscard]] std::string draft_name_of(const std::string& file);
+
 /// Gives the drafts their files' names, once each, in this order and one directly after the other, and then
 /// waits for the disk. Of a file with several names only this one changes, and a link in the file's place is
 /// replaced, not followed. On an error at `rename` that file and those behind it are as they were; at

@@ -174,7 +174,7 @@ TEST(MapKeeper, has_written_all_its_files_before_the_first_comes_into_its_place)
     for (int save = 0; save < 2; ++save) {
         const FolderEvents events(folder.path());
         EXPECT_EQ(MapKeeper::write_map(dated_map(), origin_now(), NamedFolder(folder.path())), "");
-        EXPECT_EQ(events.moved_last(), (std::vector<std::string>{"fused.snapshot", "fused.ot", "fused.bt"}));
+        EXPECT_EQ(events.moved_last(), (std::vector<std::string>{"fused.ot", "fused.snapshot", "fused.bt"}));
     }
 }
 
@@ -193,6 +193,47 @@ TEST(MapKeeper, leaves_the_whole_map_of_before_where_one_of_its_files_cannot_be_
         EXPECT_TRUE((*kept)->is_whole) << name;
         EXPECT_EQ(encode_ot((*kept)->map), encode_ot(dated_map())) << name;
     }
+}
+
+/// A folder as a process leaves it that is killed when `renames` of the three files of a save were renamed.
+void leave_killed_save(const testing_support::ScratchFolder& folder, std::size_t renames) {
+    const testing_support::ScratchFolder saved;
+    EXPECT_EQ(MapKeeper::write_map(some_map(300), {}, NamedFolder(folder.path())), "");
+    EXPECT_EQ(MapKeeper::write_map(dated_map(), origin_now(), NamedFolder(saved.path())), "");
+    for (const std::string name : {"fused.ot", "fused.snapshot", "fused.bt"}) {
+        const bool is_renamed = renames > 0;
+        renames -= is_renamed ? 1U : 0U;
+        folder.write(is_renamed ? name : "." + name + ".octoskin-part",
+                     testing_support::ScratchFolder::read(saved / name));
+    }
+}
+
+TEST(MapKeeper, goes_on_with_a_whole_map_wherever_the_save_before_was_killed) {
+    for (std::size_t renames = 0; renames < 4; ++renames) {
+        const testing_support::ScratchFolder folder;
+        leave_killed_save(folder, renames);
+        const FusedMap map = renames == 0 ? some_map(300) : dated_map();
+        const std::uint32_t mapping = renames == 0 ? 0 : kMapping;
+        for (const bool is_again : {false, true}) {
+            const auto kept = MapKeeper(folder.path()).load(mapping_of(MapConfig{}), mapping);
+            ASSERT_TRUE(kept && *kept) << renames;
+            EXPECT_TRUE((*kept)->is_whole) << renames << is_again;
+            EXPECT_EQ(encode_ot((*kept)->map), encode_ot(map)) << renames;
+            EXPECT_EQ(folder.entries(), 3) << "what was left of it goes";
+        }
+    }
+}
+
+TEST(MapKeeper, uses_no_half_of_a_snapshot_that_a_killed_save_left) {
+    const testing_support::ScratchFolder folder;
+    leave_killed_save(folder, 1);
+    const auto draft = folder / ".fused.snapshot.octoskin-part";
+    std::filesystem::resize_file(draft, std::filesystem::file_size(draft) - 1);
+    const auto kept = MapKeeper(folder.path()).load(mapping_of(MapConfig{}), kMapping);
+    ASSERT_TRUE(kept && *kept);
+    EXPECT_FALSE((*kept)->is_whole);
+    EXPECT_EQ((*kept)->warnings.size(), 1U);
+    EXPECT_EQ(folder.entries(), 3);
 }
 
 TEST(MapKeeper, goes_on_with_log_odds_alone_where_the_snapshot_is_not_the_maps) {
