@@ -2,10 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/range_status.hpp"
 #include "common/wire/names.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/version/version.hpp"
+#include "host/core/ingest/node_silence.hpp"
 
 namespace octoskin {
 namespace {
@@ -75,10 +75,11 @@ Json not_excluded_json(const SensorEvidence& evidence) {
 Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index) {
     const SensorRecord& record =
         view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
+    const bool is_known = record.health && !is_unheard(record, view.bus_now);
     Json json = {{"index", index},
                  {"name", node.sensors[index].name},
-                 {"state", record.health ? Json(name(record.health->state)) : Json(nullptr)},
-                 {"fault", record.health ? Json(name(record.health->fault)) : Json(nullptr)},
+                 {"state", is_known ? Json(name(record.health->state)) : Json(nullptr)},
+                 {"fault", is_known ? Json(name(record.health->fault)) : Json(nullptr)},
                  {"received", record.received},
                  {"lost", record.sent.lost()},
                  {"age_s", age_s(record.newest_at, view.bus_now)}};
@@ -279,19 +280,6 @@ Json account_json(const Pipeline& pipeline) {
 }
 
 }  // namespace
-
-bool are_joints_withheld(const DaemonView& view) {
-    constexpr Nanoseconds kHold = JointSenders::kHeardFor;
-    const auto is_new = [&](const std::optional<HostTime>& at) { return at && view.now - *at < kHold; };
-    const JointSocket* const socket = view.inputs->joints();
-    return is_new(view.used.joint_senders) || (socket != nullptr && is_new(socket->senders().several_at()));
-}
-
-bool are_joints_above_rate(const DaemonView& view) {
-    constexpr double kAbout = 1.3;
-    const JointSocket* const socket = view.inputs->joints();
-    return socket != nullptr && socket->rate_hz(view.now) > kAbout * view.rig->joints.rate_hz;
-}
 
 void LastUsed::note(const Pipeline& pipeline, HostTime now) {
     const PipelineAccounts& accounts = pipeline.accounts();

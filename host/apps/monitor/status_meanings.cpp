@@ -131,9 +131,12 @@ constexpr std::array kStatusMeanings = {
     Meaning{"nodes.registers", "sensors", "how many had shown it when it was told"},
     Meaning{"nodes.sensors", "index", "its number on the node"},
     Meaning{"nodes.sensors", "name", "its name in the rig"},
-    Meaning{"nodes.sensors", "state", "its node's word in the newest SENSOR_HEALTH; null before the first"},
+    Meaning{
+        "nodes.sensors", "state",
+        "its node's word in the newest SENSOR_HEALTH; null: not known, as none came yet, or for 3 s neither "
+        "that nor a reading"},
     Meaning{"nodes.sensors", "fault",
-            "why it is not well, by the same message; bring-up has each with its remedy"},
+            "why it is not well, by the same message; bring-up has each with its remedy; null: not known"},
     Meaning{"nodes.sensors", "received", "readings that came"},
     Meaning{"nodes.sensors", "lost",
             "readings that its node sent and that never came, exact as of the newest SENSOR_HEALTH"},

@@ -84,9 +84,15 @@ void CanIntake::end_joint_samples(FrameOutcome& outcome) {
 void CanIntake::note_time() {
     const std::uint64_t jumps = host_clock_.steps_back() + host_clock_.steps_ahead() + host_clock_.relocks();
     if (std::exchange(jumps_, jumps) != jumps) known_since_.reset();
-    if (!known_since_) known_since_ = now();
+    if (!known_since_) begin_time();
     const auto now_known = now();
     if (!std::exchange(is_time_known_, now_known.has_value()) && now_known) nodes_.on_time_known(*now_known);
+}
+
+void CanIntake::begin_time() {
+    known_since_ = now();
+    if (!known_since_) return;
+    for (const auto& [node, record] : nodes_.records()) ranges_.expect(node, known_since_);
 }
 
 std::optional<HostTime> CanIntake::steady_now() const {
@@ -210,6 +216,7 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::RangeAux& mess
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Heartbeat& message, FrameOutcome&) {
     ranges_.on_rate(node, message.is_rate_overridden, now());
+    if (nodes_.verdict(node, now()) != NodeVerdict::usable) ranges_.expect(node, now());
     if (nodes_.on_heartbeat(node, message, now()) == NodeRegistry::Life::restarted) {
         clocks_.at(node).forget();
         answers_.at(node).forget();

@@ -155,6 +155,7 @@ class CanIntake {
     void note_damage(const wire::CanFrame& frame, wire::DecodeError error);
     void end_joint_samples(FrameOutcome& outcome);
     void note_time();
+    void begin_time();
     /// "Now", once the stamps have not jumped for a second: before, what was held back may still come.
     [[nodiscard]] std::optional<HostTime> steady_now() const;
 

@@ -75,6 +75,7 @@ void RangeGate::on_arrival(wire::NodeId node, const wire::RangeReading& reading,
     record.sent.on_arrival();
     record.newest = reading;
     record.newest_at = now;
+    record.words.note(now, SensorRecord::kUnheardAfter);
 }
 
 void RangeGate::on_fate(wire::NodeId node, std::uint8_t sensor, std::optional<ReadingReason> rejected) {
@@ -269,21 +270,11 @@ std::optional<HostTime> RangeGate::held_until(const RangeMeasurement& measuremen
     return measurement.captured + std::min(wait, kHeldMax);
 }
 
-bool RangeGate::is_silent(wire::NodeId node, std::uint8_t sensor, HostTime now) const {
-    constexpr Nanoseconds kSilent{1'000'000'000};
-    constexpr Nanoseconds kOvertaken{200'000'000};  // by a health message, on a bus that was away
-    const Sensor& known = sensors_.at({node, sensor});
-    const SensorRecord& record = known.record;
-    const Nanoseconds period{known.expected.period};
-    const bool is_ranging = record.health && record.health->state == wire::SensorState::ranging;
-    const bool is_recent = record.newest_at && now - *record.newest_at < std::max(kSilent, 3 * period);
-    return is_ranging && !is_recent && record.sent.are_missing(now, std::max(kOvertaken, 2 * period));
-}
-
 void RangeGate::on_health(wire::NodeId node, const wire::SensorHealth& health, std::optional<HostTime> now) {
     SensorRecord& record = sensors_.at({node, health.sensor}).record;
     record.sent.on_health(health.sent, record.received, now);
     record.health = health;
+    record.words.note(now, SensorRecord::kUnheardAfter);
     record.capture_bound = Microseconds{wire::kClassicalTimeStepUs} * health.capture_bound_64us;
 }
 
@@ -301,6 +292,15 @@ void RangeGate::on_damage(wire::NodeId node, HostTime now) {
     for (auto& [key, sensor] : sensors_) {
         if (key.first == node) {
             sensor.senders.on_damage(now);
+        }
+    }
+}
+
+void RangeGate::expect(wire::NodeId node, std::optional<HostTime> now) {
+    for (auto& [key, sensor] : sensors_) {
+        if (key.first == node) {
+            sensor.record.words = {};
+            sensor.record.words.note(now, SensorRecord::kUnheardAfter);
         }
     }
 }

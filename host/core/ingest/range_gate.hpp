@@ -19,6 +19,7 @@
 #include "host/core/ingest/sender_watch.hpp"
 #include "host/core/ingest/sent_count.hpp"
 #include "host/core/ingest/sequence_tracker.hpp"
+#include "host/core/ingest/stretch.hpp"
 #include "host/core/rig/host_rig.hpp"
 #include "host/core/time/clock_map.hpp"
 
@@ -40,6 +41,9 @@ struct SensorRecord {
     std::uint64_t reflexes = 0;          ///< times that something came closer than the sensor's limit
     std::optional<wire::Reflex> reflex;  ///< the newest
     SentCount sent;                      ///< and what of it was lost
+    /// Its readings and SENSOR_HEALTH; begun when its node became usable (RangeGate::expect).
+    Stretch words;
+    static constexpr Nanoseconds kUnheardAfter{3'000'000'000};
 };
 
 class RangeGate {
@@ -86,9 +90,6 @@ class RangeGate {
     /// `now`: empty while unknown.
     void on_health(wire::NodeId node, const wire::SensorHealth& health,
                    std::optional<HostTime> now = std::nullopt);
-    /// Nothing came of a sensor for a second and three periods, though its node says that it ranges, and sent
-    /// more meanwhile than may be on the way.
-    [[nodiscard]] bool is_silent(wire::NodeId node, std::uint8_t sensor, HostTime now) const;
     /// By what its node told last, its capture times alone are within what the rig allows.
     [[nodiscard]] bool is_certain(wire::NodeId node, std::uint8_t sensor) const {
         return is_certain(sensors_.at({node, sensor}), MappedTime{});
@@ -96,6 +97,9 @@ class RangeGate {
     void on_signal(wire::NodeId node, std::uint8_t sensor, const wire::SignalReading& signal);
     /// Counted whoever the node is: it is for people and for arms, and does not touch the map.
     void on_reflex(wire::NodeId node, const wire::Reflex& reflex);
+    /// The node was not usable so far, or "now" is another than before: what its sensors say is expected from
+    /// here on.
+    void expect(wire::NodeId node, std::optional<HostTime> now);
     /// The node began anew: its sequences, its counts, and what it told.
     void forget(wire::NodeId node);
     /// The times of the newest readings were wrong: their order says nothing.

@@ -117,6 +117,19 @@ void add_joint_gap(const DaemonView& view, Problems& problems) {
 
 }  // namespace
 
+bool are_joints_withheld(const DaemonView& view) {
+    constexpr Nanoseconds kHold = JointSenders::kHeardFor;
+    const auto is_new = [&](const std::optional<HostTime>& at) { return at && view.now - *at < kHold; };
+    const JointSocket* const socket = view.inputs->joints();
+    return is_new(view.used.joint_senders) || (socket != nullptr && is_new(socket->senders().several_at()));
+}
+
+bool are_joints_above_rate(const DaemonView& view) {
+    constexpr double kAbout = 1.3;
+    const JointSocket* const socket = view.inputs->joints();
+    return socket != nullptr && socket->rate_hz(view.now) > kAbout * view.rig->joints.rate_hz;
+}
+
 void add_joints(const DaemonView& view, Problems& problems) {
     constexpr std::uint64_t kFirstSamples = 5;  // of a source: nothing is known of it yet
     const auto& joints = view.pipeline->accounts().joint_samples;

@@ -9,14 +9,11 @@
 
 #include "common/wire/names.hpp"
 #include "host/apps/daemon/problems/unused_input.hpp"
+#include "host/core/ingest/node_silence.hpp"
 #include "host/core/rig/sensor_text.hpp"
 
 namespace octoskin {
 namespace {
-
-std::string node_subject(wire::NodeId node) {
-    return "node " + std::to_string(node);
-}
 
 /// Two senders under one sensor's name: what was counted of them, and what becomes of its readings.
 void add_senders(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {
@@ -107,69 +104,6 @@ void add_losses(const DaemonView& view, const HostNode& node, Problems& problems
          on});
 }
 
-/// What tells where its readings are lost: they come in frames of one kind, all else in classical ones.
-std::string lost_where(const SensorRecord& sensor) {
-    const bool is_classical = sensor.newest && sensor.newest->capture.span_us == wire::kClassicalTimeSpanUs;
-    return is_classical
-               ? "RANGE frames are lost: look for a gateway or a filter between that leaves them out"
-               : "RANGE_FD frames are lost where classical ones pass: look at the FD setting and the "
-                 "data bit rate of the adapter, and for a gateway, a filter or a part between that "
-                 "passes no FD frames";
-}
-
-std::vector<std::size_t> silent_sensors(const DaemonView& view, const HostNode& node) {
-    std::vector<std::size_t> silent;
-    for (std::size_t i = 0; view.bus_now && i < node.sensors.size(); ++i) {
-        const auto sensor = static_cast<std::uint8_t>(i);
-        if (view.pipeline->intake().ranges().is_silent(node.node_id, sensor, *view.bus_now))
-            silent.push_back(i);
-    }
-    return silent;
-}
-
-/// Of all sensors but those that are silent.
-bool come_from_others(const DaemonView& view, const HostNode& node, const std::vector<std::size_t>& silent) {
-    constexpr Nanoseconds kRecent{500'000'000};
-    for (std::size_t i = 0; i < node.sensors.size(); ++i) {
-        const auto sensor = static_cast<std::uint8_t>(i);
-        const auto& newest = view.pipeline->intake().ranges().record(node.node_id, sensor).newest_at;
-        if (newest && *view.bus_now - *newest < kRecent && std::ranges::count(silent, i) == 0) return true;
-    }
-    return false;
-}
-
-/// Readings that their node sends, and that do not come: of all of its sensors, or of some.
-void add_silence(const DaemonView& view, const HostNode& node, Problems& problems) {
-    const std::vector<std::size_t> silent = silent_sensors(view, node);
-    if (silent.empty()) return;
-    const RangeGate& ranges = view.pipeline->intake().ranges();
-    const auto record_of = [&](std::size_t index) -> const SensorRecord& {
-        return ranges.record(node.node_id, static_cast<std::uint8_t>(index));
-    };
-    const std::string on = node_subject(node.node_id);
-    if (!come_from_others(view, node, silent)) {
-        problems.push_back(
-            {on + " silence",
-             fmt::format("{} '{}': none of its readings comes, though it sends them (lost), and "
-                         "what else it sends does: {}",
-                         on, node.name, lost_where(record_of(silent.front()))),
-             {},
-             on});
-        return;
-    }
-    for (const std::size_t index : silent) {
-        const std::string sensor = sensor_text(node, index);
-        problems.push_back(
-            {sensor + " silence",
-             fmt::format(
-                 "{}: none of its readings comes, though its node sends them (lost, {}), and those of "
-                 "others of the node do: look for a gateway or a program between that leaves them out",
-                 sensor, record_of(index).sent.lost()),
-             {},
-             on});
-    }
-}
-
 /// Which register the sensor is withheld for, and how to have it left out; empty if its node named none.
 std::string register_text(const DaemonView& view, const HostNode& node, std::size_t index) {
     const auto sensor = static_cast<std::uint8_t>(index);
@@ -185,8 +119,9 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
         view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
     const std::string who = sensor_text(node, index);
     const std::string on = node_subject(node.node_id);
+    const bool is_known = sensor.health && !is_unheard(sensor, view.bus_now);
     const bool is_ranging = sensor.health && sensor.health->state == wire::SensorState::ranging;
-    if (sensor.health && !is_ranging && sensor.health->state != wire::SensorState::starting) {
+    if (is_known && !is_ranging && sensor.health->state != wire::SensorState::starting) {
         const std::string text = fmt::format("{}: {}, {}", who, wire::name(sensor.health->state),
                                              wire::name(sensor.health->fault));
         problems.push_back({text, text + register_text(view, node, index), who, on});

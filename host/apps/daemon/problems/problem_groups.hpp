@@ -1,6 +1,7 @@
 // The groups of problems, each in the file of its name. The order of the whole is problems.cpp's.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "host/apps/daemon/problem_log.hpp"
@@ -21,8 +22,15 @@ void add_links_without_body(const DaemonView& view, Problems& problems);
 
 // --- node_problems.cpp: nodes, their sensors and registers, and what becomes of the readings
 void add_nodes(const DaemonView& view, Problems& problems);
+/// Whose problem all are that come from a node.
+[[nodiscard]] inline std::string node_subject(wire::NodeId node) {
+    return "node " + std::to_string(node);
+}
 void add_joint_node(const DaemonView& view, Problems& problems);
 void add_readings(const DaemonView& view, Problems& problems);
+
+// --- silence_problems.cpp: what does not come of a node that is usable
+void add_silence(const DaemonView& view, const HostNode& node, Problems& problems);
 
 // --- joint_problems.cpp: joint states and those that send them
 void add_joints(const DaemonView& view, Problems& problems);

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <variant>
 
 #include "common/range_status.hpp"
 #include "common/wire/codec.hpp"
@@ -70,6 +73,38 @@ TEST_F(ProblemsTest, have_a_sensor_whose_readings_do_not_come_and_a_node_none_of
     EXPECT_THAT(told("node 1 silence"), HasSubstr("RANGE frames"));
     play_silence(false, false);
     EXPECT_EQ(told(of_sensor) + told("node 1 silence"), "") << "it sends none";
+}
+
+// What else the node sends does come: heartbeats, NODE_INFO, SYNC_REPORT.
+TEST_F(ProblemsTest, have_a_node_and_a_sensor_of_which_neither_readings_nor_health_come) {
+    const std::string of_sensor = sensor_text(scene_.rig.nodes[0], kSpare) + " unheard";
+    const auto play_without = [&](const std::function<bool(std::uint8_t sensor)>& is_left_out,
+                                  double until_s) {
+        play(daemon_scene(), kAllWell);  // SENSOR_HEALTH came last at 4.02 s
+        auto frames = scene_.bus.frames();
+        std::erase_if(frames, [&](const StampedFrame& entry) {
+            const auto message = wire::decode(entry.frame);
+            const auto* const health = message ? std::get_if<wire::SensorHealth>(&message->message) : nullptr;
+            return entry.stamp < wall_at(kAllWell) || (health != nullptr && is_left_out(health->sensor));
+        });
+        play_on(frames, until_s);
+    };
+    const auto state = [&](std::uint8_t sensor) {
+        return status_json(view_)["nodes"][0]["sensors"][sensor]["state"];
+    };
+    const auto all = [](std::uint8_t) { return true; };
+    play_without(all, 7.0);
+    EXPECT_EQ(told("node 1 unheard"), "");
+    EXPECT_EQ(state(kSpare), "ranging");
+    play_without(all, 7.1);
+    EXPECT_THAT(told("node 1 unheard"), HasSubstr("(can.busy_s)"));
+    EXPECT_EQ(told(of_sensor), "");
+    EXPECT_EQ(state(kSpare), nullptr);
+    play_without([](std::uint8_t sensor) { return sensor == kSpare; }, 7.1);
+    EXPECT_THAT(told(of_sensor), HasSubstr("SENSOR_HEALTH"));
+    EXPECT_EQ(told("node 1 unheard"), "");
+    EXPECT_EQ(state(kSpare), nullptr);
+    EXPECT_EQ(state(kGood), "ranging");
 }
 
 TEST_F(ProblemsTest, begin_with_a_clock_of_this_machine_that_shows_nonsense) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <optional>
 
+#include "host/core/ingest/node_silence.hpp"
 #include "host/core/ingest/range_gate.hpp"
 
 namespace octoskin {
@@ -15,6 +16,7 @@ using namespace std::chrono_literals;
 
 constexpr wire::NodeId kNode = 5;
 constexpr std::optional<HostTime> kUnknown;
+constexpr Microseconds kPeriod = 20ms;
 
 TEST(SentCount, has_nothing_lost_for_a_message_that_comes_late_or_twice) {
     for (const std::uint16_t begun : {std::uint16_t{100}, std::uint16_t{65'500}}) {
@@ -62,7 +64,8 @@ class SilentSensorTest : public testing::Test {
         for (int ms = from_ms; ms < to_ms; ++ms) {
             if (ms % 1000 == health_phase_ms_) send_health(ms);
             if (ms % period_ms_ == 0 && state_ == State::ranging) send_reading(ms);
-            if (!silent && gate_.is_silent(kNode, 0, at(ms))) silent = ms;
+            const SensorSilence what = silence_of(gate_.record(kNode, 0), kPeriod, at(ms));
+            if (!silent && what == SensorSilence::no_readings) silent = ms;
         }
         return silent;
     }
@@ -79,7 +82,7 @@ class SilentSensorTest : public testing::Test {
     static HostTime at(int ms) { return HostTime{} + Nanoseconds{std::chrono::milliseconds(ms)}; }
     static HostRig rig() {
         HostSensor sensor;
-        sensor.period = 20ms;
+        sensor.period = kPeriod;
         HostNode node;
         node.node_id = kNode;
         node.sensors = {sensor};

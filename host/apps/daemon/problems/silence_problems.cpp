@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <string>
+
+#include "common/wire/names.hpp"
+#include "host/apps/daemon/problems/problem_groups.hpp"
+#include "host/core/ingest/node_silence.hpp"
+#include "host/core/rig/sensor_text.hpp"
+
+namespace octoskin {
+namespace {
+
+const SensorRecord& record_of(const DaemonView& view, const HostNode& node, std::size_t index) {
+    return view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
+}
+
+/// Where the readings of a node are lost: they come in frames of one kind, all else in classical ones.
+std::string lost_where(const DaemonView& view, const HostNode& node) {
+    bool is_classical = false;
+    for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+        const auto& newest = record_of(view, node, i).newest;
+        is_classical = is_classical || (newest && newest->capture.span_us == wire::kClassicalTimeSpanUs);
+    }
+    return is_classical
+               ? "RANGE frames are lost: look for a gateway or a filter between that leaves them out"
+               : "RANGE_FD frames are lost where classical ones pass: look at the FD setting and the "
+                 "data bit rate of the adapter, and for a gateway, a filter or a part between that "
+                 "passes no FD frames";
+}
+
+/// A node that is not at work says nothing of its sensors.
+std::string unheard_remedy(const DaemonView& view, const HostNode& node) {
+    const auto& heartbeat = view.pipeline->intake().nodes().records().at(node.node_id).heartbeat;
+    if (heartbeat && heartbeat->state == wire::NodeState::safe)
+        return "its state is safe: it was reset again and again, and `octoskin command NODE start` or a "
+               "minute lets it try again";
+    return "look for a gateway, a filter or a program between that leaves them out, for a bus so full that "
+           "only what is more urgent passes (can.busy_s), and at the node itself";
+}
+
+void add_of_node(const DaemonView& view, const HostNode& node, SensorSilence what, Problems& problems) {
+    const std::string on = node_subject(node.node_id);
+    if (what == SensorSilence::unheard) {
+        problems.push_back(
+            {on + " unheard",
+             fmt::format("{} '{}': neither readings nor SENSOR_HEALTH of its sensors come, and its "
+                         "heartbeats do: {}",
+                         on, node.name, unheard_remedy(view, node)),
+             on});
+    } else if (what == SensorSilence::no_readings) {
+        problems.push_back(
+            {on + " silence",
+             fmt::format("{} '{}': none of its readings comes, though it sends them (lost), and "
+                         "what else it sends does: {}",
+                         on, node.name, lost_where(view, node)),
+             {},
+             on});
+    }
+}
+
+void add_of_sensor(const DaemonView& view, const HostNode& node, const NodeSilence::OfSensor& silent,
+                   Problems& problems) {
+    const std::string on = node_subject(node.node_id);
+    const std::string sensor = sensor_text(node, silent.index);
+    if (silent.what == SensorSilence::unheard) {
+        problems.push_back({sensor + " unheard",
+                            fmt::format("{}: neither readings nor SENSOR_HEALTH of it come, and what else "
+                                        "its node sends does: look for a gateway or a program between that "
+                                        "leaves them out",
+                                        sensor),
+                            sensor, on});
+    } else {
+        problems.push_back(
+            {sensor + " silence",
+             fmt::format(
+                 "{}: none of its readings comes, though its node sends them (lost, {}), and those of "
+                 "others of the node do: look for a gateway or a program between that leaves them out",
+                 sensor, record_of(view, node, silent.index).sent.lost()),
+             {},
+             on});
+    }
+}
+
+}  // namespace
+
+void add_silence(const DaemonView& view, const HostNode& node, Problems& problems) {
+    if (!view.bus_now) return;
+    const NodeSilence silence = silence_of(view.pipeline->intake().ranges(), node, *view.bus_now);
+    add_of_node(view, node, silence.of_all, problems);
+    for (const NodeSilence::OfSensor& sensor : silence.sensors) add_of_sensor(view, node, sensor, problems);
+}
+
+}  // namespace octoskin

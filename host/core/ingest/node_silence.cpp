@@ -1,0 +1,81 @@
+#include "host/core/ingest/node_silence.hpp"
+
+#include <algorithm>
+
+namespace octoskin {
+namespace {
+
+struct Look {
+    const SensorRecord& record;
+    SensorSilence what;
+};
+
+/// Of another sensor, or of all others: whether that comes of it which does not come of a silent one.
+enum class Comes : std::uint8_t { no, unclear, yes };
+
+/// All that fall silent at once were heard last within a second of each other, as SENSOR_HEALTH comes once a
+/// second; and as much may pass until all are heard again.
+Comes are_words_of(const SensorRecord& other, const SensorRecord& silent, HostTime now) {
+    constexpr Nanoseconds kSure{1'500'000'000};
+    const auto& newest = other.words.newest();
+    const auto& before = silent.words.newest();
+    if (!newest || !before || *newest - *before <= kSure) return Comes::no;
+    if (other.words.length() >= kSure) return Comes::yes;
+    return now - *newest < kSure ? Comes::unclear : Comes::no;
+}
+
+Comes comes_of(const Look& other, const Look& silent, HostTime now) {
+    if (silent.what == SensorSilence::unheard) return are_words_of(other.record, silent.record, now);
+    constexpr Nanoseconds kRecent{500'000'000};
+    const bool is_recent = other.record.newest_at && now - *other.record.newest_at < kRecent;
+    return other.what == SensorSilence::none && is_recent ? Comes::yes : Comes::no;
+}
+
+Comes comes_of_others(const std::vector<Look>& looks, const Look& silent, HostTime now) {
+    Comes most = Comes::no;
+    for (const Look& other : looks) most = std::max(most, comes_of(other, silent, now));
+    return most;
+}
+
+std::vector<Look> look_at(const RangeGate& ranges, const HostNode& node, HostTime now) {
+    std::vector<Look> looks;
+    for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+        const SensorRecord& record = ranges.record(node.node_id, static_cast<std::uint8_t>(i));
+        looks.push_back({record, silence_of(record, Nanoseconds{node.sensors[i].period}, now)});
+    }
+    return looks;
+}
+
+}  // namespace
+
+bool is_unheard(const SensorRecord& sensor, std::optional<HostTime> now) {
+    const auto& newest = sensor.words.newest();
+    return now && newest && *now - *newest >= SensorRecord::kUnheardAfter;
+}
+
+SensorSilence silence_of(const SensorRecord& sensor, Nanoseconds period, HostTime now) {
+    constexpr Nanoseconds kSilent{1'000'000'000};
+    constexpr Nanoseconds kOvertaken{200'000'000};  // by a health message, on a bus that was away
+    if (is_unheard(sensor, now)) return SensorSilence::unheard;
+    const bool is_ranging = sensor.health && sensor.health->state == wire::SensorState::ranging;
+    const bool is_recent = sensor.newest_at && now - *sensor.newest_at < std::max(kSilent, 3 * period);
+    const bool is_silent =
+        is_ranging && !is_recent && sensor.sent.are_missing(now, std::max(kOvertaken, 2 * period));
+    return is_silent ? SensorSilence::no_readings : SensorSilence::none;
+}
+
+NodeSilence silence_of(const RangeGate& ranges, const HostNode& node, HostTime now) {
+    const std::vector<Look> looks = look_at(ranges, node, now);
+    NodeSilence silence;
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        const Look& silent = looks[i];
+        if (silent.what == SensorSilence::none) continue;
+        const Comes of_others = comes_of_others(looks, silent, now);
+        if (of_others == Comes::yes) silence.sensors.push_back({i, silent.what});
+        if (of_others == Comes::no) silence.of_all = std::max(silence.of_all, silent.what);
+    }
+    std::erase_if(silence.sensors, [&](const auto& sensor) { return sensor.what <= silence.of_all; });
+    return silence;
+}
+
+}  // namespace octoskin
