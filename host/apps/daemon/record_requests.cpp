@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <system_error>
 
 #include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/folder_lock.hpp"
 #include "host/core/text/printable.hpp"
 
 namespace octoskin {
@@ -23,6 +25,13 @@ constexpr double kSecondsMax = 1e6;
 /// For a disk to take a folder, or to refuse it: a reading may wait so long.
 constexpr Nanoseconds kFolderPatience{100'000'000};
 
+/// In its own folders the daemon, which makes recordings as its own user, writes or binds such names.
+bool is_daemons_own(const std::string& name) {
+    constexpr std::array<std::string_view, 3> kNames{FolderLock::kFile, "control", "joints"};
+    return name.starts_with('.') || name.starts_with("fused.") || name.ends_with(".lock") ||
+           std::ranges::find(kNames, name) != kNames.end();
+}
+
 }  // namespace
 
 std::string fault_of_folder(const std::filesystem::path& folder) {
@@ -33,6 +42,8 @@ std::string fault_of_folder(const std::filesystem::path& folder) {
         return fmt::format("a path has at most {} bytes, and this one {}: give a shorter one", kLongest,
                            name.size());
     if (!folder.is_absolute()) return fmt::format("'{}' is no absolute path", shown);
+    if (is_daemons_own(plain(folder).filename().string()))
+        return fmt::format("'{}': octoskin may use this name itself; give another one", shown);
     if (shown == name) return {};
     // It goes to logs, to the status, and to whoever replays it.
     return fmt::format(

@@ -23,7 +23,7 @@
 namespace octoskin {
 
 /// Why nothing is recorded to a folder of this name; empty if it may be. One with control characters would
-/// end a request, or a line of a log, in its midst.
+/// end a request, or a line of a log, in its midst; one called as a file of the daemon would take its place.
 [[nodiscard]] std::string fault_of_folder(const std::filesystem::path& folder);
 /// As it is named in requests and answers: without "." or "..", and without a slash at its end.
 [[nodiscard]] std::filesystem::path plain(const std::filesystem::path& folder);

@@ -97,6 +97,19 @@ TEST_F(RecordRequestsTest, refuses_a_folder_that_is_not_empty_and_leaves_no_trac
     EXPECT_EQ(ask("record status")["recording"]["number"], 2);
 }
 
+/// Or one client's recording would keep the daemon from saving its map, or from beginning again.
+TEST_F(RecordRequestsTest, refuses_a_name_that_the_daemon_uses_itself) {
+    for (const char* name :
+         {".fused.ot.octoskin-part", ".x", "fused.ot", "fused.bt", "fused.snapshot", "lock", "control",
+          "joints", "control.lock", "fused.ot/", "x/../fused.ot", "fused.ot/."}) {
+        const Json refused = ask("record start 0 " + (folder_.path() / name).string());
+        EXPECT_FALSE(refused["ok"].get<bool>()) << name;
+        EXPECT_EQ(refused["code"], 64) << name;
+        EXPECT_FALSE(std::filesystem::exists(folder_.path() / name)) << name;
+    }
+    EXPECT_TRUE(ask("record start 0 " + (folder_ / "fused").string())["ok"].get<bool>());
+}
+
 TEST_F(RecordRequestsTest, ends_as_failed_without_memory_for_the_last_map) {
     EXPECT_TRUE(ask("record start 0 " + (folder_ / "recording").string())["ok"].get<bool>());
     before_copy_ = [] { throw std::bad_alloc(); };
