@@ -64,8 +64,12 @@ Result<std::vector<std::string>, AppError> begin_with_first(const PlaybackReques
     if (header.first_state && has_daemons_mapping) {
         auto state = read_first_state(request, *header.first_state, header.mapping_crc32);
         if (!state) return unexpected(state.error());
-        pipeline.begin_with(std::move(*state));
-        return std::vector<std::string>{};
+        std::vector<std::string> warnings;
+        if (const auto left_out = pipeline.begin_with(std::move(*state)); left_out > 0)
+            warnings.push_back(fmt::format(
+                "{}: what range sensors had read in {} zones is left out: the rig has no such zones",
+                request.recording.first_state().shown().string(), left_out));
+        return warnings;
     }
     if (!header.first_map) return std::vector<std::string>{};
     auto first = read_first_map(request, *header.first_map);

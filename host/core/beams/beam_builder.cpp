@@ -72,9 +72,10 @@ Result<BeamBuilder, RobotModelFault> BeamBuilder::build(const HostRig& rig, cons
     return builder;
 }
 
-bool BeamBuilder::has(const BeamSource& source) const {
+const BeamOptics* BeamBuilder::optics_of(const BeamSource& source) const {
     const auto found = sensors_.find(source.sensor_id());
-    return found != sensors_.end() && source.zone < found->second.zones.size();
+    const bool has_zone = found != sensors_.end() && source.zone < found->second.zones.size();
+    return has_zone ? &found->second.zones[source.zone].zone.optics : nullptr;
 }
 
 std::optional<double> BeamBuilder::self_hit(const Zone& zone, const Eigen::Isometry3d& T_base_sensor,

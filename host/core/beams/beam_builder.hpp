@@ -38,7 +38,9 @@ class BeamBuilder {
                                                                     const BeamRules& rules);
 
     /// Whether the rig has this zone of this sensor.
-    [[nodiscard]] bool has(const BeamSource& source) const;
+    [[nodiscard]] bool has(const BeamSource& source) const { return optics_of(source) != nullptr; }
+    /// What its beams have; null where the rig has no such zone.
+    [[nodiscard]] const BeamOptics* optics_of(const BeamSource& source) const;
 
     /// `robot`: at the capture time. The source must be one of the rig's (asserted). About 50 ns per capsule.
     [[nodiscard]] Result<Beam, BeamFault> place(const RangeMeasurement& measurement,

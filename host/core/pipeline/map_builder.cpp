@@ -27,6 +27,28 @@ bool sees_any_cone(const HostRig& rig) {
         rig.nodes, [&](const HostNode& node) { return std::ranges::any_of(node.sensors, has_cone); });
 }
 
+/// The zones that the rig does not have so: no beam of theirs will come, and clearing by one that was as wide
+/// as it liked takes as long. How many there were.
+std::size_t leave_out_others(SensorHistories& histories, const BeamBuilder& beams) {
+    const auto is_other = [&](const Beam& beam) {
+        const BeamOptics* const optics = beams.optics_of(beam.source);
+        return optics == nullptr || *optics != beam.optics;
+    };
+    const auto has_other = [&](const auto& newest) {
+        return std::ranges::any_of(newest, [&](const auto& reading) { return is_other(reading.beam); });
+    };
+    std::size_t left_out = 0;
+    for (auto& sensor : histories) {
+        left_out += std::erase_if(sensor.second.zones, [&](const auto& entry) {
+            const ZoneHistory& zone = entry.second;
+            return has_other(zone.newest) || has_other(zone.passages) ||
+                   (zone.confirmed && is_other(*zone.confirmed));
+        });
+    }
+    std::erase_if(histories, [](const auto& sensor) { return sensor.second.zones.empty(); });
+    return left_out;
+}
+
 /// An image's box may be large: what there is no memory for is refused like what is wrong.
 Result<DepthUpdates, DepthReason> updates_or_reason(DepthStage& stage, const DepthFrame& frame,
                                                     const RobotPose* robot) {
@@ -83,9 +105,11 @@ void MapBuilder::begin_with(FusedMap map) {
     own_map() = std::move(map);
 }
 
-void MapBuilder::begin_with(MapState state) {
+std::size_t MapBuilder::begin_with(MapState state) {
     begin_with(std::move(state.map));
+    const std::size_t left_out = leave_out_others(state.histories, beams_);
     ranges_.go_on_with(std::move(state.histories));
+    return left_out;
 }
 
 void MapBuilder::wait(std::int64_t seconds) {

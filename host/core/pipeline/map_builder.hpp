@@ -2,6 +2,7 @@
 // maps. What it builds depends on nothing but the calls and their order: no clock, no queue, no gate.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -42,8 +43,9 @@ class MapBuilder {
     /// resolution (asserted).
     void begin_with(FusedMap map);
     /// The same, with what the range sensors read before: what is given in next becomes what it would have
-    /// become where the state is from, for a rig and mapping that are equal.
-    void begin_with(MapState state);
+    /// become where the state is from, for a rig and mapping that are equal. The answer: of so many zones
+    /// what was read is left out, as this rig does not have them, or their optics are others. O(readings).
+    [[nodiscard]] std::size_t begin_with(MapState state);
     /// All that the map of all sensors follows from, but for the joint samples (`for_each_joint_sample`). A
     /// copy: O(sensors). Throws std::bad_alloc.
     [[nodiscard]] MapState state() const { return {map().copy(), ranges_.histories()}; }

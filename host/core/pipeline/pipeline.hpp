@@ -69,7 +69,7 @@ class Pipeline {
     /// The fused map goes on from this one, which has the mapping's resolution (asserted).
     void begin_with(FusedMap fused) { builder_.begin_with(std::move(fused)); }
     /// The same with what the range sensors read before: MapBuilder::begin_with.
-    void begin_with(MapState state) { builder_.begin_with(std::move(state)); }
+    [[nodiscard]] std::size_t begin_with(MapState state) { return builder_.begin_with(std::move(state)); }
     /// Of a map that was saved, until its first measurement: FusedMap::wait.
     void wait(std::int64_t seconds) { builder_.wait(seconds); }
     /// Other limits for the fused map from now on, at the same resolution (asserted): FusedMap::limit.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -132,6 +133,32 @@ TEST_F(StandingCone, has_all_that_has_gone_off_the_map_however_long_it_stood) {
             read(range_m + 0.8, 20);
             EXPECT_EQ(occupied(), 0U) << range_m << " m, " << times << " readings";
         }
+    }
+}
+
+// As of another rig, or forged.
+TEST_F(StandingCone, goes_on_with_readings_of_zones_alone_that_the_rig_has_so) {
+    read(1.3, 30);
+    using Change = std::function<void(Beam&)>;
+    const auto left_out_of = [&](const Change& change_newest, const Change& change_passage) {
+        MapState state = builder_->state();
+        ZoneHistory& zone = state.histories.begin()->second.zones.begin()->second;
+        change_newest(zone.newest.front().beam);
+        change_passage(zone.passages.front().beam);
+        const std::size_t left_out = builder_->begin_with(std::move(state));
+        EXPECT_EQ(builder_->histories().size(), 1U - left_out);
+        return left_out;
+    };
+    const Change nothing = [](Beam&) {};
+    EXPECT_EQ(left_out_of(nothing, nothing), 0U);
+    EXPECT_EQ(left_out_of([](Beam& beam) { beam.range_m = 1.2; }, nothing), 0U);
+    for (const Change& change :
+         {Change([](Beam& beam) { beam.optics.half_angle_rad = 0.78; }),
+          Change([](Beam& beam) { beam.optics = {}; }), Change([](Beam& beam) { beam.source.zone = 7; })}) {
+        EXPECT_EQ(left_out_of(change, nothing), 1U);
+        read(1.3, 30);
+        EXPECT_EQ(left_out_of(nothing, change), 1U);
+        read(1.3, 30);
     }
 }
 
