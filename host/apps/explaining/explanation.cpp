@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 #include "hw/rigfile/rig.hpp"
@@ -27,7 +28,8 @@ std::map<BeamSource, std::string> names_of_sources(const rig::Rig& rig) {
 
 /// No room for the voxel: once a map is full it stays so, and all terms for the voxel were refused.
 bool is_without_room(const FusedMap& map, const VoxelWitness& witness) {
-    return map.counters().no_room > 0 && witness.count() > 0 && !map.log_odds(witness.key());
+    return map.counters().no_room > 0 && witness.count() > 0 && witness.forgotten().times == 0 &&
+           !map.log_odds(witness.key());
 }
 
 }  // namespace
@@ -53,7 +55,10 @@ Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vect
         no_room = witness.count();
         witness = VoxelWitness(*key, request.mapping.map, contributions_max);
     }
-    if (map.log_odds(*key) != witness.log_odds())
+    // Sums of so many changes are a little off.
+    constexpr double kOff = 1e-3;
+    const double off = witness.sum() - static_cast<double>(witness.log_odds().value_or(0.0F));
+    if (map.log_odds(*key) != witness.log_odds() || std::fabs(off) > kOff)
         return fail(ExitCode::failed, "the terms do not add up to the voxel's log-odds in the map");
     return Explanation{.p_map = p_map,
                        .centre = map.centre_of(*key),

@@ -61,18 +61,25 @@ std::optional<Share> main_cause(const Explanation& explanation) {
     const bool is_up = explanation.occupancy == Occupancy::occupied;
     std::optional<Share> cause;
     for (const Share& share : by_weight(explanation)) {
-        const bool is_of_kind = is_up ? share.second.change > 0.0 : share.second.change < 0.0;
-        if (is_of_kind && !cause) cause = share;
+        const double kept = share.second.kept;
+        if (!(is_up ? kept > 0.0 : kept < 0.0)) continue;
+        if (!cause || std::abs(kept) > std::abs(cause->second.kept)) cause = share;
     }
     return cause;
 }
 
 /// What was there before the recording did more, in the direction in which the voxel stands, than any source.
 bool is_mainly_of_before(const Explanation& explanation, const std::optional<Share>& cause) {
+    if (explanation.witness.forgotten().times > 0) return false;
     const double before = static_cast<double>(explanation.witness.begin().value_or(0.0F));
     const bool is_up = explanation.occupancy == Occupancy::occupied;
     return (is_up ? before > 0.0 : before < 0.0) &&
-           (!cause || std::abs(before) > std::abs(cause->second.change));
+           (!cause || std::abs(before) > std::abs(cause->second.kept));
+}
+
+std::string when(const Explanation& explanation, const Forgotten& forgotten) {
+    if (!forgotten.last) return "while the map waited for its first measurement";
+    return fmt::format("at {:.3f} s", seconds_of(explanation, *forgotten.last));
 }
 
 std::string when(const Explanation& explanation, const SourceShare& share) {
@@ -92,6 +99,12 @@ std::string table_of_shares(const Explanation& explanation) {
         fmt::format_to(std::back_inserter(text), "  {:<24} {:>6} {:>7} {:>+9.4f}  {:>9.3f} {:>9.3f}\n",
                        name_of(explanation, source), share.hits, share.misses, share.change,
                        seconds_of(explanation, share.first), seconds_of(explanation, share.last));
+    }
+    if (const Forgotten& forgotten = explanation.witness.forgotten(); forgotten.times > 0) {
+        const std::string last =
+            forgotten.last ? fmt::format("{:.3f}", seconds_of(explanation, *forgotten.last)) : "-";
+        fmt::format_to(std::back_inserter(text), "  {:<24} {:>6} {:>7} {:>+9.4f}  {:>9} {:>9}\n",
+                       "forgotten for its age", "-", "-", forgotten.change, "", last);
     }
     return text;
 }
@@ -115,6 +128,12 @@ Json to_json(const Eigen::Vector3d& vector) {
 
 Json json_of(const std::optional<float>& log_odds) {
     return log_odds ? Json(static_cast<double>(*log_odds)) : Json(nullptr);
+}
+
+Json json_of(const Explanation& explanation, const Forgotten& forgotten) {
+    return {{"times", forgotten.times},
+            {"change", forgotten.change},
+            {"last_s", forgotten.last ? Json(seconds_of(explanation, *forgotten.last)) : Json(nullptr)}};
 }
 
 Json json_of(const Explanation& explanation, const BeamSource& source) {
@@ -153,14 +172,20 @@ std::string conclusion_of(const Explanation& explanation) {
     }
     if (explanation.witness.count() == 0 && !explanation.witness.begin())
         return "unknown: no reading and no depth frame ever touched it";
+    if (const Forgotten& forgotten = explanation.witness.forgotten(); forgotten.is_last) {
+        return fmt::format("{}, forgotten {}: no sensor had confirmed it for age.unknown_after_s; {}",
+                           name(explanation.occupancy), when(explanation, forgotten),
+                           about_camera(explanation));
+    }
     const auto cause = main_cause(explanation);
     if (is_mainly_of_before(explanation, cause) && explanation.witness.count() > 0) {
         return fmt::format("{}, mainly by what was there before the recording; {}",
                            name(explanation.occupancy), about_camera(explanation));
     }
     if (!cause) {
-        const char* why = explanation.witness.begin() ? "as the map had it at the begin of the recording"
-                                                      : "by contributions that cancel out";
+        const bool is_of_begin = explanation.witness.begin() && explanation.witness.forgotten().times == 0;
+        const char* why = is_of_begin ? "as the map had it at the begin of the recording"
+                                      : "by contributions that cancel out";
         return fmt::format("{}, {}; {}", name(explanation.occupancy), why, about_camera(explanation));
     }
     const auto& [source, share] = *cause;
@@ -214,6 +239,7 @@ Json to_json(const Explanation& explanation) {
             {"occupancy", name(explanation.occupancy)},
             {"log_odds_at_begin", json_of(explanation.witness.begin())},
             {"log_odds", json_of(explanation.witness.log_odds())},
+            {"forgotten", json_of(explanation, explanation.witness.forgotten())},
             {"contributions_without_room", explanation.no_room},
             {"contributions_in_all", explanation.witness.count()},
             {"sources", std::move(shares)},

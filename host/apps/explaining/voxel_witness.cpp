@@ -25,6 +25,16 @@ void VoxelWitness::on_depth(const DepthFrame& frame, const Evidence& terms) {
     take(std::move(contribution), std::span(&update, 1));
 }
 
+void VoxelWitness::on_older(std::optional<HostTime> now, const FusedMap& map) {
+    if (!now_ || map.log_odds(key_)) return;
+    ++forgotten_.times;
+    forgotten_.change -= static_cast<double>(*now_);
+    forgotten_.last = now;
+    forgotten_.is_last = true;
+    for (auto& share : shares_) share.second.kept = 0.0;
+    now_.reset();
+}
+
 void VoxelWitness::on_fused(const FusedMap& map) {
     const auto now = map.log_odds(key_);
     if (now == now_ && !map.layers().counts.has(brick_of(key_))) return;
@@ -33,7 +43,15 @@ void VoxelWitness::on_fused(const FusedMap& map) {
     Contribution& newest = newest_.back();
     const double before = newest.change();
     newest.after = now_.value_or(0.0F);
-    shares_[newest.source].change += newest.change() - before;
+    SourceShare& share = shares_[newest.source];
+    share.change += newest.change() - before;
+    share.kept += newest.change() - before;
+}
+
+double VoxelWitness::sum() const {
+    double sum = static_cast<double>(begin_.value_or(0.0F)) + forgotten_.change;
+    for (const auto& share : shares_) sum += share.second.change;
+    return sum;
 }
 
 void VoxelWitness::take(Contribution contribution, std::span<const VoxelUpdate> updates) {
@@ -49,6 +67,8 @@ void VoxelWitness::take(Contribution contribution, std::span<const VoxelUpdate> 
         const auto [share, is_first] = shares_.try_emplace(contribution.source);
         ++(contribution.term > 0.0F ? share->second.hits : share->second.misses);
         share->second.change += contribution.change();
+        share->second.kept += contribution.change();
+        forgotten_.is_last = false;
         if (is_first) share->second.first = contribution.captured;
         share->second.last = contribution.captured;
         ++count_;

@@ -26,8 +26,8 @@ struct Contribution {
     float term = 0.0F;                                        ///< log-odds that it asked for
     float before = 0.0F;                                      ///< the voxel's log-odds; 0 if it was unknown
     float after = 0.0F;                                       ///< clamped
-    /// What it did. Exact: their sum is the voxel's log-odds, less that of the begin, unless the voxel was
-    /// forgotten for its age between.
+    /// What it did. Exact: their sum is the voxel's log-odds, less that of the begin, and less what was
+    /// forgotten (`Forgotten`).
     [[nodiscard]] double change() const { return static_cast<double>(after) - static_cast<double>(before); }
 };
 
@@ -36,8 +36,17 @@ struct SourceShare {
     std::uint64_t hits = 0;    ///< terms above 0
     std::uint64_t misses = 0;  ///< terms below 0
     double change = 0.0;       ///< log-odds, clamping included
+    double kept = 0.0;         ///< of that, since the voxel was last forgotten
     HostTime first;
     HostTime last;
+};
+
+/// The voxel expired: no sensor had confirmed it for `age.unknown_after_s`.
+struct Forgotten {
+    std::uint64_t times = 0;
+    double change = 0.0;           ///< log-odds, of all times together
+    std::optional<HostTime> last;  ///< empty: while a saved map waited for its first measurement
+    bool is_last = false;          ///< nothing touched the voxel since
 };
 
 class VoxelWitness final : public CommitListener {
@@ -47,12 +56,15 @@ class VoxelWitness final : public CommitListener {
         : key_(key), config_(config), kept_max_(kept_max) {}
 
     void on_begin(const FusedMap& map) override { begin_ = now_ = map.log_odds(key_); }
+    void on_time(std::optional<HostTime> now, std::span<const FedMap> maps) override {
+        if (const FusedMap* const map = find_map(maps, MapFeed::both)) on_older(now, *map);
+    }
+    void on_older(std::optional<HostTime> now, const FusedMap& map);
     void on_joints(const JointMeasurement&) override {}
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
     void on_depth(const DepthFrame& frame, const Evidence& terms) override;
-    /// Where range sensors count hits and misses, or the voxel was forgotten for its age, terms do not simply
-    /// add up: there the map is asked.
+    /// Where range sensors count hits and misses, terms do not simply add up: there the map is asked.
     void on_maps(std::span<const FedMap> maps) override {
         if (const FusedMap* const map = find_map(maps, MapFeed::both)) on_fused(*map);
     }
@@ -63,9 +75,13 @@ class VoxelWitness final : public CommitListener {
     [[nodiscard]] std::optional<float> begin() const noexcept { return begin_; }
     /// By the same arithmetic as the map's, but where that is asked; empty: unknown.
     [[nodiscard]] std::optional<float> log_odds() const noexcept { return now_; }
+    /// What was there at the begin and all that was done since, as told: the voxel's log-odds, or 0 for
+    /// unknown.
+    [[nodiscard]] double sum() const;
     [[nodiscard]] const std::deque<Contribution>& newest() const noexcept { return newest_; }
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
     [[nodiscard]] const std::map<BeamSource, SourceShare>& shares() const noexcept { return shares_; }
+    [[nodiscard]] const Forgotten& forgotten() const noexcept { return forgotten_; }
 
   private:
     void take(Contribution contribution, std::span<const VoxelUpdate> updates);
@@ -80,6 +96,7 @@ class VoxelWitness final : public CommitListener {
     bool is_newest_of_commit_ = false;  ///< newest_.back() is of the reading or frame that came last
     std::deque<Contribution> newest_;
     std::map<BeamSource, SourceShare> shares_;
+    Forgotten forgotten_;
 };
 
 }  // namespace octoskin

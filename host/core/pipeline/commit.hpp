@@ -33,12 +33,15 @@ struct WaitCommit {
 /// the map grew older without one.
 using Commit = std::variant<JointMeasurement, RangeMeasurement, DepthCommit, WaitCommit>;
 
-/// Is told of each, after it went in. What it is given is valid during the call only.
+/// Is told of each, after it went in, but for `on_time`. What it is given is valid during the call only.
 class CommitListener {
   public:
     virtual ~CommitListener() = default;
     /// Of a replay: the fused map goes on from this one, before anything went in. Not told if it is empty.
     virtual void on_begin(const FusedMap&) {}
+    /// The maps' time has gone on, to that of the reading or frame of which nothing has gone in yet: what was
+    /// too old has expired. Empty: by a wait, after `on_wait`.
+    virtual void on_time(std::optional<HostTime>, std::span<const FedMap>) {}
     virtual void on_joints(const JointMeasurement& joints) = 0;
     virtual void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                             std::span<const VoxelUpdate> updates) = 0;

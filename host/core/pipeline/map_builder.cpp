@@ -113,7 +113,9 @@ std::size_t MapBuilder::begin_with(MapState state) {
 }
 
 void MapBuilder::wait(std::int64_t seconds) {
-    if (own_map().wait(seconds) && listener_ != nullptr) listener_->on_wait({seconds});
+    if (!own_map().wait(seconds) || listener_ == nullptr) return;
+    listener_->on_wait({seconds});
+    listener_->on_time(std::nullopt, maps_);
 }
 
 const FusedMap& MapBuilder::map(MapFeed feed) const noexcept {
@@ -169,7 +171,7 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
 
 Status<ReadingReason> MapBuilder::add_range(const RangeMeasurement& measurement, const Beam& beam) {
     std::vector<VoxelUpdate> changes;
-    MapFeeder feeder(maps_, measurement.captured, listener_ != nullptr ? &changes : nullptr);
+    MapFeeder feeder(maps_, measurement.captured, listener_ != nullptr ? &changes : nullptr, listener_);
     if (const auto added = ranges_.integrate(beam, feeder); !added)
         return unexpected(reason_of(added.error()));
     if (listener_ != nullptr) {
@@ -215,7 +217,7 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
     if (depth.robot && robot_.at(depth.frame.captured) == nullptr) {
         return unexpected(DepthReason::late);
     }
-    MapFeeder(maps_, depth.frame.captured, nullptr).apply(depth.updates->terms, nullptr);
+    MapFeeder(maps_, depth.frame.captured, nullptr, listener_).apply(depth.updates->terms, nullptr);
     if (witness_) {
         depth_stage_->swap_images(seen_);
         witness_->on_depth(seen_, depth_stage_->T_map_camera_of(depth.frame), depth.frame.captured);

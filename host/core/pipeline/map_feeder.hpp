@@ -7,6 +7,7 @@
 
 #include "common/time.hpp"
 #include "host/core/mapping/evidence_sink.hpp"
+#include "host/core/pipeline/commit.hpp"
 #include "host/core/pipeline/fed_map.hpp"
 
 namespace octoskin {
@@ -15,9 +16,10 @@ namespace octoskin {
 class MapFeeder final : public EvidenceSink {
   public:
     /// `changes`: gets by how much the log-odds of the map of both sensors changed, each voxel once; of
-    /// `terms` what they say. May be null.
-    MapFeeder(std::span<FedMap> maps, HostTime now, std::vector<VoxelUpdate>* changes) noexcept
-        : maps_(maps), now_(now), changes_(changes) {}
+    /// `terms` what they say. `listener`: of the maps' time. Either may be null.
+    MapFeeder(std::span<FedMap> maps, HostTime now, std::vector<VoxelUpdate>* changes,
+              CommitListener* listener) noexcept
+        : maps_(maps), now_(now), changes_(changes), listener_(listener) {}
 
     /// O(maps) more than FusedMap::apply. Throws only where there is a list of changes.
     void apply(const Evidence& evidence, const std::function<bool(VoxelKey)>* spares) override;
@@ -29,6 +31,7 @@ class MapFeeder final : public EvidenceSink {
     std::span<FedMap> maps_;
     HostTime now_;
     std::vector<VoxelUpdate>* changes_;
+    CommitListener* listener_;
     bool has_begun_ = false;
 };
 

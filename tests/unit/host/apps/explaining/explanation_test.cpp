@@ -21,6 +21,9 @@ constexpr std::size_t kKept = 100;
 /// Several voxels watched in one run.
 class Witnesses final : public CommitListener {
   public:
+    void on_time(std::optional<HostTime> now, std::span<const FedMap> maps) override {
+        for (VoxelWitness& witness : all) witness.on_time(now, maps);
+    }
     void on_joints(const JointMeasurement& joints) override {
         for (VoxelWitness& witness : all) witness.on_joints(joints);
     }
@@ -227,6 +230,95 @@ TEST(Explanation, weighs_what_was_there_before_as_a_line_of_its_own_and_the_sum_
     EXPECT_EQ(conclusion_of(explanation_of(against, Occupancy::occupied)),
               "occupied, mainly by sensor forearm_3 at 4.100 s, 3 hits; the camera never saw it")
         << "it was free before";
+}
+
+HostTime time_at(double time_s) {
+    return {std::llround(time_s * 1e9)};
+}
+
+// The oracle is the map itself.
+TEST(VoxelWitness, knows_when_what_was_there_expired_and_what_came_since) {
+    Scene scene = good_scene();
+    scene.mapping.map.age = {.stale_after_s = 2, .unknown_after_s = 5};
+    MapBuilder builder =
+        MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, {MapFeed::both}).value();
+    const auto integrate = [&](double time_s) {
+        for (const double beside_s : {-0.01, 0.01})
+            ASSERT_TRUE(builder.add({time_at(time_s + beside_s), {M_PI / 2.0}}));
+        ASSERT_TRUE(builder.integrate(flat_frame(time_s)));
+    };
+    integrate(3.5);
+    Witnesses witnesses;
+    builder.map().for_each_known([&](VoxelKey key, float) {
+        if (witnesses.all.size() < 20) witnesses.all.emplace_back(key, scene.mapping.map, kKept);
+    });
+    for (VoxelWitness& witness : witnesses.all) witness.on_begin(builder.map());
+    builder.tell(&witnesses);
+    for (const double beside_s : {-0.01, 0.01})
+        ASSERT_TRUE(builder.add({time_at(9.5 + beside_s), {M_PI / 2.0}}));
+    ASSERT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, time_at(9.5), 0.52, 0.01}));
+    std::size_t gone = 0;
+    for (const VoxelWitness& witness : witnesses.all) {
+        EXPECT_EQ(witness.log_odds(), builder.map().log_odds(witness.key()));
+        EXPECT_EQ(witness.forgotten().times, 1U);
+        EXPECT_EQ(witness.forgotten().change, -static_cast<double>(*witness.begin()));
+        EXPECT_EQ(witness.forgotten().last, time_at(9.5));
+        gone += witness.log_odds() ? 0U : 1U;
+    }
+    EXPECT_GT(gone, 0U);
+    integrate(10.0);
+    integrate(16.5);  // what it frees expired by then, and before it frees it again
+    for (const VoxelWitness& witness : witnesses.all) {
+        EXPECT_EQ(witness.log_odds(), builder.map().log_odds(witness.key()));
+        EXPECT_NEAR(witness.sum(), static_cast<double>(witness.log_odds().value_or(0.0F)), 1e-9);
+        EXPECT_EQ(witness.forgotten().times, 2U);
+        EXPECT_FALSE(witness.forgotten().is_last);
+        EXPECT_EQ(witness.newest().back().before, 0.0F);
+    }
+}
+
+TEST(VoxelWitness, knows_what_expired_while_a_saved_map_waited) {
+    Scene scene = good_scene();
+    scene.mapping.map.age = {.stale_after_s = 2, .unknown_after_s = 5};
+    MapBuilder builder =
+        MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, {MapFeed::both}).value();
+    const VoxelKey key{1, 2, 3};
+    FusedMap saved(scene.mapping.map);
+    saved.go_on(time_at(1.0));
+    feed(saved, terms_of({{key, 0.7F}}));
+    saved.begin_to_wait();
+    VoxelWitness witness(key, scene.mapping.map, kKept);
+    witness.on_begin(saved);
+    builder.begin_with(std::move(saved));
+    builder.tell(&witness);
+    builder.wait(3);
+    EXPECT_EQ(witness.forgotten().times, 0U);
+    builder.wait(8);
+    EXPECT_EQ(builder.map().log_odds(key), std::nullopt);
+    EXPECT_EQ(witness.log_odds(), std::nullopt);
+    EXPECT_EQ(witness.forgotten().times, 1U);
+    EXPECT_EQ(witness.forgotten().last, std::nullopt);
+    EXPECT_NEAR(witness.sum(), 0.0, 1e-9);
+}
+
+TEST(Explanation, tells_that_a_voxel_was_forgotten_and_not_what_marked_it_before) {
+    const VoxelKey key{1, 2, 3};
+    VoxelWitness witness = witness_from(key, 2.0F);
+    const std::vector<VoxelUpdate> hit{{key, 0.75F}};
+    witness.on_reading(reading_at(4.1), Beam{}, hit);
+    witness.on_older(time_at(9.25), FusedMap{MapConfig{}});
+    const auto json = to_json(explanation_of(witness, Occupancy::unknown));
+    EXPECT_EQ(json["log_odds"], nullptr);
+    EXPECT_EQ(json["forgotten"]["times"], 1);
+    EXPECT_EQ(json["forgotten"]["change"], -2.75);
+    EXPECT_EQ(json["forgotten"]["last_s"], 9.25);
+    EXPECT_EQ(json["sources"][0]["change"], 0.75);
+    EXPECT_NE(json["conclusion"].get<std::string>().find("unknown, forgotten at 9.250 s"), std::string::npos);
+    EXPECT_NE(to_text(explanation_of(witness, Occupancy::unknown)).find("  -2.7500                9.250\n"),
+              std::string::npos);
+    witness.on_depth({time_at(10.5), 0, 0, {}}, terms_of({{key, 0.5F}}));
+    EXPECT_EQ(conclusion_of(explanation_of(witness, Occupancy::occupied)),
+              "occupied, mainly by the camera at 10.500 s, 1 hit");
 }
 
 TEST(Explanation, says_that_a_full_map_had_no_room) {
