@@ -82,7 +82,7 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
                  {"fault", is_known ? Json(name(record.health->fault)) : Json(nullptr)},
                  {"received", record.received},
                  {"lost", record.sent.lost()},
-                 {"age_s", age_s(record.newest_at, view.bus_now)}};
+                 {"age_s", age_s(record.arrivals.newest(), view.bus_now)}};
     if (record.newest) {
         json["range_m"] = record.newest->range_mm * 1e-3;
         json["sigma_m"] = record.newest->sigma_quarter_mm * 0.25e-3;

@@ -7,6 +7,7 @@ namespace {
 
 struct Look {
     const SensorRecord& record;
+    Nanoseconds period;
     SensorSilence what;
 };
 
@@ -24,11 +25,21 @@ Comes are_words_of(const SensorRecord& other, const SensorRecord& silent, HostTi
     return now - *newest < kSure ? Comes::unclear : Comes::no;
 }
 
+/// One that came by chance is no sign, nor one of a slow sensor that was on its way when all fell silent.
+Comes are_readings_of(const Look& other, const Look& silent, HostTime now) {
+    constexpr Nanoseconds kSure{1'000'000'000};
+    const Stretch& arrivals = other.record.arrivals;
+    const auto& newest = arrivals.newest();
+    const Nanoseconds break_after = SensorRecord::break_after(other.period);
+    if (other.what != SensorSilence::none || !newest || now - *newest > break_after) return Comes::no;
+    const auto& before = silent.record.arrivals.newest();
+    const bool is_later = !before || *newest - *before > SensorRecord::break_after(silent.period);
+    return is_later && arrivals.length() >= kSure ? Comes::yes : Comes::unclear;
+}
+
 Comes comes_of(const Look& other, const Look& silent, HostTime now) {
-    if (silent.what == SensorSilence::unheard) return are_words_of(other.record, silent.record, now);
-    constexpr Nanoseconds kRecent{500'000'000};
-    const bool is_recent = other.record.newest_at && now - *other.record.newest_at < kRecent;
-    return other.what == SensorSilence::none && is_recent ? Comes::yes : Comes::no;
+    return silent.what == SensorSilence::unheard ? are_words_of(other.record, silent.record, now)
+                                                 : are_readings_of(other, silent, now);
 }
 
 Comes comes_of_others(const std::vector<Look>& looks, const Look& silent, HostTime now) {
@@ -41,7 +52,8 @@ std::vector<Look> look_at(const RangeGate& ranges, const HostNode& node, HostTim
     std::vector<Look> looks;
     for (std::size_t i = 0; i < node.sensors.size(); ++i) {
         const SensorRecord& record = ranges.record(node.node_id, static_cast<std::uint8_t>(i));
-        looks.push_back({record, silence_of(record, Nanoseconds{node.sensors[i].period}, now)});
+        const Nanoseconds period{node.sensors[i].period};
+        looks.push_back({record, period, silence_of(record, period, now)});
     }
     return looks;
 }
@@ -58,7 +70,8 @@ SensorSilence silence_of(const SensorRecord& sensor, Nanoseconds period, HostTim
     constexpr Nanoseconds kOvertaken{200'000'000};  // by a health message, on a bus that was away
     if (is_unheard(sensor, now)) return SensorSilence::unheard;
     const bool is_ranging = sensor.health && sensor.health->state == wire::SensorState::ranging;
-    const bool is_recent = sensor.newest_at && now - *sensor.newest_at < std::max(kSilent, 3 * period);
+    const auto& newest = sensor.arrivals.newest();
+    const bool is_recent = newest && now - *newest < std::max(kSilent, 3 * period);
     const bool is_silent =
         is_ranging && !is_recent && sensor.sent.are_missing(now, std::max(kOvertaken, 2 * period));
     return is_silent ? SensorSilence::no_readings : SensorSilence::none;

@@ -70,11 +70,12 @@ RangeGate::RangeGate(const HostRig& rig, bool uses_no_return, Nanoseconds now_ea
 
 void RangeGate::on_arrival(wire::NodeId node, const wire::RangeReading& reading,
                            std::optional<HostTime> now) {
-    SensorRecord& record = sensors_.at({node, reading.sensor}).record;
+    Sensor& sensor = sensors_.at({node, reading.sensor});
+    SensorRecord& record = sensor.record;
     ++record.received;
     record.sent.on_arrival();
     record.newest = reading;
-    record.newest_at = now;
+    record.arrivals.note(now, SensorRecord::break_after(Nanoseconds{sensor.expected.period}));
     record.words.note(now, SensorRecord::kUnheardAfter);
 }
 

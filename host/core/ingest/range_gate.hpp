@@ -2,6 +2,7 @@
 // its age, its status, its zone, its figures.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -29,7 +30,7 @@ namespace octoskin {
 struct SensorRecord {
     std::uint64_t received = 0;                     ///< readings that came, each counted once
     std::optional<wire::RangeReading> newest;       ///< of those, whatever became of it
-    std::optional<HostTime> newest_at;              ///< its arrival, if "now" was known
+    Stretch arrivals;                               ///< of readings, without breaks (`break_after`)
     std::optional<ReadingReason> newest_rejected;   ///< why it was not accepted, or not put into the map
     FateHistory fates;                              ///< of the newest readings
     std::array<std::uint64_t, 32> device_status{};  ///< how often each code came
@@ -44,6 +45,10 @@ struct SensorRecord {
     /// Its readings and SENSOR_HEALTH; begun when its node became usable (RangeGate::expect).
     Stretch words;
     static constexpr Nanoseconds kUnheardAfter{3'000'000'000};
+    /// Of a sensor of this period, configured, the readings do not come while none does for so long.
+    [[nodiscard]] static constexpr Nanoseconds break_after(Nanoseconds period) noexcept {
+        return std::max(Nanoseconds{500'000'000}, 2 * period);
+    }
 };
 
 class RangeGate {

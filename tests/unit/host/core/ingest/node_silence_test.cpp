@@ -174,6 +174,48 @@ TEST_F(NodeSilenceTest, is_none_of_what_is_well_or_says_that_it_does_not_range_o
     EXPECT_TRUE(run().empty());
 }
 
+TEST_F(NodeSilenceTest, is_a_nodes_none_of_whose_readings_comes_and_first_of_no_single_sensor) {
+    for (const int period_ms : {33, 1'500}) {
+        rig_.nodes[0].sensors[0].period = std::chrono::milliseconds(period_ms);
+        reading_comes_ = [](std::uint8_t, double at_s) { return is_over(at_s); };
+        const Findings found = run();
+        ASSERT_EQ(found.size(), 1U) << period_ms;
+        const Found& of_all = found.at({"all", SensorSilence::no_readings});
+        EXPECT_GT(of_all.first_s, kStop_s + 0.9);
+        EXPECT_LT(of_all.first_s, kStop_s + 1.5 + 2e-3 * period_ms);
+        EXPECT_LT(of_all.last_s, kGoOn_s + 0.1 + 1e-3 * period_ms);
+    }
+}
+
+TEST_F(NodeSilenceTest, is_of_no_single_sensor_where_a_reading_of_another_gets_through_now_and_then) {
+    reading_comes_ = [](std::uint8_t sensor, double at_s) {
+        if (is_over(at_s)) return true;
+        const int turn = static_cast<int>(at_s / 0.9);
+        return turn % 4 == sensor && at_s - 0.9 * turn < 0.033;
+    };
+    const Findings found = run();
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_LT(found.at({"all", SensorSilence::no_readings}).first_s, kStop_s + 2.5);
+}
+
+TEST_F(NodeSilenceTest, is_of_the_sensor_none_of_whose_readings_comes_also_beside_a_slow_one_alone) {
+    for (const bool is_beside_slow : {false, true}) {
+        if (is_beside_slow) {
+            rig_.nodes[0].sensors[0].period = std::chrono::milliseconds(1'500);
+            state_ = [](std::uint8_t sensor, double) {
+                return sensor < 2 ? wire::SensorState::ranging : wire::SensorState::stopped;
+            };
+        }
+        reading_comes_ = [](std::uint8_t sensor, double at_s) { return sensor != 1 || is_over(at_s); };
+        const Findings found = run();
+        ASSERT_EQ(found.size(), 1U) << is_beside_slow;
+        const Found& of_sensor = found.at({"1", SensorSilence::no_readings});
+        EXPECT_GT(of_sensor.first_s, kStop_s + 0.9);
+        EXPECT_LT(of_sensor.first_s, kStop_s + 3.0);
+        EXPECT_LT(of_sensor.last_s, kGoOn_s + 0.1);
+    }
+}
+
 // Lost it is named so itself; then what its sensors say is expected anew.
 TEST_F(NodeSilenceTest, is_none_of_a_node_that_was_lost_nor_where_time_leapt) {
     node_is_heard_ = [](double at_s) { return is_over(at_s); };
