@@ -56,12 +56,11 @@ std::optional<std::int64_t> MapTime::begin_with(FusedMap& map, const std::option
     const auto passed_s = seconds_between(saved_, looked_);
     if (passed_s) {
         map.begin_to_wait();
-        (void)map.wait(*passed_s);
+        if (map.wait(*passed_s)) map_time_ = looked_;
     } else {
         map.forget_times();
     }
     seen_ = map.layers().ages.clock();
-    if (passed_s) map_time_ = looked_;
     return passed_s;
 }
 

@@ -43,13 +43,14 @@ void FusedMap::go_on(HostTime now) noexcept {
 }
 
 bool FusedMap::wait(std::int64_t seconds) noexcept {
+    bool is_older = false;
     try {
-        if (!layers_.ages.wait(seconds)) return false;
-        date_and_expire();
+        is_older = layers_.ages.wait(seconds);
+        if (is_older) date_and_expire();
     } catch (const std::bad_alloc&) {
         ++counters_.undated;
     }
-    return true;
+    return is_older;
 }
 
 void FusedMap::date_and_expire() {

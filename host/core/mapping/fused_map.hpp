@@ -63,7 +63,8 @@ class FusedMap {
     /// passed. O(1).
     void begin_to_wait() noexcept { layers_.ages.begin_to_wait(); }
     /// So many seconds have passed since `begin_to_wait`, in all: every age grows by what was not added yet,
-    /// and what is too old expires. True if ages grew; false if the map does not wait. Costs as `go_on`.
+    /// and what is too old expires. True if ages grew; false if the map does not wait, and if there is no
+    /// memory for that: a later call adds it. Costs as `go_on`.
     bool wait(std::int64_t seconds) noexcept;
     /// How long ago anything was seen is not known any more: everything is stale until a sensor sees it.
     /// O(stamps). Throws std::bad_alloc, and then nothing is changed.

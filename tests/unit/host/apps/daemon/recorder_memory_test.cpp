@@ -6,8 +6,10 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "host/apps/daemon/boot_clock.hpp"
 #include "host/apps/daemon/recorder.hpp"
 #include "tests/support/allocation_hooks.hpp"
+#include "tests/support/evidence.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
 
@@ -62,6 +64,27 @@ TEST(RecorderWithoutMemory, counts_what_it_could_not_keep_as_lost_and_goes_on) {
     EXPECT_EQ(json["commits"], 6);
     EXPECT_FALSE(json["is_complete"].get<bool>());
     EXPECT_EQ(json["error"], "");
+}
+
+// A restart behind it adds what this one could not.
+TEST(MapTimeWithoutMemory, is_that_of_before_where_the_map_cannot_grow_older) {
+    constexpr std::int64_t kLong_s = 20'000;  // more than the clock has room for: all stamps change
+    const BootTime saved{{1}, Nanoseconds{1'000'000'000}};
+    const BootTime now{{1}, Nanoseconds{(kLong_s + 1) * 1'000'000'000}};
+    FusedMap map(MapConfig{.age = {.stale_after_s = 10, .unknown_after_s = 0}});
+    map.go_on(HostTime{5'000'000'000});
+    feed(map, std::vector<VoxelUpdate>{{{32768, 32768, 32768}, 1.0F}});
+    const FusedMap shares = map.copy();
+    MapTime time([now] { return std::optional(now); });
+    is_memory_gone = true;
+    (void)time.begin_with(map, saved);
+    const bool is_older = map.wait(kLong_s);
+    is_memory_gone = false;
+    EXPECT_FALSE(is_older);
+    EXPECT_EQ(time.map_time(), saved);
+    EXPECT_EQ(map.confirmation({32768, 32768, 32768})->age_s, 0U);
+    EXPECT_TRUE(map.wait(kLong_s));
+    EXPECT_EQ(map.confirmation({32768, 32768, 32768})->age_s, VoxelAges::kAgeMax_s);
 }
 
 }  // namespace
