@@ -1,5 +1,6 @@
 #include "host/apps/daemon/boot_clock.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <ctime>
@@ -17,7 +18,54 @@ std::optional<std::array<std::uint8_t, 16>> boot_id() {
     return systemds != nullptr ? read_boot_id(systemds) : std::nullopt;
 }
 
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+Nanoseconds read_clock(clockid_t clock) {
+    timespec now{};
+    (void)::clock_gettime(clock, &now);  // both are there since Linux 2.6.39
+    return Nanoseconds{std::int64_t{now.tv_sec} * kSecond_ns + now.tv_nsec};
+}
+
+/// When the second of the bus's time began that the clock shows; empty: it shows none of it.
+std::optional<BootTime> begin_of_second(const VoxelAges::Clock& clock, const std::optional<BootTime>& now,
+                                        HostTime bus) {
+    if (!now || !clock.has_begun || clock.waits) return std::nullopt;
+    const std::int64_t whole_s = bus.ns / kSecond_ns - (clock.zero_s + clock.now);
+    if (whole_s < 0) return now;  // the bus's time was reckoned late, or has gone back
+    const std::int64_t boot_s = now->since_boot.count() / kSecond_ns;
+    const Nanoseconds since{std::min(whole_s, boot_s) * kSecond_ns + bus.ns % kSecond_ns};
+    return BootTime{now->boot, std::max(now->since_boot - since, Nanoseconds{0})};
+}
+
 }  // namespace
+
+Nanoseconds clock_boottime() {
+    return read_clock(CLOCK_BOOTTIME);
+}
+Nanoseconds clock_monotonic() {
+    return read_clock(CLOCK_MONOTONIC);
+}
+
+SleepWatch::SleepWatch(Clock boottime, Clock monotonic)
+    : boottime_(std::move(boottime)), monotonic_(std::move(monotonic)), told_(read().most) {}
+
+/// This thread may lose the processor, or the machine sleep, between two readings.
+SleepWatch::Slept SleepWatch::read() const {
+    const Nanoseconds before = monotonic_();
+    const Nanoseconds boottime = boottime_();
+    return {boottime - monotonic_(), boottime - before};
+}
+
+Nanoseconds SleepWatch::look() {
+    const Slept now = read();
+    const Nanoseconds slept = now.least - told_;
+    if (slept < Nanoseconds{kSecond_ns}) {
+        told_ = std::min(told_, now.most);
+        return Nanoseconds{0};
+    }
+    told_ = now.most;
+    return slept;
+}
 
 std::optional<std::array<std::uint8_t, 16>> read_boot_id(std::string_view text) {
     constexpr int kHex = 16;
@@ -36,14 +84,11 @@ std::optional<std::array<std::uint8_t, 16>> read_boot_id(std::string_view text) 
 
 std::optional<BootTime> boot_now() {
     static const auto boot = boot_id();  // it is the same for as long as this process lives
-    timespec now{};
-    if (!boot || ::clock_gettime(CLOCK_BOOTTIME, &now) != 0) return std::nullopt;
-    return BootTime{*boot, Nanoseconds{std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec}};
+    return boot ? std::optional(BootTime{*boot, clock_boottime()}) : std::nullopt;
 }
 
 std::optional<std::int64_t> seconds_between(const std::optional<BootTime>& then,
                                             const std::optional<BootTime>& now) {
-    constexpr std::int64_t kSecond_ns = 1'000'000'000;
     if (!then || !now || then->boot != now->boot || now->since_boot < then->since_boot) return std::nullopt;
     const std::int64_t passed_ns = (now->since_boot - then->since_boot).count();
     return passed_ns / kSecond_ns + (passed_ns % kSecond_ns > 0 ? 1 : 0);
@@ -64,11 +109,34 @@ std::optional<std::int64_t> MapTime::begin_with(FusedMap& map, const std::option
     return passed_s;
 }
 
-void MapTime::note(const FusedMap& map) {
+Nanoseconds MapTime::attend(Pipeline& pipeline, HostTime bus) {
+    const Nanoseconds slept = sleep_.look();
+    if (slept > Nanoseconds{0}) go_on_after_sleep(pipeline, bus, slept);
+    if (const auto passed_s = since_saved()) pipeline.wait(*passed_s);
+    note(pipeline.map(), bus);
+    return slept;
+}
+
+/// From when the map's clock came to what it shows: what passed before the sleep counts, too. Where that is
+/// not known, the sleep alone.
+void MapTime::go_on_after_sleep(Pipeline& pipeline, HostTime bus, Nanoseconds slept) {
+    pipeline.go_on_after_sleep();
+    note(pipeline.map(), bus);
+    saved_ = map_time_;
+    // It may have been looked at since, and what was settled may be of another second.
+    if (saved_ && looked_) saved_->since_boot = std::min(saved_->since_boot, looked_->since_boot - slept);
+    if (!since_saved()) pipeline.wait((slept.count() + kSecond_ns - 1) / kSecond_ns);
+}
+
+void MapTime::note(const FusedMap& map, HostTime bus) {
     const VoxelAges::Clock& clock = map.layers().ages.clock();
     const bool went_on = clock.has_begun != seen_.has_begun || clock.runs_for_s != seen_.runs_for_s;
     const std::optional<BootTime> now = clock_();
-    if (went_on) map_time_ = looked_;
+    if (went_on) {
+        const auto second = begin_of_second(clock, now, bus);
+        const bool was_earlier = looked_ && second && second->since_boot < looked_->since_boot;
+        map_time_ = was_earlier ? second : looked_;
+    }
     seen_ = clock;
     looked_ = now;
 }

@@ -187,7 +187,7 @@ void Daemon::Parts::go_on_with(KeptMap kept) {
 }
 
 SnapshotOrigin Daemon::Parts::origin_of_map() {
-    map_time.note(pipeline.map());
+    map_time.note(pipeline.map(), inputs.reckoned_bus_now(monotonic_now()));
     return {.mapping_crc32 = settings.recorded.mapping_crc32(), .map_time = map_time.map_time()};
 }
 
@@ -221,8 +221,9 @@ void Daemon::Parts::attend() {
     inputs.attend();
     recordings.attend(monotonic_now());
     last_used.note(pipeline, monotonic_now());
-    if (const auto passed_s = map_time.since_saved()) pipeline.wait(*passed_s);
-    map_time.note(pipeline.map());
+    if (const auto slept = map_time.attend(pipeline, inputs.reckoned_bus_now(monotonic_now()));
+        slept > Nanoseconds{0})
+        spdlog::info("the machine slept for {:.0f} s: the map is older by that", seconds_of(slept));
     if (reload_pace.is_due(monotonic_now())) begin_reload();
     tell_problems();
     for (const std::string& line : register_log.news(pipeline.intake().nodes())) spdlog::info("{}", line);

@@ -104,7 +104,7 @@ void Recorder::on_depth(const DepthFrame& frame, const Evidence&) {
 void Recorder::on_time_leap() {
     stop(monotonic_now(),
          "the bus's time leapt, and a replay could not go on from there: the host that sends SYNC began "
-         "anew or was set, or another one sends it too");
+         "anew or was set, another one sends it too, or this machine slept");
 }
 
 void Recorder::attend(HostTime now) {

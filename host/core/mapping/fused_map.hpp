@@ -59,8 +59,8 @@ class FusedMap {
     /// The clock by which times come from now on is ahead by this of the one before (or behind, below 0):
     /// nothing has become older.
     void leap(Nanoseconds by) noexcept { layers_.ages.leap(by); }
-    /// A map that was saved: what comes next has times of another scale, and until then `wait` says what has
-    /// passed. O(1).
+    /// A map that was saved, or that is of before the machine slept: what comes next has times of another
+    /// scale, and until then `wait` says what has passed. O(1).
     void begin_to_wait() noexcept { layers_.ages.begin_to_wait(); }
     /// So many seconds have passed since `begin_to_wait`, in all: every age grows by what was not added yet,
     /// and what is too old expires. True if ages grew; false if the map does not wait, and if there is no

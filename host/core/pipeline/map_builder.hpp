@@ -51,6 +51,9 @@ class MapBuilder {
     [[nodiscard]] MapState state() const { return {map().copy(), ranges_.histories()}; }
     /// What of it the range sensors read. Throws std::bad_alloc.
     [[nodiscard]] SensorHistories histories() const { return ranges_.histories(); }
+    /// The map of all sensors waits for its next measurement: FusedMap::begin_to_wait. No replay does that:
+    /// to be called behind `forget_motion`.
+    void begin_to_wait() noexcept { own_map().begin_to_wait(); }
     /// Of a map that waits for the time to go on: FusedMap::wait.
     void wait(std::int64_t seconds);
     /// Other limits for it, at the same resolution (asserted).

@@ -89,6 +89,11 @@ void Pipeline::on_leap(const TimeLeap::Leap& leap) {
     just_used_.clear();  // of the time before: their age is not known
 }
 
+void Pipeline::go_on_after_sleep() {
+    on_leap({Nanoseconds{0}, now()});
+    builder_.begin_to_wait();
+}
+
 void Pipeline::settle_waiting() {
     queue(intake_.settle_joints());
     for (const RangeMeasurement& measurement : intake_.take_held()) {

@@ -72,6 +72,11 @@ class Pipeline {
     [[nodiscard]] std::size_t begin_with(MapState state) { return builder_.begin_with(std::move(state)); }
     /// Of a map that was saved, until its first measurement: FusedMap::wait.
     void wait(std::int64_t seconds) { builder_.wait(seconds); }
+    /// The machine slept, and the clocks of what comes stood still, or are those of others: as where the time
+    /// leaps, what waits is settled, what was remembered of the time before is forgotten, a listener is told
+    /// that its order ends, and what was captured before and comes late is not used. The fused map waits as
+    /// one that was saved: `wait` says what has passed.
+    void go_on_after_sleep();
     /// Other limits for the fused map from now on, at the same resolution (asserted): FusedMap::limit.
     void limit_map(const MapConfig& config) { builder_.limit_map(config); }
     /// After `finish`: the fused map.
@@ -144,7 +149,7 @@ class Pipeline {
              const PipelineConfig& config);
 
     void settle_marks(HostTime now);
-    void on_leap(const TimeLeap::Leap& leap);
+    void on_leap(const TimeLeap::Leap& leap);  ///< also a sleep, as one by 0
     /// What waits is integrated or counted, by what is known.
     void settle_waiting();
     void queue(const FrameOutcome& outcome);

@@ -3,7 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+#include <utility>
+#include <vector>
+
 #include "tests/support/evidence.hpp"
+#include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
 
 namespace octoskin {
 namespace {
@@ -66,19 +72,34 @@ TEST(MapTime, is_no_later_than_when_the_maps_clock_came_to_what_it_shows) {
     BootTime now = at(100s);
     MapTime time([&now] { return std::optional(now); });
     FusedMap map(MapConfig{});
-    time.note(map);
+    time.note(map, bus(1000s - 10ms));
     EXPECT_FALSE(time.map_time()) << "it has no time";
     now = at(100s + 50ms);
     map = map_seen_at(1000s);
-    time.note(map);
+    time.note(map, bus(1000s + 40ms));
     EXPECT_EQ(time.map_time(), at(100s)) << "it may have begun right after the look before";
     now = at(130s);
-    time.note(map);
+    time.note(map, bus(1030s - 10ms));
     EXPECT_EQ(time.map_time(), at(100s)) << "the bus is silent";
-    now = at(130s + 50ms);
+    now = at(131s + 50ms);
     map.go_on(bus(1031s));
-    time.note(map);
+    time.note(map, bus(1031s + 40ms));
     EXPECT_EQ(time.map_time(), at(130s));
+}
+
+TEST(MapTime, is_no_later_than_what_was_measured_and_went_into_the_map_late) {
+    BootTime now = at(100s);
+    MapTime time([&now] { return std::optional(now); });
+    FusedMap map(MapConfig{});
+    time.note(map, bus(1000s + 600ms));
+    now = at(100s + 50ms);
+    map.go_on(bus(999s + 900ms));  // two images waited
+    time.note(map, bus(1000s + 650ms));
+    EXPECT_EQ(time.map_time(), at(100s + 50ms - 1s - 650ms));
+    now = at(100s + 100ms);
+    map.go_on(bus(1000s + 100ms));
+    time.note(map, bus(1000s + 700ms));
+    EXPECT_EQ(time.map_time(), at(100s + 100ms - 700ms));
 }
 
 TEST(MapTime, makes_a_saved_map_older_by_what_passed_until_its_first_measurement) {
@@ -90,12 +111,143 @@ TEST(MapTime, makes_a_saved_map_older_by_what_passed_until_its_first_measurement
     EXPECT_EQ(time.map_time(), at(200s)) << "what a save would say";
     now = at(203s);
     (void)map.wait(*time.since_saved());
-    time.note(map);
+    time.note(map, {});
     EXPECT_EQ(age_s(map), 13U);
     map.go_on(bus(5s));  // of another bus
     EXPECT_EQ(age_s(map), 13U);
     now = at(230s);
     EXPECT_FALSE(map.wait(*time.since_saved()));
+}
+
+TEST(SleepWatch, tells_how_long_the_machine_slept_once) {
+    Nanoseconds boottime = 1000s;
+    Nanoseconds monotonic = 900s;  // it slept before, too
+    SleepWatch watch([&] { return boottime; }, [&] { return monotonic; });
+    EXPECT_EQ(watch.look(), 0s);
+    boottime += 10s;
+    monotonic += 10s;
+    EXPECT_EQ(watch.look(), 0s);
+    boottime += 3600s;
+    EXPECT_EQ(watch.look(), 3600s);
+    EXPECT_EQ(watch.look(), 0s);
+    boottime += 600ms;
+    EXPECT_EQ(watch.look(), 0s);
+    boottime += 600ms;
+    EXPECT_EQ(watch.look(), 1200ms) << "short ones add up";
+}
+
+TEST(SleepWatch, takes_no_wait_for_the_processor_for_a_sleep) {
+    Nanoseconds now = 1000s;
+    Nanoseconds held_up = 0s;
+    SleepWatch watch([&] { return now += held_up; }, [&] { return now += held_up; });
+    for (const Nanoseconds each : {0s, 5s, 0s, 20s, 20s, 0s}) {
+        held_up = each;
+        EXPECT_EQ(watch.look(), 0s);
+    }
+}
+
+/// A map that goes on, and a machine that sleeps.
+class SleepingMachine : public testing::Test {
+  protected:
+    SleepingMachine() {
+        (void)time_.attend(pipeline_, bus_);
+        for (const StampedFrame& entry : scene_.bus.frames()) pipeline_.on_can(entry.frame, entry.stamp);
+        pass(50ms);
+        (void)time_.attend(pipeline_, bus_);
+    }
+    static test::Scene live_scene() {
+        test::Scene scene = test::good_scene();
+        scene.config.release = Release::once_placed;
+        scene.config.maps = {MapFeed::both};
+        scene.mapping.map.age = {.stale_after_s = 60, .unknown_after_s = 0};
+        return scene;
+    }
+    void pass(Nanoseconds time) {
+        boottime_ += time;
+        monotonic_ += time;
+        bus_.ns += time.count();
+    }
+    [[nodiscard]] std::uint32_t youngest_s() const {
+        std::uint32_t youngest = VoxelAges::kAgeMax_s;
+        pipeline_.map().for_each_known([&](VoxelKey key, float) {
+            const auto seen = pipeline_.map().confirmation(key);
+            if (seen) youngest = std::min(youngest, seen->age_s);
+        });
+        return youngest;
+    }
+
+    test::Scene scene_ = live_scene();
+    Pipeline pipeline_ = test::make_pipeline(scene_);
+    Nanoseconds boottime_ = 1000s;
+    Nanoseconds monotonic_ = 500s;
+    HostTime bus_{9'000'000'000};
+    MapTime time_{[this] { return std::optional(at(boottime_)); },
+                  SleepWatch([this] { return boottime_; }, [this] { return monotonic_; })};
+};
+
+TEST_F(SleepingMachine, has_the_map_older_by_that_at_once_and_until_its_next_measurement) {
+    ASSERT_GT(pipeline_.map().known_voxels(), 0U);
+    const std::uint32_t before_s = youngest_s();
+    boottime_ += 600s;
+    EXPECT_EQ(time_.attend(pipeline_, bus_), 600s);
+    EXPECT_GE(youngest_s(), before_s + 600);
+    EXPECT_LE(youngest_s(), before_s + 600 + 12) << "and by how long the bus was silent before";
+    const std::uint32_t after_s = youngest_s();
+    for (int i = 0; i < 100; ++i) {
+        pass(50ms);
+        EXPECT_EQ(time_.attend(pipeline_, bus_), 0s);
+    }
+    EXPECT_EQ(youngest_s(), after_s + 5);
+    FusedMap saved = pipeline_.map().copy();
+    pass(1s);
+    MapTime next([this] { return std::optional(at(boottime_)); });
+    const auto passed_s = next.begin_with(saved, time_.map_time());
+    ASSERT_TRUE(passed_s);
+    EXPECT_LE(*passed_s, 2) << "the sleep is in it already";
+}
+
+TEST_F(SleepingMachine, has_the_map_older_by_that_where_the_boot_is_not_known) {
+    MapTime time([] { return std::optional<BootTime>(); },
+                 SleepWatch([this] { return boottime_; }, [this] { return monotonic_; }));
+    const std::uint32_t before_s = youngest_s();
+    boottime_ += 600s + 1ms;
+    EXPECT_EQ(time.attend(pipeline_, bus_), 600s + 1ms);
+    EXPECT_EQ(youngest_s(), before_s + 601);
+}
+
+TEST_F(SleepingMachine, ends_the_order_of_a_recording_before_the_map_is_older) {
+    class Ending final : public CommitListener {
+      public:
+        explicit Ending(std::function<std::uint32_t()> age) : age_(std::move(age)) {}
+        void on_joints(const JointMeasurement&) override {}
+        void on_reading(const RangeMeasurement&, const Beam&, std::span<const VoxelUpdate>) override {}
+        void on_depth(const DepthFrame&, const Evidence&) override {}
+        void on_time_leap() override { at_end.push_back(age_()); }
+        std::vector<std::uint32_t> at_end;
+
+      private:
+        std::function<std::uint32_t()> age_;
+    };
+    Ending listener([this] { return youngest_s(); });
+    pipeline_.tell(&listener);
+    const std::uint32_t before_s = youngest_s();
+    boottime_ += 2s;
+    EXPECT_EQ(time_.attend(pipeline_, bus_), 2s);
+    ASSERT_EQ(listener.at_end.size(), 1U);
+    EXPECT_LE(listener.at_end.front(), before_s);
+    EXPECT_GE(youngest_s(), before_s + 2);
+    pipeline_.tell(nullptr);
+}
+
+TEST_F(SleepingMachine, goes_on_with_its_measurements_when_it_wakes) {
+    boottime_ += 600s;
+    (void)time_.attend(pipeline_, bus_);
+    for (const StampedFrame& entry : scene_.bus.frames()) {
+        StampedFrame later = entry;
+        later.stamp.ns += 600'000'000'000;
+        pipeline_.on_can(later.frame, later.stamp);
+    }
+    EXPECT_LT(youngest_s(), 600U) << "seen again";
 }
 
 TEST(MapTime, has_a_map_of_another_boot_stale) {
