@@ -5,6 +5,9 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <iterator>
+#include <limits>
+#include <sstream>
 #include <string>
 
 namespace octoskin {
@@ -19,6 +22,14 @@ std::optional<std::array<std::uint8_t, 16>> boot_id() {
 }
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+/// Of this process's time namespace; 0 where the kernel knows of none.
+std::optional<Nanoseconds> boot_offset() {
+    std::ifstream offsets("/proc/self/timens_offsets");
+    if (!offsets) return Nanoseconds{0};
+    const std::string text{std::istreambuf_iterator<char>(offsets), {}};
+    return read_boot_offset(text);
+}
 
 Nanoseconds read_clock(clockid_t clock) {
     timespec now{};
@@ -67,6 +78,21 @@ Nanoseconds SleepWatch::look() {
     return slept;
 }
 
+std::optional<Nanoseconds> read_boot_offset(std::string_view text) {
+    std::istringstream lines{std::string(text)};
+    std::string clock;
+    std::int64_t seconds = 0;
+    std::int64_t nanoseconds = 0;
+    constexpr std::int64_t kSecondsMax = std::numeric_limits<std::int64_t>::max() / 2 / kSecond_ns;
+    while (lines >> clock >> seconds >> nanoseconds) {
+        if (clock != "boottime") continue;
+        if (seconds > kSecondsMax || seconds < -kSecondsMax) return std::nullopt;
+        if (nanoseconds >= kSecond_ns || nanoseconds < 0) return std::nullopt;
+        return Nanoseconds{seconds * kSecond_ns + nanoseconds};
+    }
+    return std::nullopt;
+}
+
 std::optional<std::array<std::uint8_t, 16>> read_boot_id(std::string_view text) {
     constexpr int kHex = 16;
     std::string digits;
@@ -84,7 +110,9 @@ std::optional<std::array<std::uint8_t, 16>> read_boot_id(std::string_view text) 
 
 std::optional<BootTime> boot_now() {
     static const auto boot = boot_id();  // it is the same for as long as this process lives
-    return boot ? std::optional(BootTime{*boot, clock_boottime()}) : std::nullopt;
+    const auto offset = boot_offset();
+    if (!boot || !offset) return std::nullopt;
+    return BootTime{*boot, std::max(clock_boottime() - *offset, Nanoseconds{0})};
 }
 
 std::optional<std::int64_t> seconds_between(const std::optional<BootTime>& then,

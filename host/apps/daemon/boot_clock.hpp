@@ -15,9 +15,14 @@
 
 namespace octoskin {
 
-/// CLOCK_BOOTTIME, which goes on while the machine sleeps, and of which boot it is: as the kernel says, or,
-/// where a service may not see that, as systemd does in OCTOSKIN_BOOT_ID. Empty: neither does.
+/// CLOCK_BOOTTIME as it is outside of any time namespace, which goes on while the machine sleeps, and of
+/// which boot it is: as the kernel says, or, where a service may not see that, as systemd does in
+/// OCTOSKIN_BOOT_ID. Empty: neither does. Some 10 us.
 [[nodiscard]] std::optional<BootTime> boot_now();
+
+/// By how much CLOCK_BOOTTIME of a time namespace is ahead of the one outside, from the text of
+/// /proc/PID/timens_offsets; empty: it is something else.
+[[nodiscard]] std::optional<Nanoseconds> read_boot_offset(std::string_view text);
 
 /// 32 hexadecimal digits, with dashes or without; empty: it is something else.
 [[nodiscard]] std::optional<std::array<std::uint8_t, 16>> read_boot_id(std::string_view text);

@@ -1,15 +1,24 @@
 // How much older a map is after a restart.
 #include "host/apps/daemon/boot_clock.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <functional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "tests/support/evidence.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
+
+#ifndef CLONE_NEWTIME
+#define CLONE_NEWTIME 0x00000080
+#endif
 
 namespace octoskin {
 namespace {
@@ -56,6 +65,51 @@ TEST(BootClock, reads_a_boot_as_the_kernel_and_as_systemd_write_it) {
     for (const char* text : {"", "0123456789abcdef0123456789abcde", "0123456789abcdef0123456789abcdef0",
                              "x123456789abcdef0123456789abcdef", "+1234567-89ab-cdef-0123-456789abcdef"})
         EXPECT_FALSE(read_boot_id(text)) << text;
+}
+
+TEST(BootClock, reads_how_far_a_time_namespace_is_ahead) {
+    EXPECT_EQ(read_boot_offset("monotonic           7         0\nboottime            0         0\n"), 0s);
+    EXPECT_EQ(read_boot_offset("monotonic 0 0\nboottime 100 5\n"), 100s + 5ns);
+    EXPECT_EQ(read_boot_offset("monotonic 0 0\nboottime -1 500000000\n"), -500ms);
+    for (const char* text :
+         {"", "monotonic 0 0\n", "boottime", "boottime x 0", "boottime 1", "boottime 1 1000000000",
+          "boottime 9000000000000000000 0", "boottime 99999999999999999999 0"})
+        EXPECT_FALSE(read_boot_offset(text)) << text;
+}
+
+/// What `boot_now` is of a child in a time namespace that is 100 s behind; empty: there is none to be had.
+std::optional<Nanoseconds> boot_of_child_100_s_behind() {
+    int ends[2];
+    if (::pipe(ends) != 0) return std::nullopt;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const bool is_apart = ::unshare(CLONE_NEWTIME) == 0;
+        const int offsets = is_apart ? ::open("/proc/self/timens_offsets", O_WRONLY) : -1;
+        constexpr std::string_view kBehind = "boottime -100 0\n";
+        const bool is_behind = ::write(offsets, kBehind.data(), kBehind.size()) > 0;
+        const pid_t inside = is_behind ? ::fork() : -1;
+        if (inside == 0) {
+            const auto now = boot_now();
+            const std::int64_t ns = now ? now->since_boot.count() : -1;
+            ::_exit(::write(ends[1], &ns, sizeof(ns)) == sizeof(ns) ? 0 : 1);
+        }
+        if (inside > 0) ::waitpid(inside, nullptr, 0);
+        ::_exit(0);
+    }
+    ::close(ends[1]);
+    std::int64_t ns = -1;
+    const bool is_told = ::read(ends[0], &ns, sizeof(ns)) == sizeof(ns);
+    ::close(ends[0]);
+    ::waitpid(child, nullptr, 0);
+    return is_told ? std::optional(Nanoseconds{ns}) : std::nullopt;
+}
+
+TEST(BootClock, is_the_same_in_a_time_namespace) {
+    const auto before = boot_now();
+    const auto inside = boot_of_child_100_s_behind();
+    if (!before || !inside || before->since_boot < 200s) GTEST_SKIP() << "no time namespace to be had";
+    EXPECT_GE(*inside, before->since_boot);
+    EXPECT_LE(*inside, boot_now()->since_boot);
 }
 
 TEST(BootClock, counts_whole_seconds_of_one_boot_the_one_that_has_begun_too) {
