@@ -11,6 +11,7 @@
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/source_file.hpp"
+#include "host/core/mapping/brick_editor.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "host/io/snapshot/snapshot_file.hpp"
@@ -89,7 +90,7 @@ Result<KeptMap, AppError> load_alone(const MapConfig& config, const FilePlace& f
 
 std::string why_no_room(const FusedMap& map, const MapConfig& next) {
     constexpr unsigned kMib = 20;
-    const std::uint64_t needed_mib = (map.memory_bytes() + (std::size_t{1} << kMib) - 1) >> kMib;
+    const std::uint64_t needed_mib = (bytes_needed(map.layers()) + (std::size_t{1} << kMib) - 1) >> kMib;
     if (needed_mib <= next.memory_max_mib) return {};
     return fmt::format(
         "the map takes {} MiB, and map.memory_max_mib is {}: make that {} or more, or end the "

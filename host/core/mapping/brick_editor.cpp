@@ -50,7 +50,20 @@ BrickTree clamped_tree(const BrickTree& tree, const VoxelRules& rules) {
     return clamped;
 }
 
+/// Of the limit of memory, in sixteenths.
+constexpr std::size_t kCountShare = 3;
+constexpr std::size_t kAgeShare = 9;
+
+/// Of which that share is so much, or a byte more.
+constexpr std::size_t limit_for(std::size_t bytes, std::size_t share) {
+    return (16 * bytes + share - 1) / share;
+}
+
 }  // namespace
+
+std::size_t bytes_needed(const MapLayers& layers) noexcept {
+    return std::max(bytes_at_most(layers.log_odds), limit_for(layers.counts.bytes_at_most(), kCountShare));
+}
 
 std::size_t bytes_at_most(const BrickTree& tree) noexcept {
     return tree.nodes() * BrickTree::kNodeBytes + tree.bricks() * BrickTree::kBrickBytes;
@@ -64,12 +77,12 @@ bool BrickEditor::has_room_for(MortonCode brick) const noexcept {
 
 bool BrickEditor::has_room_to_count(MortonCode brick) const noexcept {
     const CountLayer& counts = layers_.counts;
-    return 16 * (counts.bytes_at_most() + counts.bytes_of_new(brick)) <= 3 * bytes_max();
+    return limit_for(counts.bytes_at_most() + counts.bytes_of_new(brick), kCountShare) <= bytes_max();
 }
 
 bool BrickEditor::has_room_to_date(MortonCode brick) const noexcept {
     const VoxelAges& ages = layers_.ages;
-    return 16 * (ages.bytes_at_most() + ages.bytes_of_new(brick)) <= 9 * bytes_max();
+    return limit_for(ages.bytes_at_most() + ages.bytes_of_new(brick), kAgeShare) <= bytes_max();
 }
 
 Status<MapRefusal> BrickEditor::open_counts(MortonCode brick) noexcept {

@@ -95,6 +95,10 @@ class BrickEditor {
     MapCounters& counters_;
 };
 
+/// The least limit of memory that these layers are within, counts with their share of it. Times are of the
+/// same space, and have what room there is.
+[[nodiscard]] std::size_t bytes_needed(const MapLayers& layers) noexcept;
+
 /// What a tree takes if each voxel has a value of its own.
 [[nodiscard]] std::size_t bytes_at_most(const BrickTree& tree) noexcept;
 

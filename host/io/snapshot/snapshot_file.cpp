@@ -11,8 +11,8 @@
 namespace octoskin {
 namespace {
 
-/// Log-odds, counts and times come to less than twice the log-odds' share; readings to far less than the
-/// rest.
+/// Log-odds, counts and times come to less than twice the log-odds' share (`bytes_needed`), also where a
+/// daemon goes on with less memory than before; readings to far less than the rest.
 std::uint64_t file_bytes_max_of(const MapConfig& config) {
     return (std::uint64_t{config.memory_max_mib} << 21U) + (std::uint64_t{64} << 20U);
 }

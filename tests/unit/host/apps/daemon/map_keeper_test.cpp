@@ -536,6 +536,22 @@ TEST(MapKeeper, tells_which_mapping_would_not_load_the_map_again) {
     EXPECT_EQ(why_no_room(FusedMap(MapConfig{}), MapConfig{.memory_max_mib = 1}), "");
 }
 
+/// Half of its space is counted, which takes three times as much as log-odds, and may take 3/16 of the limit.
+TEST(MapKeeper, goes_on_with_no_less_memory_than_its_counts_need) {
+    FusedMap map{MapConfig{.memory_max_mib = 64}};
+    for (std::uint16_t i = 0; i < 400; ++i) {
+        ConeVoxels cone;
+        cone.cap = {{{static_cast<std::uint16_t>(32768 + 8 * (i % 20)),
+                      static_cast<std::uint16_t>(32768 + 8 * (i / 20)), 32700},
+                     1.0F}};
+        feed(map, cone, ConeModel{});
+    }
+    ASSERT_LT(map.memory_bytes(), std::size_t{1} << 20U);
+    ASSERT_GT(map.layers().counts.bytes_at_most(), std::size_t{2} << 20U);
+    EXPECT_FALSE(why_no_room(map, MapConfig{.memory_max_mib = 8}).empty());
+    EXPECT_EQ(why_no_room(map, MapConfig{.memory_max_mib = 16}), "");
+}
+
 TEST(MapKeeper, saves_the_last_map_without_a_copy_of_it) {
     const testing_support::ScratchFolder folder;
     const FusedMap map = some_map(300);
