@@ -21,6 +21,7 @@
 #include "host/apps/daemon/event_loop.hpp"
 #include "host/apps/daemon/home_watch.hpp"
 #include "host/apps/daemon/inputs.hpp"
+#include "host/apps/daemon/map_files.hpp"
 #include "host/apps/daemon/map_keeper.hpp"
 #include "host/apps/daemon/next_settings.hpp"
 #include "host/apps/daemon/problem_log.hpp"
@@ -295,8 +296,8 @@ std::string Daemon::Parts::why_map_ends(const Settings& next) const {
     const double now = settings.mapping.map.resolution_m;
     const double wanted = next.mapping.map.resolution_m;
     if (wanted == now) return why_no_room(pipeline.map(), next.mapping.map);
-    return describe_other_voxels(request.map_folder / "fused.ot", now, wanted) +
-           "; end octoskin, move it and fused.bt away and start octoskin to begin with an empty map";
+    return fmt::format("{}; end octoskin, move {} away and start octoskin to begin with an empty map",
+                       describe_other_voxels(request.map_folder / kMapFile, now, wanted), kMapFilesText);
 }
 
 /// What still waits must not make the map larger than it may be from then on: the next start would refuse it.

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include "host/apps/daemon/map_files.hpp"
+
 namespace octoskin {
 namespace {
-
-constexpr const char* kMapFiles[] = {"fused.ot", "fused.bt"};
 
 bool has_map(const OpenFolder& folder) {
     for (const char* file : kMapFiles)
@@ -66,9 +66,9 @@ bool MapHome::look() {
     if (has_map(*there)) {  // not to be locked either: another daemon may be about to begin with it
         problem_ = fmt::format(
             "{}: this folder took the place of the maps' folder while octoskin ran, and has a map of its "
-            "own, which is not overwritten: move fused.ot and fused.bt out of it, and this map is saved "
+            "own, which is not overwritten: move {} out of it, and this map is saved "
             "there; or end octoskin and start it again to go on with that one; {}",
-            place_.string(), where_it_goes());
+            place_.string(), kMapFilesText, where_it_goes());
         return false;
     }
     auto next = FolderLock::take(*there, place_);

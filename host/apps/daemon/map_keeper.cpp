@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/map_files.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/source_file.hpp"
@@ -19,15 +20,11 @@
 namespace octoskin {
 namespace {
 
-constexpr const char* kMapFile = "fused.ot";
-constexpr const char* kSmallMapFile = "fused.bt";
-constexpr const char* kSnapshotFile = "fused.snapshot";
-
 Result<LoadedMap, AppError> load_to_go_on(const MapConfig& config, const FilePlace& file) {
     const auto refuse = [&file](const std::string& why) {
         return unexpected(reading_error(
-            file,
-            {ExitCode::bad_data, why + ". To begin with an empty map, move fused.ot and fused.bt away"}));
+            file, {ExitCode::bad_data,
+                   fmt::format("{}. To begin with an empty map, move {} away", why, kMapFilesText)}));
     };
     auto loaded = load_map_of(config, file);
     if (!loaded) {

@@ -84,7 +84,9 @@ void add_run_command(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--joints", request->joint_socket,
                         "Make this socket and take joint states from it (`octoskin joints`)");
-    command->add_option("--maps", request->map_folder, "Where the map is kept: fused.ot, fused.bt")
+    command
+        ->add_option("--maps", request->map_folder,
+                     "Where the map is kept: fused.ot, fused.bt, fused.snapshot")
         ->capture_default_str();
     command->add_option("--save-every", request->save_period, "Seconds between two saves of the map")
         ->check(from_to(1, 3600))

@@ -241,7 +241,7 @@ TEST_F(DaemonTest, refuses_a_reload_with_another_resolution_and_keeps_the_map) {
     ASSERT_TRUE(daemon_->wait_until(
         [](const Json& status) { return has_problem(status, "fused.ot: its voxels are 0.040000 m"); }, 5s))
         << daemon_->log();
-    EXPECT_TRUE(has_problem(daemon_->status(), "move it and fused.bt away"));
+    EXPECT_TRUE(has_problem(daemon_->status(), "move fused.ot, fused.bt and fused.snapshot away"));
     EXPECT_GE(daemon_->status()["map"]["known_voxels"].get<int>(), voxels) << "the map did not go on";
     EXPECT_EQ(daemon_->status()["reloads"]["count"], 0);
 }

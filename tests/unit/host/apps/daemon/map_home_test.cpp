@@ -53,7 +53,7 @@ TEST_F(MapHomeTest, that_was_moved_away_is_held_where_it_is) {
 }
 
 TEST_F(MapHomeTest, is_no_folder_with_a_map_of_its_own) {
-    for (const char* name : {"fused.ot", "fused.bt"}) {
+    for (const char* name : {"fused.ot", "fused.bt", "fused.snapshot"}) {
         fs::remove_all(maps_);
         fs::create_directory(maps_);
         scratch_.write(std::string("maps/") + name, "another map");

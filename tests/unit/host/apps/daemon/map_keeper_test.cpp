@@ -290,7 +290,7 @@ TEST(MapKeeper, refuses_a_damaged_map_and_one_of_another_resolution_by_name) {
     EXPECT_EQ(other.error().message, (folder / "fused.ot").string() +
                                          ": its voxels are 0.040000 m, the mapping's are 0.020000 m: "
                                          "say map.resolution_m as it was. To begin with an empty map, "
-                                         "move fused.ot and fused.bt away");
+                                         "move fused.ot, fused.bt and fused.snapshot away");
 }
 
 // Who begins from the map of another program has it as a .bt, and who moved a damaged fused.ot away has no

@@ -1,0 +1,15 @@
+// The files of a map that the daemon keeps.
+#pragma once
+
+#include <array>
+
+namespace octoskin {
+
+inline constexpr const char* kMapFile = "fused.ot";
+inline constexpr const char* kSmallMapFile = "fused.bt";
+inline constexpr const char* kSnapshotFile = "fused.snapshot";
+inline constexpr std::array kMapFiles{kMapFile, kSmallMapFile, kSnapshotFile};
+/// For a person.
+inline constexpr const char* kMapFilesText = "fused.ot, fused.bt and fused.snapshot";
+
+}  // namespace octoskin
