@@ -1,6 +1,7 @@
 // octoskin run: the daemon beside a robot.
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <memory>
@@ -36,7 +37,15 @@ Result<std::unique_ptr<Daemon>, AppError> begin(const DaemonRequest& request,
     return Daemon::build(request, log);
 }
 
+/// Members of the service's group may use its sockets (ControlSocket, JointSocket see to that), and read its
+/// files: whoever could write to a recording's folder could lay links there while the daemon writes.
+void keep_files_to_ourselves() {
+    constexpr mode_t kWrittenByOthers = 0022;
+    ::umask(::umask(0) | kWrittenByOthers);
+}
+
 void run_daemon(DaemonRequest& request) {
+    keep_files_to_ourselves();
     keep_processor_time_for_the_end();
     refuse_few_descriptors();
     request.can_descriptor = descriptor_of(request.interface);

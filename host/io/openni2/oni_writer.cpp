@@ -35,14 +35,13 @@ Result<OniWriter, DepthSourceError> OniWriter::create(const FilePlace& oni, cons
     if (!sidecar) return failure(sidecar.error().message());
     if (const auto removed = sidecar->remove(epoch.filename()); !removed)
         return failure(removed.error().message());
-    if (const auto created = oni.create_anew(); !created) return failure(created.error().reason());
-    // The helper finds the file in the folder that was opened, whatever becomes of the folder's name, and
-    // goes on with it if this process is killed.
-    const auto folder = oni.parent_to_write();
-    if (!folder) return failure(folder.error().message());
-    const auto file = path_of_descriptor(HelperProcess::kInherited) / oni.filename();
+    const auto created = oni.create_anew();
+    if (!created) return failure(created.error().reason());
+    // The helper opens this very file, whatever takes its name or its folder's meanwhile, and goes on with it
+    // if this process is killed.
+    const auto file = path_of_descriptor(HelperProcess::kInherited);
     auto process = HelperProcess::start(*program, {file.string(), oni.shown().string()},
-                                        HelperPipe::its_input, HelperComplaints::kept, folder->descriptor());
+                                        HelperPipe::its_input, HelperComplaints::kept, created->descriptor());
     if (!process) return failure(process.error());
     if (const auto written = FramePipe(process->descriptor(), kWritePatience).write_header({.size = size});
         !written) {

@@ -1,6 +1,7 @@
 // What the daemon records gives its own map again, byte for byte.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -46,6 +47,15 @@ class DaemonRecording : public DaemonTest {
     }
     Json ask(const std::string& line) const {
         return Json::parse(ask_daemon(folder_ / "control", line).value());
+    }
+    void expect_only_its_user_may_write() const {
+        using std::filesystem::perms;
+        constexpr perms kOthers = perms::group_write | perms::others_write;
+        for (const auto& top : {std::filesystem::path(out()), folder_ / "maps"}) {
+            EXPECT_EQ(std::filesystem::status(top).permissions() & kOthers, perms::none) << top;
+            for (const auto& entry : std::filesystem::directory_iterator(top))
+                EXPECT_EQ(entry.status().permissions() & kOthers, perms::none) << entry.path();
+        }
     }
     /// That a replay gives the map that the daemon had at the end of it.
     void expect_own_map(const std::string& configuration = "") const {
@@ -123,12 +133,15 @@ TEST_F(DaemonRecording, begun_with_a_full_map_gives_the_daemons_own_map_and_expl
     std::filesystem::create_directory(folder_ / "maps");
     ASSERT_TRUE(save_map(map, folder_ / "maps" / "fused.ot"));
     const auto file = folder_.write("mapping.yaml", "base: robust\nmap: {memory_max_mib: 1}\n");
+    const mode_t before = ::umask(0);
     start({"--no-camera", "--configuration", file.string()});
+    ::umask(before);
     ASSERT_TRUE(daemon_->wait_until(
         [](const Json& status) { return is_ranging(status) && has_problem(status, "memory_max_mib"); }, 15s))
         << daemon_->status()["map"].dump(1) << daemon_->log();
     const Said recorded = record(out() + " --seconds 2");
     ASSERT_EQ(recorded.exit_code, 0) << recorded.output << daemon_->log();
+    expect_only_its_user_may_write();
     expect_own_map();
     // A voxel that a map with more room has.
     const auto more = folder_.write("more.yaml", "base: robust\nmap: {memory_max_mib: 100}\n");

@@ -316,6 +316,26 @@ TEST_F(OniTest, a_file_that_is_removed_while_it_is_recorded_is_an_error_that_say
     EXPECT_FALSE(fs::exists(epoch()));
 }
 
+/// Another who may write to the folder lays a link there before the helper has opened the file.
+TEST_F(OniTest, what_takes_the_files_name_meanwhile_is_not_written_to) {
+    const fs::path slow = directory_ / "slow";
+    const fs::path go = directory_ / "go";
+    const fs::path real = fs::read_symlink("/proc/self/exe").parent_path() / "octoskin-oni-write";
+    std::ofstream(slow) << "#!/bin/sh\nwhile [ ! -e " << go.string() << " ]; do sleep 0.01; done\nexec "
+                        << real.string() << " \"$@\"\n";
+    fs::permissions(slow, fs::perms::owner_all);
+    const fs::path victim = directory_ / "victim";
+    std::ofstream(victim) << "precious";
+    auto writer = OniWriter::create(oni(), epoch(), kSize, slow);
+    ASSERT_TRUE(writer) << writer.error().what;
+    fs::create_symlink(victim, directory_ / "link");
+    fs::rename(directory_ / "link", oni());
+    std::ofstream(go) << "";
+    for (int i = 0; i < 3; ++i) (void)writer->write(time_of(i), noisy_frame(i));
+    EXPECT_FALSE(writer->close()) << "its file has no name any more";
+    EXPECT_EQ(fs::file_size(victim), 8U);
+}
+
 TEST_F(OniTest, pictures_too_large_for_OpenNI2_are_refused) {
     const auto writer = OniWriter::create(oni(), epoch(), {2000, 1200});
     ASSERT_FALSE(writer);

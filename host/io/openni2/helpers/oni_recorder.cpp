@@ -24,9 +24,11 @@ std::uintmax_t size_of(const std::filesystem::path& file) {
     return error ? 0 : size;
 }
 
+/// Under any name: a file that is open is there without one, too.
 bool is_there(const std::filesystem::path& file) {
     std::error_code error;
-    return std::filesystem::exists(file, error);
+    const std::uintmax_t names = std::filesystem::hard_link_count(file, error);
+    return !error && names > 0;
 }
 
 std::string with_reason(const std::string& what) {

@@ -1,4 +1,4 @@
-// octoskin-oni-write FILE.oni [NAME]: depth frames from standard input (frame_pipe.hpp) into a recording by
+// octoskin-oni-write FILE [NAME]: depth frames from standard input (frame_pipe.hpp) into a recording by
 // OpenNI2's recorder. NAME is what messages call the file.
 #include <unistd.h>
 
@@ -84,7 +84,7 @@ std::string record(const std::filesystem::path& file) {
 int main(int argc, char** argv) {
     if (argc != 2 && argc != 3) {
         std::fputs(
-            "usage: octoskin-oni-write FILE.oni [NAME] < frames\nA helper of octoskin; `octoskin-lab "
+            "usage: octoskin-oni-write FILE [NAME] < frames\nA helper of octoskin; `octoskin-lab "
             "simulate` "
             "runs "
             "it.\n",
