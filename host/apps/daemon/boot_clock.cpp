@@ -156,6 +156,14 @@ void MapTime::go_on_after_sleep(Pipeline& pipeline, HostTime bus, Nanoseconds sl
     if (!since_saved()) pipeline.wait((slept.count() + kSecond_ns - 1) / kSecond_ns);
 }
 
+std::optional<BootTime> MapTime::go_on(FusedMap& copy, HostTime bus) const {
+    const VoxelAges::Clock before = copy.layers().ages.clock();
+    if (!before.has_begun || before.waits) return map_time_;
+    copy.go_on(bus);
+    const VoxelAges::Clock& after = copy.layers().ages.clock();
+    return after.runs_for_s == before.runs_for_s ? map_time_ : begin_of_second(after, clock_(), bus);
+}
+
 void MapTime::note(const FusedMap& map, HostTime bus) {
     const VoxelAges::Clock& clock = map.layers().ages.clock();
     const bool went_on = clock.has_begun != seen_.has_begun || clock.runs_for_s != seen_.runs_for_s;

@@ -84,6 +84,10 @@ class MapTime {
     void note(const FusedMap& map, HostTime bus);
     /// No later than when it was; empty: not known.
     [[nodiscard]] const std::optional<BootTime>& map_time() const noexcept { return map_time_; }
+    /// The map in a file is asked without this clock: a copy of it goes on to the bus's time first, where
+    /// that is known and the map does not wait, as a copy that a question is put to does. The answer is the
+    /// copy's `map_time`.
+    [[nodiscard]] std::optional<BootTime> go_on(FusedMap& copy, HostTime bus) const;
 
   private:
     void go_on_after_sleep(Pipeline& pipeline, HostTime bus, Nanoseconds slept);

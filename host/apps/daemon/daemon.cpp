@@ -68,7 +68,7 @@ struct Daemon::Parts {
     [[nodiscard]] std::optional<HostTime> maps_silent_since(HostTime now) const;
     void go_on_with(KeptMap kept);
     /// Of the map, for the next start.
-    [[nodiscard]] SnapshotOrigin origin_of_map();
+    [[nodiscard]] SnapshotOrigin make_ready_to_save(FusedMap& copy);
     void save_map();
     std::string save_last_map(HostTime end);
     std::uint64_t settle_pipeline();
@@ -187,9 +187,11 @@ void Daemon::Parts::go_on_with(KeptMap kept) {
     pipeline.begin_with(std::move(kept.map));
 }
 
-SnapshotOrigin Daemon::Parts::origin_of_map() {
-    map_time.note(pipeline.map(), inputs.reckoned_bus_now(monotonic_now()));
-    return {.mapping_crc32 = settings.recorded.mapping_crc32(), .map_time = map_time.map_time()};
+/// As of now: for long nothing may have been measured.
+SnapshotOrigin Daemon::Parts::make_ready_to_save(FusedMap& copy) {
+    const HostTime bus = inputs.reckoned_bus_now(monotonic_now());
+    map_time.note(copy, bus);
+    return {.mapping_crc32 = settings.recorded.mapping_crc32(), .map_time = map_time.go_on(copy, bus)};
 }
 
 void Daemon::Parts::watch() {
@@ -255,8 +257,8 @@ std::optional<HostTime> Daemon::Parts::maps_silent_since(HostTime now) const {
 }
 
 void Daemon::Parts::save_map() {
-    (void)keeper->save(pipeline.map(),
-                       origin_of_map());  // counted if one is at work still; the next is not far
+    // Counted if one is at work still; the next is not far.
+    (void)keeper->save(pipeline.map(), [this](FusedMap& copy) { return make_ready_to_save(copy); });
 }
 
 /// Why it could not be saved by `end`; empty: it is saved.
@@ -270,8 +272,9 @@ std::string Daemon::Parts::save_last_map(HostTime end) {
                       : std::string(what);
     };
     if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long for the save before");
-    const SnapshotOrigin origin = origin_of_map();
-    keeper->save_last(pipeline.take_map(), origin);
+    FusedMap last = pipeline.take_map();
+    const SnapshotOrigin origin = make_ready_to_save(last);
+    keeper->save_last(std::move(last), origin);
     if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long");
     return keeper->record().error;
 }

@@ -160,7 +160,7 @@ void MapKeeper::move_to(NamedFolder folder) {
     work_->folder = std::move(folder);
 }
 
-bool MapKeeper::save(const FusedMap& map, const SnapshotOrigin& origin) {
+bool MapKeeper::save(const FusedMap& map, const MakeReady& make_ready) {
     {
         const std::lock_guard lock(work_->mutex);
         work_->record.skipped += work_->is_busy ? 1U : 0U;
@@ -169,6 +169,7 @@ bool MapKeeper::save(const FusedMap& map, const SnapshotOrigin& origin) {
     }
     try {
         FusedMap copy = copier_(map);  // takes long, so nobody is kept waiting for the lock
+        const SnapshotOrigin origin = make_ready(copy);
         const std::lock_guard lock(work_->mutex);
         work_->waiting.emplace(Save{std::move(copy), origin});
     } catch (const std::bad_alloc&) {

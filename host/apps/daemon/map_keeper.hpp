@@ -76,7 +76,12 @@ class MapKeeper {
     /// Copies the map and has the copy saved, never waiting for the disk. While one is being saved nothing is
     /// copied, and false is the answer: there is one copy at a time. False, too, if there is no memory for
     /// it: counted as failed, and the next save is tried as if nothing had been.
-    bool save(const FusedMap& map, const SnapshotOrigin& origin = {});
+    bool save(const FusedMap& map, const SnapshotOrigin& origin = {}) {
+        return save(map, [&origin](FusedMap&) { return origin; });
+    }
+    /// `make_ready` is given the copy before it is written, and says what it is of.
+    using MakeReady = std::function<SnapshotOrigin(FusedMap& copy)>;
+    bool save(const FusedMap& map, const MakeReady& make_ready);
     /// Saves the map itself, which needs no memory for a copy: the last save. `finish` first; asserted.
     void save_last(FusedMap map, const SnapshotOrigin& origin = {});
     /// Waits until nothing is left to save, `patience` at most; false if that was too short.

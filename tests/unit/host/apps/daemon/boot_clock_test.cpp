@@ -141,6 +141,32 @@ TEST(MapTime, is_no_later_than_when_the_maps_clock_came_to_what_it_shows) {
     EXPECT_EQ(time.map_time(), at(130s));
 }
 
+/// A map in a file is free where it is so now, though nothing was measured for long.
+TEST(MapTime, of_a_copy_that_goes_on_is_that_of_what_the_copy_shows) {
+    BootTime now = at(100s + 50ms);
+    MapTime time([&now] { return std::optional(now); });
+    MapConfig config;
+    config.age.unknown_after_s = 20;
+    FusedMap map(config);
+    map.go_on(bus(1000s));
+    feed(map, std::vector<VoxelUpdate>{{{32768, 32768, 32768}, -1.0F}});
+    time.note(map, bus(1000s + 40ms));
+    for (const std::int64_t passed_s : {0, 10, 30}) {
+        now = at(Nanoseconds{(100 + passed_s) * 1'000'000'000} + 50ms);
+        FusedMap copy = map.copy();
+        const auto of_copy = time.go_on(copy, bus(Nanoseconds{(1000 + passed_s) * 1'000'000'000} + 40ms));
+        EXPECT_EQ(copy.known_voxels(), passed_s < 20 ? 1U : 0U) << passed_s;
+        EXPECT_EQ(map.known_voxels(), 1U);
+        const Nanoseconds shown{(100 + passed_s) * 1'000'000'000};
+        EXPECT_EQ(of_copy, passed_s == 0 ? time.map_time() : std::optional(at(shown + 10ms))) << passed_s;
+    }
+    FusedMap waits = map.copy();
+    waits.begin_to_wait();
+    EXPECT_EQ(time.go_on(waits, bus(1100s)), time.map_time());
+    EXPECT_TRUE(waits.layers().ages.clock().waits);
+    EXPECT_EQ(waits.known_voxels(), 1U);
+}
+
 TEST(MapTime, is_no_later_than_what_was_measured_and_went_into_the_map_late) {
     BootTime now = at(100s);
     MapTime time([&now] { return std::optional(now); });
